@@ -1,0 +1,37 @@
+#pragma once
+/* Why a call failed: a code for the program, a sentence for a person.
+ * This module knows nothing of what failed; it allocates nothing, so it can also report lack of memory. */
+#include <stdarg.h>
+#include <stdbool.h>
+
+#define NODISCARD __attribute__((warn_unused_result))
+#define PRINTF_LIKE(format_at, args_at) __attribute__((format(printf, format_at, args_at)))
+
+enum error_code {
+    ERROR_NONE = 0,
+    ERROR_RANGE,       /* a value is outside what is allowed or present */
+    ERROR_LIMIT,       /* more than a written limit: size, count, time */
+    ERROR_MEMORY,      /* the system gave no memory */
+    ERROR_FORMAT,      /* bytes or text that are not what they should be */
+    ERROR_UNSUPPORTED, /* well formed, but nothing we read or do */
+    ERROR_NOT_FOUND,   /* the named file, region, plan, room does not exist */
+    ERROR_IO,          /* the system refused to read, write, connect, start */
+    ERROR_STATE,       /* not now: already done, not ready, stale */
+    ERROR_CANCELLED,   /* somebody asked to stop */
+    ERROR_GL           /* the graphics driver failed */
+};
+
+/* Lives on the caller's stack. Zero it before use: `struct error err = { 0 };` */
+struct error {
+    enum error_code code;
+    char text[240];
+};
+
+/* Fills err (NULL is allowed) and returns false: `return error_set(...);` is a whole failure. */
+bool error_set(struct error *err, enum error_code code, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* Adds context in front on the way up: "plan head-3: region 7: label 300 is not in the volume". */
+void error_prefix(struct error *err, const char *format, ...) PRINTF_LIKE(2, 3);
+
+/* The code's stable lower-case word, "range", "limit", ...; for logs, problems and tests. */
+const char *error_word(enum error_code code);

@@ -1,0 +1,16 @@
+#pragma once
+/* Memory: small fixed structs that may abort, and sizes from outside that may not. */
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/base/error.h"
+
+/* Zeroed; aborts when there is none. For small structs of fixed size only. */
+NODISCARD void *mem_new(size_t size);
+
+/* Zeroed array of n things of size bytes; the product is checked for overflow and against limit_bytes.
+ * errors ERROR_LIMIT, ERROR_MEMORY. n == 0 gives a unique pointer. Free with free(). */
+NODISCARD void *mem_array(size_t n, size_t size, uint64_t limit_bytes, struct error *err);
+
+/* Copy of a string; aborts when there is no memory. */
+NODISCARD char *mem_copy_text(const char *text);

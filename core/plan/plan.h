@@ -1,0 +1,101 @@
+#pragma once
+/* One opened plan: images, regions, doses, beams, tracks, and the report of what was noticed. Frozen after loading.
+ * Derives meshes on demand and keeps them. Knows no sockets, no scene, no GL. */
+#include <stdatomic.h>
+
+#include "core/beam/beam.h"
+#include "core/dose/dose.h"
+#include "core/plan/report.h"
+#include "core/region/region.h"
+#include "core/surface/mesh.h"
+#include "core/track/track.h"
+#include "core/volume/volume.h"
+
+enum { PLAN_MAX_IMAGES = 16, PLAN_MAX_DOSES = 16, PLAN_MAX_BEAMS = 64 };
+
+struct plan_image {
+    char id[64];
+    char modality[16]; /* "CT", "MR", ...; "" unknown */
+    char unit[8];      /* "HU" for CT, "" else */
+    struct volume *volume;
+    double window_center, window_width; /* a first window that suits the values */
+};
+
+struct plan {
+    char id[64], name[128], note[512];
+    bool is_phantom;
+    struct plan_image images[PLAN_MAX_IMAGES];
+    size_t n_images;
+    struct region_set regions;
+    struct dose doses[PLAN_MAX_DOSES];
+    size_t n_doses;
+    struct beam beams[PLAN_MAX_BEAMS];
+    size_t n_beams;
+    struct track_set tracks;
+    struct report report;
+    struct box3 bounds_lps_mm; /* of all regions, else of all images and doses */
+    int64_t load_us;
+    struct plan_meshes *meshes; /* kept surfaces; see plan_surface */
+};
+
+/* Called from the loading thread as work goes on; phase is a short sentence fragment ("reading ct.nii.gz"), percent 0..100. */
+struct plan_progress {
+    void (*step)(void *context, const char *phase, double percent);
+    void *context;
+    atomic_bool *cancel; /* may be NULL; when it turns true loading fails with ERROR_CANCELLED */
+};
+
+/* Opens a plan folder: plan.json when there is one, else by what lies in it.
+ *   errors  ERROR_NOT_FOUND, ERROR_FORMAT, ERROR_UNSUPPORTED, ERROR_LIMIT, ERROR_MEMORY, ERROR_IO, ERROR_CANCELLED;
+ *           the text names file, position, what was found, what was expected. Never half a plan.
+ *   thread  any, one call a plan */
+NODISCARD struct plan *plan_load(const char *folder, const char *id, const struct plan_progress *progress, struct error *err);
+void plan_destroy(struct plan *plan);
+
+/* What a folder holds, without reading voxels: for the list of plans. */
+struct plan_summary {
+    char name[128];
+    char note[512];
+    bool is_phantom;
+    bool is_readable;
+    char reason[240];   /* why not, when not readable */
+    char parts[16][64]; /* "CT", "3 regions", "4 dose components", "1 beam", ... */
+    size_t n_parts;
+    uint64_t n_bytes; /* of the files named */
+};
+/* Never fails: what cannot be read is said in reason. */
+void plan_summarize(const char *folder, struct plan_summary *summary);
+
+/* Detail of a surface: FULL is every univel; LIGHT is for moving pictures: the mask reduced until all surfaces of the
+ * plan together stay under PLAN_LIGHT_TRIANGLES (or the reduction reaches 8). */
+enum surface_detail { SURFACE_FULL, SURFACE_LIGHT };
+enum { PLAN_LIGHT_TRIANGLES = 80000 };
+
+struct surface_facts {
+    size_t n_triangles, n_vertices;
+    double area_mm2, volume_mm3, univel_volume_mm3; /* univel volume: of the mask the surface encloses, descendants included */
+    uint64_t n_univels;
+    double build_ms;
+    uint32_t reduction; /* 1 for FULL */
+};
+
+/* The surface of a region, built on first use and kept, with vertex normals. Any thread; the first caller builds, others wait.
+ * One reference, the caller's. errors as surface_marching_cubes */
+NODISCARD struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_detail detail, struct surface_facts *facts,
+                                    struct error *err);
+
+/* What lies at a patient point. */
+struct probe_dose {
+    size_t dose, component;
+    double value; /* in the dose's unit */
+};
+struct plan_probe {
+    struct vec3 point_lps_mm;
+    size_t regions[32]; /* every region that holds the point, innermost first */
+    size_t n_regions;
+    bool has_image[PLAN_MAX_IMAGES];
+    double image_value[PLAN_MAX_IMAGES];
+    struct probe_dose doses[PLAN_MAX_DOSES * DOSE_N_QUANTITIES];
+    size_t n_doses;
+};
+void plan_probe(const struct plan *plan, struct vec3 point_lps_mm, struct plan_probe *probe);

@@ -1,0 +1,25 @@
+#pragma once
+/* One bit per voxel, in rows of 64-bit words: what extraction works on. Deterministic for any number of threads. */
+#include <stdint.h>
+
+#include "core/region/region.h"
+
+struct mask {
+    uint32_t size[3];
+    uint32_t words;                 /* 64-bit words in a row of size[0] voxels; bits past the end are 0 */
+    struct affine lps_mm_from_ijk;
+    uint64_t *bits;                 /* [k][j][words] */
+};
+
+/* Voxels of a layer that carry one of the labels (sorted or not). errors ERROR_RANGE n_labels 0, ERROR_MEMORY */
+NODISCARD struct mask *mask_from_labels(const struct volume *layer, const uint16_t *labels, size_t n_labels, int n_threads,
+                                        struct error *err);
+/* A region with everything inside it (its descendants), on the region's own grid: what its outer surface encloses.
+ * A descendant on a layer with another grid is left out (it lies inside anyway). errors as above */
+NODISCARD struct mask *mask_from_region(const struct region_set *set, size_t region, int n_threads, struct error *err);
+/* Every factor x factor x factor block becomes one voxel, inside when at least half of the block that exists is; factor 2..8.
+ * A block row at the border may be partial. Geometry follows: the same outer faces. A region that would vanish keeps the voxel of
+ * its fullest block. */
+NODISCARD struct mask *mask_reduce(const struct mask *mask, uint32_t factor, int n_threads, struct error *err);
+uint64_t mask_count(const struct mask *mask);
+void mask_destroy(struct mask *mask);
