@@ -10,8 +10,8 @@ SHELL := /bin/bash
 
 CC := $(if $(filter default,$(origin CC)),gcc,$(CC))
 SAN ?=
-VARIANT := $(if $(SAN),$(notdir $(CC))-$(subst $(subst ,, ),-,$(subst $(comma),-,$(SAN))),$(if $(filter gcc,$(notdir $(CC))),release,$(notdir $(CC))))
 comma := ,
+VARIANT := $(if $(SAN),$(notdir $(CC))-$(subst $(comma),-,$(SAN)),$(if $(filter gcc,$(notdir $(CC))),release,$(notdir $(CC))))
 B := build/$(VARIANT)
 GEN := build/gen
 Q := $(if $(V),,@)
