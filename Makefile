@@ -1,8 +1,12 @@
-# All that is made goes to build/<variant>/; generated code and the page's files, the same for all variants, to build/gen and build/web.
-#   make            the three programs, man pages, web files        make run     install what is missing, build, demo plan, serve
-#   make test       everything (see tests/README.md)                make install PREFIX=/usr/local DESTDIR=
+# All that is made goes to build/<variant>/; what is the same for every variant to build/gen (generated code), build/web
+# (the page) and build/demo (the demo plan).
+#   make            the programs and the page               make run     install what is missing, build, demo plan, serve
+#   make test       everything (see tests/README.md)        make install PREFIX=/usr/local DESTDIR=
+#   make test-unit test-render test-api test-web            one suite
 #   make bench  lint  fuzz  cover  clean
-# Variables: CC=gcc|clang  SAN=address,undefined|thread  V=1
+# Variables: CC=gcc|clang  SAN=address,undefined|thread  WERROR=1  V=1  FUZZ_SECONDS=60
+#   run: PLANS="folder ..." further folders of plans, ARGS="--listen 127.0.0.1:9000 ..." further flags of beamroomd
+#   EXTRA_<path_with_underscores>  further flags for one source file
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .SUFFIXES:
@@ -14,13 +18,16 @@ comma := ,
 VARIANT := $(if $(SAN),$(notdir $(CC))-$(subst $(comma),-,$(SAN)),$(if $(filter gcc,$(notdir $(CC))),release,$(notdir $(CC))))
 B := build/$(VARIANT)
 GEN := build/gen
+WEB := build/web
 Q := $(if $(V),,@)
 
 VERSION := 0.1.0
 PREFIX ?= /usr/local
+SYSCONFDIR ?= /etc
 NODE ?= node
 PYTHON ?= /usr/bin/python3
-PARTS := $(shell nproc)
+FUZZ_SECONDS ?= 60
+JOBS := $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla -Werror=implicit-function-declaration $(if $(WERROR),-Werror)
 CPPFLAGS += -I. -I$(GEN) -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -DBEAMROOM_VERSION='"$(VERSION)"'
@@ -32,9 +39,15 @@ LDFLAGS += -fsanitize=$(SAN)
 else
 CPPFLAGS += -D_FORTIFY_SOURCE=2
 endif
+ifneq ($(COVER),)
+CFLAGS += --coverage
+LDFLAGS += --coverage
+endif
 
 CORE_LIBS := -lturbojpeg -lspng -lniftiio -lznz -ldeflate -lz -lcjson -ldl -lm
 SERVER_LIBS := -lmicrohttpd -lwebsockets -lcjson -lm
+
+c_files = $(if $(wildcard $(1)),$(sort $(shell find $(wildcard $(1)) -name '*.c')))
 
 # ---- generated from proto/ ------------------------------------------------------------------------------------------
 PROTO := $(wildcard proto/*.json proto/*.md proto/*.yaml proto/gen/*.mjs)
@@ -43,15 +56,16 @@ $(GEN_STAMP): $(PROTO)
 	$(Q)mkdir -p $(GEN)
 	$(Q)$(NODE) proto/gen/main.mjs $(GEN)
 	$(Q)touch $@
+$(GEN)/%.c $(GEN)/%.h: $(GEN_STAMP) ;
 
-# ---- objects --------------------------------------------------------------------------------------------------------
+# ---- objects and programs ---------------------------------------------------------------------------------------------
 # core: everything but the main()s; wire: JSON edge shared by daemon, renderer and command line; server: the daemon's own.
-CORE_SRC := $(shell find core -name '*.c' | sort)
-WIRE_SRC := $(shell find server/wire -name '*.c' | sort)
-SERVER_SRC := $(shell find server/room server/http server/ws server/fleet server/store server/auth -name '*.c' | sort)
-DAEMON_SRC := $(shell find server/daemon -name '*.c' | sort)
-RENDERER_SRC := $(shell find server/renderer -name '*.c' | sort)
-CLI_SRC := $(shell find server/cli -name '*.c' | sort)
+CORE_SRC := $(call c_files,core)
+WIRE_SRC := $(call c_files,server/wire)
+SERVER_SRC := $(call c_files,server/room server/http server/ws server/fleet server/store server/auth)
+DAEMON_SRC := $(call c_files,server/daemon)
+RENDERER_SRC := $(call c_files,server/renderer)
+CLI_SRC := $(call c_files,server/cli)
 GEN_SRC := $(GEN)/wire_gen.c
 
 obj = $(patsubst %.c,$(B)/obj/%.o,$(1))
@@ -59,7 +73,6 @@ $(B)/obj/%.o: %.c | $(GEN_STAMP)
 	@mkdir -p $(@D)
 	$(if $(Q),@echo "  CC $<")
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_$(subst /,_,$(basename $<))) -c $< -o $@
-$(GEN)/%.c: $(GEN_STAMP) ;
 
 $(B)/libcore.a: $(call obj,$(CORE_SRC))
 $(B)/libwire.a: $(call obj,$(WIRE_SRC) $(GEN_SRC))
@@ -81,21 +94,108 @@ PROGRAMS := $(if $(DAEMON_SRC),$(B)/beamroomd) $(if $(RENDERER_SRC),$(B)/beamroo
 all: programs web
 programs: $(PROGRAMS)
 
-# ---- unit tests (cmocka): one program a file in tests/unit -----------------------------------------------------------
-UNIT_SRC := $(shell find tests/unit -name 'test_*.c' | sort)
-UNIT_HELP := $(shell find tests/unit -name '*.c' ! -name 'test_*.c' | sort)
-UNIT_BIN := $(patsubst tests/unit/%.c,$(B)/unit/%,$(UNIT_SRC))
-$(B)/unit/%: $(B)/obj/tests/unit/%.o $(call obj,$(UNIT_HELP)) $(B)/libserver.a $(B)/libwire.a $(B)/libcore.a
-	@mkdir -p $(@D)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CORE_LIBS) $(SERVER_LIBS) -lcmocka
-.PHONY: unit-programs test-unit
-unit-programs: $(UNIT_BIN)
-test-unit: $(UNIT_BIN)
-	$(Q)tests/run_programs.sh unit $(UNIT_BIN)
-
-# ---- the page --------------------------------------------------------------------------------------------------------
+# ---- the page: web/, the pinned libraries and the generated tables, side by side as the browser loads them -------------
+LIB := $(WEB)/lib
+node_modules/.stamp: package.json package-lock.json .npmrc
+	$(if $(Q),@echo "  NPM ci")
+	$(Q)npm ci --silent </dev/null && touch $@
+$(WEB)/.stamp: $(shell find web 2>/dev/null) $(GEN_STAMP) node_modules/.stamp deploy/web.sh
+	$(Q)deploy/web.sh $(WEB) $(GEN)
+	$(Q)touch $@
 .PHONY: web
-web: $(GEN_STAMP)
+web: $(WEB)/.stamp
+
+# ---- the demo plan and a daemon to look at it ----------------------------------------------------------------------------
+DEMO := build/demo/plans/phantom
+$(DEMO)/plan.json: | $(B)/beamroom
+	$(if $(Q),@echo "  DEMO $(DEMO)")
+	$(Q)rm -rf $(DEMO) $(DEMO).part && mkdir -p $(dir $(DEMO))
+	$(Q)$(B)/beamroom phantom $(DEMO).part >/dev/null && mv $(DEMO).part $(DEMO)
+.PHONY: demo run
+demo: $(if $(CLI_SRC),$(DEMO)/plan.json)
+run:
+	@deploy/packages build run
+	@$(MAKE) --no-print-directory $(JOBS) all demo
+	@mkdir -p build/demo/data
+	@exec $(B)/beamroomd --plans build/demo/plans $(foreach folder,$(PLANS),--plans $(folder)) --data build/demo/data \
+	    --web $(WEB) $(ARGS)
+
+# ---- test programs: one a file; unit and render with cmocka, bench prints JSON lines ---------------------------------------
+# What is not named test_* or bench_* in these folders is shared help.
+define c_programs
+$(1)_HELP := $(filter-out tests/$(1)/$(2)_%,$(call c_files,tests/$(1)))
+$(1)_BIN := $(patsubst tests/$(1)/%.c,$(B)/$(1)/%,$(filter tests/$(1)/$(2)_%,$(call c_files,tests/$(1))))
+$(B)/$(1)/%: $(B)/obj/tests/$(1)/%.o $$(call obj,$$($(1)_HELP)) $(B)/libserver.a $(B)/libwire.a $(B)/libcore.a
+	@mkdir -p $$(@D)
+	$$(Q)$$(CC) $$(LDFLAGS) -o $$@ $$^ $$(CORE_LIBS) $$(SERVER_LIBS) $(3)
+.PHONY: $(1)-programs
+$(1)-programs: $$($(1)_BIN)
+endef
+$(eval $(call c_programs,unit,test,-lcmocka))
+$(eval $(call c_programs,render,test,-lcmocka))
+$(eval $(call c_programs,bench,bench,))
+$(eval $(call c_programs,fuzz,fuzz,-fsanitize=fuzzer))
+
+# ---- suites; each ends with "name: N passed, N failed, N skipped" -----------------------------------------------------------
+export BEAMROOM_BIN := $(abspath $(B))
+export BEAMROOM_WEB := $(abspath $(WEB))
+export BEAMROOM_DEMO := $(abspath build/demo/plans)
+LABEL = $(1)$(if $(filter release,$(VARIANT)),, ($(VARIANT)))
+# The thread sanitizer of this compiler cannot map its shadow where addresses are randomised widely.
+RUNNER := $(if $(findstring thread,$(SAN)),$(shell setarch -R true 2>/dev/null && echo setarch -R))
+.PHONY: test-unit test-render test-api test-web test-install test lint
+test-unit: $(unit_BIN)
+	$(Q)RUNNER="$(RUNNER)" tests/run_programs.sh "$(call LABEL,unit)" $(unit_BIN)
+test-render: $(render_BIN) demo
+	$(Q)tests/run_programs.sh "$(call LABEL,render)" $(render_BIN)
+test-api: all demo
+	$(Q)tests/run_node.sh api $(sort $(wildcard tests/api/*.test.mjs))
+test-web: all demo
+	$(Q)tests/run_node.sh web $(sort $(wildcard tests/web/*.test.mjs))
+test-install: all demo
+	$(Q)tests/install.sh
+lint: $(GEN_STAMP)
+	$(Q)tests/lint.sh
+test:
+	@deploy/packages build run test
+	@tests/all.sh
+
+# ---- fuzzing: a variant of its own, every source instrumented ------------------------------------------------------------------
+.PHONY: fuzz
+fuzz:
+	@deploy/packages build test
+	@$(MAKE) --no-print-directory $(JOBS) CC=clang SAN=fuzzer-no-link,address,undefined VARIANT=fuzz fuzz-programs
+	@FUZZ_SECONDS=$(FUZZ_SECONDS) tests/fuzz/run.sh build/fuzz/fuzz
+
+# ---- figures, coverage -----------------------------------------------------------------------------------------------------------
+.PHONY: bench cover
+bench:
+	@deploy/packages build run bench
+	@$(MAKE) --no-print-directory $(JOBS) all demo bench-programs
+	@PYTHON=$(PYTHON) $(NODE) tests/bench/run.mjs build/bench.json
+cover:
+	@deploy/packages build run test
+	@$(MAKE) --no-print-directory $(JOBS) VARIANT=cover COVER=1 unit-programs render-programs
+	@find build/cover -name '*.gcda' -delete
+	@$(MAKE) --no-print-directory VARIANT=cover COVER=1 test-unit test-render
+	@tests/cover.sh build/cover
+
+# ---- install -----------------------------------------------------------------------------------------------------------------------
+# beamroomd looks for beamroom-render beside itself.
+.PHONY: install
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/beamroom $(DESTDIR)$(SYSCONFDIR)/beamroom
+	install -m 755 $(PROGRAMS) $(DESTDIR)$(PREFIX)/bin
+	rm -rf $(DESTDIR)$(PREFIX)/share/beamroom/web
+	cp -r $(WEB) $(DESTDIR)$(PREFIX)/share/beamroom/web && rm $(DESTDIR)$(PREFIX)/share/beamroom/web/.stamp
+	for page in $(wildcard deploy/man/*.[1-8]); do \
+	    install -D -m 644 $$page $(DESTDIR)$(PREFIX)/share/man/man$${page##*.}/$${page##*/} || exit 1; done
+	for page in deploy/beamroomd.conf deploy/beamroomd.service; do \
+	    sed 's|@PREFIX@|$(PREFIX)|g; s|@SYSCONFDIR@|$(SYSCONFDIR)|g' $$page >$(B)/$${page##*/} || exit 1; done
+	install -D -m 644 $(B)/beamroomd.service $(DESTDIR)$(PREFIX)/lib/systemd/system/beamroomd.service
+	[ -e $(DESTDIR)$(SYSCONFDIR)/beamroom/beamroomd.conf ] || \
+	    install -m 644 $(B)/beamroomd.conf $(DESTDIR)$(SYSCONFDIR)/beamroom/beamroomd.conf
+	install -D -m 644 deploy/nginx.conf $(DESTDIR)$(PREFIX)/share/doc/beamroom/nginx.conf
 
 .PHONY: clean
 clean:

@@ -1,0 +1,28 @@
+#!/bin/bash
+# Puts the page together: deploy/web.sh DEST GENERATED
+#   DEST/...      the files of web/ as they are
+#   DEST/lib/     the pinned libraries, single ES modules: lit-html.js (directives in lib/directives/), signals-core.js
+#   DEST/gen/     the JavaScript generated from proto/
+# Built beside DEST and moved into place, so a running daemon never serves a half-written page.
+set -eu
+dest=$1 generated=$2
+part=$dest.part
+rm -rf "$part"
+mkdir -p "$part/lib/directives" "$part/gen"
+[ ! -d web ] || cp -r web/. "$part/"
+
+# The libraries' source maps stay behind, so the comments that name them go too.
+library() { sed 's|//# sourceMappingURL=.*$||' "node_modules/$1" >"$part/lib/$2"; }
+for module in lit-html directive directive-helpers directives/class-map directives/live directives/ref directives/repeat \
+    directives/style-map async-directive; do
+    library "lit-html/$module.js" "$module.js"
+done
+library @preact/signals-core/dist/signals-core.module.js signals-core.js
+cp node_modules/lit-html/LICENSE "$part/lib/LICENSE.lit-html"
+cp node_modules/@preact/signals-core/LICENSE "$part/lib/LICENSE.signals-core"
+
+for file in "$generated"/*.js; do
+    [ ! -e "$file" ] || cp "$file" "$part/gen/"
+done
+rm -rf "$dest"
+mv "$part" "$dest"

@@ -1,0 +1,50 @@
+#!/bin/bash
+# Every suite, one after the other: what `make test` runs. Each suite's full output stays in build/test/<suite>.log.
+# Ends with one line, "N passed, N failed, N skipped", over everything.
+set -u
+logs=build/test
+mkdir -p "$logs"
+jobs=-j$(nproc)
+total_passed=0 total_failed=0 total_skipped=0
+rows=()
+
+suite() { # suite NAME MAKE-ARGUMENT...
+    local name=$1 log=$logs/$1.log start=$SECONDS status counts passed failed skipped
+    shift
+    echo "== $name"
+    ${MAKE:-make} --no-print-directory "$@" >"$log" 2>&1 </dev/null
+    status=$?
+    # what a suite says about itself: "name: N passed, N failed, N skipped", one or several
+    counts=$(sed -nE 's/^[^:]+: ([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$/\1 \2 \3/p' "$log" |
+        awk '{ p += $1; f += $2; s += $3 } END { print p + 0, f + 0, s + 0 }')
+    read -r passed failed skipped <<<"$counts"
+    if [ $status != 0 ]; then
+        [ "$failed" -gt 0 ] || failed=1
+        tail -n 200 "$log"
+    else
+        # a build has no tests to count: it is one itself
+        [ "$((passed + failed + skipped))" -gt 0 ] || [[ $name != build* ]] || passed=1
+        grep -iE '^ *(skipped|.*SKIPPED|﹣)' "$log"
+    fi
+    rows+=("$(printf '%-28s %6d passed %4d failed %4d skipped %5d s' "$name" "$passed" "$failed" "$skipped" $((SECONDS - start)))")
+    total_passed=$((total_passed + passed)) total_failed=$((total_failed + failed)) total_skipped=$((total_skipped + skipped))
+}
+
+programs="unit-programs render-programs bench-programs"
+suite build-gcc "$jobs" WERROR=1 all $programs
+suite lint lint
+suite unit "$jobs" test-unit
+suite render "$jobs" test-render
+suite api "$jobs" test-api
+suite web "$jobs" test-web
+suite install "$jobs" test-install
+suite build-clang "$jobs" CC=clang WERROR=1 programs $programs
+suite unit-address-undefined "$jobs" SAN=address,undefined test-unit
+suite unit-thread "$jobs" SAN=thread test-unit
+suite fuzz fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-10}"
+
+echo
+printf '%s\n' "${rows[@]}"
+echo "in all ${SECONDS} s; logs in $logs"
+echo "$total_passed passed, $total_failed failed, $total_skipped skipped"
+[ "$total_failed" = 0 ]

@@ -1,0 +1,81 @@
+#!/bin/bash
+# What a compiler does not say: layers, headers that stand alone, calls we never make, scripts that parse.
+# Ends with "lint: N passed, N failed, N skipped".
+set -u
+passed=0 failed=0
+check() { # check SENTENCE COMMAND...: passes when the command succeeds; its output is shown when it does not
+    local sentence=$1 out
+    shift
+    if out=$("$@" 2>&1); then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAILED: $sentence"
+        echo "$out" | head -n 40 | sed 's/^/  /'
+    fi
+}
+sources() { git ls-files -co --exclude-standard -- "$@" | while read -r file; do [ ! -e "$file" ] || echo "$file"; done; }
+
+# The check itself is checked: in a copy with one planted include it has to find exactly that.
+planted() { # planted FILE INCLUDE EXPECTED-WORDS
+    local copy out
+    copy=$(mktemp -d)
+    cp -r --parents core server tests/layers.txt "$copy" 2>/dev/null || cp -r --parents core tests/layers.txt "$copy"
+    mkdir -p "$copy/$(dirname "$1")"
+    echo "#include $2" >>"$copy/$1"
+    out=$(tests/layers.sh "$copy")
+    local status=$?
+    rm -rf "$copy"
+    [ $status = 1 ] && grep -q "^$1:.*$3" <<<"$out" && [ "$(wc -l <<<"$out")" = 2 ] && return 0
+    echo "planted $2 in $1; the check said (exit $status):"
+    echo "$out"
+    return 1
+}
+no_calls() {
+    ! grep -nE '(^|[^a-zA-Z0-9_.>])(sprintf|vsprintf|strcpy|strcat|strtok|gets|system|popen|setlocale|alloca|atoi|atof)[[:space:]]*\(' \
+        $(sources '*.c' '*.h')
+}
+no_flags() { ! grep -nE -e '-f(fast-math|unsafe-math-optimizations)' Makefile; }
+headers_stand_alone() {
+    local header status=0
+    for header in $(sources '*.h'); do
+        "${CC:-gcc}" -std=c17 -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -I. -Ibuild/gen -Wall -Wextra -Werror -fsyntax-only \
+            -include "$header" -x c /dev/null || status=1
+        grep -q '^#pragma once' "$header" || { echo "$header: no #pragma once"; status=1; }
+    done
+    return $status
+}
+scripts_parse() {
+    local script status=0
+    for script in $(sources deploy tests .ci | xargs -r grep -lE '^#!/bin/(ba)?sh'); do
+        bash -n "$script" || status=1
+        [ -x "$script" ] || { echo "$script: not executable"; status=1; }
+    done
+    for script in $(sources '*.js' '*.mjs'); do "${NODE:-node}" --check "$script" || status=1; done
+    return $status
+}
+json_parses() {
+    local file status=0
+    for file in $(sources '*.json' | grep -v '/fixtures/bad/'); do
+        "${NODE:-node}" -e 'JSON.parse(require("fs").readFileSync(process.argv[1], "utf8"))' "$file" 2>&1 |
+            sed -n "s|^SyntaxError: |$file: |p" | grep . && status=1
+    done
+    return $status
+}
+no_addresses_in_the_lock() { ! grep -nE '"resolved"|https?://[^"]*\.tgz' package-lock.json; }
+
+check "includes follow tests/layers.txt" tests/layers.sh
+check "a core file that includes a server header is found" planted core/base/planted.c '"server/wire/json.h"' 'not a path\|may not include'
+check "an edge against the direction is found" planted core/math/planted.c '"core/volume/volume.h"' 'core/math may not include'
+check "a library outside its home is found" planted core/plan/planted.c '<GL/gl.h>' 'only core/render/gl'
+check "an include that is not from the root is found" planted core/volume/planted.c '"../base/error.h"' 'not a path from the root'
+check "no banned calls" no_calls
+check "no value-changing float flags" no_flags
+check "each header compiles alone, once" headers_stand_alone
+check "scripts parse and can be run" scripts_parse
+check "JSON files parse" json_parses
+check "the npm lock names no addresses" no_addresses_in_the_lock
+
+wc -l $(sources '*.c' '*.h' '*.js' '*.mjs' '*.css' '*.py') | awk '$2 != "total" && $1 > 600 { print "note: " $2 " has " $1 " lines; over 600 asks to be two" }'
+echo "lint: $passed passed, $failed failed, 0 skipped"
+[ "$failed" = 0 ]
