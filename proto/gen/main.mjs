@@ -1,5 +1,27 @@
-// Writes the C and JavaScript made from proto/*.json into the folder named on the command line.
-import { mkdirSync, writeFileSync } from 'node:fs';
+// Writes what is made from proto/*.json into the folder named on the command line:
+//   scene.h scene.c      structs, enums, defaults of scene and view; no JSON, for core
+//   wire_gen.h wire_gen.c  field tables and message structs for server/wire
+//   wire.js              the same tables for the page
+//   reference.html       for people
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { sceneHeader, sceneSource } from './scene_c.mjs';
+import { wireHeader, wireSource } from './wire_c.mjs';
+import { wireScript } from './wire_js.mjs';
+import { referencePage } from './reference.mjs';
+
+const proto = join(dirname(fileURLToPath(import.meta.url)), '..');
+const read = (name) => JSON.parse(readFileSync(join(proto, name), 'utf8'));
+const scene = read('scene.json');
+const messages = read('messages.json');
 const out = process.argv[2];
 mkdirSync(out, { recursive: true });
-writeFileSync(`${out}/wire_gen.c`, 'typedef int wire_gen_is_empty;\n');
+const write = (name, text) => writeFileSync(join(out, name), text);
+
+write('scene.h', sceneHeader(scene));
+write('scene.c', sceneSource(scene));
+write('wire_gen.h', wireHeader(scene, messages));
+write('wire_gen.c', wireSource(scene, messages));
+write('wire.js', wireScript(scene, messages));
+write('reference.html', referencePage(scene, messages));

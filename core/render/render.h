@@ -1,0 +1,44 @@
+#pragma once
+/* A snapshot to an image. Leaks no GL: another implementation can stand behind it, with the same tests. */
+#include "core/base/image.h"
+#include "core/scene/snapshot.h"
+
+enum render_back_end { RENDER_AUTO, RENDER_EGL_DEVICE, RENDER_EGL_SURFACELESS, RENDER_OSMESA, RENDER_N_BACK_ENDS };
+const char *render_back_end_word(enum render_back_end back_end); /* "auto", "egl-device", "egl-surfaceless", "osmesa" */
+bool render_back_end_from_word(const char *word, enum render_back_end *back_end);
+
+struct render_facts {
+    enum render_back_end back_end;
+    char vendor[96], renderer[160], version[96];
+    bool is_software; /* llvmpipe or the like: prefer light meshes and smaller moving pictures */
+    int max_samples;
+};
+
+struct renderer;
+
+/* Starts the back end (RENDER_AUTO: device, surfaceless, OSMesa, in that order, the first that draws a correct test pixel).
+ * The calling thread becomes the render thread: every other call must come from it (asserted).
+ *   errors ERROR_GL with what each back end said */
+NODISCARD struct renderer *renderer_create(enum render_back_end back_end, struct error *err);
+void renderer_destroy(struct renderer *renderer);
+const struct render_facts *renderer_facts(const struct renderer *renderer);
+
+struct render_options {
+    int width_px, height_px; /* of the picture; may be smaller than the view's size: the same view, fewer pixels */
+    enum surface_detail detail;
+    bool is_still;           /* anti-aliased */
+};
+
+struct render_timing {
+    int64_t draw_us, read_us;
+    size_t n_triangles;
+    bool is_light; /* some surface drawn was a reduced one */
+};
+
+/* The picture, RGBA, opaque, row 0 at the top. Uploads meshes and images on first use and keeps them until renderer_forget.
+ *   errors ERROR_GL, ERROR_MEMORY, ERROR_RANGE */
+NODISCARD struct image *render_snapshot(struct renderer *renderer, const struct snapshot *snapshot,
+                                        const struct render_options *options, struct camera *camera, struct render_timing *timing,
+                                        struct error *err);
+/* Drops everything kept for a plan; before the plan is destroyed. */
+void renderer_forget(struct renderer *renderer, const struct plan *plan);

@@ -1,0 +1,53 @@
+#pragma once
+/* What is asked to be seen, frozen: a plan, a scene and a view. A picture is a pure function of it. No JSON, no GL. */
+#include "core/math/vec.h"
+#include "core/plan/plan.h"
+#include "scene.h" /* generated from proto/scene.json */
+
+struct snapshot {
+    struct plan *plan;    /* borrowed; outlives every snapshot (its surfaces are built on demand, hence not const) */
+    struct scene scene;   /* owned */
+    struct view view;     /* owned */
+    uint32_t scene_revision;
+    _Atomic int references;
+};
+
+/* Takes scene and view, on failure too (their structs are emptied). Checks them against the plan: every region id known, the
+ * image id known (or empty), a camera that can be used (position != target, up not along the line of sight).
+ *   errors ERROR_NOT_FOUND, ERROR_RANGE; field names the place as a JSON pointer, "/regions/foo" */
+NODISCARD struct snapshot *snapshot_create(struct plan *plan, struct scene *scene, struct view *view, uint32_t scene_revision,
+                                           char field[128], struct error *err);
+struct snapshot *snapshot_ref(const struct snapshot *snapshot);
+void snapshot_unref(const struct snapshot *snapshot);
+
+/* The scene a new room starts with: every region visible in its own colour, those that contain others translucent (outermost 0.35,
+ * inner ones 0.45), innermost opaque; the first image's window; slices through the centre of the innermost region (else of the
+ * plan), axial visible when there is an image. Fills scene, which scene_finish frees. */
+void scene_for_plan(const struct plan *plan, struct scene *scene);
+
+/* The home camera of a kind: the whole plan, from the front (anterior) with superior up; slice panes the whole image or regions. */
+void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera);
+
+/* A view's camera worked out: unit axes in patient space and the projection. */
+struct camera {
+    struct vec3 eye_lps_mm, target_lps_mm;
+    struct vec3 right, up, forward; /* of the picture, orthonormal, right = forward x up */
+    bool is_parallel;
+    double pixels_per_mm;    /* parallel: of the full-size view; 0 in perspective */
+    double near_mm, far_mm;  /* along forward from the eye, around the plan's bounds */
+    struct mat4 clip_from_lps_mm, lps_mm_from_clip;
+};
+/* Slice panes: axial looks from the feet (right of the picture = patient left, up = anterior); coronal from the front (right =
+ * patient left, up = superior); sagittal from the patient's left (right = posterior, up = superior: anterior on screen left). */
+void camera_resolve(const struct snapshot *snapshot, struct camera *camera);
+
+/* What lies under a pixel of the full-size view, front to back, worked out on univels and slices, not on the picture. */
+struct pick_hit {
+    struct vec3 point_lps_mm;
+    int region; /* index, or -1 for an image slice */
+    double distance_mm;
+};
+enum { PICK_MAX_HITS = 32 };
+/* Fills hits, returns how many. Only what the scene shows (visible, opacity > 0). Slice panes: the point on the slice with the
+ * regions there, innermost first. px, py: pixel centres are at + 0.5. */
+size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, struct pick_hit hits[PICK_MAX_HITS]);

@@ -1,0 +1,40 @@
+// reference.html: the same description for people.
+const escape = (text) => String(text).replace(/[&<>"]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' })[c]);
+
+function typeWords(field, enums) {
+  switch (field.type) {
+    case 'enum': return enums[field.enum].values.map(([word]) => `<code>${escape(word)}</code>`).join(' or ');
+    case 'object': return `<a href="#object-${field.object}">${field.object}</a>`;
+    case 'map': return `map from id to <a href="#object-${field.object}">${field.object}</a>, at most ${field.max_items}`;
+    case 'vec3': return `three numbers${field.unit ? ` (${field.unit})` : ''}, patient LPS`;
+    case 'size': return 'width and height in pixels';
+    case 'patch': return 'merge patch';
+    case 'json': return 'object';
+    default: return field.type + (field.unit ? ` (${field.unit})` : '');
+  }
+}
+
+function rows(fields, enums) {
+  return fields.map((f) => {
+    const range = f.min !== undefined && f.max !== undefined ? `${f.min} to ${f.max}` : f.max !== undefined ? `at most ${f.max} characters` : '';
+    const fallback = f.required ? 'required' : f.nullable ? 'null' : f.default === undefined ? '' : JSON.stringify(f.default);
+    return `<tr><td><code>${escape(f.name)}</code></td><td>${typeWords(f, enums)}</td><td>${escape(range)}</td><td>${escape(fallback)}</td><td>${escape(f.about)}</td></tr>`;
+  }).join('\n');
+}
+
+const tableOf = (fields, enums) => `<table><thead><tr><th>Field</th><th>Type</th><th>Range</th><th>Default</th><th>Meaning</th></tr></thead><tbody>\n${rows(fields, enums)}\n</tbody></table>\n`;
+
+export function referencePage(scene, messages) {
+  const enums = { ...scene.enums, ...messages.enums };
+  let body = '<h1>Beamroom reference</h1>\n<p><a href="/api/v1/openapi.json">OpenAPI description of the HTTP API</a></p>\n';
+  body += `<h2>Scene and view</h2>\n<p>${escape(scene.about)}</p>\n`;
+  for (const [name, document] of Object.entries(scene.documents)) body += `<h3 id="document-${name}">${name}</h3>\n<p>${escape(document.about)}</p>\n${tableOf(document.fields, enums)}`;
+  for (const [name, object] of Object.entries(scene.objects)) body += `<h3 id="object-${name}">${name}</h3>\n<p>${escape(object.about)}</p>\n${tableOf(object.fields, enums)}`;
+  body += '<h2>Words</h2>\n';
+  for (const [name, description] of Object.entries(enums))
+    body += `<h3>${name}</h3>\n<p>${escape(description.about)}</p>\n<ul>${description.values.map(([word, about]) => `<li><code>${escape(word)}</code>: ${escape(about)}</li>`).join('')}</ul>\n`;
+  body += `<h2>WebSocket messages</h2>\n<p>${escape(messages.about)}</p>\n`;
+  for (const message of messages.messages)
+    body += `<h3 id="message-${escape(message.name)}">${escape(message.name)} <small>from the ${message.from === 'client' ? 'page' : 'server'}</small></h3>\n<p>${escape(message.about)}</p>\n${tableOf(message.fields, enums)}`;
+  return `<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>Beamroom reference</title>\n<link rel="stylesheet" href="css/reference.css">\n<main>\n${body}</main>\n</html>\n`;
+}

@@ -1,0 +1,69 @@
+// wire_gen.h and wire_gen.c: field tables for server/wire/fields.c, and the message structs.
+import { declaration, enumDeclaration, lower, member, notice, objectInitializer, textBytes, upper } from './names.mjs';
+
+const structOf = (message) => `message_${lower(message.name)}`;
+
+export function wireHeader(scene, messages) {
+  let text = `#pragma once\n${notice}#include <stdint.h>\n\n#include "scene.h"\n#include "server/wire/fields.h"\n\n`;
+  text += `enum { WIRE_PROTOCOL = ${messages.version}, WIRE_MAX_CLIENT_BYTES = ${messages.max_client_bytes} };\n\n`;
+  for (const [name, description] of Object.entries(messages.enums)) {
+    text += enumDeclaration(name, description, 'wire');
+    text += `extern const struct field_words wire_${name}_words;\n\n`;
+  }
+  for (const name of Object.keys(scene.enums)) text += `extern const struct field_words scene_${name}_words;\n`;
+  for (const name of Object.keys(scene.objects)) text += `extern const struct field_object scene_${name}_object;\n`;
+  for (const name of Object.keys(scene.documents)) text += `extern const struct field_object ${name}_object;\n`;
+  text += '\n';
+  for (const message of messages.messages)
+    text += `/* ${message.from}: ${message.about} */\nstruct ${structOf(message)} {\n${message.fields.map((f) => declaration(f, 'wire')).join('')}};\n\n`;
+  text += `enum message_type {\n${messages.messages.map((m) => `    MESSAGE_${upper(m.name)},`).join('\n')}\n    MESSAGE_N_TYPES\n};\n\n`;
+  text += `struct message {\n    enum message_type type;\n    union {\n${messages.messages.map((m) => `        struct ${structOf(m)} ${lower(m.name)};`).join('\n')}\n    };\n};\n\n`;
+  text += 'struct message_description {\n    const char *name;\n    bool is_from_client;\n    size_t offset; /* of its struct in struct message */\n    const struct field_object *object;\n};\n';
+  text += 'extern const struct message_description message_descriptions[MESSAGE_N_TYPES];\n';
+  return text;
+}
+
+const typeNames = { bool: 'BOOL', number: 'NUMBER', integer: 'INTEGER', enum: 'ENUM', color: 'COLOR', id: 'ID', text: 'TEXT', vec3: 'VEC3', size: 'SIZE', object: 'OBJECT', map: 'MAP', patch: 'PATCH', json: 'JSON' };
+
+function fieldRow(f, structName, prefix) {
+  const parts = [`.name = "${f.name}"`, `.type = FIELD_${typeNames[f.type]}`, `.offset = offsetof(struct ${structName}, ${member(f)})`];
+  if (f.nullable) parts.push('.is_nullable = true');
+  if (f.nullable && f.type !== 'json') parts.push('.has_flag = true', `.has_offset = offsetof(struct ${structName}, has_${f.name})`);
+  if (f.required) parts.push('.is_required = true');
+  if (f.min !== undefined) parts.push(`.min = ${f.min}`);
+  if (f.max !== undefined) parts.push(`.max = ${f.max}`);
+  if (f.type === 'enum') parts.push(`.words = &${prefix}_${f.enum}_words`);
+  if (f.type === 'object' || f.type === 'map') parts.push(`.object = &${prefix}_${f.object}_object`);
+  if (f.type === 'map')
+    parts.push(`.max_items = ${f.max_items}`, `.count_offset = offsetof(struct ${structName}, n_${f.name})`,
+      `.entry_size = sizeof(struct ${prefix}_${f.object}_entry)`, `.value_offset = offsetof(struct ${prefix}_${f.object}_entry, value)`);
+  if (f.type === 'text') parts.push(`.text_bytes = ${textBytes(f)}`);
+  return `    { ${parts.join(', ')} },`;
+}
+
+function table(tableName, structName, description, prefix, defaults) {
+  const rows = description.fields.map((f) => fieldRow(f, structName, prefix)).join('\n');
+  return `static const struct field ${tableName}_fields[] = {\n${rows}\n};\n` +
+    `const struct field_object ${tableName}_object = { "${description.name ?? tableName}", ${tableName}_fields, ${description.fields.length}, sizeof(struct ${structName}), &${defaults} };\n\n`;
+}
+
+function words(name, description, prefix) {
+  const list = description.values.map(([word]) => `"${word}"`).join(', ');
+  return `static const char *const ${prefix}_${name}_list[] = { ${list} };\n` +
+    `const struct field_words ${prefix}_${name}_words = { ${prefix}_${name}_list, ${description.values.length} };\n\n`;
+}
+
+export function wireSource(scene, messages) {
+  let text = `${notice}#include "wire_gen.h"\n\n#include <stddef.h>\n\n`;
+  for (const [name, description] of Object.entries(scene.enums)) text += words(name, description, 'scene');
+  for (const [name, description] of Object.entries(messages.enums)) text += words(name, description, 'wire');
+  for (const [name, object] of Object.entries(scene.objects)) text += table(`scene_${name}`, `scene_${name}`, object, 'scene', `scene_${name}_default`);
+  for (const [name, document] of Object.entries(scene.documents)) text += table(name, name, document, 'scene', `${name}_default`);
+  for (const message of messages.messages) {
+    const name = structOf(message);
+    text += `static const struct ${name} ${name}_default = ${objectInitializer(message, 'wire', {})};\n`;
+    text += table(name, name, message, 'wire', `${name}_default`).replace(/^const struct field_object/m, 'static const struct field_object');
+  }
+  const rows = messages.messages.map((m) => `    [MESSAGE_${upper(m.name)}] = { "${m.name}", ${m.from === 'client'}, offsetof(struct message, ${lower(m.name)}), &${structOf(m)}_object },`);
+  return text + `const struct message_description message_descriptions[MESSAGE_N_TYPES] = {\n${rows.join('\n')}\n};\n`;
+}

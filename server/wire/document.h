@@ -1,0 +1,20 @@
+#pragma once
+/* Scene and view as JSON documents: merge patches, defaults, overrides. Pure functions on documents. */
+#include "wire_gen.h"
+
+/* current with patch applied, checked whole: fields by proto/scene.json, and region ids and the image id against defaults (the scene
+ * the renderer gave for the plan: every region it has is there). What patch sets to null gets its value from defaults.
+ * image_ids: the plan's images, NULL-terminated. Returns the complete new document; NULL with problem, current untouched. */
+NODISCARD cJSON *scene_document_patch(const cJSON *defaults, const char *const *image_ids, const cJSON *current, const cJSON *patch,
+                                      struct problem *problem);
+/* The same for a view; current NULL: a new one. */
+NODISCARD cJSON *view_document_patch(const cJSON *current, const cJSON *patch, struct problem *problem);
+/* The scene a view shows: scene with the view's override applied, checked as above. */
+NODISCARD cJSON *scene_document_for_view(const cJSON *defaults, const char *const *image_ids, const cJSON *scene, const cJSON *view,
+                                         struct problem *problem);
+
+/* To structs for core; scene_finish / view_finish free them. */
+NODISCARD bool scene_read(const cJSON *json, struct scene *scene, struct problem *problem);
+NODISCARD bool view_read(const cJSON *json, struct view *view, struct problem *problem);
+NODISCARD cJSON *scene_write(const struct scene *scene);
+NODISCARD cJSON *camera_write(const struct scene_camera *camera);

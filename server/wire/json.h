@@ -1,0 +1,21 @@
+#pragma once
+/* JSON documents for the server's modules: the one door to cJSON, with bounds. Thread: any, a document has one owner. */
+#include <cjson/cJSON.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/wire/problem.h"
+
+enum { JSON_MAX_DEPTH = 32 };
+
+/* Parses exactly n bytes: valid UTF-8, at most JSON_MAX_DEPTH deep, nothing after the value. NULL with problem "json". */
+NODISCARD cJSON *json_read(const char *bytes, size_t n, struct problem *problem);
+/* Compact text, free() it. Never NULL. */
+NODISCARD char *json_write(const cJSON *json);
+
+/* RFC 7396: target (may be NULL) with patch applied, as a new document. Neither argument changes. */
+NODISCARD cJSON *json_merge(const cJSON *target, const cJSON *patch);
+
+const char *json_text(const cJSON *object, const char *name);               /* NULL when absent or no string */
+double json_number(const cJSON *object, const char *name, double fallback); /* fallback when absent or no number */
+bool json_flag(const cJSON *object, const char *name, bool fallback);
