@@ -2,7 +2,7 @@
 # Puts the page together: deploy/web.sh DEST GENERATED
 #   DEST/...      the files of web/ as they are
 #   DEST/lib/     the pinned libraries, single ES modules: lit-html.js (directives in lib/directives/), signals-core.js
-#   DEST/gen/     the JavaScript generated from proto/
+#   DEST/gen/     the tables and the reference page generated from proto/
 # Built beside DEST and moved into place, so a running daemon never serves a half-written page.
 set -eu
 dest=$1 generated=$2
@@ -21,7 +21,7 @@ library @preact/signals-core/dist/signals-core.module.js signals-core.js
 cp node_modules/lit-html/LICENSE "$part/lib/LICENSE.lit-html"
 cp node_modules/@preact/signals-core/LICENSE "$part/lib/LICENSE.signals-core"
 
-for file in "$generated"/*.js; do
+for file in "$generated"/*.js "$generated"/*.html "$generated"/openapi.json; do
     [ ! -e "$file" ] || cp "$file" "$part/gen/"
 done
 rm -rf "$dest"

@@ -26,7 +26,7 @@ planted() { # planted FILE INCLUDE EXPECTED-WORDS
     out=$(tests/layers.sh "$copy")
     local status=$?
     rm -rf "$copy"
-    [ $status = 1 ] && grep -q "^$1:.*$3" <<<"$out" && [ "$(wc -l <<<"$out")" = 2 ] && return 0
+    [ $status = 1 ] && grep -q "^$1:.*$3" <<<"$out" && [ "$(grep -c "^$1:" <<<"$out")" = 1 ] && return 0
     echo "planted $2 in $1; the check said (exit $status):"
     echo "$out"
     return 1
