@@ -1,0 +1,65 @@
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "server/cli/command.h"
+
+static const struct command {
+    const char *name, *about;
+    int (*run)(int argc, char **argv);
+} commands[] = {
+    { "phantom", "write the demo plan, a made-up head", command_phantom },
+};
+enum { N_COMMANDS = sizeof commands / sizeof *commands };
+
+static void print_help(FILE *out)
+{
+    fputs("usage: beamroom COMMAND [OPTION]...\n"
+          "Works on boron neutron capture therapy plans without the daemon.\n\n",
+          out);
+    for (int i = 0; i < N_COMMANDS; i++)
+        fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].about);
+    fputs("\n  beamroom COMMAND --help   what a command takes and gives\n"
+          "  beamroom --version        the version\n\n"
+          "Exit status: 0 done; 1 refused, with the reason on standard error; 2 wrong usage.\n"
+          "For research and plan review; not a medical device.\n",
+          out);
+}
+
+int command_usage_error(const char *name, const char *format, ...)
+{
+    fprintf(stderr, "beamroom %s: ", name);
+    va_list args;
+    va_start(args, format);
+    vfprintf(stderr, format, args);
+    va_end(args);
+    fprintf(stderr, "; see beamroom %s --help\n", name);
+    return EXIT_USAGE;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        print_help(stderr);
+        return EXIT_USAGE;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+        print_help(stdout);
+        return EXIT_DONE;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        puts("beamroom " BEAMROOM_VERSION);
+        return EXIT_DONE;
+    }
+    for (int i = 0; i < N_COMMANDS; i++)
+        if (strcmp(argv[1], commands[i].name) == 0) {
+            int code = commands[i].run(argc - 1, argv + 1);
+            if (fflush(stdout) != 0 || ferror(stdout)) {
+                fprintf(stderr, "beamroom %s: standard output cannot be written\n", argv[1]);
+                return EXIT_REFUSED;
+            }
+            return code;
+        }
+    fprintf(stderr, "beamroom: there is no command '%s'; see beamroom --help\n", argv[1]);
+    return EXIT_USAGE;
+}
