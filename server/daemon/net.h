@@ -1,0 +1,43 @@
+#pragma once
+/* The net thread: libwebsockets' loop, rooms, the fleet. Everything about rooms and renderers happens on it; other threads hand it
+ * tasks. The one place where room, fleet and ws meet. */
+#include <stdint.h>
+
+#include "server/fleet/fleet.h"
+#include "server/room/room.h"
+
+struct net;
+
+struct net_options {
+    struct fleet_options fleet; /* wake, changed and context are the net's own */
+    int max_rooms;              /* 200 */
+    int room_idle_close_s;      /* a room with nobody connected is closed after this; 0: never */
+    struct room_limits room;
+    const char *allowed_origin; /* further Origin allowed to open a WebSocket; the request's own Host always is. NULL: none */
+};
+
+/* Starts the thread. errors ERROR_IO, ERROR_MEMORY and those of fleet_create */
+NODISCARD struct net *net_create(const struct net_options *options, struct error *err);
+void net_destroy(struct net *net); /* says bye to every connection, stops renderers, joins */
+
+/* Runs task(net, argument) on the net thread soon; any thread. Every task posted before net_destroy runs (at destroy: with
+ * net_is_stopping true). */
+void net_post(struct net *net, void (*task)(struct net *net, void *argument), void *argument);
+bool net_is_stopping(const struct net *net);
+
+/* A socket that begins with an upgrade request for /api/v1/rooms/{id}/ws, not yet read from: takes it over. Any thread. */
+void net_adopt(struct net *net, int socket);
+
+/* On the net thread only: */
+struct fleet *net_fleet(struct net *net);
+struct room *net_room_create(struct net *net, const char *plan_id, struct problem *problem); /* opens the plan too; NULL with problem */
+struct room *net_room_find(struct net *net, const char *room_id);
+void net_room_delete(struct net *net, const char *room_id);
+size_t net_n_rooms(const struct net *net);
+struct room *net_room_at(const struct net *net, size_t index);
+struct net_counters {
+    struct room_counters rooms; /* of living and closed rooms */
+    uint64_t connections, connections_refused;
+    size_t n_connections;
+};
+void net_count(const struct net *net, struct net_counters *counters);

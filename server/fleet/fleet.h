@@ -1,0 +1,91 @@
+#pragma once
+/* Renderer processes: one per open plan, found, started, confined, watched, restarted and talked to.
+ * Everything here is called on the net thread, and calls back on it; one thread of the fleet's own does the socket and process
+ * waiting, hands whole events over by a queue and calls options.wake. No rooms, no HTTP, no WebSocket here. */
+#include <stdint.h>
+
+#include "server/wire/packet.h"
+
+enum { FLEET_MAX_PLANS = 2000, FLEET_MAX_RESTARTS = 3 /* within 60 s; then failed */ };
+
+struct fleet;
+
+enum fleet_state {
+    FLEET_UNREADABLE, /* looked at and refused: reason says why */
+    FLEET_CLOSED,     /* can be opened */
+    FLEET_STARTING,   /* the process is being started */
+    FLEET_LOADING,    /* it reads the plan */
+    FLEET_READY,      /* it draws and answers */
+    FLEET_RESTARTING, /* it stopped after having been ready and is being started again */
+    FLEET_FAILED      /* it could not load the plan, or stopped too often: problem says why; fleet_open tries again */
+};
+const char *fleet_state_word(enum fleet_state state); /* "unreadable", "not-loaded", "starting", "loading", "ready", "restarting", "failed" */
+
+struct fleet_options {
+    const char *const *plan_folders; /* each: a folder of plans, or itself a plan; n_plan_folders of them */
+    size_t n_plan_folders;
+    const char *data_folder;     /* our state; caches in data/cache/<plan id> */
+    const char *renderer_path;   /* beamroom-render; NULL: beside our own executable */
+    const char *gl;              /* "auto", ... handed on */
+    bool stub_renderer;          /* --stub: no GL at all, for tests */
+    uint64_t max_renderer_bytes; /* address space of one renderer; 0: no limit */
+    int max_renderers;           /* running at once; opening one more closes the longest unused, or is refused with PROBLEM_BUSY */
+    int idle_close_s;            /* a ready plan nobody uses (fleet_hold) is closed after this */
+    void (*wake)(void *context); /* any thread: make the net thread call fleet_handle_events soon */
+    /* what happened, on the net thread, from fleet_handle_events */
+    void (*changed)(void *context, const char *plan_id); /* state, progress, or the list itself (plan_id NULL) */
+    void *context;
+};
+
+NODISCARD struct fleet *fleet_create(const struct fleet_options *options, struct error *err);
+void fleet_destroy(struct fleet *fleet); /* stops every renderer, waits at most 2 s, kills */
+void fleet_handle_events(struct fleet *fleet);
+/* Time-driven work (idle close, restart back-off, request time-outs); call about every 250 ms. */
+void fleet_tick(struct fleet *fleet);
+
+/* A plan as the list knows it. Strings and documents are borrowed until the next call into the fleet. */
+struct fleet_plan {
+    const char *id, *folder, *name, *note;
+    bool is_phantom;
+    enum fleet_state state;
+    const char *phase; /* while starting, loading or restarting */
+    double percent;
+    const struct problem *problem;      /* unreadable, failed; else NULL */
+    const cJSON *parts;                 /* array of text */
+    uint64_t n_bytes;
+    const cJSON *document;              /* the plan as the API gives it; NULL before ready (kept while restarting) */
+    const cJSON *default_scene;         /* likewise */
+    const char *const *image_ids;       /* likewise; NULL-terminated */
+    uint32_t generation;                /* counts the processes started for it: a new one has forgotten rooms' scenes */
+    uint64_t memory_bytes;              /* of its process; 0 unknown */
+    int64_t load_ms;
+    int pid;                            /* 0: none */
+};
+size_t fleet_n_plans(const struct fleet *fleet);
+bool fleet_plan_at(const struct fleet *fleet, size_t index, struct fleet_plan *plan);
+bool fleet_plan_find(const struct fleet *fleet, const char *id, struct fleet_plan *plan);
+void fleet_rescan(struct fleet *fleet); /* looks at the folders again, in the background */
+
+/* Start loading if it is not loaded; true also when it is already. */
+NODISCARD bool fleet_open(struct fleet *fleet, const char *plan_id, struct problem *problem);
+/* Stop its process: cancels a load in progress (state back to closed) or closes a ready plan. */
+void fleet_close(struct fleet *fleet, const char *plan_id);
+/* Rooms using it: not closed for idleness while held. Counts. */
+void fleet_hold(struct fleet *fleet, const char *plan_id);
+void fleet_release(struct fleet *fleet, const char *plan_id);
+
+/* Tells the renderer something without an answer (scene, forget). packet is borrowed. false: not ready. */
+bool fleet_tell(struct fleet *fleet, const char *plan_id, const cJSON *packet);
+
+/* Exactly one of answer and problem is given. answer->blob may be taken: set it to NULL. */
+typedef void (*fleet_reply)(void *context, struct packet *answer, const struct problem *problem);
+/* Asks the renderer (render, query); the id is ours to add. Waits for READY if the plan is starting, loading or restarting (a render
+ * after a crash is repeated by asking again: pending requests get PROBLEM_RENDERER at once). reply always comes, from
+ * fleet_handle_events or fleet_tick, also at fleet_destroy. 30 s time limit: PROBLEM_TIMEOUT. Returns a number for fleet_forget_request. */
+uint64_t fleet_request(struct fleet *fleet, const char *plan_id, const cJSON *packet, fleet_reply reply, void *context);
+/* The asker is gone: no reply any more. */
+void fleet_forget_request(struct fleet *fleet, uint64_t request);
+
+/* GL facts of the newest renderer that told them: {back_end, vendor, renderer, version, is_software}; NULL before. A probe renderer
+ * started with the fleet (beamroom-render --probe-gl) tells them before any plan is open, for /readyz. */
+const cJSON *fleet_gl(const struct fleet *fleet, const struct problem **problem);

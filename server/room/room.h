@@ -1,0 +1,83 @@
+#pragma once
+/* Rooms: members, views, the shared scene, who sees what and when a picture is asked for. Pure logic: no sockets, no clock of its
+ * own (now_us is handed in), no renderer: it asks through callbacks. One thread. */
+#include <stdint.h>
+
+#include "server/wire/document.h"
+#include "server/wire/frame_header.h"
+
+enum { ROOM_MAX_MEMBERS = 64, ROOM_MAX_VIEWS = 8, ROOM_MAX_UNSHOWN = 2, ROOM_STILL_AFTER_MS = 150, ROOM_MEMBER_KEPT_S = 300 };
+
+struct room;
+
+/* One picture wanted. The room never has more than two of a stream outstanding. */
+struct room_render {
+    uint64_t stream;              /* comes back with the frame */
+    const cJSON *view;            /* complete view document */
+    const cJSON *scene;           /* complete scene to show when the view has an override, else NULL: the room's */
+    uint32_t scene_revision;
+    int scale_percent, quality;
+    bool is_still, full_color, light;
+};
+
+/* A picture that came. Shared: one render, one encode, sent to all who follow. */
+struct room_picture {
+    struct frame_header header; /* view, sequence, input_id, flags SHARED are filled per member by the room */
+    uint8_t *bytes;
+    size_t n_bytes;
+    int references;
+};
+
+struct room_callbacks {
+    /* ask for a picture; answered by room_picture_came or room_picture_failed with the same stream, later */
+    void (*render)(void *context, struct room *room, const struct room_render *request);
+    /* the room's scene changed (or the renderer is new): make it known to the renderer before the next render */
+    void (*scene_changed)(void *context, struct room *room, const cJSON *scene, uint32_t revision);
+    /* a text message for one connection; text is borrowed */
+    void (*send_text)(void *context, void *connection, const char *text);
+    /* a frame for one connection: header filled for it; picture must be held (room_picture_hold) if kept */
+    void (*send_frame)(void *context, void *connection, const struct frame_header *header, struct room_picture *picture);
+    void *context;
+};
+
+struct room_limits {
+    int max_members; /* at most ROOM_MAX_MEMBERS */
+};
+
+/* plan_document, defaults and image_ids may come later (room_plan_ready). id: URL-safe, random, not guessable. */
+struct room *room_create(const char *id, const char *plan_id, const struct room_callbacks *callbacks, const struct room_limits *limits);
+void room_destroy(struct room *room); /* says bye to every connection first */
+const char *room_id(const struct room *room);
+const char *room_plan_id(const struct room *room);
+
+/* The renderer's state: a member hears it; pictures are asked for only while ready. Coming back to ready asks for everything anew. */
+void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *const *image_ids, const char *gl,
+                     bool is_software, int64_t now_us);
+void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent, const struct problem *problem);
+
+/* Connections: opaque pointers of the caller's. A connection becomes a member with hello. */
+void room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us);
+void room_connection_closed(struct room *room, void *connection, int64_t now_us);
+bool room_has_member(const struct room *room, void *connection); /* said hello */
+
+void room_picture_came(struct room *room, uint64_t stream, struct room_picture *picture, int64_t now_us); /* takes a reference */
+void room_picture_failed(struct room *room, uint64_t stream, const struct problem *problem, int64_t now_us);
+struct room_picture *room_picture_hold(struct room_picture *picture);
+void room_picture_drop(struct room_picture *picture);
+
+/* Time-driven work: stills, forgetting members. Returns when it wants to be called again (INT64_MAX: not before something happens). */
+int64_t room_tick(struct room *room, int64_t now_us);
+
+/* The shared scene, for HTTP: NULL before the plan is ready. */
+const cJSON *room_scene(const struct room *room, uint32_t *revision);
+NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, struct problem *problem);
+/* {id, plan, revision, members: [...], created_at...}: what GET /rooms/{id} gives. */
+NODISCARD cJSON *room_document(const struct room *room);
+NODISCARD cJSON *room_members(const struct room *room);
+size_t room_n_connected(const struct room *room);
+
+/* Counters for /metrics. */
+struct room_counters {
+    uint64_t renders_asked, frames_sent, frame_bytes, frames_skipped, messages_refused, stills_sent;
+};
+void room_count(const struct room *room, struct room_counters *sum); /* adds to sum */

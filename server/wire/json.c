@@ -1,0 +1,123 @@
+#include "server/wire/json.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Whole well-formed UTF-8 without overlong forms, surrogates or NUL (Unicode 15, table 3-7). */
+static bool is_utf8(const unsigned char *s, size_t n)
+{
+    for (size_t at = 0; at < n;) {
+        unsigned char c = s[at];
+        size_t more = c < 0x80 ? 0 : c >= 0xc2 && c < 0xe0 ? 1 : (c & 0xf0) == 0xe0 ? 2 : c >= 0xf0 && c < 0xf5 ? 3 : 4;
+        if (c == 0 || more == 4 || n - at <= more)
+            return false;
+        for (size_t k = 1; k <= more; k++)
+            if ((s[at + k] & 0xc0) != 0x80)
+                return false;
+        if ((c == 0xe0 && s[at + 1] < 0xa0) || (c == 0xed && s[at + 1] > 0x9f) || (c == 0xf0 && s[at + 1] < 0x90) ||
+            (c == 0xf4 && s[at + 1] > 0x8f))
+            return false;
+        at += more + 1;
+    }
+    return true;
+}
+
+/* Depth before parsing, so that the parser's own recursion is bounded by us. Brackets inside strings do not count. */
+static bool depth_is_allowed(const char *s, size_t n)
+{
+    int depth = 0;
+    bool in_string = false;
+    for (size_t at = 0; at < n; at++) {
+        char c = s[at];
+        if (in_string) {
+            if (c == '\\')
+                at++;
+            else if (c == '"')
+                in_string = false;
+        } else if (c == '"') {
+            in_string = true;
+        } else if (c == '{' || c == '[') {
+            if (++depth > JSON_MAX_DEPTH)
+                return false;
+        } else if (c == '}' || c == ']') {
+            depth--;
+        }
+    }
+    return true;
+}
+
+cJSON *json_read(const char *bytes, size_t n, struct problem *problem)
+{
+    if (n == 0) {
+        problem_set(problem, PROBLEM_JSON, "", "", "nothing was sent, a JSON value was expected");
+        return NULL;
+    }
+    if (!is_utf8((const unsigned char *)bytes, n)) {
+        problem_set(problem, PROBLEM_JSON, "", "", "the text is not UTF-8");
+        return NULL;
+    }
+    if (!depth_is_allowed(bytes, n)) {
+        problem_set(problem, PROBLEM_JSON, "", "", "nested deeper than %d", JSON_MAX_DEPTH);
+        return NULL;
+    }
+    const char *end = NULL;
+    cJSON *json = cJSON_ParseWithLengthOpts(bytes, n, &end, false);
+    if (!json) {
+        size_t at = end && end >= bytes ? (size_t)(end - bytes) : 0;
+        problem_set(problem, PROBLEM_JSON, "", "", "not JSON near byte %zu of %zu", at, n);
+        return NULL;
+    }
+    for (; end < bytes + n; end++)
+        if (!strchr(" \t\r\n", *end)) {
+            problem_set(problem, PROBLEM_JSON, "", "", "something follows the JSON value at byte %zu", (size_t)(end - bytes));
+            cJSON_Delete(json);
+            return NULL;
+        }
+    return json;
+}
+
+char *json_write(const cJSON *json)
+{
+    char *text = cJSON_PrintUnformatted(json);
+    if (!text)
+        abort(); /* no memory for a message */
+    return text;
+}
+
+cJSON *json_merge(const cJSON *target, const cJSON *patch)
+{
+    if (!cJSON_IsObject(patch))
+        return cJSON_Duplicate(patch, true);
+    cJSON *merged = cJSON_IsObject(target) ? cJSON_Duplicate(target, true) : cJSON_CreateObject();
+    for (const cJSON *item = patch->child; item; item = item->next) {
+        cJSON *old = cJSON_GetObjectItemCaseSensitive(merged, item->string);
+        if (cJSON_IsNull(item)) {
+            cJSON_DeleteItemFromObjectCaseSensitive(merged, item->string);
+            continue;
+        }
+        cJSON *value = json_merge(old, item);
+        if (old)
+            cJSON_ReplaceItemInObjectCaseSensitive(merged, item->string, value);
+        else
+            cJSON_AddItemToObject(merged, item->string, value);
+    }
+    return merged;
+}
+
+const char *json_text(const cJSON *object, const char *name)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
+    return cJSON_IsString(item) ? item->valuestring : NULL;
+}
+
+double json_number(const cJSON *object, const char *name, double fallback)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
+    return cJSON_IsNumber(item) ? item->valuedouble : fallback;
+}
+
+bool json_flag(const cJSON *object, const char *name, bool fallback)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
+    return cJSON_IsBool(item) ? cJSON_IsTrue(item) : fallback;
+}
