@@ -11,15 +11,17 @@ struct mask {
     uint64_t *bits;                 /* [k][j][words] */
 };
 
-/* Voxels of a layer that carry one of the labels (sorted or not). errors ERROR_RANGE n_labels 0, ERROR_MEMORY */
+/* Voxels of a layer that carry one of the labels (sorted or not). errors ERROR_RANGE n_labels 0, ERROR_UNSUPPORTED the
+ * layer is neither U8 nor U16, ERROR_MEMORY */
 NODISCARD struct mask *mask_from_labels(const struct volume *layer, const uint16_t *labels, size_t n_labels, int n_threads,
                                         struct error *err);
 /* A region with everything inside it (its descendants), on the region's own grid: what its outer surface encloses.
- * A descendant on a layer with another grid is left out (it lies inside anyway). errors as above */
+ * A descendant on a layer with another grid is left out (it lies inside anyway). errors as above, ERROR_RANGE no such region */
 NODISCARD struct mask *mask_from_region(const struct region_set *set, size_t region, int n_threads, struct error *err);
 /* Every factor x factor x factor block becomes one voxel, inside when at least half of the block that exists is; factor 2..8.
- * A block row at the border may be partial. Geometry follows: the same outer faces. A region that would vanish keeps the voxel of
- * its fullest block. */
+ * A block row at the border may be partial. Geometry follows: every block stays where it is, so the outer faces are the same but
+ * for a partial block, which reaches beyond the old one. A region that would vanish keeps the voxel of its fullest block.
+ * errors ERROR_RANGE factor, ERROR_MEMORY */
 NODISCARD struct mask *mask_reduce(const struct mask *mask, uint32_t factor, int n_threads, struct error *err);
 uint64_t mask_count(const struct mask *mask);
 void mask_destroy(struct mask *mask);
