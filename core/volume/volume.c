@@ -81,6 +81,16 @@ int grid_index_axis(const struct grid *grid, int patient_axis, int *sign)
     return patient_axis;
 }
 
+void grid_letters(const struct grid *grid, char letters[4])
+{
+    static const char toward[3][2] = { { 'L', 'R' }, { 'P', 'A' }, { 'S', 'I' } };
+    for (int patient_axis = 0; patient_axis < 3; patient_axis++) {
+        int sign, index_axis = grid_index_axis(grid, patient_axis, &sign);
+        letters[index_axis] = toward[patient_axis][sign < 0];
+    }
+    letters[3] = 0;
+}
+
 size_t voxel_size(enum voxel_type type)
 {
     switch (type) {

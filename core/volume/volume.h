@@ -25,6 +25,8 @@ struct box3 grid_bounds_lps_mm(const struct grid *grid); /* outer faces of the o
 /* Index axis (0, 1, 2) most nearly along the patient axis (0 = L, 1 = P, 2 = S). A permutation: axes are dealt out by the
  * largest remaining cosine. sign, if given, is +1 or -1: whether the index grows with the axis. */
 int grid_index_axis(const struct grid *grid, int patient_axis, int *sign);
+/* Which side of the patient each index grows toward, as three letters of L R, P A, S I; "LPS" for a standard axial scan. */
+void grid_letters(const struct grid *grid, char letters[4]);
 
 enum voxel_type { VOXEL_U8, VOXEL_I16, VOXEL_U16, VOXEL_F32 };
 size_t voxel_size(enum voxel_type type);

@@ -31,6 +31,21 @@ static void an_index_goes_to_the_patient_and_back(void **state)
     assert_int_equal(sign, -1);
 }
 
+static void a_grid_says_toward_which_side_each_index_grows(void **state)
+{
+    (void)state;
+    char letters[4];
+    struct grid grid = oblique_grid();
+    grid_letters(&grid, letters);
+    assert_string_equal(letters, "LPI"); /* 30 degrees about S leave L and P the nearest; k goes down */
+    /* a sagittal scan: columns toward the back, rows down, slices toward the right */
+    struct affine map = { { { 0, 1, 0 }, { 0, 0, -1 }, { -3, 0, 0 } }, { 0, 0, 0 } };
+    struct error err = { 0 };
+    assert_true(grid_init(&grid, (uint32_t[3]){ 4, 4, 4 }, &map, &err));
+    grid_letters(&grid, letters);
+    assert_string_equal(letters, "PIR");
+}
+
 static void a_singular_or_absurd_geometry_is_refused(void **state)
 {
     (void)state;
@@ -76,6 +91,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_index_goes_to_the_patient_and_back),
+        cmocka_unit_test(a_grid_says_toward_which_side_each_index_grows),
         cmocka_unit_test(a_singular_or_absurd_geometry_is_refused),
         cmocka_unit_test(sampling_is_linear_inside_and_refuses_outside),
     };
