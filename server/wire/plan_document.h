@@ -1,0 +1,24 @@
+#pragma once
+/* A loaded plan as the API gives it: GET /api/v1/plans/{id}, the messages `welcome` and `plan`, `beamroom info --json`.
+ * Only numbers and names, no voxels.
+ *
+ *   { id, name, note, phantom, load_ms, bounds_mm: {low, high} | null,
+ *     images:  [ {id, modality, unit, grid, low, high, window: {center, width}} ],
+ *     regions: [ {id, name, color: "#rrggbb", color_from_file, parent: id | null, depth, grid, label, voxels, volume_cm3,
+ *                 center_mm, bounds_mm, touches_edge,
+ *                 tissue: {boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma} } ],    null: the plan does not say
+ *     hierarchy: "none" | "file" | "derived",
+ *     doses:   [ {id, unit, per, masked, components: [ {quantity, per_ppm, grid, low, high} ]} ],
+ *     beams:   [ {id, entry_mm, target_mm, aperture_mm | null} ],
+ *     tracks:  {segments, classes: {"neutron-high": n, ...}},
+ *     report:  {lines: [ {severity: "note" | "warning" | "error", code, where, sentence} ], dropped} }
+ *
+ *   grid       {size: [i, j, k], spacing_mm: [i, j, k], orientation: "LPS", lps_mm_from_ijk: 3 rows of 4, bounds_mm}
+ *   low, high  smallest and largest finite value; points are [L, P, S] in mm; a region without voxels has no center or bounds (null)
+ *
+ * Regions are in file order. Numbers that are not finite are null. */
+#include "core/plan/plan.h"
+#include "server/wire/json.h"
+
+/* A new object, the caller's to cJSON_Delete. Never NULL. */
+NODISCARD cJSON *plan_document(const struct plan *plan);
