@@ -6,6 +6,9 @@ set -u
 programs=$1
 seconds=${FUZZ_SECONDS:-60}
 passed=0 failed=0
+# every name of the protocol is a word worth trying
+words=build/fuzz/words.dict
+grep -hoE '"name": *"[^"]+"' proto/*.json | sed -E 's/.*: *("[^"]+")/\1/' | sort -u >"$words"
 for program in "$programs"/fuzz_*; do
     [ -x "$program" ] || continue
     name=$(basename "$program")
@@ -16,7 +19,7 @@ for program in "$programs"/fuzz_*; do
     seeds=()
     [ ! -d "tests/fuzz/corpus/$name" ] || seeds=("tests/fuzz/corpus/$name")
     if UBSAN_OPTIONS=print_stacktrace=1 "$program" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 \
-        -print_final_stats=1 -artifact_prefix="$found/" "$grown" "${seeds[@]}" >"$log" 2>&1 </dev/null; then
+        -dict="$words" -print_final_stats=1 -artifact_prefix="$found/" "$grown" "${seeds[@]}" >"$log" 2>&1 </dev/null; then
         passed=$((passed + 1))
         echo "  $name: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs in $seconds s," \
             "$(sed -nE 's/.* cov: ([0-9]+) .*/\1/p' "$log" | tail -n 1) edges"
