@@ -103,6 +103,7 @@ static void assert_equals_vtk(const struct volume *layer, const struct label_set
     int status = run_vtk(layer, sets, n_sets, out, sizeof out);
     if (status == 77) {
         print_message("no VTK for Python here\n");
+        volume_unref(layer); /* skip does not come back */
         skip();
     }
     assert_int_equal(status, 0);
