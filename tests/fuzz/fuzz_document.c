@@ -1,44 +1,80 @@
-/* HTTP bodies: a merge patch on the scene and on a view. What is accepted must be a scene that reads, and patching nothing onto it
- * must change nothing. */
-#include <stdlib.h>
-
+/* Merge patches on scene and view, from WebSocket and HTTP bodies: first byte odd patches the view instead of the scene. */
 #include "server/wire/document.h"
+#include "tests/fuzz/fuzz.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n);
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
+static const char *const image_ids[] = { "ct", "mr-1", NULL };
+
+/* What a renderer would give for a plan with three regions. */
+static cJSON *plan_defaults(void)
 {
-    static const char *const images[] = { "ct", NULL };
-    static cJSON *defaults;
-    struct problem problem;
-    if (!defaults) {
-        struct scene scene = scene_default;
-        struct scene_region_style_entry entries[2] = { { "brain", scene_region_style_default }, { "tumor", scene_region_style_default } };
-        scene.regions = entries;
-        scene.n_regions = 2;
-        defaults = scene_write(&scene);
+    struct scene scene = scene_default;
+    struct scene_region_style_entry entries[3] = { { "scalp", scene_region_style_default },
+                                                   { "brain", scene_region_style_default },
+                                                   { "tumour", scene_region_style_default } };
+    scene.n_regions = 3;
+    scene.regions = entries;
+    cJSON *json = scene_write(&scene);
+    REQUIRE(json);
+    return json;
+}
+
+static void scene_patch(const cJSON *defaults, const cJSON *patch)
+{
+    struct problem problem = { 0 };
+    cJSON *document = scene_document_patch(defaults, image_ids, defaults, patch, &problem);
+    if (!document) {
+        REQUIRE(problem.type != PROBLEM_NONE && problem.detail[0] != '\0');
+        return;
     }
-    cJSON *patch = json_read((const char *)data, n, &problem);
-    if (!patch)
-        return 0;
-    cJSON *scene = scene_document_patch(defaults, images, defaults, patch, &problem);
+    struct scene scene;
+    REQUIRE(scene_read(document, &scene, &problem));
+    REQUIRE(scene.n_regions == 3);
+    scene_finish(&scene);
+
+    cJSON *nothing = cJSON_CreateObject();
+    cJSON *same = scene_document_patch(defaults, image_ids, document, nothing, &problem);
+    REQUIRE(same && cJSON_Compare(document, same, true));
+    cJSON_Delete(same);
+    cJSON_Delete(nothing);
+    cJSON_Delete(document);
+}
+
+static void view_patch(const cJSON *defaults, const cJSON *patch)
+{
+    struct problem problem = { 0 };
+    cJSON *document = view_document_patch(NULL, patch, &problem);
+    if (!document) {
+        REQUIRE(problem.type != PROBLEM_NONE && problem.detail[0] != '\0');
+        return;
+    }
+    struct view view;
+    REQUIRE(view_read(document, &view, &problem));
+    REQUIRE(view.size_px[0] > 0 && view.size_px[1] > 0);
+    view_finish(&view);
+
+    cJSON *scene = scene_document_for_view(defaults, image_ids, defaults, document, &problem);
     if (scene) {
-        struct scene decoded;
-        if (!scene_read(scene, &decoded, &problem))
-            abort();
-        scene_finish(&decoded);
-        cJSON *nothing = cJSON_CreateObject();
-        cJSON *same = scene_document_patch(defaults, images, scene, nothing, &problem);
-        if (!same || !cJSON_Compare(same, scene, true))
-            abort();
-        cJSON_Delete(same);
-        cJSON_Delete(nothing);
+        struct scene read;
+        REQUIRE(scene_read(scene, &read, &problem));
+        scene_finish(&read);
         cJSON_Delete(scene);
     }
-    cJSON *view = view_document_patch(NULL, patch, &problem);
-    if (view) {
-        cJSON_Delete(scene_document_for_view(defaults, images, defaults, view, &problem));
-        cJSON_Delete(view);
+    cJSON_Delete(document);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
+{
+    if (n < 1)
+        return 0;
+    struct problem problem = { 0 };
+    cJSON *patch = json_read((const char *)data + 1, n - 1, &problem);
+    if (!patch) {
+        REQUIRE(problem.type != PROBLEM_NONE && problem.detail[0] != '\0');
+        return 0;
     }
+    cJSON *defaults = plan_defaults();
+    (data[0] % 2 == 0 ? scene_patch : view_patch)(defaults, patch);
+    cJSON_Delete(defaults);
     cJSON_Delete(patch);
     return 0;
 }

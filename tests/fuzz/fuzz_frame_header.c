@@ -1,20 +1,25 @@
-/* The header before each picture. What is accepted must be written back with the same bytes. */
-#include <stdlib.h>
-#include <string.h>
-
+/* The header in front of every picture (proto/frame.md), as a reader outside would get it. */
 #include "server/wire/frame_header.h"
+#include "tests/fuzz/fuzz.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
 {
     struct frame_header header;
-    struct error err;
-    size_t start;
-    if (!frame_header_read(data, n, &header, &start, &err))
+    size_t header_bytes = 0;
+    struct error err = { 0 };
+    if (!frame_header_read(data, n, &header, &header_bytes, &err)) {
+        REQUIRE(err.code != ERROR_NONE && err.text[0] != '\0');
         return 0;
+    }
+    REQUIRE(header_bytes >= FRAME_HEADER_BYTES && header_bytes <= n);
+    REQUIRE(header.payload_bytes == n - header_bytes);
+    REQUIRE(header.width_px > 0 && header.height_px > 0);
+    REQUIRE(header.scale_percent >= 10 && header.scale_percent <= 100);
+
+    /* written again it is what came, but for the length, which says what we write */
     uint8_t bytes[FRAME_HEADER_BYTES];
     frame_header_write(&header, bytes);
-    if (start == FRAME_HEADER_BYTES && memcmp(bytes, data, FRAME_HEADER_BYTES) != 0)
-        abort();
+    REQUIRE(memcmp(bytes, data, 6) == 0);
+    REQUIRE(memcmp(bytes + 8, data + 8, FRAME_HEADER_BYTES - 8) == 0);
     return 0;
 }

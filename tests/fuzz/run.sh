@@ -9,9 +9,9 @@ passed=0 failed=0
 # every name of the protocol is a word worth trying
 words=build/fuzz/words.dict
 grep -hoE '"name": *"[^"]+"' proto/*.json | sed -E 's/.*: *("[^"]+")/\1/' | sort -u >"$words"
-for program in "$programs"/fuzz_*; do
-    [ -x "$program" ] || continue
-    name=$(basename "$program")
+for source in tests/fuzz/fuzz_*.c; do
+    name=$(basename "$source" .c)
+    program=$programs/$name
     name=${name#fuzz_}
     [ -z "${ONLY:-}" ] || [ "$ONLY" = "$name" ] || continue
     grown=build/fuzz/corpus/$name found=build/fuzz/found/$name log=build/fuzz/$name.log
