@@ -19,7 +19,10 @@ struct report {
     size_t n_lines, n_dropped;
 };
 
+/* code must be in core/plan/report_codes.h; report may be NULL. */
 void report_add(struct report *report, enum report_severity severity, const char *code, const char *where, const char *format, ...)
     PRINTF_LIKE(5, 6);
+/* Appends all lines of from and empties it. */
+void report_move(struct report *to, struct report *from);
 void report_finish(struct report *report);
 const char *report_severity_word(enum report_severity severity); /* "note", "warning", "error" */

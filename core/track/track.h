@@ -25,3 +25,4 @@ struct track_set {
     size_t n_segments;
     size_t n_of_class[TRACK_N_CLASSES];
 };
+void track_set_finish(struct track_set *set);

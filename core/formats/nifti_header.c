@@ -1,0 +1,318 @@
+#include <math.h>
+#include <nifti/nifti1.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/formats/gzip.h"
+#include "core/formats/nifti.h"
+
+enum { HEADER1_BYTES = 348, HEADER2_BYTES = 540 };
+
+/* What both versions say, in wide types. */
+struct fields {
+    int64_t dim[8];
+    double pixdim[8];
+    int datatype, bitpix;
+    double vox_offset, slope, offset;
+    int qform_code, sform_code, units;
+    double quatern[3], qoffset[3], srow[3][4];
+    char magic[8];
+};
+
+static uint64_t get_bytes(const uint8_t *at, size_t n, bool is_big)
+{
+    uint64_t value = 0;
+    for (size_t i = 0; i < n; i++)
+        value |= (uint64_t)at[is_big ? n - 1 - i : i] << (8 * i);
+    return value;
+}
+static int get_i16(const uint8_t *at, bool is_big)
+{
+    return (int16_t)get_bytes(at, 2, is_big);
+}
+static int get_i32(const uint8_t *at, bool is_big)
+{
+    return (int32_t)get_bytes(at, 4, is_big);
+}
+static double get_f32(const uint8_t *at, bool is_big)
+{
+    uint32_t raw = (uint32_t)get_bytes(at, 4, is_big);
+    float value;
+    memcpy(&value, &raw, sizeof value);
+    return (double)value;
+}
+static double get_f64(const uint8_t *at, bool is_big)
+{
+    uint64_t raw = get_bytes(at, 8, is_big);
+    double value;
+    memcpy(&value, &raw, sizeof value);
+    return value;
+}
+
+/* Offsets are those of struct nifti_1_header. */
+static void get_fields1(const uint8_t *h, bool is_big, struct fields *f)
+{
+    for (size_t i = 0; i < 8; i++) {
+        f->dim[i] = get_i16(h + 40 + 2 * i, is_big);
+        f->pixdim[i] = get_f32(h + 76 + 4 * i, is_big);
+    }
+    f->datatype = get_i16(h + 70, is_big);
+    f->bitpix = get_i16(h + 72, is_big);
+    f->vox_offset = get_f32(h + 108, is_big);
+    f->slope = get_f32(h + 112, is_big);
+    f->offset = get_f32(h + 116, is_big);
+    f->units = h[123];
+    f->qform_code = get_i16(h + 252, is_big);
+    f->sform_code = get_i16(h + 254, is_big);
+    for (size_t i = 0; i < 3; i++) {
+        f->quatern[i] = get_f32(h + 256 + 4 * i, is_big);
+        f->qoffset[i] = get_f32(h + 268 + 4 * i, is_big);
+        for (size_t j = 0; j < 4; j++)
+            f->srow[i][j] = get_f32(h + 280 + 16 * i + 4 * j, is_big);
+    }
+    memcpy(f->magic, h + 344, 4);
+}
+
+/* Offsets are those of struct nifti_2_header. */
+static void get_fields2(const uint8_t *h, bool is_big, struct fields *f)
+{
+    memcpy(f->magic, h + 4, 8);
+    f->datatype = get_i16(h + 12, is_big);
+    f->bitpix = get_i16(h + 14, is_big);
+    for (size_t i = 0; i < 8; i++) {
+        f->dim[i] = (int64_t)get_bytes(h + 16 + 8 * i, 8, is_big);
+        f->pixdim[i] = get_f64(h + 104 + 8 * i, is_big);
+    }
+    f->vox_offset = (double)(int64_t)get_bytes(h + 168, 8, is_big);
+    f->slope = get_f64(h + 176, is_big);
+    f->offset = get_f64(h + 184, is_big);
+    f->qform_code = get_i32(h + 344, is_big);
+    f->sform_code = get_i32(h + 348, is_big);
+    for (size_t i = 0; i < 3; i++) {
+        f->quatern[i] = get_f64(h + 352 + 8 * i, is_big);
+        f->qoffset[i] = get_f64(h + 376 + 8 * i, is_big);
+        for (size_t j = 0; j < 4; j++)
+            f->srow[i][j] = get_f64(h + 400 + 32 * i + 8 * j, is_big);
+    }
+    f->units = get_i32(h + 500, is_big) & 0xff;
+}
+
+static bool get_fields(const uint8_t *head, size_t size, const char *name, struct fields *f, bool *is_big, int *version,
+                       struct error *err)
+{
+    if (size < HEADER1_BYTES)
+        return error_set(err, ERROR_FORMAT, "%s: %zu bytes; a NIfTI header has at least %d", name, size, HEADER1_BYTES);
+    for (int big = 0; big < 2; big++) {
+        int length = get_i32(head, big);
+        *is_big = big;
+        if (length == HEADER1_BYTES) {
+            *version = 1;
+            get_fields1(head, big, f);
+            if (memcmp(f->magic, "ni1", 4) == 0)
+                return error_set(err, ERROR_UNSUPPORTED,
+                                 "%s: a NIfTI header with its voxels in another file (.hdr and .img) is not read by this version",
+                                 name);
+            if (memcmp(f->magic, "n+1", 4) != 0)
+                return error_set(err, ERROR_FORMAT, "%s: byte 344: magic is %02x %02x %02x %02x, expected \"n+1\"", name,
+                                 head[344], head[345], head[346], head[347]);
+            return true;
+        }
+        if (length == HEADER2_BYTES) {
+            *version = 2;
+            if (size < HEADER2_BYTES)
+                return error_set(err, ERROR_FORMAT, "%s: %zu bytes; a NIfTI-2 header has %d", name, size, HEADER2_BYTES);
+            get_fields2(head, big, f);
+            if (memcmp(f->magic, "n+2\0\r\n\032\n", 8) != 0)
+                return error_set(err, ERROR_FORMAT, "%s: byte 4: the magic of NIfTI-2 is wrong or was changed by a text transfer",
+                                 name);
+            return true;
+        }
+    }
+    return error_set(err, ERROR_FORMAT, "%s: byte 0: header length is %d, expected 348 (NIfTI-1) or 540 (NIfTI-2): not a NIfTI file",
+                     name, get_i32(head, false));
+}
+
+static const char *type_name(int code)
+{
+    switch (code) {
+    case DT_BINARY: return "1 bit";
+    case DT_COMPLEX64:
+    case DT_COMPLEX128:
+    case DT_COMPLEX256: return "complex";
+    case DT_RGB24:
+    case DT_RGBA32: return "colour";
+    case DT_FLOAT128: return "128-bit float";
+    }
+    return "unknown";
+}
+
+static uint32_t type_bytes(int code)
+{
+    switch (code) {
+    case DT_UINT8:
+    case DT_INT8: return 1;
+    case DT_INT16:
+    case DT_UINT16: return 2;
+    case DT_INT32:
+    case DT_UINT32:
+    case DT_FLOAT32: return 4;
+    case DT_INT64:
+    case DT_UINT64:
+    case DT_FLOAT64: return 8;
+    }
+    return 0;
+}
+
+static bool get_size(const struct fields *f, const char *name, uint32_t size[3], struct error *err)
+{
+    if (f->dim[0] < 1 || f->dim[0] > 7)
+        return error_set(err, ERROR_FORMAT, "%s: dim[0] is %lld, expected 1 to 7", name, (long long)f->dim[0]);
+    size[0] = size[1] = size[2] = 1;
+    for (int i = 1; i <= f->dim[0]; i++) {
+        if (i > 3 && f->dim[i] > 1)
+            return error_set(err, ERROR_UNSUPPORTED, "%s: dim[%d] is %lld: a series of volumes is not read, only one volume", name,
+                             i, (long long)f->dim[i]);
+        if (i > 3 ? f->dim[i] < 0 : f->dim[i] < 1)
+            return error_set(err, ERROR_FORMAT, "%s: dim[%d] is %lld, expected 1 or more", name, i, (long long)f->dim[i]);
+        if (f->dim[i] > VOLUME_MAX_SIDE)
+            return error_set(err, ERROR_LIMIT, "%s: dim[%d] is %lld; at most %d voxels a side are read", name, i,
+                             (long long)f->dim[i], VOLUME_MAX_SIDE);
+        if (i <= 3)
+            size[i - 1] = (uint32_t)f->dim[i];
+    }
+    return true;
+}
+
+/* Method 2: a rotation as a quaternion, spacings, and a sign for the third axis. */
+static struct affine ras_from_quaternion(const struct fields *f)
+{
+    double b = f->quatern[0], c = f->quatern[1], d = f->quatern[2];
+    double rest = 1 - (b * b + c * c + d * d), a = 0;
+    if (rest < 1e-7) { /* half a turn: a is 0, and the others are made a unit */
+        double length = sqrt(b * b + c * c + d * d);
+        b /= length;
+        c /= length;
+        d /= length;
+    } else {
+        a = sqrt(rest);
+    }
+    double dx = f->pixdim[1] > 0 ? f->pixdim[1] : 1, dy = f->pixdim[2] > 0 ? f->pixdim[2] : 1;
+    double dz = (f->pixdim[3] > 0 ? f->pixdim[3] : 1) * (f->pixdim[0] < 0 ? -1 : 1);
+    struct affine ras = { .origin = vec3(f->qoffset[0], f->qoffset[1], f->qoffset[2]) };
+    ras.columns[0] = vec3_scale(vec3(a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)), dx);
+    ras.columns[1] = vec3_scale(vec3(2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)), dy);
+    ras.columns[2] = vec3_scale(vec3(2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - c * c - b * b), dz);
+    return ras;
+}
+
+static struct affine ras_from_rows(const struct fields *f)
+{
+    const double(*r)[4] = f->srow;
+    return (struct affine){ { vec3(r[0][0], r[1][0], r[2][0]), vec3(r[0][1], r[1][1], r[2][1]), vec3(r[0][2], r[1][2], r[2][2]) },
+                            vec3(r[0][3], r[1][3], r[2][3]) };
+}
+
+static struct affine ras_from_spacing(const struct fields *f)
+{
+    double spacing[3];
+    for (int i = 0; i < 3; i++)
+        spacing[i] = f->pixdim[i + 1] > 0 ? f->pixdim[i + 1] : 1;
+    return (struct affine){ { vec3(spacing[0], 0, 0), vec3(0, spacing[1], 0), vec3(0, 0, spacing[2]) }, vec3(0, 0, 0) };
+}
+
+static double largest_corner_distance(const struct affine *a, const struct affine *b, const uint32_t size[3])
+{
+    double largest = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        struct vec3 at = vec3(corner & 1 ? size[0] - 1.0 : 0, corner & 2 ? size[1] - 1.0 : 0, corner & 4 ? size[2] - 1.0 : 0);
+        largest = fmax(largest, vec3_length(vec3_sub(affine_point(a, at), affine_point(b, at))));
+    }
+    return largest;
+}
+
+static bool get_geometry(const struct fields *f, const char *name, const uint32_t size[3], struct grid *grid, struct report *report,
+                         struct error *err)
+{
+    struct affine ras;
+    if (f->sform_code > 0) {
+        ras = ras_from_rows(f);
+        struct affine other = ras_from_quaternion(f);
+        double apart = f->qform_code == f->sform_code ? largest_corner_distance(&ras, &other, size) : 0;
+        if (apart > 1)
+            report_add(report, REPORT_WARNING, "geometry.forms-disagree", name,
+                       "The two orientations in the file (sform, qform) put a corner %.1f units apart; the sform was used.", apart);
+    } else if (f->qform_code > 0) {
+        ras = ras_from_quaternion(f);
+    } else {
+        ras = ras_from_spacing(f);
+        report_add(report, REPORT_WARNING, "geometry.assumed", name,
+                   "The file does not say how its voxels lie in the patient; x was taken to grow to the patient's right-to-left, "
+                   "NIfTI's first method. Left and right may be wrong.");
+    }
+    double mm = 1;
+    switch (f->units & 7) {
+    case NIFTI_UNITS_METER: mm = 1000; break;
+    case NIFTI_UNITS_MICRON: mm = 0.001; break;
+    default: break; /* millimetres, or not said: millimetres */
+    }
+    struct affine lps;
+    for (int i = 0; i < 3; i++)
+        lps.columns[i] = vec3(-ras.columns[i].x * mm, -ras.columns[i].y * mm, ras.columns[i].z * mm);
+    lps.origin = vec3(-ras.origin.x * mm, -ras.origin.y * mm, ras.origin.z * mm);
+    if (!grid_init(grid, size, &lps, err)) {
+        error_prefix(err, "%s: %s", name, f->sform_code > 0 ? "sform" : f->qform_code > 0 ? "qform" : "pixdim");
+        return false;
+    }
+    return true;
+}
+
+bool nifti_parse_header(const uint8_t *head, size_t size, const char *name, struct nifti_header *header, struct report *report,
+                        struct error *err)
+{
+    struct fields f = { 0 };
+    bool is_big = false;
+    int version = 0;
+    uint32_t sides[3];
+    if (!get_fields(head, size, name, &f, &is_big, &version, err) || !get_size(&f, name, sides, err))
+        return false;
+    header->datatype = f.datatype;
+    header->voxel_bytes = type_bytes(f.datatype);
+    if (header->voxel_bytes == 0)
+        return error_set(err, ERROR_UNSUPPORTED,
+                         "%s: data type %d (%s) is not read; expected whole numbers of 8 to 64 bits or floats of 32 or 64", name,
+                         f.datatype, type_name(f.datatype));
+    if (f.bitpix != 0 && f.bitpix != (int)(8 * header->voxel_bytes))
+        return error_set(err, ERROR_FORMAT, "%s: bitpix is %d, but data type %d has %u bits", name, f.bitpix, f.datatype,
+                         8 * header->voxel_bytes);
+    if (!get_geometry(&f, name, sides, &header->grid, report, err))
+        return false;
+    header->is_swapped = is_big != (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__);
+    bool is_scaled = isfinite(f.slope) && f.slope != 0;
+    if (is_scaled && !isfinite(f.offset))
+        return error_set(err, ERROR_FORMAT, "%s: scl_inter is not a finite number", name);
+    header->slope = is_scaled ? f.slope : 1;
+    header->offset = is_scaled ? f.offset : 0;
+    double least = version == 1 ? HEADER1_BYTES + 4 : HEADER2_BYTES + 4;
+    if (f.vox_offset == 0)
+        f.vox_offset = least;
+    if (!(f.vox_offset >= least && f.vox_offset <= 1 << 30))
+        return error_set(err, ERROR_FORMAT, "%s: vox_offset is %g, expected %g or more", name, f.vox_offset, least);
+    header->data_at = (uint64_t)f.vox_offset;
+    uint64_t n_voxels = grid_n_voxels(&header->grid);
+    header->data_bytes = n_voxels * header->voxel_bytes;
+    if (header->data_bytes > VOLUME_MAX_BYTES)
+        return error_set(err, ERROR_LIMIT, "%s: %u x %u x %u voxels of %u bytes; at most %llu bytes are read", name, sides[0], sides[1],
+                         sides[2], header->voxel_bytes, (unsigned long long)VOLUME_MAX_BYTES);
+    return true;
+}
+
+bool nifti_peek(const struct bytes *file, const char *name, struct nifti_header *header, struct report *report, struct error *err)
+{
+    if (!gzip_is(file->data, file->size))
+        return nifti_parse_header(file->data, file->size, name, header, report, err);
+    uint8_t head[NIFTI_HEAD_BYTES];
+    size_t n = gzip_head(file->data, file->size, head, sizeof head);
+    if (n == 0)
+        return error_set(err, ERROR_FORMAT, "%s: the gzip stream is broken at its start", name);
+    return nifti_parse_header(head, n, name, header, report, err);
+}

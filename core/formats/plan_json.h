@@ -1,0 +1,86 @@
+#pragma once
+/* plan.json and the lists of label names: what they say, checked and in plain structs. The only file of core that knows JSON.
+ * Opens nothing: paths are checked for form alone. */
+#include "core/formats/folder.h"
+#include "core/plan/plan.h"
+
+enum {
+    PLAN_FILE_MAX_BYTES = 4 << 20,
+    PLAN_FILE_MAX_PARTS = REGION_MAX, /* entries of "regions" */
+    PLAN_FILE_MAX_TRACKS = 16,
+    PLAN_FILE_MAX_PAIRS = 1024, /* of the hierarchy */
+    PLAN_FILE_MAX_LABELS = 65536
+};
+
+struct plan_file_image {
+    char id[64];
+    char path[FOLDER_NAME_SIZE];
+    char header[FOLDER_NAME_SIZE]; /* "" none */
+    char modality[16];
+};
+struct plan_file_region {
+    char path[FOLDER_NAME_SIZE];
+    char names[FOLDER_NAME_SIZE]; /* "" none */
+    char name[REGION_NAME_SIZE];  /* not "": the path is a mask */
+    bool has_color;
+    uint8_t rgb[3];
+};
+struct plan_file_component {
+    enum dose_quantity quantity;
+    bool is_per_ppm;
+    char path[FOLDER_NAME_SIZE];
+};
+struct plan_file_dose {
+    char id[64], unit[16], per[64];
+    char mask[FOLDER_NAME_SIZE];
+    struct plan_file_component components[DOSE_N_QUANTITIES];
+    size_t n_components;
+};
+struct plan_file_tracks {
+    char path[FOLDER_NAME_SIZE];
+    double mm; /* of one unit; 0 when not given */
+};
+/* inner lies directly inside outer */
+struct plan_file_pair {
+    char outer[REGION_NAME_SIZE], inner[REGION_NAME_SIZE];
+};
+
+struct plan_file {
+    char name[128], note[512];
+    bool is_phantom;
+    struct plan_file_image images[PLAN_MAX_IMAGES];
+    size_t n_images;
+    struct plan_file_region *regions;
+    size_t n_regions;
+    char hierarchy[FOLDER_NAME_SIZE]; /* a file; "" when pairs say it, or nothing does */
+    struct plan_file_pair *pairs;
+    size_t n_pairs;
+    struct plan_file_dose doses[PLAN_MAX_DOSES];
+    size_t n_doses;
+    struct beam beams[PLAN_MAX_BEAMS];
+    size_t n_beams;
+    struct plan_file_tracks tracks[PLAN_FILE_MAX_TRACKS];
+    size_t n_tracks;
+};
+
+/* Unknown keys are reported, not refused.
+ *   errors  ERROR_FORMAT not JSON (with the line), not a plan, a value of the wrong type; ERROR_RANGE a path that leaves the folder,
+ *           a value out of range; ERROR_LIMIT too many entries; the text names the place, "doses[1].components[0].path" */
+NODISCARD struct plan_file *plan_file_parse(const uint8_t *data, size_t size, struct report *report, struct error *err);
+void plan_file_destroy(struct plan_file *file);
+
+struct label_name {
+    uint16_t value;
+    bool has_color;
+    uint8_t rgb[3];
+    char name[REGION_NAME_SIZE];
+    char parent[REGION_NAME_SIZE]; /* "" none */
+};
+struct label_names {
+    struct label_name *labels;
+    size_t n;
+};
+/* {"labels": [{"value": 1, "name": "scalp", "color": "#e0c0a0", "parent": "..."}]}; a colour may also be three numbers, of 0..1 or
+ * 0..255. errors ERROR_FORMAT, ERROR_RANGE, ERROR_LIMIT */
+NODISCARD bool label_names_parse(const uint8_t *data, size_t size, const char *file, struct label_names *names, struct error *err);
+void label_names_finish(struct label_names *names);

@@ -1,0 +1,29 @@
+#pragma once
+/* SERA univels: a text header .uvh (versions 2.0 and 1.0) and its bytes, .uv or .uv.gz. Works on bytes in memory. */
+#include "core/formats/folder.h"
+#include "core/plan/report.h"
+#include "core/region/region.h"
+
+enum { UVH_MAX_BYTES = 1 << 20, UVH_MAX_BODIES = 256 };
+
+struct uvh_body {
+    char name[REGION_NAME_SIZE];
+    int uvval; /* 0..255 */
+    bool has_color;
+    uint8_t rgb[3];
+    double boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma; /* not-a-number where not given */
+};
+
+struct uvh {
+    struct grid grid;
+    struct uvh_body *bodies;
+    size_t n_bodies;
+};
+void uvh_finish(struct uvh *uvh);
+
+/*   errors  ERROR_FORMAT, ERROR_UNSUPPORTED (oblique), ERROR_RANGE, ERROR_LIMIT; line and key named */
+NODISCARD bool uvh_parse(const uint8_t *data, size_t size, const char *name, struct uvh *uvh, struct report *report,
+                         struct error *err);
+
+/* The univels as a U8 volume. data may be gzip. errors ERROR_FORMAT not as many bytes as the header's univels; ERROR_MEMORY */
+NODISCARD struct volume *uvh_read_univels(const struct uvh *uvh, const struct bytes *data, const char *name, struct error *err);

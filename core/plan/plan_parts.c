@@ -1,0 +1,191 @@
+#include "core/plan/plan_parts.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/formats/nifti.h"
+#include "core/formats/text.h"
+
+static bool is_dicom_file(const struct folder *folder, const char *name)
+{
+    struct bytes head;
+    if (!folder_read(folder, name, UINT64_MAX, 132, &head, NULL))
+        return false;
+    bool is_dicom = head.size == 132 && memcmp(head.data + 128, "DICM", 4) == 0;
+    bytes_free(&head);
+    return is_dicom;
+}
+
+enum part_format part_format_of(const struct folder *folder, const char *name)
+{
+    static const struct {
+        const char *ending;
+        enum part_format format;
+    } endings[] = { { ".nii", PART_NIFTI },     { ".nii.gz", PART_NIFTI },    { ".uvh", PART_UVH },        { ".qim", PART_QSH },
+                    { ".qim.gz", PART_QSH },    { ".qhd", PART_QSH },         { ".pp", PART_PP },          { ".dcm", PART_DICOM },
+                    { ".nrrd", PART_NRRD },     { ".nhdr", PART_NRRD },       { ".rst", PART_SERA_DOSE },  { ".rst.gz", PART_SERA_DOSE },
+                    { ".rstb", PART_SERA_DOSE }, { ".rstb.gz", PART_SERA_DOSE }, { ".chd", PART_SERA_DOSE } };
+    enum folder_kind kind = folder_look(folder, name, NULL);
+    if (kind == FOLDER_ABSENT)
+        return PART_ABSENT;
+    if (kind == FOLDER_DIRECTORY)
+        return PART_DICOM;
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
+        if (text_has_ending(name, endings[i].ending))
+            return endings[i].format;
+    return is_dicom_file(folder, name) ? PART_DICOM : PART_UNKNOWN;
+}
+
+const char *part_format_word(enum part_format format)
+{
+    switch (format) {
+    case PART_ABSENT: return "a file that is not there";
+    case PART_NIFTI: return "NIfTI";
+    case PART_UVH: return "SERA univels";
+    case PART_QSH: return "SERA image";
+    case PART_PP: return "SERA tracks";
+    case PART_DICOM: return "DICOM";
+    case PART_NRRD: return "NRRD";
+    case PART_SERA_DOSE: return "SERA dose";
+    case PART_UNKNOWN: break;
+    }
+    return "an unknown format";
+}
+
+/* Length of name without the last ending. */
+static size_t stem_length(const char *name)
+{
+    const char *dot = strrchr(name, '.'), *slash = strrchr(name, '/');
+    return dot && (!slash || dot > slash) ? (size_t)(dot - name) : strlen(name);
+}
+
+bool part_find_data(const struct folder *folder, const char *header, const char *ending, char data[FOLDER_NAME_SIZE])
+{
+    static const char *const packings[] = { ".gz", "" };
+    for (int i = 0; i < 2; i++) {
+        int n = snprintf(data, FOLDER_NAME_SIZE, "%.*s%s%s", (int)stem_length(header), header, ending, packings[i]);
+        if (n > 0 && n < FOLDER_NAME_SIZE && folder_look(folder, data, NULL) == FOLDER_FILE)
+            return true;
+    }
+    return false;
+}
+
+/* A NIfTI file whose name speaks of labels and whose voxels are whole numbers. */
+static bool is_label_map(const struct folder *folder, const char *name)
+{
+    struct bytes head;
+    struct nifti_header header;
+    char low[FOLDER_NAME_SIZE];
+    size_t n = strlen(name);
+    for (size_t i = 0; i <= n; i++)
+        low[i] = name[i] >= 'A' && name[i] <= 'Z' ? (char)(name[i] - 'A' + 'a') : name[i];
+    if (!strstr(low, "label") && !strstr(low, "seg") && !strstr(low, "univel") && !strstr(low, "mask"))
+        return false;
+    if (!folder_read(folder, name, UINT64_MAX, 1 << 16, &head, NULL))
+        return false;
+    bool is_read = nifti_peek(&head, name, &header, NULL, NULL);
+    bytes_free(&head);
+    return is_read && header.datatype != 16 /* float */ && header.datatype != 64 /* double */;
+}
+
+static void set_name(char *out, size_t size, const char *name)
+{
+    text_clean(name, out, size);
+}
+
+static void recognise_file(const struct folder *folder, const char *name, struct plan_file *file, struct report *report,
+                           size_t *n_foreign)
+{
+    char data[FOLDER_NAME_SIZE];
+    switch (part_format_of(folder, name)) {
+    case PART_NIFTI:
+        if (is_label_map(folder, name)) {
+            if (file->n_regions < PLAN_FILE_MAX_PARTS)
+                set_name(file->regions[file->n_regions++].path, FOLDER_NAME_SIZE, name);
+        } else if (file->n_images < PLAN_MAX_IMAGES) {
+            set_name(file->images[file->n_images++].path, FOLDER_NAME_SIZE, name);
+        } else {
+            report_add(report, REPORT_WARNING, "plan.ignored-file", name, "More than %d images; this one was not read.", PLAN_MAX_IMAGES);
+        }
+        break;
+    case PART_UVH:
+        if (!part_find_data(folder, name, ".uv", data))
+            report_add(report, REPORT_NOTE, "plan.ignored-file", name, "There is no file of univels beside it.");
+        else if (file->n_regions < PLAN_FILE_MAX_PARTS)
+            set_name(file->regions[file->n_regions++].path, FOLDER_NAME_SIZE, name);
+        break;
+    case PART_QSH:
+        if (!text_has_ending(name, ".qhd"))
+            break;
+        if (!part_find_data(folder, name, ".qim", data)) {
+            report_add(report, REPORT_NOTE, "plan.ignored-file", name, "There is no file of pixels beside it.");
+        } else if (file->n_images < PLAN_MAX_IMAGES) {
+            struct plan_file_image *image = &file->images[file->n_images++];
+            set_name(image->path, sizeof image->path, data);
+            set_name(image->header, sizeof image->header, name);
+        }
+        break;
+    case PART_PP:
+        if (file->n_tracks < PLAN_FILE_MAX_TRACKS)
+            set_name(file->tracks[file->n_tracks++].path, FOLDER_NAME_SIZE, name);
+        break;
+    case PART_SERA_DOSE:
+        report_add(report, REPORT_NOTE, "plan.ignored-file", name, "A SERA dose; this version does not read it.");
+        break;
+    case PART_NRRD:
+    case PART_DICOM: (*n_foreign)++; break;
+    default:
+        if (text_has_ending(name, ".info") && !file->hierarchy[0])
+            set_name(file->hierarchy, sizeof file->hierarchy, name);
+    }
+}
+
+static struct plan_file *recognise(const struct folder *folder, struct report *report, struct error *err)
+{
+    char **names;
+    size_t n_names, n_foreign = 0;
+    if (!folder_list(folder, &names, &n_names, err))
+        return NULL;
+    struct plan_file *file = mem_new(sizeof *file);
+    file->regions = mem_new(PLAN_FILE_MAX_PARTS * sizeof *file->regions);
+    const char *foreign = "DICOM";
+    for (size_t i = 0; i < n_names; i++) {
+        size_t before = n_foreign;
+        if (folder_look(folder, names[i], NULL) == FOLDER_FILE)
+            recognise_file(folder, names[i], file, report, &n_foreign);
+        if (n_foreign > before && n_foreign == 1 && part_format_of(folder, names[i]) == PART_NRRD)
+            foreign = "NRRD";
+    }
+    folder_free_names(names, n_names);
+    const char *base = strrchr(folder->path, '/');
+    set_name(file->name, sizeof file->name, base ? base + 1 : folder->path);
+    if (file->n_images + file->n_regions == 0) {
+        if (n_foreign > 0)
+            error_set(err, ERROR_UNSUPPORTED, "%zu %s files: %s is not read by this version", n_foreign, foreign, foreign);
+        else
+            error_set(err, ERROR_NOT_FOUND, "no plan.json, and no file in the folder is an image or regions that this version reads");
+        plan_file_destroy(file);
+        return NULL;
+    }
+    report_add(report, REPORT_NOTE, "plan.recognised", "", "The folder has no plan.json; %zu images and %zu files of regions were found "
+               "by their names.", file->n_images, file->n_regions);
+    return file;
+}
+
+struct plan_file *plan_describe(const struct folder *folder, struct report *report, struct error *err)
+{
+    if (folder_look(folder, "plan.json", NULL) == FOLDER_ABSENT)
+        return recognise(folder, report, err);
+    struct bytes text;
+    if (!folder_read(folder, "plan.json", PLAN_FILE_MAX_BYTES, UINT64_MAX, &text, err))
+        return NULL;
+    struct plan_file *file = plan_file_parse(text.data, text.size, report, err);
+    bytes_free(&text);
+    if (file && !file->name[0]) {
+        const char *base = strrchr(folder->path, '/');
+        set_name(file->name, sizeof file->name, base ? base + 1 : folder->path);
+    }
+    return file;
+}

@@ -1,0 +1,26 @@
+#pragma once
+/* Inside core/plan: what a folder holds, as plan.json says it or as its files suggest, before any voxel is read. */
+#include "core/formats/plan_json.h"
+#include "core/plan/plan.h"
+
+enum part_format {
+    PART_ABSENT,
+    PART_NIFTI,
+    PART_UVH,
+    PART_QSH, /* .qim with its .qhd */
+    PART_PP,
+    PART_DICOM,
+    PART_NRRD,
+    PART_SERA_DOSE, /* .rst, .chd */
+    PART_UNKNOWN
+};
+/* By the name's ending; a folder and a file without a known ending are looked into for DICOM. */
+enum part_format part_format_of(const struct folder *folder, const char *name);
+const char *part_format_word(enum part_format format); /* "NIfTI", "DICOM", ... */
+
+/* plan.json when it is there, else the files that can be told by their names. errors as plan_load */
+NODISCARD struct plan_file *plan_describe(const struct folder *folder, struct report *report, struct error *err);
+
+/* The file of univels beside a .uvh, or of pixels beside a .qhd: stem + ".uv.gz", stem + ".uv"; the packed one wins.
+ * false when there is none. */
+bool part_find_data(const struct folder *folder, const char *header, const char *ending, char data[FOLDER_NAME_SIZE]);

@@ -1,0 +1,61 @@
+#pragma once
+/* Every code a report line may carry: X(code, what it means, what to do about it). The one list of them: report_add refuses
+ * any other, and the reference page is made from it. */
+#define REPORT_CODES(X)                                                                                                            \
+    X("plan.recognised", "The folder has no plan.json; its parts were found by their file names.",                                 \
+      "Check the parts; write a plan.json to name them and to give units.")                                                        \
+    X("plan.ignored-file", "A file in the folder looks like a part but was not used.", "Name it in plan.json if it belongs to it.") \
+    X("plan.unknown-key", "plan.json has a key that is not known.", "Check its spelling.")                                         \
+    X("geometry.assumed", "The file does not say where the grid lies in the patient.",                                             \
+      "Left and right may be wrong: export again with an orientation.")                                                            \
+    X("geometry.unit-assumed", "The file's unit cannot be right for a patient; another was taken.",                                \
+      "Check a known distance; correct the unit in the header.")                                                                   \
+    X("geometry.unit-doubtful", "The grid is too small for a patient in the unit the file gives.",                                 \
+      "Check a known distance; correct the unit in the header.")                                                                   \
+    X("geometry.extent-differs", "Number of voxels times their size is not the extent the header gives.",                          \
+      "Check the header; the voxel size was used.")                                                                                \
+    X("geometry.orientation-differs", "The slice orientation and the axis codes of a header disagree.",                            \
+      "Check left and right; the axis codes were used.")                                                                           \
+    X("geometry.forms-disagree", "The two orientations a NIfTI file may carry (sform, qform) differ.",                             \
+      "Check left and right; the sform was used.")                                                                                 \
+    X("geometry.borrowed", "An image's header was wrong about its grid; the grid of the univels was taken.",                       \
+      "Check that image and regions fit; correct the header.")                                                                     \
+    X("geometry.centred", "The header does not say where the picture lies across its plane; it was centred on the axes.",          \
+      "Check that image and regions fit.")                                                                                         \
+    X("image.slices-differ", "The header's number of slices is not what the data holds.",                                          \
+      "The data was believed; correct the header.")                                                                                \
+    X("image.locations-differ", "Slice positions and reference location with spacing disagree.",                                   \
+      "The positions were used; correct the header.")                                                                              \
+    X("image.locations-uneven", "Slice positions are a little uneven; an even spacing was fitted.",                                \
+      "Check distances along the slices.")                                                                                         \
+    X("image.precision", "Whole numbers too large to be held exactly were rounded.", "Store the image with a smaller range.")     \
+    X("image.not-finite", "Some values are not numbers.", "They are drawn as nothing and probed as nothing.")                     \
+    X("image.hu-doubtful", "A CT has no value below zero, so its numbers may not be HU.", "Check the rescale slope and intercept.") \
+    X("region.empty", "A region has no voxel.", "Nothing to show for it; check the file.")                                        \
+    X("region.unnamed", "A label has no name.", "It is listed under its number; add it to the list of names.")                    \
+    X("region.unused-names", "The list of names has labels that no voxel carries.", "Nothing; they are not listed.")              \
+    X("region.surroundings", "The filling around the patient is not listed as a region.", "Nothing.")                             \
+    X("region.absent", "A region is marked ABSENT by its file and not listed.", "Nothing.")                                       \
+    X("region.renamed", "Two regions have the same name.", "They are told apart by their ids; rename one.")                       \
+    X("mask.fractional", "A mask holds values between 0 and 1.", "Half and more counts as inside.")                               \
+    X("hierarchy.derived", "No file says what lies inside what; it was derived from containment.",                                 \
+      "Check the tree; give a hierarchy in plan.json.")                                                                            \
+    X("hierarchy.unknown-name", "The hierarchy in plan.json names a region that is not there.", "Check the spelling.")            \
+    X("hierarchy.cycle", "The hierarchy says that a region lies inside itself.", "The line was left out; correct it.")            \
+    X("hierarchy.line", "A line of the hierarchy file is not \"outer > inner\".", "The line was left out; correct it.")           \
+    X("dose.unsupported", "A dose is in a format this version does not read.", "The rest is shown without it.")                   \
+    X("dose.no-unit", "The plan does not say the dose's unit.", "Numbers carry no unit; add \"unit\" in plan.json.")              \
+    X("dose.no-per", "The plan does not say what the dose is per.", "Add \"per\" in plan.json.")                                  \
+    X("dose.negative", "A dose holds negative values.", "They are kept; check the source.")                                       \
+    X("dose.not-finite", "A dose holds values that are not numbers.", "They count as no dose there.")                             \
+    X("dose.mask-grid", "The mask of a dose lies on another grid than the dose.", "It is looked up by position.")                 \
+    X("beam.from-tracks", "No beam is given; it was taken from the beam line of the tracks.", "Its aperture is unknown.")         \
+    X("tracks.unsupported", "A track file is in a format this version does not read.", "The rest is shown without it.")           \
+    X("tracks.unit-assumed", "The unit of a track file was decided by comparing it with the patient.",                             \
+      "Give \"unit\" in plan.json.")                                                                                               \
+    X("tracks.unit-doubtful", "The unit given for a track file does not suit the patient's size.", "Check \"unit\" in plan.json.") \
+    X("tracks.no-energy", "Tracks without an energy class.", "They are listed in the high class of their kind.")                  \
+    X("tracks.zero-length", "Tracks of no length.", "They are left out.")                                                         \
+    X("tracks.bad-lines", "Lines of a track file that are not a segment.", "They are left out; check the file.")                  \
+    X("header.unknown-key", "A header has keys that are not known.", "They are ignored.")                                         \
+    X("header.bad-number", "A header has a value that is not a number.", "It is ignored.")
