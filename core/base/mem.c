@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 void *mem_new(size_t size)
 {
@@ -12,15 +13,38 @@ void *mem_new(size_t size)
     return p;
 }
 
+static bool array_bytes(size_t n, size_t size, uint64_t limit_bytes, uint64_t *bytes, struct error *err)
+{
+    if (!__builtin_mul_overflow((uint64_t)n, (uint64_t)size, bytes) && *bytes <= limit_bytes)
+        return true;
+    return error_set(err, ERROR_LIMIT, "%zu items of %zu bytes are more than the limit of %" PRIu64 " bytes", n, size, limit_bytes);
+}
+
 void *mem_array(size_t n, size_t size, uint64_t limit_bytes, struct error *err)
 {
     uint64_t bytes;
-    if (__builtin_mul_overflow((uint64_t)n, (uint64_t)size, &bytes) || bytes > limit_bytes) {
-        error_set(err, ERROR_LIMIT, "%zu items of %zu bytes are more than the limit of %" PRIu64 " bytes", n, size,
-                  limit_bytes);
+    if (!array_bytes(n, size, limit_bytes, &bytes, err))
         return NULL;
-    }
     void *p = calloc(bytes ? (size_t)bytes : 1, 1);
+    if (!p)
+        error_set(err, ERROR_MEMORY, "no memory for %" PRIu64 " bytes", bytes);
+    return p;
+}
+
+void *mem_large_array(size_t n, size_t size, uint64_t limit_bytes, struct error *err)
+{
+    const uint64_t huge = (uint64_t)2 << 20;
+    uint64_t bytes;
+    if (!array_bytes(n, size, limit_bytes, &bytes, err))
+        return NULL;
+    /* A last huge page that would be used by less than half stays small pages. */
+    uint64_t on_huge = bytes > UINT64_MAX - huge ? 0 : (bytes + huge / 2) / huge * huge;
+    uint64_t all = on_huge > bytes ? on_huge : bytes;
+    void *p = NULL;
+    if (on_huge && posix_memalign(&p, (size_t)huge, (size_t)all) == 0)
+        (void)madvise(p, (size_t)on_huge, MADV_HUGEPAGE); /* a kernel without them says no: nothing is lost */
+    else
+        p = on_huge ? NULL : malloc(bytes ? (size_t)bytes : 1);
     if (!p)
         error_set(err, ERROR_MEMORY, "no memory for %" PRIu64 " bytes", bytes);
     return p;

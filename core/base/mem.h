@@ -12,5 +12,9 @@ NODISCARD void *mem_new(size_t size);
  * errors ERROR_LIMIT, ERROR_MEMORY. n == 0 gives a unique pointer. Free with free(). */
 NODISCARD void *mem_array(size_t n, size_t size, uint64_t limit_bytes, struct error *err);
 
+/* The same for arrays of megabytes, NOT zeroed: on huge pages where the system has them, as the page faults of a fresh array
+ * can take longer than filling it. */
+NODISCARD void *mem_large_array(size_t n, size_t size, uint64_t limit_bytes, struct error *err);
+
 /* Copy of a string; aborts when there is no memory. */
 NODISCARD char *mem_copy_text(const char *text);
