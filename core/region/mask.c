@@ -1,6 +1,7 @@
 #include "core/region/mask.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
@@ -8,6 +9,7 @@
 
 enum { MAX_THREADS = 64, MAX_FACTOR = 8 };
 
+/* Bits are left to be written. */
 static struct mask *mask_create(const uint32_t size[3], const struct affine *lps_mm_from_ijk, struct error *err)
 {
     struct mask *mask = mem_new(sizeof *mask);
@@ -15,7 +17,7 @@ static struct mask *mask_create(const uint32_t size[3], const struct affine *lps
         mask->size[axis] = size[axis];
     mask->words = (size[0] + 63) / 64;
     mask->lps_mm_from_ijk = *lps_mm_from_ijk;
-    mask->bits = mem_array((size_t)size[1] * size[2], mask->words * sizeof *mask->bits, VOLUME_MAX_BYTES, err);
+    mask->bits = mem_large_array((size_t)size[1] * size[2], mask->words * sizeof *mask->bits, VOLUME_MAX_BYTES, err);
     if (!mask->bits) {
         free(mask);
         return NULL;
@@ -205,6 +207,7 @@ static void reduce_part(void *context, int part, int n_parts)
             uint32_t n_k = part_of_block(from->size[2], (uint32_t)k, job->factor);
             uint32_t n_j = part_of_block(from->size[1], j, job->factor);
             uint64_t *row = to->bits + (k * to->size[1] + j) * to->words;
+            memset(row, 0, to->words * sizeof *row);
             for (uint32_t i = 0; i < to->size[0]; i++) {
                 uint32_t n_i = part_of_block(from->size[0], i, job->factor), n = 0;
                 for (uint32_t dk = 0; dk < n_k; dk++)

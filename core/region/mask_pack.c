@@ -9,16 +9,20 @@
 void label_test_init(struct label_test *test, const uint16_t *labels, size_t n_labels)
 {
     memset(test, 0, sizeof *test);
-    for (size_t i = 0; i < n_labels; i++)
+    uint32_t low = UINT16_MAX, high = 0;
+    for (size_t i = 0; i < n_labels; i++) {
         test->has[labels[i]] = 1;
+        low = labels[i] < low ? labels[i] : low;
+        high = labels[i] > high ? labels[i] : high;
+    }
     for (uint32_t label = 0; label < 256; label++)
         if (test->has[label]) {
             uint8_t *row = &test->nibbles[label / 128][label % 16];
             *row = (uint8_t)(*row | 1u << label / 16 % 8);
         }
     size_t n = 0;
-    for (uint32_t label = 0, end; label < 65536; label = end) {
-        for (end = label; end < 65536 && test->has[end]; end++)
+    for (uint32_t label = low, end; label <= high; label = end) {
+        for (end = label; end <= high && test->has[end]; end++)
             ;
         if (end > label && ++n <= LABEL_MAX_RUNS) {
             test->first[n - 1] = (uint16_t)label;

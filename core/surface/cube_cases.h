@@ -9,10 +9,10 @@
 
 enum { CUBE_EDGES = 12, CUBE_MAX_TRIANGLES = 5 };
 
-struct cube_case {
-    uint8_t is_crossed[8]; /* edges 0..7: 1 when one end is inside, the other outside */
+struct cube_case { /* 32 bytes, in parts that vector code loads whole */
+    _Alignas(32) uint8_t is_crossed[8]; /* edges 0..7: 1 when one end is inside, the other outside */
+    uint8_t edges[3 * CUBE_MAX_TRIANGLES + 1]; /* edge on which each corner of each triangle lies; the rest 0 */
     uint8_t n_triangles;
-    uint8_t edges[3 * CUBE_MAX_TRIANGLES]; /* edge on which each corner of each triangle lies */
 };
 
 /* Triangles wind counter-clockwise seen from the outside corners when x, y, z are right-handed; the other way if mirrored. */

@@ -21,6 +21,10 @@
 #include "core/base/parallel.h"
 #include "core/surface/cube_cases.h"
 
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
 enum { CELLS_A_WORD = 63, MAX_THREADS = 64, MAX_MASK_WORDS = VOLUME_MAX_SIDE / 64 };
 #define LOW_63 (~(uint64_t)0 >> 1)
 
@@ -46,7 +50,7 @@ struct job {
     int32_t start[3];   /* mask index of its voxel 0; -1 when an empty layer was put in front */
     uint32_t size[3];   /* voxels */
     uint32_t words;     /* in a row */
-    uint64_t *bits;     /* [z][y][words] */
+    uint64_t *bits;     /* [z][y][words]; owns the rows' memory too */
     struct row *rows;   /* [z][y], and one more at the end */
     struct mesh *mesh;
 };
@@ -139,10 +143,12 @@ static void copy_rows(void *context, int part, int n_parts)
     for (range_of(job->size[2], part, n_parts, &z, &end); z < end; z++)
         for (uint32_t y = 0; y < job->size[1]; y++) {
             int32_t j = job->start[1] + (int32_t)y, k = job->start[2] + (int32_t)z;
-            if (j < 0 || k < 0 || (uint32_t)j >= mask->size[1] || (uint32_t)k >= mask->size[2])
-                continue; /* an empty row in front or behind: zero already */
-            const uint64_t *from = mask->bits + ((size_t)k * mask->size[1] + (uint32_t)j) * mask->words;
             uint64_t *to = job->bits + ((size_t)z * job->size[1] + y) * job->words;
+            if (j < 0 || k < 0 || (uint32_t)j >= mask->size[1] || (uint32_t)k >= mask->size[2]) {
+                memset(to, 0, job->words * sizeof *to); /* an empty row in front or behind */
+                continue;
+            }
+            const uint64_t *from = mask->bits + ((size_t)k * mask->size[1] + (uint32_t)j) * mask->words;
             for (uint32_t w = 0; w < job->words; w++)
                 to[w] = bits_from(from, mask->words, job->start[0] + (int32_t)(CELLS_A_WORD * w));
         }
@@ -150,7 +156,7 @@ static void copy_rows(void *context, int part, int n_parts)
 
 /* ---- rows --------------------------------------------------------------------------------------------------------------- */
 
-/* The two passes are inlined into a version for any processor and one for processors with POPCNT and BMI, see below. */
+/* The two passes are inlined into a version for any processor and one for processors with AVX2 and bit counting, see below. */
 #define INLINED static inline __attribute__((always_inline))
 
 /* A row with its neighbours; at the end of an axis the row stands in for the missing neighbour, so nothing is crossed there. */
@@ -189,6 +195,13 @@ INLINED struct crossings find_crossings(const struct job *job, const struct arou
     };
 }
 
+/* Nothing crossed and no cell active: by far the most words. */
+INLINED bool is_uniform(const struct around *rows, uint32_t w)
+{
+    uint64_t here = rows->here[w], next_y = rows->next_y[w], next_z = rows->next_z[w], next_yz = rows->next_yz[w];
+    return !(here | next_y | next_z | next_yz) || !~(here & next_y & next_z & next_yz);
+}
+
 INLINED uint32_t case_at(const struct around *rows, uint32_t w, int bit)
 {
     return (uint32_t)((rows->here[w] >> bit & 3) | (rows->next_y[w] >> bit & 3) << 2 | (rows->next_z[w] >> bit & 3) << 4 |
@@ -202,6 +215,8 @@ INLINED void count_slices(struct job *job, uint32_t from, uint32_t end)
             struct around rows = rows_around(job, y, z);
             struct row sum = { 0 };
             for (uint32_t w = 0; w < job->words; w++) {
+                if (is_uniform(&rows, w))
+                    continue;
                 struct crossings found = find_crossings(job, &rows, w);
                 sum.x += (uint32_t)__builtin_popcountll(found.x);
                 sum.y += (uint32_t)__builtin_popcountll(found.y);
@@ -233,6 +248,8 @@ INLINED void write_vertices(const struct job *job, const struct row *row, const 
     float *at_y = job->mesh->positions_lps_mm + 3 * (size_t)row->y;
     float *at_z = job->mesh->positions_lps_mm + 3 * (size_t)row->z;
     for (uint32_t w = 0; w < job->words; w++) {
+        if (is_uniform(rows, w))
+            continue;
         struct crossings found = find_crossings(job, rows, w);
         double x = CELLS_A_WORD * (double)w;
         for (uint64_t bits = found.x; bits; bits &= bits - 1)
@@ -244,20 +261,24 @@ INLINED void write_vertices(const struct job *job, const struct row *row, const 
     }
 }
 
-INLINED void write_triangles(const struct job *job, const struct row *row, const struct around *rows)
+/* The vertex that each edge of a row's first cell has, if it is crossed: edges 0..7 as in cube_cases.h. */
+#define FIRST_VERTICES(job, row)                                                                                                 \
+    { (row)->x, (row)[1].x, (row)[(job)->size[1]].x, (row)[(job)->size[1] + 1].x, (row)->y, (row)[(job)->size[1]].y, (row)->z,  \
+      (row)[1].z }
+
+static void write_triangles(const struct job *job, const struct row *row, const struct around *rows)
 {
-    const struct row *next_y = row + 1, *next_z = row + job->size[1], *next_yz = next_z + 1;
-    /* the vertex that each edge of the cell has, if it is crossed: 0..7 as in cube_cases.h, 8..11 are 4..7 one cell on */
-    uint32_t vertex[CUBE_EDGES] = { row->x, next_y->x, next_z->x, next_yz->x, row->y, next_z->y, row->z, next_y->z };
+    uint32_t vertex[CUBE_EDGES] = FIRST_VERTICES(job, row);
     uint32_t *out = job->mesh->indices + 3 * (size_t)row->triangles;
     for (uint32_t w = 0; w < job->words; w++) {
-        struct crossings found = find_crossings(job, rows, w);
-        for (uint64_t cells = found.active; cells; cells &= cells - 1) {
+        if (is_uniform(rows, w))
+            continue;
+        for (uint64_t cells = find_crossings(job, rows, w).active; cells; cells &= cells - 1) {
             const struct cube_case *cube = &job->cases[case_at(rows, w, __builtin_ctzll(cells))];
             uint32_t following[8];
             for (int e = 0; e < 8; e++)
                 following[e] = vertex[e] + cube->is_crossed[e];
-            memcpy(vertex + 8, following + 4, 4 * sizeof *vertex);
+            memcpy(vertex + 8, following + 4, 4 * sizeof *vertex); /* the face x = 1 is the next cell's x = 0 */
             for (int corner = 0; corner < 3 * cube->n_triangles; corner++)
                 *out++ = vertex[cube->edges[corner]];
             memcpy(vertex, following, sizeof following);
@@ -265,8 +286,47 @@ INLINED void write_triangles(const struct job *job, const struct row *row, const
     }
 }
 
-INLINED void write_rows(const struct job *job, size_t from, size_t end)
+#if defined(__x86_64__)
+#define FAST __attribute__((target("avx2,popcnt,bmi,bmi2")))
+
+/* The same with the running numbers in one register; all five triangles that a cell could have are written, the next cell's over
+ * what is too much. `end` is where this thread's triangles end: the last few must not reach beyond. */
+FAST static void write_triangles_avx2(const struct job *job, const struct row *row, const struct around *rows, const uint32_t *end)
 {
+    const uint32_t first[8] = FIRST_VERTICES(job, row);
+    __m256i vertex = _mm256_loadu_si256((const __m256i *)first);
+    uint32_t *out = job->mesh->indices + 3 * (size_t)row->triangles;
+    for (uint32_t w = 0; w < job->words; w++) {
+        if (is_uniform(rows, w))
+            continue;
+        for (uint64_t cells = find_crossings(job, rows, w).active; cells; cells &= cells - 1) {
+            const struct cube_case *cube = &job->cases[case_at(rows, w, __builtin_ctzll(cells))];
+            __m256i crossed = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)cube->is_crossed));
+            __m256i following = _mm256_add_epi32(vertex, crossed);
+            __m256i far_face = _mm256_permute4x64_epi64(following, 0xee); /* edges 8..11 */
+            __m256i triangles[2];
+            for (int half = 0; half < 2; half++) {
+                __m256i edges = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(cube->edges + 8 * half)));
+                __m256i is_far = _mm256_cmpgt_epi32(edges, _mm256_set1_epi32(7));
+                triangles[half] = _mm256_blendv_epi8(_mm256_permutevar8x32_epi32(vertex, edges),
+                                                     _mm256_permutevar8x32_epi32(far_face, edges), is_far);
+            }
+            vertex = following;
+            if (end - out >= 16) {
+                _mm256_storeu_si256((__m256i *)out, triangles[0]);
+                _mm256_storeu_si256((__m256i *)(out + 8), triangles[1]);
+            } else {
+                memcpy(out, triangles, 3 * sizeof *out * cube->n_triangles);
+            }
+            out += 3 * cube->n_triangles;
+        }
+    }
+}
+#endif
+
+INLINED void write_rows(const struct job *job, size_t from, size_t end, bool use_avx2)
+{
+    const uint32_t *end_of_triangles = job->mesh->indices + 3 * (size_t)job->rows[end].triangles;
     for (size_t at = from; at < end; at++) {
         const struct row *row = &job->rows[at];
         if (row[1].x == row->x && row[1].triangles == row->triangles)
@@ -274,22 +334,31 @@ INLINED void write_rows(const struct job *job, size_t from, size_t end)
         uint32_t y = (uint32_t)(at % job->size[1]), z = (uint32_t)(at / job->size[1]);
         struct around rows = rows_around(job, y, z);
         write_vertices(job, row, &rows, y, z);
-        if (rows.has_cells && row[1].triangles != row->triangles)
-            write_triangles(job, row, &rows);
+        if (!rows.has_cells || row[1].triangles == row->triangles)
+            continue;
+#if defined(__x86_64__)
+        if (use_avx2) {
+            write_triangles_avx2(job, row, &rows, end_of_triangles);
+            continue;
+        }
+#endif
+        write_triangles(job, row, &rows);
     }
+    (void)use_avx2;
+    (void)end_of_triangles;
 }
 
 #if defined(__x86_64__)
-#define FAST __attribute__((target("popcnt,bmi,bmi2")))
 FAST static void count_slices_fast(struct job *job, uint32_t from, uint32_t end) { count_slices(job, from, end); }
-FAST static void write_rows_fast(const struct job *job, size_t from, size_t end) { write_rows(job, from, end); }
+FAST static void write_rows_fast(const struct job *job, size_t from, size_t end) { write_rows(job, from, end, true); }
 static bool has_fast(void)
 {
-    return __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("bmi") &&
+           __builtin_cpu_supports("bmi2");
 }
 #else
 static void count_slices_fast(struct job *job, uint32_t from, uint32_t end) { count_slices(job, from, end); }
-static void write_rows_fast(const struct job *job, size_t from, size_t end) { write_rows(job, from, end); }
+static void write_rows_fast(const struct job *job, size_t from, size_t end) { write_rows(job, from, end, false); }
 static bool has_fast(void) { return false; }
 #endif
 
@@ -329,7 +398,7 @@ static void write_part(void *context, int part, int n_parts)
     size_t n_rows = (size_t)job->size[1] * job->size[2];
     size_t from = row_at_share(job, n_rows, part, n_parts), end = row_at_share(job, n_rows, part + 1, n_parts);
     if (job->code == MARCHING_CUBES_PORTABLE)
-        write_rows(job, from, end);
+        write_rows(job, from, end, false);
     else
         write_rows_fast(job, from, end);
 }
@@ -382,9 +451,11 @@ struct mesh *marching_cubes_with(enum marching_cubes_code code, const struct mas
     }
     place_working_grid(&job, &extent, options->close_at_border);
     size_t n_rows = (size_t)job.size[1] * job.size[2];
-    job.bits = mem_array(n_rows, job.words * sizeof *job.bits, UINT64_MAX, err);
-    job.rows = job.bits ? mem_array(n_rows + 1, sizeof *job.rows, UINT64_MAX, err) : NULL;
-    if (job.rows) {
+    /* one array for both: fewer and larger pages */
+    job.bits = mem_large_array(n_rows + 1, job.words * sizeof *job.bits + sizeof *job.rows, UINT64_MAX, err);
+    if (job.bits) {
+        job.rows = (struct row *)(job.bits + n_rows * job.words);
+        job.rows[n_rows] = (struct row){ 0 };
         parallel_run(n_parts, copy_rows, &job);
         parallel_run(n_parts, count_part, &job);
         if (number_rows(&job, options, err)) {
@@ -393,7 +464,6 @@ struct mesh *marching_cubes_with(enum marching_cubes_code code, const struct mas
         }
     }
     free(job.bits);
-    free(job.rows);
     return job.mesh;
 }
 

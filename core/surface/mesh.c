@@ -23,8 +23,9 @@ struct mesh *mesh_create(size_t n_vertices, size_t n_triangles, struct error *er
     mesh->n_vertices = n_vertices;
     mesh->n_triangles = n_triangles;
     mesh->bounds_lps_mm = box3_empty();
-    mesh->positions_lps_mm = mem_array(n_vertices, 3 * sizeof(float), MESH_MAX_BYTES, err);
-    mesh->indices = mesh->positions_lps_mm ? mem_array(n_triangles, 3 * sizeof(uint32_t), MESH_MAX_BYTES, err) : NULL;
+    /* one float more: vector code may load four of the last vertex */
+    mesh->positions_lps_mm = mem_large_array(3 * n_vertices + 1, sizeof(float), MESH_MAX_BYTES, err);
+    mesh->indices = mesh->positions_lps_mm ? mem_large_array(n_triangles, 3 * sizeof(uint32_t), MESH_MAX_BYTES, err) : NULL;
     if (!mesh->indices) {
         mesh_unref(mesh);
         return NULL;
@@ -61,16 +62,25 @@ void mesh_measure_bounds(struct mesh *mesh)
     mesh->bounds_lps_mm = box3_empty();
     if (mesh->n_vertices == 0)
         return;
+    enum { FOUR = 12 }; /* four vertices at a time: whole vectors for the compiler, each lane always the same axis */
     const float *p = mesh->positions_lps_mm;
-    float low[3] = { p[0], p[1], p[2] }, high[3] = { p[0], p[1], p[2] };
-    for (size_t at = 3; at < 3 * mesh->n_vertices; at += 3)
-        for (size_t axis = 0; axis < 3; axis++) {
-            float value = p[at + axis];
-            low[axis] = value < low[axis] ? value : low[axis];
-            high[axis] = value > high[axis] ? value : high[axis];
+    float low[FOUR], high[FOUR];
+    for (size_t lane = 0; lane < FOUR; lane++)
+        low[lane] = high[lane] = p[lane % 3];
+    size_t at = 0, end = 3 * mesh->n_vertices;
+    for (; end - at >= FOUR; at += FOUR)
+        for (size_t lane = 0; lane < FOUR; lane++) {
+            low[lane] = p[at + lane] < low[lane] ? p[at + lane] : low[lane];
+            high[lane] = p[at + lane] > high[lane] ? p[at + lane] : high[lane];
         }
-    mesh->bounds_lps_mm.low = vec3((double)low[0], (double)low[1], (double)low[2]);
-    mesh->bounds_lps_mm.high = vec3((double)high[0], (double)high[1], (double)high[2]);
+    for (; at < end; at++) {
+        low[at % 3] = p[at] < low[at % 3] ? p[at] : low[at % 3];
+        high[at % 3] = p[at] > high[at % 3] ? p[at] : high[at % 3];
+    }
+    for (size_t lane = 0; lane < FOUR; lane += 3) {
+        box3_add(&mesh->bounds_lps_mm, vec3((double)low[lane], (double)low[lane + 1], (double)low[lane + 2]));
+        box3_add(&mesh->bounds_lps_mm, vec3((double)high[lane], (double)high[lane + 1], (double)high[lane + 2]));
+    }
 }
 
 double mesh_area_mm2(const struct mesh *mesh)

@@ -15,7 +15,7 @@ struct mesh {
     _Atomic int references;
 };
 
-/* errors ERROR_MEMORY, ERROR_LIMIT */
+/* Positions and indices are there to be filled, not zeroed. errors ERROR_MEMORY, ERROR_LIMIT */
 NODISCARD struct mesh *mesh_create(size_t n_vertices, size_t n_triangles, struct error *err);
 struct mesh *mesh_ref(const struct mesh *mesh);
 void mesh_unref(const struct mesh *mesh);

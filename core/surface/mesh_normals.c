@@ -5,6 +5,7 @@
  * of triangles that stay clear of a range (most, as meshes from grids are ordered) are skipped whole. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
@@ -16,8 +17,12 @@ struct block {
     uint32_t low, high; /* vertices its triangles use, inclusive */
 };
 
+/* Four floats at once on any processor that has such registers; x, y, z and one that is carried along and never read. */
+typedef float float4 __attribute__((vector_size(16)));
+
 struct job {
     struct mesh *mesh;
+    float4 *sums; /* one a vertex */
     struct block *blocks;
     size_t n_blocks;
 };
@@ -30,75 +35,91 @@ static size_t share(size_t n, int part, int n_parts)
 static void measure_blocks(void *context, int part, int n_parts)
 {
     const struct job *job = context;
+    if (n_parts == 1) { /* the one range holds them all */
+        for (size_t b = 0; b < job->n_blocks; b++)
+            job->blocks[b] = (struct block){ 0, 0 };
+        return;
+    }
     size_t end = share(job->n_blocks, part + 1, n_parts);
     for (size_t b = share(job->n_blocks, part, n_parts); b < end; b++) {
         size_t last = (b + 1) * BLOCK < job->mesh->n_triangles ? (b + 1) * BLOCK : job->mesh->n_triangles;
-        struct block block = { UINT32_MAX, 0 };
-        for (size_t at = 3 * b * BLOCK; at < 3 * last; at++) {
-            uint32_t vertex = job->mesh->indices[at];
-            block.low = vertex < block.low ? vertex : block.low;
-            block.high = vertex > block.high ? vertex : block.high;
+        struct block corner[3] = { { UINT32_MAX, 0 }, { UINT32_MAX, 0 }, { UINT32_MAX, 0 } }; /* three chains that do not wait */
+        for (size_t at = 3 * b * BLOCK; at < 3 * last; at += 3)
+            for (size_t c = 0; c < 3; c++) {
+                uint32_t vertex = job->mesh->indices[at + c];
+                corner[c].low = vertex < corner[c].low ? vertex : corner[c].low;
+                corner[c].high = vertex > corner[c].high ? vertex : corner[c].high;
+            }
+        for (size_t c = 1; c < 3; c++) {
+            corner[0].low = corner[c].low < corner[0].low ? corner[c].low : corner[0].low;
+            corner[0].high = corner[c].high > corner[0].high ? corner[c].high : corner[0].high;
         }
-        job->blocks[b] = block;
+        job->blocks[b] = corner[0];
     }
 }
 
-/* The cross product of two sides: along the normal, twice the area long. */
-static inline void triangle_normal(const float *positions, const uint32_t v[3], float normal[3])
+static inline float4 load4(const float *at)
 {
-    const float *a = positions + 3 * (size_t)v[0], *b = positions + 3 * (size_t)v[1], *c = positions + 3 * (size_t)v[2];
-    float ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
-    float wx = c[0] - a[0], wy = c[1] - a[1], wz = c[2] - a[2];
-    normal[0] = uy * wz - uz * wy;
-    normal[1] = uz * wx - ux * wz;
-    normal[2] = ux * wy - uy * wx;
+    float4 value;
+    memcpy(&value, at, sizeof value);
+    return value;
 }
 
-static inline void add(float *sum, const float normal[3])
+static inline float4 turn(float4 v) /* y, z, x */
 {
-    sum[0] += normal[0];
-    sum[1] += normal[1];
-    sum[2] += normal[2];
+    return __builtin_shufflevector(v, v, 1, 2, 0, 3);
 }
 
-static void add_blocks(void *context, int part, int n_parts)
+/* The cross product of two sides: along the normal, twice the area long. mesh_create leaves room behind the last vertex. */
+static inline float4 triangle_normal(const float *positions, const uint32_t v[3])
+{
+    float4 a = load4(positions + 3 * (size_t)v[0]);
+    float4 u = load4(positions + 3 * (size_t)v[1]) - a, w = load4(positions + 3 * (size_t)v[2]) - a;
+    return turn(u * turn(w) - turn(u) * w);
+}
+
+/* Adds the triangles of a block to the sums of the vertices from..end. */
+static void add_block(const struct job *job, size_t block, size_t from, size_t end)
+{
+    const struct mesh *mesh = job->mesh;
+    bool all_mine = job->blocks[block].low >= from && job->blocks[block].high < end;
+    size_t last = (block + 1) * BLOCK < mesh->n_triangles ? (block + 1) * BLOCK : mesh->n_triangles;
+    for (size_t t = block * BLOCK; t < last; t++) {
+        const uint32_t *v = mesh->indices + 3 * t;
+        float4 normal = triangle_normal(mesh->positions_lps_mm, v);
+        for (int corner = 0; corner < 3; corner++)
+            if (all_mine || (v[corner] >= from && v[corner] < end))
+                job->sums[v[corner]] += normal;
+    }
+}
+
+static void make_normals(void *context, int part, int n_parts)
 {
     const struct job *job = context;
-    const struct mesh *mesh = job->mesh;
-    size_t from = share(mesh->n_vertices, part, n_parts), end = share(mesh->n_vertices, part + 1, n_parts);
-    for (size_t b = 0; b < job->n_blocks; b++) {
-        if (job->blocks[b].high < from || job->blocks[b].low >= end)
-            continue;
-        bool all_mine = job->blocks[b].low >= from && job->blocks[b].high < end;
-        size_t last = (b + 1) * BLOCK < mesh->n_triangles ? (b + 1) * BLOCK : mesh->n_triangles;
-        for (size_t t = b * BLOCK; t < last; t++) {
-            const uint32_t *v = mesh->indices + 3 * t;
-            float normal[3];
-            triangle_normal(mesh->positions_lps_mm, v, normal);
-            for (int corner = 0; corner < 3; corner++)
-                if (all_mine || (v[corner] >= from && v[corner] < end))
-                    add(mesh->normals + 3 * (size_t)v[corner], normal);
-        }
-    }
+    size_t from = share(job->mesh->n_vertices, part, n_parts), end = share(job->mesh->n_vertices, part + 1, n_parts);
+    memset(job->sums + from, 0, (end - from) * sizeof *job->sums);
+    for (size_t b = 0; b < job->n_blocks; b++)
+        if (job->blocks[b].high >= from && job->blocks[b].low < end)
+            add_block(job, b, from, end);
     for (size_t vertex = from; vertex < end; vertex++) {
-        float *n = mesh->normals + 3 * vertex;
-        float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        if (length > 0) {
-            n[0] /= length;
-            n[1] /= length;
-            n[2] /= length;
-        } else {
-            n[2] = 1; /* unused, or its triangles cancel: any direction, but a unit one */
-        }
+        float4 n = job->sums[vertex], square = n * n;
+        float length = sqrtf(square[0] + square[1] + square[2]);
+        if (length > 0)
+            n /= length;
+        else
+            n = (float4){ 0, 0, 1, 0 }; /* unused, or its triangles cancel: any direction, but a unit one */
+        memcpy(job->mesh->normals + 3 * vertex, &n, 3 * sizeof(float));
     }
 }
 
 bool mesh_make_normals(struct mesh *mesh, int n_threads, struct error *err)
 {
-    struct job job = { mesh, NULL, (mesh->n_triangles + BLOCK - 1) / BLOCK };
-    float *normals = mem_array(mesh->n_vertices, 3 * sizeof(float), UINT64_MAX, err);
-    job.blocks = normals ? mem_array(job.n_blocks, sizeof *job.blocks, UINT64_MAX, err) : NULL;
+    struct job job = { .mesh = mesh, .n_blocks = (mesh->n_triangles + BLOCK - 1) / BLOCK };
+    float *normals = mem_large_array(mesh->n_vertices, 3 * sizeof(float), UINT64_MAX, err);
+    job.sums = normals ? mem_large_array(mesh->n_vertices + 1, sizeof *job.sums, UINT64_MAX, err) : NULL;
+    job.blocks = job.sums ? mem_array(job.n_blocks, sizeof *job.blocks, UINT64_MAX, err) : NULL;
     if (!job.blocks) {
+        free(job.sums);
         free(normals);
         return false;
     }
@@ -106,7 +127,8 @@ bool mesh_make_normals(struct mesh *mesh, int n_threads, struct error *err)
     mesh->normals = normals;
     int n_parts = n_threads > 0 ? n_threads : parallel_cores();
     parallel_run(n_parts, measure_blocks, &job);
-    parallel_run(n_parts, add_blocks, &job);
+    parallel_run(n_parts, make_normals, &job);
+    free(job.sums);
     free(job.blocks);
     return true;
 }

@@ -1,0 +1,240 @@
+/* Extraction of regions of a 256 x 256 x 128 volume, against vtkFlyingEdges3D: the two take turns on the same labels, in one
+ * run, and the median of each counts. Ours starts from the labels and includes making the mask; VTK's starts from a ready mask. */
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "core/base/clock.h"
+#include "core/base/parallel.h"
+#include "core/phantom/head.h"
+#include "core/region/mask.h"
+#include "core/surface/surface.h"
+
+enum { REPEATS = 15, N_SETS = 3, N_VOLUMES = 2 };
+
+extern char **environ;
+
+static const struct {
+    const char *name, *text;
+    uint16_t labels[8];
+    size_t n;
+} sets[N_SETS] = {
+    { "head", "1,2,3,4,5", { 1, 2, 3, 4, 5 }, 5 }, { "brain", "3,4,5", { 3, 4, 5 }, 3 }, { "tumour", "5", { 5 }, 1 }
+};
+static const char *const volumes[N_VOLUMES] = { "demo plan", "ragged" };
+
+static _Noreturn void die(const char *what, const struct error *err)
+{
+    fprintf(stderr, "bench_surface: %s: %s\n", what, err ? err->text : "failed");
+    exit(1);
+}
+
+/* ---- labels ------------------------------------------------------------------------------------------------------------- */
+
+static double noise_at_cell(int64_t x, int64_t y, int64_t z)
+{
+    uint64_t mixed = phantom_mix((uint64_t)(x + 4096) << 42 | (uint64_t)(y + 4096) << 21 | (uint64_t)(z + 4096));
+    return (double)(mixed >> 11) / (double)((uint64_t)1 << 53) * 2 - 1;
+}
+
+/* Smooth between -1 and 1, changing over cell_mm. */
+static double noise(struct vec3 p, double cell_mm)
+{
+    double x = floor(p.x / cell_mm), y = floor(p.y / cell_mm), z = floor(p.z / cell_mm), sum = 0;
+    double fx = p.x / cell_mm - x, fy = p.y / cell_mm - y, fz = p.z / cell_mm - z;
+    for (int c = 0; c < 8; c++)
+        sum += (c & 1 ? fx : 1 - fx) * (c & 2 ? fy : 1 - fy) * (c & 4 ? fz : 1 - fz) *
+               noise_at_cell((int64_t)x + (c & 1), (int64_t)y + (c >> 1 & 1), (int64_t)z + (c >> 2));
+    return sum;
+}
+
+/* The demo head; ragged: its surfaces pushed about by some millimetres, as hand-drawn or noisy segmentations are. */
+static struct volume *make_labels(bool is_ragged)
+{
+    struct error err = { 0 };
+    struct grid grid;
+    if (!phantom_image_grid((const uint32_t[3]){ 256, 256, 128 }, &grid, &err))
+        die("grid", &err);
+    struct volume *labels = volume_create(&grid, VOXEL_U8, &err);
+    if (!labels)
+        die("labels", &err);
+    uint8_t *voxel = labels->voxels;
+    for (uint32_t k = 0; k < 128; k++)
+        for (uint32_t j = 0; j < 256; j++)
+            for (uint32_t i = 0; i < 256; i++) {
+                struct vec3 p = affine_point(&grid.lps_mm_from_ijk, vec3(i, j, k));
+                double scale = is_ragged ? 1 + 0.03 * noise(p, 11) + 0.02 * noise(p, 4.5) : 1;
+                *voxel++ = (uint8_t)phantom_label_at(vec3_scale(p, scale));
+            }
+    return labels;
+}
+
+/* ---- VTK ---------------------------------------------------------------------------------------------------------------- */
+
+struct peer {
+    pid_t pid;
+    FILE *to, *from;
+    char name[64];
+};
+
+static bool peer_start(struct peer *peer, const struct volume *labels, char *path)
+{
+    int file = mkstemp(path), in[2], out[2];
+    size_t n = grid_n_voxels(&labels->grid);
+    if (file < 0 || write(file, labels->voxels, n) != (ssize_t)n || pipe(in) != 0 || pipe(out) != 0)
+        die("temporary file or pipe", NULL);
+    close(file);
+    const char *python = getenv("PYTHON") ? getenv("PYTHON") : "/usr/bin/python3";
+    char size[3][16], *arguments[16] = { (char *)python, "tests/bench/vtk_flying_edges.py", path, size[0], size[1], size[2] };
+    for (size_t axis = 0; axis < 3; axis++)
+        snprintf(size[axis], sizeof size[axis], "%u", labels->grid.size[axis]);
+    for (size_t s = 0; s < N_SETS; s++)
+        arguments[6 + s] = (char *)sets[s].text;
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, in[0], STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
+    posix_spawn_file_actions_addclose(&actions, in[1]);
+    posix_spawn_file_actions_addclose(&actions, out[0]);
+    int failed = posix_spawnp(&peer->pid, python, &actions, NULL, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    close(in[0]);
+    close(out[1]);
+    peer->to = fdopen(in[1], "w");
+    peer->from = fdopen(out[0], "r");
+    char line[64], version[16];
+    int n_threads;
+    if (failed || !fgets(line, sizeof line, peer->from) || sscanf(line, "%15s %d", version, &n_threads) != 2)
+        return false;
+    snprintf(peer->name, sizeof peer->name, "vtkFlyingEdges3D %s, %d threads", version, n_threads);
+    return true;
+}
+
+static double peer_time_ms(const struct peer *peer, size_t set, bool with_normals, size_t *n_triangles)
+{
+    char line[128];
+    double ms;
+    fprintf(peer->to, "%zu %d\n", set, with_normals);
+    fflush(peer->to);
+    if (!fgets(line, sizeof line, peer->from) || sscanf(line, "%lf %zu", &ms, n_triangles) != 2)
+        die("the VTK side", NULL);
+    return ms;
+}
+
+/* ---- ours --------------------------------------------------------------------------------------------------------------- */
+
+struct times {
+    double mask, surface, normals, vtk, vtk_normals; /* ms */
+};
+
+static double since_ms(int64_t began_us)
+{
+    return (double)(clock_now_us() - began_us) / 1e3;
+}
+
+static struct times run_once(const struct volume *labels, size_t set, int n_threads, size_t *n_triangles)
+{
+    struct error err = { 0 };
+    struct surface_options options = surface_defaults;
+    options.n_threads = n_threads;
+    struct times times = { 0 };
+    int64_t began = clock_now_us();
+    struct mask *mask = mask_from_labels(labels, sets[set].labels, sets[set].n, n_threads, &err);
+    times.mask = since_ms(began);
+    if (!mask)
+        die("mask", &err);
+    struct mesh *mesh = surface_marching_cubes(mask, &options, &err);
+    times.surface = since_ms(began); /* from the labels on */
+    mask_destroy(mask);
+    if (!mesh)
+        die("surface", &err);
+    began = clock_now_us();
+    if (!mesh_make_normals(mesh, n_threads, &err))
+        die("normals", &err);
+    times.normals = since_ms(began);
+    *n_triangles = mesh->n_triangles;
+    mesh_unref(mesh);
+    return times;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(const struct times all[REPEATS], size_t offset)
+{
+    double values[REPEATS];
+    for (int r = 0; r < REPEATS; r++)
+        memcpy(&values[r], (const char *)&all[r] + offset, sizeof values[r]);
+    qsort(values, REPEATS, sizeof *values, compare_doubles);
+    return values[REPEATS / 2];
+}
+
+static void print_result(const char *name, double ms, const char *peer, double peer_ms, const char *note)
+{
+    printf("{\"name\":\"%s\",\"value\":%.3f,\"unit\":\"ms\"", name, ms);
+    if (peer)
+        printf(",\"peer\":\"%s\",\"peer_value\":%.3f,\"ratio\":%.2f", peer, peer_ms, peer_ms / ms);
+    printf(",\"note\":\"%s\"}\n", note);
+    fflush(stdout);
+}
+
+static void bench_set(const struct volume *labels, const char *volume, size_t set, const struct peer *peer)
+{
+    struct times all[3][REPEATS]; /* by threads; [0] is not used */
+    int most = parallel_cores() > 1 ? 2 : 1;
+    size_t n_triangles = 0, n_vtk = 0;
+    for (int repeat = -1; repeat < REPEATS; repeat++) /* the first warms up and does not count */
+        for (int n_threads = 1; n_threads <= most; n_threads++) {
+            struct times *times = &all[n_threads][repeat < 0 ? 0 : repeat];
+            *times = run_once(labels, set, n_threads, &n_triangles);
+            times->vtk = peer ? peer_time_ms(peer, set, false, &n_vtk) : 0;
+            times->vtk_normals = peer ? peer_time_ms(peer, set, true, &n_vtk) : 0;
+            if (peer && n_vtk != n_triangles)
+                die("not the same number of triangles", NULL);
+        }
+    for (int n_threads = 1; n_threads <= most; n_threads++) {
+        const struct times *times = all[n_threads];
+        char name[128], note[64];
+        const char *with = peer ? peer->name : NULL;
+        const char *threads = n_threads == 1 ? "1 thread" : "2 threads";
+        snprintf(note, sizeof note, "%zu triangles; from the labels", n_triangles);
+        snprintf(name, sizeof name, "surface of %s, %s, %s", sets[set].name, volume, threads);
+        double surface = median(times, offsetof(struct times, surface)), normals = median(times, offsetof(struct times, normals));
+        print_result(name, surface, with, median(times, offsetof(struct times, vtk)), note);
+        snprintf(name, sizeof name, "surface with normals of %s, %s, %s", sets[set].name, volume, threads);
+        print_result(name, surface + normals, with, median(times, offsetof(struct times, vtk_normals)), note);
+        if (set > 0)
+            continue;
+        snprintf(name, sizeof name, "mask of %s, %s, %s", sets[set].name, volume, threads);
+        print_result(name, median(times, offsetof(struct times, mask)), NULL, 0, "part of the above");
+        snprintf(name, sizeof name, "normals of %s, %s, %s", sets[set].name, volume, threads);
+        print_result(name, normals, NULL, 0, "part of the above");
+    }
+}
+
+int main(void)
+{
+    for (int v = 0; v < N_VOLUMES; v++) {
+        struct volume *labels = make_labels(v == 1);
+        struct peer peer = { 0 };
+        char path[] = "/tmp/beamroom-bench-XXXXXX";
+        bool has_peer = peer_start(&peer, labels, path);
+        if (!has_peer)
+            fprintf(stderr, "bench_surface: no VTK for Python here: our times only\n");
+        for (size_t set = 0; set < N_SETS; set++)
+            bench_set(labels, volumes[v], set, has_peer ? &peer : NULL);
+        fclose(peer.to); /* the script ends at the end of its input */
+        fclose(peer.from);
+        if (peer.pid > 0)
+            waitpid(peer.pid, NULL, 0);
+        unlink(path);
+        volume_unref(labels);
+    }
+    return 0;
+}
