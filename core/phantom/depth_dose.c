@@ -9,13 +9,13 @@ const double phantom_depths_mm[PHANTOM_N_DEPTHS] = { 2, 10, 18, 22, 26, 30, 38, 
 
 /* Goorley, Kiger and Zamenhof 2002, modified Snyder head. Their "thermal" column is mostly nitrogen's and stands for it. */
 const struct phantom_component phantom_components[PHANTOM_N_COMPONENTS] = {
-    { DOSE_BORON, "boron", true,
+    { DOSE_BORON, true,
       { .0477, .0793, .0981, .1016, .1015, .0986, .0869, .0639, .0316, .0135, .00539, .00198 }, 8, 0.14 },
-    { DOSE_NITROGEN, "nitrogen", false,
+    { DOSE_NITROGEN, false,
       { .0913, .1565, .1974, .2056, .2063, .2011, .1781, .1315, .0654, .0279, .0112, .00411 }, 8, 0.14 },
-    { DOSE_FAST, "fast", false,
+    { DOSE_FAST, false,
       { .1404, .1130, .0812, .0687, .0585, .0500, .0372, .0246, .0131, .00708, .00392, .00217 }, 5, 0.20 },
-    { DOSE_GAMMA, "gamma", false,
+    { DOSE_GAMMA, false,
       { .506, .726, .895, .941, .970, .971, .937, .800, .533, .322, .192, .115 }, 14, 0.25 },
 };
 

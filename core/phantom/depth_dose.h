@@ -11,7 +11,6 @@ extern const double phantom_source_z_lps_mm;   /* 150: where the parallel beam s
 /* One column of the table: dose in Gy per minute of beam at 1e10 n/cm2/s, in brain tissue at every depth. */
 struct phantom_component {
     enum dose_quantity quantity;
-    const char *name;
     bool is_per_ppm;
     double table[PHANTOM_N_DEPTHS];
     double edge_mm, edge_per_depth; /* width of the beam's edge at depth d: edge_mm + edge_per_depth * d */

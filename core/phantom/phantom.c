@@ -68,7 +68,7 @@ static bool make_volumes(struct volume_job jobs[N_VOLUMES], const char *folder, 
         const struct phantom_component *component = &phantom_components[i];
         struct volume_job *job = &jobs[3 + i];
         char name[64];
-        snprintf(name, sizeof name, "dose/%s.nii.gz", component->name);
+        snprintf(name, sizeof name, "dose/%s.nii.gz", dose_quantity_word(component->quantity));
         is_named = is_named && join(job->path, folder, name);
         job->description = component->is_per_ppm ? "Beamroom phantom: Gy per minute per ppm" : "Beamroom phantom: Gy per minute";
         job->volume = jobs[2].volume ? phantom_dose_volume(component, &dose_grid, err) : NULL;

@@ -33,8 +33,8 @@ static void print_dose(FILE *out)
                  "    { \"id\": \"goorley\", \"unit\": \"Gy\", \"per\": \"minute at 1e10 n/cm2/s\", \"mask\": \"dose/valid.nii.gz\",\n"
                  "      \"components\": [\n");
     for (int i = 0; i < PHANTOM_N_COMPONENTS; i++)
-        fprintf(out, "        { \"quantity\": \"%s\", %s\"path\": \"dose/%s.nii.gz\" }%s\n", phantom_components[i].name,
-                phantom_components[i].is_per_ppm ? "\"per_ppm\": true, " : "", phantom_components[i].name,
+        fprintf(out, "        { \"quantity\": \"%s\", %s\"path\": \"dose/%s.nii.gz\" }%s\n", dose_quantity_word(phantom_components[i].quantity),
+                phantom_components[i].is_per_ppm ? "\"per_ppm\": true, " : "", dose_quantity_word(phantom_components[i].quantity),
                 i + 1 < PHANTOM_N_COMPONENTS ? "," : "");
     fprintf(out, "      ] }\n  ],\n");
 }
@@ -106,7 +106,7 @@ char *phantom_readme(const struct phantom_options *options, struct error *err)
     fprintf(out, "Dose: Gy per minute in brain tissue at every depth; boron for 1 ppm of boron-10. On the axis, the paper's table:\n"
                  "  depth mm");
     for (int i = 0; i < PHANTOM_N_COMPONENTS; i++)
-        fprintf(out, "  %9s", phantom_components[i].name);
+        fprintf(out, "  %9s", dose_quantity_word(phantom_components[i].quantity));
     for (int depth = 0; depth < PHANTOM_N_DEPTHS; depth++) {
         fprintf(out, "\n  %8g", phantom_depths_mm[depth]);
         for (int i = 0; i < PHANTOM_N_COMPONENTS; i++)
@@ -117,7 +117,7 @@ char *phantom_readme(const struct phantom_options *options, struct error *err)
             "Off the axis (ours): D(d, r) = T(d) (1 + exp(-R/w)) / (1 + exp((r - R)/w)), R = %g mm, d straight down from the scalp,\n",
             phantom_beam_radius_mm);
     for (int i = 0; i < PHANTOM_N_COMPONENTS; i++)
-        fprintf(out, "  %-8s w = %g mm + %g d\n", phantom_components[i].name, phantom_components[i].edge_mm,
+        fprintf(out, "  %-8s w = %g mm + %g d\n", dose_quantity_word(phantom_components[i].quantity), phantom_components[i].edge_mm,
                 phantom_components[i].edge_per_depth);
     fprintf(out, "0 outside the head, where dose/valid.nii.gz is 0.\n\n"
                  "Tracks: a random walk that looks like transport and is none; SERA's .pp columns, mm. SERA writes energy 0 for gammas;\n"

@@ -1,10 +1,17 @@
 #pragma once
 /* The subcommands of `beamroom`, one file each. They print and choose an exit code; the work is core's. */
+#include "core/plan/plan.h"
 
 enum exit_code { EXIT_DONE = 0, EXIT_REFUSED = 1, EXIT_USAGE = 2 };
 
 /* argv[0] is the subcommand's name. */
+int command_info(int argc, char **argv);
 int command_phantom(int argc, char **argv);
 
 /* "beamroom NAME: ...; see beamroom NAME --help" on standard error. Returns EXIT_USAGE. */
-int command_usage_error(const char *name, const char *format, ...) __attribute__((format(printf, 2, 3)));
+int command_usage_error(const char *name, const char *format, ...) PRINTF_LIKE(2, 3);
+/* "beamroom NAME: ..." on standard error, without control characters. Returns EXIT_REFUSED. */
+int command_refused(const char *name, const struct error *err);
+
+/* The plan in a folder, its id made from the folder's name. NULL after saying why on standard error. */
+NODISCARD struct plan *command_open_plan(const char *name, const char *folder);

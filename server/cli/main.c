@@ -3,11 +3,13 @@
 #include <string.h>
 
 #include "server/cli/command.h"
+#include "server/cli/text.h"
 
 static const struct command {
     const char *name, *about;
     int (*run)(int argc, char **argv);
 } commands[] = {
+    { "info", "print what a plan holds and what was noticed while reading it", command_info },
     { "phantom", "write the demo plan, a made-up head", command_phantom },
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
@@ -35,6 +37,14 @@ int command_usage_error(const char *name, const char *format, ...)
     va_end(args);
     fprintf(stderr, "; see beamroom %s --help\n", name);
     return EXIT_USAGE;
+}
+
+int command_refused(const char *name, const struct error *err)
+{
+    fprintf(stderr, "beamroom %s: ", name);
+    text_print(stderr, err->text, 0);
+    fputc('\n', stderr);
+    return EXIT_REFUSED;
 }
 
 int main(int argc, char **argv)

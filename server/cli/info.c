@@ -1,0 +1,212 @@
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/cli/command.h"
+#include "server/cli/text.h"
+#include "server/wire/plan_document.h"
+
+enum { LINE_LETTERS = 96, NAME_LETTERS = 34 };
+
+static void print_help(void)
+{
+    fputs("usage: beamroom info DIR [--json]\n"
+          "Opens the plan in the folder DIR and prints what it holds: images, regions and what lies inside what, doses,\n"
+          "beams, particle tracks, and everything noticed while reading.\n\n"
+          "  --json   the same as one JSON object, as the daemon's API gives it\n"
+          "  --help   this text\n\n"
+          "Points and lengths are millimetres toward the patient's left, back and top (LPS).\n",
+          stdout);
+}
+
+static void print_grid(const struct grid *grid)
+{
+    struct vec3 spacing = grid_spacing_mm(grid);
+    char letters[4], size[40], step[60];
+    grid_letters(grid, letters);
+    snprintf(size, sizeof size, "%u x %u x %u", grid->size[0], grid->size[1], grid->size[2]);
+    snprintf(step, sizeof step, "%.4g x %.4g x %.4g mm", spacing.x, spacing.y, spacing.z);
+    printf("  %-16s %-26s %s", size, step, letters);
+}
+
+static void print_images(const struct plan *plan)
+{
+    if (plan->n_images == 0)
+        return;
+    printf("\nImages\n");
+    for (size_t i = 0; i < plan->n_images; i++) {
+        const struct plan_image *image = &plan->images[i];
+        printf("  ");
+        text_print(stdout, image->id, 12);
+        printf(" ");
+        text_print(stdout, image->modality, 4);
+        print_grid(&image->volume->grid);
+        printf("  %.6g to %.6g%s", image->volume->low, image->volume->high, *image->unit ? " " : "");
+        text_print(stdout, image->unit, 0);
+        printf("\n");
+    }
+}
+
+static void print_region(const struct region_set *set, size_t index)
+{
+    const struct region *region = &set->regions[index];
+    int depth = region_depth(set, index), indent = 2 + 2 * (depth < 8 ? depth : 8);
+    printf("%*s", indent, "");
+    text_print(stdout, region->name, NAME_LETTERS - indent);
+    printf("  %10.2f", region->volume_cm3);
+    text_print_count(stdout, region->n_voxels, 14);
+    if (region->n_voxels > 0)
+        printf("  (%6.1f, %6.1f, %6.1f)", region->centre_lps_mm.x, region->centre_lps_mm.y, region->centre_lps_mm.z);
+    printf("%s%s\n", region->n_voxels == 0 ? "  empty" : "", region->touches_edge ? "  cut" : "");
+}
+
+/* Each region under the one it lies in; siblings in file order. */
+static void print_regions_in(const struct region_set *set, int parent)
+{
+    for (size_t i = 0; i < set->n_regions; i++)
+        if (set->regions[i].parent == parent) {
+            print_region(set, i);
+            print_regions_in(set, (int)i);
+        }
+}
+
+static void print_regions(const struct region_set *set)
+{
+    static const char *const source[] = {
+        [HIERARCHY_NONE] = "", [HIERARCHY_FILE] = ", inside each other as the plan says", [HIERARCHY_DERIVED] = ", inside each other as derived"
+    };
+    if (set->n_regions == 0)
+        return;
+    printf("\n%zu region%s%s\n%*s  %10s%14s  %s\n", set->n_regions, set->n_regions == 1 ? "" : "s", source[set->hierarchy], NAME_LETTERS,
+           "", "cm3", "univels", "centre, mm");
+    print_regions_in(set, -1);
+    for (size_t i = 0; i < set->n_regions; i++)
+        if (set->regions[i].touches_edge) {
+            printf("  cut: reaches the edge of the scan, so the region may go on beyond it\n");
+            break;
+        }
+}
+
+static void print_doses(const struct plan *plan)
+{
+    for (size_t i = 0; i < plan->n_doses; i++) {
+        const struct dose *dose = &plan->doses[i];
+        printf("\nDose ");
+        text_print(stdout, dose->id, 0);
+        printf(", ");
+        text_print(stdout, *dose->unit ? dose->unit : "no unit given", 0);
+        printf(" per ");
+        text_print(stdout, *dose->per ? dose->per : "(not said)", 0);
+        printf("%s\n", dose->mask ? ", with a mask of where it is valid" : "");
+        for (size_t c = 0; c < dose->n_components; c++) {
+            const struct dose_component *component = &dose->components[c];
+            printf("  %-9s%-8s", dose_quantity_word(component->quantity), component->is_per_ppm ? " per ppm" : "");
+            print_grid(&component->values->grid);
+            printf("  %.4g to %.4g\n", component->values->low, component->values->high);
+        }
+    }
+}
+
+static void print_beams(const struct plan *plan)
+{
+    if (plan->n_beams > 0)
+        printf("\nBeams\n");
+    for (size_t i = 0; i < plan->n_beams; i++) {
+        const struct beam *beam = &plan->beams[i];
+        struct vec3 entry = beam->entry_lps_mm, target = beam->target_lps_mm;
+        printf("  ");
+        text_print(stdout, beam->id, 12);
+        printf("  from (%.1f, %.1f, %.1f) to (%.1f, %.1f, %.1f)", entry.x, entry.y, entry.z, target.x, target.y, target.z);
+        if (isfinite(beam->aperture_mm))
+            printf(", aperture %.4g mm\n", beam->aperture_mm);
+        else
+            printf(", aperture unknown\n");
+    }
+}
+
+static void print_tracks(const struct track_set *tracks)
+{
+    if (tracks->n_segments == 0)
+        return;
+    printf("\nParticle tracks, ");
+    text_print_count(stdout, tracks->n_segments, 0);
+    printf(" segments\n");
+    for (int class = 0; class < TRACK_N_CLASSES; class ++)
+        if (tracks->n_of_class[class] > 0) {
+            printf("  %-15s", track_class_word((enum track_class)class));
+            text_print_count(stdout, tracks->n_of_class[class], 9);
+            printf("\n");
+        }
+}
+
+static void print_report(const struct report *report)
+{
+    if (report->n_lines == 0)
+        return;
+    printf("\nNoticed while reading\n");
+    for (size_t i = 0; i < report->n_lines; i++) {
+        const struct report_line *line = &report->lines[i];
+        printf("  %s %s  ", report_severity_word(line->severity), line->code);
+        text_print(stdout, line->where, 0);
+        printf("\n");
+        text_print_wrapped(stdout, line->sentence, 4, LINE_LETTERS);
+    }
+    if (report->n_dropped > 0)
+        printf("  and %zu more\n", report->n_dropped);
+}
+
+static void print_plan(const struct plan *plan)
+{
+    text_print(stdout, *plan->name ? plan->name : plan->id, 0);
+    printf("%s\n", plan->is_phantom ? "  [phantom, made up]" : "");
+    text_print_wrapped(stdout, plan->note, 2, LINE_LETTERS);
+    printf("  read in %.0f ms\n", (double)plan->load_us / 1000);
+    print_images(plan);
+    print_regions(&plan->regions);
+    print_doses(plan);
+    print_beams(plan);
+    print_tracks(&plan->tracks);
+    print_report(&plan->report);
+}
+
+static void print_json(const struct plan *plan)
+{
+    cJSON *document = plan_document(plan);
+    char *text = json_write(document);
+    cJSON_Delete(document);
+    puts(text);
+    free(text);
+}
+
+int command_info(int argc, char **argv)
+{
+    static const struct option long_options[] = { { "json", no_argument, NULL, 'j' },
+                                                  { "help", no_argument, NULL, 'h' },
+                                                  { NULL, 0, NULL, 0 } };
+    bool is_json = false;
+    opterr = 0;
+    for (int option; (option = getopt_long(argc, argv, "h", long_options, NULL)) != -1;) {
+        switch (option) {
+        case 'j':
+            is_json = true;
+            break;
+        case 'h':
+            print_help();
+            return EXIT_DONE;
+        default:
+            return command_usage_error("info", "'%s' is not an option", argv[optind - 1]);
+        }
+    }
+    if (argc - optind != 1)
+        return command_usage_error("info", "one folder is needed, %d are given", argc - optind);
+    struct plan *plan = command_open_plan("info", argv[optind]);
+    if (!plan)
+        return EXIT_REFUSED;
+    if (is_json)
+        print_json(plan);
+    else
+        print_plan(plan);
+    plan_destroy(plan);
+    return EXIT_DONE;
+}

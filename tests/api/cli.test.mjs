@@ -1,0 +1,125 @@
+// The program `beamroom` from outside: what it prints, what it refuses, its exit codes.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+
+const bin = join(process.env.BEAMROOM_BIN ?? 'build/release', 'beamroom');
+const beamroom = (...args) => {
+  const { status, stdout, stderr } = spawnSync(bin, args, { encoding: 'utf8', timeout: 120_000 });
+  return { status, stdout, stderr };
+};
+
+let folder;
+let plan;
+before(() => {
+  folder = mkdtempSync(join(tmpdir(), 'beamroom-cli-'));
+  plan = join(folder, 'head one');
+  const made = beamroom('phantom', plan, '--size', '96x96x64', '--seed', '5');
+  assert.equal(made.status, 0, made.stderr);
+});
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+describe('beamroom', () => {
+  it('explains itself and each command', () => {
+    const help = beamroom('--help');
+    assert.equal(help.status, 0);
+    for (const command of ['info', 'phantom']) {
+      assert.match(help.stdout, new RegExp(`^  ${command} `, 'm'));
+      const own = beamroom(command, '--help');
+      assert.equal(own.status, 0);
+      assert.match(own.stdout, new RegExp(`^usage: beamroom ${command} DIR`));
+    }
+    assert.match(beamroom('--version').stdout, /^beamroom \d+\.\d+\.\d+\n$/);
+  });
+
+  it('says what is wrong with a command line and ends with 2', () => {
+    for (const [args, sentence] of [
+      [[], /^usage:/],
+      [['dance'], /no command 'dance'/],
+      [['info'], /one folder is needed, 0 are given/],
+      [['info', plan, '--xml'], /'--xml' is not an option/],
+      [['phantom', 'a', 'b'], /one folder is needed, 2 are given/],
+      [['phantom', 'a', '--size', '96x96'], /--size '96x96' is not of the form/],
+      [['phantom', 'a', '--size', '96x96x-1'], /is not of the form/],
+      [['phantom', 'a', '--size', '96x96x9999'], /each side must be 16 to 1024/],
+      [['phantom', 'a', '--seed', '-1'], /--seed '-1' is not a whole number/],
+      [['phantom', 'a', '--seed'], /lacks its value/],
+    ]) {
+      const { status, stdout, stderr } = beamroom(...args);
+      assert.equal(status, 2, `${args}: ${stderr}`);
+      assert.match(stderr, sentence);
+      assert.equal(stdout, '');
+    }
+    assert.ok(!existsSync('a'));
+  });
+
+  it('refuses what is no plan with a sentence and 1', () => {
+    const missing = beamroom('info', join(folder, 'nowhere'));
+    assert.equal(missing.status, 1);
+    assert.match(missing.stderr, /^beamroom info: .*nowhere: No such file or directory\n$/);
+    const bad = mkdtempSync(join(folder, 'bad-'));
+    writeFileSync(join(bad, 'plan.json'), '{"format": "beamroom-plan", "version": 1, "images": [{"path": "\\u001b[31m.nii"}]}');
+    const refused = beamroom('info', bad);
+    assert.equal(refused.status, 1);
+    assert.equal(refused.stdout, '');
+    assert.ok(!refused.stderr.includes('\u001b'), 'what a file says does not steer the terminal');
+    const again = beamroom('phantom', plan);
+    assert.equal(again.status, 1);
+    assert.match(again.stderr, /is there already.*--force/);
+  });
+});
+
+// The phantom's figures by hand: ellipsoids of Goorley, Kiger and Zamenhof 2002; voxels of 2.667 x 2.667 x 3.2 mm.
+const ellipsoid = (a, b, c) => (4 / 3) * Math.PI * a * b * c / 1000; // cm3 from mm
+const brain = ellipsoid(60, 90, 65) - ellipsoid(20, 22, 18);
+
+describe('beamroom info', () => {
+  it('prints a plan in words, in a hundred columns', () => {
+    const { status, stdout, stderr } = beamroom('info', plan);
+    assert.equal(status, 0, stderr);
+    assert.match(stdout, /^Phantom: .*\[phantom, made up\]$/m);
+    assert.match(stdout, /^  ct +CT +96 x 96 x 64 +2\.667 x 2\.667 x 3\.2 mm +LPS +-1000 to 20\d\d HU$/m);
+    assert.match(stdout, /^5 regions, inside each other as the plan says/m);
+    assert.match(stdout, /^  scalp .*\n    cranium .*\n      brain .*\n        target .*\n          tumour /m);
+    assert.match(stdout, /^Dose goorley, Gy per minute at 1e10 n\/cm2\/s, with a mask/m);
+    assert.match(stdout, /^  boron +per ppm +41 x 57 x 49 +4 x 4 x 4 mm +LPS/m);
+    assert.match(stdout, /from \(0\.0, 0\.0, 88\.0\) to \(0\.0, 0\.0, 10\.0\), aperture 100 mm$/m);
+    for (const line of stdout.split('\n')) assert.ok([...line].length <= 100, line);
+  });
+
+  it('gives the same as JSON', () => {
+    const { status, stdout, stderr } = beamroom('info', plan, '--json');
+    assert.equal(status, 0, stderr);
+    const info = JSON.parse(stdout);
+    assert.deepEqual(Object.keys(info), ['id', 'name', 'note', 'phantom', 'load_ms', 'bounds_mm', 'images', 'regions', 'hierarchy',
+      'doses', 'beams', 'tracks', 'report']);
+    assert.equal(info.id, 'head-one');
+    assert.equal(info.phantom, true);
+    const [image] = info.images;
+    assert.deepEqual(image.grid.size, [96, 96, 64]);
+    assert.equal(image.grid.orientation, 'LPS');
+    assert.equal(image.unit, 'HU');
+    assert.equal(image.low, -1000);
+    const near = (value, expected, tolerance) => assert.ok(Math.abs(value - expected) <= tolerance, `${value}, expected ${expected}`);
+    image.grid.bounds_mm.low.forEach((value, axis) => near(value, [-128, -128, -102.4][axis], 1e-3));
+    assert.deepEqual(info.regions.map(({ id, parent }) => [id, parent]),
+      [['scalp', null], ['cranium', 'scalp'], ['brain', 'cranium'], ['target', 'brain'], ['tumour', 'target']]);
+    assert.equal(info.hierarchy, 'file');
+    const region = Object.fromEntries(info.regions.map((entry) => [entry.id, entry]));
+    near(region.brain.volume_cm3, brain, 0.01 * brain); // the border's voxels: 1 % at this size
+    assert.equal(region.brain.color, '#d696a0');
+    region.tumour.center_mm.forEach((value, axis) => near(value, [24, 24, 34][axis], 0.5)); // left, behind, above
+    assert.equal(region.tumour.tissue.boron_ratio, null);
+    assert.deepEqual(info.doses.map(({ id, unit, per, masked }) => [id, unit, per, masked]),
+      [['goorley', 'Gy', 'minute at 1e10 n/cm2/s', true]]);
+    const high = Object.fromEntries(info.doses[0].components.map((entry) => [entry.quantity, entry.high]));
+    near(high.gamma, 0.971, 1e-3); // the table's highest
+    near(high.boron, 0.1016, 1e-6);
+    assert.deepEqual(info.doses[0].components.map(({ per_ppm: perPpm }) => perPpm), [true, false, false, false]);
+    assert.deepEqual(info.beams, [{ id: 'beam-1', entry_mm: [0, 0, 88], target_mm: [0, 0, 10], aperture_mm: 100 }]);
+    assert.deepEqual(info.report, { lines: [], dropped: 0 });
+  });
+});

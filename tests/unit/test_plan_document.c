@@ -1,0 +1,146 @@
+#include "server/wire/plan_document.h"
+#include "tests/check.h"
+
+static struct volume *make_volume(enum voxel_type type)
+{
+    /* 2 x 3 x 4 voxels of 1, 2, 3 mm; i to the left, j to the back, k down */
+    struct affine map = { { { 1, 0, 0 }, { 0, 2, 0 }, { 0, 0, -3 } }, { 10, 20, 30 } };
+    struct grid grid;
+    struct error err = { 0 };
+    assert_true(grid_init(&grid, (uint32_t[3]){ 2, 3, 4 }, &map, &err));
+    struct volume *volume = volume_create(&grid, type, &err);
+    assert_non_null(volume);
+    return volume;
+}
+
+static void assert_point(const cJSON *point, double x, double y, double z)
+{
+    assert_int_equal(cJSON_GetArraySize(point), 3);
+    assert_close(cJSON_GetArrayItem(point, 0)->valuedouble, x, 1e-12);
+    assert_close(cJSON_GetArrayItem(point, 1)->valuedouble, y, 1e-12);
+    assert_close(cJSON_GetArrayItem(point, 2)->valuedouble, z, 1e-12);
+}
+
+static const cJSON *item(const cJSON *object, const char *name)
+{
+    const cJSON *found = cJSON_GetObjectItemCaseSensitive(object, name);
+    if (!found)
+        fail_msg("'%s' is absent", name);
+    return found;
+}
+
+static void a_plan_is_told_with_units_and_null_where_nothing_is_known(void **state)
+{
+    (void)state;
+    struct plan plan = { .id = "head", .name = "Head \"1\"", .is_phantom = true, .load_us = 1500 };
+    plan.bounds_lps_mm = box3_empty();
+    plan.n_images = 1;
+    plan.images[0] = (struct plan_image){ .id = "ct", .modality = "CT", .unit = "HU", .window_center = 40, .window_width = 400 };
+    plan.images[0].volume = make_volume(VOXEL_I16);
+    plan.images[0].volume->low = -1000;
+    struct region regions[2] = {
+        { .id = "skin", .name = "Skin", .rgb = { 1, 2, 255 }, .parent = -1, .label = 1, .n_voxels = 5, .volume_cm3 = 0.03 },
+        { .id = "gone", .name = "Gone", .parent = 0, .label = 2 },
+    };
+    for (int i = 0; i < 2; i++)
+        regions[i].cbe_boron = regions[i].rbe_nitrogen = regions[i].rbe_fast = regions[i].rbe_gamma = NAN;
+    regions[0].boron_ratio = 1.5;
+    regions[1].boron_ratio = NAN;
+    regions[0].high_ijk[2] = 1;
+    plan.regions.layers[0] = make_volume(VOXEL_U8);
+    plan.regions.n_layers = 1;
+    plan.regions.regions = regions;
+    plan.regions.n_regions = 2;
+    plan.regions.hierarchy = HIERARCHY_DERIVED;
+    plan.n_beams = 1;
+    plan.beams[0] = (struct beam){ .id = "b", .entry_lps_mm = { 1, 2, 3 }, .aperture_mm = NAN };
+
+    cJSON *document = plan_document(&plan);
+    assert_string_equal(item(document, "id")->valuestring, "head");
+    assert_true(cJSON_IsTrue(item(document, "phantom")));
+    assert_close(item(document, "load_ms")->valuedouble, 1.5, 0);
+    assert_true(cJSON_IsNull(item(document, "bounds_mm")));
+    assert_string_equal(item(document, "hierarchy")->valuestring, "derived");
+
+    const cJSON *image = cJSON_GetArrayItem(item(document, "images"), 0), *grid = item(image, "grid");
+    assert_close(item(image, "low")->valuedouble, -1000, 0);
+    assert_point(item(grid, "size"), 2, 3, 4);
+    assert_point(item(grid, "spacing_mm"), 1, 2, 3);
+    assert_string_equal(item(grid, "orientation")->valuestring, "LPI");
+    const cJSON *last_row = cJSON_GetArrayItem(item(grid, "lps_mm_from_ijk"), 2);
+    assert_int_equal(cJSON_GetArraySize(last_row), 4);
+    assert_close(cJSON_GetArrayItem(last_row, 2)->valuedouble, -3, 0);
+    assert_close(cJSON_GetArrayItem(last_row, 3)->valuedouble, 30, 0);
+    assert_point(item(item(grid, "bounds_mm"), "low"), 9.5, 19, 19.5); /* k = 3.5: 30 - 10.5 */
+    assert_point(item(item(grid, "bounds_mm"), "high"), 11.5, 25, 31.5);
+
+    const cJSON *skin = cJSON_GetArrayItem(item(document, "regions"), 0), *gone = cJSON_GetArrayItem(item(document, "regions"), 1);
+    assert_string_equal(item(skin, "color")->valuestring, "#0102ff");
+    assert_true(cJSON_IsNull(item(skin, "parent")));
+    assert_point(item(item(skin, "bounds_mm"), "low"), 9.5, 19, 25.5); /* voxels (0,0,0) and (0,0,1) */
+    assert_point(item(item(skin, "bounds_mm"), "high"), 10.5, 21, 31.5);
+    assert_close(item(item(skin, "tissue"), "boron_ratio")->valuedouble, 1.5, 0);
+    assert_true(cJSON_IsNull(item(item(skin, "tissue"), "cbe_boron")));
+    assert_string_equal(item(gone, "parent")->valuestring, "skin");
+    assert_close(item(gone, "depth")->valuedouble, 1, 0);
+    assert_true(cJSON_IsNull(item(gone, "center_mm")) && cJSON_IsNull(item(gone, "bounds_mm")));
+
+    const cJSON *beam = cJSON_GetArrayItem(item(document, "beams"), 0);
+    assert_point(item(beam, "entry_mm"), 1, 2, 3);
+    assert_true(cJSON_IsNull(item(beam, "aperture_mm")));
+    assert_int_equal(cJSON_GetArraySize(item(item(document, "tracks"), "classes")), TRACK_N_CLASSES);
+
+    cJSON_Delete(document);
+    volume_unref(plan.images[0].volume);
+    volume_unref(plan.regions.layers[0]);
+}
+
+static void doses_tracks_and_the_report_keep_their_words(void **state)
+{
+    (void)state;
+    struct plan plan = { .id = "p" };
+    plan.bounds_lps_mm = (struct box3){ { -1, -2, -3 }, { 4, 5, 6 } };
+    plan.n_doses = 1;
+    plan.doses[0] = (struct dose){ .id = "d", .unit = "cGy", .per = "fraction", .n_components = 2 };
+    plan.doses[0].components[0] = (struct dose_component){ DOSE_BORON, true, make_volume(VOXEL_F32) };
+    plan.doses[0].components[1] = (struct dose_component){ DOSE_TOTAL, false, make_volume(VOXEL_F32) };
+    plan.doses[0].components[0].values->high = 0.25;
+    plan.tracks.n_segments = 3;
+    plan.tracks.n_of_class[TRACK_GAMMA_LOW] = 3;
+    struct report_line line = { REPORT_WARNING, "dose.negative", "A sentence.", "dose.nii.gz" };
+    plan.report.lines = &line;
+    plan.report.n_lines = 1;
+    plan.report.n_dropped = 7;
+
+    cJSON *document = plan_document(&plan);
+    assert_point(item(item(document, "bounds_mm"), "high"), 4, 5, 6);
+    const cJSON *dose = cJSON_GetArrayItem(item(document, "doses"), 0);
+    assert_string_equal(item(dose, "unit")->valuestring, "cGy");
+    assert_string_equal(item(dose, "per")->valuestring, "fraction");
+    assert_true(cJSON_IsFalse(item(dose, "masked")));
+    const cJSON *boron = cJSON_GetArrayItem(item(dose, "components"), 0), *total = cJSON_GetArrayItem(item(dose, "components"), 1);
+    assert_string_equal(item(boron, "quantity")->valuestring, "boron");
+    assert_true(cJSON_IsTrue(item(boron, "per_ppm")) && cJSON_IsFalse(item(total, "per_ppm")));
+    assert_close(item(boron, "high")->valuedouble, 0.25, 0);
+    assert_string_equal(item(total, "quantity")->valuestring, "total");
+    assert_close(item(item(item(document, "tracks"), "classes"), "gamma-low")->valuedouble, 3, 0);
+    const cJSON *told = cJSON_GetArrayItem(item(item(document, "report"), "lines"), 0);
+    assert_string_equal(item(told, "severity")->valuestring, "warning");
+    assert_string_equal(item(told, "code")->valuestring, "dose.negative");
+    assert_string_equal(item(told, "where")->valuestring, "dose.nii.gz");
+    assert_string_equal(item(told, "sentence")->valuestring, "A sentence.");
+    assert_close(item(item(document, "report"), "dropped")->valuedouble, 7, 0);
+
+    cJSON_Delete(document);
+    volume_unref(plan.doses[0].components[0].values);
+    volume_unref(plan.doses[0].components[1].values);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plan_is_told_with_units_and_null_where_nothing_is_known),
+        cmocka_unit_test(doses_tracks_and_the_report_keep_their_words),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
