@@ -66,6 +66,7 @@ static void edges_are_counted_right_around_a_vertex_of_many_triangles(void **sta
     enum { N = 500 }; /* two fans over one rim: a closed double cone */
     struct error err = { 0 };
     struct mesh *mesh = mesh_create(N + 3, 2 * N, &err); /* and a vertex nobody uses */
+    memset(mesh->positions_lps_mm, 0, 3 * mesh->n_vertices * sizeof(float));
     for (uint32_t i = 0; i < N; i++) {
         uint32_t next = (i + 1) % N;
         uint32_t *v = mesh->indices + 6 * (size_t)i;
