@@ -1,0 +1,32 @@
+/* NIfTI-1 and -2, packed or not: the first byte says what it is read for. */
+#include "core/formats/nifti.h"
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
+{
+    if (n < 1)
+        return 0;
+    static const enum nifti_use uses[] = { NIFTI_IMAGE, NIFTI_LABELS, NIFTI_MASK };
+    enum nifti_use use = uses[data[0] % 3];
+    struct bytes file = { (uint8_t *)(uintptr_t)data + 1, n - 1 };
+    struct report report = { 0 };
+    struct error err = { 0 };
+    struct nifti_header header;
+    bool has_header = nifti_peek(&file, "fuzz.nii", &header, NULL, &err);
+    REQUIRE(has_header || (err.code != ERROR_NONE && err.text[0] != '\0'));
+
+    err = (struct error){ 0 };
+    struct volume *volume = nifti_read(&file, "fuzz.nii", use, &report, &err);
+    if (volume) {
+        REQUIRE(has_header);
+        REQUIRE(memcmp(volume->grid.size, header.grid.size, sizeof header.grid.size) == 0);
+        REQUIRE(volume->low <= volume->high);
+        REQUIRE(use != NIFTI_MASK || (volume->low >= 0 && volume->high <= 1));
+        REQUIRE(use != NIFTI_LABELS || (volume->low >= 0 && volume->high <= 65535));
+        volume_unref(volume);
+    } else {
+        REQUIRE(err.code != ERROR_NONE && err.text[0] != '\0');
+    }
+    report_finish(&report);
+    return 0;
+}
