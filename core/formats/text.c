@@ -7,7 +7,9 @@
 
 void text_start(struct text *text, const uint8_t *data, size_t size)
 {
-    *text = (struct text){ .at = (const char *)data, .end = (const char *)data + size };
+    *text = (struct text){ .at = (const char *)data,
+                           .end = (const char *)data + size,
+                           .most_lines = TEXT_MAX_LINES };
 }
 
 static bool is_blank(char c)
@@ -22,7 +24,7 @@ static char lower(char c)
 
 bool text_line(struct text *text, char line[TEXT_LINE_SIZE])
 {
-    if (text->at >= text->end || text->line >= TEXT_MAX_LINES)
+    if (text->at >= text->end || text->line >= text->most_lines)
         return false;
     text->line++;
     const char *end = memchr(text->at, '\n', (size_t)(text->end - text->at));

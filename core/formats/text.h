@@ -8,7 +8,8 @@ enum { TEXT_LINE_SIZE = 513, TEXT_MAX_LINES = 200000 };
 
 struct text {
     const char *at, *end;
-    size_t line; /* number of the line last given, from 1 */
+    size_t line;       /* number of the line last given, from 1 */
+    size_t most_lines; /* reading ends there; text_start gives TEXT_MAX_LINES */
 };
 
 void text_start(struct text *text, const uint8_t *data, size_t size);

@@ -9,10 +9,12 @@
 #include "core/base/parallel.h"
 #include "core/formats/hierarchy.h"
 #include "core/formats/nifti.h"
+#include "core/formats/sera_qhd.h"
 #include "core/formats/text.h"
 #include "core/plan/plan_meshes.h"
 #include "core/plan/plan_parts.h"
 #include "core/plan/plan_regions.h"
+#include "core/plan/plan_tracks.h"
 #include "core/plan/plan_window.h"
 
 enum { TEXT_FILE_MAX_BYTES = 16 << 20 };
@@ -28,6 +30,8 @@ struct job {
     struct volume *volume;
     struct uvh uvh;
     struct label_names names;
+    char modality[16];     /* as a .qhd says it */
+    bool is_grid_doubtful; /* a .qhd that describes another image */
     struct report report;
     struct error err;
     bool is_failed;
@@ -94,7 +98,7 @@ static bool dose_is_readable(struct loading *loading, const struct plan_file_dos
         if (format == PART_NIFTI)
             continue;
         report_add(&loading->plan->report, REPORT_WARNING, "dose.unsupported", path,
-                   "The dose \"%s\" is %s, which this version does not read; the plan is shown without it.", dose->id,
+                   "The dose \"%s\" is in a format (%s) that this version does not read; the plan is shown without it.", dose->id,
                    part_format_word(format));
         *is_readable = false;
         return true;
@@ -109,7 +113,7 @@ static bool make_jobs(struct loading *loading, struct error *err)
     loading->jobs = mem_new((most + 1) * sizeof *loading->jobs);
     for (size_t i = 0; i < file->n_images; i++) {
         enum part_format format = part_format_of(&loading->folder, file->images[i].path);
-        if (format != PART_NIFTI)
+        if (format != PART_NIFTI && format != PART_QSH)
             return refuse_format(file->images[i].path, format, err);
         add_job(loading, JOB_IMAGE, i, 0, file->images[i].path);
     }
@@ -173,6 +177,37 @@ static bool read_univels(const struct folder *folder, struct job *job)
     return job->volume != NULL;
 }
 
+/* path is the file of pixels, or the header when the plan names that; header is "" when the plan names only one of them. */
+static bool read_qsh(const struct folder *folder, const char *header, struct job *job)
+{
+    struct bytes text, pixels;
+    struct qhd qhd;
+    char header_name[FOLDER_NAME_SIZE], pixel_name[FOLDER_NAME_SIZE];
+    snprintf(pixel_name, sizeof pixel_name, "%s", job->path);
+    snprintf(header_name, sizeof header_name, "%s", header);
+    if (text_has_ending(job->path, ".qhd")) {
+        snprintf(header_name, sizeof header_name, "%s", job->path);
+        if (!part_find_data(folder, job->path, ".qim", pixel_name))
+            return error_set(&job->err, ERROR_NOT_FOUND, "%s: the pixels, a .qim or .qim.gz file beside it, are missing", job->path);
+    } else if (!header[0]) {
+        size_t stem = strlen(job->path) - (text_has_ending(job->path, ".gz") ? strlen(".qim.gz") : strlen(".qim"));
+        snprintf(header_name, sizeof header_name, "%.*s.qhd", (int)stem, job->path);
+    }
+    if (!folder_read(folder, header_name, QHD_MAX_BYTES, UINT64_MAX, &text, &job->err))
+        return false;
+    bool is_read = qhd_parse(text.data, text.size, header_name, &qhd, &job->report, &job->err);
+    bytes_free(&text);
+    if (!is_read)
+        return false;
+    snprintf(job->modality, sizeof job->modality, "%s", qhd.modality);
+    if (folder_read(folder, pixel_name, DATA_FILE_MAX_BYTES, UINT64_MAX, &pixels, &job->err)) {
+        job->volume = qhd_read_pixels(&qhd, &pixels, header_name, pixel_name, &job->is_grid_doubtful, &job->report, &job->err);
+        bytes_free(&pixels);
+    }
+    qhd_finish(&qhd);
+    return job->volume != NULL;
+}
+
 static bool read_names(const struct folder *folder, const char *path, struct job *job)
 {
     struct bytes bytes;
@@ -190,6 +225,9 @@ static bool run_job(const struct loading *loading, struct job *job)
     const struct plan_file_region *region = &loading->file->regions[job->index];
     switch (job->kind) {
     case JOB_IMAGE:
+        if (!text_has_ending(job->path, ".nii") && !text_has_ending(job->path, ".nii.gz"))
+            return read_qsh(&loading->folder, loading->file->images[job->index].header, job);
+        return read_nifti(&loading->folder, job, NIFTI_IMAGE);
     case JOB_DOSE: return read_nifti(&loading->folder, job, NIFTI_IMAGE);
     case JOB_DOSE_MASK: return read_nifti(&loading->folder, job, NIFTI_MASK);
     case JOB_REGION:
@@ -290,7 +328,7 @@ static void add_image(struct loading *loading, struct job *job)
         others[i] = plan->images[i].id;
     make_id(image->id, entry->id, entry->path, others, plan->n_images);
     plan->n_images++;
-    snprintf(image->modality, sizeof image->modality, "%s", entry->modality);
+    snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : job->modality);
     image->volume = take_volume(job);
     if (text_equal(image->modality, "CT")) {
         snprintf(image->unit, sizeof image->unit, "HU");
@@ -299,6 +337,23 @@ static void add_image(struct loading *loading, struct job *job)
                        "The CT's values run from %g to %g; HU of a patient begin below 0.", image->volume->low, image->volume->high);
     }
     plan_image_window(image);
+}
+
+/* An image whose header described another one: univels with exactly as many voxels along each axis are the same scan. */
+static void borrow_grid(struct loading *loading, const struct job *job)
+{
+    struct plan *plan = loading->plan;
+    struct volume *volume = plan->images[job->index].volume;
+    for (size_t i = 0; job->is_grid_doubtful && i < loading->n_jobs; i++) {
+        const struct job *other = &loading->jobs[i];
+        if (!other->uvh.bodies || memcmp(other->uvh.grid.size, volume->grid.size, sizeof volume->grid.size) != 0)
+            continue;
+        volume->grid = other->uvh.grid;
+        report_add(&plan->report, REPORT_WARNING, "geometry.borrowed", job->path,
+                   "The image's header describes another image; %s has as many univels as this has pixels, and its grid was taken.",
+                   other->path);
+        return;
+    }
 }
 
 static bool add_regions(struct loading *loading, struct region_builder *builder, struct job *job, struct error *err)
@@ -431,6 +486,19 @@ static void find_bounds(struct plan *plan)
         }
 }
 
+static void add_beams(struct loading *loading)
+{
+    struct plan *plan = loading->plan;
+    for (size_t i = 0; i < loading->file->n_beams; i++) {
+        const char *others[PLAN_MAX_BEAMS];
+        for (size_t b = 0; b < plan->n_beams; b++)
+            others[b] = plan->beams[b].id;
+        plan->beams[i] = loading->file->beams[i];
+        make_id(plan->beams[i].id, loading->file->beams[i].id, "beam", others, plan->n_beams);
+        plan->n_beams++;
+    }
+}
+
 static bool assemble(struct loading *loading, struct error *err)
 {
     struct plan *plan = loading->plan;
@@ -445,6 +513,9 @@ static bool assemble(struct loading *loading, struct error *err)
         else if (job->kind == JOB_REGION)
             is_whole = add_regions(loading, &builder, job, err);
     }
+    for (size_t i = 0; i < loading->n_jobs; i++)
+        if (is_whole && loading->jobs[i].kind == JOB_IMAGE)
+            borrow_grid(loading, &loading->jobs[i]);
     if (is_whole) {
         region_set_measure(&plan->regions);
         note_empty_regions(plan);
@@ -455,14 +526,8 @@ static bool assemble(struct loading *loading, struct error *err)
         return false;
     add_doses(loading);
     find_bounds(plan);
-    for (size_t i = 0; i < loading->file->n_beams; i++) {
-        const char *others[PLAN_MAX_BEAMS];
-        for (size_t b = 0; b < plan->n_beams; b++)
-            others[b] = plan->beams[b].id;
-        plan->beams[i] = loading->file->beams[i];
-        make_id(plan->beams[i].id, loading->file->beams[i].id, "beam", others, plan->n_beams++);
-    }
-    return true;
+    add_beams(loading);
+    return plan_add_tracks(plan, &loading->folder, loading->file, err);
 }
 
 static void finish_loading(struct loading *loading)

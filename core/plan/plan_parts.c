@@ -142,6 +142,38 @@ static void recognise_file(const struct folder *folder, const char *name, struct
     }
 }
 
+void plan_folder_name(const char *path, char *out, size_t size)
+{
+    size_t end = strlen(path), from;
+    while (end > 1 && path[end - 1] == '/')
+        end--;
+    for (from = end; from > 0 && path[from - 1] != '/'; from--) {
+    }
+    char name[256];
+    snprintf(name, sizeof name, "%.*s", (int)(end - from < 255 ? end - from : 255), path + from);
+    set_name(out, size, name);
+}
+
+/* Why nothing was recognised, as far as the names tell. */
+static void explain_nothing(const struct folder *folder, char *const *names, size_t n_names, struct error *err)
+{
+    static const char *const archives[] = { ".tar", ".tar.gz", ".tgz", ".tar.xz", ".zip" };
+    for (size_t i = 0; i < n_names; i++) {
+        for (size_t a = 0; a < sizeof archives / sizeof archives[0]; a++)
+            if (text_has_ending(names[i], archives[a])) {
+                error_set(err, ERROR_UNSUPPORTED, "%s is an archive: unpack it first; nothing else in the folder is a plan", names[i]);
+                return;
+            }
+        char inner[FOLDER_NAME_SIZE];
+        int n = snprintf(inner, sizeof inner, "%s/plan.json", names[i]);
+        if (n > 0 && n < (int)sizeof inner && folder_look(folder, inner, NULL) == FOLDER_FILE) {
+            error_set(err, ERROR_NOT_FOUND, "no plan itself, but the folder %s in it is one", names[i]);
+            return;
+        }
+    }
+    error_set(err, ERROR_NOT_FOUND, "no plan.json, and no file in the folder is an image or regions that this version reads");
+}
+
 static struct plan_file *recognise(const struct folder *folder, struct report *report, struct error *err)
 {
     char **names;
@@ -158,17 +190,17 @@ static struct plan_file *recognise(const struct folder *folder, struct report *r
         if (n_foreign > before && n_foreign == 1 && part_format_of(folder, names[i]) == PART_NRRD)
             foreign = "NRRD";
     }
-    folder_free_names(names, n_names);
-    const char *base = strrchr(folder->path, '/');
-    set_name(file->name, sizeof file->name, base ? base + 1 : folder->path);
+    plan_folder_name(folder->path, file->name, sizeof file->name);
     if (file->n_images + file->n_regions == 0) {
         if (n_foreign > 0)
             error_set(err, ERROR_UNSUPPORTED, "%zu %s files: %s is not read by this version", n_foreign, foreign, foreign);
         else
-            error_set(err, ERROR_NOT_FOUND, "no plan.json, and no file in the folder is an image or regions that this version reads");
+            explain_nothing(folder, names, n_names, err);
+        folder_free_names(names, n_names);
         plan_file_destroy(file);
         return NULL;
     }
+    folder_free_names(names, n_names);
     report_add(report, REPORT_NOTE, "plan.recognised", "", "The folder has no plan.json; %zu images and %zu files of regions were found "
                "by their names.", file->n_images, file->n_regions);
     return file;
@@ -183,9 +215,7 @@ struct plan_file *plan_describe(const struct folder *folder, struct report *repo
         return NULL;
     struct plan_file *file = plan_file_parse(text.data, text.size, report, err);
     bytes_free(&text);
-    if (file && !file->name[0]) {
-        const char *base = strrchr(folder->path, '/');
-        set_name(file->name, sizeof file->name, base ? base + 1 : folder->path);
-    }
+    if (file && !file->name[0])
+        plan_folder_name(folder->path, file->name, sizeof file->name);
     return file;
 }

@@ -24,3 +24,6 @@ NODISCARD struct plan_file *plan_describe(const struct folder *folder, struct re
 /* The file of univels beside a .uvh, or of pixels beside a .qhd: stem + ".uv.gz", stem + ".uv"; the packed one wins.
  * false when there is none. */
 bool part_find_data(const struct folder *folder, const char *header, const char *ending, char data[FOLDER_NAME_SIZE]);
+
+/* The last part of a path, for a plan that has no name of its own. */
+void plan_folder_name(const char *path, char *out, size_t size);

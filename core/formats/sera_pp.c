@@ -1,0 +1,171 @@
+#include "core/formats/sera_pp.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/formats/sera_axes.h"
+#include "core/formats/text.h"
+
+enum { N_FIELDS = 8 };
+
+/* What was noticed, told once at the end. */
+struct counts {
+    size_t n_segments, n_bad, first_bad_line, n_zero_length, n_no_energy;
+};
+
+static bool split_numbers(char *line, double numbers[N_FIELDS])
+{
+    char *rest = line;
+    for (int i = 0; i < N_FIELDS; i++) {
+        char *word = strtok_r(i == 0 ? line : NULL, " \t", &rest);
+        if (!word || !text_number(word, &numbers[i]) || fabs(numbers[i]) > 1e6)
+            return false;
+    }
+    return strtok_r(NULL, " \t", &rest) == NULL;
+}
+
+static bool find_class(double type, double energy, uint8_t *class, struct counts *counts)
+{
+    static const uint8_t neutrons[] = { TRACK_NEUTRON_HIGH, TRACK_NEUTRON_MEDIUM, TRACK_NEUTRON_LOW };
+    static const uint8_t gammas[] = { TRACK_GAMMA_HIGH, TRACK_GAMMA_MEDIUM, TRACK_GAMMA_LOW };
+    bool has_energy = energy == 1 || energy == 2 || energy == 3;
+    if (type == 2 || type == 3) {
+        *class = type == 2 ? TRACK_BEAM_LINE : TRACK_LOST;
+        return true;
+    }
+    if (type != 0 && type != 1)
+        return false;
+    counts->n_no_energy += !has_energy;
+    *class = (type == 0 ? neutrons : gammas)[has_energy ? (int)energy - 1 : 0];
+    return true;
+}
+
+static bool grow(struct track_set *set, size_t *capacity, const char *name, struct error *err)
+{
+    if (set->n_segments < *capacity)
+        return true;
+    if (set->n_segments >= TRACK_MAX_SEGMENTS)
+        return error_set(err, ERROR_LIMIT, "%s: more than %d segments in the plan", name, TRACK_MAX_SEGMENTS);
+    size_t wanted = *capacity < 1024 ? 1024 : *capacity * 2;
+    wanted = wanted < TRACK_MAX_SEGMENTS ? wanted : TRACK_MAX_SEGMENTS;
+    struct track_segment *segments = realloc(set->segments, wanted * sizeof *segments);
+    if (!segments)
+        return error_set(err, ERROR_MEMORY, "%s: no memory for %zu segments", name, wanted);
+    set->segments = segments;
+    *capacity = wanted;
+    return true;
+}
+
+static void put_point(float out[3], double rl, double pa, double is)
+{
+    struct vec3 lps = sera_lps_from_rpi(rl, pa, is);
+    out[0] = (float)lps.x;
+    out[1] = (float)lps.y;
+    out[2] = (float)lps.z;
+}
+
+static void tell(const struct counts *counts, const char *name, struct report *report)
+{
+    if (counts->n_bad > 0)
+        report_add(report, REPORT_WARNING, "tracks.bad-lines", name, "%zu lines are not segments, the first is line %zu.", counts->n_bad,
+                   counts->first_bad_line);
+    if (counts->n_zero_length > 0)
+        report_add(report, REPORT_NOTE, "tracks.zero-length", name, "%zu segments of no length were left out.", counts->n_zero_length);
+    if (counts->n_no_energy > 0)
+        report_add(report, REPORT_NOTE, "tracks.no-energy", name,
+                   "%zu segments have no energy class (SERA gives gammas none) and are listed as high.", counts->n_no_energy);
+}
+
+bool pp_parse(const uint8_t *data, size_t size, const char *name, struct track_set *set, struct report *report, struct error *err)
+{
+    struct text text;
+    struct counts counts = { 0 };
+    char line[TEXT_LINE_SIZE];
+    size_t capacity = set->n_segments;
+    text_start(&text, data, size);
+    text.most_lines = SIZE_MAX;
+    while (text_line(&text, line)) {
+        double v[N_FIELDS];
+        uint8_t class;
+        if (line[0] == 0)
+            continue;
+        if (!split_numbers(line, v) || !find_class(v[6], v[7], &class, &counts)) {
+            counts.first_bad_line = counts.n_bad++ == 0 ? text.line : counts.first_bad_line;
+            continue;
+        }
+        counts.n_segments++;
+        if (v[0] == v[3] && v[1] == v[4] && v[2] == v[5]) {
+            counts.n_zero_length++;
+            continue;
+        }
+        if (!grow(set, &capacity, name, err))
+            return false;
+        struct track_segment *segment = &set->segments[set->n_segments++];
+        put_point(segment->from_lps_mm, v[0], v[1], v[2]);
+        put_point(segment->to_lps_mm, v[3], v[4], v[5]);
+        segment->class = class;
+        set->n_of_class[class]++;
+    }
+    if (counts.n_segments == 0)
+        return error_set(err, ERROR_FORMAT, "%s: not one of %zu lines is a segment: six coordinates, a type, an energy", name, text.line);
+    tell(&counts, name, report);
+    return true;
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Distance between the 5th and the 95th percentile of all end points along an axis: single far histories do not count. */
+static double spread(const struct track_set *set, size_t first, int axis, float *room)
+{
+    size_t n = 0;
+    for (size_t i = first; i < set->n_segments; i++) {
+        room[n++] = set->segments[i].from_lps_mm[axis];
+        room[n++] = set->segments[i].to_lps_mm[axis];
+    }
+    qsort(room, n, sizeof *room, compare_floats);
+    return (double)room[(n - 1) - (n - 1) / 20] - (double)room[(n - 1) / 20];
+}
+
+double pp_unit_mm(const struct track_set *set, size_t first, double given_mm, const struct box3 *patient_lps_mm, const char *name,
+                  struct report *report)
+{
+    if (box3_is_empty(patient_lps_mm) || set->n_segments <= first)
+        return given_mm > 0 ? given_mm : 1;
+    float *room = malloc(2 * (set->n_segments - first) * sizeof *room);
+    if (!room)
+        return given_mm > 0 ? given_mm : 1;
+    double length = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double along = spread(set, first, axis, room);
+        length += along * along;
+    }
+    free(room);
+    double patient_mm = vec3_length(vec3_sub(patient_lps_mm->high, patient_lps_mm->low));
+    /* nearer in ratio: 10 x larger than the tracks' spread is cm, as large is mm; the border is the root of 10 */
+    double likely_mm = sqrt(length) > 0 && patient_mm / sqrt(length) > sqrt(10.0) ? 10 : 1;
+    if (given_mm > 0) {
+        if (given_mm != likely_mm)
+            report_add(report, REPORT_WARNING, "tracks.unit-doubtful", name,
+                       "The plan says the tracks are in %s, but beside a patient of %.0f mm they would suit %s.",
+                       given_mm > 1 ? "cm" : "mm", patient_mm, likely_mm > 1 ? "cm" : "mm");
+        return given_mm;
+    }
+    report_add(report, REPORT_NOTE, "tracks.unit-assumed", name, "The file does not say its unit; beside the patient it is taken as %s.",
+               likely_mm > 1 ? "cm" : "mm");
+    return likely_mm;
+}
+
+void pp_scale(struct track_set *set, size_t first, double mm)
+{
+    for (size_t i = first; i < set->n_segments; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            set->segments[i].from_lps_mm[axis] = (float)((double)set->segments[i].from_lps_mm[axis] * mm);
+            set->segments[i].to_lps_mm[axis] = (float)((double)set->segments[i].to_lps_mm[axis] * mm);
+        }
+}

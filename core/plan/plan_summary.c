@@ -1,0 +1,187 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "core/formats/nifti.h"
+#include "core/formats/sera_uvh.h"
+#include "core/formats/text.h"
+#include "core/plan/plan_parts.h"
+
+enum { HEAD_BYTES = 1 << 16, NAMES_MAX_BYTES = 16 << 20 };
+
+static void add_part(struct plan_summary *summary, size_t n, const char *one, const char *many)
+{
+    if (n == 0 || summary->n_parts >= sizeof summary->parts / sizeof summary->parts[0])
+        return;
+    char *part = summary->parts[summary->n_parts++];
+    if (n == 1 && !many)
+        snprintf(part, sizeof summary->parts[0], "%s", one);
+    else
+        snprintf(part, sizeof summary->parts[0], "%zu %s", n, n == 1 || !many ? one : many);
+}
+
+static void count_bytes(const struct folder *folder, const char *name, struct plan_summary *summary)
+{
+    uint64_t bytes = 0;
+    if (name[0] && folder_look(folder, name, &bytes) == FOLDER_FILE)
+        summary->n_bytes += bytes;
+}
+
+/* Whether the file is there, of a kind we read here, and has a header that makes sense. */
+static bool check_nifti(const struct folder *folder, const char *name, struct error *err)
+{
+    struct bytes head;
+    struct nifti_header header;
+    if (!folder_read(folder, name, UINT64_MAX, HEAD_BYTES, &head, err))
+        return false;
+    bool is_good = nifti_peek(&head, name, &header, NULL, err);
+    bytes_free(&head);
+    return is_good;
+}
+
+static size_t count_bodies(const struct uvh *uvh)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < uvh->n_bodies; i++) {
+        const struct uvh_body *body = &uvh->bodies[i];
+        n += body->uvval != 0 && !text_equal(body->name, "buffer") && !text_equal(body->name, "void") &&
+             !strstr(body->name, "ABSENT");
+    }
+    return n;
+}
+
+static bool check_univels(const struct folder *folder, const char *name, struct plan_summary *summary, size_t *n_regions,
+                          struct error *err)
+{
+    struct bytes header;
+    struct uvh uvh;
+    char data[FOLDER_NAME_SIZE];
+    if (!folder_read(folder, name, UVH_MAX_BYTES, UINT64_MAX, &header, err))
+        return false;
+    bool is_good = uvh_parse(header.data, header.size, name, &uvh, NULL, err);
+    bytes_free(&header);
+    if (!is_good)
+        return false;
+    *n_regions += count_bodies(&uvh);
+    uvh_finish(&uvh);
+    if (!part_find_data(folder, name, ".uv", data))
+        return error_set(err, ERROR_NOT_FOUND, "%s: the univels, a .uv or .uv.gz file beside it, are missing", name);
+    count_bytes(folder, data, summary);
+    return true;
+}
+
+static bool refuse(const char *path, enum part_format format, struct error *err)
+{
+    if (format == PART_ABSENT)
+        return error_set(err, ERROR_NOT_FOUND, "%s: there is no such file in the plan's folder", path);
+    return error_set(err, ERROR_UNSUPPORTED, "%s: %s: not read by this version", path, part_format_word(format));
+}
+
+static bool check_image(const struct folder *folder, const struct plan_file_image *image, struct error *err)
+{
+    enum part_format format = part_format_of(folder, image->path);
+    if (format == PART_NIFTI)
+        return check_nifti(folder, image->path, err);
+    return format == PART_QSH || refuse(image->path, format, err);
+}
+
+static size_t count_names(const struct folder *folder, const char *path)
+{
+    struct bytes bytes;
+    struct label_names names;
+    if (!path[0] || !folder_read(folder, path, NAMES_MAX_BYTES, UINT64_MAX, &bytes, NULL))
+        return 0;
+    size_t n = label_names_parse(bytes.data, bytes.size, path, &names, NULL) ? names.n : 0;
+    label_names_finish(&names);
+    bytes_free(&bytes);
+    return n;
+}
+
+static bool check_images(const struct folder *folder, const struct plan_file *file, struct plan_summary *summary, struct error *err)
+{
+    bool is_good = true;
+    for (size_t i = 0; i < file->n_images; i++) {
+        const struct plan_file_image *image = &file->images[i];
+        count_bytes(folder, image->path, summary);
+        is_good = is_good && check_image(folder, image, err);
+        size_t n = 0;
+        bool is_first = true;
+        for (size_t other = 0; other < file->n_images; other++) {
+            bool is_same = strcmp(file->images[other].modality, image->modality) == 0;
+            n += is_same;
+            is_first = is_first && !(is_same && other < i);
+        }
+        if (is_first && image->modality[0])
+            add_part(summary, n, image->modality, NULL);
+        else if (is_first)
+            add_part(summary, n, "image", "images");
+    }
+    return is_good;
+}
+
+static bool check_regions(const struct folder *folder, const struct plan_file *file, struct plan_summary *summary, struct error *err)
+{
+    size_t n_regions = 0, n_names = 0, n_maps = 0;
+    bool is_good = true;
+    for (size_t i = 0; i < file->n_regions; i++) {
+        const struct plan_file_region *region = &file->regions[i];
+        enum part_format format = part_format_of(folder, region->path);
+        count_bytes(folder, region->path, summary);
+        if (format == PART_UVH) {
+            is_good = is_good && check_univels(folder, region->path, summary, &n_regions, err);
+        } else if (format != PART_NIFTI) {
+            is_good = is_good && refuse(region->path, format, err);
+        } else {
+            size_t n = count_names(folder, region->names);
+            n_regions += region->name[0] != 0;
+            n_names += n;
+            n_maps += !region->name[0] && n == 0;
+            is_good = is_good && check_nifti(folder, region->path, err);
+        }
+    }
+    add_part(summary, n_regions, "region", "regions");
+    add_part(summary, n_names, "named label", "named labels");
+    add_part(summary, n_maps, "label map", "label maps");
+    return is_good;
+}
+
+static void count_doses(const struct folder *folder, const struct plan_file *file, struct plan_summary *summary)
+{
+    size_t n_components = 0, n_unread = 0;
+    for (size_t i = 0; i < file->n_doses; i++) {
+        bool is_read = true;
+        for (size_t c = 0; c < file->doses[i].n_components; c++) {
+            count_bytes(folder, file->doses[i].components[c].path, summary);
+            is_read = is_read && part_format_of(folder, file->doses[i].components[c].path) == PART_NIFTI;
+        }
+        if (is_read)
+            n_components += file->doses[i].n_components;
+        else
+            n_unread++;
+    }
+    add_part(summary, n_components, "dose component", "dose components");
+    add_part(summary, n_unread, "dose not read by this version", "doses not read by this version");
+}
+
+void plan_summarize(const char *path, struct plan_summary *summary)
+{
+    struct folder folder = { .fd = -1 };
+    struct error err = { 0 };
+    *summary = (struct plan_summary){ 0 };
+    plan_folder_name(path, summary->name, sizeof summary->name);
+    struct plan_file *file = folder_open(&folder, path, &err) ? plan_describe(&folder, NULL, &err) : NULL;
+    if (file) {
+        memcpy(summary->name, file->name, sizeof summary->name);
+        memcpy(summary->note, file->note, sizeof summary->note);
+        summary->is_phantom = file->is_phantom;
+        bool has_images = check_images(&folder, file, summary, &err);
+        summary->is_readable = check_regions(&folder, file, summary, has_images ? &err : NULL) && has_images;
+        count_doses(&folder, file, summary);
+        add_part(summary, file->n_beams, "beam", "beams");
+        for (size_t i = 0; i < file->n_tracks; i++)
+            count_bytes(&folder, file->tracks[i].path, summary);
+        add_part(summary, file->n_tracks, "file of tracks", "files of tracks");
+    }
+    snprintf(summary->reason, sizeof summary->reason, "%s", summary->is_readable ? "" : err.text);
+    plan_file_destroy(file);
+    folder_close(&folder);
+}
