@@ -10,9 +10,10 @@ enum { ROOM_MAX_MEMBERS = 64, ROOM_MAX_VIEWS = 8, ROOM_MAX_UNSHOWN = 2, ROOM_STI
 
 struct room;
 
-/* One picture wanted. The room never has more than two of a stream outstanding. */
+/* One picture wanted. A stream is what one render serves: the own view of a member, or the shared view of a kind for all who
+ * follow it. The room never has more than two requests of a stream outstanding. */
 struct room_render {
-    uint64_t stream;              /* comes back with the frame */
+    uint64_t request;             /* never the same twice; comes back with the picture */
     const cJSON *view;            /* complete view document */
     const cJSON *scene;           /* complete scene to show when the view has an override, else NULL: the room's */
     uint32_t scene_revision;
@@ -29,7 +30,7 @@ struct room_picture {
 };
 
 struct room_callbacks {
-    /* ask for a picture; answered by room_picture_came or room_picture_failed with the same stream, later */
+    /* ask for a picture; answered by room_picture_came or room_picture_failed with the same request, later */
     void (*render)(void *context, struct room *room, const struct room_render *request);
     /* the room's scene changed (or the renderer is new): make it known to the renderer before the next render */
     void (*scene_changed)(void *context, struct room *room, const cJSON *scene, uint32_t revision);
@@ -37,6 +38,8 @@ struct room_callbacks {
     void (*send_text)(void *context, void *connection, const char *text);
     /* a frame for one connection: header filled for it; picture must be held (room_picture_hold) if kept */
     void (*send_frame)(void *context, void *connection, const struct frame_header *header, struct room_picture *picture);
+    /* no more will be sent: close once what was sent is out; room_connection_closed may follow but need not */
+    void (*close)(void *context, void *connection);
     void *context;
 };
 
@@ -50,7 +53,8 @@ void room_destroy(struct room *room); /* says bye to every connection first */
 const char *room_id(const struct room *room);
 const char *room_plan_id(const struct room *room);
 
-/* The renderer's state: a member hears it; pictures are asked for only while ready. Coming back to ready asks for everything anew. */
+/* The renderer's state: a member hears it; pictures are asked for only while ready. Each new renderer process tells
+ * room_plan_ready; coming back to ready asks for everything anew, and what the old one still owed is forgotten. */
 void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *const *image_ids, const char *gl,
                      bool is_software, int64_t now_us);
 void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent, const struct problem *problem);
@@ -60,8 +64,9 @@ void room_text_came(struct room *room, void *connection, const char *text, size_
 void room_connection_closed(struct room *room, void *connection, int64_t now_us);
 bool room_has_member(const struct room *room, void *connection); /* said hello */
 
-void room_picture_came(struct room *room, uint64_t stream, struct room_picture *picture, int64_t now_us); /* takes a reference */
-void room_picture_failed(struct room *room, uint64_t stream, const struct problem *problem, int64_t now_us);
+/* A picture nobody waits for any more (of a renderer that was restarted, of a view that was closed) is dropped. */
+void room_picture_came(struct room *room, uint64_t request, struct room_picture *picture, int64_t now_us); /* takes the reference */
+void room_picture_failed(struct room *room, uint64_t request, const struct problem *problem, int64_t now_us);
 struct room_picture *room_picture_hold(struct room_picture *picture);
 void room_picture_drop(struct room_picture *picture);
 

@@ -1,0 +1,336 @@
+#include "server/room/room.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "core/base/mem.h"
+#include "server/room/parts.h"
+#include "server/wire/message.h"
+
+static const char room_is_closed[] = "the room is closed";
+static const char hello_first[] = "the first message must be hello";
+
+/* ---- life ----------------------------------------------------------------------------------------------------------- */
+
+struct room *room_create(const char *id, const char *plan_id, const struct room_callbacks *callbacks, const struct room_limits *limits)
+{
+    struct room *room = mem_new(sizeof *room);
+    assert(id_is_valid(id) && id_is_valid(plan_id));
+    (void)snprintf(room->id, sizeof room->id, "%s", id);
+    (void)snprintf(room->plan_id, sizeof room->plan_id, "%s", plan_id);
+    room->callbacks = *callbacks;
+    room->max_members = limits && limits->max_members > 0 && limits->max_members < ROOM_MAX_MEMBERS ? limits->max_members : ROOM_MAX_MEMBERS;
+    room->created_at_s = (int64_t)time(NULL); /* for people; nothing is paced by it */
+    return room;
+}
+
+static void forget_plan(struct room *room)
+{
+    cJSON_Delete(room->plan);
+    cJSON_Delete(room->defaults);
+    for (char **id = room->image_ids; id && *id; id++)
+        free(*id);
+    free(room->image_ids);
+    room->plan = room->defaults = NULL;
+    room->image_ids = NULL;
+}
+
+void room_destroy(struct room *room)
+{
+    if (!room)
+        return;
+    for (int i = 0; i < room->n_members; i++)
+        if (room->members[i]->connection)
+            say_bye(room, room->members[i]->connection, -1, room_is_closed);
+    members_free(room);
+    while (room->streams)
+        stream_destroy(room, room->streams);
+    forget_plan(room);
+    cJSON_Delete(room->scene);
+    free(room);
+}
+
+const char *room_id(const struct room *room)
+{
+    return room->id;
+}
+
+const char *room_plan_id(const struct room *room)
+{
+    return room->plan_id;
+}
+
+/* ---- the renderer --------------------------------------------------------------------------------------------------- */
+
+static char **copy_ids(const char *const *ids)
+{
+    size_t n = 0;
+    while (ids && ids[n])
+        n++;
+    char **copy = mem_new((n + 1) * sizeof copy[0]);
+    for (size_t i = 0; i < n; i++)
+        copy[i] = mem_copy_text(ids[i]);
+    return copy;
+}
+
+/* The scene goes on after a restart; a plan that was changed on disk meanwhile may have lost what it names. */
+static void renew_scene(struct room *room)
+{
+    cJSON *nothing = cJSON_CreateObject();
+    cJSON *scene = room->scene ? scene_document_patch(room->defaults, (const char *const *)room->image_ids, room->scene, nothing, NULL) : NULL;
+    cJSON_Delete(nothing);
+    if (!scene)
+        scene = cJSON_Duplicate(room->defaults, true);
+    if (!room->scene || !cJSON_Compare(scene, room->scene, true))
+        room->revision++;
+    cJSON_Delete(room->scene);
+    room->scene = scene;
+}
+
+static void set_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent, const struct problem *problem)
+{
+    room->state = state;
+    room->percent = percent >= 0 && percent <= 100 ? percent : 0;
+    (void)snprintf(room->phase, sizeof room->phase, "%s", phase ? phase : "");
+    room->problem = problem ? *problem : (struct problem){ 0 };
+}
+
+void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *const *image_ids, const char *gl,
+                     bool is_software, int64_t now_us)
+{
+    room->now_us = now_us;
+    forget_plan(room);
+    room->plan = cJSON_Duplicate(plan_document, true);
+    room->defaults = cJSON_Duplicate(default_scene, true);
+    room->image_ids = copy_ids(image_ids);
+    (void)snprintf(room->gl, sizeof room->gl, "%s", gl ? gl : "");
+    if (room->is_software != is_software) {
+        room->is_software = is_software;
+        streams_restart_pace(room);
+    }
+    renew_scene(room);
+    set_state(room, WIRE_RENDERER_STATE_READY, NULL, 0, NULL);
+    streams_forget_requests(room);
+    streams_changed(room, true);
+    say_plan(room);
+    say_renderer(room, NULL);
+    room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
+    (void)streams_pump(room);
+}
+
+void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent, const struct problem *problem)
+{
+    bool was_ready = room->state == WIRE_RENDERER_STATE_READY;
+    set_state(room, state, phase, percent, problem);
+    if (state != WIRE_RENDERER_STATE_READY) {
+        streams_forget_requests(room);
+    } else if (!was_ready) {
+        streams_forget_requests(room);
+        streams_changed(room, false);
+    }
+    say_renderer(room, NULL);
+    (void)streams_pump(room);
+}
+
+/* ---- messages ------------------------------------------------------------------------------------------------------- */
+
+static bool apply_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input, struct problem *problem)
+{
+    if (!room->scene) {
+        problem_set(problem, PROBLEM_BUSY, "", "", "the plan is not loaded yet");
+        if (problem)
+            problem->retry_after_ms = 500;
+        return false;
+    }
+    cJSON *scene = scene_document_patch(room->defaults, (const char *const *)room->image_ids, room->scene, patch, problem);
+    if (!scene)
+        return false;
+    bool has_changed = !cJSON_Compare(scene, room->scene, true);
+    cJSON_Delete(room->scene);
+    room->scene = scene;
+    if (has_changed) {
+        room->revision++;
+        streams_changed(room, true);
+        room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
+    }
+    for (int i = 0; by && i < ROOM_MAX_VIEWS; i++)
+        view_input(&by->views[i], input);
+    say_scene(room, patch, by, input, has_changed); /* what changed nothing only its sender hears: it waits for the answer */
+    return true;
+}
+
+static bool handle_scene_patch(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+{
+    return apply_patch(room, message->scene_patch.patch, member, (uint32_t)message->scene_patch.input, problem);
+}
+
+static bool handle_ping(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+{
+    (void)problem;
+    struct message pong = { .type = MESSAGE_PONG, .pong = { message->ping.time_ms } };
+    say(room, member, &pong);
+    return true;
+}
+
+static bool handle_second_hello(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+{
+    (void)room;
+    (void)message;
+    return problem_set(problem, PROBLEM_VALIDATION, "/type", "duplicate", "hello was said already, as %s", member->id);
+}
+
+/* From message to handler. A handler returns false with a problem when nothing of the message was applied. */
+static const struct {
+    enum message_type type;
+    bool (*handle)(struct room *room, struct member *member, const struct message *message, struct problem *problem);
+} handlers[] = {
+    { MESSAGE_HELLO, handle_second_hello },
+    { MESSAGE_VIEW_OPEN, member_view_open },
+    { MESSAGE_VIEW_PATCH, member_view_patch },
+    { MESSAGE_VIEW_FOLLOW, member_view_follow },
+    { MESSAGE_VIEW_CLOSE, member_view_close },
+    { MESSAGE_SCENE_PATCH, handle_scene_patch },
+    { MESSAGE_FRAME_SHOWN, member_frame_shown },
+    { MESSAGE_PING, handle_ping },
+};
+
+static void whole_number(const cJSON *json, const char *name, double most, int64_t *value)
+{
+    double number = json_number(json, name, 0);
+    *value = number >= 0 && number <= most ? (int64_t)number : 0;
+}
+
+/* Says what was wrong, and with what: as far as the refused text can be read. */
+static void refuse(struct room *room, void *connection, const char *text, size_t n, const struct problem *problem)
+{
+    char to[41] = "";
+    int64_t view = 0, input = 0;
+    cJSON *json = n <= WIRE_MAX_CLIENT_BYTES ? json_read(text, n, NULL) : NULL;
+    const char *type = json_text(json, "type");
+    for (int i = 0; type && i < MESSAGE_N_TYPES; i++)
+        if (message_descriptions[i].is_from_client && strcmp(message_descriptions[i].name, type) == 0)
+            (void)snprintf(to, sizeof to, "%s", type);
+    whole_number(json, "view", ROOM_MAX_VIEWS, &view);
+    whole_number(json, "input", UINT32_MAX, &input);
+    cJSON_Delete(json);
+    say_problem(room, connection, to, view, input, problem);
+}
+
+void room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us)
+{
+    struct message message;
+    struct problem problem = { 0 };
+    room->now_us = now_us;
+    struct member *member = member_of(room, connection);
+    if (!message_read(text, n, true, &message, &problem)) {
+        refuse(room, connection, text, n, &problem);
+        if (!member)
+            say_bye(room, connection, -1, hello_first);
+        return;
+    }
+    if (!member && message.type == MESSAGE_HELLO) {
+        (void)member_hello(room, connection, &message.hello);
+    } else if (!member) {
+        problem_set(&problem, PROBLEM_VALIDATION, "/type", "required", "%s", hello_first);
+        refuse(room, connection, text, n, &problem);
+        say_bye(room, connection, -1, hello_first);
+    } else {
+        for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; i++)
+            if (handlers[i].type == message.type && !handlers[i].handle(room, member, &message, &problem))
+                refuse(room, connection, text, n, &problem);
+    }
+    message_finish(&message);
+    (void)streams_pump(room);
+}
+
+void room_connection_closed(struct room *room, void *connection, int64_t now_us)
+{
+    room->now_us = now_us;
+    struct member *member = member_of(room, connection);
+    if (member)
+        member_disconnected(room, member);
+}
+
+bool room_has_member(const struct room *room, void *connection)
+{
+    return member_of(room, connection) != NULL;
+}
+
+int64_t room_tick(struct room *room, int64_t now_us)
+{
+    room->now_us = now_us;
+    int64_t members_us = members_forget(room), streams_us = streams_pump(room);
+    return members_us < streams_us ? members_us : streams_us;
+}
+
+/* ---- pictures ------------------------------------------------------------------------------------------------------- */
+
+struct room_picture *room_picture_hold(struct room_picture *picture)
+{
+    picture->references++;
+    return picture;
+}
+
+void room_picture_drop(struct room_picture *picture)
+{
+    if (!picture || --picture->references > 0)
+        return;
+    free(picture->bytes);
+    free(picture);
+}
+
+/* ---- for HTTP ------------------------------------------------------------------------------------------------------- */
+
+const cJSON *room_scene(const struct room *room, uint32_t *revision)
+{
+    if (revision)
+        *revision = room->revision;
+    return room->scene;
+}
+
+bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, struct problem *problem)
+{
+    room->now_us = now_us;
+    if (!apply_patch(room, patch, NULL, 0, problem))
+        return false;
+    (void)streams_pump(room);
+    return true;
+}
+
+cJSON *room_document(const struct room *room)
+{
+    char created[32];
+    struct tm utc;
+    time_t seconds = (time_t)room->created_at_s;
+    gmtime_r(&seconds, &utc);
+    (void)strftime(created, sizeof created, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "id", room->id);
+    cJSON_AddStringToObject(json, "plan", room->plan_id);
+    cJSON_AddNumberToObject(json, "revision", room->revision);
+    cJSON_AddStringToObject(json, "renderer", wire_renderer_state_words.words[room->state]);
+    cJSON_AddStringToObject(json, "created_at", created);
+    cJSON_AddItemToObject(json, "members", room_members(room));
+    return json;
+}
+
+size_t room_n_connected(const struct room *room)
+{
+    size_t n = 0;
+    for (int i = 0; i < room->n_members; i++)
+        n += room->members[i]->connection != NULL;
+    return n;
+}
+
+void room_count(const struct room *room, struct room_counters *sum)
+{
+    sum->renders_asked += room->counters.renders_asked;
+    sum->frames_sent += room->counters.frames_sent;
+    sum->frame_bytes += room->counters.frame_bytes;
+    sum->frames_skipped += room->counters.frames_skipped;
+    sum->messages_refused += room->counters.messages_refused;
+    sum->stills_sent += room->counters.stills_sent;
+}

@@ -1,0 +1,136 @@
+/* Messages to connections. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/room/parts.h"
+#include "server/wire/message.h"
+
+static void copy_text(char *to, size_t size, const char *from)
+{
+    (void)snprintf(to, size, "%s", from ? from : "");
+}
+
+void say_to(struct room *room, void *connection, const struct message *message)
+{
+    char *text = message_write(message);
+    room->callbacks.send_text(room->callbacks.context, connection, text);
+    free(text);
+}
+
+void say(struct room *room, struct member *member, const struct message *message)
+{
+    if (member->connection)
+        say_to(room, member->connection, message);
+}
+
+void say_to_all(struct room *room, const struct message *message)
+{
+    char *text = message_write(message); /* once, for all */
+    for (int i = 0; i < room->n_members; i++)
+        if (room->members[i]->connection)
+            room->callbacks.send_text(room->callbacks.context, room->members[i]->connection, text);
+    free(text);
+}
+
+/* The documents in these messages are borrowed: message_finish is not called on them. */
+
+void say_welcome(struct room *room, struct member *member)
+{
+    struct message message = { .type = MESSAGE_WELCOME };
+    struct message_welcome *welcome = &message.welcome;
+    welcome->protocol = WIRE_PROTOCOL;
+    copy_text(welcome->room, sizeof welcome->room, room->id);
+    copy_text(welcome->member, sizeof welcome->member, member->id);
+    copy_text(welcome->secret, sizeof welcome->secret, member->secret);
+    copy_text(welcome->name, sizeof welcome->name, member->name);
+    copy_text(welcome->plan_id, sizeof welcome->plan_id, room->plan_id);
+    welcome->plan = room->plan;
+    welcome->scene = room->scene;
+    welcome->revision = room->revision;
+    copy_text(welcome->gl, sizeof welcome->gl, room->gl);
+    say(room, member, &message);
+}
+
+void say_members(struct room *room)
+{
+    struct message message = { .type = MESSAGE_MEMBERS, .members = { room_members(room) } };
+    say_to_all(room, &message);
+    message_finish(&message);
+}
+
+void say_renderer(struct room *room, struct member *member)
+{
+    struct message message = { .type = MESSAGE_RENDERER };
+    message.renderer.state = room->state;
+    message.renderer.percent = room->percent;
+    copy_text(message.renderer.phase, sizeof message.renderer.phase, room->phase);
+    if (room->problem.type != PROBLEM_NONE)
+        message.renderer.problem = problem_to_json(&room->problem);
+    if (member)
+        say(room, member, &message);
+    else
+        say_to_all(room, &message);
+    message_finish(&message);
+}
+
+void say_plan(struct room *room)
+{
+    struct message message = { .type = MESSAGE_PLAN };
+    message.plan.plan = room->plan;
+    message.plan.scene = room->scene;
+    message.plan.revision = room->revision;
+    copy_text(message.plan.gl, sizeof message.plan.gl, room->gl);
+    say_to_all(room, &message);
+}
+
+void say_scene(struct room *room, const cJSON *patch, struct member *by, uint32_t input, bool to_all)
+{
+    cJSON *copy = cJSON_Duplicate(patch, true);
+    struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->revision, .patch = copy } };
+    if (by)
+        copy_text(message.scene.by, sizeof message.scene.by, by->id);
+    char *text = message_write(&message);
+    for (int i = 0; i < room->n_members && to_all; i++) {
+        struct member *member = room->members[i];
+        if (member != by && member->connection)
+            room->callbacks.send_text(room->callbacks.context, member->connection, text);
+    }
+    free(text);
+    if (by) { /* the input number is only for the one who sent it */
+        message.scene.input = input;
+        say(room, by, &message);
+    }
+    message_finish(&message);
+}
+
+void say_view(struct room *room, struct member *member, int index, const char *by)
+{
+    const struct member_view *view = &member->views[index];
+    struct message message = { .type = MESSAGE_VIEW };
+    message.view.view = index + 1;
+    message.view.document = view->stream->view;
+    message.view.follow = view->is_following;
+    copy_text(message.view.by, sizeof message.view.by, by);
+    say(room, member, &message);
+}
+
+void say_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input, const struct problem *problem)
+{
+    struct message message = { .type = MESSAGE_PROBLEM };
+    copy_text(message.problem.to, sizeof message.problem.to, to);
+    message.problem.view = view;
+    message.problem.input = input;
+    message.problem.problem = problem_to_json(problem);
+    say_to(room, connection, &message);
+    message_finish(&message);
+    room->counters.messages_refused++;
+}
+
+void say_bye(struct room *room, void *connection, int retry_ms, const char *reason)
+{
+    struct message message = { .type = MESSAGE_BYE, .bye = { .has_retry_ms = retry_ms >= 0, .retry_ms = retry_ms } };
+    copy_text(message.bye.reason, sizeof message.bye.reason, reason);
+    say_to(room, connection, &message);
+    room->callbacks.close(room->callbacks.context, connection);
+}

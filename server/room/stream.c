@@ -1,0 +1,397 @@
+/* Streams: when a picture is asked for, how good, and who gets it. The rules are in design.md 6:
+ * nothing is asked for while nobody could be sent it; what is asked for shows the newest state; a picture older than the newest one
+ * is never sent; moving pictures are followed by a still. */
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/room/parts.h"
+
+enum { STILL_QUALITY = 92 };
+static const int64_t still_after_us = ROOM_STILL_AFTER_MS * INT64_C(1000);
+
+/* ---- streams -------------------------------------------------------------------------------------------------------- */
+
+int view_kind(const cJSON *view)
+{
+    const char *word = json_text(view, "kind");
+    for (size_t i = 0; word && i < scene_kind_words.n; i++)
+        if (strcmp(word, scene_kind_words.words[i]) == 0)
+            return (int)i;
+    return SCENE_KIND_3D;
+}
+
+static bool has_override(const cJSON *view)
+{
+    const cJSON *override = cJSON_GetObjectItemCaseSensitive(view, "override");
+    return cJSON_IsObject(override) && override->child;
+}
+
+bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem)
+{
+    if (!room->scene || !has_override(view))
+        return true; /* before the plan is known it cannot be said; looked at again when it is used */
+    cJSON *shown = scene_document_for_view(room->defaults, (const char *const *)room->image_ids, room->scene, view, problem);
+    cJSON_Delete(shown);
+    return shown != NULL;
+}
+
+static void start_pace(struct room *room, struct stream *stream)
+{
+    pace_start(&stream->pace, room->is_software, stream->kind != SCENE_KIND_3D);
+}
+
+struct stream *stream_create(struct room *room, cJSON *view, bool is_shared)
+{
+    struct stream *stream = mem_new(sizeof *stream);
+    stream->view = view;
+    stream->kind = view_kind(view);
+    stream->is_shared = is_shared;
+    stream->scene_is_old = true;
+    stream->next = room->streams;
+    room->streams = stream;
+    if (is_shared)
+        room->shared[stream->kind] = stream;
+    start_pace(room, stream);
+    stream_changed(room, stream);
+    return stream;
+}
+
+void stream_destroy(struct room *room, struct stream *stream)
+{
+    struct stream **at = &room->streams;
+    while (*at != stream)
+        at = &(*at)->next;
+    *at = stream->next;
+    if (stream->is_shared)
+        room->shared[stream->kind] = NULL;
+    room_picture_drop(stream->latest);
+    cJSON_Delete(stream->view);
+    cJSON_Delete(stream->scene);
+    free(stream);
+}
+
+bool stream_set_view(struct room *room, struct stream *stream, cJSON *view)
+{
+    if (cJSON_Compare(stream->view, view, true)) {
+        cJSON_Delete(view);
+        return false;
+    }
+    cJSON_Delete(stream->view);
+    stream->view = view;
+    stream->scene_is_old = true;
+    if (stream->kind != view_kind(view)) { /* own views only: a shared one stays what it is */
+        assert(!stream->is_shared);
+        stream->kind = view_kind(view);
+        start_pace(room, stream);
+    }
+    stream_changed(room, stream);
+    return true;
+}
+
+void stream_changed(struct room *room, struct stream *stream)
+{
+    stream->version++;
+    stream->changed_us = room->now_us;
+}
+
+void streams_changed(struct room *room, bool scene_is_new)
+{
+    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+        stream->scene_is_old = stream->scene_is_old || scene_is_new;
+        stream_changed(room, stream);
+    }
+}
+
+void streams_forget_requests(struct room *room)
+{
+    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+        memset(stream->requests, 0, sizeof stream->requests);
+        stream->asked_version = stream->still_asked_version = 0;
+        stream->retry_us = 0;
+        stream->n_failed = 0;
+    }
+}
+
+void streams_restart_pace(struct room *room)
+{
+    for (struct stream *stream = room->streams; stream; stream = stream->next)
+        start_pace(room, stream);
+}
+
+/* ---- asking --------------------------------------------------------------------------------------------------------- */
+
+static int n_outstanding(const struct stream *stream)
+{
+    return (stream->requests[0].number != 0) + (stream->requests[1].number != 0);
+}
+
+static bool still_is_outstanding(const struct stream *stream)
+{
+    return (stream->requests[0].number && stream->requests[0].is_still) || (stream->requests[1].number && stream->requests[1].is_still);
+}
+
+static uint32_t n_unshown(const struct member_view *view)
+{
+    return view->sent_sequence - view->shown_sequence;
+}
+
+/* Is there somebody who could be sent one more picture than those that are already being made? */
+static bool has_credit(const struct room *room, const struct stream *stream)
+{
+    uint32_t coming = (uint32_t)n_outstanding(stream);
+    for (int m = 0; m < room->n_members; m++)
+        for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
+            const struct member_view *view = &room->members[m]->views[v];
+            if (view->stream == stream && n_unshown(view) + coming < ROOM_MAX_UNSHOWN)
+                return true;
+        }
+    return false;
+}
+
+static void make_scene(struct room *room, struct stream *stream)
+{
+    if (!stream->scene_is_old)
+        return;
+    cJSON_Delete(stream->scene);
+    stream->scene = NULL;
+    stream->scene_is_old = false;
+    if (!has_override(stream->view))
+        return;
+    struct problem problem = { 0 };
+    stream->scene = scene_document_for_view(room->defaults, (const char *const *)room->image_ids, room->scene, stream->view, &problem);
+    if (!stream->scene) /* said before the plan was known, and not of this plan */
+        log_warn("room %s: a view's override does not apply: %s", room->id, problem.detail);
+}
+
+static void ask(struct room *room, struct stream *stream, bool is_still)
+{
+    make_scene(room, stream);
+    struct request *request = stream->requests[0].number ? &stream->requests[1] : &stream->requests[0];
+    *request = (struct request){ .number = ++room->n_requests,
+                                 .version = stream->version,
+                                 .asked_us = room->now_us,
+                                 .is_still = is_still,
+                                 .n_outstanding = n_outstanding(stream) + 1 };
+    stream->asked_version = stream->version;
+    if (is_still)
+        stream->still_asked_version = stream->version;
+    struct pace_choice choice = { .scale_percent = 100, .quality = STILL_QUALITY };
+    if (!is_still)
+        choice = pace_choose(&stream->pace);
+    struct room_render render = { .request = request->number,
+                                  .view = stream->view,
+                                  .scene = stream->scene,
+                                  .scene_revision = room->revision,
+                                  .scale_percent = choice.scale_percent,
+                                  .quality = choice.quality,
+                                  .is_still = is_still,
+                                  .full_color = is_still,
+                                  .light = choice.light };
+    room->counters.renders_asked++;
+    room->callbacks.render(room->callbacks.context, room, &render);
+}
+
+/* Asks for what is due of one stream; when to come again. What waits for credit or for a picture needs no time: its coming is an
+ * event. */
+static int64_t pump(struct room *room, struct stream *stream)
+{
+    const int64_t still_due_us = stream->changed_us + still_after_us;
+    for (;;) {
+        bool wants_still = stream->still_asked_version < stream->version, wants_moving = stream->asked_version < stream->version;
+        if ((!wants_still && !wants_moving) || !has_credit(room, stream))
+            return INT64_MAX;
+        if (room->now_us < stream->retry_us)
+            return stream->retry_us;
+        if (n_outstanding(stream) >= 2)
+            return INT64_MAX;
+        if (wants_still && room->now_us >= still_due_us && !still_is_outstanding(stream)) {
+            ask(room, stream, true);
+            continue;
+        }
+        if (wants_moving) {
+            /* The second request only when the first is drawn and being compressed: made now, it would wait and show an older state. */
+            const struct request *other = stream->requests[0].number ? &stream->requests[0] : &stream->requests[1];
+            int64_t worth_us = other->asked_us + (int64_t)stream->pace.render_us;
+            if (other->number && !other->is_still && room->now_us < worth_us)
+                return worth_us;
+            ask(room, stream, false);
+            continue;
+        }
+        return room->now_us < still_due_us ? still_due_us : INT64_MAX;
+    }
+}
+
+int64_t streams_pump(struct room *room)
+{
+    int64_t again_us = INT64_MAX;
+    if (room->state != WIRE_RENDERER_STATE_READY || !room->scene)
+        return again_us;
+    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+        int64_t us = pump(room, stream);
+        again_us = us < again_us ? us : again_us;
+    }
+    return again_us;
+}
+
+/* ---- sending -------------------------------------------------------------------------------------------------------- */
+
+/* Inputs that a picture of this version shows have been seen once it is sent. */
+static void take_inputs(struct member_view *view, uint64_t version)
+{
+    int n = 0;
+    while (n < view->n_waiting && view->waiting[n].version <= version)
+        view->input = view->waiting[n++].input;
+    view->n_waiting -= n;
+    memmove(view->waiting, view->waiting + n, (size_t)view->n_waiting * sizeof view->waiting[0]);
+}
+
+void stream_send(struct room *room, struct member *member, struct member_view *view)
+{
+    struct stream *stream = view->stream;
+    if (!stream || !stream->latest || view->sent_number == stream->latest_number || n_unshown(view) >= ROOM_MAX_UNSHOWN ||
+        !member->connection)
+        return;
+    int index = (int)(view - member->views);
+    if (view->has_news) {
+        view->has_news = false;
+        say_view(room, member, index, view->news_by);
+    }
+    take_inputs(view, stream->latest_version);
+    view->sent_number = stream->latest_number;
+    view->sent_sequence++;
+    view->sent[view->sent_sequence % ROOM_MAX_UNSHOWN].sent_us = room->now_us;
+    view->sent[view->sent_sequence % ROOM_MAX_UNSHOWN].is_still = stream->latest_is_still;
+    struct frame_header header = stream->latest->header;
+    header.view = (uint32_t)index + 1;
+    header.sequence = view->sent_sequence;
+    header.input_id = view->input;
+    if (stream->is_shared)
+        header.flags |= FRAME_SHARED;
+    room->counters.frames_sent++;
+    room->counters.frame_bytes += stream->latest->n_bytes;
+    room->counters.stills_sent += stream->latest_is_still;
+    room->callbacks.send_frame(room->callbacks.context, member->connection, &header, stream->latest);
+}
+
+static void send_to_subscribers(struct room *room, struct stream *stream)
+{
+    for (int m = 0; m < room->n_members; m++)
+        for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
+            struct member_view *view = &room->members[m]->views[v];
+            if (view->stream != stream)
+                continue;
+            if (n_unshown(view) >= ROOM_MAX_UNSHOWN)
+                room->counters.frames_skipped++; /* it gets the newest when its credit returns */
+            stream_send(room, room->members[m], view);
+        }
+}
+
+/* The best link among those who look decides: one slow member must not make the picture worse for others. */
+static void measure_lag(struct room *room, struct stream *stream)
+{
+    int64_t least = INT64_MAX;
+    for (int m = 0; m < room->n_members; m++)
+        for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
+            const struct member_view *view = &room->members[m]->views[v];
+            if (view->stream == stream && view->lag_least_us && view->lag_excess_us < least)
+                least = view->lag_excess_us;
+        }
+    if (least != INT64_MAX)
+        pace_lagged(&stream->pace, least);
+}
+
+void stream_acknowledged(struct room *room, struct member_view *view, uint32_t sequence)
+{
+    int64_t sent_us = view->sent[sequence % ROOM_MAX_UNSHOWN].sent_us;
+    bool was_still = view->sent[sequence % ROOM_MAX_UNSHOWN].is_still;
+    view->shown_sequence = sequence;
+    if (was_still || !view->stream)
+        return; /* a still is larger: its time says nothing about the link */
+    int64_t lag_us = room->now_us - sent_us + 1;
+    if (view->lag_least_us == 0 || lag_us < view->lag_least_us)
+        view->lag_least_us = lag_us;
+    else
+        view->lag_least_us += (lag_us - view->lag_least_us) / 256; /* links change */
+    view->lag_excess_us = lag_us - view->lag_least_us;
+    measure_lag(room, view->stream);
+}
+
+/* ---- answers -------------------------------------------------------------------------------------------------------- */
+
+static struct stream *take_request(struct room *room, uint64_t number, struct request *request)
+{
+    for (struct stream *stream = room->streams; stream && number; stream = stream->next)
+        for (int i = 0; i < 2; i++)
+            if (stream->requests[i].number == number) {
+                *request = stream->requests[i];
+                stream->requests[i].number = 0;
+                return stream;
+            }
+    return NULL;
+}
+
+/* Newer state first; of one state, the still is the last word. */
+static bool is_newer(const struct stream *stream, const struct request *request)
+{
+    if (request->version != stream->latest_version)
+        return request->version > stream->latest_version;
+    return request->is_still || !stream->latest_is_still;
+}
+
+static bool newer_is_coming(const struct stream *stream, uint64_t version)
+{
+    return (stream->requests[0].number && stream->requests[0].version > version) ||
+           (stream->requests[1].number && stream->requests[1].version > version);
+}
+
+void room_picture_came(struct room *room, uint64_t number, struct room_picture *picture, int64_t now_us)
+{
+    struct request request;
+    room->now_us = now_us;
+    struct stream *stream = take_request(room, number, &request);
+    if (!stream) {
+        room_picture_drop(picture);
+        return;
+    }
+    stream->n_failed = 0;
+    stream->retry_us = 0;
+    if (!request.is_still && !still_is_outstanding(stream))
+        pace_drawn(&stream->pace, picture->header.render_us, picture->header.encode_us, now_us - request.asked_us, request.n_outstanding,
+                   now_us);
+    /* a still that was overtaken while it was drawn would only stand before the moving picture that is about to come */
+    bool is_overtaken = request.is_still && newer_is_coming(stream, request.version);
+    if (is_newer(stream, &request) && !is_overtaken) {
+        room_picture_drop(stream->latest);
+        stream->latest = picture;
+        stream->latest_number = request.number;
+        stream->latest_version = request.version;
+        stream->latest_is_still = request.is_still;
+        send_to_subscribers(room, stream);
+    } else {
+        room_picture_drop(picture);
+    }
+    (void)streams_pump(room);
+}
+
+void room_picture_failed(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us)
+{
+    struct request request;
+    room->now_us = now_us;
+    struct stream *stream = take_request(room, number, &request);
+    if (!stream)
+        return;
+    log_warn("room %s: a picture failed: %s", room->id, problem ? problem->detail : "no reason given");
+    /* Ask again, but not at once: what fails every time must not keep the renderer busy. */
+    int64_t wait_us = RETRY_US << (stream->n_failed < 6 ? stream->n_failed : 6);
+    stream->n_failed++;
+    stream->retry_us = now_us + (wait_us < RETRY_AT_MOST_US ? wait_us : RETRY_AT_MOST_US);
+    if (request.is_still && stream->still_asked_version == request.version)
+        stream->still_asked_version = 0;
+    bool other_will_do = (stream->requests[0].number && stream->requests[0].version >= request.version) ||
+                         (stream->requests[1].number && stream->requests[1].version >= request.version);
+    if (stream->asked_version == request.version && !other_will_do && stream->latest_version < request.version)
+        stream->asked_version = 0;
+}

@@ -1,0 +1,246 @@
+#include "tests/unit/room_fake.h"
+
+#include "core/base/mem.h"
+
+static void render(void *context, struct room *room, const struct room_render *request)
+{
+    struct fake_room *fake = context;
+    (void)room;
+    assert_true(fake->n_requests < sizeof fake->requests / sizeof fake->requests[0]);
+    fake->requests[fake->n_requests++] = (struct fake_request){ .request = request->request,
+                                                                .view = cJSON_Duplicate(request->view, true),
+                                                                .scene = request->scene ? cJSON_Duplicate(request->scene, true) : NULL,
+                                                                .scene_revision = request->scene_revision,
+                                                                .scale_percent = request->scale_percent,
+                                                                .quality = request->quality,
+                                                                .is_still = request->is_still,
+                                                                .full_color = request->full_color,
+                                                                .light = request->light };
+}
+
+static void scene_changed(void *context, struct room *room, const cJSON *scene, uint32_t revision)
+{
+    struct fake_room *fake = context;
+    (void)room;
+    assert_non_null(scene);
+    fake->n_scenes++;
+    fake->told_revision = revision;
+}
+
+static void send_text(void *context, void *connection, const char *text)
+{
+    struct fake_page *page = connection;
+    (void)context;
+    assert_false(page->is_closed);
+    assert_true(page->n_texts < sizeof page->texts / sizeof page->texts[0]);
+    page->texts[page->n_texts++] = mem_copy_text(text);
+}
+
+static void send_frame(void *context, void *connection, const struct frame_header *header, struct room_picture *picture)
+{
+    struct fake_page *page = connection;
+    (void)context;
+    assert_false(page->is_closed);
+    assert_true(page->n_frames < sizeof page->frames / sizeof page->frames[0]);
+    page->frames[page->n_frames++] = *header;
+    page->n_bytes_last = picture->n_bytes;
+    page->first_byte_last = picture->bytes[0];
+}
+
+static void close_page(void *context, void *connection)
+{
+    (void)context;
+    ((struct fake_page *)connection)->is_closed = true;
+}
+
+void fake_room_start(struct fake_room *fake, int max_members)
+{
+    struct room_callbacks callbacks = { render, scene_changed, send_text, send_frame, close_page, fake };
+    struct room_limits limits = { max_members };
+    memset(fake, 0, sizeof *fake);
+    fake->now_us = 1000000000;
+    fake->again_us = INT64_MAX;
+    fake->room = room_create("7q4k-m2wz", "head", &callbacks, &limits);
+}
+
+void fake_room_end(struct fake_room *fake)
+{
+    room_destroy(fake->room);
+    for (size_t i = 0; i < fake->n_requests; i++) {
+        cJSON_Delete(fake->requests[i].view);
+        cJSON_Delete(fake->requests[i].scene);
+    }
+}
+
+void fake_page_end(struct fake_page *page)
+{
+    for (size_t i = 0; i < page->n_texts; i++)
+        free(page->texts[i]);
+    memset(page, 0, sizeof *page);
+}
+
+static void tick(struct fake_room *fake)
+{
+    fake->again_us = room_tick(fake->room, fake->now_us);
+}
+
+void fake_plan_ready(struct fake_room *fake, bool is_software)
+{
+    static const char defaults[] = "{\"regions\":{\"scalp\":{\"visible\":true,\"color\":\"#e0c0a0\",\"opacity\":0.4},"
+                                   "\"brain\":{\"visible\":true,\"color\":\"#e0a0a0\",\"opacity\":1}}}";
+    struct problem problem = { 0 };
+    struct scene scene;
+    cJSON *said = json_read(defaults, strlen(defaults), &problem);
+    assert_true(scene_read(said, &scene, &problem));
+    cJSON *complete = scene_write(&scene), *plan = cJSON_CreateObject();
+    cJSON_AddStringToObject(plan, "id", "head");
+    room_plan_ready(fake->room, plan, complete, (const char *const[]){ "ct", NULL }, "osmesa llvmpipe", is_software, fake->now_us);
+    scene_finish(&scene);
+    cJSON_Delete(said);
+    cJSON_Delete(complete);
+    cJSON_Delete(plan);
+    tick(fake);
+}
+
+void fake_say(struct fake_room *fake, struct fake_page *page, const char *format, ...)
+{
+    char text[4096];
+    va_list args;
+    va_start(args, format);
+    int n = vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    assert_true(n > 0 && (size_t)n < sizeof text);
+    room_text_came(fake->room, page, text, (size_t)n, fake->now_us);
+    tick(fake);
+}
+
+void fake_hello(struct fake_room *fake, struct fake_page *page)
+{
+    fake_say(fake, page, "{\"type\":\"hello\",\"protocol\":1}");
+}
+
+void fake_join(struct fake_room *fake, struct fake_page *page, bool follow)
+{
+    fake_hello(fake, page);
+    fake_say(fake, page, "{\"type\":\"view.open\",\"view\":1,\"document\":{\"size_px\":[800,600]},\"follow\":%s}", follow ? "true" : "false");
+}
+
+void fake_shown(struct fake_room *fake, struct fake_page *page)
+{
+    for (size_t i = page->n_frames; i-- > 0;)
+        if (page->frames[i].view == 1) {
+            fake_say(fake, page, "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":%u}", page->frames[i].sequence);
+            return;
+        }
+    fail_msg("no frame to show");
+}
+
+void fake_pass(struct fake_room *fake, int64_t ms)
+{
+    int64_t end_us = fake->now_us + ms * 1000;
+    while (fake->again_us <= end_us) {
+        fake->now_us = fake->again_us > fake->now_us ? fake->again_us : fake->now_us;
+        tick(fake);
+        assert_true(fake->again_us > fake->now_us); /* else it would be called in a circle */
+    }
+    fake->now_us = end_us;
+}
+
+size_t fake_outstanding(const struct fake_room *fake)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < fake->n_requests; i++)
+        n += !fake->requests[i].is_answered;
+    return n;
+}
+
+struct fake_request *fake_oldest(struct fake_room *fake)
+{
+    for (size_t i = 0; i < fake->n_requests; i++)
+        if (!fake->requests[i].is_answered)
+            return &fake->requests[i];
+    return NULL;
+}
+
+struct fake_request *fake_newest(struct fake_room *fake)
+{
+    for (size_t i = fake->n_requests; i-- > 0;)
+        if (!fake->requests[i].is_answered)
+            return &fake->requests[i];
+    return NULL;
+}
+
+void fake_draw_slow(struct fake_room *fake, struct fake_request *request, uint32_t render_us)
+{
+    assert_non_null(request);
+    assert_false(request->is_answered);
+    request->is_answered = true;
+    struct room_picture *picture = mem_new(sizeof *picture);
+    picture->references = 1;
+    picture->n_bytes = 100;
+    picture->bytes = mem_new(100);
+    picture->bytes[0] = (uint8_t)request->request;
+    picture->header = (struct frame_header){ .codec = 1,
+                                             .flags = (uint8_t)((request->is_still ? FRAME_STILL : 0) | (request->light ? FRAME_LIGHT : 0)),
+                                             .quality = (uint8_t)request->quality,
+                                             .scale_percent = (uint8_t)request->scale_percent,
+                                             .scene_revision = request->scene_revision,
+                                             .render_us = render_us,
+                                             .encode_us = 2000,
+                                             .payload_bytes = 100 };
+    room_picture_came(fake->room, request->request, picture, fake->now_us);
+    tick(fake);
+}
+
+void fake_draw(struct fake_room *fake, struct fake_request *request)
+{
+    fake_draw_slow(fake, request, 10000);
+}
+
+void fake_fail(struct fake_room *fake, struct fake_request *request)
+{
+    struct problem problem = { 0 };
+    problem_set(&problem, PROBLEM_RENDERER, "", "", "made up");
+    request->is_answered = true;
+    room_picture_failed(fake->room, request->request, &problem, fake->now_us);
+    tick(fake);
+}
+
+void fake_settle(struct fake_room *fake, struct fake_page *const *pages, size_t n_pages)
+{
+    for (int turn = 0; turn < 20; turn++) {
+        for (struct fake_request *request; (request = fake_oldest(fake));) {
+            size_t before = fake->n_requests;
+            fake_draw(fake, request);
+            for (size_t i = 0; i < n_pages; i++)
+                if (pages[i]->n_frames)
+                    fake_shown(fake, pages[i]);
+            assert_true(fake->n_requests < before + 20);
+        }
+        fake_pass(fake, 200);
+    }
+    assert_int_equal(fake_outstanding(fake), 0);
+}
+
+cJSON *fake_heard(const struct fake_page *page, const char *type)
+{
+    for (size_t i = page->n_texts; i-- > 0;) {
+        cJSON *json = json_read(page->texts[i], strlen(page->texts[i]), NULL);
+        assert_non_null(json);
+        if (strcmp(json_text(json, "type"), type) == 0)
+            return json;
+        cJSON_Delete(json);
+    }
+    return NULL;
+}
+
+size_t fake_n_heard(const struct fake_page *page, const char *type)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < page->n_texts; i++) {
+        cJSON *json = json_read(page->texts[i], strlen(page->texts[i]), NULL);
+        n += strcmp(json_text(json, "type"), type) == 0;
+        cJSON_Delete(json);
+    }
+    return n;
+}

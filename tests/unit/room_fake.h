@@ -1,0 +1,56 @@
+#pragma once
+/* A room with a fake clock, fake connections and a renderer that is the test itself. */
+#include "server/room/room.h"
+#include "tests/check.h"
+
+struct fake_page { /* one browser */
+    char *texts[4096];
+    size_t n_texts;
+    struct frame_header frames[512];
+    size_t n_frames, n_bytes_last;
+    uint8_t first_byte_last;
+    bool is_closed;
+};
+
+struct fake_request {
+    uint64_t request;
+    cJSON *view, *scene;
+    uint32_t scene_revision;
+    int scale_percent, quality;
+    bool is_still, full_color, light, is_answered;
+};
+
+struct fake_room {
+    struct room *room;
+    int64_t now_us;
+    int64_t again_us; /* what the last tick said */
+    struct fake_request requests[1024];
+    size_t n_requests;
+    size_t n_scenes;
+    uint32_t told_revision;
+};
+
+void fake_room_start(struct fake_room *fake, int max_members); /* the plan is not ready yet */
+void fake_room_end(struct fake_room *fake);
+void fake_plan_ready(struct fake_room *fake, bool is_software);
+void fake_page_end(struct fake_page *page);
+
+void fake_say(struct fake_room *fake, struct fake_page *page, const char *format, ...) PRINTF_LIKE(3, 4);
+/* hello, then view 1 of kind 3d, 800 x 600 */
+void fake_join(struct fake_room *fake, struct fake_page *page, bool follow);
+void fake_hello(struct fake_room *fake, struct fake_page *page);
+void fake_shown(struct fake_room *fake, struct fake_page *page); /* acknowledges the newest frame of view 1 */
+void fake_pass(struct fake_room *fake, int64_t ms);              /* time goes on; ticks when asked to */
+
+size_t fake_outstanding(const struct fake_room *fake);
+struct fake_request *fake_oldest(struct fake_room *fake); /* outstanding; NULL none */
+struct fake_request *fake_newest(struct fake_room *fake);
+void fake_draw(struct fake_room *fake, struct fake_request *request); /* answers with a picture */
+void fake_draw_slow(struct fake_room *fake, struct fake_request *request, uint32_t render_us);
+void fake_fail(struct fake_room *fake, struct fake_request *request);
+/* Draws and shows everything until nothing is asked for any more. */
+void fake_settle(struct fake_room *fake, struct fake_page *const *pages, size_t n_pages);
+
+/* The newest message of a type that a page got, as JSON to be deleted; NULL: none. */
+cJSON *fake_heard(const struct fake_page *page, const char *type);
+size_t fake_n_heard(const struct fake_page *page, const char *type);

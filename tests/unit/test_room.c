@@ -1,0 +1,571 @@
+/* Pacing: when pictures are asked for and who gets them (design.md 6). */
+#include "server/room/pace.h"
+#include "tests/unit/room_fake.h"
+
+static struct fake_room fake;
+static struct fake_page ann, ben;
+
+static int start(void **state)
+{
+    (void)state;
+    fake_room_start(&fake, 0);
+    fake_plan_ready(&fake, true);
+    return 0;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    fake_room_end(&fake);
+    fake_page_end(&ann);
+    fake_page_end(&ben);
+    return 0;
+}
+
+static void turn(struct fake_page *page, int degrees, unsigned input)
+{
+    fake_say(&fake, page,
+             "{\"type\":\"view.patch\",\"view\":1,\"input\":%u,\"patch\":{\"camera\":{\"position_mm\":[%d,-900,0],\"target_mm\":[0,0,0],"
+             "\"up\":[0,0,1]}}}",
+             input, degrees);
+}
+
+static double camera_x(const struct fake_request *request)
+{
+    const cJSON *camera = cJSON_GetObjectItem(request->view, "camera");
+    return cJSON_GetArrayItem(cJSON_GetObjectItem(camera, "position_mm"), 0)->valuedouble;
+}
+
+static void settle_one(void)
+{
+    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+}
+
+static void settle_two(void)
+{
+    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
+}
+
+static void a_new_view_gets_a_moving_picture_at_once_and_then_a_still(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    assert_int_equal(fake_outstanding(&fake), 1);
+    assert_false(fake_oldest(&fake)->is_still);
+    fake_draw(&fake, fake_oldest(&fake));
+    fake_shown(&fake, &ann);
+    assert_int_equal(ann.n_frames, 1);
+    fake_pass(&fake, 149);
+    assert_int_equal(fake_outstanding(&fake), 0);
+    fake_pass(&fake, 1);
+    assert_true(fake_oldest(&fake)->is_still);
+}
+
+static void a_still_follows_150_ms_after_the_last_change(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    settle_one();
+    for (int i = 0; i < 5; i++) { /* changes 100 ms apart: no still between them */
+        turn(&ann, i + 1, 0);
+        assert_false(fake_newest(&fake)->is_still);
+        fake_draw(&fake, fake_newest(&fake));
+        fake_shown(&fake, &ann);
+        if (i < 4)
+            fake_pass(&fake, 100);
+    }
+    fake_pass(&fake, 149);
+    assert_int_equal(fake_outstanding(&fake), 0);
+    fake_pass(&fake, 1);
+    struct fake_request *still = fake_oldest(&fake);
+    assert_non_null(still);
+    assert_true(still->is_still);
+    assert_true(still->full_color);
+    assert_false(still->light);
+    assert_int_equal(still->scale_percent, 100);
+    assert_int_equal(still->quality, 92);
+    assert_close(camera_x(still), 5, 0);
+}
+
+static void an_idle_room_asks_for_nothing(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    settle_one();
+    size_t before = fake.n_requests;
+    assert_true(fake.again_us == INT64_MAX);
+    fake_pass(&fake, 3600000);
+    assert_int_equal(fake.n_requests, before);
+}
+
+static void a_room_without_views_asks_for_nothing(void **state)
+{
+    (void)state;
+    fake_hello(&fake, &ann);
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"visible\":false}}}}");
+    fake_pass(&fake, 1000);
+    assert_int_equal(fake.n_requests, 0);
+}
+
+static void a_change_that_changes_nothing_is_not_drawn(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    turn(&ann, 3, 0);
+    settle_one();
+    size_t before = fake.n_requests;
+    uint32_t revision;
+    (void)room_scene(fake.room, &revision);
+    turn(&ann, 3, 0);
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"input\":9,\"patch\":{\"regions\":{\"brain\":{\"visible\":true}}}}");
+    fake_pass(&fake, 1000);
+    assert_int_equal(fake.n_requests, before);
+    cJSON *scene = fake_heard(&ann, "scene"); /* its sender still hears that it was taken, at the revision it had */
+    assert_int_equal(json_number(scene, "revision", 0), revision);
+    assert_int_equal(json_number(scene, "input", 0), 9);
+    cJSON_Delete(scene);
+}
+
+static void no_more_than_two_unshown_frames_are_ever_sent(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    for (int i = 0; i < 50; i++) { /* never acknowledged */
+        turn(&ann, i, 0);
+        fake_pass(&fake, 20);
+        for (struct fake_request *request; (request = fake_oldest(&fake));)
+            fake_draw(&fake, request);
+    }
+    assert_int_equal(ann.n_frames, 2);
+    assert_int_equal(fake.n_requests, 2); /* and nothing was drawn for nobody */
+}
+
+static void when_credit_returns_the_newest_state_is_drawn(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    for (int i = 0; i < 50; i++) {
+        turn(&ann, i, 0);
+        fake_pass(&fake, 20);
+        for (struct fake_request *request; (request = fake_oldest(&fake));)
+            fake_draw(&fake, request);
+    }
+    fake_say(&fake, &ann, "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":1}");
+    assert_int_equal(fake_outstanding(&fake), 1);
+    assert_close(camera_x(fake_oldest(&fake)), 49, 0);
+}
+
+static void an_acknowledgement_counts_for_all_earlier_frames(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_draw(&fake, fake_oldest(&fake));
+    turn(&ann, 1, 0);
+    fake_draw(&fake, fake_oldest(&fake));
+    assert_int_equal(ann.n_frames, 2);
+    turn(&ann, 2, 0);
+    assert_int_equal(fake_outstanding(&fake), 0);
+    fake_say(&fake, &ann, "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":2}");
+    fake_draw(&fake, fake_oldest(&fake));
+    turn(&ann, 3, 0);
+    fake_draw(&fake, fake_oldest(&fake)); /* two more, so both had been given back */
+    assert_int_equal(ann.n_frames, 4);
+}
+
+static void an_acknowledgement_of_a_frame_never_sent_is_refused(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_draw(&fake, fake_oldest(&fake));
+    fake_say(&fake, &ann, "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":2}");
+    cJSON *said = fake_heard(&ann, "problem");
+    assert_non_null(said);
+    assert_string_equal(json_text(said, "to"), "frame.shown");
+    assert_string_equal(json_text(cJSON_GetObjectItem(said, "problem"), "type"), "/problems/validation");
+    assert_string_equal(json_text(cJSON_GetObjectItem(said, "problem"), "pointer"), "/sequence");
+    cJSON_Delete(said);
+}
+
+static void while_two_pictures_are_being_made_nothing_more_is_asked_for(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    for (int i = 1; i < 40; i++) {
+        turn(&ann, i, 0);
+        fake_pass(&fake, 10);
+        assert_true(fake_outstanding(&fake) <= 2);
+    }
+    fake_draw(&fake, fake_oldest(&fake));
+    fake_shown(&fake, &ann);
+    fake_pass(&fake, 20);
+    assert_close(camera_x(fake_newest(&fake)), 39, 0); /* the newest state wins */
+}
+
+static void a_second_picture_is_asked_for_when_the_first_should_be_drawn(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_draw_slow(&fake, fake_oldest(&fake), 20000); /* now it is known that drawing takes 20 ms */
+    fake_shown(&fake, &ann);
+    turn(&ann, 1, 0);
+    turn(&ann, 2, 0);
+    assert_int_equal(fake_outstanding(&fake), 1);
+    fake_pass(&fake, 19);
+    turn(&ann, 3, 0);
+    assert_int_equal(fake_outstanding(&fake), 1);
+    fake_pass(&fake, 1);
+    assert_int_equal(fake_outstanding(&fake), 2);
+    assert_close(camera_x(fake_newest(&fake)), 3, 0);
+}
+
+static void a_frame_is_not_sent_out_of_order(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    settle_one();
+    size_t before = ann.n_frames;
+    turn(&ann, 1, 0);
+    struct fake_request *older = fake_newest(&fake);
+    fake_pass(&fake, 60);
+    turn(&ann, 2, 0);
+    struct fake_request *newer = fake_newest(&fake);
+    assert_ptr_not_equal(older, newer);
+    fake_draw(&fake, newer);
+    fake_draw(&fake, older);
+    assert_int_equal(ann.n_frames, before + 1);
+    assert_int_equal(ann.first_byte_last, (uint8_t)newer->request);
+}
+
+static void a_change_does_not_wait_for_a_slow_still(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    settle_one();
+    turn(&ann, 1, 0);
+    fake_draw(&fake, fake_oldest(&fake));
+    fake_shown(&fake, &ann);
+    fake_pass(&fake, 150);
+    struct fake_request *still = fake_newest(&fake);
+    assert_true(still->is_still);
+    for (int i = 2; i < 30; i++) { /* the still takes for ever; moving pictures go on */
+        turn(&ann, i, 0);
+        struct fake_request *moving = fake_newest(&fake);
+        assert_ptr_not_equal(moving, still);
+        assert_false(moving->is_still);
+        fake_draw(&fake, moving);
+        fake_shown(&fake, &ann);
+        fake_pass(&fake, 200);
+        assert_int_equal(fake_outstanding(&fake), 1); /* no second still beside it */
+    }
+    size_t before = ann.n_frames;
+    fake_draw(&fake, still); /* at last, and overtaken */
+    assert_int_equal(ann.n_frames, before);
+    struct fake_request *last = fake_newest(&fake);
+    assert_true(last->is_still);
+    assert_close(camera_x(last), 29, 0);
+    fake_draw(&fake, last);
+    assert_int_equal(ann.n_frames, before + 1);
+}
+
+static void a_slow_member_does_not_slow_another(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    fake_join(&fake, &ben, true);
+    settle_two();
+    size_t ann_before = ann.n_frames, ben_before = ben.n_frames;
+    for (int i = 0; i < 20; i++) { /* Ben acknowledges nothing */
+        turn(&ann, i + 1, 0);
+        fake_pass(&fake, 20);
+        fake_draw(&fake, fake_oldest(&fake));
+        fake_shown(&fake, &ann);
+    }
+    assert_int_equal(ann.n_frames - ann_before, 20);
+    assert_int_equal(ben.n_frames - ben_before, 2);
+    fake_pass(&fake, 200);
+    fake_draw(&fake, fake_oldest(&fake)); /* the still */
+    fake_shown(&fake, &ann);
+    size_t drawn = fake.n_requests;
+    uint64_t still = fake.requests[drawn - 1].request;
+    assert_int_equal(ben.n_frames - ben_before, 2);
+    fake_shown(&fake, &ben); /* its credit returns: the newest picture, from what is there */
+    assert_int_equal(ben.n_frames - ben_before, 3);
+    assert_int_equal(ben.first_byte_last, (uint8_t)still);
+    assert_true(ben.frames[ben.n_frames - 1].flags & FRAME_STILL);
+    assert_int_equal(fake.n_requests, drawn);
+}
+
+static void two_followers_share_one_render(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    fake_join(&fake, &ben, true);
+    settle_two();
+    size_t before = fake.n_requests, ann_before = ann.n_frames, ben_before = ben.n_frames;
+    turn(&ann, 5, 0);
+    assert_int_equal(fake.n_requests, before + 1);
+    fake_draw(&fake, fake_oldest(&fake));
+    assert_int_equal(ann.n_frames, ann_before + 1);
+    assert_int_equal(ben.n_frames, ben_before + 1);
+    assert_true(ben.frames[ben.n_frames - 1].flags & FRAME_SHARED);
+    assert_int_equal(ann.first_byte_last, ben.first_byte_last);
+}
+
+static void own_views_are_drawn_each_for_itself(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_join(&fake, &ben, false);
+    settle_two();
+    size_t before = fake.n_requests, ben_before = ben.n_frames;
+    turn(&ann, 5, 0);
+    fake_pass(&fake, 50);
+    assert_int_equal(fake.n_requests, before + 1);
+    fake_draw(&fake, fake_oldest(&fake));
+    assert_int_equal(ben.n_frames, ben_before);
+    assert_false(ann.frames[ann.n_frames - 1].flags & FRAME_SHARED);
+}
+
+static void a_late_follower_gets_the_picture_that_is_there_at_once(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    settle_one();
+    size_t before = fake.n_requests;
+    fake_join(&fake, &ben, true);
+    assert_int_equal(ben.n_frames, 1);
+    assert_true(ben.frames[0].flags & FRAME_STILL);
+    fake_pass(&fake, 1000);
+    assert_int_equal(fake.n_requests, before); /* and nothing is drawn for it */
+}
+
+static void a_frame_carries_the_newest_input_it_shows_and_none_newer(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    settle_one();
+    turn(&ann, 1, 11);
+    struct fake_request *first = fake_newest(&fake);
+    turn(&ann, 2, 12); /* after the first was asked for */
+    turn(&ann, 3, 13);
+    fake_draw(&fake, first);
+    assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 11);
+    fake_shown(&fake, &ann);
+    fake_draw(&fake, fake_newest(&fake));
+    assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 13);
+}
+
+static void input_numbers_are_each_members_own(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    fake_join(&fake, &ben, true);
+    settle_two();
+    turn(&ann, 1, 77);
+    fake_draw(&fake, fake_newest(&fake));
+    assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 77);
+    assert_int_equal(ben.frames[ben.n_frames - 1].input_id, 0);
+}
+
+static void many_inputs_between_two_pictures_are_never_reported_too_early(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    settle_one();
+    turn(&ann, 1, 100);
+    struct fake_request *first = fake_newest(&fake);
+    for (unsigned i = 0; i < 200; i++)
+        turn(&ann, 2 + (int)i, 101 + i);
+    fake_draw(&fake, first);
+    assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 100);
+    fake_shown(&fake, &ann);
+    fake_draw(&fake, fake_newest(&fake));
+    assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 300);
+}
+
+static void a_picture_that_failed_is_asked_for_again_but_not_at_once(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    for (int i = 0; i < 10; i++) {
+        size_t before = fake.n_requests;
+        fake_fail(&fake, fake_newest(&fake));
+        fake_pass(&fake, 50);
+        assert_int_equal(fake.n_requests, before);
+        fake_pass(&fake, 4000);
+        assert_true(fake.n_requests > before);
+        while (fake_outstanding(&fake) > 1)
+            fake_draw(&fake, fake_oldest(&fake));
+    }
+    settle_one();
+    assert_true(ann.frames[ann.n_frames - 1].flags & FRAME_STILL);
+}
+
+static void a_still_that_failed_is_asked_for_again(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_draw(&fake, fake_oldest(&fake));
+    fake_shown(&fake, &ann);
+    fake_pass(&fake, 150);
+    assert_true(fake_newest(&fake)->is_still);
+    fake_fail(&fake, fake_newest(&fake));
+    assert_int_equal(fake_outstanding(&fake), 0);
+    fake_pass(&fake, 1000);
+    assert_true(fake_newest(&fake)->is_still);
+}
+
+static void a_new_renderer_is_told_the_scene_and_draws_everything_anew(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.25}}}}");
+    settle_one();
+    turn(&ann, 8, 21);
+    struct fake_request *lost = fake_newest(&fake);
+    room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, NULL, 0, NULL);
+    cJSON *said = fake_heard(&ann, "renderer");
+    assert_string_equal(json_text(said, "state"), "restarting");
+    cJSON_Delete(said);
+    turn(&ann, 9, 22); /* patches go on; nothing is asked for */
+    size_t before = fake.n_requests, scenes = fake.n_scenes, frames = ann.n_frames;
+    uint32_t revision;
+    (void)room_scene(fake.room, &revision);
+    fake_pass(&fake, 1000);
+    assert_int_equal(fake.n_requests, before);
+    fake_plan_ready(&fake, true);
+    assert_int_equal(fake.n_scenes, scenes + 1);
+    assert_int_equal(fake.told_revision, revision); /* the room's state went on */
+    assert_int_equal(fake.n_requests, before + 1);
+    fake_draw(&fake, lost); /* a late answer of the old one is dropped */
+    assert_int_equal(ann.n_frames, frames);
+    struct fake_request *again = fake_newest(&fake);
+    assert_close(camera_x(again), 9, 0);
+    assert_false(again->is_still);
+    fake_draw(&fake, again);
+    assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 22);
+    settle_one();
+    assert_true(ann.frames[ann.n_frames - 1].flags & FRAME_STILL);
+}
+
+static void software_starts_small_and_light_and_slices_start_whole(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    assert_int_equal(fake_newest(&fake)->scale_percent, 60);
+    assert_int_equal(fake_newest(&fake)->quality, 75);
+    assert_true(fake_newest(&fake)->light);
+    assert_false(fake_newest(&fake)->full_color);
+    fake_say(&fake, &ann, "{\"type\":\"view.open\",\"view\":2,\"document\":{\"kind\":\"axial\"}}");
+    assert_int_equal(fake_newest(&fake)->scale_percent, 100);
+    assert_int_equal(fake_newest(&fake)->quality, 80);
+}
+
+static void a_graphics_card_starts_at_full_size_and_detail(void **state)
+{
+    (void)state;
+    fake_plan_ready(&fake, false);
+    fake_join(&fake, &ann, false);
+    assert_int_equal(fake_newest(&fake)->scale_percent, 100);
+    assert_int_equal(fake_newest(&fake)->quality, 80);
+    assert_false(fake_newest(&fake)->light);
+}
+
+/* moves for a while; returns the scale asked for last */
+static int drag(int n, int64_t interval_ms, uint32_t render_us)
+{
+    int scale = 0;
+    for (int i = 0; i < n; i++) {
+        static int x;
+        turn(&ann, ++x, 0);
+        struct fake_request *request = fake_newest(&fake);
+        scale = request->scale_percent;
+        fake_pass(&fake, interval_ms);
+        fake_draw_slow(&fake, request, render_us);
+        fake_shown(&fake, &ann);
+    }
+    return scale;
+}
+
+static void slow_pictures_become_smaller_and_fast_ones_larger_again(void **state)
+{
+    (void)state;
+    fake_plan_ready(&fake, false);
+    fake_join(&fake, &ann, false);
+    settle_one();
+    assert_int_equal(drag(10, 60, 60000), 50); /* 4 steps of 3 pictures: 100, 75, 60, 50 */
+    assert_int_equal(drag(30, 15, 8000), 50);  /* less than a second of fast ones */
+    assert_int_equal(drag(80, 15, 8000), 60);
+    assert_int_equal(drag(300, 15, 8000), 100);
+}
+
+static void late_acknowledgements_make_pictures_smaller(void **state)
+{
+    (void)state;
+    fake_plan_ready(&fake, false);
+    fake_join(&fake, &ann, false);
+    settle_one();
+    assert_int_equal(drag(10, 15, 8000), 100);
+    int scale = 0;
+    for (int i = 0; i < 40; i++) {
+        turn(&ann, 1000 + i, 0);
+        struct fake_request *request = fake_newest(&fake);
+        scale = request->scale_percent;
+        fake_draw_slow(&fake, request, 8000);
+        fake_pass(&fake, 140);
+        fake_shown(&fake, &ann);
+    }
+    assert_int_equal(scale, 50);
+}
+
+static void a_step_up_that_does_not_hold_is_tried_less_and_less_often(void **state)
+{
+    struct pace pace;
+    int n_up = 0;
+    int64_t now_us = 1;
+    (void)state;
+    pace_start(&pace, false, false);
+    for (int i = 0; i < 60 * 25; i++, now_us += 40000) { /* one minute: full size is too slow, three quarters are fast */
+        int before = pace.step;
+        pace_drawn(&pace, pace.step == 0 ? 50000 : 10000, 2000, 0, 1, now_us);
+        n_up += pace.step < before;
+    }
+    /* after 1, 2, 4, 8, 16 s and then not within the minute */
+    assert_int_equal(n_up, 5);
+}
+
+int main(void)
+{
+#define T(name) cmocka_unit_test_setup_teardown(name, start, end)
+    const struct CMUnitTest tests[] = {
+        T(a_new_view_gets_a_moving_picture_at_once_and_then_a_still),
+        T(a_still_follows_150_ms_after_the_last_change),
+        T(an_idle_room_asks_for_nothing),
+        T(a_room_without_views_asks_for_nothing),
+        T(a_change_that_changes_nothing_is_not_drawn),
+        T(no_more_than_two_unshown_frames_are_ever_sent),
+        T(when_credit_returns_the_newest_state_is_drawn),
+        T(an_acknowledgement_counts_for_all_earlier_frames),
+        T(an_acknowledgement_of_a_frame_never_sent_is_refused),
+        T(while_two_pictures_are_being_made_nothing_more_is_asked_for),
+        T(a_second_picture_is_asked_for_when_the_first_should_be_drawn),
+        T(a_frame_is_not_sent_out_of_order),
+        T(a_change_does_not_wait_for_a_slow_still),
+        T(a_slow_member_does_not_slow_another),
+        T(two_followers_share_one_render),
+        T(own_views_are_drawn_each_for_itself),
+        T(a_late_follower_gets_the_picture_that_is_there_at_once),
+        T(a_frame_carries_the_newest_input_it_shows_and_none_newer),
+        T(input_numbers_are_each_members_own),
+        T(many_inputs_between_two_pictures_are_never_reported_too_early),
+        T(a_picture_that_failed_is_asked_for_again_but_not_at_once),
+        T(a_still_that_failed_is_asked_for_again),
+        T(a_new_renderer_is_told_the_scene_and_draws_everything_anew),
+        T(software_starts_small_and_light_and_slices_start_whole),
+        T(a_graphics_card_starts_at_full_size_and_detail),
+        T(slow_pictures_become_smaller_and_fast_ones_larger_again),
+        T(late_acknowledgements_make_pictures_smaller),
+        T(a_step_up_that_does_not_hold_is_tried_less_and_less_often),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
