@@ -9,6 +9,8 @@ struct snapshot {
     struct scene scene;   /* owned */
     struct view view;     /* owned */
     uint32_t scene_revision;
+    struct scene_region_style *styles; /* owned; by region index of the plan */
+    int image;                         /* index of the image shown, or -1 when the plan has none */
     _Atomic int references;
 };
 
@@ -24,6 +26,11 @@ void snapshot_unref(const struct snapshot *snapshot);
  * inner ones 0.45), innermost opaque; the first image's window; slices through the centre of the innermost region (else of the
  * plan), axial visible when there is an image. Fills scene, which scene_finish frees. */
 void scene_for_plan(const struct plan *plan, struct scene *scene);
+
+/* The image a scene shows: its index, or -1 when the plan has none or none of that id. */
+int scene_image_index(const struct plan *plan, const struct scene *scene);
+/* Where the slice of a pane lies along its patient axis; kind is not 3-D. */
+double scene_slice_position_mm(const struct scene *scene, enum scene_kind kind);
 
 /* The home camera of a kind: the whole plan, from the front (anterior) with superior up; slice panes the whole image or regions. */
 void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera);

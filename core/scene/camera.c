@@ -1,0 +1,213 @@
+#include "core/scene/snapshot.h"
+
+/* How much larger than the plan the home picture is. */
+static const double home_margin = 1.08;
+
+static void box_corners(const struct box3 *box, struct vec3 corners[8])
+{
+    for (int i = 0; i < 8; i++)
+        corners[i] = vec3(i & 1 ? box->high.x : box->low.x, i & 2 ? box->high.y : box->low.y, i & 4 ? box->high.z : box->low.z);
+}
+
+static struct box3 plan_box(const struct plan *plan)
+{
+    struct box3 box = plan->bounds_lps_mm;
+    if (box3_is_empty(&box) || !vec3_is_finite(box.low) || !vec3_is_finite(box.high))
+        box = (struct box3){ vec3(-100, -100, -100), vec3(100, 100, 100) };
+    return box;
+}
+
+static struct box3 box_union(struct box3 a, const struct box3 *b)
+{
+    box3_add(&a, b->low);
+    box3_add(&a, b->high);
+    return a;
+}
+
+static struct vec3 box_centre(const struct box3 *box)
+{
+    return vec3_scale(vec3_add(box->low, box->high), 0.5);
+}
+
+struct pane_axes {
+    struct vec3 right, up, forward;
+};
+
+static struct pane_axes pane_axes(enum scene_kind kind)
+{
+    switch (kind) {
+    case SCENE_KIND_CORONAL: return (struct pane_axes){ vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0) };
+    case SCENE_KIND_SAGITTAL: return (struct pane_axes){ vec3(0, 1, 0), vec3(0, 0, 1), vec3(-1, 0, 0) };
+    case SCENE_KIND_AXIAL: /* from the feet */
+    case SCENE_KIND_3D: break;
+    }
+    return (struct pane_axes){ vec3(1, 0, 0), vec3(0, -1, 0), vec3(0, 0, 1) };
+}
+
+/* Extent of a box along a unit axis of the patient. */
+static double box_extent(const struct box3 *box, struct vec3 axis)
+{
+    return fabs(vec3_dot(vec3_sub(box->high, box->low), axis));
+}
+
+static struct box3 pane_box(const struct plan *plan)
+{
+    return plan->n_images ? grid_bounds_lps_mm(&plan->images[0].volume->grid) : plan_box(plan);
+}
+
+static double pane_height_mm(const struct box3 *box, enum scene_kind kind)
+{
+    struct pane_axes axes = pane_axes(kind);
+    return fmax(home_margin * fmax(box_extent(box, axes.right), box_extent(box, axes.up)), 0.1);
+}
+
+/* How far in front of the centre the eye must stand so that every corner of the box lies within the opening angle. */
+static double home_distance_mm(const struct box3 *box, double fov_deg)
+{
+    double slope = tan(fov_deg / 2 * MATH_PI / 180) / home_margin, distance = 0;
+    struct vec3 corners[8], centre = box_centre(box);
+    box_corners(box, corners);
+    for (int i = 0; i < 8; i++) {
+        struct vec3 d = vec3_sub(corners[i], centre);
+        distance = fmax(distance, fmax(fabs(d.x), fabs(d.z)) / slope - d.y); /* looking along +y */
+    }
+    return fmax(distance, 1);
+}
+
+void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera)
+{
+    double fov_deg = scene_camera_default.fov_deg;
+    struct box3 box = kind == SCENE_KIND_3D ? plan_box(plan) : pane_box(plan);
+    struct pane_axes axes = kind == SCENE_KIND_3D ? pane_axes(SCENE_KIND_CORONAL) : pane_axes(kind);
+
+    *camera = scene_camera_default;
+    camera->has_position_mm = camera->has_target_mm = camera->has_up = true;
+    camera->target_mm = box_centre(&box);
+    camera->up = axes.up;
+    double distance = kind == SCENE_KIND_3D ? home_distance_mm(&box, fov_deg) : 1000;
+    camera->position_mm = vec3_sub(camera->target_mm, vec3_scale(axes.forward, distance));
+    if (kind != SCENE_KIND_3D) {
+        camera->projection = SCENE_PROJECTION_PARALLEL;
+        camera->has_height_mm = true;
+        camera->height_mm = pane_height_mm(&box, kind);
+    }
+}
+
+static double *axis_of(struct vec3 *p, enum scene_kind kind)
+{
+    return kind == SCENE_KIND_AXIAL ? &p->z : kind == SCENE_KIND_CORONAL ? &p->y : &p->x;
+}
+
+double scene_slice_position_mm(const struct scene *scene, enum scene_kind kind)
+{
+    const struct scene_slices *slices = &scene->image.slices;
+    return kind == SCENE_KIND_AXIAL ? slices->axial.position_mm
+                                    : kind == SCENE_KIND_CORONAL ? slices->coronal.position_mm : slices->sagittal.position_mm;
+}
+
+/* Slice panes: parallel, square to the patient, the slice's own plane through the target. Returns millimetres across the
+ * smaller side. */
+static double resolve_pane(const struct snapshot *snapshot, struct camera *camera)
+{
+    const struct scene_camera *asked = &snapshot->view.camera;
+    enum scene_kind kind = snapshot->view.kind;
+    struct box3 box = pane_box(snapshot->plan);
+    struct pane_axes axes = pane_axes(kind);
+
+    camera->right = axes.right;
+    camera->up = axes.up;
+    camera->forward = axes.forward;
+    camera->is_parallel = true;
+    camera->target_lps_mm = asked->has_target_mm ? asked->target_mm : box_centre(&box);
+    *axis_of(&camera->target_lps_mm, kind) = scene_slice_position_mm(&snapshot->scene, kind);
+    camera->eye_lps_mm = vec3_sub(camera->target_lps_mm, vec3_scale(camera->forward, 1000));
+    return asked->has_height_mm ? asked->height_mm : pane_height_mm(&box, kind);
+}
+
+static double resolve_space(const struct snapshot *snapshot, struct camera *camera)
+{
+    const struct scene_camera *asked = &snapshot->view.camera;
+    struct box3 box = plan_box(snapshot->plan);
+
+    camera->target_lps_mm = asked->has_target_mm ? asked->target_mm : box_centre(&box);
+    camera->eye_lps_mm = asked->has_position_mm ? asked->position_mm
+                                                : vec3_sub(camera->target_lps_mm, vec3(0, home_distance_mm(&box, asked->fov_deg), 0));
+    camera->is_parallel = asked->projection == SCENE_PROJECTION_PARALLEL;
+    struct vec3 sight = vec3_sub(camera->target_lps_mm, camera->eye_lps_mm);
+    camera->forward = vec3_normalize(sight);
+    struct vec3 up = asked->has_up ? asked->up : vec3(0, 0, 1);
+    if (vec3_length(vec3_cross(camera->forward, vec3_normalize(up))) < 1e-6) /* no up was asked and the view is along it */
+        up = fabs(camera->forward.z) < 0.9 ? vec3(0, 0, 1) : vec3(0, -1, 0);
+    camera->right = vec3_normalize(vec3_cross(camera->forward, up));
+    camera->up = vec3_cross(camera->right, camera->forward);
+    double at_target = 2 * vec3_length(sight) * tan(asked->fov_deg / 2 * MATH_PI / 180);
+    return asked->has_height_mm && camera->is_parallel ? asked->height_mm : fmax(at_target, 1e-3);
+}
+
+/* Everything that may be drawn lies between near and far, so 24 bits of depth are enough. */
+static void resolve_depth(const struct snapshot *snapshot, struct camera *camera)
+{
+    struct box3 box = plan_box(snapshot->plan);
+    struct vec3 corners[8];
+    for (size_t i = 0; i < snapshot->plan->n_images; i++) {
+        struct box3 image = grid_bounds_lps_mm(&snapshot->plan->images[i].volume->grid);
+        box = box_union(box, &image);
+    }
+    box_corners(&box, corners);
+    double near_mm = INFINITY, far_mm = -INFINITY;
+    for (int i = 0; i < 8; i++) {
+        double depth = vec3_dot(vec3_sub(corners[i], camera->eye_lps_mm), camera->forward);
+        near_mm = fmin(near_mm, depth);
+        far_mm = fmax(far_mm, depth);
+    }
+    double slack = fmax(1, 0.01 * (far_mm - near_mm));
+    near_mm -= slack;
+    far_mm += slack;
+    if (!camera->is_parallel) {
+        far_mm = fmax(far_mm, 10);
+        near_mm = fmax(near_mm, far_mm / 2000); /* the eye stands in or before the plan: 2000 : 1 keeps 0.1 mm apart in the distance */
+    }
+    camera->near_mm = near_mm;
+    camera->far_mm = far_mm;
+}
+
+static struct mat4 eye_matrix(const struct camera *camera)
+{
+    const struct vec3 *r = &camera->right, *u = &camera->up, *f = &camera->forward, e = camera->eye_lps_mm;
+    return (struct mat4){ { r->x, u->x, -f->x, 0, r->y, u->y, -f->y, 0, r->z, u->z, -f->z, 0,
+                            -vec3_dot(*r, e), -vec3_dot(*u, e), vec3_dot(*f, e), 1 } };
+}
+
+static struct mat4 projection_matrix(const struct camera *camera, double half_width, double half_height)
+{
+    double n = camera->near_mm, f = camera->far_mm;
+    struct mat4 m = { { 0 } };
+    m.m[0] = 1 / half_width;
+    m.m[5] = 1 / half_height;
+    if (camera->is_parallel) {
+        m.m[10] = -2 / (f - n);
+        m.m[14] = -(f + n) / (f - n);
+        m.m[15] = 1;
+    } else {
+        m.m[10] = -(f + n) / (f - n);
+        m.m[11] = -1;
+        m.m[14] = -2 * f * n / (f - n);
+    }
+    return m;
+}
+
+void camera_resolve(const struct snapshot *snapshot, struct camera *camera)
+{
+    const struct view *view = &snapshot->view;
+    double width = view->size_px[0], height = view->size_px[1], smaller = fmin(width, height);
+    *camera = (struct camera){ 0 };
+    double across_mm = view->kind == SCENE_KIND_3D ? resolve_space(snapshot, camera) : resolve_pane(snapshot, camera);
+    resolve_depth(snapshot, camera);
+
+    double half = camera->is_parallel ? across_mm / 2 : tan(view->camera.fov_deg / 2 * MATH_PI / 180);
+    camera->pixels_per_mm = camera->is_parallel ? smaller / across_mm : 0;
+    struct mat4 eye = eye_matrix(camera), projection = projection_matrix(camera, half * width / smaller, half * height / smaller);
+    camera->clip_from_lps_mm = mat4_multiply(&projection, &eye);
+    if (!mat4_invert(&camera->clip_from_lps_mm, &camera->lps_mm_from_clip)) /* snapshot_create refused such cameras */
+        camera->lps_mm_from_clip = (struct mat4){ { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 } };
+}

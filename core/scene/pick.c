@@ -1,0 +1,266 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/scene/snapshot.h"
+
+/* p(t) = origin + t direction, direction of unit length, t in millimetres >= 0 */
+struct ray {
+    struct vec3 origin_lps_mm, direction;
+};
+
+static struct ray pixel_ray(const struct camera *camera, const struct view *view, double px, double py)
+{
+    double x = 2 * px / view->size_px[0] - 1, y = 1 - 2 * py / view->size_px[1];
+    struct vec3 near = mat4_project(&camera->lps_mm_from_clip, vec3(x, y, -1));
+    struct vec3 far = mat4_project(&camera->lps_mm_from_clip, vec3(x, y, 1));
+    return (struct ray){ near, vec3_normalize(vec3_sub(far, near)) };
+}
+
+static struct vec3 ray_point(const struct ray *ray, double t)
+{
+    return vec3_add(ray->origin_lps_mm, vec3_scale(ray->direction, t));
+}
+
+static bool is_shown(const struct snapshot *snapshot, size_t region)
+{
+    return snapshot->styles[region].visible && snapshot->styles[region].opacity > 0;
+}
+
+/* Insertion by distance; equal distances keep the inner region behind the outer one. */
+static size_t add_hit(struct pick_hit hits[PICK_MAX_HITS], size_t n, struct pick_hit hit)
+{
+    size_t at = n;
+    while (at > 0 && hits[at - 1].distance_mm > hit.distance_mm)
+        at--;
+    if (at >= PICK_MAX_HITS)
+        return n;
+    size_t n_after = n < PICK_MAX_HITS ? n - at : PICK_MAX_HITS - 1 - at;
+    memmove(&hits[at + 1], &hits[at], n_after * sizeof hits[0]);
+    hits[at] = hit;
+    return n < PICK_MAX_HITS ? n + 1 : n;
+}
+
+/* First entries of a ray into the regions of one layer: t_mm[region], infinity where it never enters. */
+struct layer_walk {
+    const struct snapshot *snapshot;
+    const struct volume *layer;
+    size_t layer_index;
+    bool *was_inside; /* by region: the ray starts inside and has not left yet */
+    double *t_mm;     /* by region */
+};
+
+static int region_of_label(const struct layer_walk *walk, uint16_t label)
+{
+    const struct region_set *set = &walk->snapshot->plan->regions;
+    for (size_t i = 0; label && i < set->n_regions; i++)
+        if (set->regions[i].layer == walk->layer_index && set->regions[i].label == label)
+            return (int)i;
+    return -1;
+}
+
+/* The surface of a region encloses what lies inside it, so a voxel belongs to its region and all ancestors on the layer. */
+static void enter_voxel(const struct layer_walk *walk, uint16_t label, double t)
+{
+    const struct region *regions = walk->snapshot->plan->regions.regions;
+    for (int r = region_of_label(walk, label); r >= 0; r = regions[r].parent)
+        if (regions[r].layer == walk->layer_index && !walk->was_inside[r] && t < walk->t_mm[r])
+            walk->t_mm[r] = t;
+}
+
+/* Regions the ray started inside and that this voxel no longer belongs to may be entered from now on. */
+static void leave_voxel(const struct layer_walk *walk, uint16_t label)
+{
+    const struct region_set *set = &walk->snapshot->plan->regions;
+    int self = region_of_label(walk, label);
+    for (size_t i = 0; i < set->n_regions; i++) {
+        if (!walk->was_inside[i] || set->regions[i].layer != walk->layer_index)
+            continue;
+        int r = self;
+        while (r >= 0 && r != (int)i)
+            r = set->regions[r].parent;
+        walk->was_inside[i] = r >= 0;
+    }
+}
+
+static void start_inside(const struct layer_walk *walk, uint16_t label)
+{
+    const struct region *regions = walk->snapshot->plan->regions.regions;
+    for (int r = region_of_label(walk, label); r >= 0; r = regions[r].parent)
+        if (regions[r].layer == walk->layer_index)
+            walk->was_inside[r] = true;
+}
+
+/* Part of the ray inside the grid's outer faces, t in mm; false when none. */
+static bool clip_to_grid(const struct vec3 *origin_ijk, const struct vec3 *step_ijk, const uint32_t size[3], double *t0, double *t1)
+{
+    const double o[3] = { origin_ijk->x, origin_ijk->y, origin_ijk->z }, d[3] = { step_ijk->x, step_ijk->y, step_ijk->z };
+    *t0 = 0;
+    *t1 = INFINITY;
+    for (int a = 0; a < 3; a++) {
+        double low = -0.5, high = size[a] - 0.5;
+        if (fabs(d[a]) < 1e-12) {
+            if (o[a] < low || o[a] > high)
+                return false;
+            continue;
+        }
+        double ta = (low - o[a]) / d[a], tb = (high - o[a]) / d[a];
+        *t0 = fmax(*t0, fmin(ta, tb));
+        *t1 = fmin(*t1, fmax(ta, tb));
+    }
+    return *t0 < *t1 && isfinite(*t1);
+}
+
+/* J. Amanatides, A. Woo, A Fast Voxel Traversal Algorithm for Ray Tracing, Eurographics 1987; in index space, so any
+ * orientation and spacing of the grid is exact. */
+static void walk_layer(const struct layer_walk *walk, const struct ray *ray)
+{
+    const struct grid *grid = &walk->layer->grid;
+    struct vec3 origin = affine_point(&grid->ijk_from_lps_mm, ray->origin_lps_mm);
+    struct vec3 step = affine_vector(&grid->ijk_from_lps_mm, ray->direction);
+    double t0, t1;
+    if (!clip_to_grid(&origin, &step, grid->size, &t0, &t1))
+        return;
+
+    const double o[3] = { origin.x, origin.y, origin.z }, d[3] = { step.x, step.y, step.z };
+    int64_t at[3], way[3];
+    double next[3];
+    for (int a = 0; a < 3; a++) {
+        double start = o[a] + t0 * d[a];
+        at[a] = (int64_t)floor(start + 0.5);
+        at[a] = at[a] < 0 ? 0 : at[a] >= grid->size[a] ? grid->size[a] - 1 : at[a];
+        way[a] = d[a] > 0 ? 1 : -1;
+        next[a] = fabs(d[a]) < 1e-12 ? INFINITY : ((double)at[a] + 0.5 * (double)way[a] - o[a]) / d[a];
+    }
+    uint16_t label = volume_label(walk->layer, (uint32_t)at[0], (uint32_t)at[1], (uint32_t)at[2]);
+    if (t0 > 0)
+        enter_voxel(walk, label, t0);
+    else
+        start_inside(walk, label);
+    for (;;) {
+        int a = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
+        double t = next[a];
+        if (t >= t1)
+            return;
+        at[a] += way[a];
+        if (at[a] < 0 || at[a] >= grid->size[a])
+            return;
+        next[a] = ((double)at[a] + 0.5 * (double)way[a] - o[a]) / d[a];
+        uint16_t here = volume_label(walk->layer, (uint32_t)at[0], (uint32_t)at[1], (uint32_t)at[2]);
+        if (here == label)
+            continue;
+        label = here;
+        leave_voxel(walk, label);
+        enter_voxel(walk, label, t);
+    }
+}
+
+static bool layer_is_shown(const struct snapshot *snapshot, size_t layer)
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    for (size_t i = 0; i < set->n_regions; i++)
+        if (set->regions[i].layer == layer && is_shown(snapshot, i))
+            return true;
+    return false;
+}
+
+static size_t pick_regions(const struct snapshot *snapshot, const struct ray *ray, struct pick_hit hits[PICK_MAX_HITS])
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    bool was_inside[REGION_MAX] = { false };
+    double t_mm[REGION_MAX];
+    for (size_t i = 0; i < set->n_regions; i++)
+        t_mm[i] = INFINITY;
+    for (size_t layer = 0; layer < set->n_layers; layer++)
+        if (layer_is_shown(snapshot, layer))
+            walk_layer(&(struct layer_walk){ snapshot, set->layers[layer], layer, was_inside, t_mm }, ray);
+
+    size_t n = 0;
+    for (int depth = 0, more = 1; more; depth++) { /* outer regions first, so that equal distances stay in that order */
+        more = 0;
+        for (size_t i = 0; i < set->n_regions; i++) {
+            int region_level = region_depth(set, i);
+            more |= region_level > depth;
+            if (region_level == depth && isfinite(t_mm[i]) && is_shown(snapshot, i))
+                n = add_hit(hits, n, (struct pick_hit){ ray_point(ray, t_mm[i]), (int)i, t_mm[i] });
+        }
+    }
+    return n;
+}
+
+/* Slices of the image that are shown in space. */
+static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray, struct pick_hit hits[PICK_MAX_HITS], size_t n)
+{
+    if (snapshot->image < 0)
+        return n;
+    const struct scene_slices *slices = &snapshot->scene.image.slices;
+    const struct volume *volume = snapshot->plan->images[snapshot->image].volume;
+    const struct {
+        const struct scene_slice *slice;
+        struct vec3 normal;
+    } planes[3] = { { &slices->axial, { 0, 0, 1 } }, { &slices->coronal, { 0, 1, 0 } }, { &slices->sagittal, { 1, 0, 0 } } };
+    for (int i = 0; i < 3; i++) {
+        double across = vec3_dot(ray->direction, planes[i].normal);
+        if (!planes[i].slice->visible || fabs(across) < 1e-12)
+            continue;
+        double t = (planes[i].slice->position_mm - vec3_dot(ray->origin_lps_mm, planes[i].normal)) / across;
+        struct vec3 point = ray_point(ray, t);
+        uint32_t ijk[3];
+        if (t >= 0 && volume_voxel_at(volume, point, ijk))
+            n = add_hit(hits, n, (struct pick_hit){ point, -1, t });
+    }
+    return n;
+}
+
+/* Whether a point carries the region's label or that of something inside it. */
+static void mark_regions_at(const struct snapshot *snapshot, struct vec3 point, bool holds[REGION_MAX])
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    for (size_t i = 0; i < set->n_regions; i++) {
+        const struct volume *layer = set->layers[set->regions[i].layer];
+        uint32_t ijk[3];
+        if (!volume_voxel_at(layer, point, ijk) || volume_label(layer, ijk[0], ijk[1], ijk[2]) != set->regions[i].label)
+            continue;
+        for (int r = (int)i; r >= 0 && !holds[r]; r = set->regions[r].parent)
+            holds[r] = true;
+    }
+}
+
+static size_t pick_pane(const struct snapshot *snapshot, const struct camera *camera, double px, double py,
+                        struct pick_hit hits[PICK_MAX_HITS])
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    const struct view *view = &snapshot->view;
+    double right = (px - view->size_px[0] / 2.0) / camera->pixels_per_mm, up = (view->size_px[1] / 2.0 - py) / camera->pixels_per_mm;
+    struct vec3 point = vec3_add(camera->target_lps_mm, vec3_add(vec3_scale(camera->right, right), vec3_scale(camera->up, up)));
+    bool holds[REGION_MAX] = { false };
+    mark_regions_at(snapshot, point, holds);
+
+    int deepest = 0;
+    for (size_t i = 0; i < set->n_regions; i++)
+        if (holds[i] && region_depth(set, i) > deepest)
+            deepest = region_depth(set, i);
+    size_t n = 0;
+    for (int depth = deepest; depth >= 0; depth--)
+        for (size_t i = 0; i < set->n_regions && n < PICK_MAX_HITS; i++)
+            if (holds[i] && is_shown(snapshot, i) && region_depth(set, i) == depth)
+                hits[n++] = (struct pick_hit){ point, (int)i, 0 };
+    uint32_t ijk[3];
+    if (n < PICK_MAX_HITS && snapshot->image >= 0 && volume_voxel_at(snapshot->plan->images[snapshot->image].volume, point, ijk))
+        hits[n++] = (struct pick_hit){ point, -1, 0 };
+    return n;
+}
+
+size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, struct pick_hit hits[PICK_MAX_HITS])
+{
+    struct camera camera;
+    camera_resolve(snapshot, &camera);
+    if (snapshot->view.kind != SCENE_KIND_3D)
+        return pick_pane(snapshot, &camera, px, py, hits);
+    struct ray ray = pixel_ray(&camera, &snapshot->view, px, py);
+    size_t n = pick_regions(snapshot, &ray, hits);
+    n = pick_slices(snapshot, &ray, hits, n);
+    /* distances from the eye, not from the near plane the ray starts on */
+    for (size_t i = 0; i < n; i++)
+        hits[i].distance_mm = vec3_length(vec3_sub(hits[i].point_lps_mm, camera.eye_lps_mm));
+    return n;
+}

@@ -1,0 +1,171 @@
+#include "core/scene/snapshot.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+
+int scene_image_index(const struct plan *plan, const struct scene *scene)
+{
+    if (scene->image.id[0] == 0)
+        return plan->n_images ? 0 : -1;
+    for (size_t i = 0; i < plan->n_images; i++)
+        if (strcmp(plan->images[i].id, scene->image.id) == 0)
+            return (int)i;
+    return -1;
+}
+
+static bool check_camera(const struct scene_camera *camera, const struct view *view, char field[128], struct error *err)
+{
+    if (view->kind != SCENE_KIND_3D)
+        return true;
+    struct vec3 up = camera->has_up ? camera->up : vec3(0, 0, 1);
+    if (camera->has_up && !(vec3_length(up) > 1e-9)) {
+        snprintf(field, 128, "/camera/up");
+        return error_set(err, ERROR_RANGE, "the camera's up direction has no length");
+    }
+    if (!camera->has_position_mm || !camera->has_target_mm)
+        return true;
+    struct vec3 sight = vec3_sub(camera->target_mm, camera->position_mm);
+    if (!(vec3_length(sight) > 1e-6)) {
+        snprintf(field, 128, "/camera/position_mm");
+        return error_set(err, ERROR_RANGE, "the camera's position and target are the same point");
+    }
+    if (camera->has_up && vec3_length(vec3_cross(vec3_normalize(sight), vec3_normalize(up))) < 1e-6) {
+        snprintf(field, 128, "/camera/up");
+        return error_set(err, ERROR_RANGE, "the camera looks along its own up direction");
+    }
+    return true;
+}
+
+/* Styles by region index; what the scene leaves out has the default. */
+static bool resolve_styles(struct snapshot *snapshot, char field[128], struct error *err)
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    snapshot->styles = mem_array(set->n_regions, sizeof *snapshot->styles, UINT64_MAX, err);
+    if (!snapshot->styles)
+        return false;
+    for (size_t i = 0; i < set->n_regions; i++)
+        snapshot->styles[i] = scene_region_style_default;
+    for (size_t i = 0; i < snapshot->scene.n_regions; i++) {
+        const struct scene_region_style_entry *entry = &snapshot->scene.regions[i];
+        const struct region *region = region_find(set, entry->id);
+        if (!region) {
+            snprintf(field, 128, "/regions/%s", entry->id);
+            return error_set(err, ERROR_NOT_FOUND, "the plan has no region '%s'", entry->id);
+        }
+        snapshot->styles[region - set->regions] = entry->value;
+    }
+    return true;
+}
+
+struct snapshot *snapshot_create(struct plan *plan, struct scene *scene, struct view *view, uint32_t scene_revision,
+                                 char field[128], struct error *err)
+{
+    struct snapshot *snapshot = mem_new(sizeof *snapshot);
+    *snapshot = (struct snapshot){ .plan = plan, .scene = *scene, .view = *view, .scene_revision = scene_revision, .references = 1 };
+    *scene = scene_default;
+    *view = view_default;
+    field[0] = 0;
+
+    if (!resolve_styles(snapshot, field, err))
+        goto fail;
+    snapshot->image = scene_image_index(plan, &snapshot->scene);
+    if (snapshot->image < 0 && snapshot->scene.image.id[0]) {
+        snprintf(field, 128, "/image/id");
+        error_set(err, ERROR_NOT_FOUND, "the plan has no image '%s'", snapshot->scene.image.id);
+        goto fail;
+    }
+    if (!check_camera(&snapshot->view.camera, &snapshot->view, field, err))
+        goto fail;
+    /* position alone: the target is the plan's centre, which the position must not be */
+    struct camera camera;
+    camera_resolve(snapshot, &camera);
+    if (!(vec3_length(camera.forward) > 0.5)) {
+        snprintf(field, 128, "/camera/position_mm");
+        error_set(err, ERROR_RANGE, "the camera's position and target are the same point");
+        goto fail;
+    }
+    return snapshot;
+fail:
+    snapshot_unref(snapshot);
+    return NULL;
+}
+
+struct snapshot *snapshot_ref(const struct snapshot *snapshot)
+{
+    struct snapshot *shared = (struct snapshot *)(uintptr_t)snapshot; /* frozen but for its counter */
+    atomic_fetch_add(&shared->references, 1);
+    return shared;
+}
+
+void snapshot_unref(const struct snapshot *snapshot)
+{
+    if (!snapshot)
+        return;
+    struct snapshot *shared = (struct snapshot *)(uintptr_t)snapshot;
+    if (atomic_fetch_sub(&shared->references, 1) != 1)
+        return;
+    scene_finish(&shared->scene);
+    view_finish(&shared->view);
+    free(shared->styles);
+    free(shared);
+}
+
+/* The deepest region, the smallest of them if there are several: what a plan is about. */
+static const struct region *innermost_region(const struct region_set *set)
+{
+    const struct region *best = NULL;
+    int best_depth = -1;
+    for (size_t i = 0; i < set->n_regions; i++) {
+        const struct region *region = &set->regions[i];
+        int depth = region_depth(set, i);
+        if (region->n_voxels == 0)
+            continue;
+        if (depth > best_depth || (depth == best_depth && region->n_voxels < best->n_voxels)) {
+            best = region;
+            best_depth = depth;
+        }
+    }
+    return best;
+}
+
+static bool region_has_children(const struct region_set *set, size_t index)
+{
+    for (size_t i = 0; i < set->n_regions; i++)
+        if (set->regions[i].parent == (int)index)
+            return true;
+    return false;
+}
+
+void scene_for_plan(const struct plan *plan, struct scene *scene)
+{
+    const struct region_set *set = &plan->regions;
+    *scene = scene_default;
+    scene->regions = set->n_regions ? mem_new(set->n_regions * sizeof *scene->regions) : NULL; /* at most REGION_MAX */
+    scene->n_regions = set->n_regions;
+    for (size_t i = 0; i < set->n_regions; i++) {
+        const struct region *region = &set->regions[i];
+        struct scene_region_style_entry *entry = &scene->regions[i];
+        memcpy(entry->id, region->id, sizeof entry->id);
+        entry->value = scene_region_style_default;
+        entry->value.color_rgb = (uint32_t)region->rgb[0] << 16 | (uint32_t)region->rgb[1] << 8 | region->rgb[2];
+        if (region_has_children(set, i))
+            entry->value.opacity = region->parent < 0 ? 0.35 : 0.45;
+    }
+    const struct region *centre = innermost_region(set);
+    struct vec3 at = vec3(0, 0, 0);
+    if (centre)
+        at = centre->centre_lps_mm;
+    else if (!box3_is_empty(&plan->bounds_lps_mm))
+        at = vec3_scale(vec3_add(plan->bounds_lps_mm.low, plan->bounds_lps_mm.high), 0.5);
+    scene->image.slices.sagittal.position_mm = at.x;
+    scene->image.slices.coronal.position_mm = at.y;
+    scene->image.slices.axial.position_mm = at.z;
+    if (plan->n_images) {
+        scene->image.slices.axial.visible = true;
+        scene->image.window.center = plan->images[0].window_center;
+        scene->image.window.width = plan->images[0].window_width;
+    }
+}
