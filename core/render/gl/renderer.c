@@ -1,0 +1,290 @@
+#include <assert.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/mem.h"
+#include "core/render/gl/context.h"
+#include "core/render/gl/draw.h"
+
+/* Samples along a side of a pixel in still pictures, and how many samples are drawn at a time: larger stills are drawn in bands. */
+enum { STILL_SAMPLES = 2, MAX_SIDE_PX = 4096, MAX_BAND_SAMPLES = 16 << 20 };
+
+static const float background[3] = { 0x08 / 255.0f, 0x09 / 255.0f, 0x0b / 255.0f };
+
+struct renderer {
+    pthread_t thread;
+    struct gl gl;
+    struct gl_context context;
+    struct render_facts facts;
+    struct gl_programs programs;
+    struct gl_target target;
+    struct gl_cache *cache;
+    GLuint no_vertices, polygon_array, polygon, palette;
+    uint8_t *samples; /* a band of a still picture as it is read back */
+    size_t n_samples_bytes;
+};
+
+static void assert_thread(const struct renderer *renderer)
+{
+    assert(pthread_equal(renderer->thread, pthread_self()));
+}
+
+/* ---- start and stop ------------------------------------------------------------------------------------------------------- */
+
+static void copy_text(char *to, size_t size, const GLubyte *from)
+{
+    snprintf(to, size, "%s", from ? (const char *)from : "unknown");
+}
+
+static bool is_software_name(const char *renderer)
+{
+    static const char *const names[] = { "llvmpipe", "softpipe", "swrast", "SWR", "Software", "SwiftShader" };
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (strstr(renderer, names[i]))
+            return true;
+    return false;
+}
+
+static void learn_facts(struct renderer *renderer)
+{
+    const struct gl *gl = &renderer->gl;
+    struct render_facts *facts = &renderer->facts;
+    GLint samples = 0;
+    facts->back_end = renderer->context.back_end;
+    copy_text(facts->vendor, sizeof facts->vendor, gl->GetString(GL_VENDOR));
+    copy_text(facts->renderer, sizeof facts->renderer, gl->GetString(GL_RENDERER));
+    copy_text(facts->version, sizeof facts->version, gl->GetString(GL_VERSION));
+    facts->is_software = is_software_name(facts->renderer);
+    gl->GetIntegerv(GL_MAX_SAMPLES, &samples);
+    facts->max_samples = samples;
+}
+
+static void make_polygon(struct renderer *renderer)
+{
+    const struct gl *gl = &renderer->gl;
+    gl->GenVertexArrays(1, &renderer->no_vertices);
+    gl->GenVertexArrays(1, &renderer->polygon_array);
+    gl->GenBuffers(1, &renderer->polygon);
+    gl->BindVertexArray(renderer->polygon_array);
+    gl->BindBuffer(GL_ARRAY_BUFFER, renderer->polygon);
+    gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float), NULL);
+    gl->VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float), (const void *)(3 * sizeof(float)));
+    gl->EnableVertexAttribArray(0);
+    gl->EnableVertexAttribArray(1);
+    gl->BindVertexArray(0);
+
+    gl->GenTextures(1, &renderer->palette);
+    gl->BindTexture(GL_TEXTURE_2D, renderer->palette);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+}
+
+/* A back end is believed when a triangle through its compiler and rasteriser comes back with the right colour. */
+static bool draw_test_pixel(struct renderer *renderer, struct error *err)
+{
+    const struct gl *gl = &renderer->gl;
+    const uint8_t texel[4] = { 51, 102, 204, 255 };
+    uint8_t pixel[4] = { 0 };
+    GLuint texture = 0;
+    if (!gl_target_resize(gl, &renderer->target, 4, 4, err))
+        return false;
+    gl->GenTextures(1, &texture);
+    gl->BindTexture(GL_TEXTURE_2D, texture);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, texel);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, renderer->target.framebuffer);
+    gl->Viewport(0, 0, 1, 1);
+    gl->UseProgram(renderer->programs.test.name);
+    gl->BindVertexArray(renderer->no_vertices);
+    gl->DrawArrays(GL_TRIANGLES, 0, 3);
+    gl->ReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+    gl->DeleteTextures(1, &texture);
+    gl_target_destroy(gl, &renderer->target);
+    if (!gl_check(gl, "drawing a test pixel", err))
+        return false;
+    if (memcmp(pixel, texel, sizeof pixel) != 0)
+        return error_set(err, ERROR_GL, "a test pixel came back as %d %d %d %d", pixel[0], pixel[1], pixel[2], pixel[3]);
+    return true;
+}
+
+static bool start(struct renderer *renderer, enum render_back_end back_end, enum gl_device_wish wish, struct error *err)
+{
+    if (!gl_context_open(&renderer->context, back_end, wish, &renderer->gl, err))
+        return false;
+    learn_facts(renderer);
+    if (!gl_programs_create(&renderer->gl, &renderer->programs, err))
+        return false;
+    make_polygon(renderer);
+    renderer->cache = gl_cache_create();
+    return draw_test_pixel(renderer, err);
+}
+
+struct renderer *renderer_create(enum render_back_end back_end, struct error *err)
+{
+    static const enum render_back_end order[] = { RENDER_EGL_DEVICE, RENDER_EGL_SURFACELESS, RENDER_OSMESA };
+    char said[240] = "";
+    for (size_t i = 0; i < sizeof order / sizeof order[0]; i++) {
+        if (back_end != RENDER_AUTO && back_end != order[i])
+            continue;
+        struct renderer *renderer = mem_new(sizeof *renderer);
+        struct error why = { 0 };
+        renderer->thread = pthread_self();
+        if (start(renderer, order[i], back_end == RENDER_AUTO ? GL_DEVICE_HARDWARE : GL_DEVICE_ANY, &why))
+            return renderer;
+        renderer_destroy(renderer);
+        size_t length = strlen(said);
+        snprintf(said + length, sizeof said - length, "%s%s: %.56s", length ? "; " : "", render_back_end_word(order[i]), why.text);
+    }
+    error_set(err, ERROR_GL, "%s", said);
+    return NULL;
+}
+
+void renderer_destroy(struct renderer *renderer)
+{
+    if (!renderer)
+        return;
+    assert_thread(renderer);
+    if (renderer->context.context) {
+        const struct gl *gl = &renderer->gl;
+        gl_cache_destroy(gl, renderer->cache);
+        gl_target_destroy(gl, &renderer->target);
+        gl_programs_destroy(gl, &renderer->programs);
+        gl->DeleteVertexArrays(1, &renderer->no_vertices);
+        gl->DeleteVertexArrays(1, &renderer->polygon_array);
+        gl->DeleteBuffers(1, &renderer->polygon);
+        gl->DeleteTextures(1, &renderer->palette);
+        gl_context_close(&renderer->context);
+    }
+    free(renderer->samples);
+    free(renderer);
+}
+
+const struct render_facts *renderer_facts(const struct renderer *renderer)
+{
+    return &renderer->facts;
+}
+
+void renderer_forget(struct renderer *renderer, const struct plan *plan)
+{
+    assert_thread(renderer);
+    gl_cache_forget(&renderer->gl, renderer->cache, plan);
+}
+
+/* ---- a picture -------------------------------------------------------------------------------------------------------------- */
+
+/* The camera's matrix for rows first .. first + n of a picture of `rows` rows, upside down, so that row 0 is read first. */
+static void band_matrix(const struct camera *camera, int first, int n, int rows, float out[16])
+{
+    double scale = (double)rows / n, centre = (2.0 * first + n) / rows - 1;
+    for (int column = 0; column < 4; column++) {
+        const double *m = &camera->clip_from_lps_mm.m[4 * column];
+        out[4 * column] = (float)m[0];
+        out[4 * column + 1] = (float)(scale * (-m[1] - centre * m[3]));
+        out[4 * column + 2] = (float)m[2];
+        out[4 * column + 3] = (float)m[3];
+    }
+}
+
+static bool draw_passes(const struct gl_frame *frame, struct error *err)
+{
+    const struct gl *gl = frame->gl;
+    gl->BindFramebuffer(GL_FRAMEBUFFER, frame->target->framebuffer);
+    gl->Viewport(0, 0, frame->target->width_px, frame->target->height_px);
+    gl->ClearColor(background[0], background[1], background[2], 1);
+    gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    if (frame->snapshot->view.kind != SCENE_KIND_3D)
+        return gl_draw_pane(frame, err);
+    return gl_draw_opaque_surfaces(frame, err) && gl_draw_slices_in_space(frame, err) && gl_draw_translucent_surfaces(frame, err);
+}
+
+/* Mean of STILL_SAMPLES x STILL_SAMPLES samples, rounded. */
+static void average_samples(const uint8_t *restrict samples, int width_px, int n_rows, uint8_t *restrict rgba)
+{
+    size_t row = (size_t)width_px * STILL_SAMPLES * 4;
+    for (int y = 0; y < n_rows; y++) {
+        const uint8_t *upper = samples + (size_t)y * STILL_SAMPLES * row, *lower = upper + row;
+        uint8_t *out = rgba + (size_t)y * (size_t)width_px * 4;
+        for (int x = 0; x < width_px; x++)
+            for (int c = 0; c < 4; c++)
+                out[4 * x + c] = (uint8_t)((upper[8 * x + c] + upper[8 * x + 4 + c] + lower[8 * x + c] + lower[8 * x + 4 + c] + 2) >> 2);
+    }
+}
+
+static bool read_band(struct renderer *renderer, struct image *image, int first, int n, int samples, struct error *err)
+{
+    const struct gl *gl = &renderer->gl;
+    uint8_t *rgba = image->rgba + (size_t)first * (size_t)image->width_px * 4, *to = rgba;
+    if (samples > 1) {
+        size_t n_bytes = (size_t)image->width_px * (size_t)n * (size_t)(samples * samples) * 4;
+        if (renderer->n_samples_bytes < n_bytes) {
+            free(renderer->samples);
+            renderer->samples = mem_array(n_bytes, 1, UINT64_MAX, err);
+            renderer->n_samples_bytes = renderer->samples ? n_bytes : 0;
+            if (!renderer->samples)
+                return false;
+        }
+        to = renderer->samples;
+    }
+    gl->PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl->ReadPixels(0, 0, image->width_px * samples, n * samples, GL_RGBA, GL_UNSIGNED_BYTE, to);
+    if (!gl_check(gl, "reading the picture", err))
+        return false;
+    if (samples > 1)
+        average_samples(to, image->width_px, n, rgba);
+    return true;
+}
+
+static bool draw_band(struct renderer *renderer, struct gl_frame *frame, struct image *image, int first, int n, int samples,
+                      struct error *err)
+{
+    int64_t start_us = clock_now_us();
+    if (!gl_target_resize(&renderer->gl, &renderer->target, image->width_px * samples, n * samples, err))
+        return false;
+    band_matrix(frame->camera, first, n, image->height_px, frame->clip_from_lps);
+    frame->timing->n_triangles = 0; /* of the picture, not of every band again */
+    if (!draw_passes(frame, err))
+        return false;
+    renderer->gl.Finish();
+    int64_t drawn_us = clock_now_us();
+    frame->timing->draw_us += drawn_us - start_us;
+    bool is_good = read_band(renderer, image, first, n, samples, err);
+    frame->timing->read_us += clock_now_us() - drawn_us;
+    return is_good;
+}
+
+struct image *render_snapshot(struct renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
+                              struct camera *camera, struct render_timing *timing, struct error *err)
+{
+    assert_thread(renderer);
+    *timing = (struct render_timing){ 0 };
+    camera_resolve(snapshot, camera);
+    if (options->width_px < 1 || options->height_px < 1 || options->width_px > MAX_SIDE_PX || options->height_px > MAX_SIDE_PX) {
+        error_set(err, ERROR_RANGE, "a picture of %d x %d pixels: each side must be 1 to %d", options->width_px, options->height_px,
+                  MAX_SIDE_PX);
+        return NULL;
+    }
+    struct image *image = image_create(options->width_px, options->height_px, err);
+    if (!image)
+        return NULL;
+    struct gl_frame frame = { .gl = &renderer->gl, .programs = &renderer->programs, .cache = renderer->cache,
+                              .target = &renderer->target, .no_vertices = renderer->no_vertices,
+                              .polygon_array = renderer->polygon_array, .polygon = renderer->polygon, .palette = renderer->palette,
+                              .snapshot = snapshot, .camera = camera, .detail = options->detail, .timing = timing };
+    int samples = options->is_still ? STILL_SAMPLES : 1;
+    int band = MAX_BAND_SAMPLES / (image->width_px * samples * samples);
+    for (int first = 0; first < image->height_px; first += band) {
+        int n = image->height_px - first < band ? image->height_px - first : band;
+        if (!draw_band(renderer, &frame, image, first, n, samples, err)) {
+            image_destroy(image);
+            return NULL;
+        }
+    }
+    return image;
+}

@@ -1,0 +1,203 @@
+#include <string.h>
+
+#include "core/render/gl/draw.h"
+
+/* A plane square to a patient axis cuts a grid's box in at most six corners; each half-space adds at most one to the square we
+ * start from. */
+enum { MAX_CORNERS = 10 };
+
+struct polygon {
+    int n;
+    struct vec3 lps_mm[MAX_CORNERS];
+};
+
+/* How far inside one face of the grid's box a point is, in voxels. */
+static double inside_face(const struct grid *grid, int face, struct vec3 p_lps_mm)
+{
+    struct vec3 ijk = affine_point(&grid->ijk_from_lps_mm, p_lps_mm);
+    double at = face / 2 == 0 ? ijk.x : face / 2 == 1 ? ijk.y : ijk.z;
+    return face % 2 ? grid->size[face / 2] - 0.5 - at : at + 0.5;
+}
+
+/* I. E. Sutherland, G. W. Hodgman, Reentrant Polygon Clipping, CACM 1974; one face. */
+static void clip_face(const struct grid *grid, int face, struct polygon *polygon)
+{
+    struct polygon kept = { 0 };
+    for (int i = 0; i < polygon->n; i++) {
+        struct vec3 a = polygon->lps_mm[i], b = polygon->lps_mm[(i + 1) % polygon->n];
+        double fa = inside_face(grid, face, a), fb = inside_face(grid, face, b);
+        if (fa >= 0 && kept.n < MAX_CORNERS)
+            kept.lps_mm[kept.n++] = a;
+        if ((fa >= 0) != (fb >= 0) && kept.n < MAX_CORNERS)
+            kept.lps_mm[kept.n++] = vec3_add(a, vec3_scale(vec3_sub(b, a), fa / (fa - fb)));
+    }
+    *polygon = kept;
+}
+
+/* Where a slice of a kind cuts a grid; n < 3: nowhere. */
+static struct polygon slice_polygon(const struct grid *grid, enum scene_kind kind, double position_mm)
+{
+    struct box3 box = grid_bounds_lps_mm(grid);
+    struct vec3 l = box.low, h = box.high;
+    double p = position_mm;
+    struct polygon polygon = { 4, { { l.x, l.y, p }, { h.x, l.y, p }, { h.x, h.y, p }, { l.x, h.y, p } } };
+    if (kind == SCENE_KIND_CORONAL)
+        polygon = (struct polygon){ 4, { { l.x, p, l.z }, { h.x, p, l.z }, { h.x, p, h.z }, { l.x, p, h.z } } };
+    if (kind == SCENE_KIND_SAGITTAL)
+        polygon = (struct polygon){ 4, { { p, l.y, l.z }, { p, h.y, l.z }, { p, h.y, h.z }, { p, l.y, h.z } } };
+    for (int face = 0; face < 6; face++)
+        clip_face(grid, face, &polygon);
+    return polygon;
+}
+
+static void draw_polygon(const struct gl_frame *frame, const struct grid *grid, const struct polygon *polygon)
+{
+    const struct gl *gl = frame->gl;
+    float vertices[MAX_CORNERS][6];
+    for (int i = 0; i < polygon->n; i++) {
+        struct vec3 p = polygon->lps_mm[i], ijk = affine_point(&grid->ijk_from_lps_mm, p);
+        vertices[i][0] = (float)p.x;
+        vertices[i][1] = (float)p.y;
+        vertices[i][2] = (float)p.z;
+        vertices[i][3] = (float)((ijk.x + 0.5) / grid->size[0]);
+        vertices[i][4] = (float)((ijk.y + 0.5) / grid->size[1]);
+        vertices[i][5] = (float)((ijk.z + 0.5) / grid->size[2]);
+    }
+    gl->BindVertexArray(frame->polygon_array);
+    gl->BindBuffer(GL_ARRAY_BUFFER, frame->polygon);
+    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)((size_t)polygon->n * sizeof vertices[0]), vertices, GL_STREAM_DRAW);
+    gl->DrawArrays(GL_TRIANGLE_FAN, 0, polygon->n);
+}
+
+/* ---- images ----------------------------------------------------------------------------------------------------------------- */
+
+static bool draw_image_slice(const struct gl_frame *frame, enum scene_kind kind, double position_mm, struct error *err)
+{
+    const struct gl *gl = frame->gl;
+    const struct snapshot *snapshot = frame->snapshot;
+    const struct plan *plan = snapshot->plan;
+    const struct scene_image_style *style = &snapshot->scene.image;
+    const struct gl_program *program = &frame->programs->image;
+    const struct grid *grid = &plan->images[snapshot->image].volume->grid;
+    struct polygon polygon = slice_polygon(grid, kind, position_mm);
+    if (polygon.n < 3)
+        return true;
+    const struct gl_grid *image = gl_cache_image(gl, frame->cache, plan, (size_t)snapshot->image, err);
+    if (!image)
+        return false;
+    double low = style->window.center - style->window.width / 2;
+    GLint filter = style->interpolation == SCENE_INTERPOLATION_NEAREST ? GL_NEAREST : GL_LINEAR;
+    gl->UseProgram(program->name);
+    gl->UniformMatrix4fv(program->clip_from_lps, 1, GL_FALSE, frame->clip_from_lps);
+    gl->Uniform2f(program->grey, (float)(image->value_per_unit / style->window.width),
+                  (float)((image->value_at_zero - low) / style->window.width));
+    gl->Uniform1i(program->source, 0);
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->BindTexture(GL_TEXTURE_3D, image->texture);
+    gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, filter);
+    gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, filter);
+    draw_polygon(frame, grid, &polygon);
+    gl->BindTexture(GL_TEXTURE_3D, 0);
+    return gl_check(gl, "drawing a slice", err);
+}
+
+bool gl_draw_slices_in_space(const struct gl_frame *frame, struct error *err)
+{
+    const struct scene_slices *slices = &frame->snapshot->scene.image.slices;
+    if (frame->snapshot->image < 0)
+        return true;
+    frame->gl->Enable(GL_DEPTH_TEST);
+    return (!slices->axial.visible || draw_image_slice(frame, SCENE_KIND_AXIAL, slices->axial.position_mm, err)) &&
+           (!slices->coronal.visible || draw_image_slice(frame, SCENE_KIND_CORONAL, slices->coronal.position_mm, err)) &&
+           (!slices->sagittal.visible || draw_image_slice(frame, SCENE_KIND_SAGITTAL, slices->sagittal.position_mm, err));
+}
+
+/* ---- labels ------------------------------------------------------------------------------------------------------------------- */
+
+static bool is_shown(const struct snapshot *snapshot, size_t region)
+{
+    return snapshot->styles[region].visible && snapshot->styles[region].opacity > 0;
+}
+
+/* Label to colour: of the region itself or, when that is hidden, of the innermost visible one around it. Returns how many labels
+ * have a colour. */
+static size_t fill_palette(const struct snapshot *snapshot, size_t layer, uint8_t palette[65536][4])
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    size_t n = 0;
+    memset(palette, 0, (size_t)65536 * 4);
+    for (size_t i = 0; i < set->n_regions; i++) {
+        int shown = (int)i;
+        while (shown >= 0 && !is_shown(snapshot, (size_t)shown))
+            shown = set->regions[shown].parent;
+        if (set->regions[i].layer != layer || shown < 0)
+            continue;
+        uint32_t rgb = snapshot->styles[shown].color_rgb;
+        uint8_t *color = palette[set->regions[i].label];
+        color[0] = (uint8_t)(rgb >> 16);
+        color[1] = (uint8_t)(rgb >> 8);
+        color[2] = (uint8_t)rgb;
+        color[3] = 255;
+        n++;
+    }
+    return n;
+}
+
+static bool draw_label_slice(const struct gl_frame *frame, size_t layer, struct error *err)
+{
+    static uint8_t palette[65536][4]; /* the render thread's alone */
+    const struct gl *gl = frame->gl;
+    const struct snapshot *snapshot = frame->snapshot;
+    const struct gl_program *program = &frame->programs->labels;
+    const struct grid *grid = &snapshot->plan->regions.layers[layer]->grid;
+    enum scene_kind kind = snapshot->view.kind;
+    struct polygon polygon = slice_polygon(grid, kind, scene_slice_position_mm(&snapshot->scene, kind));
+    if (polygon.n < 3 || fill_palette(snapshot, layer, palette) == 0)
+        return true;
+    const struct gl_grid *labels = gl_cache_layer(gl, frame->cache, snapshot->plan, layer, err);
+    if (!labels)
+        return false;
+    gl->UseProgram(program->name);
+    gl->UniformMatrix4fv(program->clip_from_lps, 1, GL_FALSE, frame->clip_from_lps);
+    gl->Uniform4f(program->scale, (float)grid->size[0], (float)grid->size[1], (float)grid->size[2], 0);
+    gl->Uniform1i(program->source, 0);
+    gl->Uniform1i(program->palette, 1);
+    gl->ActiveTexture(GL_TEXTURE1);
+    gl->BindTexture(GL_TEXTURE_2D, frame->palette);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 256, 256, 0, GL_RGBA, GL_UNSIGNED_BYTE, palette);
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->BindTexture(GL_TEXTURE_3D, labels->texture);
+    draw_polygon(frame, grid, &polygon);
+    gl->BindTexture(GL_TEXTURE_3D, 0);
+    return gl_check(gl, "drawing a cross-section", err);
+}
+
+static int outermost_depth(const struct region_set *set, size_t layer)
+{
+    int depth = INT32_MAX;
+    for (size_t i = 0; i < set->n_regions; i++)
+        if (set->regions[i].layer == layer && region_depth(set, i) < depth)
+            depth = region_depth(set, i);
+    return depth;
+}
+
+bool gl_draw_pane(const struct gl_frame *frame, struct error *err)
+{
+    const struct snapshot *snapshot = frame->snapshot;
+    const struct region_set *set = &snapshot->plan->regions;
+    enum scene_kind kind = snapshot->view.kind;
+    frame->gl->Disable(GL_DEPTH_TEST);
+    if (snapshot->image >= 0)
+        return draw_image_slice(frame, kind, scene_slice_position_mm(&snapshot->scene, kind), err);
+    /* layers that hold outer regions lie under those that hold inner ones */
+    for (int depth = 0, n_left = (int)set->n_layers; n_left > 0 && depth <= (int)set->n_regions; depth++)
+        for (size_t layer = 0; layer < set->n_layers; layer++) {
+            if (outermost_depth(set, layer) != depth)
+                continue;
+            n_left--;
+            if (!draw_label_slice(frame, layer, err))
+                return false;
+        }
+    return true;
+}

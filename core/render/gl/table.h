@@ -1,0 +1,89 @@
+#pragma once
+/* Every OpenGL function we call, as one table filled from the chosen back end. No gl* symbol is ever linked: OSMesa exports
+ * its own, and which one a direct call would reach depends on link order. */
+#include <GL/glcorearb.h>
+
+#include "core/base/error.h"
+
+#define GL_FUNCTIONS(X)                                                                                                \
+    X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                                                                           \
+    X(PFNGLATTACHSHADERPROC, AttachShader)                                                                             \
+    X(PFNGLBINDBUFFERPROC, BindBuffer)                                                                                 \
+    X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                                                                       \
+    X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)                                                                     \
+    X(PFNGLBINDTEXTUREPROC, BindTexture)                                                                               \
+    X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                                                                       \
+    X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate)                                                                   \
+    X(PFNGLBUFFERDATAPROC, BufferData)                                                                                 \
+    X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                                                         \
+    X(PFNGLCLEARPROC, Clear)                                                                                           \
+    X(PFNGLCLEARCOLORPROC, ClearColor)                                                                                 \
+    X(PFNGLCOLORMASKPROC, ColorMask)                                                                                   \
+    X(PFNGLCOMPILESHADERPROC, CompileShader)                                                                           \
+    X(PFNGLCREATEPROGRAMPROC, CreateProgram)                                                                           \
+    X(PFNGLCREATESHADERPROC, CreateShader)                                                                             \
+    X(PFNGLCULLFACEPROC, CullFace)                                                                                     \
+    X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                                                                           \
+    X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                                                                 \
+    X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                                                                           \
+    X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)                                                               \
+    X(PFNGLDELETESHADERPROC, DeleteShader)                                                                             \
+    X(PFNGLDELETETEXTURESPROC, DeleteTextures)                                                                         \
+    X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                                                                 \
+    X(PFNGLDEPTHFUNCPROC, DepthFunc)                                                                                   \
+    X(PFNGLDEPTHMASKPROC, DepthMask)                                                                                   \
+    X(PFNGLDISABLEPROC, Disable)                                                                                       \
+    X(PFNGLDRAWARRAYSPROC, DrawArrays)                                                                                 \
+    X(PFNGLDRAWELEMENTSPROC, DrawElements)                                                                             \
+    X(PFNGLENABLEPROC, Enable)                                                                                         \
+    X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)                                                       \
+    X(PFNGLFINISHPROC, Finish)                                                                                         \
+    X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer)                                                       \
+    X(PFNGLFRONTFACEPROC, FrontFace)                                                                                   \
+    X(PFNGLGENBUFFERSPROC, GenBuffers)                                                                                 \
+    X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                                                                       \
+    X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)                                                                     \
+    X(PFNGLGENTEXTURESPROC, GenTextures)                                                                               \
+    X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                                                                       \
+    X(PFNGLGETERRORPROC, GetError)                                                                                     \
+    X(PFNGLGETINTEGERVPROC, GetIntegerv)                                                                               \
+    X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                                                                   \
+    X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                                                             \
+    X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                                                                     \
+    X(PFNGLGETSHADERIVPROC, GetShaderiv)                                                                               \
+    X(PFNGLGETSTRINGPROC, GetString)                                                                                   \
+    X(PFNGLGETTEXLEVELPARAMETERIVPROC, GetTexLevelParameteriv)                                                         \
+    X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                                                                 \
+    X(PFNGLLINKPROGRAMPROC, LinkProgram)                                                                               \
+    X(PFNGLPIXELSTOREIPROC, PixelStorei)                                                                               \
+    X(PFNGLREADPIXELSPROC, ReadPixels)                                                                                 \
+    X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)                                                               \
+    X(PFNGLSHADERSOURCEPROC, ShaderSource)                                                                             \
+    X(PFNGLTEXIMAGE2DPROC, TexImage2D)                                                                                 \
+    X(PFNGLTEXIMAGE3DPROC, TexImage3D)                                                                                 \
+    X(PFNGLTEXPARAMETERIPROC, TexParameteri)                                                                           \
+    X(PFNGLTEXSUBIMAGE3DPROC, TexSubImage3D)                                                                           \
+    X(PFNGLUNIFORM1FPROC, Uniform1f)                                                                                   \
+    X(PFNGLUNIFORM1IPROC, Uniform1i)                                                                                   \
+    X(PFNGLUNIFORM2FPROC, Uniform2f)                                                                                   \
+    X(PFNGLUNIFORM4FPROC, Uniform4f)                                                                                   \
+    X(PFNGLUNIFORMMATRIX3FVPROC, UniformMatrix3fv)                                                                     \
+    X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)                                                                     \
+    X(PFNGLUSEPROGRAMPROC, UseProgram)                                                                                 \
+    X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                                               \
+    X(PFNGLVIEWPORTPROC, Viewport)
+
+struct gl {
+#define GL_MEMBER(type, name) type name;
+    GL_FUNCTIONS(GL_MEMBER)
+#undef GL_MEMBER
+};
+
+typedef void (*gl_function)(void);
+
+/* A function of a library opened with dlopen; NULL when it has none of that name. */
+gl_function gl_symbol(void *library, const char *name);
+/* Fills the table. errors ERROR_GL naming the first function the driver does not have */
+NODISCARD bool gl_load(struct gl *gl, gl_function (*get)(const char *name), struct error *err);
+/* The driver's error since the last call, as an error that says during what. All pending ones are taken. */
+NODISCARD bool gl_check(const struct gl *gl, const char *during, struct error *err);
