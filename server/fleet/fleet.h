@@ -6,7 +6,21 @@
 
 #include "server/wire/packet.h"
 
-enum { FLEET_MAX_PLANS = 2000, FLEET_MAX_RESTARTS = 3 /* within 60 s; then failed */ };
+enum {
+    FLEET_MAX_PLANS = 2000,
+    FLEET_MAX_RESTARTS = 3,    /* within 60 s; then failed */
+    FLEET_MAX_REQUESTS = 4096, /* unanswered ones, of all plans; more are answered with PROBLEM_BUSY */
+    FLEET_MAX_SCANS = 2        /* plan folders looked at at once */
+};
+
+/* How long things may take, in ms; 0: the default, in brackets. */
+struct fleet_times {
+    int ping;    /* a renderer that says nothing is asked whether it lives [5000] */
+    int silent;  /* one that does not answer is ended and started again [20000] */
+    int stall;   /* reading a plan without getting further; then failed [120000] */
+    int request; /* an answer; a picture that is not there by then also ends the renderer [30000] */
+    int scan;    /* looking at a plan folder, looking for GL [5000] */
+};
 
 struct fleet;
 
@@ -31,8 +45,9 @@ struct fleet_options {
     uint64_t max_renderer_bytes; /* address space of one renderer; 0: no limit */
     int max_renderers;           /* running at once; opening one more closes the longest unused, or is refused with PROBLEM_BUSY */
     int idle_close_s;            /* a ready plan nobody uses (fleet_hold) is closed after this */
+    struct fleet_times times;    /* all 0: the defaults */
     void (*wake)(void *context); /* any thread: make the net thread call fleet_handle_events soon */
-    /* what happened, on the net thread, from fleet_handle_events */
+    /* what happened, on the net thread, from fleet_handle_events or fleet_tick; a new process is told before waiting requests go to it */
     void (*changed)(void *context, const char *plan_id); /* state, progress, or the list itself (plan_id NULL) */
     void *context;
 };
@@ -60,6 +75,7 @@ struct fleet_plan {
     uint64_t memory_bytes;              /* of its process; 0 unknown */
     int64_t load_ms;
     int pid;                            /* 0: none */
+    const char *confined;               /* how its process is confined, "landlock 3, seccomp, no-new-privs"; "" unknown */
 };
 size_t fleet_n_plans(const struct fleet *fleet);
 bool fleet_plan_at(const struct fleet *fleet, size_t index, struct fleet_plan *plan);
@@ -86,6 +102,6 @@ uint64_t fleet_request(struct fleet *fleet, const char *plan_id, const cJSON *pa
 /* The asker is gone: no reply any more. */
 void fleet_forget_request(struct fleet *fleet, uint64_t request);
 
-/* GL facts of the newest renderer that told them: {back_end, vendor, renderer, version, is_software}; NULL before. A probe renderer
+/* GL facts of the newest renderer that told them: {back_end, vendor, renderer, version, is_software, confined}; NULL before. A probe renderer
  * started with the fleet (beamroom-render --probe-gl) tells them before any plan is open, for /readyz. */
 const cJSON *fleet_gl(const struct fleet *fleet, const struct problem **problem);

@@ -9,6 +9,7 @@
  *   render   {type, id, room | scene, view, scale_percent, quality, codec: "jpeg"|"png", full_color, detail: "full"|"light", still}
  *            scene: a complete document for this picture alone (HTTP render, overrides); else the room's
  *   query    {type, id, what: "surface"|"probe"|"pick", ...arguments}
+ *   ping     {type}                                   answered with pong at once, by the main thread
  * renderer to daemon
  *   gl       {type, back_end, vendor, renderer, version, is_software} or {type, problem}
  *   progress {type, phase, percent}
@@ -18,6 +19,7 @@
  *             n_triangles} + blob
  *   answer   {type, id, body, media_type?} + blob?
  *   problem  {type, id, problem}                      instead of frame or answer
+ *   pong     {type}
  */
 #include "server/wire/json.h"
 

@@ -1,0 +1,469 @@
+#include "server/fleet/fleet.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/base/clock.h"
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/fleet/news.h"
+
+static const struct fleet_times default_times = { .ping = 5000, .silent = 20000, .stall = 120000, .request = 30000, .scan = 5000 };
+
+const char *fleet_state_word(enum fleet_state state)
+{
+    switch (state) {
+    case FLEET_UNREADABLE: return "unreadable";
+    case FLEET_CLOSED: return "not-loaded";
+    case FLEET_STARTING: return "starting";
+    case FLEET_LOADING: return "loading";
+    case FLEET_READY: return "ready";
+    case FLEET_RESTARTING: return "restarting";
+    case FLEET_FAILED: return "failed";
+    }
+    return "unknown";
+}
+
+uint64_t fleet_number(struct fleet *fleet) { return ++fleet->last_number; }
+
+char **fleet_arguments(const char *const *words)
+{
+    size_t n = 0;
+    while (words[n])
+        n++;
+    char **arguments = mem_new((n + 1) * sizeof *arguments);
+    for (size_t i = 0; i < n; i++)
+        arguments[i] = mem_copy_text(words[i]);
+    return arguments;
+}
+
+void plan_entry_change(struct fleet *fleet, struct plan_entry *plan, enum fleet_state state)
+{
+    plan->state = state;
+    plan->has_changed = true;
+    fleet->options.wake(fleet->options.context);
+}
+
+void plan_entry_kill(struct fleet *fleet, struct plan_entry *plan, const char *reason)
+{
+    if (plan->process && !plan->is_dying)
+        watch_stop(fleet->watch, plan->process, true, reason);
+    plan->is_dying = plan->process != 0;
+}
+
+/* ---- start and stop ---- */
+
+static void start_renderer(struct fleet *fleet, struct plan_entry *plan)
+{
+    char cache[PATH_MAX], limit[32];
+    (void)snprintf(cache, sizeof cache, "%s/cache/%s", fleet->data_folder, plan->id);
+    (void)snprintf(limit, sizeof limit, "%llu", (unsigned long long)fleet->options.max_renderer_bytes);
+    (void)mkdir(cache, 0700); /* without it the renderer does without a cache */
+    const char *words[16] = { fleet->renderer_path, "--socket-fd", "3", "--plan-folder", plan->folder, "--plan-id", plan->id,
+                              "--cache", cache, "--gl", fleet->gl_word };
+    size_t n = 11;
+    if (fleet->options.max_renderer_bytes > 0) {
+        words[n++] = "--max-bytes";
+        words[n++] = limit;
+    }
+    if (fleet->options.stub_renderer)
+        words[n++] = "--stub";
+    plan->process = fleet_number(fleet);
+    plan->restart_at_us = 0;
+    plan->is_dying = false;
+    plan->generation++;
+    plan->percent = 0;
+    plan->asked_us = plan->moved_us = clock_now_us();
+    if (!watch_start_renderer(fleet->watch, plan->process, fleet_arguments(words))) {
+        struct problem problem;
+        plan->process = 0;
+        problem_set(&problem, PROBLEM_BUSY, "", "", "too much is waiting to be told to renderers");
+        plan_entry_fail(fleet, plan, &problem);
+    }
+}
+
+static bool has_renderer(const struct plan_entry *plan) { return plan->process != 0 || plan->restart_at_us != 0; }
+
+static bool is_unused(const struct fleet *fleet, const struct plan_entry *plan)
+{
+    return plan->state == FLEET_READY && plan->n_holds == 0 && !asks_has_any(fleet, plan);
+}
+
+static void forget_documents(struct plan_entry *plan)
+{
+    for (size_t i = 0; plan->image_ids[i]; i++) {
+        free(plan->image_ids[i]);
+        plan->image_ids[i] = NULL;
+    }
+    cJSON_Delete(plan->document);
+    cJSON_Delete(plan->default_scene);
+    plan->document = plan->default_scene = NULL;
+}
+
+static void close_plan(struct fleet *fleet, struct plan_entry *plan, const char *why)
+{
+    struct problem problem;
+    problem_set(&problem, PROBLEM_CANCELLED, "", "", "the plan was closed: %s", why);
+    asks_fail(fleet, plan, false, &problem);
+    if (plan->process)
+        watch_stop(fleet->watch, plan->process, false, "is no longer wanted");
+    plan_entry_lose(plan);
+    plan->restart_at_us = 0;
+    plan->was_ready = false;
+    plan->phase[0] = 0;
+    plan->percent = 0;
+    forget_documents(plan);
+    plan_entry_change(fleet, plan, FLEET_CLOSED);
+    log_info("plan %s: closed: %s", plan->id, why);
+}
+
+/* Makes room for one more renderer by closing the longest unused plan. */
+static bool make_room(struct fleet *fleet)
+{
+    struct plan_entry *oldest = NULL;
+    int n_running = 0;
+    for (size_t i = 0; i < fleet->n_plans; i++) {
+        struct plan_entry *plan = fleet->plans[i];
+        n_running += has_renderer(plan);
+        if (is_unused(fleet, plan) && (!oldest || plan->used_us < oldest->used_us))
+            oldest = plan;
+    }
+    if (fleet->options.max_renderers <= 0 || n_running < fleet->options.max_renderers)
+        return true;
+    if (!oldest)
+        return false;
+    close_plan(fleet, oldest, "another plan needs its place");
+    return true;
+}
+
+bool fleet_open(struct fleet *fleet, const char *plan_id, struct problem *problem)
+{
+    struct plan_entry *plan = plan_entry_find(fleet, plan_id);
+    if (!plan)
+        return problem_set(problem, PROBLEM_NOT_FOUND, "", "", "there is no plan \"%.64s\"", plan_id);
+    if (plan->state == FLEET_UNREADABLE) {
+        if (problem)
+            *problem = plan->problem;
+        return false;
+    }
+    plan->used_us = clock_now_us();
+    if (plan->state != FLEET_CLOSED && plan->state != FLEET_FAILED)
+        return true;
+    if (!make_room(fleet)) {
+        problem_set(problem, PROBLEM_BUSY, "", "", "%d plans are open and in use, which is as many as may be", fleet->options.max_renderers);
+        if (problem)
+            problem->retry_after_ms = 5000;
+        return false;
+    }
+    plan->problem = (struct problem){ 0 };
+    plan->was_ready = false;
+    forget_documents(plan);
+    memset(plan->ended_us, 0, sizeof plan->ended_us);
+    (void)snprintf(plan->phase, sizeof plan->phase, "starting the renderer");
+    plan_entry_change(fleet, plan, FLEET_STARTING);
+    start_renderer(fleet, plan);
+    return true;
+}
+
+void fleet_close(struct fleet *fleet, const char *plan_id)
+{
+    struct plan_entry *plan = plan_entry_find(fleet, plan_id);
+    if (plan && has_renderer(plan))
+        close_plan(fleet, plan, "somebody asked for it");
+}
+
+void fleet_hold(struct fleet *fleet, const char *plan_id)
+{
+    struct plan_entry *plan = plan_entry_find(fleet, plan_id);
+    if (plan)
+        plan->n_holds++;
+}
+
+void fleet_release(struct fleet *fleet, const char *plan_id)
+{
+    struct plan_entry *plan = plan_entry_find(fleet, plan_id);
+    if (plan && plan->n_holds > 0) {
+        plan->n_holds--;
+        plan->used_us = clock_now_us();
+    }
+}
+
+/* ---- events and time ---- */
+
+static void list_folders(struct fleet *fleet)
+{
+    fleet->wants_listing = !watch_list_folders(fleet->watch, (const char *const *)fleet->plan_folders, fleet->options.n_plan_folders);
+    fleet->is_listing = !fleet->wants_listing;
+}
+
+void fleet_rescan(struct fleet *fleet)
+{
+    if (fleet->is_listing)
+        fleet->wants_listing = true;
+    else
+        list_folders(fleet);
+}
+
+static void take_event(struct fleet *fleet, struct watch_event *event)
+{
+    struct plan_entry *plan = NULL;
+    switch (event->type) {
+    case WATCH_STARTED:
+        plan = plan_entry_of_process(fleet, event->number);
+        if (plan) {
+            plan->pid = event->pid;
+            plan->has_changed = true;
+        }
+        break;
+    case WATCH_MEMORY:
+        plan = plan_entry_of_process(fleet, event->number);
+        if (plan)
+            plan->memory_bytes = event->memory_bytes;
+        break;
+    case WATCH_PACKET: news_packet(fleet, event); break;
+    case WATCH_ENDED: news_ended(fleet, event); break;
+    case WATCH_FOLDERS:
+        fleet->is_listing = false;
+        plans_take_folders(fleet, &event->found);
+        if (fleet->wants_listing)
+            list_folders(fleet);
+        break;
+    }
+}
+
+/* Callbacks may call anything here but fleet_destroy; plans come and go only in take_event. */
+static void tell_news(struct fleet *fleet)
+{
+    if (fleet->list_has_changed) {
+        fleet->list_has_changed = false;
+        fleet->options.changed(fleet->options.context, NULL);
+    }
+    for (size_t i = 0; i < fleet->n_plans; i++) {
+        struct plan_entry *plan = fleet->plans[i];
+        if (!plan->has_changed)
+            continue;
+        plan->has_changed = false;
+        fleet->options.changed(fleet->options.context, plan->id);
+        if (plan->state == FLEET_READY)
+            asks_send_waiting(fleet, plan);
+    }
+    asks_deliver_failed(fleet);
+}
+
+void fleet_handle_events(struct fleet *fleet)
+{
+    for (struct watch_event *event; (event = watch_take(fleet->watch));) {
+        take_event(fleet, event);
+        watch_event_destroy(event);
+    }
+    plans_start_scans(fleet);
+    tell_news(fleet);
+}
+
+static void tick_plan(struct fleet *fleet, struct plan_entry *plan, int64_t now_us)
+{
+    if (plan->restart_at_us && now_us >= plan->restart_at_us)
+        start_renderer(fleet, plan);
+    bool is_coming_up = plan->process && plan->state != FLEET_READY;
+    if (is_coming_up && now_us - plan->moved_us > fleet->times.stall * 1000LL) {
+        struct problem problem;
+        problem_set(&problem, PROBLEM_RENDERER, "", "", "reading the plan got no further for %d s (%.120s)", fleet->times.stall / 1000,
+                    plan->phase);
+        plan_entry_kill(fleet, plan, "got no further");
+        plan_entry_fail(fleet, plan, &problem);
+    }
+    if (fleet->options.idle_close_s > 0 && is_unused(fleet, plan) && now_us - plan->used_us > fleet->options.idle_close_s * 1000000LL)
+        close_plan(fleet, plan, "nobody used it");
+}
+
+void fleet_tick(struct fleet *fleet)
+{
+    int64_t now_us = clock_now_us();
+    for (size_t i = 0; i < fleet->n_plans; i++)
+        tick_plan(fleet, fleet->plans[i], now_us);
+    asks_keep_time(fleet, now_us);
+    if (fleet->wants_listing && !fleet->is_listing)
+        list_folders(fleet);
+    plans_start_scans(fleet);
+    tell_news(fleet);
+}
+
+/* ---- looking at it ---- */
+
+size_t fleet_n_plans(const struct fleet *fleet) { return fleet->n_plans; }
+
+static void describe(const struct plan_entry *plan, struct fleet_plan *out)
+{
+    bool is_failed = plan->state == FLEET_FAILED || plan->state == FLEET_UNREADABLE;
+    *out = (struct fleet_plan){
+        .id = plan->id,
+        .folder = plan->folder,
+        .name = plan->name,
+        .note = plan->note,
+        .is_phantom = plan->is_phantom,
+        .state = plan->state,
+        .phase = plan->phase,
+        .percent = plan->percent,
+        .problem = is_failed && plan->problem.type != PROBLEM_NONE ? &plan->problem : NULL,
+        .parts = plan->parts,
+        .n_bytes = plan->n_bytes,
+        .document = plan->document,
+        .default_scene = plan->default_scene,
+        .image_ids = plan->document ? (const char *const *)plan->image_ids : NULL,
+        .generation = plan->generation,
+        .memory_bytes = plan->memory_bytes,
+        .load_ms = plan->load_ms,
+        .pid = plan->pid,
+        .confined = plan->confined,
+    };
+}
+
+bool fleet_plan_at(const struct fleet *fleet, size_t index, struct fleet_plan *plan)
+{
+    if (index >= fleet->n_plans)
+        return false;
+    describe(fleet->plans[index], plan);
+    return true;
+}
+
+bool fleet_plan_find(const struct fleet *fleet, const char *id, struct fleet_plan *plan)
+{
+    const struct plan_entry *entry = plan_entry_find(fleet, id);
+    if (entry)
+        describe(entry, plan);
+    return entry != NULL;
+}
+
+const cJSON *fleet_gl(const struct fleet *fleet, const struct problem **problem)
+{
+    if (problem)
+        *problem = fleet->gl_problem.type != PROBLEM_NONE ? &fleet->gl_problem : NULL;
+    return fleet->gl;
+}
+
+/* ---- beginning and end ---- */
+
+static char *beside_ourselves(struct error *err)
+{
+    char path[PATH_MAX];
+    ssize_t n = readlink("/proc/self/exe", path, sizeof path - sizeof "beamroom-render");
+    char *slash = NULL;
+    if (n > 0) {
+        path[n] = 0;
+        slash = strrchr(path, '/');
+    }
+    if (!slash) {
+        error_set(err, ERROR_IO, "where this program lies cannot be found out: %s", strerror(errno));
+        return NULL;
+    }
+    memcpy(slash + 1, "beamroom-render", sizeof "beamroom-render");
+    return mem_copy_text(path);
+}
+
+static bool make_cache_folder(const char *data, struct error *err)
+{
+    char path[PATH_MAX];
+    int n = snprintf(path, sizeof path, "%s/cache", data);
+    if (n < 0 || (size_t)n >= sizeof path - PLAN_ID_SIZE - 1)
+        return error_set(err, ERROR_LIMIT, "the data folder's path is too long");
+    if (mkdir(path, 0700) != 0 && errno != EEXIST)
+        return error_set(err, ERROR_IO, "%s cannot be made: %s", path, strerror(errno));
+    return true;
+}
+
+static void set_times(struct fleet *fleet)
+{
+    const struct fleet_times *asked = &fleet->options.times;
+    fleet->times = default_times;
+    if (asked->ping > 0)
+        fleet->times.ping = asked->ping;
+    if (asked->silent > 0)
+        fleet->times.silent = asked->silent;
+    if (asked->stall > 0)
+        fleet->times.stall = asked->stall;
+    if (asked->request > 0)
+        fleet->times.request = asked->request;
+    if (asked->scan > 0)
+        fleet->times.scan = asked->scan;
+}
+
+static void fleet_free(struct fleet *fleet)
+{
+    watch_destroy(fleet->watch);
+    for (size_t i = 0; i < fleet->n_plans; i++)
+        plan_entry_destroy(fleet->plans[i]);
+    free(fleet->plans);
+    for (size_t i = 0; fleet->plan_folders && fleet->plan_folders[i]; i++)
+        free(fleet->plan_folders[i]);
+    free(fleet->plan_folders);
+    free(fleet->data_folder);
+    free(fleet->renderer_path);
+    free(fleet->gl_word);
+    cJSON_Delete(fleet->gl);
+    free(fleet);
+}
+
+static void start_probe(struct fleet *fleet)
+{
+    const char *words[] = { fleet->renderer_path, "--probe-gl", "--gl", fleet->gl_word, fleet->options.stub_renderer ? "--stub" : NULL, NULL };
+    fleet->probe = fleet_number(fleet);
+    if (!watch_start_program(fleet->watch, fleet->probe, fleet_arguments(words), fleet->times.scan * 4))
+        fleet->probe = 0;
+}
+
+struct fleet *fleet_create(const struct fleet_options *options, struct error *err)
+{
+    struct fleet *fleet = mem_new(sizeof *fleet);
+    fleet->options = *options;
+    set_times(fleet);
+    fleet->plans = mem_new(FLEET_MAX_PLANS * sizeof *fleet->plans);
+    fleet->plan_folders = mem_new((options->n_plan_folders + 1) * sizeof *fleet->plan_folders);
+    for (size_t i = 0; i < options->n_plan_folders; i++)
+        fleet->plan_folders[i] = mem_copy_text(options->plan_folders[i]);
+    fleet->data_folder = mem_copy_text(options->data_folder);
+    fleet->gl_word = mem_copy_text(options->gl ? options->gl : "auto");
+    fleet->renderer_path = options->renderer_path ? mem_copy_text(options->renderer_path) : beside_ourselves(err);
+    if (!fleet->renderer_path)
+        goto fail;
+    if (access(fleet->renderer_path, X_OK) != 0) {
+        error_set(err, ERROR_NOT_FOUND, "the renderer %s cannot be run: %s", fleet->renderer_path, strerror(errno));
+        goto fail;
+    }
+    if (!make_cache_folder(fleet->data_folder, err))
+        goto fail;
+    struct watch_options watching = { fleet->times.ping, fleet->times.silent, options->wake, options->context };
+    fleet->watch = watch_create(&watching, err);
+    if (!fleet->watch)
+        goto fail;
+    start_probe(fleet);
+    list_folders(fleet);
+    return fleet;
+fail:
+    fleet_free(fleet);
+    return NULL;
+}
+
+void fleet_destroy(struct fleet *fleet)
+{
+    if (!fleet)
+        return;
+    struct problem problem;
+    problem_set(&problem, PROBLEM_CANCELLED, "", "", "the server is stopping");
+    /* a reply may ask once more; whoever goes on asking is not answered */
+    for (int round = 0; round < 3 && fleet->asks; round++) {
+        asks_fail(fleet, NULL, false, &problem);
+        asks_deliver_failed(fleet);
+    }
+    while (fleet->asks) {
+        struct fleet_ask *next = fleet->asks->next;
+        free(fleet->asks->bytes);
+        free(fleet->asks);
+        fleet->asks = next;
+    }
+    fleet_free(fleet);
+}

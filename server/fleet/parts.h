@@ -1,0 +1,102 @@
+#pragma once
+/* What the fleet's files share: its plans, its requests, its state. Everything on the net thread; nothing of this is for others. */
+#include "server/fleet/fleet.h"
+#include "server/fleet/watch.h"
+
+enum {
+    RESTART_WINDOW_MS = 60000,
+    MAX_IMAGES = 64, /* images of a plan whose ids we keep */
+    PLAN_ID_SIZE = 64
+};
+
+struct plan_entry {
+    char id[PLAN_ID_SIZE];
+    char *folder; /* absolute */
+    char name[128], note[512];
+    bool is_phantom;
+    enum fleet_state state;
+    bool has_changed; /* somebody is to be told */
+    char phase[200];
+    double percent;
+    struct problem problem; /* PROBLEM_NONE: none */
+    cJSON *parts;
+    uint64_t n_bytes;
+
+    /* looking at the folder */
+    uint64_t fingerprint, scan; /* scan: number of the process that looks; 0 none */
+    bool wants_scan, is_gone;   /* gone: no longer in the plan folders */
+
+    /* the renderer */
+    uint64_t process; /* 0: none */
+    int pid;
+    uint32_t generation;
+    uint64_t memory_bytes;
+    bool was_ready;
+    bool is_dying; /* ended by us, and not yet gone: what it still says counts for nothing */
+    char confined[96];
+    cJSON *document, *default_scene;
+    char *image_ids[MAX_IMAGES + 1];
+    int64_t load_ms, asked_us; /* asked: when its present process was started */
+    int64_t moved_us;          /* when loading last got further */
+    int64_t restart_at_us;     /* while it waits for its next start; 0: it does not */
+    int64_t ended_us[FLEET_MAX_RESTARTS]; /* when its processes last ended unasked, newest first; 0 never */
+    int n_holds;
+    int64_t used_us;
+};
+
+struct fleet_ask { /* one request */
+    struct fleet_ask *next;
+    uint64_t number;
+    struct plan_entry *plan; /* NULL when it was refused before it began */
+    bool is_render, is_sent, is_failed;
+    struct problem problem; /* when failed */
+    uint8_t *bytes;         /* while not sent */
+    size_t n_bytes;
+    int64_t until_us;
+    fleet_reply reply;
+    void *context;
+};
+
+struct fleet {
+    struct fleet_options options;
+    struct fleet_times times;
+    char **plan_folders;
+    char *data_folder, *renderer_path, *gl_word;
+    struct watch *watch;
+    struct plan_entry **plans; /* FLEET_MAX_PLANS */
+    size_t n_plans;
+    bool list_has_changed, is_listing, wants_listing;
+    struct fleet_ask *asks;
+    size_t n_asks;
+    uint64_t last_number; /* of processes and requests */
+    int n_scans;
+    uint64_t probe;
+    cJSON *gl;
+    struct problem gl_problem;
+};
+
+/* plans.c: the list */
+struct plan_entry *plan_entry_find(const struct fleet *fleet, const char *id);
+struct plan_entry *plan_entry_of_process(const struct fleet *fleet, uint64_t process);
+void plan_entry_destroy(struct plan_entry *plan);
+void plans_take_folders(struct fleet *fleet, const struct folder_list *found);
+void plans_start_scans(struct fleet *fleet);
+/* True: the event was about a scan. */
+bool plans_scan_ended(struct fleet *fleet, const struct watch_event *event);
+
+/* requests.c */
+void asks_send_waiting(struct fleet *fleet, struct plan_entry *plan);
+/* plan NULL: those of every plan. only_sent: what still waits for READY goes on waiting. Delivered by asks_deliver_failed. */
+void asks_fail(struct fleet *fleet, const struct plan_entry *plan, bool only_sent, const struct problem *problem);
+void asks_deliver_failed(struct fleet *fleet);
+void asks_keep_time(struct fleet *fleet, int64_t now_us);
+bool asks_has_any(const struct fleet *fleet, const struct plan_entry *plan);
+/* A frame, answer or problem came. False: it breaks the rules. */
+bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packet *packet);
+
+/* fleet.c */
+void plan_entry_change(struct fleet *fleet, struct plan_entry *plan, enum fleet_state state);
+/* A renderer that is stuck or lies: ends it; it is started again as after a crash. */
+void plan_entry_kill(struct fleet *fleet, struct plan_entry *plan, const char *reason);
+char **fleet_arguments(const char *const *words); /* copies; NULL-terminated */
+uint64_t fleet_number(struct fleet *fleet);

@@ -1,0 +1,413 @@
+#include "server/fleet/process.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "core/base/clock.h"
+#include "core/base/mem.h"
+
+enum {
+    READ_ROUND = 4 << 20,       /* bytes read of one process before the others have their turn */
+    MEMORY_EVERY_US = 1000000,
+    STOP_GRACE_US = 1000000,    /* to end by itself after its socket closed */
+    DRAIN_US = 500000,          /* for what is still in the socket after the end */
+    JSON_WEIGHT = 16            /* a parsed document takes about so many times its text */
+};
+
+/* What of a renderer's words lies unhandled on the other side; shared by the process and its events. */
+struct watch_lane {
+    _Atomic uint64_t unhandled;
+    atomic_int references;
+};
+
+struct chunk {
+    struct chunk *next;
+    uint8_t *bytes;
+    size_t n_bytes, n_sent;
+};
+
+struct process {
+    uint64_t number;
+    bool is_program;
+    struct child child;
+    struct process_news news;
+    struct packet_reader *reader;
+    struct watch_lane *lane;
+    struct chunk *outgoing, **last;
+    size_t n_outgoing;
+    char *output;
+    size_t n_output;
+    uint64_t n_since_packet;
+    int64_t heard_us, pinged_us, kill_at_us, limit_at_us, memory_at_us, drain_until_us;
+    bool has_ended, is_stopping;
+    int status;
+    char reason[240];
+};
+
+static void lane_drop(struct watch_lane *lane, uint64_t weight)
+{
+    atomic_fetch_sub(&lane->unhandled, weight);
+    if (atomic_fetch_sub(&lane->references, 1) == 1)
+        free(lane);
+}
+
+void watch_event_destroy(struct watch_event *event)
+{
+    if (!event)
+        return;
+    if (event->lane)
+        lane_drop(event->lane, event->memory_bytes);
+    packet_finish(&event->packet);
+    folder_list_finish(&event->found);
+    free(event->output);
+    free(event);
+}
+
+static struct watch_event *event_new(const struct process *process, enum watch_event_type type)
+{
+    struct watch_event *event = mem_new(sizeof *event);
+    event->type = type;
+    event->number = process->number;
+    return event;
+}
+
+static void give(struct process *process, struct watch_event *event)
+{
+    process->news.event(process->news.context, event);
+}
+
+struct process *process_create(uint64_t number, char *const argv[], int limit_ms, const struct process_news *news, int64_t now_us)
+{
+    struct process *process = mem_new(sizeof *process);
+    process->number = number;
+    process->is_program = limit_ms > 0;
+    process->news = *news;
+    process->last = &process->outgoing;
+    process->heard_us = process->pinged_us = now_us;
+    process->memory_at_us = now_us;
+    process->limit_at_us = limit_ms > 0 ? now_us + (int64_t)limit_ms * 1000 : INT64_MAX;
+    process->kill_at_us = INT64_MAX;
+    process->lane = mem_new(sizeof *process->lane);
+    atomic_init(&process->lane->references, 1);
+    if (!process->is_program)
+        process->reader = packet_reader_create();
+    struct error err = { 0 };
+    if (!spawn_child(argv, process->is_program ? SPAWN_OUTPUT : SPAWN_SOCKET, &process->child, &err)) {
+        (void)snprintf(process->reason, sizeof process->reason, "%s", err.text);
+        process->has_ended = true;
+        process->drain_until_us = now_us;
+        return process;
+    }
+    struct watch_event *event = event_new(process, WATCH_STARTED);
+    event->pid = process->child.pid;
+    give(process, event);
+    return process;
+}
+
+static void close_channel(struct process *process)
+{
+    if (process->child.channel >= 0)
+        close(process->child.channel);
+    process->child.channel = -1;
+    while (process->outgoing) {
+        struct chunk *next = process->outgoing->next;
+        free(process->outgoing->bytes);
+        free(process->outgoing);
+        process->outgoing = next;
+    }
+    process->last = &process->outgoing;
+    process->n_outgoing = 0;
+}
+
+void process_destroy(struct process *process)
+{
+    if (!process)
+        return;
+    if (!process->has_ended) {
+        kill(-process->child.pid, SIGKILL);
+        while (waitpid(process->child.pid, NULL, 0) < 0 && errno == EINTR)
+            continue;
+    }
+    close_channel(process);
+    if (process->child.pid_file >= 0)
+        close(process->child.pid_file);
+    packet_reader_destroy(process->reader);
+    lane_drop(process->lane, 0);
+    free(process->output);
+    free(process);
+}
+
+uint64_t process_number(const struct process *process) { return process->number; }
+
+static void set_reason(struct process *process, const char *reason)
+{
+    if (!process->reason[0])
+        (void)snprintf(process->reason, sizeof process->reason, "%s", reason);
+}
+
+void process_stop(struct process *process, bool at_once, const char *reason, int64_t now_us)
+{
+    if (process->has_ended)
+        return;
+    set_reason(process, reason);
+    process->is_stopping = true;
+    close_channel(process);
+    if (at_once || process->is_program) {
+        kill(-process->child.pid, SIGKILL);
+        process->kill_at_us = INT64_MAX;
+    } else if (process->kill_at_us == INT64_MAX) {
+        process->kill_at_us = now_us + STOP_GRACE_US;
+    }
+}
+
+void process_send(struct process *process, uint8_t *bytes, size_t n_bytes)
+{
+    if (process->child.channel < 0 || process->is_program) {
+        free(bytes);
+        return;
+    }
+    if (n_bytes > WATCH_MAX_OUTGOING || process->n_outgoing > WATCH_MAX_OUTGOING - n_bytes) {
+        free(bytes);
+        process_stop(process, true, "did not read what it was sent", clock_now_us());
+        return;
+    }
+    struct chunk *chunk = mem_new(sizeof *chunk);
+    chunk->bytes = bytes;
+    chunk->n_bytes = n_bytes;
+    *process->last = chunk;
+    process->last = &chunk->next;
+    process->n_outgoing += n_bytes;
+}
+
+bool process_is_throttled(const struct process *process)
+{
+    return atomic_load(&process->lane->unhandled) >= WATCH_MAX_UNHANDLED;
+}
+
+size_t process_poll(const struct process *process, struct pollfd polled[2])
+{
+    size_t n = 0;
+    if (process->child.channel >= 0) {
+        int events = (process_is_throttled(process) ? 0 : POLLIN) | (process->outgoing ? POLLOUT : 0);
+        if (events)
+            polled[n++] = (struct pollfd){ .fd = process->child.channel, .events = (short)events };
+    }
+    if (process->child.pid_file >= 0 && !process->has_ended)
+        polled[n++] = (struct pollfd){ .fd = process->child.pid_file, .events = POLLIN };
+    return n;
+}
+
+static void write_out(struct process *process)
+{
+    while (process->outgoing && process->child.channel >= 0) {
+        struct chunk *chunk = process->outgoing;
+        ssize_t n = send(process->child.channel, chunk->bytes + chunk->n_sent, chunk->n_bytes - chunk->n_sent, MSG_NOSIGNAL);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0)
+            return; /* full: poll tells; closed: reading finds out */
+        chunk->n_sent += (size_t)n;
+        if (chunk->n_sent < chunk->n_bytes)
+            continue;
+        process->n_outgoing -= chunk->n_bytes;
+        process->outgoing = chunk->next;
+        if (!process->outgoing)
+            process->last = &process->outgoing;
+        free(chunk->bytes);
+        free(chunk);
+    }
+}
+
+static void is_broken(struct process *process, const char *how)
+{
+    char reason[240];
+    (void)snprintf(reason, sizeof reason, "was ended because it said something that is no packet: %.160s", how);
+    process_stop(process, true, reason, clock_now_us());
+}
+
+static void take_packets(struct process *process)
+{
+    struct packet packet;
+    struct error err = { 0 };
+    int got;
+    while (process->child.channel >= 0 && (got = packet_reader_take(process->reader, &packet, &err)) != 0) {
+        if (got < 0) {
+            is_broken(process, err.text);
+            return;
+        }
+        uint64_t text = process->n_since_packet > packet.n_blob ? process->n_since_packet - packet.n_blob : 0;
+        process->n_since_packet = 0;
+        const char *type = json_text(packet.json, "type");
+        if (!type) {
+            packet_finish(&packet);
+            is_broken(process, "a packet without a type");
+            return;
+        }
+        if (strcmp(type, "pong") == 0) { /* its answer to our ping: that it speaks is all we wanted */
+            packet_finish(&packet);
+            continue;
+        }
+        struct watch_event *event = event_new(process, WATCH_PACKET);
+        event->packet = packet;
+        event->memory_bytes = 1024 + packet.n_blob + JSON_WEIGHT * text;
+        event->lane = process->lane;
+        atomic_fetch_add(&process->lane->references, 1);
+        atomic_fetch_add(&process->lane->unhandled, event->memory_bytes);
+        give(process, event);
+    }
+}
+
+/* False: nothing more to read now. */
+static bool read_packets(struct process *process, size_t *n_read, int64_t now_us)
+{
+    size_t room = 0;
+    struct error err = { 0 };
+    uint8_t *space = packet_reader_space(process->reader, &room, &err);
+    if (!space) {
+        is_broken(process, err.text);
+        return false;
+    }
+    ssize_t n = recv(process->child.channel, space, room, 0);
+    if (n < 0 && errno == EINTR)
+        return true;
+    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
+        return false;
+    if (n <= 0) {
+        close_channel(process);
+        if (!process->has_ended && process->kill_at_us == INT64_MAX)
+            process->kill_at_us = now_us + STOP_GRACE_US;
+        return false;
+    }
+    process->heard_us = now_us;
+    process->n_since_packet += (uint64_t)n;
+    *n_read += (size_t)n;
+    packet_reader_added(process->reader, (size_t)n);
+    take_packets(process);
+    return process->child.channel >= 0 && !process_is_throttled(process);
+}
+
+static bool read_output(struct process *process, size_t *n_read, int64_t now_us)
+{
+    if (!process->output)
+        process->output = mem_new(WATCH_MAX_OUTPUT + 1);
+    if (process->n_output == WATCH_MAX_OUTPUT) {
+        process_stop(process, true, "printed more than it may", now_us);
+        return false;
+    }
+    ssize_t n = read(process->child.channel, process->output + process->n_output, WATCH_MAX_OUTPUT - process->n_output);
+    if (n < 0 && errno == EINTR)
+        return true;
+    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
+        return false;
+    if (n <= 0) {
+        close_channel(process);
+        return false;
+    }
+    process->n_output += (size_t)n;
+    *n_read += (size_t)n;
+    return true;
+}
+
+static void read_in(struct process *process, int64_t now_us)
+{
+    size_t n_read = 0;
+    while (process->child.channel >= 0 && n_read < READ_ROUND && !process_is_throttled(process))
+        if (!(process->is_program ? read_output(process, &n_read, now_us) : read_packets(process, &n_read, now_us)))
+            return;
+}
+
+static void see_end(struct process *process, int64_t now_us)
+{
+    int status;
+    if (process->has_ended || waitpid(process->child.pid, &status, WNOHANG) != process->child.pid)
+        return;
+    process->has_ended = true;
+    process->status = status;
+    process->drain_until_us = now_us + DRAIN_US;
+}
+
+static void tell_memory(struct process *process, int64_t now_us)
+{
+    if (process->has_ended || process->is_program || now_us < process->memory_at_us)
+        return;
+    process->memory_at_us = now_us + MEMORY_EVERY_US;
+    char path[64], text[128];
+    (void)snprintf(path, sizeof path, "/proc/%ld/statm", (long)process->child.pid);
+    FILE *file = fopen(path, "re");
+    if (!file)
+        return;
+    unsigned long long all = 0, resident = 0;
+    if (fgets(text, sizeof text, file) && sscanf(text, "%llu %llu", &all, &resident) == 2) {
+        struct watch_event *event = event_new(process, WATCH_MEMORY);
+        event->memory_bytes = resident * (uint64_t)sysconf(_SC_PAGESIZE);
+        give(process, event);
+    }
+    fclose(file);
+}
+
+static void keep_times(struct process *process, const struct watch_options *options, int64_t now_us)
+{
+    if (process->has_ended)
+        return;
+    if (now_us >= process->kill_at_us) {
+        process_stop(process, true, process->is_stopping ? "" : "closed its socket and went on", now_us);
+        return;
+    }
+    if (now_us >= process->limit_at_us && !process->is_stopping) {
+        process_stop(process, true, "took longer than it may", now_us);
+        return;
+    }
+    if (process->is_program || process->is_stopping || process->child.channel < 0)
+        return;
+    if (process_is_throttled(process)) {
+        process->heard_us = now_us; /* it is we who do not listen */
+        return;
+    }
+    int64_t silent_ms = (now_us - process->heard_us) / 1000;
+    if (silent_ms >= options->silent_ms) {
+        char reason[80];
+        (void)snprintf(reason, sizeof reason, "did not answer for %d s", options->silent_ms / 1000);
+        process_stop(process, true, reason, now_us);
+    } else if (silent_ms >= options->ping_ms && (now_us - process->pinged_us) / 1000 >= options->ping_ms) {
+        process->pinged_us = now_us;
+        cJSON *ping = cJSON_CreateObject();
+        cJSON_AddStringToObject(ping, "type", "ping");
+        size_t n;
+        uint8_t *bytes = packet_write(ping, NULL, 0, &n);
+        cJSON_Delete(ping);
+        process_send(process, bytes, n);
+    }
+}
+
+static void tell_end(struct process *process)
+{
+    struct watch_event *event = event_new(process, WATCH_ENDED);
+    event->is_exit = process->child.pid > 0 && WIFEXITED(process->status);
+    event->status = event->is_exit ? WEXITSTATUS(process->status) : 0;
+    event->signal = process->child.pid > 0 && WIFSIGNALED(process->status) ? WTERMSIG(process->status) : 0;
+    memcpy(event->reason, process->reason, sizeof event->reason);
+    event->output = process->output;
+    event->n_output = process->n_output;
+    process->output = NULL;
+    give(process, event);
+}
+
+bool process_step(struct process *process, const struct watch_options *options, int64_t now_us)
+{
+    write_out(process);
+    read_in(process, now_us);
+    see_end(process, now_us);
+    tell_memory(process, now_us);
+    keep_times(process, options, now_us);
+    if (!process->has_ended || (process->child.channel >= 0 && now_us < process->drain_until_us))
+        return false;
+    tell_end(process);
+    return true;
+}

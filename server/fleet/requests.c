@@ -1,0 +1,240 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/mem.h"
+#include "server/fleet/parts.h"
+
+enum { MAX_SIDE_PX = 8192 };
+
+static bool is_render(const cJSON *packet)
+{
+    const char *type = json_text(packet, "type");
+    return type && strcmp(type, "render") == 0;
+}
+
+/* The packet with our id in it. The document is not copied, only looked at. */
+static uint8_t *write_with_id(const cJSON *packet, uint64_t id, size_t *n_bytes)
+{
+    cJSON *whole = cJSON_CreateObject();
+    cJSON_AddNumberToObject(whole, "id", (double)id);
+    for (cJSON *item = packet->child; item; item = item->next)
+        if (strcmp(item->string, "id") != 0)
+            cJSON_AddItemReferenceToObject(whole, item->string, item);
+    uint8_t *bytes = packet_write(whole, NULL, 0, n_bytes);
+    cJSON_Delete(whole);
+    return bytes;
+}
+
+static struct fleet_ask *ask_new(struct fleet *fleet, fleet_reply reply, void *context)
+{
+    struct fleet_ask *ask = mem_new(sizeof *ask);
+    ask->number = fleet_number(fleet);
+    ask->reply = reply;
+    ask->context = context;
+    ask->until_us = clock_now_us() + (int64_t)fleet->times.request * 1000;
+    struct fleet_ask **end = &fleet->asks;
+    while (*end)
+        end = &(*end)->next;
+    *end = ask;
+    fleet->n_asks++;
+    return ask;
+}
+
+static void unlink_ask(struct fleet *fleet, struct fleet_ask *ask)
+{
+    for (struct fleet_ask **at = &fleet->asks; *at; at = &(*at)->next)
+        if (*at == ask) {
+            *at = ask->next;
+            fleet->n_asks--;
+            return;
+        }
+}
+
+static void free_ask(struct fleet_ask *ask)
+{
+    free(ask->bytes);
+    free(ask);
+}
+
+static void fail(struct fleet_ask *ask, const struct problem *problem)
+{
+    if (ask->is_failed)
+        return;
+    ask->is_failed = true;
+    ask->problem = *problem;
+    ask->plan = NULL;
+}
+
+static void send_ask(struct fleet *fleet, struct fleet_ask *ask)
+{
+    ask->is_sent = true;
+    uint8_t *bytes = ask->bytes;
+    ask->bytes = NULL;
+    if (watch_send(fleet->watch, ask->plan->process, bytes, ask->n_bytes))
+        return;
+    struct problem problem;
+    problem_set(&problem, PROBLEM_BUSY, "", "", "too much is waiting to be told to renderers");
+    problem.retry_after_ms = 500;
+    fail(ask, &problem);
+}
+
+static bool may_wait(const struct plan_entry *plan, struct problem *problem)
+{
+    switch (plan->state) {
+    case FLEET_READY:
+    case FLEET_STARTING:
+    case FLEET_LOADING:
+    case FLEET_RESTARTING: return true;
+    case FLEET_UNREADABLE:
+    case FLEET_FAILED: *problem = plan->problem; return false;
+    case FLEET_CLOSED: break;
+    }
+    problem_set(problem, PROBLEM_BUSY, "", "", "the plan is not open");
+    problem->retry_after_ms = 500;
+    return false;
+}
+
+uint64_t fleet_request(struct fleet *fleet, const char *plan_id, const cJSON *packet, fleet_reply reply, void *context)
+{
+    bool is_full = fleet->n_asks >= FLEET_MAX_REQUESTS;
+    struct fleet_ask *ask = ask_new(fleet, reply, context);
+    struct plan_entry *plan = plan_entry_find(fleet, plan_id);
+    struct problem problem = { 0 };
+    uint64_t number = ask->number;
+    if (!plan) {
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no plan \"%.64s\"", plan_id);
+    } else if (is_full) {
+        problem_set(&problem, PROBLEM_BUSY, "", "", "%d requests wait for an answer already", FLEET_MAX_REQUESTS);
+        problem.retry_after_ms = 1000;
+    } else if (may_wait(plan, &problem)) {
+        ask->plan = plan;
+        ask->is_render = is_render(packet);
+        ask->bytes = write_with_id(packet, number, &ask->n_bytes);
+        plan->used_us = clock_now_us();
+        if (plan->state == FLEET_READY)
+            send_ask(fleet, ask);
+    }
+    if (!ask->plan) {
+        fail(ask, &problem);
+        fleet->options.wake(fleet->options.context);
+    }
+    return number;
+}
+
+void fleet_forget_request(struct fleet *fleet, uint64_t request)
+{
+    for (struct fleet_ask *ask = fleet->asks; ask; ask = ask->next)
+        if (ask->number == request) {
+            unlink_ask(fleet, ask);
+            free_ask(ask);
+            return;
+        }
+}
+
+bool fleet_tell(struct fleet *fleet, const char *plan_id, const cJSON *packet)
+{
+    const struct plan_entry *plan = plan_entry_find(fleet, plan_id);
+    if (!plan || plan->state != FLEET_READY)
+        return false;
+    size_t n_bytes;
+    uint8_t *bytes = packet_write(packet, NULL, 0, &n_bytes);
+    return watch_send(fleet->watch, plan->process, bytes, n_bytes);
+}
+
+void asks_send_waiting(struct fleet *fleet, struct plan_entry *plan)
+{
+    for (struct fleet_ask *ask = fleet->asks; ask; ask = ask->next)
+        if (ask->plan == plan && !ask->is_sent && !ask->is_failed)
+            send_ask(fleet, ask);
+}
+
+void asks_fail(struct fleet *fleet, const struct plan_entry *plan, bool only_sent, const struct problem *problem)
+{
+    for (struct fleet_ask *ask = fleet->asks; ask; ask = ask->next)
+        if ((!plan || ask->plan == plan) && (ask->is_sent || !only_sent))
+            fail(ask, problem);
+}
+
+void asks_deliver_failed(struct fleet *fleet)
+{
+    /* a reply may ask anew or forget others: look from the start each time, and only at those that had failed by now */
+    uint64_t last = fleet->last_number;
+    for (struct fleet_ask *ask = fleet->asks; ask;) {
+        if (!ask->is_failed || ask->number > last) {
+            ask = ask->next;
+            continue;
+        }
+        unlink_ask(fleet, ask);
+        ask->reply(ask->context, NULL, &ask->problem);
+        free_ask(ask);
+        ask = fleet->asks;
+    }
+}
+
+void asks_keep_time(struct fleet *fleet, int64_t now_us)
+{
+    struct problem problem;
+    problem_set(&problem, PROBLEM_TIMEOUT, "", "", "no answer within %d s", fleet->times.request / 1000);
+    for (struct fleet_ask *ask = fleet->asks; ask; ask = ask->next) {
+        if (ask->is_failed || now_us < ask->until_us)
+            continue;
+        /* its main thread answers pings, so only this shows that drawing is stuck */
+        if (ask->is_render && ask->is_sent)
+            plan_entry_kill(fleet, ask->plan, "did not finish a picture in time");
+        fail(ask, &problem);
+    }
+}
+
+bool asks_has_any(const struct fleet *fleet, const struct plan_entry *plan)
+{
+    for (const struct fleet_ask *ask = fleet->asks; ask; ask = ask->next)
+        if (ask->plan == plan)
+            return true;
+    return false;
+}
+
+static bool is_number_in(const cJSON *json, const char *name, double low, double high)
+{
+    double value = json_number(json, name, NAN);
+    return value >= low && value <= high;
+}
+
+static bool is_good_frame(const struct packet *packet)
+{
+    const cJSON *matrix = cJSON_GetObjectItemCaseSensitive(packet->json, "clip_from_lps_mm");
+    if (!packet->blob || !cJSON_IsArray(matrix) || cJSON_GetArraySize(matrix) != 16)
+        return false;
+    for (const cJSON *item = matrix->child; item; item = item->next)
+        if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
+            return false;
+    return is_number_in(packet->json, "width_px", 1, MAX_SIDE_PX) && is_number_in(packet->json, "height_px", 1, MAX_SIDE_PX) &&
+           is_number_in(packet->json, "scene_revision", 0, UINT32_MAX) && is_number_in(packet->json, "render_us", 0, UINT32_MAX) &&
+           is_number_in(packet->json, "encode_us", 0, UINT32_MAX) && is_number_in(packet->json, "pixels_per_mm", 0, 1e6);
+}
+
+bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packet *packet)
+{
+    double id = json_number(packet->json, "id", -1);
+    struct fleet_ask *ask = fleet->asks;
+    while (ask && !(ask->plan == plan && ask->is_sent && !ask->is_failed && (double)ask->number == id))
+        ask = ask->next;
+    if (!ask)
+        return id >= 0; /* asked once, and forgotten since */
+    const char *type = json_text(packet->json, "type");
+    struct problem problem = { 0 };
+    bool is_problem = strcmp(type, "problem") == 0;
+    if (is_problem) {
+        if (!problem_from_json(cJSON_GetObjectItemCaseSensitive(packet->json, "problem"), &problem))
+            return false;
+    } else if (strcmp(type, ask->is_render ? "frame" : "answer") != 0 || (ask->is_render && !is_good_frame(packet)) ||
+               (!ask->is_render && !cJSON_GetObjectItemCaseSensitive(packet->json, "body"))) {
+        return false;
+    }
+    unlink_ask(fleet, ask);
+    plan->used_us = clock_now_us();
+    ask->reply(ask->context, is_problem ? NULL : packet, is_problem ? &problem : NULL);
+    free_ask(ask);
+    return true;
+}

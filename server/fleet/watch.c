@@ -1,0 +1,319 @@
+#include "server/fleet/watch.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <poll.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "core/base/clock.h"
+#include "core/base/mem.h"
+#include "core/base/queue.h"
+#include "server/fleet/process.h"
+
+enum {
+    MAX_PROCESSES = 256,
+    ORDER_CAPACITY = 8192,
+    EVENT_CAPACITY = 8192,
+    BUSY_POLL_MS = 20,     /* while something waits for the other side */
+    CALM_POLL_MS = 250,    /* while there are processes: pings, memory, limits */
+    BLIND_POLL_MS = 50,    /* where the kernel tells no ends */
+    STOP_ALL_US = 2000000
+};
+
+enum order_type { ORDER_START, ORDER_SEND, ORDER_STOP, ORDER_LIST, ORDER_QUIT };
+
+struct order {
+    enum order_type type;
+    uint64_t number;
+    char **argv; /* start: the program; list: the folders */
+    int limit_ms;
+    uint8_t *bytes;
+    size_t n_bytes;
+    bool is_hung;
+    char reason[240];
+};
+
+struct held_event { /* given while the event queue was full */
+    struct held_event *next;
+    struct watch_event *event;
+};
+
+struct watch {
+    struct watch_options options;
+    pthread_t thread;
+    struct queue *orders, *events;
+    int bell; /* rung after an order */
+    /* the thread's own */
+    struct process *processes[MAX_PROCESSES];
+    size_t n_processes;
+    struct held_event *held, **last_held;
+    bool is_quitting;
+    int64_t quit_at_us;
+};
+
+static void free_texts(char **texts)
+{
+    for (size_t i = 0; texts && texts[i]; i++)
+        free(texts[i]);
+    free(texts);
+}
+
+static void order_destroy(void *item)
+{
+    struct order *order = item;
+    if (!order)
+        return;
+    free_texts(order->argv);
+    free(order->bytes);
+    free(order);
+}
+
+static void event_drop(void *event) { watch_event_destroy(event); }
+
+static bool give_order(struct watch *watch, struct order *order)
+{
+    if (!queue_try_put(watch->orders, order)) {
+        order_destroy(order);
+        return false;
+    }
+    uint64_t one = 1;
+    ssize_t n = write(watch->bell, &one, sizeof one);
+    assert(n == sizeof one || errno == EAGAIN);
+    return true;
+}
+
+static struct order *order_new(enum order_type type, uint64_t number)
+{
+    struct order *order = mem_new(sizeof *order);
+    order->type = type;
+    order->number = number;
+    return order;
+}
+
+bool watch_start_renderer(struct watch *watch, uint64_t number, char **argv)
+{
+    struct order *order = order_new(ORDER_START, number);
+    order->argv = argv;
+    return give_order(watch, order);
+}
+
+bool watch_start_program(struct watch *watch, uint64_t number, char **argv, int limit_ms)
+{
+    struct order *order = order_new(ORDER_START, number);
+    order->argv = argv;
+    order->limit_ms = limit_ms > 0 ? limit_ms : 1;
+    return give_order(watch, order);
+}
+
+bool watch_send(struct watch *watch, uint64_t number, uint8_t *bytes, size_t n_bytes)
+{
+    struct order *order = order_new(ORDER_SEND, number);
+    order->bytes = bytes;
+    order->n_bytes = n_bytes;
+    return give_order(watch, order);
+}
+
+void watch_stop(struct watch *watch, uint64_t number, bool is_hung, const char *reason)
+{
+    struct order *order = order_new(ORDER_STOP, number);
+    order->is_hung = is_hung;
+    (void)snprintf(order->reason, sizeof order->reason, "%s", reason);
+    while (!give_order(watch, order)) { /* must not be lost; the thread empties its queue within milliseconds */
+        poll(NULL, 0, 1);
+        order = order_new(ORDER_STOP, number);
+        order->is_hung = is_hung;
+        (void)snprintf(order->reason, sizeof order->reason, "%s", reason);
+    }
+}
+
+bool watch_list_folders(struct watch *watch, const char *const *folders, size_t n_folders)
+{
+    struct order *order = order_new(ORDER_LIST, 0);
+    order->argv = mem_new((n_folders + 1) * sizeof *order->argv);
+    for (size_t i = 0; i < n_folders; i++)
+        order->argv[i] = mem_copy_text(folders[i]);
+    return give_order(watch, order);
+}
+
+struct watch_event *watch_take(struct watch *watch) { return queue_try_take(watch->events); }
+
+/* ---- on the thread ---- */
+
+static void flush_held(struct watch *watch)
+{
+    bool gave = false;
+    while (watch->held && queue_try_put(watch->events, watch->held->event)) {
+        struct held_event *next = watch->held->next;
+        free(watch->held);
+        watch->held = next;
+        gave = true;
+    }
+    if (!watch->held)
+        watch->last_held = &watch->held;
+    if (gave)
+        watch->options.wake(watch->options.context);
+}
+
+static void give_event(void *context, struct watch_event *event)
+{
+    struct watch *watch = context;
+    if (!watch->held && queue_try_put(watch->events, event)) {
+        watch->options.wake(watch->options.context);
+        return;
+    }
+    struct held_event *held = mem_new(sizeof *held);
+    held->event = event;
+    *watch->last_held = held;
+    watch->last_held = &held->next;
+}
+
+static struct process *find(struct watch *watch, uint64_t number)
+{
+    for (size_t i = 0; i < watch->n_processes; i++)
+        if (process_number(watch->processes[i]) == number)
+            return watch->processes[i];
+    return NULL;
+}
+
+static void list_folders(struct watch *watch, char **folders)
+{
+    size_t n = 0;
+    while (folders[n])
+        n++;
+    struct watch_event *event = mem_new(sizeof *event);
+    event->type = WATCH_FOLDERS;
+    folders_list((const char *const *)folders, n, &event->found);
+    give_event(watch, event);
+}
+
+static void start(struct watch *watch, const struct order *order)
+{
+    struct process_news news = { give_event, watch };
+    if (watch->n_processes == MAX_PROCESSES || watch->is_quitting) {
+        struct watch_event *event = mem_new(sizeof *event);
+        event->type = WATCH_ENDED;
+        event->number = order->number;
+        (void)snprintf(event->reason, sizeof event->reason, "too many processes");
+        give_event(watch, event);
+        return;
+    }
+    watch->processes[watch->n_processes++] = process_create(order->number, order->argv, order->limit_ms, &news, clock_now_us());
+}
+
+static void obey(struct watch *watch, struct order *order)
+{
+    struct process *process = find(watch, order->number);
+    switch (order->type) {
+    case ORDER_START: start(watch, order); break;
+    case ORDER_SEND:
+        if (process) {
+            process_send(process, order->bytes, order->n_bytes);
+            order->bytes = NULL;
+        }
+        break;
+    case ORDER_STOP:
+        if (process)
+            process_stop(process, order->is_hung, order->reason, clock_now_us());
+        break;
+    case ORDER_LIST: list_folders(watch, order->argv); break;
+    case ORDER_QUIT:
+        watch->is_quitting = true;
+        watch->quit_at_us = clock_now_us() + STOP_ALL_US;
+        for (size_t i = 0; i < watch->n_processes; i++)
+            process_stop(watch->processes[i], false, "the server is stopping", clock_now_us());
+        break;
+    }
+    order_destroy(order);
+}
+
+static int poll_ms(const struct watch *watch)
+{
+    bool is_busy = watch->held || watch->is_quitting;
+    bool is_blind = false;
+    for (size_t i = 0; i < watch->n_processes; i++) {
+        struct pollfd polled[2];
+        size_t n = process_poll(watch->processes[i], polled);
+        is_busy |= process_is_throttled(watch->processes[i]);
+        is_blind |= n == 0;
+    }
+    return is_busy ? BUSY_POLL_MS : is_blind ? BLIND_POLL_MS : watch->n_processes > 0 ? CALM_POLL_MS : -1;
+}
+
+static void wait_for_something(struct watch *watch)
+{
+    struct pollfd polled[1 + 2 * MAX_PROCESSES];
+    polled[0] = (struct pollfd){ .fd = watch->bell, .events = POLLIN };
+    size_t n = 1;
+    for (size_t i = 0; i < watch->n_processes && !watch->held; i++)
+        n += process_poll(watch->processes[i], polled + n);
+    (void)poll(polled, (nfds_t)n, poll_ms(watch));
+    uint64_t rung;
+    if (read(watch->bell, &rung, sizeof rung) < 0)
+        return; /* nothing was ordered */
+}
+
+static void *watch_main(void *argument)
+{
+    struct watch *watch = argument;
+    while (!watch->is_quitting || watch->n_processes > 0) {
+        wait_for_something(watch);
+        for (struct order *order; (order = queue_try_take(watch->orders));)
+            obey(watch, order);
+        flush_held(watch);
+        int64_t now_us = clock_now_us();
+        for (size_t i = watch->n_processes; i-- > 0 && (!watch->held || watch->is_quitting);) {
+            if (watch->is_quitting && now_us >= watch->quit_at_us)
+                process_stop(watch->processes[i], true, "", now_us);
+            if (process_step(watch->processes[i], &watch->options, now_us)) {
+                process_destroy(watch->processes[i]);
+                watch->processes[i] = watch->processes[--watch->n_processes];
+            }
+        }
+    }
+    return NULL;
+}
+
+struct watch *watch_create(const struct watch_options *options, struct error *err)
+{
+    struct watch *watch = mem_new(sizeof *watch);
+    watch->options = *options;
+    watch->last_held = &watch->held;
+    watch->orders = queue_create(ORDER_CAPACITY, order_destroy);
+    watch->events = queue_create(EVENT_CAPACITY, event_drop);
+    watch->bell = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    int failed = watch->bell < 0 ? errno : pthread_create(&watch->thread, NULL, watch_main, watch);
+    if (failed) {
+        error_set(err, ERROR_IO, "the thread that watches renderers cannot be started: %s", strerror(failed));
+        if (watch->bell >= 0)
+            close(watch->bell);
+        queue_destroy(watch->orders);
+        queue_destroy(watch->events);
+        free(watch);
+        return NULL;
+    }
+    return watch;
+}
+
+void watch_destroy(struct watch *watch)
+{
+    if (!watch)
+        return;
+    while (!give_order(watch, order_new(ORDER_QUIT, 0)))
+        poll(NULL, 0, 1);
+    pthread_join(watch->thread, NULL);
+    while (watch->held) {
+        struct held_event *next = watch->held->next;
+        watch_event_destroy(watch->held->event);
+        free(watch->held);
+        watch->held = next;
+    }
+    queue_destroy(watch->orders);
+    queue_destroy(watch->events);
+    close(watch->bell);
+    free(watch);
+}
