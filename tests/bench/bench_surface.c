@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include "core/base/clock.h"
-#include "core/base/parallel.h"
 #include "core/phantom/head.h"
 #include "core/region/mask.h"
 #include "core/surface/surface.h"
@@ -77,7 +76,7 @@ static struct volume *make_labels(bool is_ragged)
 struct peer {
     pid_t pid;
     FILE *to, *from;
-    char name[64];
+    char name[2][64]; /* on one thread, on all */
 };
 
 static bool peer_start(struct peer *peer, const struct volume *labels, char *path)
@@ -109,25 +108,33 @@ static bool peer_start(struct peer *peer, const struct volume *labels, char *pat
     int n_threads;
     if (failed || !fgets(line, sizeof line, peer->from) || sscanf(line, "%15s %d", version, &n_threads) != 2)
         return false;
-    snprintf(peer->name, sizeof peer->name, "vtkFlyingEdges3D %s, %d threads", version, n_threads);
+    snprintf(peer->name[0], sizeof peer->name[0], "vtkFlyingEdges3D %s, 1 thread", version);
+    snprintf(peer->name[1], sizeof peer->name[1], "vtkFlyingEdges3D %s, %d threads", version, n_threads);
     return true;
 }
 
-static double peer_time_ms(const struct peer *peer, size_t set, bool with_normals, size_t *n_triangles)
+/* 0 without a peer. */
+static double peer_time_ms(const struct peer *peer, size_t set, bool with_normals, bool on_all, size_t n_triangles)
 {
+    if (!peer)
+        return 0;
     char line[128];
     double ms;
-    fprintf(peer->to, "%zu %d\n", set, with_normals);
+    size_t n_theirs;
+    fprintf(peer->to, "%zu %d %d\n", set, with_normals, !on_all);
     fflush(peer->to);
-    if (!fgets(line, sizeof line, peer->from) || sscanf(line, "%lf %zu", &ms, n_triangles) != 2)
+    if (!fgets(line, sizeof line, peer->from) || sscanf(line, "%lf %zu", &ms, &n_theirs) != 2)
         die("the VTK side", NULL);
+    if (n_theirs != n_triangles)
+        die("not the same number of triangles as VTK", NULL);
     return ms;
 }
 
 /* ---- ours --------------------------------------------------------------------------------------------------------------- */
 
-struct times {
-    double mask, surface, normals, vtk, vtk_normals; /* ms */
+struct times { /* ms */
+    double mask, surface, normals, with_normals; /* surface starts from the labels */
+    double vtk, vtk_normals, vtk_all, vtk_all_normals; /* on one thread; on all */
 };
 
 static double since_ms(int64_t began_us)
@@ -147,7 +154,7 @@ static struct times run_once(const struct volume *labels, size_t set, int n_thre
     if (!mask)
         die("mask", &err);
     struct mesh *mesh = surface_marching_cubes(mask, &options, &err);
-    times.surface = since_ms(began); /* from the labels on */
+    times.surface = since_ms(began);
     mask_destroy(mask);
     if (!mesh)
         die("surface", &err);
@@ -155,6 +162,7 @@ static struct times run_once(const struct volume *labels, size_t set, int n_thre
     if (!mesh_make_normals(mesh, n_threads, &err))
         die("normals", &err);
     times.normals = since_ms(began);
+    times.with_normals = times.surface + times.normals;
     *n_triangles = mesh->n_triangles;
     mesh_unref(mesh);
     return times;
@@ -166,55 +174,65 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static double median(const struct times all[REPEATS], size_t offset)
+/* Of one of the numbers in times, by its offset there. */
+struct spread {
+    double median, fastest;
+};
+
+static struct spread spread_of(const struct times all[REPEATS], size_t offset)
 {
     double values[REPEATS];
     for (int r = 0; r < REPEATS; r++)
         memcpy(&values[r], (const char *)&all[r] + offset, sizeof values[r]);
     qsort(values, REPEATS, sizeof *values, compare_doubles);
-    return values[REPEATS / 2];
+    return (struct spread){ values[REPEATS / 2], values[0] };
 }
 
-static void print_result(const char *name, double ms, const char *peer, double peer_ms, const char *note)
+static void print_result(const char *name, struct spread ours, const char *peer, struct spread theirs, size_t n_triangles)
 {
-    printf("{\"name\":\"%s\",\"value\":%.3f,\"unit\":\"ms\"", name, ms);
+    printf("{\"name\":\"%s\",\"value\":%.3f,\"unit\":\"ms\"", name, ours.median);
     if (peer)
-        printf(",\"peer\":\"%s\",\"peer_value\":%.3f,\"ratio\":%.2f", peer, peer_ms, peer_ms / ms);
-    printf(",\"note\":\"%s\"}\n", note);
+        printf(",\"peer\":\"%s\",\"peer_value\":%.3f,\"ratio\":%.2f,\"note\":\"%zu triangles; fastest %.2f, theirs %.2f\"}\n", peer,
+               theirs.median, theirs.median / ours.median, n_triangles, ours.fastest, theirs.fastest);
+    else
+        printf(",\"note\":\"%zu triangles; fastest %.2f\"}\n", n_triangles, ours.fastest);
     fflush(stdout);
 }
 
 static void bench_set(const struct volume *labels, const char *volume, size_t set, const struct peer *peer)
 {
-    struct times all[3][REPEATS]; /* by threads; [0] is not used */
-    int most = parallel_cores() > 1 ? 2 : 1;
-    size_t n_triangles = 0, n_vtk = 0;
+    struct times all[2][REPEATS]; /* on one thread, on two */
+    size_t n_triangles = 0;
     for (int repeat = -1; repeat < REPEATS; repeat++) /* the first warms up and does not count */
-        for (int n_threads = 1; n_threads <= most; n_threads++) {
-            struct times *times = &all[n_threads][repeat < 0 ? 0 : repeat];
-            *times = run_once(labels, set, n_threads, &n_triangles);
-            times->vtk = peer ? peer_time_ms(peer, set, false, &n_vtk) : 0;
-            times->vtk_normals = peer ? peer_time_ms(peer, set, true, &n_vtk) : 0;
-            if (peer && n_vtk != n_triangles)
-                die("not the same number of triangles", NULL);
+        for (int two = 0; two < 2; two++) {
+            struct times *times = &all[two][repeat < 0 ? 0 : repeat];
+            *times = run_once(labels, set, 1 + two, &n_triangles);
+            times->vtk = peer_time_ms(peer, set, false, false, n_triangles);
+            times->vtk_all = peer_time_ms(peer, set, false, true, n_triangles);
+            times->vtk_normals = peer_time_ms(peer, set, true, false, n_triangles);
+            times->vtk_all_normals = peer_time_ms(peer, set, true, true, n_triangles);
         }
-    for (int n_threads = 1; n_threads <= most; n_threads++) {
-        const struct times *times = all[n_threads];
-        char name[128], note[64];
-        const char *with = peer ? peer->name : NULL;
-        const char *threads = n_threads == 1 ? "1 thread" : "2 threads";
-        snprintf(note, sizeof note, "%zu triangles; from the labels", n_triangles);
-        snprintf(name, sizeof name, "surface of %s, %s, %s", sets[set].name, volume, threads);
-        double surface = median(times, offsetof(struct times, surface)), normals = median(times, offsetof(struct times, normals));
-        print_result(name, surface, with, median(times, offsetof(struct times, vtk)), note);
-        snprintf(name, sizeof name, "surface with normals of %s, %s, %s", sets[set].name, volume, threads);
-        print_result(name, surface + normals, with, median(times, offsetof(struct times, vtk_normals)), note);
+    static const char *const threads[2] = { "1 thread", "2 threads" };
+    const char *region = sets[set].name, *one = peer ? peer->name[0] : NULL, *every = peer ? peer->name[1] : NULL;
+    for (size_t two = 0; two < 2; two++) {
+        const struct times *times = all[two];
+        char name[128];
+        struct spread surface = spread_of(times, offsetof(struct times, surface));
+        struct spread with_normals = spread_of(times, offsetof(struct times, with_normals));
+        struct spread vtk[2] = { spread_of(times, offsetof(struct times, vtk)), spread_of(times, offsetof(struct times, vtk_all)) };
+        snprintf(name, sizeof name, "surface of %s, %s, %s", region, volume, threads[two]);
+        print_result(name, surface, two ? every : one, vtk[two], n_triangles);
         if (set > 0)
             continue;
-        snprintf(name, sizeof name, "mask of %s, %s, %s", sets[set].name, volume, threads);
-        print_result(name, median(times, offsetof(struct times, mask)), NULL, 0, "part of the above");
-        snprintf(name, sizeof name, "normals of %s, %s, %s", sets[set].name, volume, threads);
-        print_result(name, normals, NULL, 0, "part of the above");
+        if (!two)
+            print_result(name, surface, every, vtk[1], n_triangles);
+        snprintf(name, sizeof name, "surface with normals of %s, %s, %s", region, volume, threads[two]);
+        print_result(name, with_normals, two ? every : one,
+                     spread_of(times, two ? offsetof(struct times, vtk_all_normals) : offsetof(struct times, vtk_normals)), n_triangles);
+        snprintf(name, sizeof name, "of it: mask of %s, %s, %s", region, volume, threads[two]);
+        print_result(name, spread_of(times, offsetof(struct times, mask)), NULL, surface, n_triangles);
+        snprintf(name, sizeof name, "of it: normals of %s, %s, %s", region, volume, threads[two]);
+        print_result(name, spread_of(times, offsetof(struct times, normals)), NULL, surface, n_triangles);
     }
 }
 

@@ -3,9 +3,9 @@
 
 usage: vtk_flying_edges.py FILE NX NY NZ LABELS...     FILE: bytes, [z][y][x]; LABELS: 3 or 3,4,5
 
-First prints VTK's version and number of threads. Then, for each line "SET NORMALS" on the standard input (the number of a set
-of labels; 1 with normals, 0 without), prints "MILLISECONDS TRIANGLES". The masks are made and padded by one empty voxel
-beforehand: only the filter is timed. Exit status 77: no VTK for Python here.
+First prints VTK's version and number of threads. Then, for each line "SET NORMALS SEQUENTIAL" on the standard input (the number
+of a set of labels; 1 with normals, 0 without; 1 on one thread, 0 on all), prints "MILLISECONDS TRIANGLES". The masks are made and
+padded by one empty voxel beforehand: only the filter is timed. Exit status 77: no VTK for Python here.
 """
 import sys
 import time
@@ -40,9 +40,11 @@ def main():
     for wanted in sys.argv[5:]:
         mask = numpy.pad(numpy.isin(labels, [int(label) for label in wanted.split(",")]), 1).astype(numpy.uint8)
         filters.append([make_filter(mask, with_normals) for with_normals in (0, 1)])
+    backends = vtkSMPTools.GetBackend(), "Sequential"
     print(vtkVersion.GetVTKVersion(), vtkSMPTools.GetEstimatedNumberOfThreads(), flush=True)
     for line in sys.stdin:
-        which, with_normals = map(int, line.split())
+        which, with_normals, sequential = map(int, line.split())
+        vtkSMPTools.SetBackend(backends[sequential])
         edges = filters[which][with_normals]
         edges.Modified()
         began = time.perf_counter()
