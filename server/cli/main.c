@@ -11,6 +11,7 @@ static const struct command {
 } commands[] = {
     { "info", "print what a plan holds and what was noticed while reading it", command_info },
     { "phantom", "write the demo plan, a made-up head", command_phantom },
+    { "render", "draw one picture of a plan", command_render },
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 

@@ -1,7 +1,7 @@
 // The program `beamroom` from outside: what it prints, what it refuses, its exit codes.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
@@ -26,7 +26,7 @@ describe('beamroom', () => {
   it('explains itself and each command', () => {
     const help = beamroom('--help');
     assert.equal(help.status, 0);
-    for (const command of ['info', 'phantom']) {
+    for (const command of ['info', 'phantom', 'render']) {
       assert.match(help.stdout, new RegExp(`^  ${command} `, 'm'));
       const own = beamroom(command, '--help');
       assert.equal(own.status, 0);
@@ -47,13 +47,18 @@ describe('beamroom', () => {
       [['phantom', 'a', '--size', '96x96x9999'], /each side must be 16 to 1024/],
       [['phantom', 'a', '--seed', '-1'], /--seed '-1' is not a whole number/],
       [['phantom', 'a', '--seed'], /lacks its value/],
+      [['render', plan], /-o OUT/],
+      [['render', plan, '-o', 'x.gif'], /does not end in/],
+      [['render', plan, '-o', 'x.png', '--size', '5000x10'], /--size '5000x10'/],
+      [['render', plan, '-o', 'x.jpg', '--quality', '101'], /--quality '101'/],
+      [['render', plan, '-o', 'x.jpg', '--gl', 'metal'], /--gl 'metal'/],
     ]) {
       const { status, stdout, stderr } = beamroom(...args);
       assert.equal(status, 2, `${args}: ${stderr}`);
       assert.match(stderr, sentence);
       assert.equal(stdout, '');
     }
-    assert.ok(!existsSync('a'));
+    assert.ok(!existsSync('a') && !existsSync('x.png'));
   });
 
   it('refuses what is no plan with a sentence and 1', () => {
@@ -87,6 +92,7 @@ describe('beamroom info', () => {
     assert.match(stdout, /^Dose goorley, Gy per minute at 1e10 n\/cm2\/s, with a mask/m);
     assert.match(stdout, /^  boron +per ppm +41 x 57 x 49 +4 x 4 x 4 mm +LPS/m);
     assert.match(stdout, /from \(0\.0, 0\.0, 88\.0\) to \(0\.0, 0\.0, 10\.0\), aperture 100 mm$/m);
+    assert.match(stdout, /^  beam-line +1$/m);
     for (const line of stdout.split('\n')) assert.ok([...line].length <= 100, line);
   });
 
@@ -120,6 +126,61 @@ describe('beamroom info', () => {
     near(high.boron, 0.1016, 1e-6);
     assert.deepEqual(info.doses[0].components.map(({ per_ppm: perPpm }) => perPpm), [true, false, false, false]);
     assert.deepEqual(info.beams, [{ id: 'beam-1', entry_mm: [0, 0, 88], target_mm: [0, 0, 10], aperture_mm: 100 }]);
+    assert.equal(info.tracks.segments, Object.values(info.tracks.classes).reduce((sum, n) => sum + n, 0));
+    assert.equal(Object.values(info.tracks.classes).filter((n) => n > 0).length, 8);
     assert.deepEqual(info.report, { lines: [], dropped: 0 });
+  });
+});
+
+describe('beamroom render', () => {
+  it('writes a PNG of the size asked for, twice the same', () => {
+    const [one, two] = [join(folder, 'one.png'), join(folder, 'two.png')];
+    for (const out of [one, two]) {
+      const { status, stdout, stderr } = beamroom('render', plan, '-o', out, '--size', '320x200');
+      assert.equal(status, 0, stderr);
+      assert.match(stdout, /one\.png|two\.png/);
+      assert.match(stdout, /: 320 x 200, [1-9]\d* triangles, \d+ ms, (egl-device|egl-surfaceless|osmesa)\n$/);
+    }
+    const bytes = readFileSync(one);
+    assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
+    assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], [320, 200]);
+    assert.ok(bytes.length > 2000, 'an empty picture packs smaller');
+    assert.deepEqual(bytes, readFileSync(two));
+  });
+
+  it('takes scene and view as merge patches, and quality for JPEG', () => {
+    const [scene, view] = [join(folder, 'scene.json'), join(folder, 'view.json')];
+    writeFileSync(scene, JSON.stringify({ regions: { scalp: { visible: false }, cranium: { visible: false } } }));
+    writeFileSync(view, JSON.stringify({ kind: 'axial', size_px: [200, 200] }));
+    const sizes = ['20', '95'].map((quality) => {
+      const out = join(folder, `q${quality}.jpg`);
+      const { status, stderr } = beamroom('render', plan, '-o', out, '--scene', scene, '--view', view, '--quality', quality);
+      assert.equal(status, 0, stderr);
+      const bytes = readFileSync(out);
+      assert.deepEqual([...bytes.subarray(0, 3)], [0xff, 0xd8, 0xff]);
+      return bytes.length;
+    });
+    assert.ok(sizes[0] < sizes[1]);
+  });
+
+  it('refuses a scene or view that is wrong, naming file and field, and writes nothing', () => {
+    const patch = join(folder, 'patch.json');
+    const out = join(folder, 'never.png');
+    for (const [option, text, sentence] of [
+      ['--scene', '{"regions": {"brian": {"visible": true}}}', /patch\.json: \/regions\/brian: the plan has no region/],
+      ['--scene', '{"image": {"window": {"width": -4}}}', /patch\.json: \/image\/window\/width is -4, expected/],
+      ['--view', '{"kind": "upside-down"}', /patch\.json: \/kind is "upside-down", expected one of/],
+      ['--view', '{"override": {"image": {"id": "pet"}}}', /patch\.json: \/override\/image\/id: the plan has no image/],
+      ['--view', '{"override": {"image": {"window": {"width": 0}}}}', /patch\.json: \/override\/image\/window\/width is 0/],
+      ['--view', '{', /patch\.json: /],
+      ['--scene', `"${'x'.repeat(1 << 20)}"`, /longer than 1048576 bytes/],
+    ]) {
+      writeFileSync(patch, text);
+      const { status, stderr } = beamroom('render', plan, '-o', out, option, patch);
+      assert.equal(status, 1, stderr);
+      assert.match(stderr, sentence);
+    }
+    assert.equal(beamroom('render', plan, '-o', out, '--view', join(folder, 'none.json')).status, 1);
+    assert.ok(!existsSync(out));
   });
 });

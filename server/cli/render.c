@@ -1,0 +1,296 @@
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/base/clock.h"
+#include "core/base/file_write.h"
+#include "core/encode/encode.h"
+#include "core/render/render.h"
+#include "server/cli/command.h"
+#include "server/cli/text.h"
+#include "server/wire/document.h"
+
+enum { DOCUMENT_MAX_BYTES = 1 << 20, DEFAULT_QUALITY = 92 };
+
+struct render_job {
+    const char *folder, *out, *scene_path, *view_path;
+    enum encode_codec codec;
+    enum render_back_end back_end;
+    int size_px[2]; /* 0: the view's */
+    int quality;
+};
+
+static void print_help(void)
+{
+    printf("usage: beamroom render DIR -o OUT.png|OUT.jpg [OPTION]...\n"
+           "Draws one picture of the plan in the folder DIR, the same that the daemon shows for the same scene and view.\n\n"
+           "  -o, --output OUT  the picture; its ending says whether PNG or JPEG\n"
+           "  --scene FILE      JSON: what differs from the scene a new room starts with (a merge patch, RFC 7396)\n"
+           "  --view FILE       JSON: what differs from the view from the front, 1024x768; camera, kind, size, override\n"
+           "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
+           "  --gl BACKEND      auto, egl-device, egl-surfaceless or osmesa (default auto: the first that works)\n"
+           "  --quality N       of a JPEG, 1 to 100 (default %d)\n"
+           "  --help            this text\n\n"
+           "The fields of scene and view are those of the daemon's API. Equal plans, scenes and views give equal pictures on the\n"
+           "same back end.\n",
+           DEFAULT_QUALITY);
+}
+
+/* ---- what to draw --------------------------------------------------------------------------------------------------- */
+
+/* "FILE: /the/field is 3, expected 0 to 1": a detail that starts with the field's place needs it only once. */
+static bool refuse_problem(const char *path, const struct problem *problem, struct error *err)
+{
+    const char *detail = problem->detail;
+    bool has_place = detail[0] == '/';
+    if (has_place)
+        detail += strcspn(detail, " ");
+    else if (*problem->pointer)
+        return error_set(err, ERROR_FORMAT, "%s: %s: %s", path, problem->pointer, detail);
+    return error_set(err, ERROR_FORMAT, "%s: %s%s", path, has_place ? problem->pointer : "", detail);
+}
+
+/* A JSON document from a file, at most DOCUMENT_MAX_BYTES. NULL with err. */
+static cJSON *read_document(const char *path, struct error *err)
+{
+    cJSON *json = NULL;
+    char *bytes = malloc(DOCUMENT_MAX_BYTES + 1);
+    FILE *in = bytes ? fopen(path, "rb") : NULL;
+    if (!in) {
+        error_set(err, bytes ? ERROR_IO : ERROR_MEMORY, "%s: %s", path, strerror(errno));
+    } else {
+        size_t n = fread(bytes, 1, DOCUMENT_MAX_BYTES + 1, in);
+        struct problem problem = { 0 };
+        if (ferror(in))
+            error_set(err, ERROR_IO, "%s: cannot be read", path);
+        else if (n > DOCUMENT_MAX_BYTES)
+            error_set(err, ERROR_LIMIT, "%s: is longer than %d bytes", path, DOCUMENT_MAX_BYTES);
+        else if (!(json = json_read(bytes, n, &problem)))
+            refuse_problem(path, &problem, err);
+        fclose(in);
+    }
+    free(bytes);
+    return json;
+}
+
+/* The plan's first scene with the file's patch. NULL with err. */
+static cJSON *make_scene(const cJSON *defaults, const char *const *image_ids, const char *path, struct error *err)
+{
+    struct problem problem = { 0 };
+    cJSON *patch = path ? read_document(path, err) : cJSON_CreateObject();
+    if (!patch)
+        return NULL;
+    cJSON *scene = scene_document_patch(defaults, image_ids, defaults, patch, &problem);
+    cJSON_Delete(patch);
+    if (!scene)
+        refuse_problem(path ? path : "scene", &problem, err);
+    return scene;
+}
+
+static cJSON *make_view(const char *path, const int size_px[2], struct error *err)
+{
+    struct problem problem = { 0 };
+    cJSON *patch = path ? read_document(path, err) : cJSON_CreateObject();
+    if (!patch)
+        return NULL;
+    cJSON *view = view_document_patch(NULL, patch, &problem);
+    cJSON_Delete(patch);
+    if (!view) {
+        refuse_problem(path ? path : "view", &problem, err);
+        return NULL;
+    }
+    if (size_px[0] == 0)
+        return view;
+    cJSON *size = cJSON_CreateObject();
+    cJSON_AddItemToObject(size, "size_px", cJSON_CreateIntArray(size_px, 2));
+    cJSON *sized = view_document_patch(view, size, &problem);
+    cJSON_Delete(size);
+    cJSON_Delete(view);
+    if (!sized)
+        refuse_problem("--size", &problem, err);
+    return sized;
+}
+
+/* Scene and view of the job as a snapshot. NULL with err. */
+static struct snapshot *make_snapshot(struct plan *plan, const struct render_job *job, struct error *err)
+{
+    const char *image_ids[PLAN_MAX_IMAGES + 1] = { NULL };
+    for (size_t i = 0; i < plan->n_images; i++)
+        image_ids[i] = plan->images[i].id;
+    struct scene scene = { 0 };
+    struct view view = { 0 };
+    struct problem problem = { 0 };
+    struct snapshot *snapshot = NULL;
+    char field[128] = "";
+
+    scene_for_plan(plan, &scene);
+    cJSON *defaults = scene_write(&scene), *scene_json = NULL, *shown_json = NULL, *view_json = NULL;
+    scene_finish(&scene);
+    if (!(scene_json = make_scene(defaults, image_ids, job->scene_path, err)) ||
+        !(view_json = make_view(job->view_path, job->size_px, err)))
+        goto done;
+    if (!(shown_json = scene_document_for_view(defaults, image_ids, scene_json, view_json, &problem))) {
+        refuse_problem(job->view_path ? job->view_path : "view", &problem, err);
+        goto done;
+    }
+    if (!scene_read(shown_json, &scene, &problem)) {
+        refuse_problem("scene", &problem, err);
+        goto done;
+    }
+    if (!view_read(view_json, &view, &problem)) {
+        scene_finish(&scene);
+        refuse_problem("view", &problem, err);
+        goto done;
+    }
+    snapshot = snapshot_create(plan, &scene, &view, 0, field, err);
+    if (!snapshot && *field)
+        error_prefix(err, "%s", field);
+done:
+    cJSON_Delete(defaults);
+    cJSON_Delete(scene_json);
+    cJSON_Delete(shown_json);
+    cJSON_Delete(view_json);
+    return snapshot;
+}
+
+/* ---- the picture ---------------------------------------------------------------------------------------------------- */
+
+static bool write_picture(const struct image *image, const struct render_job *job, struct error *err)
+{
+    const struct encode_options options = { job->codec, job->quality, true };
+    struct encoded encoded = { 0 };
+    struct encoder *encoder = encoder_create();
+    bool is_written = encode_image(encoder, image, &options, &encoded, err) && file_write(job->out, encoded.bytes, encoded.n_bytes, err);
+    free(encoded.bytes);
+    encoder_destroy(encoder);
+    return is_written;
+}
+
+static bool draw(struct plan *plan, const struct render_job *job, struct error *err)
+{
+    struct snapshot *snapshot = make_snapshot(plan, job, err);
+    if (!snapshot)
+        return false;
+    bool is_drawn = false;
+    struct image *image = NULL;
+    struct renderer *renderer = renderer_create(job->back_end, err);
+    if (renderer) {
+        const struct render_options options = { snapshot->view.size_px[0], snapshot->view.size_px[1], SURFACE_FULL, true };
+        struct camera camera;
+        struct render_timing timing = { 0 };
+        int64_t start_us = clock_now_us();
+        image = render_snapshot(renderer, snapshot, &options, &camera, &timing, err);
+        is_drawn = image && write_picture(image, job, err);
+        if (is_drawn) {
+            text_print(stdout, job->out, 0);
+            printf(": %d x %d, %zu triangles, %.0f ms, %s\n", image->width_px, image->height_px, timing.n_triangles,
+                   (double)(clock_now_us() - start_us) / 1000, render_back_end_word(renderer_facts(renderer)->back_end));
+        }
+        renderer_forget(renderer, plan);
+    }
+    image_destroy(image);
+    renderer_destroy(renderer);
+    snapshot_unref(snapshot);
+    return is_drawn;
+}
+
+/* ---- the command line ----------------------------------------------------------------------------------------------- */
+
+static bool parse_between(const char **at, int low, int high, int *number)
+{
+    if (**at < '0' || **at > '9')
+        return false;
+    char *end;
+    errno = 0;
+    long value = strtol(*at, &end, 10);
+    *at = end;
+    *number = (int)value;
+    return errno == 0 && value >= low && value <= high;
+}
+
+static bool parse_size(const char *text, int size_px[2])
+{
+    return parse_between(&text, 16, 4096, &size_px[0]) && *text++ == 'x' && parse_between(&text, 16, 4096, &size_px[1]) && *text == 0;
+}
+
+static bool parse_quality(const char *text, int *quality)
+{
+    return parse_between(&text, 1, 100, quality) && *text == 0;
+}
+
+static bool codec_from_path(const char *path, enum encode_codec *codec)
+{
+    const char *dot = strrchr(path, '.');
+    if (!dot)
+        return false;
+    *codec = strcasecmp(dot, ".png") == 0 ? ENCODE_PNG : ENCODE_JPEG;
+    return *codec == ENCODE_PNG || strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0;
+}
+
+/* false with *code when there is nothing to draw */
+static bool parse_arguments(int argc, char **argv, struct render_job *job, int *code)
+{
+    static const struct option long_options[] = { { "output", required_argument, NULL, 'o' }, { "scene", required_argument, NULL, 's' },
+                                                  { "view", required_argument, NULL, 'v' },   { "size", required_argument, NULL, 'z' },
+                                                  { "gl", required_argument, NULL, 'g' },     { "quality", required_argument, NULL, 'q' },
+                                                  { "help", no_argument, NULL, 'h' },         { NULL, 0, NULL, 0 } };
+    *code = EXIT_USAGE;
+    opterr = 0;
+    for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
+        switch (option) {
+        case 'o':
+            job->out = optarg;
+            break;
+        case 's':
+            job->scene_path = optarg;
+            break;
+        case 'v':
+            job->view_path = optarg;
+            break;
+        case 'z':
+            if (!parse_size(optarg, job->size_px))
+                return command_usage_error("render", "--size '%s' is not of the form 1024x768, each 16 to 4096", optarg), false;
+            break;
+        case 'g':
+            if (!render_back_end_from_word(optarg, &job->back_end))
+                return command_usage_error("render", "--gl '%s' is not auto, egl-device, egl-surfaceless or osmesa", optarg), false;
+            break;
+        case 'q':
+            if (!parse_quality(optarg, &job->quality))
+                return command_usage_error("render", "--quality '%s' is not 1 to 100", optarg), false;
+            break;
+        case 'h':
+            print_help();
+            *code = EXIT_DONE;
+            return false;
+        default:
+            return command_usage_error("render", "'%s' is not an option or lacks its value", argv[optind - 1]), false;
+        }
+    }
+    if (argc - optind != 1)
+        return command_usage_error("render", "one folder is needed, %d are given", argc - optind), false;
+    if (!job->out)
+        return command_usage_error("render", "where to write is needed: -o OUT.png or -o OUT.jpg"), false;
+    if (!codec_from_path(job->out, &job->codec))
+        return command_usage_error("render", "-o '%s' does not end in .png, .jpg or .jpeg", job->out), false;
+    job->folder = argv[optind];
+    return true;
+}
+
+int command_render(int argc, char **argv)
+{
+    struct render_job job = { .back_end = RENDER_AUTO, .quality = DEFAULT_QUALITY };
+    struct error err = { 0 };
+    int code;
+    if (!parse_arguments(argc, argv, &job, &code))
+        return code;
+    struct plan *plan = command_open_plan("render", job.folder);
+    if (!plan)
+        return EXIT_REFUSED;
+    code = draw(plan, &job, &err) ? EXIT_DONE : command_refused("render", &err);
+    plan_destroy(plan);
+    return code;
+}
