@@ -66,7 +66,7 @@ SERVER_SRC := $(call c_files,server/room server/http server/ws server/fleet serv
 DAEMON_SRC := $(call c_files,server/daemon)
 RENDERER_SRC := $(call c_files,server/renderer)
 CLI_SRC := $(call c_files,server/cli)
-GEN_SRC := $(GEN)/wire_gen.c
+GEN_SRC := $(GEN)/wire_gen.c $(GEN)/openapi.c
 
 obj = $(patsubst %.c,$(B)/obj/%.o,$(1))
 $(B)/obj/%.o: %.c | $(GEN_STAMP)
@@ -88,7 +88,7 @@ $(B)/beamroom-render: $(call obj,$(RENDERER_SRC)) $(B)/libwire.a $(B)/libcore.a
 $(B)/beamroom: $(call obj,$(CLI_SRC)) $(B)/libwire.a $(B)/libcore.a
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CORE_LIBS)
 
-PROGRAMS := $(if $(DAEMON_SRC),$(B)/beamroomd) $(if $(RENDERER_SRC),$(B)/beamroom-render) $(if $(CLI_SRC),$(B)/beamroom)
+PROGRAMS := $(if $(wildcard server/daemon/net.c),$(B)/beamroomd) $(if $(RENDERER_SRC),$(B)/beamroom-render) $(if $(CLI_SRC),$(B)/beamroom)
 .DEFAULT_GOAL := all
 .PHONY: all programs
 all: programs web

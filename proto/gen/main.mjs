@@ -1,6 +1,7 @@
 // Writes what is made from proto/*.json into the folder named on the command line:
 //   scene.h scene.c      structs, enums, defaults of scene and view; no JSON, for core
 //   wire_gen.h wire_gen.c  field tables and message structs for server/wire
+//   openapi.json openapi.c  the HTTP API, for people and for the daemon to serve
 //   wire.js              the same tables for the page
 //   reference.html       for people
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -9,12 +10,14 @@ import { fileURLToPath } from 'node:url';
 import { sceneHeader, sceneSource } from './scene_c.mjs';
 import { wireHeader, wireSource } from './wire_c.mjs';
 import { wireScript } from './wire_js.mjs';
+import { openapi, openapiSource } from './openapi.mjs';
 import { referencePage } from './reference.mjs';
 
 const proto = join(dirname(fileURLToPath(import.meta.url)), '..');
 const read = (name) => JSON.parse(readFileSync(join(proto, name), 'utf8'));
 const scene = read('scene.json');
 const messages = read('messages.json');
+const api = openapi(read('http.json'), scene, '1');
 const out = process.argv[2];
 mkdirSync(out, { recursive: true });
 const write = (name, text) => writeFileSync(join(out, name), text);
@@ -25,3 +28,5 @@ write('wire_gen.h', wireHeader(scene, messages));
 write('wire_gen.c', wireSource(scene, messages));
 write('wire.js', wireScript(scene, messages));
 write('reference.html', referencePage(scene, messages));
+write('openapi.json', JSON.stringify(api, null, 1));
+write('openapi.c', openapiSource(api));

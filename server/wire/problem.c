@@ -10,6 +10,7 @@ static const struct {
     [PROBLEM_NONE] = { "none", "No problem", 200 },
     [PROBLEM_JSON] = { "json", "Not readable as JSON", 400 },
     [PROBLEM_VALIDATION] = { "validation", "A field is wrong", 422 },
+    [PROBLEM_FORBIDDEN] = { "forbidden", "Not for this origin", 403 },
     [PROBLEM_NOT_FOUND] = { "not-found", "There is no such thing", 404 },
     [PROBLEM_METHOD] = { "method", "Not a method of this address", 405 },
     [PROBLEM_STALE_REVISION] = { "stale-revision", "Changed by somebody else meanwhile", 412 },

@@ -8,6 +8,7 @@ enum problem_type {
     PROBLEM_NONE,
     PROBLEM_JSON,            /* 400 the body is not JSON (or not UTF-8, or too deep) */
     PROBLEM_VALIDATION,      /* 422 a field is wrong: pointer says which, code how */
+    PROBLEM_FORBIDDEN,       /* 403 asked for by a page of another origin */
     PROBLEM_NOT_FOUND,       /* 404 */
     PROBLEM_METHOD,          /* 405 */
     PROBLEM_STALE_REVISION,  /* 412 If-Match names another revision than the current */

@@ -1,0 +1,171 @@
+/* beamroomd: reads the settings, starts net, HTTP and the acceptor in this order, waits for a signal, stops them in the other. */
+#define _GNU_SOURCE
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/daemon/acceptor.h"
+#include "server/daemon/net.h"
+#include "server/daemon/options.h"
+#include "server/http/http.h"
+
+enum { PATH_SIZE = 4096 };
+
+static bool make_folders(const char *folder, struct error *err)
+{
+    char path[PATH_SIZE];
+    (void)snprintf(path, sizeof path, "%s", folder);
+    for (char *slash = path + 1;; slash++) {
+        char kept = *slash;
+        if (kept != '/' && kept != 0)
+            continue;
+        *slash = 0;
+        if (mkdir(path, 0700) != 0 && errno != EEXIST)
+            return error_set(err, ERROR_IO, "--data %.150s: %s", path, strerror(errno));
+        *slash = kept;
+        if (!kept)
+            break;
+    }
+    if (access(folder, W_OK) != 0)
+        return error_set(err, ERROR_IO, "--data %.150s: %s", folder, strerror(errno));
+    return true;
+}
+
+static bool default_data_folder(char path[PATH_SIZE], struct error *err)
+{
+    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+    if (state && *state)
+        (void)snprintf(path, PATH_SIZE, "%s/beamroom", state);
+    else if (home && *home)
+        (void)snprintf(path, PATH_SIZE, "%s/.local/state/beamroom", home);
+    else
+        return error_set(err, ERROR_NOT_FOUND, "--data is needed: neither XDG_STATE_HOME nor HOME is set");
+    return true;
+}
+
+/* Beside the program: build/web next to build/release, or share/beamroom/web of an installation. */
+static bool default_web_folder(char path[PATH_SIZE], struct error *err)
+{
+    static const char *const places[] = { "../web", "../share/beamroom/web" };
+    char program[PATH_SIZE - 64];
+    ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[n > 0 ? n : 0] = 0;
+    char *slash = strrchr(program, '/');
+    if (slash)
+        *slash = 0;
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        char index[PATH_SIZE];
+        (void)snprintf(path, PATH_SIZE, "%s/%s", program, places[i]);
+        (void)snprintf(index, sizeof index, "%s/%s/index.html", program, places[i]);
+        if (access(index, R_OK) == 0)
+            return true;
+    }
+    return error_set(err, ERROR_NOT_FOUND, "the page's files are not beside the program; say --web DIR");
+}
+
+static bool gl_is_known(const char *gl, struct error *err)
+{
+    static const char *const known[] = { "auto", "egl-device", "egl-surfaceless", "osmesa" };
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+        if (strcmp(gl, known[i]) == 0)
+            return true;
+    return error_set(err, ERROR_FORMAT, "--gl is \"%.40s\", expected auto, egl-device, egl-surfaceless or osmesa", gl);
+}
+
+/* Serves until a signal comes. */
+static bool serve(const struct options *options, const char *data_folder, const char *web_folder, struct error *err)
+{
+    const struct net_options net_options = {
+        .fleet = { .plan_folders = (const char *const *)options->plan_folders,
+                   .n_plan_folders = options->n_plan_folders,
+                   .data_folder = data_folder,
+                   .renderer_path = options->renderer_path,
+                   .gl = options->gl ? options->gl : "auto",
+                   .stub_renderer = options->stub_renderer,
+                   .max_renderer_bytes = (uint64_t)options->max_renderer_mib << 20,
+                   .max_renderers = (int)options->max_renderers,
+                   .idle_close_s = (int)options->plan_idle_close_s },
+        .max_rooms = (int)options->max_rooms,
+        .room_idle_close_s = (int)options->room_idle_close_s,
+        .room = { .max_members = (int)options->max_members },
+        .allowed_origin = options->allowed_origin,
+    };
+    const struct http_options http_options = { .web_folder = web_folder };
+    struct net *net = net_create(&net_options, err);
+    struct http *http = net ? http_create(net, &http_options, err) : NULL;
+    struct acceptor *acceptor = http ? acceptor_create(options->listen ? options->listen : "127.0.0.1:8080", net, http, err) : NULL;
+    if (acceptor) {
+        sigset_t signals;
+        int signal_number = 0;
+        printf("ready %s\n", acceptor_url(acceptor));
+        (void)fflush(stdout);
+        log_info("serving on %s", acceptor_url(acceptor));
+        sigemptyset(&signals);
+        sigaddset(&signals, SIGINT);
+        sigaddset(&signals, SIGTERM);
+        sigwait(&signals, &signal_number);
+        log_info("stopping: %s", strsignal(signal_number));
+    }
+    acceptor_destroy(acceptor);
+    if (http)
+        http_stop_asking(http);
+    net_destroy(net);
+    http_destroy(http);
+    return acceptor != NULL;
+}
+
+int main(int argc, char **argv)
+{
+    struct options options;
+    struct error err = { 0 };
+    char data_folder[PATH_SIZE], web_folder[PATH_SIZE];
+    if (!options_read(&options, argc, argv, &err)) {
+        fprintf(stderr, "beamroomd: %s\n", err.text);
+        options_finish(&options);
+        return 2;
+    }
+    if (options.wants_help || options.wants_version) {
+        if (options.wants_help)
+            options_print_help();
+        else
+            printf("beamroomd %s\n", BEAMROOM_VERSION);
+        options_finish(&options);
+        return 0;
+    }
+    log_start("beamroomd", options.log_level);
+
+    /* every thread inherits the mask, so that signals reach sigwait alone; a write to a closed socket is an error, not a signal */
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    sigprocmask(SIG_BLOCK, &signals, NULL);
+    signal(SIGPIPE, SIG_IGN);
+    struct rlimit no_core = { 0, 0 }; /* memory holds patients' data */
+    (void)setrlimit(RLIMIT_CORE, &no_core);
+
+    bool ok = !options.gl || gl_is_known(options.gl, &err);
+    if (ok && options.data_folder)
+        (void)snprintf(data_folder, sizeof data_folder, "%s", options.data_folder);
+    else if (ok)
+        ok = default_data_folder(data_folder, &err);
+    ok = ok && make_folders(data_folder, &err);
+    if (ok && options.web_folder)
+        (void)snprintf(web_folder, sizeof web_folder, "%s", options.web_folder);
+    else if (ok)
+        ok = default_web_folder(web_folder, &err);
+    if (ok && options.n_plan_folders == 0)
+        log_warn("no --plans folder: there is nothing to show");
+    ok = ok && serve(&options, data_folder, web_folder, &err);
+    if (!ok)
+        log_error("%s", err.text);
+    options_finish(&options);
+    return ok ? 0 : 1;
+}

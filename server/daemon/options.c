@@ -1,0 +1,207 @@
+#include "server/daemon/options.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+
+enum kind { KIND_FOLDERS, KIND_TEXT, KIND_COUNT, KIND_FLAG, KIND_LEVEL };
+
+/* One row a setting: flag --name VALUE, key "name = value". */
+struct setting {
+    const char *name, *value_name, *about;
+    enum kind kind;
+    size_t offset;
+    int64_t least, most;
+};
+
+#define AT(member) offsetof(struct options, member)
+static const struct setting settings[] = {
+    { "plans", "DIR", "a folder of plans, or one plan; may be repeated; only ever read", KIND_FOLDERS, AT(plan_folders), 0, 0 },
+    { "data", "DIR", "own state and cache; default: $XDG_STATE_HOME/beamroom or ~/.local/state/beamroom", KIND_TEXT, AT(data_folder), 0, 0 },
+    { "web", "DIR", "the page's files; default: beside the program or ../share/beamroom/web", KIND_TEXT, AT(web_folder), 0, 0 },
+    { "listen", "ADDRESS:PORT", "default 127.0.0.1:8080; port 0 lets the system choose. There is no TLS here: put a proxy in front", KIND_TEXT,
+      AT(listen), 0, 0 },
+    { "gl", "NAME", "auto (default), egl-device, egl-surfaceless or osmesa", KIND_TEXT, AT(gl), 0, 0 },
+    { "renderer", "FILE", "the renderer's program; default: beamroom-render beside this one", KIND_TEXT, AT(renderer_path), 0, 0 },
+    { "max-renderers", "N", "plans open at once; default 8", KIND_COUNT, AT(max_renderers), 1, 1000 },
+    { "max-renderer-mib", "N", "address space of one renderer in MiB, 0 no limit; default 16384", KIND_COUNT, AT(max_renderer_mib), 0, 1 << 24 },
+    { "plan-idle-close", "SECONDS", "close a plan nobody uses after this, 0 never; default 600", KIND_COUNT, AT(plan_idle_close_s), 0, 1 << 24 },
+    { "room-idle-close", "SECONDS", "close a room nobody is in after this, 0 never; default 86400", KIND_COUNT, AT(room_idle_close_s), 0, 1 << 24 },
+    { "max-rooms", "N", "default 200", KIND_COUNT, AT(max_rooms), 1, 10000 },
+    { "max-members", "N", "people in one room; default 32, at most 64", KIND_COUNT, AT(max_members), 1, 64 },
+    { "allow-origin", "ORIGIN", "a further origin whose pages may open WebSockets, as https://beamroom.example", KIND_TEXT, AT(allowed_origin), 0, 0 },
+    { "log-level", "LEVEL", "debug, info (default), warning or error", KIND_LEVEL, AT(log_level), 0, 0 },
+    { "stub", NULL, "draw grey pictures instead of using GL; for tests", KIND_FLAG, AT(stub_renderer), 0, 0 },
+};
+enum { N_SETTINGS = sizeof settings / sizeof settings[0] };
+
+static const struct setting *find_setting(const char *name, size_t n)
+{
+    for (size_t i = 0; i < N_SETTINGS; i++)
+        if (strlen(settings[i].name) == n && strncmp(settings[i].name, name, n) == 0)
+            return &settings[i];
+    return NULL;
+}
+
+static bool set_count(const struct setting *setting, const char *value, int64_t *count, struct error *err)
+{
+    char *end;
+    errno = 0;
+    long long number = strtoll(value, &end, 10);
+    if (end == value || *end || errno || number < setting->least || number > setting->most)
+        return error_set(err, ERROR_FORMAT, "%s is \"%.40s\", expected a whole number from %lld to %lld", setting->name, value,
+                         (long long)setting->least, (long long)setting->most);
+    *count = number;
+    return true;
+}
+
+static bool set_level(const char *value, enum log_level *level, struct error *err)
+{
+    static const char *const words[] = { "debug", "info", "warning", "error" };
+    for (int i = 0; i < 4; i++)
+        if (strcmp(value, words[i]) == 0) {
+            *level = (enum log_level)i;
+            return true;
+        }
+    return error_set(err, ERROR_FORMAT, "log-level is \"%.40s\", expected debug, info, warning or error", value);
+}
+
+static bool set(struct options *options, const struct setting *setting, const char *value, struct error *err)
+{
+    char *at = (char *)options + setting->offset;
+    switch (setting->kind) {
+    case KIND_FOLDERS:
+        if (options->n_plan_folders == OPTIONS_MAX_PLAN_FOLDERS)
+            return error_set(err, ERROR_LIMIT, "more than %d plan folders", OPTIONS_MAX_PLAN_FOLDERS);
+        options->plan_folders[options->n_plan_folders++] = mem_copy_text(value);
+        return true;
+    case KIND_TEXT: {
+        char **text = (char **)(void *)at;
+        free(*text);
+        *text = mem_copy_text(value);
+        return true;
+    }
+    case KIND_COUNT: return set_count(setting, value, (int64_t *)(void *)at, err);
+    case KIND_LEVEL: return set_level(value, &options->log_level, err);
+    case KIND_FLAG: *(bool *)at = strcmp(value, "no") != 0 && strcmp(value, "false") != 0; return true;
+    }
+    return false;
+}
+
+static char *trim(char *text)
+{
+    text += strspn(text, " \t\r\n");
+    size_t n = strlen(text);
+    while (n && strchr(" \t\r\n", text[n - 1]))
+        text[--n] = 0;
+    return text;
+}
+
+/* given: settings the command line has said already, which win */
+static bool read_file(struct options *options, const char *name, const bool *given, struct error *err)
+{
+    char line[OPTIONS_MAX_LINE];
+    FILE *file = fopen(name, "re");
+    if (!file)
+        return error_set(err, ERROR_IO, "--config %.100s: %s", name, strerror(errno));
+    bool ok = true;
+    for (int number = 1; ok && fgets(line, sizeof line, file); number++) {
+        if (!strchr(line, '\n') && !feof(file)) {
+            ok = error_set(err, ERROR_LIMIT, "%.100s line %d: longer than %d bytes", name, number, OPTIONS_MAX_LINE - 2);
+            break;
+        }
+        line[strcspn(line, "#")] = 0;
+        char *key = trim(line);
+        if (!*key)
+            continue;
+        char *equals = strchr(key, '=');
+        if (!equals) {
+            ok = error_set(err, ERROR_FORMAT, "%.100s line %d: expected \"key = value\", found \"%.60s\"", name, number, key);
+            break;
+        }
+        *equals = 0;
+        key = trim(key);
+        const struct setting *setting = find_setting(key, strlen(key));
+        if (!setting)
+            ok = error_set(err, ERROR_FORMAT, "%.100s line %d: there is no setting \"%.40s\"", name, number, key);
+        else if (!given[setting - settings]) {
+            ok = set(options, setting, trim(equals + 1), err);
+            if (!ok)
+                error_prefix(err, "%.100s line %d", name, number);
+        }
+    }
+    fclose(file);
+    return ok;
+}
+
+bool options_read(struct options *options, int argc, char **argv, struct error *err)
+{
+    bool given[N_SETTINGS] = { false };
+    const char *config = NULL;
+    *options = (struct options){ .max_renderers = 8, .max_renderer_mib = 16384, .plan_idle_close_s = 600, .room_idle_close_s = 86400,
+                                 .max_rooms = 200, .max_members = 32, .log_level = LOG_INFO };
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "-h") == 0 || strcmp(argv[i], "--help") == 0) {
+            options->wants_help = true;
+            return true;
+        }
+        if (strcmp(argv[i], "--version") == 0) {
+            options->wants_version = true;
+            return true;
+        }
+        if (strncmp(argv[i], "--", 2) != 0)
+            return error_set(err, ERROR_FORMAT, "\"%.60s\" is not a flag; see --help", argv[i]);
+        const char *name = argv[i] + 2, *value = strchr(name, '=');
+        size_t n = value ? (size_t)(value - name) : strlen(name);
+        const struct setting *setting = find_setting(name, n);
+        bool is_config = n == 6 && strncmp(name, "config", 6) == 0;
+        if (!setting && !is_config)
+            return error_set(err, ERROR_FORMAT, "there is no flag --%.*s; see --help", (int)(n < 60 ? n : 60), name);
+        if (value)
+            value++;
+        else if (setting && setting->kind == KIND_FLAG)
+            value = "yes";
+        else if (++i < argc)
+            value = argv[i];
+        else
+            return error_set(err, ERROR_FORMAT, "--%.60s needs a value", name);
+        if (is_config)
+            config = value;
+        else if (!set(options, setting, value, err))
+            return false;
+        else
+            given[setting - settings] = true;
+    }
+    return !config || read_file(options, config, given, err);
+}
+
+void options_finish(struct options *options)
+{
+    for (size_t i = 0; i < options->n_plan_folders; i++)
+        free(options->plan_folders[i]);
+    free(options->data_folder);
+    free(options->web_folder);
+    free(options->listen);
+    free(options->gl);
+    free(options->renderer_path);
+    free(options->allowed_origin);
+}
+
+void options_print_help(void)
+{
+    printf("beamroomd: shows neutron capture therapy plans to browsers\n\n"
+           "  beamroomd --plans DIR [--listen ADDRESS:PORT] [flags]\n\n"
+           "Loads plans from the folders given, draws them here and streams the pictures to any browser that opens the\n"
+           "address it prints (\"ready http://...\"). Stops on SIGINT or SIGTERM. Research and plan review only.\n\n");
+    for (size_t i = 0; i < N_SETTINGS; i++) {
+        char flag[64];
+        (void)snprintf(flag, sizeof flag, "--%s%s%s", settings[i].name, settings[i].value_name ? " " : "",
+                       settings[i].value_name ? settings[i].value_name : "");
+        printf("  %-28s %s\n", flag, settings[i].about);
+    }
+    printf("  %-28s %s\n  %-28s %s\n  %-28s %s\n", "--config FILE", "the same settings as lines of \"name = value\"; flags win", "--version",
+           "print the version", "--help", "print this");
+}

@@ -1,0 +1,25 @@
+#pragma once
+/* The daemon's settings: command line first, then a configuration file with the same names as keys. */
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/base/error.h"
+#include "core/base/log.h"
+
+enum { OPTIONS_MAX_PLAN_FOLDERS = 64, OPTIONS_MAX_LINE = 4096 };
+
+struct options {
+    char *plan_folders[OPTIONS_MAX_PLAN_FOLDERS];
+    size_t n_plan_folders;
+    char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin; /* NULL: not said */
+    int64_t max_renderers, max_renderer_mib, plan_idle_close_s, room_idle_close_s, max_rooms, max_members;
+    bool stub_renderer;
+    enum log_level log_level;
+    bool wants_help, wants_version;
+};
+
+/* Fills options with the defaults and what the command line and its --config file say; the command line wins.
+ *   errors ERROR_FORMAT names the flag, or file and line */
+NODISCARD bool options_read(struct options *options, int argc, char **argv, struct error *err);
+void options_finish(struct options *options);
+void options_print_help(void);

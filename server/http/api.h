@@ -1,0 +1,22 @@
+#pragma once
+/* The HTTP API's routes and what they do. Runs on the net thread. Knows nothing of libmicrohttpd. */
+#include "server/daemon/net.h"
+#include "server/http/call.h"
+
+struct api;
+
+struct api *api_create(struct net *net);
+void api_destroy(struct api *api);
+
+struct api_route {
+    const char *method, *path; /* as proto/http.json says: "/api/v1/plans/{plan}/open" */
+    void (*handle)(struct api *api, struct call *call);
+};
+extern const struct api_route api_routes[];
+extern const size_t api_n_routes;
+
+/* Finds the route, checks ids, runs it. Answers the call now or later, exactly once. */
+void api_handle(struct api *api, struct call *call);
+
+/* An answer went out; any thread. For /metrics. */
+void api_count(struct api *api, int status, int64_t took_us);

@@ -1,0 +1,62 @@
+#pragma once
+/* What the files of the API share: its state and the handlers. */
+#include "server/http/api.h"
+
+enum { API_MAX_JOBS = 500 }; /* ended ones are forgotten oldest first */
+
+struct api_job {
+    char id[40], plan_id[64];
+    enum { JOB_RUNNING, JOB_DONE, JOB_FAILED, JOB_CANCELLED } state;
+    char phase[200];
+    double percent;
+    struct problem problem; /* failed */
+    bool is_cancel_asked;
+};
+
+struct api {
+    struct net *net;
+    int64_t started_us;
+    struct api_job jobs[API_MAX_JOBS];
+    size_t n_jobs;    /* ever made; the job of number n is at n % API_MAX_JOBS */
+    _Atomic uint64_t n_calls[6], n_calls_us; /* by status / 100; time spent, for /metrics; counted by the HTTP thread */
+};
+
+/* Brings the states of running jobs up to date with their plans'. */
+void api_update_jobs(struct api *api);
+
+void api_healthz(struct api *api, struct call *call);
+void api_readyz(struct api *api, struct call *call);
+void api_metrics(struct api *api, struct call *call);
+void api_version(struct api *api, struct call *call);
+void api_openapi(struct api *api, struct call *call);
+
+void api_plans(struct api *api, struct call *call);
+void api_plan(struct api *api, struct call *call);
+void api_plan_open(struct api *api, struct call *call);
+void api_plan_close(struct api *api, struct call *call);
+void api_job(struct api *api, struct call *call);
+void api_job_cancel(struct api *api, struct call *call);
+void api_plan_render(struct api *api, struct call *call);
+void api_plan_surface(struct api *api, struct call *call);
+void api_plan_probe(struct api *api, struct call *call);
+void api_plan_pick(struct api *api, struct call *call);
+
+void api_rooms(struct api *api, struct call *call);
+void api_room_new(struct api *api, struct call *call);
+void api_room(struct api *api, struct call *call);
+void api_room_delete(struct api *api, struct call *call);
+void api_room_scene(struct api *api, struct call *call);
+void api_room_scene_patch(struct api *api, struct call *call);
+void api_room_members(struct api *api, struct call *call);
+void api_room_snapshot(struct api *api, struct call *call);
+void api_room_ws(struct api *api, struct call *call);
+
+/* A picture for a call: asks the plan's renderer and answers the call with the bytes. scene and view are complete documents, borrowed. */
+void api_render(struct api *api, struct call *call, const char *plan_id, const cJSON *scene, uint32_t revision, const cJSON *view,
+                const char *format, double quality);
+/* A query for a call: answered with the renderer's body. Takes query. */
+void api_query(struct api *api, struct call *call, const char *plan_id, cJSON *query);
+/* The view parameter, complete; a default view when it was not given. NULL: the call has been answered. */
+NODISCARD cJSON *api_view_parameter(struct call *call);
+/* {type: "query", what: what} */
+NODISCARD cJSON *api_new_query(const char *what);

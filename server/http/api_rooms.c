@@ -1,0 +1,215 @@
+/* Rooms: their documents, the shared scene with its ETag, snapshots. */
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "server/http/api_inner.h"
+
+/* The call's first id as a room; NULL: answered with not-found. */
+static struct room *find_room(struct api *api, struct call *call)
+{
+    struct room *room = net_room_find(api->net, call->ids[0]);
+    if (!room) {
+        struct problem problem;
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
+        call_answer_problem(call, &problem);
+    }
+    return room;
+}
+
+void api_rooms(struct api *api, struct call *call)
+{
+    cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "rooms");
+    for (size_t i = 0; i < net_n_rooms(api->net); i++)
+        cJSON_AddItemToArray(list, room_document(net_room_at(api->net, i)));
+    call_answer_json(call, 200, answer);
+}
+
+void api_room_new(struct api *api, struct call *call)
+{
+    static const char *const media_types[] = { "application/json", NULL };
+    struct problem problem = { 0 };
+    cJSON *body;
+    if (!call_read_object(call, media_types, &body))
+        return;
+    const cJSON *plan = cJSON_GetObjectItemCaseSensitive(body, "plan");
+    const cJSON *item;
+    cJSON_ArrayForEach(item, body)
+    {
+        char pointer[64];
+        (void)snprintf(pointer, sizeof pointer, "/%.60s", item->string);
+        if (strcmp(item->string, "plan") != 0)
+            problem_set(&problem, PROBLEM_VALIDATION, pointer, "unknown-field", "%.60s is not a field of a room", item->string);
+    }
+    if (!plan)
+        problem_set(&problem, PROBLEM_VALIDATION, "/plan", "required", "which plan? \"plan\" is missing");
+    else if (!cJSON_IsString(plan) || !id_is_valid(plan->valuestring))
+        problem_set(&problem, PROBLEM_VALIDATION, "/plan", "pattern", "\"plan\" must be the id of a plan");
+    struct room *room = problem.type == PROBLEM_NONE ? net_room_create(api->net, plan->valuestring, &problem) : NULL;
+    cJSON_Delete(body);
+    if (!room) {
+        call_answer_problem(call, &problem);
+        return;
+    }
+    char location[96];
+    (void)snprintf(location, sizeof location, "/api/v1/rooms/%s", room_id(room));
+    call_add_header(call, "Location", location);
+    call_answer_json(call, 201, room_document(room));
+}
+
+void api_room(struct api *api, struct call *call)
+{
+    struct room *room = find_room(api, call);
+    if (room)
+        call_answer_json(call, 200, room_document(room));
+}
+
+void api_room_delete(struct api *api, struct call *call)
+{
+    if (!find_room(api, call))
+        return;
+    net_room_delete(api->net, call->ids[0]);
+    call_answer_nothing(call, 204);
+}
+
+void api_room_members(struct api *api, struct call *call)
+{
+    struct room *room = find_room(api, call);
+    if (!room)
+        return;
+    cJSON *answer = cJSON_CreateObject();
+    cJSON_AddItemToObject(answer, "members", room_members(room));
+    call_answer_json(call, 200, answer);
+}
+
+static void write_etag(char etag[24], uint32_t revision)
+{
+    (void)snprintf(etag, 24, "\"%u\"", revision);
+}
+
+/* Whether a list of ETags (RFC 9110 13.1) names this one. Weak tags match only where weak comparison is allowed. */
+static bool etag_is_listed(const char *list, const char *etag, bool weak_allowed)
+{
+    size_t n = strlen(etag);
+    for (const char *at = list; *at;) {
+        at += strspn(at, " \t,");
+        if (*at == '*')
+            return true;
+        bool is_weak = strncmp(at, "W/", 2) == 0;
+        const char *tag = is_weak ? at + 2 : at;
+        size_t length = strcspn(tag, " \t,");
+        if (length == n && strncmp(tag, etag, n) == 0 && (weak_allowed || !is_weak))
+            return true;
+        at = tag + length;
+    }
+    return false;
+}
+
+/* The scene of the call's room; NULL: answered. */
+static const cJSON *find_scene(struct api *api, struct call *call, struct room **room, uint32_t *revision)
+{
+    *room = find_room(api, call);
+    if (!*room)
+        return NULL;
+    const cJSON *scene = room_scene(*room, revision);
+    if (!scene) {
+        struct problem problem;
+        problem_set(&problem, PROBLEM_BUSY, "", "", "the plan of this room is not loaded yet");
+        problem.retry_after_ms = 500;
+        call_answer_problem(call, &problem);
+    }
+    return scene;
+}
+
+void api_room_scene(struct api *api, struct call *call)
+{
+    struct room *room;
+    uint32_t revision;
+    const cJSON *scene = find_scene(api, call, &room, &revision);
+    if (!scene)
+        return;
+    char etag[24];
+    write_etag(etag, revision);
+    call_add_header(call, "ETag", etag);
+    if (call->if_none_match && etag_is_listed(call->if_none_match, etag, true))
+        call_answer_nothing(call, 304);
+    else
+        call_answer_json(call, 200, cJSON_Duplicate(scene, true));
+}
+
+void api_room_scene_patch(struct api *api, struct call *call)
+{
+    static const char *const media_types[] = { "application/merge-patch+json", "application/json", NULL };
+    struct problem problem;
+    struct room *room;
+    uint32_t revision;
+    cJSON *patch;
+    char etag[24];
+    if (!find_scene(api, call, &room, &revision))
+        return;
+    write_etag(etag, revision);
+    if (!call->if_match) {
+        problem_set(&problem, PROBLEM_REVISION_NEEDED, "", "", "send If-Match with the ETag of the scene you changed; it is %s now", etag);
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (!etag_is_listed(call->if_match, etag, false)) {
+        call_add_header(call, "ETag", etag);
+        problem_set(&problem, PROBLEM_STALE_REVISION, "", "", "the scene is at %s now, If-Match says %.40s; get it and try again", etag,
+                    call->if_match);
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (!call_read_object(call, media_types, &patch))
+        return;
+    bool ok = room_patch_scene(room, patch, clock_now_us(), &problem);
+    cJSON_Delete(patch);
+    if (!ok) {
+        call_answer_problem(call, &problem);
+        return;
+    }
+    const cJSON *scene = room_scene(room, &revision);
+    write_etag(etag, revision);
+    call_add_header(call, "ETag", etag);
+    call_answer_json(call, 200, cJSON_Duplicate(scene, true));
+}
+
+void api_room_snapshot(struct api *api, struct call *call)
+{
+    struct problem problem;
+    struct room *room;
+    struct fleet_plan plan;
+    uint32_t revision;
+    const cJSON *scene = find_scene(api, call, &room, &revision);
+    if (!scene)
+        return;
+    double quality = 92;
+    if (!call_query_number(call, "quality", false, &quality, &problem)) {
+        call_answer_problem(call, &problem);
+        return;
+    }
+    cJSON *view = api_view_parameter(call);
+    if (!view)
+        return;
+    const char *plan_id = room_plan_id(room);
+    bool is_known = fleet_plan_find(net_fleet(api->net), plan_id, &plan);
+    cJSON *shown = is_known ? scene_document_for_view(plan.default_scene, plan.image_ids, scene, view, &problem) : NULL;
+    if (!is_known)
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "the plan of this room is gone");
+    if (shown)
+        api_render(api, call, plan_id, shown, revision, view, call_query(call, "format"), quality);
+    else
+        call_answer_problem(call, &problem);
+    cJSON_Delete(shown);
+    cJSON_Delete(view);
+}
+
+void api_room_ws(struct api *api, struct call *call)
+{
+    (void)api;
+    struct problem problem;
+    problem_set(&problem, PROBLEM_UPGRADE, "", "", "the WebSocket is opened by the first request of a connection: GET with Upgrade: websocket");
+    call_add_header(call, "Upgrade", "websocket");
+    call_add_header(call, "Connection", "close");
+    call_answer_problem(call, &problem);
+}

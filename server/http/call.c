@@ -1,0 +1,177 @@
+#include "server/http/call.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/base/clock.h"
+#include "core/base/mem.h"
+
+struct call *call_create(void)
+{
+    struct call *call = mem_new(sizeof *call);
+    call->started_us = clock_now_us();
+    return call;
+}
+
+void call_destroy(struct call *call)
+{
+    if (!call)
+        return;
+    for (size_t i = 0; i < call->n_segments; i++)
+        free(call->segments[i]);
+    for (size_t i = 0; i < call->n_query; i++) {
+        free(call->query[i].name);
+        free(call->query[i].value);
+    }
+    for (size_t i = 0; i < call->n_headers; i++) {
+        free(call->headers[i].name);
+        free(call->headers[i].value);
+    }
+    free(call->if_match);
+    free(call->if_none_match);
+    free(call->content_type);
+    free(call->origin);
+    free(call->host);
+    free(call->body);
+    free(call->bytes);
+    free(call);
+}
+
+void call_set_path(struct call *call, const char *path)
+{
+    size_t n = strlen(path);
+    if (n >= sizeof call->path) {
+        problem_set(&call->early, PROBLEM_NOT_FOUND, "", "", "an address of %zu bytes, at most %d are read", n, CALL_MAX_PATH - 1);
+        return;
+    }
+    memcpy(call->path, path, n + 1);
+    for (const char *at = path; *at;) {
+        at += *at == '/';
+        size_t length = strcspn(at, "/");
+        if (length == 0 && !at[length])
+            break; /* a trailing slash */
+        if (call->n_segments == CALL_MAX_SEGMENTS) {
+            problem_set(&call->early, PROBLEM_NOT_FOUND, "", "", "an address of more than %d parts", CALL_MAX_SEGMENTS);
+            return;
+        }
+        char *segment = mem_new(length + 1);
+        memcpy(segment, at, length);
+        call->segments[call->n_segments++] = segment;
+        at += length;
+    }
+}
+
+const char *call_query(const struct call *call, const char *name)
+{
+    for (size_t i = 0; i < call->n_query; i++)
+        if (strcmp(call->query[i].name, name) == 0)
+            return call->query[i].value;
+    return NULL;
+}
+
+static void finish(struct call *call, int status, const char *media_type)
+{
+    call->status = status;
+    (void)snprintf(call->media_type, sizeof call->media_type, "%s", media_type);
+    call->finished(call);
+}
+
+void call_add_header(struct call *call, const char *name, const char *value)
+{
+    assert(call->n_headers < CALL_MAX_HEADERS);
+    call->headers[call->n_headers++] = (struct call_pair){ mem_copy_text(name), mem_copy_text(value) };
+}
+
+void call_answer_json(struct call *call, int status, cJSON *json)
+{
+    char *text = json_write(json);
+    cJSON_Delete(json);
+    call->bytes = (uint8_t *)text;
+    call->n_bytes = strlen(text);
+    finish(call, status, "application/json");
+}
+
+void call_answer_problem(struct call *call, const struct problem *problem)
+{
+    cJSON *json = problem_to_json(problem);
+    cJSON_AddStringToObject(json, "instance", call->path);
+    char *text = json_write(json);
+    cJSON_Delete(json);
+    if (problem->retry_after_ms > 0) {
+        char seconds[16];
+        (void)snprintf(seconds, sizeof seconds, "%d", (problem->retry_after_ms + 999) / 1000);
+        call_add_header(call, "Retry-After", seconds);
+    }
+    call->bytes = (uint8_t *)text;
+    call->n_bytes = strlen(text);
+    finish(call, problem_status(problem->type), "application/problem+json");
+}
+
+void call_answer_bytes(struct call *call, int status, const char *media_type, uint8_t *bytes, size_t n)
+{
+    call->bytes = bytes;
+    call->n_bytes = n;
+    finish(call, status, media_type);
+}
+
+void call_answer_text(struct call *call, int status, const char *media_type, const char *text)
+{
+    call->bytes = (uint8_t *)mem_copy_text(text);
+    call->n_bytes = strlen(text);
+    finish(call, status, media_type);
+}
+
+void call_answer_nothing(struct call *call, int status)
+{
+    finish(call, status, "");
+}
+
+static bool media_type_is(const char *content_type, const char *media_type)
+{
+    size_t n = strlen(media_type);
+    return strncasecmp(content_type, media_type, n) == 0 && (content_type[n] == 0 || content_type[n] == ';' || content_type[n] == ' ');
+}
+
+bool call_read_object(struct call *call, const char *const *media_types, cJSON **object)
+{
+    struct problem problem;
+    const char *const *type = media_types;
+    while (*type && !(call->content_type && media_type_is(call->content_type, *type)))
+        type++;
+    if (!*type) {
+        problem_set(&problem, PROBLEM_MEDIA_TYPE, "", "", "Content-Type is \"%.60s\", expected %s", call->content_type ? call->content_type : "",
+                    media_types[0]);
+        call_answer_problem(call, &problem);
+        return false;
+    }
+    *object = json_read(call->body ? call->body : "", call->n_body, &problem);
+    if (*object && !cJSON_IsObject(*object)) {
+        problem_set(&problem, PROBLEM_VALIDATION, "", "type", "the body must be a JSON object");
+        cJSON_Delete(*object);
+        *object = NULL;
+    }
+    if (!*object) {
+        call_answer_problem(call, &problem);
+        return false;
+    }
+    return true;
+}
+
+bool call_query_number(const struct call *call, const char *name, bool is_required, double *value, struct problem *problem)
+{
+    char pointer[64];
+    (void)snprintf(pointer, sizeof pointer, "/%s", name);
+    const char *text = call_query(call, name);
+    if (!text)
+        return !is_required || problem_set(problem, PROBLEM_VALIDATION, pointer, "required", "the parameter %s is missing", name);
+    char *end;
+    double number = strtod(text, &end);
+    if (end == text || *end || !isfinite(number) || strpbrk(text, "xXnN")) /* no hexadecimal, no "inf" */
+        return problem_set(problem, PROBLEM_VALIDATION, pointer, "type", "the parameter %s is \"%.40s\", expected a number", name, text);
+    *value = number;
+    return true;
+}

@@ -1,0 +1,135 @@
+#define _GNU_SOURCE
+#include "server/http/files.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "core/base/mem.h"
+
+struct files {
+    struct file *files;
+    size_t n;
+};
+
+static const char *media_type_of(const char *name)
+{
+    static const char *const types[][2] = {
+        { ".html", "text/html; charset=utf-8" }, { ".css", "text/css; charset=utf-8" }, { ".js", "text/javascript; charset=utf-8" },
+        { ".mjs", "text/javascript; charset=utf-8" }, { ".json", "application/json" }, { ".svg", "image/svg+xml" },
+        { ".png", "image/png" }, { ".ico", "image/x-icon" }, { ".woff2", "font/woff2" }, { ".txt", "text/plain; charset=utf-8" },
+        { ".webmanifest", "application/manifest+json" },
+    };
+    size_t n = strlen(name);
+    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
+        size_t ending = strlen(types[i][0]);
+        if (n > ending && strcmp(name + n - ending, types[i][0]) == 0)
+            return types[i][1];
+    }
+    return NULL;
+}
+
+/* FNV-1a, 64 bits: tells contents apart for caching, nothing more. */
+static uint64_t hash_bytes(const uint8_t *bytes, size_t n)
+{
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < n; i++)
+        hash = (hash ^ bytes[i]) * 0x100000001b3u;
+    return hash;
+}
+
+static bool add_file(struct files *files, const char *folder, const char *path, const char *media_type, struct error *err)
+{
+    char name[4096];
+    struct stat facts;
+    (void)snprintf(name, sizeof name, "%s%s", folder, path);
+    FILE *stream = fopen(name, "rbe");
+    if (!stream || fstat(fileno(stream), &facts) != 0) {
+        if (stream)
+            fclose(stream);
+        return error_set(err, ERROR_IO, "%s: %s", name, strerror(errno));
+    }
+    if (!S_ISREG(facts.st_mode) || facts.st_size > FILES_MAX_BYTES || files->n == FILES_MAX || strlen(path) >= sizeof files->files->path) {
+        fclose(stream);
+        return error_set(err, ERROR_LIMIT, "%s: not a file, over %d bytes, its path too long, or more than %d files", name, FILES_MAX_BYTES,
+                         FILES_MAX);
+    }
+    struct file *file = &files->files[files->n];
+    file->n_bytes = (size_t)facts.st_size;
+    file->bytes = mem_new(file->n_bytes + 1);
+    size_t got = fread(file->bytes, 1, file->n_bytes, stream);
+    fclose(stream);
+    files->n++;
+    if (got != file->n_bytes)
+        return error_set(err, ERROR_IO, "%s: %zu bytes read, %zu expected", name, got, file->n_bytes);
+    memcpy(file->path, path, strlen(path) + 1);
+    file->media_type = media_type;
+    (void)snprintf(file->etag, sizeof file->etag, "\"%016" PRIx64 "\"", hash_bytes(file->bytes, file->n_bytes));
+    return true;
+}
+
+static bool add_folder(struct files *files, const char *folder, const char *below, int depth, struct error *err)
+{
+    char path[4096];
+    (void)snprintf(path, sizeof path, "%s%s", folder, below);
+    DIR *dir = opendir(path);
+    if (!dir)
+        return error_set(err, ERROR_IO, "%s: %s", path, strerror(errno));
+    bool ok = true;
+    for (struct dirent *entry; ok && (entry = readdir(dir));) {
+        char inner[512];
+        struct stat facts;
+        if (entry->d_name[0] == '.')
+            continue;
+        int n = snprintf(inner, sizeof inner, "%s/%s", below, entry->d_name);
+        if (n < 0 || (size_t)n >= sizeof inner || fstatat(dirfd(dir), entry->d_name, &facts, 0) != 0)
+            continue;
+        const char *media_type = media_type_of(entry->d_name);
+        if (S_ISDIR(facts.st_mode) && depth < 8)
+            ok = add_folder(files, folder, inner, depth + 1, err);
+        else if (S_ISREG(facts.st_mode) && media_type)
+            ok = add_file(files, folder, inner, media_type, err);
+    }
+    closedir(dir);
+    return ok;
+}
+
+struct files *files_create(const char *folder, struct error *err)
+{
+    struct files *files = mem_new(sizeof *files);
+    files->files = mem_new(FILES_MAX * sizeof *files->files);
+    if (!add_folder(files, folder, "", 0, err)) {
+        files_destroy(files);
+        return NULL;
+    }
+    if (!files_find(files, "/")) {
+        error_set(err, ERROR_NOT_FOUND, "%s holds no index.html: is it the page's folder?", folder);
+        files_destroy(files);
+        return NULL;
+    }
+    return files;
+}
+
+void files_destroy(struct files *files)
+{
+    if (!files)
+        return;
+    for (size_t i = 0; i < files->n; i++)
+        free(files->files[i].bytes);
+    free(files->files);
+    free(files);
+}
+
+const struct file *files_find(const struct files *files, const char *path)
+{
+    if (strcmp(path, "/") == 0)
+        path = "/index.html";
+    for (size_t i = 0; i < files->n; i++)
+        if (strcmp(files->files[i].path, path) == 0)
+            return &files->files[i];
+    return NULL;
+}

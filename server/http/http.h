@@ -1,0 +1,22 @@
+#pragma once
+/* The HTTP server: libmicrohttpd's own thread for connections that the acceptor hands over; the page's files are answered there,
+ * everything of the API on the net thread while the connection is suspended. */
+#include <sys/socket.h>
+
+#include "server/daemon/net.h"
+
+enum { HTTP_MAX_CONNECTIONS = 500, HTTP_MAX_PER_ADDRESS = 200, HTTP_TIMEOUT_S = 60 };
+
+struct http;
+
+struct http_options {
+    const char *web_folder; /* the page; NULL: the API alone */
+};
+
+/* errors ERROR_IO, ERROR_LIMIT, ERROR_NOT_FOUND. net outlives it. */
+NODISCARD struct http *http_create(struct net *net, const struct http_options *options, struct error *err);
+/* Stopping: http_stop_asking (from then on the API answers 503 by itself), net_destroy (which answers what was asked), http_destroy. */
+void http_stop_asking(struct http *http);
+void http_destroy(struct http *http);
+/* Takes an accepted socket, nothing read from it yet; closes it when it cannot be served. Any thread. */
+void http_add_connection(struct http *http, int socket, const struct sockaddr *address, socklen_t n_address);

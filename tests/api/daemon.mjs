@@ -1,0 +1,66 @@
+// Starts the real daemon for a test, on a port of its own, with its own state folder.
+import { spawn } from 'node:child_process';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { createInterface } from 'node:readline';
+
+export const bin = process.env.BEAMROOM_BIN ?? resolve('build/release');
+export const web = process.env.BEAMROOM_WEB ?? resolve('build/web');
+export const demo = process.env.BEAMROOM_DEMO ?? resolve('build/demo/plans');
+/** Real plans, when this machine has them; tests that need them skip otherwise. */
+export const realData = [process.env.BEAMROOM_DATA, '../shared/data'].filter(Boolean).map((p) => resolve(p)).find(existsSync);
+
+/** @returns {Promise<{url: string, child: import('node:child_process').ChildProcess, log: () => string, stop: () => Promise<number|null>}>} */
+export async function startDaemon({ plans = [demo], args = [] } = {}) {
+  const data = mkdtempSync(join(tmpdir(), 'beamroom-test-'));
+  const child = spawn(join(bin, 'beamroomd'), ['--listen', '127.0.0.1:0', '--data', data, '--web', web, ...plans.flatMap((p) => ['--plans', p]), ...args],
+    { stdio: ['ignore', 'pipe', 'pipe'] });
+  let log = '';
+  child.stderr.on('data', (text) => { log += text; });
+  const ended = new Promise((done) => child.on('exit', (code) => done(code)));
+  const url = await new Promise((ready, failed) => {
+    createInterface({ input: child.stdout }).on('line', (line) => {
+      const found = /^ready (http:\S+)$/.exec(line);
+      if (found) ready(found[1]);
+    });
+    child.on('exit', (code) => failed(new Error(`beamroomd ended with ${code}: ${log}`)));
+  });
+  const stop = async () => {
+    child.kill('SIGTERM');
+    const code = await Promise.race([ended, new Promise((late) => setTimeout(late, 10000, null))]);
+    if (code === null) child.kill('SIGKILL');
+    rmSync(data, { recursive: true, force: true });
+    return code;
+  };
+  return { url, child, log: () => log, stop };
+}
+
+export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+/** Asks until the answer suits; the last answer is given when it never does. */
+export async function until(ask, suits, ms = 15000) {
+  const end = Date.now() + ms;
+  for (;;) {
+    const answer = await ask();
+    if (suits(answer) || Date.now() > end) return answer;
+    await sleep(30);
+  }
+}
+
+/** fetch with JSON in and out. */
+export async function call(url, method = 'GET', body, headers = {}) {
+  const answer = await fetch(url, { method, headers: { ...(body !== undefined && { 'Content-Type': 'application/json' }), ...headers },
+    body: body === undefined || typeof body === 'string' ? body : JSON.stringify(body) });
+  const text = await answer.text();
+  let json;
+  try { json = JSON.parse(text); } catch { json = undefined; }
+  return { status: answer.status, headers: answer.headers, type: answer.headers.get('content-type') ?? '', text, json };
+}
+
+/** Loads a plan and waits for it. */
+export async function openPlan(url, plan) {
+  const opened = await call(`${url}/api/v1/plans/${plan}/open`, 'POST');
+  if (opened.status !== 202) throw new Error(`open ${plan}: ${opened.text}`);
+  return until(async () => (await call(`${url}/api/v1/jobs/${opened.json.id}`)).json, (job) => job.state !== 'running', 30000);
+}

@@ -1,0 +1,329 @@
+// The HTTP API against the real daemon.
+import assert from 'node:assert/strict';
+import { mkdirSync, mkdtempSync, writeFileSync } from 'node:fs';
+import { connect } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { call, demo, openPlan, startDaemon, until } from './daemon.mjs';
+import { centreOf, readPng } from './png.mjs';
+
+let daemon, url, api, plan;
+
+before(async () => {
+  const broken = mkdtempSync(join(tmpdir(), 'beamroom-plans-'));
+  mkdirSync(join(broken, 'broken'));
+  writeFileSync(join(broken, 'broken', 'plan.json'), '{"format":"beamroom-plan","version":1,"images":[{"id":"ct","path":"../../etc/passwd"}]}');
+  daemon = await startDaemon({ plans: [demo, broken] });
+  url = daemon.url;
+  api = `${url}/api/v1`;
+  plan = `${api}/plans/phantom`;
+  await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.length === 2 && plans.every((p) => p.parts.length || p.reason));
+});
+after(async () => { await daemon?.stop(); });
+
+function assertProblem(answer, status, type, pointer) {
+  assert.equal(answer.status, status, answer.text);
+  assert.equal(answer.type, 'application/problem+json');
+  assert.equal(answer.json.type, `/problems/${type}`);
+  assert.equal(answer.json.status, status);
+  assert.ok(answer.json.detail.length > 5);
+  if (pointer !== undefined) assert.equal(answer.json.pointer, pointer);
+}
+
+describe('the server', () => {
+  test('says that it is alive, what draws, and what it is', async () => {
+    assert.equal((await call(`${url}/healthz`)).text, 'ok\n');
+    const ready = await until(() => call(`${url}/readyz`), (a) => a.status === 200);
+    assert.equal(ready.status, 200, ready.text);
+    assert.match(ready.json.gl.back_end, /^(egl-device|egl-surfaceless|osmesa)$/);
+    const version = await call(`${api}/version`);
+    assert.equal(version.json.api, 1);
+    assert.equal(version.json.gl.back_end, ready.json.gl.back_end);
+  });
+
+  test('serves the page with a policy that lets it run only its own scripts', async () => {
+    const page = await call(`${url}/`);
+    assert.equal(page.status, 200);
+    assert.match(page.type, /^text\/html/);
+    assert.match(page.headers.get('content-security-policy'), /default-src 'self'/);
+    assert.equal(page.headers.get('x-content-type-options'), 'nosniff');
+    const again = await call(`${url}/`, 'GET', undefined, { 'If-None-Match': page.headers.get('etag') });
+    assert.equal(again.status, 304);
+  });
+
+  test('keeps to its folder whatever the address says', async () => {
+    for (const path of ['/../Makefile', '/%2e%2e/Makefile', '/js/..%2f..%2fMakefile', '/.stamp', '//etc/passwd'])
+      assertProblem(await call(url + path), 404, 'not-found');
+  });
+
+  test('answers an unknown address, a wrong method and another origin with a problem', async () => {
+    assertProblem(await call(`${api}/nothing`), 404, 'not-found');
+    const wrong = await call(`${api}/plans`, 'DELETE');
+    assertProblem(wrong, 405, 'method');
+    assert.equal(wrong.headers.get('allow'), 'GET');
+    assertProblem(await call(`${api}/rooms`, 'POST', { plan: 'phantom' }, { Origin: 'https://elsewhere.example' }), 403, 'forbidden');
+    assertProblem(await call(`${api}/plans/${'x'.repeat(64)}`), 404, 'not-found');
+    assertProblem(await call(`${api}/plans/UPPER`), 404, 'not-found');
+  });
+
+  test('counts for Prometheus without naming a plan', async () => {
+    const metrics = await call(`${url}/metrics`);
+    assert.match(metrics.type, /^text\/plain/);
+    assert.match(metrics.text, /^beamroom_http_requests_total\{code="2xx"\} [1-9]/m);
+    assert.match(metrics.text, /^beamroom_plans\{state="unreadable"\} 1$/m);
+    assert.doesNotMatch(metrics.text, /phantom/);
+    for (const line of metrics.text.trim().split('\n')) assert.match(line, /^(# (HELP|TYPE) beamroom_\w+ .+|beamroom_\w+(\{[^}]*\})? -?[\d.e+-]+)$/);
+  });
+
+  test('describes every address it has, and has every address it describes', async () => {
+    const description = (await call(`${api}/openapi.json`)).json;
+    assert.equal(description.openapi, '3.1.0');
+    for (const [path, operations] of Object.entries(description.paths)) {
+      const address = url + path.replace(/\{\w+\}/g, 'no-such-thing');
+      for (const method of ['get', 'post', 'patch', 'delete', 'put']) {
+        const answer = await call(address, method.toUpperCase(), ['post', 'patch', 'put'].includes(method) ? {} : undefined);
+        if (operations[method]) {
+          assert.notEqual(answer.status, 405, `${method} ${path}`);
+          assert.doesNotMatch(answer.json?.detail ?? '', /^nothing is at/, `${method} ${path}`);
+        } else assertProblem(answer, 405, 'method');
+      }
+    }
+  });
+
+  test('refuses a WebSocket on a connection that has been used, and closes it', async () => {
+    const { hostname, port } = new URL(url);
+    const socket = connect(Number(port), hostname);
+    let got = '';
+    const closed = new Promise((done) => socket.on('close', done));
+    socket.on('data', (bytes) => {
+      got += bytes;
+      if (/\r\n\r\nok\n$/.test(got))
+        socket.write('GET /api/v1/rooms/x/ws HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n');
+    });
+    socket.write('GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n');
+    await closed;
+    assert.match(got, /HTTP\/1\.1 426 /);
+    assert.match(got, /connection: close/i);
+  });
+
+  test('drops a connection that does not say what it wants within 5 s', async () => {
+    const { hostname, port } = new URL(url);
+    const start = Date.now();
+    const socket = connect(Number(port), hostname);
+    socket.on('error', () => {});
+    socket.write('GET /heal');
+    await new Promise((done) => socket.on('close', done));
+    const waited = Date.now() - start;
+    assert.ok(waited > 4000 && waited < 8000, `closed after ${waited} ms`);
+  });
+});
+
+describe('a plan', () => {
+  test('is listed with its parts, one that cannot be read with the reason', async () => {
+    const { plans } = (await call(`${api}/plans`)).json;
+    const phantom = plans.find((p) => p.id === 'phantom');
+    assert.equal(phantom.is_phantom, true);
+    assert.ok(phantom.parts.includes('CT'), phantom.parts.join());
+    const broken = plans.find((p) => p.id === 'broken');
+    assert.equal(broken.state, 'unreadable');
+    assert.match(broken.reason, /passwd|\.\./);
+    assertProblem(await call(`${api}/plans/broken/open`, 'POST'), 409, 'plan-unreadable');
+    assertProblem(await call(`${api}/plans/nowhere/open`, 'POST'), 404, 'not-found');
+  });
+
+  test('is loaded by a job, and then tells what it holds', async () => {
+    const job = await openPlan(url, 'phantom');
+    assert.equal(job.state, 'done');
+    assert.equal(job.percent, 100);
+    const { json } = await call(plan);
+    assert.equal(json.state, 'ready');
+    assert.deepEqual(json.regions.map((r) => r.name), ['scalp', 'cranium', 'brain', 'target', 'tumour']);
+    assert.equal(json.regions.find((r) => r.name === 'brain').parent, 'cranium');
+    // modified Snyder head: brain ellipsoid 6 x 9 x 6.5 cm, less the voxels that are target and tumour
+    const inside = json.regions.filter((r) => ['brain', 'target', 'tumour'].includes(r.name)).reduce((sum, r) => sum + r.volume_cm3, 0);
+    const ellipsoid = 4 / 3 * Math.PI * 6 * 9 * 6.5;
+    assert.ok(Math.abs(inside / ellipsoid - 1) < 0.01, `${inside} cm3, expected ${ellipsoid}`);
+    assert.equal(json.images[0].unit, 'HU');
+    assert.deepEqual(json.doses[0].components.map((c) => c.quantity).sort(), ['boron', 'fast', 'gamma', 'nitrogen']);
+    assert.equal((await call(`${api}/jobs/open-999`)).status, 404);
+  });
+
+  test('gives a picture as PNG and JPEG of the size asked for', async () => {
+    const ask = (body) => fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body) });
+    const png = await ask({ view: { size_px: [320, 200] } });
+    assert.equal(png.status, 200);
+    assert.equal(png.headers.get('content-type'), 'image/png');
+    const picture = readPng(await png.arrayBuffer());
+    assert.deepEqual([picture.width, picture.height], [320, 200]);
+    assert.match(png.headers.get('server-timing'), /render;dur=/);
+    const jpeg = Buffer.from(await (await ask({ view: { size_px: [320, 200] }, format: 'jpeg', quality: 80 })).arrayBuffer());
+    assert.equal(jpeg.readUInt16BE(0), 0xffd8);
+  });
+
+  test('is a pure function of plan, scene and view: the same request gives the same bytes', async () => {
+    const ask = async () => Buffer.from(await (await fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
+      body: JSON.stringify({ view: { size_px: [200, 150] } }) })).arrayBuffer());
+    assert.ok((await ask()).equals(await ask()));
+  });
+
+  test('shows the tumour, which lies on the patient\'s left, on the right of a picture from the front and of an axial picture', async () => {
+    const { regions } = (await call(plan)).json;
+    const tumour = regions.find((r) => r.name === 'tumour');
+    assert.ok(tumour.centre_lps_mm[0] > 10, 'the demo tumour is on the left: L > 0');
+    const scene = { regions: Object.fromEntries(regions.map((r) => [r.id, { visible: r.id === tumour.id, opacity: 1, color: '#00ff00' }])),
+      image: { slices: { axial: { visible: false } } } };
+    const isGreen = ([r, g, b]) => g > 60 && g > 1.5 * r && g > 1.5 * b;
+    const render = async (view) => readPng(await (await fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
+      body: JSON.stringify({ scene, view: { size_px: [300, 300], ...view } }) })).arrayBuffer());
+    const front = centreOf(await render({ kind: '3d' }), isGreen);
+    assert.ok(front.n > 50, 'the tumour is seen');
+    assert.ok(front.x > 160, `from the front the tumour is at x ${front.x} of 300`);
+    const back = (await call(plan)).json.home['3d'];
+    const behind = { ...back, position_mm: [back.target_mm[0], back.target_mm[1] + 700, back.target_mm[2]] };
+    assert.ok(centreOf(await render({ kind: '3d', camera: behind }), isGreen).x < 140, 'from behind it is on the left');
+  });
+
+  test('refuses a wrong picture with the field that is wrong', async () => {
+    const ask = (body, headers) => call(`${plan}/render`, 'POST', body, headers);
+    assertProblem(await ask({ view: { size_px: [5, 200] } }), 422, 'validation', '/view/size_px/0');
+    assertProblem(await ask({ scene: { regions: { liver: {} } } }), 404, 'not-found', '/scene/regions/liver');
+    assertProblem(await ask({ scene: { regions: { brain: { opacity: 2 } } } }), 422, 'validation', '/scene/regions/brain/opacity');
+    assertProblem(await ask({ format: 'gif' }), 422, 'validation', '/format');
+    assertProblem(await ask({ quality: 0 }), 422, 'validation', '/quality');
+    assertProblem(await ask({ colour: 1 }), 422, 'validation', '/colour');
+    assertProblem(await ask('{"view":'), 400, 'json');
+    assertProblem(await ask('[]'), 422, 'validation');
+    assertProblem(await ask('{}', { 'Content-Type': 'text/plain' }), 415, 'media-type');
+    assertProblem(await ask(`{"view":{},"scene":{}}${' '.repeat(1 << 20)}`), 413, 'too-large');
+    const home = (await call(plan)).json.home['3d'];
+    const eyeInTarget = { ...home, position_mm: home.target_mm };
+    assertProblem(await ask({ view: { camera: eyeInTarget } }), 422, 'validation');
+  });
+
+  test('gives the surface of a region, whose volume is that of its univels', async () => {
+    const { json } = await call(`${plan}/regions/brain/surface`);
+    assert.equal(json.algorithm, 'marching-cubes');
+    assert.ok(json.triangles > 50000 && json.vertices > 25000);
+    assert.ok(Math.abs(json.volume_mm3 / json.univel_volume_mm3 - 1) < 0.01, JSON.stringify(json));
+    assertProblem(await call(`${plan}/regions/liver/surface`), 404, 'not-found');
+    assertProblem(await call(`${plan}/regions/brain/surface?algorithm=magic`), 422, 'validation', '/algorithm');
+  });
+
+  test('tells what lies at a point and under a pixel', async () => {
+    const { regions, home } = (await call(plan)).json;
+    const [x, y, z] = regions.find((r) => r.name === 'tumour').centre_lps_mm;
+    const probe = (await call(`${plan}/probe?x=${x}&y=${y}&z=${z}`)).json;
+    assert.equal(probe.regions[0], 'tumour');
+    assert.equal(probe.images[0].unit, 'HU');
+    assert.ok(Math.abs(probe.images[0].value - 48) < 40, `tumour at ${probe.images[0].value} HU`);
+    assert.equal(probe.doses.length, 4);
+    for (const dose of probe.doses) assert.ok(dose.value > 0 && dose.unit === 'Gy' && dose.per, JSON.stringify(dose));
+    const outside = (await call(`${plan}/probe?x=5000&y=0&z=0`)).json;
+    assert.deepEqual([outside.regions, outside.images, outside.doses], [[], [], []]);
+    assertProblem(await call(`${plan}/probe?x=1&y=2`), 422, 'validation', '/z');
+    assertProblem(await call(`${plan}/probe?x=1&y=2&z=nan`), 422, 'validation', '/z');
+    const view = encodeURIComponent(JSON.stringify({ size_px: [400, 400], camera: home['3d'] }));
+    const { hits } = (await call(`${plan}/pick?view=${view}&px=200&py=200`)).json;
+    assert.equal(hits[0].region, 'scalp', 'the scalp is in front');
+    for (let i = 1; i < hits.length; i++) assert.ok(hits[i].distance_mm >= hits[i - 1].distance_mm);
+    assert.ok(hits[0].point_lps_mm[1] < 0, 'the home camera looks from the front: the first hit is anterior');
+    assertProblem(await call(`${plan}/pick?view=${view}&px=200`), 422, 'validation', '/py');
+  });
+
+  test('is drawn for many at once', async () => {
+    const answers = await Promise.all(Array.from({ length: 24 }, (_, i) => call(`${plan}/render`, 'POST', { view: { size_px: [64 + i, 48] }, format: 'jpeg' })));
+    assert.deepEqual(answers.map((a) => a.status), Array(24).fill(200));
+  });
+});
+
+describe('a room', () => {
+  let room;
+  before(async () => {
+    await openPlan(url, 'phantom');
+    const made = await call(`${api}/rooms`, 'POST', { plan: 'phantom' });
+    assert.equal(made.status, 201, made.text);
+    assert.equal(made.headers.get('location'), `/api/v1/rooms/${made.json.id}`);
+    room = `${api}/rooms/${made.json.id}`;
+    await until(() => call(`${room}/scene`), (a) => a.status === 200);
+  });
+
+  test('is made on a plan that exists, listed and told', async () => {
+    assertProblem(await call(`${api}/rooms`, 'POST', { plan: 'nowhere' }), 404, 'not-found');
+    assertProblem(await call(`${api}/rooms`, 'POST', { plan: 'broken' }), 409, 'plan-unreadable');
+    assertProblem(await call(`${api}/rooms`, 'POST', {}), 422, 'validation', '/plan');
+    assertProblem(await call(`${api}/rooms`, 'POST', { plan: 'phantom', name: 1 }), 422, 'validation', '/name');
+    assert.equal((await call(room)).json.plan, 'phantom');
+    assert.ok((await call(`${api}/rooms`)).json.rooms.some((r) => room.endsWith(r.id)));
+    assert.deepEqual((await call(`${room}/members`)).json.members, []);
+  });
+
+  test('changes its scene only for who names the revision it changed', async () => {
+    const first = await call(`${room}/scene`);
+    const etag = first.headers.get('etag');
+    assert.match(etag, /^"\d+"$/);
+    assert.equal((await call(`${room}/scene`, 'GET', undefined, { 'If-None-Match': etag })).status, 304);
+    const patch = { regions: { scalp: { opacity: 0.2 } } };
+    assertProblem(await call(`${room}/scene`, 'PATCH', patch), 428, 'revision-needed');
+    assertProblem(await call(`${room}/scene`, 'PATCH', patch, { 'If-Match': '"999999"' }), 412, 'stale-revision');
+    assertProblem(await call(`${room}/scene`, 'PATCH', patch, { 'If-Match': `W/${etag}` }), 412, 'stale-revision');
+    assert.deepEqual((await call(`${room}/scene`)).json, first.json, 'nothing was applied');
+    const changed = await call(`${room}/scene`, 'PATCH', patch, { 'If-Match': etag, 'Content-Type': 'application/merge-patch+json' });
+    assert.equal(changed.status, 200, changed.text);
+    assert.equal(changed.json.regions.scalp.opacity, 0.2);
+    assert.notEqual(changed.headers.get('etag'), etag);
+    assertProblem(await call(`${room}/scene`, 'PATCH', patch, { 'If-Match': etag }), 412, 'stale-revision');
+    const back = await call(`${room}/scene`, 'PATCH', { regions: { scalp: null } }, { 'If-Match': '*' });
+    assert.deepEqual(back.json, first.json, 'null gives the plan\'s own value back');
+  });
+
+  test('lets exactly one of many who changed the same revision win', async () => {
+    const etag = (await call(`${room}/scene`)).headers.get('etag');
+    const answers = await Promise.all(Array.from({ length: 10 }, (_, i) =>
+      call(`${room}/scene`, 'PATCH', { image: { window: { center: i } } }, { 'If-Match': etag })));
+    assert.deepEqual(answers.map((a) => a.status).sort(), [200, ...Array(9).fill(412)]);
+  });
+
+  test('applies a patch whole or not at all', async () => {
+    const first = await call(`${room}/scene`);
+    const answer = await call(`${room}/scene`, 'PATCH', { surface: { normals: 'face' }, regions: { brain: { opacity: 7 } } }, { 'If-Match': '*' });
+    assertProblem(answer, 422, 'validation', '/regions/brain/opacity');
+    assert.deepEqual((await call(`${room}/scene`)).json, first.json);
+  });
+
+  test('shows what was changed in its snapshot', async () => {
+    const snapshot = async (query = '') => Buffer.from(await (await fetch(`${room}/snapshot?view=${encodeURIComponent('{"size_px":[160,120]}')}${query}`)).arrayBuffer());
+    const one = await snapshot();
+    assert.equal(readPng(one).width, 160);
+    await call(`${room}/scene`, 'PATCH', { regions: { scalp: { visible: false } } }, { 'If-Match': '*' });
+    assert.ok(!one.equals(await snapshot()));
+    assert.equal((await snapshot('&format=jpeg&quality=50')).readUInt16BE(0), 0xffd8);
+    assertProblem(await call(`${room}/snapshot?view=${encodeURIComponent('{"kind":"sideways"}')}`), 422, 'validation', '/view/kind');
+    assertProblem(await call(`${room}/snapshot?view=nojson`), 400, 'json');
+  });
+
+  test('is gone when it has been closed', async () => {
+    assert.equal((await call(room, 'DELETE')).status, 204);
+    assertProblem(await call(room), 404, 'not-found');
+    assertProblem(await call(`${room}/scene`), 404, 'not-found');
+  });
+});
+
+test('the daemon says what is wrong with its flags and its settings, and stops at once when asked to', async () => {
+  const settings = join(mkdtempSync(join(tmpdir(), 'beamroom-conf-')), 'beamroomd.conf');
+  const ends = async (args) => { try { const d = await startDaemon({ args }); await d.stop(); return 'started'; } catch (error) { return error.message; } };
+  assert.match(await ends(['--lisen', 'x']), /there is no flag --lisen/);
+  assert.match(await ends(['--max-rooms', '0']), /max-rooms is "0", expected a whole number from 1/);
+  assert.match(await ends(['--gl', 'vulkan']), /--gl is "vulkan"/);
+  assert.match(await ends(['--listen', 'localhost']), /expected ADDRESS:PORT/);
+  writeFileSync(settings, '# ours\nmax-rooms = 3\nport = 80\n');
+  assert.match(await ends(['--config', settings]), /line 3: there is no setting "port"/);
+  writeFileSync(settings, 'max-rooms = 1\nlog-level = debug\n');
+  const limited = await startDaemon({ args: ['--config', settings] });
+  await until(async () => (await call(`${limited.url}/api/v1/plans`)).json.plans, (plans) => plans[0]?.parts.length);
+  assert.equal((await call(`${limited.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).status, 201);
+  assertProblem(await call(`${limited.url}/api/v1/rooms`, 'POST', { plan: 'phantom' }), 429, 'limit');
+  const start = Date.now();
+  assert.equal(await limited.stop(), 0, limited.log());
+  assert.ok(Date.now() - start < 4000);
+});
