@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/region/mask_pack.h"
 
-enum { MAX_THREADS = 64, MAX_FACTOR = 8 };
+enum { MAX_THREADS = 64, MAX_FACTOR = 8, MAX_WORDS = VOLUME_MAX_SIDE / 64 };
 
 /* Bits are left to be written. */
 static struct mask *mask_create(const uint32_t size[3], const struct affine *lps_mm_from_ijk, struct error *err)
@@ -187,44 +187,82 @@ static uint32_t part_of_block(uint32_t size, uint32_t block, uint32_t factor)
     return left < factor ? left : factor;
 }
 
-/* Voxels inside among the n of a row from `first` on; n <= 8, so at most two words. */
-static uint32_t count_bits(const uint64_t *row, uint32_t first, uint32_t n)
+/* Which of the n voxels of a row from `first` on are inside; n <= 8, so they lie in at most two words. */
+static uint64_t bits_at(const uint64_t *row, uint32_t first, uint32_t n)
 {
     uint32_t word = first / 64, shift = first % 64;
     uint64_t bits = row[word] >> shift;
     if (shift + n > 64)
         bits |= row[word + 1] << (64 - shift);
-    return (uint32_t)__builtin_popcountll(bits & (((uint64_t)1 << n) - 1));
+    return bits & (((uint64_t)1 << n) - 1);
+}
+
+/* The rows of voxels that a row of blocks covers. */
+struct block_row {
+    const uint64_t *first;
+    size_t next_j, next_k; /* words from a row to the next along j and k */
+    uint32_t n_j, n_k;
+    uint64_t any[MAX_WORDS], all[MAX_WORDS]; /* of these rows: inside in one of them, in each of them */
+};
+
+static void block_row_init(struct block_row *rows, const struct mask *from, uint32_t factor, uint32_t j, uint32_t k)
+{
+    rows->next_j = from->words;
+    rows->next_k = (size_t)from->words * from->size[1];
+    rows->first = from->bits + (size_t)k * factor * rows->next_k + (size_t)j * factor * rows->next_j;
+    rows->n_j = part_of_block(from->size[1], j, factor);
+    rows->n_k = part_of_block(from->size[2], k, factor);
+    for (uint32_t w = 0; w < from->words; w++) {
+        uint64_t any = 0, all = ~(uint64_t)0;
+        for (uint32_t dk = 0; dk < rows->n_k; dk++)
+            for (uint32_t dj = 0; dj < rows->n_j; dj++) {
+                uint64_t bits = rows->first[dk * rows->next_k + dj * rows->next_j + w];
+                any |= bits;
+                all &= bits;
+            }
+        rows->any[w] = any;
+        rows->all[w] = all;
+    }
+}
+
+/* Voxels inside in the block of n_i voxels from `first` on. Most blocks are empty or full and need no counting. */
+static uint32_t count_block(const struct block_row *rows, uint32_t first, uint32_t n_i)
+{
+    if (!bits_at(rows->any, first, n_i))
+        return 0;
+    if (bits_at(rows->all, first, n_i) == ((uint64_t)1 << n_i) - 1)
+        return n_i * rows->n_j * rows->n_k;
+    uint32_t n = 0;
+    for (uint32_t dk = 0; dk < rows->n_k; dk++)
+        for (uint32_t dj = 0; dj < rows->n_j; dj++)
+            n += (uint32_t)__builtin_popcountll(bits_at(rows->first + dk * rows->next_k + dj * rows->next_j, first, n_i));
+    return n;
 }
 
 static void reduce_part(void *context, int part, int n_parts)
 {
     struct reduce_job *job = context;
     const struct mask *from = job->from, *to = job->to;
-    size_t k, end;
-    for (range_of(to->size[2], part, n_parts, &k, &end); k < end; k++)
-        for (uint32_t j = 0; j < to->size[1]; j++) {
-            uint32_t n_k = part_of_block(from->size[2], (uint32_t)k, job->factor);
-            uint32_t n_j = part_of_block(from->size[1], j, job->factor);
-            uint64_t *row = to->bits + (k * to->size[1] + j) * to->words;
-            memset(row, 0, to->words * sizeof *row);
-            for (uint32_t i = 0; i < to->size[0]; i++) {
-                uint32_t n_i = part_of_block(from->size[0], i, job->factor), n = 0;
-                for (uint32_t dk = 0; dk < n_k; dk++)
-                    for (uint32_t dj = 0; dj < n_j; dj++) {
-                        size_t source = (k * job->factor + dk) * from->size[1] + (size_t)j * job->factor + dj;
-                        n += count_bits(from->bits + source * from->words, i * job->factor, n_i);
-                    }
-                if (2 * n >= n_i * n_j * n_k)
-                    row[i / 64] |= (uint64_t)1 << i % 64;
-                if (n > job->fullest[part].n) {
-                    job->fullest[part].n = n;
-                    job->fullest[part].ijk[0] = i;
-                    job->fullest[part].ijk[1] = j;
-                    job->fullest[part].ijk[2] = (uint32_t)k;
-                }
+    struct block_row rows;
+    size_t at, end;
+    for (range_of((size_t)to->size[1] * to->size[2], part, n_parts, &at, &end); at < end; at++) {
+        uint32_t j = (uint32_t)(at % to->size[1]), k = (uint32_t)(at / to->size[1]);
+        block_row_init(&rows, from, job->factor, j, k);
+        uint64_t *row = to->bits + at * to->words;
+        memset(row, 0, to->words * sizeof *row);
+        for (uint32_t i = 0; i < to->size[0]; i++) {
+            uint32_t n_i = part_of_block(from->size[0], i, job->factor);
+            uint32_t n = count_block(&rows, i * job->factor, n_i);
+            if (2 * n >= n_i * rows.n_j * rows.n_k)
+                row[i / 64] |= (uint64_t)1 << i % 64;
+            if (n > job->fullest[part].n) {
+                job->fullest[part].n = n;
+                job->fullest[part].ijk[0] = i;
+                job->fullest[part].ijk[1] = j;
+                job->fullest[part].ijk[2] = k;
             }
         }
+    }
 }
 
 struct mask *mask_reduce(const struct mask *mask, uint32_t factor, int n_threads, struct error *err)
