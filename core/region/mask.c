@@ -107,15 +107,6 @@ struct mask *mask_from_labels(const struct volume *layer, const uint16_t *labels
 
 /* ---- a region and what is inside it ------------------------------------------------------------------------------------- */
 
-static bool is_within(const struct region_set *set, size_t inner, size_t outer)
-{
-    size_t steps = 0; /* a chain longer than all regions would be a cycle */
-    for (int at = (int)inner; at >= 0 && steps <= set->n_regions; at = set->regions[at].parent, steps++)
-        if ((size_t)at == outer)
-            return true;
-    return false;
-}
-
 /* The same voxels: corners of the one grid lie within a hundredth of a voxel of the other's. */
 static bool is_same_grid(const struct grid *a, const struct grid *b)
 {
@@ -137,19 +128,20 @@ struct mask *mask_from_region(const struct region_set *set, size_t region, int n
         error_set(err, ERROR_RANGE, "region %zu: the plan has %zu", region, set->n_regions);
         return NULL;
     }
+    size_t *inside = mem_array(set->n_regions, sizeof *inside, UINT64_MAX, err);
+    uint16_t *labels = inside ? mem_array(set->n_regions, sizeof *labels, UINT64_MAX, err) : NULL;
+    size_t n_inside = labels ? region_with_descendants(set, region, inside) : 0;
     uint32_t own_layer = set->regions[region].layer;
-    uint16_t *labels = mem_array(set->n_regions, sizeof *labels, UINT64_MAX, err);
     struct mask *mask = NULL;
     bool good = labels != NULL;
-    /* own layer first, as it sets the grid */
     for (size_t step = 0; good && step <= set->n_layers; step++) {
-        size_t layer = step == 0 ? own_layer : step - 1;
+        size_t layer = step == 0 ? own_layer : step - 1; /* own layer first, as it sets the grid */
         if ((step > 0 && layer == own_layer) || !is_same_grid(&set->layers[layer]->grid, &set->layers[own_layer]->grid))
             continue;
         size_t n = 0;
-        for (size_t i = 0; i < set->n_regions; i++)
-            if (set->regions[i].layer == layer && is_within(set, i, region))
-                labels[n++] = set->regions[i].label;
+        for (size_t i = 0; i < n_inside; i++)
+            if (set->regions[inside[i]].layer == layer)
+                labels[n++] = set->regions[inside[i]].label;
         if (n == 0)
             continue;
         struct mask *more = mask_from_labels(set->layers[layer], labels, n, n_threads, err);
@@ -163,6 +155,7 @@ struct mask *mask_from_region(const struct region_set *set, size_t region, int n
         mask_destroy(more);
     }
     free(labels);
+    free(inside);
     if (!good) {
         mask_destroy(mask);
         return NULL;
