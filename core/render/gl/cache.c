@@ -4,6 +4,11 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/render/gl/shading.h"
+
+/* How far normals are averaged: as wide as the terraces of a surface that rises one voxel in a dozen. A reduced surface has
+ * larger triangles, so fewer passes reach as far. */
+enum { SHADING_PASSES = 12 };
 
 enum entry_kind { ENTRY_SURFACE, ENTRY_IMAGE, ENTRY_LAYER };
 
@@ -84,22 +89,25 @@ static struct entry *keep(struct gl_cache *cache, struct entry entry)
 
 /* ---- surfaces ----------------------------------------------------------------------------------------------------------- */
 
-static struct vertex *pack_vertices(const struct mesh *mesh, struct error *err)
+static struct vertex *pack_vertices(const struct mesh *mesh, int n_passes, struct error *err)
 {
-    struct vertex *vertices = mem_array(mesh->n_vertices, sizeof *vertices, UINT64_MAX, err);
+    float *normals = shading_normals(mesh, n_passes, err);
+    struct vertex *vertices = normals ? mem_array(mesh->n_vertices, sizeof *vertices, UINT64_MAX, err) : NULL;
     for (size_t i = 0; vertices && i < mesh->n_vertices; i++) {
         memcpy(vertices[i].position_lps_mm, &mesh->positions_lps_mm[3 * i], sizeof vertices[i].position_lps_mm);
         for (int a = 0; a < 3; a++)
-            vertices[i].normal[a] = (int16_t)(mesh->normals[3 * i + (size_t)a] * 32767.0f);
+            vertices[i].normal[a] = (int16_t)(normals[3 * i + (size_t)a] * 32767.0f);
     }
+    free(normals);
     return vertices;
 }
 
-static bool upload_surface(const struct gl *gl, const struct mesh *mesh, struct gl_surface *surface, struct error *err)
+static bool upload_surface(const struct gl *gl, const struct mesh *mesh, uint32_t reduction, struct gl_surface *surface,
+                           struct error *err)
 {
     if (mesh->n_triangles > (size_t)INT32_MAX / 3)
         return error_set(err, ERROR_LIMIT, "a surface of %zu triangles: at most %d can be drawn", mesh->n_triangles, INT32_MAX / 3);
-    struct vertex *vertices = pack_vertices(mesh, err);
+    struct vertex *vertices = pack_vertices(mesh, SHADING_PASSES / (int)(reduction > SHADING_PASSES ? SHADING_PASSES : reduction), err);
     if (!vertices)
         return false;
     surface->n_indices = (GLsizei)(3 * mesh->n_triangles);
@@ -139,7 +147,7 @@ const struct gl_surface *gl_cache_surface(const struct gl *gl, struct gl_cache *
     }
     struct entry made = { .plan = plan, .kind = ENTRY_SURFACE, .index = region, .detail = detail };
     made.surface.is_light = facts.reduction > 1;
-    bool is_good = upload_surface(gl, mesh, &made.surface, err);
+    bool is_good = upload_surface(gl, mesh, facts.reduction ? facts.reduction : 1, &made.surface, err);
     mesh_unref(mesh);
     entry = keep(cache, made);
     if (is_good)

@@ -31,8 +31,9 @@ static const char surface_light[] =
     "    float edge = 1.0 - facing;\n"
     "    float key = max(dot(n, vec3(0.426, 0.568, 0.704)), 0.0);\n"
     "    float fill = max(dot(n, vec3(-0.741, 0.106, 0.663)), 0.0);\n"
+    "    float ambient = opacity < 1.0 ? 0.5 : 0.3;\n" /* what shows through black must be brighter to be seen */
     "    float gloss = key * key; gloss *= gloss; gloss *= gloss; gloss *= gloss;\n"
-    "    vec3 lit = color.rgb * (0.24 + 0.66 * key + 0.16 * fill + 0.14 * edge * edge) + 0.07 * gloss;\n"
+    "    vec3 lit = color.rgb * (ambient + 0.58 * key + 0.18 * fill + 0.24 * edge * edge) + 0.07 * gloss;\n"
     "    float alpha = is_rim != 0 ? opacity * (0.3 + 1.82 * pow(edge, 1.8)) : opacity;\n"
     "    result = vec4(min(lit, 1.0), min(alpha, 1.0));\n"
     "}\n";
