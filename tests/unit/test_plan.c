@@ -1,0 +1,549 @@
+/* Whole plans: made here, and real ones with numbers other programs gave. */
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/plan/plan.h"
+#include "tests/check.h"
+#include "tests/unit/data_folder.h"
+#include "tests/unit/nifti_bytes.h"
+
+static bool report_has(const struct report *report, const char *code)
+{
+    for (size_t i = 0; i < report->n_lines; i++)
+        if (strcmp(report->lines[i].code, code) == 0)
+            return true;
+    return false;
+}
+
+static struct plan *load(const char *folder, struct error *err)
+{
+    *err = (struct error){ 0 };
+    return plan_load(folder, "p", NULL, err);
+}
+
+static struct plan *load_data(const char *name)
+{
+    char path[512];
+    struct error err;
+    if (!data_path(name, path, sizeof path))
+        return NULL;
+    struct plan *plan = load(path, &err);
+    assert_string_equal(err.text, "");
+    assert_non_null(plan);
+    return plan;
+}
+
+static const struct region *region_of(const struct plan *plan, const char *id)
+{
+    const struct region *region = region_find(&plan->regions, id);
+    if (!region)
+        fail_msg("no region %s", id);
+    return region;
+}
+
+static const char *parent_of(const struct plan *plan, const char *id)
+{
+    int parent = region_of(plan, id)->parent;
+    return parent < 0 ? "" : plan->regions.regions[parent].id;
+}
+
+/* 8 x 8 x 8 voxels of 10 mm, LPS origin 0: nested boxes 1 (2..6), 2 (3..5), 3 (4) as bytes. */
+static struct nifti_bytes nested_boxes(void)
+{
+    const double rows[3][4] = { { -10, 0, 0, 0 }, { 0, -10, 0, 0 }, { 0, 0, 10, 0 } };
+    struct nifti_bytes file = nifti_bytes_make(8, 8, 8, 2, 8, 512, false);
+    nifti_put_sform(&file, rows);
+    for (int k = 0; k < 8; k++)
+        for (int j = 0; j < 8; j++)
+            for (int i = 0; i < 8; i++) {
+                int far = abs(i - 4) > abs(j - 4) ? abs(i - 4) : abs(j - 4);
+                far = far > abs(k - 4) ? far : abs(k - 4);
+                file.data[352 + (k * 8 + j) * 8 + i] = (uint8_t)(far <= 2 ? 3 - far : 0);
+            }
+    return file;
+}
+
+static void put_text(const char *folder, const char *name, const char *text)
+{
+    folder_put(folder, name, text, strlen(text));
+}
+
+static void a_plan_without_a_tree_gets_one_from_what_encloses_what(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err;
+    folder_make(folder);
+    struct nifti_bytes file = nested_boxes();
+    folder_put(folder, "labels.nii", file.data, file.size);
+    put_text(folder, "names.json",
+             "{\"labels\":[{\"value\":1,\"name\":\"Skin\",\"color\":\"#ff8000\"},{\"value\":2,\"name\":\"Skull\"},"
+             "{\"value\":3,\"name\":\"Brain\",\"color\":[0,0.5,1]},{\"value\":9,\"name\":\"none\"}]}");
+    put_text(folder, "plan.json",
+             "{\"format\":\"beamroom-plan\",\"version\":1,\"name\":\"boxes\",\"phantom\":true,\"regions\":[{\"path\":\"labels.nii\","
+             "\"names\":\"names.json\"}],\"colour\":1}");
+    struct plan *plan = load(folder, &err);
+    assert_string_equal(err.text, "");
+    assert_true(plan->is_phantom);
+    assert_int_equal(plan->regions.n_regions, 3);
+    assert_int_equal(plan->regions.hierarchy, HIERARCHY_DERIVED);
+    assert_string_equal(parent_of(plan, "brain"), "skull");
+    assert_string_equal(parent_of(plan, "skull"), "skin");
+    assert_string_equal(parent_of(plan, "skin"), "");
+    const struct region *skin = region_of(plan, "skin"), *skull = region_of(plan, "skull");
+    assert_int_equal(skin->n_voxels, 5 * 5 * 5 - 3 * 3 * 3);
+    assert_close(skull->volume_cm3, 26, 1e-9); /* 27 - 1 voxels of 1 cm3 */
+    assert_int_equal(skull->low_ijk[0], 3);
+    assert_int_equal(skull->high_ijk[2], 5);
+    assert_close(skull->centre_lps_mm.y, 40, 1e-9);
+    assert_false(skin->touches_edge);
+    assert_true(skin->has_file_color);
+    assert_int_equal(skin->rgb[0], 255);
+    assert_int_equal(skin->rgb[1], 128);
+    assert_int_equal(region_of(plan, "brain")->rgb[1], 128);
+    assert_true(report_has(&plan->report, "hierarchy.derived"));
+    assert_true(report_has(&plan->report, "region.unused-names"));
+    assert_true(report_has(&plan->report, "plan.unknown-key"));
+    assert_close(plan->bounds_lps_mm.low.x, 15, 1e-9);
+    assert_close(plan->bounds_lps_mm.high.z, 65, 1e-9);
+
+    struct plan_probe probe;
+    plan_probe(plan, vec3(40, 40, 40), &probe);
+    assert_int_equal(probe.n_regions, 3);
+    assert_string_equal(plan->regions.regions[probe.regions[0]].id, "brain");
+    assert_string_equal(plan->regions.regions[probe.regions[2]].id, "skin");
+    plan_probe(plan, vec3(54, 40, 40), &probe);
+    assert_int_equal(probe.n_regions, 2);
+    plan_probe(plan, vec3(0, 0, 0), &probe);
+    assert_int_equal(probe.n_regions, 0);
+    plan_probe(plan, vec3(NAN, 0, 0), &probe);
+    assert_int_equal(probe.n_regions, 0);
+    plan_destroy(plan);
+    nifti_bytes_free(&file);
+    folder_remove(folder);
+}
+
+static void a_tree_from_the_plan_wins_and_unknown_names_and_circles_are_reported(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err;
+    folder_make(folder);
+    struct nifti_bytes file = nested_boxes();
+    folder_put(folder, "labels.nii", file.data, file.size);
+    put_text(folder, "plan.json",
+             "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"labels.nii\"}],"
+             "\"hierarchy\":{\"label 3\":[\"label 1\",\"nobody\"],\"label 1\":[\"label 3\",\"label 2\"]}}");
+    struct plan *plan = load(folder, &err);
+    assert_string_equal(err.text, "");
+    assert_int_equal(plan->regions.hierarchy, HIERARCHY_FILE);
+    assert_string_equal(parent_of(plan, "label-1"), "label-3");
+    assert_string_equal(parent_of(plan, "label-2"), "label-1");
+    assert_string_equal(parent_of(plan, "label-3"), "");
+    assert_true(report_has(&plan->report, "hierarchy.cycle"));
+    assert_true(report_has(&plan->report, "hierarchy.unknown-name"));
+    assert_true(report_has(&plan->report, "region.unnamed"));
+    plan_destroy(plan);
+    nifti_bytes_free(&file);
+    folder_remove(folder);
+}
+
+static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err;
+    folder_make(folder);
+    struct nifti_bytes file = nested_boxes();
+    folder_put(folder, "labels.nii", file.data, file.size);
+    put_text(folder, "plan.json", "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"labels.nii\"}]}");
+    struct plan *plan = load(folder, &err);
+    size_t skin = (size_t)(region_of(plan, "label-1") - plan->regions.regions);
+    struct surface_facts facts, light;
+    struct mesh *first = plan_surface(plan, skin, SURFACE_FULL, &facts, &err);
+    struct mesh *second = plan_surface(plan, skin, SURFACE_FULL, NULL, &err);
+    struct mesh *moving = plan_surface(plan, skin, SURFACE_LIGHT, &light, &err);
+    assert_ptr_equal(first, second);
+    assert_ptr_equal(first, moving); /* so few triangles that nothing is to be saved */
+    assert_int_equal(light.reduction, 1);
+    assert_int_equal(facts.n_univels, 125);
+    assert_close(facts.univel_volume_mm3, 125000, 1e-6);
+    /* through the outermost centres 4^3; on its faces 6 slabs of half a voxel; along its edges 12 prisms of 4 x 1/8; at its
+     * corners 8 tetrahedra of 1/48: 118.1667 voxels of 1000 mm3 */
+    assert_near(facts.volume_mm3, 118166.667, 1e-5);
+    assert_int_equal(mesh_open_edges(first), 0);
+    assert_non_null(first->normals);
+    mesh_unref(first);
+    mesh_unref(second);
+    mesh_unref(moving);
+    assert_null(plan_surface(plan, 99, SURFACE_FULL, &facts, &err));
+    assert_int_equal(err.code, ERROR_RANGE);
+    plan_destroy(plan);
+    nifti_bytes_free(&file);
+    folder_remove(folder);
+}
+
+/* A mask of one 4 x 1 x 1 row. */
+static void put_row(const char *folder, const char *name, const uint8_t row[4], double step)
+{
+    const double rows[3][4] = { { step, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } };
+    struct nifti_bytes file = nifti_bytes_make(4, 1, 1, 2, 8, 4, false);
+    nifti_put_sform(&file, rows);
+    memcpy(file.data + 352, row, 4);
+    folder_put(folder, name, file.data, file.size);
+    nifti_bytes_free(&file);
+}
+
+static void masks_share_a_layer_until_they_overlap_or_their_grids_differ(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err;
+    folder_make(folder);
+    put_row(folder, "a.nii", (const uint8_t[4]){ 1, 0, 0, 0 }, 1);
+    put_row(folder, "b.nii", (const uint8_t[4]){ 0, 1, 1, 0 }, 1);
+    put_row(folder, "c.nii", (const uint8_t[4]){ 0, 0, 1, 1 }, 1);
+    put_row(folder, "d.nii", (const uint8_t[4]){ 0, 0, 0, 1 }, 2);
+    put_row(folder, "e.nii", (const uint8_t[4]){ 0, 0, 0, 0 }, 1);
+    put_text(folder, "plan.json",
+             "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.nii\",\"name\":\"A\"},{\"path\":\"b.nii\",\"name\":"
+             "\"B\"},{\"path\":\"c.nii\",\"name\":\"C\"},{\"path\":\"d.nii\",\"name\":\"D\"},{\"path\":\"e.nii\",\"name\":\"A\"}]}");
+    struct plan *plan = load(folder, &err);
+    assert_string_equal(err.text, "");
+    assert_int_equal(plan->regions.n_layers, 3); /* a with b and e; c; d */
+    assert_int_equal(region_of(plan, "b")->n_voxels, 2);
+    assert_int_equal(region_of(plan, "c")->n_voxels, 2);
+    assert_int_equal(region_of(plan, "a-2")->n_voxels, 0);
+    assert_int_not_equal(region_of(plan, "b")->layer, region_of(plan, "c")->layer);
+    assert_true(report_has(&plan->report, "region.empty"));
+    assert_true(report_has(&plan->report, "region.renamed"));
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
+static void expect_refused(const char *folder, const char *json, enum error_code code, const char *said)
+{
+    struct error err;
+    put_text(folder, "plan.json", json);
+    struct plan *plan = load(folder, &err);
+    if (plan || err.code != code || !strstr(err.text, said))
+        fail_msg("%s\n  gave %s: %s\n  expected %s with \"%s\"", json, error_word(err.code), err.text, error_word(code), said);
+}
+
+#define PLAN(parts) "{\"format\":\"beamroom-plan\",\"version\":1," parts "}"
+
+static void a_plan_never_leaves_its_folder(void **state)
+{
+    (void)state;
+    char folder[256], outside[256], link[600], target[600];
+    folder_make(folder);
+    folder_make(outside);
+    struct nifti_bytes file = nested_boxes();
+    folder_put(outside, "secret.nii", file.data, file.size);
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"/etc/passwd\"}]"), ERROR_RANGE, "images[0].path: /etc/passwd");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"../x/secret.nii\"}]"), ERROR_RANGE, "\"..\"");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a/../../secret.nii\"}]"), ERROR_RANGE, "\"..\"");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"\"}]"), ERROR_RANGE, "empty");
+    expect_refused(folder, PLAN("\"hierarchy\":\"/etc/passwd\""), ERROR_RANGE, "hierarchy");
+    snprintf(link, sizeof link, "%s/link.nii", folder);
+    snprintf(target, sizeof target, "%s/secret.nii", outside);
+    assert_int_equal(symlink(target, link), 0);
+    struct error err;
+    put_text(folder, "plan.json", PLAN("\"images\":[{\"path\":\"link.nii\"}]"));
+    assert_null(load(folder, &err));
+    assert_non_null(strstr(err.text, "link.nii"));
+    unlink(link);
+    folder_put(folder, "inside.nii", file.data, file.size); /* a link that stays inside is fine */
+    assert_int_equal(symlink("inside.nii", link), 0);
+    struct plan *plan = load(folder, &err);
+    assert_string_equal(err.text, "");
+    plan_destroy(plan);
+    unlink(link);
+    assert_int_equal(mkfifo(link, 0600), 0); /* a pipe must not hang the reader */
+    assert_null(load(folder, &err));
+    nifti_bytes_free(&file);
+    folder_remove(folder);
+    folder_remove(outside);
+}
+
+static void a_plan_that_is_wrong_is_refused_with_the_place(void **state)
+{
+    (void)state;
+    char folder[256];
+    folder_make(folder);
+    struct nifti_bytes file = nested_boxes();
+    folder_put(folder, "a.nii", file.data, file.size);
+    expect_refused(folder, "{\n\"format\": \"beamroom-plan\",\n oops }", ERROR_FORMAT, "plan.json: line 3");
+    expect_refused(folder, "[]", ERROR_FORMAT, "expected an object");
+    expect_refused(folder, "{\"version\":1}", ERROR_FORMAT, "format");
+    expect_refused(folder, "{\"format\":\"beamroom-plan\",\"version\":2}", ERROR_UNSUPPORTED, "version");
+    expect_refused(folder, PLAN("\"name\":\"empty\""), ERROR_FORMAT, "one part is required");
+    expect_refused(folder, PLAN("\"images\":{}"), ERROR_FORMAT, "images: expected a list");
+    expect_refused(folder, PLAN("\"images\":[{\"id\":\"x\"}]"), ERROR_FORMAT, "images[0].path: is missing");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"b.nii\"}]"), ERROR_NOT_FOUND, "b.nii");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\",\"modality\":4}]"), ERROR_FORMAT, "images[0].modality");
+    expect_refused(folder, PLAN("\"regions\":[{\"path\":\"a.nii\",\"name\":\"x\",\"names\":\"y.json\"}]"), ERROR_FORMAT, "not both");
+    expect_refused(folder, PLAN("\"regions\":[{\"path\":\"a.nii\",\"names\":\"y.json\"}]"), ERROR_NOT_FOUND, "y.json");
+    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"alpha\"}]"), ERROR_RANGE, "doses[0].quantity");
+    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"fast\",\"per_ppm\":true}]"), ERROR_RANGE, "per_ppm");
+    expect_refused(folder, PLAN("\"doses\":[{\"components\":[{\"path\":\"a.nii\"},{\"path\":\"a.nii\"}]}]"), ERROR_RANGE,
+                   "doses[0].components[1].quantity: is there twice");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"}],\"beams\":[{\"entry_mm\":[1,2,3],\"target_mm\":[1,2,3]}]"),
+                   ERROR_RANGE, "same point");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"}],\"beams\":[{\"entry_mm\":[1,2],\"target_mm\":[1,2,3]}]"),
+                   ERROR_FORMAT, "beams[0].entry_mm");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"}],\"tracks\":[{\"path\":\"a.pp\",\"unit\":\"m\"}]"), ERROR_RANGE,
+                   "tracks[0].unit");
+    put_text(folder, "c.nrrd", "NRRD0004");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"c.nrrd\"}]"), ERROR_UNSUPPORTED, "c.nrrd: NRRD");
+    folder_put(folder, "cut.nii", file.data, 400);
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"},{\"path\":\"cut.nii\"}]"), ERROR_FORMAT, "cut.nii: cut short");
+    nifti_bytes_free(&file);
+    folder_remove(folder);
+}
+
+static void a_dose_in_a_format_not_read_is_left_out_and_said(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err;
+    folder_make(folder);
+    struct nifti_bytes file = nested_boxes();
+    folder_put(folder, "a.nii", file.data, file.size);
+    put_text(folder, "d.nrrd", "NRRD0004");
+    put_text(folder, "plan.json",
+             PLAN("\"images\":[{\"path\":\"a.nii\",\"modality\":\"CT\"}],\"doses\":[{\"id\":\"x\",\"path\":\"d.nrrd\"},"
+                  "{\"id\":\"Run 1\",\"unit\":\"Gy\",\"per\":\"fraction\",\"mask\":\"a.nii\",\"components\":[{\"quantity\":\"boron\","
+                  "\"path\":\"a.nii\",\"per_ppm\":true},{\"quantity\":\"gamma\",\"path\":\"a.nii\"}]}],"
+                  "\"beams\":[{\"id\":\"B\",\"entry_mm\":[0,0,0],\"target_mm\":[0,0,9],\"aperture_mm\":120},"
+                  "{\"entry_mm\":[0,0,1],\"target_mm\":[0,0,9]}]"));
+    struct plan *plan = load(folder, &err);
+    assert_string_equal(err.text, "");
+    assert_true(report_has(&plan->report, "dose.unsupported"));
+    assert_int_equal(plan->n_doses, 1);
+    assert_string_equal(plan->doses[0].id, "run-1");
+    assert_int_equal(plan->doses[0].n_components, 2);
+    assert_true(plan->doses[0].components[0].is_per_ppm);
+    assert_non_null(plan->doses[0].mask);
+    assert_string_equal(plan->images[0].id, "a");
+    assert_string_equal(plan->images[0].unit, "HU");
+    assert_close(plan->images[0].window_width, 400, 0);
+    assert_int_equal(plan->n_beams, 2);
+    assert_close(plan->beams[0].aperture_mm, 120, 0);
+    assert_true(isnan(plan->beams[1].aperture_mm));
+    assert_string_equal(plan->beams[1].id, "beam");
+    struct plan_probe probe;
+    plan_probe(plan, vec3(40, 40, 40), &probe);
+    assert_int_equal(probe.n_doses, 2);
+    assert_close(probe.doses[1].value, 3, 1e-6);
+    assert_true(probe.has_image[0]);
+    plan_probe(plan, vec3(0, 0, 0), &probe); /* the mask is 0 there: no dose, but an image */
+    assert_int_equal(probe.n_doses, 0);
+    assert_true(probe.has_image[0]);
+    plan_destroy(plan);
+    struct plan_summary summary;
+    plan_summarize(folder, &summary);
+    assert_true(summary.is_readable);
+    assert_string_equal(summary.parts[0], "CT");
+    assert_string_equal(summary.parts[1], "2 dose components");
+    nifti_bytes_free(&file);
+    folder_remove(folder);
+}
+
+static void loading_can_be_cancelled_and_tells_how_far_it_is(void **state)
+{
+    (void)state;
+    char folder[256];
+    folder_make(folder);
+    struct nifti_bytes file = nested_boxes();
+    folder_put(folder, "a.nii", file.data, file.size);
+    atomic_bool cancel = true;
+    struct plan_progress progress = { .cancel = &cancel };
+    struct error err = { 0 };
+    assert_null(plan_load(folder, "p", &progress, &err));
+    assert_int_equal(err.code, ERROR_CANCELLED);
+    nifti_bytes_free(&file);
+    folder_remove(folder);
+}
+
+/* ---- real data ------------------------------------------------------------------------------------------------------- */
+
+static void assert_extent(const struct region *r, uint32_t i0, uint32_t i1, uint32_t j0, uint32_t j1, uint32_t k0, uint32_t k1)
+{
+    const uint32_t expected[6] = { i0, i1, j0, j1, k0, k1 };
+    const uint32_t found[6] = { r->low_ijk[0], r->high_ijk[0], r->low_ijk[1], r->high_ijk[1], r->low_ijk[2], r->high_ijk[2] };
+    assert_memory_equal(found, expected, sizeof found);
+}
+
+static void assert_sera_head(const struct plan *plan)
+{
+    /* counts and extents as published with the sample; the tumour's centroid is the planned target (24.9, 38.4, -64.9) */
+    assert_int_equal(plan->regions.n_regions, 3);
+    assert_int_equal(region_of(plan, "scalp")->n_voxels, 590872);
+    assert_int_equal(region_of(plan, "brain")->n_voxels, 302070);
+    assert_int_equal(region_of(plan, "tumor")->n_voxels, 11837);
+    assert_extent(region_of(plan, "scalp"), 3, 248, 6, 224, 0, 47);
+    assert_extent(region_of(plan, "brain"), 55, 196, 36, 214, 21, 46);
+    assert_extent(region_of(plan, "tumor"), 127, 175, 130, 196, 33, 40);
+    assert_close(region_of(plan, "brain")->volume_cm3, 1713.664, 0.01);
+    assert_close(region_of(plan, "tumor")->volume_cm3, 67.152, 0.001);
+    assert_close(region_of(plan, "tumor")->centre_lps_mm.x, 24.9, 0.1);
+    assert_close(region_of(plan, "tumor")->centre_lps_mm.y, 38.4, 0.1);
+    assert_close(region_of(plan, "tumor")->centre_lps_mm.z, -64.9, 0.1);
+    assert_string_equal(parent_of(plan, "tumor"), "brain");
+    assert_string_equal(parent_of(plan, "brain"), "scalp");
+    assert_true(region_of(plan, "scalp")->touches_edge);
+    assert_false(region_of(plan, "brain")->touches_edge);
+}
+
+static void sera_s_own_head_has_the_published_counts_extents_and_places(void **state)
+{
+    (void)state;
+    struct plan *plan = load_data("sera-head");
+    if (!plan)
+        skip();
+    assert_sera_head(plan);
+    assert_int_equal(plan->regions.hierarchy, HIERARCHY_FILE);
+    assert_close(region_of(plan, "tumor")->boron_ratio, 3.5, 0);
+    assert_close(region_of(plan, "tumor")->cbe_boron, 3.8, 0);
+    assert_close(region_of(plan, "brain")->rbe_nitrogen, 3.2, 0);
+    assert_true(report_has(&plan->report, "dose.unsupported"));
+    /* 600 segments, 21 of no length; 1 beam line from (RL, PA, IS) (90.5, -93.4, -5.0) */
+    assert_int_equal(plan->tracks.n_segments, 579);
+    assert_int_equal(plan->tracks.n_of_class[TRACK_BEAM_LINE], 1);
+    assert_int_equal(plan->n_beams, 1);
+    assert_close(plan->beams[0].entry_lps_mm.x, 90.4691, 1e-3);
+    assert_close(plan->beams[0].entry_lps_mm.y, 93.4190, 1e-3);
+    assert_close(plan->beams[0].target_lps_mm.z, -64.9, 1e-3);
+    assert_close(plan->images[0].volume->high, 255, 0);
+    plan_destroy(plan);
+}
+
+static void the_distributed_head_opens_from_nifti_copies_and_from_headers_that_lie(void **state)
+{
+    (void)state;
+    struct plan *plan = load_data("sera-st");
+    if (!plan)
+        skip();
+    assert_sera_head(plan);
+    assert_true(report_has(&plan->report, "region.surroundings"));
+    plan_destroy(plan);
+    plan = load_data("sera-head/original");
+    assert_sera_head(plan);
+    assert_true(report_has(&plan->report, "plan.recognised"));
+    assert_true(report_has(&plan->report, "geometry.unit-assumed"));
+    assert_true(report_has(&plan->report, "image.slices-differ"));
+    assert_true(report_has(&plan->report, "geometry.borrowed"));
+    assert_memory_equal(plan->images[0].volume->grid.size, plan->regions.layers[0]->grid.size, sizeof(uint32_t[3]));
+    assert_close(plan->images[0].volume->grid.lps_mm_from_ijk.origin.z, -264.999145, 1e-3); /* of the corrected header */
+    plan_destroy(plan);
+}
+
+static void a_clinical_plan_has_its_left_parotid_on_the_left(void **state)
+{
+    (void)state;
+    struct plan *plan = load_data("openkbp-pt99");
+    if (!plan)
+        skip();
+    assert_int_equal(plan->regions.n_regions, 10);
+    assert_true(region_of(plan, "leftparotid")->centre_lps_mm.x > 20);
+    assert_true(region_of(plan, "rightparotid")->centre_lps_mm.x < -20);
+    assert_true(region_of(plan, "brainstem")->centre_lps_mm.z > region_of(plan, "larynx")->centre_lps_mm.z);
+    assert_true(region_of(plan, "mandible")->centre_lps_mm.y < region_of(plan, "spinalcord")->centre_lps_mm.y);
+    assert_int_equal(region_of(plan, "ptv56")->n_voxels, 25423);
+    assert_int_equal(region_of(plan, "ptv70")->n_voxels, 4150);
+    /* the data's notes: PTV70 mean about 71 Gy */
+    const struct region *ptv = region_of(plan, "ptv70");
+    const struct volume *layer = plan->regions.layers[ptv->layer];
+    double sum = 0;
+    for (uint32_t k = 0; k < 128; k++)
+        for (uint32_t j = 0; j < 128; j++)
+            for (uint32_t i = 0; i < 128; i++)
+                if (volume_label(layer, i, j, k) == ptv->label)
+                    sum += volume_value(plan->doses[0].components[0].values, i, j, k);
+    assert_close(sum / 4150, 71, 1.5);
+    assert_string_equal(plan->doses[0].unit, "Gy");
+    assert_true(report_has(&plan->report, "dose.no-per"));
+    plan_destroy(plan);
+}
+
+static void volumes_agree_with_another_planning_system(void **state)
+{
+    (void)state;
+    struct plan *plan = load_data("eclipse-ent-dose");
+    if (!plan)
+        skip();
+    assert_int_equal(plan->regions.n_regions, 16);
+    assert_near(region_of(plan, "brain")->volume_cm3, 1114.2, 0.01);
+    assert_near(region_of(plan, "brstem")->volume_cm3, 30.8, 0.02);
+    assert_near(region_of(plan, "ptv1")->volume_cm3, 125.7, 0.015);
+    assert_true(report_has(&plan->report, "dose.unsupported"));
+    assert_string_equal(parent_of(plan, "gtv"), "ctv");
+    assert_string_equal(parent_of(plan, "lens-left"), "orbit-left");
+    plan_destroy(plan);
+}
+
+static void an_atlas_keeps_all_its_regions(void **state)
+{
+    (void)state;
+    struct plan *plan = load_data("head-colin27");
+    if (!plan)
+        skip();
+    assert_int_equal(plan->regions.n_regions, 116);
+    assert_true(region_of(plan, "precentral-l")->centre_lps_mm.x > 0); /* L is the patient's left */
+    assert_true(region_of(plan, "precentral-r")->centre_lps_mm.x < 0);
+    plan_destroy(plan);
+    plan = load_data("ct-totalseg");
+    assert_int_equal(plan->regions.n_regions, 41);
+    assert_true(region_of(plan, "liver")->centre_lps_mm.x < region_of(plan, "spleen")->centre_lps_mm.x);
+    plan_destroy(plan);
+}
+
+static void every_folder_of_data_is_summarised_with_a_reason_when_it_cannot_be_read(void **state)
+{
+    (void)state;
+    const struct {
+        const char *name, *reason;
+    } folders[] = { { "sera-head", NULL },
+                    { "gbm-brats2013", NULL },
+                    { "mr-tumour-nrrd", "NRRD: not read by this version" },
+                    { "dicomrt-plans", "DICOM is not read by this version" },
+                    { "dicom-mr-head", "archive: unpack it first" },
+                    { "hostile", "series of volumes" },
+                    { "matrad-phantoms", "BOXPHANTOM" },
+                    { "trip98-tst003", "no plan.json" } };
+    for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
+        char path[512];
+        struct plan_summary summary;
+        if (!data_path(folders[i].name, path, sizeof path))
+            skip();
+        plan_summarize(path, &summary);
+        if (summary.is_readable != (folders[i].reason == NULL) || (folders[i].reason && !strstr(summary.reason, folders[i].reason)))
+            fail_msg("%s: \"%s\"", folders[i].name, summary.reason);
+    }
+    struct plan_summary summary;
+    plan_summarize("/no/such/folder", &summary);
+    assert_false(summary.is_readable);
+    assert_string_equal(summary.name, "folder");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plan_without_a_tree_gets_one_from_what_encloses_what),
+        cmocka_unit_test(a_tree_from_the_plan_wins_and_unknown_names_and_circles_are_reported),
+        cmocka_unit_test(surfaces_are_built_once_and_hold_what_lies_inside),
+        cmocka_unit_test(masks_share_a_layer_until_they_overlap_or_their_grids_differ),
+        cmocka_unit_test(a_plan_never_leaves_its_folder),
+        cmocka_unit_test(a_plan_that_is_wrong_is_refused_with_the_place),
+        cmocka_unit_test(a_dose_in_a_format_not_read_is_left_out_and_said),
+        cmocka_unit_test(loading_can_be_cancelled_and_tells_how_far_it_is),
+        cmocka_unit_test(sera_s_own_head_has_the_published_counts_extents_and_places),
+        cmocka_unit_test(the_distributed_head_opens_from_nifti_copies_and_from_headers_that_lie),
+        cmocka_unit_test(a_clinical_plan_has_its_left_parotid_on_the_left),
+        cmocka_unit_test(volumes_agree_with_another_planning_system),
+        cmocka_unit_test(an_atlas_keeps_all_its_regions),
+        cmocka_unit_test(every_folder_of_data_is_summarised_with_a_reason_when_it_cannot_be_read),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
