@@ -22,6 +22,11 @@ check "the page" test -s "$root/usr/share/beamroom/web/index.html"
 check "the pinned libraries" test -s "$root/usr/share/beamroom/web/lib/lit-html.js"
 check "the unit names the installed program" grep -q '^ExecStart=/usr/bin/beamroomd ' "$root/usr/lib/systemd/system/beamroomd.service"
 check "nothing is left to fill in" sh -c "! grep -rE '@[A-Z]+@' '$root/usr/lib' '$root/etc'"
+every_key() { # the sample configuration and --help name the same settings
+    diff <("$root/usr/bin/beamroomd" --help | sed -nE 's/^ +--([a-z-]+) .*/\1/p' | grep -vE '^(config|version|help|stub)$' | sort -u) \
+        <(sed -nE 's/^(# )?([a-z-]+) = .*/\2/p' "$root/etc/beamroom/beamroomd.conf" | sort -u)
+}
+check "the sample configuration has every key" every_key
 echo "# mine" >>"$root/etc/beamroom/beamroomd.conf"
 check "a second install" "${MAKE:-make}" install DESTDIR="$root" PREFIX=/usr SYSCONFDIR=/etc
 check "keeps a configuration that was changed" grep -q '^# mine$' "$root/etc/beamroom/beamroomd.conf"
@@ -30,6 +35,7 @@ check "keeps a configuration that was changed" grep -q '^# mine$' "$root/etc/bea
 data=$(mktemp -d)
 sed -e "s|^plans = .*|plans = $PWD/build/demo/plans|; s|^data = .*|data = $data|; s|^listen = .*|listen = 127.0.0.1:0|" \
     -e "s|^web = /usr|web = $root/usr|" "$root/etc/beamroom/beamroomd.conf" >"$data/beamroomd.conf"
+: >"$log"
 "$root/usr/bin/beamroomd" --config "$data/beamroomd.conf" >"$log" 2>&1 </dev/null &
 daemon=$!
 for _ in $(seq 100); do
