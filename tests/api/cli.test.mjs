@@ -132,8 +132,17 @@ describe('beamroom info', () => {
   });
 });
 
+// A machine on which no back end works cannot show what render draws; the refusal names all three.
+const skipWithoutGl = (context) => {
+  const { status, stderr } = beamroom('render', plan, '-o', join(folder, 'try.png'), '--size', '16x16');
+  if (status !== 1 || !/egl-device: .*osmesa: /.test(stderr)) return false;
+  context.skip(stderr.trim());
+  return true;
+};
+
 describe('beamroom render', () => {
-  it('writes a PNG of the size asked for, twice the same', () => {
+  it('writes a PNG of the size asked for, twice the same', (context) => {
+    if (skipWithoutGl(context)) return;
     const [one, two] = [join(folder, 'one.png'), join(folder, 'two.png')];
     for (const out of [one, two]) {
       const { status, stdout, stderr } = beamroom('render', plan, '-o', out, '--size', '320x200');
@@ -148,7 +157,8 @@ describe('beamroom render', () => {
     assert.deepEqual(bytes, readFileSync(two));
   });
 
-  it('takes scene and view as merge patches, and quality for JPEG', () => {
+  it('takes scene and view as merge patches, and quality for JPEG', (context) => {
+    if (skipWithoutGl(context)) return;
     const [scene, view] = [join(folder, 'scene.json'), join(folder, 'view.json')];
     writeFileSync(scene, JSON.stringify({ regions: { scalp: { visible: false }, cranium: { visible: false } } }));
     writeFileSync(view, JSON.stringify({ kind: 'axial', size_px: [200, 200] }));
