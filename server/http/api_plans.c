@@ -28,7 +28,7 @@ static cJSON *plan_head(const struct fleet_plan *plan)
     }
     const cJSON *line;
     int n_warnings = 0;
-    cJSON_ArrayForEach(line, cJSON_GetObjectItemCaseSensitive(plan->document, "report"))
+    cJSON_ArrayForEach(line, cJSON_GetObjectItemCaseSensitive(cJSON_GetObjectItemCaseSensitive(plan->document, "report"), "lines"))
     {
         const char *severity = json_text(line, "severity");
         n_warnings += severity && strcmp(severity, "note") != 0;
