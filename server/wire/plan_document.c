@@ -4,6 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "core/scene/snapshot.h"
+#include "server/wire/document.h"
+
 static void add(cJSON *object, const char *name, cJSON *value) /* takes value */
 {
     if (!value || !cJSON_AddItemToObject(object, name, value))
@@ -191,6 +194,17 @@ static cJSON *report_object(const struct report *report)
     return object;
 }
 
+static cJSON *home_object(const struct plan *plan)
+{
+    cJSON *object = cJSON_CreateObject();
+    for (size_t kind = 0; kind < scene_kind_words.n; kind++) {
+        struct scene_camera camera;
+        camera_home(plan, (enum scene_kind)kind, &camera);
+        add(object, scene_kind_words.words[kind], camera_write(&camera));
+    }
+    return object;
+}
+
 cJSON *plan_document(const struct plan *plan)
 {
     static const char *const hierarchy_words[] = {
@@ -214,6 +228,7 @@ cJSON *plan_document(const struct plan *plan)
     add(object, "phantom", cJSON_CreateBool(plan->is_phantom));
     add(object, "load_ms", number((double)plan->load_us / 1000));
     add(object, "bounds_mm", box(&plan->bounds_lps_mm));
+    add(object, "home", home_object(plan));
     add(object, "images", images);
     add(object, "regions", regions);
     add(object, "hierarchy", cJSON_CreateString(hierarchy_words[plan->regions.hierarchy]));

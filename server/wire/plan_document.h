@@ -3,6 +3,7 @@
  * Only numbers and names, no voxels.
  *
  *   { id, name, note, phantom, load_ms, bounds_mm: {low, high} | null,
+ *     home: {"3d": camera, axial, coronal, sagittal},                 where a view without a camera is taken from; as in a view
  *     images:  [ {id, modality, unit, grid, low, high, window: {center, width}} ],
  *     regions: [ {id, name, color: "#rrggbb", color_from_file, parent: id | null, depth, grid, label, voxels, volume_cm3,
  *                 center_mm, bounds_mm, touches_edge,

@@ -100,8 +100,8 @@ describe('beamroom info', () => {
     const { status, stdout, stderr } = beamroom('info', plan, '--json');
     assert.equal(status, 0, stderr);
     const info = JSON.parse(stdout);
-    assert.deepEqual(Object.keys(info), ['id', 'name', 'note', 'phantom', 'load_ms', 'bounds_mm', 'images', 'regions', 'hierarchy',
-      'doses', 'beams', 'tracks', 'report']);
+    assert.deepEqual(Object.keys(info), ['id', 'name', 'note', 'phantom', 'load_ms', 'bounds_mm', 'home', 'images', 'regions',
+      'hierarchy', 'doses', 'beams', 'tracks', 'report']);
     assert.equal(info.id, 'head-one');
     assert.equal(info.phantom, true);
     const [image] = info.images;
@@ -114,6 +114,8 @@ describe('beamroom info', () => {
     assert.deepEqual(info.regions.map(({ id, parent }) => [id, parent]),
       [['scalp', null], ['cranium', 'scalp'], ['brain', 'cranium'], ['target', 'brain'], ['tumour', 'target']]);
     assert.equal(info.hierarchy, 'file');
+    assert.deepEqual(Object.keys(info.home), ['3d', 'axial', 'coronal', 'sagittal']);
+    assert.ok(info.home['3d'].position_mm[1] < -103 && info.home['3d'].up[2] === 1, 'from the front, the top up');
     const region = Object.fromEntries(info.regions.map((entry) => [entry.id, entry]));
     near(region.brain.volume_cm3, brain, 0.01 * brain); // the border's voxels: 1 % at this size
     assert.equal(region.brain.color, '#d696a0');

@@ -62,6 +62,15 @@ static void a_plan_is_told_with_units_and_null_where_nothing_is_known(void **sta
     assert_true(cJSON_IsNull(item(document, "bounds_mm")));
     assert_string_equal(item(document, "hierarchy")->valuestring, "derived");
 
+    /* axial looks from the feet up, square to the patient, at the middle of the image: (10.5, 22, 25.5) */
+    const cJSON *axial = item(item(document, "home"), "axial");
+    assert_string_equal(item(axial, "projection")->valuestring, "parallel");
+    assert_point(item(axial, "target_mm"), 10.5, 22, 25.5);
+    assert_point(item(axial, "up"), 0, -1, 0);
+    assert_true(cJSON_GetArrayItem(item(axial, "position_mm"), 2)->valuedouble < 25.5);
+    assert_string_equal(item(item(item(document, "home"), "3d"), "projection")->valuestring, "perspective");
+    assert_int_equal(cJSON_GetArraySize(item(document, "home")), 4);
+
     const cJSON *image = cJSON_GetArrayItem(item(document, "images"), 0), *grid = item(image, "grid");
     assert_close(item(image, "low")->valuedouble, -1000, 0);
     assert_point(item(grid, "size"), 2, 3, 4);
