@@ -149,9 +149,9 @@ test-unit: $(unit_BIN)
 test-render: $(render_BIN) demo
 	$(Q)tests/run_programs.sh "$(call LABEL,render)" $(render_BIN)
 test-api: all demo
-	$(Q)tests/run_node.sh api $(sort $(wildcard tests/api/*.test.mjs))
+	$(Q)tests/run_node.sh api $(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs))
 test-web: all demo
-	$(Q)tests/run_node.sh web $(sort $(wildcard tests/web/*.test.mjs))
+	$(Q)tests/run_node.sh web $(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs))
 test-install: all demo
 	$(Q)tests/install.sh
 lint: $(GEN_STAMP)
