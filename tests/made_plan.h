@@ -1,6 +1,7 @@
 #pragma once
 /* Plans made by hand for tests: label layers and images filled from functions of the patient point. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/mem.h"
