@@ -132,6 +132,7 @@ $(B)/$(1)/%: $(B)/obj/tests/$(1)/%.o $$(call obj,$$($(1)_HELP)) $(B)/libserver.a
 $(1)-programs: $$($(1)_BIN)
 endef
 $(eval $(call c_programs,unit,test,-lcmocka))
+$(B)/unit/test_renderer: | $(B)/beamroom-render
 $(eval $(call c_programs,render,test,-lcmocka))
 $(eval $(call c_programs,bench,bench,))
 $(eval $(call c_programs,fuzz,fuzz,-fsanitize=fuzzer))

@@ -1,0 +1,131 @@
+#include "server/renderer/answers.h"
+
+#include <math.h>
+
+#include "server/wire/document.h"
+
+static cJSON *point(struct vec3 p)
+{
+    return cJSON_CreateDoubleArray((double[3]){ p.x, p.y, p.z }, 3);
+}
+
+static void add_number(cJSON *json, const char *name, double value)
+{
+    cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
+}
+
+cJSON *answer_surface(struct plan *plan, size_t region, bool is_faceted, struct problem *problem)
+{
+    struct error err = { 0 };
+    struct surface_facts facts;
+    struct mesh *mesh = plan_surface(plan, region, SURFACE_FULL, &facts, &err);
+    if (!mesh) {
+        problem_from_error(problem, &err);
+        return NULL;
+    }
+    mesh_unref(mesh);
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "region", plan->regions.regions[region].id);
+    cJSON_AddStringToObject(json, "algorithm", "marching-cubes");
+    cJSON_AddStringToObject(json, "normals", is_faceted ? "face" : "vertex");
+    add_number(json, "triangles", (double)facts.n_triangles);
+    add_number(json, "vertices", (double)facts.n_vertices);
+    add_number(json, "area_mm2", facts.area_mm2);
+    add_number(json, "volume_mm3", facts.volume_mm3);
+    add_number(json, "univel_volume_mm3", facts.univel_volume_mm3);
+    add_number(json, "n_univels", (double)facts.n_univels);
+    add_number(json, "ms", facts.build_ms);
+    return json;
+}
+
+cJSON *answer_probe(const struct plan *plan, struct vec3 point_lps_mm)
+{
+    struct plan_probe probe;
+    plan_probe(plan, point_lps_mm, &probe);
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddItemToObject(json, "point_lps_mm", point(point_lps_mm));
+    cJSON *regions = cJSON_AddArrayToObject(json, "regions");
+    for (size_t i = 0; i < probe.n_regions; i++)
+        cJSON_AddItemToArray(regions, cJSON_CreateString(plan->regions.regions[probe.regions[i]].id));
+    cJSON *images = cJSON_AddArrayToObject(json, "images");
+    for (size_t i = 0; i < plan->n_images; i++) {
+        if (!probe.has_image[i])
+            continue;
+        cJSON *image = cJSON_CreateObject();
+        cJSON_AddStringToObject(image, "id", plan->images[i].id);
+        add_number(image, "value", probe.image_value[i]);
+        cJSON_AddStringToObject(image, "unit", plan->images[i].unit);
+        cJSON_AddItemToArray(images, image);
+    }
+    cJSON *doses = cJSON_AddArrayToObject(json, "doses");
+    for (size_t i = 0; i < probe.n_doses; i++) {
+        const struct dose *dose = &plan->doses[probe.doses[i].dose];
+        const struct dose_component *component = &dose->components[probe.doses[i].component];
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddStringToObject(item, "id", dose->id);
+        cJSON_AddStringToObject(item, "quantity", dose_quantity_word(component->quantity));
+        cJSON_AddBoolToObject(item, "per_ppm", component->is_per_ppm);
+        add_number(item, "value", probe.doses[i].value);
+        cJSON_AddStringToObject(item, "unit", dose->unit);
+        cJSON_AddStringToObject(item, "per", dose->per);
+        cJSON_AddItemToArray(doses, item);
+    }
+    return json;
+}
+
+cJSON *answer_pick(const struct snapshot *snapshot, double px, double py)
+{
+    struct pick_hit hits[PICK_MAX_HITS];
+    size_t n = snapshot_pick(snapshot, px, py, hits);
+    cJSON *json = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(json, "hits");
+    for (size_t i = 0; i < n; i++) {
+        cJSON *hit = cJSON_CreateObject();
+        cJSON_AddItemToObject(hit, "point_lps_mm", point(hits[i].point_lps_mm));
+        if (hits[i].region >= 0)
+            cJSON_AddStringToObject(hit, "region", snapshot->plan->regions.regions[hits[i].region].id);
+        else
+            cJSON_AddNullToObject(hit, "region");
+        add_number(hit, "distance_mm", hits[i].distance_mm);
+        cJSON_AddItemToArray(list, hit);
+    }
+    return json;
+}
+
+cJSON *answer_summary(const struct plan_summary *summary)
+{
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "name", summary->name);
+    cJSON_AddStringToObject(json, "note", summary->note);
+    cJSON_AddBoolToObject(json, "phantom", summary->is_phantom);
+    cJSON_AddBoolToObject(json, "readable", summary->is_readable);
+    cJSON_AddStringToObject(json, "reason", summary->reason);
+    cJSON *parts = cJSON_AddArrayToObject(json, "parts");
+    for (size_t i = 0; i < summary->n_parts; i++)
+        cJSON_AddItemToArray(parts, cJSON_CreateString(summary->parts[i]));
+    add_number(json, "n_bytes", (double)summary->n_bytes);
+    return json;
+}
+
+cJSON *answer_gl(const struct render_facts *facts, bool is_stub)
+{
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "back_end", is_stub ? "stub" : render_back_end_word(facts->back_end));
+    cJSON_AddStringToObject(json, "vendor", facts->vendor);
+    cJSON_AddStringToObject(json, "renderer", facts->renderer);
+    cJSON_AddStringToObject(json, "version", facts->version);
+    cJSON_AddBoolToObject(json, "is_software", facts->is_software);
+    return json;
+}
+
+cJSON *answer_home(const struct plan *plan)
+{
+    static const char *const kinds[] = { [SCENE_KIND_3D] = "3d", [SCENE_KIND_AXIAL] = "axial", [SCENE_KIND_CORONAL] = "coronal",
+                                         [SCENE_KIND_SAGITTAL] = "sagittal" };
+    cJSON *json = cJSON_CreateObject();
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        struct scene_camera camera;
+        camera_home(plan, (enum scene_kind)i, &camera);
+        cJSON_AddItemToObject(json, kinds[i], camera_write(&camera));
+    }
+    return json;
+}

@@ -1,0 +1,17 @@
+#pragma once
+/* Gives up what a renderer never needs, before the first byte of a plan is read: the network, other files, other programs. What the
+ * kernel offers is taken; what it got is said. Linux only. */
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct confine_options {
+    const char *plan_folder;  /* may be read */
+    const char *cache_folder; /* may be written; NULL: nothing may */
+    uint64_t max_bytes;       /* address space; 0: no limit */
+    bool needs_gpu;           /* device files of graphics drivers stay open to it */
+};
+
+/* Call before any other thread starts. got: what holds now, "landlock 3, seccomp, no-new-privs"; what is missing is named with the
+ * reason. Never fails: a kernel without these still runs renderers, and says so. */
+void confine(const struct confine_options *options, char got[128]);

@@ -1,0 +1,201 @@
+#include "server/renderer/loader.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "core/base/queue.h"
+#include "server/renderer/answers.h"
+
+enum {
+    PROGRESS_EVERY_US = 50000,
+    BUILD_AHEAD_US = 300000, /* after that a first picture goes ahead with what is there */
+    MAX_QUESTIONS = 256
+};
+
+struct loader {
+    char *folder, *plan_id;
+    struct desk *desk;
+    atomic_bool cancel;
+    pthread_t load_thread, quick_thread;
+    struct queue *slow, *quick; /* questions: surfaces, on the load thread; points, on their own */
+    struct plan *plan;          /* the load thread's; the quick one gets it with its first question */
+    int64_t told_us;
+};
+
+static void question_drop(void *item)
+{
+    struct question *question = item;
+    snapshot_unref(question->snapshot);
+    free(question);
+}
+
+static void tell(struct loader *loader, const char *phase, double percent)
+{
+    struct note note = { .type = NOTE_PROGRESS, .percent = percent };
+    (void)snprintf(note.phase, sizeof note.phase, "%s", phase);
+    desk_offer(loader->desk, &note);
+}
+
+static void step(void *context, const char *phase, double percent)
+{
+    struct loader *loader = context;
+    int64_t now_us = clock_now_us();
+    if (now_us - loader->told_us < PROGRESS_EVERY_US)
+        return;
+    loader->told_us = now_us;
+    tell(loader, phase, percent * 0.9); /* the rest is for surfaces */
+}
+
+static void answer(struct loader *loader, struct plan *plan, struct question *question)
+{
+    struct note note = { .type = NOTE_ANSWER, .id = question->id };
+    switch (question->what) {
+    case QUESTION_SURFACE: note.body = answer_surface(plan, question->region, question->is_faceted, &note.problem); break;
+    case QUESTION_PROBE: note.body = answer_probe(plan, question->point_lps_mm); break;
+    case QUESTION_PICK: note.body = answer_pick(question->snapshot, question->px, question->py); break;
+    }
+    desk_put(loader->desk, &note);
+    question_drop(question);
+}
+
+/* Regions a new room shows, in file order. */
+static size_t visible_regions(const struct plan *plan, size_t *regions)
+{
+    struct scene scene;
+    size_t n = 0;
+    scene_for_plan(plan, &scene);
+    for (size_t i = 0; i < scene.n_regions; i++) {
+        const struct region *region = region_find(&plan->regions, scene.regions[i].id);
+        if (region && region->n_voxels > 0 && scene.regions[i].value.visible && scene.regions[i].value.opacity > 0)
+            regions[n++] = (size_t)(region - plan->regions.regions);
+    }
+    scene_finish(&scene);
+    return n;
+}
+
+static void build(struct plan *plan, size_t region, enum surface_detail detail)
+{
+    struct error err = { 0 };
+    struct surface_facts facts;
+    struct mesh *mesh = plan_surface(plan, region, detail, &facts, &err);
+    if (!mesh)
+        log_warn("surface of region %s: %s", plan->regions.regions[region].id, err.text);
+    mesh_unref(mesh);
+}
+
+/* Light surfaces first: they are what a picture that moves needs. Questions go before what is built after BUILT was said. */
+static void build_ahead(struct loader *loader)
+{
+    struct plan *plan = loader->plan;
+    size_t *regions = mem_new((plan->regions.n_regions + 1) * sizeof *regions);
+    size_t n = visible_regions(plan, regions);
+    int64_t began_us = clock_now_us();
+    bool is_told = false;
+    for (size_t i = 0; i < 2 * n && !atomic_load(&loader->cancel); i++) {
+        if (!is_told && clock_now_us() - began_us > BUILD_AHEAD_US) {
+            desk_put(loader->desk, &(struct note){ .type = NOTE_BUILT });
+            is_told = true;
+        }
+        for (struct question *question; is_told && (question = queue_try_take(loader->slow));)
+            answer(loader, plan, question);
+        if (!is_told)
+            tell(loader, "building surfaces", 90 + 10.0 * (double)i / (double)(2 * n));
+        build(plan, regions[i % n], i < n ? SURFACE_LIGHT : SURFACE_FULL);
+    }
+    if (!is_told)
+        desk_put(loader->desk, &(struct note){ .type = NOTE_BUILT });
+    free(regions);
+}
+
+static void *load_main(void *argument)
+{
+    struct loader *loader = argument;
+    struct note note = { .type = NOTE_LOADED };
+    struct plan_progress progress = { step, loader, &loader->cancel };
+    struct plan *plan = plan_load(loader->folder, loader->plan_id, &progress, &note.error);
+    note.plan = plan;
+    if (!plan)
+        note.type = NOTE_FAILED;
+    loader->plan = plan;
+    desk_put(loader->desk, &note);
+    if (!plan)
+        return NULL;
+    build_ahead(loader);
+    for (struct question *question; (question = queue_take(loader->slow, -1));) {
+        if (atomic_load(&loader->cancel))
+            question_drop(question);
+        else
+            answer(loader, plan, question);
+    }
+    return NULL;
+}
+
+static void *quick_main(void *argument)
+{
+    struct loader *loader = argument;
+    for (struct question *question; (question = queue_take(loader->quick, -1));) {
+        if (atomic_load(&loader->cancel))
+            question_drop(question);
+        else
+            answer(loader, loader->plan, question); /* set before LOADED was said, and questions come after that */
+    }
+    return NULL;
+}
+
+struct loader *loader_create(const char *folder, const char *plan_id, struct desk *desk, struct error *err)
+{
+    struct loader *loader = mem_new(sizeof *loader);
+    loader->folder = mem_copy_text(folder);
+    loader->plan_id = mem_copy_text(plan_id);
+    loader->desk = desk;
+    atomic_init(&loader->cancel, false);
+    loader->slow = queue_create(MAX_QUESTIONS, question_drop);
+    loader->quick = queue_create(MAX_QUESTIONS, question_drop);
+    int failed = pthread_create(&loader->load_thread, NULL, load_main, loader);
+    if (!failed && (failed = pthread_create(&loader->quick_thread, NULL, quick_main, loader)) != 0) {
+        atomic_store(&loader->cancel, true);
+        queue_close(loader->slow);
+        pthread_join(loader->load_thread, NULL);
+    }
+    if (failed) {
+        error_set(err, ERROR_IO, "a thread cannot be started: %s", strerror(failed));
+        queue_destroy(loader->slow);
+        queue_destroy(loader->quick);
+        free(loader->folder);
+        free(loader->plan_id);
+        free(loader);
+        return NULL;
+    }
+    return loader;
+}
+
+bool loader_ask(struct loader *loader, const struct question *question)
+{
+    struct question *copy = mem_new(sizeof *copy);
+    *copy = *question;
+    if (queue_try_put(question->what == QUESTION_SURFACE ? loader->slow : loader->quick, copy))
+        return true;
+    question_drop(copy);
+    return false;
+}
+
+void loader_destroy(struct loader *loader)
+{
+    if (!loader)
+        return;
+    atomic_store(&loader->cancel, true);
+    queue_close(loader->slow);
+    queue_close(loader->quick);
+    pthread_join(loader->load_thread, NULL);
+    pthread_join(loader->quick_thread, NULL);
+    queue_destroy(loader->slow);
+    queue_destroy(loader->quick);
+    free(loader->folder);
+    free(loader->plan_id);
+    free(loader);
+}

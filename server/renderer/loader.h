@@ -1,0 +1,22 @@
+#pragma once
+/* The threads that read the plan, build surfaces ahead, and answer questions that need no picture. */
+#include "server/renderer/desk.h"
+
+struct loader;
+
+struct question {
+    enum { QUESTION_SURFACE, QUESTION_PROBE, QUESTION_PICK } what;
+    uint64_t id;
+    size_t region;   /* surface */
+    bool is_faceted; /* surface: normals "face" */
+    struct vec3 point_lps_mm;
+    struct snapshot *snapshot; /* pick: one reference, taken */
+    double px, py;
+};
+
+/* Starts reading: notes PROGRESS, then LOADED and later BUILT (the surfaces a first picture needs), or FAILED. NULL: no thread. */
+NODISCARD struct loader *loader_create(const char *folder, const char *plan_id, struct desk *desk, struct error *err);
+/* After LOADED. Answered by a note with the same id. Takes what question owns. False: too many wait. */
+NODISCARD bool loader_ask(struct loader *loader, const struct question *question);
+/* Cancels reading, drops what waits, joins. The plan must outlive it. */
+void loader_destroy(struct loader *loader);

@@ -1,0 +1,183 @@
+/* beamroom-render: the process that reads one plan, draws it and answers questions about it, for beamroomd. */
+#include <errno.h>
+#include <fcntl.h>
+#include <getopt.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "core/base/log.h"
+#include "server/renderer/answers.h"
+#include "server/renderer/confine.h"
+#include "server/renderer/session.h"
+
+enum { EXIT_USAGE = 2 };
+
+static void print_help(void)
+{
+    fputs("usage: beamroom-render --socket-fd FD --plan-folder DIR --plan-id ID --cache DIR [OPTION]...\n"
+          "       beamroom-render --scan DIR\n"
+          "       beamroom-render --probe-gl [--gl BACK-END]\n"
+          "Reads one plan, draws it and answers questions about it. beamroomd starts one of these for each open plan and speaks\n"
+          "with it over a socket; by hand only --scan and --probe-gl are of use.\n\n"
+          "  --scan DIR         print as JSON what the plan folder DIR holds, without reading voxels, and end\n"
+          "  --probe-gl         print as JSON how pictures can be drawn on this machine, and end\n"
+          "  --gl BACK-END      auto (default), egl-device, egl-surfaceless or osmesa\n"
+          "  --stub             no graphics: grey pictures of the right size, for tests\n"
+          "  --socket-fd FD     number of the open socket to the daemon\n"
+          "  --plan-folder DIR  the plan to read; nothing else is readable from then on\n"
+          "  --plan-id ID       what the daemon calls the plan: letters a-z, digits, '-'\n"
+          "  --cache DIR        folder that may be written\n"
+          "  --max-bytes N      most address space the process may take; 0 (default): no limit\n"
+          "  --help, --version  this text, the version\n\n"
+          "It gives up the network, other programs and other files before it reads a plan, as far as the kernel offers that.\n"
+          "Exit status: 0 done, or the daemon closed the socket; 1 the connection broke, or GL does not start (--probe-gl);\n"
+          "2 wrong usage; 3 the plan cannot be read.\n",
+          stdout);
+}
+
+struct arguments {
+    struct session_options session;
+    const char *scan, *cache;
+    bool is_probe;
+    uint64_t max_bytes;
+};
+
+static int refuse(const char *what, const char *value)
+{
+    fprintf(stderr, "beamroom-render: %s%s%s; see beamroom-render --help\n", what, value ? " " : "", value ? value : "");
+    return EXIT_USAGE;
+}
+
+static bool read_number(const char *text, unsigned long long most, unsigned long long *number)
+{
+    char *end;
+    errno = 0;
+    *number = strtoull(text, &end, 10);
+    return errno == 0 && end != text && *end == 0 && text[0] != '-' && *number <= most;
+}
+
+/* -1: go on; else the exit status. */
+static int read_arguments(int argc, char **argv, struct arguments *arguments)
+{
+    enum { HELP = 256, VERSION, SOCKET, FOLDER, ID, CACHE, GL, STUB, MAX_BYTES, SCAN, PROBE };
+    static const struct option options[] = {
+        { "help", no_argument, NULL, HELP },           { "version", no_argument, NULL, VERSION },
+        { "socket-fd", required_argument, NULL, SOCKET }, { "plan-folder", required_argument, NULL, FOLDER },
+        { "plan-id", required_argument, NULL, ID },    { "cache", required_argument, NULL, CACHE },
+        { "gl", required_argument, NULL, GL },         { "stub", no_argument, NULL, STUB },
+        { "max-bytes", required_argument, NULL, MAX_BYTES }, { "scan", required_argument, NULL, SCAN },
+        { "probe-gl", no_argument, NULL, PROBE },      { NULL, 0, NULL, 0 },
+    };
+    *arguments = (struct arguments){ .session = { .socket = -1 } };
+    unsigned long long number;
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        switch (option) {
+        case HELP: print_help(); return EXIT_SUCCESS;
+        case VERSION: puts("beamroom-render " BEAMROOM_VERSION); return EXIT_SUCCESS;
+        case SOCKET:
+            if (!read_number(optarg, 1023, &number))
+                return refuse("no file number:", optarg);
+            arguments->session.socket = (int)number;
+            break;
+        case FOLDER: arguments->session.plan_folder = optarg; break;
+        case ID: arguments->session.plan_id = optarg; break;
+        case CACHE: arguments->cache = optarg; break;
+        case GL:
+            if (!render_back_end_from_word(optarg, &arguments->session.back_end))
+                return refuse("--gl is auto, egl-device, egl-surfaceless or osmesa, not", optarg);
+            break;
+        case STUB: arguments->session.is_stub = true; break;
+        case MAX_BYTES:
+            if (!read_number(optarg, UINT64_MAX, &number))
+                return refuse("--max-bytes needs a number of bytes, not", optarg);
+            arguments->max_bytes = number;
+            break;
+        case SCAN: arguments->scan = optarg; break;
+        case PROBE: arguments->is_probe = true; break;
+        default: return refuse("wrong usage", NULL);
+        }
+    }
+    if (optind < argc)
+        return refuse("what is meant by", argv[optind]);
+    const struct session_options *session = &arguments->session;
+    if (arguments->scan || arguments->is_probe)
+        return -1;
+    if (session->socket < 0 || !session->plan_folder || !session->plan_id || !arguments->cache)
+        return refuse("--socket-fd, --plan-folder, --plan-id and --cache are needed", NULL);
+    struct stat facts;
+    if (fstat(session->socket, &facts) != 0 || !S_ISSOCK(facts.st_mode))
+        return refuse("--socket-fd is not an open socket", NULL);
+    return -1;
+}
+
+static int print_json(cJSON *json)
+{
+    char *text = json_write(json);
+    int failed = puts(text) < 0 || fflush(stdout) != 0;
+    free(text);
+    cJSON_Delete(json);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+static int scan(const char *folder)
+{
+    static struct plan_summary summary;
+    plan_summarize(folder, &summary);
+    return print_json(answer_summary(&summary));
+}
+
+static int probe_gl(const struct session_options *options, const char *confined)
+{
+    struct error err = { 0 };
+    static const struct render_facts stub_facts = { .vendor = "Beamroom", .renderer = "stub", .version = "none", .is_software = true };
+    struct renderer *renderer = options->is_stub ? NULL : renderer_create(options->back_end, &err);
+    cJSON *json;
+    if (renderer || options->is_stub) {
+        json = answer_gl(renderer ? renderer_facts(renderer) : &stub_facts, options->is_stub);
+        cJSON_AddStringToObject(json, "confined", confined);
+    } else {
+        struct problem problem;
+        problem_set(&problem, PROBLEM_GL, "", "", "%s", err.text);
+        json = cJSON_CreateObject();
+        cJSON_AddItemToObject(json, "problem", problem_to_json(&problem));
+    }
+    int status = print_json(json);
+    bool has_failed = !renderer && !options->is_stub;
+    renderer_destroy(renderer);
+    return has_failed ? EXIT_FAILURE : status;
+}
+
+int main(int argc, char **argv)
+{
+    log_start("beamroom-render", LOG_INFO);
+    struct arguments arguments;
+    int status = read_arguments(argc, argv, &arguments);
+    if (status >= 0)
+        return status;
+    struct session_options *session = &arguments.session;
+    (void)signal(SIGPIPE, SIG_IGN);
+    /* compiled shaders are code: one plan's renderer must not leave any for another's, so they stay in the plan's own cache */
+    if (arguments.cache) {
+        (void)setenv("MESA_SHADER_CACHE_DIR", arguments.cache, 1);
+        (void)setenv("__GL_SHADER_DISK_CACHE_PATH", arguments.cache, 1);
+    } else {
+        (void)setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    }
+    char confined[128];
+    struct confine_options limits = {
+        .plan_folder = arguments.scan ? arguments.scan : session->plan_folder,
+        .cache_folder = arguments.cache,
+        .max_bytes = arguments.max_bytes,
+        .needs_gpu = !arguments.scan && !session->is_stub,
+    };
+    confine(&limits, confined);
+    session->confined = confined;
+    if (arguments.scan)
+        return scan(arguments.scan);
+    if (arguments.is_probe)
+        return probe_gl(session, confined);
+    return session_run(session);
+}

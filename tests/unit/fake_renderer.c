@@ -1,0 +1,204 @@
+#include "tests/unit/fake_renderer.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "server/wire/packet.h"
+
+static char behaviour[64];
+
+static bool behaves(const char *word) { return strcmp(behaviour, word) == 0; }
+
+static const char *argument(int argc, char **argv, const char *flag)
+{
+    for (int i = 1; i + 1 < argc; i++)
+        if (strcmp(argv[i], flag) == 0)
+            return argv[i + 1];
+    return NULL;
+}
+
+static void read_behaviour(const char *folder)
+{
+    char path[512];
+    snprintf(path, sizeof path, "%s/behave", folder);
+    FILE *file = fopen(path, "r");
+    if (file && !fgets(behaviour, sizeof behaviour, file))
+        behaviour[0] = 0;
+    if (file)
+        fclose(file);
+}
+
+static void write_all(const void *bytes, size_t n)
+{
+    for (const char *at = bytes; n > 0;) {
+        ssize_t wrote = write(3, at, n);
+        if (wrote <= 0)
+            _exit(0);
+        at += wrote;
+        n -= (size_t)wrote;
+    }
+}
+
+static void say(cJSON *json, const void *blob, size_t n_blob)
+{
+    size_t n;
+    uint8_t *bytes = packet_write(json, blob, n_blob, &n);
+    write_all(bytes, n);
+    free(bytes);
+    cJSON_Delete(json);
+}
+
+static cJSON *word(const char *type)
+{
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "type", type);
+    return json;
+}
+
+static void say_progress(double percent)
+{
+    cJSON *json = word("progress");
+    cJSON_AddStringToObject(json, "phase", "reading");
+    cJSON_AddNumberToObject(json, "percent", percent);
+    say(json, NULL, 0);
+}
+
+static void say_ready(const char *id)
+{
+    cJSON *json = word("ready"), *plan = cJSON_AddObjectToObject(json, "plan");
+    cJSON_AddStringToObject(plan, "id", behaves("other-id") ? "another" : id);
+    cJSON *image = cJSON_CreateObject();
+    cJSON_AddStringToObject(image, "id", "ct");
+    cJSON_AddItemToArray(cJSON_AddArrayToObject(plan, "images"), image);
+    cJSON *scene = cJSON_AddObjectToObject(json, "scene");
+    if (behaves("wrong-scene"))
+        cJSON_AddNumberToObject(scene, "regions", 7);
+    cJSON_AddStringToObject(json, "confined", "not at all");
+    cJSON_AddNumberToObject(json, "load_ms", 12);
+    say(json, NULL, 0);
+}
+
+static void say_frame(const cJSON *asked)
+{
+    cJSON *json = word("frame");
+    cJSON_AddNumberToObject(json, "id", json_number(asked, "id", 0));
+    cJSON_AddNumberToObject(json, "width_px", behaves("liar") ? -5 : 64);
+    static const char *const others[] = { "height_px", "scene_revision", "render_us", "encode_us", "pixels_per_mm" };
+    for (size_t i = 0; i < 5; i++)
+        cJSON_AddNumberToObject(json, others[i], 48);
+    cJSON *matrix = cJSON_AddArrayToObject(json, "clip_from_lps_mm");
+    for (int i = 0; i < 16; i++)
+        cJSON_AddItemToArray(matrix, cJSON_CreateNumber(i));
+    say(json, "picture", 7);
+}
+
+static void die(void)
+{
+    kill(getpid(), SIGKILL);
+    pause();
+}
+
+static void handle(const cJSON *packet, const char *folder)
+{
+    const char *type = json_text(packet, "type");
+    char mark[512];
+    snprintf(mark, sizeof mark, "%s/crashed", folder);
+    if (strcmp(type, "ping") == 0) {
+        say(word("pong"), NULL, 0);
+    } else if (strcmp(type, "render") == 0) {
+        if (behaves("crash-on-render") || (behaves("crash-once") && access(mark, F_OK) != 0 && mkdir(mark, 0700) == 0))
+            die();
+        if (!behaves("never-draws"))
+            say_frame(packet);
+    } else if (strcmp(type, "query") == 0) {
+        cJSON *json = word("answer");
+        cJSON_AddNumberToObject(json, "id", json_number(packet, "id", 0));
+        cJSON_AddItemToObject(json, "body", cJSON_Duplicate(packet, true));
+        say(json, NULL, 0);
+    } else if (strcmp(type, "scene") == 0 && behaves("floods")) {
+        for (;;)
+            say_progress(1);
+    }
+}
+
+static int renderer_main(const char *folder, const char *id)
+{
+    read_behaviour(folder);
+    if (behaves("crash-loading"))
+        die();
+    if (behaves("huge-head")) {
+        uint32_t head[3] = { 0x4b505242u, 0xffffffffu, 0xffffffffu };
+        write_all(head, sizeof head);
+    }
+    if (behaves("garbage"))
+        write_all("HTTP/1.1 200 OK\r\n\r\n", 19);
+    if (behaves("no-type"))
+        say(cJSON_CreateObject(), NULL, 0);
+    if (behaves("fails")) {
+        struct problem problem;
+        problem_set(&problem, PROBLEM_VALIDATION, "", "format", "ct.nii: byte 40: 9 axes, expected 3");
+        cJSON *json = word("failed");
+        cJSON_AddItemToObject(json, "problem", problem_to_json(&problem));
+        say(json, NULL, 0);
+        return 3;
+    }
+    cJSON *gl = word("gl");
+    cJSON_AddStringToObject(gl, "back_end", "made-up");
+    say(gl, NULL, 0);
+    say_progress(10);
+    for (double percent = 20; behaves("loads-for-ever"); percent = percent < 90 ? percent + 0.01 : 20) {
+        say_progress(percent);
+        nanosleep(&(struct timespec){ .tv_nsec = 20000000 }, NULL);
+    }
+    while (behaves("stalls"))
+        pause();
+    say_ready(id);
+    if (behaves("deaf"))
+        raise(SIGSTOP);
+    struct packet_reader *reader = packet_reader_create();
+    for (;;) {
+        size_t room;
+        struct packet packet;
+        uint8_t *space = packet_reader_space(reader, &room, NULL);
+        ssize_t n = space ? read(3, space, room) : 0;
+        if (n <= 0)
+            break;
+        packet_reader_added(reader, (size_t)n);
+        while (packet_reader_take(reader, &packet, NULL) == 1) {
+            handle(packet.json, folder);
+            packet_finish(&packet);
+        }
+    }
+    packet_reader_destroy(reader);
+    return 0;
+}
+
+static int scan_main(const char *folder)
+{
+    read_behaviour(folder);
+    if (behaves("scan-crashes"))
+        die();
+    while (behaves("scan-hangs"))
+        pause();
+    if (behaves("scan-babbles"))
+        for (;;)
+            puts("more and more");
+    printf("{\"name\":\"A plan\",\"note\":\"n\",\"phantom\":true,\"readable\":%s,\"reason\":\"a DICOM folder\",\"parts\":[\"CT\"],\"n_bytes\":77}\n",
+           behaves("unreadable") ? "false" : "true");
+    return 0;
+}
+
+int fake_renderer_main(int argc, char **argv)
+{
+    const char *folder = argument(argc, argv, "--plan-folder"), *id = argument(argc, argv, "--plan-id");
+    if (folder && id)
+        return renderer_main(folder, id);
+    if (argument(argc, argv, "--scan"))
+        return scan_main(argument(argc, argv, "--scan"));
+    return puts("{\"back_end\":\"made-up\",\"is_software\":true}") < 0;
+}

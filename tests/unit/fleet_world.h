@@ -1,0 +1,45 @@
+#pragma once
+/* A fleet with a folder of plans of its own, for tests. */
+#include <stdatomic.h>
+#include <stddef.h>
+
+#include "server/fleet/fleet.h"
+
+struct world {
+    char folder[64];
+    struct fleet *fleet;
+    atomic_int n_wakes;
+    int n_changes;
+    struct fleet_options options;
+    const char *folders[1];
+    char data[80], plans[80], self[512];
+};
+
+struct reply {
+    int n;          /* replies that came */
+    bool is_frame;  /* with the made-up renderer's picture */
+    struct problem problem;
+    char what[32];  /* of an answer's body */
+    cJSON *json;    /* the answer; reply_finish frees it */
+    uint8_t *blob;
+    size_t n_blob;
+};
+
+/* A folder below /tmp with an empty folder of plans; options stand ready to be changed, the renderer is this test program. */
+void world_begin(struct world *world);
+/* A plan for the made-up renderer. */
+void world_add_plan(struct world *world, const char *name, const char *behave);
+/* Starts the fleet and waits until n_plans have been looked at. */
+void world_start(struct world *world, size_t n_plans);
+void world_end(struct world *world);
+void world_remove_folder(const char *path);
+void world_step(struct world *world); /* one turn of what the net thread does */
+struct fleet_plan world_plan_of(struct world *world, const char *id);
+void world_wait_for_state(struct world *world, const char *id, enum fleet_state state);
+void world_open_plan(struct world *world, const char *id);
+/* Asks with a packet that has only its type and "what": "probe". reply must outlive the answer. */
+uint64_t world_ask(struct world *world, const char *id, const char *type, struct reply *reply);
+/* Asks with this packet, which is deleted. */
+uint64_t world_ask_packet(struct world *world, const char *id, cJSON *packet, struct reply *reply);
+void world_wait_for_reply(struct world *world, struct reply *reply);
+void reply_finish(struct reply *reply); /* empties it too */

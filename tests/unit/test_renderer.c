@@ -1,0 +1,325 @@
+/* The fleet with the real beamroom-render on a small demo plan: --stub, so that sanitizers can watch, and GL where there is one. */
+#include <errno.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/base/clock.h"
+#include "core/phantom/phantom.h"
+#include "tests/check.h"
+#include "tests/unit/fleet_world.h"
+
+#define PLAN "head"
+
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
+#define IS_SANITIZED 1
+#endif
+#endif
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+#define IS_SANITIZED 1
+#endif
+
+static char renderer_path[512];
+
+/* False: this variant's beamroom-render is not built. */
+static bool has_renderer(void)
+{
+    const char *folder = getenv("BEAMROOM_BIN");
+    char self[512];
+    ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
+    assert_true(n > 0);
+    self[n] = 0;
+    *strrchr(self, '/') = 0;
+    snprintf(renderer_path, sizeof renderer_path, "%.400s/../beamroom-render", self);
+    if (access(renderer_path, X_OK) != 0 && folder)
+        snprintf(renderer_path, sizeof renderer_path, "%.400s/beamroom-render", folder);
+    return access(renderer_path, X_OK) == 0;
+}
+
+static void begin_head(struct world *world, bool is_stub, const uint32_t size[3])
+{
+    if (!has_renderer())
+        skip();
+    world_begin(world);
+    char path[512];
+    struct error err = { 0 };
+    struct phantom_options options = { { size[0], size[1], size[2] }, 1 };
+    snprintf(path, sizeof path, "%s/%s", world->plans, PLAN);
+    assert_true(phantom_write(path, &options, false, &err));
+    world->options.renderer_path = renderer_path;
+    world->options.stub_renderer = is_stub;
+    world->options.times.scan = 20000; /* sanitizers start slowly */
+}
+
+static const uint32_t small[3] = { 64, 64, 32 };
+
+static cJSON *parse(const char *text)
+{
+    cJSON *json = cJSON_Parse(text);
+    assert_non_null(json);
+    return json;
+}
+
+static void ask(struct world *world, const char *packet, struct reply *reply)
+{
+    reply_finish(reply);
+    world_ask_packet(world, PLAN, parse(packet), reply);
+    world_wait_for_reply(world, reply);
+}
+
+/* Width and height from a baseline JPEG's frame header (ITU T.81, B.2.2); false when the markers do not follow each other to the end. */
+static bool jpeg_size(const uint8_t *bytes, size_t n, int *width, int *height)
+{
+    *width = *height = 0;
+    if (n < 4 || bytes[0] != 0xff || bytes[1] != 0xd8 || bytes[n - 2] != 0xff || bytes[n - 1] != 0xd9)
+        return false;
+    for (size_t at = 2; at + 9 < n && bytes[at] == 0xff && bytes[at + 1] != 0xda; at += 2 + ((size_t)bytes[at + 2] << 8 | bytes[at + 3]))
+        if (bytes[at + 1] == 0xc0) {
+            *height = bytes[at + 5] << 8 | bytes[at + 6];
+            *width = bytes[at + 7] << 8 | bytes[at + 8];
+        }
+    return *width > 0;
+}
+
+static void assert_frame(const struct reply *reply, int width, int height)
+{
+    int w, h;
+    assert_string_equal(reply->problem.detail, "");
+    assert_true(jpeg_size(reply->blob, reply->n_blob, &w, &h));
+    assert_int_equal(w, width);
+    assert_int_equal(h, height);
+    assert_int_equal(json_number(reply->json, "width_px", 0), width);
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(reply->json, "clip_from_lps_mm")), 16);
+}
+
+static void a_plan_is_read_and_drawn_and_drawn_again_after_a_kill(void **state)
+{
+    (void)state;
+    struct world world;
+    struct reply reply = { 0 };
+    begin_head(&world, true, small);
+    world_start(&world, 1);
+    world_open_plan(&world, PLAN);
+    world_wait_for_state(&world, PLAN, FLEET_READY);
+    struct fleet_plan plan = world_plan_of(&world, PLAN);
+    assert_string_equal(json_text(plan.document, "id"), PLAN);
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(plan.document, "regions")), 5);
+    assert_non_null(cJSON_GetObjectItem(cJSON_GetObjectItem(plan.document, "home"), "coronal"));
+    assert_string_equal(plan.image_ids[0], "ct");
+    assert_non_null(strstr(plan.confined, "seccomp"));
+    assert_string_equal(json_text(fleet_gl(world.fleet, NULL), "back_end"), "stub");
+    assert_true(plan.is_phantom);
+
+    ask(&world, "{\"type\":\"render\",\"view\":{\"size_px\":[320,200]}}", &reply);
+    assert_frame(&reply, 320, 200);
+    ask(&world, "{\"type\":\"render\",\"scale_percent\":50,\"detail\":\"light\",\"view\":{\"size_px\":[320,200]}}", &reply);
+    assert_frame(&reply, 160, 100);
+
+    cJSON *scene = cJSON_CreateObject();
+    cJSON_AddStringToObject(scene, "type", "scene");
+    cJSON_AddStringToObject(scene, "room", "r1");
+    cJSON_AddNumberToObject(scene, "revision", 41);
+    cJSON_AddItemToObject(scene, "scene", cJSON_Duplicate(plan.default_scene, true));
+    assert_true(fleet_tell(world.fleet, PLAN, scene));
+    ask(&world, "{\"type\":\"render\",\"room\":\"r1\",\"view\":{\"size_px\":[64,64]}}", &reply);
+    assert_frame(&reply, 64, 64);
+    assert_int_equal(json_number(reply.json, "scene_revision", 0), 41);
+
+    kill(plan.pid, SIGKILL);
+    world_wait_for_state(&world, PLAN, FLEET_RESTARTING);
+    reply_finish(&reply);
+    world_ask_packet(&world, PLAN, parse("{\"type\":\"render\",\"view\":{\"size_px\":[320,200]}}"), &reply);
+    world_wait_for_reply(&world, &reply);
+    assert_frame(&reply, 320, 200);
+    assert_int_equal(world_plan_of(&world, PLAN).generation, 2);
+    /* the new one has forgotten the room */
+    ask(&world, "{\"type\":\"render\",\"room\":\"r1\",\"view\":{}}", &reply);
+    assert_int_equal(reply.problem.type, PROBLEM_NOT_FOUND);
+    assert_true(fleet_tell(world.fleet, PLAN, scene));
+    cJSON_Delete(scene);
+    ask(&world, "{\"type\":\"render\",\"room\":\"r1\",\"view\":{\"size_px\":[64,64]}}", &reply);
+    assert_frame(&reply, 64, 64);
+    reply_finish(&reply);
+    world_end(&world);
+}
+
+static const cJSON *body(const struct reply *reply)
+{
+    assert_string_equal(reply->problem.detail, "");
+    const cJSON *json = cJSON_GetObjectItem(reply->json, "body");
+    assert_non_null(json);
+    return json;
+}
+
+static void numbers_are_answered(void **state)
+{
+    (void)state;
+    struct world world;
+    struct reply reply = { 0 };
+    begin_head(&world, true, small);
+    world_start(&world, 1);
+    world_open_plan(&world, PLAN);
+    /* modified Snyder head: the middle of the brain, (0, 0, 10) mm in the paper's frame, is inside brain, cranium and scalp */
+    ask(&world, "{\"type\":\"query\",\"what\":\"probe\",\"point_lps_mm\":[30,0,-10]}", &reply);
+    const cJSON *json = body(&reply);
+    assert_true(cJSON_GetArraySize(cJSON_GetObjectItem(json, "regions")) >= 1);
+    assert_string_equal(cJSON_GetArrayItem(cJSON_GetObjectItem(json, "regions"), 0)->valuestring, "brain");
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "images")), 1);
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "doses")), 4);
+
+    ask(&world, "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\"}", &reply);
+    json = body(&reply);
+    double univels = json_number(json, "n_univels", 0), volume = json_number(json, "univel_volume_mm3", 0);
+    assert_close(volume, univels * 4 * 4 * 6.4, 0.5); /* 256 x 256 x 204.8 mm in 64 x 64 x 32 voxels */
+    /* the mesh cuts half a voxel off every edge of the staircase */
+    assert_near(json_number(json, "volume_mm3", 0), volume, 0.03);
+    assert_true(json_number(json, "triangles", 0) > 1000);
+
+    ask(&world, "{\"type\":\"query\",\"what\":\"pick\",\"view\":{\"size_px\":[200,200]},\"px\":100.5,\"py\":100.5}", &reply);
+    const cJSON *hits = cJSON_GetObjectItem(body(&reply), "hits");
+    assert_true(cJSON_GetArraySize(hits) >= 1);
+    assert_string_equal(json_text(cJSON_GetArrayItem(hits, 0), "region"), "scalp"); /* from the front the skin comes first */
+    reply_finish(&reply);
+    world_end(&world);
+}
+
+static void what_is_asked_wrongly_is_refused_with_its_place(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *packet;
+        enum problem_type type;
+        const char *pointer;
+    } wrong[] = {
+        { "{\"type\":\"render\",\"view\":{\"size_px\":[1,1]}}", PROBLEM_VALIDATION, "/view/size_px/0" },
+        { "{\"type\":\"render\",\"view\":{\"kind\":\"4d\"}}", PROBLEM_VALIDATION, "/view/kind" },
+        { "{\"type\":\"render\",\"scene\":{\"regions\":{\"liver\":{}}}}", PROBLEM_VALIDATION, "/scene/regions/liver" },
+        { "{\"type\":\"render\",\"scene\":{\"image\":{\"id\":\"pet\"}}}", PROBLEM_VALIDATION, "/scene/image/id" },
+        { "{\"type\":\"render\",\"view\":{\"camera\":{\"position_mm\":[1,1,1],\"target_mm\":[1,1,1],\"up\":[0,0,1]}}}", PROBLEM_VALIDATION,
+          "/view/camera/position_mm" },
+        { "{\"type\":\"render\",\"quality\":0}", PROBLEM_VALIDATION, "/quality" },
+        { "{\"type\":\"render\",\"codec\":\"gif\"}", PROBLEM_VALIDATION, "/codec" },
+        { "{\"type\":\"render\",\"room\":\"nowhere\"}", PROBLEM_NOT_FOUND, "/room" },
+        { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"liver\"}", PROBLEM_NOT_FOUND, "/region" },
+        { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"algorithm\":\"magic\"}", PROBLEM_VALIDATION, "/algorithm" },
+        { "{\"type\":\"query\",\"what\":\"probe\",\"point_lps_mm\":[1,2]}", PROBLEM_VALIDATION, "/point_lps_mm" },
+        { "{\"type\":\"query\",\"what\":\"pick\",\"view\":{},\"px\":-1,\"py\":0}", PROBLEM_VALIDATION, "/px" },
+        { "{\"type\":\"query\",\"what\":\"weather\"}", PROBLEM_VALIDATION, "/what" },
+    };
+    struct world world;
+    struct reply reply = { 0 };
+    begin_head(&world, true, small);
+    world_start(&world, 1);
+    world_open_plan(&world, PLAN);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        ask(&world, wrong[i].packet, &reply);
+        if (reply.problem.type != wrong[i].type || strcmp(reply.problem.pointer, wrong[i].pointer) != 0)
+            fail_msg("%s: %s at %s, expected %s", wrong[i].packet, reply.problem.detail, reply.problem.pointer, wrong[i].pointer);
+    }
+    assert_int_equal(world_plan_of(&world, PLAN).generation, 1);
+    reply_finish(&reply);
+    world_end(&world);
+}
+
+static void a_plan_that_cannot_be_read_fails_with_the_loaders_sentence(void **state)
+{
+    (void)state;
+    struct world world;
+    char path[600];
+    begin_head(&world, true, small);
+    snprintf(path, sizeof path, "%s/%s/labels.nii.gz", world.plans, PLAN);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("no image at all", file);
+    fclose(file);
+    world_start(&world, 1);
+    struct fleet_plan plan = world_plan_of(&world, PLAN);
+    if (plan.state == FLEET_CLOSED) { /* seen only when it is read */
+        world_open_plan(&world, PLAN);
+        world_wait_for_state(&world, PLAN, FLEET_FAILED);
+        plan = world_plan_of(&world, PLAN);
+    }
+    assert_int_equal(plan.problem->type, PROBLEM_PLAN_UNREADABLE);
+    assert_non_null(strstr(plan.problem->detail, "labels.nii.gz"));
+    world_end(&world);
+}
+
+static void the_running_renderer_is_filtered(void **state)
+{
+    (void)state;
+    struct world world;
+    begin_head(&world, true, small);
+    world_start(&world, 1);
+    world_open_plan(&world, PLAN);
+    world_wait_for_state(&world, PLAN, FLEET_READY);
+    char path[64], line[256];
+    bool has_filter = false, has_no_privileges = false;
+    snprintf(path, sizeof path, "/proc/%d/status", world_plan_of(&world, PLAN).pid);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file)) {
+        has_filter |= strcmp(line, "Seccomp:\t2\n") == 0;
+        has_no_privileges |= strcmp(line, "NoNewPrivs:\t1\n") == 0;
+    }
+    fclose(file);
+    assert_true(has_no_privileges);
+    assert_true(has_filter);
+    world_end(&world);
+}
+
+static void with_gl_a_frame_of_the_demo_plan_comes_and_comes_again(void **state)
+{
+    (void)state;
+#ifdef IS_SANITIZED
+    skip(); /* the graphics driver is not built for sanitizers */
+#endif
+    struct world world;
+    struct reply reply = { 0 };
+    begin_head(&world, false, phantom_defaults.size);
+    world_start(&world, 1);
+    const struct problem *problem = NULL;
+    for (int64_t until_us = clock_now_us() + 20000000; !fleet_gl(world.fleet, &problem) && !problem && clock_now_us() < until_us;)
+        world_step(&world);
+    if (!fleet_gl(world.fleet, NULL)) {
+        world_end(&world);
+        skip(); /* nothing here can draw */
+    }
+    int64_t began_us = clock_now_us();
+    world_open_plan(&world, PLAN);
+    world_wait_for_state(&world, PLAN, FLEET_READY);
+    int64_t ready_us = clock_now_us();
+    ask(&world, "{\"type\":\"render\",\"detail\":\"light\",\"view\":{\"size_px\":[1024,768]}}", &reply);
+    int64_t drawn_us = clock_now_us();
+    assert_frame(&reply, 1024, 768);
+    assert_true(json_number(reply.json, "n_triangles", 0) > 1000);
+    assert_true(reply.n_blob > 8000); /* a flat grey picture takes less */
+    printf("process start to ready %.0f ms, first picture %.0f ms later, ", (double)(ready_us - began_us) / 1000, (double)(drawn_us - ready_us) / 1000);
+    ask(&world, "{\"type\":\"render\",\"still\":true,\"view\":{\"size_px\":[1024,768]}}", &reply);
+    printf("a still %.0f ms, ", (double)(clock_now_us() - drawn_us) / 1000);
+    for (int64_t until_us = clock_now_us() + 1500000; clock_now_us() < until_us;)
+        world_step(&world);
+    printf("resident %.0f MB; %s\n", (double)world_plan_of(&world, PLAN).memory_bytes / 1e6, world_plan_of(&world, PLAN).confined);
+
+    kill(world_plan_of(&world, PLAN).pid, SIGKILL);
+    world_wait_for_state(&world, PLAN, FLEET_RESTARTING);
+    int64_t killed_us = clock_now_us();
+    ask(&world, "{\"type\":\"render\",\"detail\":\"light\",\"view\":{\"size_px\":[1024,768]}}", &reply);
+    assert_frame(&reply, 1024, 768);
+    printf("picture %.0f ms after a kill\n", (double)(clock_now_us() - killed_us) / 1000);
+    reply_finish(&reply);
+    world_end(&world);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plan_is_read_and_drawn_and_drawn_again_after_a_kill),
+        cmocka_unit_test(numbers_are_answered),
+        cmocka_unit_test(what_is_asked_wrongly_is_refused_with_its_place),
+        cmocka_unit_test(a_plan_that_cannot_be_read_fails_with_the_loaders_sentence),
+        cmocka_unit_test(the_running_renderer_is_filtered),
+        cmocka_unit_test(with_gl_a_frame_of_the_demo_plan_comes_and_comes_again),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
