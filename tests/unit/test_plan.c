@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/base/parallel.h"
 #include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
@@ -181,6 +182,66 @@ static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
     plan_destroy(plan);
     nifti_bytes_free(&file);
     folder_remove(folder);
+}
+
+struct crowd {
+    struct plan *plan;
+    struct mesh *meshes[4][3][2];
+};
+
+static void ask_for_all(void *context, int part, int n_parts)
+{
+    (void)n_parts;
+    struct crowd *crowd = context;
+    for (size_t r = 0; r < 3; r++)
+        for (int detail = 0; detail < 2; detail++)
+            crowd->meshes[part][r][detail] = plan_surface(crowd->plan, r, (enum surface_detail)detail, NULL, NULL);
+}
+
+static void many_threads_get_the_same_surfaces(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err;
+    folder_make(folder);
+    struct nifti_bytes file = nested_boxes();
+    folder_put(folder, "labels.nii", file.data, file.size);
+    put_text(folder, "plan.json", "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"labels.nii\"}]}");
+    struct crowd crowd = { .plan = load(folder, &err) };
+    parallel_run(4, ask_for_all, &crowd);
+    for (size_t r = 0; r < 3; r++)
+        for (int detail = 0; detail < 2; detail++)
+            for (int part = 0; part < 4; part++) {
+                assert_non_null(crowd.meshes[part][r][detail]);
+                assert_ptr_equal(crowd.meshes[part][r][detail], crowd.meshes[0][r][detail]);
+                mesh_unref(crowd.meshes[part][r][detail]);
+            }
+    plan_destroy(crowd.plan);
+    nifti_bytes_free(&file);
+    folder_remove(folder);
+}
+
+static void light_surfaces_of_a_whole_plan_stay_under_their_limit(void **state)
+{
+    (void)state;
+    struct plan *plan = load_data("sera-head");
+    if (!plan)
+        skip();
+    size_t n_full = 0, n_light = 0;
+    for (size_t r = 0; r < plan->regions.n_regions; r++) {
+        struct surface_facts full, light;
+        mesh_unref(plan_surface(plan, r, SURFACE_FULL, &full, NULL));
+        mesh_unref(plan_surface(plan, r, SURFACE_LIGHT, &light, NULL));
+        n_full += full.n_triangles;
+        n_light += light.n_triangles;
+        assert_int_equal(light.n_univels, full.n_univels);
+        assert_true(light.reduction > 1);
+        /* descendants lie inside: scalp holds brain and tumour */
+        assert_near(full.volume_mm3, full.univel_volume_mm3, 0.02);
+    }
+    assert_true(n_full > PLAN_LIGHT_TRIANGLES);
+    assert_true(n_light <= PLAN_LIGHT_TRIANGLES);
+    plan_destroy(plan);
 }
 
 /* A mask of one 4 x 1 x 1 row. */
@@ -533,6 +594,8 @@ int main(void)
         cmocka_unit_test(a_plan_without_a_tree_gets_one_from_what_encloses_what),
         cmocka_unit_test(a_tree_from_the_plan_wins_and_unknown_names_and_circles_are_reported),
         cmocka_unit_test(surfaces_are_built_once_and_hold_what_lies_inside),
+        cmocka_unit_test(many_threads_get_the_same_surfaces),
+        cmocka_unit_test(light_surfaces_of_a_whole_plan_stay_under_their_limit),
         cmocka_unit_test(masks_share_a_layer_until_they_overlap_or_their_grids_differ),
         cmocka_unit_test(a_plan_never_leaves_its_folder),
         cmocka_unit_test(a_plan_that_is_wrong_is_refused_with_the_place),
