@@ -204,8 +204,9 @@ static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray
             continue;
         double t = (planes[i].slice->position_mm - vec3_dot(ray->origin_lps_mm, planes[i].normal)) / across;
         struct vec3 point = ray_point(ray, t);
-        uint32_t ijk[3];
-        if (t >= 0 && volume_voxel_at(volume, point, ijk))
+        double value;
+        const struct scene_image_style *style = &snapshot->scene.image;
+        if (t >= 0 && volume_sample(volume, point, &value) && value >= style->cull_below)
             n = add_hit(hits, n, (struct pick_hit){ point, -1, t });
     }
     return n;

@@ -167,5 +167,7 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
         scene->image.slices.axial.visible = true;
         scene->image.window.center = plan->images[0].window_center;
         scene->image.window.width = plan->images[0].window_width;
+        const struct scene_window *window = &scene->image.window;
+        scene->image.cull_below = strcmp(plan->images[0].unit, "HU") == 0 ? -500 : window->center - 0.45 * window->width;
     }
 }

@@ -90,11 +90,14 @@ static const char slice_vertex[] =
 static const char image_fragment[] =
     "uniform sampler3D source;\n"
     "uniform vec2 grey;\n" /* stored value to 0 .. 1 */
+    "uniform float cull;\n" /* in the same scale: what is below is left out */
     "in vec3 at;\n"
     "out vec4 result;\n"
     "void main() {\n"
     "    float value = texture(source, at).r;\n"
     "    if (isnan(value) || isinf(value)) discard;\n"
+    "    if (value * grey.x + grey.y < cull)\n"
+    "        discard;\n"
     "    result = vec4(vec3(clamp(value * grey.x + grey.y, 0.0, 1.0)), 1.0);\n"
     "}\n";
 
@@ -167,7 +170,7 @@ static bool create(const struct gl *gl, struct gl_program *program, const char *
     } uniforms[] = {
         { &program->clip_from_lps, "clip_from_lps" }, { &program->eye_from_lps, "eye_from_lps" }, { &program->viewer, "viewer" },
         { &program->color, "color" }, { &program->opacity, "opacity" }, { &program->is_rim, "is_rim" },
-        { &program->source, "source" }, { &program->palette, "palette" }, { &program->grey, "grey" }, { &program->scale, "scale" },
+        { &program->source, "source" }, { &program->palette, "palette" }, { &program->grey, "grey" }, { &program->cull, "cull" }, { &program->scale, "scale" },
     };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++)
         *uniforms[i].place = gl->GetUniformLocation(program->name, uniforms[i].name);

@@ -5,7 +5,7 @@
 struct gl_program {
     GLuint name;
     /* places of uniforms; -1 where the program has none of that name */
-    GLint clip_from_lps, eye_from_lps, viewer, color, opacity, is_rim, source, palette, grey, scale;
+    GLint clip_from_lps, eye_from_lps, viewer, color, opacity, is_rim, source, palette, grey, cull, scale;
 };
 
 struct gl_programs {
