@@ -1,5 +1,3 @@
-#include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +9,7 @@
 #include "core/formats/nifti.h"
 #include "core/formats/sera_qhd.h"
 #include "core/formats/text.h"
+#include "core/plan/plan_bounds.h"
 #include "core/plan/plan_meshes.h"
 #include "core/plan/plan_parts.h"
 #include "core/plan/plan_regions.h"
@@ -455,37 +454,6 @@ static void note_empty_regions(struct plan *plan)
             report_add(&plan->report, REPORT_WARNING, "region.empty", "", "The region \"%s\" has no voxel.", plan->regions.regions[i].name);
 }
 
-static void add_box(struct box3 *bounds, const struct box3 *box)
-{
-    box3_add(bounds, box->low);
-    box3_add(bounds, box->high);
-}
-
-static void find_bounds(struct plan *plan)
-{
-    plan->bounds_lps_mm = box3_empty();
-    for (size_t i = 0; i < plan->regions.n_regions; i++) {
-        const struct region *region = &plan->regions.regions[i];
-        const struct affine *map = &plan->regions.layers[region->layer]->grid.lps_mm_from_ijk;
-        for (int corner = 0; region->n_voxels > 0 && corner < 8; corner++)
-            box3_add(&plan->bounds_lps_mm,
-                     affine_point(map, vec3(corner & 1 ? region->high_ijk[0] + 0.5 : region->low_ijk[0] - 0.5,
-                                            corner & 2 ? region->high_ijk[1] + 0.5 : region->low_ijk[1] - 0.5,
-                                            corner & 4 ? region->high_ijk[2] + 0.5 : region->low_ijk[2] - 0.5)));
-    }
-    if (!box3_is_empty(&plan->bounds_lps_mm))
-        return;
-    for (size_t i = 0; i < plan->n_images; i++) {
-        struct box3 box = grid_bounds_lps_mm(&plan->images[i].volume->grid);
-        add_box(&plan->bounds_lps_mm, &box);
-    }
-    for (size_t i = 0; i < plan->n_doses; i++)
-        for (size_t c = 0; c < plan->doses[i].n_components; c++) {
-            struct box3 box = grid_bounds_lps_mm(&plan->doses[i].components[c].values->grid);
-            add_box(&plan->bounds_lps_mm, &box);
-        }
-}
-
 static void add_beams(struct loading *loading)
 {
     struct plan *plan = loading->plan;
@@ -525,7 +493,7 @@ static bool assemble(struct loading *loading, struct error *err)
     if (!is_whole)
         return false;
     add_doses(loading);
-    find_bounds(plan);
+    plan_measure_bounds(plan);
     add_beams(loading);
     return plan_add_tracks(plan, &loading->folder, loading->file, err);
 }

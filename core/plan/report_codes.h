@@ -47,7 +47,6 @@
     X("dose.no-unit", "The plan does not say the dose's unit.", "Numbers carry no unit; add \"unit\" in plan.json.")              \
     X("dose.no-per", "The plan does not say what the dose is per.", "Add \"per\" in plan.json.")                                  \
     X("dose.negative", "A dose holds negative values.", "They are kept; check the source.")                                       \
-    X("dose.not-finite", "A dose holds values that are not numbers.", "They count as no dose there.")                             \
     X("dose.mask-grid", "The mask of a dose lies on another grid than the dose.", "It is looked up by position.")                 \
     X("beam.from-tracks", "No beam is given; it was taken from the beam line of the tracks.", "Its aperture is unknown.")         \
     X("tracks.unsupported", "A track file is in a format this version does not read.", "The rest is shown without it.")           \
@@ -57,5 +56,7 @@
     X("tracks.no-energy", "Tracks without an energy class.", "They are listed in the high class of their kind.")                  \
     X("tracks.zero-length", "Tracks of no length.", "They are left out.")                                                         \
     X("tracks.bad-lines", "Lines of a track file that are not a segment.", "They are left out; check the file.")                  \
+    X("geometry.apart", "Two parts of the plan do not overlap anywhere.",                                                          \
+      "One of them may be flipped, shifted or of another patient.")                                                                \
     X("header.unknown-key", "A header has keys that are not known.", "They are ignored.")                                         \
     X("header.bad-number", "A header has a value that is not a number.", "It is ignored.")

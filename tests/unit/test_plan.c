@@ -411,6 +411,29 @@ static void a_dose_in_a_format_not_read_is_left_out_and_said(void **state)
     folder_remove(folder);
 }
 
+static void an_image_beside_the_regions_is_reported(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err;
+    folder_make(folder);
+    put_row(folder, "mask.nii", (const uint8_t[4]){ 1, 1, 0, 0 }, 1);
+    put_row(folder, "near.nii", (const uint8_t[4]){ 1, 2, 3, 4 }, 1);
+    put_row(folder, "mirrored.nii", (const uint8_t[4]){ 1, 2, 3, 4 }, -1);
+    put_text(folder, "plan.json", PLAN("\"images\":[{\"path\":\"near.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
+    struct plan *plan = load(folder, &err);
+    assert_false(report_has(&plan->report, "geometry.apart"));
+    plan_destroy(plan);
+    put_row(folder, "mask.nii", (const uint8_t[4]){ 0, 0, 1, 1 }, 1);
+    put_text(folder, "plan.json",
+             PLAN("\"images\":[{\"path\":\"mirrored.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
+    plan = load(folder, &err);
+    assert_true(report_has(&plan->report, "geometry.apart"));
+    assert_close(plan->bounds_lps_mm.high.x, -1.5, 1e-9); /* of the region alone: RAS x 1.5 .. 3.5 */
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
 static void loading_can_be_cancelled_and_tells_how_far_it_is(void **state)
 {
     (void)state;
@@ -600,6 +623,7 @@ int main(void)
         cmocka_unit_test(a_plan_never_leaves_its_folder),
         cmocka_unit_test(a_plan_that_is_wrong_is_refused_with_the_place),
         cmocka_unit_test(a_dose_in_a_format_not_read_is_left_out_and_said),
+        cmocka_unit_test(an_image_beside_the_regions_is_reported),
         cmocka_unit_test(loading_can_be_cancelled_and_tells_how_far_it_is),
         cmocka_unit_test(sera_s_own_head_has_the_published_counts_extents_and_places),
         cmocka_unit_test(the_distributed_head_opens_from_nifti_copies_and_from_headers_that_lie),

@@ -1,0 +1,53 @@
+#include "core/plan/plan_bounds.h"
+
+static void add_box(struct box3 *bounds, const struct box3 *box)
+{
+    if (box3_is_empty(box))
+        return;
+    box3_add(bounds, box->low);
+    box3_add(bounds, box->high);
+}
+
+static struct box3 box_of_regions(const struct plan *plan)
+{
+    struct box3 bounds = box3_empty();
+    for (size_t i = 0; i < plan->regions.n_regions; i++) {
+        const struct region *region = &plan->regions.regions[i];
+        const struct affine *map = &plan->regions.layers[region->layer]->grid.lps_mm_from_ijk;
+        for (int corner = 0; region->n_voxels > 0 && corner < 8; corner++)
+            box3_add(&bounds, affine_point(map, vec3(corner & 1 ? region->high_ijk[0] + 0.5 : region->low_ijk[0] - 0.5,
+                                                     corner & 2 ? region->high_ijk[1] + 0.5 : region->low_ijk[1] - 0.5,
+                                                     corner & 4 ? region->high_ijk[2] + 0.5 : region->low_ijk[2] - 0.5)));
+    }
+    return bounds;
+}
+
+static bool boxes_overlap(const struct box3 *a, const struct box3 *b)
+{
+    return a->low.x <= b->high.x && b->low.x <= a->high.x && a->low.y <= b->high.y && b->low.y <= a->high.y &&
+           a->low.z <= b->high.z && b->low.z <= a->high.z;
+}
+
+static void check_part(struct plan *plan, const struct box3 *regions, const struct box3 *part, const char *what, const char *id)
+{
+    if (!box3_is_empty(regions) && !boxes_overlap(regions, part))
+        report_add(&plan->report, REPORT_WARNING, "geometry.apart", "", "The %s \"%s\" and the regions do not overlap anywhere.", what, id);
+}
+
+void plan_measure_bounds(struct plan *plan)
+{
+    struct box3 regions = box_of_regions(plan), others = box3_empty();
+    for (size_t i = 0; i < plan->n_images; i++) {
+        struct box3 box = grid_bounds_lps_mm(&plan->images[i].volume->grid);
+        check_part(plan, &regions, &box, "image", plan->images[i].id);
+        add_box(&others, &box);
+    }
+    for (size_t i = 0; i < plan->n_doses; i++)
+        for (size_t c = 0; c < plan->doses[i].n_components; c++) {
+            struct box3 box = grid_bounds_lps_mm(&plan->doses[i].components[c].values->grid);
+            if (c == 0)
+                check_part(plan, &regions, &box, "dose", plan->doses[i].id);
+            add_box(&others, &box);
+        }
+    plan->bounds_lps_mm = box3_is_empty(&regions) ? others : regions;
+}
