@@ -1,0 +1,227 @@
+/* The threads of the pipeline, with the stub behind render.h: drivers and sanitizers do not get on. */
+#include <pthread.h>
+#include <unistd.h>
+
+#include "core/pipeline/pipeline.h"
+#include "tests/check.h"
+#include "tests/made_plan.h"
+
+enum { MAX_FRAMES = 256 };
+
+struct receiver {
+    pthread_mutex_t mutex;
+    pthread_cond_t changed;
+    bool is_started, has_facts;
+    struct error why_not;
+    int hold_ms; /* how long a delivery takes */
+    size_t n_frames;
+    uint64_t ids[MAX_FRAMES];
+    struct pipeline_frame last; /* its picture kept */
+};
+
+static void receiver_init(struct receiver *receiver)
+{
+    *receiver = (struct receiver){ 0 };
+    pthread_mutex_init(&receiver->mutex, NULL);
+    pthread_cond_init(&receiver->changed, NULL);
+}
+
+static void receiver_finish(struct receiver *receiver)
+{
+    free(receiver->last.picture.bytes);
+    pthread_cond_destroy(&receiver->changed);
+    pthread_mutex_destroy(&receiver->mutex);
+}
+
+static void on_started(void *context, const struct render_facts *facts, const struct error *err)
+{
+    struct receiver *receiver = context;
+    pthread_mutex_lock(&receiver->mutex);
+    receiver->is_started = true;
+    receiver->has_facts = facts != NULL;
+    receiver->why_not = *err;
+    pthread_cond_broadcast(&receiver->changed);
+    pthread_mutex_unlock(&receiver->mutex);
+}
+
+static void on_frame(void *context, struct pipeline_frame *frame)
+{
+    struct receiver *receiver = context;
+    pthread_mutex_lock(&receiver->mutex);
+    if (receiver->hold_ms)
+        usleep((useconds_t)receiver->hold_ms * 1000);
+    if (receiver->n_frames == MAX_FRAMES)
+        abort();
+    receiver->ids[receiver->n_frames++] = frame->id;
+    free(receiver->last.picture.bytes);
+    receiver->last = *frame;
+    pthread_cond_broadcast(&receiver->changed);
+    pthread_mutex_unlock(&receiver->mutex);
+}
+
+static void wait_for(struct receiver *receiver, size_t n_frames)
+{
+    pthread_mutex_lock(&receiver->mutex);
+    while (!receiver->is_started || receiver->n_frames < n_frames)
+        pthread_cond_wait(&receiver->changed, &receiver->mutex);
+    pthread_mutex_unlock(&receiver->mutex);
+}
+
+static double label(struct vec3 p) { return vec3_length(p) < 5; }
+static const struct made_region ball[] = { { "ball", -1, 0xff0000 } };
+
+static struct plan *small_plan(void)
+{
+    const uint32_t size[3] = { 16, 16, 16 };
+    struct grid grid = made_grid(16, 16, 16, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+    return made_plan(&grid, label, ball, 1);
+}
+
+static struct pipeline *start(struct receiver *receiver)
+{
+    struct pipeline_callbacks callbacks = { on_started, on_frame, receiver };
+    struct error err = { 0 };
+    struct pipeline *pipeline = pipeline_create(RENDER_AUTO, true, &callbacks, &err);
+    assert_non_null(pipeline);
+    return pipeline;
+}
+
+static bool submit(struct pipeline *pipeline, struct plan *plan, uint64_t id, int width_px, struct error *err)
+{
+    struct scene scene;
+    struct view view = view_default;
+    char field[128];
+    scene_for_plan(plan, &scene);
+    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, (uint32_t)id, field, err);
+    struct pipeline_request request = { id, snapshot, { width_px, 48, SURFACE_LIGHT, true }, { ENCODE_JPEG, 80, false } };
+    return pipeline_submit(pipeline, &request, err);
+}
+
+static void frames_come_back_in_order_and_none_is_lost(void **state)
+{
+    (void)state;
+    struct receiver receiver;
+    receiver_init(&receiver);
+    struct plan *plan = small_plan();
+    struct pipeline *pipeline = start(&receiver);
+    for (uint64_t id = 1; id <= 200; id++) {
+        struct error err = { 0 };
+        while (!submit(pipeline, plan, id, 64, &err)) { /* full: what a caller does is its business; here it waits */
+            assert_int_equal(err.code, ERROR_LIMIT);
+            usleep(500);
+        }
+    }
+    wait_for(&receiver, 200);
+    for (size_t i = 0; i < 200; i++)
+        assert_int_equal(receiver.ids[i], i + 1);
+    assert_true(receiver.has_facts);
+    assert_int_equal(receiver.last.error.code, ERROR_NONE);
+    assert_int_equal(receiver.last.width_px, 64);
+    assert_int_equal(receiver.last.height_px, 48);
+    assert_true(receiver.last.is_still);
+    assert_true(receiver.last.picture.n_bytes > 100);
+    assert_int_equal(receiver.last.picture.bytes[0], 0xff); /* a JPEG begins so */
+    assert_int_equal(receiver.last.picture.bytes[1], 0xd8);
+    assert_close(receiver.last.camera.forward.y, 1, 1e-9); /* the view's own camera, also from the stub */
+    pipeline_destroy(pipeline);
+    plan_destroy(plan);
+    receiver_finish(&receiver);
+}
+
+static void a_picture_that_cannot_be_drawn_comes_back_as_an_error(void **state)
+{
+    (void)state;
+    struct receiver receiver;
+    receiver_init(&receiver);
+    struct plan *plan = small_plan();
+    struct pipeline *pipeline = start(&receiver);
+    struct error err = { 0 };
+    assert_true(submit(pipeline, plan, 5, 0, &err));
+    assert_true(submit(pipeline, plan, 6, 64, &err));
+    wait_for(&receiver, 1);
+    wait_for(&receiver, 2);
+    assert_int_equal(receiver.ids[0], 5);
+    assert_int_equal(receiver.last.error.code, ERROR_NONE); /* and the next one is a picture again */
+    pipeline_destroy(pipeline);
+    plan_destroy(plan);
+    receiver_finish(&receiver);
+}
+
+static void more_than_the_limit_is_refused_and_never_blocks(void **state)
+{
+    (void)state;
+    struct receiver receiver;
+    receiver_init(&receiver);
+    receiver.hold_ms = 20;
+    struct plan *plan = small_plan();
+    struct pipeline *pipeline = start(&receiver);
+    size_t n_taken = 0, n_refused = 0;
+    for (uint64_t id = 1; id <= 100; id++) {
+        struct error err = { 0 };
+        if (submit(pipeline, plan, id, 64, &err))
+            n_taken++;
+        else {
+            assert_int_equal(err.code, ERROR_LIMIT);
+            n_refused++;
+        }
+    }
+    assert_true(n_refused > 0);
+    assert_in_range(n_taken, PIPELINE_MAX_WAITING, 100);
+    pipeline_destroy(pipeline); /* with most of them still waiting */
+    assert_true(receiver.n_frames < n_taken);
+    plan_destroy(plan);
+    receiver_finish(&receiver);
+}
+
+static void it_can_be_destroyed_in_any_state(void **state)
+{
+    (void)state;
+    for (int n_submitted = 0; n_submitted < 12; n_submitted++) {
+        struct receiver receiver;
+        receiver_init(&receiver);
+        struct plan *plan = small_plan();
+        struct pipeline *pipeline = start(&receiver);
+        for (int i = 0; i < n_submitted; i++) {
+            struct error err = { 0 };
+            assert_true(submit(pipeline, plan, (uint64_t)i, 64, &err));
+        }
+        if (n_submitted % 3 == 1)
+            wait_for(&receiver, (size_t)n_submitted / 2);
+        pipeline_destroy(pipeline);
+        plan_destroy(plan);
+        receiver_finish(&receiver);
+    }
+    pipeline_destroy(NULL);
+}
+
+static void a_forgotten_plan_may_be_destroyed_at_once(void **state)
+{
+    (void)state;
+    struct receiver receiver;
+    receiver_init(&receiver);
+    struct plan *plan = small_plan(), *next = small_plan();
+    struct pipeline *pipeline = start(&receiver);
+    struct error err = { 0 };
+    for (uint64_t id = 0; id < 8; id++)
+        assert_true(submit(pipeline, plan, id, 64, &err));
+    pipeline_forget(pipeline, plan);
+    plan_destroy(plan); /* what was asked before is drawn, or at least no longer needs the plan */
+    assert_true(submit(pipeline, next, 8, 64, &err));
+    wait_for(&receiver, 9);
+    assert_int_equal(receiver.ids[8], 8);
+    pipeline_destroy(pipeline);
+    plan_destroy(next);
+    receiver_finish(&receiver);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frames_come_back_in_order_and_none_is_lost),
+        cmocka_unit_test(a_picture_that_cannot_be_drawn_comes_back_as_an_error),
+        cmocka_unit_test(more_than_the_limit_is_refused_and_never_blocks),
+        cmocka_unit_test(it_can_be_destroyed_in_any_state),
+        cmocka_unit_test(a_forgotten_plan_may_be_destroyed_at_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
