@@ -95,13 +95,35 @@ static const char *last_part(const char *path)
     return slash && slash[1] ? slash + 1 : path;
 }
 
+static bool join(char path[PATH_MAX], const char *folder, const char *name)
+{
+    int n = snprintf(path, PATH_MAX, "%s/%s", folder, name);
+    return n > 0 && n < PATH_MAX;
+}
+
+/* A collection: plans inside a subfolder that is none itself. True when there were any. */
+static bool add_inner(struct folder_list *list, const char *path, const char *name, const struct looked_at *seen)
+{
+    bool has_any = false;
+    for (size_t i = 0; i < seen->n_folders; i++) {
+        char inner[PATH_MAX], full_name[512];
+        struct looked_at inside = { 0 };
+        if (!join(inner, path, seen->subfolders[i]) || !look_at(inner, false, &inside) || !inside.has_plan_json)
+            continue;
+        (void)snprintf(full_name, sizeof full_name, "%.250s %.250s", name, seen->subfolders[i]);
+        add(list, inner, full_name, inside.fingerprint);
+        has_any = true;
+    }
+    return has_any;
+}
+
 static void list_one(const char *given, struct folder_list *list)
 {
     char *real = realpath(given, NULL);
     struct looked_at seen = { 0 };
     if (!real || !look_at(real, true, &seen)) {
         if (!list->problem[0])
-            (void)snprintf(list->problem, sizeof list->problem, "%s: %s", given, strerror(errno));
+            (void)snprintf(list->problem, sizeof list->problem, "%.150s: %s", given, strerror(errno));
         free(real);
         return;
     }
@@ -110,12 +132,14 @@ static void list_one(const char *given, struct folder_list *list)
     } else {
         for (size_t i = 0; i < seen.n_folders; i++) {
             char path[PATH_MAX];
-            int n = snprintf(path, sizeof path, "%s/%s", real, seen.subfolders[i]);
-            struct looked_at inside;
-            if (n < 0 || (size_t)n >= sizeof path)
+            struct looked_at inside = { 0 };
+            if (!join(path, real, seen.subfolders[i]))
                 continue;
             /* one that cannot be read is listed all the same: looking at it says why */
-            add(list, path, seen.subfolders[i], look_at(path, false, &inside) ? inside.fingerprint : 0);
+            bool is_read = look_at(path, true, &inside);
+            if (!is_read || inside.has_plan_json || !add_inner(list, path, seen.subfolders[i], &inside))
+                add(list, path, seen.subfolders[i], inside.fingerprint);
+            looked_at_finish(&inside);
         }
     }
     looked_at_finish(&seen);

@@ -20,8 +20,8 @@ struct folder_list {
     char problem[240];           /* a folder given that cannot be read; "" else */
 };
 
-/* A folder given is a plan when plan.json is in it, or when it has files and no subfolders; else each subfolder is one.
- * What begins with a dot is passed over; the same folder twice counts once. */
+/* A folder given is a plan when plan.json is in it, or when it has files and no subfolders; else each subfolder is one, or, where it
+ * has no plan.json itself, each of its own subfolders that has. What begins with a dot is passed over; the same folder twice counts once. */
 void folders_list(const char *const *given, size_t n_given, struct folder_list *list);
 void folder_list_finish(struct folder_list *list);
 /* An id for URLs from a name: [a-z0-9-], 1 to 63 characters. */

@@ -29,7 +29,7 @@ struct reply {
 void world_begin(struct world *world);
 /* A plan for the made-up renderer. */
 void world_add_plan(struct world *world, const char *name, const char *behave);
-/* Starts the fleet and waits until n_plans have been looked at. */
+/* Starts the fleet and waits until n_plans or more have been looked at. */
 void world_start(struct world *world, size_t n_plans);
 void world_end(struct world *world);
 void world_remove_folder(const char *path);

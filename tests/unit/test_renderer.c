@@ -245,6 +245,23 @@ static void a_plan_that_cannot_be_read_fails_with_the_loaders_sentence(void **st
     world_end(&world);
 }
 
+static void a_plan_larger_than_the_memory_limit_fails_and_says_so(void **state)
+{
+    (void)state;
+#ifdef IS_SANITIZED
+    skip(); /* sanitizers map more than any limit */
+#endif
+    struct world world;
+    begin_head(&world, true, phantom_defaults.size);
+    world.options.max_renderer_bytes = 60 << 20; /* with its threads' stacks the program alone takes about 50 MB of addresses */
+    world_start(&world, 1);
+    world_open_plan(&world, PLAN);
+    world_wait_for_state(&world, PLAN, FLEET_FAILED);
+    printf("%s\n", world_plan_of(&world, PLAN).problem->detail);
+    assert_non_null(strstr(world_plan_of(&world, PLAN).problem->detail, "memory"));
+    world_end(&world);
+}
+
 static void the_running_renderer_is_filtered(void **state)
 {
     (void)state;
@@ -311,6 +328,47 @@ static void with_gl_a_frame_of_the_demo_plan_comes_and_comes_again(void **state)
     world_end(&world);
 }
 
+/* Real plans, as they lie: whatever is not read must say why, and none may bring the renderer down. */
+static void each_real_plan_becomes_ready_or_says_why_not(void **state)
+{
+    (void)state;
+    const char *data = getenv("BEAMROOM_DATA") ? getenv("BEAMROOM_DATA") : "../shared/data";
+    struct world world;
+    struct reply reply = { 0 };
+    if (access(data, R_OK) != 0)
+        skip();
+    begin_head(&world, true, small);
+    world.folders[0] = data;
+    world_start(&world, 15);
+    char ids[64][64];
+    size_t n = 0;
+    struct fleet_plan plan;
+    for (; n < 64 && fleet_plan_at(world.fleet, n, &plan); n++)
+        snprintf(ids[n], sizeof ids[n], "%s", plan.id);
+    for (size_t i = 0; i < n; i++) {
+        plan = world_plan_of(&world, ids[i]);
+        if (plan.state == FLEET_UNREADABLE) {
+            assert_non_null(plan.problem);
+            assert_true(strlen(plan.problem->detail) > 10);
+            continue;
+        }
+        int64_t began_us = clock_now_us();
+        world_open_plan(&world, ids[i]);
+        world_ask_packet(&world, ids[i], parse("{\"type\":\"render\",\"view\":{\"size_px\":[64,64]}}"), &reply);
+        world_wait_for_reply(&world, &reply);
+        plan = world_plan_of(&world, ids[i]);
+        printf("%-24s %-7s %6.0f ms  %s\n", ids[i], fleet_state_word(plan.state), (double)(clock_now_us() - began_us) / 1000,
+               plan.problem ? plan.problem->detail : "");
+        if (plan.state == FLEET_READY)
+            assert_frame(&reply, 64, 64);
+        else
+            assert_int_equal(plan.problem->type, PROBLEM_PLAN_UNREADABLE);
+        reply_finish(&reply);
+        fleet_close(world.fleet, ids[i]);
+    }
+    world_end(&world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -318,7 +376,9 @@ int main(void)
         cmocka_unit_test(numbers_are_answered),
         cmocka_unit_test(what_is_asked_wrongly_is_refused_with_its_place),
         cmocka_unit_test(a_plan_that_cannot_be_read_fails_with_the_loaders_sentence),
+        cmocka_unit_test(a_plan_larger_than_the_memory_limit_fails_and_says_so),
         cmocka_unit_test(the_running_renderer_is_filtered),
+        cmocka_unit_test(each_real_plan_becomes_ready_or_says_why_not),
         cmocka_unit_test(with_gl_a_frame_of_the_demo_plan_comes_and_comes_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
