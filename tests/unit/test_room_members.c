@@ -1,0 +1,481 @@
+/* Members, views, the shared scene, refusals. */
+#include "tests/unit/room_fake.h"
+
+static struct fake_room fake;
+static struct fake_page ann, ben, cem, dee;
+
+static int start(void **state)
+{
+    (void)state;
+    fake_room_start(&fake, 3);
+    fake_plan_ready(&fake, true);
+    return 0;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    fake_room_end(&fake);
+    fake_page_end(&ann);
+    fake_page_end(&ben);
+    fake_page_end(&cem);
+    fake_page_end(&dee);
+    return 0;
+}
+
+/* The text of a field of the newest message of a type. */
+static const char *heard(struct fake_page *page, const char *type, const char *field)
+{
+    static char text[256];
+    cJSON *json = fake_heard(page, type);
+    assert_non_null(json);
+    const char *value = json_text(json, field);
+    (void)snprintf(text, sizeof text, "%s", value ? value : "");
+    cJSON_Delete(json);
+    return text;
+}
+
+/* Pointer and status of the newest problem, as "404 /regions/liver". */
+static const char *refused(struct fake_page *page)
+{
+    static char text[256];
+    cJSON *json = fake_heard(page, "problem");
+    assert_non_null(json);
+    const cJSON *problem = cJSON_GetObjectItem(json, "problem");
+    const char *pointer = json_text(problem, "pointer");
+    (void)snprintf(text, sizeof text, "%d %s", (int)json_number(problem, "status", 0), pointer ? pointer : "");
+    cJSON_Delete(json);
+    return text;
+}
+
+static void come_back(struct fake_page *page, const char *id, const char *secret)
+{
+    fake_say(&fake, page, "{\"type\":\"hello\",\"protocol\":1,\"member\":\"%s\",\"secret\":\"%s\"}", id, secret);
+}
+
+static int width_of(const struct fake_request *request)
+{
+    return cJSON_GetArrayItem(cJSON_GetObjectItem(request->view, "size_px"), 0)->valueint;
+}
+
+static void move(struct fake_page *page, int x)
+{
+    fake_say(&fake, page, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"camera\":{\"target_mm\":[%d,0,0]}}}", x);
+}
+
+/* ---- members -------------------------------------------------------------------------------------------------------- */
+
+static void hello_is_answered_with_everything_a_page_needs(void **state)
+{
+    (void)state;
+    fake_hello(&fake, &ann);
+    cJSON *welcome = fake_heard(&ann, "welcome");
+    assert_string_equal(json_text(welcome, "room"), "7q4k-m2wz");
+    assert_string_equal(json_text(welcome, "plan_id"), "head");
+    assert_int_equal(strlen(json_text(welcome, "secret")), 32);
+    assert_string_equal(json_text(cJSON_GetObjectItem(welcome, "plan"), "id"), "head");
+    assert_non_null(cJSON_GetObjectItem(cJSON_GetObjectItem(welcome, "scene"), "regions"));
+    assert_string_equal(json_text(welcome, "gl"), "osmesa llvmpipe");
+    cJSON_Delete(welcome);
+    assert_string_equal(heard(&ann, "renderer", "state"), "ready");
+}
+
+static void who_gives_no_name_is_numbered(void **state)
+{
+    (void)state;
+    fake_hello(&fake, &ann);
+    assert_string_equal(heard(&ann, "welcome", "name"), "Reviewer 1");
+    fake_hello(&fake, &ben);
+    assert_string_equal(heard(&ben, "welcome", "name"), "Reviewer 2");
+    fake_say(&fake, &cem, "{\"type\":\"hello\",\"protocol\":1,\"name\":\"Cem\"}");
+    assert_string_equal(heard(&cem, "welcome", "name"), "Cem");
+}
+
+static void nothing_but_hello_may_come_first(void **state)
+{
+    (void)state;
+    fake_say(&fake, &ann, "{\"type\":\"ping\",\"time_ms\":1}");
+    assert_string_equal(refused(&ann), "422 /type");
+    assert_true(ann.is_closed);
+    assert_false(room_has_member(fake.room, &ann));
+}
+
+static void another_protocol_is_told_to_go(void **state)
+{
+    (void)state;
+    fake_say(&fake, &ann, "{\"type\":\"hello\",\"protocol\":2}");
+    assert_int_equal(fake_n_heard(&ann, "bye"), 1);
+    assert_true(ann.is_closed);
+}
+
+static void a_second_hello_is_refused(void **state)
+{
+    (void)state;
+    fake_hello(&fake, &ann);
+    fake_hello(&fake, &ann);
+    assert_string_equal(refused(&ann), "422 /type");
+    assert_int_equal(room_n_connected(fake.room), 1);
+}
+
+static void a_full_room_says_so(void **state)
+{
+    (void)state;
+    fake_hello(&fake, &ann);
+    fake_hello(&fake, &ben);
+    fake_hello(&fake, &cem);
+    fake_hello(&fake, &dee);
+    assert_true(dee.is_closed);
+    assert_string_equal(heard(&dee, "bye", "reason"), "the room is full");
+    assert_int_equal(room_n_connected(fake.room), 3);
+    room_connection_closed(fake.room, &ben, fake.now_us); /* who is away makes place for who is here */
+    dee.is_closed = false;
+    fake_hello(&fake, &dee);
+    assert_false(dee.is_closed);
+    assert_int_equal(room_n_connected(fake.room), 3);
+}
+
+static void a_member_comes_back_with_its_secret_only(void **state)
+{
+    char id[64], secret[64];
+    (void)state;
+    fake_hello(&fake, &ann);
+    (void)snprintf(id, sizeof id, "%s", heard(&ann, "welcome", "member"));
+    (void)snprintf(secret, sizeof secret, "%s", heard(&ann, "welcome", "secret"));
+    room_connection_closed(fake.room, &ann, fake.now_us);
+    come_back(&cem, id, "00000000000000000000000000000000");
+    assert_string_not_equal(heard(&cem, "welcome", "member"), id);
+    come_back(&dee, id, secret);
+    assert_string_equal(heard(&dee, "welcome", "member"), id);
+}
+
+static void coming_back_ends_the_old_connection(void **state)
+{
+    char id[64], secret[64];
+    (void)state;
+    fake_join(&fake, &ann, false);
+    (void)snprintf(id, sizeof id, "%s", heard(&ann, "welcome", "member"));
+    (void)snprintf(secret, sizeof secret, "%s", heard(&ann, "welcome", "secret"));
+    come_back(&dee, id, secret);
+    assert_true(ann.is_closed);
+    assert_int_equal(fake_n_heard(&ann, "bye"), 1);
+    room_connection_closed(fake.room, &ann, fake.now_us); /* the late news of it changes nothing */
+    assert_int_equal(room_n_connected(fake.room), 1);
+}
+
+static void a_member_who_is_away_is_kept_five_minutes(void **state)
+{
+    (void)state;
+    fake_hello(&fake, &ann);
+    fake_hello(&fake, &ben);
+    room_connection_closed(fake.room, &ann, fake.now_us);
+    fake_pass(&fake, 0);
+    fake.again_us = room_tick(fake.room, fake.now_us);
+    cJSON *members = room_members(fake.room);
+    assert_int_equal(cJSON_GetArraySize(members), 2);
+    cJSON_Delete(members);
+    fake_pass(&fake, 299999);
+    members = room_members(fake.room);
+    assert_int_equal(cJSON_GetArraySize(members), 2);
+    cJSON_Delete(members);
+    fake_pass(&fake, 1);
+    members = room_members(fake.room);
+    assert_int_equal(cJSON_GetArraySize(members), 1);
+    cJSON_Delete(members);
+    assert_true(fake.again_us == INT64_MAX);
+}
+
+static void who_is_there_is_said_after_each_change(void **state)
+{
+    (void)state;
+    fake_hello(&fake, &ann);
+    size_t before = fake_n_heard(&ann, "members");
+    fake_join(&fake, &ben, true); /* comes; follows */
+    assert_int_equal(fake_n_heard(&ann, "members"), before + 2);
+    room_connection_closed(fake.room, &ben, fake.now_us);
+    assert_int_equal(fake_n_heard(&ann, "members"), before + 3);
+}
+
+static void a_closed_room_says_bye_to_everybody(void **state)
+{
+    (void)state;
+    fake_hello(&fake, &ann);
+    fake_hello(&fake, &ben);
+    room_destroy(fake.room);
+    assert_true(ann.is_closed && ben.is_closed);
+    assert_string_equal(heard(&ann, "bye", "reason"), "the room is closed");
+    fake.room = NULL;
+}
+
+/* ---- views ---------------------------------------------------------------------------------------------------------- */
+
+static void the_shared_view_goes_on_from_who_opened_it_first(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    move(&ann, 42);
+    fake_join(&fake, &ben, true);
+    cJSON *view = fake_heard(&ben, "view");
+    const cJSON *camera = cJSON_GetObjectItem(cJSON_GetObjectItem(view, "document"), "camera");
+    assert_close(cJSON_GetArrayItem(cJSON_GetObjectItem(camera, "target_mm"), 0)->valuedouble, 42, 0);
+    assert_true(json_flag(view, "follow", false));
+    cJSON_Delete(view);
+}
+
+static void followers_hear_of_a_move_with_the_frame_that_shows_it_and_once(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    fake_join(&fake, &ben, true);
+    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
+    size_t ben_before = fake_n_heard(&ben, "view"), ann_before = fake_n_heard(&ann, "view");
+    for (int i = 1; i <= 30; i++)
+        move(&ann, i);
+    assert_int_equal(fake_n_heard(&ben, "view"), ben_before);
+    fake_draw(&fake, fake_oldest(&fake));
+    assert_int_equal(fake_n_heard(&ben, "view"), ben_before + 1);
+    assert_int_equal(fake_n_heard(&ann, "view"), ann_before); /* who moved it knows */
+}
+
+static void the_size_is_that_of_the_follower_who_moved_last(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true); /* 800 wide */
+    fake_hello(&fake, &ben);
+    fake_say(&fake, &ben, "{\"type\":\"view.open\",\"view\":1,\"document\":{\"size_px\":[400,300]},\"follow\":true}");
+    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
+    assert_int_equal(width_of(&fake.requests[fake.n_requests - 1]), 800);
+    size_t before = fake.n_requests;
+    fake_say(&fake, &ben, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"size_px\":[500,300]}}"); /* a resize takes no lead */
+    fake_pass(&fake, 1000);
+    assert_int_equal(fake.n_requests, before);
+    move(&ben, 1);
+    assert_int_equal(width_of(fake_newest(&fake)), 500);
+    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
+    move(&ann, 2);
+    assert_int_equal(width_of(fake_newest(&fake)), 800);
+}
+
+static void an_own_view_starts_as_a_copy_and_goes_its_own_way(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    fake_join(&fake, &ben, true);
+    move(&ann, 7);
+    fake_say(&fake, &ben, "{\"type\":\"view.follow\",\"view\":1,\"follow\":false}");
+    cJSON *view = fake_heard(&ben, "view");
+    const cJSON *camera = cJSON_GetObjectItem(cJSON_GetObjectItem(view, "document"), "camera");
+    assert_close(cJSON_GetArrayItem(cJSON_GetObjectItem(camera, "target_mm"), 0)->valuedouble, 7, 0);
+    cJSON_Delete(view);
+    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
+    size_t before = ann.n_frames;
+    move(&ben, 8);
+    fake_draw(&fake, fake_newest(&fake));
+    assert_int_equal(ann.n_frames, before);
+    fake_say(&fake, &ben, "{\"type\":\"view.follow\",\"view\":1,\"follow\":true}"); /* and back */
+    view = fake_heard(&ben, "view");
+    camera = cJSON_GetObjectItem(cJSON_GetObjectItem(view, "document"), "camera");
+    assert_close(cJSON_GetArrayItem(cJSON_GetObjectItem(camera, "target_mm"), 0)->valuedouble, 7, 0);
+    cJSON_Delete(view);
+}
+
+static void each_kind_has_its_own_shared_view(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    fake_say(&fake, &ann, "{\"type\":\"view.open\",\"view\":2,\"document\":{\"kind\":\"axial\",\"size_px\":[300,300]},\"follow\":true}");
+    assert_int_equal(fake_outstanding(&fake), 2);
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":2,\"patch\":{\"camera\":{\"height_mm\":120}}}");
+    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    size_t before = fake.n_requests;
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"kind\":\"coronal\"}}");
+    assert_int_equal(fake.n_requests, before + 1);
+    assert_string_equal(json_text(fake_newest(&fake)->view, "kind"), "coronal");
+}
+
+static void a_view_that_is_closed_gets_nothing_more(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    struct fake_request *request = fake_newest(&fake);
+    fake_say(&fake, &ann, "{\"type\":\"view.close\",\"view\":1}");
+    fake_draw(&fake, request);
+    assert_int_equal(ann.n_frames, 0);
+    fake_pass(&fake, 1000);
+    assert_int_equal(fake_outstanding(&fake), 0);
+    fake_say(&fake, &ann, "{\"type\":\"view.close\",\"view\":1}");
+    assert_string_equal(refused(&ann), "404 /view");
+}
+
+static void a_frame_of_a_view_closed_meanwhile_may_still_be_acknowledged(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_draw(&fake, fake_newest(&fake));
+    fake_say(&fake, &ann, "{\"type\":\"view.close\",\"view\":1}");
+    fake_shown(&fake, &ann);
+    assert_int_equal(fake_n_heard(&ann, "problem"), 0);
+}
+
+static void an_override_shows_another_scene_to_one_view(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"scalp\":{\"visible\":false}}}}}");
+    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    const cJSON *scene = fake.requests[fake.n_requests - 1].scene;
+    assert_non_null(scene);
+    assert_false(json_flag(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "scalp"), "visible", true));
+    assert_true(json_flag(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "brain"), "visible", false));
+    /* the room's scene goes on under it */
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.5}}}}");
+    scene = fake_newest(&fake)->scene;
+    assert_close(json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "brain"), "opacity", 0), 0.5, 0);
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"liver\":{\"visible\":false}}}}}");
+    assert_string_equal(refused(&ann), "404 /override/regions/liver");
+}
+
+static void a_view_number_outside_one_to_eight_is_refused(void **state)
+{
+    (void)state;
+    fake_hello(&fake, &ann);
+    fake_say(&fake, &ann, "{\"type\":\"view.open\",\"view\":9,\"document\":{}}");
+    assert_string_equal(refused(&ann), "422 /view");
+    fake_say(&fake, &ann, "{\"type\":\"view.open\",\"view\":0,\"document\":{}}");
+    assert_string_equal(refused(&ann), "422 /view");
+    fake_pass(&fake, 1000);
+    assert_int_equal(fake.n_requests, 0);
+}
+
+/* ---- the scene ------------------------------------------------------------------------------------------------------ */
+
+static void a_change_of_the_scene_reaches_all_and_raises_the_revision_by_one(void **state)
+{
+    uint32_t before, after;
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_join(&fake, &ben, false);
+    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
+    (void)room_scene(fake.room, &before);
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"input\":3,\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.1}}}}");
+    (void)room_scene(fake.room, &after);
+    assert_int_equal(after, before + 1);
+    assert_int_equal(fake.told_revision, after);
+    cJSON *to_ben = fake_heard(&ben, "scene"), *to_ann = fake_heard(&ann, "scene");
+    assert_int_equal(json_number(to_ben, "revision", 0), after);
+    assert_int_equal(json_number(to_ben, "input", 0), 0);
+    assert_int_equal(json_number(to_ann, "input", 0), 3);
+    cJSON_Delete(to_ben);
+    cJSON_Delete(to_ann);
+    assert_int_equal(fake_outstanding(&fake), 2); /* both pictures */
+}
+
+static void a_bad_patch_is_refused_whole_and_only_its_sender_hears_it(void **state)
+{
+    uint32_t before, after;
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_join(&fake, &ben, false);
+    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
+    size_t texts = ben.n_texts, requests = fake.n_requests;
+    (void)room_scene(fake.room, &before);
+    fake_say(&fake, &ann,
+             "{\"type\":\"scene.patch\",\"input\":4,\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.9},\"liver\":{\"visible\":true}}}}");
+    assert_string_equal(refused(&ann), "404 /regions/liver");
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"scalp\":{\"opacity\":2}}}}");
+    assert_string_equal(refused(&ann), "422 /regions/scalp/opacity");
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"size_px\":[8,8]}}");
+    assert_string_equal(refused(&ann), "422 /size_px/0");
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":[]}");
+    fake_say(&fake, &ann, "not json");
+    assert_string_equal(refused(&ann), "400 ");
+    const cJSON *scene = room_scene(fake.room, &after);
+    assert_int_equal(after, before);
+    assert_close(json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "scalp"), "opacity", 0), 0.4, 1e-12);
+    fake_pass(&fake, 1000);
+    assert_int_equal(ben.n_texts, texts);
+    assert_int_equal(fake.n_requests, requests);
+    struct room_counters counters = { 0 };
+    room_count(fake.room, &counters);
+    assert_int_equal(counters.messages_refused, 5);
+}
+
+static void a_message_over_64_kib_is_refused(void **state)
+{
+    static char text[WIRE_MAX_CLIENT_BYTES + 2];
+    (void)state;
+    fake_hello(&fake, &ann);
+    memset(text, ' ', sizeof text);
+    memcpy(text, "{\"type\":\"ping\",\"time_ms\":1}", 27);
+    room_text_came(fake.room, &ann, text, WIRE_MAX_CLIENT_BYTES, fake.now_us);
+    assert_int_equal(fake_n_heard(&ann, "pong"), 1);
+    room_text_came(fake.room, &ann, text, WIRE_MAX_CLIENT_BYTES + 1, fake.now_us);
+    assert_string_equal(refused(&ann), "413 ");
+}
+
+static void before_the_plan_is_loaded_views_wait_and_the_scene_cannot_change(void **state)
+{
+    struct fake_room early;
+    (void)state;
+    fake_room_start(&early, 3);
+    struct fake_page page = { 0 };
+    fake_join(&early, &page, false);
+    room_renderer_state(early.room, WIRE_RENDERER_STATE_LOADING, "reading the image", 40, NULL);
+    assert_string_equal(heard(&page, "renderer", "phase"), "reading the image");
+    fake_say(&early, &page, "{\"type\":\"scene.patch\",\"patch\":{}}");
+    assert_string_equal(refused(&page), "503 ");
+    fake_pass(&early, 5000);
+    assert_int_equal(early.n_requests, 0);
+    fake_plan_ready(&early, true);
+    assert_int_equal(fake_n_heard(&page, "plan"), 1);
+    assert_int_equal(early.n_requests, 1);
+    fake_room_end(&early);
+    fake_page_end(&page);
+}
+
+static void a_plan_that_cannot_be_loaded_says_why(void **state)
+{
+    struct problem problem = { 0 };
+    (void)state;
+    fake_hello(&fake, &ann);
+    problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "labels.nii.gz ends after 12 of 8388608 bytes");
+    room_renderer_state(fake.room, WIRE_RENDERER_STATE_FAILED, NULL, 0, &problem);
+    cJSON *said = fake_heard(&ann, "renderer");
+    assert_string_equal(json_text(said, "state"), "failed");
+    assert_string_equal(json_text(cJSON_GetObjectItem(said, "problem"), "detail"), problem.detail);
+    cJSON_Delete(said);
+    fake_hello(&fake, &ben); /* also to who comes later */
+    assert_string_equal(heard(&ben, "renderer", "state"), "failed");
+}
+
+int main(void)
+{
+#define T(name) cmocka_unit_test_setup_teardown(name, start, end)
+    const struct CMUnitTest tests[] = {
+        T(hello_is_answered_with_everything_a_page_needs),
+        T(who_gives_no_name_is_numbered),
+        T(nothing_but_hello_may_come_first),
+        T(another_protocol_is_told_to_go),
+        T(a_second_hello_is_refused),
+        T(a_full_room_says_so),
+        T(a_member_comes_back_with_its_secret_only),
+        T(coming_back_ends_the_old_connection),
+        T(a_member_who_is_away_is_kept_five_minutes),
+        T(who_is_there_is_said_after_each_change),
+        T(a_closed_room_says_bye_to_everybody),
+        T(the_shared_view_goes_on_from_who_opened_it_first),
+        T(followers_hear_of_a_move_with_the_frame_that_shows_it_and_once),
+        T(the_size_is_that_of_the_follower_who_moved_last),
+        T(an_own_view_starts_as_a_copy_and_goes_its_own_way),
+        T(each_kind_has_its_own_shared_view),
+        T(a_view_that_is_closed_gets_nothing_more),
+        T(a_frame_of_a_view_closed_meanwhile_may_still_be_acknowledged),
+        T(an_override_shows_another_scene_to_one_view),
+        T(a_view_number_outside_one_to_eight_is_refused),
+        T(a_change_of_the_scene_reaches_all_and_raises_the_revision_by_one),
+        T(a_bad_patch_is_refused_whole_and_only_its_sender_hears_it),
+        T(a_message_over_64_kib_is_refused),
+        T(before_the_plan_is_loaded_views_wait_and_the_scene_cannot_change),
+        T(a_plan_that_cannot_be_loaded_says_why),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
