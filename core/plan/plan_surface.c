@@ -22,7 +22,7 @@ static struct mesh *extract(const struct mask *mask, int n_threads, struct error
     return mesh;
 }
 
-/* Counts and the univel volume are those of the unreduced mask. */
+/* The univel volume is that of the unreduced mask. */
 static void fill_facts(struct surface_facts *facts, const struct mesh *mesh, const struct mask *full, uint32_t reduction,
                        int64_t started_us)
 {
@@ -67,7 +67,7 @@ static struct mesh *full_surface(struct plan *plan, size_t region, struct surfac
 
 /* ---- light surfaces: one reduction for the whole plan, so all of it is decided at once ---------------------------------- */
 
-/* What every reduction would give, for one region. */
+/* What the reductions tried so far give, for one region. */
 struct ladder {
     struct mesh *mesh[MAX_REDUCTION + 1];
     struct surface_facts facts[MAX_REDUCTION + 1];
@@ -76,45 +76,68 @@ struct ladder {
 struct lighting {
     const struct plan *plan;
     struct ladder *ladders; /* [n_regions] */
+    bool is_tried[MAX_REDUCTION + 1];
+    uint32_t factor; /* being tried */
     atomic_size_t next;
     atomic_bool is_failed;
 };
 
-static bool climb(const struct plan *plan, size_t region, struct ladder *ladder)
+static bool reduce_region(const struct plan *plan, size_t region, uint32_t factor, struct ladder *ladder)
 {
     int64_t started_us = clock_now_us();
     if (plan->regions.regions[region].n_voxels == 0)
         return true;
     struct mask *full = mask_from_region(&plan->regions, region, 1, NULL);
-    bool is_built = full != NULL;
-    for (uint32_t factor = 2; is_built && factor <= MAX_REDUCTION; factor++) {
-        struct mask *mask = mask_reduce(full, factor, 1, NULL);
-        ladder->mesh[factor] = mask ? extract(mask, 1, NULL) : NULL;
-        mask_destroy(mask);
-        is_built = ladder->mesh[factor] != NULL;
-        if (is_built)
-            fill_facts(&ladder->facts[factor], ladder->mesh[factor], full, factor, started_us);
-    }
+    struct mask *mask = full ? mask_reduce(full, factor, 1, NULL) : NULL;
+    struct mesh *mesh = mask ? extract(mask, 1, NULL) : NULL;
+    if (mesh)
+        fill_facts(&ladder->facts[factor], mesh, full, factor, started_us);
+    ladder->mesh[factor] = mesh;
+    mask_destroy(mask);
     mask_destroy(full);
-    return is_built;
+    return mesh != NULL;
 }
 
-static void climb_some(void *context, int part, int n_parts)
+static void reduce_some(void *context, int part, int n_parts)
 {
     (void)part;
     (void)n_parts;
     struct lighting *lighting = context;
     for (size_t r; (r = atomic_fetch_add(&lighting->next, 1)) < lighting->plan->regions.n_regions;)
-        if (!climb(lighting->plan, r, &lighting->ladders[r]))
+        if (!reduce_region(lighting->plan, r, lighting->factor, &lighting->ladders[r]))
             atomic_store(&lighting->is_failed, true);
 }
 
-static size_t triangles_at(const struct lighting *lighting, uint32_t factor)
+/* Triangles of the whole plan at a reduction; several regions are worked on at once. */
+static size_t triangles_at(struct lighting *lighting, uint32_t factor)
 {
-    size_t n = 0;
-    for (size_t r = 0; r < lighting->plan->regions.n_regions; r++)
+    size_t n_regions = lighting->plan->regions.n_regions, n = 0;
+    int n_threads = parallel_cores();
+    if (!lighting->is_tried[factor]) {
+        lighting->factor = factor;
+        atomic_store(&lighting->next, 0);
+        parallel_run((size_t)n_threads < n_regions ? n_threads : (int)n_regions, reduce_some, lighting);
+        lighting->is_tried[factor] = true;
+    }
+    for (size_t r = 0; r < n_regions; r++)
         n += lighting->ladders[r].facts[factor].n_triangles;
     return n;
+}
+
+/* The smallest reduction from 2 on that is light enough, or the largest. Triangles fall with the square of it, so the search
+ * starts where that law says. */
+static uint32_t find_reduction(struct lighting *lighting, size_t n_at_two)
+{
+    if (n_at_two <= PLAN_LIGHT_TRIANGLES)
+        return 2;
+    double guess = 2 * sqrt((double)n_at_two / PLAN_LIGHT_TRIANGLES);
+    uint32_t factor = guess < 3 ? 3 : guess > MAX_REDUCTION ? MAX_REDUCTION : (uint32_t)guess;
+    while (factor < MAX_REDUCTION && triangles_at(lighting, factor) > PLAN_LIGHT_TRIANGLES)
+        factor++;
+    (void)triangles_at(lighting, factor);
+    while (factor > 3 && triangles_at(lighting, factor - 1) <= PLAN_LIGHT_TRIANGLES)
+        factor--;
+    return factor;
 }
 
 /* Whether the full surfaces are already light enough. Halving the grid quarters the triangles, so they are only built when
@@ -144,14 +167,9 @@ static bool build_light(struct plan *plan, struct error *err)
     struct lighting lighting = { .plan = plan, .ladders = mem_new((n_regions + 1) * sizeof *lighting.ladders) };
     atomic_init(&lighting.next, 0);
     atomic_init(&lighting.is_failed, false);
-    int n_threads = parallel_cores();
-    parallel_run((size_t)n_threads < n_regions ? n_threads : (int)n_regions, climb_some, &lighting);
+    size_t n_at_two = triangles_at(&lighting, 2);
+    uint32_t factor = full_is_light(plan, n_at_two) ? 1 : find_reduction(&lighting, n_at_two);
     bool is_built = !atomic_load(&lighting.is_failed);
-    uint32_t factor = 2;
-    if (is_built && full_is_light(plan, triangles_at(&lighting, 2)))
-        factor = 1;
-    while (factor > 1 && factor < MAX_REDUCTION && triangles_at(&lighting, factor) > PLAN_LIGHT_TRIANGLES)
-        factor++;
     for (size_t r = 0; r < n_regions; r++) {
         struct plan_mesh *slot = &plan->meshes->of_region[r][SURFACE_LIGHT];
         if (is_built && factor > 1 && lighting.ladders[r].mesh[factor]) {

@@ -48,8 +48,10 @@ const struct region *region_find(const struct region_set *set, const char *id); 
 void region_set_measure(struct region_set *set);
 /* Parents from containment when no file gave them. Within one exclusive layer region A is taken to lie inside B when B
  * encloses A: every path of 6-neighbours from A to the grid's border passes B (approximated: of A's outward boundary faces at
- * least 95 % touch B or a region already inside B). Across layers: A inside B when at least 99 % of A's voxel centres carry B.
- * The smallest enclosing region is the parent. Sets hierarchy to HIERARCHY_DERIVED when it found any. */
+ * least 95 % touch B or a region already inside B, A's box lies in B's box, and no more than a quarter of A's faces lie on the
+ * outside of the grid, where a scan cuts; those count for neither side). Across layers: A inside B when at least 99 % of A's
+ * voxel centres carry B (up to 4096 of them, evenly taken). The enclosing region with the smallest box is the parent. Sets
+ * hierarchy to HIERARCHY_DERIVED when it found any. */
 void region_set_derive_hierarchy(struct region_set *set);
 /* region index and all of its descendants, index first; returns how many. out holds n_regions. */
 size_t region_with_descendants(const struct region_set *set, size_t index, size_t *out);
