@@ -35,6 +35,7 @@ struct scene shots_scene(const struct plan *plan)
     for (size_t i = 0; i < scene.n_regions; i++)
         scene.regions[i].value.opacity = 1;
     scene.image.slices.axial.visible = false;
+    scene.image.cull_below = scene_image_style_default.cull_below; /* air too */
     return scene;
 }
 

@@ -285,6 +285,30 @@ static void linear_interpolation_is_linear(void **state)
     finish(plan);
 }
 
+static void a_slice_in_space_leaves_out_what_is_below_the_threshold(void **state)
+{
+    (void)state;
+    struct grid grid = unit_grid(60);
+    struct plan *plan = made_plan(&grid, empty_label, ball, 0);
+    made_plan_add_image(plan, &grid, VOXEL_I16, ramp); /* 10 a millimetre to the left */
+    struct scene scene = shots_scene(plan);
+    scene.image.slices.coronal.visible = true;
+    scene.image.window = (struct scene_window){ 0, 600 };
+    scene.image.cull_below = 50;
+    struct image *image = shots_plain(plan, scene, shots_view_from(origin, from_front, up, 4));
+    assert_memory_equal(shots_pixel(image, 200 + 4 * 4, 150), shots_background, 3); /* 40 */
+    assert_close(shots_pixel(image, 200 + 6 * 4, 150)[0], 255 * 360 / 600.0, 3);    /* 60: half a millimetre is 2 levels */
+    image_destroy(image);
+
+    scene = shots_scene(plan); /* the slice's own pane shows everything */
+    scene.image.window = (struct scene_window){ 0, 600 };
+    scene.image.cull_below = 50;
+    image = shots_plain(plan, scene, shots_view(SCENE_KIND_CORONAL, origin, 4));
+    assert_close(shots_pixel(image, 200 - 10 * 4, 150)[0], 255 * 200 / 600.0, 3);
+    image_destroy(image);
+    finish(plan);
+}
+
 static double holed(struct vec3 p) { return vec3_length(p) < 5 ? NAN : 100; }
 
 static void what_is_not_a_number_is_not_drawn(void **state)
@@ -435,6 +459,7 @@ int main(void)
         cmocka_unit_test(every_voxel_has_the_grey_its_window_says),
         cmocka_unit_test(linear_interpolation_is_linear),
         cmocka_unit_test(what_is_not_a_number_is_not_drawn),
+        cmocka_unit_test(a_slice_in_space_leaves_out_what_is_below_the_threshold),
         cmocka_unit_test(a_grid_beyond_the_drivers_limit_is_refused_with_its_size),
         cmocka_unit_test(stills_have_smooth_edges),
         cmocka_unit_test(light_surfaces_are_marked_and_lighter),

@@ -170,7 +170,8 @@ static bool create(const struct gl *gl, struct gl_program *program, const char *
     } uniforms[] = {
         { &program->clip_from_lps, "clip_from_lps" }, { &program->eye_from_lps, "eye_from_lps" }, { &program->viewer, "viewer" },
         { &program->color, "color" }, { &program->opacity, "opacity" }, { &program->is_rim, "is_rim" },
-        { &program->source, "source" }, { &program->palette, "palette" }, { &program->grey, "grey" }, { &program->cull, "cull" }, { &program->scale, "scale" },
+        { &program->source, "source" }, { &program->palette, "palette" }, { &program->grey, "grey" },
+        { &program->cull, "cull" }, { &program->scale, "scale" },
     };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++)
         *uniforms[i].place = gl->GetUniformLocation(program->name, uniforms[i].name);

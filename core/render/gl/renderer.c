@@ -259,6 +259,18 @@ static bool draw_band(struct renderer *renderer, struct gl_frame *frame, struct 
     return is_good;
 }
 
+/* Stills take several samples a pixel, but a slice pane whose voxels are larger than its pixels has nothing to gain. */
+static int samples_per_side(const struct snapshot *snapshot, const struct camera *camera, const struct render_options *options)
+{
+    if (!options->is_still)
+        return 1;
+    if (snapshot->view.kind == SCENE_KIND_3D || snapshot->image < 0)
+        return STILL_SAMPLES;
+    struct vec3 spacing_mm = grid_spacing_mm(&snapshot->plan->images[snapshot->image].volume->grid);
+    double pixels_per_mm = camera->pixels_per_mm * options->width_px / snapshot->view.size_px[0];
+    return fmin(fmin(spacing_mm.x, spacing_mm.y), spacing_mm.z) * pixels_per_mm < 1 ? STILL_SAMPLES : 1;
+}
+
 struct image *render_snapshot(struct renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
                               struct camera *camera, struct render_timing *timing, struct error *err)
 {
@@ -277,7 +289,7 @@ struct image *render_snapshot(struct renderer *renderer, const struct snapshot *
                               .target = &renderer->target, .no_vertices = renderer->no_vertices,
                               .polygon_array = renderer->polygon_array, .polygon = renderer->polygon, .palette = renderer->palette,
                               .snapshot = snapshot, .camera = camera, .detail = options->detail, .timing = timing };
-    int samples = options->is_still ? STILL_SAMPLES : 1;
+    int samples = samples_per_side(snapshot, camera, options);
     int band = MAX_BAND_SAMPLES / (image->width_px * samples * samples);
     for (int first = 0; first < image->height_px; first += band) {
         int n = image->height_px - first < band ? image->height_px - first : band;
