@@ -266,6 +266,21 @@ static void packed_files_are_read_also_in_several_members_and_with_more_behind(v
     nifti_bytes_free(&file);
 }
 
+static void a_packed_file_with_a_wrong_checksum_is_refused(void **state)
+{
+    (void)state;
+    struct nifti_bytes file = nifti_bytes_make(4, 4, 4, U8, 8, 64, false);
+    nifti_put_sform(&file, identity_ras);
+    struct bytes packed = nifti_bytes_pack(file.data, file.size);
+    packed.data[packed.size - 6] ^= 1; /* the checksum is the last eight bytes' first half */
+    struct error err = { 0 };
+    assert_null(nifti_read(&packed, "a.nii.gz", NIFTI_IMAGE, NULL, &err));
+    assert_int_equal(err.code, ERROR_FORMAT);
+    assert_non_null(strstr(err.text, "checksum"));
+    bytes_free(&packed);
+    nifti_bytes_free(&file);
+}
+
 static void nifti_2_is_read(void **state)
 {
     (void)state;
@@ -391,6 +406,7 @@ int main(void)
         cmocka_unit_test(labels_are_whole_numbers_and_others_are_refused_with_their_place),
         cmocka_unit_test(a_mask_counts_half_and_more_as_inside),
         cmocka_unit_test(packed_files_are_read_also_in_several_members_and_with_more_behind),
+        cmocka_unit_test(a_packed_file_with_a_wrong_checksum_is_refused),
         cmocka_unit_test(nifti_2_is_read),
         cmocka_unit_test(what_is_broken_is_refused_with_a_sentence),
         cmocka_unit_test(a_small_packed_file_that_claims_gigabytes_is_refused_before_memory_is_asked_for),

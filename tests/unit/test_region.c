@@ -168,6 +168,19 @@ static void neighbours_and_half_buried_regions_have_no_parent(void **state)
     region_set_finish(&set);
 }
 
+static void a_region_in_a_notch_does_not_lie_inside(void **state)
+{
+    (void)state;
+    struct volume *layer = layer_make(20, 20, 20, VOXEL_U8);
+    BOX(layer, 2, 17, 1);
+    put_box(layer, (uint32_t[3]){ 8, 8, 8 }, (uint32_t[3]){ 11, 11, 17 }, 0);
+    put_box(layer, (uint32_t[3]){ 8, 8, 8 }, (uint32_t[3]){ 11, 11, 11 }, 2); /* a cube, open to one of its six sides */
+    struct region_set set = set_make(&layer, 1, (uint32_t[2]){ 0 }, (uint16_t[]){ 1, 2 }, 2);
+    region_set_derive_hierarchy(&set);
+    assert_int_equal(set.regions[1].parent, -1);
+    region_set_finish(&set);
+}
+
 static void regions_on_other_layers_lie_inside_when_their_voxels_do(void **state)
 {
     (void)state;
@@ -233,6 +246,7 @@ int main(void)
         cmocka_unit_test(shells_are_put_into_one_another),
         cmocka_unit_test(a_brain_cut_by_the_scan_still_lies_in_the_scalp),
         cmocka_unit_test(neighbours_and_half_buried_regions_have_no_parent),
+        cmocka_unit_test(a_region_in_a_notch_does_not_lie_inside),
         cmocka_unit_test(regions_on_other_layers_lie_inside_when_their_voxels_do),
         cmocka_unit_test(two_equal_masks_make_no_circle),
         cmocka_unit_test(a_tree_of_five_labels_in_256_256_128_takes_under_50_ms),
