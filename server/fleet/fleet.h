@@ -42,7 +42,7 @@ struct fleet_options {
     const char *renderer_path;   /* beamroom-render; NULL: beside our own executable */
     const char *gl;              /* "auto", ... handed on */
     bool stub_renderer;          /* --stub: no GL at all, for tests */
-    uint64_t max_renderer_bytes; /* address space of one renderer; 0: no limit */
+    uint64_t max_renderer_bytes; /* writable memory of one renderer, its threads' stacks included; 0: no limit */
     int max_renderers;           /* running at once; opening one more closes the longest unused, or is refused with PROBLEM_BUSY */
     int idle_close_s;            /* a ready plan nobody uses (fleet_hold) is closed after this */
     struct fleet_times times;    /* all 0: the defaults */

@@ -133,8 +133,9 @@ void confine(const struct confine_options *options, char got[128])
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, 1024);
     if (!SECCOMP_IS_RELAXED) { /* a sanitizer maps terabytes, and looks at its own process from outside */
+        /* of its own writable memory, not of addresses: a graphics driver reserves far more of those than it uses */
         if (options->max_bytes > 0)
-            limit(RLIMIT_AS, (rlim_t)options->max_bytes);
+            limit(RLIMIT_DATA, (rlim_t)options->max_bytes);
         (void)prctl(PR_SET_DUMPABLE, 0, 0, 0, 0);
     }
     (void)prctl(PR_SET_PDEATHSIG, SIGKILL, 0, 0, 0);

@@ -8,7 +8,7 @@
 struct confine_options {
     const char *plan_folder;  /* may be read */
     const char *cache_folder; /* may be written; NULL: nothing may */
-    uint64_t max_bytes;       /* address space; 0: no limit */
+    uint64_t max_bytes;       /* writable memory of its own; 0: no limit */
     bool needs_gpu;           /* device files of graphics drivers stay open to it */
 };
 

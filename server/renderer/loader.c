@@ -36,6 +36,10 @@ static void question_drop(void *item)
 
 static void tell(struct loader *loader, const char *phase, double percent)
 {
+    int64_t now_us = clock_now_us();
+    if (now_us - loader->told_us < PROGRESS_EVERY_US)
+        return;
+    loader->told_us = now_us;
     struct note note = { .type = NOTE_PROGRESS, .percent = percent };
     (void)snprintf(note.phase, sizeof note.phase, "%s", phase);
     desk_offer(loader->desk, &note);
@@ -43,12 +47,7 @@ static void tell(struct loader *loader, const char *phase, double percent)
 
 static void step(void *context, const char *phase, double percent)
 {
-    struct loader *loader = context;
-    int64_t now_us = clock_now_us();
-    if (now_us - loader->told_us < PROGRESS_EVERY_US)
-        return;
-    loader->told_us = now_us;
-    tell(loader, phase, percent * 0.9); /* the rest is for surfaces */
+    tell(context, phase, percent * 0.9); /* the rest is for surfaces */
 }
 
 static void answer(struct loader *loader, struct plan *plan, struct question *question)

@@ -30,7 +30,7 @@ static void print_help(void)
           "  --plan-folder DIR  the plan to read; nothing else is readable from then on\n"
           "  --plan-id ID       what the daemon calls the plan: letters a-z, digits, '-'\n"
           "  --cache DIR        folder that may be written\n"
-          "  --max-bytes N      most address space the process may take; 0 (default): no limit\n"
+          "  --max-bytes N      most memory of its own the process may take; 0 (default): no limit\n"
           "  --help, --version  this text, the version\n\n"
           "It gives up the network, other programs and other files before it reads a plan, as far as the kernel offers that.\n"
           "Exit status: 0 done, or the daemon closed the socket; 1 the connection broke, or GL does not start (--probe-gl);\n"

@@ -3,23 +3,38 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whole well-formed UTF-8 without overlong forms, surrogates or NUL (Unicode 15, table 3-7). */
+/* Bytes of the well-formed UTF-8 character at s, of at most n; 0: none, without overlong forms, surrogates or NUL (Unicode 15,
+ * table 3-7). */
+static size_t utf8_character(const unsigned char *s, size_t n)
+{
+    unsigned char c = s[0];
+    size_t more = c < 0x80 ? 0 : c >= 0xc2 && c < 0xe0 ? 1 : (c & 0xf0) == 0xe0 ? 2 : c >= 0xf0 && c < 0xf5 ? 3 : 4;
+    if (c == 0 || more == 4 || n <= more)
+        return 0;
+    for (size_t k = 1; k <= more; k++)
+        if ((s[k] & 0xc0) != 0x80)
+            return 0;
+    bool is_odd = (c == 0xe0 && s[1] < 0xa0) || (c == 0xed && s[1] > 0x9f) || (c == 0xf0 && s[1] < 0x90) || (c == 0xf4 && s[1] > 0x8f);
+    return is_odd ? 0 : more + 1;
+}
+
 static bool is_utf8(const unsigned char *s, size_t n)
 {
-    for (size_t at = 0; at < n;) {
-        unsigned char c = s[at];
-        size_t more = c < 0x80 ? 0 : c >= 0xc2 && c < 0xe0 ? 1 : (c & 0xf0) == 0xe0 ? 2 : c >= 0xf0 && c < 0xf5 ? 3 : 4;
-        if (c == 0 || more == 4 || n - at <= more)
+    for (size_t at = 0, more; at < n; at += more)
+        if ((more = utf8_character(s + at, n - at)) == 0)
             return false;
-        for (size_t k = 1; k <= more; k++)
-            if ((s[at + k] & 0xc0) != 0x80)
-                return false;
-        if ((c == 0xe0 && s[at + 1] < 0xa0) || (c == 0xed && s[at + 1] > 0x9f) || (c == 0xf0 && s[at + 1] < 0x90) ||
-            (c == 0xf4 && s[at + 1] > 0x8f))
-            return false;
-        at += more + 1;
-    }
     return true;
+}
+
+/* File names are bytes, and a sentence may have been cut within a character: what is no UTF-8 becomes '?'. */
+static void make_utf8(unsigned char *s, size_t n)
+{
+    for (size_t at = 0; at < n;) {
+        size_t more = utf8_character(s + at, n - at);
+        if (more == 0)
+            s[at] = '?';
+        at += more ? more : 1;
+    }
 }
 
 /* Depth before parsing, so that the parser's own recursion is bounded by us. Brackets inside strings do not count. */
@@ -81,6 +96,7 @@ char *json_write(const cJSON *json)
     char *text = cJSON_PrintUnformatted(json);
     if (!text)
         abort(); /* no memory for a message */
+    make_utf8((unsigned char *)text, strlen(text));
     return text;
 }
 

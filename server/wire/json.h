@@ -10,7 +10,7 @@ enum { JSON_MAX_DEPTH = 32 };
 
 /* Parses exactly n bytes: valid UTF-8, at most JSON_MAX_DEPTH deep, nothing after the value. NULL with problem "json". */
 NODISCARD cJSON *json_read(const char *bytes, size_t n, struct problem *problem);
-/* Compact text, free() it. Never NULL. */
+/* Compact text, free() it. Never NULL, always UTF-8: bytes in strings that are none come out as '?'. */
 NODISCARD char *json_write(const cJSON *json);
 
 /* RFC 7396: target (may be NULL) with patch applied, as a new document. Neither argument changes. */

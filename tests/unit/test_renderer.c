@@ -245,6 +245,44 @@ static void a_plan_that_cannot_be_read_fails_with_the_loaders_sentence(void **st
     world_end(&world);
 }
 
+/* A name in another encoding, long enough to be cut in every sentence: still a plan that says what is wrong, not a renderer that lies. */
+static void a_file_name_that_is_no_utf8_comes_out_readable(void **state)
+{
+    (void)state;
+    struct world world;
+    char path[800];
+    begin_head(&world, true, small);
+    snprintf(path, sizeof path, "%s/%s/plan.json", world.plans, PLAN);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"", file);
+    for (int i = 0; i < 90; i++)
+        fputs("\xe2\x82\xac", file); /* the euro sign, three bytes */
+    fputs(".nii\"}]}", file);
+    fclose(file);
+    snprintf(path, sizeof path, "%s/latin1", world.plans);
+    assert_int_equal(mkdir(path, 0700), 0);
+    snprintf(path, sizeof path, "%s/latin1/K\xf6pf.nii", world.plans);
+    file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("no image", file);
+    fclose(file);
+    world_start(&world, 2);
+    static const char *const ids[] = { PLAN, "latin1" };
+    for (int i = 0; i < 2; i++) {
+        struct fleet_plan plan = world_plan_of(&world, ids[i]);
+        if (plan.state == FLEET_CLOSED) {
+            world_open_plan(&world, ids[i]);
+            world_wait_for_state(&world, ids[i], FLEET_FAILED);
+            plan = world_plan_of(&world, ids[i]);
+        }
+        assert_int_equal(plan.problem->type, PROBLEM_PLAN_UNREADABLE);
+        assert_non_null(strstr(plan.problem->detail, i == 0 ? "\xe2\x82\xac" : "K?pf.nii"));
+        assert_null(strstr(plan.problem->detail, "no packet"));
+    }
+    world_end(&world);
+}
+
 static void a_plan_larger_than_the_memory_limit_fails_and_says_so(void **state)
 {
     (void)state;
@@ -253,7 +291,7 @@ static void a_plan_larger_than_the_memory_limit_fails_and_says_so(void **state)
 #endif
     struct world world;
     begin_head(&world, true, phantom_defaults.size);
-    world.options.max_renderer_bytes = 60 << 20; /* with its threads' stacks the program alone takes about 50 MB of addresses */
+    world.options.max_renderer_bytes = 60 << 20; /* five threads' stacks take 40 of them */
     world_start(&world, 1);
     world_open_plan(&world, PLAN);
     world_wait_for_state(&world, PLAN, FLEET_FAILED);
@@ -376,6 +414,7 @@ int main(void)
         cmocka_unit_test(numbers_are_answered),
         cmocka_unit_test(what_is_asked_wrongly_is_refused_with_its_place),
         cmocka_unit_test(a_plan_that_cannot_be_read_fails_with_the_loaders_sentence),
+        cmocka_unit_test(a_file_name_that_is_no_utf8_comes_out_readable),
         cmocka_unit_test(a_plan_larger_than_the_memory_limit_fails_and_says_so),
         cmocka_unit_test(the_running_renderer_is_filtered),
         cmocka_unit_test(each_real_plan_becomes_ready_or_says_why_not),
