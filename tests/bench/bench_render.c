@@ -1,0 +1,131 @@
+/* Drawing and compressing the demo plan as a new room shows it (five surfaces, four of them translucent, and an axial slice), the
+ * camera going round it: light surfaces as while moving at 100, 75 and 50 % of 1024 x 768, full surfaces anti-aliased as still;
+ * the axial pane; JPEG and PNG. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "core/base/clock.h"
+#include "core/encode/encode.h"
+#include "core/render/render.h"
+
+enum { REPEATS = 15, WIDTH = 1024, HEIGHT = 768 };
+
+static struct renderer *renderer;
+static struct plan *plan;
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static double median(double values[REPEATS])
+{
+    qsort(values, REPEATS, sizeof values[0], compare);
+    return values[REPEATS / 2];
+}
+
+static void stop(const struct error *err)
+{
+    fprintf(stderr, "bench_render: %s\n", err->text);
+    exit(1);
+}
+
+/* One picture; step moves the camera round the plan (or the slice through it). */
+static struct image *draw(enum scene_kind kind, int step, double scale, enum surface_detail detail, bool is_still,
+                          struct render_timing *timing)
+{
+    struct scene scene;
+    struct view view = view_default;
+    struct error err = { 0 };
+    char field[128];
+    scene_for_plan(plan, &scene);
+    view.kind = kind;
+    camera_home(plan, kind, &view.camera);
+    if (kind == SCENE_KIND_3D) {
+        struct vec3 home = vec3_sub(view.camera.position_mm, view.camera.target_mm);
+        double distance = vec3_length(home), turn = 0.6 + 0.05 * step;
+        view.camera.position_mm =
+            vec3_add(view.camera.target_mm, vec3_scale(vec3_normalize(vec3(sin(turn), -cos(turn), 0.25)), distance));
+    } else
+        scene.image.slices.axial.position_mm += step;
+    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
+    struct render_options options = { (int)(WIDTH * scale), (int)(HEIGHT * scale), detail, is_still };
+    struct camera camera;
+    struct image *image = snapshot ? render_snapshot(renderer, snapshot, &options, &camera, timing, &err) : NULL;
+    if (!image)
+        stop(&err);
+    snapshot_unref(snapshot);
+    return image;
+}
+
+static void bench_drawing(const char *name, enum scene_kind kind, double scale, enum surface_detail detail, bool is_still)
+{
+    double draw_ms[REPEATS], read_ms[REPEATS];
+    struct render_timing timing;
+    image_destroy(draw(kind, -1, scale, detail, is_still, &timing)); /* uploads */
+    for (int i = 0; i < REPEATS; i++) {
+        image_destroy(draw(kind, i, scale, detail, is_still, &timing));
+        draw_ms[i] = (double)timing.draw_us / 1e3;
+        read_ms[i] = (double)timing.read_us / 1e3;
+    }
+    double drawing = median(draw_ms), reading = median(read_ms);
+    printf("{\"name\":\"draw, %s\",\"value\":%.2f,\"unit\":\"ms\",\"note\":\"%d x %d, %zu triangles%s, reading back %.2f ms more; "
+           "%s; median of %d\"}\n",
+           name, drawing, (int)(WIDTH * scale), (int)(HEIGHT * scale), timing.n_triangles, is_still ? ", anti-aliased" : "", reading,
+           render_back_end_word(renderer_facts(renderer)->back_end), REPEATS);
+}
+
+static void bench_encoding(const char *name, struct encode_options options)
+{
+    struct encoder *encoder = encoder_create();
+    struct render_timing timing;
+    struct image *image = draw(SCENE_KIND_3D, 3, 1, SURFACE_FULL, true, &timing);
+    double ms[REPEATS];
+    size_t n_bytes = 0;
+    for (int i = 0; i < REPEATS; i++) {
+        struct error err = { 0 };
+        struct encoded out;
+        int64_t began_us = clock_now_us();
+        if (!encode_image(encoder, image, &options, &out, &err))
+            stop(&err);
+        ms[i] = (double)(clock_now_us() - began_us) / 1e3;
+        n_bytes = out.n_bytes;
+        free(out.bytes);
+    }
+    printf("{\"name\":\"encode, %s\",\"value\":%.2f,\"unit\":\"ms\",\"note\":\"%d x %d, %zu bytes; median of %d\"}\n", name, median(ms),
+           WIDTH, HEIGHT, n_bytes, REPEATS);
+    image_destroy(image);
+    encoder_destroy(encoder);
+}
+
+int main(void)
+{
+    const char *plans = getenv("BEAMROOM_DEMO") ? getenv("BEAMROOM_DEMO") : "build/demo/plans";
+    char folder[4096];
+    struct error err = { 0 };
+    snprintf(folder, sizeof folder, "%s/phantom", plans);
+    plan = plan_load(folder, "phantom", NULL, &err);
+    if (!plan)
+        stop(&err);
+    int64_t began_us = clock_now_us();
+    renderer = renderer_create(RENDER_AUTO, &err);
+    if (!renderer)
+        stop(&err);
+    printf("{\"name\":\"start OpenGL\",\"value\":%.1f,\"unit\":\"ms\",\"note\":\"%s, %s\"}\n", (double)(clock_now_us() - began_us) / 1e3,
+           render_back_end_word(renderer_facts(renderer)->back_end), renderer_facts(renderer)->renderer);
+
+    bench_drawing("moving", SCENE_KIND_3D, 1, SURFACE_LIGHT, false);
+    bench_drawing("moving at 75 %", SCENE_KIND_3D, 0.75, SURFACE_LIGHT, false);
+    bench_drawing("moving at 50 %", SCENE_KIND_3D, 0.5, SURFACE_LIGHT, false);
+    bench_drawing("still", SCENE_KIND_3D, 1, SURFACE_FULL, true);
+    bench_drawing("axial pane", SCENE_KIND_AXIAL, 1, SURFACE_LIGHT, false);
+    bench_encoding("JPEG quality 80 4:2:0", (struct encode_options){ ENCODE_JPEG, 80, false });
+    bench_encoding("JPEG quality 92 4:4:4", (struct encode_options){ ENCODE_JPEG, 92, true });
+    bench_encoding("PNG", (struct encode_options){ ENCODE_PNG, 0, false });
+
+    renderer_forget(renderer, plan);
+    renderer_destroy(renderer);
+    plan_destroy(plan);
+    return 0;
+}
