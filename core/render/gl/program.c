@@ -5,9 +5,27 @@
 /* Every picture is drawn upside down (flip in the camera's matrix, see renderer.c), so that reading it back gives row 0 at the
  * top. */
 
-/* viewer: xyz the eye and w 1 in perspective, xyz the direction towards the viewer and w 0 in parallel projection.
- * shade: the normal in eye space (x right, y up, z towards the viewer) and its cosine with the line of sight. */
-static const char surface_vertex[] =
+/* A key light from the upper right, a weak fill from the left, a soft rim; translucency as proto/scene.json says.
+ * n: the normal in eye space (x right, y up, z towards the viewer); facing: its cosine with the line of sight. */
+static const char surface_light[] =
+    "uniform vec4 color;\n"
+    "uniform float opacity;\n"
+    "uniform int is_rim;\n"
+    "vec4 light(vec3 n, float facing) {\n"
+    "    float edge = 1.0 - facing;\n"
+    "    float key = max(dot(n, vec3(0.426, 0.568, 0.704)), 0.0);\n"
+    "    float fill = max(dot(n, vec3(-0.741, 0.106, 0.663)), 0.0);\n"
+    "    float ambient = opacity < 1.0 ? 0.5 : 0.3;\n" /* what shows through black must be brighter to be seen */
+    "    float gloss = key * key; gloss *= gloss; gloss *= gloss; gloss *= gloss;\n"
+    "    vec3 lit = color.rgb * (ambient + 0.58 * key + 0.18 * fill + 0.24 * edge * edge) + 0.07 * gloss;\n"
+    "    float alpha = is_rim != 0 ? opacity * (0.3 + 1.82 * pow(edge, 1.8)) : opacity;\n"
+    "    return vec4(min(lit, 1.0), min(alpha, 1.0));\n"
+    "}\n";
+
+/* Light is worked out at the vertices: a voxel's surface has triangles of a pixel or few, and on a software rasteriser a fragment
+ * costs what a vertex does.
+ * viewer: xyz the eye and w 1 in perspective, xyz the direction towards the viewer and w 0 in parallel projection. */
+static const char smooth_vertex[] =
     "layout(location = 0) in vec3 position;\n"
     "layout(location = 1) in vec3 normal;\n"
     "uniform mat4 clip_from_lps;\n"
@@ -17,34 +35,14 @@ static const char surface_vertex[] =
     "invariant gl_Position;\n"
     "void main() {\n"
     "    vec3 towards = normalize(viewer.xyz - viewer.w * position);\n"
-    "    shade = vec4(eye_from_lps * normal, dot(normal, towards));\n"
+    "    shade = light(eye_from_lps * normal, clamp(dot(normal, towards), 0.0, 1.0));\n"
     "    gl_Position = clip_from_lps * vec4(position, 1.0);\n"
-    "}\n";
-
-/* A key light from the upper right, a weak fill from the left, a soft rim; translucency as proto/scene.json says. */
-static const char surface_light[] =
-    "uniform vec4 color;\n"
-    "uniform float opacity;\n"
-    "uniform int is_rim;\n"
-    "out vec4 result;\n"
-    "void light(vec3 n, float facing) {\n"
-    "    float edge = 1.0 - facing;\n"
-    "    float key = max(dot(n, vec3(0.426, 0.568, 0.704)), 0.0);\n"
-    "    float fill = max(dot(n, vec3(-0.741, 0.106, 0.663)), 0.0);\n"
-    "    float ambient = opacity < 1.0 ? 0.5 : 0.3;\n" /* what shows through black must be brighter to be seen */
-    "    float gloss = key * key; gloss *= gloss; gloss *= gloss; gloss *= gloss;\n"
-    "    vec3 lit = color.rgb * (ambient + 0.58 * key + 0.18 * fill + 0.24 * edge * edge) + 0.07 * gloss;\n"
-    "    float alpha = is_rim != 0 ? opacity * (0.3 + 1.82 * pow(edge, 1.8)) : opacity;\n"
-    "    result = vec4(min(lit, 1.0), min(alpha, 1.0));\n"
     "}\n";
 
 static const char smooth_fragment[] =
     "in vec4 shade;\n"
-    "void main() {\n"
-    "    float scale = inversesqrt(max(dot(shade.xyz, shade.xyz), 1e-12));\n"
-    "    if (!gl_FrontFacing) scale = -scale;\n"
-    "    light(shade.xyz * scale, clamp(shade.w * scale, 0.0, 1.0));\n"
-    "}\n";
+    "out vec4 result;\n"
+    "void main() { result = shade; }\n";
 
 static const char faceted_vertex[] =
     "layout(location = 0) in vec3 position;\n"
@@ -63,11 +61,12 @@ static const char faceted_fragment[] =
     "uniform mat3 eye_from_lps;\n"
     "in vec3 towards;\n"
     "in vec3 place;\n"
+    "out vec4 result;\n"
     "void main() {\n"
     "    vec3 n = normalize(cross(dFdx(place), dFdy(place)));\n"
     "    float facing = dot(n, normalize(towards));\n"
     "    if (facing < 0.0) n = -n;\n" /* the visible side of the triangle */
-    "    light(eye_from_lps * n, min(abs(facing), 1.0));\n"
+    "    result = light(eye_from_lps * n, min(abs(facing), 1.0));\n"
     "}\n";
 
 /* Exactly the depths of the programs above: the same expression, and invariant. */
@@ -141,10 +140,10 @@ static GLuint compile(const struct gl *gl, GLenum kind, const char *name, const 
     return 0;
 }
 
-static bool create(const struct gl *gl, struct gl_program *program, const char *name, const char *vertex, const char *library,
-                   const char *fragment, struct error *err)
+static bool create(const struct gl *gl, struct gl_program *program, const char *name, const char *vertex_library,
+                   const char *vertex, const char *library, const char *fragment, struct error *err)
 {
-    GLuint v = compile(gl, GL_VERTEX_SHADER, name, "", vertex, err);
+    GLuint v = compile(gl, GL_VERTEX_SHADER, name, vertex_library, vertex, err);
     GLuint f = v ? compile(gl, GL_FRAGMENT_SHADER, name, library, fragment, err) : 0;
     if (!f) {
         if (v)
@@ -181,12 +180,12 @@ static bool create(const struct gl *gl, struct gl_program *program, const char *
 bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struct error *err)
 {
     *programs = (struct gl_programs){ 0 };
-    if (create(gl, &programs->smooth, "smooth", surface_vertex, surface_light, smooth_fragment, err) &&
-        create(gl, &programs->faceted, "faceted", faceted_vertex, surface_light, faceted_fragment, err) &&
-        create(gl, &programs->depth, "depth", depth_vertex, "", depth_fragment, err) &&
-        create(gl, &programs->image, "image", slice_vertex, "", image_fragment, err) &&
-        create(gl, &programs->labels, "labels", slice_vertex, "", labels_fragment, err) &&
-        create(gl, &programs->test, "test", test_vertex, "", test_fragment, err))
+    if (create(gl, &programs->smooth, "smooth", surface_light, smooth_vertex, "", smooth_fragment, err) &&
+        create(gl, &programs->faceted, "faceted", "", faceted_vertex, surface_light, faceted_fragment, err) &&
+        create(gl, &programs->depth, "depth", "", depth_vertex, "", depth_fragment, err) &&
+        create(gl, &programs->image, "image", "", slice_vertex, "", image_fragment, err) &&
+        create(gl, &programs->labels, "labels", "", slice_vertex, "", labels_fragment, err) &&
+        create(gl, &programs->test, "test", "", test_vertex, "", test_fragment, err))
         return true;
     gl_programs_destroy(gl, programs);
     return false;
