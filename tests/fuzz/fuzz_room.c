@@ -1,0 +1,151 @@
+/* A room with two browsers: each line of the input is a message or an event. Whatever they say, no more than two frames are unshown,
+ * sequences count up, the scene's revision never goes back, and no clock is asked for in the past. */
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/room/room.h"
+#include "tests/fuzz/fuzz.h"
+
+enum { N_PAGES = 2, MAX_ASKED = 4096 };
+
+static struct page {
+    uint32_t sent[ROOM_MAX_VIEWS + 1], shown[ROOM_MAX_VIEWS + 1];
+    bool is_closed;
+} pages[N_PAGES];
+static uint64_t asked[MAX_ASKED];
+static size_t n_asked, n_answered;
+
+static void render(void *context, struct room *room, const struct room_render *request)
+{
+    (void)context;
+    (void)room;
+    REQUIRE(request->view != NULL && request->scale_percent >= 10 && request->scale_percent <= 100);
+    REQUIRE(!request->is_still || (request->scale_percent == 100 && request->full_color && !request->light));
+    if (n_asked < MAX_ASKED)
+        asked[n_asked++] = request->request;
+}
+
+static void scene_changed(void *context, struct room *room, const cJSON *scene, uint32_t revision)
+{
+    static uint32_t last;
+    (void)context;
+    (void)room;
+    REQUIRE(scene != NULL && (revision >= last || revision == 1));
+    last = revision;
+}
+
+static void send_text(void *context, void *connection, const char *text)
+{
+    (void)context;
+    REQUIRE(!((struct page *)connection)->is_closed);
+    cJSON *json = json_read(text, strlen(text), NULL);
+    REQUIRE(json != NULL && json_text(json, "type") != NULL);
+    cJSON_Delete(json);
+}
+
+static void send_frame(void *context, void *connection, const struct frame_header *header, struct room_picture *picture)
+{
+    struct page *page = connection;
+    (void)context;
+    REQUIRE(!page->is_closed && picture->references > 0);
+    REQUIRE(header->view >= 1 && header->view <= ROOM_MAX_VIEWS);
+    REQUIRE(header->sequence == page->sent[header->view] + 1);
+    page->sent[header->view] = header->sequence;
+    REQUIRE(header->sequence - page->shown[header->view] <= ROOM_MAX_UNSHOWN);
+}
+
+static void close_connection(void *context, void *connection)
+{
+    (void)context;
+    ((struct page *)connection)->is_closed = true;
+}
+
+static void answer(struct room *room, bool has_failed, int64_t now_us)
+{
+    if (n_answered == n_asked)
+        return;
+    uint64_t request = asked[n_answered++];
+    if (has_failed) {
+        struct problem problem = { .type = PROBLEM_RENDERER };
+        room_picture_failed(room, request, &problem, now_us);
+        return;
+    }
+    struct room_picture *picture = mem_new(sizeof *picture);
+    *picture = (struct room_picture){ .header = { .codec = 1, .render_us = (uint32_t)(request * 7919 % 90000) },
+                                      .bytes = mem_new(8),
+                                      .n_bytes = 8,
+                                      .references = 1 };
+    room_picture_came(room, request, picture, now_us);
+}
+
+/* What the page counts as shown must be what the room takes: only whole and true acknowledgements. */
+static void follow_acknowledgement(struct page *page, const char *text, size_t n)
+{
+    cJSON *json = json_read(text, n, NULL);
+    const char *type = json_text(json, "type");
+    double view = json_number(json, "view", 0), sequence = json_number(json, "sequence", -1);
+    if (type && strcmp(type, "frame.shown") == 0 && view >= 1 && view <= ROOM_MAX_VIEWS && sequence >= 0 &&
+        sequence <= page->sent[(int)view] && sequence > page->shown[(int)view])
+        page->shown[(int)view] = (uint32_t)sequence;
+    cJSON_Delete(json);
+}
+
+static void plan_ready(struct room *room, int64_t now_us)
+{
+    static const char text[] = "{\"regions\":{\"scalp\":{\"visible\":true},\"brain\":{\"opacity\":0.5}}}";
+    struct scene scene;
+    cJSON *said = json_read(text, strlen(text), NULL);
+    REQUIRE(scene_read(said, &scene, NULL));
+    cJSON *defaults = scene_write(&scene);
+    room_plan_ready(room, said, defaults, (const char *const[]){ "ct", NULL }, "fuzz", true, now_us);
+    scene_finish(&scene);
+    cJSON_Delete(said);
+    cJSON_Delete(defaults);
+}
+
+static void take_line(struct room *room, const char *line, size_t n, int64_t *now_us)
+{
+    switch (line[0]) {
+    case '{': /* from the first page; with a space in front, from the second */
+    case ' ': {
+        struct page *page = &pages[line[0] == ' '];
+        if (page->is_closed)
+            break;
+        follow_acknowledgement(page, line, n);
+        room_text_came(room, page, line, n, *now_us);
+        break;
+    }
+    case 'd': answer(room, false, *now_us); break;
+    case 'f': answer(room, true, *now_us); break;
+    case 't': *now_us += n > 1 ? (int64_t)(unsigned char)line[1] * 1000 : 20000; break;
+    case 'r': room_renderer_state(room, WIRE_RENDERER_STATE_RESTARTING, "again", 10, NULL); break;
+    case 'p': plan_ready(room, *now_us); break;
+    case 'x': {
+        struct page *page = &pages[n > 1 && line[1] == '1'];
+        room_connection_closed(room, page, *now_us);
+        *page = (struct page){ 0 };
+        break;
+    }
+    default: break;
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
+{
+    const struct room_callbacks callbacks = { render, scene_changed, send_text, send_frame, close_connection, NULL };
+    struct room *room = room_create("7q4k-m2wz", "head", &callbacks, NULL);
+    int64_t now_us = 1000000;
+    log_start("fuzz", LOG_ERROR); /* pictures that fail are the everyday here */
+    memset(pages, 0, sizeof pages);
+    n_asked = n_answered = 0;
+    plan_ready(room, now_us);
+    for (size_t at = 0, end; at < n; at = end + 1) {
+        for (end = at; end < n && data[end] != '\n'; end++) {
+        }
+        if (end > at)
+            take_line(room, (const char *)data + at, end - at, &now_us);
+        int64_t again_us = room_tick(room, now_us);
+        REQUIRE(again_us > now_us);
+    }
+    room_destroy(room);
+    return 0;
+}
