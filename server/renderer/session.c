@@ -16,7 +16,8 @@
 #include "server/wire/document.h"
 #include "server/wire/plan_document.h"
 
-enum { MAX_DRAWINGS = 2 * PIPELINE_MAX_WAITING, LAST_WORDS_MS = 1000 };
+enum { MAX_DRAWINGS = 2 * PIPELINE_MAX_WAITING, LAST_WORDS_MS = 1000, WARM_UP_PX = 64 };
+#define WARM_UP_ID UINT64_MAX /* never asked for, so its picture is dropped */
 
 struct room_scene {
     char id[64];
@@ -102,6 +103,27 @@ static double resident_bytes(void)
     return (double)resident * 4096;
 }
 
+/* A tiny picture nobody sees, so that shaders are compiled and light surfaces on the device before the first one is asked for. */
+static void warm_up(struct session *session)
+{
+    struct scene scene;
+    struct view view = view_default;
+    struct problem problem;
+    struct error err = { 0 };
+    char field[128];
+    if (session->gl_problem.type != PROBLEM_NONE || !scene_read(session->default_scene, &scene, &problem))
+        return;
+    view.size_px[0] = view.size_px[1] = WARM_UP_PX;
+    struct pipeline_request request = {
+        .id = WARM_UP_ID,
+        .snapshot = snapshot_create(session->plan, &scene, &view, 0, field, &err),
+        .render = { WARM_UP_PX, WARM_UP_PX, SURFACE_LIGHT, false },
+        .encode = { ENCODE_JPEG, 50, false },
+    };
+    if (request.snapshot && !pipeline_submit(session->pipeline, &request, &err))
+        log_warn("nothing could be drawn ahead: %s", err.text);
+}
+
 static void say_ready_when_it_is(struct session *session)
 {
     if (session->is_ready || !session->plan || !session->is_built || !session->has_gl)
@@ -115,6 +137,7 @@ static void say_ready_when_it_is(struct session *session)
     cJSON_AddNumberToObject(json, "memory_bytes", resident_bytes());
     cJSON_AddNumberToObject(json, "load_ms", (double)((clock_now_us() - session->began_us) / 1000));
     say(session, json, NULL, 0);
+    warm_up(session);
 }
 
 /* ---- what the daemon asks ---- */
@@ -324,6 +347,14 @@ static bool read_question(struct session *session, uint64_t id, const cJSON *jso
 static void answer(struct session *session, uint64_t id, const cJSON *json)
 {
     struct question question;
+    const char *what = json_text(json, "what");
+    if (what && strcmp(what, "ready") == 0) { /* only whether: this is not asked before ready was said */
+        cJSON *yes = packet("answer");
+        cJSON_AddNumberToObject(yes, "id", (double)id);
+        (void)cJSON_AddObjectToObject(yes, "body");
+        say(session, yes, NULL, 0);
+        return;
+    }
     if (!read_question(session, id, json, &question) || loader_ask(session->loader, &question))
         return;
     struct problem problem;

@@ -8,7 +8,7 @@
  *   forget   {type, room}                             a room is gone
  *   render   {type, id, room | scene, view, scale_percent, quality, codec: "jpeg"|"png", full_color, detail: "full"|"light", still}
  *            scene: a complete document for this picture alone (HTTP render, overrides); else the room's
- *   query    {type, id, what: "surface"|"probe"|"pick", ...arguments}
+ *   query    {type, id, what: "surface"|"probe"|"pick"|"ready", ...arguments}   ready: answered with an empty body
  *   ping     {type}                                   answered with pong at once, by the main thread
  * renderer to daemon
  *   gl       {type, back_end, vendor, renderer, version, is_software} or {type, problem}

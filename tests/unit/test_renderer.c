@@ -180,6 +180,8 @@ static void numbers_are_answered(void **state)
     const cJSON *hits = cJSON_GetObjectItem(body(&reply), "hits");
     assert_true(cJSON_GetArraySize(hits) >= 1);
     assert_string_equal(json_text(cJSON_GetArrayItem(hits, 0), "region"), "scalp"); /* from the front the skin comes first */
+    ask(&world, "{\"type\":\"query\",\"what\":\"ready\"}", &reply);
+    assert_int_equal(cJSON_GetArraySize(body(&reply)), 0);
     reply_finish(&reply);
     world_end(&world);
 }
@@ -354,6 +356,9 @@ static void with_gl_a_frame_of_the_demo_plan_comes_and_comes_again(void **state)
     printf("a still %.0f ms, ", (double)(clock_now_us() - drawn_us) / 1000);
     for (int64_t until_us = clock_now_us() + 1500000; clock_now_us() < until_us;)
         world_step(&world);
+    drawn_us = clock_now_us();
+    ask(&world, "{\"type\":\"render\",\"detail\":\"light\",\"view\":{\"size_px\":[1024,768]}}", &reply);
+    printf("the next %.0f ms, ", (double)(clock_now_us() - drawn_us) / 1000);
     printf("resident %.0f MB; %s\n", (double)world_plan_of(&world, PLAN).memory_bytes / 1e6, world_plan_of(&world, PLAN).confined);
 
     kill(world_plan_of(&world, PLAN).pid, SIGKILL);
