@@ -16,7 +16,8 @@ struct render_facts {
 
 struct renderer;
 
-/* Starts the back end (RENDER_AUTO: device, surfaceless, OSMesa, in that order, the first that draws a correct test pixel).
+/* Starts the back end (RENDER_AUTO: a hardware device, surfaceless, OSMesa, in that order, the first that draws a
+ * correct test pixel; asked for by name, a device may also be a software one).
  * The calling thread becomes the render thread: every other call must come from it (asserted).
  *   errors ERROR_GL with what each back end said */
 NODISCARD struct renderer *renderer_create(enum render_back_end back_end, struct error *err);

@@ -187,6 +187,21 @@ static size_t pick_regions(const struct snapshot *snapshot, const struct ray *ra
     return n;
 }
 
+/* Values below the threshold are left out of slices in space; the value is the one the picture shows. */
+static bool slice_is_drawn_at(const struct snapshot *snapshot, const struct volume *volume, struct vec3 point_lps_mm)
+{
+    const struct scene_image_style *style = &snapshot->scene.image;
+    uint32_t ijk[3];
+    double value;
+    if (style->interpolation == SCENE_INTERPOLATION_NEAREST) {
+        if (!volume_voxel_at(volume, point_lps_mm, ijk))
+            return false;
+        value = volume_value(volume, ijk[0], ijk[1], ijk[2]);
+    } else if (!volume_sample(volume, point_lps_mm, &value))
+        return false;
+    return value >= style->cull_below;
+}
+
 /* Slices of the image that are shown in space. */
 static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray, struct pick_hit hits[PICK_MAX_HITS], size_t n)
 {
@@ -204,9 +219,7 @@ static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray
             continue;
         double t = (planes[i].slice->position_mm - vec3_dot(ray->origin_lps_mm, planes[i].normal)) / across;
         struct vec3 point = ray_point(ray, t);
-        double value;
-        const struct scene_image_style *style = &snapshot->scene.image;
-        if (t >= 0 && volume_sample(volume, point, &value) && value >= style->cull_below)
+        if (t >= 0 && slice_is_drawn_at(snapshot, volume, point))
             n = add_hit(hits, n, (struct pick_hit){ point, -1, t });
     }
     return n;

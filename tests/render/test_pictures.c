@@ -229,6 +229,25 @@ static void fewer_pixels_show_the_same_view(void **state)
     finish(plan);
 }
 
+static void what_is_out_of_sight_is_not_drawn_and_what_is_partly_in_sight_is(void **state)
+{
+    (void)state;
+    struct grid grid = unit_grid(60);
+    struct plan *plan = made_plan(&grid, box_label, ball, 1);
+    struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, false };
+    struct render_timing timing;
+    /* 5 pixels a millimetre: 80 mm across, and the box reaches 20 mm to the left of the patient's middle */
+    image_destroy(shots_take(plan, shots_scene(plan), shots_view_from(vec3(-61, 0, 0), from_front, up, 5), &options, &timing));
+    assert_int_equal(timing.n_triangles, 0);
+    struct image *image =
+        shots_take(plan, shots_scene(plan), shots_view_from(vec3(-59, 0, 0), from_front, up, 5), &options, &timing);
+    assert_true(timing.n_triangles > 0);
+    assert_memory_not_equal(shots_pixel(image, SHOTS_WIDTH - 2, SHOTS_HEIGHT / 2), shots_background, 3);
+    assert_memory_equal(shots_pixel(image, SHOTS_WIDTH - 8, SHOTS_HEIGHT / 2), shots_background, 3);
+    image_destroy(image);
+    finish(plan);
+}
+
 /* ---- greys --------------------------------------------------------------------------------------------------------------------- */
 
 static double ramp(struct vec3 p) { return floor(10 * p.x); } /* -300 .. 300: whole numbers, so that 16 bits hold them */
@@ -456,6 +475,7 @@ int main(void)
         cmocka_unit_test(a_folded_translucent_surface_shows_its_front_sheet_once),
         cmocka_unit_test(silhouettes_are_as_large_as_the_projection_says),
         cmocka_unit_test(fewer_pixels_show_the_same_view),
+        cmocka_unit_test(what_is_out_of_sight_is_not_drawn_and_what_is_partly_in_sight_is),
         cmocka_unit_test(every_voxel_has_the_grey_its_window_says),
         cmocka_unit_test(linear_interpolation_is_linear),
         cmocka_unit_test(what_is_not_a_number_is_not_drawn),

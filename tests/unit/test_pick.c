@@ -170,6 +170,29 @@ static void slices_in_space_are_hit_between_regions(void **state)
     plan_destroy(plan);
 }
 
+static double ramp(struct vec3 p) { return 100 + p.y; }
+
+static void show_coronal_of_dense(struct scene *scene)
+{
+    show_coronal(scene);
+    scene->image.cull_below = 93.5;
+}
+
+static void a_pick_goes_through_where_a_slice_leaves_out_air(void **state)
+{
+    (void)state;
+    struct plan *plan = nested_plan(false);
+    struct grid grid = plan->regions.layers[0]->grid;
+    made_plan_add_image(plan, &grid, VOXEL_F32, ramp); /* 93 on the slice at P-7 */
+    struct snapshot *snapshot = look(plan, vec3(0, -100, 0.5), vec3(0, 0, 0.5), show_coronal_of_dense, SCENE_KIND_3D);
+    struct pick_hit hits[PICK_MAX_HITS];
+    assert_int_equal(snapshot_pick(snapshot, 50.5, 50.5, hits), 3);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(hits[i].region, i);
+    snapshot_unref(snapshot);
+    plan_destroy(plan);
+}
+
 static void move_slice(struct scene *scene)
 {
     scene->image.slices.axial.position_mm = 3;
@@ -228,6 +251,7 @@ int main(void)
         cmocka_unit_test(only_what_is_shown_is_hit),
         cmocka_unit_test(from_inside_a_region_its_own_wall_is_not_a_hit),
         cmocka_unit_test(slices_in_space_are_hit_between_regions),
+        cmocka_unit_test(a_pick_goes_through_where_a_slice_leaves_out_air),
         cmocka_unit_test(a_pane_gives_the_point_and_its_regions_innermost_first),
         cmocka_unit_test(more_hits_than_fit_keep_the_nearest),
     };

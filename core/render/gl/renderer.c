@@ -23,6 +23,7 @@ struct renderer {
     struct gl_target target;
     struct gl_cache *cache;
     GLuint no_vertices, polygon_array, polygon, palette;
+    uint8_t colors[GL_N_LABELS][4]; /* of the palette */
     uint8_t *samples; /* a band of a still picture as it is read back */
     size_t n_samples_bytes;
 };
@@ -288,6 +289,7 @@ struct image *render_snapshot(struct renderer *renderer, const struct snapshot *
     struct gl_frame frame = { .gl = &renderer->gl, .programs = &renderer->programs, .cache = renderer->cache,
                               .target = &renderer->target, .no_vertices = renderer->no_vertices,
                               .polygon_array = renderer->polygon_array, .polygon = renderer->polygon, .palette = renderer->palette,
+                              .colors = renderer->colors,
                               .snapshot = snapshot, .camera = camera, .detail = options->detail, .timing = timing };
     int samples = samples_per_side(snapshot, camera, options);
     int band = MAX_BAND_SAMPLES / (image->width_px * samples * samples);

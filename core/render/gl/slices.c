@@ -123,11 +123,11 @@ static bool is_shown(const struct snapshot *snapshot, size_t region)
 
 /* Label to colour: of the region itself or, when that is hidden, of the innermost visible one around it. Returns how many labels
  * have a colour. */
-static size_t fill_palette(const struct snapshot *snapshot, size_t layer, uint8_t palette[65536][4])
+static size_t fill_palette(const struct snapshot *snapshot, size_t layer, uint8_t (*colors)[4])
 {
     const struct region_set *set = &snapshot->plan->regions;
     size_t n = 0;
-    memset(palette, 0, (size_t)65536 * 4);
+    memset(colors, 0, GL_N_LABELS * sizeof *colors);
     for (size_t i = 0; i < set->n_regions; i++) {
         int shown = (int)i;
         while (shown >= 0 && !is_shown(snapshot, (size_t)shown))
@@ -135,7 +135,7 @@ static size_t fill_palette(const struct snapshot *snapshot, size_t layer, uint8_
         if (set->regions[i].layer != layer || shown < 0)
             continue;
         uint32_t rgb = snapshot->styles[shown].color_rgb;
-        uint8_t *color = palette[set->regions[i].label];
+        uint8_t *color = colors[set->regions[i].label];
         color[0] = (uint8_t)(rgb >> 16);
         color[1] = (uint8_t)(rgb >> 8);
         color[2] = (uint8_t)rgb;
@@ -147,14 +147,13 @@ static size_t fill_palette(const struct snapshot *snapshot, size_t layer, uint8_
 
 static bool draw_label_slice(const struct gl_frame *frame, size_t layer, struct error *err)
 {
-    static uint8_t palette[65536][4]; /* the render thread's alone */
     const struct gl *gl = frame->gl;
     const struct snapshot *snapshot = frame->snapshot;
     const struct gl_program *program = &frame->programs->labels;
     const struct grid *grid = &snapshot->plan->regions.layers[layer]->grid;
     enum scene_kind kind = snapshot->view.kind;
     struct polygon polygon = slice_polygon(grid, kind, scene_slice_position_mm(&snapshot->scene, kind));
-    if (polygon.n < 3 || fill_palette(snapshot, layer, palette) == 0)
+    if (polygon.n < 3 || fill_palette(snapshot, layer, frame->colors) == 0)
         return true;
     const struct gl_grid *labels = gl_cache_layer(gl, frame->cache, snapshot->plan, layer, err);
     if (!labels)
@@ -167,7 +166,7 @@ static bool draw_label_slice(const struct gl_frame *frame, size_t layer, struct 
     gl->ActiveTexture(GL_TEXTURE1);
     gl->BindTexture(GL_TEXTURE_2D, frame->palette);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 256, 256, 0, GL_RGBA, GL_UNSIGNED_BYTE, palette);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 256, 256, 0, GL_RGBA, GL_UNSIGNED_BYTE, frame->colors);
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_3D, labels->texture);
     draw_polygon(frame, grid, &polygon);

@@ -34,6 +34,27 @@ static bool is_wholly_ahead(const struct camera *camera, const struct box3 *box)
     return vec3_dot(vec3_sub(corner, camera->eye_lps_mm), f) > camera->near_mm;
 }
 
+/* Whether a box lies beyond one side of the picture (or of the band being drawn). */
+static bool is_out_of_sight(const struct gl_frame *frame, const struct box3 *box)
+{
+    const float *m = frame->clip_from_lps;
+    int n_beyond[6] = { 0 };
+    for (int corner = 0; corner < 8; corner++) {
+        double x = corner & 1 ? box->high.x : box->low.x, y = corner & 2 ? box->high.y : box->low.y, z = corner & 4 ? box->high.z : box->low.z;
+        double clip[4];
+        for (int row = 0; row < 4; row++)
+            clip[row] = m[row] * x + m[4 + row] * y + m[8 + row] * z + m[12 + row];
+        for (int axis = 0; axis < 3; axis++) {
+            n_beyond[2 * axis] += clip[axis] < -clip[3];
+            n_beyond[2 * axis + 1] += clip[axis] > clip[3];
+        }
+    }
+    for (int side = 0; side < 6; side++)
+        if (n_beyond[side] == 8)
+            return true;
+    return false;
+}
+
 static bool is_drawn(const struct snapshot *snapshot, size_t region)
 {
     const struct scene_region_style *style = &snapshot->styles[region];
@@ -75,6 +96,8 @@ static struct item *collect(const struct gl_frame *frame, bool is_opaque, size_t
             free(items);
             return NULL;
         }
+        if (is_out_of_sight(frame, &surface->bounds_lps_mm))
+            continue;
         items[(*n_items)++] = (struct item){ surface, &snapshot->styles[i], nearest_mm(frame->camera, &surface->bounds_lps_mm),
                                              region_depth(set, i), set->regions[i].n_voxels };
     }
