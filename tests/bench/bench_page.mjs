@@ -1,0 +1,96 @@
+// What a person feels: Chromium shows the demo plan's five surfaces in a 1024 x 768 picture, a mouse orbits it for some seconds.
+// Input to paint: from the pointer event to the paint of the first picture that shows it, measured by the page itself (js/hooks.js).
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { call, openPlan, sleep, startDaemon, until } from '../api/daemon.mjs';
+
+const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const wanted = { width: 1024, height: 768 };
+const dragSeconds = 6;
+const releases = 7;
+
+const tell = (name, value, unit, note) => console.log(JSON.stringify({ name, value: Number(value.toFixed(2)), unit, note }));
+const quantile = (values, q) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(q * values.length))];
+
+if (!existsSync(chromiumPath)) {
+  console.log('no Chromium: nothing measured in a page');
+  process.exit(77);
+}
+const { chromium } = await import('playwright-core');
+const profile = mkdtempSync(join(tmpdir(), 'beamroom-bench-'));
+const daemon = await startDaemon();
+const browser = await chromium.launchPersistentContext(profile, {
+  executablePath: chromiumPath, headless: true, viewport: { width: 1500, height: 1000 },
+  args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
+});
+try {
+  await openPlan(daemon.url, 'phantom');
+  const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json;
+  const page = await browser.newPage();
+  const began = performance.now();
+  await page.goto(`${daemon.url}/#/rooms/${room.id}`);
+  const stats = () => page.evaluate(() => globalThis.beamroom?.stats() ?? null);
+  const isFull = (s) => Boolean(s?.headers[1]) && s.badges[1] === 'full';
+  await page.waitForFunction(() => globalThis.beamroom?.stats().headers[1], null, { polling: 5 });
+  tell('page opened to first picture, open plan', performance.now() - began, 'ms', 'room address typed to paint; at most 300 asked for, without the page itself');
+
+  // one pane, its picture exactly 1024 x 768
+  await page.locator('#picture-1').focus();
+  await page.keyboard.press('Enter');
+  await sleep(200);
+  for (let turn = 0; turn < 3; turn++) {
+    const box = await page.locator('#picture-1').boundingBox();
+    const view = page.viewportSize();
+    await page.setViewportSize({ width: Math.round(view.width + wanted.width - box.width), height: Math.round(view.height + wanted.height - box.height) });
+    await sleep(300);
+  }
+  const box = await page.locator('#picture-1').boundingBox();
+  if (Math.abs(box.width - wanted.width) > 2 || Math.abs(box.height - wanted.height) > 2) throw new Error(`the picture is ${box.width} x ${box.height}`);
+  await until(stats, isFull);
+
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let step = 0; step < 60; step++) { await page.mouse.move(x + 2 * step, y + 10 * Math.sin(step / 9)); await sleep(16); } // the pace settles
+  await page.evaluate(() => globalThis.beamroom.clear());
+  const frames = (await stats()).frames;
+  const start = performance.now();
+  for (let step = 0; performance.now() - start < dragSeconds * 1000; step++) {
+    await page.mouse.move(x + 250 * Math.sin(step / 40), y + 60 * Math.sin(step / 23));
+    await sleep(12);
+  }
+  const seconds = (performance.now() - start) / 1000;
+  const moved = await stats();
+  const header = moved.headers[1];
+  await page.mouse.up();
+  const size = `${header.width_px} x ${header.height_px}, JPEG ${header.quality}`;
+  tell('input to paint while orbiting, p50', quantile(moved.input_to_paint_ms, 0.5), 'ms', `${moved.input_to_paint_ms.length} inputs, pictures of ${size}; at most 60 asked for`);
+  tell('input to paint while orbiting, p95', quantile(moved.input_to_paint_ms, 0.95), 'ms', 'at most 100 asked for');
+  tell('pictures a second while orbiting', (moved.frames - frames) / seconds, '1/s', size);
+  tell('drawing one of them', header.render_us / 1000, 'ms', 'the last one');
+
+  // from letting go to the full picture on the screen
+  const stills = [];
+  for (let turn = 0; turn < releases; turn++) {
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    for (let step = 0; step < 20; step++) { await page.mouse.move(x + 5 * step, y); await sleep(16); }
+    await page.mouse.up();
+    const released = performance.now();
+    await page.waitForFunction(() => globalThis.beamroom.stats().badges[1] === 'full', null, { polling: 4 });
+    stills.push(performance.now() - released);
+    await sleep(100);
+  }
+  tell('release to full picture, 1024 x 768', quantile(stills, 0.5), 'ms', `median of ${releases}; at most 400 asked for`);
+
+  const renders = async () => Number(/^beamroom_renders_total (\d+)/m.exec((await call(`${daemon.url}/metrics`)).text)[1]);
+  await sleep(1000);
+  const before = await renders();
+  await sleep(3000);
+  tell('pictures drawn in an idle room', await renders() - before, '', 'over 3 s with a browser in it; none asked for');
+} finally {
+  await browser.close();
+  await daemon.stop();
+  rmSync(profile, { recursive: true, force: true });
+}
