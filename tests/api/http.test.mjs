@@ -170,7 +170,7 @@ describe('a plan', () => {
   test('shows the tumour, which lies on the patient\'s left, on the right of a picture from the front and of an axial picture', async () => {
     const { regions } = (await call(plan)).json;
     const tumour = regions.find((r) => r.name === 'tumour');
-    assert.ok(tumour.centre_lps_mm[0] > 10, 'the demo tumour is on the left: L > 0');
+    assert.ok(tumour.center_mm[0] > 10, 'the demo tumour is on the left: L > 0');
     const scene = { regions: Object.fromEntries(regions.map((r) => [r.id, { visible: r.id === tumour.id, opacity: 1, color: '#00ff00' }])),
       image: { slices: { axial: { visible: false } } } };
     const isGreen = ([r, g, b]) => g > 60 && g > 1.5 * r && g > 1.5 * b;
@@ -212,7 +212,7 @@ describe('a plan', () => {
 
   test('tells what lies at a point and under a pixel', async () => {
     const { regions, home } = (await call(plan)).json;
-    const [x, y, z] = regions.find((r) => r.name === 'tumour').centre_lps_mm;
+    const [x, y, z] = regions.find((r) => r.name === 'tumour').center_mm;
     const probe = (await call(`${plan}/probe?x=${x}&y=${y}&z=${z}`)).json;
     assert.equal(probe.regions[0], 'tumour');
     assert.equal(probe.images[0].unit, 'HU');
