@@ -67,5 +67,6 @@ void pace_drawn(struct pace *pace, int64_t render_us, int64_t encode_us, int64_t
 
 void pace_lagged(struct pace *pace, int64_t excess_us)
 {
-    pace->lag_us = smooth(pace->lag_us, (double)excess_us, false);
+    /* one late answer, however late (a tab that was in the background), says nothing: it takes two */
+    pace->lag_us = smooth(pace->lag_us, (double)(excess_us < 2 * PACE_LAG_US ? excess_us : 2 * PACE_LAG_US), false);
 }
