@@ -373,6 +373,50 @@ static void a_flood_of_packets_does_not_fill_the_memory(void **state)
     world_end(&world);
 }
 
+static void more_requests_than_the_limit_are_refused_at_once(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "stalls");
+    world_start(&world, 1);
+    struct reply waiting = { 0 }, one_more = { 0 };
+    world_open_plan(&world, "a");
+    for (int i = 0; i < FLEET_MAX_REQUESTS; i++)
+        world_ask(&world, "a", "query", &waiting);
+    world_ask(&world, "a", "query", &one_more);
+    world_wait_for_reply(&world, &one_more);
+    assert_int_equal(one_more.problem.type, PROBLEM_BUSY);
+    assert_int_equal(waiting.n, 0);
+    fleet_close(world.fleet, "a");
+    fleet_handle_events(world.fleet);
+    assert_int_equal(waiting.n, FLEET_MAX_REQUESTS);
+    world_end(&world);
+}
+
+static void one_that_reads_nothing_is_ended_before_memory_fills(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "deaf");
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_wait_for_state(&world, "a", FLEET_READY);
+    char *text = calloc(1, (1 << 20) + 1);
+    assert_non_null(text);
+    memset(text, 'x', 1 << 20);
+    cJSON *scene = cJSON_CreateObject();
+    cJSON_AddStringToObject(scene, "type", "scene");
+    cJSON_AddStringToObject(scene, "scene", text);
+    for (int i = 0; i < 70; i++) /* the limit is 64 MB */
+        assert_true(fleet_tell(world.fleet, "a", scene));
+    world_wait_for_state(&world, "a", FLEET_RESTARTING);
+    cJSON_Delete(scene);
+    free(text);
+    world_end(&world);
+}
+
 static void what_is_asked_of_no_plan_or_a_closed_one_is_refused(void **state)
 {
     (void)state;
@@ -451,6 +495,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_longest_unused_plan_makes_room_but_never_a_held_one),
         cmocka_unit_test(an_idle_plan_is_closed_unless_held),
         cmocka_unit_test(a_flood_of_packets_does_not_fill_the_memory),
+        cmocka_unit_test(more_requests_than_the_limit_are_refused_at_once),
+        cmocka_unit_test(one_that_reads_nothing_is_ended_before_memory_fills),
         cmocka_unit_test(what_is_asked_of_no_plan_or_a_closed_one_is_refused),
         cmocka_unit_test(the_end_answers_everybody_and_leaves_no_process),
         cmocka_unit_test(a_renderer_that_is_not_there_is_said_at_once),
