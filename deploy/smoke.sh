@@ -83,16 +83,21 @@ call GET /api/v1/plans
 check "lists plans" is 200 '"plans"'
 [ -n "$plan" ] || plan=$(first_readable_plan)
 call POST "/api/v1/plans/$plan/open" '{}'
-check "opens the plan '$plan'" is '20[02]'
+check "opens the plan '$plan'" is 202
 job=$(field id)
 check "the plan loads" loaded "$job"
 call POST "/api/v1/plans/$plan/render" '{"scene":{},"view":{"kind":"3d","size_px":[320,240]},"format":"jpeg"}'
 check "renders a picture" is 200 $'Content-Type: image/jpeg'
 check "the picture is a JPEG" says $'\xff\xd8\xff'
-CALL_SECONDS=2 call GET /api/v1/rooms/smoke/ws '' 'Connection: Upgrade' 'Upgrade: websocket' 'Sec-WebSocket-Version: 13' \
+call POST /api/v1/rooms "{\"plan\":\"$plan\"}"
+check "opens a room" is 201
+room=$(field id)
+CALL_SECONDS=2 call GET "/api/v1/rooms/$room/ws" '' 'Connection: Upgrade' 'Upgrade: websocket' 'Sec-WebSocket-Version: 13' \
     'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ=='
 # RFC 6455 1.3 gives the accept value of this key
 check "speaks WebSocket" is 101 's3pPLMBiTxaQ9kYGzzhZRbK\+xOo='
+call DELETE "/api/v1/rooms/$room"
+check "closes the room" is 204
 
 echo "smoke: $passed passed, $failed failed, 0 skipped"
 [ "$failed" = 0 ]
