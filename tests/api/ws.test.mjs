@@ -1,7 +1,7 @@
 // The WebSocket against the real daemon: what a page and several of them see. --stub: pictures are grey, everything else is real.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
-import { after, before, describe, test } from 'node:test';
+import { after, afterEach, before, describe, test } from 'node:test';
 import { call, sleep, startDaemon, until } from './daemon.mjs';
 import { Client } from './ws_client.mjs';
 
@@ -13,8 +13,8 @@ before(async () => {
   api = `${daemon.url}/api/v1`;
   await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.some((p) => p.id === 'phantom' && p.parts.length));
 });
+afterEach(() => { for (const client of clients.splice(0)) client.cut(); }); // what nobody looks at is not drawn again
 after(async () => {
-  for (const client of clients) client.cut();
   if (daemon) assert.equal(await daemon.stop(), 0, daemon.log());
 });
 
