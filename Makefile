@@ -62,7 +62,7 @@ $(GEN)/%.c $(GEN)/%.h: $(GEN_STAMP) ;
 # core: everything but the main()s; wire: JSON edge shared by daemon, renderer and command line; server: the daemon's own.
 CORE_SRC := $(call c_files,core)
 WIRE_SRC := $(call c_files,server/wire)
-SERVER_SRC := $(call c_files,server/room server/http server/ws server/fleet server/store server/auth)
+SERVER_SRC := $(call c_files,server/room server/net server/http server/ws server/fleet server/store server/auth)
 DAEMON_SRC := $(call c_files,server/daemon)
 RENDERER_SRC := $(call c_files,server/renderer)
 CLI_SRC := $(call c_files,server/cli)
@@ -88,7 +88,7 @@ $(B)/beamroom-render: $(call obj,$(RENDERER_SRC)) $(B)/libwire.a $(B)/libcore.a
 $(B)/beamroom: $(call obj,$(CLI_SRC)) $(B)/libwire.a $(B)/libcore.a
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CORE_LIBS)
 
-PROGRAMS := $(if $(wildcard server/daemon/net.c),$(B)/beamroomd) $(if $(RENDERER_SRC),$(B)/beamroom-render) $(if $(CLI_SRC),$(B)/beamroom)
+PROGRAMS := $(if $(DAEMON_SRC),$(B)/beamroomd) $(if $(RENDERER_SRC),$(B)/beamroom-render) $(if $(CLI_SRC),$(B)/beamroom)
 .DEFAULT_GOAL := all
 .PHONY: all programs
 all: programs web

@@ -16,7 +16,7 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "server/daemon/net.h"
+#include "server/net/net.h"
 #include "server/http/http.h"
 
 struct pending {

@@ -12,7 +12,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/daemon/acceptor.h"
-#include "server/daemon/net.h"
+#include "server/net/net.h"
 #include "server/daemon/options.h"
 #include "server/http/http.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 /* The HTTP API's routes and what they do. Runs on the net thread. Knows nothing of libmicrohttpd. */
-#include "server/daemon/net.h"
+#include "server/net/net.h"
 #include "server/http/call.h"
 
 struct api;

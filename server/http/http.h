@@ -3,7 +3,7 @@
  * everything of the API on the net thread while the connection is suspended. */
 #include <sys/socket.h>
 
-#include "server/daemon/net.h"
+#include "server/net/net.h"
 
 enum { HTTP_MAX_CONNECTIONS = 500, HTTP_MAX_PER_ADDRESS = 200, HTTP_TIMEOUT_S = 60 };
 

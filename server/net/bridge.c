@@ -1,0 +1,211 @@
+/* Rooms and the fleet: what rooms ask for becomes packets, what renderers answer becomes pictures, and what happens to a plan is told
+ * to its rooms. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/mem.h"
+#include "server/net/parts.h"
+
+enum { MAX_SIDE_PX = 16384 };
+
+/* ---- rooms to the fleet --------------------------------------------------------------------------------------------- */
+
+static void unlink_asked(struct asked *asked)
+{
+    struct asked **at = &asked->place->asked;
+    while (*at != asked)
+        at = &(*at)->next;
+    *at = asked->next;
+}
+
+/* The renderer may be in the hands of a hostile file: what it says is checked as if it came from outside. */
+static bool whole(const cJSON *json, const char *name, double least, double most, double *value)
+{
+    *value = json_number(json, name, NAN);
+    return *value >= least && *value <= most;
+}
+
+static bool read_frame(const struct asked *asked, const struct packet *answer, struct frame_header *header)
+{
+    double width, height, render_us, encode_us, pixels_per_mm, revision;
+    const cJSON *json = answer->json, *matrix = cJSON_GetObjectItemCaseSensitive(json, "clip_from_lps_mm");
+    const char *type = json_text(json, "type");
+    if (!type || strcmp(type, "frame") != 0 || answer->n_blob == 0 || answer->n_blob > UINT32_MAX)
+        return false;
+    if (!whole(json, "width_px", 1, MAX_SIDE_PX, &width) || !whole(json, "height_px", 1, MAX_SIDE_PX, &height) ||
+        !whole(json, "render_us", 0, UINT32_MAX, &render_us) || !whole(json, "encode_us", 0, UINT32_MAX, &encode_us) ||
+        !whole(json, "pixels_per_mm", 0, 4e6, &pixels_per_mm) || !whole(json, "scene_revision", 0, UINT32_MAX, &revision) ||
+        cJSON_GetArraySize(matrix) != 16)
+        return false;
+    *header = (struct frame_header){ .codec = 1,
+                                     .flags = asked->flags,
+                                     .quality = asked->quality,
+                                     .scale_percent = asked->scale_percent,
+                                     .scene_revision = asked->is_override ? asked->scene_revision : (uint32_t)revision,
+                                     .width_px = (uint16_t)width,
+                                     .height_px = (uint16_t)height,
+                                     .render_us = (uint32_t)render_us,
+                                     .encode_us = (uint32_t)encode_us,
+                                     .payload_bytes = (uint32_t)answer->n_blob,
+                                     .pixels_per_mm_1000 = (uint32_t)lround(pixels_per_mm * 1000) };
+    int i = 0;
+    const cJSON *number;
+    cJSON_ArrayForEach(number, matrix)
+    {
+        if (!cJSON_IsNumber(number) || !isfinite((float)number->valuedouble))
+            return false;
+        header->clip_from_lps_mm[i++] = (float)number->valuedouble;
+    }
+    if (json_flag(json, "is_light", false))
+        header->flags |= FRAME_LIGHT; /* the renderer knows whether it really drew the lighter meshes */
+    return true;
+}
+
+static void picture_came(void *context, struct packet *answer, const struct problem *problem)
+{
+    struct asked *asked = context;
+    struct place *place = asked->place;
+    struct problem broken;
+    struct frame_header header;
+    unlink_asked(asked);
+    if (answer && !read_frame(asked, answer, &header)) {
+        problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer is not a frame");
+        answer = NULL;
+        problem = &broken;
+    }
+    if (answer) {
+        struct room_picture *picture = mem_new(sizeof *picture);
+        *picture = (struct room_picture){ .header = header, .bytes = answer->blob, .n_bytes = answer->n_blob, .references = 1 };
+        answer->blob = NULL; /* taken */
+        room_picture_came(place->room, asked->room_request, picture, clock_now_us());
+    } else {
+        room_picture_failed(place->room, asked->room_request, problem, clock_now_us());
+    }
+    free(asked);
+    net_touch(place);
+    net_plan_next_call(place->net);
+}
+
+static struct place *place_with(struct net *net, const struct room *room)
+{
+    for (size_t i = 0; i < net->n_places; i++)
+        if (net->places[i]->room == room)
+            return net->places[i];
+    return NULL;
+}
+
+void bridge_render(void *context, struct room *room, const struct room_render *request)
+{
+    struct net *net = context;
+    struct place *place = place_with(net, room);
+    cJSON *packet = cJSON_CreateObject();
+    cJSON_AddStringToObject(packet, "type", "render");
+    if (request->scene)
+        cJSON_AddItemReferenceToObject(packet, "scene", (cJSON *)(uintptr_t)request->scene);
+    else
+        cJSON_AddStringToObject(packet, "room", room_id(room));
+    cJSON_AddItemReferenceToObject(packet, "view", (cJSON *)(uintptr_t)request->view);
+    cJSON_AddNumberToObject(packet, "scale_percent", request->scale_percent);
+    cJSON_AddNumberToObject(packet, "quality", request->quality);
+    cJSON_AddStringToObject(packet, "codec", "jpeg");
+    cJSON_AddBoolToObject(packet, "full_color", request->full_color);
+    cJSON_AddStringToObject(packet, "detail", request->light ? "light" : "full");
+    cJSON_AddBoolToObject(packet, "still", request->is_still);
+
+    struct asked *asked = mem_new(sizeof *asked);
+    *asked = (struct asked){ .next = place->asked,
+                             .place = place,
+                             .room_request = request->request,
+                             .scene_revision = request->scene_revision,
+                             .flags = (uint8_t)((request->is_still ? FRAME_STILL : 0) | (request->full_color ? FRAME_FULL_COLOR : 0)),
+                             .quality = (uint8_t)request->quality,
+                             .scale_percent = (uint8_t)request->scale_percent,
+                             .is_override = request->scene != NULL };
+    place->asked = asked;
+    asked->fleet_request = fleet_request(net->fleet, room_plan_id(room), packet, picture_came, asked);
+    cJSON_Delete(packet);
+}
+
+void bridge_scene_changed(void *context, struct room *room, const cJSON *scene, uint32_t revision)
+{
+    struct net *net = context;
+    cJSON *packet = cJSON_CreateObject();
+    cJSON_AddStringToObject(packet, "type", "scene");
+    cJSON_AddStringToObject(packet, "room", room_id(room));
+    cJSON_AddNumberToObject(packet, "revision", revision);
+    cJSON_AddItemReferenceToObject(packet, "scene", (cJSON *)(uintptr_t)scene);
+    (void)fleet_tell(net->fleet, room_plan_id(room), packet); /* not ready: it is told when it is */
+    cJSON_Delete(packet);
+}
+
+/* ---- the fleet to rooms --------------------------------------------------------------------------------------------- */
+
+static void tell_ready(struct place *place, const struct fleet_plan *plan)
+{
+    const cJSON *gl = fleet_gl(place->net->fleet, NULL);
+    const char *back_end = json_text(gl, "back_end"), *renderer = json_text(gl, "renderer");
+    char words[200];
+    (void)snprintf(words, sizeof words, "%s%s%s", back_end ? back_end : "", back_end && renderer ? ", " : "", renderer ? renderer : "");
+    place->generation = plan->generation;
+    room_plan_ready(place->room, plan->document, plan->default_scene, plan->image_ids, words, json_flag(gl, "is_software", true),
+                    clock_now_us());
+}
+
+static void tell_state(struct place *place, const struct fleet_plan *plan)
+{
+    enum wire_renderer_state state = WIRE_RENDERER_STATE_STARTING;
+    struct problem closed;
+    const struct problem *problem = NULL;
+    switch (plan->state) {
+    case FLEET_STARTING: state = WIRE_RENDERER_STATE_STARTING; break;
+    case FLEET_LOADING: state = WIRE_RENDERER_STATE_LOADING; break;
+    case FLEET_READY: state = WIRE_RENDERER_STATE_READY; break;
+    case FLEET_RESTARTING: state = WIRE_RENDERER_STATE_RESTARTING; break;
+    case FLEET_UNREADABLE:
+    case FLEET_FAILED:
+        state = WIRE_RENDERER_STATE_FAILED;
+        problem = plan->problem;
+        break;
+    case FLEET_CLOSED: /* somebody closed it while we look: only opening it again helps */
+        state = WIRE_RENDERER_STATE_FAILED;
+        problem_set(&closed, PROBLEM_CANCELLED, "", "", "the plan was closed");
+        problem = &closed;
+        break;
+    }
+    room_renderer_state(place->room, state, plan->phase, plan->percent, problem);
+}
+
+void bridge_tell_plan(struct place *place)
+{
+    struct fleet_plan plan;
+    if (!fleet_plan_find(place->net->fleet, room_plan_id(place->room), &plan))
+        return;
+    const char *phase = plan.phase ? plan.phase : "";
+    bool is_same = plan.state == place->state && strcmp(phase, place->phase) == 0 && plan.percent == place->percent;
+    if (plan.state == FLEET_READY ? place->state == FLEET_READY && place->generation == plan.generation : is_same)
+        return;
+    place->state = plan.state;
+    place->percent = plan.percent;
+    (void)snprintf(place->phase, sizeof place->phase, "%s", phase);
+    if (plan.state == FLEET_READY && plan.document && plan.default_scene)
+        tell_ready(place, &plan);
+    else
+        tell_state(place, &plan);
+    net_touch(place);
+}
+
+void bridge_fleet_changed(void *context, const char *plan_id)
+{
+    struct net *net = context;
+    char id[64];
+    if (!plan_id)
+        return; /* rooms live on plans, not on the list */
+    (void)snprintf(id, sizeof id, "%s", plan_id); /* borrowed until the next call into the fleet */
+    for (size_t i = 0; i < net->n_places; i++)
+        if (strcmp(room_plan_id(net->places[i]->room), id) == 0)
+            bridge_tell_plan(net->places[i]);
+    net_plan_next_call(net);
+}
