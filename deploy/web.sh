@@ -13,8 +13,7 @@ mkdir -p "$part/lib/directives" "$part/gen"
 
 # The libraries' source maps stay behind, so the comments that name them go too.
 library() { sed 's|//# sourceMappingURL=.*$||' "node_modules/$1" >"$part/lib/$2"; }
-for module in lit-html directive directive-helpers directives/class-map directives/live directives/ref directives/repeat \
-    directives/style-map async-directive; do
+for module in lit-html directive directive-helpers directives/class-map directives/live directives/repeat; do
     library "lit-html/$module.js" "$module.js"
 done
 library @preact/signals-core/dist/signals-core.module.js signals-core.js
