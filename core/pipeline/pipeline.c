@@ -11,12 +11,17 @@
 /* Drawn pictures that may wait for the encoder: one being compressed, one ready; more would only add delay. */
 enum { MAX_DRAWN = 2 };
 
+/* Stills take ten times as long as moving pictures, and somebody drags the mouse while they wait: moving pictures go first, but a still
+ * lets at most this many overtake it. */
+enum { MAX_OVERTAKING = 8 };
+
 /* What travels down the pipeline: a request to draw, or a plan to forget. */
 struct job {
     struct pipeline_request request;
     const struct plan *forget; /* not NULL: no request */
     struct image *image;
     struct pipeline_frame frame;
+    int n_overtaken; /* still: moving pictures drawn before it although they came later */
 };
 
 struct pipeline {
@@ -102,6 +107,43 @@ static void forget(struct pipeline *pipeline, struct renderer *renderer, const s
     pthread_mutex_unlock(&pipeline->mutex);
 }
 
+/* The render thread's own list of what has come and is not drawn yet, oldest first. */
+struct agenda {
+    struct job *jobs[2 * PIPELINE_MAX_WAITING];
+    size_t n;
+};
+
+/* Which is next: the oldest moving picture unless a still before it has waited long enough. What stands behind a plan to forget stays
+ * behind it. */
+static size_t choose(struct agenda *agenda)
+{
+    if (agenda->jobs[0]->forget || !agenda->jobs[0]->request.render.is_still || agenda->jobs[0]->n_overtaken >= MAX_OVERTAKING)
+        return 0;
+    for (size_t i = 1; i < agenda->n && !agenda->jobs[i]->forget; i++)
+        if (!agenda->jobs[i]->request.render.is_still) {
+            for (size_t earlier = 0; earlier < i; earlier++)
+                agenda->jobs[earlier]->n_overtaken++;
+            return i;
+        }
+    return 0;
+}
+
+/* Waits for something to do; NULL: the pipeline is closed and empty. */
+static struct job *next_job(struct pipeline *pipeline, struct agenda *agenda)
+{
+    const size_t room = sizeof agenda->jobs / sizeof agenda->jobs[0];
+    struct job *job = agenda->n ? queue_try_take(pipeline->waiting) : queue_take(pipeline->waiting, -1);
+    for (; job; job = agenda->n < room ? queue_try_take(pipeline->waiting) : NULL)
+        agenda->jobs[agenda->n++] = job;
+    if (agenda->n == 0)
+        return NULL;
+    size_t at = choose(agenda);
+    job = agenda->jobs[at];
+    agenda->n--;
+    memmove(agenda->jobs + at, agenda->jobs + at + 1, (agenda->n - at) * sizeof agenda->jobs[0]);
+    return job;
+}
+
 static void *render_main(void *argument)
 {
     struct pipeline *pipeline = argument;
@@ -115,7 +157,8 @@ static void *render_main(void *argument)
         renderer = renderer_create(pipeline->back_end, &err);
         pipeline->callbacks.started(pipeline->callbacks.context, renderer ? renderer_facts(renderer) : NULL, &err);
     }
-    for (struct job *job; (job = queue_take(pipeline->waiting, -1));) {
+    struct agenda agenda = { .n = 0 };
+    for (struct job *job; (job = next_job(pipeline, &agenda));) {
         if (job->forget) {
             forget(pipeline, renderer, job->forget);
             job_destroy(job);

@@ -35,7 +35,8 @@ struct pipeline_callbacks {
 NODISCARD struct pipeline *pipeline_create(enum render_back_end back_end, bool stub, const struct pipeline_callbacks *callbacks,
                                            struct error *err);
 /* Takes request->snapshot always. false (ERROR_LIMIT) when more than PIPELINE_MAX_WAITING requests wait. Any thread; never blocks.
- * Requests are drawn in order; nothing is dropped, so the caller decides what is worth asking for. */
+ * Moving pictures are drawn in order, and before stills, which let at most eight overtake them; nothing is dropped, so the caller
+ * decides what is worth asking for. */
 enum { PIPELINE_MAX_WAITING = 64 };
 NODISCARD bool pipeline_submit(struct pipeline *pipeline, const struct pipeline_request *request, struct error *err);
 /* Waits for both threads; requests still waiting are dropped undelivered. */

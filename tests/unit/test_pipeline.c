@@ -86,15 +86,20 @@ static struct pipeline *start(struct receiver *receiver)
     return pipeline;
 }
 
-static bool submit(struct pipeline *pipeline, struct plan *plan, uint64_t id, int width_px, struct error *err)
+static bool submit_kind(struct pipeline *pipeline, struct plan *plan, uint64_t id, int width_px, bool is_still, struct error *err)
 {
     struct scene scene;
     struct view view = view_default;
     char field[128];
     scene_for_plan(plan, &scene);
     struct snapshot *snapshot = snapshot_create(plan, &scene, &view, (uint32_t)id, field, err);
-    struct pipeline_request request = { id, snapshot, { width_px, 48, SURFACE_LIGHT, true }, { ENCODE_JPEG, 80, false } };
+    struct pipeline_request request = { id, snapshot, { width_px, 48, SURFACE_LIGHT, is_still }, { ENCODE_JPEG, 80, false } };
     return pipeline_submit(pipeline, &request, err);
+}
+
+static bool submit(struct pipeline *pipeline, struct plan *plan, uint64_t id, int width_px, struct error *err)
+{
+    return submit_kind(pipeline, plan, id, width_px, true, err);
 }
 
 static void frames_come_back_in_order_and_none_is_lost(void **state)
@@ -123,6 +128,34 @@ static void frames_come_back_in_order_and_none_is_lost(void **state)
     assert_int_equal(receiver.last.picture.bytes[0], 0xff); /* a JPEG begins so */
     assert_int_equal(receiver.last.picture.bytes[1], 0xd8);
     assert_close(receiver.last.camera.forward.y, 1, 1e-9); /* the view's own camera, also from the stub */
+    pipeline_destroy(pipeline);
+    plan_destroy(plan);
+    receiver_finish(&receiver);
+}
+
+static void moving_pictures_overtake_stills_but_not_for_ever(void **state)
+{
+    (void)state;
+    struct receiver receiver;
+    receiver_init(&receiver);
+    receiver.hold_ms = 50;
+    struct plan *plan = small_plan();
+    struct pipeline *pipeline = start(&receiver);
+    struct error err = { 0 };
+    uint64_t id = 1;
+    for (; id <= 6; id++) /* keep both threads busy while the others are asked for */
+        assert_true(submit_kind(pipeline, plan, id, 64, false, &err));
+    assert_true(submit_kind(pipeline, plan, 100, 64, true, &err));
+    assert_true(submit_kind(pipeline, plan, 101, 64, true, &err));
+    for (; id <= 16; id++)
+        assert_true(submit_kind(pipeline, plan, id, 64, false, &err));
+    wait_for(&receiver, 18);
+    for (size_t i = 0; i < 14; i++) /* eight of the ten that came after the stills */
+        assert_int_equal(receiver.ids[i], i + 1);
+    assert_int_equal(receiver.ids[14], 100);
+    assert_int_equal(receiver.ids[15], 101);
+    assert_int_equal(receiver.ids[16], 15);
+    assert_int_equal(receiver.ids[17], 16);
     pipeline_destroy(pipeline);
     plan_destroy(plan);
     receiver_finish(&receiver);
@@ -218,6 +251,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_come_back_in_order_and_none_is_lost),
+        cmocka_unit_test(moving_pictures_overtake_stills_but_not_for_ever),
         cmocka_unit_test(a_picture_that_cannot_be_drawn_comes_back_as_an_error),
         cmocka_unit_test(more_than_the_limit_is_refused_and_never_blocks),
         cmocka_unit_test(it_can_be_destroyed_in_any_state),
