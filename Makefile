@@ -115,7 +115,7 @@ $(DEMO)/plan.json: $(call c_files,core/phantom) $(wildcard core/formats/*_write.
 demo: $(if $(CLI_SRC),$(DEMO)/plan.json)
 run:
 	@deploy/packages build run
-	@$(MAKE) --no-print-directory $(JOBS) all demo
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(JOBS) all demo
 	@mkdir -p build/demo/data
 	@exec $(B)/beamroomd --plans build/demo/plans $(foreach folder,$(PLANS),--plans $(folder)) --data build/demo/data \
 	    --web $(WEB) $(ARGS)
@@ -173,7 +173,7 @@ fuzz:
 .PHONY: bench cover
 bench:
 	@deploy/packages build run bench
-	@$(MAKE) --no-print-directory $(JOBS) all demo bench-programs
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(JOBS) all demo bench-programs
 	@PYTHON=$(PYTHON) $(NODE) tests/bench/run.mjs build/bench.json
 cover:
 	@deploy/packages build run test

@@ -67,7 +67,11 @@ loaded() { # waits for a job: loaded JOB
 
 call GET /healthz
 check "alive" is 200
-call GET /readyz
+for _ in $(seq 40); do # a daemon that has just started is still looking for a way to draw
+    call GET /readyz
+    [ "$status" = 503 ] || break
+    sleep 0.25
+done
 check "able to render" is 200
 call GET /api/v1/version
 check "says its version and how it renders" is 200 '"version"'
