@@ -44,7 +44,7 @@ CFLAGS += --coverage
 LDFLAGS += --coverage
 endif
 
-CORE_LIBS := -lturbojpeg -lspng -lniftiio -lznz -ldeflate -lz -lcjson -ldl -lm
+CORE_LIBS := -lturbojpeg -lspng -ldeflate -lz -lcjson -ldl -lm
 SERVER_LIBS := -lmicrohttpd -lwebsockets -lcjson -lm
 
 c_files = $(if $(wildcard $(1)),$(sort $(shell find $(wildcard $(1)) -name '*.c')))
