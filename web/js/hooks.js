@@ -1,0 +1,50 @@
+// For tests and measurements: window.beamroom. Only reads; the page itself never uses it.
+//   beamroom.stats()   {input_to_paint_ms: [...], frames, fps: {view: n}, headers: {view: FrameHeader}, badges: {view: word}}
+//   beamroom.clear()   forgets the measured times
+
+const capacity = 5000;
+
+export class Hooks {
+  #clock;
+  #times = [];
+  #frames = 0;
+  #room = null;
+  #panes = [];
+
+  constructor(clock) {
+    this.#clock = clock;
+    globalThis.beamroom = { stats: () => this.#stats(), clear: () => { this.#times = []; } };
+  }
+
+  enter(room, panes) {
+    this.#room = room;
+    this.#panes = panes;
+    this.#times = [];
+    this.#frames = 0;
+  }
+
+  /** A picture was drawn and answers these inputs. The time is taken once the browser has painted it. */
+  painted(header, answered) {
+    this.#frames += 1;
+    if (!answered.length) return;
+    const { port1, port2 } = new MessageChannel();
+    port1.onmessage = () => {
+      const now = this.#clock.now();
+      for (const { at } of answered) this.#times.push(now - at);
+      this.#times.splice(0, this.#times.length - capacity);
+      port1.close();
+    };
+    port2.postMessage(0); // comes after the paint of this animation frame
+  }
+
+  #stats() {
+    const by = (pick) => Object.fromEntries((this.#room?.views ?? []).map((view, index) => [view.number, pick(view, index)]));
+    return {
+      input_to_paint_ms: [...this.#times],
+      frames: this.#frames,
+      fps: by((view) => view.fps.value),
+      headers: by((view) => view.painted.value),
+      badges: by((_, index) => this.#panes[index].badge.value?.state ?? ''),
+    };
+  }
+}

@@ -1,0 +1,53 @@
+// Starts the page: hands the real browser to the modules and shows the page the address names.
+import { Connection } from './net/connection.js';
+import { makeApi } from './net/api.js';
+import { Hooks } from './hooks.js';
+import { roomPage } from './panels/room_page.js';
+import { startPage } from './panels/start_page.js';
+import { isId } from './wire/check.js';
+
+const clock = {
+  now: () => performance.now(),
+  setTimeout: (callback, ms) => setTimeout(callback, ms),
+  clearTimeout: (timer) => clearTimeout(timer),
+};
+const schedule = (callback) => requestAnimationFrame(callback);
+const hooks = new Hooks(clock);
+const api = makeApi((...request) => fetch(...request));
+const enter = (room) => { location.hash = `#/rooms/${room}`; };
+
+/** The same member again after a reload of this tab. */
+function remembered(room) {
+  try {
+    return JSON.parse(sessionStorage.getItem(`room ${room}`)) ?? {};
+  } catch {
+    return {};
+  }
+}
+
+function connect(room) {
+  const url = new URL(`api/v1/rooms/${room}/ws`, location.href);
+  url.protocol = url.protocol.replace('http', 'ws');
+  url.hash = '';
+  const { member = '', secret = '' } = remembered(room);
+  const connection = new Connection(url.href, { makeSocket: (address) => new WebSocket(address), clock }, { member, secret });
+  connection.addEventListener('message', ({ detail }) => {
+    if (detail.type === 'welcome') sessionStorage.setItem(`room ${room}`, JSON.stringify({ member: detail.member, secret: detail.secret }));
+  });
+  return connection;
+}
+
+let leave = () => {};
+
+function route() {
+  const [, place, id] = location.hash.split('/');
+  if (location.hash.startsWith('#picture-')) return; // the skip link
+  leave();
+  const host = document.querySelector('#page');
+  leave = place === 'rooms' && isId(id)
+    ? roomPage(host, id, { api, connect, clock, schedule, decode: (blob) => createImageBitmap(blob), hooks })
+    : startPage(host, { api, clock, enter });
+}
+
+addEventListener('hashchange', route);
+route();

@@ -1,0 +1,48 @@
+// The HTTP interface of design.md 5, as far as the page uses it. Every failure is a Problem with a sentence.
+
+/** An RFC 9457 problem, or a failure that never reached the server. */
+export class Problem extends Error {
+  /** @param {{type?: string, status?: number, detail?: string, title?: string}} problem */
+  constructor(problem) {
+    super(problem.detail || problem.title || 'The server refused without a reason.');
+    this.type = problem.type ?? '';
+    this.status = problem.status ?? 0;
+  }
+}
+
+/** @param {typeof fetch} fetch @param {string} base */
+export function makeApi(fetch, base = 'api/v1') {
+  async function call(method, path, { body, signal } = {}) {
+    let response;
+    try {
+      response = await fetch(`${base}/${path}`, {
+        method,
+        signal,
+        headers: body === undefined ? {} : { 'Content-Type': 'application/json' },
+        body: body === undefined ? undefined : JSON.stringify(body),
+      });
+    } catch (error) {
+      if (error.name === 'AbortError') throw error;
+      throw new Problem({ detail: 'The server does not answer.' });
+    }
+    const isJson = /json/.test(response.headers.get('Content-Type') ?? '');
+    const answer = isJson ? await response.json().catch(() => null) : null;
+    if (!response.ok) throw new Problem({ status: response.status, ...(answer ?? { detail: `The server answered ${response.status}.` }) });
+    return answer;
+  }
+  const id = encodeURIComponent;
+  return {
+    version: (signal) => call('GET', 'version', { signal }),
+    plans: (signal) => call('GET', 'plans', { signal }),
+    plan: (plan, signal) => call('GET', `plans/${id(plan)}`, { signal }),
+    openPlan: (plan) => call('POST', `plans/${id(plan)}/open`, { body: {} }),
+    job: (job, signal) => call('GET', `jobs/${id(job)}`, { signal }),
+    cancelJob: (job) => call('DELETE', `jobs/${id(job)}`),
+    makeRoom: (plan) => call('POST', 'rooms', { body: { plan } }),
+    room: (room) => call('GET', `rooms/${id(room)}`),
+    probe: (plan, [x, y, z], signal) => call('GET', `plans/${id(plan)}/probe?x=${x}&y=${y}&z=${z}`, { signal }),
+    pick: (plan, room, view, px, py) =>
+      call('GET', `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}`),
+    snapshotUrl: (room, view, format) => `${base}/rooms/${id(room)}/snapshot?view=${id(JSON.stringify(view))}&format=${format}`,
+  };
+}

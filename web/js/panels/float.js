@@ -1,0 +1,37 @@
+// What floats over the page: toasts and the list of keys.
+import { html, nothing } from '../../lib/lit-html.js';
+import { repeat } from '../../lib/directives/repeat.js';
+import { icon } from './icons.js';
+
+const signs = { ok: 'check', warn: 'warning', err: 'error' };
+
+export const toasts = ({ ui }) => html`${repeat(ui.toasts.value, (toast) => toast.id, ({ id, kind, text }) => html`
+  <div class="toast" role=${kind === 'err' ? 'alert' : 'status'}><span class=${kind}>${icon(signs[kind])}</span><span>${text}</span>
+    <button class="icon-button small" aria-label="Dismiss" @click=${() => ui.dismiss(id)}>${icon('close', 12)}</button><i></i></div>`)}`;
+
+const keys = [
+  ['Left drag', 'Turn in 3-D, crosshair in slices'],
+  ['Middle drag, Shift + left drag', 'Move the picture'],
+  ['Right drag, Ctrl + wheel', 'Zoom'],
+  ['Wheel', 'Zoom in 3-D, next slice in slices'],
+  ['Shift + click in 3-D', 'Crosshair to the point under the pointer'],
+  ['Double click, Enter', 'Maximise and back'],
+  ['One finger, two fingers, pinch', 'As left drag, move, zoom'],
+  ['Long press', 'Probe there'],
+  ['Arrow keys', 'Turn by 5° in 3-D, next slice in slices'],
+  ['Page up, Page down', 'Ten slices on'],
+  ['+ −', 'Zoom'],
+  ['Numpad 1 3 7 (Shift: opposite)', 'From anterior, left, superior'],
+  ['R, Space', 'Reset the view'],
+  ['1 to 5', 'Window presets'],
+  ['W', 'Window and level by left drag'],
+  ['Z', 'Zoom by left drag'],
+  ['F', 'Follow the shared view, or look for yourself'],
+  ['?', 'This list'],
+  ['Esc', 'Leave tool, popover, message, full pane'],
+];
+
+export const help = ({ ui }) => (ui.popover.value !== 'help' ? nothing : html`<section class="card help" role="dialog" aria-label="Keys and mouse">
+  <header><h2>Keys and mouse</h2><span class="grow"></span><button class="icon-button" aria-label="Close" @click=${() => ui.toggle('help')}>${icon('close')}</button></header>
+  <p class="note">Keys act in the pane that has the focus.</p>
+  <dl>${keys.map(([key, what]) => html`<dt>${key}</dt><dd>${what}</dd>`)}</dl></section>`);

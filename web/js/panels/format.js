@@ -1,0 +1,41 @@
+// Numbers as people read them: a true minus, thin spaces between thousands, one space before a unit.
+
+const thin = '\u2009';
+const minus = '\u2212';
+
+/** @param {number} value @param {number} digits after the point */
+export function number(value, digits = 0) {
+  if (!Number.isFinite(value)) return '–';
+  const [whole, rest] = Math.abs(value).toFixed(digits).split('.');
+  const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, thin) : whole;
+  const isZero = !/[1-9]/.test(whole + (rest ?? ''));
+  return `${value < 0 && !isZero ? minus : ''}${grouped}${rest ? `.${rest}` : ''}`;
+}
+
+/** Three figures that count. */
+export function significant(value) {
+  if (!Number.isFinite(value)) return '–';
+  if (value === 0) return '0';
+  const size = Math.floor(Math.log10(Math.abs(value)));
+  if (size < -4 || size > 6) return value.toExponential(2).replace('-', minus).replace('e+', 'e');
+  return number(value, Math.max(0, 2 - size));
+}
+
+export const millimetres = (value) => `${number(value, 1)} mm`;
+
+/** "6.6 MB" */
+export function bytes(n) {
+  if (!Number.isFinite(n)) return '';
+  if (n < 1e6) return `${number(Math.max(n / 1e3, 0.1), 1)} kB`;
+  return n < 1e9 ? `${number(n / 1e6, 1)} MB` : `${number(n / 1e9, 1)} GB`;
+}
+
+export const seconds = (ms) => (ms < 1000 ? `${number(ms)} ms` : `${number(ms / 1000, 1)} s`);
+
+export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;
+
+/** "W 400 C 40" the way windows are written everywhere. */
+export const windowText = ({ center, width }, unit) => {
+  const digits = width < 10 ? 2 : 0;
+  return `C ${number(center, digits)}  W ${number(width, digits)}${unit ? ` ${unit}` : ''}`;
+};

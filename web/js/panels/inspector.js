@@ -1,0 +1,137 @@
+// The inspector at the right: probe at the crosshair, how pictures are drawn, what loading noticed.
+import { html, nothing } from '../../lib/lit-html.js';
+import { classMap } from '../../lib/directives/class-map.js';
+import { live } from '../../lib/directives/live.js';
+import { crosshair, crosshairPatch, reportSummary, shownImage, windowPresets } from '../state/plan.js';
+import { number, seconds, significant } from './format.js';
+import { icon } from './icons.js';
+import { reportLines } from './report.js';
+import { roving } from './tools.js';
+import { soloPatch } from './tree.js';
+
+const tabs = [['probe', 'Probe'], ['view', 'View'], ['report', 'Report']];
+const sides = [['sagittal', 'Sagittal'], ['coronal', 'Coronal'], ['axial', 'Axial']];
+
+export function inspector(world) {
+  const { room, ui } = world;
+  if (!ui.isInspectorOpen.value)
+    return html`<button class="icon-button rail" title="Show the inspector" aria-label="Show the inspector" @click=${() => { ui.isInspectorOpen.value = true; }}>${icon('panel')}</button>`;
+  const tab = ui.tab.value;
+  const content = { probe, view: viewTab, report: reportTab }[tab];
+  return html`<div class="tabs"><div role="tablist" aria-label="Inspector" @keydown=${roving}>
+      ${tabs.map(([id, name]) => html`<button role="tab" id=${`tab-${id}`} aria-selected=${tab === id} aria-controls="tab-panel" tabindex=${tab === id ? 0 : -1}
+        @click=${() => { ui.tab.value = id; }}>${name}</button>`)}</div><span class="grow"></span>
+      <button class="icon-button" title="Fold" aria-label="Fold the inspector" @click=${() => { ui.isInspectorOpen.value = false; }}>${icon('chevronRight')}</button></div>
+    <div class="scroll" role="tabpanel" id="tab-panel" aria-labelledby=${`tab-${tab}`}>${room.plan.value && room.scene.value ? content(world) : html`<p class="empty">The plan is being loaded.</p>`}</div>`;
+}
+
+// ---- probe ------------------------------------------------------------------------------------------------------------
+
+function probe(world) {
+  const { room, ui, probed } = world;
+  const plan = room.plan.value;
+  const scene = room.scene.value;
+  const image = shownImage(plan, scene);
+  const { result, error, isOld } = probed.value;
+  const value = result?.images?.find((other) => other.id === image?.id);
+  const point = crosshair(scene);
+  return html`<section class="block"><h3>Probe at crosshair</h3>
+      <div class="numbers">${['L', 'P', 'S'].map((letter, axis) => html`<div><span class="dim">${letter}</span><b>${number(point[axis], 1)}${axis === 2 ? ' mm' : ''}</b></div>`)}
+        ${image ? html`<div class=${classMap({ end: true, old: isOld })}><span class="dim">${image.modality}</span><b>${value && value.value !== null ? `${significant(value.value)} ${value.unit}` : '–'}</b></div>` : nothing}</div>
+      <div class=${classMap({ inside: true, old: isOld })}>${error ? html`<span class="err">${icon('error')} ${error}</span>` : inside(plan, scene, result)}</div></section>
+    ${doseTable(result, isOld)}${regionBlock(world, plan.regions.find((region) => region.id === ui.region.value))}`;
+}
+
+function inside(plan, scene, result) {
+  if (!result) return html`<span class="dim">…</span>`;
+  const regions = result.regions.map((id) => plan.regions.find((region) => region.id === id)).filter(Boolean);
+  if (!regions.length) return html`<span class="dim">outside every region</span>`;
+  const [first, ...outer] = regions;
+  return html`<svg class="swatch" viewBox="0 0 12 12" width="12" height="12" aria-hidden="true"><rect width="12" height="12" rx="2.5" fill=${scene.regions[first.id]?.color ?? first.color}/></svg>
+    <b>${first.name}</b><span class="dim">${outer.map((region) => `in ${region.name}`).join(', ')}</span>`;
+}
+
+function doseTable(result, isOld) {
+  if (!result?.doses?.length) return nothing;
+  const ids = [...new Set(result.doses.map((dose) => dose.id))];
+  return ids.map((id) => {
+    const rows = result.doses.filter((dose) => dose.id === id);
+    return html`<section class="block"><h3>Dose <span class="dim">${id}</span></h3><table class=${classMap({ old: isOld })}><thead><tr><th>Component</th><th>${rows[0].unit}</th></tr></thead>
+      <tbody>${rows.map((dose) => html`<tr><td>${componentName(dose)}</td><td>${dose.value === null ? 'not known here' : significant(dose.value)}</td></tr>`)}</tbody></table>
+      <p class="note">${rows[0].per ? `Per ${rows[0].per.replace(/^per /, '')}. ` : ''}Physical, no weights.</p></section>`;
+  });
+}
+
+const componentName = ({ quantity, per_ppm }) => `${quantity[0].toUpperCase()}${quantity.slice(1)}${per_ppm ? ', per ppm' : ''}`;
+
+function regionBlock({ room, ui }, region) {
+  if (!region) return html`<section class="block"><p class="empty">Choose a region in the tree for its figures.</p></section>`;
+  const plan = room.plan.value;
+  const scene = room.scene.value;
+  const style = scene.regions[region.id];
+  const isDisabled = !room.canChange.value;
+  const change = (patch, event) => room.patchScene({ regions: { [region.id]: patch } }, { view: ui.active.value, at: event.timeStamp });
+  const parent = plan.regions.find((other) => other.id === region.parent);
+  const show = (event) => room.patchScene(crosshairPatch(plan, shownImage(plan, scene), region.center_mm), { view: ui.active.value, at: event.timeStamp });
+  const isAlone = plan.regions.every((other) => Boolean(scene.regions[other.id]?.visible) === (other.id === region.id));
+  return html`<section class="block"><h3>Region ${region.name} <span class="dim">${parent ? `in ${parent.name}` : ''}</span></h3>
+    <dl><dt>Volume</dt><dd>${number(region.volume_cm3, 2)} cm³, ${number(region.voxels)} univels</dd>
+      ${region.touches_edge ? html`<dt>Edge</dt><dd>cut by the edge of the scan</dd>` : nothing}
+      <dt>Opacity</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(style.opacity * 100)))} aria-label="Opacity" ?disabled=${isDisabled}
+        @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField('Opacity in per cent', Math.round(style.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd></dl>
+    <div class="buttons"><button aria-pressed=${isAlone} class=${classMap({ on: isAlone })} ?disabled=${isDisabled} @click=${(event) => room.patchScene(soloPatch(plan.regions, scene, region.id), { view: ui.active.value, at: event.timeStamp })}>${icon('solo')}<span>Solo</span></button>
+      ${region.center_mm ? html`<button ?disabled=${isDisabled} @click=${show}>${icon('target')}<span>Go to centre</span></button>` : nothing}</div></section>`;
+}
+
+// ---- view -------------------------------------------------------------------------------------------------------------
+
+/** A number with its unit inside the field. */
+function numberField(label, value, unit, isDisabled, change) {
+  return html`<span class="field"><input type="number" step="any" .value=${live(String(value))} aria-label=${label} ?disabled=${isDisabled}
+    @change=${(event) => Number.isFinite(event.target.valueAsNumber) && change(event.target.valueAsNumber, event)}>${unit ? html`<span>${unit}</span>` : nothing}</span>`;
+}
+
+function segment(label, options, chosen, isDisabled, choose) {
+  return html`<div class="segment" role="radiogroup" aria-label=${label} @keydown=${roving}>${options.map(([id, name]) => html`<button role="radio" aria-checked=${id === chosen}
+    tabindex=${id === chosen ? 0 : -1} class=${classMap({ on: id === chosen })} ?disabled=${isDisabled} @click=${(event) => choose(id, event)}>${name}</button>`)}</div>`;
+}
+
+function viewTab(world) {
+  const { room, ui, panes } = world;
+  const scene = room.scene.value;
+  const plan = room.plan.value;
+  const image = shownImage(plan, scene);
+  const isDisabled = !room.canChange.value;
+  const change = (patch, event) => room.patchScene(patch, { view: ui.active.value, at: event.timeStamp });
+  const camera = panes()[0].actions.camera;
+  return html`${image ? imageBlock(world, plan, scene, image, isDisabled, change) : nothing}
+    <section class="block"><h3>3-D picture</h3>
+      <dl>${room.view(1).document.value ? html`<dt>Projection</dt><dd>${segment('Projection', [['perspective', 'Perspective'], ['parallel', 'Parallel']], camera.projection, isDisabled, (id) => panes()[0].actions.setProjection(id))}</dd>` : nothing}
+        <dt>Shading</dt><dd>${segment('Shading', [['vertex', 'Smooth'], ['face', 'Faceted']], scene.surface.normals, isDisabled, (normals, event) => change({ surface: { normals } }, event))}</dd>
+        <dt>Translucency</dt><dd>${segment('Translucency', [['rim', 'Rim'], ['plain', 'Plain']], scene.surface.translucency, isDisabled, (translucency, event) => change({ surface: { translucency } }, event))}</dd></dl>
+      ${image ? html`<div class="checks" role="group" aria-label="Slices in 3-D"><span class="dim">Slices in 3-D</span>${sides.map(([id, name]) => html`<label><input type="checkbox" .checked=${live(scene.image.slices[id].visible)} ?disabled=${isDisabled}
+        @change=${(event) => change({ image: { slices: { [id]: { visible: event.target.checked } } } }, event)}>${name}</label>`)}</div>` : nothing}
+      <div class="buttons looks" role="group" aria-label="Look from">${['anterior', 'posterior', 'left', 'right', 'superior', 'inferior'].map((name) => html`<button ?disabled=${isDisabled} title=${`Look from ${name}`}
+        @click=${(event) => panes()[0].actions.lookFrom(name, event.timeStamp)}>${name[0].toUpperCase()}${name.slice(1)}</button>`)}</div></section>`;
+}
+
+function imageBlock({ panes, ui }, plan, scene, image, isDisabled, change) {
+  const { window } = scene.image;
+  const setWindow = (value, event) => panes()[ui.active.value - 1].actions.setWindow({ ...window, ...value }, event.timeStamp);
+  const isNow = (preset) => Math.abs(preset.center - window.center) < 0.06 && Math.abs(preset.width - window.width) < 0.06;
+  return html`<section class="block"><h3>Image ${image.modality}</h3>
+    ${plan.images.length > 1 ? html`<dl><dt>Image</dt><dd>${segment('Image', plan.images.map((other) => [other.id, `${other.modality} ${other.id}`]), image.id, isDisabled, (id, event) => change({ image: { id, window: plan.images.find((other) => other.id === id).window } }, event))}</dd></dl>` : nothing}
+    <dl><dt>Centre</dt><dd>${numberField('Window centre', window.center, image.unit, isDisabled, (center, event) => setWindow({ center }, event))}</dd>
+      <dt>Width</dt><dd>${numberField('Window width', window.width, image.unit, isDisabled, (width, event) => setWindow({ width: Math.max(width, 0.1) }, event))}</dd>
+      <dt>Between voxels</dt><dd>${segment('Interpolation', [['linear', 'Linear'], ['nearest', 'Nearest']], scene.image.interpolation, isDisabled, (interpolation, event) => change({ image: { interpolation } }, event))}</dd></dl>
+    <div class="buttons looks" role="group" aria-label="Window presets">${windowPresets(image).map((preset) => html`<button class=${classMap({ on: isNow(preset) })} aria-pressed=${isNow(preset)} ?disabled=${isDisabled} title=${`Key ${preset.key}`}
+      @click=${(event) => setWindow({ center: preset.center, width: preset.width }, event)}>${preset.name} <kbd>${preset.key}</kbd></button>`)}</div></section>`;
+}
+
+// ---- report -----------------------------------------------------------------------------------------------------------
+
+function reportTab({ room }) {
+  const plan = room.plan.value;
+  return html`<section class="block"><h3>Load report</h3><p class="note">${reportSummary(plan.report)}${plan.loadMs === null ? '' : `, loaded in ${seconds(plan.loadMs)}`}</p>
+    ${plan.note ? html`<p>${plan.note}</p>` : nothing}</section>${reportLines(plan.report)}`;
+}

@@ -1,0 +1,218 @@
+// One pane: header, follow bar, picture with what is drawn over it, slice slider.
+import { html, nothing } from '../../lib/lit-html.js';
+import { classMap } from '../../lib/directives/class-map.js';
+import { live } from '../../lib/directives/live.js';
+import { computed, signal } from '../../lib/signals-core.js';
+import { fidelity } from '../state/fidelity.js';
+import { crosshair, shownImage } from '../state/plan.js';
+import { describe, planes } from '../view/camera.js';
+import { overlay } from '../view/overlay.js';
+import { Painter } from '../view/painter.js';
+import { PointerReader } from '../view/pointer.js';
+import { millimetres, number, seconds, windowText } from './format.js';
+import { icon } from './icons.js';
+import { mount, variables } from './mount.js';
+import { PaneActions, fitBox } from './pane_actions.js';
+
+export const names = { '3d': '3-D', axial: 'Axial', sagittal: 'Sagittal', coronal: 'Coronal' };
+const resizeMs = 120;
+const maxSide = 4096;
+
+export class Pane {
+  #room;
+  #ui;
+  #view;
+  #size = signal([0, 0]);
+  #resizeTimer = 0;
+  #stops = [];
+  #lastCaption = '';
+
+  /** @param {HTMLElement} host @param {object} world {room, ui, api, decode, schedule, onPainted} */
+  constructor(host, { room, ui, api, decode, schedule, onPainted }, view) {
+    this.#room = room;
+    this.#ui = ui;
+    this.#view = view;
+    this.host = host;
+    this.actions = new PaneActions(room, ui, api, view.number);
+    this.badge = computed(() => fidelity({
+      link: room.link.value,
+      renderer: room.renderer.value.state,
+      header: view.painted.value,
+      staleSince: view.staleSince.value,
+      revision: room.revision.value,
+      revisionAt: room.revisionAt.value,
+      fps: view.fps.value,
+      now: ui.now.value,
+    }));
+    this.#stops.push(mount(host, () => this.#draw()));
+    const body = host.querySelector('.picture');
+    this.painter = new Painter(host.querySelector('canvas'), { decode, schedule, onPainted });
+    const pointer = new PointerReader(body, this.actions);
+    body.addEventListener('keydown', (event) => {
+      if (this.actions.key(event)) event.preventDefault();
+    });
+    const observer = new ResizeObserver(() => this.#measure(body));
+    observer.observe(body);
+    this.#measure(body);
+    this.#stops.push(() => pointer.stop(), () => observer.disconnect(), () => this.painter.stop());
+  }
+
+  stop() {
+    clearTimeout(this.#resizeTimer);
+    for (const stop of this.#stops) stop();
+  }
+
+  /** Opens, resizes or closes the server's picture as the pane is shown and sized. */
+  #measure(body) {
+    const { width, height } = body.getBoundingClientRect();
+    this.#size.value = [width, height];
+    clearTimeout(this.#resizeTimer);
+    if (!this.#view.isOpen.value) this.#ask();
+    else this.#resizeTimer = setTimeout(() => this.#ask(), resizeMs);
+  }
+
+  #ask() {
+    const [width, height] = this.#size.value;
+    if (width < 2 || height < 2) return void this.#room.hideView(this.#view.number);
+    const ratio = Math.min(globalThis.devicePixelRatio || 1, 2);
+    const pixels = (side) => Math.min(Math.max(Math.round(side * ratio), 16), maxSide);
+    this.#room.showView(this.#view.number, [pixels(width), pixels(height)]);
+  }
+
+  get #box() {
+    const header = this.#view.painted.value;
+    const pane = this.#size.value;
+    return header && pane[0] > 1 ? fitBox(pane, [header.width_px, header.height_px]) : { x: 0, y: 0, width: pane[0], height: pane[1] };
+  }
+
+  #draw() {
+    const { kind, number: n } = this.#view;
+    const isMaximised = this.#ui.maximised.value === n;
+    this.actions.box = this.#box;
+    return html`
+      <header class=${classMap({ 'pane-head': true, active: this.#ui.active.value === n })}>
+        <h2>${names[kind]}</h2><span class="where">${this.#where()}</span><span class="grow"></span>
+        ${this.#badgeButton()}
+        <button class="icon-button small" @click=${() => this.#ui.maximise(n)} aria-pressed=${isMaximised}
+          title=${isMaximised ? 'Show all panes (Enter)' : 'Maximise (double click, Enter)'} aria-label=${`${isMaximised ? 'Restore' : 'Maximise'} ${names[kind]}`}>
+          ${icon(isMaximised ? 'restore' : 'maximise')}</button>
+      </header>
+      ${this.#followBar()}
+      <div class="pane-body">
+        <div class=${classMap({ picture: true, stale: this.badge.value?.state === 'stale', lost: this.badge.value?.state === 'disconnected' })}
+          tabindex="0" role="group" aria-label=${`${names[kind]} picture`} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
+          @focus=${() => { this.#ui.active.value = n; }}>
+          <canvas width="16" height="16"></canvas>
+          <svg class="overlay" aria-hidden="true">${this.#overlay()}</svg>
+          ${this.#cover()}
+        </div>
+        ${this.#slider()}
+      </div>
+      <p class="hidden" id=${`caption-${n}`} aria-live="polite">${this.#caption()}</p>`;
+  }
+
+  #where() {
+    const { kind } = this.#view;
+    const scene = this.#room.scene.value;
+    if (!scene || !this.#room.plan.value) return '';
+    if (kind === '3d') {
+      const camera = this.#view.document.value && this.actions.camera;
+      return describe(camera);
+    }
+    const { axis, letter } = planes[kind];
+    return `${letter} ${millimetres(crosshair(scene)[axis])}`;
+  }
+
+  #badgeButton() {
+    const badge = this.badge.value;
+    if (!badge) return nothing;
+    const name = `badge-${this.#view.number}`;
+    return html`<span class="anchor"><button class=${`badge ${badge.state}`} data-badge=${badge.state} ?disabled=${!badge.why}
+        aria-expanded=${this.#ui.popover.value === name} @click=${() => this.#ui.toggle(name)}>${icon(badge.state, 12)}<span>${badge.text}</span></button>
+      ${badge.why && this.#ui.popover.value === name ? html`<div class="popover badge-why" role="status"><b class=${badge.state}>${icon(badge.state, 12)} ${badge.text}</b><p>${badge.why}</p></div>` : nothing}</span>`;
+  }
+
+  #followBar() {
+    const view = this.#view;
+    const act = (isFollowing) => this.#room.follow(view.number, isFollowing);
+    if (!view.isFollowing.value) {
+      const ago = seconds(Math.max(0, Math.round((this.#ui.now.value - view.leftAt.value) / 1000)) * 1000);
+      const from = view.leftFrom.value ? `left ${this.#room.nameOf(view.leftFrom.value)} ${ago} ago` : '';
+      return html`<div class="follow-bar"><b>Own view</b><span class="dim">${from}</span><span class="grow"></span>
+        <button class="primary" @click=${() => act(true)}>Return</button></div>`;
+    }
+    if (!view.movedBy.value) return nothing;
+    const name = this.#room.nameOf(view.movedBy.value);
+    return html`<div class="follow-bar"><span class="avatar small">${initials(name)}</span><span class="follow-text"><b>Following ${name}</b></span><span class="grow"></span>
+      <button @click=${() => act(false)}>Look for yourself <kbd>F</kbd></button></div>`;
+  }
+
+  #overlay() {
+    const header = this.#view.painted.value;
+    const scene = this.#room.scene.value;
+    const pane = this.#size.value;
+    if (!header || !scene || pane[0] < 2) return nothing;
+    const box = this.#box;
+    const fullWidth = (header.width_px * 100) / header.scale_percent;
+    const image = shownImage(this.#room.plan.value, scene);
+    return overlay({
+      kind: this.#view.kind, header, box, pane,
+      point: crosshair(scene),
+      pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
+      windowText: image ? windowText(scene.image.window, image.unit) : '',
+    });
+  }
+
+  #cover() {
+    const { state, phase, percent, problem } = this.#room.renderer.value;
+    if (state === 'failed')
+      return html`<div class="cover"><div class="refusal">${icon('error')}<div><b>The plan cannot be shown.</b><p>${problem?.detail ?? 'The renderer gave no reason.'}</p></div></div></div>`;
+    if (this.#view.painted.value) return this.#emptyWords();
+    if (state === 'ready') return this.#emptyWords();
+    return html`<div class="cover"><div class="loading" role="progressbar" aria-valuenow=${Math.round(percent)} aria-valuemin="0" aria-valuemax="100">
+      <span>${phase || (state === 'starting' ? 'Starting the renderer' : 'Loading')}</span><b>${number(percent)} %</b>
+      <i class="bar" ${variables({ '--fill': `${percent}%` })}></i></div></div>`;
+  }
+
+  #emptyWords() {
+    const plan = this.#room.plan.value;
+    if (!plan || this.#view.kind === '3d' || plan.images.length) return nothing;
+    return html`<div class="cover quiet"><p>No image in this plan. Regions can still be shown.</p></div>`;
+  }
+
+  #slider() {
+    const { kind } = this.#view;
+    const { scene, plan } = this.#room;
+    if (kind === '3d' || !scene.value || !plan.value) return nothing;
+    const { axis, letter } = planes[kind];
+    const image = shownImage(plan.value, scene.value);
+    const { low, high } = image?.bounds ?? plan.value.bounds;
+    const position = crosshair(scene.value)[axis];
+    return html`<label class="slice-slider" title="Slice (wheel, arrow keys)"><input type="range" aria-label=${`${names[kind]} slice, ${letter} in mm`}
+      min=${low[axis]} max=${high[axis]} step="0.1" .value=${live(String(position))} ?disabled=${!this.#room.canChange.value}
+      aria-valuetext=${`${letter} ${millimetres(position)}`}
+      @input=${(event) => this.actions.setSlice(event.target.valueAsNumber, event.timeStamp)}
+      @keydown=${(event) => this.#sliderKey(event)}></label>`;
+  }
+
+  #sliderKey(event) {
+    const steps = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10 }[event.key];
+    if (!steps) return;
+    event.preventDefault();
+    this.actions.stepSlice(steps, event.timeStamp);
+  }
+
+  #caption() {
+    // told when something has come to rest, not thirty times a second
+    if (this.#view.painted.value?.is_still) this.#lastCaption = `${names[this.#view.kind]}, ${this.#where()}`;
+    return this.#lastCaption;
+  }
+
+}
+
+/** "Reviewer 1" gives R1, "Ada Lovelace" AL. */
+export function initials(name) {
+  const words = name.trim().split(/\s+/);
+  const letters = words.length > 1 ? words[0][0] + words.at(-1)[0] : words[0].slice(0, 2);
+  return letters.toUpperCase();
+}

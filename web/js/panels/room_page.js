@@ -1,0 +1,138 @@
+// The room page: the frame of panels round four panes, and what joins them to the room's state.
+import { html } from '../../lib/lit-html.js';
+import { computed, effect, signal } from '../../lib/signals-core.js';
+import { crosshair } from '../state/plan.js';
+import { RoomState } from '../state/room.js';
+import { UiState } from '../state/ui.js';
+import { banner } from './banner.js';
+import { help, toasts } from './float.js';
+import { inspector } from './inspector.js';
+import { mount } from './mount.js';
+import { Pane } from './pane.js';
+import { status } from './status.js';
+import { toolStrip } from './tools.js';
+import { tree } from './tree.js';
+
+const probeMs = 60;
+const tickMs = 250;
+
+const frame = () => html`<div class="room">
+  <a class="skip" href="#picture-1">To the panes</a>
+  <header class="banner"></header><aside class="tree" aria-label="Plan"></aside>
+  <main><div class="strip"></div><div class="panes">${[1, 2, 3, 4].map((n) => html`<section class="pane" data-view=${n}></section>`)}</div><div class="toasts"></div></main>
+  <aside class="inspector" aria-label="Inspector"></aside><footer class="status"></footer><div class="floating"></div></div>`;
+
+/**
+ * @param {HTMLElement} host @param {string} id of the room
+ * @param {object} world {api, connect, clock, schedule, decode, hooks}
+ * @returns {() => void} leaves the room
+ */
+export function roomPage(host, id, { api, connect, clock, schedule, decode, hooks }) {
+  const stops = [mount(host, frame)];
+  const part = (name) => host.querySelector(name);
+  const ui = new UiState(clock);
+  const connection = connect(id);
+  const room = new RoomState(id, { connection, clock, schedule, notify: ui.notify });
+  const probed = signal({ result: null, error: '', isOld: false });
+
+  const onPainted = (header, isDrawn) => {
+    const answered = room.frameShown(header, isDrawn);
+    hooks.painted(header, answered);
+  };
+  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, decode, schedule, onPainted }, view));
+  connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));
+
+  const world = { room, ui, api, probed, panes: () => panes };
+  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', help]])
+    stops.push(mount(part(name), () => draw(world)));
+  stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), probe(room, api, probed, clock), ...adapt(ui));
+  stops.push(listenKeys(ui));
+
+  const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
+  hooks.enter(room, panes);
+  connection.open();
+  return () => {
+    clearInterval(tick);
+    connection.close();
+    for (const pane of panes) pane.stop();
+    for (const stop of stops.reverse()) stop();
+    document.title = 'Beamroom';
+  };
+}
+
+function layOut(element, ui) {
+  const shown = ui.visible.value;
+  element.dataset.layout = shown.length === 1 ? 'single' : ui.layout.value;
+  element.classList.toggle('tree-open', ui.isTreeOpen.value);
+  element.classList.toggle('inspector-open', ui.isInspectorOpen.value);
+  for (const pane of element.querySelectorAll('.pane')) {
+    const n = Number(pane.dataset.view);
+    pane.hidden = !shown.includes(n);
+    pane.classList.toggle('active', ui.active.value === n);
+  }
+}
+
+function describeTitle(room) {
+  document.title = `${room.plan.value?.name ?? room.planId.value} – Beamroom`;
+}
+
+/** Asks what is at the crosshair whenever it has moved: the newest question wins. */
+function probe(room, api, probed, clock) {
+  let timer = 0;
+  let asking = null;
+  const place = computed(() => {
+    const scene = room.scene.value;
+    return scene && room.plan.value ? crosshair(scene).join(' ') : '';
+  });
+  const ask = async () => {
+    asking?.abort();
+    asking = new AbortController();
+    const { signal: aborted } = asking;
+    try {
+      const result = await api.probe(room.planId.value, place.peek().split(' ').map(Number), aborted);
+      if (!aborted.aborted) probed.value = { result, error: '', isOld: false };
+    } catch (error) {
+      if (!aborted.aborted) probed.value = { result: null, error: error.message, isOld: false };
+    }
+  };
+  const stop = effect(() => {
+    const isReady = room.renderer.value.state === 'ready';
+    if (!place.value || !isReady) return;
+    probed.value = { ...probed.peek(), isOld: true };
+    clock.clearTimeout(timer);
+    timer = clock.setTimeout(ask, probeMs);
+  });
+  return () => {
+    stop();
+    clock.clearTimeout(timer);
+    asking?.abort();
+  };
+}
+
+/** Folds what the window has no room for; unfolded again where it has. */
+function adapt(ui) {
+  return [['(min-width: 1400px)', ui.isTreeOpen], ['(min-width: 1200px)', ui.isInspectorOpen]].map(([query, isOpen]) => {
+    const media = matchMedia(query);
+    const set = () => { isOpen.value = media.matches; };
+    set();
+    media.addEventListener('change', set);
+    return () => media.removeEventListener('change', set);
+  });
+}
+
+function listenKeys(ui) {
+  const onKey = (event) => {
+    const isTyping = event.target.matches?.('input:not([type=range]):not([type=checkbox]), textarea');
+    if (event.key === 'Escape') ui.escape();
+    else if (event.key === '?' && !isTyping) ui.toggle('help');
+  };
+  const onPress = (event) => {
+    if (ui.popover.value && ui.popover.value !== 'help' && !event.target.closest('.anchor')) ui.popover.value = '';
+  };
+  addEventListener('keydown', onKey);
+  addEventListener('pointerdown', onPress);
+  return () => {
+    removeEventListener('keydown', onKey);
+    removeEventListener('pointerdown', onPress);
+  };
+}

@@ -1,0 +1,27 @@
+// The strip at the foot of a room: how true and how fast the pictures are, where the crosshair is.
+import { html, nothing } from '../../lib/lit-html.js';
+import { worst } from '../state/fidelity.js';
+import { crosshair } from '../state/plan.js';
+import { number } from './format.js';
+import { icon } from './icons.js';
+
+export function status({ room, ui, panes, probed }) {
+  const shown = ui.visible.value;
+  const badge = worst(panes().filter((_, index) => shown.includes(index + 1)).map((pane) => pane.badge.value));
+  const scene = room.scene.value;
+  const plan = room.plan.value;
+  const latency = room.latencyMs.value;
+  const fps = Math.max(...shown.map((number_) => room.view(number_).fps.value));
+  const region = probed.value.result && plan?.regions.find((other) => other.id === probed.value.result.regions[0]);
+  const point = scene && crosshair(scene);
+  return html`
+    ${badge ? html`<span class=${`badge ${badge.state}`} id="badge-all" data-badge=${badge.state}>${icon(badge.state, 12)}<span>${badge.text}</span></span>` : nothing}
+    ${room.link.value.state === 'lost' ? html`<button class="ghost" @click=${() => room.reconnect()}>Try now</button>` : nothing}
+    <span class="pairing">Latency <b id="latency">${latency === null ? '–' : `${number(latency)} ms`}</b></span>
+    <span class="pairing"><b id="fps">${number(fps)} fps</b></span>
+    <span class="dim wide" id="gl">${room.gl.value}</span>
+    ${point ? html`<i class="rule"></i><span class="pairing">Position <b>L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm</b></span><span>${region?.name ?? ''}</span>` : nothing}
+    <span class="grow"></span>
+    <span class="radiological">Radiological: patient right on screen left</span><i class="rule"></i>
+    <b class="research" title="Beamroom is not a medical device. It shows what a calculation gave, for research and plan review; nobody has certified it for decisions on patients.">Research use. Not for diagnosis or treatment decisions.</b>`;
+}

@@ -1,0 +1,85 @@
+// The left tree: what the plan holds, with eye, colour and opacity.
+import { html, nothing } from '../../lib/lit-html.js';
+import { classMap } from '../../lib/directives/class-map.js';
+import { live } from '../../lib/directives/live.js';
+import { repeat } from '../../lib/directives/repeat.js';
+import { shownImage } from '../state/plan.js';
+import { number, windowText } from './format.js';
+import { icon } from './icons.js';
+import { variables } from './mount.js';
+
+const hierarchyWords = { file: 'hierarchy from file', derived: 'hierarchy derived', none: '' };
+
+/** Hides all regions but one; when only that one is shown, shows all again. */
+export function soloPatch(regions, scene, id) {
+  const isAlone = regions.every((region) => Boolean(scene.regions[region.id]?.visible) === (region.id === id));
+  return { regions: Object.fromEntries(regions.map((region) => [region.id, { visible: isAlone || region.id === id }])) };
+}
+
+export function tree({ room, ui }) {
+  const plan = room.plan.value;
+  if (!ui.isTreeOpen.value)
+    return html`<button class="icon-button rail" title="Show the plan's parts" aria-label="Show the plan's parts" @click=${() => { ui.isTreeOpen.value = true; }}>${icon('tree')}</button>`;
+  return html`
+    <header class="panel-head"><h2>Plan</h2><span class="grow"></span>
+      <button class="icon-button" title="Fold" aria-label="Fold the plan's parts" @click=${() => { ui.isTreeOpen.value = false; }}>${icon('chevronLeft')}</button></header>
+    <div class="scroll">${plan ? html`${images(room, plan)}${regions(room, ui, plan)}` : html`<p class="empty">The plan is being loaded.</p>`}</div>`;
+}
+
+function section(title, note, rows) {
+  return html`<details class="section" open><summary>${icon('chevronDown', 12)}<h3>${title}</h3><span class="grow"></span><span class="note">${note}</span></summary>${rows}</details>`;
+}
+
+function images(room, plan) {
+  const scene = room.scene.value;
+  if (!plan.images.length) return section('Images', '', html`<p class="empty">No image in this plan.</p>`);
+  const shown = shownImage(plan, scene);
+  return section('Images', '', plan.images.map((image) => html`
+    <button class=${classMap({ row: true, selected: plan.images.length > 1 && image === shown })} ?disabled=${!room.canChange.value}
+      title=${`${image.size.join(' × ')} voxels`} aria-pressed=${image === shown}
+      @click=${() => image !== shown && room.patchScene({ image: { id: image.id, window: image.window } })}>
+      ${icon('image')}<span class="name">${image.modality}</span><span class="dim">${plan.images.length > 1 ? image.id : ''}</span><span class="grow"></span>
+      <span class="tail">${image === shown && scene ? windowText(scene.image.window, '') : ''}</span></button>`));
+}
+
+function regions(room, ui, plan) {
+  if (!plan.regions.length) return section('Regions', '', html`<p class="empty">No regions in this plan.</p>`);
+  const note = hierarchyWords[plan.hierarchy] ?? '';
+  return section('Regions', note, html`<ul class="rows" @keydown=${walk}>${repeat(plan.regions, (region) => region.id, (region) => row(room, ui, plan, region))}</ul>`);
+}
+
+/** Up and down move between rows. */
+function walk(event) {
+  const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+  if (!by || event.target.type === 'range' || event.target.type === 'number') return;
+  const names = [...event.currentTarget.querySelectorAll('button.name')];
+  const at = names.findIndex((name) => name.closest('li').contains(event.target));
+  names[at + by]?.focus();
+  event.preventDefault();
+}
+
+function row(room, ui, plan, region) {
+  const scene = room.scene.value;
+  const style = scene?.regions[region.id];
+  if (!style) return nothing;
+  const isDisabled = !room.canChange.value;
+  const change = (patch, event) => room.patchScene({ regions: { [region.id]: patch } }, { view: ui.active.value, at: event.timeStamp });
+  const percent = Math.round(style.opacity * 100);
+  const toggle = (event) => (event.altKey
+    ? room.patchScene(soloPatch(plan.regions, scene, region.id), { view: ui.active.value, at: event.timeStamp })
+    : change({ visible: !style.visible }, event));
+  return html`<li class=${classMap({ row: true, selected: ui.region.value === region.id, off: !style.visible })} data-region=${region.id}
+      ${variables({ '--indent': String(region.depth) })}>
+    <button class="eye" aria-pressed=${style.visible} aria-label=${`Show ${region.name}`} title="Show or hide (Alt: only this one)" ?disabled=${isDisabled}
+      @click=${toggle}>${icon(style.visible ? 'eye' : 'eyeOff')}</button>
+    <input type="color" .value=${live(style.color)} aria-label=${`Colour of ${region.name}`} title="Colour" ?disabled=${isDisabled}
+      @input=${(event) => change({ color: event.target.value }, event)}>
+    <button class="name" title=${`${region.name}, ${number(region.volume_cm3, 2)} cm³`} aria-pressed=${ui.region.value === region.id}
+      @click=${() => { ui.region.value = ui.region.value === region.id ? '' : region.id; }}>${region.name}</button>
+    <input type="range" class="mini" min="0" max="100" step="1" .value=${live(String(percent))} ${variables({ '--fill': `${percent}%` })}
+      aria-label=${`Opacity of ${region.name}`} title="Opacity" ?disabled=${isDisabled}
+      @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>
+    <span class="percent"><input type="number" min="0" max="100" step="1" .value=${live(String(percent))} aria-label=${`Opacity of ${region.name} in per cent`} ?disabled=${isDisabled}
+      @change=${(event) => Number.isFinite(event.target.valueAsNumber) && change({ opacity: Math.min(Math.max(event.target.valueAsNumber, 0), 100) / 100 }, event)}> %</span>
+  </li>`;
+}

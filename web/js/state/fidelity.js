@@ -1,0 +1,51 @@
+// How true the picture on the screen is: one of five states, each with its words. Pure functions.
+
+const staleMs = 1000;
+/** Best to worst. */
+export const order = ['full', 'live', 'reduced', 'stale', 'disconnected'];
+
+const words = { full: 'Full', live: 'Live', reduced: 'Reduced', stale: 'Stale', disconnected: 'Disconnected' };
+
+function why(header) {
+  const reasons = [];
+  if (header.scale_percent < 100) reasons.push(`size ${header.scale_percent} %`);
+  if (header.quality > 0 && header.quality < 60) reasons.push(`quality ${header.quality}`);
+  if (header.is_light) reasons.push('lighter surfaces');
+  return reasons;
+}
+
+/**
+ * @param {object} facts
+ * @param {{state: string, retryAt: number}} facts.link
+ * @param {string} facts.renderer its state
+ * @param {import('../wire/frame.js').FrameHeader|null} facts.header of what is painted
+ * @param {number} facts.staleSince @param {number} facts.revision @param {number} facts.revisionAt
+ * @param {number} facts.fps @param {number} facts.now
+ * @returns {{state: string, text: string, why: string} | null} null before the first picture
+ */
+export function fidelity({ link, renderer, header, staleSince, revision, revisionAt, fps, now }) {
+  const badge = (state, text, reason = '') => ({ state, text, why: reason });
+  if (link.state === 'lost') {
+    const seconds = Math.max(0, Math.ceil((link.retryAt - now) / 1000));
+    return badge('disconnected', seconds ? `Disconnected, trying again in ${seconds} s` : 'Disconnected, trying again');
+  }
+  if (link.state === 'ended') return badge('disconnected', 'Disconnected', link.reason);
+  if (!header) return null;
+  if (renderer !== 'ready') return badge('stale', 'Stale', 'The renderer is being started again; this is the last picture it made.');
+  const behindSince = header.scene_revision < revision ? revisionAt : 0;
+  const since = Math.min(staleSince || Infinity, behindSince || Infinity);
+  if (now - since > staleMs) return badge('stale', `Stale ${Math.floor((now - since) / 1000)} s`, 'The picture does not show the newest change yet.');
+  if (header.is_still && header.scale_percent === 100 && !header.is_light)
+    return header.is_lossless ? badge('full', 'Full, lossless still') : badge('full', 'Full');
+  const reasons = why(header);
+  if (reasons.length) {
+    const text = reasons.join(', ');
+    return badge('reduced', words.reduced, `${text[0].toUpperCase()}${text.slice(1)} while moving. The full picture follows at rest.`);
+  }
+  return badge('live', fps > 1 ? `Live, ${fps} fps` : words.live);
+}
+
+/** The badge of all panes together: the worst of them. */
+export function worst(badges) {
+  return badges.filter(Boolean).reduce((a, b) => (a && order.indexOf(a.state) >= order.indexOf(b.state) ? a : b), null);
+}

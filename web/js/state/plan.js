@@ -1,0 +1,109 @@
+// The plan as the server describes it, put the way the panels need it. Read once, then never changed.
+
+const axisNames = ['L', 'P', 'S'];
+
+/** Millimetres from one voxel to the next along each patient axis: of the grid axis that runs most along it. */
+function spacingAlong(rows) {
+  return axisNames.map((_, axis) => Math.max(...rows[axis].slice(0, 3).map(Math.abs)) || 1);
+}
+
+function readImage(image) {
+  const { grid } = image;
+  return {
+    id: image.id,
+    modality: image.modality || 'Image',
+    unit: image.unit ?? '',
+    low: image.low ?? 0,
+    high: image.high ?? 1,
+    window: image.window,
+    size: grid.size,
+    bounds: grid.bounds_mm,
+    stepMm: spacingAlong(grid.lps_mm_from_ijk),
+  };
+}
+
+/** Regions with what contains them before what they contain, in file order otherwise. */
+function inOrder(regions) {
+  const known = new Set(regions.map((region) => region.id));
+  const rows = [];
+  const seen = new Set();
+  const visit = (region, depth) => {
+    if (seen.has(region.id)) return;
+    seen.add(region.id);
+    rows.push({ ...region, depth });
+    for (const child of regions) if (child.parent === region.id) visit(child, depth + 1);
+  };
+  for (const region of regions) if (!region.parent || !known.has(region.parent)) visit(region, 0);
+  for (const region of regions) visit(region, 0);
+  return rows;
+}
+
+/** @param {object} document GET /api/v1/plans/{id} of a loaded plan */
+export function readPlan(document) {
+  const images = (document.images ?? []).map(readImage);
+  return {
+    id: document.id,
+    name: document.name || document.id,
+    note: document.note ?? '',
+    isPhantom: Boolean(document.phantom),
+    images,
+    regions: inOrder(document.regions ?? []),
+    hierarchy: document.hierarchy ?? 'none',
+    doses: document.doses ?? [],
+    beams: document.beams ?? [],
+    report: readReport(document.report),
+    loadMs: document.load_ms ?? null,
+    bounds: document.bounds_mm ?? { low: [-100, -100, -100], high: [100, 100, 100] },
+    home: document.home ?? {},
+  };
+}
+
+/** @returns {{lines: {severity: string, code: string, where: string, sentence: string}[], dropped: number}} */
+export function readReport(report) {
+  const order = ['error', 'warning', 'note'];
+  const lines = [...(report?.lines ?? [])].sort((a, b) => order.indexOf(a.severity) - order.indexOf(b.severity));
+  return { lines, dropped: report?.dropped ?? 0 };
+}
+
+/** "3 warnings, 2 notes", "no remarks" */
+export function reportSummary({ lines }) {
+  const parts = ['error', 'warning', 'note'].flatMap((severity) => {
+    const n = lines.filter((line) => line.severity === severity).length;
+    return n ? [`${n} ${severity}${n > 1 ? 's' : ''}`] : [];
+  });
+  return parts.join(', ') || 'no remarks';
+}
+
+/** The image the scene shows. */
+export function shownImage(plan, scene) {
+  const id = scene?.image?.id;
+  return plan?.images.find((image) => image.id === id) ?? plan?.images[0] ?? null;
+}
+
+/** Where the crosshair is: the three slices together. @returns {[number, number, number]} LPS mm */
+export function crosshair(scene) {
+  const { sagittal, coronal, axial } = scene.image.slices;
+  return [sagittal.position_mm, coronal.position_mm, axial.position_mm];
+}
+
+/** The patch that puts the crosshair there, within the plan. */
+export function crosshairPatch(plan, image, point) {
+  const { low, high } = image?.bounds ?? plan.bounds;
+  const position = point.map((value, axis) => Math.round(Math.min(Math.max(value, low[axis]), high[axis]) * 10) / 10);
+  const [sagittal, coronal, axial] = position.map((position_mm) => ({ position_mm }));
+  return { image: { slices: { sagittal, coronal, axial } } };
+}
+
+/** Window presets by key; 5 is the image's full range. Hounsfield units only where the image has them. */
+export function windowPresets(image) {
+  if (!image) return [];
+  const full = { key: '5', name: 'Full range', center: (image.low + image.high) / 2, width: Math.max(image.high - image.low, 0.001) };
+  if (image.unit !== 'HU') return [{ key: '1', name: 'Plan', ...image.window }, full];
+  return [
+    { key: '1', name: 'Soft tissue', center: 40, width: 400 },
+    { key: '2', name: 'Lung', center: -600, width: 1500 },
+    { key: '3', name: 'Brain', center: 40, width: 80 },
+    { key: '4', name: 'Bone', center: 480, width: 2500 },
+    full,
+  ];
+}

@@ -1,0 +1,136 @@
+// The start page's truth: which plans there are, which is being loaded, what loading noticed.
+import { batch, computed, signal } from '../../lib/signals-core.js';
+import { readReport } from './plan.js';
+
+const listMs = 4000;
+const jobMs = 150;
+
+export class PlansState {
+  #api;
+  #clock;
+  #enter;
+  #timer = 0;
+  #isStopped = false;
+  #asked = 0;
+
+  /** @param {object} world {api, clock, enter: (room: string) => void} */
+  constructor({ api, clock, enter }) {
+    this.#api = api;
+    this.#clock = clock;
+    this.#enter = enter;
+    this.plans = signal(null); // null until the first answer
+    this.version = signal(null);
+    this.error = signal('');
+    this.jobs = signal({}); // by plan: {id, state, phase, percent, problem, isOpening}
+    this.refusals = signal({}); // by plan: a sentence
+    this.chosen = signal('');
+    this.report = signal(null); // {plan, loadMs, lines, dropped} of the chosen plan, null when there is none
+    this.filter = signal('all'); // all | ready | warnings
+    this.search = signal('');
+    this.isJoining = signal(false);
+    this.shown = computed(() => {
+      const words = this.search.value.trim().toLowerCase();
+      return (this.plans.value ?? []).filter((plan) => {
+        if (this.filter.value === 'ready' && plan.state !== 'ready') return false;
+        if (this.filter.value === 'warnings' && !plan.n_warnings) return false;
+        return !words || `${plan.name} ${plan.id}`.toLowerCase().includes(words);
+      });
+    });
+  }
+
+  start() {
+    this.#list();
+    this.#api.version().then((version) => { this.version.value = version; }, () => {});
+  }
+
+  stop() {
+    this.#isStopped = true;
+    this.#clock.clearTimeout(this.#timer);
+  }
+
+  choose(id) {
+    this.chosen.value = id;
+    this.#readReport();
+  }
+
+  /** Loads the plan, then goes into a new room with it. */
+  async open(id) {
+    if (this.jobs.value[id]) return;
+    this.choose(id);
+    this.#refuse(id, '');
+    this.#setJob(id, { id: '', state: 'queued', phase: '', percent: 0 });
+    try {
+      const job = await this.#finish(id, await this.#api.openPlan(id));
+      if (!job || this.#isStopped) return;
+      const room = await this.#api.makeRoom(id);
+      if (!this.#isStopped) this.#enter(room.id);
+    } catch (error) {
+      this.#refuse(id, error.message);
+    } finally {
+      this.#setJob(id, null);
+      this.#list();
+    }
+  }
+
+  async cancel(id) {
+    const job = this.jobs.value[id];
+    if (!job?.id) return;
+    await this.#api.cancelJob(job.id).catch((error) => this.#refuse(id, error.message));
+  }
+
+  /** Follows a job to its end; null when it was cancelled. */
+  async #finish(id, job) {
+    while (!this.#isStopped) {
+      this.#setJob(id, job);
+      if (job.state === 'done') return job;
+      if (job.state === 'cancelled') return null;
+      if (job.state === 'failed') throw new Error(job.problem?.detail ?? 'The plan cannot be loaded.');
+      await new Promise((resolve) => { this.#clock.setTimeout(resolve, jobMs); });
+      job = await this.#api.job(job.id);
+    }
+    return null;
+  }
+
+  async #list() {
+    this.#clock.clearTimeout(this.#timer);
+    try {
+      const { plans } = await this.#api.plans();
+      batch(() => {
+        this.plans.value = plans;
+        this.error.value = '';
+      });
+      if (!this.chosen.value && plans.length) this.choose((plans.find((plan) => plan.state === 'ready') ?? plans[0]).id);
+      else this.#readReport();
+    } catch (error) {
+      this.error.value = error.message;
+    }
+    if (!this.#isStopped) this.#timer = this.#clock.setTimeout(() => this.#list(), listMs);
+  }
+
+  async #readReport() {
+    const id = this.chosen.value;
+    const plan = this.plans.value?.find((other) => other.id === id);
+    const asked = ++this.#asked;
+    if (plan?.state !== 'ready') {
+      this.report.value = null;
+      return;
+    }
+    if (this.report.value?.plan === id) return;
+    try {
+      const document = await this.#api.plan(id);
+      if (asked === this.#asked) this.report.value = { plan: id, loadMs: document.load_ms ?? null, ...readReport(document.report) };
+    } catch {
+      if (asked === this.#asked) this.report.value = null; // the list says why
+    }
+  }
+
+  #setJob(id, job) {
+    const { [id]: _, ...others } = this.jobs.value;
+    this.jobs.value = job ? { ...others, [id]: job } : others;
+  }
+
+  #refuse(id, sentence) {
+    const { [id]: _, ...others } = this.refusals.value;
+    this.refusals.value = sentence ? { ...others, [id]: sentence } : others;
+  }
+}

@@ -1,0 +1,57 @@
+// What only this page knows: tools, layout, what is selected, what is unfolded. Lives and dies with the page.
+import { computed, signal } from '../../lib/signals-core.js';
+
+const toastMs = 6000;
+
+export class UiState {
+  #clock;
+  #nextToast = 1;
+
+  /** @param {{now: () => number, setTimeout: Function}} clock */
+  constructor(clock) {
+    this.#clock = clock;
+    this.tool = signal('crosshair'); // crosshair | window | pan | zoom
+    this.layout = signal('2x2'); // 2x2 | 1+3 | single
+    this.maximised = signal(0);
+    this.active = signal(1);
+    this.region = signal('');
+    this.tab = signal('probe'); // probe | view | report
+    this.isTreeOpen = signal(true);
+    this.isInspectorOpen = signal(true);
+    this.popover = signal(''); // name of the one that is open
+    this.toasts = signal([]);
+    this.now = signal(clock.now()); // moves a few times a second: ages on badges
+    this.visible = computed(() => {
+      if (this.maximised.value) return [this.maximised.value];
+      return this.layout.value === 'single' ? [this.active.value] : [1, 2, 3, 4];
+    });
+  }
+
+  /** @param {'ok'|'warn'|'err'} kind */
+  notify = (kind, text) => {
+    const toast = { id: this.#nextToast++, kind, text };
+    this.toasts.value = [...this.toasts.value.filter((other) => other.text !== text).slice(-2), toast];
+    this.#clock.setTimeout(() => this.dismiss(toast.id), toastMs);
+  };
+
+  dismiss(id) {
+    this.toasts.value = this.toasts.value.filter((toast) => toast.id !== id);
+  }
+
+  toggle(name) {
+    this.popover.value = this.popover.value === name ? '' : name;
+  }
+
+  maximise(number) {
+    this.active.value = number;
+    this.maximised.value = this.maximised.value ? 0 : number;
+  }
+
+  /** Leaves what is open, one thing a call: tool, popover, toast, full pane. */
+  escape() {
+    if (this.tool.value !== 'crosshair') this.tool.value = 'crosshair';
+    else if (this.popover.value) this.popover.value = '';
+    else if (this.toasts.value.length) this.dismiss(this.toasts.value.at(-1).id);
+    else this.maximised.value = 0;
+  }
+}

@@ -1,0 +1,29 @@
+// Orientation letters: which way the patient lies at each edge of a picture.
+import { scale } from './vec.js';
+import { pictureAxes } from './vec.js';
+
+const names = [['L', 'R'], ['P', 'A'], ['S', 'I']];
+const secondFrom = 0.3; // cosine from which an oblique direction gets its second letter
+
+/** "L", or "AR" for an oblique direction: dominant letter first. @param {number[]} direction unit, LPS */
+export function letters(direction) {
+  const parts = direction
+    .map((cosine, axis) => ({ size: Math.abs(cosine), letter: names[axis][cosine >= 0 ? 0 : 1] }))
+    .sort((a, b) => b.size - a.size);
+  return parts[0].letter + (parts[1].size >= secondFrom ? parts[1].letter : '');
+}
+
+/** @param {ArrayLike<number>} matrix clip from LPS */
+export function edgeLetters(matrix) {
+  const { right, up } = pictureAxes(matrix);
+  return { left: letters(scale(right, -1)), right: letters(right), top: letters(up), bottom: letters(scale(up, -1)) };
+}
+
+/** The ends of the patient's axes in the picture, for the figure in the corner: x right, y down, length at most 1. */
+export function axesFigure(matrix) {
+  const { right, up, forward } = pictureAxes(matrix);
+  return names.flatMap(([positive, negative], axis) => [
+    { letter: positive, x: right[axis], y: -up[axis], isAway: forward[axis] > 0.01 },
+    { letter: negative, x: -right[axis], y: up[axis], isAway: forward[axis] < -0.01 },
+  ]);
+}

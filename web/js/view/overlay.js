@@ -1,0 +1,82 @@
+// What the page draws over a picture, from the matrix that came with it: letters, crosshair, axes figure, scale bar, window.
+import { nothing, svg } from '../../lib/lit-html.js';
+import { axesFigure, edgeLetters } from './letters.js';
+import { toPicture } from './vec.js';
+
+const gapPx = 22;
+const marginPx = 26;
+const letterPx = 14;
+const figurePx = 24;
+const barLengths = [1, 2, 5, 10, 20, 50, 100, 200];
+
+/**
+ * @param {object} what
+ * @param {string} what.kind @param {import('../wire/frame.js').FrameHeader} what.header
+ * @param {{x: number, y: number, width: number, height: number}} what.box the picture's place, CSS px
+ * @param {number[]} what.pane its size, CSS px
+ * @param {number[]|null} what.point the crosshair, LPS mm
+ * @param {number} what.pxPerMm CSS px; 0 in perspective
+ * @param {string} what.windowText
+ */
+export function overlay({ kind, header, box, pane: [width, height], point, pxPerMm, windowText }) {
+  const matrix = header.clip_from_lps_mm;
+  const at = point && toPicture(matrix, point);
+  const mark = at && { x: box.x + at[0] * box.width, y: box.y + at[1] * box.height };
+  return svg`
+    ${mark && (kind === '3d' ? marker(mark, box) : cross(mark, box))}
+    ${edgeText(edgeLetters(matrix), width, height)}
+    ${kind === '3d' ? figure(matrix, width, height) : nothing}
+    ${pxPerMm > 0 ? scaleBar(pxPerMm, height) : nothing}
+    ${kind !== '3d' && windowText ? svg`<text class="halo caption" x=${width - 12} y=${height - 12} text-anchor="end">${windowText}</text>` : nothing}`;
+}
+
+const line = (x1, y1, x2, y2) => svg`<line x1=${x1} y1=${y1} x2=${x2} y2=${y2} />`;
+
+function cross({ x, y }, box) {
+  const left = box.x + marginPx;
+  const right = box.x + box.width - marginPx;
+  const top = box.y + marginPx;
+  const bottom = box.y + box.height - marginPx;
+  const isIn = (value, low, high) => value > low - marginPx && value < high + marginPx;
+  if (!isIn(x, left, right) || !isIn(y, top, bottom)) return nothing;
+  const half = gapPx / 2;
+  return svg`<g class="crosshair">
+    ${x - half > left ? line(left, y, x - half, y) : nothing} ${x + half < right ? line(x + half, y, right, y) : nothing}
+    ${y - half > top ? line(x, top, x, y - half) : nothing} ${y + half < bottom ? line(x, y + half, x, bottom) : nothing}</g>`;
+}
+
+function marker({ x, y }, box) {
+  if (x < box.x || y < box.y || x > box.x + box.width || y > box.y + box.height) return nothing;
+  return svg`<g class="marker">${[0, 1].map((layer) => svg`<g class=${layer ? 'ink' : 'under'}>
+    <circle cx=${x} cy=${y} r="7" />${line(x - 12, y, x - 7, y)}${line(x + 7, y, x + 12, y)}${line(x, y - 12, x, y - 7)}${line(x, y + 7, x, y + 12)}</g>`)}</g>`;
+}
+
+function edgeText(letters, width, height) {
+  const text = (x, y, anchor, word) => svg`<text class="halo letter" x=${x} y=${y} text-anchor=${anchor}>${word}</text>`;
+  const middle = height / 2 + 5;
+  return svg`<g data-letters=${`${letters.left} ${letters.right} ${letters.top} ${letters.bottom}`}>
+    ${text(letterPx - 4, middle, 'start', letters.left)}${text(width - letterPx + 4, middle, 'end', letters.right)}
+    ${text(width / 2, letterPx + 5, 'middle', letters.top)}${text(width / 2, height - letterPx + 4, 'middle', letters.bottom)}</g>`;
+}
+
+function figure(matrix, width, height) {
+  const x = width - 46;
+  const y = height - 50;
+  return svg`<g class="figure">${axesFigure(matrix).map((end) => svg`<g class=${end.isAway ? 'away' : 'near'}>
+    <line x1=${x} y1=${y} x2=${x + end.x * figurePx} y2=${y + end.y * figurePx} />
+    ${Math.hypot(end.x, end.y) > 0.2
+      ? svg`<text class="halo" text-anchor="middle" x=${x + end.x * (figurePx + 9)} y=${y + end.y * (figurePx + 9) + 4}>${end.letter}</text>`
+      : nothing}</g>`)}</g>`;
+}
+
+/** The round length whose bar is at most 110 px. */
+export const barMm = (pxPerMm) => barLengths.filter((mm) => mm * pxPerMm <= 110).at(-1) ?? barLengths[0];
+
+function scaleBar(pxPerMm, height) {
+  const mm = barMm(pxPerMm);
+  const length = mm * pxPerMm;
+  const y = height - 16;
+  const path = `M12.5 ${y - 6}V${y}H${12.5 + length}V${y - 6}M${12.5 + length / 2} ${y - 3.5}V${y}`;
+  return svg`<g class="scale"><path class="under" d=${path} /><path class="ink" d=${path} />
+    <text class="halo caption" x=${length + 20} y=${y + 4}>${mm} mm</text></g>`;
+}

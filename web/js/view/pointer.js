@@ -1,0 +1,139 @@
+// Reads mouse, pen and fingers on a picture and tells what they mean there: a drag of some kind, a tap, a wheel, a pinch.
+
+const slopPx = 4; // below this a press is a tap
+const doubleMs = 350;
+const longMs = 500;
+
+/**
+ * @typedef {object} PointerHandlers each gets CSS pixels relative to the element, and at: when the person did it
+ * @property {(mode: 'primary'|'pan'|'zoom', at: {x: number, y: number}) => void} start
+ * @property {(mode: string, move: {x: number, y: number, dx: number, dy: number, at: number}) => void} move
+ * @property {(mode: string) => void} end
+ * @property {(tap: {x: number, y: number, shift: boolean, at: number}) => void} tap
+ * @property {(tap: {x: number, y: number, touch: boolean, at: number}) => void} doubleTap
+ * @property {(press: {x: number, y: number, at: number}) => void} longPress
+ * @property {(wheel: {x: number, y: number, steps: number, ctrl: boolean, at: number}) => void} wheel
+ * @property {(pinch: {x: number, y: number, dx: number, dy: number, factor: number, at: number}) => void} pinch
+ */
+export class PointerReader {
+  #element;
+  #handlers;
+  #fingers = new Map();
+  #mode = null;
+  #start = null;
+  #isDrag = false;
+  #lastTap = null;
+  #longTimer = 0;
+  #wheelRest = 0;
+  #abort = new AbortController();
+
+  /** @param {HTMLElement} element @param {PointerHandlers} handlers */
+  constructor(element, handlers) {
+    this.#element = element;
+    this.#handlers = handlers;
+    const on = (type, handler, options) => element.addEventListener(type, handler, { signal: this.#abort.signal, ...options });
+    on('pointerdown', (event) => this.#down(event));
+    on('pointermove', (event) => this.#move(event));
+    on('pointerup', (event) => this.#up(event));
+    on('pointercancel', (event) => this.#up(event, true));
+    on('wheel', (event) => this.#wheel(event), { passive: false });
+    on('contextmenu', (event) => event.preventDefault());
+  }
+
+  stop() {
+    clearTimeout(this.#longTimer);
+    this.#abort.abort();
+  }
+
+  #point(event) {
+    const box = this.#element.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top };
+  }
+
+  #down(event) {
+    if (event.button === 1) event.preventDefault(); // no scroll mode of the browser
+    const point = this.#point(event);
+    this.#fingers.set(event.pointerId, point);
+    this.#element.setPointerCapture(event.pointerId);
+    this.#element.focus({ preventScroll: true });
+    clearTimeout(this.#longTimer);
+    if (this.#fingers.size > 1) {
+      this.#isDrag = true;
+      this.#mode = 'pinch';
+      return;
+    }
+    this.#isDrag = false;
+    this.#start = { ...point, shift: event.shiftKey };
+    const isRight = event.button === 2 || (event.button === 0 && event.ctrlKey);
+    this.#mode = isRight ? 'zoom' : event.button === 1 || event.shiftKey ? 'pan' : 'primary';
+    if (event.pointerType === 'touch') this.#longTimer = setTimeout(() => this.#long(event.timeStamp), longMs);
+    this.#handlers.start(this.#mode, point);
+  }
+
+  #long(at) {
+    if (this.#isDrag || this.#fingers.size !== 1) return;
+    this.#isDrag = true; // what follows is no tap
+    this.#mode = 'held';
+    this.#handlers.longPress({ x: this.#start.x, y: this.#start.y, at });
+  }
+
+  #move(event) {
+    const before = this.#fingers.get(event.pointerId);
+    if (!before) return;
+    const point = this.#point(event);
+    const at = event.timeStamp;
+    if (this.#mode === 'pinch') {
+      const other = [...this.#fingers].find(([id]) => id !== event.pointerId)?.[1];
+      this.#fingers.set(event.pointerId, point);
+      if (other) this.#pinch(before, point, other, at);
+      return;
+    }
+    if (!this.#isDrag && Math.hypot(point.x - this.#start.x, point.y - this.#start.y) < slopPx) return;
+    this.#isDrag = true;
+    clearTimeout(this.#longTimer);
+    this.#fingers.set(event.pointerId, point);
+    if (this.#mode !== 'held') this.#handlers.move(this.#mode, { ...point, dx: point.x - before.x, dy: point.y - before.y, at });
+  }
+
+  #pinch(before, point, other, at) {
+    const apart = (a) => Math.max(Math.hypot(a.x - other.x, a.y - other.y), 10);
+    const middle = (a) => ({ x: (a.x + other.x) / 2, y: (a.y + other.y) / 2 });
+    const from = middle(before);
+    const to = middle(point);
+    this.#handlers.pinch({ ...to, dx: to.x - from.x, dy: to.y - from.y, factor: apart(point) / apart(before), at });
+  }
+
+  #up(event, isCancelled = false) {
+    if (!this.#fingers.delete(event.pointerId)) return;
+    clearTimeout(this.#longTimer);
+    if (this.#fingers.size) {
+      this.#mode = 'held'; // one finger of two is left: it turns nothing
+      return;
+    }
+    const point = this.#point(event);
+    const at = event.timeStamp;
+    const mode = this.#mode;
+    this.#mode = null;
+    if (mode !== 'held' && mode !== 'pinch') this.#handlers.end(mode);
+    if (this.#isDrag || isCancelled || event.button > 0) return;
+    const last = this.#lastTap;
+    if (last && at - last.at < doubleMs && Math.hypot(point.x - last.x, point.y - last.y) < 24) {
+      this.#lastTap = null;
+      this.#handlers.doubleTap({ ...point, touch: event.pointerType === 'touch', at });
+      return;
+    }
+    this.#lastTap = { ...point, at };
+    this.#handlers.tap({ ...point, shift: this.#start.shift, at });
+  }
+
+  #wheel(event) {
+    event.preventDefault();
+    const unit = event.deltaMode === 1 ? 40 : event.deltaMode === 2 ? 400 : 1;
+    // trackpads send many small deltas: whole steps only, the rest is kept
+    this.#wheelRest += (event.deltaY * unit) / 100;
+    const steps = event.ctrlKey ? this.#wheelRest : Math.trunc(this.#wheelRest);
+    if (steps === 0) return;
+    this.#wheelRest -= steps;
+    this.#handlers.wheel({ ...this.#point(event), steps, ctrl: event.ctrlKey, at: event.timeStamp });
+  }
+}

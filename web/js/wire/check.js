@@ -1,0 +1,136 @@
+// Checks messages against the tables made from proto/: what passes has every field, with its default when it was left out.
+// The server refuses the same messages with the same codes.
+import { enums, messages, objects } from '../../gen/wire.js';
+import { isObject } from './merge.js';
+
+const idPattern = /^[a-z0-9-]{1,63}$/;
+const colorPattern = /^#[0-9a-f]{6}$/i;
+
+/** Why a message was refused. */
+export class WireError extends Error {
+  /** @param {string} code of proto: "type", "range", ... @param {string} pointer RFC 6901 @param {string} detail */
+  constructor(code, pointer, detail) {
+    super(`${pointer || 'message'}: ${detail}`);
+    this.code = code;
+    this.pointer = pointer;
+  }
+}
+
+export const isId = (text) => typeof text === 'string' && idPattern.test(text);
+
+const kindOf = (value) => (value === null ? 'null' : Array.isArray(value) ? 'a list' : `a ${typeof value}`);
+const escapePointer = (name) => name.replaceAll('~', '~0').replaceAll('/', '~1');
+
+function need(is, value, expected, pointer) {
+  if (!is) throw new WireError('type', pointer, `found ${kindOf(value)}, expected ${expected}`);
+}
+
+function checkRange(value, field, pointer) {
+  const low = field.min ?? -Infinity;
+  const high = field.max ?? Infinity;
+  if (!(value >= low && value <= high)) throw new WireError('range', pointer, `${value} is not in ${low} to ${high}`);
+}
+
+function checkList(value, length, field, pointer) {
+  const whole = field.type === 'size';
+  const words = `a list of ${length} ${whole ? 'whole ' : ''}numbers`;
+  need(Array.isArray(value) && value.length === length, value, words, pointer);
+  value.forEach((item, index) => {
+    need(Number.isFinite(item) && (!whole || Number.isInteger(item)), item, whole ? 'a whole number' : 'a number', `${pointer}/${index}`);
+    checkRange(item, field, `${pointer}/${index}`);
+  });
+  return value;
+}
+
+const controlPattern = /[\x00-\x1f\x7f]/;
+const readers = {
+  bool: (value, field, pointer) => (need(typeof value === 'boolean', value, 'true or false', pointer), value),
+  number: (value, field, pointer) => (need(Number.isFinite(value), value, 'a number', pointer), checkRange(value, field, pointer), value),
+  integer: (value, field, pointer) =>
+    (need(Number.isInteger(value), value, 'a whole number', pointer), checkRange(value, field, pointer), value),
+  enum: (value, field, pointer) => {
+    need(typeof value === 'string', value, 'a word', pointer);
+    const words = enums[field.enum];
+    if (!words.includes(value)) throw new WireError('enum', pointer, `found "${value.slice(0, 40)}", expected one of ${words.join(', ')}`);
+    return value;
+  },
+  color: (value, field, pointer) => {
+    need(typeof value === 'string', value, 'a colour', pointer);
+    if (!colorPattern.test(value)) throw new WireError('pattern', pointer, 'expected a colour like #e0a0a0');
+    return value.toLowerCase();
+  },
+  id: (value, field, pointer) => {
+    need(typeof value === 'string', value, 'an id', pointer);
+    if (!isId(value) && (value !== '' || field.required)) throw new WireError('pattern', pointer, 'expected 1 to 63 of a-z, 0-9 and -');
+    return value;
+  },
+  text: (value, field, pointer) => {
+    need(typeof value === 'string', value, 'text', pointer);
+    if ([...value].length > field.max) throw new WireError('length', pointer, `longer than ${field.max} characters`);
+    if (controlPattern.test(value)) throw new WireError('pattern', pointer, 'holds a control character');
+    return value;
+  },
+  vec3: (value, field, pointer) => checkList(value, 3, field, pointer),
+  size: (value, field, pointer) => checkList(value, 2, field, pointer),
+  json: (value, field, pointer) => (need(typeof value === 'object', value, 'an object', pointer), value),
+  patch: (value, field, pointer) => (need(isObject(value), value, 'an object', pointer), value),
+  object: (value, field, pointer) => readObject(objects[field.object], value, pointer),
+  map: (value, field, pointer) => {
+    need(isObject(value), value, 'an object', pointer);
+    const entries = Object.entries(value);
+    if (entries.length > field.max_items) throw new WireError('count', pointer, `more than ${field.max_items} entries`);
+    return Object.fromEntries(entries.map(([name, item]) => {
+      const at = `${pointer}/${escapePointer(name)}`;
+      if (!isId(name)) throw new WireError('pattern', at, 'expected an id of 1 to 63 of a-z, 0-9 and -');
+      return [name, readObject(objects[field.object], item, at)];
+    }));
+  },
+};
+
+function fallback(field) {
+  if (field.type === 'object') return readObject(objects[field.object], {}, '');
+  if (field.type === 'map' || field.type === 'patch') return {};
+  return field.default ?? null;
+}
+
+function readObject(fields, value, pointer, skip) {
+  need(isObject(value), value, 'an object', pointer);
+  for (const name of Object.keys(value))
+    if (name !== skip && !fields.some((field) => field.name === name))
+      throw new WireError('unknown-field', `${pointer}/${escapePointer(name)}`, 'no such field');
+  const result = {};
+  for (const field of fields) {
+    const at = `${pointer}/${field.name}`;
+    const given = Object.hasOwn(value, field.name) ? value[field.name] : undefined;
+    const isAbsent = given === undefined || given === null; // null means the default
+    if (isAbsent && field.required) throw new WireError('required', at, 'missing');
+    result[field.name] = isAbsent ? fallback(field) : readers[field.type](given, field, at);
+  }
+  return result;
+}
+
+/** A whole scene or view, checked, with defaults. @param {'scene'|'view'} kind */
+export const readDocument = (kind, value) => readObject(objects[kind], value, '');
+
+/**
+ * A message, checked, with defaults, with its name in type.
+ * @param {unknown} value parsed JSON @param {'client'|'server'} from who sent it
+ */
+export function readMessage(value, from) {
+  need(isObject(value), value, 'an object', '');
+  const { type } = value;
+  if (type === undefined) throw new WireError('required', '/type', 'missing');
+  need(typeof type === 'string', type, 'the name of a message', '/type');
+  const description = Object.hasOwn(messages, type) ? messages[type] : undefined;
+  if (!description || description.from !== from) throw new WireError('enum', '/type', `no message of the ${from} is called "${type.slice(0, 40)}"`);
+  return { type, ...readObject(description.fields, value, '', 'type') };
+}
+
+/** The same for what the server sends: a newer server's further fields are passed over. Unknown messages give null. */
+export function readNews(value) {
+  need(isObject(value), value, 'an object', '');
+  const description = Object.hasOwn(messages, value.type) ? messages[value.type] : undefined;
+  if (!description || description.from !== 'server') return null;
+  const known = description.fields.filter((field) => Object.hasOwn(value, field.name)).map((field) => [field.name, value[field.name]]);
+  return readMessage({ type: value.type, ...Object.fromEntries(known) }, 'server');
+}
