@@ -65,6 +65,11 @@ loaded() { # waits for a job: loaded JOB
     return 1
 }
 
+if ! (exec 3<>"/dev/tcp/$host/$port") 2>/dev/null; then
+    echo "  FAILED  nobody answers at $url"
+    echo "smoke: 0 passed, 1 failed, 0 skipped"
+    exit 1
+fi
 call GET /healthz
 check "alive" is 200
 for _ in $(seq 40); do # a daemon that has just started is still looking for a way to draw
