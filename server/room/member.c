@@ -356,6 +356,7 @@ bool member_view_patch(struct room *room, struct member *member, const struct me
         (void)stream_set_view(room, stream, document);
     }
     view_input(view, (uint32_t)patch->input);
+    stream_send(room, member, view);
     return true;
 }
 

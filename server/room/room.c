@@ -156,8 +156,10 @@ static bool apply_patch(struct room *room, const cJSON *patch, struct member *by
         streams_changed(room, true);
         room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
     }
-    for (int i = 0; by && i < ROOM_MAX_VIEWS; i++)
+    for (int i = 0; by && i < ROOM_MAX_VIEWS; i++) {
         view_input(&by->views[i], input);
+        stream_send(room, by, &by->views[i]);
+    }
     say_scene(room, patch, by, input, has_changed); /* what changed nothing only its sender hears: it waits for the answer */
     return true;
 }

@@ -248,11 +248,18 @@ static void take_inputs(struct member_view *view, uint64_t version)
     memmove(view->waiting, view->waiting + n, (size_t)view->n_waiting * sizeof view->waiting[0]);
 }
 
+/* An input that changed nothing: the picture that is there shows it already, and goes out once more to say so. */
+static bool shows_waiting_input(const struct stream *stream, const struct member_view *view)
+{
+    return view->n_waiting > 0 && view->waiting[0].version <= stream->latest_version;
+}
+
 void stream_send(struct room *room, struct member *member, struct member_view *view)
 {
     struct stream *stream = view->stream;
-    if (!stream || !stream->latest || view->sent_number == stream->latest_number || n_unshown(view) >= ROOM_MAX_UNSHOWN ||
-        !member->connection)
+    if (!stream || !stream->latest || n_unshown(view) >= ROOM_MAX_UNSHOWN || !member->connection)
+        return;
+    if (view->sent_number == stream->latest_number && !shows_waiting_input(stream, view))
         return;
     int index = (int)(view - member->views);
     if (view->has_news) {

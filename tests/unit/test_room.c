@@ -126,6 +126,38 @@ static void a_change_that_changes_nothing_is_not_drawn(void **state)
     cJSON_Delete(scene);
 }
 
+static void an_input_that_changes_nothing_is_answered_by_the_picture_that_is_there(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    turn(&ann, 3, 4);
+    settle_one();
+    assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 4);
+    size_t n_drawn = fake.n_requests, n_frames = ann.n_frames;
+    turn(&ann, 3, 5);
+    assert_int_equal(ann.n_frames, n_frames + 1);
+    assert_int_equal(ann.frames[n_frames].input_id, 5);
+    assert_true(ann.frames[n_frames].flags & FRAME_STILL);
+    fake_shown(&fake, &ann);
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"input\":6,\"patch\":{}}");
+    assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 6);
+    assert_int_equal(fake.n_requests, n_drawn);
+}
+
+static void a_followers_resizing_that_does_not_take_the_lead_is_answered(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    turn(&ann, 3, 1);
+    settle_one();
+    fake_join(&fake, &ben, true);
+    settle_two();
+    size_t n_drawn = fake.n_requests;
+    fake_say(&fake, &ben, "{\"type\":\"view.patch\",\"view\":1,\"input\":7,\"patch\":{\"size_px\":[300,200]}}");
+    assert_int_equal(ben.frames[ben.n_frames - 1].input_id, 7);
+    assert_int_equal(fake.n_requests, n_drawn);
+}
+
 static void no_more_than_two_unshown_frames_are_ever_sent(void **state)
 {
     (void)state;
@@ -543,6 +575,8 @@ int main(void)
         T(an_idle_room_asks_for_nothing),
         T(a_room_without_views_asks_for_nothing),
         T(a_change_that_changes_nothing_is_not_drawn),
+        T(an_input_that_changes_nothing_is_answered_by_the_picture_that_is_there),
+        T(a_followers_resizing_that_does_not_take_the_lead_is_answered),
         T(no_more_than_two_unshown_frames_are_ever_sent),
         T(when_credit_returns_the_newest_state_is_drawn),
         T(an_acknowledgement_counts_for_all_earlier_frames),
