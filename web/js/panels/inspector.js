@@ -2,12 +2,11 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
-import { crosshair, crosshairPatch, reportSummary, shownImage, windowPresets } from '../state/plan.js';
+import { crosshair, crosshairPatch, reportSummary, shownImage, soloPatch, windowPresets } from '../state/plan.js';
 import { number, seconds, significant } from './format.js';
 import { icon } from './icons.js';
 import { reportLines } from './report.js';
 import { roving } from './tools.js';
-import { soloPatch } from './tree.js';
 
 const tabs = [['probe', 'Probe'], ['view', 'View'], ['report', 'Report']];
 const sides = [['sagittal', 'Sagittal'], ['coronal', 'Coronal'], ['axial', 'Axial']];

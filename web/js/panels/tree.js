@@ -3,18 +3,12 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { repeat } from '../../lib/directives/repeat.js';
-import { shownImage } from '../state/plan.js';
+import { shownImage, soloPatch } from '../state/plan.js';
 import { number, windowText } from './format.js';
 import { icon } from './icons.js';
 import { variables } from './mount.js';
 
 const hierarchyWords = { file: 'hierarchy from file', derived: 'hierarchy derived', none: '' };
-
-/** Hides all regions but one; when only that one is shown, shows all again. */
-export function soloPatch(regions, scene, id) {
-  const isAlone = regions.every((region) => Boolean(scene.regions[region.id]?.visible) === (region.id === id));
-  return { regions: Object.fromEntries(regions.map((region) => [region.id, { visible: isAlone || region.id === id }])) };
-}
 
 export function tree({ room, ui }) {
   const plan = room.plan.value;

@@ -107,3 +107,9 @@ export function windowPresets(image) {
     full,
   ];
 }
+
+/** Hides all regions but one; when only that one is shown, shows all again. */
+export function soloPatch(regions, scene, id) {
+  const isAlone = regions.every((region) => Boolean(scene.regions[region.id]?.visible) === (region.id === id));
+  return { regions: Object.fromEntries(regions.map((region) => [region.id, { visible: isAlone || region.id === id }])) };
+}

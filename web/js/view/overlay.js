@@ -1,13 +1,12 @@
 // What the page draws over a picture, from the matrix that came with it: letters, crosshair, axes figure, scale bar, window.
 import { nothing, svg } from '../../lib/lit-html.js';
 import { axesFigure, edgeLetters } from './letters.js';
-import { toPicture } from './vec.js';
+import { barMm, toPicture } from './vec.js';
 
 const gapPx = 22;
 const marginPx = 26;
 const letterPx = 14;
 const figurePx = 24;
-const barLengths = [1, 2, 5, 10, 20, 50, 100, 200];
 
 /**
  * @param {object} what
@@ -68,9 +67,6 @@ function figure(matrix, width, height) {
       ? svg`<text class="halo" text-anchor="middle" x=${x + end.x * (figurePx + 9)} y=${y + end.y * (figurePx + 9) + 4}>${end.letter}</text>`
       : nothing}</g>`)}</g>`;
 }
-
-/** The round length whose bar is at most 110 px. */
-export const barMm = (pxPerMm) => barLengths.filter((mm) => mm * pxPerMm <= 110).at(-1) ?? barLengths[0];
 
 function scaleBar(pxPerMm, height) {
   const mm = barMm(pxPerMm);

@@ -41,3 +41,9 @@ export function fromPicture(matrix, [x, y], through) {
   const up = ((at[1] - y) * 2) / length(rows[1]);
   return add(through, add(scale(unit(rows[0]), right), scale(unit(rows[1]), up)));
 }
+
+const barLengths = [1, 2, 5, 10, 20, 50, 100, 200];
+const longestBarPx = 110;
+
+/** The length of a scale bar: the longest round one that fits. */
+export const barMm = (pxPerMm) => barLengths.filter((mm) => mm * pxPerMm <= longestBarPx).at(-1) ?? barLengths[0];

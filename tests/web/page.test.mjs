@@ -1,0 +1,196 @@
+// The page in a real browser against the real daemon. Screenshots stay in build/test-artifacts/.
+import assert from 'node:assert/strict';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { bin, call, demo, openPlan, sleep, startDaemon } from '../api/daemon.mjs';
+
+const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const artifacts = 'build/test-artifacts';
+const missing = [chromiumPath, join(bin, 'beamroomd'), join(demo, 'phantom/plan.json')].find((path) => !existsSync(path));
+const flags = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync'];
+
+/** In the browser: mean and spread of grey over a pane's picture, and a fingerprint of it. */
+const look = (page, view) => page.evaluate((n) => {
+  const canvas = document.querySelector(`[data-view="${n}"] canvas`);
+  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  let sum = 0;
+  let lit = 0;
+  let print = 0;
+  for (let at = 0; at < data.length; at += 4) {
+    sum += data[at];
+    lit += data[at] > 40;
+    print = (print * 31 + data[at] * 3 + data[at + 1]) | 0;
+  }
+  return { mean: sum / (data.length / 4), lit: lit / (data.length / 4), print };
+}, view);
+
+const full = (page, view = 1) => page.waitForFunction((n) => globalThis.beamroom?.stats().badges[n] === 'full', view, { timeout: 20000 });
+const letters = (page, view) => page.locator(`[data-view="${view}"] [data-letters]`).getAttribute('data-letters');
+const header = (page, view) => page.evaluate((n) => globalThis.beamroom.stats().headers[n], view);
+const shoot = (page, name) => page.screenshot({ path: `${artifacts}/${name}.png` });
+
+/** The daemon's renderer for the one plan that is open. */
+function rendererOf({ pid }) {
+  const children = readdirSync(`/proc/${pid}/task`).flatMap((task) =>
+    readFileSync(`/proc/${pid}/task/${task}/children`, 'utf8').trim().split(' ').filter(Boolean).map(Number));
+  return children.find((child) => readFileSync(`/proc/${child}/cmdline`, 'utf8').includes('beamroom-render'));
+}
+
+describe('the page', { skip: missing && `${missing} is not there` }, () => {
+  let daemon;
+  let browser;
+  let folder;
+  const errors = [];
+
+  before(async () => {
+    mkdirSync(artifacts, { recursive: true });
+    folder = mkdtempSync(join(tmpdir(), 'beamroom-page-'));
+    mkdirSync(join(folder, 'plans/broken-head'), { recursive: true });
+    writeFileSync(join(folder, 'plans/broken-head/plan.json'),
+      JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Broken head', images: [{ id: 'ct', path: 'ct.nii' }] }));
+    writeFileSync(join(folder, 'plans/broken-head/ct.nii'), 'no image at all');
+    daemon = await startDaemon({ plans: [demo, join(folder, 'plans')] });
+    const { chromium } = await import('playwright-core');
+    browser = await chromium.launch({ executablePath: chromiumPath, headless: true, args: flags });
+  });
+  after(async () => {
+    await browser?.close();
+    await daemon?.stop();
+    if (folder) rmSync(folder, { recursive: true, force: true });
+  });
+
+  const newPage = async (address = '', viewport = { width: 1600, height: 1000 }) => {
+    const context = await browser.newContext({ viewport });
+    context.setDefaultTimeout(10000);
+    const page = await context.newPage();
+    page.on('pageerror', (error) => errors.push(error.message));
+    page.on('console', (message) => /Content Security Policy/.test(message.text()) && errors.push(message.text()));
+    await page.goto(`${daemon.url}/${address}`);
+    return page;
+  };
+  const newRoom = async () => {
+    await openPlan(daemon.url, 'phantom');
+    return (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+  };
+  const drag = async (page, view, dx, dy, { release = true } = {}) => {
+    const box = await page.locator(`#picture-${view}`).boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    for (let step = 1; step <= 10; step++) {
+      await page.mouse.move(x + (dx * step) / 10, y + (dy * step) / 10);
+      await sleep(20);
+    }
+    if (release) await page.mouse.up();
+  };
+
+  it('says why a plan is refused and loads nothing of it', async () => {
+    const page = await newPage();
+    const refusal = page.locator('[data-plan="broken-head"] .refusal');
+    await refusal.waitFor();
+    assert.match(await refusal.textContent(), /ct\.nii/);
+    await shoot(page, 'start-refused');
+    assert.equal(await page.locator('[data-plan="broken-head"] button').count(), 0, 'what cannot be read cannot be opened');
+    await page.context().close();
+  });
+
+  it('opens a plan from the list: four pictures, each with the right letters', async () => {
+    const page = await newPage();
+    await page.locator('[data-plan="phantom"] button').click();
+    await page.waitForURL(/#\/rooms\/[a-z0-9-]+$/);
+    for (const view of [1, 2, 3, 4]) await full(page, view);
+    assert.equal(await letters(page, 1), 'R L S I', 'from the front, patient right on screen left');
+    assert.equal(await letters(page, 2), 'R L A P');
+    assert.equal(await letters(page, 3), 'A P S I');
+    assert.equal(await letters(page, 4), 'R L S I');
+    for (const view of [1, 2, 3, 4]) assert.ok((await look(page, view)).lit > 0.1, `pane ${view} shows the head`);
+    assert.ok(await page.locator('.tag.phantom').isVisible(), 'a phantom is labelled as one');
+    await sleep(400);
+    await shoot(page, 'room');
+    await page.setViewportSize({ width: 1180, height: 820 });
+    await sleep(500);
+    await full(page);
+    await shoot(page, 'room-1180x820');
+    await page.context().close();
+  });
+
+  it('turns by dragging, and ends with a full picture and turned letters', async () => {
+    const page = await newPage(`#/rooms/${await newRoom()}`);
+    await full(page);
+    const before = await look(page, 1);
+    await drag(page, 1, 225, 0); // 90 degrees at 0.4 degrees a pixel: the front turns to screen right, the eye to patient right
+    await page.waitForFunction(() => globalThis.beamroom.stats().input_to_paint_ms.length > 3);
+    await full(page);
+    assert.notEqual((await look(page, 1)).print, before.print);
+    assert.equal(await letters(page, 1), 'P A S I');
+    assert.equal((await header(page, 1)).scale_percent, 100);
+    await page.locator('#picture-1').focus();
+    await page.keyboard.press('r');
+    await page.waitForFunction(() => document.querySelector('[data-view="1"] [data-letters]').dataset.letters === 'R L S I');
+    await page.context().close();
+  });
+
+  it('hides a region through the tree and changes the window by a key', async () => {
+    const room = await newRoom();
+    const page = await newPage(`#/rooms/${room}`);
+    await full(page);
+    const before = await look(page, 1);
+    await page.locator('[data-region="scalp"] .eye').click();
+    await page.waitForFunction(() => globalThis.beamroom.stats().headers[1].scene_revision > 1);
+    await full(page);
+    assert.notEqual((await look(page, 1)).print, before.print);
+    const scene = (await call(`${daemon.url}/api/v1/rooms/${room}/scene`)).json;
+    assert.equal((scene.scene ?? scene).regions.scalp.visible, false);
+    const slice = await look(page, 2);
+    await page.locator('#picture-2').focus();
+    await page.keyboard.press('4'); // bone: centre 480, so soft tissue gets darker
+    await page.waitForFunction(() => document.querySelector('[data-view="2"] .overlay').textContent.includes('C 480'));
+    await page.waitForFunction(() => globalThis.beamroom.stats().headers[2].scene_revision > 2);
+    await full(page, 2);
+    assert.ok((await look(page, 2)).mean < slice.mean - 3);
+    await page.context().close();
+  });
+
+  it('shows one member what the other does, until one looks for themself', async () => {
+    const room = await newRoom();
+    const [one, two] = [await newPage(`#/rooms/${room}`), await newPage(`#/rooms/${room}`)];
+    await Promise.all([full(one), full(two)]);
+    await drag(one, 1, 225, 0);
+    await two.waitForFunction(() => document.querySelector('[data-view="1"] [data-letters]').dataset.letters === 'P A S I');
+    await two.locator('[data-view="1"] .follow-bar').waitFor();
+    assert.match(await two.locator('[data-view="1"] .follow-bar').textContent(), /Following/);
+    await shoot(two, 'room-following');
+    await two.locator('#picture-1').focus();
+    await two.keyboard.press('f');
+    await two.locator('[data-view="1"] .follow-bar >> text=Own view').waitFor();
+    await one.locator('#picture-1').focus();
+    await one.keyboard.press('r');
+    await one.waitForFunction(() => document.querySelector('[data-view="1"] [data-letters]').dataset.letters === 'R L S I');
+    await sleep(300);
+    assert.equal(await letters(two, 1), 'P A S I', 'an own view stays');
+    await two.locator('[data-view="1"] .follow-bar button').click();
+    await two.waitForFunction(() => document.querySelector('[data-view="1"] [data-letters]').dataset.letters === 'R L S I');
+    await Promise.all([one.context().close(), two.context().close()]);
+  });
+
+  it('lives through the death of the renderer in the middle of a drag', async () => {
+    const page = await newPage(`#/rooms/${await newRoom()}`);
+    await full(page);
+    await drag(page, 1, 100, 0, { release: false });
+    process.kill(rendererOf(daemon.child), 'SIGKILL');
+    await page.locator('.toast >> text=Renderer restarting').waitFor({ timeout: 5000 });
+    await shoot(page, 'room-restarting');
+    await page.mouse.up();
+    await page.locator('.toast >> text=Picture restored').waitFor({ timeout: 10000 });
+    await full(page);
+    assert.ok((await look(page, 1)).lit > 0.05);
+    await drag(page, 1, 125, 0);
+    await page.waitForFunction(() => document.querySelector('[data-view="1"] [data-letters]').dataset.letters === 'P A S I');
+    await page.context().close();
+  });
+
+  it('has had no error and nothing against the content security policy', () => assert.deepEqual(errors, []));
+});
