@@ -162,6 +162,8 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await two.waitForFunction(() => document.querySelector('[data-view="1"] [data-letters]').dataset.letters === 'P A S I');
     await two.locator('[data-view="1"] .follow-bar').waitFor();
     assert.match(await two.locator('[data-view="1"] .follow-bar').textContent(), /Following/);
+    await sleep(600); // the bar stays, whatever sizes change
+    assert.ok(await two.locator('[data-view="1"] .follow-bar').isVisible());
     await shoot(two, 'room-following');
     await two.locator('#picture-1').focus();
     await two.keyboard.press('f');

@@ -97,8 +97,7 @@ export class Pane {
           title=${isMaximised ? 'Show all panes (Enter)' : 'Maximise (double click, Enter)'} aria-label=${`${isMaximised ? 'Restore' : 'Maximise'} ${names[kind]}`}>
           ${icon(isMaximised ? 'restore' : 'maximise')}</button>
       </header>
-      ${this.#followBar()}
-      <div class="pane-body">
+      <div class="pane-body">${this.#followBar()}
         <div class=${classMap({ picture: true, stale: this.badge.value?.state === 'stale', lost: this.badge.value?.state === 'disconnected' })}
           tabindex="0" role="group" aria-label=${`${names[kind]} picture`} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
           @focus=${() => { this.#ui.active.value = n; }}>
@@ -148,7 +147,8 @@ export class Pane {
   }
 
   #overlay() {
-    const header = this.#view.painted.value;
+    const view = this.#view;
+    const header = view.painted.value;
     const scene = this.#room.scene.value;
     const pane = this.#size.value;
     if (!header || !scene || pane[0] < 2) return nothing;
@@ -156,9 +156,10 @@ export class Pane {
     const fullWidth = (header.width_px * 100) / header.scale_percent;
     const image = shownImage(this.#room.plan.value, scene);
     return overlay({
-      kind: this.#view.kind, header, box, pane,
+      kind: view.kind, header, box, pane,
       point: crosshair(scene),
       pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
+      topPx: view.isFollowing.value && !view.movedBy.value ? 0 : parseInt(getComputedStyle(this.host).getPropertyValue('--follow'), 10),
       windowText: image ? windowText(scene.image.window, image.unit) : '',
     });
   }

@@ -27,7 +27,7 @@ export class ViewState {
   queue(patch) {
     this.#replica.queue(patch);
     batch(() => {
-      this.movedBy.value = '';
+      if ('camera' in patch) this.movedBy.value = ''; // a new size alone is nobody's movement
       this.document.value = this.#replica.value;
     });
   }

@@ -15,15 +15,15 @@ const figurePx = 24;
  * @param {number[]} what.pane its size, CSS px
  * @param {number[]|null} what.point the crosshair, LPS mm
  * @param {number} what.pxPerMm CSS px; 0 in perspective
- * @param {string} what.windowText
+ * @param {string} what.windowText @param {number} what.topPx how much at the top something else covers
  */
-export function overlay({ kind, header, box, pane: [width, height], point, pxPerMm, windowText }) {
+export function overlay({ kind, header, box, pane: [width, height], point, pxPerMm, windowText, topPx }) {
   const matrix = header.clip_from_lps_mm;
   const at = point && toPicture(matrix, point);
   const mark = at && { x: box.x + at[0] * box.width, y: box.y + at[1] * box.height };
   return svg`
     ${mark && (kind === '3d' ? marker(mark, box) : cross(mark, box))}
-    ${edgeText(edgeLetters(matrix), width, height)}
+    ${edgeText(edgeLetters(matrix), width, height, topPx)}
     ${kind === '3d' ? figure(matrix, width, height) : nothing}
     ${pxPerMm > 0 ? scaleBar(pxPerMm, height) : nothing}
     ${kind !== '3d' && windowText ? svg`<text class="halo caption" x=${width - 12} y=${height - 12} text-anchor="end">${windowText}</text>` : nothing}`;
@@ -50,20 +50,23 @@ function marker({ x, y }, box) {
     <circle cx=${x} cy=${y} r="7" />${line(x - 12, y, x - 7, y)}${line(x + 7, y, x + 12, y)}${line(x, y - 12, x, y - 7)}${line(x, y + 7, x, y + 12)}</g>`)}</g>`;
 }
 
-function edgeText(letters, width, height) {
+function edgeText(letters, width, height, topPx) {
   const text = (x, y, anchor, word) => svg`<text class="halo letter" x=${x} y=${y} text-anchor=${anchor}>${word}</text>`;
   const middle = height / 2 + 5;
   return svg`<g data-letters=${`${letters.left} ${letters.right} ${letters.top} ${letters.bottom}`}>
     ${text(letterPx - 4, middle, 'start', letters.left)}${text(width - letterPx + 4, middle, 'end', letters.right)}
-    ${text(width / 2, letterPx + 5, 'middle', letters.top)}${text(width / 2, height - letterPx + 4, 'middle', letters.bottom)}</g>`;
+    ${text(width / 2, topPx + letterPx + 5, 'middle', letters.top)}${text(width / 2, height - letterPx + 4, 'middle', letters.bottom)}</g>`;
 }
 
 function figure(matrix, width, height) {
   const x = width - 46;
   const y = height - 50;
-  return svg`<g class="figure">${axesFigure(matrix).map((end) => svg`<g class=${end.isAway ? 'away' : 'near'}>
+  const ends = axesFigure(matrix);
+  // a letter that points away gives way to a nearer one in the same place
+  const isFree = (end) => !end.isAway || ends.every((other) => other.isAway || Math.hypot(end.x - other.x, end.y - other.y) * figurePx > 11);
+  return svg`<g class="figure">${ends.map((end) => svg`<g class=${end.isAway ? 'away' : 'near'}>
     <line x1=${x} y1=${y} x2=${x + end.x * figurePx} y2=${y + end.y * figurePx} />
-    ${Math.hypot(end.x, end.y) > 0.2
+    ${Math.hypot(end.x, end.y) > 0.2 && isFree(end)
       ? svg`<text class="halo" text-anchor="middle" x=${x + end.x * (figurePx + 9)} y=${y + end.y * (figurePx + 9) + 4}>${end.letter}</text>`
       : nothing}</g>`)}</g>`;
 }
