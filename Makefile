@@ -66,7 +66,7 @@ SERVER_SRC := $(call c_files,server/room server/net server/http server/ws server
 DAEMON_SRC := $(call c_files,server/daemon)
 RENDERER_SRC := $(call c_files,server/renderer)
 CLI_SRC := $(call c_files,server/cli)
-GEN_SRC := $(GEN)/wire_gen.c $(GEN)/openapi.c
+GEN_SRC := $(GEN)/wire_gen.c $(GEN)/problem_gen.c $(GEN)/openapi.c
 
 obj = $(patsubst %.c,$(B)/obj/%.o,$(1))
 $(B)/obj/%.o: %.c | $(GEN_STAMP)

@@ -1,6 +1,7 @@
 // Writes what is made from proto/*.json into the folder named on the command line:
 //   scene.h scene.c      structs, enums, defaults of scene and view; no JSON, for core
 //   wire_gen.h wire_gen.c  field tables and message structs for server/wire
+//   problem_gen.h problem_gen.c  types of problems
 //   openapi.json openapi.c  the HTTP API, for people and for the daemon to serve
 //   wire.js              the same tables for the page
 //   reference.html       for people
@@ -11,12 +12,14 @@ import { sceneHeader, sceneSource } from './scene_c.mjs';
 import { wireHeader, wireSource } from './wire_c.mjs';
 import { wireScript } from './wire_js.mjs';
 import { openapi, openapiSource } from './openapi.mjs';
+import { problemHeader, problemSource } from './problem_c.mjs';
 import { referencePage } from './reference.mjs';
 
 const proto = join(dirname(fileURLToPath(import.meta.url)), '..');
 const read = (name) => JSON.parse(readFileSync(join(proto, name), 'utf8'));
 const scene = read('scene.json');
 const messages = read('messages.json');
+const problems = read('problems.json');
 const api = openapi(read('http.json'), scene, '1');
 const out = process.argv[2];
 mkdirSync(out, { recursive: true });
@@ -26,7 +29,9 @@ write('scene.h', sceneHeader(scene));
 write('scene.c', sceneSource(scene));
 write('wire_gen.h', wireHeader(scene, messages));
 write('wire_gen.c', wireSource(scene, messages));
+write('problem_gen.h', problemHeader(problems));
+write('problem_gen.c', problemSource(problems));
 write('wire.js', wireScript(scene, messages));
-write('reference.html', referencePage(scene, messages));
+write('reference.html', referencePage(scene, messages, problems));
 write('openapi.json', JSON.stringify(api, null, 1));
 write('openapi.c', openapiSource(api));

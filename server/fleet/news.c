@@ -225,7 +225,7 @@ static void probe_ended(struct fleet *fleet, const struct watch_event *event)
     cJSON *json = event->is_exit ? json_read(event->output ? event->output : "", event->n_output, &problem) : NULL;
     if (!json || !fleet_take_gl(fleet, json)) {
         how_it_ended(event, how, sizeof how);
-        problem_set(&fleet->gl_problem, PROBLEM_GL, "", "", "looking for a way to draw failed: the renderer %.180s", how);
+        problem_set(&fleet->gl_problem, PROBLEM_GL_UNAVAILABLE, "", "", "looking for a way to draw failed: the renderer %.180s", how);
     }
     cJSON_Delete(json);
     if (fleet->gl_problem.type != PROBLEM_NONE)

@@ -140,7 +140,7 @@ static int probe_gl(const struct session_options *options, const char *confined)
         cJSON_AddStringToObject(json, "confined", confined);
     } else {
         struct problem problem;
-        problem_set(&problem, PROBLEM_GL, "", "", "%s", err.text);
+        problem_set(&problem, PROBLEM_GL_UNAVAILABLE, "", "", "%s", err.text);
         json = cJSON_CreateObject();
         cJSON_AddItemToObject(json, "problem", problem_to_json(&problem));
     }

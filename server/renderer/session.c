@@ -419,7 +419,7 @@ static void take_gl(struct session *session, const struct note *note)
         cJSON_AddStringToObject(json, "type", "gl");
         cJSON_AddStringToObject(json, "confined", session->options->confined);
     } else {
-        problem_set(&session->gl_problem, PROBLEM_GL, "", "", "%s", note->error.text);
+        problem_set(&session->gl_problem, PROBLEM_GL_UNAVAILABLE, "", "", "%s", note->error.text);
         json = packet("gl");
         cJSON_AddItemToObject(json, "problem", problem_to_json(&session->gl_problem));
         log_warn("nothing can be drawn: %s", note->error.text);

@@ -3,31 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct {
-    const char *word, *title;
-    int status;
-} types[PROBLEM_N_TYPES] = {
-    [PROBLEM_NONE] = { "none", "No problem", 200 },
-    [PROBLEM_JSON] = { "json", "Not readable as JSON", 400 },
-    [PROBLEM_VALIDATION] = { "validation", "A field is wrong", 422 },
-    [PROBLEM_FORBIDDEN] = { "forbidden", "Not for this origin", 403 },
-    [PROBLEM_NOT_FOUND] = { "not-found", "There is no such thing", 404 },
-    [PROBLEM_METHOD] = { "method", "Not a method of this address", 405 },
-    [PROBLEM_STALE_REVISION] = { "stale-revision", "Changed by somebody else meanwhile", 412 },
-    [PROBLEM_REVISION_NEEDED] = { "revision-needed", "If-Match is needed", 428 },
-    [PROBLEM_TOO_LARGE] = { "too-large", "Too large", 413 },
-    [PROBLEM_MEDIA_TYPE] = { "media-type", "Not a media type read here", 415 },
-    [PROBLEM_UPGRADE] = { "upgrade", "Open the WebSocket on a fresh connection", 426 },
-    [PROBLEM_BUSY] = { "busy", "Not at the moment", 503 },
-    [PROBLEM_PLAN_UNREADABLE] = { "plan-unreadable", "The plan cannot be loaded", 409 },
-    [PROBLEM_RENDERER] = { "renderer", "The renderer stopped and is being started again", 503 },
-    [PROBLEM_GL] = { "gl-unavailable", "Nothing can be drawn on this machine", 503 },
-    [PROBLEM_LIMIT] = { "limit", "More than is allowed", 429 },
-    [PROBLEM_TIMEOUT] = { "timeout", "It took too long", 504 },
-    [PROBLEM_CANCELLED] = { "cancelled", "Somebody cancelled it", 409 },
-    [PROBLEM_INTERNAL] = { "internal", "A mistake in the server", 500 },
-};
-
 bool problem_set(struct problem *problem, enum problem_type type, const char *pointer, const char *code, const char *format, ...)
 {
     if (!problem)
@@ -53,7 +28,7 @@ bool problem_from_error(struct problem *problem, const struct error *err)
     case ERROR_UNSUPPORTED: type = PROBLEM_VALIDATION; break;
     case ERROR_LIMIT: type = PROBLEM_LIMIT; break;
     case ERROR_CANCELLED: type = PROBLEM_CANCELLED; break;
-    case ERROR_GL: type = PROBLEM_GL; break;
+    case ERROR_GL: type = PROBLEM_GL_UNAVAILABLE; break;
     case ERROR_STATE: type = PROBLEM_BUSY; break;
     case ERROR_NONE:
     case ERROR_MEMORY:
@@ -64,23 +39,23 @@ bool problem_from_error(struct problem *problem, const struct error *err)
 
 int problem_status(enum problem_type type)
 {
-    return (unsigned)type < PROBLEM_N_TYPES ? types[type].status : 500;
+    return (unsigned)type < PROBLEM_N_TYPES ? problem_types[type].status : 500;
 }
 
 const char *problem_word(enum problem_type type)
 {
-    return (unsigned)type < PROBLEM_N_TYPES ? types[type].word : "internal";
+    return (unsigned)type < PROBLEM_N_TYPES ? problem_types[type].word : "internal";
 }
 
 cJSON *problem_to_json(const struct problem *problem)
 {
     enum problem_type type = (unsigned)problem->type < PROBLEM_N_TYPES ? problem->type : PROBLEM_INTERNAL;
     char uri[64];
-    (void)snprintf(uri, sizeof uri, "/problems/%s", types[type].word);
+    (void)snprintf(uri, sizeof uri, "/problems/%s", problem_types[type].word);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "type", uri);
-    cJSON_AddStringToObject(json, "title", types[type].title);
-    cJSON_AddNumberToObject(json, "status", types[type].status);
+    cJSON_AddStringToObject(json, "title", problem_types[type].title);
+    cJSON_AddNumberToObject(json, "status", problem_types[type].status);
     cJSON_AddStringToObject(json, "detail", problem->detail);
     if (problem->pointer[0])
         cJSON_AddStringToObject(json, "pointer", problem->pointer);
@@ -104,7 +79,7 @@ bool problem_from_json(const cJSON *json, struct problem *problem)
     enum problem_type type = PROBLEM_NONE;
     if (strncmp(uri, prefix, sizeof prefix - 1) == 0)
         for (int i = PROBLEM_NONE + 1; i < PROBLEM_N_TYPES; i++)
-            if (strcmp(uri + sizeof prefix - 1, types[i].word) == 0)
+            if (strcmp(uri + sizeof prefix - 1, problem_types[i].word) == 0)
                 type = (enum problem_type)i;
     if (type == PROBLEM_NONE)
         return problem_set(problem, PROBLEM_INTERNAL, "", "", "an answer that is not a problem description");

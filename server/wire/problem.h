@@ -3,29 +3,7 @@
 #include <cjson/cJSON.h>
 
 #include "core/base/error.h"
-
-enum problem_type {
-    PROBLEM_NONE,
-    PROBLEM_JSON,            /* 400 the body is not JSON (or not UTF-8, or too deep) */
-    PROBLEM_VALIDATION,      /* 422 a field is wrong: pointer says which, code how */
-    PROBLEM_FORBIDDEN,       /* 403 asked for by a page of another origin */
-    PROBLEM_NOT_FOUND,       /* 404 */
-    PROBLEM_METHOD,          /* 405 */
-    PROBLEM_STALE_REVISION,  /* 412 If-Match names another revision than the current */
-    PROBLEM_REVISION_NEEDED, /* 428 PATCH of shared state without If-Match */
-    PROBLEM_TOO_LARGE,       /* 413 */
-    PROBLEM_MEDIA_TYPE,      /* 415 */
-    PROBLEM_UPGRADE,         /* 426 open the WebSocket on a fresh connection */
-    PROBLEM_BUSY,            /* 503 try again after retry_after_ms */
-    PROBLEM_PLAN_UNREADABLE, /* 409 the plan cannot be loaded; detail is the reason */
-    PROBLEM_RENDERER,        /* 503 the renderer stopped while answering; it is being restarted */
-    PROBLEM_GL,              /* 503 no way to draw on this machine */
-    PROBLEM_LIMIT,           /* 429 more rooms, members, views, requests than configured */
-    PROBLEM_TIMEOUT,         /* 504 */
-    PROBLEM_CANCELLED,       /* 409 somebody cancelled the job */
-    PROBLEM_INTERNAL,        /* 500 */
-    PROBLEM_N_TYPES
-};
+#include "problem_gen.h" /* enum problem_type and its words, from proto/problems.json */
 
 struct problem {
     enum problem_type type;
