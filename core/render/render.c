@@ -1,12 +1,29 @@
 #include "core/render/render.h"
 
+#include <assert.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+#include "core/base/mem.h"
+#include "core/render/gl/renderer.h"
+#include "core/render/soft/soft.h"
+
+/* Either of the two implementations; the other is NULL. */
+struct renderer {
+    pthread_t thread;
+    struct gl_renderer *gl;
+    struct soft_renderer *soft;
+};
 
 static const char *const words[RENDER_N_BACK_ENDS] = {
     [RENDER_AUTO] = "auto",
     [RENDER_EGL_DEVICE] = "egl-device",
     [RENDER_EGL_SURFACELESS] = "egl-surfaceless",
     [RENDER_OSMESA] = "osmesa",
+    [RENDER_SOFT] = "soft",
 };
 
 const char *render_back_end_word(enum render_back_end back_end)
@@ -22,4 +39,97 @@ bool render_back_end_from_word(const char *word, enum render_back_end *back_end)
             return true;
         }
     return false;
+}
+
+static void assert_thread(const struct renderer *renderer)
+{
+    assert(pthread_equal(renderer->thread, pthread_self()));
+}
+
+/* Whether the system shows a graphics device at all. Starting a driver only to learn that it is a software one takes longer than
+ * many pictures. Looks at names alone, which a confined process may. */
+static bool has_graphics_device(void)
+{
+    static const char *const names[] = { "/dev/nvidiactl", "/dev/nvidia0", "/dev/dxg" };
+    char name[32];
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (access(names[i], F_OK) == 0)
+            return true;
+    for (int i = 0; i < 64; i++) {
+        snprintf(name, sizeof name, "/dev/dri/card%d", i);
+        if (access(name, F_OK) == 0)
+            return true;
+        snprintf(name, sizeof name, "/dev/dri/renderD%d", 128 + i);
+        if (access(name, F_OK) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* OpenGL on a graphics card, or NULL. */
+static struct gl_renderer *create_hardware(void)
+{
+    static const enum render_back_end order[] = { RENDER_EGL_DEVICE, RENDER_EGL_SURFACELESS };
+    for (size_t i = 0; has_graphics_device() && i < sizeof order / sizeof order[0]; i++) {
+        struct error why = { 0 };
+        struct gl_renderer *gl = gl_renderer_create(order[i], true, &why);
+        if (gl && !gl_renderer_facts(gl)->is_software)
+            return gl;
+        gl_renderer_destroy(gl);
+    }
+    return NULL;
+}
+
+struct renderer *renderer_create(enum render_back_end back_end, struct error *err)
+{
+    struct renderer *renderer = mem_new(sizeof *renderer);
+    renderer->thread = pthread_self();
+    if (back_end == RENDER_AUTO)
+        renderer->gl = create_hardware();
+    else if (back_end != RENDER_SOFT) {
+        renderer->gl = gl_renderer_create(back_end, false, err);
+        if (!renderer->gl)
+            error_prefix(err, "%s", words[back_end]);
+    }
+    if (!renderer->gl && (back_end == RENDER_AUTO || back_end == RENDER_SOFT))
+        renderer->soft = soft_renderer_create();
+    if (renderer->gl || renderer->soft)
+        return renderer;
+    free(renderer);
+    return NULL;
+}
+
+void renderer_destroy(struct renderer *renderer)
+{
+    if (!renderer)
+        return;
+    assert_thread(renderer);
+    gl_renderer_destroy(renderer->gl);
+    soft_renderer_destroy(renderer->soft);
+    free(renderer);
+}
+
+const struct render_facts *renderer_facts(const struct renderer *renderer)
+{
+    return renderer->gl ? gl_renderer_facts(renderer->gl) : soft_renderer_facts(renderer->soft);
+}
+
+void renderer_forget(struct renderer *renderer, const struct plan *plan)
+{
+    assert_thread(renderer);
+    if (renderer->gl)
+        gl_renderer_forget(renderer->gl, plan);
+    else
+        soft_renderer_forget(renderer->soft, plan);
+}
+
+struct image *render_snapshot(struct renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
+                              struct camera *camera, struct render_timing *timing, struct error *err)
+{
+    assert_thread(renderer);
+    *timing = (struct render_timing){ 0 };
+    camera_resolve(snapshot, camera);
+    if (renderer->gl)
+        return gl_renderer_snapshot(renderer->gl, snapshot, options, camera, timing, err);
+    return soft_renderer_snapshot(renderer->soft, snapshot, options, camera, timing, err);
 }

@@ -1,10 +1,10 @@
 #pragma once
-/* A snapshot to an image. Leaks no GL: another implementation can stand behind it, with the same tests. */
+/* A snapshot to an image. Leaks no GL: OpenGL and a software rasteriser of our own stand behind it, with the same tests. */
 #include "core/base/image.h"
 #include "core/scene/snapshot.h"
 
-enum render_back_end { RENDER_AUTO, RENDER_EGL_DEVICE, RENDER_EGL_SURFACELESS, RENDER_OSMESA, RENDER_N_BACK_ENDS };
-const char *render_back_end_word(enum render_back_end back_end); /* "auto", "egl-device", "egl-surfaceless", "osmesa" */
+enum render_back_end { RENDER_AUTO, RENDER_EGL_DEVICE, RENDER_EGL_SURFACELESS, RENDER_OSMESA, RENDER_SOFT, RENDER_N_BACK_ENDS };
+const char *render_back_end_word(enum render_back_end back_end); /* "auto", "egl-device", "egl-surfaceless", "osmesa", "soft" */
 bool render_back_end_from_word(const char *word, enum render_back_end *back_end);
 
 struct render_facts {
@@ -16,8 +16,8 @@ struct render_facts {
 
 struct renderer;
 
-/* Starts the back end (RENDER_AUTO: a hardware device, surfaceless, OSMesa, in that order, the first that draws a
- * correct test pixel; asked for by name, a device may also be a software one).
+/* Starts the back end. RENDER_AUTO: OpenGL where a graphics card draws a correct test pixel, else our own software rasteriser,
+ * which is always there and several times faster than OpenGL in software. Asked for by name, OpenGL may also be a software one.
  * The calling thread becomes the render thread: every other call must come from it (asserted).
  *   errors ERROR_GL with what each back end said */
 NODISCARD struct renderer *renderer_create(enum render_back_end back_end, struct error *err);

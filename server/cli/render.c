@@ -31,7 +31,7 @@ static void print_help(void)
            "  --scene FILE      JSON: what differs from the scene a new room starts with (a merge patch, RFC 7396)\n"
            "  --view FILE       JSON: what differs from the view from the front, 1024x768; camera, kind, size, override\n"
            "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
-           "  --gl BACKEND      auto, egl-device, egl-surfaceless or osmesa (default auto: the first that works)\n"
+           "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
            "  --quality N       of a JPEG, 1 to 100 (default %d)\n"
            "  --help            this text\n\n"
            "The fields of scene and view are those of the daemon's API. Equal plans, scenes and views give equal pictures on the\n"
@@ -256,7 +256,7 @@ static bool parse_arguments(int argc, char **argv, struct render_job *job, int *
             break;
         case 'g':
             if (!render_back_end_from_word(optarg, &job->back_end))
-                return command_usage_error("render", "--gl '%s' is not auto, egl-device, egl-surfaceless or osmesa", optarg), false;
+                return command_usage_error("render", "--gl '%s' is not auto, egl-device, egl-surfaceless, osmesa or soft", optarg), false;
             break;
         case 'q':
             if (!parse_quality(optarg, &job->quality))

@@ -72,11 +72,11 @@ static bool default_web_folder(char path[PATH_SIZE], struct error *err)
 
 static bool gl_is_known(const char *gl, struct error *err)
 {
-    static const char *const known[] = { "auto", "egl-device", "egl-surfaceless", "osmesa" };
+    static const char *const known[] = { "auto", "egl-device", "egl-surfaceless", "osmesa", "soft" };
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
         if (strcmp(gl, known[i]) == 0)
             return true;
-    return error_set(err, ERROR_FORMAT, "--gl is \"%.40s\", expected auto, egl-device, egl-surfaceless or osmesa", gl);
+    return error_set(err, ERROR_FORMAT, "--gl is \"%.40s\", expected auto, egl-device, egl-surfaceless, osmesa or soft", gl);
 }
 
 /* Serves until a signal comes. */

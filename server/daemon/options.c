@@ -24,7 +24,7 @@ static const struct setting settings[] = {
     { "web", "DIR", "the page's files; default: beside the program or ../share/beamroom/web", KIND_TEXT, AT(web_folder), 0, 0 },
     { "listen", "ADDRESS:PORT", "default 127.0.0.1:8080; port 0 lets the system choose. There is no TLS here: put a proxy in front", KIND_TEXT,
       AT(listen), 0, 0 },
-    { "gl", "NAME", "auto (default), egl-device, egl-surfaceless or osmesa", KIND_TEXT, AT(gl), 0, 0 },
+    { "gl", "NAME", "auto (default), egl-device, egl-surfaceless, osmesa or soft", KIND_TEXT, AT(gl), 0, 0 },
     { "renderer", "FILE", "the renderer's program; default: beamroom-render beside this one", KIND_TEXT, AT(renderer_path), 0, 0 },
     { "max-renderers", "N", "plans open at once; default 8", KIND_COUNT, AT(max_renderers), 1, 1000 },
     { "max-renderer-mib", "N", "memory one renderer may take in MiB, 0 no limit; default 16384", KIND_COUNT, AT(max_renderer_mib), 0, 1 << 24 },

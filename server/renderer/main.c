@@ -24,7 +24,7 @@ static void print_help(void)
           "with it over a socket; by hand only --scan and --probe-gl are of use.\n\n"
           "  --scan DIR         print as JSON what the plan folder DIR holds, without reading voxels, and end\n"
           "  --probe-gl         print as JSON how pictures can be drawn on this machine, and end\n"
-          "  --gl BACK-END      auto (default), egl-device, egl-surfaceless or osmesa\n"
+          "  --gl BACK-END      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
           "  --stub             no graphics: grey pictures of the right size, for tests\n"
           "  --socket-fd FD     number of the open socket to the daemon\n"
           "  --plan-folder DIR  the plan to read; nothing else is readable from then on\n"
@@ -87,7 +87,7 @@ static int read_arguments(int argc, char **argv, struct arguments *arguments)
         case CACHE: arguments->cache = optarg; break;
         case GL:
             if (!render_back_end_from_word(optarg, &arguments->session.back_end))
-                return refuse("--gl is auto, egl-device, egl-surfaceless or osmesa, not", optarg);
+                return refuse("--gl is auto, egl-device, egl-surfaceless, osmesa or soft, not", optarg);
             break;
         case STUB: arguments->session.is_stub = true; break;
         case MAX_BYTES:

@@ -22,7 +22,7 @@ int shots_run(const char *name, const struct CMUnitTest *tests, size_t n_tests)
         shots_renderer = NULL;
     }
     if (n_present == 0) {
-        printf("no OpenGL back end works here\n");
+        printf("no back end works here\n");
         return 77;
     }
     return n_failed ? 1 : 0;

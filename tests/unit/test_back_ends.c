@@ -4,7 +4,7 @@
 static void every_back_end_has_a_word_that_leads_back_to_it(void **state)
 {
     (void)state;
-    static const char *const words[] = { "auto", "egl-device", "egl-surfaceless", "osmesa" };
+    static const char *const words[] = { "auto", "egl-device", "egl-surfaceless", "osmesa", "soft" };
     for (int i = 0; i < RENDER_N_BACK_ENDS; i++) {
         enum render_back_end back_end = RENDER_N_BACK_ENDS;
         assert_string_equal(render_back_end_word((enum render_back_end)i), words[i]);

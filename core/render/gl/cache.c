@@ -4,11 +4,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "core/render/gl/shading.h"
-
-/* How far normals are averaged: as wide as the terraces of a surface that rises one voxel in a dozen. A reduced surface has
- * larger triangles, so fewer passes reach as far. */
-enum { SHADING_PASSES = 12 };
+#include "core/render/shading.h"
 
 enum entry_kind { ENTRY_SURFACE, ENTRY_IMAGE, ENTRY_LAYER };
 
@@ -107,7 +103,7 @@ static bool upload_surface(const struct gl *gl, const struct mesh *mesh, uint32_
 {
     if (mesh->n_triangles > (size_t)INT32_MAX / 3)
         return error_set(err, ERROR_LIMIT, "a surface of %zu triangles: at most %d can be drawn", mesh->n_triangles, INT32_MAX / 3);
-    struct vertex *vertices = pack_vertices(mesh, SHADING_PASSES / (int)(reduction > SHADING_PASSES ? SHADING_PASSES : reduction), err);
+    struct vertex *vertices = pack_vertices(mesh, shading_passes(reduction), err);
     if (!vertices)
         return false;
     surface->n_indices = (GLsizei)(3 * mesh->n_triangles);
@@ -147,7 +143,7 @@ const struct gl_surface *gl_cache_surface(const struct gl *gl, struct gl_cache *
     }
     struct entry made = { .plan = plan, .kind = ENTRY_SURFACE, .index = region, .detail = detail };
     made.surface.is_light = facts.reduction > 1;
-    bool is_good = upload_surface(gl, mesh, facts.reduction ? facts.reduction : 1, &made.surface, err);
+    bool is_good = upload_surface(gl, mesh, facts.reduction, &made.surface, err);
     mesh_unref(mesh);
     entry = keep(cache, made);
     if (is_good)

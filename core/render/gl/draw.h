@@ -4,8 +4,7 @@
 #include "core/render/gl/program.h"
 #include "core/render/gl/target.h"
 #include "core/render/render.h"
-
-enum { GL_N_LABELS = 65536 };
+#include "core/render/visible.h"
 
 struct gl_frame {
     const struct gl *gl;
@@ -15,7 +14,7 @@ struct gl_frame {
     GLuint no_vertices;                 /* vertex array of passes without vertices */
     GLuint polygon_array, polygon;      /* vertex array and buffer of slices */
     GLuint palette;                     /* texture, label to colour */
-    uint8_t (*colors)[4];               /* [GL_N_LABELS], what is uploaded to it */
+    uint8_t (*colors)[4];               /* [VISIBLE_N_LABELS], what is uploaded to it */
     const struct snapshot *snapshot;
     const struct camera *camera;
     enum surface_detail detail;

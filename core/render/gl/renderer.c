@@ -1,5 +1,3 @@
-#include <assert.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,14 +6,13 @@
 #include "core/base/mem.h"
 #include "core/render/gl/context.h"
 #include "core/render/gl/draw.h"
+#include "core/render/gl/renderer.h"
+#include "core/render/visible.h"
 
-/* Samples along a side of a pixel in still pictures, and how many samples are drawn at a time: larger stills are drawn in bands. */
-enum { STILL_SAMPLES = 2, MAX_SIDE_PX = 4096, MAX_BAND_SAMPLES = 16 << 20 };
+/* How many samples are drawn at a time: larger stills are drawn in bands. */
+enum { MAX_SIDE_PX = 4096, MAX_BAND_SAMPLES = 16 << 20 };
 
-static const float background[3] = { 0x08 / 255.0f, 0x09 / 255.0f, 0x0b / 255.0f };
-
-struct renderer {
-    pthread_t thread;
+struct gl_renderer {
     struct gl gl;
     struct gl_context context;
     struct render_facts facts;
@@ -23,15 +20,10 @@ struct renderer {
     struct gl_target target;
     struct gl_cache *cache;
     GLuint no_vertices, polygon_array, polygon, palette;
-    uint8_t colors[GL_N_LABELS][4]; /* of the palette */
+    uint8_t colors[VISIBLE_N_LABELS][4]; /* of the palette */
     uint8_t *samples; /* a band of a still picture as it is read back */
     size_t n_samples_bytes;
 };
-
-static void assert_thread(const struct renderer *renderer)
-{
-    assert(pthread_equal(renderer->thread, pthread_self()));
-}
 
 /* ---- start and stop ------------------------------------------------------------------------------------------------------- */
 
@@ -49,7 +41,7 @@ static bool is_software_name(const char *renderer)
     return false;
 }
 
-static void learn_facts(struct renderer *renderer)
+static void learn_facts(struct gl_renderer *renderer)
 {
     const struct gl *gl = &renderer->gl;
     struct render_facts *facts = &renderer->facts;
@@ -63,7 +55,7 @@ static void learn_facts(struct renderer *renderer)
     facts->max_samples = samples;
 }
 
-static void make_polygon(struct renderer *renderer)
+static void make_polygon(struct gl_renderer *renderer)
 {
     const struct gl *gl = &renderer->gl;
     gl->GenVertexArrays(1, &renderer->no_vertices);
@@ -86,7 +78,7 @@ static void make_polygon(struct renderer *renderer)
 }
 
 /* A back end is believed when a triangle through its compiler and rasteriser comes back with the right colour. */
-static bool draw_test_pixel(struct renderer *renderer, struct error *err)
+static bool draw_test_pixel(struct gl_renderer *renderer, struct error *err)
 {
     const struct gl *gl = &renderer->gl;
     const uint8_t texel[4] = { 51, 102, 204, 255 };
@@ -115,7 +107,7 @@ static bool draw_test_pixel(struct renderer *renderer, struct error *err)
     return true;
 }
 
-static bool start(struct renderer *renderer, enum render_back_end back_end, enum gl_device_wish wish, struct error *err)
+static bool start(struct gl_renderer *renderer, enum render_back_end back_end, enum gl_device_wish wish, struct error *err)
 {
     if (!gl_context_open(&renderer->context, back_end, wish, &renderer->gl, err))
         return false;
@@ -127,31 +119,19 @@ static bool start(struct renderer *renderer, enum render_back_end back_end, enum
     return draw_test_pixel(renderer, err);
 }
 
-struct renderer *renderer_create(enum render_back_end back_end, struct error *err)
+struct gl_renderer *gl_renderer_create(enum render_back_end back_end, bool is_hardware_wanted, struct error *err)
 {
-    static const enum render_back_end order[] = { RENDER_EGL_DEVICE, RENDER_EGL_SURFACELESS, RENDER_OSMESA };
-    char said[240] = "";
-    for (size_t i = 0; i < sizeof order / sizeof order[0]; i++) {
-        if (back_end != RENDER_AUTO && back_end != order[i])
-            continue;
-        struct renderer *renderer = mem_new(sizeof *renderer);
-        struct error why = { 0 };
-        renderer->thread = pthread_self();
-        if (start(renderer, order[i], back_end == RENDER_AUTO ? GL_DEVICE_HARDWARE : GL_DEVICE_ANY, &why))
-            return renderer;
-        renderer_destroy(renderer);
-        size_t length = strlen(said);
-        snprintf(said + length, sizeof said - length, "%s%s: %.56s", length ? "; " : "", render_back_end_word(order[i]), why.text);
-    }
-    error_set(err, ERROR_GL, "%s", said);
+    struct gl_renderer *renderer = mem_new(sizeof *renderer);
+    if (start(renderer, back_end, is_hardware_wanted ? GL_DEVICE_HARDWARE : GL_DEVICE_ANY, err))
+        return renderer;
+    gl_renderer_destroy(renderer);
     return NULL;
 }
 
-void renderer_destroy(struct renderer *renderer)
+void gl_renderer_destroy(struct gl_renderer *renderer)
 {
     if (!renderer)
         return;
-    assert_thread(renderer);
     if (renderer->context.context) {
         const struct gl *gl = &renderer->gl;
         gl_cache_destroy(gl, renderer->cache);
@@ -167,14 +147,13 @@ void renderer_destroy(struct renderer *renderer)
     free(renderer);
 }
 
-const struct render_facts *renderer_facts(const struct renderer *renderer)
+const struct render_facts *gl_renderer_facts(const struct gl_renderer *renderer)
 {
     return &renderer->facts;
 }
 
-void renderer_forget(struct renderer *renderer, const struct plan *plan)
+void gl_renderer_forget(struct gl_renderer *renderer, const struct plan *plan)
 {
-    assert_thread(renderer);
     gl_cache_forget(&renderer->gl, renderer->cache, plan);
 }
 
@@ -198,19 +177,19 @@ static bool draw_passes(const struct gl_frame *frame, struct error *err)
     const struct gl *gl = frame->gl;
     gl->BindFramebuffer(GL_FRAMEBUFFER, frame->target->framebuffer);
     gl->Viewport(0, 0, frame->target->width_px, frame->target->height_px);
-    gl->ClearColor(background[0], background[1], background[2], 1);
+    gl->ClearColor((float)visible_background[0] / 255.0f, (float)visible_background[1] / 255.0f, (float)visible_background[2] / 255.0f, 1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     if (frame->snapshot->view.kind != SCENE_KIND_3D)
         return gl_draw_pane(frame, err);
     return gl_draw_opaque_surfaces(frame, err) && gl_draw_slices_in_space(frame, err) && gl_draw_translucent_surfaces(frame, err);
 }
 
-/* Mean of STILL_SAMPLES x STILL_SAMPLES samples, rounded. */
+/* Mean of 2 x 2 samples, rounded. */
 static void average_samples(const uint8_t *restrict samples, int width_px, int n_rows, uint8_t *restrict rgba)
 {
-    size_t row = (size_t)width_px * STILL_SAMPLES * 4;
+    size_t row = (size_t)width_px * 2 * 4;
     for (int y = 0; y < n_rows; y++) {
-        const uint8_t *upper = samples + (size_t)y * STILL_SAMPLES * row, *lower = upper + row;
+        const uint8_t *upper = samples + (size_t)y * 2 * row, *lower = upper + row;
         uint8_t *out = rgba + (size_t)y * (size_t)width_px * 4;
         for (int x = 0; x < width_px; x++)
             for (int c = 0; c < 4; c++)
@@ -218,7 +197,7 @@ static void average_samples(const uint8_t *restrict samples, int width_px, int n
     }
 }
 
-static bool read_band(struct renderer *renderer, struct image *image, int first, int n, int samples, struct error *err)
+static bool read_band(struct gl_renderer *renderer, struct image *image, int first, int n, int samples, struct error *err)
 {
     const struct gl *gl = &renderer->gl;
     uint8_t *rgba = image->rgba + (size_t)first * (size_t)image->width_px * 4, *to = rgba;
@@ -242,7 +221,7 @@ static bool read_band(struct renderer *renderer, struct image *image, int first,
     return true;
 }
 
-static bool draw_band(struct renderer *renderer, struct gl_frame *frame, struct image *image, int first, int n, int samples,
+static bool draw_band(struct gl_renderer *renderer, struct gl_frame *frame, struct image *image, int first, int n, int samples,
                       struct error *err)
 {
     int64_t start_us = clock_now_us();
@@ -260,24 +239,9 @@ static bool draw_band(struct renderer *renderer, struct gl_frame *frame, struct 
     return is_good;
 }
 
-/* Stills take several samples a pixel, but a slice pane whose voxels are larger than its pixels has nothing to gain. */
-static int samples_per_side(const struct snapshot *snapshot, const struct camera *camera, const struct render_options *options)
+struct image *gl_renderer_snapshot(struct gl_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
+                                   const struct camera *camera, struct render_timing *timing, struct error *err)
 {
-    if (!options->is_still)
-        return 1;
-    if (snapshot->view.kind == SCENE_KIND_3D || snapshot->image < 0)
-        return STILL_SAMPLES;
-    struct vec3 spacing_mm = grid_spacing_mm(&snapshot->plan->images[snapshot->image].volume->grid);
-    double pixels_per_mm = camera->pixels_per_mm * options->width_px / snapshot->view.size_px[0];
-    return fmin(fmin(spacing_mm.x, spacing_mm.y), spacing_mm.z) * pixels_per_mm < 1 ? STILL_SAMPLES : 1;
-}
-
-struct image *render_snapshot(struct renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
-                              struct camera *camera, struct render_timing *timing, struct error *err)
-{
-    assert_thread(renderer);
-    *timing = (struct render_timing){ 0 };
-    camera_resolve(snapshot, camera);
     if (options->width_px < 1 || options->height_px < 1 || options->width_px > MAX_SIDE_PX || options->height_px > MAX_SIDE_PX) {
         error_set(err, ERROR_RANGE, "a picture of %d x %d pixels: each side must be 1 to %d", options->width_px, options->height_px,
                   MAX_SIDE_PX);
@@ -291,7 +255,7 @@ struct image *render_snapshot(struct renderer *renderer, const struct snapshot *
                               .polygon_array = renderer->polygon_array, .polygon = renderer->polygon, .palette = renderer->palette,
                               .colors = renderer->colors,
                               .snapshot = snapshot, .camera = camera, .detail = options->detail, .timing = timing };
-    int samples = samples_per_side(snapshot, camera, options);
+    int samples = visible_samples(snapshot, camera, options->width_px, options->is_still);
     int band = MAX_BAND_SAMPLES / (image->width_px * samples * samples);
     for (int first = 0; first < image->height_px; first += band) {
         int n = image->height_px - first < band ? image->height_px - first : band;

@@ -1,6 +1,5 @@
-#include <string.h>
-
 #include "core/render/gl/draw.h"
+#include "core/render/visible.h"
 
 /* A plane square to a patient axis cuts a grid's box in at most six corners; each half-space adds at most one to the square we
  * start from. */
@@ -116,35 +115,6 @@ bool gl_draw_slices_in_space(const struct gl_frame *frame, struct error *err)
 
 /* ---- labels ------------------------------------------------------------------------------------------------------------------- */
 
-static bool is_shown(const struct snapshot *snapshot, size_t region)
-{
-    return snapshot->styles[region].visible && snapshot->styles[region].opacity > 0;
-}
-
-/* Label to colour: of the region itself or, when that is hidden, of the innermost visible one around it. Returns how many labels
- * have a colour. */
-static size_t fill_palette(const struct snapshot *snapshot, size_t layer, uint8_t (*colors)[4])
-{
-    const struct region_set *set = &snapshot->plan->regions;
-    size_t n = 0;
-    memset(colors, 0, GL_N_LABELS * sizeof *colors);
-    for (size_t i = 0; i < set->n_regions; i++) {
-        int shown = (int)i;
-        while (shown >= 0 && !is_shown(snapshot, (size_t)shown))
-            shown = set->regions[shown].parent;
-        if (set->regions[i].layer != layer || shown < 0)
-            continue;
-        uint32_t rgb = snapshot->styles[shown].color_rgb;
-        uint8_t *color = colors[set->regions[i].label];
-        color[0] = (uint8_t)(rgb >> 16);
-        color[1] = (uint8_t)(rgb >> 8);
-        color[2] = (uint8_t)rgb;
-        color[3] = 255;
-        n++;
-    }
-    return n;
-}
-
 static bool draw_label_slice(const struct gl_frame *frame, size_t layer, struct error *err)
 {
     const struct gl *gl = frame->gl;
@@ -153,7 +123,7 @@ static bool draw_label_slice(const struct gl_frame *frame, size_t layer, struct 
     const struct grid *grid = &snapshot->plan->regions.layers[layer]->grid;
     enum scene_kind kind = snapshot->view.kind;
     struct polygon polygon = slice_polygon(grid, kind, scene_slice_position_mm(&snapshot->scene, kind));
-    if (polygon.n < 3 || fill_palette(snapshot, layer, frame->colors) == 0)
+    if (polygon.n < 3 || visible_palette(snapshot, layer, frame->colors) == 0)
         return true;
     const struct gl_grid *labels = gl_cache_layer(gl, frame->cache, snapshot->plan, layer, err);
     if (!labels)
@@ -174,15 +144,6 @@ static bool draw_label_slice(const struct gl_frame *frame, size_t layer, struct 
     return gl_check(gl, "drawing a cross-section", err);
 }
 
-static int outermost_depth(const struct region_set *set, size_t layer)
-{
-    int depth = INT32_MAX;
-    for (size_t i = 0; i < set->n_regions; i++)
-        if (set->regions[i].layer == layer && region_depth(set, i) < depth)
-            depth = region_depth(set, i);
-    return depth;
-}
-
 bool gl_draw_pane(const struct gl_frame *frame, struct error *err)
 {
     const struct snapshot *snapshot = frame->snapshot;
@@ -191,14 +152,10 @@ bool gl_draw_pane(const struct gl_frame *frame, struct error *err)
     frame->gl->Disable(GL_DEPTH_TEST);
     if (snapshot->image >= 0)
         return draw_image_slice(frame, kind, scene_slice_position_mm(&snapshot->scene, kind), err);
-    /* layers that hold outer regions lie under those that hold inner ones */
-    for (int depth = 0, n_left = (int)set->n_layers; n_left > 0 && depth <= (int)set->n_regions; depth++)
-        for (size_t layer = 0; layer < set->n_layers; layer++) {
-            if (outermost_depth(set, layer) != depth)
-                continue;
-            n_left--;
-            if (!draw_label_slice(frame, layer, err))
-                return false;
-        }
+    size_t layers[REGION_MAX_LAYERS];
+    visible_layers(set, layers);
+    for (size_t i = 0; i < set->n_layers; i++)
+        if (!draw_label_slice(frame, layers[i], err))
+            return false;
     return true;
 }

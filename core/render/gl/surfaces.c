@@ -1,120 +1,45 @@
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/base/mem.h"
 #include "core/render/gl/draw.h"
+#include "core/render/visible.h"
 
 /* One surface to draw. */
 struct item {
     const struct gl_surface *surface;
     const struct scene_region_style *style;
-    double distance_mm; /* from the eye to the nearest point of its box */
-    int depth;          /* in the hierarchy */
-    uint64_t n_voxels;
 };
 
-static double nearest_mm(const struct camera *camera, const struct box3 *box)
+static const struct box3 *bounds(void *context, size_t region, struct error *err)
 {
-    if (camera->is_parallel) {
-        struct vec3 f = camera->forward;
-        struct vec3 corner = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y, f.z > 0 ? box->low.z : box->high.z);
-        return vec3_dot(vec3_sub(corner, camera->eye_lps_mm), f);
-    }
-    struct vec3 e = camera->eye_lps_mm;
-    struct vec3 p = vec3(fmin(fmax(e.x, box->low.x), box->high.x), fmin(fmax(e.y, box->low.y), box->high.y),
-                         fmin(fmax(e.z, box->low.z), box->high.z));
-    return vec3_length(vec3_sub(p, e));
+    const struct gl_frame *frame = context;
+    const struct gl_surface *surface = gl_cache_surface(frame->gl, frame->cache, frame->snapshot->plan, region, frame->detail, err);
+    return surface ? &surface->bounds_lps_mm : NULL;
 }
 
-/* Nearest depth of a box along the line of sight: beyond near, nothing of it is cut away. */
-static bool is_wholly_ahead(const struct camera *camera, const struct box3 *box)
-{
-    struct vec3 f = camera->forward;
-    struct vec3 corner = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y, f.z > 0 ? box->low.z : box->high.z);
-    return vec3_dot(vec3_sub(corner, camera->eye_lps_mm), f) > camera->near_mm;
-}
-
-/* Whether a box lies beyond one side of the picture (or of the band being drawn). */
-static bool is_out_of_sight(const struct gl_frame *frame, const struct box3 *box)
-{
-    const float *m = frame->clip_from_lps;
-    int n_beyond[6] = { 0 };
-    for (int corner = 0; corner < 8; corner++) {
-        double x = corner & 1 ? box->high.x : box->low.x, y = corner & 2 ? box->high.y : box->low.y, z = corner & 4 ? box->high.z : box->low.z;
-        double clip[4];
-        for (int row = 0; row < 4; row++)
-            clip[row] = m[row] * x + m[4 + row] * y + m[8 + row] * z + m[12 + row];
-        for (int axis = 0; axis < 3; axis++) {
-            n_beyond[2 * axis] += clip[axis] < -clip[3];
-            n_beyond[2 * axis + 1] += clip[axis] > clip[3];
-        }
-    }
-    for (int side = 0; side < 6; side++)
-        if (n_beyond[side] == 8)
-            return true;
-    return false;
-}
-
-static bool is_drawn(const struct snapshot *snapshot, size_t region)
-{
-    const struct scene_region_style *style = &snapshot->styles[region];
-    return style->visible && style->opacity > 0 && snapshot->plan->regions.regions[region].n_voxels > 0;
-}
-
-/* A region inside an opaque one, in the same label layer, cannot be seen: the outer surface is closed and encloses it. Unless the
- * eye is within the outer one's box, or the near plane cuts it open. */
-static bool is_hidden(const struct gl_frame *frame, size_t region, bool *is_good, struct error *err)
-{
-    const struct snapshot *snapshot = frame->snapshot;
-    const struct region *regions = snapshot->plan->regions.regions;
-    for (int outer = regions[region].parent; outer >= 0; outer = regions[outer].parent) {
-        if (!is_drawn(snapshot, (size_t)outer) || snapshot->styles[outer].opacity < 1 || regions[outer].layer != regions[region].layer)
-            continue;
-        const struct gl_surface *surface =
-            gl_cache_surface(frame->gl, frame->cache, snapshot->plan, (size_t)outer, frame->detail, err);
-        *is_good = surface != NULL;
-        if (!surface || is_wholly_ahead(frame->camera, &surface->bounds_lps_mm))
-            return surface != NULL;
-    }
-    return false;
-}
-
-/* The surfaces that are wanted and can be seen; is_opaque picks the kind. Gives NULL on failure. */
+/* The surfaces that are wanted and can be seen, back to front; is_opaque picks the kind. Gives NULL on failure. */
 static struct item *collect(const struct gl_frame *frame, bool is_opaque, size_t *n_items, struct error *err)
 {
     const struct snapshot *snapshot = frame->snapshot;
-    const struct region_set *set = &snapshot->plan->regions;
-    struct item *items = mem_array(set->n_regions, sizeof *items, UINT64_MAX, err);
-    *n_items = 0;
-    for (size_t i = 0; items && i < set->n_regions; i++) {
-        bool is_good = true;
-        if (!is_drawn(snapshot, i) || (snapshot->styles[i].opacity >= 1) != is_opaque || is_hidden(frame, i, &is_good, err))
-            continue;
+    struct gl_frame context = *frame;
+    struct mat4 clip_from_lps_mm;
+    for (int i = 0; i < 16; i++)
+        clip_from_lps_mm.m[i] = (double)frame->clip_from_lps[i];
+    struct visible_surface *visible =
+        visible_surfaces(snapshot, frame->camera, &clip_from_lps_mm, is_opaque, bounds, &context, n_items, err);
+    struct item *items = visible ? mem_array(*n_items, sizeof *items, UINT64_MAX, err) : NULL;
+    for (size_t i = 0; items && i < *n_items; i++) {
         const struct gl_surface *surface =
-            is_good ? gl_cache_surface(frame->gl, frame->cache, snapshot->plan, i, frame->detail, err) : NULL;
-        if (!surface) {
+            gl_cache_surface(frame->gl, frame->cache, snapshot->plan, visible[i].region, frame->detail, err);
+        if (!surface) { /* it was there a moment ago, so this does not come about */
             free(items);
-            return NULL;
+            items = NULL;
+            break;
         }
-        if (is_out_of_sight(frame, &surface->bounds_lps_mm))
-            continue;
-        items[(*n_items)++] = (struct item){ surface, &snapshot->styles[i], nearest_mm(frame->camera, &surface->bounds_lps_mm),
-                                             region_depth(set, i), set->regions[i].n_voxels };
+        items[i] = (struct item){ surface, visible[i].style };
     }
+    free(visible);
     return items;
-}
-
-/* Back to front. What encloses another is never farther away, so at equal distances the inner one comes first. */
-static int compare_back_to_front(const void *left, const void *right)
-{
-    const struct item *a = left, *b = right;
-    if (a->distance_mm != b->distance_mm)
-        return a->distance_mm > b->distance_mm ? -1 : 1;
-    if (a->depth != b->depth)
-        return a->depth > b->depth ? -1 : 1;
-    if (a->n_voxels != b->n_voxels)
-        return a->n_voxels < b->n_voxels ? -1 : 1;
-    return a->style < b->style ? -1 : a->style > b->style;
 }
 
 static void use_culling(const struct gl *gl)
@@ -165,7 +90,6 @@ bool gl_draw_opaque_surfaces(const struct gl_frame *frame, struct error *err)
     struct item *items = collect(frame, true, &n, err);
     if (!items)
         return false;
-    qsort(items, n, sizeof *items, compare_back_to_front);
     use_culling(frame->gl);
     use_surface_program(frame);
     for (size_t i = n; i-- > 0;)
@@ -203,7 +127,6 @@ bool gl_draw_translucent_surfaces(const struct gl_frame *frame, struct error *er
     struct item *items = collect(frame, false, &n, err);
     if (!items)
         return false;
-    qsort(items, n, sizeof *items, compare_back_to_front);
     use_culling(frame->gl);
     for (size_t i = 0; i < n; i++)
         draw_front_sheet(frame, &items[i]);

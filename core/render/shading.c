@@ -1,4 +1,4 @@
-#include "core/render/gl/shading.h"
+#include "core/render/shading.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -51,4 +51,13 @@ float *shading_normals(const struct mesh *mesh, int n_passes, struct error *err)
     }
     free(next);
     return now;
+}
+
+/* As wide as the terraces of a surface that rises one voxel in a dozen. A reduced surface has larger triangles, so fewer passes
+ * reach as far. */
+enum { FULL_PASSES = 12 };
+
+int shading_passes(uint32_t reduction)
+{
+    return FULL_PASSES / (int)(reduction < 1 ? 1 : reduction > FULL_PASSES ? FULL_PASSES : reduction);
 }

@@ -7,3 +7,5 @@
 /* Unit normals [n_vertices][3], free(); each the mean over its neighbourhood, n_passes triangles wide. Equal input, equal bytes.
  * errors ERROR_MEMORY */
 NODISCARD float *shading_normals(const struct mesh *mesh, int n_passes, struct error *err);
+/* How many passes suit a surface of this reduction (1: full). */
+int shading_passes(uint32_t reduction);

@@ -1,0 +1,16 @@
+#pragma once
+/* The OpenGL implementation of render.h, for render.c alone. */
+#include "core/render/render.h"
+
+struct gl_renderer;
+
+/* back_end is one of OpenGL's; is_hardware_wanted leaves out the software devices of RENDER_EGL_DEVICE. The context is current on
+ * the calling thread, which makes every other call. errors ERROR_GL */
+NODISCARD struct gl_renderer *gl_renderer_create(enum render_back_end back_end, bool is_hardware_wanted, struct error *err);
+void gl_renderer_destroy(struct gl_renderer *renderer);
+const struct render_facts *gl_renderer_facts(const struct gl_renderer *renderer);
+/* camera: the snapshot's, resolved; timing: zeroed. */
+NODISCARD struct image *gl_renderer_snapshot(struct gl_renderer *renderer, const struct snapshot *snapshot,
+                                             const struct render_options *options, const struct camera *camera,
+                                             struct render_timing *timing, struct error *err);
+void gl_renderer_forget(struct gl_renderer *renderer, const struct plan *plan);

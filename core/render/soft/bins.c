@@ -1,0 +1,234 @@
+#include "core/render/soft/bins.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void soft_chunk_finish(struct soft_chunk *chunk)
+{
+    free(chunk->kept);
+    free(chunk->extras);
+    free(chunk->refs);
+    free(chunk->starts);
+}
+
+/* Room for n things of size bytes at *array; keeps what is there. */
+static bool reserve(void *array, size_t *capacity, size_t n, size_t size)
+{
+    if (n <= *capacity)
+        return true;
+    size_t grown = n + n / 2 + 64;
+    void *old, *moved = NULL;
+    memcpy(&old, array, sizeof old);
+    if (grown <= SIZE_MAX / size)
+        moved = realloc(old, grown * size);
+    if (!moved)
+        return false;
+    memcpy(array, &moved, sizeof moved);
+    *capacity = grown;
+    return true;
+}
+
+/* A corner to be clipped: place times w in sub-samples, depth times w, w, and its light by component. */
+struct corner {
+    double x, y, z, w, shade[4];
+    const struct soft_vertex *own; /* already rounded as its neighbours see it, or NULL */
+};
+
+enum { N_PLANES = 5, MAX_CORNERS = 3 + N_PLANES };
+
+struct polygon {
+    int n;
+    struct corner corners[MAX_CORNERS];
+};
+
+static double inside(const struct corner *corner, int plane)
+{
+    const double guard = SOFT_GUARD / 2; /* well inside what can be drawn */
+    switch (plane) {
+    case 0: return corner->z + corner->w;
+    case 1: return corner->x + guard * corner->w;
+    case 2: return guard * corner->w - corner->x;
+    case 3: return corner->y + guard * corner->w;
+    default: return guard * corner->w - corner->y;
+    }
+}
+
+static struct corner between(const struct corner *a, const struct corner *b, double t)
+{
+    struct corner out = { a->x + t * (b->x - a->x), a->y + t * (b->y - a->y), a->z + t * (b->z - a->z), a->w + t * (b->w - a->w), { 0 }, NULL };
+    for (int c = 0; c < 4; c++)
+        out.shade[c] = a->shade[c] + t * (b->shade[c] - a->shade[c]);
+    return out;
+}
+
+/* I. E. Sutherland, G. W. Hodgman, Reentrant Polygon Clipping, CACM 1974. */
+static void clip(struct polygon *polygon)
+{
+    for (int plane = 0; plane < N_PLANES; plane++) {
+        struct polygon kept = { 0 };
+        for (int i = 0; i < polygon->n; i++) {
+            const struct corner *a = &polygon->corners[i], *b = &polygon->corners[(i + 1) % polygon->n];
+            double fa = inside(a, plane), fb = inside(b, plane);
+            if (fa >= 0 && kept.n < MAX_CORNERS)
+                kept.corners[kept.n++] = *a;
+            if ((fa >= 0) != (fb >= 0) && kept.n < MAX_CORNERS) /* from the inner one, so that a neighbour gets the same point */
+                kept.corners[kept.n++] = fa >= 0 ? between(a, b, fa / (fa - fb)) : between(b, a, fb / (fb - fa));
+        }
+        *polygon = kept;
+    }
+}
+
+static struct soft_vertex to_vertex(const struct corner *corner)
+{
+    if (corner->own && corner->own->x != SOFT_CLIPPED)
+        return *corner->own;
+    struct soft_vertex vertex = { (int32_t)lround(corner->x / corner->w), (int32_t)lround(corner->y / corner->w),
+                                  (float)(corner->z / corner->w), 0 };
+    for (int c = 0; c < 4; c++)
+        vertex.shade |= (uint32_t)(corner->shade[c] + 0.5) << 8 * c;
+    return vertex;
+}
+
+/* Whether a triangle faces the viewer and its box holds a sample, and in which bands. */
+static bool can_be_seen(const struct soft_vertex *a, const struct soft_vertex *b, const struct soft_vertex *c, int width, int height,
+                        struct soft_kept *kept)
+{
+    int32_t low_x = a->x, high_x = a->x, low_y = a->y, high_y = a->y;
+    low_x = b->x < low_x ? b->x : low_x;
+    high_x = b->x > high_x ? b->x : high_x;
+    low_y = b->y < low_y ? b->y : low_y;
+    high_y = b->y > high_y ? b->y : high_y;
+    low_x = c->x < low_x ? c->x : low_x;
+    high_x = c->x > high_x ? c->x : high_x;
+    low_y = c->y < low_y ? c->y : low_y;
+    high_y = c->y > high_y ? c->y : high_y;
+    int left = (low_x + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS, right = (high_x - SOFT_SUB / 2) >> SOFT_SUB_BITS;
+    int top = (low_y + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS, bottom = (high_y - SOFT_SUB / 2) >> SOFT_SUB_BITS;
+    top = top > 0 ? top : 0;
+    bottom = bottom < height ? bottom : height - 1;
+    int64_t area = (int64_t)(b->x - a->x) * (c->y - a->y) - (int64_t)(b->y - a->y) * (c->x - a->x);
+    kept->first_band = (uint16_t)(top / SOFT_BAND_ROWS);
+    kept->last_band = (uint16_t)(bottom / SOFT_BAND_ROWS);
+    return (area < 0) & (left <= right) & (top <= bottom) & (left < width) & (right >= 0); /* y is down: counter-clockwise is negative */
+}
+
+static bool keep_extra(struct soft_chunk *chunk, const struct soft_vertex triangle[3], int width, int height)
+{
+    struct soft_kept kept;
+    if (!can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept))
+        return true;
+    if (!reserve(&chunk->extras, &chunk->extras_capacity, 3 * (chunk->n_extras + 1), sizeof *chunk->extras) ||
+        !reserve(&chunk->kept, &chunk->kept_capacity, chunk->n_kept + 1, sizeof *chunk->kept))
+        return false;
+    memcpy(&chunk->extras[3 * chunk->n_extras], triangle, 3 * sizeof *triangle);
+    kept.ref = SOFT_EXTRA | (uint32_t)chunk->n_extras++;
+    chunk->kept[chunk->n_kept++] = kept;
+    return true;
+}
+
+/* The light on a triangle of its own plane, seen from its middle. */
+static uint32_t flat_shade(const struct soft_item *item, const uint32_t *corners)
+{
+    const struct soft_points *points = &item->surface->points;
+    const float *viewer = item->lighting.viewer;
+    struct vec3 p[3];
+    for (int i = 0; i < 3; i++)
+        p[i] = vec3((double)points->x[corners[i]], (double)points->y[corners[i]], (double)points->z[corners[i]]);
+    struct vec3 middle = vec3_scale(vec3_add(vec3_add(p[0], p[1]), p[2]), 1 / 3.0);
+    struct vec3 n = vec3_normalize(vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])));
+    struct vec3 t = vec3_normalize(vec3_sub(vec3((double)viewer[0], (double)viewer[1], (double)viewer[2]), vec3_scale(middle, (double)viewer[3])));
+    return soft_light(&item->lighting, (float[3]){ (float)n.x, (float)n.y, (float)n.z }, (float[3]){ (float)t.x, (float)t.y, (float)t.z });
+}
+
+static double apply(const float row[4], double x, double y, double z)
+{
+    return (double)row[0] * x + (double)row[1] * y + (double)row[2] * z + (double)row[3];
+}
+
+static bool keep_clipped(struct soft_chunk *chunk, const uint32_t *corners, const uint32_t *shade, int width, int height)
+{
+    const struct soft_item *item = chunk->item;
+    const struct soft_points *points = &item->surface->points;
+    const struct soft_lighting *l = &item->lighting;
+    struct polygon polygon = { .n = 3 };
+    for (int i = 0; i < 3; i++) {
+        struct corner *corner = &polygon.corners[i];
+        double x = (double)points->x[corners[i]], y = (double)points->y[corners[i]], z = (double)points->z[corners[i]];
+        *corner = (struct corner){ apply(l->row_x, x, y, z), apply(l->row_y, x, y, z), apply(l->row_z, x, y, z), apply(l->row_w, x, y, z),
+                                   { 0 }, &item->vertices[corners[i]] };
+        for (int c = 0; c < 4; c++)
+            corner->shade[c] = (double)((shade ? *shade : corner->own->shade) >> 8 * c & 255);
+    }
+    clip(&polygon);
+    for (int i = 2; i < polygon.n; i++) {
+        struct soft_vertex triangle[3] = { to_vertex(&polygon.corners[0]), to_vertex(&polygon.corners[i - 1]), to_vertex(&polygon.corners[i]) };
+        for (int corner = 0; shade && corner < 3; corner++)
+            triangle[corner].shade = *shade;
+        if (!keep_extra(chunk, triangle, width, height))
+            return false;
+    }
+    return true;
+}
+
+static bool keep_flat(struct soft_chunk *chunk, const uint32_t *corners, int width, int height)
+{
+    const struct soft_vertex *vertices = chunk->item->vertices;
+    struct soft_vertex triangle[3] = { vertices[corners[0]], vertices[corners[1]], vertices[corners[2]] };
+    struct soft_kept kept;
+    if (!can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept))
+        return true;
+    triangle[0].shade = triangle[1].shade = triangle[2].shade = flat_shade(chunk->item, corners);
+    return keep_extra(chunk, triangle, width, height);
+}
+
+static bool keep_all(struct soft_chunk *chunk, int width, int height)
+{
+    const struct soft_item *item = chunk->item;
+    chunk->n_kept = chunk->n_extras = 0;
+    for (size_t t = chunk->first; t < chunk->first + chunk->n; t++) {
+        const uint32_t *corners = item->surface->indices + 3 * t;
+        const struct soft_vertex *a = &item->vertices[corners[0]], *b = &item->vertices[corners[1]], *c = &item->vertices[corners[2]];
+        if ((a->x == SOFT_CLIPPED) | (b->x == SOFT_CLIPPED) | (c->x == SOFT_CLIPPED)) {
+            uint32_t shade = item->is_flat ? flat_shade(item, corners) : 0;
+            if (!keep_clipped(chunk, corners, item->is_flat ? &shade : NULL, width, height))
+                return false;
+        } else if (item->is_flat) {
+            if (!keep_flat(chunk, corners, width, height))
+                return false;
+        } else {
+            if (chunk->n_kept == chunk->kept_capacity &&
+                !reserve(&chunk->kept, &chunk->kept_capacity, chunk->n_kept + SOFT_CHUNK_TRIANGLES, sizeof *chunk->kept))
+                return false;
+            struct soft_kept *kept = &chunk->kept[chunk->n_kept]; /* written anyway: a branch less */
+            kept->ref = (uint32_t)t;
+            chunk->n_kept += can_be_seen(a, b, c, width, height, kept);
+        }
+    }
+    return true;
+}
+
+bool soft_chunk_sort(struct soft_chunk *chunk, int width, int height, int n_bands)
+{
+    size_t n_starts = (size_t)n_bands + 1;
+    if (!keep_all(chunk, width, height) || !reserve(&chunk->starts, &chunk->starts_capacity, n_starts, sizeof *chunk->starts))
+        return false;
+    /* count[b + 1], summed up to ends, then filled from the back of each band so that ends become starts */
+    uint32_t *starts = chunk->starts;
+    memset(starts, 0, n_starts * sizeof *starts);
+    for (size_t i = 0; i < chunk->n_kept; i++)
+        for (int band = chunk->kept[i].first_band; band <= chunk->kept[i].last_band; band++)
+            starts[band]++;
+    uint64_t n_refs = 0;
+    for (int band = 0; band < n_bands; band++) {
+        n_refs += starts[band];
+        starts[band] = (uint32_t)n_refs;
+    }
+    starts[n_bands] = (uint32_t)n_refs;
+    if (n_refs > UINT32_MAX || !reserve(&chunk->refs, &chunk->refs_capacity, (size_t)n_refs, sizeof *chunk->refs))
+        return false;
+    for (size_t i = chunk->n_kept; i-- > 0;)
+        for (int band = chunk->kept[i].first_band; band <= chunk->kept[i].last_band; band++)
+            chunk->refs[--starts[band]] = chunk->kept[i].ref;
+    return true;
+}

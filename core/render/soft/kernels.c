@@ -1,0 +1,31 @@
+#include "core/render/soft/kernels.h"
+
+#define NAME(x) x##_portable
+#define TARGET
+/* lanes are 0 or -1 */
+#define LANES_OR(v) ((((LONGS)(v))[0] | ((LONGS)(v))[1]) | (((LONGS)(v))[2] | ((LONGS)(v))[3]))
+#define LANES_AND(v) ((((LONGS)(v))[0] & ((LONGS)(v))[1]) & (((LONGS)(v))[2] & ((LONGS)(v))[3]))
+#define ANY_SET(v) (LANES_OR(v) != 0)
+#define ALL_SET(v) (LANES_AND(v) == -1)
+#include "core/render/soft/kernels.inc"
+
+/* Samples are packed as they lie in memory. */
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the software rasteriser packs samples for little-endian machines");
+
+const struct soft_kernels soft_kernels_portable = { "portable", shade_portable, raster_portable, blend_portable, sample_portable,
+                                                    halve_portable };
+
+uint32_t soft_light(const struct soft_lighting *lighting, const float normal_lps[3], const float towards_lps[3])
+{
+    return light_at(lighting, normal_lps[0], normal_lps[1], normal_lps[2], towards_lps[0], towards_lps[1], towards_lps[2]);
+}
+
+#if defined(__x86_64__)
+extern const struct soft_kernels soft_kernels_avx2;
+const struct soft_kernels *soft_kernels_best(void)
+{
+    return __builtin_cpu_supports("avx2") ? &soft_kernels_avx2 : &soft_kernels_portable;
+}
+#else
+const struct soft_kernels *soft_kernels_best(void) { return &soft_kernels_portable; }
+#endif

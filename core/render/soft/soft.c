@@ -1,0 +1,445 @@
+#include "core/render/soft/soft.h"
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/mem.h"
+#include "core/base/parallel.h"
+#include "core/render/soft/bins.h"
+#include "core/render/soft/planes.h"
+#include "core/render/visible.h"
+
+/* More threads than this wait for memory and for each other. */
+enum { MAX_THREADS = 16, MAX_PLANES = 3 + REGION_MAX_LAYERS, VERTEX_BLOCK = 8192 };
+
+struct soft_renderer {
+    struct render_facts facts;
+    const struct soft_kernels *kernels;
+    int n_threads;
+    struct soft_cache *cache;
+    /* kept from picture to picture */
+    struct soft_vertex *vertices;
+    size_t n_vertices;
+    struct soft_chunk *chunks;
+    size_t n_chunks;
+    uint32_t *samples[MAX_THREADS]; /* a band's depth, colour and layer, one after the other */
+    size_t n_samples;               /* of each of the three */
+};
+
+/* ---- start and stop ------------------------------------------------------------------------------------------------------- */
+
+static void learn_facts(struct soft_renderer *renderer)
+{
+    struct render_facts *facts = &renderer->facts;
+    *facts = (struct render_facts){ .back_end = RENDER_SOFT, .vendor = "Beamroom", .version = BEAMROOM_VERSION, .is_software = true,
+                                    .max_samples = 4 };
+    snprintf(facts->renderer, sizeof facts->renderer, "software rasteriser, %s (%d thread%s)", renderer->kernels->name, renderer->n_threads,
+             renderer->n_threads == 1 ? "" : "s");
+}
+
+struct soft_renderer *soft_renderer_create(void)
+{
+    struct soft_renderer *renderer = mem_new(sizeof *renderer);
+    renderer->cache = soft_cache_create();
+    soft_renderer_tune(renderer, parallel_cores(), false);
+    return renderer;
+}
+
+void soft_renderer_tune(struct soft_renderer *renderer, int n_threads, bool is_portable)
+{
+    renderer->n_threads = n_threads < 1 ? 1 : n_threads > MAX_THREADS ? MAX_THREADS : n_threads;
+    renderer->kernels = is_portable ? &soft_kernels_portable : soft_kernels_best();
+    learn_facts(renderer);
+}
+
+static void drop_samples(struct soft_renderer *renderer)
+{
+    for (int i = 0; i < MAX_THREADS; i++) {
+        free(renderer->samples[i]);
+        renderer->samples[i] = NULL;
+    }
+    renderer->n_samples = 0;
+}
+
+/* What grew with a plan goes with it. */
+static void drop_buffers(struct soft_renderer *renderer)
+{
+    for (size_t i = 0; i < renderer->n_chunks; i++)
+        soft_chunk_finish(&renderer->chunks[i]);
+    free(renderer->chunks);
+    free(renderer->vertices);
+    renderer->chunks = NULL;
+    renderer->vertices = NULL;
+    renderer->n_chunks = renderer->n_vertices = 0;
+    drop_samples(renderer);
+}
+
+void soft_renderer_destroy(struct soft_renderer *renderer)
+{
+    if (!renderer)
+        return;
+    drop_buffers(renderer);
+    soft_cache_destroy(renderer->cache);
+    free(renderer);
+}
+
+const struct render_facts *soft_renderer_facts(const struct soft_renderer *renderer)
+{
+    return &renderer->facts;
+}
+
+void soft_renderer_forget(struct soft_renderer *renderer, const struct plan *plan)
+{
+    soft_cache_forget(renderer->cache, plan);
+    drop_buffers(renderer);
+}
+
+/* ---- what is to be drawn -------------------------------------------------------------------------------------------------- */
+
+struct frame {
+    struct soft_renderer *renderer;
+    const struct snapshot *snapshot;
+    const struct camera *camera;
+    enum surface_detail detail;
+    int width, height, samples, n_bands; /* width and height in samples */
+    struct soft_item *items;             /* opaque ones front to back, then translucent ones back to front */
+    size_t n_items, n_chunks, n_blocks;
+    struct soft_plane planes[MAX_PLANES]; /* in the order of drawing: after the opaque items */
+    size_t n_planes;
+    uint32_t *palettes; /* of the planes, [][VISIBLE_N_LABELS] */
+    struct image *image;
+    atomic_size_t next; /* piece of work nobody has taken */
+    atomic_bool is_out_of_memory;
+};
+
+static const struct box3 *bounds(void *context, size_t region, struct error *err)
+{
+    const struct frame *frame = context;
+    const struct soft_surface *surface = soft_cache_surface(frame->renderer->cache, frame->snapshot->plan, region, frame->detail, err);
+    return surface ? &surface->bounds_lps_mm : NULL;
+}
+
+static void put(float out[3], struct vec3 v)
+{
+    out[0] = (float)v.x;
+    out[1] = (float)v.y;
+    out[2] = (float)v.z;
+}
+
+static struct soft_lighting make_lighting(const struct frame *frame, const struct scene_region_style *style)
+{
+    const struct camera *camera = frame->camera;
+    struct soft_lighting l = { 0 };
+    for (int column = 0; column < 4; column++) {
+        const double *m = &camera->clip_from_lps_mm.m[4 * column];
+        l.row_x[column] = (float)(0.5 * SOFT_SUB * frame->width * (m[3] + m[0]));
+        l.row_y[column] = (float)(0.5 * SOFT_SUB * frame->height * (m[3] - m[1]));
+        l.row_z[column] = (float)m[2];
+        l.row_w[column] = (float)m[3];
+    }
+    put(l.viewer, camera->is_parallel ? vec3_scale(camera->forward, -1) : camera->eye_lps_mm);
+    l.viewer[3] = camera->is_parallel ? 0 : 1;
+    put(l.right, camera->right);
+    put(l.up, camera->up);
+    put(l.towards, vec3_scale(camera->forward, -1));
+    for (int c = 0; c < 3; c++)
+        l.color[c] = (float)(style->color_rgb >> (16 - 8 * c) & 255) / 255.0f;
+    l.opacity = (float)style->opacity;
+    l.is_rim = style->opacity < 1 && frame->snapshot->scene.surface.translucency == SCENE_TRANSLUCENCY_RIM;
+    return l;
+}
+
+static bool collect_surfaces(struct frame *frame, struct render_timing *timing, struct error *err)
+{
+    const struct snapshot *snapshot = frame->snapshot;
+    struct visible_surface *visible[2] = { NULL, NULL }; /* translucent, opaque */
+    size_t n[2] = { 0, 0 };
+    for (int is_opaque = 0; is_opaque < 2; is_opaque++) {
+        visible[is_opaque] =
+            visible_surfaces(snapshot, frame->camera, &frame->camera->clip_from_lps_mm, is_opaque, bounds, frame, &n[is_opaque], err);
+        if (!visible[is_opaque])
+            goto fail;
+    }
+    frame->items = mem_array(n[0] + n[1], sizeof *frame->items, UINT64_MAX, err);
+    if (!frame->items)
+        goto fail;
+    for (size_t i = 0; i < n[0] + n[1]; i++) {
+        bool is_opaque = i < n[1];
+        const struct visible_surface *from = is_opaque ? &visible[1][n[1] - 1 - i] : &visible[0][i - n[1]];
+        const struct soft_surface *surface =
+            soft_cache_surface(frame->renderer->cache, snapshot->plan, from->region, frame->detail, err);
+        if (!surface)
+            goto fail;
+        frame->items[frame->n_items++] =
+            (struct soft_item){ .surface = surface, .lighting = make_lighting(frame, from->style), .is_opaque = is_opaque,
+                                .is_flat = snapshot->scene.surface.normals == SCENE_NORMALS_FACE };
+        timing->n_triangles += surface->n_triangles;
+        timing->is_light |= surface->is_light;
+    }
+    free(visible[0]);
+    free(visible[1]);
+    return true;
+fail:
+    free(visible[0]);
+    free(visible[1]);
+    return false;
+}
+
+static void add_image(struct frame *frame, enum scene_kind kind, double position_mm)
+{
+    static const enum soft_voxel types[] = { [VOXEL_U8] = SOFT_U8, [VOXEL_I16] = SOFT_I16, [VOXEL_U16] = SOFT_U16, [VOXEL_F32] = SOFT_F32 };
+    const struct snapshot *snapshot = frame->snapshot;
+    const struct scene_image_style *style = &snapshot->scene.image;
+    const struct volume *volume = snapshot->plan->images[snapshot->image].volume;
+    struct soft_plane *plane = &frame->planes[frame->n_planes++];
+    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
+    double low = style->window.center - style->window.width / 2, width = style->window.width;
+    soft_plane_init(plane, volume, kind, position_mm, &frame->camera->clip_from_lps_mm, frame->width, frame->height);
+    plane->texture.type = types[volume->type];
+    plane->texture.grey_scale = (float)(volume->slope / width);
+    plane->texture.grey_offset = (float)((volume->offset - low) / width);
+    plane->texture.cull = is_in_space ? (float)((style->cull_below - low) / width) : -INFINITY;
+    plane->texture.is_linear = style->interpolation != SCENE_INTERPOLATION_NEAREST;
+    plane->texture.has_depth = is_in_space;
+}
+
+static bool add_labels(struct frame *frame, struct error *err)
+{
+    const struct snapshot *snapshot = frame->snapshot;
+    const struct region_set *set = &snapshot->plan->regions;
+    enum scene_kind kind = snapshot->view.kind;
+    size_t layers[REGION_MAX_LAYERS];
+    visible_layers(set, layers);
+    frame->palettes = mem_array(set->n_layers, VISIBLE_N_LABELS * sizeof *frame->palettes, UINT64_MAX, err);
+    if (!frame->palettes)
+        return false;
+    for (size_t i = 0; i < set->n_layers; i++) {
+        const struct volume *volume = set->layers[layers[i]];
+        uint32_t *palette = frame->palettes + i * VISIBLE_N_LABELS;
+        if (visible_palette(snapshot, layers[i], (uint8_t(*)[4])palette) == 0)
+            continue;
+        if (volume->type == VOXEL_F32)
+            return error_set(err, ERROR_UNSUPPORTED, "label layer %zu: a label layer of real numbers", layers[i]);
+        struct soft_plane *plane = &frame->planes[frame->n_planes++];
+        soft_plane_init(plane, volume, kind, scene_slice_position_mm(&snapshot->scene, kind), &frame->camera->clip_from_lps_mm,
+                        frame->width, frame->height);
+        plane->texture.type = volume->type == VOXEL_U8 ? SOFT_U8 : SOFT_U16; /* labels are never negative */
+        plane->texture.palette = palette;
+    }
+    return true;
+}
+
+static bool collect_planes(struct frame *frame, struct error *err)
+{
+    const struct snapshot *snapshot = frame->snapshot;
+    const struct scene_slices *slices = &snapshot->scene.image.slices;
+    enum scene_kind kind = snapshot->view.kind;
+    if (kind != SCENE_KIND_3D) {
+        if (snapshot->image < 0)
+            return add_labels(frame, err);
+        add_image(frame, kind, scene_slice_position_mm(&snapshot->scene, kind));
+        return true;
+    }
+    if (snapshot->image >= 0 && slices->axial.visible)
+        add_image(frame, SCENE_KIND_AXIAL, slices->axial.position_mm);
+    if (snapshot->image >= 0 && slices->coronal.visible)
+        add_image(frame, SCENE_KIND_CORONAL, slices->coronal.position_mm);
+    if (snapshot->image >= 0 && slices->sagittal.visible)
+        add_image(frame, SCENE_KIND_SAGITTAL, slices->sagittal.position_mm);
+    return true;
+}
+
+/* ---- memory --------------------------------------------------------------------------------------------------------------- */
+
+static bool make_room(struct frame *frame, struct error *err)
+{
+    struct soft_renderer *renderer = frame->renderer;
+    size_t n_vertices = 0;
+    for (size_t i = 0; i < frame->n_items; i++) {
+        struct soft_item *item = &frame->items[i];
+        n_vertices += item->surface->n_vertices;
+        item->first_chunk = frame->n_chunks;
+        item->n_chunks = (item->surface->n_triangles + SOFT_CHUNK_TRIANGLES - 1) / SOFT_CHUNK_TRIANGLES;
+        frame->n_chunks += item->n_chunks;
+        frame->n_blocks += (item->surface->n_vertices + VERTEX_BLOCK - 1) / VERTEX_BLOCK;
+    }
+    if (renderer->n_vertices < n_vertices) {
+        free(renderer->vertices);
+        renderer->vertices = mem_large_array(n_vertices, sizeof *renderer->vertices, UINT64_MAX, err);
+        renderer->n_vertices = renderer->vertices ? n_vertices : 0;
+        if (!renderer->vertices)
+            return false;
+    }
+    if (renderer->n_chunks < frame->n_chunks) {
+        struct soft_chunk *grown = realloc(renderer->chunks, frame->n_chunks * sizeof *grown);
+        if (!grown)
+            return error_set(err, ERROR_MEMORY, "no memory for %zu pieces of surfaces", frame->n_chunks);
+        memset(grown + renderer->n_chunks, 0, (frame->n_chunks - renderer->n_chunks) * sizeof *grown);
+        renderer->chunks = grown;
+        renderer->n_chunks = frame->n_chunks;
+    }
+    struct soft_vertex *vertices = renderer->vertices;
+    for (size_t i = 0; i < frame->n_items; i++) {
+        struct soft_item *item = &frame->items[i];
+        item->vertices = vertices;
+        vertices += item->surface->n_vertices;
+        for (size_t c = 0; c < item->n_chunks; c++) {
+            struct soft_chunk *chunk = &renderer->chunks[item->first_chunk + c];
+            chunk->item = item;
+            chunk->first = c * SOFT_CHUNK_TRIANGLES;
+            chunk->n = item->surface->n_triangles - chunk->first;
+            chunk->n = chunk->n < SOFT_CHUNK_TRIANGLES ? chunk->n : SOFT_CHUNK_TRIANGLES;
+        }
+    }
+    size_t n_samples = (size_t)(frame->width + SOFT_PADDING) * SOFT_BAND_ROWS;
+    if (renderer->n_samples < n_samples)
+        drop_samples(renderer);
+    for (int i = 0; i < renderer->n_threads; i++)
+        if (!renderer->samples[i]) {
+            renderer->samples[i] = mem_array(n_samples, 3 * sizeof(uint32_t), UINT64_MAX, err);
+            if (!renderer->samples[i])
+                return false;
+            renderer->n_samples = n_samples;
+        }
+    return true;
+}
+
+/* ---- drawing -------------------------------------------------------------------------------------------------------------- */
+
+static void shade_vertices(void *context, int part, int n_parts)
+{
+    struct frame *frame = context;
+    (void)part, (void)n_parts;
+    for (size_t piece; (piece = atomic_fetch_add(&frame->next, 1)) < frame->n_blocks;) {
+        struct soft_item *item = frame->items;
+        size_t n_blocks;
+        while (piece >= (n_blocks = (item->surface->n_vertices + VERTEX_BLOCK - 1) / VERTEX_BLOCK)) {
+            piece -= n_blocks;
+            item++;
+        }
+        size_t first = piece * VERTEX_BLOCK, n = item->surface->n_vertices - first;
+        frame->renderer->kernels->shade(&item->lighting, &item->surface->points, first, n < VERTEX_BLOCK ? n : VERTEX_BLOCK,
+                                        item->vertices + first);
+    }
+}
+
+static void sort_triangles(void *context, int part, int n_parts)
+{
+    struct frame *frame = context;
+    (void)part, (void)n_parts;
+    for (size_t piece; (piece = atomic_fetch_add(&frame->next, 1)) < frame->n_chunks;)
+        if (!soft_chunk_sort(&frame->renderer->chunks[piece], frame->width, frame->height, frame->n_bands))
+            atomic_store(&frame->is_out_of_memory, true);
+}
+
+static void draw_item(const struct frame *frame, const struct soft_item *item, const struct soft_band *band, int index)
+{
+    const struct soft_kernels *kernels = frame->renderer->kernels;
+    int range[2] = { band->width, 0 };
+    for (size_t i = 0; i < item->n_chunks; i++) {
+        const struct soft_chunk *chunk = &frame->renderer->chunks[item->first_chunk + i];
+        const struct soft_triangles triangles = { chunk->refs + chunk->starts[index], chunk->starts[index + 1] - chunk->starts[index],
+                                                  item->surface->indices, item->vertices, chunk->extras };
+        if (triangles.n_refs > 0)
+            kernels->raster(band, item->is_opaque ? band->color : band->layer, &triangles, range);
+    }
+    if (!item->is_opaque)
+        kernels->blend(band, range);
+}
+
+static void clear(const struct soft_band *band)
+{
+    const uint8_t *b = visible_background;
+    uint32_t color = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | 0xff000000u;
+    for (size_t i = 0; i < (size_t)band->stride * (size_t)band->n_rows; i++) {
+        band->depth[i] = 1;
+        band->color[i] = color;
+    }
+}
+
+static void write_rows(const struct frame *frame, const struct soft_band *band)
+{
+    size_t width_px = (size_t)frame->image->width_px;
+    for (int y = 0; y < band->n_rows; y += frame->samples) {
+        const uint32_t *from = band->color + (size_t)y * (size_t)band->stride;
+        uint8_t *to = frame->image->rgba + (size_t)((band->first_row + y) / frame->samples) * width_px * 4;
+        if (frame->samples == 2)
+            frame->renderer->kernels->halve(from, from + band->stride, (int)width_px, (uint32_t *)(void *)to);
+        else
+            memcpy(to, from, width_px * 4);
+    }
+}
+
+static void draw_bands(void *context, int part, int n_parts)
+{
+    struct frame *frame = context;
+    struct soft_renderer *renderer = frame->renderer;
+    (void)n_parts;
+    for (size_t piece; (piece = atomic_fetch_add(&frame->next, 1)) < (size_t)frame->n_bands;) {
+        int first = (int)piece * SOFT_BAND_ROWS, n = frame->height - first;
+        uint32_t *samples = renderer->samples[part];
+        struct soft_band band = { first, n < SOFT_BAND_ROWS ? n : SOFT_BAND_ROWS, frame->width, frame->width + SOFT_PADDING,
+                                  (float *)(void *)samples, samples + renderer->n_samples, samples + 2 * renderer->n_samples };
+        size_t at = 0;
+        clear(&band);
+        for (; at < frame->n_items && frame->items[at].is_opaque; at++)
+            draw_item(frame, &frame->items[at], &band, (int)piece);
+        for (size_t i = 0; i < frame->n_planes; i++)
+            soft_plane_draw(&frame->planes[i], renderer->kernels, &band);
+        for (; at < frame->n_items; at++)
+            draw_item(frame, &frame->items[at], &band, (int)piece);
+        write_rows(frame, &band);
+    }
+}
+
+static void run(struct frame *frame, void (*work)(void *context, int part, int n_parts))
+{
+    atomic_store(&frame->next, 0);
+    parallel_run(frame->renderer->n_threads, work, frame);
+}
+
+static bool draw(struct frame *frame, struct render_timing *timing, struct error *err)
+{
+    bool is_in_space = frame->snapshot->view.kind == SCENE_KIND_3D;
+    if ((is_in_space && !collect_surfaces(frame, timing, err)) || !collect_planes(frame, err) || !make_room(frame, err))
+        return false;
+    if (frame->n_items > 0) {
+        run(frame, shade_vertices);
+        run(frame, sort_triangles);
+        if (atomic_load(&frame->is_out_of_memory))
+            return error_set(err, ERROR_MEMORY, "no memory to sort %zu triangles", timing->n_triangles);
+    }
+    run(frame, draw_bands);
+    return true;
+}
+
+struct image *soft_renderer_snapshot(struct soft_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
+                                     const struct camera *camera, struct render_timing *timing, struct error *err)
+{
+    int64_t start_us = clock_now_us();
+    struct frame *frame = mem_new(sizeof *frame);
+    frame->renderer = renderer;
+    frame->snapshot = snapshot;
+    frame->camera = camera;
+    frame->detail = options->detail;
+    frame->image = image_create(options->width_px, options->height_px, err);
+    frame->samples = visible_samples(snapshot, camera, options->width_px, options->is_still);
+    if (frame->image) {
+        frame->width = options->width_px * frame->samples;
+        frame->height = options->height_px * frame->samples;
+        frame->n_bands = (frame->height + SOFT_BAND_ROWS - 1) / SOFT_BAND_ROWS;
+        if (!draw(frame, timing, err)) {
+            image_destroy(frame->image);
+            frame->image = NULL;
+        }
+    }
+    struct image *image = frame->image;
+    free(frame->items);
+    free(frame->palettes);
+    free(frame);
+    timing->draw_us = clock_now_us() - start_us;
+    return image;
+}

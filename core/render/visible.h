@@ -1,0 +1,36 @@
+#pragma once
+/* What of a snapshot is drawn, and in which order: the same for every back end. Knows no pixels and no GL. */
+#include "core/scene/snapshot.h"
+
+/* One surface to draw. */
+struct visible_surface {
+    size_t region;
+    const struct scene_region_style *style;
+    double distance_mm; /* from the eye to the nearest point of its box */
+    int depth;          /* in the hierarchy */
+    uint64_t n_voxels;
+};
+
+/* The box around a region's surface, borrowed until the plan is forgotten; NULL with err when there is no surface to be had. */
+typedef const struct box3 *visible_bounds(void *context, size_t region, struct error *err);
+
+/* The surfaces that are wanted and can be seen, back to front (opaque ones are drawn from the last one on). What lies outside
+ * clip_from_lps_mm's box is left out, and so is what an opaque surface encloses. free(); NULL on failure.
+ * errors ERROR_MEMORY, and those of bounds */
+NODISCARD struct visible_surface *visible_surfaces(const struct snapshot *snapshot, const struct camera *camera,
+                                                   const struct mat4 *clip_from_lps_mm, bool is_opaque, visible_bounds *bounds,
+                                                   void *context, size_t *n, struct error *err);
+
+enum { VISIBLE_N_LABELS = 65536 };
+/* Label to colour, RGBA, for a label layer's cross-section: of the region itself or, when that is hidden, of the innermost visible
+ * one around it; alpha 0 where there is nothing to see. Returns how many labels have a colour. */
+size_t visible_palette(const struct snapshot *snapshot, size_t layer, uint8_t (*colors)[4]);
+/* Label layers from the lowest to the uppermost: those that hold outer regions lie under those that hold inner ones. */
+void visible_layers(const struct region_set *set, size_t layers[REGION_MAX_LAYERS]);
+
+/* Samples along a side of a pixel: stills take several, but a slice pane whose voxels are larger than its pixels has nothing to
+ * gain. width_px is the picture's. */
+int visible_samples(const struct snapshot *snapshot, const struct camera *camera, int width_px, bool is_still);
+
+/* What is behind everything. */
+extern const uint8_t visible_background[3];
