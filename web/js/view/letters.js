@@ -1,6 +1,5 @@
 // Orientation letters: which way the patient lies at each edge of a picture.
-import { scale } from './vec.js';
-import { pictureAxes } from './vec.js';
+import { pictureAxes, scale } from './vec.js';
 
 const names = [['L', 'R'], ['P', 'A'], ['S', 'I']];
 const secondFrom = 0.3; // cosine from which an oblique direction gets its second letter
