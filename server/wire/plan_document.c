@@ -225,7 +225,7 @@ cJSON *plan_document(const struct plan *plan)
     add(object, "id", cJSON_CreateString(plan->id));
     add(object, "name", cJSON_CreateString(plan->name));
     add(object, "note", cJSON_CreateString(plan->note));
-    add(object, "phantom", cJSON_CreateBool(plan->is_phantom));
+    add(object, "is_phantom", cJSON_CreateBool(plan->is_phantom));
     add(object, "load_ms", number((double)plan->load_us / 1000));
     add(object, "bounds_mm", box(&plan->bounds_lps_mm));
     add(object, "home", home_object(plan));

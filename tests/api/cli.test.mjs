@@ -103,7 +103,7 @@ describe('beamroom info', () => {
     assert.deepEqual(Object.keys(info), ['id', 'name', 'note', 'phantom', 'load_ms', 'bounds_mm', 'home', 'images', 'regions',
       'hierarchy', 'doses', 'beams', 'tracks', 'report']);
     assert.equal(info.id, 'head-one');
-    assert.equal(info.phantom, true);
+    assert.equal(info.is_phantom, true);
     const [image] = info.images;
     assert.deepEqual(image.grid.size, [96, 96, 64]);
     assert.equal(image.grid.orientation, 'LPS');

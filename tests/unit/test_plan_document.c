@@ -57,7 +57,7 @@ static void a_plan_is_told_with_units_and_null_where_nothing_is_known(void **sta
 
     cJSON *document = plan_document(&plan);
     assert_string_equal(item(document, "id")->valuestring, "head");
-    assert_true(cJSON_IsTrue(item(document, "phantom")));
+    assert_true(cJSON_IsTrue(item(document, "is_phantom")));
     assert_close(item(document, "load_ms")->valuedouble, 1.5, 0);
     assert_true(cJSON_IsNull(item(document, "bounds_mm")));
     assert_string_equal(item(document, "hierarchy")->valuestring, "derived");

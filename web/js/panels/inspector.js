@@ -109,9 +109,20 @@ function viewTab(world) {
         <dt>Shading</dt><dd>${segment('Shading', [['vertex', 'Smooth'], ['face', 'Faceted']], scene.surface.normals, isDisabled, (normals, event) => change({ surface: { normals } }, event))}</dd>
         <dt>Translucency</dt><dd>${segment('Translucency', [['rim', 'Rim'], ['plain', 'Plain']], scene.surface.translucency, isDisabled, (translucency, event) => change({ surface: { translucency } }, event))}</dd></dl>
       ${image ? html`<div class="checks" role="group" aria-label="Slices in 3-D"><span class="dim">Slices in 3-D</span>${sides.map(([id, name]) => html`<label><input type="checkbox" .checked=${live(scene.image.slices[id].visible)} ?disabled=${isDisabled}
-        @change=${(event) => change({ image: { slices: { [id]: { visible: event.target.checked } } } }, event)}>${name}</label>`)}</div>` : nothing}
+        @change=${(event) => change({ image: { slices: { [id]: { visible: event.target.checked } } } }, event)}>${name}</label>`)}</div>${cullRow(scene, image, isDisabled, change)}` : nothing}
       <div class="buttons looks" role="group" aria-label="Look from">${['anterior', 'posterior', 'left', 'right', 'superior', 'inferior'].map((name) => html`<button ?disabled=${isDisabled} title=${`Look from ${name}`}
         @click=${(event) => panes()[0].actions.lookFrom(name, event.timeStamp)}>${name[0].toUpperCase()}${name.slice(1)}</button>`)}</div></section>`;
+}
+
+const cullsNothing = -100000; // proto/scene.json
+
+/** What slices in the 3-D view leave out, so that air hides nothing. */
+function cullRow(scene, image, isDisabled, change) {
+  const { cull_below: value } = scene.image;
+  const isOn = value > cullsNothing;
+  return html`<div class="checks cull"><label title="Slices in the 3-D view leave out darker values"><input type="checkbox" .checked=${live(isOn)} ?disabled=${isDisabled}
+    @change=${(event) => change({ image: { cull_below: event.target.checked ? null : cullsNothing } }, event)}>Leave out below</label>
+    ${isOn ? numberField('Leave out values below', Math.round(value * 10) / 10, image.unit, isDisabled, (cull_below, event) => change({ image: { cull_below } }, event)) : nothing}</div>`;
 }
 
 function imageBlock({ panes, ui }, plan, scene, image, isDisabled, change) {

@@ -11,14 +11,14 @@ export function status({ room, ui, panes, probed }) {
   const scene = room.scene.value;
   const plan = room.plan.value;
   const latency = room.latencyMs.value;
-  const fps = Math.max(...shown.map((number_) => room.view(number_).fps.value));
+  const fps = Math.max(...shown.map((number_) => room.view(number_).fpsAt(ui.now.value)));
   const region = probed.value.result && plan?.regions.find((other) => other.id === probed.value.result.regions[0]);
   const point = scene && crosshair(scene);
   return html`
     ${badge ? html`<span class=${`badge ${badge.state}`} id="badge-all" data-badge=${badge.state}>${icon(badge.state, 12)}<span>${badge.text}</span></span>` : nothing}
     ${room.link.value.state === 'lost' ? html`<button class="ghost" @click=${() => room.reconnect()}>Try now</button>` : nothing}
     <span class="pairing">Latency <b id="latency">${latency === null ? '–' : `${number(latency)} ms`}</b></span>
-    <span class="pairing"><b id="fps">${number(fps)} fps</b></span>
+    <span class="pairing"><b id="fps">${fps ? `${number(fps)} fps` : 'idle'}</b></span>
     <span class="dim wide" id="gl">${room.gl.value}</span>
     ${point ? html`<i class="rule"></i><span class="pairing">Position <b>L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm</b></span><span>${region?.name ?? ''}</span>` : nothing}
     <span class="grow"></span>

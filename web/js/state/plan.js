@@ -45,7 +45,7 @@ export function readPlan(document) {
     id: document.id,
     name: document.name || document.id,
     note: document.note ?? '',
-    isPhantom: Boolean(document.phantom),
+    isPhantom: Boolean(document.is_phantom),
     images,
     regions: inOrder(document.regions ?? []),
     hierarchy: document.hierarchy ?? 'none',

@@ -126,7 +126,7 @@ export class RoomState {
     const answered = this.view(header.view).paint(header, this.#clock.now());
     if (this.#restored && this.renderer.value.state === 'ready') {
       this.#restored = false;
-      this.notify('ok', 'Picture restored');
+      this.notify('ok', 'Picture restored', 'renderer');
     }
     return answered;
   }
@@ -224,7 +224,7 @@ export class RoomState {
     this.renderer.value = { state, phase, percent, problem };
     if (state === 'restarting' && before !== 'restarting') {
       this.#restored = true;
-      this.notify('warn', 'Renderer restarting. The last picture stays until the new one is here.');
+      this.notify('warn', 'Renderer restarting. The last picture stays until the new one is here.', 'renderer');
     }
   }
 

@@ -27,10 +27,10 @@ export class UiState {
     });
   }
 
-  /** @param {'ok'|'warn'|'err'} kind */
-  notify = (kind, text) => {
-    const toast = { id: this.#nextToast++, kind, text };
-    this.toasts.value = [...this.toasts.value.filter((other) => other.text !== text).slice(-2), toast];
+  /** @param {'ok'|'warn'|'err'} kind @param {string} topic a newer message on the same topic takes the place of an older one */
+  notify = (kind, text, topic = text) => {
+    const toast = { id: this.#nextToast++, kind, text, topic };
+    this.toasts.value = [...this.toasts.value.filter((other) => other.topic !== topic).slice(-2), toast];
     this.#clock.setTimeout(() => this.dismiss(toast.id), toastMs);
   };
 

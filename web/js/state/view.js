@@ -77,6 +77,11 @@ export class ViewState {
     return answered;
   }
 
+  /** Pictures painted in the last second; 0 when nothing moves. */
+  fpsAt(now) {
+    return this.#paintedAt.filter((at) => now - at < fpsWindowMs).length;
+  }
+
   #forget(test) {
     this.#unanswered = this.#unanswered.filter((entry) => !test(entry));
     this.staleSince.value = this.#unanswered[0]?.sentAt ?? 0;
