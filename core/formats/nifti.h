@@ -2,14 +2,13 @@
 /* NIfTI-1 and NIfTI-2, one file (.nii, .nii.gz): an image, a label map or a mask. Works on bytes in memory.
  *   source   nifti1.h, nifti2.h (R. W. Cox, C. Holmes and others, NIMH); geometry: method 3 (sform), else 2 (qform), else 1. */
 #include "core/formats/folder.h"
-#include "core/plan/report.h"
-#include "core/volume/volume.h"
+#include "core/formats/raw_voxels.h"
 
 enum { NIFTI_HEAD_BYTES = 544 }; /* more than either header, with the four bytes that follow it */
 
 struct nifti_header {
     struct grid grid;
-    int datatype;           /* its NIfTI code */
+    enum raw_type type;
     uint32_t voxel_bytes;
     bool is_swapped;        /* the file's byte order is not this machine's */
     double slope, offset;   /* value = stored * slope + offset; 1 and 0 when the file gives none */
@@ -26,13 +25,7 @@ NODISCARD bool nifti_parse_header(const uint8_t *head, size_t size, const char *
 NODISCARD bool nifti_peek(const struct bytes *file, const char *name, struct nifti_header *header, struct report *report,
                           struct error *err);
 
-enum nifti_use {
-    NIFTI_IMAGE,  /* values, in the smallest voxel type that holds them */
-    NIFTI_LABELS, /* whole numbers 0..65535, U8 or U16; errors ERROR_RANGE any other, with its place */
-    NIFTI_MASK    /* U8, 1 inside: half and more */
-};
-
 /*   returns  the volume, measured. One reference, the caller's; NULL on failure.
  *   errors   as nifti_parse_header, and ERROR_MEMORY */
-NODISCARD struct volume *nifti_read(const struct bytes *file, const char *name, enum nifti_use use, struct report *report,
+NODISCARD struct volume *nifti_read(const struct bytes *file, const char *name, enum raw_use use, struct report *report,
                                     struct error *err);

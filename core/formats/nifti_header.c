@@ -146,21 +146,19 @@ static const char *type_name(int code)
     return "unknown";
 }
 
-static uint32_t type_bytes(int code)
+static bool get_type(int code, enum raw_type *type)
 {
-    switch (code) {
-    case DT_UINT8:
-    case DT_INT8: return 1;
-    case DT_INT16:
-    case DT_UINT16: return 2;
-    case DT_INT32:
-    case DT_UINT32:
-    case DT_FLOAT32: return 4;
-    case DT_INT64:
-    case DT_UINT64:
-    case DT_FLOAT64: return 8;
-    }
-    return 0;
+    static const struct {
+        int code;
+        enum raw_type type;
+    } types[] = { { DT_UINT8, RAW_U8 },   { DT_INT8, RAW_I8 },   { DT_INT16, RAW_I16 },  { DT_UINT16, RAW_U16 },  { DT_INT32, RAW_I32 },
+                  { DT_UINT32, RAW_U32 }, { DT_INT64, RAW_I64 }, { DT_UINT64, RAW_U64 }, { DT_FLOAT32, RAW_F32 }, { DT_FLOAT64, RAW_F64 } };
+    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
+        if (types[i].code == code) {
+            *type = types[i].type;
+            return true;
+        }
+    return false;
 }
 
 static bool get_size(const struct fields *f, const char *name, uint32_t size[3], struct error *err)
@@ -275,12 +273,11 @@ bool nifti_parse_header(const uint8_t *head, size_t size, const char *name, stru
     uint32_t sides[3];
     if (!get_fields(head, size, name, &f, &is_big, &version, err) || !get_size(&f, name, sides, err))
         return false;
-    header->datatype = f.datatype;
-    header->voxel_bytes = type_bytes(f.datatype);
-    if (header->voxel_bytes == 0)
+    if (!get_type(f.datatype, &header->type))
         return error_set(err, ERROR_UNSUPPORTED,
                          "%s: data type %d (%s) is not read; expected whole numbers of 8 to 64 bits or floats of 32 or 64", name,
                          f.datatype, type_name(f.datatype));
+    header->voxel_bytes = raw_type_bytes(header->type);
     if (f.bitpix != 0 && f.bitpix != (int)(8 * header->voxel_bytes))
         return error_set(err, ERROR_FORMAT, "%s: bitpix is %d, but data type %d has %u bits", name, f.bitpix, f.datatype,
                          8 * header->voxel_bytes);

@@ -147,7 +147,7 @@ static void order_jobs(struct loading *loading)
 
 /* ---- reading, in several threads ------------------------------------------------------------------------------------ */
 
-static bool read_nifti(const struct folder *folder, struct job *job, enum nifti_use use)
+static bool read_nifti(const struct folder *folder, struct job *job, enum raw_use use)
 {
     struct bytes bytes;
     if (!folder_read(folder, job->path, DATA_FILE_MAX_BYTES, UINT64_MAX, &bytes, &job->err))
@@ -226,14 +226,14 @@ static bool run_job(const struct loading *loading, struct job *job)
     case JOB_IMAGE:
         if (!text_has_ending(job->path, ".nii") && !text_has_ending(job->path, ".nii.gz"))
             return read_qsh(&loading->folder, loading->file->images[job->index].header, job);
-        return read_nifti(&loading->folder, job, NIFTI_IMAGE);
-    case JOB_DOSE: return read_nifti(&loading->folder, job, NIFTI_IMAGE);
-    case JOB_DOSE_MASK: return read_nifti(&loading->folder, job, NIFTI_MASK);
+        return read_nifti(&loading->folder, job, RAW_IMAGE);
+    case JOB_DOSE: return read_nifti(&loading->folder, job, RAW_IMAGE);
+    case JOB_DOSE_MASK: return read_nifti(&loading->folder, job, RAW_MASK);
     case JOB_REGION:
         if (text_has_ending(job->path, ".uvh"))
             return read_univels(&loading->folder, job);
         return read_names(&loading->folder, region->names, job) &&
-               read_nifti(&loading->folder, job, region->name[0] ? NIFTI_MASK : NIFTI_LABELS);
+               read_nifti(&loading->folder, job, region->name[0] ? RAW_MASK : RAW_LABELS);
     }
     return false;
 }

@@ -87,7 +87,7 @@ static bool is_label_map(const struct folder *folder, const char *name)
         return false;
     bool is_read = nifti_peek(&head, name, &header, NULL, NULL);
     bytes_free(&head);
-    return is_read && header.datatype != 16 /* float */ && header.datatype != 64 /* double */;
+    return is_read && header.type != RAW_F32 && header.type != RAW_F64;
 }
 
 static void set_name(char *out, size_t size, const char *name)

@@ -6,8 +6,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
 {
     if (n < 1)
         return 0;
-    static const enum nifti_use uses[] = { NIFTI_IMAGE, NIFTI_LABELS, NIFTI_MASK };
-    enum nifti_use use = uses[data[0] % 3];
+    static const enum raw_use uses[] = { RAW_IMAGE, RAW_LABELS, RAW_MASK };
+    enum raw_use use = uses[data[0] % 3];
     struct bytes file = { (uint8_t *)(uintptr_t)data + 1, n - 1 };
     struct report report = { 0 };
     struct error err = { 0 };
@@ -21,8 +21,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
         REQUIRE(has_header);
         REQUIRE(memcmp(volume->grid.size, header.grid.size, sizeof header.grid.size) == 0);
         REQUIRE(volume->low <= volume->high);
-        REQUIRE(use != NIFTI_MASK || (volume->low >= 0 && volume->high <= 1));
-        REQUIRE(use != NIFTI_LABELS || (volume->low >= 0 && volume->high <= 65535));
+        REQUIRE(use != RAW_MASK || (volume->low >= 0 && volume->high <= 1));
+        REQUIRE(use != RAW_LABELS || (volume->low >= 0 && volume->high <= 65535));
         volume_unref(volume);
     } else {
         REQUIRE(err.code != ERROR_NONE && err.text[0] != '\0');

@@ -6,7 +6,7 @@ enum { U8 = 2, I16 = 4, I32 = 8, F32 = 16, F64 = 64, I8 = 256, U16 = 512, U32 = 
 
 static const double identity_ras[3][4] = { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } };
 
-static struct volume *read_from(const struct nifti_bytes *file, enum nifti_use use, struct report *report, struct error *err)
+static struct volume *read_from(const struct nifti_bytes *file, enum raw_use use, struct report *report, struct error *err)
 {
     struct bytes bytes = { file->data, file->size };
     *err = (struct error){ 0 };
@@ -36,7 +36,7 @@ static void the_sform_becomes_patient_lps(void **state)
     struct nifti_bytes file = nifti_bytes_make(2, 3, 4, U8, 8, 24, false);
     nifti_put_sform(&file, rows);
     struct error err;
-    struct volume *volume = read_from(&file, NIFTI_IMAGE, NULL, &err);
+    struct volume *volume = read_from(&file, RAW_IMAGE, NULL, &err);
     assert_non_null(volume);
     /* by hand: RAS (10 - 4*3, 20 + 2*1, 30 + 3*2) = (-2, 22, 36), so LPS (2, -22, 36) */
     assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 2, 3)), 2, -22, 36);
@@ -64,14 +64,14 @@ static void the_qform_is_a_rotation_with_a_sign_for_k(void **state)
     nifti_put_f32(&file, 84, 3);
     nifti_put_f32(&file, 88, 4);
     struct error err;
-    struct volume *volume = read_from(&file, NIFTI_IMAGE, NULL, &err);
+    struct volume *volume = read_from(&file, RAW_IMAGE, NULL, &err);
     assert_non_null(volume);
     /* RAS of (1,1,1): (5 - 2, 6 - 3, 7 - 4) = (3, 3, 3); LPS (-3, -3, 3) */
     assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), -3, -3, 3);
     volume_unref(volume);
     /* A quarter turn about S: (0, 0, sin 45): i goes to RAS +y. */
     nifti_put_f32(&file, 264, sqrt(0.5));
-    volume = read_from(&file, NIFTI_IMAGE, NULL, &err);
+    volume = read_from(&file, RAW_IMAGE, NULL, &err);
     assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 0, 0)), -5, -8, 7);
     volume_unref(volume);
     nifti_bytes_free(&file);
@@ -83,7 +83,7 @@ static void the_sform_wins_and_a_missing_orientation_is_said(void **state)
     struct nifti_bytes file = nifti_bytes_make(2, 2, 2, U8, 8, 8, false);
     struct report report = { 0 };
     struct error err;
-    struct volume *volume = read_from(&file, NIFTI_IMAGE, &report, &err);
+    struct volume *volume = read_from(&file, RAW_IMAGE, &report, &err);
     assert_non_null(volume);
     assert_true(report_has(&report, "geometry.assumed"));
     volume_unref(volume);
@@ -91,7 +91,7 @@ static void the_sform_wins_and_a_missing_orientation_is_said(void **state)
     nifti_put_sform(&file, identity_ras);
     nifti_put_i16(&file, 252, 1);
     nifti_put_f32(&file, 268, 100);
-    volume = read_from(&file, NIFTI_IMAGE, &report, &err);
+    volume = read_from(&file, RAW_IMAGE, &report, &err);
     assert_point(volume->grid.lps_mm_from_ijk.origin, 0, 0, 0);
     assert_true(report_has(&report, "geometry.forms-disagree"));
     volume_unref(volume);
@@ -107,7 +107,7 @@ static void metres_and_microns_become_millimetres(void **state)
     nifti_put_sform(&file, rows);
     file.data[123] = 1;
     struct error err;
-    struct volume *volume = read_from(&file, NIFTI_IMAGE, NULL, &err);
+    struct volume *volume = read_from(&file, RAW_IMAGE, NULL, &err);
     assert_close(grid_spacing_mm(&volume->grid).x, 2, 1e-6);
     assert_close(volume->grid.lps_mm_from_ijk.origin.x, -100, 1e-4);
     volume_unref(volume);
@@ -136,7 +136,7 @@ static void check_type(int datatype, int bytes, double first, double second, enu
             nifti_put_i64(&file, at, (int64_t)values[i]);
     }
     struct error err;
-    struct volume *volume = read_from(&file, NIFTI_IMAGE, NULL, &err);
+    struct volume *volume = read_from(&file, RAW_IMAGE, NULL, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(volume->type, expected);
     assert_close(volume_value(volume, 0, 0, 0), first, 1e-6 * fabs(first));
@@ -177,13 +177,13 @@ static void scaling_is_applied_and_a_slope_of_zero_is_none(void **state)
     nifti_put_f32(&file, 112, -2);
     nifti_put_f32(&file, 116, 100);
     struct error err;
-    struct volume *volume = read_from(&file, NIFTI_IMAGE, NULL, &err);
+    struct volume *volume = read_from(&file, RAW_IMAGE, NULL, &err);
     assert_close(volume_value(volume, 0, 0, 0), 80, 0);
     assert_close(volume->low, 40, 0);
     assert_close(volume->high, 80, 0);
     volume_unref(volume);
     nifti_put_f32(&file, 112, 0);
-    volume = read_from(&file, NIFTI_IMAGE, NULL, &err);
+    volume = read_from(&file, RAW_IMAGE, NULL, &err);
     assert_close(volume_value(volume, 0, 0, 0), 10, 0);
     volume_unref(volume);
     nifti_bytes_free(&file);
@@ -197,7 +197,7 @@ static void labels_are_whole_numbers_and_others_are_refused_with_their_place(voi
     for (size_t i = 0; i < 8; i++)
         nifti_put_f32(&file, 352 + 4 * i, (double)i * 40);
     struct error err;
-    struct volume *volume = read_from(&file, NIFTI_LABELS, NULL, &err);
+    struct volume *volume = read_from(&file, RAW_LABELS, NULL, &err);
     assert_non_null(volume);
     assert_int_equal(volume->type, VOXEL_U16); /* 280 does not fit a byte */
     assert_int_equal(volume_label(volume, 1, 1, 1), 280);
@@ -208,7 +208,7 @@ static void labels_are_whole_numbers_and_others_are_refused_with_their_place(voi
     } bad[] = { { -1, "is -1" }, { 0.5, "is 0.5" }, { 65536, "is 65536" }, { NAN, "is " } };
     for (size_t i = 0; i < 4; i++) {
         nifti_put_f32(&file, 352 + 4 * 5, bad[i].value);
-        assert_null(read_from(&file, NIFTI_LABELS, NULL, &err));
+        assert_null(read_from(&file, RAW_LABELS, NULL, &err));
         assert_int_equal(err.code, ERROR_RANGE);
         assert_non_null(strstr(err.text, "a.nii: voxel (1, 0, 1)"));
         assert_non_null(strstr(err.text, bad[i].said));
@@ -226,7 +226,7 @@ static void a_mask_counts_half_and_more_as_inside(void **state)
         nifti_put_f32(&file, 352 + 4 * i, values[i]);
     struct report report = { 0 };
     struct error err;
-    struct volume *mask = read_from(&file, NIFTI_MASK, &report, &err);
+    struct volume *mask = read_from(&file, RAW_MASK, &report, &err);
     const uint8_t expected[4] = { 0, 0, 1, 0 };
     assert_memory_equal(mask->voxels, expected, 4);
     assert_true(report_has(&report, "mask.fractional"));
@@ -244,7 +244,7 @@ static void packed_files_are_read_also_in_several_members_and_with_more_behind(v
         file.data[352 + i] = (uint8_t)(3 * i);
     struct error err = { 0 };
     struct bytes whole = nifti_bytes_pack(file.data, file.size);
-    struct volume *volume = nifti_read(&whole, "a.nii.gz", NIFTI_IMAGE, NULL, &err);
+    struct volume *volume = nifti_read(&whole, "a.nii.gz", RAW_IMAGE, NULL, &err);
     assert_non_null(volume);
     assert_close(volume_value(volume, 3, 3, 3), 189, 0);
     volume_unref(volume);
@@ -252,12 +252,12 @@ static void packed_files_are_read_also_in_several_members_and_with_more_behind(v
     struct bytes both = { malloc(head.size + tail.size), head.size + tail.size };
     memcpy(both.data, head.data, head.size);
     memcpy(both.data + head.size, tail.data, tail.size);
-    volume = nifti_read(&both, "a.nii.gz", NIFTI_IMAGE, NULL, &err);
+    volume = nifti_read(&both, "a.nii.gz", RAW_IMAGE, NULL, &err);
     assert_string_equal(err.text, "");
     assert_close(volume_value(volume, 3, 3, 3), 189, 0);
     volume_unref(volume);
     whole.size -= 30; /* cut */
-    assert_null(nifti_read(&whole, "a.nii.gz", NIFTI_IMAGE, NULL, &err));
+    assert_null(nifti_read(&whole, "a.nii.gz", RAW_IMAGE, NULL, &err));
     assert_int_equal(err.code, ERROR_FORMAT);
     bytes_free(&whole);
     bytes_free(&head);
@@ -274,7 +274,7 @@ static void a_packed_file_with_a_wrong_checksum_is_refused(void **state)
     struct bytes packed = nifti_bytes_pack(file.data, file.size);
     packed.data[packed.size - 6] ^= 1; /* the checksum is the last eight bytes' first half */
     struct error err = { 0 };
-    assert_null(nifti_read(&packed, "a.nii.gz", NIFTI_IMAGE, NULL, &err));
+    assert_null(nifti_read(&packed, "a.nii.gz", RAW_IMAGE, NULL, &err));
     assert_int_equal(err.code, ERROR_FORMAT);
     assert_non_null(strstr(err.text, "checksum"));
     bytes_free(&packed);
@@ -302,7 +302,7 @@ static void nifti_2_is_read(void **state)
         nifti_put_i32(&file, 500, 2);
         file.data[545] = 9;
         struct error err;
-        struct volume *volume = read_from(&file, NIFTI_IMAGE, NULL, &err);
+        struct volume *volume = read_from(&file, RAW_IMAGE, NULL, &err);
         assert_string_equal(err.text, "");
         assert_close(volume_value(volume, 1, 0, 0), 9, 0);
         assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 0, 0)), -2.5, 0, 0);
@@ -314,7 +314,7 @@ static void nifti_2_is_read(void **state)
 static void expect_refusal(const struct nifti_bytes *file, enum error_code code, const char *said)
 {
     struct error err;
-    assert_null(read_from(file, NIFTI_IMAGE, NULL, &err));
+    assert_null(read_from(file, RAW_IMAGE, NULL, &err));
     if (err.code != code || !strstr(err.text, said) || !strstr(err.text, "a.nii"))
         fail_msg("%s: %s; expected %s with \"%s\"", error_word(err.code), err.text, error_word(code), said);
 }
@@ -361,7 +361,7 @@ static void what_is_broken_is_refused_with_a_sentence(void **state)
     expect_refusal(&file, ERROR_UNSUPPORTED, "dim[5] is 3");
     nifti_put_i16(&file, 50, 1);
     struct error err;
-    struct volume *volume = read_from(&file, NIFTI_IMAGE, NULL, &err); /* trailing ones do no harm */
+    struct volume *volume = read_from(&file, RAW_IMAGE, NULL, &err); /* trailing ones do no harm */
     assert_non_null(volume);
     volume_unref(volume);
     nifti_put_i16(&file, 40, 0);
@@ -387,7 +387,7 @@ static void a_small_packed_file_that_claims_gigabytes_is_refused_before_memory_i
     nifti_put_sform(&file, identity_ras);
     struct bytes packed = nifti_bytes_pack(file.data, file.size);
     struct error err = { 0 };
-    assert_null(nifti_read(&packed, "a.nii.gz", NIFTI_IMAGE, NULL, &err));
+    assert_null(nifti_read(&packed, "a.nii.gz", RAW_IMAGE, NULL, &err));
     assert_int_equal(err.code, ERROR_FORMAT);
     assert_non_null(strstr(err.text, "cut short"));
     bytes_free(&packed);

@@ -61,7 +61,7 @@ static void compare_file(char *line)
     assert_true(folder_open(&folder, folder_path, &err));
     assert_true(folder_read(&folder, slash + 1, UINT32_MAX, UINT64_MAX, &bytes, &err));
     folder_close(&folder);
-    struct volume *volume = nifti_read(&bytes, slash + 1, NIFTI_IMAGE, NULL, &err);
+    struct volume *volume = nifti_read(&bytes, slash + 1, RAW_IMAGE, NULL, &err);
     bytes_free(&bytes);
     if (!volume)
         fail_msg("%s", err.text);
