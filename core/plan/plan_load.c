@@ -11,6 +11,7 @@
 #include "core/formats/text.h"
 #include "core/plan/plan_bounds.h"
 #include "core/plan/plan_meshes.h"
+#include "core/plan/plan_nrrd.h"
 #include "core/plan/plan_parts.h"
 #include "core/plan/plan_regions.h"
 #include "core/plan/plan_tracks.h"
@@ -26,7 +27,9 @@ struct job {
     size_t index, component; /* into the plan file */
     const char *path;
     uint64_t bytes; /* of the file, for order and progress */
+    enum part_format format;
     struct volume *volume;
+    struct nrrd_layers *layers; /* of a NRRD label map, instead of volume */
     struct uvh uvh;
     struct label_names names;
     char modality[16];     /* as a .qhd says it */
@@ -81,6 +84,7 @@ static void add_job(struct loading *loading, enum job_kind kind, size_t index, s
     job->index = index;
     job->component = component;
     job->path = path;
+    job->format = part_format_of(&loading->folder, path);
     folder_look(&loading->folder, path, &job->bytes);
     loading->n_bytes += job->bytes;
 }
@@ -94,7 +98,7 @@ static bool dose_is_readable(struct loading *loading, const struct plan_file_dos
         enum part_format format = part_format_of(&loading->folder, path);
         if (format == PART_ABSENT)
             return refuse_format(path, format, err);
-        if (format == PART_NIFTI)
+        if (format == PART_NIFTI || format == PART_NRRD)
             continue;
         report_add(&loading->plan->report, REPORT_WARNING, "dose.unsupported", path,
                    "The dose \"%s\" is in a format (%s) that this version does not read; the plan is shown without it.", dose->id,
@@ -112,13 +116,13 @@ static bool make_jobs(struct loading *loading, struct error *err)
     loading->jobs = mem_new((most + 1) * sizeof *loading->jobs);
     for (size_t i = 0; i < file->n_images; i++) {
         enum part_format format = part_format_of(&loading->folder, file->images[i].path);
-        if (format != PART_NIFTI && format != PART_QSH)
+        if (format != PART_NIFTI && format != PART_NRRD && format != PART_QSH)
             return refuse_format(file->images[i].path, format, err);
         add_job(loading, JOB_IMAGE, i, 0, file->images[i].path);
     }
     for (size_t i = 0; i < file->n_regions; i++) {
         enum part_format format = part_format_of(&loading->folder, file->regions[i].path);
-        if (format != PART_NIFTI && format != PART_UVH)
+        if (format != PART_NIFTI && format != PART_NRRD && format != PART_UVH)
             return refuse_format(file->regions[i].path, format, err);
         add_job(loading, JOB_REGION, i, 0, file->regions[i].path);
     }
@@ -147,9 +151,13 @@ static void order_jobs(struct loading *loading)
 
 /* ---- reading, in several threads ------------------------------------------------------------------------------------ */
 
-static bool read_nifti(const struct folder *folder, struct job *job, enum raw_use use)
+static bool read_grid(const struct folder *folder, struct job *job, enum raw_use use)
 {
     struct bytes bytes;
+    if (job->format == PART_NRRD) {
+        job->volume = plan_nrrd_read(folder, job->path, use, &job->report, &job->err);
+        return job->volume != NULL;
+    }
     if (!folder_read(folder, job->path, DATA_FILE_MAX_BYTES, UINT64_MAX, &bytes, &job->err))
         return false;
     job->volume = nifti_read(&bytes, job->path, use, &job->report, &job->err);
@@ -207,6 +215,12 @@ static bool read_qsh(const struct folder *folder, const char *header, struct job
     return job->volume != NULL;
 }
 
+static bool read_layers(const struct folder *folder, struct job *job)
+{
+    job->layers = mem_new(sizeof *job->layers);
+    return plan_nrrd_read_layers(folder, job->path, job->layers, &job->report, &job->err);
+}
+
 static bool read_names(const struct folder *folder, const char *path, struct job *job)
 {
     struct bytes bytes;
@@ -224,16 +238,18 @@ static bool run_job(const struct loading *loading, struct job *job)
     const struct plan_file_region *region = &loading->file->regions[job->index];
     switch (job->kind) {
     case JOB_IMAGE:
-        if (!text_has_ending(job->path, ".nii") && !text_has_ending(job->path, ".nii.gz"))
+        if (job->format == PART_QSH)
             return read_qsh(&loading->folder, loading->file->images[job->index].header, job);
-        return read_nifti(&loading->folder, job, RAW_IMAGE);
-    case JOB_DOSE: return read_nifti(&loading->folder, job, RAW_IMAGE);
-    case JOB_DOSE_MASK: return read_nifti(&loading->folder, job, RAW_MASK);
+        return read_grid(&loading->folder, job, RAW_IMAGE);
+    case JOB_DOSE: return read_grid(&loading->folder, job, RAW_IMAGE);
+    case JOB_DOSE_MASK: return read_grid(&loading->folder, job, RAW_MASK);
     case JOB_REGION:
-        if (text_has_ending(job->path, ".uvh"))
+        if (job->format == PART_UVH)
             return read_univels(&loading->folder, job);
+        if (job->format == PART_NRRD && !region->name[0])
+            return read_names(&loading->folder, region->names, job) && read_layers(&loading->folder, job);
         return read_names(&loading->folder, region->names, job) &&
-               read_nifti(&loading->folder, job, region->name[0] ? RAW_MASK : RAW_LABELS);
+               read_grid(&loading->folder, job, region->name[0] ? RAW_MASK : RAW_LABELS);
     }
     return false;
 }
@@ -358,6 +374,14 @@ static void borrow_grid(struct loading *loading, const struct job *job)
 static bool add_regions(struct loading *loading, struct region_builder *builder, struct job *job, struct error *err)
 {
     const struct plan_file_region *entry = &loading->file->regions[job->index];
+    for (size_t i = 0; job->layers && i < job->layers->n; i++) {
+        struct volume *layer = job->layers->volumes[i];
+        job->layers->volumes[i] = NULL;
+        if (!region_builder_add_labels(builder, layer, job->names.n > 0 ? &job->names : &job->layers->names[i], job->path, err))
+            return false;
+    }
+    if (job->layers)
+        return true;
     struct volume *volume = take_volume(job);
     if (job->uvh.bodies)
         return region_builder_add_univels(builder, volume, &job->uvh, job->path, err);
@@ -502,6 +526,9 @@ static void finish_loading(struct loading *loading)
 {
     for (size_t i = 0; i < loading->n_jobs; i++) {
         volume_unref(loading->jobs[i].volume);
+        if (loading->jobs[i].layers)
+            nrrd_layers_finish(loading->jobs[i].layers);
+        free(loading->jobs[i].layers);
         uvh_finish(&loading->jobs[i].uvh);
         label_names_finish(&loading->jobs[i].names);
         report_finish(&loading->jobs[i].report);

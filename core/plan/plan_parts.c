@@ -7,6 +7,7 @@
 #include "core/base/mem.h"
 #include "core/formats/nifti.h"
 #include "core/formats/text.h"
+#include "core/plan/plan_nrrd.h"
 
 static bool is_dicom_file(const struct folder *folder, const char *name)
 {
@@ -72,22 +73,37 @@ bool part_find_data(const struct folder *folder, const char *header, const char 
     return false;
 }
 
-/* A NIfTI file whose name speaks of labels and whose voxels are whole numbers. */
-static bool is_label_map(const struct folder *folder, const char *name)
+static bool nifti_is_whole(const struct folder *folder, const char *name)
 {
     struct bytes head;
     struct nifti_header header;
-    char low[FOLDER_NAME_SIZE];
-    size_t n = strlen(name);
-    for (size_t i = 0; i <= n; i++)
-        low[i] = name[i] >= 'A' && name[i] <= 'Z' ? (char)(name[i] - 'A' + 'a') : name[i];
-    if (!strstr(low, "label") && !strstr(low, "seg") && !strstr(low, "univel") && !strstr(low, "mask"))
-        return false;
     if (!folder_read(folder, name, UINT64_MAX, 1 << 16, &head, NULL))
         return false;
     bool is_read = nifti_peek(&head, name, &header, NULL, NULL);
     bytes_free(&head);
     return is_read && header.type != RAW_F32 && header.type != RAW_F64;
+}
+
+static bool nrrd_is_whole(const struct folder *folder, const char *name, bool *has_segments)
+{
+    struct nrrd_header header;
+    bool is_read = plan_nrrd_peek(folder, name, &header, NULL);
+    *has_segments = is_read && header.n_segments > 0;
+    nrrd_header_finish(&header);
+    return is_read && header.type != RAW_F32 && header.type != RAW_F64;
+}
+
+/* A file whose voxels are whole numbers and whose name speaks of labels, or that names segments itself. */
+static bool is_label_map(const struct folder *folder, const char *name, enum part_format format)
+{
+    bool has_segments = false;
+    if (!(format == PART_NIFTI ? nifti_is_whole(folder, name) : nrrd_is_whole(folder, name, &has_segments)))
+        return false;
+    char low[FOLDER_NAME_SIZE];
+    size_t n = strlen(name);
+    for (size_t i = 0; i <= n; i++)
+        low[i] = name[i] >= 'A' && name[i] <= 'Z' ? (char)(name[i] - 'A' + 'a') : name[i];
+    return has_segments || strstr(low, "label") || strstr(low, "seg") || strstr(low, "univel") || strstr(low, "mask");
 }
 
 static void set_name(char *out, size_t size, const char *name)
@@ -99,9 +115,11 @@ static void recognise_file(const struct folder *folder, const char *name, struct
                            size_t *n_foreign)
 {
     char data[FOLDER_NAME_SIZE];
-    switch (part_format_of(folder, name)) {
+    enum part_format format = part_format_of(folder, name);
+    switch (format) {
     case PART_NIFTI:
-        if (is_label_map(folder, name)) {
+    case PART_NRRD:
+        if (is_label_map(folder, name, format)) {
             if (file->n_regions < PLAN_FILE_MAX_PARTS)
                 set_name(file->regions[file->n_regions++].path, FOLDER_NAME_SIZE, name);
         } else if (file->n_images < PLAN_MAX_IMAGES) {
@@ -134,7 +152,6 @@ static void recognise_file(const struct folder *folder, const char *name, struct
     case PART_SERA_DOSE:
         report_add(report, REPORT_NOTE, "plan.ignored-file", name, "A SERA dose; this version does not read it.");
         break;
-    case PART_NRRD:
     case PART_DICOM: (*n_foreign)++; break;
     default:
         if (text_has_ending(name, ".info") && !file->hierarchy[0])
@@ -182,18 +199,14 @@ static struct plan_file *recognise(const struct folder *folder, struct report *r
         return NULL;
     struct plan_file *file = mem_new(sizeof *file);
     file->regions = mem_new(PLAN_FILE_MAX_PARTS * sizeof *file->regions);
-    const char *foreign = "DICOM";
     for (size_t i = 0; i < n_names; i++) {
-        size_t before = n_foreign;
         if (folder_look(folder, names[i], NULL) == FOLDER_FILE)
             recognise_file(folder, names[i], file, report, &n_foreign);
-        if (n_foreign > before && n_foreign == 1 && part_format_of(folder, names[i]) == PART_NRRD)
-            foreign = "NRRD";
     }
     plan_folder_name(folder->path, file->name, sizeof file->name);
     if (file->n_images + file->n_regions == 0) {
         if (n_foreign > 0)
-            error_set(err, ERROR_UNSUPPORTED, "%zu %s files: %s is not read by this version", n_foreign, foreign, foreign);
+            error_set(err, ERROR_UNSUPPORTED, "%zu DICOM files: DICOM is not read by this version", n_foreign);
         else
             explain_nothing(folder, names, n_names, err);
         folder_free_names(names, n_names);

@@ -4,6 +4,7 @@
 #include "core/formats/nifti.h"
 #include "core/formats/sera_uvh.h"
 #include "core/formats/text.h"
+#include "core/plan/plan_nrrd.h"
 #include "core/plan/plan_parts.h"
 
 enum { HEAD_BYTES = 1 << 16, NAMES_MAX_BYTES = 16 << 20 };
@@ -35,6 +36,19 @@ static bool check_nifti(const struct folder *folder, const char *name, struct er
         return false;
     bool is_good = nifti_peek(&head, name, &header, NULL, err);
     bytes_free(&head);
+    return is_good;
+}
+
+static bool check_nrrd(const struct folder *folder, const char *name, struct plan_summary *summary, size_t *n_segments,
+                       struct error *err)
+{
+    struct nrrd_header header;
+    bool is_good = plan_nrrd_peek(folder, name, &header, err);
+    for (size_t i = 0; is_good && n_segments && i < header.n_segments; i++)
+        *n_segments += header.segments[i].is_present;
+    if (is_good && header.data_file[0])
+        count_bytes(folder, header.data_file, summary);
+    nrrd_header_finish(&header);
     return is_good;
 }
 
@@ -76,11 +90,14 @@ static bool refuse(const char *path, enum part_format format, struct error *err)
     return error_set(err, ERROR_UNSUPPORTED, "%s: %s: not read by this version", path, part_format_word(format));
 }
 
-static bool check_image(const struct folder *folder, const struct plan_file_image *image, struct error *err)
+static bool check_image(const struct folder *folder, const struct plan_file_image *image, struct plan_summary *summary,
+                        struct error *err)
 {
     enum part_format format = part_format_of(folder, image->path);
     if (format == PART_NIFTI)
         return check_nifti(folder, image->path, err);
+    if (format == PART_NRRD)
+        return check_nrrd(folder, image->path, summary, NULL, err);
     return format == PART_QSH || refuse(image->path, format, err);
 }
 
@@ -102,7 +119,7 @@ static bool check_images(const struct folder *folder, const struct plan_file *fi
     for (size_t i = 0; i < file->n_images; i++) {
         const struct plan_file_image *image = &file->images[i];
         count_bytes(folder, image->path, summary);
-        is_good = is_good && check_image(folder, image, err);
+        is_good = is_good && check_image(folder, image, summary, err);
         size_t n = 0;
         bool is_first = true;
         for (size_t other = 0; other < file->n_images; other++) {
@@ -128,14 +145,19 @@ static bool check_regions(const struct folder *folder, const struct plan_file *f
         count_bytes(folder, region->path, summary);
         if (format == PART_UVH) {
             is_good = is_good && check_univels(folder, region->path, summary, &n_regions, err);
-        } else if (format != PART_NIFTI) {
+        } else if (format != PART_NIFTI && format != PART_NRRD) {
             is_good = is_good && refuse(region->path, format, err);
         } else {
-            size_t n = count_names(folder, region->names);
+            size_t n = count_names(folder, region->names), n_segments = 0;
+            if (format == PART_NIFTI)
+                is_good = is_good && check_nifti(folder, region->path, err);
+            else
+                is_good = is_good && check_nrrd(folder, region->path, summary, &n_segments, err);
+            if (n == 0 && !region->name[0])
+                n = n_segments;
             n_regions += region->name[0] != 0;
             n_names += n;
             n_maps += !region->name[0] && n == 0;
-            is_good = is_good && check_nifti(folder, region->path, err);
         }
     }
     add_part(summary, n_regions, "region", "regions");
@@ -151,7 +173,8 @@ static void count_doses(const struct folder *folder, const struct plan_file *fil
         bool is_read = true;
         for (size_t c = 0; c < file->doses[i].n_components; c++) {
             count_bytes(folder, file->doses[i].components[c].path, summary);
-            is_read = is_read && part_format_of(folder, file->doses[i].components[c].path) == PART_NIFTI;
+            enum part_format format = part_format_of(folder, file->doses[i].components[c].path);
+            is_read = is_read && (format == PART_NIFTI || format == PART_NRRD);
         }
         if (is_read)
             n_components += file->doses[i].n_components;
