@@ -152,8 +152,8 @@ RUNNER := $(if $(findstring thread,$(SAN)),$(shell setarch -R true 2>/dev/null &
 .PHONY: test-unit test-render test-api test-web test-install test lint
 test-unit: $(unit_BIN)
 	$(Q)RUNNER="$(RUNNER)" tests/run_programs.sh "$(call LABEL,unit)" $(unit_BIN)
-test-render: $(render_BIN) demo
-	$(Q)tests/run_programs.sh "$(call LABEL,render)" $(render_BIN)
+test-render: $(render_BIN)
+	$(Q)RUNNER="$(RUNNER)" tests/run_programs.sh "$(call LABEL,render)" $(render_BIN)
 test-api: all demo
 	$(Q)tests/run_node.sh api $(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs))
 test-web: all demo

@@ -43,6 +43,8 @@ suite install "$jobs" test-install
 suite build-clang "$jobs" CC=clang WERROR=1 programs $programs
 suite unit-address-undefined "$jobs" SAN=address,undefined test-unit
 suite unit-thread "$jobs" SAN=thread test-unit
+suite render-address-undefined "$jobs" SAN=address,undefined test-render
+suite render-thread "$jobs" SAN=thread test-render
 suite fuzz fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-10}"
 
 echo

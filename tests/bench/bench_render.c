@@ -1,6 +1,6 @@
 /* Drawing and compressing the demo plan as a new room shows it (five surfaces, four of them translucent, and an axial slice), the
- * camera going round it: light surfaces as while moving at 100, 75 and 50 % of 1024 x 768, full surfaces anti-aliased as still;
- * the axial pane; JPEG and PNG. */
+ * camera going round it: light surfaces as while moving at 100, 75, 60 and 50 % of 1024 x 768, full surfaces anti-aliased as still;
+ * the axial pane; each by our own rasteriser and, picture by picture in turn, by the OpenGL there is; JPEG and PNG. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -10,7 +10,7 @@
 
 enum { REPEATS = 15, WIDTH = 1024, HEIGHT = 768 };
 
-static struct renderer *renderer;
+static struct renderer *soft, *gl; /* gl: NULL where there is none */
 static struct plan *plan;
 
 static int compare(const void *a, const void *b)
@@ -32,7 +32,7 @@ static void stop(const struct error *err)
 }
 
 /* One picture; step moves the camera round the plan (or the slice through it). */
-static struct image *draw(enum scene_kind kind, int step, double scale, enum surface_detail detail, bool is_still,
+static struct image *draw(struct renderer *renderer, enum scene_kind kind, int step, double scale, enum surface_detail detail, bool is_still,
                           struct render_timing *timing)
 {
     struct scene scene;
@@ -59,28 +59,40 @@ static struct image *draw(enum scene_kind kind, int step, double scale, enum sur
     return image;
 }
 
+/* Until the picture is in memory: drawing and reading back. */
+static double draw_ms(struct renderer *renderer, enum scene_kind kind, int step, double scale, enum surface_detail detail, bool is_still,
+                      struct render_timing *timing)
+{
+    image_destroy(draw(renderer, kind, step, scale, detail, is_still, timing));
+    return (double)(timing->draw_us + timing->read_us) / 1e3;
+}
+
 static void bench_drawing(const char *name, enum scene_kind kind, double scale, enum surface_detail detail, bool is_still)
 {
-    double draw_ms[REPEATS], read_ms[REPEATS];
+    double ours_ms[REPEATS], peer_ms[REPEATS] = { 0 };
     struct render_timing timing;
-    image_destroy(draw(kind, -1, scale, detail, is_still, &timing)); /* uploads */
+    (void)draw_ms(soft, kind, -1, scale, detail, is_still, &timing); /* makes the surfaces, uploads */
+    if (gl)
+        (void)draw_ms(gl, kind, -1, scale, detail, is_still, &timing);
     for (int i = 0; i < REPEATS; i++) {
-        image_destroy(draw(kind, i, scale, detail, is_still, &timing));
-        draw_ms[i] = (double)timing.draw_us / 1e3;
-        read_ms[i] = (double)timing.read_us / 1e3;
+        if (gl)
+            peer_ms[i] = draw_ms(gl, kind, i, scale, detail, is_still, &timing);
+        ours_ms[i] = draw_ms(soft, kind, i, scale, detail, is_still, &timing);
     }
-    double drawing = median(draw_ms), reading = median(read_ms);
-    printf("{\"name\":\"draw, %s\",\"value\":%.2f,\"unit\":\"ms\",\"note\":\"%d x %d, %zu triangles%s, reading back %.2f ms more; "
-           "%s; median of %d\"}\n",
-           name, drawing, (int)(WIDTH * scale), (int)(HEIGHT * scale), timing.n_triangles, is_still ? ", anti-aliased" : "", reading,
-           render_back_end_word(renderer_facts(renderer)->back_end), REPEATS);
+    double ours = median(ours_ms), peer = median(peer_ms);
+    printf("{\"name\":\"draw, %s\",\"value\":%.2f,\"unit\":\"ms\",", name, ours);
+    if (gl)
+        printf("\"peer\":\"%s, %s\",\"peer_value\":%.2f,\"ratio\":%.2f,", render_back_end_word(renderer_facts(gl)->back_end),
+               renderer_facts(gl)->renderer, peer, peer / ours);
+    printf("\"note\":\"%d x %d, %zu triangles%s; %s; median of %d\"}\n", (int)(WIDTH * scale), (int)(HEIGHT * scale), timing.n_triangles,
+           is_still ? ", anti-aliased" : "", renderer_facts(soft)->renderer, REPEATS);
 }
 
 static void bench_encoding(const char *name, struct encode_options options)
 {
     struct encoder *encoder = encoder_create();
     struct render_timing timing;
-    struct image *image = draw(SCENE_KIND_3D, 3, 1, SURFACE_FULL, true, &timing);
+    struct image *image = draw(soft, SCENE_KIND_3D, 3, 1, SURFACE_FULL, true, &timing);
     double ms[REPEATS];
     size_t n_bytes = 0;
     for (int i = 0; i < REPEATS; i++) {
@@ -99,6 +111,17 @@ static void bench_encoding(const char *name, struct encode_options options)
     encoder_destroy(encoder);
 }
 
+static struct renderer *start(enum render_back_end back_end)
+{
+    struct error err = { 0 };
+    int64_t began_us = clock_now_us();
+    struct renderer *renderer = renderer_create(back_end, &err);
+    if (renderer)
+        printf("{\"name\":\"start %s\",\"value\":%.1f,\"unit\":\"ms\",\"note\":\"%s\"}\n", render_back_end_word(back_end),
+               (double)(clock_now_us() - began_us) / 1e3, renderer_facts(renderer)->renderer);
+    return renderer;
+}
+
 int main(void)
 {
     const char *plans = getenv("BEAMROOM_DEMO") ? getenv("BEAMROOM_DEMO") : "build/demo/plans";
@@ -108,15 +131,13 @@ int main(void)
     plan = plan_load(folder, "phantom", NULL, &err);
     if (!plan)
         stop(&err);
-    int64_t began_us = clock_now_us();
-    renderer = renderer_create(RENDER_AUTO, &err);
-    if (!renderer)
-        stop(&err);
-    printf("{\"name\":\"start OpenGL\",\"value\":%.1f,\"unit\":\"ms\",\"note\":\"%s, %s\"}\n", (double)(clock_now_us() - began_us) / 1e3,
-           render_back_end_word(renderer_facts(renderer)->back_end), renderer_facts(renderer)->renderer);
+    soft = start(RENDER_SOFT);
+    for (int back_end = RENDER_EGL_DEVICE; !gl && back_end <= RENDER_OSMESA; back_end++)
+        gl = start((enum render_back_end)back_end);
 
     bench_drawing("moving", SCENE_KIND_3D, 1, SURFACE_LIGHT, false);
     bench_drawing("moving at 75 %", SCENE_KIND_3D, 0.75, SURFACE_LIGHT, false);
+    bench_drawing("moving at 60 %", SCENE_KIND_3D, 0.6, SURFACE_LIGHT, false);
     bench_drawing("moving at 50 %", SCENE_KIND_3D, 0.5, SURFACE_LIGHT, false);
     bench_drawing("still", SCENE_KIND_3D, 1, SURFACE_FULL, true);
     bench_drawing("axial pane", SCENE_KIND_AXIAL, 1, SURFACE_LIGHT, false);
@@ -124,8 +145,11 @@ int main(void)
     bench_encoding("JPEG quality 92 4:4:4", (struct encode_options){ ENCODE_JPEG, 92, true });
     bench_encoding("PNG", (struct encode_options){ ENCODE_PNG, 0, false });
 
-    renderer_forget(renderer, plan);
-    renderer_destroy(renderer);
+    renderer_forget(soft, plan);
+    renderer_destroy(soft);
+    if (gl)
+        renderer_forget(gl, plan);
+    renderer_destroy(gl);
     plan_destroy(plan);
     return 0;
 }

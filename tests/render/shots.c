@@ -5,8 +5,8 @@ const uint8_t shots_background[3] = { 0x08, 0x09, 0x0b };
 
 int shots_run(const char *name, const struct CMUnitTest *tests, size_t n_tests)
 {
-    int n_failed = 0, n_present = 0;
-    for (int back_end = RENDER_EGL_DEVICE; back_end < RENDER_N_BACK_ENDS; back_end++) {
+    int n_failed = 0;
+    for (int back_end = SHOTS_SANITIZED ? RENDER_SOFT : RENDER_EGL_DEVICE; back_end < RENDER_N_BACK_ENDS; back_end++) {
         struct error err = { 0 };
         shots_renderer = renderer_create((enum render_back_end)back_end, &err);
         if (!shots_renderer) {
@@ -16,14 +16,9 @@ int shots_run(const char *name, const struct CMUnitTest *tests, size_t n_tests)
         char group[128];
         snprintf(group, sizeof group, "%s, %s", name, render_back_end_word((enum render_back_end)back_end));
         printf("%s: %s\n", group, renderer_facts(shots_renderer)->renderer);
-        n_present++;
         n_failed += _cmocka_run_group_tests(group, tests, n_tests, NULL, NULL);
         renderer_destroy(shots_renderer);
         shots_renderer = NULL;
-    }
-    if (n_present == 0) {
-        printf("no back end works here\n");
-        return 77;
     }
     return n_failed ? 1 : 0;
 }
