@@ -61,6 +61,18 @@ static bool depth_is_allowed(const char *s, size_t n)
     return true;
 }
 
+/* The parser ends a text at \u0000: "a\u0000b" would pass every check as "a". */
+static bool names_nul(const char *s, size_t n)
+{
+    for (size_t at = 0; at + 1 < n; at++)
+        if (s[at] == '\\') {
+            if (n - at >= 6 && memcmp(s + at + 1, "u0000", 5) == 0)
+                return true;
+            at++;
+        }
+    return false;
+}
+
 cJSON *json_read(const char *bytes, size_t n, struct problem *problem)
 {
     if (n == 0) {
@@ -69,6 +81,10 @@ cJSON *json_read(const char *bytes, size_t n, struct problem *problem)
     }
     if (!is_utf8((const unsigned char *)bytes, n)) {
         problem_set(problem, PROBLEM_JSON, "", "", "the text is not UTF-8");
+        return NULL;
+    }
+    if (names_nul(bytes, n)) {
+        problem_set(problem, PROBLEM_JSON, "", "", "a text holds the character \\u0000");
         return NULL;
     }
     if (!depth_is_allowed(bytes, n)) {

@@ -122,9 +122,23 @@ static void a_problem_survives_the_way_through_json(void **state)
     cJSON_Delete(json);
 }
 
+static void a_text_that_names_nul_is_refused_and_a_backslash_before_u0000_is_not(void **state)
+{
+    (void)state;
+    static const char named[] = "{\"plan\":\"phantom\\u0000x\"}", spelled[] = "{\"plan\":\"phantom\\\\u0000\"}";
+    struct problem problem = { 0 };
+    assert_null(json_read(named, sizeof named - 1, &problem));
+    assert_int_equal(problem.type, PROBLEM_JSON);
+    cJSON *json = json_read(spelled, sizeof spelled - 1, &problem);
+    assert_non_null(json);
+    assert_string_equal(json_text(json, "plan"), "phantom\\u0000");
+    cJSON_Delete(json);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_text_that_names_nul_is_refused_and_a_backslash_before_u0000_is_not),
         cmocka_unit_test(every_good_message_decodes_and_encodes_to_itself),
         cmocka_unit_test(every_bad_message_is_refused_with_the_error_it_names),
         cmocka_unit_test(bytes_that_are_no_json_are_refused),
