@@ -37,6 +37,7 @@ struct plan_entry {
     cJSON *document, *default_scene;
     char *image_ids[MAX_IMAGES + 1];
     int64_t load_ms, asked_us; /* asked: when its present process was started */
+    int64_t drew_us;           /* when a picture last came */
     int64_t moved_us;          /* when loading last got further */
     int64_t restart_at_us;     /* while it waits for its next start; 0: it does not */
     int64_t ended_us[FLEET_MAX_RESTARTS]; /* when its processes last ended unasked, newest first; 0 never */

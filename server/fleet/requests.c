@@ -180,8 +180,9 @@ void asks_keep_time(struct fleet *fleet, int64_t now_us)
     for (struct fleet_ask *ask = fleet->asks; ask; ask = ask->next) {
         if (ask->is_failed || now_us < ask->until_us)
             continue;
-        /* its main thread answers pings, so only this shows that drawing is stuck */
-        if (ask->is_render && ask->is_sent)
+        /* Its main thread answers pings, so only this shows that drawing is stuck. One that finishes other pictures meanwhile is
+         * not stuck: too much was asked of it. */
+        if (ask->is_render && ask->is_sent && now_us - ask->plan->drew_us >= (int64_t)fleet->times.request * 1000)
             plan_entry_kill(fleet, ask->plan, "did not finish a picture in time");
         fail(ask, &problem);
     }
@@ -220,9 +221,12 @@ bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packe
     struct fleet_ask *ask = fleet->asks;
     while (ask && !(ask->plan == plan && ask->is_sent && !ask->is_failed && (double)ask->number == id))
         ask = ask->next;
-    if (!ask)
-        return id >= 0; /* asked once, and forgotten since */
     const char *type = json_text(packet->json, "type");
+    if (!ask) { /* asked once, and forgotten since */
+        if (id >= 0 && type && strcmp(type, "frame") == 0)
+            plan->drew_us = clock_now_us();
+        return id >= 0;
+    }
     struct problem problem = { 0 };
     bool is_problem = strcmp(type, "problem") == 0;
     if (is_problem) {
@@ -234,6 +238,8 @@ bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packe
     }
     unlink_ask(fleet, ask);
     plan->used_us = clock_now_us();
+    if (ask->is_render)
+        plan->drew_us = plan->used_us;
     ask->reply(ask->context, is_problem ? NULL : packet, is_problem ? &problem : NULL);
     free_ask(ask);
     return true;

@@ -113,7 +113,8 @@ static void handle(const cJSON *packet, const char *folder)
     } else if (strcmp(type, "render") == 0) {
         if (behaves("crash-on-render") || (behaves("crash-once") && access(mark, F_OK) != 0 && mkdir(mark, 0700) == 0))
             die();
-        if (!behaves("never-draws"))
+        static int n_asked;
+        if (!behaves("never-draws") && !(behaves("forgets-first") && n_asked++ == 0))
             say_frame(packet);
     } else if (strcmp(type, "query") == 0) {
         cJSON *json = word("answer");

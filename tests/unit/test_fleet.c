@@ -286,6 +286,34 @@ static void a_picture_that_never_comes_is_a_timeout_and_a_restart(void **state)
     world_end(&world);
 }
 
+static void one_that_is_late_with_a_picture_but_draws_others_is_left_alone(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "forgets-first");
+    world.options.times.request = 1000;
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_wait_for_state(&world, "a", FLEET_READY);
+    uint32_t generation = world_plan_of(&world, "a").generation;
+    struct reply late = { 0 };
+    world_ask(&world, "a", "render", &late);
+    while (late.n == 0) {
+        struct reply reply = { 0 };
+        world_ask(&world, "a", "render", &reply);
+        world_wait_for_reply(&world, &reply);
+        assert_true(reply.is_frame);
+        reply_finish(&reply);
+    }
+    assert_int_equal(late.problem.type, PROBLEM_TIMEOUT);
+    for (int64_t end_us = clock_now_us() + 300000; clock_now_us() < end_us;)
+        world_step(&world);
+    assert_int_equal(world_plan_of(&world, "a").state, FLEET_READY);
+    assert_int_equal(world_plan_of(&world, "a").generation, generation);
+    world_end(&world);
+}
+
 static void closing_cancels_a_load(void **state)
 {
     (void)state;
@@ -491,6 +519,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(one_that_answers_pings_lives_on),
         cmocka_unit_test(a_load_that_gets_no_further_fails),
         cmocka_unit_test(a_picture_that_never_comes_is_a_timeout_and_a_restart),
+        cmocka_unit_test(one_that_is_late_with_a_picture_but_draws_others_is_left_alone),
         cmocka_unit_test(closing_cancels_a_load),
         cmocka_unit_test(the_longest_unused_plan_makes_room_but_never_a_held_one),
         cmocka_unit_test(an_idle_plan_is_closed_unless_held),
