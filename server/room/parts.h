@@ -34,6 +34,7 @@ struct stream {
     char mover[64];     /* shared: member who moved it last */
     uint64_t version;   /* counts what changes its picture */
     uint64_t asked_version, still_asked_version; /* newest asked for; 0 none */
+    uint64_t refused_version;                    /* newest that cannot be drawn, as members were told; 0 none */
     int64_t changed_us; /* when version last went up */
     int64_t retry_us;   /* not before this */
     int n_failed;       /* in a row */

@@ -110,6 +110,7 @@ void streams_forget_requests(struct room *room)
     for (struct stream *stream = room->streams; stream; stream = stream->next) {
         memset(stream->requests, 0, sizeof stream->requests);
         stream->asked_version = stream->still_asked_version = 0;
+        stream->refused_version = 0;
         stream->retry_us = 0;
         stream->n_failed = 0;
     }
@@ -383,6 +384,20 @@ void room_picture_came(struct room *room, uint64_t number, struct room_picture *
     (void)streams_pump(room);
 }
 
+/* A picture that the plan and the view cannot give: it will be no better the next time, so those who look are told, and it is not
+ * asked for again until something changes. */
+static void give_up(struct room *room, struct stream *stream, uint64_t version, const struct problem *problem)
+{
+    if (stream->refused_version < version)
+        for (int m = 0; m < room->n_members; m++)
+            for (int v = 0; v < ROOM_MAX_VIEWS; v++)
+                if (room->members[m]->views[v].stream == stream && room->members[m]->connection)
+                    say_problem(room, room->members[m]->connection, "", v + 1, 0, problem);
+    stream->refused_version = version;
+    if (stream->still_asked_version < version)
+        stream->still_asked_version = version;
+}
+
 void room_picture_failed(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us)
 {
     struct request request;
@@ -391,6 +406,10 @@ void room_picture_failed(struct room *room, uint64_t number, const struct proble
     if (!stream)
         return;
     log_warn("room %s: a picture failed: %s", room->id, problem ? problem->detail : "no reason given");
+    if (problem && problem->type == PROBLEM_VALIDATION) {
+        give_up(room, stream, request.version, problem);
+        return;
+    }
     /* Ask again, but not at once: what fails every time must not keep the renderer busy. */
     int64_t wait_us = RETRY_US << (stream->n_failed < 6 ? stream->n_failed : 6);
     stream->n_failed++;

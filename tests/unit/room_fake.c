@@ -206,6 +206,15 @@ void fake_fail(struct fake_room *fake, struct fake_request *request)
     tick(fake);
 }
 
+void fake_refuse(struct fake_room *fake, struct fake_request *request)
+{
+    struct problem problem = { 0 };
+    problem_set(&problem, PROBLEM_VALIDATION, "", "range", "made up: there is no such picture");
+    request->is_answered = true;
+    room_picture_failed(fake->room, request->request, &problem, fake->now_us);
+    tick(fake);
+}
+
 void fake_settle(struct fake_room *fake, struct fake_page *const *pages, size_t n_pages)
 {
     for (int turn = 0; turn < 20; turn++) {

@@ -48,6 +48,8 @@ struct fake_request *fake_newest(struct fake_room *fake);
 void fake_draw(struct fake_room *fake, struct fake_request *request); /* answers with a picture */
 void fake_draw_slow(struct fake_room *fake, struct fake_request *request, uint32_t render_us);
 void fake_fail(struct fake_room *fake, struct fake_request *request);
+/* As a renderer that says that this can never be drawn. */
+void fake_refuse(struct fake_room *fake, struct fake_request *request);
 /* Draws and shows everything until nothing is asked for any more. */
 void fake_settle(struct fake_room *fake, struct fake_page *const *pages, size_t n_pages);
 

@@ -447,6 +447,25 @@ static void a_still_that_failed_is_asked_for_again(void **state)
     assert_true(fake_newest(&fake)->is_still);
 }
 
+static void a_picture_that_cannot_be_is_told_once_and_not_asked_for_again(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_refuse(&fake, fake_oldest(&fake));
+    fake_pass(&fake, 10000);
+    assert_int_equal(fake_outstanding(&fake), 0);
+    assert_int_equal(fake.n_requests, 1);
+    assert_int_equal(fake_n_heard(&ann, "problem"), 1);
+    cJSON *problem = fake_heard(&ann, "problem");
+    assert_int_equal(json_number(problem, "view", 0), 1);
+    assert_string_equal(json_text(cJSON_GetObjectItemCaseSensitive(problem, "problem"), "type"), "/problems/validation");
+    cJSON_Delete(problem);
+    turn(&ann, 8, 21); /* another view of it may well be drawn */
+    settle_one();
+    assert_true(ann.frames[ann.n_frames - 1].flags & FRAME_STILL);
+    assert_int_equal(fake_n_heard(&ann, "problem"), 1);
+}
+
 static void a_new_renderer_is_told_the_scene_and_draws_everything_anew(void **state)
 {
     (void)state;
@@ -594,6 +613,7 @@ int main(void)
         T(many_inputs_between_two_pictures_are_never_reported_too_early),
         T(a_picture_that_failed_is_asked_for_again_but_not_at_once),
         T(a_still_that_failed_is_asked_for_again),
+        T(a_picture_that_cannot_be_is_told_once_and_not_asked_for_again),
         T(a_new_renderer_is_told_the_scene_and_draws_everything_anew),
         T(software_starts_small_and_light_and_slices_start_whole),
         T(a_graphics_card_starts_at_full_size_and_detail),
