@@ -170,10 +170,49 @@ void api_query(struct api *api, struct call *call, const char *plan_id, cJSON *q
     cJSON_Delete(query);
 }
 
+struct api_picture {
+    struct api_picture *next;
+    struct call *call;
+    char plan_id[64];
+};
+
+/* Scripts and rooms share a plan's renderer: how much a script may put before the others has an end. */
+static bool start_picture(struct api *api, struct call *call, const char *plan_id)
+{
+    size_t n = 0;
+    for (const struct api_picture *picture = api->pictures; picture; picture = picture->next)
+        n += strcmp(picture->plan_id, plan_id) == 0;
+    if (n >= API_MAX_PICTURES) {
+        struct problem problem;
+        problem_set(&problem, PROBLEM_BUSY, "", "", "%zu pictures of this plan are being made already", n);
+        problem.retry_after_ms = 1000;
+        call_answer_problem(call, &problem);
+        return false;
+    }
+    struct api_picture *picture = mem_new(sizeof *picture);
+    picture->next = api->pictures;
+    picture->call = call;
+    (void)snprintf(picture->plan_id, sizeof picture->plan_id, "%s", plan_id);
+    api->pictures = picture;
+    return true;
+}
+
+static void end_picture(struct api *api, const struct call *call)
+{
+    for (struct api_picture **at = &api->pictures; *at; at = &(*at)->next)
+        if ((*at)->call == call) {
+            struct api_picture *picture = *at;
+            *at = picture->next;
+            free(picture);
+            return;
+        }
+}
+
 static void picture_came(void *context, struct packet *answer, const struct problem *problem)
 {
     struct call *call = context;
     struct problem broken;
+    end_picture(call->api, call);
     if (problem) {
         call_answer_problem(call, problem);
         return;
@@ -209,6 +248,8 @@ void api_render(struct api *api, struct call *call, const char *plan_id, const c
         call_answer_problem(call, &problem);
         return;
     }
+    if (!start_picture(api, call, plan_id))
+        return;
     cJSON *packet = cJSON_CreateObject();
     cJSON_AddStringToObject(packet, "type", "render");
     cJSON_AddItemToObject(packet, "scene", cJSON_Duplicate(scene, true));

@@ -2,7 +2,10 @@
 /* What the files of the API share: its state and the handlers. */
 #include "server/http/api.h"
 
-enum { API_MAX_JOBS = 500 }; /* ended ones are forgotten oldest first */
+enum {
+    API_MAX_JOBS = 500,  /* ended ones are forgotten oldest first */
+    API_MAX_PICTURES = 8 /* asked of one plan and not answered yet; more are answered with 503 */
+};
 
 struct api_job {
     char id[40], plan_id[64];
@@ -17,6 +20,7 @@ struct api {
     struct net *net;
     int64_t started_us;
     struct api_job jobs[API_MAX_JOBS];
+    struct api_picture *pictures; /* being made */
     size_t n_jobs;    /* ever made; the job of number n is at n % API_MAX_JOBS */
     _Atomic uint64_t n_calls[6], n_calls_us; /* by status / 100; time spent, for /metrics; counted by the HTTP thread */
 };

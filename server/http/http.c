@@ -1,11 +1,13 @@
 #include "server/http/http.h"
 
+#include <ctype.h>
 #include <microhttpd.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
@@ -20,6 +22,8 @@ struct http {
     struct MHD_Daemon *daemon;
     pthread_mutex_t asking; /* held while a task is posted: after http_stop_asking none is */
     bool is_stopping;
+    size_t n_refused; /* connections, since the log said so last */
+    int64_t logged_us;
 };
 
 /* A request: the call, and where it stands. */
@@ -29,6 +33,7 @@ struct request {
     struct MHD_Connection *connection;
     atomic_bool is_answered; /* set on the net thread before the connection is resumed */
     bool is_posted;
+    size_t n_dropped; /* bytes of the body beyond what is read */
 };
 
 /* The page runs its own scripts and styles only, and nobody may frame it. */
@@ -115,6 +120,46 @@ static enum call_method method_of(const char *word)
     return CALL_OTHER;
 }
 
+/* Decodes %XX in place, but leaves %00 as it stands: a text that ended there would pass for a shorter one. */
+static size_t unescape(void *context, struct MHD_Connection *connection, char *text)
+{
+    (void)context;
+    (void)connection;
+    char *out = text;
+    for (const char *at = text; *at; out++) {
+        unsigned value;
+        if (at[0] == '%' && isxdigit((unsigned char)at[1]) && isxdigit((unsigned char)at[2]) && sscanf(at + 1, "%2x", &value) == 1 && value != 0) {
+            *out = (char)value;
+            at += 3;
+        } else {
+            *out = *at++;
+        }
+    }
+    *out = 0;
+    return (size_t)(out - text);
+}
+
+/* The path of an address in absolute form (RFC 9112 3.2.2), as proxies are asked with. */
+static const char *path_of(const char *url)
+{
+    if (strncasecmp(url, "http://", 7) != 0)
+        return url;
+    const char *path = strchr(url + 7, '/');
+    return path ? path : "/";
+}
+
+/* A body that would be read only to be dropped: refused before it comes, where the sender waits to hear that, or where it is huge. */
+static bool refuses_body(struct MHD_Connection *connection, struct call *call)
+{
+    const char *length = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Content-Length");
+    const char *expect = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Expect");
+    unsigned long long n = length ? strtoull(length, NULL, 10) : 0;
+    if (n <= CALL_MAX_BODY || (!expect && n <= HTTP_MAX_DROPPED))
+        return false;
+    problem_set(&call->early, PROBLEM_TOO_LARGE, "", "", "a body of more than %d bytes", CALL_MAX_BODY);
+    return true;
+}
+
 static struct request *request_create(struct http *http, struct MHD_Connection *connection, const char *url, const char *method)
 {
     struct request *request = mem_new(sizeof *request);
@@ -125,7 +170,7 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     call->connection = request;
     call->finished = call_finished;
     call->method = method_of(method);
-    call_set_path(call, url);
+    call_set_path(call, path_of(url));
     MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, add_query, call);
     call->if_match = copy_header(connection, "If-Match");
     call->if_none_match = copy_header(connection, "If-None-Match");
@@ -135,21 +180,24 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     return request;
 }
 
-/* More of the body. What is over the limit is read and dropped, so that the sender gets to see the answer. */
-static void add_body(struct call *call, const char *bytes, size_t n)
+/* More of the body. What is over the limit is read and dropped, so that the sender gets to see the answer; false: too much of that. */
+static bool add_body(struct request *request, const char *bytes, size_t n)
 {
+    struct call *call = request->call;
     if (call->n_body + n > CALL_MAX_BODY) {
         problem_set(&call->early, PROBLEM_TOO_LARGE, "", "", "a body of more than %d bytes", CALL_MAX_BODY);
-        return;
+        request->n_dropped += n;
+        return request->n_dropped <= HTTP_MAX_DROPPED;
     }
     char *larger = realloc(call->body, call->n_body + n);
     if (!larger) {
         problem_set(&call->early, PROBLEM_INTERNAL, "", "", "no memory for the body");
-        return;
+        return true;
     }
     memcpy(larger + call->n_body, bytes, n);
     call->body = larger;
     call->n_body += n;
+    return true;
 }
 
 /* Hands the request to the net thread; the connection sleeps until the answer is there. */
@@ -176,19 +224,23 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
     struct request *request = *state;
     (void)version;
     if (!request) {
-        *state = request_create(http, connection, url, method);
+        *state = request = request_create(http, connection, url, method);
+        if (refuses_body(connection, request->call)) {
+            request->is_posted = true;
+            ask(http, request);
+        }
         return MHD_YES;
     }
     if (*n_upload) {
-        add_body(request->call, upload, *n_upload);
+        bool goes_on = add_body(request, upload, *n_upload);
         *n_upload = 0;
-        return MHD_YES;
+        return goes_on ? MHD_YES : MHD_NO;
     }
     if (atomic_load(&request->is_answered))
         return send_answer(connection, request);
     if (!request->is_posted) {
         enum call_method verb = request->call->method;
-        const struct file *file = http->files && (verb == CALL_GET || verb == CALL_HEAD) ? files_find(http->files, url) : NULL;
+        const struct file *file = http->files && (verb == CALL_GET || verb == CALL_HEAD) ? files_find(http->files, request->call->path) : NULL;
         if (file)
             return send_file(connection, file);
         request->is_posted = true;
@@ -234,7 +286,7 @@ struct http *http_create(struct net *net, const struct http_options *options, st
                                     0, NULL, NULL, handle, http, MHD_OPTION_EXTERNAL_LOGGER, log_library, NULL,
                                     MHD_OPTION_NOTIFY_COMPLETED, completed, NULL, MHD_OPTION_CONNECTION_LIMIT, (unsigned)HTTP_MAX_CONNECTIONS,
                                     MHD_OPTION_PER_IP_CONNECTION_LIMIT, (unsigned)HTTP_MAX_PER_ADDRESS, MHD_OPTION_CONNECTION_TIMEOUT,
-                                    (unsigned)HTTP_TIMEOUT_S, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)128 * 1024, MHD_OPTION_END);
+                                    (unsigned)HTTP_TIMEOUT_S, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)128 * 1024, MHD_OPTION_UNESCAPE_CALLBACK, unescape, NULL, MHD_OPTION_END);
     if (!http->daemon) {
         error_set(err, ERROR_IO, "the HTTP server did not start");
         goto fail;
@@ -264,8 +316,20 @@ void http_destroy(struct http *http)
     free(http);
 }
 
+/* A flood of connections must not become one of lines. On the acceptor's thread only. */
+static void log_refusal(struct http *http)
+{
+    int64_t now_us = clock_now_us();
+    http->n_refused++;
+    if (http->logged_us && now_us - http->logged_us < 10000000)
+        return;
+    log_warn("http: too many connections: %zu refused", http->n_refused);
+    http->logged_us = now_us;
+    http->n_refused = 0;
+}
+
 void http_add_connection(struct http *http, int socket, const struct sockaddr *address, socklen_t n_address)
 {
     if (MHD_add_connection(http->daemon, socket, address, n_address) != MHD_YES)
-        log_warn("http: a connection was refused: too many"); /* the library has closed the socket */
+        log_refusal(http); /* the library has closed the socket */
 }

@@ -5,7 +5,7 @@
 
 #include "server/net/net.h"
 
-enum { HTTP_MAX_CONNECTIONS = 500, HTTP_MAX_PER_ADDRESS = 200, HTTP_TIMEOUT_S = 60 };
+enum { HTTP_MAX_CONNECTIONS = 500, HTTP_MAX_PER_ADDRESS = 200, HTTP_TIMEOUT_S = 60, HTTP_MAX_DROPPED = 64 << 20 /* bytes of a body beyond the limit that are read before the connection is cut */ };
 
 struct http;
 
