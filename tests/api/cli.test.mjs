@@ -100,7 +100,7 @@ describe('beamroom info', () => {
     const { status, stdout, stderr } = beamroom('info', plan, '--json');
     assert.equal(status, 0, stderr);
     const info = JSON.parse(stdout);
-    assert.deepEqual(Object.keys(info), ['id', 'name', 'note', 'phantom', 'load_ms', 'bounds_mm', 'home', 'images', 'regions',
+    assert.deepEqual(Object.keys(info), ['id', 'name', 'note', 'is_phantom', 'load_ms', 'bounds_mm', 'home', 'images', 'regions',
       'hierarchy', 'doses', 'beams', 'tracks', 'report']);
     assert.equal(info.id, 'head-one');
     assert.equal(info.is_phantom, true);
