@@ -68,9 +68,10 @@ RENDERER_SRC := $(call c_files,server/renderer)
 CLI_SRC := $(call c_files,server/cli)
 GEN_SRC := $(GEN)/wire_gen.c $(GEN)/problem_gen.c $(GEN)/openapi.c
 
-# The inner loops of the software rasteriser are written to be vectorised.
-EXTRA_core_render_soft_kernels := -O3
-EXTRA_core_render_soft_kernels_avx2 := -O3
+# The inner loops of the software rasteriser are written to be vectorised. No value changes by that; what does is the exception
+# flags of the processor, which nobody reads.
+EXTRA_core_render_soft_kernels := -O3 -fno-trapping-math
+EXTRA_core_render_soft_kernels_avx2 := -O3 -fno-trapping-math
 
 obj = $(patsubst %.c,$(B)/obj/%.o,$(1))
 $(B)/obj/%.o: %.c | $(GEN_STAMP)

@@ -184,7 +184,7 @@ static void threads_and_processors_make_no_difference(void **state)
 static void pictures_of_other_sizes_leave_nothing_behind(void **state)
 {
     (void)state;
-    static const int sizes[][2] = { { 64, 48 }, { 301, 17 }, { 1, 1 }, { 9, 200 }, { 500, 333 } };
+    static const int sizes[][2] = { { 64, 48 }, { IMAGE_MAX_SIDE_PX, 17 }, { 1, 1 }, { 9, 200 }, { 500, 333 } };
     struct plan *plan = make_head(VOXEL_U8);
     struct soft_renderer *used = soft_renderer_create();
     for (int round = 0; round < 2; round++)
