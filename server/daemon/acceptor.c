@@ -110,18 +110,18 @@ static bool is_websocket(const char *line, size_t n)
     return stop - target > 3 && memcmp(stop - 3, "/ws", 3) == 0;
 }
 
-/* Looks at what has come. true: the slot is done with. */
-static bool look(struct acceptor *acceptor, struct pending *slot)
+/* Looks at what has come. has_ended: nothing more will. true: the slot is done with. */
+static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended)
 {
     char bytes[ACCEPTOR_MAX_FIRST_LINE];
     ssize_t n = recv(slot->socket, bytes, sizeof bytes, MSG_PEEK | MSG_DONTWAIT);
     if (n < 0 && (errno == EAGAIN || errno == EINTR))
         return false;
-    if (n <= 0) {
+    const char *line_end = n > 0 ? memchr(bytes, '\n', (size_t)n) : NULL;
+    if (n <= 0 || (has_ended && !line_end)) {
         close(slot->socket);
         return true;
     }
-    const char *line_end = memchr(bytes, '\n', (size_t)n);
     if (!line_end && n < ACCEPTOR_MAX_FIRST_LINE)
         return false;
     epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, slot->socket, NULL);
@@ -164,7 +164,7 @@ static void *run(void *argument)
                 continue;
             }
             struct pending *slot = &acceptor->pending[tag];
-            if (slot->socket >= 0 && look(acceptor, slot))
+            if (slot->socket >= 0 && look(acceptor, slot, events[i].events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)))
                 free_slot(acceptor, slot);
         }
     }
