@@ -28,7 +28,9 @@ export async function startDaemon({ plans = [demo], args = [] } = {}) {
   });
   const stop = async () => {
     child.kill('SIGTERM');
-    const code = await Promise.race([ended, new Promise((late) => setTimeout(late, 10000, null))]);
+    let timer;
+    const code = await Promise.race([ended, new Promise((late) => { timer = setTimeout(late, 10000, null); })]);
+    clearTimeout(timer); /* else the test run waits for it */
     if (code === null) child.kill('SIGKILL');
     rmSync(data, { recursive: true, force: true });
     return code;

@@ -1,0 +1,257 @@
+// What strangers send: malformed requests, sockets that misbehave, plans that are damaged. The daemon answers or closes, and goes on.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { connect } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { gunzipSync, gzipSync } from 'node:zlib';
+import { bin, call, openPlan, realData, sleep, startDaemon, until } from './daemon.mjs';
+import { Client } from './ws_client.mjs';
+
+let folder, daemon, url, api;
+
+/** A generator with a seed, so that a failure can be had again (mulberry32). */
+function numbers(seed) {
+  return (below) => {
+    seed = (seed + 0x6d2b79f5) | 0;
+    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return Math.floor(((t ^ (t >>> 14)) >>> 0) / 4294967296 * below);
+  };
+}
+
+/** The ways a file gets damaged: header bits, any bits, cut short, empty; and what a gzip stream unpacks to. */
+function damage(bytes, way, random) {
+  const flip = (b, n, below) => { for (let i = 0; i < n; i++) b[random(Math.min(below, b.length))] ^= 1 << random(8); return b; };
+  switch (way) {
+    case 0: return flip(Buffer.from(bytes), 4, 400);
+    case 1: return flip(Buffer.from(bytes), 20, bytes.length);
+    case 2: return bytes.subarray(0, random(bytes.length));
+    case 3: return Buffer.alloc(0);
+    default: {
+      if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return flip(Buffer.from(bytes), 2, 64);
+      const inner = gunzipSync(bytes);
+      return gzipSync(way === 4 ? flip(inner, 3, 400) : inner.subarray(0, random(inner.length)), { level: 1 });
+    }
+  }
+}
+
+function addDamaged(source, tag, n, random) {
+  const files = readdirSync(source).filter((name) => /\.(nii|nii\.gz|json|uvh|uv|uv\.gz|qhd|qim|qim\.gz|info)$/.test(name));
+  for (let i = 0; i < n; i++) {
+    const plan = join(folder, 'plans', `${tag}-${i}`), name = files[random(files.length)];
+    cpSync(source, plan, { recursive: true });
+    rmSync(join(plan, name));
+    writeFileSync(join(plan, name), damage(readFileSync(join(source, name)), i % 6, random));
+  }
+}
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'beamroom-hostile-'));
+  const plans = join(folder, 'plans'), random = numbers(20);
+  mkdirSync(plans);
+  execFileSync(join(bin, 'beamroom'), ['phantom', join(plans, 'good'), '--size', '48x48x24']);
+  addDamaged(join(plans, 'good'), 'phantom', 24, random);
+  if (realData) {
+    const head = join(realData, 'sera-head', 'original'), odd = join(realData, 'hostile');
+    if (existsSync(head)) addDamaged(head, 'head', 12, random);
+    for (const name of existsSync(odd) ? readdirSync(odd).filter((file) => statSync(join(odd, file)).isFile()) : []) {
+      const plan = join(plans, `odd-${name.toLowerCase().replace(/[^a-z0-9]/g, '-')}`);
+      mkdirSync(plan);
+      writeFileSync(join(plan, name), readFileSync(join(odd, name)));
+    }
+  }
+  mkdirSync(join(plans, 'a\nb "<i>'));
+  writeFileSync(join(plans, 'a\nb "<i>', 'plan.json'), '{"format":"beamroom-plan","version":1,"name":"\\u202e<script>","images":[{"id":"ct","path":"/etc/passwd"}]}');
+  daemon = await startDaemon({ plans: [plans], args: ['--stub', '--max-renderers', '2'] });
+  url = daemon.url;
+  api = `${url}/api/v1`;
+});
+after(async () => {
+  await daemon?.stop();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+/** Writes bytes to a connection of its own; what comes back until it is closed, or for ms. */
+function exchange(bytes, ms = 1500) {
+  return new Promise((done) => {
+    const { hostname, port } = new URL(url);
+    let got = '';
+    const socket = connect(Number(port), hostname);
+    const end = () => { socket.destroy(); done(got); };
+    const timer = setTimeout(end, ms);
+    socket.setEncoding('latin1');
+    socket.on('data', (text) => { got += text; });
+    socket.on('error', () => {});
+    socket.on('close', () => { clearTimeout(timer); done(got); });
+    socket.write(bytes);
+  });
+}
+
+const get = (target, lines = '') => `GET ${target} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n${lines}\r\n`;
+const post = (lines, body) => Buffer.concat([Buffer.from(`POST /api/v1/rooms HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Type: application/json\r\n${lines}\r\n`), Buffer.from(body)]);
+const statusOf = (answer) => Number(/^HTTP\/1\.[01] (\d+)/.exec(answer)?.[1] ?? 0);
+const openFiles = () => readdirSync(`/proc/${daemon.child.pid}/fd`).length;
+
+describe('a stranger on the line', () => {
+  test('is refused with a status for what is no request of ours, and nothing else happens', async () => {
+    const cases = [
+      ['a header of 200 KB', get('/healthz', `X: ${'a'.repeat(200000)}\r\n`), [431]],
+      ['an address of 200 KB', get(`/${'a'.repeat(200000)}`), [414, 431]],
+      ['another version', 'GET /healthz HTTP/9.9\r\nHost: x\r\n\r\n', [505]],
+      ['a method nobody knows', get('/healthz').replace('GET', 'BREW'), [405]],
+      ['a body with a wrong length', post('Content-Length: -5\r\n', ''), [400]],
+      ['chunks without a size', post('Transfer-Encoding: chunked\r\n', 'zz\r\n{}\r\n'), [400]],
+      ['a chunk of 2^72', post('Transfer-Encoding: chunked\r\n', 'ffffffffffffffffff\r\n{}\r\n'), [400, 413]],
+      ['a NUL in an address', get('/healthz%00x'), [404]],
+      ['bytes that are no UTF-8 in an address', get('/api/v1/plans/%ff%fe%0d%0aX:y'), [404]],
+      ['a NUL in JSON', post('Content-Length: 23\r\n', '{"plan":"good\\u0000xy"}'), [400]],
+      ['200 KB of brackets', post('Content-Length: 200000\r\n', '['.repeat(200000)), [400]],
+      ['a handshake without a key', get('/api/v1/rooms/x/ws', 'Upgrade: websocket\r\n'), [0, 400, 404]],
+    ];
+    for (const [what, bytes, expected] of cases)
+      assert.ok(expected.includes(statusOf(await exchange(bytes))), `${what}: expected ${expected.join(' or ')}`);
+    assert.equal((await call(`${url}/healthz`)).status, 200);
+  });
+
+  test('hears at once that a body is too large, when it waits to be told', async () => {
+    const start = Date.now();
+    const answer = await exchange('POST /api/v1/rooms HTTP/1.1\r\nHost: x\r\nExpect: 100-continue\r\nContent-Type: application/json\r\nContent-Length: 2000000000\r\n\r\n', 5000);
+    assert.equal(statusOf(answer), 413);
+    assert.match(answer, /application\/problem\+json/);
+    assert.ok(Date.now() - start < 2000);
+  });
+
+  test('may name the server in the address, as a proxy does', async () => {
+    assert.match(await exchange(get('http://beamroom.example/healthz')), /^HTTP\/1\.1 200 [^]*\r\n\r\nok\n$/);
+  });
+
+  test('is answered in order when it asks for several things at once', async () => {
+    const answer = await exchange('GET /healthz HTTP/1.1\r\nHost: x\r\n\r\nGET /nothing HTTP/1.1\r\nHost: x\r\n\r\n' + get('/healthz'));
+    assert.deepEqual([...answer.matchAll(/HTTP\/1\.1 (\d+)/g)].map((m) => m[1]), ['200', '404', '200']);
+  });
+
+  test('cannot use up the descriptors with connections that say nothing or half of it', async () => {
+    const { hostname, port } = new URL(url);
+    const before_ = openFiles();
+    const sockets = Array.from({ length: 300 }, (_, i) => {
+      const socket = connect(Number(port), hostname);
+      socket.on('error', () => {});
+      if (i % 3) socket.write(i % 3 === 1 ? 'GET /hea' : 'POST /api/v1/rooms HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\n{');
+      return socket;
+    });
+    await sleep(300);
+    assert.ok(openFiles() <= before_ + 64 + 200, `${openFiles()} descriptors`);
+    for (const socket of sockets) socket.destroy();
+    assert.ok(await until(async () => openFiles(), (n) => n <= before_ + 4, 2000) <= before_ + 4, 'who hangs up frees its place at once');
+    assert.equal((await call(`${url}/healthz`)).status, 200);
+    assert.ok(daemon.log().split('\n').filter((line) => line.includes('too many connections')).length <= 1, 'a flood is one line in the log');
+  });
+
+  test('gets at most eight pictures of one plan at a time; the rest is told when to come again', async () => {
+    assert.equal((await openPlan(url, 'good')).state, 'done');
+    const ask = () => fetch(`${api}/plans/good/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
+      body: '{"view":{"size_px":[2048,2048]}}' });
+    const answers = await Promise.all(Array.from({ length: 30 }, ask));
+    const refused = answers.filter((answer) => answer.status === 503);
+    assert.ok(answers.filter((answer) => answer.status === 200).length >= 8);
+    assert.ok(refused.length > 0);
+    for (const answer of refused) {
+      assert.equal(answer.headers.get('content-type'), 'application/problem+json');
+      assert.ok(Number(answer.headers.get('retry-after')) >= 1);
+    }
+    for (const answer of answers) await answer.arrayBuffer();
+    assert.equal((await ask()).status, 200);
+  });
+});
+
+describe('a socket that misbehaves', () => {
+  let room, neighbour;
+  before(async () => {
+    room = (await call(`${api}/rooms`, 'POST', { plan: 'good' })).json.id;
+    neighbour = await Client.open(url, `/api/v1/rooms/${room}/ws`);
+    neighbour.send({ type: 'hello', protocol: 1 });
+    await neighbour.message('welcome');
+  });
+  after(() => neighbour?.cut());
+
+  const cases = [
+    ['a continuation of nothing', 1002, (c) => c.write(0, Buffer.from('{}'))],
+    ['an opcode that is none', 1002, (c) => c.write(3, Buffer.from('{}'))],
+    ['a ping in fragments', 1002, (c) => c.write(9, Buffer.from('a'), { isFinal: false })],
+    ['text that is no UTF-8', 1007, (c) => c.write(1, Buffer.from([0x22, 0xff, 0xfe, 0x22]))],
+    ['a surrogate in UTF-8', 1007, (c) => c.write(1, Buffer.from([0x22, 0xed, 0xa0, 0x80, 0x22]))],
+    ['64 KiB and one byte', 1009, (c) => c.write(1, Buffer.alloc(65537, ' '))],
+    ['seventy fragments of 1000 bytes', 1009, (c) => { for (let i = 0; i < 70; i++) c.write(i ? 0 : 1, Buffer.alloc(1000, ' '), { isFinal: false }); }],
+  ];
+  for (const [what, code, act] of cases)
+    test(`${what} closes it with ${code}`, async () => {
+      const client = await Client.open(url, `/api/v1/rooms/${room}/ws`);
+      client.send({ type: 'hello', protocol: 1 });
+      await client.message('welcome');
+      act(client);
+      await client.until(() => client.closeCode, 'the end');
+      assert.ok([code, 1006].includes(client.closeCode), `closed with ${client.closeCode}`); /* 1006: the rest of what it sent met a closed socket */
+    });
+
+  test('a camera whose eye is its target is told to who set it, once', async () => {
+    const client = await Client.open(url, `/api/v1/rooms/${room}/ws`);
+    client.send({ type: 'hello', protocol: 1 });
+    await client.message('welcome');
+    client.send({ type: 'view.open', view: 1, document: { kind: '3d', size_px: [64, 64], camera: { position_mm: [1, 2, 3], target_mm: [1, 2, 3], up: [0, 0, 1] } } });
+    const problem = await client.message('problem');
+    assert.equal(problem.view, 1);
+    assert.equal(problem.problem.type, '/problems/validation');
+    await sleep(600);
+    assert.equal(client.messages.filter((m) => m.type === 'problem').length, 1);
+    client.cut();
+  });
+
+  test('neighbours in the room notice nothing of it', async () => {
+    const from = neighbour.messages.length;
+    neighbour.send({ type: 'ping', time_ms: 7 });
+    await neighbour.message('pong', (m) => m.time_ms === 7, from);
+    assert.equal(neighbour.closeCode, 0);
+  });
+});
+
+describe('a damaged plan', () => {
+  test('is listed with its parts or with the reason, and opened or refused with a sentence; another plan is not touched', async () => {
+    const expected = readdirSync(join(folder, 'plans')).length;
+    const { plans } = await until(async () => (await call(`${api}/plans`)).json,
+      (list) => list.plans.length === expected && list.plans.every((p) => p.parts.length || p.reason));
+    assert.equal(plans.length, expected);
+    const room = (await call(`${api}/rooms`, 'POST', { plan: 'good' })).json.id;
+    const generation = daemon.log().split('\n').filter((line) => line.includes('plan good: ready')).length;
+    let opened = 0;
+    for (const plan of plans.filter((p) => p.id !== 'good')) {
+      if (plan.state === 'unreadable') {
+        assert.ok(plan.reason.length > 10, plan.id);
+        continue;
+      }
+      const start = Date.now();
+      const job = await openPlan(url, plan.id);
+      assert.ok(['done', 'failed'].includes(job.state), `${plan.id}: ${job.state}`);
+      assert.ok(Date.now() - start < 5000, `${plan.id} took ${Date.now() - start} ms`); /* a fraction of it, on a machine of its own */
+      if (job.state === 'failed') {
+        assert.ok(job.problem.detail.length > 20, `${plan.id}: ${job.problem.detail}`);
+        assert.doesNotMatch(job.problem.detail, /stopped|signal|memory|did not/, plan.id);
+      }
+      opened++;
+      await call(`${api}/plans/${plan.id}/close`, 'POST');
+    }
+    assert.ok(opened > 5, `${opened} plans were worth opening`);
+    assert.equal((await call(`${api}/rooms/${room}`)).json.renderer, 'ready');
+    assert.equal(daemon.log().split('\n').filter((line) => line.includes('plan good: ready')).length, generation, 'the good plan was never restarted');
+    assert.doesNotMatch(daemon.log(), /signal \d/);
+  });
+
+  test('with a name full of tricks has a clean id, and its name is only text', async () => {
+    const plan = (await call(`${api}/plans`)).json.plans.find((p) => /passwd/.test(p.reason ?? ''));
+    assert.match(plan.id, /^[a-z0-9-]{1,63}$/);
+    assert.equal(plan.state, 'unreadable');
+    assert.ok(daemon.log().split('\n').every((line) => line === '' || /^\d{4}-\d\d-\d\dT/.test(line)), 'no name breaks a line of the log');
+  });
+});
