@@ -7,13 +7,13 @@
 #include "core/base/parallel.h"
 #include "core/formats/hierarchy.h"
 #include "core/formats/nifti.h"
-#include "core/formats/sera_qhd.h"
 #include "core/formats/text.h"
 #include "core/plan/plan_bounds.h"
 #include "core/plan/plan_meshes.h"
 #include "core/plan/plan_nrrd.h"
 #include "core/plan/plan_parts.h"
 #include "core/plan/plan_regions.h"
+#include "core/plan/plan_sera.h"
 #include "core/plan/plan_tracks.h"
 #include "core/plan/plan_window.h"
 
@@ -30,6 +30,7 @@ struct job {
     enum part_format format;
     struct volume *volume;
     struct nrrd_layers *layers; /* of a NRRD label map, instead of volume */
+    struct volume *doses[RST_N_DOSES]; /* of a SERA dose, instead of volume */
     struct uvh uvh;
     struct label_names names;
     char modality[16];     /* as a .qhd says it */
@@ -98,7 +99,7 @@ static bool dose_is_readable(struct loading *loading, const struct plan_file_dos
         enum part_format format = part_format_of(&loading->folder, path);
         if (format == PART_ABSENT)
             return refuse_format(path, format, err);
-        if (format == PART_NIFTI || format == PART_NRRD)
+        if (format == PART_NIFTI || format == PART_NRRD || format == PART_SERA_RST)
             continue;
         report_add(&loading->plan->report, REPORT_WARNING, "dose.unsupported", path,
                    "The dose \"%s\" is in a format (%s) that this version does not read; the plan is shown without it.", dose->id,
@@ -165,56 +166,6 @@ static bool read_grid(const struct folder *folder, struct job *job, enum raw_use
     return job->volume != NULL;
 }
 
-static bool read_univels(const struct folder *folder, struct job *job)
-{
-    struct bytes header, data;
-    char data_name[FOLDER_NAME_SIZE];
-    if (!folder_read(folder, job->path, UVH_MAX_BYTES, UINT64_MAX, &header, &job->err))
-        return false;
-    bool is_read = uvh_parse(header.data, header.size, job->path, &job->uvh, &job->report, &job->err);
-    bytes_free(&header);
-    if (!is_read)
-        return false;
-    if (!part_find_data(folder, job->path, ".uv", data_name))
-        return error_set(&job->err, ERROR_NOT_FOUND, "%s: the univels, a .uv or .uv.gz file beside it, are missing", job->path);
-    if (!folder_read(folder, data_name, DATA_FILE_MAX_BYTES, UINT64_MAX, &data, &job->err))
-        return false;
-    job->volume = uvh_read_univels(&job->uvh, &data, data_name, &job->err);
-    bytes_free(&data);
-    return job->volume != NULL;
-}
-
-/* path is the file of pixels, or the header when the plan names that; header is "" when the plan names only one of them. */
-static bool read_qsh(const struct folder *folder, const char *header, struct job *job)
-{
-    struct bytes text, pixels;
-    struct qhd qhd;
-    char header_name[FOLDER_NAME_SIZE], pixel_name[FOLDER_NAME_SIZE];
-    snprintf(pixel_name, sizeof pixel_name, "%s", job->path);
-    snprintf(header_name, sizeof header_name, "%s", header);
-    if (text_has_ending(job->path, ".qhd")) {
-        snprintf(header_name, sizeof header_name, "%s", job->path);
-        if (!part_find_data(folder, job->path, ".qim", pixel_name))
-            return error_set(&job->err, ERROR_NOT_FOUND, "%s: the pixels, a .qim or .qim.gz file beside it, are missing", job->path);
-    } else if (!header[0]) {
-        size_t stem = strlen(job->path) - (text_has_ending(job->path, ".gz") ? strlen(".qim.gz") : strlen(".qim"));
-        snprintf(header_name, sizeof header_name, "%.*s.qhd", (int)stem, job->path);
-    }
-    if (!folder_read(folder, header_name, QHD_MAX_BYTES, UINT64_MAX, &text, &job->err))
-        return false;
-    bool is_read = qhd_parse(text.data, text.size, header_name, &qhd, &job->report, &job->err);
-    bytes_free(&text);
-    if (!is_read)
-        return false;
-    snprintf(job->modality, sizeof job->modality, "%s", qhd.modality);
-    if (folder_read(folder, pixel_name, DATA_FILE_MAX_BYTES, UINT64_MAX, &pixels, &job->err)) {
-        job->volume = qhd_read_pixels(&qhd, &pixels, header_name, pixel_name, &job->is_grid_doubtful, &job->report, &job->err);
-        bytes_free(&pixels);
-    }
-    qhd_finish(&qhd);
-    return job->volume != NULL;
-}
-
 static bool read_layers(const struct folder *folder, struct job *job)
 {
     job->layers = mem_new(sizeof *job->layers);
@@ -239,13 +190,17 @@ static bool run_job(const struct loading *loading, struct job *job)
     switch (job->kind) {
     case JOB_IMAGE:
         if (job->format == PART_QSH)
-            return read_qsh(&loading->folder, loading->file->images[job->index].header, job);
+            return plan_read_qsh(&loading->folder, job->path, loading->file->images[job->index].header, &job->volume, job->modality,
+                                 &job->is_grid_doubtful, &job->report, &job->err);
         return read_grid(&loading->folder, job, RAW_IMAGE);
-    case JOB_DOSE: return read_grid(&loading->folder, job, RAW_IMAGE);
+    case JOB_DOSE:
+        if (job->format == PART_SERA_RST)
+            return plan_read_rst(&loading->folder, job->path, job->doses, &job->report, &job->err);
+        return read_grid(&loading->folder, job, RAW_IMAGE);
     case JOB_DOSE_MASK: return read_grid(&loading->folder, job, RAW_MASK);
     case JOB_REGION:
         if (job->format == PART_UVH)
-            return read_univels(&loading->folder, job);
+            return plan_read_univels(&loading->folder, job->path, &job->uvh, &job->volume, &job->report, &job->err);
         if (job->format == PART_NRRD && !region->name[0])
             return read_names(&loading->folder, region->names, job) && read_layers(&loading->folder, job);
         return read_names(&loading->folder, region->names, job) &&
@@ -390,7 +345,7 @@ static bool add_regions(struct loading *loading, struct region_builder *builder,
     return region_builder_add_labels(builder, volume, &job->names, job->path, err);
 }
 
-static struct dose *find_dose(struct loading *loading, size_t index)
+static struct dose *find_dose(struct loading *loading, size_t index, bool is_sera)
 {
     struct plan *plan = loading->plan;
     const struct plan_file_dose *entry = &loading->file->doses[index];
@@ -401,25 +356,17 @@ static struct dose *find_dose(struct loading *loading, size_t index)
     make_id(id, entry->id, entry->components[0].path, others, plan->n_doses);
     struct dose *dose = &plan->doses[plan->n_doses++];
     memcpy(dose->id, id, sizeof dose->id);
-    snprintf(dose->unit, sizeof dose->unit, "%s", entry->unit);
-    snprintf(dose->per, sizeof dose->per, "%s", entry->per);
-    if (!entry->unit[0])
-        report_add(&plan->report, REPORT_WARNING, "dose.no-unit", entry->components[0].path, "The plan does not say the unit of the dose \"%s\".",
-                   id);
-    if (!entry->per[0])
-        report_add(&plan->report, REPORT_NOTE, "dose.no-per", entry->components[0].path,
-                   "The plan does not say what the dose \"%s\" is per: a fraction, a minute, the whole treatment.", id);
+    plan_dose_units(dose, entry, is_sera, &plan->report);
     return dose;
 }
 
 static void add_component(struct loading *loading, struct dose *dose, struct job *job)
 {
-    const struct plan_file_component *entry = &loading->file->doses[job->index].components[job->component];
-    struct dose_component *component = &dose->components[dose->n_components++];
-    *component = (struct dose_component){ entry->quantity, entry->is_per_ppm, take_volume(job) };
-    if (component->values->low < 0)
-        report_add(&loading->plan->report, REPORT_WARNING, "dose.negative", entry->path, "The smallest value is %g.",
-                   component->values->low);
+    const struct plan_file_dose *entry = &loading->file->doses[job->index];
+    if (job->format == PART_SERA_RST)
+        plan_add_rst(dose, entry, job->component, job->doses, &loading->plan->report);
+    else
+        plan_add_component(dose, entry, job->component, take_volume(job), &loading->plan->report);
 }
 
 static void add_doses(struct loading *loading)
@@ -431,7 +378,7 @@ static void add_doses(struct loading *loading)
         if (job->kind != JOB_DOSE && job->kind != JOB_DOSE_MASK)
             continue;
         if (job->index != current)
-            dose = find_dose(loading, job->index);
+            dose = find_dose(loading, job->index, job->format == PART_SERA_RST);
         current = job->index;
         if (job->kind == JOB_DOSE) {
             add_component(loading, dose, job);
@@ -526,6 +473,8 @@ static void finish_loading(struct loading *loading)
 {
     for (size_t i = 0; i < loading->n_jobs; i++) {
         volume_unref(loading->jobs[i].volume);
+        for (size_t d = 0; d < RST_N_DOSES; d++)
+            volume_unref(loading->jobs[i].doses[d]);
         if (loading->jobs[i].layers)
             nrrd_layers_finish(loading->jobs[i].layers);
         free(loading->jobs[i].layers);

@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/formats/gzip.h"
 #include "core/formats/nifti.h"
+#include "core/formats/sera_rst.h"
 #include "core/formats/text.h"
 #include "core/plan/plan_nrrd.h"
 
@@ -26,8 +28,8 @@ enum part_format part_format_of(const struct folder *folder, const char *name)
         enum part_format format;
     } endings[] = { { ".nii", PART_NIFTI },     { ".nii.gz", PART_NIFTI },    { ".uvh", PART_UVH },        { ".qim", PART_QSH },
                     { ".qim.gz", PART_QSH },    { ".qhd", PART_QSH },         { ".pp", PART_PP },          { ".dcm", PART_DICOM },
-                    { ".nrrd", PART_NRRD },     { ".nhdr", PART_NRRD },       { ".rst", PART_SERA_DOSE },  { ".rst.gz", PART_SERA_DOSE },
-                    { ".rstb", PART_SERA_DOSE }, { ".rstb.gz", PART_SERA_DOSE }, { ".chd", PART_SERA_DOSE } };
+                    { ".nrrd", PART_NRRD },     { ".nhdr", PART_NRRD },       { ".rst", PART_SERA_RST },  { ".rst.gz", PART_SERA_RST },
+                    { ".rstb", PART_SERA_RST }, { ".rstb.gz", PART_SERA_RST }, { ".chd", PART_SERA_DOSE } };
     enum folder_kind kind = folder_look(folder, name, NULL);
     if (kind == FOLDER_ABSENT)
         return PART_ABSENT;
@@ -49,7 +51,8 @@ const char *part_format_word(enum part_format format)
     case PART_PP: return "SERA tracks";
     case PART_DICOM: return "DICOM";
     case PART_NRRD: return "NRRD";
-    case PART_SERA_DOSE: return "SERA dose";
+    case PART_SERA_RST: return "SERA dose";
+    case PART_SERA_DOSE: return "SERA dose contours";
     case PART_UNKNOWN: break;
     }
     return "an unknown format";
@@ -106,6 +109,22 @@ static bool is_label_map(const struct folder *folder, const char *name, enum par
     return has_segments || strstr(low, "label") || strstr(low, "seg") || strstr(low, "univel") || strstr(low, "mask");
 }
 
+static bool is_rst(const struct folder *folder, const char *name)
+{
+    struct bytes head;
+    uint8_t text[RST_HEAD_BYTES];
+    struct rst_header header;
+    if (!folder_read(folder, name, UINT64_MAX, sizeof text, &head, NULL))
+        return false;
+    size_t n = head.size;
+    if (gzip_is(head.data, head.size))
+        n = gzip_head(head.data, head.size, text, sizeof text);
+    else
+        memcpy(text, head.data, n);
+    bytes_free(&head);
+    return rst_parse_header(text, n, name, &header, NULL);
+}
+
 static void set_name(char *out, size_t size, const char *name)
 {
     text_clean(name, out, size);
@@ -149,8 +168,18 @@ static void recognise_file(const struct folder *folder, const char *name, struct
         if (file->n_tracks < PLAN_FILE_MAX_TRACKS)
             set_name(file->tracks[file->n_tracks++].path, FOLDER_NAME_SIZE, name);
         break;
+    case PART_SERA_RST:
+        if (!is_rst(folder, name))
+            report_add(report, REPORT_NOTE, "plan.ignored-file", name, "Named like a dose of SERA, but its header is another one's.");
+        else if (file->n_doses < PLAN_MAX_DOSES) {
+            struct plan_file_dose *dose = &file->doses[file->n_doses++];
+            set_name(dose->components[0].path, FOLDER_NAME_SIZE, name);
+            dose->components[0].quantity = DOSE_TOTAL;
+            dose->n_components = 1;
+        }
+        break;
     case PART_SERA_DOSE:
-        report_add(report, REPORT_NOTE, "plan.ignored-file", name, "A SERA dose; this version does not read it.");
+        report_add(report, REPORT_NOTE, "plan.ignored-file", name, "Dose contours of SERA; this version does not read them.");
         break;
     case PART_DICOM: (*n_foreign)++; break;
     default:

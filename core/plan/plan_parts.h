@@ -11,7 +11,8 @@ enum part_format {
     PART_PP,
     PART_DICOM,
     PART_NRRD,
-    PART_SERA_DOSE, /* .rst, .chd */
+    PART_SERA_RST,  /* dose on a mesh */
+    PART_SERA_DOSE, /* .chd: dose on planes */
     PART_UNKNOWN
 };
 /* By the name's ending; a folder and a file without a known ending are looked into for DICOM. */

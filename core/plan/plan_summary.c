@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/formats/nifti.h"
+#include "core/formats/sera_rst.h"
 #include "core/formats/sera_uvh.h"
 #include "core/formats/text.h"
 #include "core/plan/plan_nrrd.h"
@@ -171,13 +172,16 @@ static void count_doses(const struct folder *folder, const struct plan_file *fil
     size_t n_components = 0, n_unread = 0;
     for (size_t i = 0; i < file->n_doses; i++) {
         bool is_read = true;
+        size_t n_more = 0; /* one file of SERA holds several */
         for (size_t c = 0; c < file->doses[i].n_components; c++) {
             count_bytes(folder, file->doses[i].components[c].path, summary);
             enum part_format format = part_format_of(folder, file->doses[i].components[c].path);
-            is_read = is_read && (format == PART_NIFTI || format == PART_NRRD);
+            is_read = is_read && (format == PART_NIFTI || format == PART_NRRD || format == PART_SERA_RST);
+            if (format == PART_SERA_RST && file->doses[i].components[c].quantity == DOSE_TOTAL)
+                n_more += RST_N_DOSES - file->doses[i].n_components;
         }
         if (is_read)
-            n_components += file->doses[i].n_components;
+            n_components += file->doses[i].n_components + n_more;
         else
             n_unread++;
     }

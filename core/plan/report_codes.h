@@ -46,6 +46,10 @@
     X("dose.unsupported", "A dose is in a format this version does not read.", "The rest is shown without it.")                   \
     X("dose.no-unit", "The plan does not say the dose's unit.", "Numbers carry no unit; add \"unit\" in plan.json.")              \
     X("dose.no-per", "The plan does not say what the dose is per.", "Add \"per\" in plan.json.")                                  \
+    X("dose.unit-differs", "The plan gives another unit than the dose's file is in.", "The file's was used; correct plan.json.")    \
+    X("dose.bad-values", "A dose file holds values that are no numbers, or too large for their columns.",                          \
+      "They are drawn as nothing and probed as nothing.")                                                                          \
+    X("dose.sets-differ", "The runs joined in a dose file had different sources.", "The first was used; edit the dose again.")    \
     X("dose.negative", "A dose holds negative values.", "They are kept; check the source.")                                       \
     X("dose.mask-grid", "The mask of a dose lies on another grid than the dose.", "It is looked up by position.")                 \
     X("beam.from-tracks", "No beam is given; it was taken from the beam line of the tracks.", "Its aperture is unknown.")         \

@@ -1,0 +1,42 @@
+#pragma once
+/* SERA's restart file, .rst: the dose seraMC edited on its cubic mesh, text in fixed Fortran columns. Becomes the physical dose
+ * components in cGy for one unit of the source; boron per 1 ppm of boron-10. Works on unpacked text in memory.
+ *   source   the layout and the absolute scale as seraMC 1C0 writes and seraPlan 1C0 applies them */
+#include "core/dose/dose.h"
+#include "core/formats/folder.h"
+#include "core/plan/report.h"
+
+enum {
+    RST_MAX_SETS = 99,
+    RST_MAX_CELLS = 128,     /* along an edge; seraMC makes at most 120 */
+    RST_MAX_GROUPS = 1000,
+    RST_HEAD_BYTES = 1 << 16 /* enough for any header */
+};
+#define RST_MAX_BYTES ((uint64_t)512 << 20) /* of the text: 128^3 cells of 14 values are 450 MB */
+
+struct rst_set {
+    char directive;                /* N neutrons, F fast neutrons, G gammas, ... */
+    uint32_t n_histories[3];       /* neutron, gamma, fast */
+    double strength;               /* particles of a unit of the source */
+    double gamma_fraction;         /* of them, gammas */
+};
+
+struct rst_header {
+    char version[13], title[81];
+    struct rst_set sets[RST_MAX_SETS];
+    size_t n_sets;
+    uint32_t n_cells; /* along each edge */
+    double cell_cm;
+    struct grid grid; /* i to the left, j to the anterior, k to the superior side */
+    size_t data_at, data_line; /* where the array begins */
+};
+
+/* errors ERROR_FORMAT with the line, ERROR_LIMIT, ERROR_RANGE (geometry) */
+NODISCARD bool rst_parse_header(const uint8_t *text, size_t size, const char *name, struct rst_header *header, struct error *err);
+
+/* Boron (per ppm), nitrogen, fast (hydrogen) and gamma, measured, in DOSE's order from DOSE_BORON on; one reference each. */
+enum { RST_N_DOSES = DOSE_GAMMA - DOSE_BORON + 1 };
+/* Values that could not be printed ("***") or are no number become not-a-number and are reported.
+ *   errors  as rst_parse_header, ERROR_MEMORY; doses is then empty */
+NODISCARD bool rst_read(const struct bytes *text, const char *name, struct volume *doses[RST_N_DOSES], struct report *report,
+                        struct error *err);

@@ -1,0 +1,127 @@
+#include "core/plan/plan_sera.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "core/formats/gzip.h"
+#include "core/formats/text.h"
+
+#define DATA_FILE_MAX_BYTES (VOLUME_MAX_BYTES + (1 << 20))
+
+bool plan_read_univels(const struct folder *folder, const char *path, struct uvh *uvh, struct volume **univels, struct report *report,
+                       struct error *err)
+{
+    struct bytes header, data;
+    char data_name[FOLDER_NAME_SIZE];
+    if (!folder_read(folder, path, UVH_MAX_BYTES, UINT64_MAX, &header, err))
+        return false;
+    bool is_read = uvh_parse(header.data, header.size, path, uvh, report, err);
+    bytes_free(&header);
+    if (!is_read)
+        return false;
+    if (!part_find_data(folder, path, ".uv", data_name))
+        return error_set(err, ERROR_NOT_FOUND, "%s: the univels, a .uv or .uv.gz file beside it, are missing", path);
+    if (!folder_read(folder, data_name, DATA_FILE_MAX_BYTES, UINT64_MAX, &data, err))
+        return false;
+    *univels = uvh_read_univels(uvh, &data, data_name, err);
+    bytes_free(&data);
+    return *univels != NULL;
+}
+
+bool plan_read_qsh(const struct folder *folder, const char *path, const char *header, struct volume **image, char modality[16],
+                   bool *is_grid_doubtful, struct report *report, struct error *err)
+{
+    struct bytes text, pixels;
+    struct qhd qhd;
+    char header_name[FOLDER_NAME_SIZE], pixel_name[FOLDER_NAME_SIZE];
+    snprintf(pixel_name, sizeof pixel_name, "%s", path);
+    snprintf(header_name, sizeof header_name, "%s", header);
+    if (text_has_ending(path, ".qhd")) {
+        snprintf(header_name, sizeof header_name, "%s", path);
+        if (!part_find_data(folder, path, ".qim", pixel_name))
+            return error_set(err, ERROR_NOT_FOUND, "%s: the pixels, a .qim or .qim.gz file beside it, are missing", path);
+    } else if (!header[0]) {
+        size_t stem = strlen(path) - (text_has_ending(path, ".gz") ? strlen(".qim.gz") : strlen(".qim"));
+        snprintf(header_name, sizeof header_name, "%.*s.qhd", (int)stem, path);
+    }
+    if (!folder_read(folder, header_name, QHD_MAX_BYTES, UINT64_MAX, &text, err))
+        return false;
+    bool is_read = qhd_parse(text.data, text.size, header_name, &qhd, report, err);
+    bytes_free(&text);
+    if (!is_read)
+        return false;
+    snprintf(modality, 16, "%s", qhd.modality);
+    if (folder_read(folder, pixel_name, DATA_FILE_MAX_BYTES, UINT64_MAX, &pixels, err)) {
+        *image = qhd_read_pixels(&qhd, &pixels, header_name, pixel_name, is_grid_doubtful, report, err);
+        bytes_free(&pixels);
+    }
+    qhd_finish(&qhd);
+    return *image != NULL;
+}
+
+bool plan_read_rst(const struct folder *folder, const char *path, struct volume *doses[RST_N_DOSES], struct report *report,
+                   struct error *err)
+{
+    struct bytes file, text = { 0 };
+    if (!folder_read(folder, path, RST_MAX_BYTES, UINT64_MAX, &file, err))
+        return false;
+    bool is_packed = gzip_is(file.data, file.size);
+    bool is_read = (!is_packed || gzip_all(file.data, file.size, path, RST_MAX_BYTES, &text, err)) &&
+                   rst_read(is_packed ? &text : &file, path, doses, report, err);
+    bytes_free(&text);
+    bytes_free(&file);
+    return is_read;
+}
+
+void plan_dose_units(struct dose *dose, const struct plan_file_dose *entry, bool is_sera, struct report *report)
+{
+    const char *path = entry->components[0].path;
+    snprintf(dose->unit, sizeof dose->unit, "%s", is_sera ? "cGy" : entry->unit);
+    snprintf(dose->per, sizeof dose->per, "%s", is_sera && !entry->per[0] ? "unit of the source" : entry->per);
+    if (!dose->unit[0])
+        report_add(report, REPORT_WARNING, "dose.no-unit", path, "The plan does not say the unit of the dose \"%s\".", dose->id);
+    if (is_sera && entry->unit[0] && strcmp(entry->unit, dose->unit) != 0)
+        report_add(report, REPORT_WARNING, "dose.unit-differs", path,
+                   "The plan says that the dose \"%s\" is in %s; a file of SERA is in cGy, and that was used.", dose->id, entry->unit);
+    if (!entry->per[0])
+        report_add(report, REPORT_NOTE, "dose.no-per", path,
+                   is_sera ? "The dose \"%s\" is for one unit of the source, as its source file normalises it; neither the plan nor the "
+                             "file says what that unit is, for instance 250 kW-min."
+                           : "The plan does not say what the dose \"%s\" is per: a fraction, a minute, the whole treatment.",
+                   dose->id);
+}
+
+static void add(struct dose *dose, struct dose_component component, const char *path, struct report *report)
+{
+    dose->components[dose->n_components++] = component;
+    if (component.values->low < 0)
+        report_add(report, REPORT_WARNING, "dose.negative", path, "The smallest value is %g.", component.values->low);
+}
+
+void plan_add_component(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct volume *values,
+                        struct report *report)
+{
+    const struct plan_file_component *from = &entry->components[component];
+    add(dose, (struct dose_component){ from->quantity, from->is_per_ppm, values }, from->path, report);
+}
+
+static bool is_named(const struct plan_file_dose *entry, enum dose_quantity quantity)
+{
+    bool is_there = false;
+    for (size_t i = 0; i < entry->n_components; i++)
+        is_there |= entry->components[i].quantity == quantity;
+    return is_there;
+}
+
+void plan_add_rst(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct volume *doses[RST_N_DOSES],
+                  struct report *report)
+{
+    const struct plan_file_component *from = &entry->components[component];
+    for (int i = 0; i < RST_N_DOSES; i++) {
+        enum dose_quantity quantity = (enum dose_quantity)(DOSE_BORON + i);
+        if (from->quantity == DOSE_TOTAL ? is_named(entry, quantity) : from->quantity != quantity)
+            continue;
+        add(dose, (struct dose_component){ quantity, quantity == DOSE_BORON, doses[i] }, from->path, report);
+        doses[i] = NULL;
+    }
+}

@@ -1,0 +1,25 @@
+#pragma once
+/* Inside core/plan: SERA's parts of a plan, each of several files or of several quantities. */
+#include "core/formats/sera_qhd.h"
+#include "core/formats/sera_rst.h"
+#include "core/formats/sera_uvh.h"
+#include "core/plan/plan_parts.h"
+
+/* errors of all: as folder_read and the formats; the text names the file */
+NODISCARD bool plan_read_univels(const struct folder *folder, const char *path, struct uvh *uvh, struct volume **univels,
+                                 struct report *report, struct error *err);
+/* path is the file of pixels, or the header when the plan names that; header is "" when the plan names only one of them.
+ * is_grid_doubtful: the header describes another image. */
+NODISCARD bool plan_read_qsh(const struct folder *folder, const char *path, const char *header, struct volume **image, char modality[16],
+                             bool *is_grid_doubtful, struct report *report, struct error *err);
+NODISCARD bool plan_read_rst(const struct folder *folder, const char *path, struct volume *doses[RST_N_DOSES], struct report *report,
+                             struct error *err);
+
+/* What a dose's numbers are in, and per what: as the plan says. is_sera: the format says cGy and a unit of the source. */
+void plan_dose_units(struct dose *dose, const struct plan_file_dose *entry, bool is_sera, struct report *report);
+/* Takes values. */
+void plan_add_component(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct volume *values,
+                        struct report *report);
+/* The quantity the plan asks for; for "total", which the file does not hold, all of them that no other component is for. */
+void plan_add_rst(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct volume *doses[RST_N_DOSES],
+                  struct report *report);
