@@ -174,17 +174,28 @@ struct api_picture {
     struct api_picture *next;
     struct call *call;
     char plan_id[64];
+    double n_pixels;
 };
 
+static double pixels_of(const cJSON *view)
+{
+    const cJSON *size = cJSON_GetObjectItemCaseSensitive(view, "size_px");
+    return cJSON_GetNumberValue(cJSON_GetArrayItem(size, 0)) * cJSON_GetNumberValue(cJSON_GetArrayItem(size, 1));
+}
+
 /* Scripts and rooms share a plan's renderer: how much a script may put before the others has an end. */
-static bool start_picture(struct api *api, struct call *call, const char *plan_id)
+static bool start_picture(struct api *api, struct call *call, const char *plan_id, const cJSON *view)
 {
     size_t n = 0;
+    double n_pixels = pixels_of(view), n_before = 0;
     for (const struct api_picture *picture = api->pictures; picture; picture = picture->next)
-        n += strcmp(picture->plan_id, plan_id) == 0;
-    if (n >= API_MAX_PICTURES) {
+        if (strcmp(picture->plan_id, plan_id) == 0) {
+            n++;
+            n_before += picture->n_pixels;
+        }
+    if (n >= API_MAX_PICTURES || (n > 0 && n_before + n_pixels > API_MAX_PIXELS)) {
         struct problem problem;
-        problem_set(&problem, PROBLEM_BUSY, "", "", "%zu pictures of this plan are being made already", n);
+        problem_set(&problem, PROBLEM_BUSY, "", "", "%zu pictures of this plan are being made already, of %.0f million pixels", n, n_before / 1e6);
         problem.retry_after_ms = 1000;
         call_answer_problem(call, &problem);
         return false;
@@ -192,6 +203,7 @@ static bool start_picture(struct api *api, struct call *call, const char *plan_i
     struct api_picture *picture = mem_new(sizeof *picture);
     picture->next = api->pictures;
     picture->call = call;
+    picture->n_pixels = n_pixels;
     (void)snprintf(picture->plan_id, sizeof picture->plan_id, "%s", plan_id);
     api->pictures = picture;
     return true;
@@ -248,7 +260,7 @@ void api_render(struct api *api, struct call *call, const char *plan_id, const c
         call_answer_problem(call, &problem);
         return;
     }
-    if (!start_picture(api, call, plan_id))
+    if (!start_picture(api, call, plan_id, view))
         return;
     cJSON *packet = cJSON_CreateObject();
     cJSON_AddStringToObject(packet, "type", "render");

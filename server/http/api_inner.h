@@ -4,7 +4,8 @@
 
 enum {
     API_MAX_JOBS = 500,  /* ended ones are forgotten oldest first */
-    API_MAX_PICTURES = 8 /* asked of one plan and not answered yet; more are answered with 503 */
+    API_MAX_PICTURES = 32,     /* asked of one plan and not answered yet; more are answered with 503 */
+    API_MAX_PIXELS = 32 << 20  /* of these together; one alone may be larger */
 };
 
 struct api_job {

@@ -150,13 +150,13 @@ describe('a stranger on the line', () => {
     assert.ok(daemon.log().split('\n').filter((line) => line.includes('too many connections')).length <= 1, 'a flood is one line in the log');
   });
 
-  test('gets at most eight pictures of one plan at a time; the rest is told when to come again', async () => {
+  test('gets no more than some seconds of drawing at a time; the rest is told when to come again', async () => {
     assert.equal((await openPlan(url, 'good')).state, 'done');
     const ask = () => fetch(`${api}/plans/good/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
       body: '{"view":{"size_px":[2048,2048]}}' });
     const answers = await Promise.all(Array.from({ length: 30 }, ask));
     const refused = answers.filter((answer) => answer.status === 503);
-    assert.ok(answers.filter((answer) => answer.status === 200).length >= 8);
+    assert.ok(answers.filter((answer) => answer.status === 200).length >= 8); /* 8 x 2048 x 2048 is 32 << 20 */
     assert.ok(refused.length > 0);
     for (const answer of refused) {
       assert.equal(answer.headers.get('content-type'), 'application/problem+json');
