@@ -9,6 +9,7 @@ static const struct command {
     const char *name, *about;
     int (*run)(int argc, char **argv);
 } commands[] = {
+    { "export", "write the surface of a region as STL, PLY or GLB", command_export },
     { "info", "print what a plan holds and what was noticed while reading it", command_info },
     { "phantom", "write the demo plan, a made-up head", command_phantom },
     { "render", "draw one picture of a plan", command_render },

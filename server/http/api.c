@@ -143,7 +143,7 @@ cJSON *api_new_query(const char *what)
     return query;
 }
 
-static void query_came(void *context, struct packet *answer, const struct problem *problem)
+void api_query_came(void *context, struct packet *answer, const struct problem *problem)
 {
     struct call *call = context;
     if (problem) {
@@ -162,11 +162,16 @@ static void query_came(void *context, struct packet *answer, const struct proble
 
 void api_query(struct api *api, struct call *call, const char *plan_id, cJSON *query)
 {
+    api_ask(api, call, plan_id, query, api_query_came);
+}
+
+void api_ask(struct api *api, struct call *call, const char *plan_id, cJSON *query, fleet_reply reply)
+{
     struct problem problem;
     if (fleet_open(net_fleet(api->net), plan_id, &problem))
-        (void)fleet_request(net_fleet(api->net), plan_id, query, query_came, call);
+        (void)fleet_request(net_fleet(api->net), plan_id, query, reply, call);
     else
-        call_answer_problem(call, &problem);
+        reply(call, NULL, &problem);
     cJSON_Delete(query);
 }
 

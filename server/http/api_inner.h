@@ -3,9 +3,10 @@
 #include "server/http/api.h"
 
 enum {
-    API_MAX_JOBS = 500,  /* ended ones are forgotten oldest first */
+    API_MAX_JOBS = 500,        /* ended ones are forgotten oldest first */
     API_MAX_PICTURES = 32,     /* asked of one plan and not answered yet; more are answered with 503 */
-    API_MAX_PIXELS = 32 << 20  /* of these together; one alone may be larger */
+    API_MAX_PIXELS = 32 << 20, /* of these together; one alone may be larger */
+    API_MAX_FILES = 4          /* surfaces asked for as files and not answered yet, of all plans: each may have PACKET_MAX_BLOB bytes */
 };
 
 struct api_job {
@@ -22,6 +23,7 @@ struct api {
     int64_t started_us;
     struct api_job jobs[API_MAX_JOBS];
     struct api_picture *pictures; /* being made */
+    size_t n_files;               /* being made */
     size_t n_jobs;    /* ever made; the job of number n is at n % API_MAX_JOBS */
     _Atomic uint64_t n_calls[6], n_calls_us; /* by status / 100; time spent, for /metrics; counted by the HTTP thread */
 };
@@ -61,6 +63,10 @@ void api_render(struct api *api, struct call *call, const char *plan_id, const c
                 const char *format, double quality);
 /* A query for a call: answered with the renderer's body. Takes query. */
 void api_query(struct api *api, struct call *call, const char *plan_id, cJSON *query);
+/* The same with another end: reply gets the call as its context, exactly once. */
+void api_ask(struct api *api, struct call *call, const char *plan_id, cJSON *query, fleet_reply reply);
+/* How api_query ends: answers the call with the body. */
+void api_query_came(void *context, struct packet *answer, const struct problem *problem);
 /* The view parameter, complete; a default view when it was not given. NULL: the call has been answered. */
 NODISCARD cJSON *api_view_parameter(struct call *call);
 /* {type: "query", what: what} */

@@ -329,10 +329,47 @@ static bool check_word(const char *value, const char *name, const char *const *w
     return problem_set(problem, PROBLEM_VALIDATION, pointer, "enum", "%s is \"%.40s\", expected %s", name, value, list);
 }
 
+/* The files a surface is given as. What they are is said here and not by the renderer. */
+static const struct surface_file {
+    const char *word, *media_type;
+} surface_files[] = { { "stl", "model/stl" }, { "ply", "application/octet-stream" }, { "glb", "model/gltf-binary" } }; /* no type is registered for PLY */
+
+static const struct surface_file *find_surface_file(const char *format)
+{
+    for (size_t i = 0; format && i < sizeof surface_files / sizeof surface_files[0]; i++)
+        if (strcmp(format, surface_files[i].word) == 0)
+            return &surface_files[i];
+    return NULL; /* figures */
+}
+
+static void surface_file_came(void *context, struct packet *answer, const struct problem *problem)
+{
+    struct call *call = context;
+    struct api *api = call->api;
+    const struct surface_file *file = call->context;
+    struct problem broken;
+    api->n_files--;
+    if (problem) {
+        call_answer_problem(call, problem);
+        return;
+    }
+    if (!answer->blob) {
+        problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no surface");
+        call_answer_problem(call, &broken);
+        return;
+    }
+    char disposition[192]; /* ids need no quoting */
+    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%.63s-%.63s.%s\"", call->ids[0], call->ids[1], file->word);
+    call_add_header(call, "Content-Disposition", disposition);
+    uint8_t *bytes = answer->blob;
+    answer->blob = NULL;
+    call_answer_bytes(call, 200, file->media_type, bytes, answer->n_blob);
+}
+
 void api_plan_surface(struct api *api, struct call *call)
 {
     static const char *const algorithms[] = { "marching-cubes", NULL }, *const normals[] = { "vertex", "face", NULL },
-                             *const formats[] = { "json", NULL };
+                             *const formats[] = { "json", "stl", "ply", "glb", NULL };
     struct fleet_plan plan;
     struct problem problem;
     if (!find_plan(api, call, &plan))
@@ -343,12 +380,22 @@ void api_plan_surface(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    const char *normals_word = call_query(call, "normals");
+    const char *normals_word = call_query(call, "normals"), *format = call_query(call, "format");
+    const struct surface_file *file = find_surface_file(format);
+    if (file && api->n_files == API_MAX_FILES) {
+        problem_set(&problem, PROBLEM_BUSY, "", "", "%zu surfaces are being written already", api->n_files);
+        problem.retry_after_ms = 1000;
+        call_answer_problem(call, &problem);
+        return;
+    }
+    api->n_files += file != NULL;
+    call->context = (void *)file;
     cJSON *query = api_new_query("surface");
     cJSON_AddStringToObject(query, "region", call->ids[1]);
     cJSON_AddStringToObject(query, "algorithm", "marching-cubes");
     cJSON_AddStringToObject(query, "normals", normals_word ? normals_word : "vertex");
-    api_query(api, call, call->ids[0], query);
+    cJSON_AddStringToObject(query, "format", format ? format : "json");
+    api_ask(api, call, call->ids[0], query, file ? surface_file_came : api_query_came);
 }
 
 void api_plan_probe(struct api *api, struct call *call)

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "server/wire/document.h"
+#include "server/wire/packet.h"
 
 static cJSON *point(struct vec3 p)
 {
@@ -36,6 +37,22 @@ cJSON *answer_surface(struct plan *plan, size_t region, bool is_faceted, struct 
     add_number(json, "n_univels", (double)facts.n_univels);
     add_number(json, "ms", facts.build_ms);
     return json;
+}
+
+uint8_t *answer_surface_file(struct plan *plan, size_t region, bool is_faceted, enum mesh_format format, size_t *n_bytes,
+                             struct problem *problem)
+{
+    struct error err = { 0 };
+    struct surface_facts facts;
+    const struct region *what = &plan->regions.regions[region];
+    struct mesh *mesh = plan_surface(plan, region, SURFACE_FULL, &facts, &err);
+    const struct mesh_export_about about = { plan->id, what->id, "marching-cubes", plan->is_phantom, is_faceted,
+                                             { what->rgb[0], what->rgb[1], what->rgb[2] } };
+    uint8_t *bytes = mesh ? mesh_export(mesh, format, &about, PACKET_MAX_BLOB, n_bytes, &err) : NULL;
+    mesh_unref(mesh);
+    if (!bytes)
+        problem_from_error(problem, &err);
+    return bytes;
 }
 
 cJSON *answer_probe(const struct plan *plan, struct vec3 point_lps_mm)

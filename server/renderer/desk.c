@@ -22,6 +22,7 @@ void note_destroy(struct note *note)
     plan_destroy(note->plan);
     free(note->frame.picture.bytes);
     cJSON_Delete(note->body);
+    free(note->blob);
     free(note);
 }
 

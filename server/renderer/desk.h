@@ -17,6 +17,8 @@ struct note {
     struct pipeline_frame frame;
     uint64_t id;               /* answer */
     cJSON *body;               /* answer: the receiver's; NULL: problem says why */
+    uint8_t *blob;             /* answer: bytes beside the body, the receiver's; NULL when there are none */
+    size_t n_blob;
     struct problem problem;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 /* The threads that read the plan, build surfaces ahead, and answer questions that need no picture. */
+#include "core/surface/mesh_export.h"
 #include "server/renderer/desk.h"
 
 struct loader;
@@ -9,6 +10,8 @@ struct question {
     uint64_t id;
     size_t region;   /* surface */
     bool is_faceted; /* surface: normals "face" */
+    bool is_file;    /* surface: also as a file of this format */
+    enum mesh_format format;
     struct vec3 point_lps_mm;
     struct snapshot *snapshot; /* pick: one reference, taken */
     double px, py;

@@ -313,11 +313,13 @@ static bool read_question(struct session *session, uint64_t id, const cJSON *jso
     struct problem problem;
     *question = (struct question){ .id = id };
     if (what && strcmp(what, "surface") == 0) {
-        const char *name = json_text(json, "region"), *algorithm = json_text(json, "algorithm");
+        const char *name = json_text(json, "region"), *algorithm = json_text(json, "algorithm"), *format = json_text(json, "format");
         const struct region *region = region_find(&session->plan->regions, name ? name : "");
         question->what = QUESTION_SURFACE;
         if (algorithm && strcmp(algorithm, "marching-cubes") != 0) {
             problem_set(&problem, PROBLEM_VALIDATION, "/algorithm", "enum", "algorithm is \"%.40s\", expected \"marching-cubes\"", algorithm);
+        } else if (format && !(question->is_file = mesh_format_from_word(format, &question->format)) && strcmp(format, "json") != 0) {
+            problem_set(&problem, PROBLEM_VALIDATION, "/format", "enum", "format is \"%.40s\", expected json, stl, ply or glb", format);
         } else if (!region) {
             problem_set(&problem, PROBLEM_NOT_FOUND, "/region", "", "the plan has no region \"%.64s\"", name ? name : "");
         } else {
@@ -487,7 +489,7 @@ static void take_note(struct session *session, struct note *note)
             cJSON_AddNumberToObject(json, "id", (double)note->id);
             cJSON_AddItemToObject(json, "body", note->body);
             note->body = NULL;
-            say(session, json, NULL, 0);
+            say(session, json, note->blob, note->n_blob);
         } else {
             say_problem(session, note->id, &note->problem);
         }

@@ -8,7 +8,8 @@
  *   forget   {type, room}                             a room is gone
  *   render   {type, id, room | scene, view, scale_percent, quality, codec: "jpeg"|"png", full_color, detail: "full"|"light", still}
  *            scene: a complete document for this picture alone (HTTP render, overrides); else the room's
- *   query    {type, id, what: "surface"|"probe"|"pick"|"ready", ...arguments}   ready: answered with an empty body
+ *   query    {type, id, what: "surface"|"probe"|"pick"|"ready", ...arguments}   ready: answered with an empty body;
+ *            surface with format "stl", "ply" or "glb": answered with the file as blob
  *   ping     {type}                                   answered with pong at once, by the main thread
  * renderer to daemon
  *   gl       {type, back_end, vendor, renderer, version, is_software} or {type, problem}
@@ -17,7 +18,7 @@
  *   failed   {type, problem}                          the plan cannot be loaded; the process then ends with status 3
  *   frame    {type, id, width_px, height_px, scene_revision, render_us, encode_us, pixels_per_mm, clip_from_lps_mm[16], is_light,
  *             n_triangles} + blob
- *   answer   {type, id, body, media_type?} + blob?
+ *   answer   {type, id, body} + blob?
  *   problem  {type, id, problem}                      instead of frame or answer
  *   pong     {type}
  */

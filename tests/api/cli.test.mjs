@@ -26,7 +26,7 @@ describe('beamroom', () => {
   it('explains itself and each command', () => {
     const help = beamroom('--help');
     assert.equal(help.status, 0);
-    for (const command of ['info', 'phantom', 'render']) {
+    for (const command of ['export', 'info', 'phantom', 'render']) {
       assert.match(help.stdout, new RegExp(`^  ${command} `, 'm'));
       const own = beamroom(command, '--help');
       assert.equal(own.status, 0);
@@ -39,6 +39,10 @@ describe('beamroom', () => {
     for (const [args, sentence] of [
       [[], /^usage:/],
       [['dance'], /no command 'dance'/],
+      [['export', plan, '-o', 'x.stl'], /one folder and one region are needed, 1 words are given/],
+      [['export', plan, 'brain'], /-o OUT\.stl/],
+      [['export', plan, 'brain', '-o', 'x.obj'], /does not end in \.stl, \.ply or \.glb/],
+      [['export', plan, 'brain', '-o', 'x.stl', '--normals', 'up'], /--normals 'up'/],
       [['info'], /one folder is needed, 0 are given/],
       [['info', plan, '--xml'], /'--xml' is not an option/],
       [['phantom', 'a', 'b'], /one folder is needed, 2 are given/],
@@ -131,6 +135,39 @@ describe('beamroom info', () => {
     assert.equal(info.tracks.segments, Object.values(info.tracks.classes).reduce((sum, n) => sum + n, 0));
     assert.equal(Object.values(info.tracks.classes).filter((n) => n > 0).length, 8);
     assert.deepEqual(info.report, { lines: [], dropped: 0 });
+  });
+});
+
+describe('beamroom export', () => {
+  it('writes the surface of a region as each format, twice the same', () => {
+    for (const [ending, magic] of [['stl', 'Beamroom mm LPS tumour'], ['PLY', 'ply\nformat binary_little_endian 1.0\n'], ['glb', 'glTF']]) {
+      const out = join(folder, `tumour.${ending}`);
+      const { status, stdout, stderr } = beamroom('export', plan, 'tumour', '-o', out);
+      assert.equal(status, 0, stderr);
+      const told = /: (\d+) triangles, (\d+) vertices, [\d.]+ cm2, ([\d.]+) cm3, (\d+) bytes\n$/.exec(stdout);
+      const bytes = readFileSync(out);
+      assert.equal(bytes.length, Number(told[4]));
+      assert.equal(bytes.subarray(0, magic.length).toString(), magic);
+      if (ending === 'stl') assert.equal(bytes.length, 84 + 50 * Number(told[1]));
+      assert.equal(beamroom('export', plan, 'tumour', '-o', out).status, 0);
+      assert.deepEqual(readFileSync(out), bytes);
+    }
+  });
+
+  it('leaves vertex normals out of a PLY for flat shading', () => {
+    const out = join(folder, 'flat.ply');
+    assert.equal(beamroom('export', plan, 'tumour', '-o', out, '--normals', 'face').status, 0);
+    assert.doesNotMatch(readFileSync(out).subarray(0, 700).toString('latin1'), /property float nx/);
+    assert.match(readFileSync(out).subarray(0, 700).toString('latin1'), /comment a phantom, not a patient/);
+  });
+
+  it('refuses a region that is not there, naming those that are, and writes nothing', () => {
+    const out = join(folder, 'never.stl');
+    const { status, stderr } = beamroom('export', plan, 'liver', '-o', out);
+    assert.equal(status, 1);
+    assert.match(stderr, /no region "liver"; it has scalp, cranium, brain, target, tumour/);
+    assert.ok(!existsSync(out));
+    assert.equal(beamroom('export', plan, 'brain', '-o', join(folder, 'nowhere', 'x.stl')).status, 1);
   });
 });
 

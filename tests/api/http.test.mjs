@@ -210,6 +210,40 @@ describe('a plan', () => {
     assertProblem(await call(`${plan}/regions/brain/surface?algorithm=magic`), 422, 'validation', '/algorithm');
   });
 
+  test('gives the surface as a file whose size is that of its triangles, to be saved under the names of plan and region', async () => {
+    const { json: facts } = await call(`${plan}/regions/tumour/surface`);
+    const file = async (query) => {
+      const answer = await fetch(`${plan}/regions/tumour/surface?${query}`);
+      return { status: answer.status, type: answer.headers.get('content-type'), name: answer.headers.get('content-disposition'), bytes: Buffer.from(await answer.arrayBuffer()) };
+    };
+    const stl = await file('format=stl');
+    assert.deepEqual([stl.status, stl.type, stl.name], [200, 'model/stl', 'attachment; filename="phantom-tumour.stl"']);
+    assert.equal(stl.bytes.length, 84 + 50 * facts.triangles);
+    assert.equal(stl.bytes.readUInt32LE(80), facts.triangles);
+    const ply = await file('format=ply');
+    assert.deepEqual([ply.status, ply.type, ply.name], [200, 'application/octet-stream', 'attachment; filename="phantom-tumour.ply"']);
+    const head = ply.bytes.subarray(0, ply.bytes.indexOf('end_header\n') + 11).toString();
+    assert.equal(ply.bytes.length, head.length + 24 * facts.vertices + 13 * facts.triangles);
+    assert.match(head, /comment unit mm\n.*LPS.*\ncomment plan phantom\ncomment region tumour\n/);
+    const glb = await file('format=glb');
+    assert.deepEqual([glb.status, glb.type, glb.name], [200, 'model/gltf-binary', 'attachment; filename="phantom-tumour.glb"']);
+    const jsonOf = ({ bytes }) => JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
+    const gltf = jsonOf(glb);
+    assert.equal(gltf.asset.version, '2.0');
+    assert.equal(gltf.accessors[gltf.meshes[0].primitives[0].attributes.POSITION].count, facts.vertices);
+    assert.equal(gltf.accessors[gltf.meshes[0].primitives[0].indices].count, 3 * facts.triangles);
+    assert.ok('NORMAL' in jsonOf(glb).meshes[0].primitives[0].attributes);
+    assert.ok(!('NORMAL' in jsonOf(await file('format=glb&normals=face')).meshes[0].primitives[0].attributes));
+    assertProblem(await call(`${plan}/regions/tumour/surface?format=obj`), 422, 'validation', '/format');
+    const crowd = await Promise.all(Array.from({ length: 16 }, () => call(`${plan}/regions/scalp/surface?format=stl`)));
+    for (const answer of crowd) if (answer.status !== 200) assertProblem(answer, 503, 'busy');
+    assert.ok(crowd.filter((answer) => answer.status === 200).length >= 4, 'four at once are made');
+    assert.equal((await file('format=stl')).status, 200, 'and later ones again');
+    const none = await call(`${plan}/regions/liver/surface?format=stl`);
+    assertProblem(none, 404, 'not-found');
+    assert.equal(none.headers.get('content-disposition'), null);
+  });
+
   test('tells what lies at a point and under a pixel', async () => {
     const { regions, home } = (await call(plan)).json;
     const [x, y, z] = regions.find((r) => r.name === 'tumour').center_mm;

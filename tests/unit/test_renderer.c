@@ -176,6 +176,11 @@ static void numbers_are_answered(void **state)
     assert_near(json_number(json, "volume_mm3", 0), volume, 0.03);
     assert_true(json_number(json, "triangles", 0) > 1000);
 
+    double n_triangles = json_number(json, "triangles", 0);
+    ask(&world, "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"format\":\"stl\"}", &reply);
+    assert_close(json_number(body(&reply), "triangles", 0), n_triangles, 0);
+    assert_close((double)reply.n_blob, 84 + 50 * n_triangles, 0);
+
     ask(&world, "{\"type\":\"query\",\"what\":\"pick\",\"view\":{\"size_px\":[200,200]},\"px\":100.5,\"py\":100.5}", &reply);
     const cJSON *hits = cJSON_GetObjectItem(body(&reply), "hits");
     assert_true(cJSON_GetArraySize(hits) >= 1);
@@ -205,6 +210,7 @@ static void what_is_asked_wrongly_is_refused_with_its_place(void **state)
         { "{\"type\":\"render\",\"room\":\"nowhere\"}", PROBLEM_NOT_FOUND, "/room" },
         { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"liver\"}", PROBLEM_NOT_FOUND, "/region" },
         { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"algorithm\":\"magic\"}", PROBLEM_VALIDATION, "/algorithm" },
+        { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"format\":\"obj\"}", PROBLEM_VALIDATION, "/format" },
         { "{\"type\":\"query\",\"what\":\"probe\",\"point_lps_mm\":[1,2]}", PROBLEM_VALIDATION, "/point_lps_mm" },
         { "{\"type\":\"query\",\"what\":\"pick\",\"view\":{},\"px\":-1,\"py\":0}", PROBLEM_VALIDATION, "/px" },
         { "{\"type\":\"query\",\"what\":\"weather\"}", PROBLEM_VALIDATION, "/what" },

@@ -154,6 +154,21 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
+  it('downloads the surface of the chosen region in three formats', async () => {
+    const page = await newPage(`#/rooms/${await newRoom()}`);
+    await full(page);
+    await page.locator('[data-region="tumour"] button.name').click();
+    const links = page.locator('[aria-label="Download the surface"] a');
+    assert.deepEqual(await links.allTextContents().then((words) => words.map((word) => word.trim())), ['STL', 'PLY', 'GLB']);
+    await shoot(page, 'downloads');
+    for (const [at, ending, magic] of [[0, 'stl', 'Beamroom mm LPS tumour'], [1, 'ply', 'ply\n'], [2, 'glb', 'glTF']]) {
+      const [download] = await Promise.all([page.waitForEvent('download'), links.nth(at).click()]);
+      assert.equal(download.suggestedFilename(), `phantom-tumour.${ending}`);
+      assert.equal(readFileSync(await download.path()).subarray(0, magic.length).toString(), magic);
+    }
+    await page.context().close();
+  });
+
   it('shows one member what the other does, until one looks for themself', async () => {
     const room = await newRoom();
     const [one, two] = [await newPage(`#/rooms/${room}`), await newPage(`#/rooms/${room}`)];

@@ -11,6 +11,8 @@ import { roving } from './tools.js';
 const tabs = [['probe', 'Probe'], ['view', 'View'], ['report', 'Report']];
 const sides = [['sagittal', 'Sagittal'], ['coronal', 'Coronal'], ['axial', 'Axial']];
 
+const surfaceFiles = [['stl', 'binary STL'], ['ply', 'binary PLY'], ['glb', 'GLB (glTF 2.0), in metres with the top up']];
+
 export function inspector(world) {
   const { room, ui } = world;
   if (!ui.isInspectorOpen.value)
@@ -63,7 +65,7 @@ function doseTable(result, isOld) {
 
 const componentName = ({ quantity, per_ppm }) => `${quantity[0].toUpperCase()}${quantity.slice(1)}${per_ppm ? ', per ppm' : ''}`;
 
-function regionBlock({ room, ui }, region) {
+function regionBlock({ api, room, ui }, region) {
   if (!region) return html`<section class="block"><p class="empty">Choose a region in the tree for its figures.</p></section>`;
   const plan = room.plan.value;
   const scene = room.scene.value;
@@ -79,7 +81,9 @@ function regionBlock({ room, ui }, region) {
       <dt>Opacity</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(style.opacity * 100)))} aria-label="Opacity" ?disabled=${isDisabled}
         @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField('Opacity in per cent', Math.round(style.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd></dl>
     <div class="buttons"><button aria-pressed=${isAlone} class=${classMap({ on: isAlone })} ?disabled=${isDisabled} @click=${(event) => room.patchScene(soloPatch(plan.regions, scene, region.id), { view: ui.active.value, at: event.timeStamp })}>${icon('solo')}<span>Solo</span></button>
-      ${region.center_mm ? html`<button ?disabled=${isDisabled} @click=${show}>${icon('target')}<span>Go to centre</span></button>` : nothing}</div></section>`;
+      ${region.center_mm ? html`<button ?disabled=${isDisabled} @click=${show}>${icon('target')}<span>Go to centre</span></button>` : nothing}</div>
+    ${region.voxels ? html`<div class="buttons downloads" role="group" aria-label="Download the surface"><span class="dim">Surface, mm LPS</span>${surfaceFiles.map(([format, about]) => html`<a class="button"
+      download href=${api.surfaceUrl(room.planId.value, region.id, format)} title=${`Download the surface of ${region.name} as ${about}`}>${format.toUpperCase()}</a>`)}</div>` : nothing}</section>`;
 }
 
 // ---- view -------------------------------------------------------------------------------------------------------------
