@@ -298,8 +298,11 @@ static void a_plan_larger_than_the_memory_limit_fails_and_says_so(void **state)
     skip(); /* sanitizers map more than any limit */
 #endif
     struct world world;
-    begin_head(&world, true, phantom_defaults.size);
-    world.options.max_renderer_bytes = 60 << 20; /* five threads' stacks take 40 of them */
+    /* The stacks of five threads take 40 MiB. Of what is left the image alone (384 x 384 x 160 x 2 bytes, 45 MiB) takes more, and
+     * nothing else comes near it, so that it is the one large request that fails and not some small one after it. */
+    const uint32_t large[3] = { 384, 384, 160 };
+    begin_head(&world, true, large);
+    world.options.max_renderer_bytes = 80 << 20;
     world_start(&world, 1);
     world_open_plan(&world, PLAN);
     world_wait_for_state(&world, PLAN, FLEET_FAILED);
