@@ -3,7 +3,7 @@
 static const struct {
     int scale_percent, quality;
 } ladder[] = { { 100, 80 }, { 75, 78 }, { 60, 75 }, { 50, 65 } };
-enum { N_STEPS = sizeof ladder / sizeof ladder[0], SOFTWARE_START = 2, LEAST_DRAWN = 3 };
+enum { N_STEPS = sizeof ladder / sizeof ladder[0], LEAST_DRAWN = 3 };
 
 /* New values count for a third: three pictures decide, one outlier does not. */
 static double smooth(double old, double value, bool is_first)
@@ -11,11 +11,9 @@ static double smooth(double old, double value, bool is_first)
     return is_first ? value : old + (value - old) / 3;
 }
 
-void pace_start(struct pace *pace, bool is_software, bool is_slice)
+void pace_start(struct pace *pace, bool is_software)
 {
-    *pace = (struct pace){ .is_software = is_software,
-                           .step = is_software && !is_slice ? SOFTWARE_START : 0,
-                           .up_after_us = PACE_UP_AFTER_US };
+    *pace = (struct pace){ .is_software = is_software, .up_after_us = PACE_UP_AFTER_US };
 }
 
 struct pace_choice pace_choose(const struct pace *pace)

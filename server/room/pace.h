@@ -28,8 +28,8 @@ struct pace_choice {
     bool light; /* lighter surfaces */
 };
 
-/* is_slice: a slice pane, cheap: starts at the best. */
-void pace_start(struct pace *pace, bool is_software, bool is_slice);
+/* Starts at the best; three slow pictures bring it down. */
+void pace_start(struct pace *pace, bool is_software);
 struct pace_choice pace_choose(const struct pace *pace);
 /* A moving picture came: what it cost, how long after it was asked for, how many were outstanding then. */
 void pace_drawn(struct pace *pace, int64_t render_us, int64_t encode_us, int64_t turnaround_us, int n_outstanding, int64_t now_us);

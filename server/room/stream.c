@@ -40,7 +40,7 @@ bool override_is_valid(const struct room *room, const cJSON *view, struct proble
 
 static void start_pace(struct room *room, struct stream *stream)
 {
-    pace_start(&stream->pace, room->is_software, stream->kind != SCENE_KIND_3D);
+    pace_start(&stream->pace, room->is_software);
 }
 
 struct stream *stream_create(struct room *room, cJSON *view, bool is_shared)
