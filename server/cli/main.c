@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/standard_files.h"
 #include "server/cli/command.h"
 #include "server/cli/text.h"
 
@@ -51,6 +52,7 @@ int command_refused(const char *name, const struct error *err)
 
 int main(int argc, char **argv)
 {
+    standard_files_fill();
     if (argc < 2) {
         print_help(stderr);
         return EXIT_USAGE;

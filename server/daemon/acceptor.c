@@ -179,6 +179,8 @@ static bool start_listening(struct acceptor *acceptor, const char *listen_at, st
     if (!colon || n == 0 || n >= sizeof host)
         return error_set(err, ERROR_FORMAT, "--listen %.80s: expected ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080", listen_at);
     (void)snprintf(host, sizeof host, "%.*s", (int)(is_bracketed ? n - 2 : n), listen_at + is_bracketed);
+    if (colon[1 + strspn(colon + 1, "0123456789")] || strlen(colon + 1) - 1 >= 5 || strtoul(colon + 1, NULL, 10) > 65535)
+        return error_set(err, ERROR_RANGE, "--listen %.80s: expected a port from 0 to 65535", listen_at); /* the library takes 16 bits of it */
     struct addrinfo hints = { .ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE, .ai_socktype = SOCK_STREAM }, *found = NULL;
     int failed = getaddrinfo(host, colon + 1, &hints, &found);
     if (failed)

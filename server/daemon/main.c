@@ -11,6 +11,7 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "core/base/standard_files.h"
 #include "server/daemon/acceptor.h"
 #include "server/net/net.h"
 #include "server/daemon/options.h"
@@ -123,6 +124,7 @@ static bool serve(const struct options *options, const char *data_folder, const 
 
 int main(int argc, char **argv)
 {
+    standard_files_fill();
     struct options options;
     struct error err = { 0 };
     char data_folder[PATH_SIZE], web_folder[PATH_SIZE];

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "core/base/log.h"
+#include "core/base/standard_files.h"
 #include "server/renderer/answers.h"
 #include "server/renderer/confine.h"
 #include "server/renderer/session.h"
@@ -152,6 +153,7 @@ static int probe_gl(const struct session_options *options, const char *confined)
 
 int main(int argc, char **argv)
 {
+    standard_files_fill();
     log_start("beamroom-render", LOG_INFO);
     struct arguments arguments;
     int status = read_arguments(argc, argv, &arguments);

@@ -3,8 +3,9 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { dirname, join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
+import { web } from './daemon.mjs';
 
 const bin = join(process.env.BEAMROOM_BIN ?? 'build/release', 'beamroom');
 const beamroom = (...args) => {
@@ -221,5 +222,29 @@ describe('beamroom render', () => {
     }
     assert.equal(beamroom('render', plan, '-o', out, '--view', join(folder, 'none.json')).status, 1);
     assert.ok(!existsSync(out));
+  });
+
+  it('writes only the picture into the picture, whatever is closed, and says so when standard output is full', () => {
+    const out = join(folder, 'with a space\nand a line.png');
+    spawnSync('sh', ['-c', '"$0" render "$1" -o "$2" --size 64x48 <&- >&- 2>&- || true', bin, plan, out]);
+    const bytes = readFileSync(out);
+    assert.equal(bytes.subarray(0, 8).toString('latin1'), '\x89PNG\r\n\x1a\n');
+    assert.equal(bytes.subarray(-8, -4).toString('latin1'), 'IEND', 'nothing follows the picture');
+    for (const to of ['>/dev/full', '>&-']) {
+      const { status, stderr } = spawnSync('sh', ['-c', `"$0" info "$1" ${to}`, bin, plan], { encoding: 'utf8' });
+      assert.equal(status, 1);
+      assert.match(stderr, /standard output cannot be written/);
+    }
+  });
+});
+
+describe('beamroomd', () => {
+  it('refuses a port that is none', () => {
+    for (const port of ['65536', '99999', '-1', 'x', '']) {
+      const { status, stderr } = spawnSync(join(dirname(bin), 'beamroomd'), ['--listen', `127.0.0.1:${port}`, '--data', join(folder, 'state'), '--web', web],
+        { encoding: 'utf8', timeout: 5000 });
+      assert.equal(status, 1, `${port}: ${stderr}`);
+      assert.match(stderr, /--listen 127\.0\.0\.1:/);
+    }
   });
 });
