@@ -1,6 +1,6 @@
 // The HTTP API against the real daemon.
 import assert from 'node:assert/strict';
-import { mkdirSync, mkdtempSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -8,10 +8,10 @@ import { after, before, describe, test } from 'node:test';
 import { call, demo, openPlan, startDaemon, until } from './daemon.mjs';
 import { centreOf, readPng } from './png.mjs';
 
-let daemon, url, api, plan;
+let daemon, url, api, plan, broken;
 
 before(async () => {
-  const broken = mkdtempSync(join(tmpdir(), 'beamroom-plans-'));
+  broken = mkdtempSync(join(tmpdir(), 'beamroom-plans-'));
   mkdirSync(join(broken, 'broken'));
   writeFileSync(join(broken, 'broken', 'plan.json'), '{"format":"beamroom-plan","version":1,"images":[{"id":"ct","path":"../../etc/passwd"}]}');
   daemon = await startDaemon({ plans: [demo, broken] });
@@ -20,7 +20,10 @@ before(async () => {
   plan = `${api}/plans/phantom`;
   await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.length === 2 && plans.every((p) => p.parts.length || p.reason));
 });
-after(async () => { await daemon?.stop(); });
+after(async () => {
+  await daemon?.stop();
+  rmSync(broken, { recursive: true, force: true });
+});
 
 function assertProblem(answer, status, type, pointer) {
   assert.equal(answer.status, status, answer.text);
