@@ -7,7 +7,7 @@
 #include "core/dose/dose.h"
 #include "core/plan/report.h"
 #include "core/region/region.h"
-#include "core/surface/mesh.h"
+#include "core/surface/surface.h"
 #include "core/track/track.h"
 #include "core/volume/volume.h"
 
@@ -67,7 +67,7 @@ struct plan_summary {
 void plan_summarize(const char *folder, struct plan_summary *summary);
 
 /* Detail of a surface: FULL is every univel; LIGHT is for moving pictures: the mask reduced until all surfaces of the
- * plan together stay under PLAN_LIGHT_TRIANGLES (or the reduction reaches 8). */
+ * plan by the same algorithm stay together under PLAN_LIGHT_TRIANGLES (or the reduction reaches 8). */
 enum surface_detail { SURFACE_FULL, SURFACE_LIGHT };
 enum { PLAN_LIGHT_TRIANGLES = 80000 };
 
@@ -76,13 +76,13 @@ struct surface_facts {
     double area_mm2, volume_mm3, univel_volume_mm3; /* univel volume: of the mask the surface encloses, descendants included */
     uint64_t n_univels;
     double build_ms;
-    uint32_t reduction; /* 1 for FULL */
+    uint32_t reduction; /* 1 for FULL, and for a LIGHT one that any reduction would empty */
 };
 
 /* The surface of a region, built on first use and kept, with vertex normals. Any thread; the first caller builds, others wait.
- * One reference, the caller's. errors as surface_marching_cubes */
-NODISCARD struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_detail detail, struct surface_facts *facts,
-                                    struct error *err);
+ * With SURFACE_EIGHT_CELL it may have no triangle. One reference, the caller's. errors as surface_make */
+NODISCARD struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,
+                                    struct surface_facts *facts, struct error *err);
 
 /* What lies at a patient point. */
 struct probe_dose {

@@ -10,11 +10,11 @@
 
 enum { MAX_REDUCTION = 8 };
 
-static struct mesh *extract(const struct mask *mask, int n_threads, struct error *err)
+static struct mesh *extract(enum surface_algorithm algorithm, const struct mask *mask, int n_threads, struct error *err)
 {
     struct surface_options options = surface_defaults;
     options.n_threads = n_threads;
-    struct mesh *mesh = surface_marching_cubes(mask, &options, err);
+    struct mesh *mesh = surface_make(algorithm, mask, &options, err);
     if (mesh && !mesh_make_normals(mesh, n_threads, err)) {
         mesh_unref(mesh);
         return NULL;
@@ -36,14 +36,15 @@ static void fill_facts(struct surface_facts *facts, const struct mesh *mesh, con
     facts->build_ms = (double)(clock_now_us() - started_us) / 1000;
 }
 
-static struct mesh *build_full(const struct plan *plan, size_t region, struct surface_facts *facts, struct error *err)
+static struct mesh *build_full(const struct plan *plan, size_t region, enum surface_algorithm algorithm, struct surface_facts *facts,
+                               struct error *err)
 {
     int64_t started_us = clock_now_us();
     int n_threads = parallel_cores();
     struct mask *mask = mask_from_region(&plan->regions, region, n_threads, err);
     if (!mask)
         return NULL;
-    struct mesh *mesh = extract(mask, n_threads, err);
+    struct mesh *mesh = extract(algorithm, mask, n_threads, err);
     if (mesh)
         fill_facts(facts, mesh, mask, 1, started_us);
     mask_destroy(mask);
@@ -53,12 +54,13 @@ static struct mesh *build_full(const struct plan *plan, size_t region, struct su
 }
 
 /* The first caller builds under the slot's own lock; others wait for it. A failure is not kept: memory may come back. */
-static struct mesh *full_surface(struct plan *plan, size_t region, struct surface_facts *facts, struct error *err)
+static struct mesh *full_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, struct surface_facts *facts,
+                                 struct error *err)
 {
-    struct plan_mesh *slot = &plan->meshes->of_region[region][SURFACE_FULL];
+    struct plan_mesh *slot = &plan->meshes->of_region[region][algorithm][SURFACE_FULL];
     pthread_mutex_lock(&slot->lock);
     if (!slot->mesh)
-        slot->mesh = build_full(plan, region, &slot->facts, err);
+        slot->mesh = build_full(plan, region, algorithm, &slot->facts, err);
     struct mesh *mesh = slot->mesh ? mesh_ref(slot->mesh) : NULL;
     *facts = slot->facts;
     pthread_mutex_unlock(&slot->lock);
@@ -75,6 +77,7 @@ struct ladder {
 
 struct lighting {
     const struct plan *plan;
+    enum surface_algorithm algorithm;
     struct ladder *ladders; /* [n_regions] */
     bool is_tried[MAX_REDUCTION + 1];
     uint32_t factor; /* being tried */
@@ -82,18 +85,31 @@ struct lighting {
     atomic_bool is_failed;
 };
 
-static bool reduce_region(const struct plan *plan, size_t region, uint32_t factor, struct ladder *ladder)
+static struct mesh *extract_reduced(enum surface_algorithm algorithm, const struct mask *full, uint32_t factor)
+{
+    struct mask *mask = factor > 1 ? mask_reduce(full, factor, 1, NULL) : NULL;
+    struct mesh *mesh = factor == 1 || mask ? extract(algorithm, mask ? mask : full, 1, NULL) : NULL;
+    mask_destroy(mask);
+    return mesh;
+}
+
+/* A small region that the 8-cell algorithm does not draw when reduced so far is reduced less: it must not vanish in motion. */
+static bool reduce_region(const struct plan *plan, size_t region, enum surface_algorithm algorithm, uint32_t factor,
+                          struct ladder *ladder)
 {
     int64_t started_us = clock_now_us();
     if (plan->regions.regions[region].n_voxels == 0)
         return true;
     struct mask *full = mask_from_region(&plan->regions, region, 1, NULL);
-    struct mask *mask = full ? mask_reduce(full, factor, 1, NULL) : NULL;
-    struct mesh *mesh = mask ? extract(mask, 1, NULL) : NULL;
+    uint32_t taken = factor;
+    struct mesh *mesh = full ? extract_reduced(algorithm, full, taken) : NULL;
+    while (mesh && mesh->n_triangles == 0 && taken > 1) {
+        mesh_unref(mesh);
+        mesh = extract_reduced(algorithm, full, --taken);
+    }
     if (mesh)
-        fill_facts(&ladder->facts[factor], mesh, full, factor, started_us);
+        fill_facts(&ladder->facts[factor], mesh, full, taken, started_us);
     ladder->mesh[factor] = mesh;
-    mask_destroy(mask);
     mask_destroy(full);
     return mesh != NULL;
 }
@@ -104,7 +120,7 @@ static void reduce_some(void *context, int part, int n_parts)
     (void)n_parts;
     struct lighting *lighting = context;
     for (size_t r; (r = atomic_fetch_add(&lighting->next, 1)) < lighting->plan->regions.n_regions;)
-        if (!reduce_region(lighting->plan, r, lighting->factor, &lighting->ladders[r]))
+        if (!reduce_region(lighting->plan, r, lighting->algorithm, lighting->factor, &lighting->ladders[r]))
             atomic_store(&lighting->is_failed, true);
 }
 
@@ -142,7 +158,7 @@ static uint32_t find_reduction(struct lighting *lighting, size_t n_at_two)
 
 /* Whether the full surfaces are already light enough. Halving the grid quarters the triangles, so they are only built when
  * the first step of the ladder promises that. */
-static bool full_is_light(struct plan *plan, size_t n_at_two)
+static bool full_is_light(struct plan *plan, enum surface_algorithm algorithm, size_t n_at_two)
 {
     size_t n = 0;
     if (n_at_two > PLAN_LIGHT_TRIANGLES / 3)
@@ -151,7 +167,7 @@ static bool full_is_light(struct plan *plan, size_t n_at_two)
         struct surface_facts facts;
         if (plan->regions.regions[r].n_voxels == 0)
             continue;
-        struct mesh *mesh = full_surface(plan, r, &facts, NULL);
+        struct mesh *mesh = full_surface(plan, r, algorithm, &facts, NULL);
         if (!mesh)
             return false;
         mesh_unref(mesh);
@@ -160,18 +176,18 @@ static bool full_is_light(struct plan *plan, size_t n_at_two)
     return n <= PLAN_LIGHT_TRIANGLES;
 }
 
-/* Under light_lock. */
-static bool build_light(struct plan *plan, struct error *err)
+/* Under the algorithm's lock. */
+static bool build_light(struct plan *plan, enum surface_algorithm algorithm, struct error *err)
 {
     size_t n_regions = plan->regions.n_regions;
-    struct lighting lighting = { .plan = plan, .ladders = mem_new((n_regions + 1) * sizeof *lighting.ladders) };
+    struct lighting lighting = { .plan = plan, .algorithm = algorithm, .ladders = mem_new((n_regions + 1) * sizeof *lighting.ladders) };
     atomic_init(&lighting.next, 0);
     atomic_init(&lighting.is_failed, false);
     size_t n_at_two = triangles_at(&lighting, 2);
-    uint32_t factor = full_is_light(plan, n_at_two) ? 1 : find_reduction(&lighting, n_at_two);
+    uint32_t factor = full_is_light(plan, algorithm, n_at_two) ? 1 : find_reduction(&lighting, n_at_two);
     bool is_built = !atomic_load(&lighting.is_failed);
     for (size_t r = 0; r < n_regions; r++) {
-        struct plan_mesh *slot = &plan->meshes->of_region[r][SURFACE_LIGHT];
+        struct plan_mesh *slot = &plan->meshes->of_region[r][algorithm][SURFACE_LIGHT];
         if (is_built && factor > 1 && lighting.ladders[r].mesh[factor]) {
             slot->mesh = mesh_ref(lighting.ladders[r].mesh[factor]);
             slot->facts = lighting.ladders[r].facts[factor];
@@ -181,28 +197,29 @@ static bool build_light(struct plan *plan, struct error *err)
     }
     free(lighting.ladders);
     if (is_built)
-        plan->meshes->light_reduction = factor;
+        plan->meshes->light[algorithm].reduction = factor;
     return is_built || error_set(err, ERROR_MEMORY, "no memory for the lighter surfaces");
 }
 
-static struct mesh *light_surface(struct plan *plan, size_t region, struct surface_facts *facts, struct error *err)
+static struct mesh *light_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, struct surface_facts *facts,
+                                  struct error *err)
 {
-    struct plan_meshes *meshes = plan->meshes;
-    pthread_mutex_lock(&meshes->light_lock);
-    bool is_built = meshes->light_reduction > 0 || build_light(plan, err);
-    bool is_full = meshes->light_reduction == 1;
-    pthread_mutex_unlock(&meshes->light_lock);
+    struct plan_lightness *light = &plan->meshes->light[algorithm];
+    pthread_mutex_lock(&light->lock);
+    bool is_built = light->reduction > 0 || build_light(plan, algorithm, err);
+    bool is_full = light->reduction == 1;
+    pthread_mutex_unlock(&light->lock);
     if (!is_built)
         return NULL;
     if (is_full)
-        return full_surface(plan, region, facts, err);
-    const struct plan_mesh *slot = &meshes->of_region[region][SURFACE_LIGHT]; /* frozen from here on */
+        return full_surface(plan, region, algorithm, facts, err);
+    const struct plan_mesh *slot = &plan->meshes->of_region[region][algorithm][SURFACE_LIGHT]; /* frozen from here on */
     *facts = slot->facts;
     return mesh_ref(slot->mesh);
 }
 
-struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_detail detail, struct surface_facts *facts,
-                          struct error *err)
+struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,
+                          struct surface_facts *facts, struct error *err)
 {
     struct surface_facts unwanted;
     if (region >= plan->regions.n_regions) {
@@ -214,5 +231,6 @@ struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_detail 
         return NULL;
     }
     facts = facts ? facts : &unwanted;
-    return detail == SURFACE_FULL ? full_surface(plan, region, facts, err) : light_surface(plan, region, facts, err);
+    return detail == SURFACE_FULL ? full_surface(plan, region, algorithm, facts, err)
+                                  : light_surface(plan, region, algorithm, facts, err);
 }

@@ -9,6 +9,11 @@ const uint8_t visible_background[3] = { 0x08, 0x09, 0x0b };
 
 /* ---- surfaces ------------------------------------------------------------------------------------------------------------- */
 
+enum surface_algorithm visible_algorithm(const struct snapshot *snapshot)
+{
+    return snapshot->scene.surface.algorithm == SCENE_ALGORITHM_EIGHT_CELL ? SURFACE_EIGHT_CELL : SURFACE_MARCHING_CUBES;
+}
+
 static double nearest_mm(const struct camera *camera, const struct box3 *box)
 {
     if (camera->is_parallel) {
@@ -74,7 +79,7 @@ static bool find_hidden(const struct snapshot *snapshot, const struct camera *ca
         const struct box3 *box = bounds(context, (size_t)outer, err);
         if (!box)
             return false;
-        *is_hidden = is_wholly_ahead(camera, box);
+        *is_hidden = !box3_is_empty(box) && is_wholly_ahead(camera, box);
     }
     return true;
 }
@@ -110,7 +115,7 @@ struct visible_surface *visible_surfaces(const struct snapshot *snapshot, const 
             free(surfaces);
             return NULL;
         }
-        if (!is_out_of_sight(clip_from_lps_mm, box))
+        if (!box3_is_empty(box) && !is_out_of_sight(clip_from_lps_mm, box))
             surfaces[(*n)++] = (struct visible_surface){ i, &snapshot->styles[i], nearest_mm(camera, box), region_depth(set, i),
                                                          set->regions[i].n_voxels };
     }

@@ -2,6 +2,9 @@
 /* What of a snapshot is drawn, and in which order: the same for every back end. Knows no pixels and no GL. */
 #include "core/scene/snapshot.h"
 
+/* How the scene wants regions to become surfaces. */
+enum surface_algorithm visible_algorithm(const struct snapshot *snapshot);
+
 /* One surface to draw. */
 struct visible_surface {
     size_t region;
@@ -11,7 +14,8 @@ struct visible_surface {
     uint64_t n_voxels;
 };
 
-/* The box around a region's surface, borrowed until the plan is forgotten; NULL with err when there is no surface to be had. */
+/* The box around a region's surface, borrowed until the plan is forgotten; NULL with err when there is no surface to be had.
+ * Empty when the surface is: then there is nothing to draw. */
 typedef const struct box3 *visible_bounds(void *context, size_t region, struct error *err);
 
 /* The surfaces that are wanted and can be seen, back to front (opaque ones are drawn from the last one on). What lies outside

@@ -28,8 +28,6 @@
 enum { CELLS_A_WORD = 63, MAX_THREADS = 64, MAX_MASK_WORDS = VOLUME_MAX_SIDE / 64 };
 #define LOW_63 (~(uint64_t)0 >> 1)
 
-const struct surface_options surface_defaults = { .n_threads = 0, .max_triangles = 40000000, .close_at_border = true };
-
 /* Of one row. First how many, then (after the running totals) the number of its first. */
 struct row {
     uint32_t x, y, z; /* vertices on edges along x, y, z, numbered in this order */

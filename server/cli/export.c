@@ -14,6 +14,7 @@
 struct export_job {
     const char *folder, *region, *out;
     enum mesh_format format;
+    enum surface_algorithm algorithm;
     bool is_faceted;
 };
 
@@ -22,6 +23,7 @@ static void print_help(void)
     printf("usage: beamroom export DIR REGION -o OUT.stl|OUT.ply|OUT.glb [OPTION]...\n"
            "Writes the surface of a region of the plan in the folder DIR, with everything inside it, for other programs.\n\n"
            "  -o, --output OUT  the file; its ending says whether binary STL, binary PLY or GLB (glTF 2.0)\n"
+           "  --algorithm NAME  marching-cubes (default) or eight-cell, Sera3d's: through the centres of univels\n"
            "  --normals WHICH   vertex (default) or face: PLY and GLB without vertex normals, for flat shading\n"
            "  --help            this text\n\n"
            "REGION is an id, as beamroom info --json gives it. Points are mm toward the patient's left, back and top (DICOM LPS);\n"
@@ -53,8 +55,8 @@ static bool export_region(struct plan *plan, const struct export_job *job, struc
     if (!region)
         return false;
     struct surface_facts facts;
-    struct mesh *mesh = plan_surface(plan, (size_t)(region - plan->regions.regions), SURFACE_FULL, &facts, err);
-    const struct mesh_export_about about = { plan->id, region->id, "marching-cubes", plan->is_phantom, job->is_faceted,
+    struct mesh *mesh = plan_surface(plan, (size_t)(region - plan->regions.regions), job->algorithm, SURFACE_FULL, &facts, err);
+    const struct mesh_export_about about = { plan->id, region->id, surface_algorithm_word(job->algorithm), plan->is_phantom, job->is_faceted,
                                              { region->rgb[0], region->rgb[1], region->rgb[2] } };
     size_t n_bytes = 0;
     uint8_t *bytes = mesh ? mesh_export(mesh, job->format, &about, FILE_MAX_BYTES, &n_bytes, err) : NULL;
@@ -84,6 +86,7 @@ static bool format_from_path(const char *path, enum mesh_format *format)
 static bool parse_arguments(int argc, char **argv, struct export_job *job, int *code)
 {
     static const struct option long_options[] = { { "output", required_argument, NULL, 'o' },
+                                                  { "algorithm", required_argument, NULL, 'a' },
                                                   { "normals", required_argument, NULL, 'n' },
                                                   { "help", no_argument, NULL, 'h' },
                                                   { NULL, 0, NULL, 0 } };
@@ -93,6 +96,10 @@ static bool parse_arguments(int argc, char **argv, struct export_job *job, int *
         switch (option) {
         case 'o':
             job->out = optarg;
+            break;
+        case 'a':
+            if (!surface_algorithm_from_word(optarg, &job->algorithm))
+                return command_usage_error("export", "--algorithm '%s' is not marching-cubes or eight-cell", optarg), false;
             break;
         case 'n':
             job->is_faceted = strcmp(optarg, "face") == 0;

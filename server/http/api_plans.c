@@ -368,7 +368,7 @@ static void surface_file_came(void *context, struct packet *answer, const struct
 
 void api_plan_surface(struct api *api, struct call *call)
 {
-    static const char *const algorithms[] = { "marching-cubes", NULL }, *const normals[] = { "vertex", "face", NULL },
+    static const char *const algorithms[] = { "marching-cubes", "eight-cell", NULL }, *const normals[] = { "vertex", "face", NULL },
                              *const formats[] = { "json", "stl", "ply", "glb", NULL };
     struct fleet_plan plan;
     struct problem problem;
@@ -380,7 +380,7 @@ void api_plan_surface(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    const char *normals_word = call_query(call, "normals"), *format = call_query(call, "format");
+    const char *normals_word = call_query(call, "normals"), *format = call_query(call, "format"), *algorithm = call_query(call, "algorithm");
     const struct surface_file *file = find_surface_file(format);
     if (file && api->n_files == API_MAX_FILES) {
         problem_set(&problem, PROBLEM_BUSY, "", "", "%zu surfaces are being written already", api->n_files);
@@ -392,7 +392,7 @@ void api_plan_surface(struct api *api, struct call *call)
     call->context = (void *)file;
     cJSON *query = api_new_query("surface");
     cJSON_AddStringToObject(query, "region", call->ids[1]);
-    cJSON_AddStringToObject(query, "algorithm", "marching-cubes");
+    cJSON_AddStringToObject(query, "algorithm", algorithm ? algorithm : "marching-cubes");
     cJSON_AddStringToObject(query, "normals", normals_word ? normals_word : "vertex");
     cJSON_AddStringToObject(query, "format", format ? format : "json");
     api_ask(api, call, call->ids[0], query, file ? surface_file_came : api_query_came);

@@ -15,11 +15,11 @@ static void add_number(cJSON *json, const char *name, double value)
     cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
 }
 
-cJSON *answer_surface(struct plan *plan, size_t region, bool is_faceted, struct problem *problem)
+cJSON *answer_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, bool is_faceted, struct problem *problem)
 {
     struct error err = { 0 };
     struct surface_facts facts;
-    struct mesh *mesh = plan_surface(plan, region, SURFACE_FULL, &facts, &err);
+    struct mesh *mesh = plan_surface(plan, region, algorithm, SURFACE_FULL, &facts, &err);
     if (!mesh) {
         problem_from_error(problem, &err);
         return NULL;
@@ -27,7 +27,7 @@ cJSON *answer_surface(struct plan *plan, size_t region, bool is_faceted, struct 
     mesh_unref(mesh);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "region", plan->regions.regions[region].id);
-    cJSON_AddStringToObject(json, "algorithm", "marching-cubes");
+    cJSON_AddStringToObject(json, "algorithm", surface_algorithm_word(algorithm));
     cJSON_AddStringToObject(json, "normals", is_faceted ? "face" : "vertex");
     add_number(json, "triangles", (double)facts.n_triangles);
     add_number(json, "vertices", (double)facts.n_vertices);
@@ -39,14 +39,14 @@ cJSON *answer_surface(struct plan *plan, size_t region, bool is_faceted, struct 
     return json;
 }
 
-uint8_t *answer_surface_file(struct plan *plan, size_t region, bool is_faceted, enum mesh_format format, size_t *n_bytes,
-                             struct problem *problem)
+uint8_t *answer_surface_file(struct plan *plan, size_t region, enum surface_algorithm algorithm, bool is_faceted,
+                             enum mesh_format format, size_t *n_bytes, struct problem *problem)
 {
     struct error err = { 0 };
     struct surface_facts facts;
     const struct region *what = &plan->regions.regions[region];
-    struct mesh *mesh = plan_surface(plan, region, SURFACE_FULL, &facts, &err);
-    const struct mesh_export_about about = { plan->id, what->id, "marching-cubes", plan->is_phantom, is_faceted,
+    struct mesh *mesh = plan_surface(plan, region, algorithm, SURFACE_FULL, &facts, &err);
+    const struct mesh_export_about about = { plan->id, what->id, surface_algorithm_word(algorithm), plan->is_phantom, is_faceted,
                                              { what->rgb[0], what->rgb[1], what->rgb[2] } };
     uint8_t *bytes = mesh ? mesh_export(mesh, format, &about, PACKET_MAX_BLOB, n_bytes, &err) : NULL;
     mesh_unref(mesh);

@@ -55,9 +55,10 @@ static void answer(struct loader *loader, struct plan *plan, struct question *qu
     struct note note = { .type = NOTE_ANSWER, .id = question->id };
     switch (question->what) {
     case QUESTION_SURFACE:
-        note.body = answer_surface(plan, question->region, question->is_faceted, &note.problem);
+        note.body = answer_surface(plan, question->region, question->algorithm, question->is_faceted, &note.problem);
         if (note.body && question->is_file) {
-            note.blob = answer_surface_file(plan, question->region, question->is_faceted, question->format, &note.n_blob, &note.problem);
+            note.blob = answer_surface_file(plan, question->region, question->algorithm, question->is_faceted, question->format, &note.n_blob,
+                                            &note.problem);
             if (!note.blob) {
                 cJSON_Delete(note.body);
                 note.body = NULL;
@@ -71,7 +72,7 @@ static void answer(struct loader *loader, struct plan *plan, struct question *qu
     question_drop(question);
 }
 
-/* Regions a new room shows, in file order. */
+/* Regions a new room shows, in file order. It shows them by marching cubes; other surfaces are built when they are asked for. */
 static size_t visible_regions(const struct plan *plan, size_t *regions)
 {
     struct scene scene;
@@ -90,7 +91,7 @@ static void build(struct plan *plan, size_t region, enum surface_detail detail)
 {
     struct error err = { 0 };
     struct surface_facts facts;
-    struct mesh *mesh = plan_surface(plan, region, detail, &facts, &err);
+    struct mesh *mesh = plan_surface(plan, region, SURFACE_MARCHING_CUBES, detail, &facts, &err);
     if (!mesh)
         log_warn("surface of region %s: %s", plan->regions.regions[region].id, err.text);
     mesh_unref(mesh);

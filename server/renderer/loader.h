@@ -10,6 +10,7 @@ struct question {
     uint64_t id;
     size_t region;   /* surface */
     bool is_faceted; /* surface: normals "face" */
+    enum surface_algorithm algorithm; /* surface */
     bool is_file;    /* surface: also as a file of this format */
     enum mesh_format format;
     struct vec3 point_lps_mm;

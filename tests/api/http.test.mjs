@@ -209,6 +209,10 @@ describe('a plan', () => {
     assert.equal(json.algorithm, 'marching-cubes');
     assert.ok(json.triangles > 50000 && json.vertices > 25000);
     assert.ok(Math.abs(json.volume_mm3 / json.univel_volume_mm3 - 1) < 0.01, JSON.stringify(json));
+    const cells = (await call(`${plan}/regions/brain/surface?algorithm=eight-cell`)).json;
+    assert.equal(cells.algorithm, 'eight-cell');
+    assert.equal(cells.univel_volume_mm3, json.univel_volume_mm3);
+    assert.ok(cells.volume_mm3 < json.volume_mm3 && cells.triangles / json.triangles > 0.5 && cells.triangles / json.triangles < 0.85, JSON.stringify(cells));
     assertProblem(await call(`${plan}/regions/liver/surface`), 404, 'not-found');
     assertProblem(await call(`${plan}/regions/brain/surface?algorithm=magic`), 422, 'validation', '/algorithm');
   });

@@ -422,6 +422,42 @@ static void light_surfaces_are_marked_and_lighter(void **state)
     finish(plan);
 }
 
+static double specks_label(struct vec3 p)
+{
+    return fabs(p.x) < 10 && fabs(p.y) < 10 && fabs(p.z) < 10 ? 1 : fabs(p.x - 14.5) < 0.4 && fabs(p.y - 0.5) < 0.4 && fabs(p.z - 0.5) < 0.4 ? 2 : 0;
+}
+
+static const struct made_region specks[] = { { "box", -1, 0xff8040 }, { "speck", -1, 0x40ff80 } };
+
+/* A box is smaller by half a voxel on either side; a lone voxel is gone, and marching cubes brings both back. */
+static void the_scene_says_how_regions_become_surfaces(void **state)
+{
+    (void)state;
+    struct grid grid = unit_grid(40);
+    struct plan *plan = made_plan(&grid, specks_label, specks, 2);
+    struct view view = shots_view_from(origin, from_front, up, 10);
+    struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, false };
+    for (int turn = 0; turn < 4; turn++) {
+        bool is_cells = turn & 1;
+        struct scene scene = shots_scene(plan);
+        scene.surface.algorithm = is_cells ? SCENE_ALGORITHM_EIGHT_CELL : SCENE_ALGORITHM_MARCHING_CUBES;
+        struct render_timing timing;
+        shots_style(&scene, "box")->visible = turn < 2;
+        int width_px = 0, height_px = 0;
+        struct image *image = shots_take(plan, scene, view, &options, &timing);
+        if (turn < 2) {
+            measure_silhouette(image, &width_px, &height_px);
+            assert_close(height_px, is_cells ? 190 : 200, 2);
+        }
+        if (turn == 2)
+            assert_int_equal(timing.n_triangles, 8);
+        if (turn == 3)
+            assert_int_equal(timing.n_triangles, 0);
+        image_destroy(image);
+    }
+    finish(plan);
+}
+
 static void equal_snapshots_give_equal_bytes(void **state)
 {
     (void)state;
@@ -483,6 +519,7 @@ int main(void)
         cmocka_unit_test(a_grid_beyond_the_drivers_limit_is_refused_with_its_size),
         cmocka_unit_test(stills_have_smooth_edges),
         cmocka_unit_test(light_surfaces_are_marked_and_lighter),
+        cmocka_unit_test(the_scene_says_how_regions_become_surfaces),
         cmocka_unit_test(equal_snapshots_give_equal_bytes),
         cmocka_unit_test(large_stills_have_no_seam_between_bands),
     };

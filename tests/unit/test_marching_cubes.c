@@ -1,72 +1,11 @@
-#include "core/base/mem.h"
 #include "core/surface/marching_cubes.h"
 #include "core/surface/surface.h"
 #include "tests/check.h"
-
-static const struct affine unit_map = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { 0, 0, 0 } };
-
-/* ---- masks to work on --------------------------------------------------------------------------------------------------- */
-
-static struct mask *mask_make(uint32_t nx, uint32_t ny, uint32_t nz, const struct affine *map)
-{
-    struct mask *mask = mem_new(sizeof *mask);
-    *mask = (struct mask){ { nx, ny, nz }, (nx + 63) / 64, *map, NULL };
-    struct error err = { 0 };
-    mask->bits = mem_array((size_t)ny * nz, mask->words * sizeof *mask->bits, UINT64_MAX, &err);
-    assert_non_null(mask->bits);
-    return mask;
-}
-
-static void mask_put(struct mask *mask, uint32_t i, uint32_t j, uint32_t k)
-{
-    mask->bits[((size_t)k * mask->size[1] + j) * mask->words + i / 64] |= (uint64_t)1 << i % 64;
-}
-
-static bool mask_has(const struct mask *mask, int64_t i, int64_t j, int64_t k)
-{
-    if (i < 0 || j < 0 || k < 0 || i >= mask->size[0] || j >= mask->size[1] || k >= mask->size[2])
-        return false;
-    return mask->bits[((size_t)k * mask->size[1] + (size_t)j) * mask->words + (size_t)i / 64] >> (i % 64) & 1;
-}
-
-static uint32_t next_random(uint64_t *state) /* splitmix64, so a block is the same everywhere */
-{
-    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return (uint32_t)((z ^ z >> 31) >> 32);
-}
-
-static struct mask *random_mask(uint32_t nx, uint32_t ny, uint32_t nz, uint32_t percent, uint64_t seed, const struct affine *map)
-{
-    struct mask *mask = mask_make(nx, ny, nz, map);
-    for (uint32_t k = 0; k < nz; k++)
-        for (uint32_t j = 0; j < ny; j++)
-            for (uint32_t i = 0; i < nx; i++)
-                if (next_random(&seed) % 100 < percent)
-                    mask_put(mask, i, j, k);
-    mask_put(mask, nx / 2, ny / 2, nz / 2);
-    return mask;
-}
+#include "tests/unit/made_mask.h"
 
 static struct mesh *extract(const struct mask *mask, int n_threads, bool close_at_border)
 {
-    struct surface_options options = surface_defaults;
-    options.n_threads = n_threads;
-    options.close_at_border = close_at_border;
-    struct error err = { 0 };
-    struct mesh *mesh = surface_marching_cubes(mask, &options, &err);
-    assert_string_equal(err.text, "");
-    assert_non_null(mesh);
-    return mesh;
-}
-
-static void assert_same_bytes(const struct mesh *a, const struct mesh *b)
-{
-    assert_int_equal(a->n_vertices, b->n_vertices);
-    assert_int_equal(a->n_triangles, b->n_triangles);
-    assert_memory_equal(a->positions_lps_mm, b->positions_lps_mm, 3 * a->n_vertices * sizeof(float));
-    assert_memory_equal(a->indices, b->indices, 3 * a->n_triangles * sizeof(uint32_t));
+    return made_surface(SURFACE_MARCHING_CUBES, mask, n_threads, close_at_border);
 }
 
 /* ---- what the surface must be, found without the case table ------------------------------------------------------------- */

@@ -161,9 +161,9 @@ static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
     struct plan *plan = load(folder, &err);
     size_t skin = (size_t)(region_of(plan, "label-1") - plan->regions.regions);
     struct surface_facts facts, light;
-    struct mesh *first = plan_surface(plan, skin, SURFACE_FULL, &facts, &err);
-    struct mesh *second = plan_surface(plan, skin, SURFACE_FULL, NULL, &err);
-    struct mesh *moving = plan_surface(plan, skin, SURFACE_LIGHT, &light, &err);
+    struct mesh *first = plan_surface(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err);
+    struct mesh *second = plan_surface(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err);
+    struct mesh *moving = plan_surface(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_LIGHT, &light, &err);
     assert_ptr_equal(first, second);
     assert_ptr_equal(first, moving); /* so few triangles that nothing is to be saved */
     assert_int_equal(light.reduction, 1);
@@ -177,7 +177,7 @@ static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
     mesh_unref(first);
     mesh_unref(second);
     mesh_unref(moving);
-    assert_null(plan_surface(plan, 99, SURFACE_FULL, &facts, &err));
+    assert_null(plan_surface(plan, 99, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err));
     assert_int_equal(err.code, ERROR_RANGE);
     plan_destroy(plan);
     nifti_bytes_free(&file);
@@ -195,7 +195,7 @@ static void ask_for_all(void *context, int part, int n_parts)
     struct crowd *crowd = context;
     for (size_t r = 0; r < 3; r++)
         for (int detail = 0; detail < 2; detail++)
-            crowd->meshes[part][r][detail] = plan_surface(crowd->plan, r, (enum surface_detail)detail, NULL, NULL);
+            crowd->meshes[part][r][detail] = plan_surface(crowd->plan, r, SURFACE_MARCHING_CUBES, (enum surface_detail)detail, NULL, NULL);
 }
 
 static void many_threads_get_the_same_surfaces(void **state)
@@ -230,8 +230,8 @@ static void light_surfaces_of_a_whole_plan_stay_under_their_limit(void **state)
     size_t n_full = 0, n_light = 0;
     for (size_t r = 0; r < plan->regions.n_regions; r++) {
         struct surface_facts full, light;
-        mesh_unref(plan_surface(plan, r, SURFACE_FULL, &full, NULL));
-        mesh_unref(plan_surface(plan, r, SURFACE_LIGHT, &light, NULL));
+        mesh_unref(plan_surface(plan, r, SURFACE_MARCHING_CUBES, SURFACE_FULL, &full, NULL));
+        mesh_unref(plan_surface(plan, r, SURFACE_MARCHING_CUBES, SURFACE_LIGHT, &light, NULL));
         n_full += full.n_triangles;
         n_light += light.n_triangles;
         assert_int_equal(light.n_univels, full.n_univels);

@@ -13,7 +13,7 @@ static struct mesh *mesh_of(double (*label)(struct vec3 p))
     struct plan *plan = made_plan(&grid, label, one, 1);
     struct surface_facts facts;
     struct error err = { 0 };
-    struct mesh *mesh = plan_surface(plan, 0, SURFACE_FULL, &facts, &err);
+    struct mesh *mesh = plan_surface(plan, 0, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err);
     assert_non_null(mesh);
     plan_destroy(plan);
     return mesh;

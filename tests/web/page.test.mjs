@@ -169,6 +169,22 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
+  it('draws the surfaces by the algorithm chosen in the View tab', async () => {
+    const room = await newRoom();
+    const page = await newPage(`#/rooms/${room}`);
+    await full(page);
+    const before = await look(page, 1);
+    await page.locator('[role="tab"]', { hasText: 'View' }).click();
+    await page.locator('[aria-label="Surface"] >> text=8-cell').click();
+    await page.waitForFunction(() => globalThis.beamroom.stats().headers[1].scene_revision > 1);
+    await full(page);
+    assert.notEqual((await look(page, 1)).print, before.print);
+    const scene = (await call(`${daemon.url}/api/v1/rooms/${room}/scene`)).json;
+    assert.equal((scene.scene ?? scene).surface.algorithm, 'eight-cell');
+    await shoot(page, 'room-eight-cell');
+    await page.context().close();
+  });
+
   it('shows one member what the other does, until one looks for themself', async () => {
     const room = await newRoom();
     const [one, two] = [await newPage(`#/rooms/${room}`), await newPage(`#/rooms/${room}`)];

@@ -12,6 +12,7 @@ struct entry {
     const struct plan *plan;
     enum entry_kind kind;
     size_t index;
+    enum surface_algorithm algorithm;
     enum surface_detail detail;
     struct gl_surface surface;
     struct gl_grid grid;
@@ -66,10 +67,11 @@ void gl_cache_destroy(const struct gl *gl, struct gl_cache *cache)
 }
 
 static struct entry *find(const struct gl_cache *cache, const struct plan *plan, enum entry_kind kind, size_t index,
-                          enum surface_detail detail)
+                          enum surface_algorithm algorithm, enum surface_detail detail)
 {
     for (struct entry *entry = cache->first; entry; entry = entry->next)
-        if (entry->plan == plan && entry->kind == kind && entry->index == index && entry->detail == detail)
+        if (entry->plan == plan && entry->kind == kind && entry->index == index && entry->algorithm == algorithm &&
+            entry->detail == detail)
             return entry;
     return NULL;
 }
@@ -130,18 +132,18 @@ static bool upload_surface(const struct gl *gl, const struct mesh *mesh, uint32_
 }
 
 const struct gl_surface *gl_cache_surface(const struct gl *gl, struct gl_cache *cache, struct plan *plan, size_t region,
-                                          enum surface_detail detail, struct error *err)
+                                          enum surface_algorithm algorithm, enum surface_detail detail, struct error *err)
 {
-    struct entry *entry = find(cache, plan, ENTRY_SURFACE, region, detail);
+    struct entry *entry = find(cache, plan, ENTRY_SURFACE, region, algorithm, detail);
     if (entry)
         return &entry->surface;
     struct surface_facts facts = { 0 };
-    struct mesh *mesh = plan_surface(plan, region, detail, &facts, err);
+    struct mesh *mesh = plan_surface(plan, region, algorithm, detail, &facts, err);
     if (!mesh) {
         error_prefix(err, "region %s", plan->regions.regions[region].id);
         return NULL;
     }
-    struct entry made = { .plan = plan, .kind = ENTRY_SURFACE, .index = region, .detail = detail };
+    struct entry made = { .plan = plan, .kind = ENTRY_SURFACE, .index = region, .algorithm = algorithm, .detail = detail };
     made.surface.is_light = facts.reduction > 1;
     bool is_good = upload_surface(gl, mesh, facts.reduction, &made.surface, err);
     mesh_unref(mesh);
@@ -246,7 +248,7 @@ static bool upload_grid(const struct gl *gl, const struct volume *volume, const 
 const struct gl_grid *gl_cache_image(const struct gl *gl, struct gl_cache *cache, const struct plan *plan, size_t image,
                                      struct error *err)
 {
-    struct entry *entry = find(cache, plan, ENTRY_IMAGE, image, SURFACE_FULL);
+    struct entry *entry = find(cache, plan, ENTRY_IMAGE, image, SURFACE_MARCHING_CUBES, SURFACE_FULL);
     if (entry)
         return &entry->grid;
     const struct volume *volume = plan->images[image].volume;
@@ -264,7 +266,7 @@ const struct gl_grid *gl_cache_image(const struct gl *gl, struct gl_cache *cache
 const struct gl_grid *gl_cache_layer(const struct gl *gl, struct gl_cache *cache, const struct plan *plan, size_t layer,
                                      struct error *err)
 {
-    struct entry *entry = find(cache, plan, ENTRY_LAYER, layer, SURFACE_FULL);
+    struct entry *entry = find(cache, plan, ENTRY_LAYER, layer, SURFACE_MARCHING_CUBES, SURFACE_FULL);
     if (entry)
         return &entry->grid;
     const struct volume *volume = plan->regions.layers[layer];

@@ -24,7 +24,8 @@ void gl_cache_forget(const struct gl *gl, struct gl_cache *cache, const struct p
 
 /* Borrowed, good until the plan is forgotten. errors ERROR_GL, ERROR_MEMORY, ERROR_LIMIT, and those of plan_surface */
 NODISCARD const struct gl_surface *gl_cache_surface(const struct gl *gl, struct gl_cache *cache, struct plan *plan, size_t region,
-                                                    enum surface_detail detail, struct error *err);
+                                                    enum surface_algorithm algorithm, enum surface_detail detail,
+                                                    struct error *err);
 NODISCARD const struct gl_grid *gl_cache_image(const struct gl *gl, struct gl_cache *cache, const struct plan *plan, size_t image,
                                                struct error *err);
 NODISCARD const struct gl_grid *gl_cache_layer(const struct gl *gl, struct gl_cache *cache, const struct plan *plan, size_t layer,

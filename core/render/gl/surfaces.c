@@ -10,10 +10,16 @@ struct item {
     const struct scene_region_style *style;
 };
 
+static const struct gl_surface *surface_of(const struct gl_frame *frame, size_t region, struct error *err)
+{
+    const struct snapshot *snapshot = frame->snapshot;
+    return gl_cache_surface(frame->gl, frame->cache, snapshot->plan, region, visible_algorithm(snapshot), frame->detail, err);
+}
+
 static const struct box3 *bounds(void *context, size_t region, struct error *err)
 {
     const struct gl_frame *frame = context;
-    const struct gl_surface *surface = gl_cache_surface(frame->gl, frame->cache, frame->snapshot->plan, region, frame->detail, err);
+    const struct gl_surface *surface = surface_of(frame, region, err);
     return surface ? &surface->bounds_lps_mm : NULL;
 }
 
@@ -29,8 +35,7 @@ static struct item *collect(const struct gl_frame *frame, bool is_opaque, size_t
         visible_surfaces(snapshot, frame->camera, &clip_from_lps_mm, is_opaque, bounds, &context, n_items, err);
     struct item *items = visible ? mem_array(*n_items, sizeof *items, UINT64_MAX, err) : NULL;
     for (size_t i = 0; items && i < *n_items; i++) {
-        const struct gl_surface *surface =
-            gl_cache_surface(frame->gl, frame->cache, snapshot->plan, visible[i].region, frame->detail, err);
+        const struct gl_surface *surface = surface_of(frame, visible[i].region, err);
         if (!surface) { /* it was there a moment ago, so this does not come about */
             free(items);
             items = NULL;

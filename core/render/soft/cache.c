@@ -8,6 +8,7 @@
 struct entry {
     const struct plan *plan;
     size_t region;
+    enum surface_algorithm algorithm;
     enum surface_detail detail;
     struct soft_surface surface;
     struct mesh *mesh;
@@ -80,18 +81,19 @@ static bool fill(struct entry *entry, int n_passes, struct error *err)
     return true;
 }
 
-const struct soft_surface *soft_cache_surface(struct soft_cache *cache, struct plan *plan, size_t region, enum surface_detail detail,
-                                              struct error *err)
+const struct soft_surface *soft_cache_surface(struct soft_cache *cache, struct plan *plan, size_t region,
+                                              enum surface_algorithm algorithm, enum surface_detail detail, struct error *err)
 {
     for (struct entry *entry = cache->first; entry; entry = entry->next)
-        if (entry->plan == plan && entry->region == region && entry->detail == detail)
+        if (entry->plan == plan && entry->region == region && entry->algorithm == algorithm && entry->detail == detail)
             return &entry->surface;
     struct surface_facts facts = { 0 };
     struct entry *made = mem_new(sizeof *made);
     made->plan = plan;
     made->region = region;
+    made->algorithm = algorithm;
     made->detail = detail;
-    made->mesh = plan_surface(plan, region, detail, &facts, err);
+    made->mesh = plan_surface(plan, region, algorithm, detail, &facts, err);
     bool is_good = made->mesh != NULL;
     if (is_good && made->mesh->n_triangles > (size_t)INT32_MAX / 3)
         is_good = error_set(err, ERROR_LIMIT, "a surface of %zu triangles: at most %d can be drawn", made->mesh->n_triangles, INT32_MAX / 3);

@@ -19,4 +19,5 @@ void soft_cache_forget(struct soft_cache *cache, const struct plan *plan);
 
 /* Borrowed, good until the plan is forgotten. errors ERROR_MEMORY, ERROR_LIMIT, and those of plan_surface */
 NODISCARD const struct soft_surface *soft_cache_surface(struct soft_cache *cache, struct plan *plan, size_t region,
-                                                        enum surface_detail detail, struct error *err);
+                                                        enum surface_algorithm algorithm, enum surface_detail detail,
+                                                        struct error *err);

@@ -115,10 +115,16 @@ struct frame {
     atomic_bool is_out_of_memory;
 };
 
+static const struct soft_surface *surface_of(const struct frame *frame, size_t region, struct error *err)
+{
+    const struct snapshot *snapshot = frame->snapshot;
+    return soft_cache_surface(frame->renderer->cache, snapshot->plan, region, visible_algorithm(snapshot), frame->detail, err);
+}
+
 static const struct box3 *bounds(void *context, size_t region, struct error *err)
 {
     const struct frame *frame = context;
-    const struct soft_surface *surface = soft_cache_surface(frame->renderer->cache, frame->snapshot->plan, region, frame->detail, err);
+    const struct soft_surface *surface = surface_of(frame, region, err);
     return surface ? &surface->bounds_lps_mm : NULL;
 }
 
@@ -169,8 +175,7 @@ static bool collect_surfaces(struct frame *frame, struct render_timing *timing, 
     for (size_t i = 0; i < n[0] + n[1]; i++) {
         bool is_opaque = i < n[1];
         const struct visible_surface *from = is_opaque ? &visible[1][n[1] - 1 - i] : &visible[0][i - n[1]];
-        const struct soft_surface *surface =
-            soft_cache_surface(frame->renderer->cache, snapshot->plan, from->region, frame->detail, err);
+        const struct soft_surface *surface = surface_of(frame, from->region, err);
         if (!surface)
             goto fail;
         frame->items[frame->n_items++] =

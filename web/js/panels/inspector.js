@@ -83,7 +83,7 @@ function regionBlock({ api, room, ui }, region) {
     <div class="buttons"><button aria-pressed=${isAlone} class=${classMap({ on: isAlone })} ?disabled=${isDisabled} @click=${(event) => room.patchScene(soloPatch(plan.regions, scene, region.id), { view: ui.active.value, at: event.timeStamp })}>${icon('solo')}<span>Solo</span></button>
       ${region.center_mm ? html`<button ?disabled=${isDisabled} @click=${show}>${icon('target')}<span>Go to centre</span></button>` : nothing}</div>
     ${region.voxels ? html`<div class="buttons downloads" role="group" aria-label="Download the surface"><span class="dim">Surface, mm LPS</span>${surfaceFiles.map(([format, about]) => html`<a class="button"
-      download href=${api.surfaceUrl(room.planId.value, region.id, format)} title=${`Download the surface of ${region.name} as ${about}`}>${format.toUpperCase()}</a>`)}</div>` : nothing}</section>`;
+      download href=${api.surfaceUrl(room.planId.value, region.id, format, scene.surface.algorithm)} title=${`Download the surface of ${region.name} as ${about}`}>${format.toUpperCase()}</a>`)}</div>` : nothing}</section>`;
 }
 
 // ---- view -------------------------------------------------------------------------------------------------------------
@@ -110,6 +110,7 @@ function viewTab(world) {
   return html`${image ? imageBlock(world, plan, scene, image, isDisabled, change) : nothing}
     <section class="block"><h3>3-D picture</h3>
       <dl>${room.view(1).document.value ? html`<dt>Projection</dt><dd>${segment('Projection', [['perspective', 'Perspective'], ['parallel', 'Parallel']], camera.projection, isDisabled, (id) => panes()[0].actions.setProjection(id))}</dd>` : nothing}
+        <dt>Surface</dt><dd>${segment('Surface', [['marching-cubes', 'Marching cubes'], ['eight-cell', '8-cell']], scene.surface.algorithm, isDisabled, (algorithm, event) => change({ surface: { algorithm } }, event))}</dd>
         <dt>Shading</dt><dd>${segment('Shading', [['vertex', 'Smooth'], ['face', 'Faceted']], scene.surface.normals, isDisabled, (normals, event) => change({ surface: { normals } }, event))}</dd>
         <dt>Translucency</dt><dd>${segment('Translucency', [['rim', 'Rim'], ['plain', 'Plain']], scene.surface.translucency, isDisabled, (translucency, event) => change({ surface: { translucency } }, event))}</dd></dl>
       ${image ? html`<div class="checks" role="group" aria-label="Slices in 3-D"><span class="dim">Slices in 3-D</span>${sides.map(([id, name]) => html`<label><input type="checkbox" .checked=${live(scene.image.slices[id].visible)} ?disabled=${isDisabled}

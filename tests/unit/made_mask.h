@@ -1,0 +1,15 @@
+#pragma once
+/* Masks for tests of surfaces: empty, filled at random, and asked voxel by voxel. */
+#include "core/region/mask.h"
+#include "core/surface/surface.h"
+
+extern const struct affine unit_map;
+
+struct mask *mask_make(uint32_t nx, uint32_t ny, uint32_t nz, const struct affine *map);
+void mask_put(struct mask *mask, uint32_t i, uint32_t j, uint32_t k);
+bool mask_has(const struct mask *mask, int64_t i, int64_t j, int64_t k); /* beyond the grid: false */
+uint32_t next_random(uint64_t *state); /* splitmix64, so a block is the same everywhere */
+/* percent of the voxels, and the middle one */
+struct mask *random_mask(uint32_t nx, uint32_t ny, uint32_t nz, uint32_t percent, uint64_t seed, const struct affine *map);
+struct mesh *made_surface(enum surface_algorithm algorithm, const struct mask *mask, int n_threads, bool close_at_border);
+void assert_same_bytes(const struct mesh *a, const struct mesh *b);
