@@ -29,6 +29,7 @@ NODISCARD struct mesh *surface_marching_cubes(const struct mask *mask, const str
  *
  *   returns  as above but for thin parts: what is one voxel thick is two sheets back to back (so an edge may have four triangles,
  *            two each way), a line or a lone voxel is not drawn at all. A mesh without triangles when nothing else is there.
+ *            The two sheets share their vertices, so those have no normal of their own: only faceted shading lights them rightly.
  *   errors   as above
  *   source   the thesis on Sera3d, "8-cell algorithm". Triangle counts equal the original's on its own sample head with the border
  *            left open as it does: scalp 137,132, brain 85,240, tumour 10,236. */
