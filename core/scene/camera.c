@@ -55,6 +55,19 @@ static struct box3 pane_box(const struct plan *plan)
     return plan->n_images ? grid_bounds_lps_mm(&plan->images[0].volume->grid) : plan_box(plan);
 }
 
+static double box_diagonal(const struct box3 *box)
+{
+    return vec3_length(vec3_sub(box->high, box->low));
+}
+
+/* What the first 3-D picture frames: the regions; where they are only a small part of what was scanned (a lesion, and no head around
+ * it) the image, so that it is seen where in the body one looks. */
+static struct box3 home_box(const struct plan *plan)
+{
+    struct box3 regions = plan_box(plan), image = pane_box(plan);
+    return box_diagonal(&regions) < 0.5 * box_diagonal(&image) ? image : regions;
+}
+
 static double pane_height_mm(const struct box3 *box, enum scene_kind kind)
 {
     struct pane_axes axes = pane_axes(kind);
@@ -77,7 +90,7 @@ static double home_distance_mm(const struct box3 *box, double fov_deg)
 void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera)
 {
     double fov_deg = scene_camera_default.fov_deg;
-    struct box3 box = kind == SCENE_KIND_3D ? plan_box(plan) : pane_box(plan);
+    struct box3 box = kind == SCENE_KIND_3D ? home_box(plan) : pane_box(plan);
     struct pane_axes axes = kind == SCENE_KIND_3D ? pane_axes(SCENE_KIND_CORONAL) : pane_axes(kind);
 
     *camera = scene_camera_default;

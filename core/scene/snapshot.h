@@ -32,7 +32,7 @@ int scene_image_index(const struct plan *plan, const struct scene *scene);
 /* Where the slice of a pane lies along its patient axis; kind is not 3-D. */
 double scene_slice_position_mm(const struct scene *scene, enum scene_kind kind);
 
-/* The home camera of a kind: the whole plan, from the front (anterior) with superior up; slice panes the whole image or regions. */
+/* The home camera of a kind: all regions (the image where they are less than half as long), from the front, superior up; slice panes the whole image or regions. */
 void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera);
 
 /* A view's camera worked out: unit axes in patient space and the projection. */

@@ -13,7 +13,7 @@
 #include "core/base/mem.h"
 #include "server/fleet/news.h"
 
-static const struct fleet_times default_times = { .ping = 5000, .silent = 20000, .stall = 120000, .request = 30000, .scan = 5000 };
+static const struct fleet_times default_times = { .ping = 2000, .silent = 8000, .stall = 120000, .request = 30000, .scan = 5000 };
 
 const char *fleet_state_word(enum fleet_state state)
 {

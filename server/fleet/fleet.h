@@ -15,8 +15,8 @@ enum {
 
 /* How long things may take, in ms; 0: the default, in brackets. */
 struct fleet_times {
-    int ping;    /* a renderer that says nothing is asked whether it lives [5000] */
-    int silent;  /* one that does not answer is ended and started again [20000] */
+    int ping;    /* a renderer that says nothing is asked whether it lives [2000] */
+    int silent;  /* one that does not answer is ended and started again [8000]: its main thread only talks */
     int stall;   /* reading a plan without getting further; then failed [120000] */
     int request; /* an answer; a picture that is not there by then also ends the renderer [30000] */
     int scan;    /* looking at a plan folder, looking for GL [5000] */

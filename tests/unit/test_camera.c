@@ -58,6 +58,33 @@ static void the_home_camera_looks_from_the_front_and_holds_the_whole_plan(void *
     plan_destroy(plan);
 }
 
+static double nothing(struct vec3 p)
+{
+    (void)p;
+    return 0;
+}
+
+/* box_plan is 100 x 80 x 60 mm, its diagonal 141 mm */
+static void a_plan_of_a_small_region_in_a_large_image_is_framed_by_the_image(void **state)
+{
+    (void)state;
+    for (int is_large = 0; is_large < 2; is_large++) {
+        struct plan *plan = box_plan();
+        double side_mm = is_large ? 10 : 4; /* 20 voxels a side: 346 or 139 mm across */
+        const uint32_t size[3] = { 20, 20, 20 };
+        struct grid grid = made_grid(20, 20, 20, made_affine(vec3(side_mm, 0, 0), vec3(0, side_mm, 0), vec3(0, 0, side_mm), size, vec3(5, 6, 7)));
+        plan->images[0].volume = made_volume(&grid, VOXEL_U8, nothing);
+        plan->n_images = 1;
+        struct scene_camera camera;
+        camera_home(plan, SCENE_KIND_3D, &camera);
+        if (is_large)
+            expect_vec3(camera.target_mm, 5, 6, 7);
+        else
+            expect_vec3(camera.target_mm, 10, 20, 30);
+        plan_destroy(plan);
+    }
+}
+
 static void a_view_without_position_has_the_home_camera(void **state)
 {
     (void)state;
@@ -272,6 +299,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_home_camera_looks_from_the_front_and_holds_the_whole_plan),
+        cmocka_unit_test(a_plan_of_a_small_region_in_a_large_image_is_framed_by_the_image),
         cmocka_unit_test(a_view_without_position_has_the_home_camera),
         cmocka_unit_test(clip_space_goes_to_the_patient_and_back),
         cmocka_unit_test(perspective_spans_the_smaller_side_with_its_opening_angle),

@@ -160,7 +160,7 @@ export class Pane {
       point: crosshair(scene),
       pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
       topPx: view.isFollowing.value && !view.movedBy.value ? 0 : parseInt(getComputedStyle(this.host).getPropertyValue('--follow'), 10),
-      windowText: image ? windowText(scene.image.window, image.unit) : '',
+      windowText: image ? windowText(scene.image.window, image.unit) : 'No image: regions',
     });
   }
 
@@ -177,8 +177,8 @@ export class Pane {
 
   #emptyWords() {
     const plan = this.#room.plan.value;
-    if (!plan || this.#view.kind === '3d' || plan.images.length) return nothing;
-    return html`<div class="cover quiet"><p>No image in this plan. Regions can still be shown.</p></div>`;
+    if (!plan || this.#view.kind === '3d' || plan.images.length || plan.regions.length) return nothing;
+    return html`<div class="cover quiet"><p>No image and no region in this plan: nothing to cut through.</p></div>`;
   }
 
   #slider() {
