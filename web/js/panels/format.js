@@ -23,10 +23,11 @@ export function significant(value) {
 
 export const millimetres = (value) => `${number(value, 1)} mm`;
 
-/** "6.6 MB" */
+/** "6.6 MB"; a dash where nothing was counted, as for a plan that cannot be read */
 export function bytes(n) {
-  if (!Number.isFinite(n)) return '';
-  if (n < 1e6) return `${number(Math.max(n / 1e3, 0.1), 1)} kB`;
+  if (!Number.isFinite(n) || n <= 0) return '–';
+  if (n < 1e3) return `${number(n)} B`;
+  if (n < 1e6) return `${number(n / 1e3, 1)} kB`;
   return n < 1e9 ? `${number(n / 1e6, 1)} MB` : `${number(n / 1e9, 1)} GB`;
 }
 
@@ -34,7 +35,7 @@ export const seconds = (ms) => (ms < 1000 ? `${number(ms)} ms` : `${number(ms / 
 
 export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;
 
-/** "W 400 C 40" the way windows are written everywhere. */
+/** "C 40  W 400 HU", the way windows are written everywhere. */
 export const windowText = ({ center, width }, unit) => {
   const digits = width < 10 ? 2 : 0;
   return `C ${number(center, digits)}  W ${number(width, digits)}${unit ? ` ${unit}` : ''}`;

@@ -1,0 +1,20 @@
+// How numbers are written.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { load } from './page.mjs';
+
+const { bytes, windowText } = await load('panels/format.js');
+
+test('a size is never made up: what was not counted is a dash', () => {
+  assert.equal(bytes(0), '–');
+  assert.equal(bytes(undefined), '–');
+  assert.equal(bytes(12), '12 B');
+  assert.equal(bytes(28500), '28.5 kB');
+  assert.equal(bytes(2.2e6), '2.2 MB');
+  assert.equal(bytes(3.14e9), '3.1 GB');
+});
+
+test('a window is written centre first, with the unit of its image', () => {
+  assert.match(windowText({ center: 40, width: 400 }, 'HU'), /^C 40\s+W 400 HU$/);
+  assert.match(windowText({ center: 0.5, width: 1 }, ''), /^C 0\.50\s+W 1\.00$/);
+});
