@@ -1,6 +1,4 @@
 /* Surfaces as files: by the formats' specifications byte for byte, and as VTK reads them. */
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "core/base/file_write.h"
@@ -8,8 +6,7 @@
 #include "core/surface/mesh_export.h"
 #include "core/surface/surface.h"
 #include "tests/check.h"
-
-extern char **environ;
+#include "tests/unit/oracle.h"
 
 #define NO_LIMIT UINT64_MAX
 
@@ -294,32 +291,6 @@ static struct mesh *make_ellipsoid(void)
     return mesh;
 }
 
-/* Runs the script on the files. Returns its exit status; what it printed goes to out. */
-static int run_vtk(char paths[3][64], char *out, size_t out_size)
-{
-    const char *python = getenv("PYTHON") ? getenv("PYTHON") : "/usr/bin/python3";
-    char *arguments[] = { (char *)python, "tests/oracle/mesh_vtk.py", paths[0], paths[1], paths[2], NULL };
-    int ends[2];
-    assert_int_equal(pipe(ends), 0);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    posix_spawn_file_actions_addclose(&actions, ends[0]);
-    pid_t pid;
-    int failed = posix_spawnp(&pid, python, &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    size_t length = 0;
-    for (ssize_t got; !failed && (got = read(ends[0], out + length, out_size - 1 - length)) > 0;)
-        length += (size_t)got;
-    out[length] = 0;
-    close(ends[0]);
-    int status = 0;
-    if (!failed)
-        waitpid(pid, &status, 0);
-    return failed ? 77 : WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
 static void vtk_reads_the_same_triangles_area_volume_and_places_from_every_format(void **state)
 {
     (void)state;
@@ -334,7 +305,8 @@ static void vtk_reads_the_same_triangles_area_volume_and_places_from_every_forma
         assert_true(file_write(paths[format], bytes, n, &err));
         free(bytes);
     }
-    int status = run_vtk(paths, out, sizeof out);
+    char *arguments[] = { oracle_python(), "tests/oracle/mesh_vtk.py", paths[0], paths[1], paths[2], NULL };
+    int status = oracle_run(arguments, out, sizeof out);
     for (int i = 0; i < 3; i++)
         unlink(paths[i]);
     rmdir(folder);
@@ -342,7 +314,7 @@ static void vtk_reads_the_same_triangles_area_volume_and_places_from_every_forma
     double area = mesh_area_mm2(mesh), volume = mesh_volume_mm3(mesh);
     size_t n_triangles = mesh->n_triangles;
     mesh_unref(mesh);
-    if (status == 77) {
+    if (status == ORACLE_MISSING) {
         print_message("no VTK for Python here\n");
         skip();
     }

@@ -1,38 +1,20 @@
 /* Our NIfTI reader against nibabel's: files that it wrote itself, and all real ones there are. */
 #include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "core/formats/nifti.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
-
-extern char **environ;
+#include "tests/unit/oracle.h"
 
 /* What the script printed, for the caller to free; NULL: no nibabel here. */
 static char *ask(char *const *arguments)
 {
-    int ends[2];
-    pid_t pid;
-    posix_spawn_file_actions_t actions;
-    assert_int_equal(pipe(ends), 0);
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    posix_spawn_file_actions_addclose(&actions, ends[0]);
-    int failed = posix_spawnp(&pid, arguments[0], &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
     enum { MOST = 1 << 18 };
-    char *out = calloc(MOST, 1);
-    size_t length = 0;
-    for (ssize_t got; !failed && length < MOST - 1 && (got = read(ends[0], out + length, MOST - 1 - length)) > 0;)
-        length += (size_t)got;
-    close(ends[0]);
-    int status = 0;
-    if (!failed)
-        waitpid(pid, &status, 0);
-    if (failed || WEXITSTATUS(status) == 77) {
+    char *out = malloc(MOST);
+    assert_non_null(out);
+    int status = oracle_run(arguments, out, MOST);
+    if (status == ORACLE_MISSING) {
         free(out);
         print_message("no nibabel for Python here\n");
         return NULL;

@@ -1,15 +1,12 @@
 /* Our marching cubes against VTK's on the same voxels, and both algorithms against the counts known for SERA's sample head. */
 #include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 #include <zlib.h>
 
 #include "core/region/mask.h"
 #include "core/surface/surface.h"
 #include "tests/check.h"
-
-extern char **environ;
+#include "tests/unit/oracle.h"
 
 struct label_set {
     const char *text; /* as the script takes it */
@@ -68,40 +65,22 @@ static int run_vtk(const struct volume *layer, const struct label_set *sets, siz
     }
     close(file);
 
-    const char *python = getenv("PYTHON") ? getenv("PYTHON") : "/usr/bin/python3";
-    char sizes[3][16], *arguments[16] = { (char *)python, "tests/oracle/vtk_counts.py", path, sizes[0], sizes[1], sizes[2] };
+    char sizes[3][16], *arguments[16] = { oracle_python(), "tests/oracle/vtk_counts.py", path, sizes[0], sizes[1], sizes[2] };
     for (size_t axis = 0; axis < 3; axis++)
         snprintf(sizes[axis], sizeof sizes[axis], "%u", layer->grid.size[axis]);
     for (size_t s = 0; s < n_sets; s++)
         arguments[6 + s] = (char *)sets[s].text;
 
-    int ends[2];
-    assert_int_equal(pipe(ends), 0);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    posix_spawn_file_actions_addclose(&actions, ends[0]);
-    pid_t pid;
-    int failed = posix_spawnp(&pid, python, &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    size_t length = 0;
-    for (ssize_t got; !failed && (got = read(ends[0], out + length, out_size - 1 - length)) > 0;)
-        length += (size_t)got;
-    out[length] = 0;
-    close(ends[0]);
-    int status = 0;
-    if (!failed)
-        waitpid(pid, &status, 0);
+    int status = oracle_run(arguments, out, out_size);
     unlink(path);
-    return failed ? 77 : WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return status;
 }
 
 static void assert_equals_vtk(const struct volume *layer, const struct label_set *sets, size_t n_sets)
 {
     char out[512], *at = out;
     int status = run_vtk(layer, sets, n_sets, out, sizeof out);
-    if (status == 77) {
+    if (status == ORACLE_MISSING) {
         print_message("no VTK for Python here\n");
         volume_unref(layer); /* skip does not come back */
         skip();
