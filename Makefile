@@ -13,6 +13,7 @@ SHELL := /bin/bash
 .SECONDARY:
 
 CC := $(if $(filter default,$(origin CC)),gcc,$(CC))
+CXX := $(if $(filter clang%,$(notdir $(CC))),clang++,g++)
 SAN ?=
 comma := ,
 VARIANT := $(if $(SAN),$(notdir $(CC))-$(subst $(comma),-,$(SAN)),$(if $(filter gcc,$(notdir $(CC))),release,$(notdir $(CC))))
@@ -32,6 +33,8 @@ JOBS := $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla -Werror=implicit-function-declaration $(if $(WERROR),-Werror)
 CPPFLAGS += -I. -I$(GEN) -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -DBEAMROOM_VERSION='"$(VERSION)"'
 CFLAGS += -std=c17 -O2 -g -fno-math-errno -fstack-protector-strong -fPIE $(WARNINGS) -MMD -MP -pthread
+# C++ is the shim over DCMTK alone (core/formats/dicom/*.cc): same checks, none of C++'s exceptions leave it.
+CXXFLAGS += $(filter-out -std=c17 $(WARNINGS),$(CFLAGS)) -std=c++17 -Wall -Wextra -Wpedantic -Wconversion $(if $(WERROR),-Werror)
 LDFLAGS += -pie -Wl,-z,relro,-z,now -pthread
 ifneq ($(SAN),)
 CFLAGS += -fsanitize=$(SAN) -fno-omit-frame-pointer -fno-sanitize-recover=all
@@ -44,7 +47,8 @@ CFLAGS += --coverage
 LDFLAGS += --coverage
 endif
 
-CORE_LIBS := -lturbojpeg -lspng -ldeflate -lz -lcjson -ldl -lm
+DCMTK_LIBS := -ldcmjpeg -lijg8 -lijg12 -lijg16 -ldcmjpls -ldcmtkcharls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++
+CORE_LIBS := $(DCMTK_LIBS) -lturbojpeg -lspng -ldeflate -lz -lcjson -ldl -lm
 SERVER_LIBS := -lmicrohttpd -lwebsockets -lcjson -lm
 
 c_files = $(if $(wildcard $(1)),$(sort $(shell find $(wildcard $(1)) -name '*.c')))
@@ -60,7 +64,7 @@ $(GEN)/%.c $(GEN)/%.h: $(GEN_STAMP) ;
 
 # ---- objects and programs ---------------------------------------------------------------------------------------------
 # core: everything but the main()s; wire: JSON edge shared by daemon, renderer and command line; server: the daemon's own.
-CORE_SRC := $(call c_files,core)
+CORE_SRC := $(call c_files,core) $(sort $(wildcard core/formats/dicom/*.cc))
 WIRE_SRC := $(call c_files,server/wire)
 SERVER_SRC := $(call c_files,server/room server/net server/http server/ws server/fleet server/store server/auth)
 DAEMON_SRC := $(call c_files,server/daemon)
@@ -73,7 +77,11 @@ GEN_SRC := $(GEN)/wire_gen.c $(GEN)/problem_gen.c $(GEN)/openapi.c
 EXTRA_core_render_soft_kernels := -O3 -fno-trapping-math
 EXTRA_core_render_soft_kernels_avx2 := -O3 -fno-trapping-math
 
-obj = $(patsubst %.c,$(B)/obj/%.o,$(1))
+obj = $(patsubst %.c,$(B)/obj/%.o,$(patsubst %.cc,$(B)/obj/%.o,$(1)))
+$(B)/obj/%.o: %.cc | $(GEN_STAMP)
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  CXX $<")
+	$(Q)$(CXX) $(CPPFLAGS) $(CXXFLAGS) -c $< -o $@
 $(B)/obj/%.o: %.c | $(GEN_STAMP)
 	@mkdir -p $(@D)
 	$(if $(Q),@echo "  CC $<")

@@ -2,7 +2,7 @@
 # Holds the includes to tests/layers.txt: layers.sh [ROOT]; prints each one that breaks a rule, and fails then.
 set -eu
 cd "${1:-.}"
-find core server tests -name '*.[ch]' -type f 2>/dev/null | sort | xargs -r grep -HnE '^[[:space:]]*#[[:space:]]*include' |
+find core server tests \( -name '*.[ch]' -o -name '*.cc' \) -type f 2>/dev/null | sort | xargs -r grep -HnE '^[[:space:]]*#[[:space:]]*include' |
 awk -v rules="${LAYERS:-tests/layers.txt}" '
 function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }
 # the folder itself, or the nearest one above it that has a rule

@@ -14,7 +14,8 @@ static cJSON *parse(const char *text)
 static cJSON *plan_defaults(void)
 {
     struct scene scene = scene_default;
-    struct scene_region_style_entry entries[2] = { { "brain", { true, 0xd696a0, 0.45 } }, { "tumor", { true, 0x46be50, 1 } } };
+    struct scene_region_style_entry entries[2] = { { "brain", { .visible = true, .color_rgb = 0xd696a0, .opacity = 0.45 } },
+                                                    { "tumor", { .visible = true, .color_rgb = 0x46be50, .opacity = 1 } } };
     scene.regions = entries;
     scene.n_regions = 2;
     memcpy(scene.image.id, "ct", 3);

@@ -1,0 +1,61 @@
+#pragma once
+/* One DICOM file, parsed: elements, sequences, pixels. The only door to DCMTK: plain C outside, C++ behind (dicom_file.cc).
+ * Knows tags and encodings, not what a CT or a plan is. Reads memory only; never a file, never the network.
+ *   thread  any number of files at once; one file, one thread at a time */
+#include "core/formats/folder.h"
+
+/* "DICM" after the preamble, or a group 0002/0008 element where a file without preamble begins. Needs the first 140 bytes. */
+bool dicom_looks_like(const uint8_t *data, size_t size);
+
+#define DICOM_TAG(group, element) ((uint32_t)(group) << 16 | (uint32_t)(element))
+
+enum {
+    DICOM_MAX_FILE_MIB = 1024, /* larger files are refused */
+    DICOM_MAX_DEPTH = 16,      /* of sequences in sequences */
+    DICOM_UID_SIZE = 65
+};
+
+struct dicom_file;
+struct dicom_item; /* the data set or an item of a sequence; borrowed from its file */
+
+enum dicom_extent {
+    DICOM_HEAD, /* elements before the pixel data; data may end anywhere after them */
+    DICOM_WHOLE
+};
+
+/* data is borrowed as long as the file lives: pixels of native encodings are not copied.
+ *   errors  ERROR_FORMAT not DICOM, cut short, an element longer than what holds it, too deep; ERROR_LIMIT, ERROR_MEMORY;
+ *           the text names file, tag, position, found, expected */
+NODISCARD struct dicom_file *dicom_file_parse(const uint8_t *data, size_t size, const char *name, enum dicom_extent extent,
+                                              struct error *err);
+void dicom_file_destroy(struct dicom_file *file);
+const struct dicom_item *dicom_root(const struct dicom_file *file);
+const char *dicom_transfer_syntax(const struct dicom_file *file); /* UID; "" when the file does not say */
+
+bool dicom_has(const struct dicom_item *item, uint32_t tag); /* present, with or without a value */
+/* The whole value as UTF-8 (by SpecificCharacterSet), without the padding, cut at a whole character; false and "" when it is absent
+ * or empty. Control characters become blanks. */
+bool dicom_text(const struct dicom_item *item, uint32_t tag, char *out, size_t size);
+bool dicom_text_at(const struct dicom_item *item, uint32_t tag, size_t index, char *out, size_t size); /* one of several values */
+/* Values of DS, IS, FD, FL, US, SS, UL, SL, AT as numbers; what is no number becomes not-a-number. Fills at most most of them and
+ * returns how many the element has. */
+size_t dicom_numbers(const struct dicom_item *item, uint32_t tag, double *values, size_t most);
+bool dicom_number(const struct dicom_item *item, uint32_t tag, double *value);    /* the first, finite */
+bool dicom_integer(const struct dicom_item *item, uint32_t tag, int64_t *value);  /* the first, whole */
+size_t dicom_n_items(const struct dicom_item *item, uint32_t tag);                /* of a sequence; 0 when absent */
+const struct dicom_item *dicom_item_at(const struct dicom_item *item, uint32_t tag, size_t index);
+
+struct dicom_pixels {
+    uint32_t rows, columns, n_frames; /* each at least 1 */
+    uint32_t bits_allocated;          /* 8, 16 or 32 */
+    uint32_t bits_stored, high_bit;
+    bool is_signed, is_monochrome1;
+    uint32_t n_samples;               /* 1; colour is refused */
+};
+/* What the image pixel module says, checked against what is there before anything is allocated.
+ *   errors ERROR_FORMAT missing or contradicting, pixel data shorter than they say; ERROR_UNSUPPORTED colour, float pixels, an encoding
+ *          that cannot be decoded (named); ERROR_LIMIT a side over VOLUME_MAX_SIDE */
+NODISCARD bool dicom_pixels_look(const struct dicom_file *file, struct dicom_pixels *pixels, struct error *err);
+/* Stored values of one frame, [rows][columns] of bits_allocated, machine order, unused high bits cleared or sign-extended; out holds
+ * rows * columns * bits_allocated / 8 bytes. Decodes what is compressed. errors as above and ERROR_MEMORY */
+NODISCARD bool dicom_pixels_read(const struct dicom_file *file, uint32_t frame, void *out, struct error *err);
