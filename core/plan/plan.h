@@ -45,11 +45,18 @@ struct plan_progress {
     atomic_bool *cancel; /* may be NULL; when it turns true loading fails with ERROR_CANCELLED */
 };
 
+/* How a plan is opened; all zero: quietly and without a limit. */
+struct plan_load_options {
+    struct plan_progress progress;
+};
+
 /* Opens a plan folder: plan.json when there is one, else by what lies in it.
+ *   options NULL: all zero
  *   errors  ERROR_NOT_FOUND, ERROR_FORMAT, ERROR_UNSUPPORTED, ERROR_LIMIT, ERROR_MEMORY, ERROR_IO, ERROR_CANCELLED;
  *           the text names file, position, what was found, what was expected. Never half a plan.
  *   thread  any, one call a plan */
-NODISCARD struct plan *plan_load(const char *folder, const char *id, const struct plan_progress *progress, struct error *err);
+NODISCARD struct plan *plan_load(const char *folder, const char *id, const struct plan_load_options *options,
+                                 struct error *err);
 void plan_destroy(struct plan *plan);
 
 /* What a folder holds, without reading voxels: for the list of plans. */

@@ -125,8 +125,8 @@ static void *load_main(void *argument)
 {
     struct loader *loader = argument;
     struct note note = { .type = NOTE_LOADED };
-    struct plan_progress progress = { step, loader, &loader->cancel };
-    struct plan *plan = plan_load(loader->folder, loader->plan_id, &progress, &note.error);
+    struct plan_load_options options = { .progress = { step, loader, &loader->cancel } };
+    struct plan *plan = plan_load(loader->folder, loader->plan_id, &options, &note.error);
     note.plan = plan;
     if (!plan)
         note.type = NOTE_FAILED;

@@ -442,9 +442,9 @@ static void loading_can_be_cancelled_and_tells_how_far_it_is(void **state)
     struct nifti_bytes file = nested_boxes();
     folder_put(folder, "a.nii", file.data, file.size);
     atomic_bool cancel = true;
-    struct plan_progress progress = { .cancel = &cancel };
+    struct plan_load_options options = { .progress.cancel = &cancel };
     struct error err = { 0 };
-    assert_null(plan_load(folder, "p", &progress, &err));
+    assert_null(plan_load(folder, "p", &options, &err));
     assert_int_equal(err.code, ERROR_CANCELLED);
     nifti_bytes_free(&file);
     folder_remove(folder);

@@ -1,0 +1,221 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/formats/hierarchy.h"
+#include "core/formats/text.h"
+#include "core/plan/plan_bounds.h"
+#include "core/plan/plan_loading.h"
+#include "core/plan/plan_regions.h"
+#include "core/plan/plan_tracks.h"
+#include "core/plan/plan_window.h"
+
+static struct volume *take_volume(struct job *job)
+{
+    struct volume *volume = job->volume;
+    job->volume = NULL;
+    return volume;
+}
+
+/* An id that may stand in a URL: from what the plan gives, else from the file's name; unique among those before. */
+static void make_id(char id[64], const char *given, const char *path, const char *const *others, size_t n_others)
+{
+    const struct region_set none = { 0 };
+    const char *slash = strrchr(path, '/');
+    const char *base = slash ? slash + 1 : path;
+    char stem[128];
+    size_t length = strcspn(base, ".");
+    snprintf(stem, sizeof stem, "%.*s", (int)(length < 100 ? length : 100), base);
+    region_make_id(&none, given[0] ? given : stem, id);
+    size_t n = strlen(id);
+    bool is_taken = true;
+    for (int number = 1; is_taken; number++) {
+        if (number > 1)
+            snprintf(id + n, 64 - n, "-%d", number);
+        is_taken = false;
+        for (size_t i = 0; i < n_others; i++)
+            is_taken |= strcmp(others[i], id) == 0;
+    }
+}
+
+static void add_image(struct loading *loading, struct job *job)
+{
+    struct plan *plan = loading->plan;
+    const struct plan_file_image *entry = &loading->file->images[job->index];
+    struct plan_image *image = &plan->images[plan->n_images];
+    const char *others[PLAN_MAX_IMAGES];
+    for (size_t i = 0; i < plan->n_images; i++)
+        others[i] = plan->images[i].id;
+    make_id(image->id, entry->id, entry->path, others, plan->n_images);
+    plan->n_images++;
+    snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : job->modality);
+    image->volume = take_volume(job);
+    if (text_equal(image->modality, "CT")) {
+        snprintf(image->unit, sizeof image->unit, "HU");
+        if (image->volume->low >= 0 && image->volume->high > 0)
+            report_add(&plan->report, REPORT_WARNING, "image.hu-doubtful", entry->path,
+                       "The CT's values run from %g to %g; HU of a patient begin below 0.", image->volume->low, image->volume->high);
+    }
+    plan_image_window(image);
+}
+
+/* An image whose header described another one: univels with exactly as many voxels along each axis are the same scan. */
+static void borrow_grid(struct loading *loading, const struct job *job)
+{
+    struct plan *plan = loading->plan;
+    struct volume *volume = plan->images[job->index].volume;
+    for (size_t i = 0; job->is_grid_doubtful && i < loading->n_jobs; i++) {
+        const struct job *other = &loading->jobs[i];
+        if (!other->uvh.bodies || memcmp(other->uvh.grid.size, volume->grid.size, sizeof volume->grid.size) != 0)
+            continue;
+        volume->grid = other->uvh.grid;
+        report_add(&plan->report, REPORT_WARNING, "geometry.borrowed", job->path,
+                   "The image's header describes another image; %s has as many univels as this has pixels, and its grid was taken.",
+                   other->path);
+        return;
+    }
+}
+
+static bool add_regions(struct loading *loading, struct region_builder *builder, struct job *job, struct error *err)
+{
+    const struct plan_file_region *entry = &loading->file->regions[job->index];
+    for (size_t i = 0; job->layers && i < job->layers->n; i++) {
+        struct volume *layer = job->layers->volumes[i];
+        job->layers->volumes[i] = NULL;
+        if (!region_builder_add_labels(builder, layer, job->names.n > 0 ? &job->names : &job->layers->names[i], job->path, err))
+            return false;
+    }
+    if (job->layers)
+        return true;
+    struct volume *volume = take_volume(job);
+    if (job->uvh.bodies)
+        return region_builder_add_univels(builder, volume, &job->uvh, job->path, err);
+    if (entry->name[0])
+        return region_builder_add_mask(builder, volume, entry, err);
+    return region_builder_add_labels(builder, volume, &job->names, job->path, err);
+}
+
+static struct dose *find_dose(struct loading *loading, size_t index, bool is_sera)
+{
+    struct plan *plan = loading->plan;
+    const struct plan_file_dose *entry = &loading->file->doses[index];
+    const char *others[PLAN_MAX_DOSES];
+    char id[64];
+    for (size_t i = 0; i < plan->n_doses; i++)
+        others[i] = plan->doses[i].id;
+    make_id(id, entry->id, entry->components[0].path, others, plan->n_doses);
+    struct dose *dose = &plan->doses[plan->n_doses++];
+    memcpy(dose->id, id, sizeof dose->id);
+    plan_dose_units(dose, entry, is_sera, &plan->report);
+    return dose;
+}
+
+static void add_component(struct loading *loading, struct dose *dose, struct job *job)
+{
+    const struct plan_file_dose *entry = &loading->file->doses[job->index];
+    if (job->format == PART_SERA_RST)
+        plan_add_rst(dose, entry, job->component, job->doses, &loading->plan->report);
+    else
+        plan_add_component(dose, entry, job->component, take_volume(job), &loading->plan->report);
+}
+
+static void add_doses(struct loading *loading)
+{
+    struct dose *dose = NULL;
+    size_t current = SIZE_MAX;
+    for (size_t i = 0; i < loading->n_jobs; i++) {
+        struct job *job = &loading->jobs[i];
+        if (job->kind != JOB_DOSE && job->kind != JOB_DOSE_MASK)
+            continue;
+        if (job->index != current)
+            dose = find_dose(loading, job->index, job->format == PART_SERA_RST);
+        current = job->index;
+        if (job->kind == JOB_DOSE) {
+            add_component(loading, dose, job);
+            continue;
+        }
+        dose->mask = take_volume(job);
+        if (memcmp(dose->mask->grid.size, dose->components[0].values->grid.size, sizeof dose->mask->grid.size) != 0)
+            report_add(&loading->plan->report, REPORT_NOTE, "dose.mask-grid", job->path,
+                       "The mask of the dose \"%s\" lies on another grid; it is looked up by position.", dose->id);
+    }
+}
+
+static bool apply_hierarchy(struct loading *loading, const struct region_builder *builder, struct error *err)
+{
+    struct plan *plan = loading->plan;
+    const struct plan_file *file = loading->file;
+    if (file->hierarchy[0]) {
+        struct bytes bytes;
+        if (!folder_read(&loading->folder, file->hierarchy, TEXT_FILE_MAX_BYTES, UINT64_MAX, &bytes, err))
+            return false;
+        struct plan_file_pair *pairs = mem_new(PLAN_FILE_MAX_PAIRS * sizeof *pairs);
+        size_t n = hierarchy_parse(bytes.data, bytes.size, file->hierarchy, pairs, PLAN_FILE_MAX_PAIRS, &plan->report);
+        bytes_free(&bytes);
+        region_set_apply_pairs(&plan->regions, pairs, n, false, file->hierarchy, &plan->report);
+        free(pairs);
+    } else if (file->n_pairs > 0) {
+        region_set_apply_pairs(&plan->regions, file->pairs, file->n_pairs, true, "plan.json", &plan->report);
+    } else if (builder->n_pairs > 0) {
+        region_set_apply_pairs(&plan->regions, builder->pairs, builder->n_pairs, true, "", &plan->report);
+    }
+    if (plan->regions.hierarchy == HIERARCHY_NONE) {
+        region_set_derive_hierarchy(&plan->regions);
+        if (plan->regions.hierarchy == HIERARCHY_DERIVED)
+            report_add(&plan->report, REPORT_NOTE, "hierarchy.derived", "",
+                       "No file says what lies inside what; the tree was derived from which region encloses which.");
+    }
+    return true;
+}
+
+static void note_empty_regions(struct plan *plan)
+{
+    for (size_t i = 0; i < plan->regions.n_regions; i++)
+        if (plan->regions.regions[i].n_voxels == 0)
+            report_add(&plan->report, REPORT_WARNING, "region.empty", "", "The region \"%s\" has no voxel.", plan->regions.regions[i].name);
+}
+
+static void add_beams(struct loading *loading)
+{
+    struct plan *plan = loading->plan;
+    for (size_t i = 0; i < loading->file->n_beams; i++) {
+        const char *others[PLAN_MAX_BEAMS];
+        for (size_t b = 0; b < plan->n_beams; b++)
+            others[b] = plan->beams[b].id;
+        plan->beams[i] = loading->file->beams[i];
+        make_id(plan->beams[i].id, loading->file->beams[i].id, "beam", others, plan->n_beams);
+        plan->n_beams++;
+    }
+}
+
+bool plan_assemble(struct loading *loading, struct error *err)
+{
+    struct plan *plan = loading->plan;
+    struct region_builder builder;
+    bool is_whole = true;
+    loading_tell(loading, "measuring regions", "", 80);
+    region_builder_init(&builder, &plan->regions, &plan->report);
+    for (size_t i = 0; is_whole && i < loading->n_jobs; i++) {
+        struct job *job = &loading->jobs[i];
+        if (job->kind == JOB_IMAGE)
+            add_image(loading, job);
+        else if (job->kind == JOB_REGION)
+            is_whole = add_regions(loading, &builder, job, err);
+    }
+    for (size_t i = 0; i < loading->n_jobs; i++)
+        if (is_whole && loading->jobs[i].kind == JOB_IMAGE)
+            borrow_grid(loading, &loading->jobs[i]);
+    if (is_whole) {
+        region_set_measure(&plan->regions);
+        note_empty_regions(plan);
+        is_whole = apply_hierarchy(loading, &builder, err);
+    }
+    region_builder_finish(&builder);
+    if (!is_whole)
+        return false;
+    add_doses(loading);
+    plan_measure_bounds(plan);
+    add_beams(loading);
+    return plan_add_tracks(plan, &loading->folder, loading->file, err);
+}
