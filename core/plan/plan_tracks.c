@@ -31,7 +31,10 @@ static void beam_from_tracks(struct plan *plan)
         if (segment->class != TRACK_BEAM_LINE)
             continue;
         struct beam *beam = &plan->beams[plan->n_beams++];
-        *beam = (struct beam){ "beam-1", point_of(segment->from_lps_mm), point_of(segment->to_lps_mm), NAN };
+        *beam = (struct beam){ .id = "beam-1",
+                               .entry_lps_mm = point_of(segment->from_lps_mm),
+                               .target_lps_mm = point_of(segment->to_lps_mm),
+                               .aperture_mm = NAN };
         report_add(&plan->report, REPORT_NOTE, "beam.from-tracks", "", "The plan gives no beam; the beam line of the tracks was taken, "
                    "from the source plane to the target. Its aperture is unknown.");
     }

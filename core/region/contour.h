@@ -1,10 +1,23 @@
 #pragma once
-/* Closed planar contours, and the voxels they enclose. Knows nothing of DICOM. */
-#include "core/volume/volume.h"
+/* Closed planar contours, and the voxels they enclose. Knows nothing of DICOM, files or reports.
+ *
+ * How a caller goes about a set of regions that were drawn together:
+ *     options.spacing_mm = contour_usual_spacing_mm(sets, n_sets);
+ *     contour_choose_grids(sets, n_sets, image_grid, &options, choices, &err);
+ *     for each: mask = contour_fill(&sets[i], &choices[i].grid, &options, &facts, &err);
+ *               lay it into a label layer on that grid (contour_layer.h), then mask_destroy(mask) */
+#include "core/region/mask.h"
+
+enum {
+    CONTOUR_MAX_POINTS = 10000000, /* of one set */
+    CONTOUR_MAX_PLANES = 8192,     /* of one set */
+    CONTOUR_MAX_SUBDIVISION = 8    /* of a voxel of the image, along each axis */
+};
+#define CONTOUR_MAX_MM 1e5 /* a contour with a coordinate beyond is left out */
 
 struct contour {
     double *points_lps_mm; /* [n_points][3] */
-    size_t n_points;       /* at least 3; the last is joined to the first */
+    size_t n_points;       /* the last is joined to the first */
 };
 
 /* The contours of one region. On one plane they combine by even-odd: an outline inside another is a hole, one inside that an island;
@@ -14,13 +27,61 @@ struct contour_set {
     size_t n_contours;
 };
 
+struct contour_options {
+    int n_threads;        /* at least 1 */
+    double spacing_mm;    /* of planes where a region's own do not tell (a single plane); 0: that of the grid along their normal */
+    uint64_t most_voxels; /* in one grid that contour_choose_grids makes itself */
+};
+extern const struct contour_options contour_defaults; /* 2 threads, 0 mm, 64 Mi voxels */
+
 struct contour_facts {
     size_t n_planes;
-    double polygon_cm3;  /* area of each plane times the slab it stands for */
-    double filled_cm3;   /* of the voxels */
-    size_t n_outside;    /* contours that reach beyond the grid */
-    size_t n_not_planar; /* contours that leave their plane by more than a hundredth of a mm */
-    double spacing_mm;   /* of the planes; 0 when there is one */
+    double polygon_cm3;      /* area of each plane by even-odd, times the slab it stands for */
+    double filled_cm3;       /* of the voxels */
+    double spacing_mm;       /* of neighbouring planes, the usual one; with a single plane the thickness it was given */
+    size_t n_gaps;           /* places where the next plane is further away than that; nothing is filled there */
+    double widest_gap_mm;    /* 0 without one */
+    size_t n_outside;        /* contours that reach beyond the grid */
+    size_t n_not_planar;     /* contours that leave their plane by more than a hundredth of a mm; they are flattened into it */
+    size_t n_not_parallel;   /* contours in another orientation than the largest share; left out */
+    size_t n_degenerate;     /* fewer than 3 points, or no area; left out */
+    size_t n_repeated;       /* the same points as another contour; left out, as even-odd would make a hole of the pair */
+    size_t n_not_finite;     /* contours with a point that is no number or beyond CONTOUR_MAX_MM; left out */
 };
+
+/* The voxels of the grid whose centres the contours enclose.
+ *
+ *   method   A plane stands for a slab: half way to its neighbours on both sides, a full spacing for the outermost planes. The
+ *            spacing is the median distance of neighbouring planes; a distance over 1.5 of it is a gap, into which either side
+ *            reaches half a spacing. A voxel is inside when its centre lies in a slab and its projection along the planes' normal
+ *            is enclosed by that plane's contours (even-odd). Centres that lie on an edge belong to one side only, so regions
+ *            that share an edge share no voxel. Planes may have any orientation to the grid.
+ *   facts    filled on success; may be NULL
+ *   returns  a mask on the whole grid, the caller's, possibly empty; NULL on failure
+ *   errors   ERROR_LIMIT CONTOUR_MAX_POINTS, CONTOUR_MAX_PLANES, more crossings of edges and rows than 2^29; ERROR_MEMORY
+ *   thread   any; equal bits for any number of threads */
+NODISCARD struct mask *contour_fill(const struct contour_set *set, const struct grid *grid, const struct contour_options *options,
+                                    struct contour_facts *facts, struct error *err);
+
+/* The commonest spacing of planes over all sets, by number of planes; 0 when no set has two planes. */
+double contour_usual_spacing_mm(const struct contour_set *sets, size_t n_sets);
+
+struct contour_choice {
+    struct grid grid;
+    uint32_t subdivision[3]; /* of the image's voxels, each 1..CONTOUR_MAX_SUBDIVISION; 1 1 1 with the image's own grid */
+    uint32_t group;          /* sets with equal numbers have equal grids and may share a layer; 0 is the image's own grid */
+    double volume_error;     /* relative, on this grid; not-a-number for an empty set */
+    bool is_short;           /* more than was asked for, and no finer grid was allowed */
+};
+
+/* A label grid for each set: the image's own where it holds the volume, else the coarsest whole subdivision of it that does, cropped
+ * to the regions that need the same.
+ *
+ *   accuracy  1 % of the polygon volume from 1 cm3 on, 5 % below; and at least one voxel. Regions that reach beyond the image
+ *             stay on the image's grid.
+ *   image     NULL: a grid from the planes: their orientation, their spacing, 1 mm in the plane or as coarse as most_voxels asks
+ *   errors    ERROR_RANGE no set has a contour and there is no image; as contour_fill */
+NODISCARD bool contour_choose_grids(const struct contour_set *sets, size_t n_sets, const struct grid *image,
+                                    const struct contour_options *options, struct contour_choice *choices, struct error *err);
 
 void contour_set_finish(struct contour_set *set);
