@@ -194,7 +194,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
     struct plan *plan = loading->plan;
     struct region_builder builder;
     bool is_whole = true;
-    loading_tell(loading, "measuring regions", "", 80);
+    loading_phase(loading, "measuring regions", "", 80, 100);
     region_builder_init(&builder, &plan->regions, &plan->report);
     for (size_t i = 0; is_whole && i < loading->n_jobs; i++) {
         struct job *job = &loading->jobs[i];

@@ -99,15 +99,14 @@ static void work(void *context, int part, int n_parts)
         if (at > atomic_load(&loading->first_failed))
             continue;
         if (part == 0)
-            loading_tell(loading, "reading", job->path,
-                 80.0 * (double)atomic_load(&loading->bytes_done) / (double)(loading->n_bytes + 1));
+            loading_phase(loading, "reading", job->path, 5, 80);
         if (!plan_read_part(loading, job)) {
             job->is_failed = true;
             size_t before = atomic_load(&loading->first_failed);
             while (at < before && !atomic_compare_exchange_weak(&loading->first_failed, &before, at)) {
             }
         }
-        atomic_fetch_add(&loading->bytes_done, job->bytes);
+        loading_work(loading, job->bytes);
     }
 }
 
@@ -116,7 +115,7 @@ bool plan_run_jobs(struct loading *loading, struct error *err)
     order_jobs(loading);
     atomic_init(&loading->next, 0);
     atomic_init(&loading->first_failed, SIZE_MAX);
-    atomic_init(&loading->bytes_done, 0);
+    loading_begin(loading, loading->n_bytes);
     int n_threads = parallel_cores();
     if ((size_t)n_threads > loading->n_jobs)
         n_threads = (int)loading->n_jobs;

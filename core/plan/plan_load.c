@@ -1,74 +1,181 @@
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "core/base/mailbox.h"
 #include "core/base/mem.h"
+#include "core/base/queue.h"
 #include "core/plan/plan_loading.h"
 #include "core/plan/plan_meshes.h"
 
+/* A plan is loaded on a thread of its own, and the caller waits. So the caller can turn its back within LOOK_EVERY_MS whatever the
+ * thread is in the middle of; that ends its file or slice, finds that nobody waits any more, and cleans up behind itself. */
+enum { LOOK_EVERY_MS = 20 };
+
+/* What is going on, and which part of the whole it is. */
+struct phase {
+    char words[96];
+    double low, high; /* percent */
+};
+
 bool loading_is_cancelled(const struct loading *loading)
 {
-    atomic_bool *cancel = loading->options.progress.cancel;
-    return cancel && atomic_load(cancel);
+    return atomic_load(&loading->is_given_up);
 }
 
-void loading_tell(const struct loading *loading, const char *what, const char *name, double percent)
+void loading_phase(struct loading *loading, const char *what, const char *name, double low, double high)
 {
-    const struct plan_progress *progress = &loading->options.progress;
-    if (!progress->step)
+    struct phase *phase = mem_new(sizeof *phase);
+    *phase = (struct phase){ .low = low, .high = high };
+    snprintf(phase->words, sizeof phase->words, "%s%s%.80s", what, name[0] ? " " : "", name);
+    mailbox_put(loading->phases, phase);
+}
+
+void loading_begin(struct loading *loading, uint64_t work)
+{
+    atomic_store(&loading->work_done, 0);
+    atomic_store(&loading->work, work);
+}
+
+void loading_work(struct loading *loading, uint64_t work)
+{
+    atomic_fetch_add(&loading->work_done, work);
+}
+
+static void finish_job(struct job *job)
+{
+    volume_unref(job->volume);
+    for (size_t d = 0; d < RST_N_DOSES; d++)
+        volume_unref(job->doses[d]);
+    if (job->layers)
+        nrrd_layers_finish(job->layers);
+    free(job->layers);
+    uvh_finish(&job->uvh);
+    label_names_finish(&job->names);
+    report_finish(&job->report);
+}
+
+static void loading_unref(struct loading *loading)
+{
+    if (atomic_fetch_sub(&loading->references, 1) > 1)
         return;
-    char phase[96];
-    snprintf(phase, sizeof phase, "%s%s%.80s", what, name[0] ? " " : "", name);
-    progress->step(progress->context, phase, percent);
-}
-
-static void finish_loading(struct loading *loading)
-{
-    for (size_t i = 0; i < loading->n_jobs; i++) {
-        volume_unref(loading->jobs[i].volume);
-        for (size_t d = 0; d < RST_N_DOSES; d++)
-            volume_unref(loading->jobs[i].doses[d]);
-        if (loading->jobs[i].layers)
-            nrrd_layers_finish(loading->jobs[i].layers);
-        free(loading->jobs[i].layers);
-        uvh_finish(&loading->jobs[i].uvh);
-        label_names_finish(&loading->jobs[i].names);
-        report_finish(&loading->jobs[i].report);
-    }
+    for (size_t i = 0; i < loading->n_jobs; i++)
+        finish_job(&loading->jobs[i]);
     free(loading->jobs);
     free(loading->order);
     plan_file_destroy(loading->file);
+    plan_destroy(loading->plan);
     folder_close(&loading->folder);
+    mailbox_destroy(loading->phases);
+    queue_destroy(loading->ended);
+    free(loading);
+}
+
+static bool load(struct loading *loading)
+{
+    struct error *err = &loading->err;
+    struct plan *plan = loading->plan;
+    loading_phase(loading, "looking at the folder", "", 0, 5);
+    loading->file = plan_describe(&loading->folder, &plan->report, err);
+    if (!loading->file || !plan_make_jobs(loading, err) || !plan_run_jobs(loading, err) || !plan_assemble(loading, err))
+        return false;
+    memcpy(plan->name, loading->file->name, sizeof plan->name);
+    memcpy(plan->note, loading->file->note, sizeof plan->note);
+    plan->is_phantom = loading->file->is_phantom;
+    plan->meshes = plan_meshes_create(plan->regions.n_regions);
+    return true;
+}
+
+static void *load_main(void *argument)
+{
+    struct loading *loading = argument;
+    loading->is_whole = load(loading);
+    (void)queue_try_put(loading->ended, loading); /* a letter to say so; it holds no reference */
+    loading_unref(loading);
+    return NULL;
+}
+
+/* Without a thread to be had the work is done here, and nobody hears how far it is. */
+static void start(struct loading *loading)
+{
+    pthread_t thread;
+    atomic_store(&loading->references, 2);
+    if (pthread_create(&thread, NULL, load_main, loading) == 0)
+        pthread_detach(thread);
+    else
+        load_main(loading);
+}
+
+static void tell(struct loading *loading, struct phase *now, double *percent)
+{
+    const struct plan_progress *progress = &loading->options.progress;
+    struct phase *newest = mailbox_take(loading->phases);
+    if (newest)
+        *now = *newest;
+    free(newest);
+    double work = (double)atomic_load(&loading->work), done = (double)atomic_load(&loading->work_done);
+    double reached = now->low + (now->high - now->low) * (work > 0 && done < work ? done / work : work > 0);
+    *percent = reached > *percent ? reached : *percent; /* it never falls, also while a phase begins */
+    if (progress->step)
+        progress->step(progress->context, now->words, *percent);
+}
+
+static bool wait(struct loading *loading, struct error *err)
+{
+    const atomic_bool *cancel = loading->options.progress.cancel;
+    struct phase phase = { .words = "starting" };
+    double percent = 0;
+    while (!queue_take(loading->ended, LOOK_EVERY_MS)) {
+        tell(loading, &phase, &percent);
+        if (cancel && atomic_load(cancel)) {
+            atomic_store(&loading->is_given_up, true);
+            return error_set(err, ERROR_CANCELLED, "loading was cancelled");
+        }
+    }
+    if (!loading->is_whole && err)
+        *err = loading->err;
+    if (loading->is_whole && loading->options.progress.step)
+        loading->options.progress.step(loading->options.progress.context, "loaded", 100);
+    return loading->is_whole;
+}
+
+static struct loading *loading_create(const char *folder, const char *id, const struct plan_load_options *options, struct error *err)
+{
+    struct loading *loading = mem_new(sizeof *loading);
+    if (!folder_open(&loading->folder, folder, err)) {
+        free(loading);
+        return NULL;
+    }
+    if (options)
+        loading->options = *options;
+    loading->phases = mailbox_create(free);
+    loading->ended = queue_create(1, NULL);
+    loading->plan = mem_new(sizeof *loading->plan);
+    snprintf(loading->plan->id, sizeof loading->plan->id, "%s", id);
+    return loading;
 }
 
 struct plan *plan_load(const char *folder, const char *id, const struct plan_load_options *options, struct error *err)
 {
     int64_t started_us = clock_now_us();
-    struct loading loading = { .folder.fd = -1 };
-    if (options)
-        loading.options = *options;
-    if (!folder_open(&loading.folder, folder, err))
+    const atomic_bool *cancel = options ? options->progress.cancel : NULL;
+    if (cancel && atomic_load(cancel)) {
+        error_set(err, ERROR_CANCELLED, "loading was cancelled");
         return NULL;
-    struct plan *plan = mem_new(sizeof *plan);
-    loading.plan = plan;
-    snprintf(plan->id, sizeof plan->id, "%s", id);
-    loading_tell(&loading, "looking at the folder", "", 0);
-    loading.file = plan_describe(&loading.folder, &plan->report, err);
-    bool is_loaded = loading.file && plan_make_jobs(&loading, err) && plan_run_jobs(&loading, err) && plan_assemble(&loading, err);
-    if (is_loaded) {
-        memcpy(plan->name, loading.file->name, sizeof plan->name);
-        memcpy(plan->note, loading.file->note, sizeof plan->note);
-        plan->is_phantom = loading.file->is_phantom;
-        plan->meshes = plan_meshes_create(plan->regions.n_regions);
+    }
+    struct loading *loading = loading_create(folder, id, options, err);
+    struct plan *plan = NULL;
+    if (!loading)
+        return NULL;
+    start(loading);
+    if (wait(loading, err)) {
+        plan = loading->plan;
+        loading->plan = NULL;
         plan->load_us = clock_now_us() - started_us;
-        loading_tell(&loading, "loaded", "", 100);
     }
-    finish_loading(&loading);
-    if (!is_loaded) {
-        plan_destroy(plan);
-        return NULL;
-    }
+    loading_unref(loading);
     return plan;
 }
 

@@ -37,13 +37,22 @@ struct loading {
     size_t n_jobs;
     uint64_t n_bytes;
     atomic_size_t next, first_failed;
-    atomic_uint_fast64_t bytes_done;
     struct plan_load_options options;
+    struct error err;
+    bool is_whole;
+    struct queue *ended;     /* one letter when the thread that loads is through */
+    struct mailbox *phases;  /* for the caller to tell */
+    atomic_uint_fast64_t work, work_done; /* of the phase */
+    atomic_bool is_given_up; /* nobody waits any more */
+    atomic_int references;   /* the caller's and the thread's */
 };
 
 bool loading_is_cancelled(const struct loading *loading);
-/* "reading ct.nii.gz", 40 % */
-void loading_tell(const struct loading *loading, const char *what, const char *name, double percent);
+/* A phase begins: "reading", "ct.nii.gz", from 5 to 80 % */
+void loading_phase(struct loading *loading, const char *what, const char *name, double low, double high);
+/* What the phases from here on have to do together, and that a part of it is done; in bytes, or anything else. Any thread. */
+void loading_begin(struct loading *loading, uint64_t work);
+void loading_work(struct loading *loading, uint64_t work);
 
 /* The jobs of a plan file. errors ERROR_NOT_FOUND, ERROR_UNSUPPORTED */
 NODISCARD bool plan_make_jobs(struct loading *loading, struct error *err);
