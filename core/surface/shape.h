@@ -1,5 +1,6 @@
 #pragma once
 /* What a region is drawn as: triangles, lines or points, in patient space. Frozen once published. Knows no plan, scene or GL. */
+#include "core/region/outline.h"
 #include "core/surface/mesh.h"
 #include "core/surface/surface.h"
 
@@ -17,7 +18,6 @@ enum region_representation {
 const char *region_representation_word(enum region_representation representation);
 NODISCARD bool region_representation_from_word(const char *word, enum region_representation *representation);
 
-enum outline_method { OUTLINE_TRACED, OUTLINE_MARCHING_SQUARES };
 enum nurbs_sampling { NURBS_TRACES, NURBS_DEGREE_BINS };
 
 /* All that decides a shape besides the region's voxels. Fields that a representation does not use are 0 in a key
