@@ -66,6 +66,14 @@ static bool is_drawn(const struct snapshot *snapshot, size_t region)
     return is_shown(snapshot, region) && snapshot->plan->regions.regions[region].n_voxels > 0;
 }
 
+size_t visible_n_translucent(const struct snapshot *snapshot)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++)
+        n += is_drawn(snapshot, i) && snapshot->styles[i].opacity < 1;
+    return n;
+}
+
 /* A region inside an opaque one, in the same label layer, cannot be seen: the outer surface is closed and encloses it. Unless the
  * eye is within the outer one's box, or the near plane cuts it open. False on failure. */
 static bool find_hidden(const struct snapshot *snapshot, const struct camera *camera, size_t region, visible_bounds *bounds, void *context,
@@ -84,10 +92,12 @@ static bool find_hidden(const struct snapshot *snapshot, const struct camera *ca
     return true;
 }
 
-/* Back to front. What encloses another is never farther away, so at equal distances the inner one comes first. */
+/* As visible_surfaces says. What encloses another is never farther away, so at equal distances the inner one comes first. */
 static int compare_back_to_front(const void *left, const void *right)
 {
     const struct visible_surface *a = left, *b = right;
+    if (a->order != b->order)
+        return a->order < b->order ? -1 : 1;
     if (a->distance_mm != b->distance_mm)
         return a->distance_mm > b->distance_mm ? -1 : 1;
     if (a->depth != b->depth)
@@ -116,7 +126,8 @@ struct visible_surface *visible_surfaces(const struct snapshot *snapshot, const 
             return NULL;
         }
         if (!box3_is_empty(box) && !is_out_of_sight(clip_from_lps_mm, box))
-            surfaces[(*n)++] = (struct visible_surface){ i, &snapshot->styles[i], nearest_mm(camera, box), region_depth(set, i),
+            surfaces[(*n)++] = (struct visible_surface){ i, &snapshot->styles[i], nearest_mm(camera, box),
+                                                         (int)snapshot->styles[i].order, region_depth(set, i),
                                                          set->regions[i].n_voxels };
     }
     if (surfaces)

@@ -10,6 +10,7 @@ struct visible_surface {
     size_t region;
     const struct scene_region_style *style;
     double distance_mm; /* from the eye to the nearest point of its box */
+    int order;          /* the style's */
     int depth;          /* in the hierarchy */
     uint64_t n_voxels;
 };
@@ -18,12 +19,20 @@ struct visible_surface {
  * Empty when the surface is: then there is nothing to draw. */
 typedef const struct box3 *visible_bounds(void *context, size_t region, struct error *err);
 
-/* The surfaces that are wanted and can be seen, back to front (opaque ones are drawn from the last one on). What lies outside
+/* The surfaces that are wanted and can be seen: by the styles' order, then back to front (opaque ones are drawn from the last one
+ * on). What lies outside
  * clip_from_lps_mm's box is left out, and so is what an opaque surface encloses. free(); NULL on failure.
  * errors ERROR_MEMORY, and those of bounds */
 NODISCARD struct visible_surface *visible_surfaces(const struct snapshot *snapshot, const struct camera *camera,
                                                    const struct mat4 *clip_from_lps_mm, bool is_opaque, visible_bounds *bounds,
                                                    void *context, size_t *n, struct error *err);
+
+/* In exact order a surface counts as so much nearer for each one before it in visible_surfaces' order (depth 0 near .. 1 far), so
+ * that surfaces that coincide keep one order all over. */
+#define VISIBLE_RANK_DEPTH 5e-7
+
+/* How many of them there can be at most. */
+size_t visible_n_translucent(const struct snapshot *snapshot);
 
 enum { VISIBLE_N_LABELS = 65536 };
 /* Label to colour, RGBA, for a label layer's cross-section: of the region itself or, when that is hidden, of the innermost visible

@@ -112,3 +112,8 @@ size_t shots_centroid(const struct image *image, int channel, double *x_px, doub
     *y_px = n ? sum_y / (double)n : -1;
     return n;
 }
+
+double shots_facing_light(double color, bool is_opaque)
+{
+    return fmin(1, color * ((is_opaque ? 0.3 : 0.5) + 0.58 * 0.704 + 0.18 * 0.663) + 0.07 * pow(0.704, 16));
+}

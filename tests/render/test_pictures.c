@@ -17,13 +17,6 @@ static void finish(struct plan *plan)
     plan_destroy(plan);
 }
 
-/* Light on a surface that faces the viewer squarely, by the shader's published constants: key (0.426, 0.568, 0.704) at 0.58,
- * fill (-0.741, 0.106, 0.663) at 0.18, gloss 0.07 key^16, ambient 0.3 where opaque and 0.5 where translucent. */
-static double facing_light(double color, bool is_opaque)
-{
-    return fmin(1, color * ((is_opaque ? 0.3 : 0.5) + 0.58 * 0.704 + 0.18 * 0.663) + 0.07 * pow(0.704, 16));
-}
-
 static void expect_color(const uint8_t *pixel, const double color[3])
 {
     for (int c = 0; c < 3; c++)
@@ -44,7 +37,7 @@ static void the_near_side_of_a_ball_is_seen_lit_from_the_upper_right(void **stat
     int right = shots_pixel(image, 200 + 60, 150 - 60)[0], left = shots_pixel(image, 200 - 60, 150 + 60)[0];
     assert_true(right > left + 60); /* were the far side drawn, its normals would make it the other way round */
     double grey = 0xc8 / 255.0;
-    assert_close(shots_pixel(image, 200, 150)[0], 255 * facing_light(grey, true), 8); /* averaged normals of voxels: a few levels */
+    assert_close(shots_pixel(image, 200, 150)[0], 255 * shots_facing_light(grey, true), 8); /* averaged normals of voxels: a few levels */
     assert_memory_equal(shots_pixel(image, 2, 2), shots_background, 3);
     image_destroy(image);
     finish(plan);
@@ -61,7 +54,7 @@ static const struct made_region nested[] = { { "outer", -1, 0xff8040 }, { "middl
 static void blend(double under[3], const double rgb[3], double alpha)
 {
     for (int c = 0; c < 3; c++)
-        under[c] = alpha * facing_light(rgb[c], alpha >= 1) + (1 - alpha) * under[c];
+        under[c] = alpha * shots_facing_light(rgb[c], alpha >= 1) + (1 - alpha) * under[c];
 }
 
 static void translucent_surfaces_blend_from_the_inside_out(void **state)

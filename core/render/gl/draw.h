@@ -11,6 +11,7 @@ struct gl_frame {
     const struct gl_programs *programs;
     struct gl_cache *cache;
     const struct gl_target *target;
+    struct gl_layers *layers;
     GLuint no_vertices;                 /* vertex array of passes without vertices */
     GLuint polygon_array, polygon;      /* vertex array and buffer of slices */
     GLuint palette;                     /* texture, label to colour */
@@ -24,7 +25,8 @@ struct gl_frame {
 
 /* The regions' surfaces: opaque ones front to back, */
 NODISCARD bool gl_draw_opaque_surfaces(const struct gl_frame *frame, struct error *err);
-/* translucent ones back to front, what lies inside before what encloses it, each with its nearest sheet only. */
+/* translucent ones, each with its nearest sheet only: each sample in its own order or whole regions, as the scene says. More than
+ * GL_LAYERS_MAX of them are taken in groups of as many, in the order of visible_surfaces. */
 NODISCARD bool gl_draw_translucent_surfaces(const struct gl_frame *frame, struct error *err);
 
 /* The image on the slices that are visible in space. */

@@ -32,7 +32,6 @@ static const char smooth_vertex[] =
     "uniform mat3 eye_from_lps;\n"
     "uniform vec4 viewer;\n"
     "out vec4 shade;\n"
-    "invariant gl_Position;\n"
     "void main() {\n"
     "    vec3 towards = normalize(viewer.xyz - viewer.w * position);\n"
     "    shade = light(eye_from_lps * normal, clamp(dot(normal, towards), 0.0, 1.0));\n"
@@ -50,7 +49,6 @@ static const char faceted_vertex[] =
     "uniform vec4 viewer;\n"
     "out vec3 towards;\n" /* linear over a triangle in perspective; its derivatives are the triangle's plane */
     "out vec3 place;\n"
-    "invariant gl_Position;\n"
     "void main() {\n"
     "    towards = viewer.xyz - viewer.w * position;\n"
     "    place = position;\n"
@@ -68,15 +66,6 @@ static const char faceted_fragment[] =
     "    if (facing < 0.0) n = -n;\n" /* the visible side of the triangle */
     "    result = light(eye_from_lps * n, min(abs(facing), 1.0));\n"
     "}\n";
-
-/* Exactly the depths of the programs above: the same expression, and invariant. */
-static const char depth_vertex[] =
-    "layout(location = 0) in vec3 position;\n"
-    "uniform mat4 clip_from_lps;\n"
-    "invariant gl_Position;\n"
-    "void main() { gl_Position = clip_from_lps * vec4(position, 1.0); }\n";
-
-static const char depth_fragment[] = "void main() {}\n";
 
 /* A polygon in a plane through a grid. at: 0 .. 1 over the grid's outer faces. */
 static const char slice_vertex[] =
@@ -116,6 +105,39 @@ static const char labels_fragment[] =
 static const char test_vertex[] =
     "void main() {\n"
     "    gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);\n"
+    "}\n";
+
+/* Layers over each other, the farther first: with rank_depth 0 in their own order, else each sample in its own. What is laid down
+ * comes out with the share of what was there before that still shows, for blending. */
+static const char compose_fragment[] =
+    "uniform sampler2DArray source;\n"
+    "uniform sampler2DArray depths;\n"
+    "uniform sampler2D before;\n" /* depth of what is opaque */
+    "uniform int n_layers;\n"
+    "uniform float rank_depth;\n"
+    "out vec4 result;\n"
+    "void main() {\n"
+    "    ivec2 at = ivec2(gl_FragCoord.xy);\n"
+    "    float opaque = texelFetch(before, at, 0).r, last = 2.0;\n"
+    "    int last_layer = -1;\n"
+    "    result = vec4(0.0, 0.0, 0.0, 1.0);\n"
+    "    for (int n = 0; n < n_layers; n++) {\n"
+    "        float most = -1.0;\n"
+    "        int farthest = -1;\n"
+    "        for (int i = rank_depth > 0.0 ? 0 : last_layer + 1; i < n_layers; i++) {\n"
+    "            float depth = texelFetch(depths, ivec3(at, i), 0).r;\n"
+    "            if (depth >= opaque) continue;\n"
+    "            if (rank_depth <= 0.0) { farthest = i; break; }\n"
+    "            depth -= rank_depth * float(i);\n"
+    "            if (depth > most && (depth < last || (depth == last && i > last_layer))) { most = depth; farthest = i; }\n"
+    "        }\n"
+    "        if (farthest < 0) break;\n"
+    "        vec4 over = texelFetch(source, ivec3(at, farthest), 0);\n"
+    "        result = vec4(mix(result.rgb, over.rgb, over.a), result.a * (1.0 - over.a));\n"
+    "        last = most;\n"
+    "        last_layer = farthest;\n"
+    "    }\n"
+    "    if (last_layer < 0) discard;\n"
     "}\n";
 
 static const char test_fragment[] =
@@ -170,7 +192,8 @@ static bool create(const struct gl *gl, struct gl_program *program, const char *
         { &program->clip_from_lps, "clip_from_lps" }, { &program->eye_from_lps, "eye_from_lps" }, { &program->viewer, "viewer" },
         { &program->color, "color" }, { &program->opacity, "opacity" }, { &program->is_rim, "is_rim" },
         { &program->source, "source" }, { &program->palette, "palette" }, { &program->grey, "grey" },
-        { &program->cull, "cull" }, { &program->scale, "scale" },
+        { &program->cull, "cull" }, { &program->scale, "scale" }, { &program->depths, "depths" }, { &program->before, "before" },
+        { &program->n_layers, "n_layers" }, { &program->rank_depth, "rank_depth" },
     };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++)
         *uniforms[i].place = gl->GetUniformLocation(program->name, uniforms[i].name);
@@ -182,7 +205,7 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
     *programs = (struct gl_programs){ 0 };
     if (create(gl, &programs->smooth, "smooth", surface_light, smooth_vertex, "", smooth_fragment, err) &&
         create(gl, &programs->faceted, "faceted", "", faceted_vertex, surface_light, faceted_fragment, err) &&
-        create(gl, &programs->depth, "depth", "", depth_vertex, "", depth_fragment, err) &&
+        create(gl, &programs->compose, "compose", "", test_vertex, "", compose_fragment, err) &&
         create(gl, &programs->image, "image", "", slice_vertex, "", image_fragment, err) &&
         create(gl, &programs->labels, "labels", "", slice_vertex, "", labels_fragment, err) &&
         create(gl, &programs->test, "test", "", test_vertex, "", test_fragment, err))
@@ -193,7 +216,7 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
 
 void gl_programs_destroy(const struct gl *gl, struct gl_programs *programs)
 {
-    const GLuint names[] = { programs->smooth.name, programs->faceted.name, programs->depth.name, programs->image.name, programs->labels.name,
+    const GLuint names[] = { programs->smooth.name, programs->faceted.name, programs->compose.name, programs->image.name, programs->labels.name,
                              programs->test.name };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (names[i])

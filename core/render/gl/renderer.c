@@ -18,6 +18,7 @@ struct gl_renderer {
     struct render_facts facts;
     struct gl_programs programs;
     struct gl_target target;
+    struct gl_layers layers;
     struct gl_cache *cache;
     GLuint no_vertices, polygon_array, polygon, palette;
     uint8_t colors[VISIBLE_N_LABELS][4]; /* of the palette */
@@ -136,6 +137,7 @@ void gl_renderer_destroy(struct gl_renderer *renderer)
         const struct gl *gl = &renderer->gl;
         gl_cache_destroy(gl, renderer->cache);
         gl_target_destroy(gl, &renderer->target);
+        gl_layers_destroy(gl, &renderer->layers);
         gl_programs_destroy(gl, &renderer->programs);
         gl->DeleteVertexArrays(1, &renderer->no_vertices);
         gl->DeleteVertexArrays(1, &renderer->polygon_array);
@@ -251,12 +253,16 @@ struct image *gl_renderer_snapshot(struct gl_renderer *renderer, const struct sn
     if (!image)
         return NULL;
     struct gl_frame frame = { .gl = &renderer->gl, .programs = &renderer->programs, .cache = renderer->cache,
-                              .target = &renderer->target, .no_vertices = renderer->no_vertices,
+                              .target = &renderer->target, .layers = &renderer->layers, .no_vertices = renderer->no_vertices,
                               .polygon_array = renderer->polygon_array, .polygon = renderer->polygon, .palette = renderer->palette,
                               .colors = renderer->colors,
                               .snapshot = snapshot, .camera = camera, .detail = options->detail, .timing = timing };
     int samples = visible_samples(snapshot, camera, options->width_px, options->is_still);
-    int band = MAX_BAND_SAMPLES / (image->width_px * samples * samples);
+    int row = image->width_px * samples * samples, band = MAX_BAND_SAMPLES / row;
+    int n_layers = (int)visible_n_translucent(snapshot);
+    n_layers = n_layers < GL_LAYERS_MAX ? n_layers : GL_LAYERS_MAX;
+    if (n_layers > 0 && band > GL_LAYERS_MAX_SAMPLES / n_layers / row)
+        band = GL_LAYERS_MAX_SAMPLES / n_layers / row; /* 8 rows at the very least */
     for (int first = 0; first < image->height_px; first += band) {
         int n = image->height_px - first < band ? image->height_px - first : band;
         if (!draw_band(renderer, &frame, image, first, n, samples, err)) {

@@ -104,26 +104,39 @@ bool gl_draw_opaque_surfaces(const struct gl_frame *frame, struct error *err)
     return gl_check(frame->gl, "drawing opaque surfaces", err);
 }
 
-/* First its depth alone, then its colour where it is nearest: of a surface with folds only the front sheet blends. */
-static void draw_front_sheet(const struct gl_frame *frame, const struct item *item)
+/* The layers over the picture. */
+static void compose(const struct gl_frame *frame, int n)
 {
     const struct gl *gl = frame->gl;
-    gl->UseProgram(frame->programs->depth.name);
-    gl->UniformMatrix4fv(frame->programs->depth.clip_from_lps, 1, GL_FALSE, frame->clip_from_lps);
-    gl->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    gl->BindVertexArray(item->surface->vertex_array);
-    gl->DrawElements(GL_TRIANGLES, item->surface->n_indices, GL_UNSIGNED_INT, NULL);
-    gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-
-    use_surface_program(frame);
-    gl->DepthFunc(GL_EQUAL);
-    gl->DepthMask(GL_FALSE);
+    const struct gl_program *program = &frame->programs->compose;
+    bool is_exact = frame->snapshot->scene.surface.translucent_order == SCENE_TRANSLUCENT_ORDER_EXACT;
+    gl->BindFramebuffer(GL_FRAMEBUFFER, frame->target->over);
+    gl->Disable(GL_CULL_FACE);
+    gl->Disable(GL_DEPTH_TEST);
     gl->Enable(GL_BLEND);
-    gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
-    draw_item(frame, item);
+    gl->BlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_ONE);
+    gl->UseProgram(program->name);
+    gl->Uniform1i(program->source, 0);
+    gl->Uniform1i(program->depths, 1);
+    gl->Uniform1i(program->before, 2);
+    gl->Uniform1i(program->n_layers, n);
+    gl->Uniform1f(program->rank_depth, is_exact ? (float)VISIBLE_RANK_DEPTH : 0);
+    gl->ActiveTexture(GL_TEXTURE2);
+    gl->BindTexture(GL_TEXTURE_2D, frame->target->depth);
+    gl->ActiveTexture(GL_TEXTURE1);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, frame->layers->depth);
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, frame->layers->color);
+    gl->BindVertexArray(frame->no_vertices);
+    gl->DrawArrays(GL_TRIANGLES, 0, 3);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    gl->ActiveTexture(GL_TEXTURE1);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    gl->ActiveTexture(GL_TEXTURE2);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+    gl->ActiveTexture(GL_TEXTURE0);
     gl->Disable(GL_BLEND);
-    gl->DepthMask(GL_TRUE);
-    gl->DepthFunc(GL_LESS);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, frame->target->framebuffer);
 }
 
 bool gl_draw_translucent_surfaces(const struct gl_frame *frame, struct error *err)
@@ -132,10 +145,17 @@ bool gl_draw_translucent_surfaces(const struct gl_frame *frame, struct error *er
     struct item *items = collect(frame, false, &n, err);
     if (!items)
         return false;
-    use_culling(frame->gl);
-    for (size_t i = 0; i < n; i++)
-        draw_front_sheet(frame, &items[i]);
-    frame->gl->Disable(GL_CULL_FACE);
+    bool is_good = n == 0 || gl_layers_resize(frame->gl, frame->layers, frame->target, n < GL_LAYERS_MAX ? (int)n : GL_LAYERS_MAX, err);
+    for (size_t first = 0; is_good && first < n; first += GL_LAYERS_MAX) {
+        int n_here = n - first < GL_LAYERS_MAX ? (int)(n - first) : GL_LAYERS_MAX;
+        use_culling(frame->gl);
+        use_surface_program(frame);
+        for (int i = 0; i < n_here; i++) {
+            gl_layers_bind(frame->gl, frame->layers, i);
+            draw_item(frame, &items[first + (size_t)i]);
+        }
+        compose(frame, n_here);
+    }
     free(items);
-    return gl_check(frame->gl, "drawing translucent surfaces", err);
+    return is_good && gl_check(frame->gl, "drawing translucent surfaces", err);
 }

@@ -34,11 +34,14 @@
     X(PFNGLDEPTHMASKPROC, DepthMask)                                                                                   \
     X(PFNGLDISABLEPROC, Disable)                                                                                       \
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                                                                                 \
+    X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)                                                               \
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                                                                             \
     X(PFNGLENABLEPROC, Enable)                                                                                         \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)                                                       \
     X(PFNGLFINISHPROC, Finish)                                                                                         \
     X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer)                                                       \
+    X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)                                                             \
+    X(PFNGLFRAMEBUFFERTEXTURELAYERPROC, FramebufferTextureLayer)                                                       \
     X(PFNGLFRONTFACEPROC, FrontFace)                                                                                   \
     X(PFNGLGENBUFFERSPROC, GenBuffers)                                                                                 \
     X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                                                                       \

@@ -37,12 +37,21 @@ struct soft_points {
     const int16_t *nx, *ny, *nz; /* 32767: 1 */
 };
 
-/* Some rows of the picture's samples. Rows are stride apart, at least SOFT_PADDING longer than the picture. */
+/* Some rows of samples. Rows are stride apart, at least SOFT_PADDING longer than the picture. */
 struct soft_band {
     int first_row, n_rows, width, stride;
     float *depth;
-    uint32_t *color, *layer; /* layer: 0 between surfaces */
+    uint32_t *color;
 };
+
+/* What one translucent region has in the same rows: its nearest sheet. Where it has none, and everywhere between pictures, depth 1
+ * and colour 0. */
+struct soft_layer {
+    float *depth;
+    uint32_t *color;
+    int range[2]; /* the columns touched, [0] <= x < [1] */
+};
+enum { SOFT_MAX_LAYERS = 1024 };
 
 /* Triangles to draw into a band: refs count the triangles of indices, or with SOFT_EXTRA those of extras. */
 #define SOFT_EXTRA 0x80000000u
@@ -72,10 +81,11 @@ struct soft_texture {
 struct soft_kernels {
     const char *name;
     void (*shade)(const struct soft_lighting *lighting, const struct soft_points *points, size_t first, size_t n, struct soft_vertex *out);
-    /* Into `to`, the band's color or its layer; range grows to the columns touched, [0] <= x < [1]. */
-    void (*raster)(const struct soft_band *band, uint32_t *to, const struct soft_triangles *triangles, int range[2]);
-    /* Lays the layer's columns over the colours and clears them. */
-    void (*blend)(const struct soft_band *band, const int range[2]);
+    /* range grows to the columns touched, [0] <= x < [1]. */
+    void (*raster)(const struct soft_band *band, const struct soft_triangles *triangles, int range[2]);
+    /* Lays what is nearer than the band's depth over its colours, and clears the layers. rank_depth > 0: at each sample the farther
+     * first, where a layer counts as so much nearer for each one before it; else in the order of the layers. */
+    void (*compose)(const struct soft_band *band, struct soft_layer *layers, int n_layers, float rank_depth);
     /* Samples first .. first + n of a row of a plane. */
     void (*sample)(const struct soft_texture *texture, const struct soft_row *row, int first, int n, float *depth, uint32_t *color);
     /* Mean of 2 x 2 samples. */

@@ -14,6 +14,17 @@
 
 /* More threads than this wait for memory and for each other. */
 enum { MAX_THREADS = 16, MAX_PLANES = 3 + REGION_MAX_LAYERS, VERTEX_BLOCK = 8192 };
+/* Of a thread's translucent layers together, unless one row of them takes more. */
+enum { LAYER_BYTES = 1 << 20 };
+_Static_assert((int)SOFT_MAX_LAYERS >= (int)REGION_MAX, "every region of a plan can be translucent");
+
+/* What one thread draws into. */
+struct scratch {
+    uint32_t *band; /* depth, colour */
+    size_t n_band;  /* samples of each */
+    uint32_t *layers;
+    size_t n_layers; /* samples of all of them */
+};
 
 struct soft_renderer {
     struct render_facts facts;
@@ -25,8 +36,7 @@ struct soft_renderer {
     size_t n_vertices;
     struct soft_chunk *chunks;
     size_t n_chunks;
-    uint32_t *samples[MAX_THREADS]; /* a band's depth, colour and layer, one after the other */
-    size_t n_samples;               /* of each of the three */
+    struct scratch scratch[MAX_THREADS];
 };
 
 /* ---- start and stop ------------------------------------------------------------------------------------------------------- */
@@ -55,15 +65,6 @@ void soft_renderer_tune(struct soft_renderer *renderer, int n_threads, bool is_p
     learn_facts(renderer);
 }
 
-static void drop_samples(struct soft_renderer *renderer)
-{
-    for (int i = 0; i < MAX_THREADS; i++) {
-        free(renderer->samples[i]);
-        renderer->samples[i] = NULL;
-    }
-    renderer->n_samples = 0;
-}
-
 /* What grew with a plan goes with it. */
 static void drop_buffers(struct soft_renderer *renderer)
 {
@@ -74,7 +75,11 @@ static void drop_buffers(struct soft_renderer *renderer)
     renderer->chunks = NULL;
     renderer->vertices = NULL;
     renderer->n_chunks = renderer->n_vertices = 0;
-    drop_samples(renderer);
+    for (int i = 0; i < MAX_THREADS; i++) {
+        free(renderer->scratch[i].band);
+        free(renderer->scratch[i].layers);
+        renderer->scratch[i] = (struct scratch){ 0 };
+    }
 }
 
 void soft_renderer_destroy(struct soft_renderer *renderer)
@@ -106,7 +111,8 @@ struct frame {
     enum surface_detail detail;
     int width, height, samples, n_bands; /* width and height in samples */
     struct soft_item *items;             /* opaque ones front to back, then translucent ones back to front */
-    size_t n_items, n_chunks, n_blocks;
+    size_t n_items, n_translucent, n_chunks, n_blocks;
+    int layer_rows; /* of the translucent layers */
     struct soft_plane planes[MAX_PLANES]; /* in the order of drawing: after the opaque items */
     size_t n_planes;
     uint32_t *palettes; /* of the planes, [][VISIBLE_N_LABELS] */
@@ -181,6 +187,7 @@ static bool collect_surfaces(struct frame *frame, struct render_timing *timing, 
         frame->items[frame->n_items++] =
             (struct soft_item){ .surface = surface, .lighting = make_lighting(frame, from->style), .is_opaque = is_opaque,
                                 .is_flat = snapshot->scene.surface.normals == SCENE_NORMALS_FACE };
+        frame->n_translucent += !is_opaque;
         timing->n_triangles += surface->n_triangles;
         timing->is_light |= surface->is_light;
     }
@@ -259,6 +266,36 @@ static bool collect_planes(struct frame *frame, struct error *err)
 
 /* ---- memory --------------------------------------------------------------------------------------------------------------- */
 
+static bool make_scratch(struct frame *frame, struct scratch *scratch, struct error *err)
+{
+    size_t row = (size_t)(frame->width + SOFT_PADDING), n_band = row * SOFT_BAND_ROWS;
+    if (scratch->n_band < n_band) {
+        free(scratch->band);
+        scratch->band = mem_array(n_band, 2 * sizeof(uint32_t), UINT64_MAX, err);
+        scratch->n_band = scratch->band ? n_band : 0;
+        if (!scratch->band)
+            return false;
+    }
+    if (frame->n_translucent == 0)
+        return true;
+    size_t rows = LAYER_BYTES / (row * frame->n_translucent * 2 * sizeof(uint32_t));
+    rows = rows < 1 ? 1 : rows > SOFT_BAND_ROWS ? SOFT_BAND_ROWS : rows;
+    size_t n_layers = row * rows * frame->n_translucent;
+    frame->layer_rows = (int)rows;
+    if (scratch->n_layers < n_layers) {
+        free(scratch->layers);
+        scratch->layers = mem_array(n_layers, 2 * sizeof(uint32_t), UINT64_MAX, err);
+        scratch->n_layers = scratch->layers ? n_layers : 0;
+        if (!scratch->layers)
+            return false;
+        float *depth = (float *)(void *)scratch->layers;
+        for (size_t i = 0; i < n_layers; i++)
+            depth[i] = 1;
+        memset(scratch->layers + n_layers, 0, n_layers * sizeof(uint32_t));
+    }
+    return true;
+}
+
 static bool make_room(struct frame *frame, struct error *err)
 {
     struct soft_renderer *renderer = frame->renderer;
@@ -299,16 +336,9 @@ static bool make_room(struct frame *frame, struct error *err)
             chunk->n = chunk->n < SOFT_CHUNK_TRIANGLES ? chunk->n : SOFT_CHUNK_TRIANGLES;
         }
     }
-    size_t n_samples = (size_t)(frame->width + SOFT_PADDING) * SOFT_BAND_ROWS;
-    if (renderer->n_samples < n_samples)
-        drop_samples(renderer);
     for (int i = 0; i < renderer->n_threads; i++)
-        if (!renderer->samples[i]) {
-            renderer->samples[i] = mem_array(n_samples, 3 * sizeof(uint32_t), UINT64_MAX, err);
-            if (!renderer->samples[i])
-                return false;
-            renderer->n_samples = n_samples;
-        }
+        if (!make_scratch(frame, &renderer->scratch[i], err))
+            return false;
     return true;
 }
 
@@ -340,19 +370,40 @@ static void sort_triangles(void *context, int part, int n_parts)
             atomic_store(&frame->is_out_of_memory, true);
 }
 
-static void draw_item(const struct frame *frame, const struct soft_item *item, const struct soft_band *band, int index)
+static void draw_item(const struct frame *frame, const struct soft_item *item, const struct soft_band *band, int index, int range[2])
 {
-    const struct soft_kernels *kernels = frame->renderer->kernels;
-    int range[2] = { band->width, 0 };
+    range[0] = band->width;
+    range[1] = 0;
     for (size_t i = 0; i < item->n_chunks; i++) {
         const struct soft_chunk *chunk = &frame->renderer->chunks[item->first_chunk + i];
         const struct soft_triangles triangles = { chunk->refs + chunk->starts[index], chunk->starts[index + 1] - chunk->starts[index],
                                                   item->surface->indices, item->vertices, chunk->extras };
         if (triangles.n_refs > 0)
-            kernels->raster(band, item->is_opaque ? band->color : band->layer, &triangles, range);
+            frame->renderer->kernels->raster(band, &triangles, range);
     }
-    if (!item->is_opaque)
-        kernels->blend(band, range);
+}
+
+/* Each region's nearest sheet into a layer of its own, a few rows at a time, then all of them over the picture. */
+static void draw_translucent(const struct frame *frame, const struct scratch *scratch, const struct soft_band *band, int index)
+{
+    struct soft_layer layers[SOFT_MAX_LAYERS];
+    const struct soft_item *items = frame->items + (frame->n_items - frame->n_translucent);
+    size_t n = frame->n_translucent, n_layer = (size_t)band->stride * (size_t)frame->layer_rows;
+    bool is_exact = frame->snapshot->scene.surface.translucent_order == SCENE_TRANSLUCENT_ORDER_EXACT;
+    for (int row = 0; n > 0 && row < band->n_rows; row += frame->layer_rows) {
+        struct soft_band part = *band;
+        part.first_row += row;
+        part.n_rows = band->n_rows - row < frame->layer_rows ? band->n_rows - row : frame->layer_rows;
+        for (size_t i = 0; i < n; i++) {
+            struct soft_layer *layer = &layers[i];
+            layer->depth = part.depth = (float *)(void *)scratch->layers + i * n_layer;
+            layer->color = part.color = scratch->layers + scratch->n_layers + i * n_layer;
+            draw_item(frame, &items[i], &part, index, layer->range);
+        }
+        part.depth = band->depth + (size_t)row * (size_t)band->stride;
+        part.color = band->color + (size_t)row * (size_t)band->stride;
+        frame->renderer->kernels->compose(&part, layers, (int)n, is_exact ? (float)(2 * VISIBLE_RANK_DEPTH) : 0);
+    }
 }
 
 static void clear(const struct soft_band *band)
@@ -385,17 +436,15 @@ static void draw_bands(void *context, int part, int n_parts)
     (void)n_parts;
     for (size_t piece; (piece = atomic_fetch_add(&frame->next, 1)) < (size_t)frame->n_bands;) {
         int first = (int)piece * SOFT_BAND_ROWS, n = frame->height - first;
-        uint32_t *samples = renderer->samples[part];
+        const struct scratch *scratch = &renderer->scratch[part];
         struct soft_band band = { first, n < SOFT_BAND_ROWS ? n : SOFT_BAND_ROWS, frame->width, frame->width + SOFT_PADDING,
-                                  (float *)(void *)samples, samples + renderer->n_samples, samples + 2 * renderer->n_samples };
-        size_t at = 0;
+                                  (float *)(void *)scratch->band, scratch->band + scratch->n_band };
         clear(&band);
-        for (; at < frame->n_items && frame->items[at].is_opaque; at++)
-            draw_item(frame, &frame->items[at], &band, (int)piece);
+        for (size_t i = 0; i < frame->n_items - frame->n_translucent; i++)
+            draw_item(frame, &frame->items[i], &band, (int)piece, (int[2]){ 0, 0 });
         for (size_t i = 0; i < frame->n_planes; i++)
             soft_plane_draw(&frame->planes[i], renderer->kernels, &band);
-        for (; at < frame->n_items; at++)
-            draw_item(frame, &frame->items[at], &band, (int)piece);
+        draw_translucent(frame, scratch, &band, (int)piece);
         write_rows(frame, &band);
     }
 }
