@@ -8,7 +8,9 @@
 
 enum {
     FOLDER_NAME_SIZE = 512,   /* longest relative name, with its end */
-    FOLDER_MAX_ENTRIES = 4096 /* a listing ends here */
+    FOLDER_MAX_ENTRIES = 4096, /* a listing ends here */
+    FOLDER_MAX_FILES = 65536,  /* folder_walk ends here */
+    FOLDER_MAX_DEPTH = 8       /* folders in folders that folder_walk enters */
 };
 
 struct folder {
@@ -44,3 +46,21 @@ NODISCARD bool folder_read(const struct folder *folder, const char *name, uint64
  * The array and its names are the caller's: folder_free_names. errors ERROR_IO, ERROR_MEMORY */
 NODISCARD bool folder_list(const struct folder *folder, char ***names, size_t *n_names, struct error *err);
 void folder_free_names(char **names, size_t n_names);
+
+/* One file below the folder, and what tells whether it has changed. */
+struct folder_file {
+    char *name; /* relative to the folder, "series-1/IM0001" */
+    uint64_t bytes, inode;
+    int64_t modified_ns; /* since 1970 */
+};
+struct folder_tree {
+    struct folder_file *files; /* sorted by the bytes of their names */
+    size_t n_files;
+    bool is_cut; /* there was more than FOLDER_MAX_FILES or deeper than FOLDER_MAX_DEPTH */
+};
+/* All plain files below a part of the folder ("" for all of it), without names that begin with a dot; links to folders are not
+ * followed, links to files are when they stay inside. Folders that is_skipped says yes to are left out (NULL: none).
+ * errors as folder_list; the caller calls folder_tree_finish, after a failure too */
+NODISCARD bool folder_walk(const struct folder *folder, const char *under, bool (*is_skipped)(const struct folder *folder, const char *name),
+                           struct folder_tree *tree, struct error *err);
+void folder_tree_finish(struct folder_tree *tree);

@@ -22,6 +22,10 @@ const char *part_format_word(enum part_format format); /* "NIfTI", "DICOM", ... 
 /* plan.json when it is there, else the files that can be told by their names. errors as plan_load */
 NODISCARD struct plan_file *plan_describe(const struct folder *folder, struct report *report, struct error *err);
 
+/* What the files of a folder without a plan.json are, those in folders below included (but folders that are plans of their own).
+ * errors as plan_load */
+NODISCARD struct plan_file *plan_recognise(const struct folder *folder, struct report *report, struct error *err);
+
 /* The file of univels beside a .uvh, or of pixels beside a .qhd: stem + ".uv.gz", stem + ".uv"; the packed one wins.
  * false when there is none. */
 bool part_find_data(const struct folder *folder, const char *header, const char *ending, char data[FOLDER_NAME_SIZE]);

@@ -5,6 +5,8 @@
     X("plan.recognised", "The folder has no plan.json; its parts were found by their file names.",                                 \
       "Check the parts; write a plan.json to name them and to give units.")                                                        \
     X("plan.ignored-file", "A file in the folder looks like a part but was not used.", "Name it in plan.json if it belongs to it.") \
+    X("plan.too-many-files", "The folder holds more files or deeper folders than are looked at.",                                  \
+      "Move what does not belong to the plan elsewhere, or name the parts in a plan.json.")                                        \
     X("plan.unknown-key", "plan.json has a key that is not known.", "Check its spelling.")                                         \
     X("geometry.assumed", "The file does not say where the grid lies in the patient.",                                             \
       "Left and right may be wrong: export again with an orientation.")                                                            \

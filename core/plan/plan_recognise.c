@@ -1,0 +1,273 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/formats/gzip.h"
+#include "core/formats/nifti.h"
+#include "core/formats/sera_rst.h"
+#include "core/formats/text.h"
+#include "core/plan/plan_nrrd.h"
+#include "core/plan/plan_parts.h"
+
+/* A folder without a plan.json: its files, and those in the folders below, become parts by what they are called and what they hold. */
+struct recognition {
+    const struct folder *folder;
+    struct plan_file *file;
+    struct report *report;
+    size_t n_dicom;
+};
+
+static bool nifti_is_whole(const struct folder *folder, const char *name)
+{
+    struct bytes head;
+    struct nifti_header header;
+    if (!folder_read(folder, name, UINT64_MAX, 1 << 16, &head, NULL))
+        return false;
+    bool is_read = nifti_peek(&head, name, &header, NULL, NULL);
+    bytes_free(&head);
+    return is_read && header.type != RAW_F32 && header.type != RAW_F64;
+}
+
+static bool nrrd_is_whole(const struct folder *folder, const char *name, bool *has_segments)
+{
+    struct nrrd_header header;
+    bool is_read = plan_nrrd_peek(folder, name, &header, NULL);
+    *has_segments = is_read && header.n_segments > 0;
+    nrrd_header_finish(&header);
+    return is_read && header.type != RAW_F32 && header.type != RAW_F64;
+}
+
+static bool is_spoken_of(const char *name, const char *const *words, size_t n_words)
+{
+    char low[FOLDER_NAME_SIZE];
+    size_t n = strlen(name);
+    for (size_t i = 0; i <= n; i++)
+        low[i] = name[i] >= 'A' && name[i] <= 'Z' ? (char)(name[i] - 'A' + 'a') : name[i];
+    for (size_t i = 0; i < n_words; i++)
+        if (strstr(low, words[i]))
+            return true;
+    return false;
+}
+
+static const char *base_name(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    return slash ? slash + 1 : name;
+}
+
+/* A file whose voxels are whole numbers and whose name speaks of labels, or that names segments itself. */
+static bool is_label_map(const struct folder *folder, const char *name, enum part_format format)
+{
+    static const char *const words[] = { "label", "seg", "univel", "mask" };
+    bool has_segments = false;
+    if (!(format == PART_NIFTI ? nifti_is_whole(folder, name) : nrrd_is_whole(folder, name, &has_segments)))
+        return false;
+    return has_segments || is_spoken_of(name, words, sizeof words / sizeof words[0]);
+}
+
+static bool is_dose_map(const char *name)
+{
+    static const char *const words[] = { "dose" };
+    return is_spoken_of(base_name(name), words, 1);
+}
+
+static bool is_rst(const struct folder *folder, const char *name)
+{
+    struct bytes head;
+    uint8_t text[RST_HEAD_BYTES];
+    struct rst_header header;
+    if (!folder_read(folder, name, UINT64_MAX, sizeof text, &head, NULL))
+        return false;
+    size_t n = head.size;
+    if (gzip_is(head.data, head.size))
+        n = gzip_head(head.data, head.size, text, sizeof text);
+    else
+        memcpy(text, head.data, n);
+    bytes_free(&head);
+    return rst_parse_header(text, n, name, &header, NULL);
+}
+
+static void set_name(char *out, size_t size, const char *name)
+{
+    text_clean(name, out, size);
+}
+
+static void ignore_one(struct recognition *all, const char *name, const char *why)
+{
+    report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "%s", why);
+}
+
+static void add_image(struct recognition *all, const char *name, const char *header)
+{
+    struct plan_file *file = all->file;
+    if (file->n_images >= PLAN_MAX_IMAGES) {
+        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "More than %d images; this one was not read.", PLAN_MAX_IMAGES);
+        return;
+    }
+    struct plan_file_image *image = &file->images[file->n_images++];
+    set_name(image->path, sizeof image->path, name);
+    set_name(image->header, sizeof image->header, header);
+}
+
+/* The list of names beside a label map: its own name with .json, else labels.json. */
+static void find_names(struct recognition *all, struct plan_file_region *region)
+{
+    char names[FOLDER_NAME_SIZE];
+    int folder = (int)(base_name(region->path) - region->path), stem = folder + (int)strcspn(region->path + folder, ".");
+    int n = snprintf(names, sizeof names, "%.*s.json", stem, region->path);
+    if (n > 0 && n < (int)sizeof names && folder_look(all->folder, names, NULL) == FOLDER_FILE)
+        memcpy(region->names, names, sizeof names);
+    n = snprintf(names, sizeof names, "%.*slabels.json", folder, region->path);
+    if (!region->names[0] && n > 0 && n < (int)sizeof names && folder_look(all->folder, names, NULL) == FOLDER_FILE)
+        memcpy(region->names, names, sizeof names);
+}
+
+static struct plan_file_region *add_region(struct recognition *all, const char *name)
+{
+    struct plan_file *file = all->file;
+    if (file->n_regions >= PLAN_FILE_MAX_PARTS) {
+        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "More than %d files of regions; this one was not read.",
+                   PLAN_FILE_MAX_PARTS);
+        return NULL;
+    }
+    struct plan_file_region *region = &file->regions[file->n_regions++];
+    set_name(region->path, sizeof region->path, name);
+    return region;
+}
+
+static void add_dose(struct recognition *all, const char *name)
+{
+    struct plan_file *file = all->file;
+    if (file->n_doses >= PLAN_MAX_DOSES) {
+        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "More than %d doses; this one was not read.", PLAN_MAX_DOSES);
+        return;
+    }
+    struct plan_file_dose *dose = &file->doses[file->n_doses++];
+    set_name(dose->components[0].path, FOLDER_NAME_SIZE, name);
+    dose->components[0].quantity = DOSE_TOTAL;
+    dose->n_components = 1;
+}
+
+static void add_grid(struct recognition *all, const char *name, enum part_format format)
+{
+    if (is_label_map(all->folder, name, format)) {
+        struct plan_file_region *region = add_region(all, name);
+        if (region)
+            find_names(all, region);
+    } else if (is_dose_map(name)) {
+        add_dose(all, name);
+    } else {
+        add_image(all, name, "");
+    }
+}
+
+static void add_qsh(struct recognition *all, const char *name)
+{
+    char data[FOLDER_NAME_SIZE];
+    if (!text_has_ending(name, ".qhd"))
+        return;
+    if (part_find_data(all->folder, name, ".qim", data))
+        add_image(all, data, name);
+    else
+        ignore_one(all, name, "There is no file of pixels beside it.");
+}
+
+static void recognise_file(struct recognition *all, const char *name)
+{
+    struct plan_file *file = all->file;
+    char data[FOLDER_NAME_SIZE];
+    enum part_format format = part_format_of(all->folder, name);
+    switch (format) {
+    case PART_NIFTI:
+    case PART_NRRD: add_grid(all, name, format); break;
+    case PART_UVH:
+        if (part_find_data(all->folder, name, ".uv", data))
+            (void)add_region(all, name);
+        else
+            ignore_one(all, name, "There is no file of univels beside it.");
+        break;
+    case PART_QSH: add_qsh(all, name); break;
+    case PART_PP:
+        if (file->n_tracks < PLAN_FILE_MAX_TRACKS)
+            set_name(file->tracks[file->n_tracks++].path, FOLDER_NAME_SIZE, name);
+        else
+            ignore_one(all, name, "More files of tracks than are read.");
+        break;
+    case PART_SERA_RST:
+        if (is_rst(all->folder, name))
+            add_dose(all, name);
+        else
+            ignore_one(all, name, "Named like a dose of SERA, but its header is another one's.");
+        break;
+    case PART_SERA_DOSE: ignore_one(all, name, "Dose contours of SERA; this version does not read them."); break;
+    case PART_DICOM: all->n_dicom++; break;
+    default:
+        if (text_has_ending(name, ".info") && !file->hierarchy[0])
+            set_name(file->hierarchy, sizeof file->hierarchy, name);
+    }
+}
+
+/* Why nothing was recognised, as far as the names tell. */
+static void explain_nothing(const struct folder *folder, const struct folder_tree *tree, size_t n_dicom, struct error *err)
+{
+    static const char *const archives[] = { ".tar", ".tar.gz", ".tgz", ".tar.xz", ".zip" };
+    char **names = NULL, inner[FOLDER_NAME_SIZE];
+    size_t n_names = 0;
+    if (n_dicom > 0) {
+        error_set(err, ERROR_UNSUPPORTED, "%zu DICOM files: DICOM is not read by this version", n_dicom);
+        return;
+    }
+    for (size_t i = 0; i < tree->n_files; i++)
+        for (size_t a = 0; a < sizeof archives / sizeof archives[0]; a++)
+            if (text_has_ending(tree->files[i].name, archives[a])) {
+                error_set(err, ERROR_UNSUPPORTED, "%s is an archive: unpack it first; nothing else in the folder is a plan",
+                          tree->files[i].name);
+                return;
+            }
+    error_set(err, ERROR_NOT_FOUND, "no plan.json, and no file in the folder is an image, regions or a dose that this version reads");
+    if (!folder_list(folder, &names, &n_names, NULL))
+        return;
+    for (size_t i = 0; i < n_names; i++) {
+        int n = snprintf(inner, sizeof inner, "%s/plan.json", names[i]);
+        if (n > 0 && n < (int)sizeof inner && folder_look(folder, inner, NULL) == FOLDER_FILE) {
+            error_set(err, ERROR_NOT_FOUND, "no plan itself, but the folder %s in it is one", names[i]);
+            break;
+        }
+    }
+    folder_free_names(names, n_names);
+}
+
+/* A plan of its own. */
+static bool is_plan(const struct folder *folder, const char *name)
+{
+    char inner[FOLDER_NAME_SIZE];
+    int n = snprintf(inner, sizeof inner, "%s/plan.json", name);
+    return n > 0 && n < (int)sizeof inner && folder_look(folder, inner, NULL) == FOLDER_FILE;
+}
+
+struct plan_file *plan_recognise(const struct folder *folder, struct report *report, struct error *err)
+{
+    struct folder_tree tree;
+    if (!folder_walk(folder, "", is_plan, &tree, err))
+        return NULL;
+    struct recognition all = { folder, mem_new(sizeof *all.file), report, 0 };
+    struct plan_file *file = all.file;
+    file->regions = mem_new(PLAN_FILE_MAX_PARTS * sizeof *file->regions);
+    for (size_t i = 0; i < tree.n_files; i++)
+        recognise_file(&all, tree.files[i].name);
+    plan_folder_name(folder->path, file->name, sizeof file->name);
+    if (tree.is_cut)
+        report_add(report, REPORT_WARNING, "plan.too-many-files", "", "Of the folder the first %d files down to %d folders deep were looked "
+                   "at; there are more.", FOLDER_MAX_FILES, FOLDER_MAX_DEPTH);
+    if (file->n_images + file->n_regions + file->n_doses == 0) {
+        explain_nothing(folder, &tree, all.n_dicom, err);
+        plan_file_destroy(file);
+        file = NULL;
+    } else {
+        report_add(report, REPORT_NOTE, "plan.recognised", "", "The folder has no plan.json; %zu images, %zu files of regions and %zu "
+                   "doses were found by their names.", file->n_images, file->n_regions, file->n_doses);
+    }
+    folder_tree_finish(&tree);
+    return file;
+}
