@@ -6,7 +6,7 @@
 
 #include "core/base/mem.h"
 #include "core/plan/plan.h"
-#include "core/plan/plan_meshes.h"
+#include "core/plan/plan_shapes.h"
 
 static inline struct grid made_grid(uint32_t ni, uint32_t nj, uint32_t nk, struct affine lps_mm_from_ijk)
 {
@@ -78,7 +78,7 @@ static inline struct plan *made_plan(const struct grid *grid, double (*label)(st
         region->rgb[2] = (uint8_t)regions[i].rgb;
     }
     region_set_measure(&plan->regions);
-    plan->meshes = plan_meshes_create(n_regions);
+    plan->shapes = plan_shapes_create(PLAN_SHAPE_BUDGET_BYTES);
     return plan;
 }
 

@@ -7,7 +7,7 @@
 #include "core/dose/dose.h"
 #include "core/plan/report.h"
 #include "core/region/region.h"
-#include "core/surface/surface.h"
+#include "core/surface/shape.h"
 #include "core/track/track.h"
 #include "core/volume/volume.h"
 
@@ -35,7 +35,7 @@ struct plan {
     struct report report;
     struct box3 bounds_lps_mm; /* of all regions, else of all images and doses */
     int64_t load_us;
-    struct plan_meshes *meshes; /* kept surfaces; see plan_surface */
+    struct plan_shapes *shapes; /* kept ones; see plan_shape */
 };
 
 /* Called from the loading thread as work goes on; phase is a short sentence fragment ("reading ct.nii.gz"), percent 0..100. */
@@ -78,18 +78,42 @@ void plan_summarize(const char *folder, struct plan_summary *summary);
 enum surface_detail { SURFACE_FULL, SURFACE_LIGHT };
 enum { PLAN_LIGHT_TRIANGLES = 80000 };
 
+/* What was built, for people to read. */
 struct surface_facts {
-    size_t n_triangles, n_vertices;
-    double area_mm2, volume_mm3, univel_volume_mm3; /* univel volume: of the mask the surface encloses, descendants included */
+    size_t n_triangles, n_vertices; /* vertices of triangles or of lines */
+    size_t n_lines, n_points;       /* closed outlines; points */
+    double area_mm2, volume_mm3;    /* of triangles; volume: enclosed */
+    double univel_volume_mm3;       /* of the mask the shape is made from, descendants included */
     uint64_t n_univels;
+    double distance_mean_mm, distance_max_mm; /* of the vertices from the border of the univels; not-a-number: not measured */
     double build_ms;
-    uint32_t reduction; /* 1 for FULL, and for a LIGHT one that any reduction would empty */
+    uint64_t n_bytes;   /* of memory */
+    uint32_t reduction; /* univels in one, along their shortest edge: 1 for FULL, and for a LIGHT one that any reduction would empty */
 };
 
-/* The surface of a region, built on first use and kept, with vertex normals. Any thread; the first caller builds, others wait.
- * With SURFACE_EIGHT_CELL it may have no triangle. One reference, the caller's. errors as surface_make */
+/* The shape of a region, built on first use and kept; triangles of a surface have vertex normals. Any thread; the first caller
+ * builds, others wait. What was not used for longest is dropped when all that is kept exceeds the budget; whoever holds a
+ * reference keeps it. Only surfaces have a LIGHT shape of their own, others are always FULL. By SURFACE_EIGHT_CELL there may be no
+ * triangle.
+ *
+ *   key      what is wanted; need not be normalised
+ *   facts    NULL: not wanted
+ *   returns  one reference, the caller's; NULL on failure
+ *   errors   ERROR_RANGE no such region, or one without a voxel; those of surface_make and shape_make */
+NODISCARD struct shape *plan_shape(struct plan *plan, size_t region, const struct shape_key *key, enum surface_detail detail,
+                                   struct surface_facts *facts, struct error *err);
+/* The same for surfaces, as their mesh. */
 NODISCARD struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,
                                     struct surface_facts *facts, struct error *err);
+
+/* Memory that kept shapes may take. */
+#define PLAN_SHAPE_BUDGET_BYTES ((uint64_t)1 << 30) /* unless set otherwise */
+struct plan_shape_usage {
+    size_t n_shapes;
+    uint64_t n_bytes, budget_bytes;
+};
+void plan_set_shape_budget(struct plan *plan, uint64_t n_bytes);
+void plan_shape_usage(struct plan *plan, struct plan_shape_usage *usage);
 
 /* What lies at a patient point. */
 struct probe_dose {

@@ -8,7 +8,7 @@
 #include "core/base/mem.h"
 #include "core/base/queue.h"
 #include "core/plan/plan_loading.h"
-#include "core/plan/plan_meshes.h"
+#include "core/plan/plan_shapes.h"
 
 /* A plan is loaded on a thread of its own, and the caller waits. So the caller can turn its back within LOOK_EVERY_MS whatever the
  * thread is in the middle of; that ends its file or slice, finds that nobody waits any more, and cleans up behind itself. */
@@ -84,7 +84,7 @@ static bool load(struct loading *loading)
     memcpy(plan->name, loading->file->name, sizeof plan->name);
     memcpy(plan->note, loading->file->note, sizeof plan->note);
     plan->is_phantom = loading->file->is_phantom;
-    plan->meshes = plan_meshes_create(plan->regions.n_regions);
+    plan->shapes = plan_shapes_create(PLAN_SHAPE_BUDGET_BYTES);
     return true;
 }
 
@@ -183,7 +183,7 @@ void plan_destroy(struct plan *plan)
 {
     if (!plan)
         return;
-    plan_meshes_destroy(plan->meshes);
+    plan_shapes_destroy(plan->shapes);
     for (size_t i = 0; i < plan->n_images; i++)
         volume_unref(plan->images[i].volume);
     region_set_finish(&plan->regions);

@@ -1,10 +1,13 @@
+/* Surfaces of regions: full ones, and lighter ones of the whole plan for moving pictures. */
+#include "core/plan/plan_surface.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
-#include "core/plan/plan_meshes.h"
+#include "core/plan/plan_shapes.h"
 #include "core/region/mask.h"
 #include "core/surface/surface.h"
 
@@ -22,22 +25,25 @@ static struct mesh *extract(enum surface_algorithm algorithm, const struct mask 
     return mesh;
 }
 
-/* The univel volume is that of the unreduced mask. */
-static void fill_facts(struct surface_facts *facts, const struct mesh *mesh, const struct mask *full, uint32_t reduction,
-                       int64_t started_us)
+/* Takes the mesh. The univels are those of the unreduced mask. */
+static struct shape *shape_of(struct mesh *mesh, const struct mask *full, uint32_t reduction, int64_t started_us,
+                              struct surface_facts *facts)
 {
-    facts->n_triangles = mesh->n_triangles;
-    facts->n_vertices = mesh->n_vertices;
-    facts->area_mm2 = mesh_area_mm2(mesh);
-    facts->volume_mm3 = mesh_volume_mm3(mesh);
-    facts->n_univels = mask_count(full);
+    struct shape *shape = mem_new(sizeof *shape);
+    atomic_init(&shape->references, 1);
+    shape->kind = SHAPE_TRIANGLES;
+    shape->mesh = mesh;
+    shape->bounds_lps_mm = mesh->bounds_lps_mm;
+    shape->n_bytes = sizeof *shape + sizeof *mesh + mesh->n_vertices * 6 * sizeof(float) + mesh->n_triangles * 3 * sizeof(uint32_t);
+    *facts = (struct surface_facts){ .n_univels = mask_count(full), .reduction = reduction };
     facts->univel_volume_mm3 = (double)facts->n_univels * fabs(affine_determinant(&full->lps_mm_from_ijk));
-    facts->reduction = reduction;
+    plan_count_shape(shape, facts);
     facts->build_ms = (double)(clock_now_us() - started_us) / 1000;
+    return shape;
 }
 
-static struct mesh *build_full(const struct plan *plan, size_t region, enum surface_algorithm algorithm, struct surface_facts *facts,
-                               struct error *err)
+struct shape *plan_build_surface(const struct plan *plan, size_t region, enum surface_algorithm algorithm, struct surface_facts *facts,
+                                 struct error *err)
 {
     int64_t started_us = clock_now_us();
     int n_threads = parallel_cores();
@@ -45,38 +51,43 @@ static struct mesh *build_full(const struct plan *plan, size_t region, enum surf
     if (!mask)
         return NULL;
     struct mesh *mesh = extract(algorithm, mask, n_threads, err);
-    if (mesh)
-        fill_facts(facts, mesh, mask, 1, started_us);
+    struct shape *shape = mesh ? shape_of(mesh, mask, 1, started_us, facts) : NULL;
     mask_destroy(mask);
-    if (!mesh && err)
-        error_prefix(err, "region \"%s\"", plan->regions.regions[region].name);
-    return mesh;
+    return shape;
 }
 
-/* The first caller builds under the slot's own lock; others wait for it. A failure is not kept: memory may come back. */
-static struct mesh *full_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, struct surface_facts *facts,
-                                 struct error *err)
+/* A small region that the 8-cell algorithm does not draw when reduced so far is reduced less: it must not vanish in motion. */
+struct shape *plan_build_light_surface(const struct plan *plan, size_t region, enum surface_algorithm algorithm, uint32_t reduction,
+                                       struct surface_facts *facts, struct error *err)
 {
-    struct plan_mesh *slot = &plan->meshes->of_region[region][algorithm][SURFACE_FULL];
-    pthread_mutex_lock(&slot->lock);
-    if (!slot->mesh)
-        slot->mesh = build_full(plan, region, algorithm, &slot->facts, err);
-    struct mesh *mesh = slot->mesh ? mesh_ref(slot->mesh) : NULL;
-    *facts = slot->facts;
-    pthread_mutex_unlock(&slot->lock);
-    return mesh;
+    int64_t started_us = clock_now_us();
+    struct mask *full = mask_from_region(&plan->regions, region, 1, err);
+    struct shape *shape = NULL;
+    for (uint32_t taken = reduction; full && !shape && taken > 0; taken--) {
+        struct mask *reduced = taken > 1 ? mask_reduce(full, taken, 1, err) : NULL;
+        struct mesh *mesh = taken == 1 || reduced ? extract(algorithm, reduced ? reduced : full, 1, err) : NULL;
+        mask_destroy(reduced);
+        if (!mesh)
+            break;
+        if (mesh->n_triangles > 0 || taken == 1)
+            shape = shape_of(mesh, full, taken, started_us, facts);
+        else
+            mesh_unref(mesh);
+    }
+    mask_destroy(full);
+    return shape;
 }
 
-/* ---- light surfaces: one reduction for the whole plan, so all of it is decided at once ---------------------------------- */
+/* ---- one reduction for the whole plan, so all of it is decided at once --------------------------------------------------- */
 
 /* What the reductions tried so far give, for one region. */
 struct ladder {
-    struct mesh *mesh[MAX_REDUCTION + 1];
+    struct shape *shape[MAX_REDUCTION + 1];
     struct surface_facts facts[MAX_REDUCTION + 1];
 };
 
 struct lighting {
-    const struct plan *plan;
+    struct plan *plan;
     enum surface_algorithm algorithm;
     struct ladder *ladders; /* [n_regions] */
     bool is_tried[MAX_REDUCTION + 1];
@@ -85,43 +96,21 @@ struct lighting {
     atomic_bool is_failed;
 };
 
-static struct mesh *extract_reduced(enum surface_algorithm algorithm, const struct mask *full, uint32_t factor)
-{
-    struct mask *mask = factor > 1 ? mask_reduce(full, factor, 1, NULL) : NULL;
-    struct mesh *mesh = factor == 1 || mask ? extract(algorithm, mask ? mask : full, 1, NULL) : NULL;
-    mask_destroy(mask);
-    return mesh;
-}
-
-/* A small region that the 8-cell algorithm does not draw when reduced so far is reduced less: it must not vanish in motion. */
-static bool reduce_region(const struct plan *plan, size_t region, enum surface_algorithm algorithm, uint32_t factor,
-                          struct ladder *ladder)
-{
-    int64_t started_us = clock_now_us();
-    if (plan->regions.regions[region].n_voxels == 0)
-        return true;
-    struct mask *full = mask_from_region(&plan->regions, region, 1, NULL);
-    uint32_t taken = factor;
-    struct mesh *mesh = full ? extract_reduced(algorithm, full, taken) : NULL;
-    while (mesh && mesh->n_triangles == 0 && taken > 1) {
-        mesh_unref(mesh);
-        mesh = extract_reduced(algorithm, full, --taken);
-    }
-    if (mesh)
-        fill_facts(&ladder->facts[factor], mesh, full, taken, started_us);
-    ladder->mesh[factor] = mesh;
-    mask_destroy(full);
-    return mesh != NULL;
-}
-
 static void reduce_some(void *context, int part, int n_parts)
 {
     (void)part;
     (void)n_parts;
     struct lighting *lighting = context;
-    for (size_t r; (r = atomic_fetch_add(&lighting->next, 1)) < lighting->plan->regions.n_regions;)
-        if (!reduce_region(lighting->plan, r, lighting->algorithm, lighting->factor, &lighting->ladders[r]))
+    const struct region_set *set = &lighting->plan->regions;
+    for (size_t r; (r = atomic_fetch_add(&lighting->next, 1)) < set->n_regions;) {
+        struct ladder *ladder = &lighting->ladders[r];
+        if (set->regions[r].n_voxels == 0)
+            continue;
+        ladder->shape[lighting->factor] = plan_build_light_surface(lighting->plan, r, lighting->algorithm, lighting->factor,
+                                                                   &ladder->facts[lighting->factor], NULL);
+        if (!ladder->shape[lighting->factor])
             atomic_store(&lighting->is_failed, true);
+    }
 }
 
 /* Triangles of the whole plan at a reduction; several regions are worked on at once. */
@@ -136,7 +125,7 @@ static size_t triangles_at(struct lighting *lighting, uint32_t factor)
         lighting->is_tried[factor] = true;
     }
     for (size_t r = 0; r < n_regions; r++)
-        n += lighting->ladders[r].facts[factor].n_triangles;
+        n += lighting->ladders[r].shape[factor] ? lighting->ladders[r].shape[factor]->mesh->n_triangles : 0;
     return n;
 }
 
@@ -164,73 +153,53 @@ static bool full_is_light(struct plan *plan, enum surface_algorithm algorithm, s
     if (n_at_two > PLAN_LIGHT_TRIANGLES / 3)
         return false;
     for (size_t r = 0; r < plan->regions.n_regions; r++) {
-        struct surface_facts facts;
         if (plan->regions.regions[r].n_voxels == 0)
             continue;
-        struct mesh *mesh = full_surface(plan, r, algorithm, &facts, NULL);
+        struct mesh *mesh = plan_surface(plan, r, algorithm, SURFACE_FULL, NULL, NULL);
         if (!mesh)
             return false;
+        n += mesh->n_triangles;
         mesh_unref(mesh);
-        n += facts.n_triangles;
     }
     return n <= PLAN_LIGHT_TRIANGLES;
 }
 
-/* Under the algorithm's lock. */
-static bool build_light(struct plan *plan, enum surface_algorithm algorithm, struct error *err)
+struct decision {
+    struct plan *plan;
+    enum surface_algorithm algorithm;
+};
+
+static uint32_t decide(void *context, struct error *err)
 {
+    const struct decision *decision = context;
+    struct plan *plan = decision->plan;
     size_t n_regions = plan->regions.n_regions;
-    struct lighting lighting = { .plan = plan, .algorithm = algorithm, .ladders = mem_new((n_regions + 1) * sizeof *lighting.ladders) };
+    struct lighting lighting = {
+        .plan = plan,
+        .algorithm = decision->algorithm,
+        .ladders = mem_new((n_regions + 1) * sizeof *lighting.ladders),
+    };
     atomic_init(&lighting.next, 0);
     atomic_init(&lighting.is_failed, false);
     size_t n_at_two = triangles_at(&lighting, 2);
-    uint32_t factor = full_is_light(plan, algorithm, n_at_two) ? 1 : find_reduction(&lighting, n_at_two);
+    uint32_t factor = full_is_light(plan, decision->algorithm, n_at_two) ? 1 : find_reduction(&lighting, n_at_two);
     bool is_built = !atomic_load(&lighting.is_failed);
     for (size_t r = 0; r < n_regions; r++) {
-        struct plan_mesh *slot = &plan->meshes->of_region[r][algorithm][SURFACE_LIGHT];
-        if (is_built && factor > 1 && lighting.ladders[r].mesh[factor]) {
-            slot->mesh = mesh_ref(lighting.ladders[r].mesh[factor]);
-            slot->facts = lighting.ladders[r].facts[factor];
-        }
+        struct ladder *ladder = &lighting.ladders[r];
+        struct shape_name name = { r, { .representation = REPRESENTATION_SURFACE, .algorithm = decision->algorithm }, SURFACE_LIGHT };
+        shape_key_normalise(&name.key);
+        if (is_built && factor > 1 && ladder->shape[factor])
+            plan_shapes_offer(plan->shapes, &name, ladder->shape[factor], &ladder->facts[factor]);
         for (uint32_t step = 2; step <= MAX_REDUCTION; step++)
-            mesh_unref(lighting.ladders[r].mesh[step]);
+            shape_unref(ladder->shape[step]);
     }
     free(lighting.ladders);
-    if (is_built)
-        plan->meshes->light[algorithm].reduction = factor;
-    return is_built || error_set(err, ERROR_MEMORY, "no memory for the lighter surfaces");
-}
-
-static struct mesh *light_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, struct surface_facts *facts,
-                                  struct error *err)
-{
-    struct plan_lightness *light = &plan->meshes->light[algorithm];
-    pthread_mutex_lock(&light->lock);
-    bool is_built = light->reduction > 0 || build_light(plan, algorithm, err);
-    bool is_full = light->reduction == 1;
-    pthread_mutex_unlock(&light->lock);
     if (!is_built)
-        return NULL;
-    if (is_full)
-        return full_surface(plan, region, algorithm, facts, err);
-    const struct plan_mesh *slot = &plan->meshes->of_region[region][algorithm][SURFACE_LIGHT]; /* frozen from here on */
-    *facts = slot->facts;
-    return mesh_ref(slot->mesh);
+        error_set(err, ERROR_MEMORY, "no memory for the lighter surfaces");
+    return is_built ? factor : 0;
 }
 
-struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,
-                          struct surface_facts *facts, struct error *err)
+uint32_t plan_light_reduction(struct plan *plan, enum surface_algorithm algorithm, struct error *err)
 {
-    struct surface_facts unwanted;
-    if (region >= plan->regions.n_regions) {
-        error_set(err, ERROR_RANGE, "region %zu; the plan has %zu", region, plan->regions.n_regions);
-        return NULL;
-    }
-    if (plan->regions.regions[region].n_voxels == 0) {
-        error_set(err, ERROR_RANGE, "the region \"%s\" has no voxel", plan->regions.regions[region].name);
-        return NULL;
-    }
-    facts = facts ? facts : &unwanted;
-    return detail == SURFACE_FULL ? full_surface(plan, region, algorithm, facts, err)
-                                  : light_surface(plan, region, algorithm, facts, err);
+    return plan_shapes_reduction(plan->shapes, algorithm, decide, &(struct decision){ plan, algorithm }, err);
 }

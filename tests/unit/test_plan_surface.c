@@ -97,11 +97,64 @@ static void seras_head_by_either_algorithm_in_full_and_light(void **state)
     plan_destroy(plan);
 }
 
+static struct shape *shape_of(struct plan *plan, size_t region, enum surface_algorithm algorithm, struct surface_facts *facts)
+{
+    struct error err = { 0 };
+    /* a field that surfaces do not use makes no other shape */
+    struct shape_key key = { .representation = REPRESENTATION_SURFACE, .algorithm = algorithm, .nurbs_order = 3 };
+    struct shape *shape = plan_shape(plan, region, &key, SURFACE_FULL, facts, &err);
+    assert_string_equal(err.text, "");
+    assert_non_null(shape);
+    return shape;
+}
+
+static void what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds_it(void **state)
+{
+    (void)state;
+    struct plan *plan = plan_of_boxes();
+    struct surface_facts facts;
+    struct plan_shape_usage usage;
+    plan_shape_usage(plan, &usage);
+    assert_int_equal(usage.n_shapes, 0);
+    assert_int_equal(usage.budget_bytes, PLAN_SHAPE_BUDGET_BYTES);
+    struct shape *small = shape_of(plan, 1, SURFACE_MARCHING_CUBES, &facts);
+    struct shape *lone = shape_of(plan, 2, SURFACE_MARCHING_CUBES, NULL);
+    struct shape *again = shape_of(plan, 1, SURFACE_MARCHING_CUBES, NULL); /* so the lone one is the oldest */
+    assert_ptr_equal(small, again);
+    assert_int_equal(facts.n_bytes, small->n_bytes);
+    assert_true(facts.n_bytes >= facts.n_triangles * 12 + facts.n_vertices * 24);
+    plan_shape_usage(plan, &usage);
+    assert_int_equal(usage.n_shapes, 2);
+    assert_int_equal(usage.n_bytes, small->n_bytes + lone->n_bytes);
+
+    plan_set_shape_budget(plan, usage.n_bytes - 1);
+    plan_shape_usage(plan, &usage);
+    assert_int_equal(usage.n_shapes, 1);
+    assert_int_equal(usage.n_bytes, small->n_bytes);
+    assert_int_equal(lone->mesh->n_triangles, 8); /* an octahedron still, as this test holds it */
+    struct shape *rebuilt = shape_of(plan, 2, SURFACE_MARCHING_CUBES, NULL); /* takes the place of the other */
+    assert_ptr_not_equal(rebuilt, lone);
+    assert_memory_equal(rebuilt->mesh->positions_lps_mm, lone->mesh->positions_lps_mm, 3 * 6 * sizeof(float));
+    plan_shape_usage(plan, &usage);
+    assert_int_equal(usage.n_shapes, 1);
+
+    plan_set_shape_budget(plan, 0); /* even then the newest is kept, or two who take turns would build without end */
+    shape_unref(shape_of(plan, 0, SURFACE_MARCHING_CUBES, NULL));
+    plan_shape_usage(plan, &usage);
+    assert_int_equal(usage.n_shapes, 1);
+    shape_unref(small);
+    shape_unref(again);
+    shape_unref(lone);
+    shape_unref(rebuilt);
+    plan_destroy(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(surfaces_are_kept_by_algorithm),
         cmocka_unit_test(a_small_region_does_not_vanish_in_motion),
+        cmocka_unit_test(what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds_it),
         cmocka_unit_test(seras_head_by_either_algorithm_in_full_and_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
