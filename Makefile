@@ -146,7 +146,7 @@ $(1)-programs: $$($(1)_BIN)
 endef
 $(eval $(call c_programs,unit,test,-lcmocka))
 $(B)/unit/test_renderer: | $(B)/beamroom-render
-$(B)/unit/test_confine: $(call obj,server/renderer/confine.c server/renderer/seccomp.c)
+$(B)/unit/test_confine $(B)/unit/test_dicom_file: $(call obj,server/renderer/confine.c server/renderer/seccomp.c)
 $(eval $(call c_programs,render,test,-lcmocka))
 $(eval $(call c_programs,bench,bench,))
 $(eval $(call c_programs,fuzz,fuzz,-fsanitize=fuzzer))

@@ -12,6 +12,7 @@ bool dicom_looks_like(const uint8_t *data, size_t size);
 enum {
     DICOM_MAX_FILE_MIB = 1024, /* larger files are refused */
     DICOM_MAX_DEPTH = 16,      /* of sequences in sequences */
+    DICOM_MAX_SIDE = 4096,     /* rows, columns: as a volume's */
     DICOM_UID_SIZE = 65
 };
 
@@ -19,9 +20,14 @@ struct dicom_file;
 struct dicom_item; /* the data set or an item of a sequence; borrowed from its file */
 
 enum dicom_extent {
-    DICOM_HEAD, /* elements before the pixel data; data may end anywhere after them */
+    DICOM_START, /* as many whole elements as data holds: of a first look at a file */
+    DICOM_HEAD,  /* elements before the pixel data; data may end anywhere after them */
     DICOM_WHOLE
 };
+
+/* Loads what the library under this takes from files of its own (the dictionary), registers decoders, silences it. Call before the
+ * process gives up its rights to files; every other call does it when nobody has. Any thread. */
+void dicom_prepare(void);
 
 /* data is borrowed as long as the file lives: pixels of native encodings are not copied.
  *   errors  ERROR_FORMAT not DICOM, cut short, an element longer than what holds it, too deep; ERROR_LIMIT, ERROR_MEMORY;
@@ -31,6 +37,7 @@ NODISCARD struct dicom_file *dicom_file_parse(const uint8_t *data, size_t size, 
 void dicom_file_destroy(struct dicom_file *file);
 const struct dicom_item *dicom_root(const struct dicom_file *file);
 const char *dicom_transfer_syntax(const struct dicom_file *file); /* UID; "" when the file does not say */
+bool dicom_is_cut(const struct dicom_file *file); /* DICOM_START: there are more elements before the pixels than data held */
 
 bool dicom_has(const struct dicom_item *item, uint32_t tag); /* present, with or without a value */
 /* The whole value as UTF-8 (by SpecificCharacterSet), without the padding, cut at a whole character; false and "" when it is absent
@@ -54,8 +61,18 @@ struct dicom_pixels {
 };
 /* What the image pixel module says, checked against what is there before anything is allocated.
  *   errors ERROR_FORMAT missing or contradicting, pixel data shorter than they say; ERROR_UNSUPPORTED colour, float pixels, an encoding
- *          that cannot be decoded (named); ERROR_LIMIT a side over VOLUME_MAX_SIDE */
+ *          that cannot be decoded (named); ERROR_LIMIT a side over DICOM_MAX_SIDE */
 NODISCARD bool dicom_pixels_look(const struct dicom_file *file, struct dicom_pixels *pixels, struct error *err);
 /* Stored values of one frame, [rows][columns] of bits_allocated, machine order, unused high bits cleared or sign-extended; out holds
  * rows * columns * bits_allocated / 8 bytes. Decodes what is compressed. errors as above and ERROR_MEMORY */
 NODISCARD bool dicom_pixels_read(const struct dicom_file *file, uint32_t frame, void *out, struct error *err);
+
+/* Where native pixels lie in the file, for a reader that takes them from there into its own memory: frame after frame, as in
+ * dicom_pixels_read but in the file's byte order and with the unused bits as they are. false: none, compressed or deflated. */
+struct dicom_stored {
+    uint64_t at, size;
+    bool is_swapped; /* not this machine's byte order */
+};
+bool dicom_pixels_stored(const struct dicom_file *file, struct dicom_stored *stored);
+/* Makes n stored values of this machine out of those of a file: byte order, place of the bits, sign. In place. */
+void dicom_pixels_unpack(const struct dicom_pixels *pixels, bool is_swapped, void *values, size_t n);

@@ -1,0 +1,652 @@
+// The shim over DCMTK: elements of a data set as plain C sees them. No exception leaves it.
+extern "C" {
+#include "core/formats/dicom/dicom_walk.h"
+}
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <iconv.h>
+
+#include <dcmtk/config/osconfig.h>
+
+#include <dcmtk/dcmdata/dcistrmb.h>
+#include <dcmtk/dcmdata/dcspchrs.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <dcmtk/oflog/oflog.h>
+
+#include "core/formats/dicom/dicom_decode.hh"
+
+struct dicom_item {
+    DcmItem *item;
+    dicom_file *file;
+    const dicom_item *parent;
+};
+
+struct dicom_file {
+    std::string name;
+    dicom_layout layout{};
+    DcmDataset data_set;
+    dicom_item root{};
+    std::unordered_map<const DcmObject *, std::vector<dicom_item>> sequences; // items of those asked for
+    std::string character_set;                                                // what converter converts from
+    std::unique_ptr<DcmSpecificCharacterSet> converter;                       // NULL: not a set we know
+    bool has_converter = false;
+    std::vector<dicom_fragment> fragments; // of compressed pixels, the table of offsets first
+    std::vector<size_t> first_fragments;   // of each frame
+    bool has_frames = false;
+    ~dicom_file() { free(layout.inflated); }
+};
+
+namespace {
+
+DcmTagKey key_of(uint32_t tag) { return DcmTagKey(Uint16(tag >> 16), Uint16(tag & 0xFFFF)); }
+
+DcmElement *find(const dicom_item *item, uint32_t tag)
+{
+    DcmElement *element = nullptr;
+    if (!item || item->item->findAndGetElement(key_of(tag), element, OFFalse).bad())
+        return nullptr;
+    return element;
+}
+
+enum class values { none, text, binary };
+
+values values_of(DcmElement &element)
+{
+    switch (element.ident()) {
+    case EVR_AE: case EVR_AS: case EVR_CS: case EVR_DA: case EVR_DS: case EVR_DT: case EVR_IS: case EVR_LO: case EVR_LT: case EVR_PN:
+    case EVR_SH: case EVR_ST: case EVR_TM: case EVR_UC: case EVR_UI: case EVR_UR: case EVR_UT:
+        return values::text;
+    case EVR_AT: case EVR_FD: case EVR_FL: case EVR_SL: case EVR_SS: case EVR_UL: case EVR_US: case EVR_up: case EVR_xs: case EVR_lt:
+        return values::binary;
+    default:
+        return values::none;
+    }
+}
+
+// The bytes of a text element where they lie.
+bool raw_text(DcmElement &element, const char **text, size_t *size)
+{
+    if (values_of(element) == values::text) {
+        char *found = nullptr;
+        Uint32 length = 0;
+        if (element.getString(found, length).bad() || !found)
+            return false;
+        *text = found;
+        *size = length;
+        return true;
+    }
+    if (element.ident() == EVR_UN || element.ident() == EVR_OB) { // a kind the file does not say
+        Uint8 *found = nullptr;
+        if (element.getUint8Array(found).bad() || !found)
+            return false;
+        *text = reinterpret_cast<const char *>(found);
+        *size = element.getLength();
+        return true;
+    }
+    return false;
+}
+
+bool is_ascii(const char *text, size_t size)
+{
+    return std::all_of(text, text + size, [](char c) { return static_cast<unsigned char>(c) < 128 && c != 27; });
+}
+
+// Length of the character at p, 0 when it is not UTF-8. RFC 3629, table 3-7 of the Unicode standard.
+size_t utf8_length(const unsigned char *p, size_t left)
+{
+    if (p[0] < 0x80)
+        return 1;
+    size_t n = p[0] >= 0xC2 && p[0] <= 0xDF ? 2 : (p[0] & 0xF0) == 0xE0 ? 3 : p[0] >= 0xF0 && p[0] <= 0xF4 ? 4 : 0;
+    if (n == 0 || n > left)
+        return 0;
+    unsigned low = p[0] == 0xE0 ? 0xA0 : p[0] == 0xF0 ? 0x90 : 0x80, high = p[0] == 0xED ? 0x9F : p[0] == 0xF4 ? 0x8F : 0xBF;
+    for (size_t i = 1; i < n; i++, low = 0x80, high = 0xBF)
+        if (p[i] < low || p[i] > high)
+            return 0;
+    return n;
+}
+
+bool is_utf8(const std::string &text)
+{
+    for (size_t at = 0, n; at < text.size(); at += n)
+        if ((n = utf8_length(reinterpret_cast<const unsigned char *>(text.data()) + at, text.size() - at)) == 0)
+            return false;
+    return true;
+}
+
+std::string from_latin1(const std::string &text)
+{
+    std::string out;
+    for (char c : text) {
+        auto byte = static_cast<unsigned char>(c);
+        if (byte < 128) {
+            out += c;
+        } else {
+            out += static_cast<char>(0xC0 | byte >> 6);
+            out += static_cast<char>(0x80 | (byte & 0x3F));
+        }
+    }
+    return out;
+}
+
+// Escape sequences of Japanese sets (ISO-IR 6, 14, 87, 159), which DCMTK over the C library's iconv does not know by their own names.
+bool from_iso2022(const std::string &text, std::string &out)
+{
+    iconv_t converter = iconv_open("UTF-8", "ISO-2022-JP-2");
+    if (converter == reinterpret_cast<iconv_t>(-1))
+        return false;
+    std::string from = text;
+    out.resize(4 * text.size() + 16);
+    char *in = from.data(), *to = out.data();
+    size_t in_left = from.size(), out_left = out.size();
+    bool is_converted = iconv(converter, &in, &in_left, &to, &out_left) != static_cast<size_t>(-1);
+    iconv_close(converter);
+    out.resize(out.size() - out_left);
+    return is_converted && is_utf8(out);
+}
+
+// The character set in force in an item: its own or that of what holds it.
+std::string character_set_of(const dicom_item *item)
+{
+    for (; item; item = item->parent) {
+        DcmElement *element = find(item, 0x00080005);
+        const char *text;
+        size_t size;
+        if (element && raw_text(*element, &text, &size) && size > 0 && size < 1024)
+            return std::string(text, size);
+    }
+    return "";
+}
+
+// What cannot be converted by what the file says is taken for UTF-8 when it is that, else for Latin-1: files without a word on their
+// characters are common, and a readable name is better than none.
+std::string to_utf8(const dicom_item *item, std::string text)
+{
+    dicom_file &file = *item->file;
+    std::string wanted = character_set_of(item);
+    if (!file.has_converter || file.character_set != wanted) {
+        file.converter = std::make_unique<DcmSpecificCharacterSet>();
+        if (wanted.empty() || file.converter->selectCharacterSet(wanted.c_str()).bad())
+            file.converter.reset();
+        file.character_set = wanted;
+        file.has_converter = true;
+    }
+    OFString converted;
+    if (file.converter && file.converter->convertString(text.data(), text.size(), converted, "\\^=").good()) {
+        std::string out(converted.c_str(), converted.size());
+        if (is_utf8(out))
+            return out;
+    }
+    std::string out;
+    if (text.find('\x1B') != std::string::npos && from_iso2022(text, out))
+        return out;
+    return is_utf8(text) ? text : from_latin1(text);
+}
+
+bool is_padding(char c) { return c == ' ' || c == 0 || c == '\t' || c == '\r' || c == '\n'; }
+
+bool put_text(const std::string &text, char *out, size_t size)
+{
+    size_t from = 0, end = text.size();
+    while (end > from && is_padding(text[end - 1]))
+        end--;
+    while (from < end && is_padding(text[from]))
+        from++;
+    size_t n = 0;
+    while (from < end) {
+        auto *p = reinterpret_cast<const unsigned char *>(text.data()) + from;
+        size_t length = utf8_length(p, end - from);
+        if (length == 0 || n + length >= size)
+            break;
+        bool is_control = p[0] < 32 || p[0] == 127 || (p[0] == 0xC2 && length == 2 && p[1] < 0xA0);
+        if (is_control) {
+            out[n++] = ' ';
+        } else {
+            std::memcpy(out + n, p, length);
+            n += length;
+        }
+        from += length;
+    }
+    out[n] = 0;
+    return n > 0;
+}
+
+bool get_text(const dicom_item *item, uint32_t tag, bool is_one, size_t index, char *out, size_t size)
+{
+    if (size == 0)
+        return false;
+    out[0] = 0;
+    DcmElement *element = find(item, tag);
+    const char *raw;
+    size_t raw_size;
+    if (!element)
+        return false;
+    if (!raw_text(*element, &raw, &raw_size)) {
+        double number;
+        std::vector<double> all(is_one ? index + 1 : 1);
+        if (values_of(*element) != values::binary || dicom_numbers(item, tag, all.data(), all.size()) < all.size())
+            return false;
+        number = all.back();
+        return snprintf(out, size, "%.17g", number) > 0;
+    }
+    std::string text(raw, std::min<size_t>(raw_size, 1 << 20)); // nobody asks for more than a description
+    if (!is_ascii(text.data(), text.size()))
+        text = to_utf8(item, std::move(text));
+    size_t from = 0;
+    if (is_one) {
+        for (; index > 0; index--) {
+            from = text.find('\\', from);
+            if (from == std::string::npos)
+                return false;
+            from++;
+        }
+        size_t end = text.find('\\', from);
+        text = text.substr(from, end == std::string::npos ? end : end - from);
+    }
+    return put_text(text, out, size);
+}
+
+// Decimal strings as people write them: blanks around, a leading plus; else not-a-number. Knows no locale.
+double number_from(const char *from, const char *end)
+{
+    while (from < end && is_padding(*from))
+        from++;
+    while (end > from && is_padding(end[-1]))
+        end--;
+    if (end - from > 1 && *from == '+' && from[1] != '-')
+        from++;
+    double value;
+    auto [stop, error] = std::from_chars(from, end, value);
+    bool is_digits = from < end && (*from == '-' || *from == '.' || (*from >= '0' && *from <= '9')); // not "inf", "nan"
+    if (stop != end || !is_digits || error != std::errc())
+        return std::numeric_limits<double>::quiet_NaN();
+    return value;
+}
+
+size_t numbers_from_text(const char *text, size_t size, double *out, size_t most)
+{
+    while (size > 0 && is_padding(text[size - 1]))
+        size--;
+    if (size == 0)
+        return 0;
+    size_t n = 0;
+    const char *end = text + size;
+    for (const char *from = text;; n++) {
+        auto *stop = static_cast<const char *>(std::memchr(from, '\\', size_t(end - from)));
+        if (n < most)
+            out[n] = number_from(from, stop ? stop : end);
+        if (!stop)
+            return n + 1;
+        from = stop + 1;
+    }
+}
+
+template <typename T> size_t copy_numbers(const T *from, size_t n_bytes, double *out, size_t most)
+{
+    size_t n = from ? n_bytes / sizeof(T) : 0;
+    for (size_t i = 0; i < n && i < most; i++)
+        out[i] = static_cast<double>(from[i]);
+    return n;
+}
+
+size_t binary_numbers(DcmElement &element, double *out, size_t most)
+{
+    size_t bytes = element.getLength();
+    switch (element.ident()) {
+    case EVR_FD: { Float64 *p = nullptr; return element.getFloat64Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
+    case EVR_FL: { Float32 *p = nullptr; return element.getFloat32Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
+    case EVR_SL: { Sint32 *p = nullptr; return element.getSint32Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
+    case EVR_SS: { Sint16 *p = nullptr; return element.getSint16Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
+    case EVR_UL: case EVR_up: { Uint32 *p = nullptr; return element.getUint32Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
+    case EVR_US: case EVR_xs: { Uint16 *p = nullptr; return element.getUint16Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
+    case EVR_AT: {
+        Uint16 *p = nullptr;
+        size_t n = element.getUint16Array(p).good() && p ? bytes / 4 : 0;
+        for (size_t i = 0; i < n && i < most; i++)
+            out[i] = p[2 * i] * 65536.0 + p[2 * i + 1];
+        return n;
+    }
+    default:
+        return 0;
+    }
+}
+
+// Runs what may throw; what it throws becomes the answer given.
+template <typename F, typename R> R guarded(R on_throw, F run) noexcept
+{
+    try {
+        return run();
+    } catch (...) {
+        return on_throw;
+    }
+}
+
+template <typename F> bool guarded_call(const char *name, error *err, F run) noexcept
+{
+    try {
+        return run();
+    } catch (const std::bad_alloc &) {
+        return error_set(err, ERROR_MEMORY, "%s: no memory for what the file holds", name);
+    } catch (...) {
+        return error_set(err, ERROR_FORMAT, "%s: cannot be read", name);
+    }
+}
+
+void prepare()
+{
+    static std::once_flag once;
+    std::call_once(once, [] {
+        OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+        dcmEnableUnknownVRConversion.set(OFTrue); // UN with a known tag is what the dictionary says
+        dcmEnableAutomaticInputDataCorrection.set(OFTrue);
+        dcmEnableVRCheckerForStringValues.set(OFFalse);
+        (void)dcmDataDict.isDictionaryLoaded(); // the first question loads it
+        dicom_decoders_register();
+    });
+}
+
+bool parse(dicom_file &file, const uint8_t *data, size_t size, dicom_extent extent, error *err)
+{
+    const char *name = file.name.c_str();
+    if (!dicom_walk(data, size, name, extent, &file.layout, err))
+        return false;
+    const dicom_layout &layout = file.layout;
+    if (layout.end > layout.begin) {
+        DcmInputBufferStream stream;
+        stream.setBuffer(layout.data + layout.begin, static_cast<offile_off_t>(layout.end - layout.begin));
+        stream.setEos();
+        E_TransferSyntax xfer = layout.is_implicit    ? EXS_LittleEndianImplicit
+                                : layout.is_big_endian ? EXS_BigEndianExplicit
+                                                       : EXS_LittleEndianExplicit;
+        file.data_set.transferInit();
+        OFCondition condition = file.data_set.read(stream, xfer, EGL_noChange);
+        file.data_set.transferEnd();
+        if (condition.bad())
+            return error_set(err, ERROR_FORMAT, "%s: byte %lld: the data set cannot be read: %.80s", name,
+                             static_cast<long long>(layout.begin) + static_cast<long long>(stream.tell()), condition.text());
+    }
+    file.root = { &file.data_set, &file, nullptr };
+    return true;
+}
+
+// The fragments, and which of them begin a frame.
+bool find_frames(dicom_file &file, const dicom_pixels &pixels, error *err)
+{
+    if (file.has_frames)
+        return true;
+    size_t n = 0;
+    if (!dicom_walk_fragments(&file.layout, file.name.c_str(), nullptr, 0, &n, err))
+        return false;
+    file.fragments.resize(n);
+    if (!dicom_walk_fragments(&file.layout, file.name.c_str(), file.fragments.data(), n, &n, err))
+        return false;
+    if (n < 1 + size_t(pixels.n_frames))
+        return error_set(err, ERROR_FORMAT, "%s: %zu fragments of compressed pixels for %u frames", file.name.c_str(), n > 0 ? n - 1 : 0,
+                         pixels.n_frames);
+    file.first_fragments.clear();
+    if (pixels.n_frames == 1 || n - 1 == pixels.n_frames) {
+        for (size_t i = 0; i < pixels.n_frames; i++)
+            file.first_fragments.push_back(1 + i);
+    } else { // by the table of offsets: positions from the first fragment's own tag
+        const dicom_fragment table = file.fragments[0];
+        size_t base = file.fragments[1].at - 8, fragment = 1;
+        for (size_t i = 0; i < pixels.n_frames && 4 * i + 4 <= table.size; i++) {
+            const uint8_t *p = file.layout.data + table.at + 4 * i;
+            size_t at = base + (size_t(p[0]) | size_t(p[1]) << 8 | size_t(p[2]) << 16 | size_t(p[3]) << 24);
+            while (fragment < n && file.fragments[fragment].at - 8 < at)
+                fragment++;
+            if (fragment < n && file.fragments[fragment].at - 8 == at)
+                file.first_fragments.push_back(fragment);
+        }
+        if (file.first_fragments.size() != pixels.n_frames)
+            return error_set(err, ERROR_FORMAT, "%s: %zu fragments for %u frames, and no table says which are whose", file.name.c_str(), n - 1,
+                             pixels.n_frames);
+    }
+    file.first_fragments.push_back(n);
+    file.has_frames = true;
+    return true;
+}
+
+bool need_integer(const dicom_file *file, uint32_t tag, const char *what, int64_t low, int64_t high, uint32_t *out, error *err)
+{
+    int64_t value = 0;
+    if (!dicom_integer(&file->root, tag, &value))
+        return error_set(err, ERROR_FORMAT, "%s: element (%04X,%04X), %s: expected a whole number, found none", file->name.c_str(), tag >> 16,
+                         tag & 0xFFFF, what);
+    if (value < low || value > high)
+        return error_set(err, value > high ? ERROR_LIMIT : ERROR_FORMAT, "%s: element (%04X,%04X), %s: found %lld, expected %lld to %lld",
+                         file->name.c_str(), tag >> 16, tag & 0xFFFF, what, static_cast<long long>(value), static_cast<long long>(low),
+                         static_cast<long long>(high));
+    *out = static_cast<uint32_t>(value);
+    return true;
+}
+
+uint32_t optional_integer(const dicom_file *file, uint32_t tag, uint32_t otherwise)
+{
+    int64_t value;
+    return dicom_integer(&file->root, tag, &value) && value >= 0 && value <= INT32_MAX ? static_cast<uint32_t>(value) : otherwise;
+}
+
+bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
+{
+    const char *name = file->name.c_str();
+    const dicom_layout &layout = file->layout;
+    *pixels = dicom_pixels{};
+    if (layout.has_float_pixels)
+        return error_set(err, ERROR_UNSUPPORTED, "%s: its pixels are floating-point numbers; only whole ones are read", name);
+    if (!layout.has_pixels)
+        return error_set(err, ERROR_FORMAT, "%s: expected pixel data (7FE0,0010), found none", name);
+    if (!need_integer(file, 0x00280010, "rows", 1, DICOM_MAX_SIDE, &pixels->rows, err) ||
+        !need_integer(file, 0x00280011, "columns", 1, DICOM_MAX_SIDE, &pixels->columns, err) ||
+        !need_integer(file, 0x00280100, "bits allocated", 1, 64, &pixels->bits_allocated, err))
+        return false;
+    if (pixels->bits_allocated != 8 && pixels->bits_allocated != 16 && pixels->bits_allocated != 32)
+        return error_set(err, ERROR_UNSUPPORTED, "%s: element (0028,0100), bits allocated: found %u, expected 8, 16 or 32", name,
+                         pixels->bits_allocated);
+    pixels->n_samples = optional_integer(file, 0x00280002, 1);
+    char color[20];
+    if (!dicom_text(&file->root, 0x00280004, color, sizeof color))
+        std::strcpy(color, "MONOCHROME2");
+    pixels->is_monochrome1 = std::strcmp(color, "MONOCHROME1") == 0;
+    if (pixels->n_samples != 1 || (!pixels->is_monochrome1 && std::strcmp(color, "MONOCHROME2") != 0))
+        return error_set(err, ERROR_UNSUPPORTED, "%s: a colour picture (%s, %u samples a pixel); only grey ones are read", name, color,
+                         pixels->n_samples);
+    pixels->bits_stored = optional_integer(file, 0x00280101, pixels->bits_allocated);
+    pixels->high_bit = optional_integer(file, 0x00280102, pixels->bits_stored - 1);
+    pixels->is_signed = optional_integer(file, 0x00280103, 0) == 1;
+    if (pixels->bits_stored < 1 || pixels->bits_stored > pixels->bits_allocated || pixels->high_bit >= pixels->bits_allocated ||
+        pixels->high_bit + 1 < pixels->bits_stored)
+        return error_set(err, ERROR_FORMAT, "%s: elements (0028,0100) to (0028,0102): %u bits up to bit %u do not fit into %u", name,
+                         pixels->bits_stored, pixels->high_bit, pixels->bits_allocated);
+    pixels->n_frames = 1;
+    if (dicom_has(&file->root, 0x00280008) && !need_integer(file, 0x00280008, "number of frames", 1, INT32_MAX, &pixels->n_frames, err))
+        return false;
+    if (layout.is_encapsulated) {
+        const char *encoding;
+        if (!dicom_can_decode(layout.transfer_syntax, &encoding))
+            return error_set(err, ERROR_UNSUPPORTED, "%s: its pixels are encoded as %s (%s), which is not read", name, encoding,
+                             layout.transfer_syntax);
+        return true;
+    }
+    uint64_t frame = uint64_t(pixels->rows) * pixels->columns * (pixels->bits_allocated / 8);
+    uint64_t needed = frame * pixels->n_frames;
+    if (layout.pixels_size < needed)
+        return error_set(err, ERROR_FORMAT, "%s: byte %zu: pixel data of %llu bytes; %u x %u x %u pixels of %u bits need %llu", name,
+                         layout.pixels_at, static_cast<unsigned long long>(layout.pixels_size), pixels->columns, pixels->rows, pixels->n_frames,
+                         pixels->bits_allocated, static_cast<unsigned long long>(needed));
+    return true;
+}
+
+bool read_frame(dicom_file &file, uint32_t frame, void *out, error *err)
+{
+    dicom_pixels pixels;
+    if (!look(&file, &pixels, err))
+        return false;
+    const char *name = file.name.c_str();
+    const dicom_layout &layout = file.layout;
+    if (frame >= pixels.n_frames)
+        return error_set(err, ERROR_RANGE, "%s: frame %u of %u", name, frame, pixels.n_frames);
+    size_t n = size_t(pixels.rows) * pixels.columns, bytes = n * (pixels.bits_allocated / 8);
+    if (layout.is_encapsulated) {
+        if (!find_frames(file, pixels, err))
+            return false;
+        std::vector<dicom_fragment> own(file.fragments.begin() + static_cast<std::ptrdiff_t>(file.first_fragments[frame]),
+                                        file.fragments.begin() + static_cast<std::ptrdiff_t>(file.first_fragments[frame + 1]));
+        if (!dicom_decode_frame(layout, pixels, name, own, out, err))
+            return false;
+        dicom_pixels_unpack(&pixels, false, out, n);
+        return true;
+    }
+    uint64_t at = layout.pixels_at + uint64_t(frame) * bytes;
+    if (at > layout.size || bytes > layout.size - at)
+        return error_set(err, ERROR_FORMAT, "%s: byte %llu: frame %u needs %zu bytes, the file ends at %zu", name,
+                         static_cast<unsigned long long>(at), frame, bytes, layout.size);
+    std::memcpy(out, layout.data + at, bytes);
+    dicom_pixels_unpack(&pixels, layout.is_big_endian && (pixels.bits_allocated > 8), out, n);
+    return true;
+}
+
+} // namespace
+
+extern "C" {
+
+void dicom_prepare(void)
+{
+    guarded(0, [] { prepare(); return 0; });
+}
+
+struct dicom_file *dicom_file_parse(const uint8_t *data, size_t size, const char *name, enum dicom_extent extent, struct error *err)
+{
+    std::unique_ptr<dicom_file> file;
+    bool is_parsed = guarded_call(name, err, [&] {
+        prepare();
+        file = std::make_unique<dicom_file>();
+        file->name = name;
+        return parse(*file, data, size, extent, err);
+    });
+    return is_parsed ? file.release() : nullptr;
+}
+
+void dicom_file_destroy(struct dicom_file *file) { guarded(0, [&] { delete file; return 0; }); }
+
+const struct dicom_item *dicom_root(const struct dicom_file *file) { return &file->root; }
+
+const char *dicom_transfer_syntax(const struct dicom_file *file) { return file->layout.transfer_syntax; }
+
+bool dicom_is_cut(const struct dicom_file *file) { return file->layout.is_cut; }
+
+bool dicom_has(const struct dicom_item *item, uint32_t tag)
+{
+    if (item && !item->parent && (tag == 0x7FE00010 || tag == 0x7FE00008 || tag == 0x7FE00009))
+        return tag == 0x7FE00010 ? item->file->layout.has_pixels : item->file->layout.has_float_pixels;
+    return guarded(false, [&] { return find(item, tag) != nullptr; });
+}
+
+bool dicom_text(const struct dicom_item *item, uint32_t tag, char *out, size_t size)
+{
+    return guarded(false, [&] { return get_text(item, tag, false, 0, out, size); });
+}
+
+bool dicom_text_at(const struct dicom_item *item, uint32_t tag, size_t index, char *out, size_t size)
+{
+    return guarded(false, [&] { return get_text(item, tag, true, index, out, size); });
+}
+
+size_t dicom_numbers(const struct dicom_item *item, uint32_t tag, double *out, size_t most)
+{
+    return guarded(size_t(0), [&]() -> size_t {
+        DcmElement *element = find(item, tag);
+        const char *text;
+        size_t size;
+        if (!element)
+            return 0;
+        if (values_of(*element) == values::binary)
+            return binary_numbers(*element, out, most);
+        return raw_text(*element, &text, &size) ? numbers_from_text(text, size, out, most) : 0;
+    });
+}
+
+bool dicom_number(const struct dicom_item *item, uint32_t tag, double *value)
+{
+    double first;
+    if (dicom_numbers(item, tag, &first, 1) < 1 || !std::isfinite(first))
+        return false;
+    *value = first;
+    return true;
+}
+
+bool dicom_integer(const struct dicom_item *item, uint32_t tag, int64_t *value)
+{
+    double first;
+    if (!dicom_number(item, tag, &first) || first != std::floor(first) || std::fabs(first) > 9007199254740992.0)
+        return false;
+    *value = static_cast<int64_t>(first);
+    return true;
+}
+
+static std::vector<dicom_item> *items_of(const struct dicom_item *item, uint32_t tag)
+{
+    DcmElement *element = find(item, tag);
+    if (!element || element->ident() != EVR_SQ)
+        return nullptr;
+    auto &sequences = item->file->sequences;
+    auto known = sequences.find(element);
+    if (known != sequences.end())
+        return &known->second;
+    auto &items = sequences[element];
+    auto *sequence = static_cast<DcmSequenceOfItems *>(element);
+    items.reserve(sequence->card());
+    for (DcmObject *object = nullptr; (object = sequence->nextInContainer(object));)
+        items.push_back({ static_cast<DcmItem *>(object), item->file, item });
+    return &items;
+}
+
+size_t dicom_n_items(const struct dicom_item *item, uint32_t tag)
+{
+    return guarded(size_t(0), [&]() -> size_t {
+        auto *items = items_of(item, tag);
+        return items ? items->size() : 0;
+    });
+}
+
+const struct dicom_item *dicom_item_at(const struct dicom_item *item, uint32_t tag, size_t index)
+{
+    return guarded(static_cast<const dicom_item *>(nullptr), [&]() -> const dicom_item * {
+        auto *items = items_of(item, tag);
+        return items && index < items->size() ? &(*items)[index] : nullptr;
+    });
+}
+
+bool dicom_pixels_look(const struct dicom_file *file, struct dicom_pixels *pixels, struct error *err)
+{
+    return guarded_call(file->name.c_str(), err, [&] { return look(file, pixels, err); });
+}
+
+bool dicom_pixels_read(const struct dicom_file *file, uint32_t frame, void *out, struct error *err)
+{
+    // the fragments found are kept for the next frame: a file is read by one thread at a time
+    return guarded_call(file->name.c_str(), err, [&] { return read_frame(*const_cast<dicom_file *>(file), frame, out, err); });
+}
+
+bool dicom_pixels_stored(const struct dicom_file *file, struct dicom_stored *stored)
+{
+    const dicom_layout &layout = file->layout;
+    if (!layout.has_pixels || layout.is_encapsulated || layout.inflated)
+        return false;
+    *stored = { layout.pixels_at, layout.pixels_size, layout.is_big_endian };
+    return true;
+}
+
+} // extern "C"

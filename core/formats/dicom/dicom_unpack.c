@@ -1,0 +1,44 @@
+/* Stored values out of the cells a file keeps them in. PS3.5 8.1.1. */
+#include "core/formats/dicom/dicom_file.h"
+#include "core/volume/volume.h"
+
+_Static_assert((int)DICOM_MAX_SIDE == (int)VOLUME_MAX_SIDE, "a picture that is read fits into a volume");
+
+static void swap16(uint16_t *values, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        values[i] = (uint16_t)(values[i] << 8 | values[i] >> 8);
+}
+
+static void swap32(uint32_t *values, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        values[i] = values[i] << 24 | (values[i] & 0xFF00) << 8 | (values[i] >> 8 & 0xFF00) | values[i] >> 24;
+}
+
+/* up, then down again: what lies above the value falls out, what lies below it too, and the sign is drawn over what is left */
+#define KEEP_BITS(signed_type, unsigned_type)                                                                                          \
+    do {                                                                                                                               \
+        unsigned_type *cells = values;                                                                                                 \
+        for (size_t i = 0; i < n; i++) {                                                                                               \
+            unsigned_type top = (unsigned_type)(cells[i] << up);                                                                       \
+            cells[i] = pixels->is_signed ? (unsigned_type)((signed_type)top >> down) : (unsigned_type)(top >> down);                   \
+        }                                                                                                                              \
+    } while (0)
+
+void dicom_pixels_unpack(const struct dicom_pixels *pixels, bool is_swapped, void *values, size_t n)
+{
+    if (is_swapped && pixels->bits_allocated == 16)
+        swap16(values, n);
+    if (is_swapped && pixels->bits_allocated == 32)
+        swap32(values, n);
+    int up = (int)(pixels->bits_allocated - 1 - pixels->high_bit), down = (int)(pixels->bits_allocated - pixels->bits_stored);
+    if (down == 0)
+        return;
+    if (pixels->bits_allocated == 8)
+        KEEP_BITS(int8_t, uint8_t);
+    else if (pixels->bits_allocated == 16)
+        KEEP_BITS(int16_t, uint16_t);
+    else
+        KEEP_BITS(int32_t, uint32_t);
+}
