@@ -1,8 +1,21 @@
 #include "core/dose/dose.h"
 
+#include <stdio.h>
 #include <string.h>
 
-static const char *const words[DOSE_N_QUANTITIES] = { "total", "boron", "nitrogen", "fast", "gamma" };
+static const char *const words[DOSE_N_QUANTITIES] = {
+    [DOSE_TOTAL] = "total",
+    [DOSE_BORON] = "boron",
+    [DOSE_NITROGEN] = "nitrogen",
+    [DOSE_FAST] = "fast",
+    [DOSE_GAMMA] = "gamma",
+    [DOSE_OTHER] = "other",
+    [DOSE_FAST_FLUENCE] = "fast-fluence",
+    [DOSE_EPITHERMAL_FLUENCE] = "epithermal-fluence",
+    [DOSE_THERMAL_FLUENCE] = "thermal-fluence",
+    [DOSE_BLOOD_BORON] = "blood-boron",
+    [DOSE_WEIGHTED_TOTAL] = "weighted-total",
+};
 
 const char *dose_quantity_word(enum dose_quantity quantity)
 {
@@ -17,6 +30,19 @@ bool dose_quantity_from_word(const char *word, enum dose_quantity *quantity)
             return true;
         }
     return false;
+}
+
+bool dose_quantity_is_fluence(enum dose_quantity quantity)
+{
+    return quantity == DOSE_FAST_FLUENCE || quantity == DOSE_EPITHERMAL_FLUENCE || quantity == DOSE_THERMAL_FLUENCE;
+}
+
+void dose_unit_of(const struct dose *dose, enum dose_quantity quantity, char unit[DOSE_UNIT_SIZE])
+{
+    if (dose_quantity_is_fluence(quantity))
+        snprintf(unit, DOSE_UNIT_SIZE, "1/cm2");
+    else
+        snprintf(unit, DOSE_UNIT_SIZE, "%s%s", dose->unit, quantity == DOSE_WEIGHTED_TOTAL && dose->unit[0] ? "(w)" : "");
 }
 
 void dose_finish(struct dose *dose)

@@ -2,14 +2,30 @@
 /* A dose as the plan gives it: components on their own grids, their unit and what they are per. No weights, no pictures. */
 #include "core/volume/volume.h"
 
-enum dose_quantity { DOSE_TOTAL, DOSE_BORON, DOSE_NITROGEN, DOSE_FAST, DOSE_GAMMA, DOSE_N_QUANTITIES };
-const char *dose_quantity_word(enum dose_quantity quantity); /* "total", "boron", ... */
+/* Physical doses, fluences, and two that a file may hold with weights already in them and no way to take them out. The last two
+ * have words of their own, and no sum may mix them with the others. */
+enum dose_quantity {
+    DOSE_TOTAL, /* physical, of all components */
+    DOSE_BORON,
+    DOSE_NITROGEN,
+    DOSE_FAST,
+    DOSE_GAMMA,
+    DOSE_OTHER, /* recoils and captures that are none of those */
+    DOSE_FAST_FLUENCE,
+    DOSE_EPITHERMAL_FLUENCE,
+    DOSE_THERMAL_FLUENCE,
+    DOSE_BLOOD_BORON,    /* boron per ppm in the blood: each tissue's own ratio to blood is in it */
+    DOSE_WEIGHTED_TOTAL, /* biological weights, and boron as the file assumes it, are in it */
+    DOSE_N_QUANTITIES
+};
+const char *dose_quantity_word(enum dose_quantity quantity); /* "total", "boron", "thermal-fluence", ... */
 bool dose_quantity_from_word(const char *word, enum dose_quantity *quantity);
+bool dose_quantity_is_fluence(enum dose_quantity quantity);
 
 struct dose_component {
     enum dose_quantity quantity;
-    bool is_per_ppm;       /* boron per 1 ppm of boron-10 */
-    struct volume *values; /* physical dose in the dose's unit */
+    bool is_per_ppm;       /* boron, or blood boron, per 1 ppm of boron-10 */
+    struct volume *values; /* in what dose_unit_of says */
 };
 
 struct dose {
@@ -19,5 +35,12 @@ struct dose {
     struct dose_component components[DOSE_N_QUANTITIES];
     size_t n_components;
     struct volume *mask; /* where values are valid; NULL: everywhere on the grid */
+    /* by quantity; 0 where unknown */
+    double reference[DOSE_N_QUANTITIES]; /* what the file itself calls 100 % */
+    double body_high[DOSE_N_QUANTITIES]; /* largest value inside a region of the plan */
 };
 void dose_finish(struct dose *dose);
+
+/* What the numbers of a quantity are in: the dose's unit, with "(w)" behind it when weights are in them, or "1/cm2". */
+enum { DOSE_UNIT_SIZE = 24 };
+void dose_unit_of(const struct dose *dose, enum dose_quantity quantity, char unit[DOSE_UNIT_SIZE]);

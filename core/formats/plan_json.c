@@ -228,8 +228,9 @@ static bool parse_component(const struct place *at, const cJSON *entry, struct p
         return false;
     component->quantity = DOSE_TOTAL;
     if (word[0] && !dose_quantity_from_word(word, &component->quantity))
-        return fail(at, ERROR_RANGE, "quantity", "expected total, boron, nitrogen, fast or gamma");
-    if (component->is_per_ppm && component->quantity != DOSE_BORON)
+        return fail(at, ERROR_RANGE, "quantity", "expected total, boron, nitrogen, fast, gamma, other, fast-fluence, epithermal-fluence, "
+                    "thermal-fluence, blood-boron or weighted-total");
+    if (component->is_per_ppm && component->quantity != DOSE_BORON && component->quantity != DOSE_BLOOD_BORON)
         return fail(at, ERROR_RANGE, "per_ppm", "only boron is given per ppm");
     for (size_t i = 0; i < dose->n_components; i++)
         if (dose->components[i].quantity == component->quantity)

@@ -10,7 +10,12 @@
 enum { NUMBER_WIDTH = 15, NUMBERS_A_LINE = 6, LINES_BEFORE_ORIGIN = 8, LINES_A_SET = 9, LINES_A_SET_READ = 2 };
 
 /* Columns of the array, from 0. */
-enum { GAMMA = 0, HYDROGEN = 1, BORON = 3, GAMMA_PRODUCTION = 4, NITROGEN = 5, COLUMNS_NOW = 14, COLUMNS_BEFORE = 12 };
+enum { GAMMA_PRODUCTION = 4, COLUMNS_NOW = 14, COLUMNS_BEFORE = 12 };
+static const struct {
+    enum dose_quantity quantity;
+    size_t column;
+} kept[RST_N_DOSES] = { { DOSE_BORON, 3 }, { DOSE_NITROGEN, 5 },     { DOSE_FAST, 1 },               { DOSE_GAMMA, 0 },
+             { DOSE_OTHER, 11 }, { DOSE_FAST_FLUENCE, 6 }, { DOSE_EPITHERMAL_FLUENCE, 7 }, { DOSE_THERMAL_FLUENCE, 8 } };
 
 struct lines {
     const char *at, *start, *end;
@@ -226,7 +231,7 @@ static bool count_columns(const struct bytes *text, const struct rst_header *hea
 
 struct array {
     const struct rst_header *header;
-    float *doses[RST_N_DOSES];
+    float *of_column[COLUMNS_BEFORE]; /* NULL: not kept */
     double sum_gamma_production;
     size_t n_unprinted, n_unread, first_line; /* first_line of either; 0 none */
 };
@@ -247,10 +252,8 @@ static double read_value(struct array *array, const char *word, size_t line)
 
 static void store(struct array *array, size_t index, size_t n_columns, const char *word, size_t line)
 {
-    static const int dose_of[COLUMNS_BEFORE] = { [GAMMA] = 1 + DOSE_GAMMA - DOSE_BORON, [HYDROGEN] = 1 + DOSE_FAST - DOSE_BORON,
-                                                 [BORON] = 1 + DOSE_BORON - DOSE_BORON, [NITROGEN] = 1 + DOSE_NITROGEN - DOSE_BORON };
     size_t column = index % n_columns, cell = index / n_columns, n = array->header->n_cells;
-    if (column >= COLUMNS_BEFORE || (dose_of[column] == 0 && column != GAMMA_PRODUCTION))
+    if (column >= COLUMNS_BEFORE || (!array->of_column[column] && column != GAMMA_PRODUCTION))
         return;
     double value = read_value(array, word, line);
     if (column == GAMMA_PRODUCTION) {
@@ -259,7 +262,7 @@ static void store(struct array *array, size_t index, size_t n_columns, const cha
     }
     /* the file: z fastest, then y (RL), then x (PA); ours: RL fastest, then PA, then IS */
     size_t z = cell % n, y = cell / n % n, x = cell / n / n;
-    array->doses[dose_of[column] - 1][(z * n + x) * n + y] = (float)value;
+    array->of_column[column][(z * n + x) * n + y] = (float)value;
 }
 
 static void read_array(const struct bytes *text, const char *name, size_t n_columns, struct array *array)
@@ -276,7 +279,7 @@ static void read_array(const struct bytes *text, const char *name, size_t n_colu
 }
 
 /* To cGy: neutron columns are per source particle and cell; photons follow from what gammas the neutrons make and the source has. */
-static void scale(const struct array *array, struct volume *doses[RST_N_DOSES])
+static void scale(const struct array *array, struct sera_doses *doses)
 {
     const struct rst_header *header = array->header;
     const struct rst_set *set = &header->sets[0];
@@ -285,13 +288,15 @@ static void scale(const struct array *array, struct volume *doses[RST_N_DOSES])
     double gammas = set->strength * ((1 - set->gamma_fraction) * array->sum_gamma_production + set->gamma_fraction);
     double photon = gammas / 3600 / volume_cm3;
     size_t n = grid_n_voxels(&header->grid);
-    for (size_t d = 0; d < RST_N_DOSES; d++) {
-        double factor = d == DOSE_GAMMA - DOSE_BORON ? photon : neutron;
+    for (size_t d = 0; d < doses->n_components; d++) {
+        struct volume *volume = doses->components[d].values;
+        double factor = doses->components[d].quantity == DOSE_GAMMA ? photon : neutron;
+        float *values = volume->voxels;
         for (size_t i = 0; i < n; i++) {
-            double value = array->doses[d][i] * factor;
-            array->doses[d][i] = fabs(value) <= 1e30 ? (float)value : NAN;
+            double value = (double)values[i] * factor;
+            values[i] = fabs(value) <= 1e30 ? (float)value : NAN;
         }
-        volume_measure(doses[d]);
+        volume_measure(volume);
     }
 }
 
@@ -312,26 +317,22 @@ static void note_array(const struct array *array, const char *name, struct repor
         }
 }
 
-bool rst_read(const struct bytes *text, const char *name, struct volume *doses[RST_N_DOSES], struct report *report, struct error *err)
+bool rst_read(const struct bytes *text, const char *name, struct sera_doses *doses, struct report *report, struct error *err)
 {
     struct rst_header header;
     size_t n_columns = 0;
-    for (size_t d = 0; d < RST_N_DOSES; d++)
-        doses[d] = NULL;
+    *doses = (struct sera_doses){ 0 };
     if (!rst_parse_header(text->data, text->size, name, &header, err) || !count_columns(text, &header, name, &n_columns, err))
         return false;
     struct array array = { .header = &header };
     for (size_t d = 0; d < RST_N_DOSES; d++) {
-        doses[d] = volume_create(&header.grid, VOXEL_F32, err);
-        if (!doses[d]) {
-            for (size_t i = 0; i < d; i++) {
-                volume_unref(doses[i]);
-                doses[i] = NULL;
-            }
+        float *values = sera_doses_add(doses, kept[d].quantity, kept[d].quantity == DOSE_BORON, &header.grid, err);
+        if (!values) {
+            sera_doses_finish(doses);
             error_prefix(err, "%s", name);
             return false;
         }
-        array.doses[d] = doses[d]->voxels;
+        array.of_column[kept[d].column] = values;
     }
     read_array(text, name, n_columns, &array);
     scale(&array, doses);

@@ -1,9 +1,9 @@
 #pragma once
 /* SERA's restart file, .rst: the dose seraMC edited on its cubic mesh, text in fixed Fortran columns. Becomes the physical dose
- * components in cGy for one unit of the source; boron per 1 ppm of boron-10. Works on unpacked text in memory.
+ * components in cGy and fluences for one unit of the source; boron per 1 ppm of boron-10. Works on unpacked text in memory.
  *   source   the layout and the absolute scale as seraMC 1C0 writes and seraPlan 1C0 applies them */
-#include "core/dose/dose.h"
 #include "core/formats/folder.h"
+#include "core/formats/sera_doses.h"
 #include "core/plan/report.h"
 
 enum {
@@ -34,9 +34,9 @@ struct rst_header {
 /* errors ERROR_FORMAT with the line, ERROR_LIMIT, ERROR_RANGE (geometry) */
 NODISCARD bool rst_parse_header(const uint8_t *text, size_t size, const char *name, struct rst_header *header, struct error *err);
 
-/* Boron (per ppm), nitrogen, fast (hydrogen) and gamma, measured, in DOSE's order from DOSE_BORON on; one reference each. */
-enum { RST_N_DOSES = DOSE_GAMMA - DOSE_BORON + 1 };
-/* Values that could not be printed ("***") or are no number become not-a-number and are reported.
+enum { RST_N_DOSES = 8 };
+/* Boron (per ppm), nitrogen, fast (hydrogen), gamma and other doses, then fast, epithermal and thermal fluence in 1/cm2, in this order.
+ * Values that could not be printed ("***") or are no number become not-a-number and are reported.
  *   errors  as rst_parse_header, ERROR_MEMORY; doses is then empty */
-NODISCARD bool rst_read(const struct bytes *text, const char *name, struct volume *doses[RST_N_DOSES], struct report *report,
+NODISCARD bool rst_read(const struct bytes *text, const char *name, struct sera_doses *doses, struct report *report,
                         struct error *err);

@@ -5,6 +5,7 @@
 #include "core/base/mem.h"
 #include "core/formats/hierarchy.h"
 #include "core/formats/text.h"
+#include "core/plan/plan_body.h"
 #include "core/plan/plan_bounds.h"
 #include "core/plan/plan_loading.h"
 #include "core/plan/plan_regions.h"
@@ -115,7 +116,7 @@ static void add_component(struct loading *loading, struct dose *dose, struct job
 {
     const struct plan_file_dose *entry = &loading->file->doses[job->index];
     if (job->format == PART_SERA_RST)
-        plan_add_rst(dose, entry, job->component, job->doses, &loading->plan->report);
+        plan_add_sera(dose, entry, job->component, &job->doses, &loading->plan->report);
     else
         plan_add_component(dose, entry, job->component, take_volume(job), &loading->plan->report);
 }
@@ -215,6 +216,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
     if (!is_whole)
         return false;
     add_doses(loading);
+    plan_measure_body(plan);
     plan_measure_bounds(plan);
     add_beams(loading);
     return plan_add_tracks(plan, &loading->folder, loading->file, err);

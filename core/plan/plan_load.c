@@ -47,8 +47,7 @@ void loading_work(struct loading *loading, uint64_t work)
 static void finish_job(struct job *job)
 {
     volume_unref(job->volume);
-    for (size_t d = 0; d < RST_N_DOSES; d++)
-        volume_unref(job->doses[d]);
+    sera_doses_finish(&job->doses);
     if (job->layers)
         nrrd_layers_finish(job->layers);
     free(job->layers);

@@ -18,7 +18,7 @@ struct job {
     enum part_format format;
     struct volume *volume;
     struct nrrd_layers *layers; /* of a NRRD label map, instead of volume */
-    struct volume *doses[RST_N_DOSES]; /* of a SERA dose, instead of volume */
+    struct sera_doses doses;    /* of a SERA dose, instead of volume */
     struct uvh uvh;
     struct label_names names;
     char modality[16];     /* as a .qhd says it */

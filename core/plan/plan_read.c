@@ -46,7 +46,7 @@ bool plan_read_part(const struct loading *loading, struct job *job)
         return read_grid(&loading->folder, job, RAW_IMAGE);
     case JOB_DOSE:
         if (job->format == PART_SERA_RST)
-            return plan_read_rst(&loading->folder, job->path, job->doses, &job->report, &job->err);
+            return plan_read_rst(&loading->folder, job->path, &job->doses, &job->report, &job->err);
         return read_grid(&loading->folder, job, RAW_IMAGE);
     case JOB_DOSE_MASK: return read_grid(&loading->folder, job, RAW_MASK);
     case JOB_REGION:

@@ -59,7 +59,7 @@ bool plan_read_qsh(const struct folder *folder, const char *path, const char *he
     return *image != NULL;
 }
 
-bool plan_read_rst(const struct folder *folder, const char *path, struct volume *doses[RST_N_DOSES], struct report *report,
+bool plan_read_rst(const struct folder *folder, const char *path, struct sera_doses *doses, struct report *report,
                    struct error *err)
 {
     struct bytes file, text = { 0 };
@@ -102,7 +102,7 @@ void plan_add_component(struct dose *dose, const struct plan_file_dose *entry, s
                         struct report *report)
 {
     const struct plan_file_component *from = &entry->components[component];
-    add(dose, (struct dose_component){ from->quantity, from->is_per_ppm, values }, from->path, report);
+    add(dose, (struct dose_component){ .quantity = from->quantity, .is_per_ppm = from->is_per_ppm, .values = values }, from->path, report);
 }
 
 static bool is_named(const struct plan_file_dose *entry, enum dose_quantity quantity)
@@ -113,15 +113,26 @@ static bool is_named(const struct plan_file_dose *entry, enum dose_quantity quan
     return is_there;
 }
 
-void plan_add_rst(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct volume *doses[RST_N_DOSES],
-                  struct report *report)
+void plan_add_sera(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct sera_doses *doses,
+                   struct report *report)
 {
     const struct plan_file_component *from = &entry->components[component];
-    for (int i = 0; i < RST_N_DOSES; i++) {
-        enum dose_quantity quantity = (enum dose_quantity)(DOSE_BORON + i);
-        if (from->quantity == DOSE_TOTAL ? is_named(entry, quantity) : from->quantity != quantity)
+    bool is_any = false;
+    for (size_t i = 0; i < doses->n_components; i++) {
+        struct dose_component *held = &doses->components[i];
+        bool is_asked = from->quantity == held->quantity || (from->quantity == DOSE_TOTAL && !is_named(entry, held->quantity));
+        if (!is_asked || dose->n_components >= DOSE_N_QUANTITIES)
             continue;
-        add(dose, (struct dose_component){ quantity, quantity == DOSE_BORON, doses[i] }, from->path, report);
-        doses[i] = NULL;
+        dose->reference[held->quantity] = doses->reference[held->quantity];
+        add(dose, *held, from->path, report);
+        held->values = NULL;
+        is_any = true;
+    }
+    if (!is_any)
+        report_add(report, REPORT_WARNING, "dose.no-quantity", from->path, "The file holds no %s of the dose \"%s\".",
+                   dose_quantity_word(from->quantity), dose->id);
+    if (doses->mask && !dose->mask) {
+        dose->mask = doses->mask;
+        doses->mask = NULL;
     }
 }

@@ -12,7 +12,7 @@ NODISCARD bool plan_read_univels(const struct folder *folder, const char *path, 
  * is_grid_doubtful: the header describes another image. */
 NODISCARD bool plan_read_qsh(const struct folder *folder, const char *path, const char *header, struct volume **image, char modality[16],
                              bool *is_grid_doubtful, struct report *report, struct error *err);
-NODISCARD bool plan_read_rst(const struct folder *folder, const char *path, struct volume *doses[RST_N_DOSES], struct report *report,
+NODISCARD bool plan_read_rst(const struct folder *folder, const char *path, struct sera_doses *doses, struct report *report,
                              struct error *err);
 
 /* What a dose's numbers are in, and per what: as the plan says. is_sera: the format says cGy and a unit of the source. */
@@ -20,6 +20,7 @@ void plan_dose_units(struct dose *dose, const struct plan_file_dose *entry, bool
 /* Takes values. */
 void plan_add_component(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct volume *values,
                         struct report *report);
-/* The quantity the plan asks for; for "total", which the file does not hold, all of them that no other component is for. */
-void plan_add_rst(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct volume *doses[RST_N_DOSES],
-                  struct report *report);
+/* What the file holds of the quantity the plan asks for; for "total" everything in the file that no other component is for.
+ * Takes it out of doses. */
+void plan_add_sera(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct sera_doses *doses,
+                   struct report *report);

@@ -49,9 +49,12 @@
     X("dose.no-unit", "The plan does not say the dose's unit.", "Numbers carry no unit; add \"unit\" in plan.json.")              \
     X("dose.no-per", "The plan does not say what the dose is per.", "Add \"per\" in plan.json.")                                  \
     X("dose.unit-differs", "The plan gives another unit than the dose's file is in.", "The file's was used; correct plan.json.")    \
+    X("dose.no-quantity", "A dose file does not hold the quantity the plan asks it for.", "Check \"quantity\" in plan.json.")       \
     X("dose.bad-values", "A dose file holds values that are no numbers, or too large for their columns.",                          \
       "They are drawn as nothing and probed as nothing.")                                                                          \
     X("dose.sets-differ", "The runs joined in a dose file had different sources.", "The first was used; edit the dose again.")    \
+    X("dose.absurd-outside", "A dose is many times higher outside the regions than anywhere inside.",                               \
+      "Scale by the largest value inside, or by the file's reference.")                                                           \
     X("dose.negative", "A dose holds negative values.", "They are kept; check the source.")                                       \
     X("dose.mask-grid", "The mask of a dose lies on another grid than the dose.", "It is looked up by position.")                 \
     X("beam.from-tracks", "No beam is given; it was taken from the beam line of the tracks.", "Its aperture is unknown.")         \

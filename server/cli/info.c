@@ -101,9 +101,18 @@ static void print_doses(const struct plan *plan)
         printf("%s\n", dose->mask ? ", with a mask of where it is valid" : "");
         for (size_t c = 0; c < dose->n_components; c++) {
             const struct dose_component *component = &dose->components[c];
-            printf("  %-9s%-8s", dose_quantity_word(component->quantity), component->is_per_ppm ? " per ppm" : "");
+            char unit[DOSE_UNIT_SIZE];
+            dose_unit_of(dose, component->quantity, unit);
+            printf("  %-19s%-8s", dose_quantity_word(component->quantity), component->is_per_ppm ? " per ppm" : "");
             print_grid(&component->values->grid);
-            printf("  %.4g to %.4g\n", component->values->low, component->values->high);
+            printf("  %.4g to %.4g", component->values->low, component->values->high);
+            if (strcmp(unit, dose->unit) != 0)
+                printf(" %s", unit);
+            if (dose->body_high[component->quantity] > 0)
+                printf(", in the regions up to %.4g", dose->body_high[component->quantity]);
+            if (dose->reference[component->quantity] > 0)
+                printf(", 100 %% is %.4g", dose->reference[component->quantity]);
+            printf("\n");
         }
     }
 }

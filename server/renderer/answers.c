@@ -78,12 +78,14 @@ cJSON *answer_probe(const struct plan *plan, struct vec3 point_lps_mm)
     for (size_t i = 0; i < probe.n_doses; i++) {
         const struct dose *dose = &plan->doses[probe.doses[i].dose];
         const struct dose_component *component = &dose->components[probe.doses[i].component];
+        char unit[DOSE_UNIT_SIZE];
         cJSON *item = cJSON_CreateObject();
         cJSON_AddStringToObject(item, "id", dose->id);
         cJSON_AddStringToObject(item, "quantity", dose_quantity_word(component->quantity));
         cJSON_AddBoolToObject(item, "per_ppm", component->is_per_ppm);
         add_number(item, "value", probe.doses[i].value);
-        cJSON_AddStringToObject(item, "unit", dose->unit);
+        dose_unit_of(dose, component->quantity, unit);
+        cJSON_AddStringToObject(item, "unit", unit);
         cJSON_AddStringToObject(item, "per", dose->per);
         cJSON_AddItemToArray(doses, item);
     }

@@ -136,6 +136,12 @@ static cJSON *region_object(const struct region_set *set, size_t index)
     return object;
 }
 
+/* 0 stands for what nobody knows. */
+static cJSON *known(double value)
+{
+    return value > 0 ? number(value) : cJSON_CreateNull();
+}
+
 static cJSON *dose_object(const struct dose *dose)
 {
     cJSON *object = cJSON_CreateObject(), *components = cJSON_CreateArray();
@@ -145,12 +151,17 @@ static cJSON *dose_object(const struct dose *dose)
     add(object, "masked", cJSON_CreateBool(dose->mask != NULL));
     for (size_t i = 0; i < dose->n_components; i++) {
         const struct dose_component *component = &dose->components[i];
+        char unit[DOSE_UNIT_SIZE];
+        dose_unit_of(dose, component->quantity, unit);
         cJSON *entry = cJSON_CreateObject();
         add(entry, "quantity", cJSON_CreateString(dose_quantity_word(component->quantity)));
+        add(entry, "unit", cJSON_CreateString(unit));
         add(entry, "per_ppm", cJSON_CreateBool(component->is_per_ppm));
         add(entry, "grid", grid_object(&component->values->grid));
         add(entry, "low", number(component->values->low));
         add(entry, "high", number(component->values->high));
+        add(entry, "reference", known(dose->reference[component->quantity]));
+        add(entry, "body_high", known(dose->body_high[component->quantity]));
         append(components, entry);
     }
     add(object, "components", components);

@@ -9,7 +9,7 @@
  *                 center_mm, bounds_mm, touches_edge,
  *                 tissue: {boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma} } ],    null: the plan does not say
  *     hierarchy: "none" | "file" | "derived",
- *     doses:   [ {id, unit, per, masked, components: [ {quantity, per_ppm, grid, low, high} ]} ],
+ *     doses:   [ {id, unit, per, masked, components: [ {quantity, unit, per_ppm, grid, low, high, reference, body_high} ]} ],
  *     beams:   [ {id, entry_mm, target_mm, aperture_mm | null} ],
  *     tracks:  {segments, classes: {"neutron-high": n, ...}},
  *     report:  {lines: [ {severity: "note" | "warning" | "error", code, where, sentence} ], dropped} }

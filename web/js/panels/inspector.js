@@ -58,12 +58,13 @@ function doseTable(result, isOld) {
   return ids.map((id) => {
     const rows = result.doses.filter((dose) => dose.id === id);
     return html`<section class="block"><h3>Dose <span class="dim">${id}</span></h3><table class=${classMap({ old: isOld })}><thead><tr><th>Component</th><th>${rows[0].unit}</th></tr></thead>
-      <tbody>${rows.map((dose) => html`<tr><td>${componentName(dose)}</td><td>${dose.value === null ? 'not known here' : significant(dose.value)}</td></tr>`)}</tbody></table>
-      <p class="note">${rows[0].per ? `Per ${rows[0].per.replace(/^per /, '')}. ` : ''}Physical, no weights.</p></section>`;
+      <tbody>${rows.map((dose) => html`<tr><td>${componentName(dose)}</td><td>${dose.value === null ? 'not known here' : significant(dose.value)}${dose.unit === rows[0].unit ? '' : ` ${dose.unit}`}</td></tr>`)}</tbody></table>
+      <p class="note">${rows[0].per ? `Per ${rows[0].per.replace(/^per /, '')}. ` : ''}Physical, no weights${rows.some(({ quantity }) => hasWeights.has(quantity)) ? ', but for weighted total and blood boron: there the file has put them in' : ''}.</p></section>`;
   });
 }
 
-const componentName = ({ quantity, per_ppm }) => `${quantity[0].toUpperCase()}${quantity.slice(1)}${per_ppm ? ', per ppm' : ''}`;
+const componentName = ({ quantity, per_ppm }) => `${quantity[0].toUpperCase()}${quantity.slice(1).replaceAll('-', ' ')}${per_ppm ? ', per ppm' : ''}`;
+const hasWeights = new Set(['weighted-total', 'blood-boron']);
 
 function regionBlock({ api, room, ui }, region) {
   if (!region) return html`<section class="block"><p class="empty">Choose a region in the tree for its figures.</p></section>`;
