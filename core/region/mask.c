@@ -9,8 +9,7 @@
 
 enum { MAX_THREADS = 64, MAX_FACTOR = 8, MAX_WORDS = VOLUME_MAX_SIDE / 64 };
 
-/* Bits are left to be written. */
-static struct mask *mask_create(const uint32_t size[3], const struct affine *lps_mm_from_ijk, struct error *err)
+struct mask *mask_create(const uint32_t size[3], const struct affine *lps_mm_from_ijk, struct error *err)
 {
     struct mask *mask = mem_new(sizeof *mask);
     for (int axis = 0; axis < 3; axis++)

@@ -11,6 +11,8 @@ struct mask {
     uint64_t *bits;                 /* [k][j][words] */
 };
 
+/* Bits are left to be written; sides 1..VOLUME_MAX_SIDE. errors ERROR_LIMIT, ERROR_MEMORY */
+NODISCARD struct mask *mask_create(const uint32_t size[3], const struct affine *lps_mm_from_ijk, struct error *err);
 /* Voxels of a layer that carry one of the labels (sorted or not). errors ERROR_RANGE n_labels 0, ERROR_UNSUPPORTED the
  * layer is neither U8 nor U16, ERROR_MEMORY */
 NODISCARD struct mask *mask_from_labels(const struct volume *layer, const uint16_t *labels, size_t n_labels, int n_threads,

@@ -1,0 +1,9 @@
+#pragma once
+/* SERA's own sample head: univels 256 x 256 x 48 of 1.01562 x 1.01562 x 5.49991 mm; 2 scalp, 3 brain, 4 tumor. */
+#include "core/region/region.h"
+
+/* NULL, with a word on standard output, when the data is not here. */
+struct volume *sera_head_read(void);
+/* Regions 0 scalp, 1 brain, 2 tumor, one inside the other, as its body_containment.info says; takes layer. */
+struct region_set *sera_head_regions(struct volume *layer);
+void sera_head_destroy(struct region_set *set);
