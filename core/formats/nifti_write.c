@@ -10,31 +10,29 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "voxels are written as they lie in memory, as little-endian");
 
-enum { HEADER_BYTES = 348, VOXELS_AT = 352, GZIP_LEVEL = 1 };
+enum { GZIP_LEVEL = 1, CODE_SCANNER = 1, UNITS_MM = 2, HEADER_MOST = 544 };
+#define EXACT_MM 1e-7 /* a corner may move by so much before 32-bit numbers are too short */
 
-/* Where the header's fields stand, in bytes. */
-enum {
-    AT_SIZE = 0, AT_DIM = 40, AT_DATATYPE = 70, AT_BITPIX = 72, AT_PIXDIM = 76, AT_VOX_OFFSET = 108, AT_SLOPE = 112, AT_INTER = 116,
-    AT_UNITS = 123, AT_DESCRIPTION = 148, AT_QFORM_CODE = 252, AT_SFORM_CODE = 254, AT_QUATERNION = 256, AT_QOFFSET = 268,
-    AT_SROW = 280, AT_MAGIC = 344
+/* Where the header's fields stand, in bytes, and how wide its numbers are. */
+struct layout {
+    uint32_t header_bytes, voxels_at, real_bytes;
+    const char *magic;
+    size_t magic_bytes;
+    int magic_at, dim, dim_bytes, datatype, bitpix, pixdim, vox_offset, slope, units, description, qform_code, code_bytes, quaternion, srow;
 };
-enum { CODE_SCANNER = 1, UNITS_MM = 2 };
+static const struct layout nifti1 = { 348, 352, 4, "n+1", 4, 344, 40, 2, 70, 72, 76, 108, 112, 123, 148, 252, 2, 256, 280 };
+static const struct layout nifti2 = { 540, 544, 8, "n+2\0\r\n\032\n", 8, 4, 16, 8, 12, 14, 104, 168, 176, 500, 240, 344, 4, 352, 400 };
 
-static void put_i16(uint8_t *header, int at, int value)
+static void put_whole(uint8_t *header, int at, int bytes, int64_t value)
 {
-    int16_t v = (int16_t)value;
-    memcpy(header + at, &v, sizeof v);
+    memcpy(header + at, &value, (size_t)bytes); /* little-endian: the low bytes come first */
 }
 
-static void put_i32(uint8_t *header, int at, int32_t value)
+static void put_real(uint8_t *header, const struct layout *layout, int first, int index, double value)
 {
-    memcpy(header + at, &value, sizeof value);
-}
-
-static void put_f32(uint8_t *header, int at, double value)
-{
-    float v = (float)value;
-    memcpy(header + at, &v, sizeof v);
+    float narrow = (float)value;
+    const void *bytes = layout->real_bytes == 4 ? (const void *)&narrow : (const void *)&value;
+    memcpy(header + first + index * (int)layout->real_bytes, bytes, layout->real_bytes);
 }
 
 static int datatype_code(enum voxel_type type)
@@ -75,13 +73,13 @@ static struct vec3 ras_from_lps(struct vec3 v)
     return vec3(-v.x, -v.y, v.z);
 }
 
-static void put_geometry(uint8_t *header, const struct grid *grid)
+static void put_geometry(uint8_t *header, const struct layout *layout, const struct grid *grid)
 {
     struct vec3 columns[3], axes[3];
     for (int i = 0; i < 3; i++) {
         columns[i] = ras_from_lps(grid->lps_mm_from_ijk.columns[i]);
         axes[i] = vec3_normalize(columns[i]);
-        put_f32(header, AT_PIXDIM + 4 * (i + 1), vec3_length(columns[i]));
+        put_real(header, layout, layout->pixdim, i + 1, vec3_length(columns[i]));
     }
     struct vec3 origin = ras_from_lps(grid->lps_mm_from_ijk.origin);
     double rows[3][4] = { { columns[0].x, columns[1].x, columns[2].x, origin.x },
@@ -89,11 +87,11 @@ static void put_geometry(uint8_t *header, const struct grid *grid)
                           { columns[0].z, columns[1].z, columns[2].z, origin.z } };
     for (int row = 0; row < 3; row++)
         for (int column = 0; column < 4; column++)
-            put_f32(header, AT_SROW + 16 * row + 4 * column, rows[row][column]);
-    put_i16(header, AT_SFORM_CODE, CODE_SCANNER);
+            put_real(header, layout, layout->srow, 4 * row + column, rows[row][column]);
+    put_whole(header, layout->qform_code + layout->code_bytes, layout->code_bytes, CODE_SCANNER); /* of the sform */
 
     double handedness = vec3_dot(vec3_cross(axes[0], axes[1]), axes[2]) < 0 ? -1 : 1;
-    put_f32(header, AT_PIXDIM, handedness);
+    put_real(header, layout, layout->pixdim, 0, handedness);
     bool is_orthogonal = fabs(vec3_dot(axes[0], axes[1])) < 1e-5 && fabs(vec3_dot(axes[1], axes[2])) < 1e-5 &&
                          fabs(vec3_dot(axes[2], axes[0])) < 1e-5;
     if (!is_orthogonal)
@@ -102,28 +100,52 @@ static void put_geometry(uint8_t *header, const struct grid *grid)
     quaternion_from_axes(axes[0], axes[1], vec3_scale(axes[2], handedness), q);
     double offsets[3] = { origin.x, origin.y, origin.z };
     for (int i = 0; i < 3; i++) {
-        put_f32(header, AT_QUATERNION + 4 * i, q[i + 1]);
-        put_f32(header, AT_QOFFSET + 4 * i, offsets[i]);
+        put_real(header, layout, layout->quaternion, i, q[i + 1]);
+        put_real(header, layout, layout->quaternion, 3 + i, offsets[i]);
     }
-    put_i16(header, AT_QFORM_CODE, CODE_SCANNER);
+    put_whole(header, layout->qform_code, layout->code_bytes, CODE_SCANNER);
 }
 
-static void put_header(uint8_t *header, const struct volume *volume, const char *description)
+static void put_header(uint8_t *header, const struct layout *layout, const struct volume *volume, const char *description)
 {
-    put_i32(header, AT_SIZE, HEADER_BYTES);
-    put_i16(header, AT_DIM, 3);
+    put_whole(header, 0, 4, layout->header_bytes);
+    put_whole(header, layout->dim, layout->dim_bytes, 3);
     for (int i = 0; i < 7; i++)
-        put_i16(header, AT_DIM + 2 * (i + 1), i < 3 ? (int)volume->grid.size[i] : 1);
-    put_i16(header, AT_DATATYPE, datatype_code(volume->type));
-    put_i16(header, AT_BITPIX, (int)(8 * voxel_size(volume->type)));
-    put_f32(header, AT_VOX_OFFSET, VOXELS_AT);
-    put_f32(header, AT_SLOPE, volume->slope);
-    put_f32(header, AT_INTER, volume->offset);
-    header[AT_UNITS] = UNITS_MM;
+        put_whole(header, layout->dim + layout->dim_bytes * (i + 1), layout->dim_bytes, i < 3 ? volume->grid.size[i] : 1);
+    put_whole(header, layout->datatype, 2, datatype_code(volume->type));
+    put_whole(header, layout->bitpix, 2, (int64_t)(8 * voxel_size(volume->type)));
+    if (layout == &nifti1)
+        put_real(header, layout, layout->vox_offset, 0, layout->voxels_at);
+    else
+        put_whole(header, layout->vox_offset, 8, layout->voxels_at);
+    put_real(header, layout, layout->slope, 0, volume->slope);
+    put_real(header, layout, layout->slope, 1, volume->offset);
+    header[layout->units] = UNITS_MM;
     if (description)
-        memcpy(header + AT_DESCRIPTION, description, strnlen(description, 79));
-    put_geometry(header, &volume->grid);
-    memcpy(header + AT_MAGIC, "n+1", 4);
+        memcpy(header + layout->description, description, strnlen(description, 79));
+    put_geometry(header, layout, &volume->grid);
+    memcpy(header + layout->magic_at, layout->magic, layout->magic_bytes);
+}
+
+static double narrowed(double value)
+{
+    return (double)(float)value;
+}
+
+/* Whether 32-bit numbers hold where the voxels lie and what they are worth. */
+static bool is_narrow_enough(const struct volume *volume)
+{
+    const struct affine *map = &volume->grid.lps_mm_from_ijk;
+    struct affine narrow = { .origin = vec3(narrowed(map->origin.x), narrowed(map->origin.y), narrowed(map->origin.z)) };
+    for (int i = 0; i < 3; i++)
+        narrow.columns[i] = vec3(narrowed(map->columns[i].x), narrowed(map->columns[i].y), narrowed(map->columns[i].z));
+    double furthest = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        const uint32_t *size = volume->grid.size;
+        struct vec3 at = vec3(corner & 1 ? size[0] - 1 : 0, corner & 2 ? size[1] - 1 : 0, corner & 4 ? size[2] - 1 : 0);
+        furthest = fmax(furthest, vec3_length(vec3_sub(affine_point(map, at), affine_point(&narrow, at))));
+    }
+    return furthest <= EXACT_MM && volume->slope == narrowed(volume->slope) && volume->offset == narrowed(volume->offset);
 }
 
 static bool ends_with_gz(const char *path)
@@ -155,22 +177,33 @@ done:
     return is_written;
 }
 
-bool nifti_write(const char *path, const struct volume *volume, const char *description, struct error *err)
+static bool write_as(const struct layout *layout, const char *path, const struct volume *volume, const char *description,
+                     struct error *err)
 {
     for (int i = 0; i < 3; i++)
-        if (volume->grid.size[i] > INT16_MAX)
+        if (layout == &nifti1 && volume->grid.size[i] > INT16_MAX)
             return error_set(err, ERROR_LIMIT, "%s: %u voxels along axis %d are more than NIfTI-1 holds (%d)", path, volume->grid.size[i],
                              i, INT16_MAX);
     size_t n_voxel_bytes = grid_n_voxels(&volume->grid) * voxel_size(volume->type);
-    size_t n_bytes = VOXELS_AT + n_voxel_bytes;
-    uint8_t *bytes = mem_array(n_bytes, 1, VOLUME_MAX_BYTES + VOXELS_AT, err);
+    size_t n_bytes = layout->voxels_at + n_voxel_bytes;
+    uint8_t *bytes = mem_array(n_bytes, 1, VOLUME_MAX_BYTES + HEADER_MOST, err);
     if (!bytes) {
         error_prefix(err, "%s", path);
         return false;
     }
-    put_header(bytes, volume, description);
-    memcpy(bytes + VOXELS_AT, volume->voxels, n_voxel_bytes);
+    put_header(bytes, layout, volume, description);
+    memcpy(bytes + layout->voxels_at, volume->voxels, n_voxel_bytes);
     bool is_written = ends_with_gz(path) ? write_gzip(path, bytes, n_bytes, err) : file_write(path, bytes, n_bytes, err);
     free(bytes);
     return is_written;
+}
+
+bool nifti_write(const char *path, const struct volume *volume, const char *description, struct error *err)
+{
+    return write_as(&nifti1, path, volume, description, err);
+}
+
+bool nifti_write_exact(const char *path, const struct volume *volume, const char *description, struct error *err)
+{
+    return write_as(is_narrow_enough(volume) ? &nifti1 : &nifti2, path, volume, description, err);
 }

@@ -182,7 +182,7 @@ static bool get_color(const struct place *place, const cJSON *object, bool *has_
 
 static bool parse_images(const struct place *top, const cJSON *root, struct plan_file *file)
 {
-    static const char *const known[] = { "id", "path", "header", "modality", NULL };
+    static const char *const known[] = { "id", "path", "header", "modality", "name", NULL };
     const cJSON *list;
     if (!get_list(top, root, "images", PLAN_MAX_IMAGES, &list))
         return false;
@@ -192,7 +192,8 @@ static bool parse_images(const struct place *top, const cJSON *root, struct plan
         note_unknown_keys(&at, entry, known);
         if (!get_text(&at, entry, "id", image->id, sizeof image->id) || !get_path(&at, entry, "path", true, image->path) ||
             !get_path(&at, entry, "header", false, image->header) ||
-            !get_text(&at, entry, "modality", image->modality, sizeof image->modality))
+            !get_text(&at, entry, "modality", image->modality, sizeof image->modality) ||
+            !get_text(&at, entry, "name", image->name, sizeof image->name))
             return false;
     }
     return true;
@@ -396,6 +397,59 @@ void plan_file_destroy(struct plan_file *file)
     free(file);
 }
 
+static bool get_weight(const struct place *place, const cJSON *object, const char *key, double *out)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+    *out = NAN;
+    if (!item || cJSON_IsNull(item))
+        return true;
+    if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= 1000))
+        return fail(place, ERROR_RANGE, key, "expected a number from 0 to 1000");
+    *out = item->valuedouble;
+    return true;
+}
+
+static bool get_tissue(const struct place *at, const cJSON *entry, struct label_name *label)
+{
+    struct label_tissue *tissue = &label->tissue;
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(entry, "tissue");
+    if (item && !cJSON_IsNull(item) && !cJSON_IsObject(item))
+        return fail(at, ERROR_FORMAT, "tissue", "expected an object, {...}");
+    label->has_tissue = cJSON_IsObject(item);
+    return get_weight(at, item, "boron_ratio", &tissue->boron_ratio) && get_weight(at, item, "cbe_boron", &tissue->cbe_boron) &&
+           get_weight(at, item, "rbe_nitrogen", &tissue->rbe_nitrogen) && get_weight(at, item, "rbe_fast", &tissue->rbe_fast) &&
+           get_weight(at, item, "rbe_gamma", &tissue->rbe_gamma);
+}
+
+/* A whole number from 1 to most; 0 when the key is absent. */
+static bool get_whole(const struct place *at, const cJSON *entry, const char *key, int most, int *out)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(entry, key);
+    *out = 0;
+    if (!item || cJSON_IsNull(item))
+        return true;
+    if (!cJSON_IsNumber(item) || item->valuedouble != floor(item->valuedouble) || !(item->valuedouble >= 1 && item->valuedouble <= most)) {
+        char what[64];
+        snprintf(what, sizeof what, "expected a whole number from 1 to %d", most);
+        return fail(at, ERROR_RANGE, key, what);
+    }
+    *out = (int)item->valuedouble;
+    return true;
+}
+
+static bool parse_label(const struct place *at, const cJSON *entry, struct label_name *label)
+{
+    const cJSON *value = cJSON_GetObjectItemCaseSensitive(entry, "value");
+    if (!cJSON_IsNumber(value) || value->valuedouble != floor(value->valuedouble) ||
+        !(value->valuedouble >= 0 && value->valuedouble <= UINT16_MAX))
+        return fail(at, ERROR_RANGE, "value", "expected a whole number from 0 to 65535");
+    label->value = (uint16_t)value->valuedouble;
+    return get_text(at, entry, "name", label->name, sizeof label->name) &&
+           get_text(at, entry, "parent", label->parent, sizeof label->parent) &&
+           get_text(at, entry, "id", label->id, sizeof label->id) && get_whole(at, entry, "place", REGION_MAX, &label->place) &&
+           get_color(at, entry, &label->has_color, label->rgb) && get_tissue(at, entry, label);
+}
+
 bool label_names_parse(const uint8_t *data, size_t size, const char *name, struct label_names *names, struct error *err)
 {
     *names = (struct label_names){ 0 };
@@ -411,16 +465,7 @@ bool label_names_parse(const uint8_t *data, size_t size, const char *name, struc
         names->labels = mem_new(((size_t)cJSON_GetArraySize(list) + 1) * sizeof *names->labels);
     for (const cJSON *entry = is_read ? list->child : NULL; is_read && entry; entry = entry->next) {
         struct place at = place_at(&top, "labels", (int)names->n);
-        struct label_name *label = &names->labels[names->n++];
-        const cJSON *value = cJSON_GetObjectItemCaseSensitive(entry, "value");
-        if (!cJSON_IsNumber(value) || value->valuedouble != floor(value->valuedouble) ||
-            !(value->valuedouble >= 0 && value->valuedouble <= UINT16_MAX))
-            is_read = fail(&at, ERROR_RANGE, "value", "expected a whole number from 0 to 65535");
-        else
-            label->value = (uint16_t)value->valuedouble;
-        is_read = is_read && get_text(&at, entry, "name", label->name, sizeof label->name) &&
-                  get_text(&at, entry, "parent", label->parent, sizeof label->parent) &&
-                  get_color(&at, entry, &label->has_color, label->rgb);
+        is_read = parse_label(&at, entry, &names->labels[names->n++]);
     }
     cJSON_Delete(root);
     if (!is_read)

@@ -17,6 +17,7 @@ struct plan_file_image {
     char path[FOLDER_NAME_SIZE];
     char header[FOLDER_NAME_SIZE]; /* "" none */
     char modality[16];
+    char name[128]; /* for people; "" none */
 };
 struct plan_file_region {
     char path[FOLDER_NAME_SIZE];
@@ -75,12 +76,23 @@ struct label_name {
     uint8_t rgb[3];
     char name[REGION_NAME_SIZE];
     char parent[REGION_NAME_SIZE]; /* "" none */
+    /* what beamroom convert writes, so that a plan comes back as it was */
+    char id[REGION_ID_SIZE];       /* "" none; an entry with an id is a region even without a voxel */
+    int place;                     /* among all regions of the plan, from 1; 0 none */
+    bool has_tissue;
+    struct label_tissue {
+        double boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma; /* not-a-number: not given */
+    } tissue;
 };
 struct label_names {
     struct label_name *labels;
     size_t n;
 };
-/* {"labels": [{"value": 1, "name": "scalp", "color": "#e0c0a0", "parent": "..."}]}; a colour may also be three numbers, of 0..1 or
- * 0..255. errors ERROR_FORMAT, ERROR_RANGE, ERROR_LIMIT */
+/* {"labels": [{"value": 1, "name": "scalp", "color": "#e0c0a0", "parent": "...", "id": "scalp", "place": 1, "tissue": {"cbe_boron": 1.3}}]};
+ * a colour may also be three numbers, of 0..1 or 0..255. errors ERROR_FORMAT, ERROR_RANGE, ERROR_LIMIT */
 NODISCARD bool label_names_parse(const uint8_t *data, size_t size, const char *file, struct label_names *names, struct error *err);
 void label_names_finish(struct label_names *names);
+
+/* The documents that the two readers above read back to the same; "" and not-a-number are left out. The text is the caller's: free. */
+NODISCARD char *plan_file_text(const struct plan_file *file);
+NODISCARD char *label_names_text(const struct label_names *names);

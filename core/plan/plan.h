@@ -15,6 +15,7 @@ enum { PLAN_MAX_IMAGES = 16, PLAN_MAX_DOSES = 16, PLAN_MAX_BEAMS = 64 };
 
 struct plan_image {
     char id[64];
+    char name[128];    /* for people; "" when the files give none */
     char modality[16]; /* "CT", "MR", ...; "" unknown */
     char unit[8];      /* "HU" for CT, "" else */
     struct volume *volume;

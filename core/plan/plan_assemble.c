@@ -50,6 +50,7 @@ static void add_image(struct loading *loading, struct job *job)
         others[i] = plan->images[i].id;
     make_id(image->id, entry->id, entry->path, others, plan->n_images);
     plan->n_images++;
+    memcpy(image->name, entry->name, sizeof image->name);
     snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : job->modality);
     image->volume = take_volume(job);
     if (text_equal(image->modality, "CT")) {
@@ -208,6 +209,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
         if (is_whole && loading->jobs[i].kind == JOB_IMAGE)
             borrow_grid(loading, &loading->jobs[i]);
     if (is_whole) {
+        region_builder_order(&builder);
         region_set_measure(&plan->regions);
         note_empty_regions(plan);
         is_whole = apply_hierarchy(loading, &builder, err);

@@ -51,6 +51,53 @@ static struct region *add_region(struct region_builder *builder, const char *nam
     return region;
 }
 
+static bool is_free_id(const struct region_set *set, const char *id)
+{
+    return id[0] && strspn(id, "abcdefghijklmnopqrstuvwxyz0123456789-") == strlen(id) && !region_find(set, id);
+}
+
+/* What a list of names that we wrote says of a region beyond its name. */
+static void take_names(struct region_builder *builder, struct region *region, const struct label_name *label)
+{
+    struct region_set *set = builder->set;
+    if (label->has_color) {
+        region->has_file_color = true;
+        memcpy(region->rgb, label->rgb, 3);
+    }
+    if (strcmp(label->id, region->id) != 0 && is_free_id(set, label->id))
+        memcpy(region->id, label->id, sizeof region->id);
+    if (label->has_tissue) {
+        region->boron_ratio = label->tissue.boron_ratio;
+        region->cbe_boron = label->tissue.cbe_boron;
+        region->rbe_nitrogen = label->tissue.rbe_nitrogen;
+        region->rbe_fast = label->tissue.rbe_fast;
+        region->rbe_gamma = label->tissue.rbe_gamma;
+    }
+    builder->places[region - set->regions] = label->place;
+}
+
+void region_builder_order(struct region_builder *builder)
+{
+    struct region_set *set = builder->set;
+    bool has_places = false;
+    for (size_t i = 0; i < set->n_regions; i++)
+        has_places |= builder->places[i] > 0;
+    for (size_t i = 1; has_places && i < set->n_regions; i++) { /* equal places keep their order */
+        struct region region = set->regions[i];
+        int place = builder->places[i];
+        size_t at = i;
+        for (; at > 0 && (unsigned)(builder->places[at - 1] - 1) > (unsigned)(place - 1); at--) { /* no place is the last */
+            set->regions[at] = set->regions[at - 1];
+            builder->places[at] = builder->places[at - 1];
+        }
+        set->regions[at] = region;
+        builder->places[at] = place;
+    }
+    for (size_t i = 0; has_places && i < set->n_regions; i++)
+        if (!set->regions[i].has_file_color)
+            region_palette(i, set->regions[i].rgb);
+}
+
 static bool add_layer(struct region_builder *builder, struct volume *volume, const char *where, uint32_t *layer, struct error *err)
 {
     struct region_set *set = builder->set;
@@ -137,20 +184,18 @@ bool region_builder_add_labels(struct region_builder *builder, struct volume *la
         if (label->value == 0 || is_named[label->value] || !label->name[0])
             continue;
         is_named[label->value] = true;
-        if (counts[label->value] == 0) {
+        if (counts[label->value] == 0 && !label->id[0]) {
             n_unused++;
             continue;
         }
-        if (is_surroundings(labels, label->name, label->value)) {
+        if (!label->id[0] && is_surroundings(labels, label->name, label->value)) {
             note_surroundings(builder, label->name, where);
             continue;
         }
         struct region *region = add_region(builder, label->name, layer, label->value, where, err);
         is_added = region != NULL;
-        if (region && label->has_color) {
-            region->has_file_color = true;
-            memcpy(region->rgb, label->rgb, 3);
-        }
+        if (region)
+            take_names(builder, region, label);
         if (region && label->parent[0])
             add_pair(builder, label->parent, label->name);
     }

@@ -9,6 +9,7 @@ struct region_builder {
     struct report *report;
     bool is_packed[REGION_MAX_LAYERS]; /* made of masks; others may join */
     uint16_t n_labels[REGION_MAX_LAYERS];
+    int places[REGION_MAX]; /* among all regions, from 1, where a list of names says it; else 0 */
     struct plan_file_pair *pairs; /* hierarchy named by the parts themselves; PLAN_FILE_MAX_PAIRS of them */
     size_t n_pairs;
 };
@@ -23,6 +24,9 @@ NODISCARD bool region_builder_add_univels(struct region_builder *builder, struct
                                           const char *where, struct error *err);
 NODISCARD bool region_builder_add_mask(struct region_builder *builder, struct volume *mask, const struct plan_file_region *entry,
                                        struct error *err);
+
+/* After the last part: regions that have a place are put there, in front of the others. */
+void region_builder_order(struct region_builder *builder);
 
 /* Parents from pairs of names; outer names that are absent are passed through. is_strict: a name that is absent is reported.
  * Sets hierarchy to HIERARCHY_FILE when it gave any region a parent. */

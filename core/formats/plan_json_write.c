@@ -1,0 +1,206 @@
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "core/formats/plan_json.h"
+
+/* A document is small, so lack of memory ends the program, as with mem_new. */
+static void add(cJSON *object, const char *key, cJSON *value) /* takes value */
+{
+    if (!value || !cJSON_AddItemToObject(object, key, value))
+        abort();
+}
+
+static cJSON *append(cJSON *list, cJSON *value) /* takes value */
+{
+    if (!value || !cJSON_AddItemToArray(list, value))
+        abort();
+    return value;
+}
+
+static cJSON *add_list(cJSON *object, const char *key)
+{
+    cJSON *list = cJSON_CreateArray();
+    add(object, key, list);
+    return list;
+}
+
+static void add_text(cJSON *object, const char *key, const char *text)
+{
+    if (text[0])
+        add(object, key, cJSON_CreateString(text));
+}
+
+/* As few digits as bring the very number back; cJSON's own printing may miss it by the last bit. */
+static cJSON *exact_number(double value)
+{
+    char text[32];
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+    return cJSON_CreateRaw(text);
+}
+
+static void add_number(cJSON *object, const char *key, double value)
+{
+    if (isfinite(value))
+        add(object, key, exact_number(value));
+}
+
+static void add_point(cJSON *object, const char *key, struct vec3 p)
+{
+    cJSON *list = add_list(object, key);
+    append(list, exact_number(p.x));
+    append(list, exact_number(p.y));
+    append(list, exact_number(p.z));
+}
+
+static void add_color(cJSON *object, const uint8_t rgb[3])
+{
+    char color[8];
+    snprintf(color, sizeof color, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    add_text(object, "color", color);
+}
+
+static char *print(cJSON *root) /* takes root */
+{
+    char *text = cJSON_Print(root);
+    if (!text)
+        abort();
+    cJSON_Delete(root);
+    return text;
+}
+
+static void add_images(cJSON *root, const struct plan_file *file)
+{
+    cJSON *list = file->n_images ? add_list(root, "images") : NULL;
+    for (size_t i = 0; i < file->n_images; i++) {
+        const struct plan_file_image *image = &file->images[i];
+        cJSON *entry = append(list, cJSON_CreateObject());
+        add_text(entry, "id", image->id);
+        add_text(entry, "name", image->name);
+        add_text(entry, "modality", image->modality);
+        add_text(entry, "path", image->path);
+        add_text(entry, "header", image->header);
+    }
+}
+
+static void add_regions(cJSON *root, const struct plan_file *file)
+{
+    cJSON *list = file->n_regions ? add_list(root, "regions") : NULL;
+    for (size_t i = 0; i < file->n_regions; i++) {
+        const struct plan_file_region *region = &file->regions[i];
+        cJSON *entry = append(list, cJSON_CreateObject());
+        add_text(entry, "path", region->path);
+        add_text(entry, "name", region->name);
+        add_text(entry, "names", region->names);
+        if (region->has_color)
+            add_color(entry, region->rgb);
+    }
+}
+
+static void add_hierarchy(cJSON *root, const struct plan_file *file)
+{
+    add_text(root, "hierarchy", file->hierarchy);
+    if (file->hierarchy[0] || file->n_pairs == 0)
+        return;
+    cJSON *tree = cJSON_CreateObject();
+    add(root, "hierarchy", tree);
+    for (size_t i = 0; i < file->n_pairs; i++) {
+        cJSON *inside = cJSON_GetObjectItemCaseSensitive(tree, file->pairs[i].outer);
+        append(inside ? inside : add_list(tree, file->pairs[i].outer), cJSON_CreateString(file->pairs[i].inner));
+    }
+}
+
+static void add_doses(cJSON *root, const struct plan_file *file)
+{
+    cJSON *list = file->n_doses ? add_list(root, "doses") : NULL;
+    for (size_t i = 0; i < file->n_doses; i++) {
+        const struct plan_file_dose *dose = &file->doses[i];
+        cJSON *entry = append(list, cJSON_CreateObject());
+        add_text(entry, "id", dose->id);
+        add_text(entry, "unit", dose->unit);
+        add_text(entry, "per", dose->per);
+        add_text(entry, "mask", dose->mask);
+        cJSON *components = add_list(entry, "components");
+        for (size_t c = 0; c < dose->n_components; c++) {
+            cJSON *component = append(components, cJSON_CreateObject());
+            add_text(component, "quantity", dose_quantity_word(dose->components[c].quantity));
+            if (dose->components[c].is_per_ppm)
+                add(component, "per_ppm", cJSON_CreateTrue());
+            add_text(component, "path", dose->components[c].path);
+        }
+    }
+}
+
+static void add_beams(cJSON *root, const struct plan_file *file)
+{
+    cJSON *list = file->n_beams ? add_list(root, "beams") : NULL;
+    for (size_t i = 0; i < file->n_beams; i++) {
+        const struct beam *beam = &file->beams[i];
+        cJSON *entry = append(list, cJSON_CreateObject());
+        add_text(entry, "id", beam->id);
+        add_point(entry, "entry_mm", beam->entry_lps_mm);
+        add_point(entry, "target_mm", beam->target_lps_mm);
+        add_number(entry, "aperture_mm", beam->aperture_mm);
+    }
+}
+
+static void add_tracks(cJSON *root, const struct plan_file *file)
+{
+    cJSON *list = file->n_tracks ? add_list(root, "tracks") : NULL;
+    for (size_t i = 0; i < file->n_tracks; i++) {
+        cJSON *entry = append(list, cJSON_CreateObject());
+        add_text(entry, "path", file->tracks[i].path);
+        if (file->tracks[i].mm > 0)
+            add_text(entry, "unit", file->tracks[i].mm > 1 ? "cm" : "mm");
+    }
+}
+
+char *plan_file_text(const struct plan_file *file)
+{
+    cJSON *root = cJSON_CreateObject();
+    add(root, "format", cJSON_CreateString("beamroom-plan"));
+    add(root, "version", cJSON_CreateNumber(1));
+    add_text(root, "name", file->name);
+    if (file->is_phantom)
+        add(root, "phantom", cJSON_CreateTrue());
+    add_text(root, "note", file->note);
+    add_images(root, file);
+    add_regions(root, file);
+    add_hierarchy(root, file);
+    add_doses(root, file);
+    add_beams(root, file);
+    add_tracks(root, file);
+    return print(root);
+}
+
+char *label_names_text(const struct label_names *names)
+{
+    cJSON *root = cJSON_CreateObject(), *list = add_list(root, "labels");
+    for (size_t i = 0; i < names->n; i++) {
+        const struct label_name *label = &names->labels[i];
+        cJSON *entry = append(list, cJSON_CreateObject());
+        add(entry, "value", cJSON_CreateNumber(label->value));
+        add_text(entry, "name", label->name);
+        add_text(entry, "id", label->id);
+        if (label->place > 0)
+            add(entry, "place", cJSON_CreateNumber(label->place));
+        if (label->has_color)
+            add_color(entry, label->rgb);
+        add_text(entry, "parent", label->parent);
+        if (!label->has_tissue)
+            continue;
+        cJSON *tissue = cJSON_CreateObject();
+        add(entry, "tissue", tissue);
+        add_number(tissue, "boron_ratio", label->tissue.boron_ratio);
+        add_number(tissue, "cbe_boron", label->tissue.cbe_boron);
+        add_number(tissue, "rbe_nitrogen", label->tissue.rbe_nitrogen);
+        add_number(tissue, "rbe_fast", label->tissue.rbe_fast);
+        add_number(tissue, "rbe_gamma", label->tissue.rbe_gamma);
+    }
+    return print(root);
+}

@@ -1,0 +1,357 @@
+#include "core/plan/plan_write.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/base/file_write.h"
+#include "core/base/mem.h"
+#include "core/base/parallel.h"
+#include "core/formats/nifti_write.h"
+#include "core/formats/plan_json.h"
+
+static const char *const folders[] = { "images", "regions", "doses" };
+enum { N_FOLDERS = sizeof folders / sizeof folders[0], MAX_FILES = PLAN_MAX_IMAGES + REGION_MAX_LAYERS + PLAN_MAX_DOSES * (DOSE_N_QUANTITIES + 1) };
+
+/* One file of voxels, written by any thread. */
+struct output {
+    char name[FOLDER_NAME_SIZE];
+    const struct volume *volume;
+    const bool *is_kept; /* of a label layer: which labels to write; NULL: all voxels as they are */
+    bool is_failed;
+    struct error err;
+};
+
+struct writing {
+    const struct plan *plan;
+    char folder[PATH_MAX]; /* where it is built */
+    struct output *outputs;
+    size_t n_outputs;
+    atomic_size_t next;
+    struct plan_file *file;
+};
+
+static void join(char out[PATH_MAX], const char *folder, const char *name)
+{
+    int n = snprintf(out, PATH_MAX, "%s/%s", folder, name);
+    if (n < 0 || n >= PATH_MAX)
+        out[0] = 0; /* opening "" fails with a reason */
+}
+
+static struct output *add_output(struct writing *writing, const struct volume *volume, const char *name)
+{
+    struct output *output = &writing->outputs[writing->n_outputs++];
+    output->volume = volume;
+    snprintf(output->name, sizeof output->name, "%s", name);
+    return output;
+}
+
+/* ---- what is to be written ------------------------------------------------------------------------------------------ */
+
+static void list_images(struct writing *writing)
+{
+    const struct plan *plan = writing->plan;
+    for (size_t i = 0; i < plan->n_images; i++) {
+        struct plan_file_image *image = &writing->file->images[writing->file->n_images++];
+        memcpy(image->id, plan->images[i].id, sizeof image->id);
+        memcpy(image->name, plan->images[i].name, sizeof image->name);
+        memcpy(image->modality, plan->images[i].modality, sizeof image->modality);
+        snprintf(image->path, sizeof image->path, "images/%s.nii.gz", plan->images[i].id);
+        add_output(writing, plan->images[i].volume, image->path);
+    }
+}
+
+static bool write_names(const struct writing *writing, uint32_t layer, const char *name, bool *is_kept, struct error *err)
+{
+    const struct region_set *set = &writing->plan->regions;
+    struct label_names names = { mem_new(set->n_regions * sizeof *names.labels), 0 };
+    char path[PATH_MAX];
+    for (size_t r = 0; r < set->n_regions; r++) {
+        const struct region *region = &set->regions[r];
+        if (region->layer != layer)
+            continue;
+        struct label_name *label = &names.labels[names.n++];
+        label->value = region->label;
+        label->has_color = region->has_file_color;
+        memcpy(label->rgb, region->rgb, sizeof label->rgb);
+        memcpy(label->name, region->name, sizeof label->name);
+        memcpy(label->id, region->id, sizeof label->id);
+        label->place = (int)r + 1;
+        label->has_tissue = true;
+        label->tissue = (struct label_tissue){ region->boron_ratio, region->cbe_boron, region->rbe_nitrogen, region->rbe_fast, region->rbe_gamma };
+        is_kept[region->label] = true;
+    }
+    char *text = label_names_text(&names);
+    join(path, writing->folder, name);
+    bool is_written = file_write(path, text, strlen(text), err);
+    free(text);
+    label_names_finish(&names);
+    return is_written;
+}
+
+static bool list_regions(struct writing *writing, bool (*is_kept)[65536], struct error *err)
+{
+    const struct region_set *set = &writing->plan->regions;
+    struct plan_file *file = writing->file;
+    for (uint32_t layer = 0; layer < set->n_layers; layer++) {
+        bool is_used = false;
+        for (size_t r = 0; r < set->n_regions; r++)
+            is_used |= set->regions[r].layer == layer;
+        if (!is_used)
+            continue;
+        struct plan_file_region *region = &file->regions[file->n_regions++];
+        snprintf(region->path, sizeof region->path, "regions/labels-%zu.nii.gz", file->n_regions);
+        snprintf(region->names, sizeof region->names, "regions/labels-%zu.json", file->n_regions);
+        if (!write_names(writing, layer, region->names, is_kept[layer], err))
+            return false;
+        add_output(writing, set->layers[layer], region->path)->is_kept = is_kept[layer];
+    }
+    for (size_t r = 0; set->hierarchy == HIERARCHY_FILE && r < set->n_regions; r++) {
+        int parent = set->regions[r].parent;
+        if (parent < 0 || file->n_pairs >= PLAN_FILE_MAX_PAIRS)
+            continue;
+        struct plan_file_pair *pair = &file->pairs[file->n_pairs++];
+        snprintf(pair->outer, sizeof pair->outer, "%s", set->regions[parent].id);
+        snprintf(pair->inner, sizeof pair->inner, "%s", set->regions[r].id);
+    }
+    return true;
+}
+
+static void list_doses(struct writing *writing)
+{
+    const struct plan *plan = writing->plan;
+    for (size_t i = 0; i < plan->n_doses; i++) {
+        const struct dose *dose = &plan->doses[i];
+        struct plan_file_dose *entry = &writing->file->doses[writing->file->n_doses++];
+        memcpy(entry->id, dose->id, sizeof entry->id);
+        memcpy(entry->unit, dose->unit, sizeof entry->unit);
+        memcpy(entry->per, dose->per, sizeof entry->per);
+        for (size_t c = 0; c < dose->n_components; c++) {
+            struct plan_file_component *component = &entry->components[entry->n_components++];
+            component->quantity = dose->components[c].quantity;
+            component->is_per_ppm = dose->components[c].is_per_ppm;
+            snprintf(component->path, sizeof component->path, "doses/%s-%s.nii.gz", dose->id, dose_quantity_word(component->quantity));
+            add_output(writing, dose->components[c].values, component->path);
+        }
+        if (dose->mask) {
+            snprintf(entry->mask, sizeof entry->mask, "doses/%s-valid.nii.gz", dose->id);
+            add_output(writing, dose->mask, entry->mask);
+        }
+    }
+}
+
+/* ---- writing it ------------------------------------------------------------------------------------------------------- */
+
+/* A copy of a label layer with the labels of no region cleared. */
+static struct volume *copy_kept(const struct volume *layer, const bool *is_kept, struct error *err)
+{
+    struct volume *copy = volume_create(&layer->grid, layer->type, err);
+    size_t n = grid_n_voxels(&layer->grid);
+    for (size_t i = 0; copy && i < n; i++) {
+        if (layer->type == VOXEL_U8) {
+            uint8_t label = ((const uint8_t *)layer->voxels)[i];
+            ((uint8_t *)copy->voxels)[i] = is_kept[label] ? label : 0;
+        } else {
+            uint16_t label = ((const uint16_t *)layer->voxels)[i];
+            ((uint16_t *)copy->voxels)[i] = is_kept[label] ? label : 0;
+        }
+    }
+    return copy;
+}
+
+static bool write_output(const struct writing *writing, struct output *output)
+{
+    char path[PATH_MAX];
+    join(path, writing->folder, output->name);
+    if (!output->is_kept)
+        return nifti_write_exact(path, output->volume, NULL, &output->err);
+    struct volume *kept = copy_kept(output->volume, output->is_kept, &output->err);
+    bool is_written = kept && nifti_write_exact(path, kept, NULL, &output->err);
+    volume_unref(kept);
+    return is_written;
+}
+
+static void write_some(void *context, int part, int n_parts)
+{
+    (void)part;
+    (void)n_parts;
+    struct writing *writing = context;
+    for (size_t at; (at = atomic_fetch_add(&writing->next, 1)) < writing->n_outputs;)
+        writing->outputs[at].is_failed = !write_output(writing, &writing->outputs[at]);
+}
+
+static bool write_volumes(struct writing *writing, struct error *err)
+{
+    atomic_init(&writing->next, 0);
+    parallel_run(parallel_cores(), write_some, writing);
+    for (size_t i = 0; i < writing->n_outputs; i++)
+        if (writing->outputs[i].is_failed) {
+            if (err)
+                *err = writing->outputs[i].err;
+            return false;
+        }
+    return true;
+}
+
+/* SERA's columns, in its axes (RL, PA, IS) = (L, -P, S); nine digits bring a float back as it was. */
+static bool write_tracks(struct writing *writing, struct error *err)
+{
+    static const int codes[TRACK_N_CLASSES][2] = {
+        [TRACK_NEUTRON_HIGH] = { 0, 1 }, [TRACK_NEUTRON_MEDIUM] = { 0, 2 }, [TRACK_NEUTRON_LOW] = { 0, 3 },
+        [TRACK_GAMMA_HIGH] = { 1, 1 },   [TRACK_GAMMA_MEDIUM] = { 1, 2 },   [TRACK_GAMMA_LOW] = { 1, 3 },
+        [TRACK_LOST] = { 3, 0 },         [TRACK_BEAM_LINE] = { 2, 0 }
+    };
+    const struct track_set *tracks = &writing->plan->tracks;
+    struct plan_file_tracks *entry = &writing->file->tracks[0];
+    char *text = NULL, path[PATH_MAX];
+    size_t n_bytes = 0;
+    if (tracks->n_segments == 0)
+        return true;
+    snprintf(entry->path, sizeof entry->path, "tracks.pp");
+    entry->mm = 1;
+    writing->file->n_tracks = 1;
+    FILE *out = open_memstream(&text, &n_bytes);
+    for (size_t i = 0; out && i < tracks->n_segments; i++) {
+        const struct track_segment *segment = &tracks->segments[i];
+        const float *a = segment->from_lps_mm, *b = segment->to_lps_mm;
+        fprintf(out, "%.9g %.9g %.9g %.9g %.9g %.9g %d %d\n", (double)a[0], -(double)a[1], (double)a[2], (double)b[0], -(double)b[1],
+                (double)b[2], codes[segment->class][0], codes[segment->class][1]);
+    }
+    bool is_whole = out && !ferror(out) && fclose(out) == 0;
+    join(path, writing->folder, entry->path);
+    bool is_written = is_whole ? file_write(path, text, n_bytes, err) : error_set(err, ERROR_MEMORY, "%s: no memory for the tracks", path);
+    free(text);
+    return is_written;
+}
+
+static bool write_plan_json(const struct writing *writing, struct error *err)
+{
+    char path[PATH_MAX];
+    char *text = plan_file_text(writing->file);
+    join(path, writing->folder, "plan.json");
+    bool is_written = file_write(path, text, strlen(text), err);
+    free(text);
+    return is_written;
+}
+
+static bool write_contents(struct writing *writing, struct error *err)
+{
+    const struct plan *plan = writing->plan;
+    bool(*is_kept)[65536] = mem_new((plan->regions.n_layers + 1) * sizeof *is_kept);
+    struct plan_file *file = writing->file;
+    memcpy(file->name, plan->name, sizeof file->name);
+    memcpy(file->note, plan->note, sizeof file->note);
+    file->is_phantom = plan->is_phantom;
+    list_images(writing);
+    bool is_written = list_regions(writing, is_kept, err);
+    list_doses(writing);
+    memcpy(file->beams, plan->beams, sizeof file->beams);
+    file->n_beams = plan->n_beams;
+    is_written = is_written && write_volumes(writing, err) && write_tracks(writing, err) && write_plan_json(writing, err);
+    free(is_kept);
+    return is_written;
+}
+
+/* ---- the folder ------------------------------------------------------------------------------------------------------- */
+
+static bool is_empty(const char *folder)
+{
+    DIR *directory = opendir(folder);
+    size_t n = 0;
+    for (struct dirent *entry; directory && (entry = readdir(directory));)
+        n += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
+    if (directory)
+        closedir(directory);
+    return directory && n == 0;
+}
+
+static bool check_target(const char *folder, struct error *err)
+{
+    struct stat about;
+    if (lstat(folder, &about) != 0)
+        return errno == ENOENT ? true : error_set(err, ERROR_IO, "%s: %s", folder, strerror(errno));
+    if (!S_ISDIR(about.st_mode))
+        return error_set(err, ERROR_STATE, "%s is there and is no folder", folder);
+    return is_empty(folder) || error_set(err, ERROR_STATE, "%s is there already and is not empty", folder);
+}
+
+static bool make_folders(const char *folder, struct error *err)
+{
+    char path[PATH_MAX];
+    bool is_made = mkdir(folder, 0777) == 0;
+    for (int i = 0; is_made && i < N_FOLDERS; i++) {
+        join(path, folder, folders[i]);
+        is_made = mkdir(path, 0777) == 0;
+    }
+    return is_made || error_set(err, ERROR_IO, "%s: cannot be created: %s", folder, strerror(errno));
+}
+
+/* Folders that nothing went into are not part of the plan. */
+static void remove_empty(const char *folder)
+{
+    char path[PATH_MAX];
+    for (int i = 0; i < N_FOLDERS; i++) {
+        join(path, folder, folders[i]);
+        (void)rmdir(path);
+    }
+}
+
+static void remove_files(const char *folder)
+{
+    DIR *directory = opendir(folder);
+    char path[PATH_MAX];
+    for (struct dirent *entry; directory && (entry = readdir(directory));) {
+        join(path, folder, entry->d_name);
+        (void)unlink(path); /* fails for folders, which is what is wanted */
+    }
+    if (directory)
+        closedir(directory);
+}
+
+static void remove_all(const char *folder)
+{
+    char path[PATH_MAX];
+    for (int i = 0; i < N_FOLDERS; i++) {
+        join(path, folder, folders[i]);
+        remove_files(path);
+    }
+    remove_files(folder);
+    remove_empty(folder);
+    (void)rmdir(folder);
+}
+
+bool plan_write(const struct plan *plan, const char *folder, struct error *err)
+{
+    struct writing writing = { .plan = plan };
+    char place[PATH_MAX - 64];
+    size_t n = strlen(folder);
+    while (n > 1 && folder[n - 1] == '/')
+        n--;
+    if (n == 0 || n >= sizeof place)
+        return error_set(err, ERROR_RANGE, "a folder's path has 1 to %zu bytes, this one %zu", sizeof place - 1, n);
+    memcpy(place, folder, n);
+    place[n] = 0;
+    snprintf(writing.folder, sizeof writing.folder, "%s.partial-%ld", place, (long)getpid());
+    if (!check_target(place, err) || !make_folders(writing.folder, err))
+        return false;
+    writing.outputs = mem_new(MAX_FILES * sizeof *writing.outputs);
+    writing.file = mem_new(sizeof *writing.file);
+    writing.file->regions = mem_new((REGION_MAX_LAYERS + 1) * sizeof *writing.file->regions);
+    writing.file->pairs = mem_new(PLAN_FILE_MAX_PAIRS * sizeof *writing.file->pairs);
+    bool is_written = write_contents(&writing, err);
+    if (is_written) {
+        remove_empty(writing.folder);
+        if (rename(writing.folder, place) != 0)
+            is_written = error_set(err, ERROR_IO, "%s: cannot be created: %s", place, strerror(errno));
+    }
+    if (!is_written)
+        remove_all(writing.folder);
+    plan_file_destroy(writing.file);
+    free(writing.outputs);
+    return is_written;
+}

@@ -1,0 +1,135 @@
+#include "tests/unit/same_plan.h"
+
+#include "core/region/mask.h"
+#include "tests/check.h"
+
+static void same_number(double found, double expected)
+{
+    if (!(isnan(found) && isnan(expected)) && found != expected)
+        fail_msg("%.17g instead of %.17g", found, expected);
+}
+
+static void same_grid(const struct grid *found, const struct grid *expected, double mm)
+{
+    assert_memory_equal(found->size, expected->size, sizeof found->size);
+    for (int corner = 0; corner < 8; corner++) {
+        struct vec3 at = vec3(corner & 1 ? found->size[0] - 1 : 0, corner & 2 ? found->size[1] - 1 : 0, corner & 4 ? found->size[2] - 1 : 0);
+        struct vec3 a = affine_point(&found->lps_mm_from_ijk, at), b = affine_point(&expected->lps_mm_from_ijk, at);
+        assert_close(vec3_length(vec3_sub(a, b)), 0, mm);
+    }
+}
+
+static void same_volume(const struct volume *found, const struct volume *expected, double mm)
+{
+    same_grid(&found->grid, &expected->grid, mm);
+    same_number(found->low, expected->low);
+    same_number(found->high, expected->high);
+    size_t n = grid_n_voxels(&found->grid);
+    if (found->type == expected->type && found->slope == expected->slope && found->offset == expected->offset) {
+        if (memcmp(found->voxels, expected->voxels, n * voxel_size(found->type)) == 0)
+            return;
+    }
+    const uint32_t *size = found->grid.size;
+    for (uint32_t k = 0; k < size[2]; k++)
+        for (uint32_t j = 0; j < size[1]; j++)
+            for (uint32_t i = 0; i < size[0]; i++) {
+                double a = volume_value(found, i, j, k), b = volume_value(expected, i, j, k);
+                if (!(isnan(a) && isnan(b)) && a != b)
+                    fail_msg("voxel %u %u %u is %.17g instead of %.17g", i, j, k, a, b);
+            }
+}
+
+static void same_mask(const struct region_set *found, const struct region_set *expected, size_t region)
+{
+    struct error err = { 0 };
+    const struct region *a = &found->regions[region], *b = &expected->regions[region];
+    struct mask *mask_a = mask_from_labels(found->layers[a->layer], &a->label, 1, 2, &err);
+    struct mask *mask_b = mask_from_labels(expected->layers[b->layer], &b->label, 1, 2, &err);
+    assert_string_equal(err.text, "");
+    assert_memory_equal(mask_a->bits, mask_b->bits, (size_t)mask_a->words * mask_a->size[1] * mask_a->size[2] * sizeof(uint64_t));
+    mask_destroy(mask_a);
+    mask_destroy(mask_b);
+}
+
+static void same_regions(const struct region_set *found, const struct region_set *expected, double mm)
+{
+    assert_int_equal(found->n_regions, expected->n_regions);
+    assert_int_equal(found->hierarchy, expected->hierarchy);
+    for (size_t r = 0; r < found->n_regions; r++) {
+        const struct region *a = &found->regions[r], *b = &expected->regions[r];
+        assert_string_equal(a->id, b->id);
+        assert_string_equal(a->name, b->name);
+        assert_memory_equal(a->rgb, b->rgb, 3);
+        assert_int_equal(a->has_file_color, b->has_file_color);
+        assert_int_equal(a->parent, b->parent);
+        assert_int_equal(a->n_voxels, b->n_voxels);
+        same_number(a->boron_ratio, b->boron_ratio);
+        same_number(a->cbe_boron, b->cbe_boron);
+        same_number(a->rbe_nitrogen, b->rbe_nitrogen);
+        same_number(a->rbe_fast, b->rbe_fast);
+        same_number(a->rbe_gamma, b->rbe_gamma);
+        same_grid(&found->layers[a->layer]->grid, &expected->layers[b->layer]->grid, mm);
+        same_mask(found, expected, r);
+    }
+}
+
+static void same_doses(const struct plan *found, const struct plan *expected, double mm)
+{
+    assert_int_equal(found->n_doses, expected->n_doses);
+    for (size_t d = 0; d < found->n_doses; d++) {
+        const struct dose *a = &found->doses[d], *b = &expected->doses[d];
+        assert_string_equal(a->id, b->id);
+        assert_string_equal(a->unit, b->unit);
+        assert_string_equal(a->per, b->per);
+        assert_int_equal(a->n_components, b->n_components);
+        for (size_t c = 0; c < a->n_components; c++) {
+            assert_int_equal(a->components[c].quantity, b->components[c].quantity);
+            assert_int_equal(a->components[c].is_per_ppm, b->components[c].is_per_ppm);
+            same_volume(a->components[c].values, b->components[c].values, mm);
+        }
+        assert_int_equal(a->mask != NULL, b->mask != NULL);
+        if (a->mask)
+            same_volume(a->mask, b->mask, mm);
+    }
+}
+
+static void same_beams(const struct plan *found, const struct plan *expected)
+{
+    assert_int_equal(found->n_beams, expected->n_beams);
+    for (size_t i = 0; i < found->n_beams; i++) {
+        const struct beam *a = &found->beams[i], *b = &expected->beams[i];
+        assert_string_equal(a->id, b->id);
+        assert_memory_equal(&a->entry_lps_mm, &b->entry_lps_mm, sizeof a->entry_lps_mm);
+        assert_memory_equal(&a->target_lps_mm, &b->target_lps_mm, sizeof a->target_lps_mm);
+        same_number(a->aperture_mm, b->aperture_mm);
+    }
+}
+
+void assert_same_plan(const struct plan *found, const struct plan *expected, double mm)
+{
+    assert_string_equal(found->name, expected->name);
+    assert_string_equal(found->note, expected->note);
+    assert_int_equal(found->is_phantom, expected->is_phantom);
+    assert_int_equal(found->n_images, expected->n_images);
+    for (size_t i = 0; i < found->n_images; i++) {
+        assert_string_equal(found->images[i].id, expected->images[i].id);
+        assert_string_equal(found->images[i].name, expected->images[i].name);
+        assert_string_equal(found->images[i].modality, expected->images[i].modality);
+        assert_string_equal(found->images[i].unit, expected->images[i].unit);
+        same_number(found->images[i].window_center, expected->images[i].window_center);
+        same_number(found->images[i].window_width, expected->images[i].window_width);
+        same_volume(found->images[i].volume, expected->images[i].volume, mm);
+    }
+    same_regions(&found->regions, &expected->regions, mm);
+    same_doses(found, expected, mm);
+    same_beams(found, expected);
+    assert_int_equal(found->tracks.n_segments, expected->tracks.n_segments);
+    for (size_t i = 0; i < found->tracks.n_segments; i++) {
+        const struct track_segment *a = &found->tracks.segments[i], *b = &expected->tracks.segments[i];
+        assert_memory_equal(a->from_lps_mm, b->from_lps_mm, sizeof a->from_lps_mm);
+        assert_memory_equal(a->to_lps_mm, b->to_lps_mm, sizeof a->to_lps_mm);
+        assert_int_equal(a->class, b->class);
+    }
+    assert_close(vec3_length(vec3_sub(found->bounds_lps_mm.low, expected->bounds_lps_mm.low)), 0, mm);
+    assert_close(vec3_length(vec3_sub(found->bounds_lps_mm.high, expected->bounds_lps_mm.high)), 0, mm);
+}
