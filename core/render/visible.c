@@ -4,14 +4,67 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/render/shading.h"
 
 const uint8_t visible_background[3] = { 0x08, 0x09, 0x0b };
 
-/* ---- surfaces ------------------------------------------------------------------------------------------------------------- */
+/* ---- shapes --------------------------------------------------------------------------------------------------------------- */
 
-enum surface_algorithm visible_algorithm(const struct snapshot *snapshot)
+struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t region)
 {
-    return snapshot->scene.surface.algorithm == SCENE_ALGORITHM_EIGHT_CELL ? SURFACE_EIGHT_CELL : SURFACE_MARCHING_CUBES;
+    static const enum region_representation representations[] = {
+        [SCENE_REPRESENTATION_SURFACE] = REPRESENTATION_SURFACE, [SCENE_REPRESENTATION_OUTLINE] = REPRESENTATION_OUTLINE,
+        [SCENE_REPRESENTATION_POINTS] = REPRESENTATION_POINTS,   [SCENE_REPRESENTATION_UNIVELS] = REPRESENTATION_UNIVELS,
+        [SCENE_REPRESENTATION_SOLID] = REPRESENTATION_SOLID,     [SCENE_REPRESENTATION_NURBS] = REPRESENTATION_NURBS,
+        [SCENE_REPRESENTATION_FAN] = REPRESENTATION_FAN,
+    };
+    static const enum surface_algorithm algorithms[] = {
+        [SCENE_ALGORITHM_MARCHING_CUBES] = SURFACE_MARCHING_CUBES,
+        [SCENE_ALGORITHM_EIGHT_CELL] = SURFACE_EIGHT_CELL,
+        [SCENE_ALGORITHM_SMOOTH] = SURFACE_MARCHING_CUBES,
+    };
+    const struct scene *scene = &snapshot->scene;
+    struct shape_key key = {
+        .representation = representations[snapshot->styles[region].representation],
+        .algorithm = algorithms[scene->surface.algorithm],
+        .outline = scene->outline.method == SCENE_OUTLINE_METHOD_TRACED ? OUTLINE_TRACED : OUTLINE_MARCHING_SQUARES,
+        .has_inner_boundary = scene->points.inner_boundary,
+        .nurbs_order = (int)scene->nurbs.order,
+        .nurbs_sampling = scene->nurbs.sampling == SCENE_NURBS_SAMPLING_TRACES ? NURBS_TRACES : NURBS_DEGREE_BINS,
+        .nurbs_bins = (int)scene->nurbs.bins,
+    };
+    shape_key_normalise(&key);
+    return key;
+}
+
+struct visible_look visible_look(const struct snapshot *snapshot, size_t region, const struct shape_key *key)
+{
+    const struct scene *scene = &snapshot->scene;
+    enum region_representation kind = key->representation;
+    bool is_line = kind == REPRESENTATION_OUTLINE, is_point = kind == REPRESENTATION_POINTS || kind == REPRESENTATION_SOLID;
+    return (struct visible_look){
+        .is_flat = scene->surface.normals == SCENE_NORMALS_FACE,
+        .is_two_sided = kind == REPRESENTATION_FAN || kind == REPRESENTATION_NURBS,
+        .is_rim = !is_line && !is_point && snapshot->styles[region].opacity < 1 && scene->surface.translucency == SCENE_TRANSLUCENCY_RIM,
+        .is_baked = kind == REPRESENTATION_SOLID && scene->points.solid == SCENE_SOLID_LIGHTING_BAKED,
+        .is_covering = kind == REPRESENTATION_SOLID,
+        .size_px = is_line ? scene->outline.width_px : scene->points.size_px,
+    };
+}
+
+/* Only what is made of voxels' terraces needs its light smoothed. */
+int visible_shading_passes(const struct shape_key *key, uint32_t reduction)
+{
+    return key->representation == REPRESENTATION_SURFACE ? shading_passes(reduction) : 0;
+}
+
+struct visible_cue visible_depth_cue(const struct camera *camera, const struct box3 *box)
+{
+    struct vec3 f = camera->forward, size = vec3_sub(box->high, box->low);
+    double length = fabs(f.x) * size.x + fabs(f.y) * size.y + fabs(f.z) * size.z; /* along the line of sight */
+    double slope = -(1 - VISIBLE_DARKEST) / fmax(length, 1e-6);
+    struct vec3 nearest = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y, f.z > 0 ? box->low.z : box->high.z);
+    return (struct visible_cue){ slope * f.x, slope * f.y, slope * f.z, 1 - slope * vec3_dot(f, nearest) };
 }
 
 static double nearest_mm(const struct camera *camera, const struct box3 *box)
@@ -74,6 +127,14 @@ size_t visible_n_translucent(const struct snapshot *snapshot)
     return n;
 }
 
+/* Whether a closed surface of the outer one's kind has the inner one's within it, if its voxels are. */
+static bool can_enclose(const struct snapshot *snapshot, size_t outer, size_t inner)
+{
+    enum scene_representation a = snapshot->styles[outer].representation, b = snapshot->styles[inner].representation;
+    return (a == SCENE_REPRESENTATION_SURFACE || a == SCENE_REPRESENTATION_UNIVELS) &&
+           (a == b || (a == SCENE_REPRESENTATION_UNIVELS && b == SCENE_REPRESENTATION_SURFACE));
+}
+
 /* A region inside an opaque one, in the same label layer, cannot be seen: the outer surface is closed and encloses it. Unless the
  * eye is within the outer one's box, or the near plane cuts it open. False on failure. */
 static bool find_hidden(const struct snapshot *snapshot, const struct camera *camera, size_t region, visible_bounds *bounds, void *context,
@@ -82,7 +143,8 @@ static bool find_hidden(const struct snapshot *snapshot, const struct camera *ca
     const struct region *regions = snapshot->plan->regions.regions;
     *is_hidden = false;
     for (int outer = regions[region].parent; outer >= 0 && !*is_hidden; outer = regions[outer].parent) {
-        if (!is_drawn(snapshot, (size_t)outer) || snapshot->styles[outer].opacity < 1 || regions[outer].layer != regions[region].layer)
+        if (!is_drawn(snapshot, (size_t)outer) || snapshot->styles[outer].opacity < 1 || regions[outer].layer != regions[region].layer ||
+            !can_enclose(snapshot, (size_t)outer, region))
             continue;
         const struct box3 *box = bounds(context, (size_t)outer, err);
         if (!box)
@@ -92,10 +154,10 @@ static bool find_hidden(const struct snapshot *snapshot, const struct camera *ca
     return true;
 }
 
-/* As visible_surfaces says. What encloses another is never farther away, so at equal distances the inner one comes first. */
+/* As visible_shapes says. What encloses another is never farther away, so at equal distances the inner one comes first. */
 static int compare_back_to_front(const void *left, const void *right)
 {
-    const struct visible_surface *a = left, *b = right;
+    const struct visible_shape *a = left, *b = right;
     if (a->order != b->order)
         return a->order < b->order ? -1 : 1;
     if (a->distance_mm != b->distance_mm)
@@ -107,13 +169,13 @@ static int compare_back_to_front(const void *left, const void *right)
     return a->style < b->style ? -1 : a->style > b->style;
 }
 
-struct visible_surface *visible_surfaces(const struct snapshot *snapshot, const struct camera *camera, const struct mat4 *clip_from_lps_mm,
+struct visible_shape *visible_shapes(const struct snapshot *snapshot, const struct camera *camera, const struct mat4 *clip_from_lps_mm,
                                          bool is_opaque, visible_bounds *bounds, void *context, size_t *n, struct error *err)
 {
     const struct region_set *set = &snapshot->plan->regions;
-    struct visible_surface *surfaces = mem_array(set->n_regions, sizeof *surfaces, UINT64_MAX, err);
+    struct visible_shape *shapes = mem_array(set->n_regions, sizeof *shapes, UINT64_MAX, err);
     *n = 0;
-    for (size_t i = 0; surfaces && i < set->n_regions; i++) {
+    for (size_t i = 0; shapes && i < set->n_regions; i++) {
         bool is_hidden = false;
         if (!is_drawn(snapshot, i) || (snapshot->styles[i].opacity >= 1) != is_opaque)
             continue;
@@ -122,17 +184,17 @@ struct visible_surface *visible_surfaces(const struct snapshot *snapshot, const 
             continue;
         const struct box3 *box = is_good ? bounds(context, i, err) : NULL;
         if (!box) {
-            free(surfaces);
+            free(shapes);
             return NULL;
         }
         if (!box3_is_empty(box) && !is_out_of_sight(clip_from_lps_mm, box))
-            surfaces[(*n)++] = (struct visible_surface){ i, &snapshot->styles[i], nearest_mm(camera, box),
+            shapes[(*n)++] = (struct visible_shape){ i, &snapshot->styles[i], nearest_mm(camera, box),
                                                          (int)snapshot->styles[i].order, region_depth(set, i),
                                                          set->regions[i].n_voxels };
     }
-    if (surfaces)
-        qsort(surfaces, *n, sizeof *surfaces, compare_back_to_front);
-    return surfaces;
+    if (shapes)
+        qsort(shapes, *n, sizeof *shapes, compare_back_to_front);
+    return shapes;
 }
 
 /* ---- cross-sections ------------------------------------------------------------------------------------------------------- */

@@ -1,12 +1,26 @@
 #pragma once
 /* What of a snapshot is drawn, and in which order: the same for every back end. Knows no pixels and no GL. */
 #include "core/scene/snapshot.h"
+#include "core/surface/shape.h"
 
-/* How the scene wants regions to become surfaces. */
-enum surface_algorithm visible_algorithm(const struct snapshot *snapshot);
+/* What the scene wants a region drawn as; normalised. */
+struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t region);
 
-/* One surface to draw. */
-struct visible_surface {
+/* How a shape is lit and laid down, besides its geometry. */
+struct visible_look {
+    bool is_flat;      /* a normal a triangle */
+    bool is_two_sided; /* open surfaces: seen from behind too */
+    bool is_rim;       /* denser towards the silhouette */
+    bool is_baked;     /* points: light worked out in advance */
+    bool is_covering;  /* points: as large as their voxel; else size_px */
+    double size_px;    /* points: side of the square; lines: width; on the full picture */
+};
+struct visible_look visible_look(const struct snapshot *snapshot, size_t region, const struct shape_key *key);
+/* Passes of shading_normals that suit a shape. */
+int visible_shading_passes(const struct shape_key *key, uint32_t reduction);
+
+/* One shape to draw. */
+struct visible_shape {
     size_t region;
     const struct scene_region_style *style;
     double distance_mm; /* from the eye to the nearest point of its box */
@@ -15,19 +29,27 @@ struct visible_surface {
     uint64_t n_voxels;
 };
 
-/* The box around a region's surface, borrowed until the plan is forgotten; NULL with err when there is no surface to be had.
- * Empty when the surface is: then there is nothing to draw. */
+/* The box around a region's shape, borrowed for this picture; NULL with err when there is no shape to be had. Empty when the shape
+ * is, or when the region cannot be shown in this way: then there is nothing to draw. */
 typedef const struct box3 *visible_bounds(void *context, size_t region, struct error *err);
 
-/* The surfaces that are wanted and can be seen: by the styles' order, then back to front (opaque ones are drawn from the last one
- * on). What lies outside
- * clip_from_lps_mm's box is left out, and so is what an opaque surface encloses. free(); NULL on failure.
- * errors ERROR_MEMORY, and those of bounds */
-NODISCARD struct visible_surface *visible_surfaces(const struct snapshot *snapshot, const struct camera *camera,
-                                                   const struct mat4 *clip_from_lps_mm, bool is_opaque, visible_bounds *bounds,
-                                                   void *context, size_t *n, struct error *err);
+/* The shapes that are wanted and can be seen: by the styles' order, then back to front (opaque ones are drawn from the last one
+ * on). What lies outside clip_from_lps_mm's box is left out, and so is what an opaque closed surface encloses. free(); NULL on
+ * failure. errors ERROR_MEMORY, and those of bounds */
+NODISCARD struct visible_shape *visible_shapes(const struct snapshot *snapshot, const struct camera *camera,
+                                               const struct mat4 *clip_from_lps_mm, bool is_opaque, visible_bounds *bounds,
+                                               void *context, size_t *n, struct error *err);
+/* Lines grow darker away from the viewer, so that near and far ones can be told apart: what their colour is times,
+ * clamp(w + xyz . p, VISIBLE_DARKEST, 1), for a shape in this box. */
+struct visible_cue {
+    double x, y, z, w;
+};
+struct visible_cue visible_depth_cue(const struct camera *camera, const struct box3 *bounds_lps_mm);
+#define VISIBLE_DARKEST 0.4
+/* Lines lie so much nearer (depth 0 near .. 1 far) than they do: on a slice through them they can be seen. */
+#define VISIBLE_LINE_DEPTH 2e-4
 
-/* In exact order a surface counts as so much nearer for each one before it in visible_surfaces' order (depth 0 near .. 1 far), so
+/* In exact order a surface counts as so much nearer for each one before it in visible_shapes' order (depth 0 near .. 1 far), so
  * that surfaces that coincide keep one order all over. */
 #define VISIBLE_RANK_DEPTH 5e-7
 

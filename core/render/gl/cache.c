@@ -1,32 +1,29 @@
 #include "core/render/gl/cache.h"
 
 #include <stdlib.h>
-#include <string.h>
 
+#include "core/base/log.h"
 #include "core/base/mem.h"
-#include "core/render/shading.h"
+#include "core/render/gl/upload.h"
+#include "core/render/visible.h"
 
-enum entry_kind { ENTRY_SURFACE, ENTRY_IMAGE, ENTRY_LAYER };
+enum entry_kind { ENTRY_SHAPE, ENTRY_IMAGE, ENTRY_LAYER };
 
 struct entry {
     const struct plan *plan;
     enum entry_kind kind;
     size_t index;
-    enum surface_algorithm algorithm;
+    struct shape_key key;
     enum surface_detail detail;
-    struct gl_surface surface;
+    struct gl_shape shape;
+    uint64_t n_bytes, used; /* of shapes; used: the picture that drew it last */
     struct gl_grid grid;
     struct entry *next;
 };
 
 struct gl_cache {
     struct entry *first;
-};
-
-/* Position in single precision, normal in 16 bits a component: fine enough for shading, and less to fetch. */
-struct vertex {
-    float position_lps_mm[3];
-    int16_t normal[4];
+    uint64_t n_bytes, n_pictures;
 };
 
 struct gl_cache *gl_cache_create(void)
@@ -36,10 +33,10 @@ struct gl_cache *gl_cache_create(void)
 
 static void entry_destroy(const struct gl *gl, struct entry *entry)
 {
-    if (entry->kind == ENTRY_SURFACE) {
-        gl->DeleteVertexArrays(1, &entry->surface.vertex_array);
-        gl->DeleteBuffers(1, &entry->surface.vertices);
-        gl->DeleteBuffers(1, &entry->surface.indices);
+    if (entry->kind == ENTRY_SHAPE) {
+        gl->DeleteVertexArrays(1, &entry->shape.vertex_array);
+        gl->DeleteBuffers(1, &entry->shape.vertices);
+        gl->DeleteBuffers(1, &entry->shape.indices);
     } else
         gl->DeleteTextures(1, &entry->grid.texture);
     free(entry);
@@ -54,6 +51,7 @@ void gl_cache_forget(const struct gl *gl, struct gl_cache *cache, const struct p
             continue;
         }
         *at = entry->next;
+        cache->n_bytes -= entry->n_bytes;
         entry_destroy(gl, entry);
     }
 }
@@ -66,12 +64,35 @@ void gl_cache_destroy(const struct gl *gl, struct gl_cache *cache)
     free(cache);
 }
 
-static struct entry *find(const struct gl_cache *cache, const struct plan *plan, enum entry_kind kind, size_t index,
-                          enum surface_algorithm algorithm, enum surface_detail detail)
+void gl_cache_trim(const struct gl *gl, struct gl_cache *cache)
+{
+    while (cache->n_bytes > GL_CACHE_BYTES) {
+        struct entry **oldest = NULL;
+        for (struct entry **at = &cache->first; *at; at = &(*at)->next)
+            if ((*at)->n_bytes > 0 && (!oldest || (*at)->used < (*oldest)->used))
+                oldest = at;
+        struct entry *entry = *oldest;
+        *oldest = entry->next;
+        cache->n_bytes -= entry->n_bytes;
+        entry_destroy(gl, entry);
+    }
+    cache->n_pictures++;
+}
+
+static struct entry *find(const struct gl_cache *cache, const struct plan *plan, enum entry_kind kind, size_t index)
 {
     for (struct entry *entry = cache->first; entry; entry = entry->next)
-        if (entry->plan == plan && entry->kind == kind && entry->index == index && entry->algorithm == algorithm &&
-            entry->detail == detail)
+        if (entry->plan == plan && entry->kind == kind && entry->index == index)
+            return entry;
+    return NULL;
+}
+
+static struct entry *find_shape(const struct gl_cache *cache, const struct plan *plan, size_t region, const struct shape_key *key,
+                                enum surface_detail detail)
+{
+    for (struct entry *entry = cache->first; entry; entry = entry->next)
+        if (entry->plan == plan && entry->kind == ENTRY_SHAPE && entry->index == region && entry->detail == detail &&
+            shape_key_equal(&entry->key, key))
             return entry;
     return NULL;
 }
@@ -82,76 +103,39 @@ static struct entry *keep(struct gl_cache *cache, struct entry entry)
     *kept = entry;
     kept->next = cache->first;
     cache->first = kept;
+    cache->n_bytes += kept->n_bytes;
     return kept;
 }
 
-/* ---- surfaces ----------------------------------------------------------------------------------------------------------- */
-
-static struct vertex *pack_vertices(const struct mesh *mesh, int n_passes, struct error *err)
+const struct gl_shape *gl_cache_shape(const struct gl *gl, struct gl_cache *cache, struct plan *plan, size_t region,
+                                      const struct shape_key *key, enum surface_detail detail, struct error *err)
 {
-    float *normals = shading_normals(mesh, n_passes, err);
-    struct vertex *vertices = normals ? mem_array(mesh->n_vertices, sizeof *vertices, UINT64_MAX, err) : NULL;
-    for (size_t i = 0; vertices && i < mesh->n_vertices; i++) {
-        memcpy(vertices[i].position_lps_mm, &mesh->positions_lps_mm[3 * i], sizeof vertices[i].position_lps_mm);
-        for (int a = 0; a < 3; a++)
-            vertices[i].normal[a] = (int16_t)(normals[3 * i + (size_t)a] * 32767.0f);
+    detail = key->representation == REPRESENTATION_SURFACE ? detail : SURFACE_FULL;
+    struct entry *entry = find_shape(cache, plan, region, key, detail);
+    if (entry) {
+        entry->used = cache->n_pictures;
+        return &entry->shape;
     }
-    free(normals);
-    return vertices;
-}
-
-static bool upload_surface(const struct gl *gl, const struct mesh *mesh, uint32_t reduction, struct gl_surface *surface,
-                           struct error *err)
-{
-    if (mesh->n_triangles > (size_t)INT32_MAX / 3)
-        return error_set(err, ERROR_LIMIT, "a surface of %zu triangles: at most %d can be drawn", mesh->n_triangles, INT32_MAX / 3);
-    struct vertex *vertices = pack_vertices(mesh, shading_passes(reduction), err);
-    if (!vertices)
-        return false;
-    surface->n_indices = (GLsizei)(3 * mesh->n_triangles);
-    surface->n_triangles = mesh->n_triangles;
-    surface->bounds_lps_mm = mesh->bounds_lps_mm;
-    gl->GenVertexArrays(1, &surface->vertex_array);
-    gl->GenBuffers(1, &surface->vertices);
-    gl->GenBuffers(1, &surface->indices);
-    gl->BindVertexArray(surface->vertex_array);
-    gl->BindBuffer(GL_ARRAY_BUFFER, surface->vertices);
-    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(mesh->n_vertices * sizeof *vertices), vertices, GL_STATIC_DRAW);
-    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, surface->indices);
-    gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(3 * mesh->n_triangles * sizeof(uint32_t)), mesh->indices, GL_STATIC_DRAW);
-    gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof *vertices, (const void *)offsetof(struct vertex, position_lps_mm));
-    gl->VertexAttribPointer(1, 3, GL_SHORT, GL_TRUE, sizeof *vertices, (const void *)offsetof(struct vertex, normal));
-    gl->EnableVertexAttribArray(0);
-    gl->EnableVertexAttribArray(1);
-    gl->BindVertexArray(0);
-    free(vertices);
-    if (gl_check(gl, "uploading a surface", err))
-        return true;
-    error_prefix(err, "%zu triangles, %zu vertices", mesh->n_triangles, mesh->n_vertices);
-    return false;
-}
-
-const struct gl_surface *gl_cache_surface(const struct gl *gl, struct gl_cache *cache, struct plan *plan, size_t region,
-                                          enum surface_algorithm algorithm, enum surface_detail detail, struct error *err)
-{
-    struct entry *entry = find(cache, plan, ENTRY_SURFACE, region, algorithm, detail);
-    if (entry)
-        return &entry->surface;
     struct surface_facts facts = { 0 };
-    struct mesh *mesh = plan_surface(plan, region, algorithm, detail, &facts, err);
-    if (!mesh) {
-        error_prefix(err, "region %s", plan->regions.regions[region].id);
-        return NULL;
-    }
-    struct entry made = { .plan = plan, .kind = ENTRY_SURFACE, .index = region, .algorithm = algorithm, .detail = detail };
-    made.surface.is_light = facts.reduction > 1;
-    bool is_good = upload_surface(gl, mesh, facts.reduction, &made.surface, err);
-    mesh_unref(mesh);
+    struct error why = { 0 };
+    struct entry made = { .plan = plan, .kind = ENTRY_SHAPE, .index = region, .key = *key, .detail = detail,
+                          .n_bytes = sizeof made, .used = cache->n_pictures };
+    made.shape.bounds_lps_mm = box3_empty();
+    struct shape *shape = plan_shape(plan, region, key, detail, &facts, &why);
+    bool is_good = shape ? gl_upload_shape(gl, shape, visible_shading_passes(key, facts.reduction), &made.shape, &made.n_bytes, &why)
+                         : why.code == ERROR_UNSUPPORTED;
+    if (!shape && is_good)
+        log_info("region %s is not drawn: %s", plan->regions.regions[region].id, why.text);
+    shape_unref(shape);
+    made.shape.is_light = facts.reduction > 1;
     entry = keep(cache, made);
     if (is_good)
-        return &entry->surface;
+        return &entry->shape;
+    if (err)
+        *err = why;
     error_prefix(err, "region %s", plan->regions.regions[region].id);
     cache->first = entry->next;
+    cache->n_bytes -= entry->n_bytes;
     entry_destroy(gl, entry);
     return NULL;
 }
@@ -248,7 +232,7 @@ static bool upload_grid(const struct gl *gl, const struct volume *volume, const 
 const struct gl_grid *gl_cache_image(const struct gl *gl, struct gl_cache *cache, const struct plan *plan, size_t image,
                                      struct error *err)
 {
-    struct entry *entry = find(cache, plan, ENTRY_IMAGE, image, SURFACE_MARCHING_CUBES, SURFACE_FULL);
+    struct entry *entry = find(cache, plan, ENTRY_IMAGE, image);
     if (entry)
         return &entry->grid;
     const struct volume *volume = plan->images[image].volume;
@@ -266,7 +250,7 @@ const struct gl_grid *gl_cache_image(const struct gl *gl, struct gl_cache *cache
 const struct gl_grid *gl_cache_layer(const struct gl *gl, struct gl_cache *cache, const struct plan *plan, size_t layer,
                                      struct error *err)
 {
-    struct entry *entry = find(cache, plan, ENTRY_LAYER, layer, SURFACE_MARCHING_CUBES, SURFACE_FULL);
+    struct entry *entry = find(cache, plan, ENTRY_LAYER, layer);
     if (entry)
         return &entry->grid;
     const struct volume *volume = plan->regions.layers[layer];

@@ -23,11 +23,11 @@ struct gl_frame {
     struct render_timing *timing;
 };
 
-/* The regions' surfaces: opaque ones front to back, */
-NODISCARD bool gl_draw_opaque_surfaces(const struct gl_frame *frame, struct error *err);
+/* The regions' shapes: opaque ones front to back, */
+NODISCARD bool gl_draw_opaque_shapes(const struct gl_frame *frame, struct error *err);
 /* translucent ones, each with its nearest sheet only: each sample in its own order or whole regions, as the scene says. More than
- * GL_LAYERS_MAX of them are taken in groups of as many, in the order of visible_surfaces. */
-NODISCARD bool gl_draw_translucent_surfaces(const struct gl_frame *frame, struct error *err);
+ * GL_LAYERS_MAX of them are taken in groups of as many, in the order of visible_shapes. */
+NODISCARD bool gl_draw_translucent_shapes(const struct gl_frame *frame, struct error *err);
 
 /* The image on the slices that are visible in space. */
 NODISCARD bool gl_draw_slices_in_space(const struct gl_frame *frame, struct error *err);

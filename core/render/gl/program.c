@@ -1,6 +1,9 @@
 #include "core/render/gl/program.h"
 
 #include <stddef.h>
+#include <stdio.h>
+
+#include "core/render/visible.h"
 
 /* Every picture is drawn upside down (flip in the camera's matrix, see renderer.c), so that reading it back gives row 0 at the
  * top. */
@@ -31,10 +34,12 @@ static const char smooth_vertex[] =
     "uniform mat4 clip_from_lps;\n"
     "uniform mat3 eye_from_lps;\n"
     "uniform vec4 viewer;\n"
+    "uniform int is_two_sided;\n"
     "out vec4 shade;\n"
     "void main() {\n"
     "    vec3 towards = normalize(viewer.xyz - viewer.w * position);\n"
-    "    shade = light(eye_from_lps * normal, clamp(dot(normal, towards), 0.0, 1.0));\n"
+    "    float cosine = dot(normal, towards), side = is_two_sided != 0 && cosine < 0.0 ? -1.0 : 1.0;\n" /* that is seen */
+    "    shade = light(eye_from_lps * (side * normal), clamp(side * cosine, 0.0, 1.0));\n"
     "    gl_Position = clip_from_lps * vec4(position, 1.0);\n"
     "}\n";
 
@@ -65,6 +70,71 @@ static const char faceted_fragment[] =
     "    float facing = dot(n, normalize(towards));\n"
     "    if (facing < 0.0) n = -n;\n" /* the visible side of the triangle */
     "    result = light(eye_from_lps * n, min(abs(facing), 1.0));\n"
+    "}\n";
+
+/* Lines and points are rectangles square to the picture: an instance of four corners each, laid out here as
+ * core/render/soft/quads.c does. half_view: half the picture's size in samples; half_size: of a line or point, in samples. */
+static const char line_vertex[] =
+    "layout(location = 0) in vec3 first;\n"
+    "layout(location = 1) in vec3 second;\n"
+    "uniform mat4 clip_from_lps;\n"
+    "uniform vec2 half_view;\n"
+    "uniform float half_size;\n"
+    "uniform vec4 color;\n"
+    "uniform float opacity;\n"
+    "uniform vec4 cue;\n" /* darker away from the viewer: visible_depth_cue */
+    "out vec4 shade;\n"
+    "float cue_at(vec3 p) { return clamp(dot(cue.xyz, p) + cue.w, DARKEST, 1.0); }\n"
+    "void main() {\n"
+    "    vec4 a = clip_from_lps * vec4(first, 1.0), b = clip_from_lps * vec4(second, 1.0), uncut = a;\n"
+    "    float fa = a.z + a.w, fb = b.z + b.w;\n"
+    "    shade = vec4(color.rgb * (cue_at(first) + cue_at(second)) * 0.5, opacity);\n"
+    "    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);\n" /* nothing */
+    "    if (fa < 0.0 && fb < 0.0) return;\n"
+    "    if (fa < 0.0) a = mix(a, b, fa / (fa - fb));\n"
+    "    if (fb < 0.0) b = mix(uncut, b, fa / (fa - fb));\n"
+    "    if (a.w <= 0.0 || b.w <= 0.0) return;\n"
+    "    vec2 s = a.xy / a.w * half_view, t = b.xy / b.w * half_view, along = t - s;\n"
+    "    float size = length(along);\n"
+    "    along = size > 1e-6 ? along / size * half_size : vec2(half_size, 0.0);\n"
+    "    vec2 across = (gl_VertexID & 1) == 0 ? vec2(-along.y, along.x) : vec2(along.y, -along.x);\n"
+    "    bool is_second = gl_VertexID > 1;\n"
+    "    float z = is_second ? b.z / b.w : a.z / a.w;\n"
+    "    gl_Position = vec4((is_second ? t + along + across : s - along + across) / half_view, max(z - 2.0 * LINE_DEPTH, -1.0), 1.0);\n"
+    "}\n";
+
+static const char point_vertex[] =
+    "layout(location = 0) in vec3 position;\n"
+    "layout(location = 1) in vec3 normal;\n"
+    "layout(location = 2) in float baked;\n"
+    "uniform mat4 clip_from_lps;\n"
+    "uniform mat3 eye_from_lps;\n"
+    "uniform vec4 viewer;\n"
+    "uniform vec2 half_view;\n"
+    "uniform float half_size;\n"
+    "uniform int is_covering;\n" /* as large as a voxel; else half_size */
+    "uniform int is_baked;\n"
+    "uniform vec4 edges[3];\n" /* of a voxel, in clip space */
+    "out vec4 shade;\n"
+    "void main() {\n"
+    "    vec4 middle = clip_from_lps * vec4(position, 1.0);\n"
+    "    vec3 towards = normalize(viewer.xyz - viewer.w * position);\n"
+    "    shade = is_baked != 0 ? vec4(color.rgb * baked, opacity)\n"
+    "                          : light(eye_from_lps * normal, clamp(dot(normal, towards), 0.0, 1.0));\n"
+    "    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);\n" /* nothing */
+    "    if (middle.z + middle.w < 0.0 || middle.w <= 0.0) return;\n"
+    "    vec2 at = middle.xy / middle.w, size = vec2(half_size);\n"
+    "    if (is_covering != 0) {\n"
+    "        vec2 across = vec2(0.0);\n"
+    "        float depth = 0.0;\n"
+    "        for (int i = 0; i < 3; i++) {\n"
+    "            across += abs(edges[i].xy - at * edges[i].w) * 0.5;\n"
+    "            depth += abs(edges[i].w) * 0.5;\n"
+    "        }\n"
+    "        size = max(across / max(middle.w - depth, middle.w * 0.125) * half_view + 1.0 / 256.0, 0.5);\n"
+    "    }\n"
+    "    vec2 corner = vec2((gl_VertexID & 1) == 0 ? -1.0 : 1.0, gl_VertexID > 1 ? 1.0 : -1.0);\n"
+    "    gl_Position = vec4(at + corner * size / half_view, middle.z / middle.w, 1.0);\n"
     "}\n";
 
 /* A polygon in a plane through a grid. at: 0 .. 1 over the grid's outer faces. */
@@ -194,17 +264,28 @@ static bool create(const struct gl *gl, struct gl_program *program, const char *
         { &program->source, "source" }, { &program->palette, "palette" }, { &program->grey, "grey" },
         { &program->cull, "cull" }, { &program->scale, "scale" }, { &program->depths, "depths" }, { &program->before, "before" },
         { &program->n_layers, "n_layers" }, { &program->rank_depth, "rank_depth" },
+        { &program->is_two_sided, "is_two_sided" }, { &program->is_baked, "is_baked" }, { &program->is_covering, "is_covering" },
+        { &program->half_size, "half_size" }, { &program->half_view, "half_view" }, { &program->cue, "cue" }, { &program->edges, "edges" },
     };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++)
         *uniforms[i].place = gl->GetUniformLocation(program->name, uniforms[i].name);
     return true;
 }
 
+static const char *line_constants(char text[80])
+{
+    (void)snprintf(text, 80, "#define DARKEST %.9f\n#define LINE_DEPTH %.9f\n", VISIBLE_DARKEST, VISIBLE_LINE_DEPTH);
+    return text;
+}
+
 bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struct error *err)
 {
+    char constants[80];
     *programs = (struct gl_programs){ 0 };
     if (create(gl, &programs->smooth, "smooth", surface_light, smooth_vertex, "", smooth_fragment, err) &&
         create(gl, &programs->faceted, "faceted", "", faceted_vertex, surface_light, faceted_fragment, err) &&
+        create(gl, &programs->lines, "lines", line_constants(constants), line_vertex, "", smooth_fragment, err) &&
+        create(gl, &programs->points, "points", surface_light, point_vertex, "", smooth_fragment, err) &&
         create(gl, &programs->compose, "compose", "", test_vertex, "", compose_fragment, err) &&
         create(gl, &programs->image, "image", "", slice_vertex, "", image_fragment, err) &&
         create(gl, &programs->labels, "labels", "", slice_vertex, "", labels_fragment, err) &&
@@ -216,7 +297,7 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
 
 void gl_programs_destroy(const struct gl *gl, struct gl_programs *programs)
 {
-    const GLuint names[] = { programs->smooth.name, programs->faceted.name, programs->compose.name, programs->image.name, programs->labels.name,
+    const GLuint names[] = { programs->smooth.name, programs->faceted.name, programs->compose.name, programs->lines.name, programs->points.name, programs->image.name, programs->labels.name,
                              programs->test.name };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (names[i])

@@ -183,7 +183,7 @@ static bool draw_passes(const struct gl_frame *frame, struct error *err)
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     if (frame->snapshot->view.kind != SCENE_KIND_3D)
         return gl_draw_pane(frame, err);
-    return gl_draw_opaque_surfaces(frame, err) && gl_draw_slices_in_space(frame, err) && gl_draw_translucent_surfaces(frame, err);
+    return gl_draw_opaque_shapes(frame, err) && gl_draw_slices_in_space(frame, err) && gl_draw_translucent_shapes(frame, err);
 }
 
 /* Mean of 2 x 2 samples, rounded. */
@@ -257,6 +257,7 @@ struct image *gl_renderer_snapshot(struct gl_renderer *renderer, const struct sn
                               .polygon_array = renderer->polygon_array, .polygon = renderer->polygon, .palette = renderer->palette,
                               .colors = renderer->colors,
                               .snapshot = snapshot, .camera = camera, .detail = options->detail, .timing = timing };
+    gl_cache_trim(&renderer->gl, renderer->cache);
     int samples = visible_samples(snapshot, camera, options->width_px, options->is_still);
     int row = image->width_px * samples * samples, band = MAX_BAND_SAMPLES / row;
     int n_layers = (int)visible_n_translucent(snapshot);

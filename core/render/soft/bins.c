@@ -29,20 +29,7 @@ static bool reserve(void *array, size_t *capacity, size_t n, size_t size)
     return true;
 }
 
-/* A corner to be clipped: place times w in sub-samples, depth times w, w, and its light by component. */
-struct corner {
-    double x, y, z, w, shade[4];
-    const struct soft_vertex *own; /* already rounded as its neighbours see it, or NULL */
-};
-
-enum { N_PLANES = 5, MAX_CORNERS = 3 + N_PLANES };
-
-struct polygon {
-    int n;
-    struct corner corners[MAX_CORNERS];
-};
-
-static double inside(const struct corner *corner, int plane)
+static double inside(const struct soft_corner *corner, int plane)
 {
     const double guard = SOFT_GUARD / 2; /* well inside what can be drawn */
     switch (plane) {
@@ -54,32 +41,32 @@ static double inside(const struct corner *corner, int plane)
     }
 }
 
-static struct corner between(const struct corner *a, const struct corner *b, double t)
+static struct soft_corner between(const struct soft_corner *a, const struct soft_corner *b, double t)
 {
-    struct corner out = { a->x + t * (b->x - a->x), a->y + t * (b->y - a->y), a->z + t * (b->z - a->z), a->w + t * (b->w - a->w), { 0 }, NULL };
+    struct soft_corner out = { a->x + t * (b->x - a->x), a->y + t * (b->y - a->y), a->z + t * (b->z - a->z), a->w + t * (b->w - a->w), { 0 }, NULL };
     for (int c = 0; c < 4; c++)
         out.shade[c] = a->shade[c] + t * (b->shade[c] - a->shade[c]);
     return out;
 }
 
 /* I. E. Sutherland, G. W. Hodgman, Reentrant Polygon Clipping, CACM 1974. */
-static void clip(struct polygon *polygon)
+static void clip(struct soft_polygon *polygon)
 {
-    for (int plane = 0; plane < N_PLANES; plane++) {
-        struct polygon kept = { 0 };
+    for (int plane = 0; plane < SOFT_CLIP_PLANES; plane++) {
+        struct soft_polygon kept = { 0 };
         for (int i = 0; i < polygon->n; i++) {
-            const struct corner *a = &polygon->corners[i], *b = &polygon->corners[(i + 1) % polygon->n];
+            const struct soft_corner *a = &polygon->corners[i], *b = &polygon->corners[(i + 1) % polygon->n];
             double fa = inside(a, plane), fb = inside(b, plane);
-            if (fa >= 0 && kept.n < MAX_CORNERS)
+            if (fa >= 0 && kept.n < SOFT_MAX_CORNERS)
                 kept.corners[kept.n++] = *a;
-            if ((fa >= 0) != (fb >= 0) && kept.n < MAX_CORNERS) /* from the inner one, so that a neighbour gets the same point */
+            if ((fa >= 0) != (fb >= 0) && kept.n < SOFT_MAX_CORNERS) /* from the inner one, so that a neighbour gets the same point */
                 kept.corners[kept.n++] = fa >= 0 ? between(a, b, fa / (fa - fb)) : between(b, a, fb / (fb - fa));
         }
         *polygon = kept;
     }
 }
 
-static struct soft_vertex to_vertex(const struct corner *corner)
+static struct soft_vertex to_vertex(const struct soft_corner *corner)
 {
     if (corner->own && corner->own->x != SOFT_CLIPPED)
         return *corner->own;
@@ -113,7 +100,7 @@ static bool can_be_seen(const struct soft_vertex *a, const struct soft_vertex *b
     return (area < 0) & (left <= right) & (top <= bottom) & (left < width) & (right >= 0); /* y is down: counter-clockwise is negative */
 }
 
-static bool keep_extra(struct soft_chunk *chunk, const struct soft_vertex triangle[3], int width, int height)
+bool soft_keep_triangle(struct soft_chunk *chunk, const struct soft_vertex triangle[3], int width, int height)
 {
     struct soft_kept kept;
     if (!can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept))
@@ -127,10 +114,10 @@ static bool keep_extra(struct soft_chunk *chunk, const struct soft_vertex triang
     return true;
 }
 
-/* The light on a triangle of its own plane, seen from its middle. */
+/* The light on a triangle of its own plane, seen from its middle; from behind, where that can be, the plane's other side. */
 static uint32_t flat_shade(const struct soft_item *item, const uint32_t *corners)
 {
-    const struct soft_points *points = &item->surface->points;
+    const struct soft_points *points = &item->shape->points;
     const float *viewer = item->lighting.viewer;
     struct vec3 p[3];
     for (int i = 0; i < 3; i++)
@@ -146,64 +133,98 @@ static double apply(const float row[4], double x, double y, double z)
     return (double)row[0] * x + (double)row[1] * y + (double)row[2] * z + (double)row[3];
 }
 
-static bool keep_clipped(struct soft_chunk *chunk, const uint32_t *corners, const uint32_t *shade, int width, int height)
+void soft_project(const struct soft_lighting *l, double x, double y, double z, struct soft_corner *corner)
 {
-    const struct soft_item *item = chunk->item;
-    const struct soft_points *points = &item->surface->points;
-    const struct soft_lighting *l = &item->lighting;
-    struct polygon polygon = { .n = 3 };
-    for (int i = 0; i < 3; i++) {
-        struct corner *corner = &polygon.corners[i];
-        double x = (double)points->x[corners[i]], y = (double)points->y[corners[i]], z = (double)points->z[corners[i]];
-        *corner = (struct corner){ apply(l->row_x, x, y, z), apply(l->row_y, x, y, z), apply(l->row_z, x, y, z), apply(l->row_w, x, y, z),
-                                   { 0 }, &item->vertices[corners[i]] };
-        for (int c = 0; c < 4; c++)
-            corner->shade[c] = (double)((shade ? *shade : corner->own->shade) >> 8 * c & 255);
-    }
-    clip(&polygon);
-    for (int i = 2; i < polygon.n; i++) {
-        struct soft_vertex triangle[3] = { to_vertex(&polygon.corners[0]), to_vertex(&polygon.corners[i - 1]), to_vertex(&polygon.corners[i]) };
+    *corner = (struct soft_corner){ apply(l->row_x, x, y, z), apply(l->row_y, x, y, z), apply(l->row_z, x, y, z), apply(l->row_w, x, y, z),
+                                    { 0 }, NULL };
+}
+
+bool soft_keep_polygon(struct soft_chunk *chunk, struct soft_polygon *polygon, const uint32_t *shade, int width, int height)
+{
+    clip(polygon);
+    for (int i = 2; i < polygon->n; i++) {
+        struct soft_vertex triangle[3] = { to_vertex(&polygon->corners[0]), to_vertex(&polygon->corners[i - 1]), to_vertex(&polygon->corners[i]) };
         for (int corner = 0; shade && corner < 3; corner++)
             triangle[corner].shade = *shade;
-        if (!keep_extra(chunk, triangle, width, height))
+        if (!soft_keep_triangle(chunk, triangle, width, height))
             return false;
     }
     return true;
 }
 
-static bool keep_flat(struct soft_chunk *chunk, const uint32_t *corners, int width, int height)
-{
-    const struct soft_vertex *vertices = chunk->item->vertices;
-    struct soft_vertex triangle[3] = { vertices[corners[0]], vertices[corners[1]], vertices[corners[2]] };
-    struct soft_kept kept;
-    if (!can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept))
-        return true;
-    triangle[0].shade = triangle[1].shade = triangle[2].shade = flat_shade(chunk->item, corners);
-    return keep_extra(chunk, triangle, width, height);
-}
-
-static bool keep_all(struct soft_chunk *chunk, int width, int height)
+static bool keep_clipped(struct soft_chunk *chunk, const uint32_t *corners, const uint32_t *shade, int width, int height)
 {
     const struct soft_item *item = chunk->item;
-    chunk->n_kept = chunk->n_extras = 0;
+    const struct soft_points *points = &item->shape->points;
+    struct soft_polygon polygon = { .n = 3 };
+    for (int i = 0; i < 3; i++) {
+        struct soft_corner *corner = &polygon.corners[i];
+        soft_project(&item->lighting, (double)points->x[corners[i]], (double)points->y[corners[i]], (double)points->z[corners[i]], corner);
+        corner->own = &item->vertices[corners[i]];
+        for (int c = 0; c < 4; c++)
+            corner->shade[c] = (double)((shade ? *shade : corner->own->shade) >> 8 * c & 255);
+    }
+    return soft_keep_polygon(chunk, &polygon, shade, width, height);
+}
+
+static bool is_in_picture(const struct soft_vertex *a, const struct soft_vertex *b, const struct soft_vertex *c)
+{
+    return (a->x != SOFT_CLIPPED) & (b->x != SOFT_CLIPPED) & (c->x != SOFT_CLIPPED);
+}
+
+/* One that the mesh's own corners cannot stand for. */
+static bool keep_special(struct soft_chunk *chunk, const uint32_t *corners, int width, int height)
+{
+    const struct soft_item *item = chunk->item;
+    bool is_flat = item->look.is_flat || item->shape->is_faceted;
+    const struct soft_vertex *vertices = item->vertices;
+    struct soft_vertex triangle[3] = { vertices[corners[0]], vertices[corners[1]], vertices[corners[2]] };
+    if (!is_in_picture(&triangle[0], &triangle[1], &triangle[2])) {
+        uint32_t shade = is_flat ? flat_shade(item, corners) : 0, behind[3] = { corners[0], corners[2], corners[1] };
+        return keep_clipped(chunk, corners, is_flat ? &shade : NULL, width, height) &&
+               (!item->look.is_two_sided || keep_clipped(chunk, behind, is_flat ? &shade : NULL, width, height));
+    }
+    struct soft_kept kept;
+    bool is_seen = can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept);
+    if (!is_seen && item->look.is_two_sided) {
+        triangle[1] = vertices[corners[2]];
+        triangle[2] = vertices[corners[1]];
+        is_seen = can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept);
+    }
+    if (is_seen && is_flat)
+        triangle[0].shade = triangle[1].shade = triangle[2].shade = flat_shade(item, corners);
+    return !is_seen || soft_keep_triangle(chunk, triangle, width, height);
+}
+
+static bool keep_triangles(struct soft_chunk *chunk, int width, int height)
+{
+    const struct soft_item *item = chunk->item;
+    bool is_special = item->look.is_flat || item->shape->is_faceted || item->look.is_two_sided;
     for (size_t t = chunk->first; t < chunk->first + chunk->n; t++) {
-        const uint32_t *corners = item->surface->indices + 3 * t;
+        const uint32_t *corners = item->shape->indices + 3 * t;
         const struct soft_vertex *a = &item->vertices[corners[0]], *b = &item->vertices[corners[1]], *c = &item->vertices[corners[2]];
-        if ((a->x == SOFT_CLIPPED) | (b->x == SOFT_CLIPPED) | (c->x == SOFT_CLIPPED)) {
-            uint32_t shade = item->is_flat ? flat_shade(item, corners) : 0;
-            if (!keep_clipped(chunk, corners, item->is_flat ? &shade : NULL, width, height))
-                return false;
-        } else if (item->is_flat) {
-            if (!keep_flat(chunk, corners, width, height))
+        if (is_special | !is_in_picture(a, b, c)) {
+            if (!keep_special(chunk, corners, width, height))
                 return false;
         } else {
             if (chunk->n_kept == chunk->kept_capacity &&
-                !reserve(&chunk->kept, &chunk->kept_capacity, chunk->n_kept + SOFT_CHUNK_TRIANGLES, sizeof *chunk->kept))
+                !reserve(&chunk->kept, &chunk->kept_capacity, chunk->n_kept + SOFT_CHUNK_PRIMITIVES, sizeof *chunk->kept))
                 return false;
             struct soft_kept *kept = &chunk->kept[chunk->n_kept]; /* written anyway: a branch less */
             kept->ref = (uint32_t)t;
             chunk->n_kept += can_be_seen(a, b, c, width, height, kept);
         }
+    }
+    return true;
+}
+
+static bool keep_all(struct soft_chunk *chunk, int width, int height)
+{
+    chunk->n_kept = chunk->n_extras = 0;
+    switch (chunk->item->shape->kind) {
+    case SHAPE_TRIANGLES: return keep_triangles(chunk, width, height);
+    case SHAPE_LINES: return soft_keep_lines(chunk, width, height);
+    case SHAPE_POINTS: return soft_keep_points(chunk, width, height);
     }
     return true;
 }

@@ -28,7 +28,7 @@ struct soft_lighting {
     float viewer[4];                              /* eye and 1, or direction towards the viewer and 0 */
     float right[3], up[3], towards[3];            /* axes of the eye's space */
     float color[3], opacity;
-    bool is_rim;
+    bool is_rim, is_two_sided;
 };
 
 /* Positions and normals by component. */

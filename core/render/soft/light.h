@@ -14,11 +14,13 @@
 __attribute__((always_inline)) static inline uint32_t light_at(const struct soft_lighting *s, float nx, float ny, float nz, float tx,
                                                                float ty, float tz)
 {
-    const float facing = nx * tx + ny * ty + nz * tz;
+    const float cosine = nx * tx + ny * ty + nz * tz;
+    const float side = s->is_two_sided & (cosine < 0.0f) ? -1.0f : 1.0f; /* the side that is seen */
+    const float facing = side * cosine;
     float edge = 1.0f - LIGHT_CLAMP(facing);
     edge = LIGHT_CLAMP(edge);
-    const float ex = s->right[0] * nx + s->right[1] * ny + s->right[2] * nz, ey = s->up[0] * nx + s->up[1] * ny + s->up[2] * nz,
-                ez = s->towards[0] * nx + s->towards[1] * ny + s->towards[2] * nz;
+    const float ex = side * (s->right[0] * nx + s->right[1] * ny + s->right[2] * nz), ey = side * (s->up[0] * nx + s->up[1] * ny + s->up[2] * nz),
+                ez = side * (s->towards[0] * nx + s->towards[1] * ny + s->towards[2] * nz);
     const float key_cosine = 0.426f * ex + 0.568f * ey + 0.704f * ez, fill_cosine = -0.741f * ex + 0.106f * ey + 0.663f * ez;
     const float key = LIGHT_CLAMP(key_cosine), fill = LIGHT_CLAMP(fill_cosine);
     const float key_2 = key * key, key_4 = key_2 * key_2, key_8 = key_4 * key_4, gloss = 0.07f * (key_8 * key_8);

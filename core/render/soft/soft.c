@@ -1,6 +1,5 @@
 #include "core/render/soft/soft.h"
 
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,12 +7,11 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
-#include "core/render/soft/bins.h"
-#include "core/render/soft/planes.h"
+#include "core/render/soft/frame.h"
 #include "core/render/visible.h"
 
 /* More threads than this wait for memory and for each other. */
-enum { MAX_THREADS = 16, MAX_PLANES = 3 + REGION_MAX_LAYERS, VERTEX_BLOCK = 8192 };
+enum { MAX_THREADS = 16, VERTEX_BLOCK = 8192 };
 /* Of a thread's translucent layers together, unless one row of them takes more. */
 enum { LAYER_BYTES = 1 << 20 };
 _Static_assert((int)SOFT_MAX_LAYERS >= (int)REGION_MAX, "every region of a plan can be translucent");
@@ -102,171 +100,9 @@ void soft_renderer_forget(struct soft_renderer *renderer, const struct plan *pla
     drop_buffers(renderer);
 }
 
-/* ---- what is to be drawn -------------------------------------------------------------------------------------------------- */
-
-struct frame {
-    struct soft_renderer *renderer;
-    const struct snapshot *snapshot;
-    const struct camera *camera;
-    enum surface_detail detail;
-    int width, height, samples, n_bands; /* width and height in samples */
-    struct soft_item *items;             /* opaque ones front to back, then translucent ones back to front */
-    size_t n_items, n_translucent, n_chunks, n_blocks;
-    int layer_rows; /* of the translucent layers */
-    struct soft_plane planes[MAX_PLANES]; /* in the order of drawing: after the opaque items */
-    size_t n_planes;
-    uint32_t *palettes; /* of the planes, [][VISIBLE_N_LABELS] */
-    struct image *image;
-    atomic_size_t next; /* piece of work nobody has taken */
-    atomic_bool is_out_of_memory;
-};
-
-static const struct soft_surface *surface_of(const struct frame *frame, size_t region, struct error *err)
-{
-    const struct snapshot *snapshot = frame->snapshot;
-    return soft_cache_surface(frame->renderer->cache, snapshot->plan, region, visible_algorithm(snapshot), frame->detail, err);
-}
-
-static const struct box3 *bounds(void *context, size_t region, struct error *err)
-{
-    const struct frame *frame = context;
-    const struct soft_surface *surface = surface_of(frame, region, err);
-    return surface ? &surface->bounds_lps_mm : NULL;
-}
-
-static void put(float out[3], struct vec3 v)
-{
-    out[0] = (float)v.x;
-    out[1] = (float)v.y;
-    out[2] = (float)v.z;
-}
-
-static struct soft_lighting make_lighting(const struct frame *frame, const struct scene_region_style *style)
-{
-    const struct camera *camera = frame->camera;
-    struct soft_lighting l = { 0 };
-    for (int column = 0; column < 4; column++) {
-        const double *m = &camera->clip_from_lps_mm.m[4 * column];
-        l.row_x[column] = (float)(0.5 * SOFT_SUB * frame->width * (m[3] + m[0]));
-        l.row_y[column] = (float)(0.5 * SOFT_SUB * frame->height * (m[3] - m[1]));
-        l.row_z[column] = (float)m[2];
-        l.row_w[column] = (float)m[3];
-    }
-    put(l.viewer, camera->is_parallel ? vec3_scale(camera->forward, -1) : camera->eye_lps_mm);
-    l.viewer[3] = camera->is_parallel ? 0 : 1;
-    put(l.right, camera->right);
-    put(l.up, camera->up);
-    put(l.towards, vec3_scale(camera->forward, -1));
-    for (int c = 0; c < 3; c++)
-        l.color[c] = (float)(style->color_rgb >> (16 - 8 * c) & 255) / 255.0f;
-    l.opacity = (float)style->opacity;
-    l.is_rim = style->opacity < 1 && frame->snapshot->scene.surface.translucency == SCENE_TRANSLUCENCY_RIM;
-    return l;
-}
-
-static bool collect_surfaces(struct frame *frame, struct render_timing *timing, struct error *err)
-{
-    const struct snapshot *snapshot = frame->snapshot;
-    struct visible_surface *visible[2] = { NULL, NULL }; /* translucent, opaque */
-    size_t n[2] = { 0, 0 };
-    for (int is_opaque = 0; is_opaque < 2; is_opaque++) {
-        visible[is_opaque] =
-            visible_surfaces(snapshot, frame->camera, &frame->camera->clip_from_lps_mm, is_opaque, bounds, frame, &n[is_opaque], err);
-        if (!visible[is_opaque])
-            goto fail;
-    }
-    frame->items = mem_array(n[0] + n[1], sizeof *frame->items, UINT64_MAX, err);
-    if (!frame->items)
-        goto fail;
-    for (size_t i = 0; i < n[0] + n[1]; i++) {
-        bool is_opaque = i < n[1];
-        const struct visible_surface *from = is_opaque ? &visible[1][n[1] - 1 - i] : &visible[0][i - n[1]];
-        const struct soft_surface *surface = surface_of(frame, from->region, err);
-        if (!surface)
-            goto fail;
-        frame->items[frame->n_items++] =
-            (struct soft_item){ .surface = surface, .lighting = make_lighting(frame, from->style), .is_opaque = is_opaque,
-                                .is_flat = snapshot->scene.surface.normals == SCENE_NORMALS_FACE };
-        frame->n_translucent += !is_opaque;
-        timing->n_triangles += surface->n_triangles;
-        timing->is_light |= surface->is_light;
-    }
-    free(visible[0]);
-    free(visible[1]);
-    return true;
-fail:
-    free(visible[0]);
-    free(visible[1]);
-    return false;
-}
-
-static void add_image(struct frame *frame, enum scene_kind kind, double position_mm)
-{
-    static const enum soft_voxel types[] = { [VOXEL_U8] = SOFT_U8, [VOXEL_I16] = SOFT_I16, [VOXEL_U16] = SOFT_U16, [VOXEL_F32] = SOFT_F32 };
-    const struct snapshot *snapshot = frame->snapshot;
-    const struct scene_image_style *style = &snapshot->scene.image;
-    const struct volume *volume = snapshot->plan->images[snapshot->image].volume;
-    struct soft_plane *plane = &frame->planes[frame->n_planes++];
-    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
-    double low = style->window.center - style->window.width / 2, width = style->window.width;
-    soft_plane_init(plane, volume, kind, position_mm, &frame->camera->clip_from_lps_mm, frame->width, frame->height);
-    plane->texture.type = types[volume->type];
-    plane->texture.grey_scale = (float)(volume->slope / width);
-    plane->texture.grey_offset = (float)((volume->offset - low) / width);
-    plane->texture.cull = is_in_space ? (float)((style->cull_below - low) / width) : -INFINITY;
-    plane->texture.is_linear = style->interpolation != SCENE_INTERPOLATION_NEAREST;
-    plane->texture.has_depth = is_in_space;
-}
-
-static bool add_labels(struct frame *frame, struct error *err)
-{
-    const struct snapshot *snapshot = frame->snapshot;
-    const struct region_set *set = &snapshot->plan->regions;
-    enum scene_kind kind = snapshot->view.kind;
-    size_t layers[REGION_MAX_LAYERS];
-    visible_layers(set, layers);
-    frame->palettes = mem_array(set->n_layers, VISIBLE_N_LABELS * sizeof *frame->palettes, UINT64_MAX, err);
-    if (!frame->palettes)
-        return false;
-    for (size_t i = 0; i < set->n_layers; i++) {
-        const struct volume *volume = set->layers[layers[i]];
-        uint32_t *palette = frame->palettes + i * VISIBLE_N_LABELS;
-        if (visible_palette(snapshot, layers[i], (uint8_t(*)[4])palette) == 0)
-            continue;
-        if (volume->type == VOXEL_F32)
-            return error_set(err, ERROR_UNSUPPORTED, "label layer %zu: a label layer of real numbers", layers[i]);
-        struct soft_plane *plane = &frame->planes[frame->n_planes++];
-        soft_plane_init(plane, volume, kind, scene_slice_position_mm(&snapshot->scene, kind), &frame->camera->clip_from_lps_mm,
-                        frame->width, frame->height);
-        plane->texture.type = volume->type == VOXEL_U8 ? SOFT_U8 : SOFT_U16; /* labels are never negative */
-        plane->texture.palette = palette;
-    }
-    return true;
-}
-
-static bool collect_planes(struct frame *frame, struct error *err)
-{
-    const struct snapshot *snapshot = frame->snapshot;
-    const struct scene_slices *slices = &snapshot->scene.image.slices;
-    enum scene_kind kind = snapshot->view.kind;
-    if (kind != SCENE_KIND_3D) {
-        if (snapshot->image < 0)
-            return add_labels(frame, err);
-        add_image(frame, kind, scene_slice_position_mm(&snapshot->scene, kind));
-        return true;
-    }
-    if (snapshot->image >= 0 && slices->axial.visible)
-        add_image(frame, SCENE_KIND_AXIAL, slices->axial.position_mm);
-    if (snapshot->image >= 0 && slices->coronal.visible)
-        add_image(frame, SCENE_KIND_CORONAL, slices->coronal.position_mm);
-    if (snapshot->image >= 0 && slices->sagittal.visible)
-        add_image(frame, SCENE_KIND_SAGITTAL, slices->sagittal.position_mm);
-    return true;
-}
-
 /* ---- memory --------------------------------------------------------------------------------------------------------------- */
 
-static bool make_scratch(struct frame *frame, struct scratch *scratch, struct error *err)
+static bool make_scratch(struct soft_frame *frame, struct scratch *scratch, struct error *err)
 {
     size_t row = (size_t)(frame->width + SOFT_PADDING), n_band = row * SOFT_BAND_ROWS;
     if (scratch->n_band < n_band) {
@@ -296,17 +132,17 @@ static bool make_scratch(struct frame *frame, struct scratch *scratch, struct er
     return true;
 }
 
-static bool make_room(struct frame *frame, struct error *err)
+static bool make_room(struct soft_frame *frame, struct error *err)
 {
     struct soft_renderer *renderer = frame->renderer;
     size_t n_vertices = 0;
     for (size_t i = 0; i < frame->n_items; i++) {
         struct soft_item *item = &frame->items[i];
-        n_vertices += item->surface->n_vertices;
+        n_vertices += item->shape->n_vertices;
         item->first_chunk = frame->n_chunks;
-        item->n_chunks = (item->surface->n_triangles + SOFT_CHUNK_TRIANGLES - 1) / SOFT_CHUNK_TRIANGLES;
+        item->n_chunks = (item->shape->n_primitives + SOFT_CHUNK_PRIMITIVES - 1) / SOFT_CHUNK_PRIMITIVES;
         frame->n_chunks += item->n_chunks;
-        frame->n_blocks += (item->surface->n_vertices + VERTEX_BLOCK - 1) / VERTEX_BLOCK;
+        frame->n_blocks += (item->shape->n_vertices + VERTEX_BLOCK - 1) / VERTEX_BLOCK;
     }
     if (renderer->n_vertices < n_vertices) {
         free(renderer->vertices);
@@ -327,13 +163,13 @@ static bool make_room(struct frame *frame, struct error *err)
     for (size_t i = 0; i < frame->n_items; i++) {
         struct soft_item *item = &frame->items[i];
         item->vertices = vertices;
-        vertices += item->surface->n_vertices;
+        vertices += item->shape->n_vertices;
         for (size_t c = 0; c < item->n_chunks; c++) {
             struct soft_chunk *chunk = &renderer->chunks[item->first_chunk + c];
             chunk->item = item;
-            chunk->first = c * SOFT_CHUNK_TRIANGLES;
-            chunk->n = item->surface->n_triangles - chunk->first;
-            chunk->n = chunk->n < SOFT_CHUNK_TRIANGLES ? chunk->n : SOFT_CHUNK_TRIANGLES;
+            chunk->first = c * SOFT_CHUNK_PRIMITIVES;
+            chunk->n = item->shape->n_primitives - chunk->first;
+            chunk->n = chunk->n < SOFT_CHUNK_PRIMITIVES ? chunk->n : SOFT_CHUNK_PRIMITIVES;
         }
     }
     for (int i = 0; i < renderer->n_threads; i++)
@@ -346,45 +182,45 @@ static bool make_room(struct frame *frame, struct error *err)
 
 static void shade_vertices(void *context, int part, int n_parts)
 {
-    struct frame *frame = context;
+    struct soft_frame *frame = context;
     (void)part, (void)n_parts;
     for (size_t piece; (piece = atomic_fetch_add(&frame->next, 1)) < frame->n_blocks;) {
         struct soft_item *item = frame->items;
         size_t n_blocks;
-        while (piece >= (n_blocks = (item->surface->n_vertices + VERTEX_BLOCK - 1) / VERTEX_BLOCK)) {
+        while (piece >= (n_blocks = (item->shape->n_vertices + VERTEX_BLOCK - 1) / VERTEX_BLOCK)) {
             piece -= n_blocks;
             item++;
         }
-        size_t first = piece * VERTEX_BLOCK, n = item->surface->n_vertices - first;
-        frame->renderer->kernels->shade(&item->lighting, &item->surface->points, first, n < VERTEX_BLOCK ? n : VERTEX_BLOCK,
+        size_t first = piece * VERTEX_BLOCK, n = item->shape->n_vertices - first;
+        frame->renderer->kernels->shade(&item->lighting, &item->shape->points, first, n < VERTEX_BLOCK ? n : VERTEX_BLOCK,
                                         item->vertices + first);
     }
 }
 
 static void sort_triangles(void *context, int part, int n_parts)
 {
-    struct frame *frame = context;
+    struct soft_frame *frame = context;
     (void)part, (void)n_parts;
     for (size_t piece; (piece = atomic_fetch_add(&frame->next, 1)) < frame->n_chunks;)
         if (!soft_chunk_sort(&frame->renderer->chunks[piece], frame->width, frame->height, frame->n_bands))
             atomic_store(&frame->is_out_of_memory, true);
 }
 
-static void draw_item(const struct frame *frame, const struct soft_item *item, const struct soft_band *band, int index, int range[2])
+static void draw_item(const struct soft_frame *frame, const struct soft_item *item, const struct soft_band *band, int index, int range[2])
 {
     range[0] = band->width;
     range[1] = 0;
     for (size_t i = 0; i < item->n_chunks; i++) {
         const struct soft_chunk *chunk = &frame->renderer->chunks[item->first_chunk + i];
         const struct soft_triangles triangles = { chunk->refs + chunk->starts[index], chunk->starts[index + 1] - chunk->starts[index],
-                                                  item->surface->indices, item->vertices, chunk->extras };
+                                                  item->shape->indices, item->vertices, chunk->extras };
         if (triangles.n_refs > 0)
             frame->renderer->kernels->raster(band, &triangles, range);
     }
 }
 
 /* Each region's nearest sheet into a layer of its own, a few rows at a time, then all of them over the picture. */
-static void draw_translucent(const struct frame *frame, const struct scratch *scratch, const struct soft_band *band, int index)
+static void draw_translucent(const struct soft_frame *frame, const struct scratch *scratch, const struct soft_band *band, int index)
 {
     struct soft_layer layers[SOFT_MAX_LAYERS];
     const struct soft_item *items = frame->items + (frame->n_items - frame->n_translucent);
@@ -416,7 +252,7 @@ static void clear(const struct soft_band *band)
     }
 }
 
-static void write_rows(const struct frame *frame, const struct soft_band *band)
+static void write_rows(const struct soft_frame *frame, const struct soft_band *band)
 {
     size_t width_px = (size_t)frame->image->width_px;
     for (int y = 0; y < band->n_rows; y += frame->samples) {
@@ -431,7 +267,7 @@ static void write_rows(const struct frame *frame, const struct soft_band *band)
 
 static void draw_bands(void *context, int part, int n_parts)
 {
-    struct frame *frame = context;
+    struct soft_frame *frame = context;
     struct soft_renderer *renderer = frame->renderer;
     (void)n_parts;
     for (size_t piece; (piece = atomic_fetch_add(&frame->next, 1)) < (size_t)frame->n_bands;) {
@@ -449,22 +285,30 @@ static void draw_bands(void *context, int part, int n_parts)
     }
 }
 
-static void run(struct frame *frame, void (*work)(void *context, int part, int n_parts))
+static void run(struct soft_frame *frame, void (*work)(void *context, int part, int n_parts))
 {
     atomic_store(&frame->next, 0);
     parallel_run(frame->renderer->n_threads, work, frame);
 }
 
-static bool draw(struct frame *frame, struct render_timing *timing, struct error *err)
+static size_t n_primitives(const struct soft_frame *frame)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < frame->n_items; i++)
+        n += frame->items[i].shape->n_primitives;
+    return n;
+}
+
+static bool draw(struct soft_frame *frame, struct render_timing *timing, struct error *err)
 {
     bool is_in_space = frame->snapshot->view.kind == SCENE_KIND_3D;
-    if ((is_in_space && !collect_surfaces(frame, timing, err)) || !collect_planes(frame, err) || !make_room(frame, err))
+    if ((is_in_space && !soft_collect_shapes(frame, timing, err)) || !soft_collect_planes(frame, err) || !make_room(frame, err))
         return false;
     if (frame->n_items > 0) {
         run(frame, shade_vertices);
         run(frame, sort_triangles);
         if (atomic_load(&frame->is_out_of_memory))
-            return error_set(err, ERROR_MEMORY, "no memory to sort %zu triangles", timing->n_triangles);
+            return error_set(err, ERROR_MEMORY, "no memory to sort %zu triangles, lines and points", n_primitives(frame));
     }
     run(frame, draw_bands);
     return true;
@@ -474,8 +318,10 @@ struct image *soft_renderer_snapshot(struct soft_renderer *renderer, const struc
                                      const struct camera *camera, struct render_timing *timing, struct error *err)
 {
     int64_t start_us = clock_now_us();
-    struct frame *frame = mem_new(sizeof *frame);
+    struct soft_frame *frame = mem_new(sizeof *frame);
+    soft_cache_trim(renderer->cache);
     frame->renderer = renderer;
+    frame->cache = renderer->cache;
     frame->snapshot = snapshot;
     frame->camera = camera;
     frame->detail = options->detail;
