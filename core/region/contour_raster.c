@@ -1,0 +1,432 @@
+#include "core/region/contour_raster.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/base/parallel.h"
+
+/* Centres are tested this far off, so that the noise of the last digits does not decide on which side of an edge they are. */
+#define NUDGE_MM 1e-6
+enum { AREA_LINES = 256, MOST_EXACT_EDGES = 4096, MOST_BUCKETS = 8192, MOST_THREADS = 64 };
+
+/* u runs along the rows of voxels as they look within a plane, v across them, d from plane to plane. */
+struct edge {
+    double v_low, v_high; /* low < high: edges along a row are never met */
+    double u_low, u_width; /* from the lower end, so that the same u comes out whichever way the edge was drawn */
+};
+
+static double edge_u(const struct edge *edge, double v)
+{
+    return edge->u_low + edge->u_width * ((v - edge->v_low) / (edge->v_high - edge->v_low));
+}
+
+/* The edges of a plane, and which of them may be met at a given v: those of one bucket. */
+struct layer {
+    struct edge *edges;
+    size_t n_edges;
+    double v_low, v_high, buckets_per_mm;
+    uint32_t n_buckets;
+    size_t *starts;   /* [n_buckets + 1] into which */
+    uint32_t *which;
+};
+
+struct contour_raster {
+    const struct contour_planes *planes;
+    struct vec3 u_lps, v_lps;
+    struct layer *layers; /* one a plane */
+};
+
+static void layer_edges(struct layer *layer, const struct contour_raster *raster, const struct contour *contour)
+{
+    const double *p = contour->points_lps_mm + 3 * (contour->n_points - 1);
+    struct vec3 last = vec3(p[0], p[1], p[2]);
+    double u = vec3_dot(raster->u_lps, last), v = vec3_dot(raster->v_lps, last);
+    for (size_t i = 0; i < contour->n_points; i++) {
+        p = contour->points_lps_mm + 3 * i;
+        struct vec3 point = vec3(p[0], p[1], p[2]);
+        double to_u = vec3_dot(raster->u_lps, point), to_v = vec3_dot(raster->v_lps, point);
+        if (v != to_v) {
+            bool is_up = v < to_v;
+            double u_low = is_up ? u : to_u, v_low = is_up ? v : to_v, v_high = is_up ? to_v : v;
+            layer->edges[layer->n_edges++] =
+                (struct edge){ v_low, v_high, u_low, (is_up ? to_u : u) - u_low };
+            layer->v_low = fmin(layer->v_low, v_low);
+            layer->v_high = fmax(layer->v_high, v_high);
+        }
+        u = to_u;
+        v = to_v;
+    }
+}
+
+static uint32_t bucket_of(const struct layer *layer, double v)
+{
+    double at = (v - layer->v_low) * layer->buckets_per_mm;
+    return !(at > 0) ? 0 : at >= layer->n_buckets ? layer->n_buckets - 1 : (uint32_t)at; /* no height: not-a-number */
+}
+
+static bool layer_sort(struct layer *layer, double row_mm, struct error *err)
+{
+    double height_mm = layer->v_high - layer->v_low;
+    if (layer->n_edges == 0)
+        return true;
+    double wanted = fmin(fmax(ceil(height_mm / row_mm), 1), MOST_BUCKETS);
+    layer->n_buckets = (uint32_t)wanted;
+    for (size_t n_entries;; layer->n_buckets = (layer->n_buckets + 1) / 2) { /* many long edges: fewer buckets */
+        layer->buckets_per_mm = layer->n_buckets / height_mm;
+        n_entries = 0;
+        for (size_t i = 0; i < layer->n_edges; i++)
+            n_entries += bucket_of(layer, layer->edges[i].v_high) - bucket_of(layer, layer->edges[i].v_low) + 1;
+        if (layer->n_buckets == 1 || n_entries <= 16 * layer->n_edges + 65536)
+            break;
+    }
+    layer->starts = mem_array(layer->n_buckets + 2, sizeof *layer->starts, UINT64_MAX, err);
+    if (!layer->starts)
+        return false;
+    for (size_t i = 0; i < layer->n_edges; i++)
+        for (uint32_t b = bucket_of(layer, layer->edges[i].v_low); b <= bucket_of(layer, layer->edges[i].v_high); b++)
+            layer->starts[b + 2]++;
+    for (uint32_t b = 2; b < layer->n_buckets + 2; b++)
+        layer->starts[b] += layer->starts[b - 1];
+    layer->which = mem_array(layer->starts[layer->n_buckets + 1], sizeof *layer->which, UINT64_MAX, err);
+    if (!layer->which)
+        return false;
+    /* starts[b + 1] moves from the start of bucket b to its end, which is the start of the next */
+    for (size_t i = 0; i < layer->n_edges; i++)
+        for (uint32_t b = bucket_of(layer, layer->edges[i].v_low); b <= bucket_of(layer, layer->edges[i].v_high); b++)
+            layer->which[layer->starts[b + 1]++] = (uint32_t)i;
+    return true;
+}
+
+static bool layer_init(struct layer *layer, const struct contour_raster *raster, const struct contour_plane *plane, double row_mm,
+                       struct error *err)
+{
+    size_t n_points = 0;
+    for (size_t i = plane->first; i < plane->end; i++)
+        n_points += raster->planes->contours[i]->n_points;
+    *layer = (struct layer){ .v_low = INFINITY, .v_high = -INFINITY };
+    layer->edges = mem_array(n_points, sizeof *layer->edges, UINT64_MAX, err);
+    if (!layer->edges)
+        return false;
+    for (size_t i = plane->first; i < plane->end; i++)
+        layer_edges(layer, raster, raster->planes->contours[i]);
+    return layer_sort(layer, row_mm, err);
+}
+
+struct contour_raster *contour_raster_create(const struct contour_planes *planes, const struct grid *grid, struct error *err)
+{
+    const struct vec3 *columns = grid->lps_mm_from_ijk.columns;
+    struct contour_raster *raster = mem_new(sizeof *raster);
+    raster->planes = planes;
+    struct vec3 u = vec3(0, 0, 0);
+    for (int axis = 0; axis < 2 && vec3_length(u) <= 1e-6; axis++) { /* the second where rows run along the normal */
+        struct vec3 column = vec3_normalize(columns[axis]);
+        u = vec3_sub(column, vec3_scale(planes->normal_lps, vec3_dot(planes->normal_lps, column)));
+    }
+    raster->u_lps = vec3_normalize(u);
+    raster->v_lps = vec3_cross(planes->normal_lps, raster->u_lps);
+    double row_mm = fmax(fabs(vec3_dot(raster->v_lps, columns[1])), fabs(vec3_dot(raster->v_lps, columns[2])));
+    raster->layers = mem_array(planes->n_planes, sizeof *raster->layers, UINT64_MAX, err);
+    bool is_made = raster->layers != NULL;
+    for (size_t i = 0; is_made && i < planes->n_planes; i++)
+        is_made = layer_init(&raster->layers[i], raster, &planes->planes[i], row_mm, err);
+    if (!is_made) {
+        contour_raster_destroy(raster);
+        return NULL;
+    }
+    return raster;
+}
+
+void contour_raster_destroy(struct contour_raster *raster)
+{
+    if (!raster)
+        return;
+    for (size_t i = 0; raster->layers && i < raster->planes->n_planes; i++) {
+        free(raster->layers[i].edges);
+        free(raster->layers[i].starts);
+        free(raster->layers[i].which);
+    }
+    free(raster->layers);
+    free(raster);
+}
+
+/* ---- areas -------------------------------------------------------------------------------------------------------------------- */
+
+static int by_value(const void *a, const void *b)
+{
+    double one = *(const double *)a, other = *(const double *)b;
+    return one < other ? -1 : one > other;
+}
+
+static void sort_values(double *values, size_t n)
+{
+    if (n > 32) {
+        qsort(values, n, sizeof *values, by_value);
+        return;
+    }
+    for (size_t i = 1; i < n; i++) {
+        double value = values[i];
+        size_t at = i;
+        for (; at > 0 && values[at - 1] > value; at--)
+            values[at] = values[at - 1];
+        values[at] = value;
+    }
+}
+
+/* Length of a line across the plane that lies inside, by even-odd. */
+static double inside_mm(const struct layer *layer, double v, double *crossings, uint64_t *n_met)
+{
+    uint32_t bucket = bucket_of(layer, v);
+    size_t n = 0;
+    for (size_t at = layer->starts[bucket]; at < layer->starts[bucket + 1]; at++) {
+        const struct edge *edge = &layer->edges[layer->which[at]];
+        if (edge->v_low <= v && v < edge->v_high)
+            crossings[n++] = edge_u(edge, v);
+    }
+    *n_met += layer->starts[bucket + 1] - layer->starts[bucket] + n * (n > 32 ? 16 : 1); /* sorting counts as well */
+    sort_values(crossings, n);
+    double sum = 0;
+    for (size_t i = 0; i + 1 < n; i += 2)
+        sum += crossings[i + 1] - crossings[i];
+    return sum;
+}
+
+/* Heights between which the length inside changes evenly: those of all points, and evenly spread ones for where edges cross.
+ * Ascending; returns how many. */
+static size_t area_heights(const struct layer *layer, double *heights)
+{
+    size_t n = 0;
+    for (size_t line = 0; line <= AREA_LINES; line++)
+        heights[n++] = layer->v_low + (layer->v_high - layer->v_low) * (double)line / AREA_LINES;
+    for (size_t i = 0; layer->n_edges <= MOST_EXACT_EDGES && i < layer->n_edges; i++) {
+        heights[n++] = layer->edges[i].v_low;
+        heights[n++] = layer->edges[i].v_high;
+    }
+    sort_values(heights, n);
+    return n;
+}
+
+bool contour_raster_areas(const struct contour_raster *raster, double *areas_mm2, struct error *err)
+{
+    size_t n_planes = raster->planes->n_planes, most_edges = 0;
+    for (size_t i = 0; i < n_planes; i++)
+        most_edges = raster->layers[i].n_edges > most_edges ? raster->layers[i].n_edges : most_edges;
+    double *crossings = mem_array(most_edges, sizeof *crossings, UINT64_MAX, err);
+    double *heights = mem_array(2 * MOST_EXACT_EDGES + AREA_LINES + 1, sizeof *heights, UINT64_MAX, err);
+    uint64_t n_met = 0;
+    for (size_t i = 0; crossings && heights && i < n_planes; i++) {
+        const struct layer *layer = &raster->layers[i];
+        size_t n = layer->n_edges > 0 ? area_heights(layer, heights) : 0;
+        areas_mm2[i] = 0;
+        for (size_t line = 1; line < n && n_met <= CONTOUR_MAX_MEETINGS; line++) {
+            double from = heights[line - 1], to = heights[line];
+            if (to > from)
+                areas_mm2[i] += (to - from) * inside_mm(layer, (from + to) / 2, crossings, &n_met);
+        }
+    }
+    bool is_made = crossings && heights;
+    free(crossings);
+    free(heights);
+    if (!is_made)
+        return false;
+    if (n_met > CONTOUR_MAX_MEETINGS)
+        return error_set(err, ERROR_LIMIT, "contours too intricate: lines across them meet more than %llu edges",
+                         (unsigned long long)CONTOUR_MAX_MEETINGS);
+    return true;
+}
+
+/* ---- voxels ------------------------------------------------------------------------------------------------------------------- */
+
+/* Where the voxels of a grid are in the raster's directions: at (i, j, k) u is at.u + i step[0].u + ... */
+struct place {
+    double u, v, d;
+};
+
+struct filling {
+    const struct contour_raster *raster;
+    const struct grid *grid;
+    struct place origin, step[3];
+    bool is_aligned; /* a slice of the grid lies in one plane and slices are straight above each other */
+    uint64_t *bits;
+    uint32_t words;
+    uint64_t most;
+    uint64_t n_voxels[MOST_THREADS], n_met[MOST_THREADS]; /* of each thread */
+};
+
+static struct place place_of(const struct contour_raster *raster, struct vec3 v)
+{
+    return (struct place){ vec3_dot(raster->u_lps, v), vec3_dot(raster->v_lps, v), vec3_dot(raster->planes->normal_lps, v) };
+}
+
+/* A step that over the whole grid leads nowhere is none: what is meant to be aligned is. */
+static double without_noise(double step_mm, uint32_t n)
+{
+    return fabs(step_mm) * n < NUDGE_MM ? 0 : step_mm;
+}
+
+static void filling_init(struct filling *filling, const struct contour_raster *raster, const struct grid *grid)
+{
+    *filling = (struct filling){ .raster = raster, .grid = grid, .words = (grid->size[0] + 63) / 64 };
+    filling->origin = place_of(raster, grid->lps_mm_from_ijk.origin);
+    filling->origin.u += NUDGE_MM;
+    filling->origin.v += NUDGE_MM;
+    filling->origin.d += NUDGE_MM;
+    for (int axis = 0; axis < 3; axis++) {
+        struct place *step = &filling->step[axis];
+        *step = place_of(raster, grid->lps_mm_from_ijk.columns[axis]);
+        step->u = without_noise(step->u, grid->size[axis]);
+        step->v = axis == 0 ? 0 : without_noise(step->v, grid->size[axis]);
+        step->d = without_noise(step->d, grid->size[axis]);
+    }
+    filling->is_aligned = filling->step[0].d == 0 && filling->step[1].d == 0 && filling->step[2].u == 0 && filling->step[2].v == 0;
+}
+
+/* The first plane whose slab ends after d. */
+static size_t plane_after(const struct contour_planes *planes, double d)
+{
+    size_t low = 0, high = planes->n_planes;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (planes->planes[middle].high_mm > d)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+/* The first index in 0 .. n whose value from + index * step is at least to (step > 0). */
+static uint32_t first_index(double from, double step, double to, uint32_t n)
+{
+    double at = ceil((to - from) / step);
+    return at <= 0 ? 0 : at >= n ? n : (uint32_t)at;
+}
+
+/* The run of a row inside a slab: from <= index < end. */
+static void run_in_slab(const struct contour_plane *plane, double d, double step, uint32_t n, uint32_t *from, uint32_t *end)
+{
+    if (step > 0) {
+        *from = first_index(d, step, plane->low_mm, n);
+        *end = first_index(d, step, plane->high_mm, n);
+    } else if (step < 0) { /* low <= d + i step < high as floor((high - d) / step) < i <= floor((low - d) / step) */
+        double after = floor((plane->high_mm - d) / step) + 1, last = floor((plane->low_mm - d) / step) + 1;
+        *from = after <= 0 ? 0 : after >= n ? n : (uint32_t)after;
+        *end = last <= 0 ? 0 : last >= n ? n : (uint32_t)last;
+    } else {
+        bool is_in = plane->low_mm <= d && d < plane->high_mm;
+        *from = 0;
+        *end = is_in ? n : 0;
+    }
+}
+
+/* Flips what lies behind each crossing: a bit at its first index, then the running parity of the bits. Adds the run to the row. */
+static uint64_t fill_run(const struct layer *layer, const struct place *start, double u_step, uint32_t from, uint32_t end,
+                         uint64_t *row, uint64_t *n_met)
+{
+    if (layer->n_edges == 0 || from >= end || start->v < layer->v_low || start->v >= layer->v_high)
+        return 0;
+    uint64_t flips[VOLUME_MAX_SIDE / 64];
+    uint32_t first_word = from / 64, last_word = (end - 1) / 64;
+    memset(flips + first_word, 0, (last_word - first_word + 1) * sizeof *flips);
+    uint32_t bucket = bucket_of(layer, start->v);
+    *n_met += layer->starts[bucket + 1] - layer->starts[bucket];
+    for (size_t at = layer->starts[bucket]; at < layer->starts[bucket + 1]; at++) {
+        const struct edge *edge = &layer->edges[layer->which[at]];
+        if (start->v < edge->v_low || start->v >= edge->v_high)
+            continue;
+        double u = edge_u(edge, start->v);
+        uint32_t index = u_step > 0 ? first_index(start->u, u_step, u, end) : u <= start->u ? 0 : end;
+        index = index < from ? from : index;
+        if (index < end)
+            flips[index / 64] ^= (uint64_t)1 << index % 64;
+    }
+    uint64_t n = 0, carry = 0;
+    for (uint32_t word = first_word; word <= last_word; word++) {
+        uint64_t inside = flips[word];
+        for (int shift = 1; shift < 64; shift *= 2)
+            inside ^= inside << shift;
+        inside ^= carry;
+        carry = inside >> 63 ? UINT64_MAX : 0;
+        if (word == last_word && end % 64 != 0)
+            inside &= ((uint64_t)1 << end % 64) - 1;
+        n += (uint64_t)__builtin_popcountll(inside);
+        if (row)
+            row[word] |= inside;
+    }
+    return n;
+}
+
+static uint64_t fill_row(const struct filling *filling, const struct place *start, uint64_t *row, uint64_t *n_met)
+{
+    const struct contour_planes *planes = filling->raster->planes;
+    uint32_t n = filling->grid->size[0];
+    double d_step = filling->step[0].d, d_last = start->d + (n - 1) * d_step;
+    double d_low = fmin(start->d, d_last), d_high = fmax(start->d, d_last);
+    uint64_t n_voxels = 0;
+    for (size_t i = plane_after(planes, d_low); i < planes->n_planes && planes->planes[i].low_mm <= d_high; i++) {
+        uint32_t from, end;
+        run_in_slab(&planes->planes[i], start->d, d_step, n, &from, &end);
+        n_voxels += fill_run(&filling->raster->layers[i], start, filling->step[0].u, from, end, row, n_met);
+    }
+    return n_voxels;
+}
+
+static struct place row_start(const struct filling *filling, uint32_t j, uint32_t k)
+{
+    const struct place *o = &filling->origin, *sj = &filling->step[1], *sk = &filling->step[2];
+    return (struct place){ o->u + j * sj->u + k * sk->u, o->v + j * sj->v + k * sk->v, o->d + j * sj->d + k * sk->d };
+}
+
+static void fill_slices(void *context, int part, int n_parts)
+{
+    struct filling *filling = context;
+    const struct contour_planes *planes = filling->raster->planes;
+    const uint32_t *size = filling->grid->size;
+    size_t slice_words = (size_t)size[1] * filling->words;
+    uint32_t first = (uint32_t)((uint64_t)size[2] * (uint32_t)part / (uint32_t)n_parts);
+    uint32_t end = (uint32_t)((uint64_t)size[2] * ((uint32_t)part + 1) / (uint32_t)n_parts);
+    uint64_t n_voxels = 0, n_met = 0, n_slice_voxels = 0, n_slice_met = 0;
+    size_t last_plane = SIZE_MAX;
+    for (uint32_t k = first; k < end && n_met <= filling->most; k++) {
+        uint64_t *slice = filling->bits ? filling->bits + k * slice_words : NULL;
+        size_t plane = filling->is_aligned ? plane_after(planes, row_start(filling, 0, k).d) : SIZE_MAX;
+        bool is_same = plane != SIZE_MAX && plane == last_plane && plane < planes->n_planes &&
+                       row_start(filling, 0, k).d >= planes->planes[plane].low_mm;
+        if (is_same) {
+            if (slice)
+                memcpy(slice, slice - slice_words, slice_words * sizeof *slice);
+        } else {
+            n_slice_voxels = n_slice_met = 0;
+            for (uint32_t j = 0; j < size[1] && n_met + n_slice_met <= filling->most; j++) {
+                struct place start = row_start(filling, j, k);
+                n_slice_voxels += fill_row(filling, &start, slice ? slice + (size_t)j * filling->words : NULL, &n_slice_met);
+            }
+            /* what was filled before the slab begins is not what its slices look like */
+            bool is_in_slab = plane < planes->n_planes && row_start(filling, 0, k).d >= planes->planes[plane].low_mm;
+            last_plane = is_in_slab ? plane : SIZE_MAX;
+        }
+        n_voxels += n_slice_voxels;
+        n_met += n_slice_met;
+    }
+    filling->n_voxels[part] = n_voxels;
+    filling->n_met[part] = n_met;
+}
+
+bool contour_raster_fill(const struct contour_raster *raster, const struct grid *grid, uint64_t *bits, int n_threads, uint64_t most,
+                         uint64_t *n_voxels, struct error *err)
+{
+    struct filling *filling = mem_new(sizeof *filling);
+    filling_init(filling, raster, grid);
+    filling->bits = bits;
+    filling->most = most;
+    parallel_run(n_threads < 1 ? 1 : n_threads > MOST_THREADS ? MOST_THREADS : n_threads, fill_slices, filling);
+    uint64_t n_met = 0;
+    *n_voxels = 0;
+    for (int part = 0; part < MOST_THREADS; part++) {
+        *n_voxels += filling->n_voxels[part];
+        n_met += filling->n_met[part];
+    }
+    free(filling);
+    return n_met <= most || error_set(err, ERROR_LIMIT, "contours too intricate: the rows of voxels meet more than %llu edges",
+                                      (unsigned long long)most);
+}
