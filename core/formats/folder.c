@@ -112,26 +112,25 @@ enum folder_kind folder_look(const struct folder *folder, const char *name, uint
     return kind;
 }
 
-static bool read_all(int fd, const char *name, struct bytes *bytes, struct error *err)
+bool folder_read_part(const struct folder_part *part, const char *name, uint64_t at, void *out, size_t n, struct error *err)
 {
     size_t have = 0;
-    while (have < bytes->size) {
-        ssize_t got = read(fd, bytes->data + have, bytes->size - have);
+    while (have < n) {
+        ssize_t got = pread(part->fd, (uint8_t *)out + have, n - have, (off_t)(at + have));
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0)
             return error_set(err, ERROR_IO, "%s: reading failed after %zu bytes: %s", name, have, strerror(errno));
         if (got == 0)
-            return error_set(err, ERROR_IO, "%s: the file shrank while it was read: %zu of %zu bytes", name, have, bytes->size);
+            return error_set(err, ERROR_IO, "%s: the file shrank while it was read: %zu of %zu bytes", name, have, n);
         have += (size_t)got;
     }
     return true;
 }
 
-bool folder_read(const struct folder *folder, const char *name, uint64_t limit, uint64_t most, struct bytes *bytes,
-                 struct error *err)
+bool folder_open_part(const struct folder *folder, const char *name, struct folder_part *part, struct error *err)
 {
-    *bytes = (struct bytes){ 0 };
+    *part = (struct folder_part){ .fd = -1 };
     if (!folder_check_name(name, err))
         return false;
     int fd = open_beneath(folder, name);
@@ -143,23 +142,43 @@ bool folder_read(const struct folder *folder, const char *name, uint64_t limit, 
         return error_set(err, ERROR_IO, "%s: cannot be opened: %s", name, strerror(errno));
     }
     struct stat about;
-    bool is_read = false;
     if (fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) {
-        error_set(err, ERROR_IO, "%s: not a plain file", name);
-    } else if ((uint64_t)about.st_size > limit) {
-        error_set(err, ERROR_LIMIT, "%s: %llu bytes; at most %llu are read", name, (unsigned long long)about.st_size,
+        close(fd);
+        return error_set(err, ERROR_IO, "%s: not a plain file", name);
+    }
+    *part = (struct folder_part){ fd, (uint64_t)about.st_size };
+    return true;
+}
+
+void folder_close_part(struct folder_part *part)
+{
+    if (part->fd >= 0)
+        close(part->fd);
+    part->fd = -1;
+}
+
+bool folder_read(const struct folder *folder, const char *name, uint64_t limit, uint64_t most, struct bytes *bytes,
+                 struct error *err)
+{
+    *bytes = (struct bytes){ 0 };
+    struct folder_part part;
+    if (!folder_open_part(folder, name, &part, err))
+        return false;
+    bool is_read = false;
+    if (part.n_bytes > limit) {
+        error_set(err, ERROR_LIMIT, "%s: %llu bytes; at most %llu are read", name, (unsigned long long)part.n_bytes,
                   (unsigned long long)limit);
     } else {
-        bytes->size = (uint64_t)about.st_size < most ? (size_t)about.st_size : (size_t)most;
+        bytes->size = part.n_bytes < most ? (size_t)part.n_bytes : (size_t)most;
         bytes->data = malloc(bytes->size + 1); /* one more, 0: text readers may look at the byte after the last */
         if (!bytes->data) {
             error_set(err, ERROR_MEMORY, "%s: no memory for %zu bytes", name, bytes->size);
         } else {
             bytes->data[bytes->size] = 0;
-            is_read = read_all(fd, name, bytes, err);
+            is_read = folder_read_part(&part, name, 0, bytes->data, bytes->size, err);
         }
     }
-    close(fd);
+    folder_close_part(&part);
     if (!is_read)
         bytes_free(bytes);
     return is_read;

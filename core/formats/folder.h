@@ -42,6 +42,17 @@ enum folder_kind folder_look(const struct folder *folder, const char *name, uint
 NODISCARD bool folder_read(const struct folder *folder, const char *name, uint64_t limit, uint64_t most, struct bytes *bytes,
                            struct error *err);
 
+/* One file kept open, to read parts of it. */
+struct folder_part {
+    int fd;
+    uint64_t n_bytes; /* of the file */
+};
+/* errors as folder_read, without ERROR_LIMIT and ERROR_MEMORY */
+NODISCARD bool folder_open_part(const struct folder *folder, const char *name, struct folder_part *part, struct error *err);
+/* n bytes from at on. errors ERROR_IO, also when the file ends before */
+NODISCARD bool folder_read_part(const struct folder_part *part, const char *name, uint64_t at, void *out, size_t n, struct error *err);
+void folder_close_part(struct folder_part *part);
+
 /* Names of files and folders right inside, without those that begin with a dot, sorted by byte value.
  * The array and its names are the caller's: folder_free_names. errors ERROR_IO, ERROR_MEMORY */
 NODISCARD bool folder_list(const struct folder *folder, char ***names, size_t *n_names, struct error *err);

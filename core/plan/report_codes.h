@@ -33,6 +33,28 @@
     X("image.precision", "Whole numbers too large to be held exactly were rounded.", "Store the image with a smaller range.")     \
     X("image.not-finite", "Some values are not numbers.", "They are drawn as nothing and probed as nothing.")                     \
     X("image.hu-doubtful", "A CT has no value below zero, so its numbers may not be HU.", "Check the rescale slope and intercept.") \
+    X("dicom.unreadable", "A DICOM file cannot be read.", "Check or copy the file again; the rest is shown without it.")          \
+    X("dicom.not-used", "DICOM objects of a kind that has no place in a plan.", "Nothing; they are left out.")                    \
+    X("dicom.duplicate", "A DICOM object is there more than once.", "Nothing; the first by name was used.")                       \
+    X("dicom.too-many", "There are more DICOM objects than are kept.", "Open a folder that holds one patient's plan alone.")      \
+    X("image.split", "A series holds pictures that do not make one volume.", "Each stack of slices became an image of its own.")  \
+    X("image.slices-missing", "Slices are missing between others.",                                                               \
+      "They were interpolated between their neighbours; look for the missing files.")                                             \
+    X("image.slices-resampled", "The distances between slices differ too much for one grid.",                                     \
+      "The image was interpolated to even slices; slices at even places kept their values.")                                      \
+    X("image.slices-repeated", "Several slices lie at the same place.", "One of each was used; check the series.")                \
+    X("image.slices-shifted", "Slices are shifted sideways against each other.", "They were placed on a straight line.")          \
+    X("image.gantry-tilt", "Slices are not stacked at right angles (gantry tilt).", "Nothing; the image is kept sheared, as taken.") \
+    X("image.thickness-differs", "The thickness of the slices is not the distance between them.",                                 \
+      "Nothing; the distance between their positions was used.")                                                                  \
+    X("image.single-slice", "The image has one slice.", "Its thickness was taken from the file, or is 1 mm.")                     \
+    X("image.inverted", "The image asks for low values to be bright (MONOCHROME1).", "The values were kept; they are drawn dark.") \
+    X("image.slopes-differ", "Slices have a scale of their own.", "Nothing; all were brought to one unit.")                       \
+    X("image.rescale", "The scale of values is not one that can be used.", "Check the values; they were taken as stored.")        \
+    X("image.lossy", "The pixels were compressed with loss.", "Do not measure small differences in them.")                        \
+    X("image.frames-left-out", "Frames of a file do not belong to one volume.", "Those of the first orientation and time were used.") \
+    X("geometry.cosines", "The directions of rows and columns are not at right angles or not of length 1.",                       \
+      "They were corrected; check angles.")                                                                                       \
     X("region.empty", "A region has no voxel.", "Nothing to show for it; check the file.")                                        \
     X("region.unnamed", "A label has no name.", "It is listed under its number; add it to the list of names.")                    \
     X("region.unused-names", "The list of names has labels that no voxel carries.", "Nothing; they are not listed.")              \

@@ -461,7 +461,7 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
         std::strcpy(color, "MONOCHROME2");
     pixels->is_monochrome1 = std::strcmp(color, "MONOCHROME1") == 0;
     if (pixels->n_samples != 1 || (!pixels->is_monochrome1 && std::strcmp(color, "MONOCHROME2") != 0))
-        return error_set(err, ERROR_UNSUPPORTED, "%s: a colour picture (%s, %u samples a pixel); only grey ones are read", name, color,
+        return error_set(err, ERROR_UNSUPPORTED, "%s: it is a colour picture (%s, %u samples a pixel); only grey ones are read", name, color,
                          pixels->n_samples);
     pixels->bits_stored = optional_integer(file, 0x00280101, pixels->bits_allocated);
     pixels->high_bit = optional_integer(file, 0x00280102, pixels->bits_stored - 1);

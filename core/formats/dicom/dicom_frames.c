@@ -1,0 +1,95 @@
+/* Enhanced images: many frames in one file, each with groups of facts of its own beside those it shares. PS3.3 C.7.6.16. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/formats/dicom/dicom_slices.h"
+#include "core/formats/dicom/dicom_stacks.h"
+#include "core/formats/dicom/dicom_tags.h"
+
+/* Item of a group: the frame's own, else the shared one, else NULL. */
+static const struct dicom_item *group_of(const struct dicom_item *frame, const struct dicom_item *shared, uint32_t tag)
+{
+    const struct dicom_item *own = frame ? dicom_item_at(frame, tag, 0) : NULL;
+    return own ? own : shared ? dicom_item_at(shared, tag, 0) : NULL;
+}
+
+static bool get_finite(const struct dicom_item *item, uint32_t tag, double *values, size_t n)
+{
+    if (!item || dicom_numbers(item, tag, values, n) != n)
+        return false;
+    for (size_t i = 0; i < n; i++)
+        if (!isfinite(values[i]))
+            return false;
+    return true;
+}
+
+struct frame_place {
+    double position_mm[3], cosines[6], spacing_mm[2], thickness_mm;
+};
+
+static bool read_frame(const struct dicom_item *frame, const struct dicom_item *shared, struct frame_place *place, struct dicom_slice *slice)
+{
+    const struct dicom_item *measures = group_of(frame, shared, TAG_PIXEL_MEASURES);
+    const struct dicom_item *values = group_of(frame, shared, TAG_FRAME_VALUES);
+    if (!get_finite(group_of(frame, shared, TAG_PLANE_POSITIONS), TAG_POSITION, place->position_mm, 3) ||
+        !get_finite(group_of(frame, shared, TAG_PLANE_ORIENTATIONS), TAG_ORIENTATION, place->cosines, 6) ||
+        !get_finite(measures, TAG_SPACING, place->spacing_mm, 2) || !(place->spacing_mm[0] > 0 && place->spacing_mm[1] > 0))
+        return false;
+    place->thickness_mm = 0;
+    (void)get_finite(measures, TAG_THICKNESS, &place->thickness_mm, 1);
+    slice->slope = 1;
+    slice->offset = 0;
+    (void)get_finite(values, TAG_SLOPE, &slice->slope, 1);
+    (void)get_finite(values, TAG_OFFSET, &slice->offset, 1);
+    slice->position_lps_mm = vec3(place->position_mm[0], place->position_mm[1], place->position_mm[2]);
+    return true;
+}
+
+static bool is_same_plane(const struct frame_place *a, const struct frame_place *b)
+{
+    for (int i = 0; i < 6; i++)
+        if (!(fabs(a->cosines[i] - b->cosines[i]) <= 1e-3))
+            return false;
+    return fabs(a->spacing_mm[0] - b->spacing_mm[0]) <= 1e-3 * b->spacing_mm[0] && fabs(a->spacing_mm[1] - b->spacing_mm[1]) <= 1e-3 * b->spacing_mm[1];
+}
+
+bool dicom_frames_find(const struct dicom_file *file, const char *path, size_t object, uint32_t n_frames, struct dicom_slice *slices,
+                       size_t *n, struct dicom_plane *plane, struct report *report, struct error *err)
+{
+    const struct dicom_item *root = dicom_root(file), *shared = dicom_item_at(root, TAG_SHARED_GROUPS, 0);
+    size_t n_groups = dicom_n_items(root, TAG_FRAME_GROUPS);
+    if (n_groups != n_frames)
+        return error_set(err, ERROR_FORMAT, "%s: sequence (5200,9230) has %zu items for %u frames", path, n_groups, n_frames);
+    struct frame_place first = { 0 }, place;
+    struct vec3 axes[3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 } };
+    double off;
+    size_t n_others = 0, n_repeated = 0;
+    *n = 0;
+    for (uint32_t f = 0; f < n_frames; f++) {
+        struct dicom_slice slice = { .object = object, .frame = f };
+        if (!read_frame(dicom_item_at(root, TAG_FRAME_GROUPS, f), shared, &place, &slice))
+            return error_set(err, ERROR_FORMAT, "%s: frame %u of %u does not say where it lies in the patient, or how large its pixels are", path,
+                             f + 1, n_frames);
+        if (f == 0) {
+            first = place;
+            if (!dicom_axes(first.cosines, first.cosines + 3, axes, &off))
+                return error_set(err, ERROR_FORMAT, "%s: the directions of its rows and columns (0020,0037) do not span a plane", path);
+        }
+        if (!is_same_plane(&first, &place)) {
+            n_others++;
+            continue;
+        }
+        slice.along_mm = vec3_dot(axes[2], slice.position_lps_mm);
+        slices[(*n)++] = slice;
+    }
+    *n = dicom_slices_sort(slices, *n, &n_repeated);
+    if (n_others + n_repeated > 0)
+        report_add(report, REPORT_WARNING, "image.frames-left-out", path, "Of %u frames %zu have another orientation or pixel size than the first, "
+                   "and %zu lie where an earlier one does; they are not shown.", n_frames, n_others, n_repeated);
+    memcpy(plane->row, first.cosines, sizeof plane->row);
+    memcpy(plane->column, first.cosines + 3, sizeof plane->column);
+    memcpy(plane->spacing_mm, first.spacing_mm, sizeof plane->spacing_mm);
+    plane->thickness_mm = fmax(0, first.thickness_mm);
+    return true;
+}

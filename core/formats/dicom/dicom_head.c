@@ -1,0 +1,303 @@
+#include "core/formats/dicom/dicom_head.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/formats/dicom/dicom_tags.h"
+
+#define CLASSES "1.2.840.10008.5.1.4.1.1."
+
+/* PS3.4 B.5. What is not here is an image if its pixels have a place in the patient. */
+static const struct {
+    const char *uid; /* behind CLASSES */
+    enum dicom_kind kind;
+    const char *name;
+} classes[] = {
+    { "2", DICOM_KIND_IMAGE, "CT image" },
+    { "2.1", DICOM_KIND_IMAGE, "enhanced CT image" },
+    { "2.2", DICOM_KIND_IMAGE, "converted enhanced CT image" },
+    { "4", DICOM_KIND_IMAGE, "MR image" },
+    { "4.1", DICOM_KIND_IMAGE, "enhanced MR image" },
+    { "4.4", DICOM_KIND_IMAGE, "converted enhanced MR image" },
+    { "128", DICOM_KIND_IMAGE, "PET image" },
+    { "128.1", DICOM_KIND_IMAGE, "converted enhanced PET image" },
+    { "130", DICOM_KIND_IMAGE, "enhanced PET image" },
+    { "481.2", DICOM_KIND_DOSE, "dose" },
+    { "481.3", DICOM_KIND_STRUCT, "structure set" },
+    { "481.5", DICOM_KIND_PLAN, "plan" },
+    { "481.8", DICOM_KIND_PLAN, "ion plan" },
+    { "1", DICOM_KIND_OTHER, "radiograph" },
+    { "1.1", DICOM_KIND_OTHER, "radiograph" },
+    { "1.2", DICOM_KIND_OTHER, "mammogram" },
+    { "6.1", DICOM_KIND_OTHER, "sonogram" },
+    { "3.1", DICOM_KIND_OTHER, "sonogram film" },
+    { "7", DICOM_KIND_OTHER, "screen capture" },
+    { "7.1", DICOM_KIND_OTHER, "screen capture" },
+    { "7.2", DICOM_KIND_OTHER, "screen capture" },
+    { "7.3", DICOM_KIND_OTHER, "screen capture" },
+    { "7.4", DICOM_KIND_OTHER, "screen capture" },
+    { "4.2", DICOM_KIND_OTHER, "MR spectrum" },
+    { "11.1", DICOM_KIND_OTHER, "presentation state" },
+    { "12.1", DICOM_KIND_OTHER, "picture of blood vessels" },
+    { "30", DICOM_KIND_OTHER, "parametric map" },
+    { "66", DICOM_KIND_OTHER, "set of raw data" },
+    { "66.1", DICOM_KIND_OTHER, "registration" },
+    { "66.3", DICOM_KIND_OTHER, "deformable registration" },
+    { "66.4", DICOM_KIND_OTHER, "segmentation" },
+    { "88.11", DICOM_KIND_OTHER, "report" },
+    { "88.22", DICOM_KIND_OTHER, "report" },
+    { "88.33", DICOM_KIND_OTHER, "report" },
+    { "88.67", DICOM_KIND_OTHER, "radiation dose report" },
+    { "104.1", DICOM_KIND_OTHER, "PDF document" },
+    { "481.1", DICOM_KIND_OTHER, "radiotherapy image" },
+    { "481.4", DICOM_KIND_OTHER, "treatment record" },
+    { "481.6", DICOM_KIND_OTHER, "brachytherapy record" },
+    { "481.7", DICOM_KIND_OTHER, "treatment summary" },
+    { "481.9", DICOM_KIND_OTHER, "record of ion treatment" },
+};
+
+static const char *known_class(const char *sop_class, enum dicom_kind *kind)
+{
+    for (size_t i = 0; i < sizeof classes / sizeof classes[0]; i++)
+        if (strncmp(sop_class, CLASSES, sizeof CLASSES - 1) == 0 && strcmp(sop_class + sizeof CLASSES - 1, classes[i].uid) == 0) {
+            *kind = classes[i].kind;
+            return classes[i].name;
+        }
+    return NULL;
+}
+
+void dicom_class_name(const char *sop_class, char *out, size_t size)
+{
+    enum dicom_kind kind;
+    const char *name = known_class(sop_class, &kind);
+    if (name)
+        snprintf(out, size, "%s", name);
+    else
+        snprintf(out, size, "object of class %s", sop_class[0] ? sop_class : "not said");
+}
+
+static double number_or(const struct dicom_item *item, uint32_t tag, double otherwise)
+{
+    double value;
+    return dicom_number(item, tag, &value) ? value : otherwise;
+}
+
+static int64_t integer_or_none(const struct dicom_item *item, uint32_t tag)
+{
+    int64_t value;
+    return dicom_integer(item, tag, &value) ? value : INT64_MIN;
+}
+
+static bool three_finite(const double *values)
+{
+    return isfinite(values[0]) && isfinite(values[1]) && isfinite(values[2]);
+}
+
+/* Position, orientation and spacing of a picture of its own; false with the reason when one is not there or no number. */
+static bool read_place(const struct dicom_item *root, struct dicom_image *image, char *reason, size_t size)
+{
+    double cosines[6];
+    if (dicom_numbers(root, TAG_POSITION, image->position_mm, 3) != 3 || !three_finite(image->position_mm))
+        return snprintf(reason, size, "it does not say where it lies in the patient (0020,0032)") < 0;
+    if (dicom_numbers(root, TAG_ORIENTATION, cosines, 6) != 6 || !three_finite(cosines) || !three_finite(cosines + 3))
+        return snprintf(reason, size, "it does not say how it lies in the patient (0020,0037)") < 0;
+    if (dicom_numbers(root, TAG_SPACING, image->spacing_mm, 2) != 2 || !(image->spacing_mm[0] > 0 && image->spacing_mm[0] < 1e4) ||
+        !(image->spacing_mm[1] > 0 && image->spacing_mm[1] < 1e4))
+        return snprintf(reason, size, "it does not say how large its pixels are (0028,0030)") < 0;
+    memcpy(image->row, cosines, sizeof image->row);
+    memcpy(image->column, cosines + 3, sizeof image->column);
+    image->has_place = true;
+    return true;
+}
+
+static void read_image_facts(const struct dicom_item *root, struct dicom_image *image)
+{
+    image->thickness_mm = fmax(0, number_or(root, TAG_THICKNESS, 0));
+    image->slope = number_or(root, TAG_SLOPE, 1);
+    image->offset = number_or(root, TAG_OFFSET, 0);
+    image->instance = integer_or_none(root, TAG_INSTANCE);
+    image->acquisition = integer_or_none(root, TAG_ACQUISITION);
+    image->echo = integer_or_none(root, TAG_ECHO_NUMBER);
+    image->temporal = integer_or_none(root, TAG_TEMPORAL);
+    image->echo_ms = number_or(root, TAG_ECHO_TIME, NAN);
+    image->trigger_ms = number_or(root, TAG_TRIGGER_TIME, NAN);
+    image->b_value = number_or(root, TAG_B_VALUE, NAN);
+    (void)dicom_text(root, TAG_IMAGE_TYPE, image->image_type, sizeof image->image_type);
+    char lossy[8];
+    image->is_lossy = dicom_text(root, TAG_LOSSY, lossy, sizeof lossy) && strcmp(lossy, "01") == 0;
+}
+
+/* An image, if all that is needed is there and can be read; else another object with the reason. */
+static void read_image(const struct dicom_file *file, uint64_t n_bytes, struct dicom_object *object)
+{
+    const struct dicom_item *root = dicom_root(file);
+    struct dicom_image image = { 0 };
+    struct error err = { 0 };
+    object->kind = DICOM_KIND_OTHER;
+    if (!dicom_has(root, DICOM_TAG(0x7FE0, 0x0010)) && !dicom_has(root, DICOM_TAG(0x7FE0, 0x0008))) {
+        char name[100];
+        dicom_class_name(object->sop_class, name, sizeof name);
+        snprintf(object->reason, sizeof object->reason, "it has no picture (%s)", name);
+        return;
+    }
+    if (!dicom_pixels_look(file, &image.pixels, &err)) {
+        const char *text = strstr(err.text, ": "); /* behind the name */
+        snprintf(object->reason, sizeof object->reason, "%.159s", text ? text + 2 : err.text);
+        return;
+    }
+    read_image_facts(root, &image);
+    if (strstr(image.image_type, "LOCALIZER")) {
+        snprintf(object->reason, sizeof object->reason, "it is a localizer");
+        return;
+    }
+    bool has_frames = dicom_has(root, TAG_FRAME_GROUPS);
+    if (!has_frames && image.pixels.n_frames > 1) {
+        snprintf(object->reason, sizeof object->reason, "it has %u frames and does not say where they lie in the patient (5200,9230)",
+                 image.pixels.n_frames);
+        return;
+    }
+    if (!has_frames && !read_place(root, &image, object->reason, sizeof object->reason))
+        return;
+    image.has_stored = dicom_pixels_stored(file, &image.stored);
+    uint64_t needed = (uint64_t)image.pixels.rows * image.pixels.columns * (image.pixels.bits_allocated / 8) * image.pixels.n_frames;
+    if (image.has_stored && (image.stored.at > n_bytes || needed > n_bytes - image.stored.at)) {
+        snprintf(object->reason, sizeof object->reason, "cut short: its pixels need %llu bytes from byte %llu on, the file has %llu",
+                 (unsigned long long)needed, (unsigned long long)image.stored.at, (unsigned long long)n_bytes);
+        return;
+    }
+    object->kind = DICOM_KIND_IMAGE;
+    object->image = mem_new(sizeof *object->image);
+    *object->image = image;
+}
+
+static const struct dicom_item *first_item(const struct dicom_item *item, uint32_t tag)
+{
+    return item ? dicom_item_at(item, tag, 0) : NULL;
+}
+
+/* What an RTSTRUCT, RTDOSE or RTPLAN refers to. PS3.3 C.8.8.5, C.8.8.3, C.8.8.9. */
+static void read_references(const struct dicom_item *root, struct dicom_object *object)
+{
+    const struct dicom_item *frame = first_item(root, DICOM_TAG(0x3006, 0x0010));
+    const struct dicom_item *series = first_item(first_item(frame, DICOM_TAG(0x3006, 0x0012)), DICOM_TAG(0x3006, 0x0014));
+    if (object->kind == DICOM_KIND_STRUCT && frame && !object->frame_of_reference[0])
+        (void)dicom_text(frame, TAG_FRAME_OF_REFERENCE, object->frame_of_reference, DICOM_UID_SIZE);
+    if (series)
+        (void)dicom_text(series, TAG_SERIES, object->referenced_series, DICOM_UID_SIZE);
+    const struct dicom_item *plan = first_item(root, DICOM_TAG(0x300C, 0x0002));
+    const struct dicom_item *structs = first_item(root, DICOM_TAG(0x300C, 0x0060));
+    if (plan)
+        (void)dicom_text(plan, TAG_REFERENCED_SOP_INSTANCE, object->referenced_plan, DICOM_UID_SIZE);
+    if (structs)
+        (void)dicom_text(structs, TAG_REFERENCED_SOP_INSTANCE, object->referenced_struct, DICOM_UID_SIZE);
+    if (object->kind == DICOM_KIND_STRUCT)
+        (void)dicom_text(root, DICOM_TAG(0x3006, 0x0002), object->label, DICOM_TEXT_SIZE);
+    if (object->kind == DICOM_KIND_PLAN)
+        (void)dicom_text(root, DICOM_TAG(0x300A, 0x0002), object->label, DICOM_TEXT_SIZE);
+}
+
+static void read_identity(const struct dicom_file *file, struct dicom_object *object)
+{
+    const struct dicom_item *root = dicom_root(file);
+    (void)dicom_text(root, TAG_SOP_CLASS, object->sop_class, DICOM_UID_SIZE);
+    (void)dicom_text(root, TAG_SOP_INSTANCE, object->sop_instance, DICOM_UID_SIZE);
+    (void)dicom_text(root, TAG_SERIES, object->series, DICOM_UID_SIZE);
+    (void)dicom_text(root, TAG_STUDY, object->study, DICOM_UID_SIZE);
+    (void)dicom_text(root, TAG_FRAME_OF_REFERENCE, object->frame_of_reference, DICOM_UID_SIZE);
+    (void)dicom_text(root, TAG_MODALITY, object->modality, sizeof object->modality);
+    (void)dicom_text(root, TAG_SERIES_DESCRIPTION, object->description, DICOM_TEXT_SIZE);
+    snprintf(object->transfer_syntax, sizeof object->transfer_syntax, "%s", dicom_transfer_syntax(file));
+}
+
+/* Files whose class is not said, or not one we know, are told by their modality. */
+static enum dicom_kind kind_of(const struct dicom_object *object, const char **name)
+{
+    static const struct {
+        const char *modality;
+        enum dicom_kind kind;
+    } modalities[] = { { "RTSTRUCT", DICOM_KIND_STRUCT }, { "RTDOSE", DICOM_KIND_DOSE }, { "RTPLAN", DICOM_KIND_PLAN } };
+    enum dicom_kind kind = DICOM_KIND_IMAGE;
+    *name = known_class(object->sop_class, &kind);
+    for (size_t i = 0; !*name && i < sizeof modalities / sizeof modalities[0]; i++)
+        if (strcmp(object->modality, modalities[i].modality) == 0)
+            kind = modalities[i].kind;
+    return kind;
+}
+
+static bool grow(struct bytes *scratch, size_t size, const char *path, struct error *err)
+{
+    if (scratch->size >= size)
+        return true;
+    free(scratch->data);
+    scratch->data = malloc(size);
+    scratch->size = scratch->data ? size : 0;
+    return scratch->data ? true : error_set(err, ERROR_MEMORY, "%s: no memory for %zu bytes", path, size);
+}
+
+static enum dicom_head_result describe(const struct dicom_file *file, uint64_t n_bytes, struct dicom_object *object)
+{
+    const char *name;
+    object->kind = kind_of(object, &name);
+    if (strcmp(object->sop_class, "1.2.840.10008.1.3.10") == 0 || dicom_has(dicom_root(file), DICOM_TAG(0x0004, 0x1220)))
+        return DICOM_HEAD_DIRECTORY;
+    if (object->kind == DICOM_KIND_IMAGE)
+        read_image(file, n_bytes, object);
+    else if (object->kind == DICOM_KIND_OTHER)
+        snprintf(object->reason, sizeof object->reason, "it is a %s", name);
+    else
+        read_references(dicom_root(file), object);
+    return DICOM_HEAD_READ;
+}
+
+enum dicom_head_result dicom_head_read(const struct folder *folder, const char *path, struct dicom_object *object, struct bytes *scratch,
+                                       struct error *err)
+{
+    /* Most heads end within the first bytes; private ones of some vendors, and tables of frames, are longer. */
+    static const uint64_t steps[] = { 1 << 14, 1 << 18, 1 << 22, 1 << 26, (uint64_t)DICOM_MAX_FILE_MIB << 20 };
+    *object = (struct dicom_object){ 0 };
+    struct folder_part part;
+    if (!folder_open_part(folder, path, &part, err))
+        return DICOM_HEAD_BROKEN;
+    enum dicom_head_result result = DICOM_HEAD_BROKEN;
+    struct dicom_file *file = NULL;
+    for (size_t step = 0; step < sizeof steps / sizeof steps[0]; step++) {
+        size_t n = part.n_bytes < steps[step] ? (size_t)part.n_bytes : (size_t)steps[step];
+        if (!grow(scratch, n, path, err) || !folder_read_part(&part, path, 0, scratch->data, n, err))
+            break;
+        if (!dicom_looks_like(scratch->data, n)) {
+            result = DICOM_HEAD_FOREIGN;
+            break;
+        }
+        dicom_file_destroy(file);
+        bool is_all = n == part.n_bytes; /* the second look at a whole file tells what is wrong with it */
+        file = dicom_file_parse(scratch->data, n, path, is_all && step > 0 ? DICOM_HEAD : DICOM_START, err);
+        if (!file)
+            break;
+        const char *name;
+        read_identity(file, object);
+        object->n_bytes = part.n_bytes;
+        /* of a plan or a dose what it refers to stands far in front, and it is read whole later */
+        bool is_enough = !dicom_is_cut(file) || (step > 0 && kind_of(object, &name) != DICOM_KIND_IMAGE);
+        if (is_enough) {
+            result = describe(file, part.n_bytes, object);
+            break;
+        }
+        if (is_all && step > 0) {
+            error_set(err, ERROR_FORMAT, "%s: cut short", path);
+            break;
+        }
+    }
+    dicom_file_destroy(file);
+    folder_close_part(&part);
+    return result;
+}
+
+void dicom_object_finish(struct dicom_object *object)
+{
+    free(object->path);
+    free(object->image);
+    *object = (struct dicom_object){ 0 };
+}

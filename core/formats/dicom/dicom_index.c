@@ -1,0 +1,305 @@
+#include "core/formats/dicom/dicom_index.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/base/parallel.h"
+#include "core/formats/dicom/dicom_head.h"
+#include "core/formats/dicom/dicom_stacks.h"
+
+/* A file to look at, and what came of it. */
+struct looked {
+    char *path; /* moves into object */
+    enum dicom_head_result result;
+    struct dicom_object object;
+    char *why; /* BROKEN */
+};
+
+struct scan {
+    const struct folder *folder;
+    const struct dicom_progress *progress;
+    struct looked *files;
+    size_t n_files;
+    atomic_size_t next, n_done, n_kept;
+    atomic_bool is_cancelled;
+    pthread_mutex_t step_lock;
+};
+
+static void look_at(struct scan *scan, struct looked *file, struct bytes *scratch)
+{
+    struct error err = { 0 };
+    file->result = dicom_head_read(scan->folder, file->path, &file->object, scratch, &err);
+    if (file->result == DICOM_HEAD_BROKEN) {
+        dicom_object_finish(&file->object);
+        file->why = mem_copy_text(err.text);
+    }
+    if (file->result == DICOM_HEAD_READ && atomic_fetch_add(&scan->n_kept, 1) >= DICOM_MAX_OBJECTS) {
+        dicom_object_finish(&file->object);
+        file->why = NULL;
+        file->result = DICOM_HEAD_BROKEN;
+    }
+}
+
+static void scan_part(void *context, int part, int n_parts)
+{
+    struct scan *scan = context;
+    struct bytes scratch = { 0 };
+    (void)part;
+    (void)n_parts;
+    for (size_t i; (i = atomic_fetch_add(&scan->next, 1)) < scan->n_files;) {
+        if (scan->progress->cancel && atomic_load(scan->progress->cancel))
+            atomic_store(&scan->is_cancelled, true);
+        if (atomic_load(&scan->is_cancelled))
+            break;
+        look_at(scan, &scan->files[i], &scratch);
+        size_t n_done = atomic_fetch_add(&scan->n_done, 1) + 1;
+        if (scan->progress->step && (n_done % 32 == 0 || n_done == scan->n_files)) {
+            pthread_mutex_lock(&scan->step_lock);
+            scan->progress->step(scan->progress->context, n_done, scan->n_files);
+            pthread_mutex_unlock(&scan->step_lock);
+        }
+    }
+    free(scratch.data);
+}
+
+static int compare_looked(const void *a, const void *b)
+{
+    return strcmp(((const struct looked *)a)->path, ((const struct looked *)b)->path);
+}
+
+/* The files behind the names given: a file itself, of a folder what is in it. */
+static bool list_files(const struct folder *folder, char *const *names, size_t n_names, struct scan *scan, struct report *report,
+                       struct error *err)
+{
+    static char whole[] = "";
+    char *all[] = { whole };
+    if (!names || n_names == 0) {
+        names = all;
+        n_names = 1;
+    }
+    size_t room = 0;
+    for (size_t i = 0; i < n_names; i++) {
+        struct folder_tree tree = { 0 };
+        bool is_file = names[i][0] && folder_look(folder, names[i], NULL) == FOLDER_FILE;
+        if (!is_file && !folder_walk(folder, names[i], NULL, &tree, err)) {
+            folder_tree_finish(&tree);
+            return false;
+        }
+        if (tree.is_cut)
+            report_add(report, REPORT_WARNING, "dicom.too-many", names[i], "Of this folder the first %d files down to %d folders deep were "
+                       "looked at; there are more.", FOLDER_MAX_FILES, FOLDER_MAX_DEPTH);
+        size_t n = is_file ? 1 : tree.n_files;
+        if (scan->n_files + n > room) {
+            room = 2 * (scan->n_files + n);
+            struct looked *larger = realloc(scan->files, room * sizeof *larger);
+            if (!larger) {
+                folder_tree_finish(&tree);
+                return error_set(err, ERROR_MEMORY, "no memory for the names of %zu files", room);
+            }
+            scan->files = larger;
+        }
+        for (size_t f = 0; f < n; f++) {
+            struct looked *file = &scan->files[scan->n_files++];
+            *file = (struct looked){ .path = mem_copy_text(is_file ? names[i] : tree.files[f].name) };
+        }
+        folder_tree_finish(&tree);
+    }
+    if (scan->n_files == 0)
+        return true;
+    qsort(scan->files, scan->n_files, sizeof *scan->files, compare_looked);
+    size_t n = 1;
+    for (size_t i = 1; i < scan->n_files; i++) { /* a file that was named twice */
+        if (strcmp(scan->files[i].path, scan->files[n - 1].path) == 0)
+            free(scan->files[i].path);
+        else
+            scan->files[n++] = scan->files[i];
+    }
+    scan->n_files = n;
+    return true;
+}
+
+enum { MOST_LINES = 20 }; /* of one kind; the others are counted */
+
+/* Moves what was read into the index; says what could not be. */
+static bool collect(struct scan *scan, struct dicom_index *index, struct report *report, struct error *err)
+{
+    size_t n = 0, n_broken = 0, n_too_many = 0;
+    for (size_t i = 0; i < scan->n_files; i++)
+        n += scan->files[i].result == DICOM_HEAD_READ;
+    index->objects = mem_array(n, sizeof *index->objects, UINT64_MAX, err);
+    if (!index->objects)
+        return false;
+    index->n_files = scan->n_files;
+    for (size_t i = 0; i < scan->n_files; i++) {
+        struct looked *file = &scan->files[i];
+        if (file->result == DICOM_HEAD_READ) {
+            struct dicom_object *object = &index->objects[index->n_objects++];
+            *object = file->object;
+            object->path = file->path;
+            file->object = (struct dicom_object){ 0 };
+            file->path = NULL;
+        } else if (file->result == DICOM_HEAD_FOREIGN) {
+            index->n_foreign++;
+        } else if (file->result == DICOM_HEAD_BROKEN && !file->why) {
+            n_too_many++;
+        } else if (file->result == DICOM_HEAD_BROKEN && n_broken++ < MOST_LINES) {
+            report_add(report, REPORT_ERROR, "dicom.unreadable", file->path, "%s", file->why);
+        }
+    }
+    if (n_broken > MOST_LINES)
+        report_add(report, REPORT_ERROR, "dicom.unreadable", "", "%zu more files cannot be read.", n_broken - MOST_LINES);
+    if (n_too_many > 0)
+        report_add(report, REPORT_WARNING, "dicom.too-many", "", "%zu DICOM objects beyond the first %d were left out.", n_too_many,
+                   DICOM_MAX_OBJECTS);
+    return true;
+}
+
+static int compare_instances(const void *a, const void *b)
+{
+    const struct dicom_object *const *left = a, *const *right = b;
+    int order = strcmp((*left)->sop_instance, (*right)->sop_instance);
+    return order ? order : strcmp((*left)->path, (*right)->path);
+}
+
+/* The same object once more, and not another one that was given its number by mistake. */
+static bool is_copy(const struct dicom_object *a, const struct dicom_object *b)
+{
+    if (!a->sop_instance[0] || strcmp(a->sop_instance, b->sop_instance) != 0 || a->kind != b->kind)
+        return false;
+    return a->kind != DICOM_KIND_IMAGE || (a->image->instance == b->image->instance &&
+                                           memcmp(a->image->position_mm, b->image->position_mm, sizeof a->image->position_mm) == 0);
+}
+
+static bool drop_copies(struct dicom_index *index, struct report *report, struct error *err)
+{
+    struct dicom_object **order = mem_array(index->n_objects, sizeof *order, UINT64_MAX, err);
+    if (!order)
+        return false;
+    for (size_t i = 0; i < index->n_objects; i++)
+        order[i] = &index->objects[i];
+    qsort(order, index->n_objects, sizeof *order, compare_instances);
+    size_t n_copies = 0;
+    const struct dicom_object *first = NULL, *example = NULL;
+    for (size_t i = 0; i < index->n_objects; i++) {
+        if (order[i]->kind == DICOM_KIND_OTHER)
+            continue;
+        if (first && is_copy(first, order[i])) {
+            struct dicom_object *copy = order[i];
+            copy->kind = DICOM_KIND_OTHER;
+            free(copy->image);
+            copy->image = NULL;
+            snprintf(copy->reason, sizeof copy->reason, "it is a copy of %.120s", first->path);
+            if (!example || strcmp(copy->path, example->path) < 0)
+                example = copy;
+            n_copies++;
+        } else {
+            first = order[i];
+        }
+    }
+    if (n_copies > 0)
+        report_add(report, REPORT_WARNING, "dicom.duplicate", example->path, "%zu object%s more than once in the folder; this file: %s.",
+                   n_copies, n_copies == 1 ? " is there" : "s are there", example->reason);
+    free(order);
+    return true;
+}
+
+/* One line for each reason: how many, and the first by name. */
+static void report_unused(const struct dicom_index *index, struct report *report)
+{
+    enum { MOST_REASONS = 32 };
+    const struct dicom_object *first[MOST_REASONS];
+    size_t count[MOST_REASONS], n_reasons = 0, n_more = 0;
+    for (size_t i = 0; i < index->n_objects; i++) {
+        const struct dicom_object *object = &index->objects[i];
+        if (object->kind != DICOM_KIND_OTHER || strncmp(object->reason, "it is a copy", 12) == 0)
+            continue;
+        size_t r = 0;
+        while (r < n_reasons && strcmp(first[r]->reason, object->reason) != 0)
+            r++;
+        if (r == MOST_REASONS) {
+            n_more++;
+            continue;
+        }
+        if (r == n_reasons) {
+            first[n_reasons] = object;
+            count[n_reasons++] = 0;
+        }
+        count[r]++;
+    }
+    for (size_t r = 0; r < n_reasons; r++) {
+        const char *reason = first[r]->reason;
+        bool is_damage = strncmp(reason, "it ", 3) != 0; /* what is wrong with a picture, not what it is */
+        const char *code = is_damage ? "dicom.unreadable" : "dicom.not-used";
+        if (count[r] == 1)
+            report_add(report, is_damage ? REPORT_ERROR : REPORT_NOTE, code, first[r]->path, "Not used: %s.", reason);
+        else
+            report_add(report, is_damage ? REPORT_ERROR : REPORT_NOTE, code, first[r]->path, "%zu objects are not used; this one: %s.",
+                       count[r], reason);
+    }
+    if (n_more > 0)
+        report_add(report, REPORT_NOTE, "dicom.not-used", "", "%zu more objects are not used, for other reasons.", n_more);
+}
+
+static void scan_finish(struct scan *scan)
+{
+    for (size_t i = 0; i < scan->n_files; i++) {
+        free(scan->files[i].path);
+        free(scan->files[i].why);
+        dicom_object_finish(&scan->files[i].object);
+    }
+    free(scan->files);
+    pthread_mutex_destroy(&scan->step_lock);
+}
+
+struct dicom_index *dicom_index_scan(const struct folder *folder, char *const *names, size_t n_names,
+                                     const struct dicom_progress *progress, struct report *report, struct error *err)
+{
+    static const struct dicom_progress quiet;
+    struct scan scan = { .folder = folder, .progress = progress ? progress : &quiet };
+    pthread_mutex_init(&scan.step_lock, NULL);
+    struct dicom_index *index = mem_new(sizeof *index);
+    if (!list_files(folder, names, n_names, &scan, report, err))
+        goto fail;
+    int n_threads = scan.progress->n_threads > 0 ? scan.progress->n_threads : parallel_cores();
+    n_threads = n_threads < 8 ? n_threads : 8;
+    parallel_run((size_t)n_threads < scan.n_files ? n_threads : (int)scan.n_files, scan_part, &scan);
+    if (atomic_load(&scan.is_cancelled)) {
+        error_set(err, ERROR_CANCELLED, "looking for DICOM was cancelled");
+        goto fail;
+    }
+    if (!collect(&scan, index, report, err) || !drop_copies(index, report, err))
+        goto fail;
+    report_unused(index, report);
+    if (!dicom_stacks_find(index, report, err))
+        goto fail;
+    scan_finish(&scan);
+    return index;
+fail:
+    scan_finish(&scan);
+    dicom_index_destroy(index);
+    return NULL;
+}
+
+void dicom_index_destroy(struct dicom_index *index)
+{
+    if (!index)
+        return;
+    for (size_t i = 0; i < index->n_objects; i++)
+        dicom_object_finish(&index->objects[i]);
+    for (size_t i = 0; i < index->n_stacks; i++)
+        free(index->stacks[i].objects);
+    free(index->objects);
+    free(index->stacks);
+    free(index);
+}
+
+const struct dicom_object *dicom_index_find(const struct dicom_index *index, const char *sop_instance)
+{
+    for (size_t i = 0; sop_instance[0] && i < index->n_objects; i++)
+        if (strcmp(index->objects[i].sop_instance, sop_instance) == 0)
+            return &index->objects[i];
+    return NULL;
+}
