@@ -31,7 +31,7 @@ static void find_faces(uint8_t faces_of[CUBE_EDGES])
 /* On every face, walking round it counter-clockwise, the line goes from where the walk enters the inside to where it next leaves
  * it. So at an ambiguous face, two inside corners across a diagonal, each is cut off alone; the cell on the other side of the
  * face walks the other way round the same runs of corners and so draws the same lines: no crack can open between the two. */
-static void link_edges(int inside, int8_t next[CUBE_EDGES])
+void cube_case_links(int inside, int8_t next[CUBE_EDGES])
 {
     memset(next, -1, CUBE_EDGES);
     for (int f = 0; f < 6; f++)
@@ -79,7 +79,7 @@ void cube_cases_make(struct cube_case cases[256], bool is_mirrored)
     for (int inside = 0; inside < 256; inside++) {
         struct cube_case *out = &cases[inside];
         int8_t next[CUBE_EDGES];
-        link_edges(inside, next);
+        cube_case_links(inside, next);
         for (int e = 0; e < 8; e++)
             out->is_crossed[e] = next[e] >= 0;
         for (int start = 0; start < CUBE_EDGES; start++) {

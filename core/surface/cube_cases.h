@@ -17,3 +17,6 @@ struct cube_case { /* 32 bytes, in parts that vector code loads whole */
 
 /* Triangles wind counter-clockwise seen from the outside corners when x, y, z are right-handed; the other way if mirrored. */
 void cube_cases_make(struct cube_case cases[256], bool is_mirrored);
+/* The same before it is cut into triangles: for each crossed edge the next one on its loop round the outside corners' side, -1 for
+ * the others. */
+void cube_case_links(int inside, int8_t next[CUBE_EDGES]);

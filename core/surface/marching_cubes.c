@@ -20,19 +20,13 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 #include "core/surface/cube_cases.h"
+#include "core/surface/marching_rows.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
 
-enum { CELLS_A_WORD = 63, MAX_THREADS = 64, MAX_MASK_WORDS = VOLUME_MAX_SIDE / 64 };
-#define LOW_63 (~(uint64_t)0 >> 1)
-
-/* Of one row. First how many, then (after the running totals) the number of its first. */
-struct row {
-    uint32_t x, y, z; /* vertices on edges along x, y, z, numbered in this order */
-    uint32_t triangles;
-};
+enum { MAX_THREADS = 64 };
 
 struct extent {
     bool is_empty;
@@ -40,17 +34,11 @@ struct extent {
 };
 
 struct job {
+    struct marching_rows grid; /* the working grid, its rows and the mesh */
     const struct mask *mask;
-    const struct cube_case *cases;
     enum marching_cubes_code code;
     struct extent extents[MAX_THREADS]; /* one a part */
-    /* the working grid */
-    int32_t start[3];   /* mask index of its voxel 0; -1 when an empty layer was put in front */
-    uint32_t size[3];   /* voxels */
-    uint32_t words;     /* in a row */
-    uint64_t *bits;     /* [z][y][words]; owns the rows' memory too */
-    struct row *rows;   /* [z][y], and one more at the end */
-    struct mesh *mesh;
+    struct marching_graph *graph;       /* NULL: not wanted */
 };
 
 static void range_of(uint32_t n, int part, int n_parts, uint32_t *from, uint32_t *end)
@@ -116,11 +104,11 @@ static void place_working_grid(struct job *job, const struct extent *extent, boo
     for (int axis = 0; axis < 3; axis++) {
         uint32_t last = job->mask->size[axis] - 1;
         bool has_before = close_at_border || extent->low[axis] > 0, has_after = close_at_border || extent->high[axis] < last;
-        job->start[axis] = (int32_t)extent->low[axis] - has_before;
-        job->size[axis] = extent->high[axis] - extent->low[axis] + 1 + has_before + has_after;
+        job->grid.start[axis] = (int32_t)extent->low[axis] - has_before;
+        job->grid.size[axis] = extent->high[axis] - extent->low[axis] + 1 + has_before + has_after;
     }
-    uint32_t cells = job->size[0] - 1;
-    job->words = cells ? (cells + CELLS_A_WORD - 1) / CELLS_A_WORD : 1;
+    uint32_t cells = job->grid.size[0] - 1;
+    job->grid.words = cells ? (cells + CELLS_A_WORD - 1) / CELLS_A_WORD : 1;
 }
 
 /* 64 bits of a row from any bit on, -1 included; what lies beyond the row is 0. */
@@ -138,91 +126,39 @@ static void copy_rows(void *context, int part, int n_parts)
     struct job *job = context;
     const struct mask *mask = job->mask;
     uint32_t z, end;
-    for (range_of(job->size[2], part, n_parts, &z, &end); z < end; z++)
-        for (uint32_t y = 0; y < job->size[1]; y++) {
-            int32_t j = job->start[1] + (int32_t)y, k = job->start[2] + (int32_t)z;
-            uint64_t *to = job->bits + ((size_t)z * job->size[1] + y) * job->words;
+    for (range_of(job->grid.size[2], part, n_parts, &z, &end); z < end; z++)
+        for (uint32_t y = 0; y < job->grid.size[1]; y++) {
+            int32_t j = job->grid.start[1] + (int32_t)y, k = job->grid.start[2] + (int32_t)z;
+            uint64_t *to = job->grid.bits + ((size_t)z * job->grid.size[1] + y) * job->grid.words;
             if (j < 0 || k < 0 || (uint32_t)j >= mask->size[1] || (uint32_t)k >= mask->size[2]) {
-                memset(to, 0, job->words * sizeof *to); /* an empty row in front or behind */
+                memset(to, 0, job->grid.words * sizeof *to); /* an empty row in front or behind */
                 continue;
             }
             const uint64_t *from = mask->bits + ((size_t)k * mask->size[1] + (uint32_t)j) * mask->words;
-            for (uint32_t w = 0; w < job->words; w++)
-                to[w] = bits_from(from, mask->words, job->start[0] + (int32_t)(CELLS_A_WORD * w));
+            for (uint32_t w = 0; w < job->grid.words; w++)
+                to[w] = bits_from(from, mask->words, job->grid.start[0] + (int32_t)(CELLS_A_WORD * w));
         }
 }
 
-/* ---- rows --------------------------------------------------------------------------------------------------------------- */
+/* ---- counting and writing ------------------------------------------------------------------------------------------------ */
 
-/* The two passes are inlined into a version for any processor and one for processors with AVX2 and bit counting, see below. */
-#define INLINED static inline __attribute__((always_inline))
-
-/* A row with its neighbours; at the end of an axis the row stands in for the missing neighbour, so nothing is crossed there. */
-struct around {
-    const uint64_t *here, *next_y, *next_z, *next_yz;
-    bool has_cells;
-};
-
-INLINED struct around rows_around(const struct job *job, uint32_t y, uint32_t z)
-{
-    const uint64_t *here = job->bits + ((size_t)z * job->size[1] + y) * job->words;
-    bool has_y = y + 1 < job->size[1], has_z = z + 1 < job->size[2];
-    size_t to_y = has_y ? job->words : 0, to_z = has_z ? (size_t)job->words * job->size[1] : 0;
-    return (struct around){ here, here + to_y, here + to_z, here + to_y + to_z, has_y && has_z && job->size[0] > 1 };
-}
-
-/* What one word of a row owns. */
-struct crossings {
-    uint64_t x, y, z; /* crossed edges, by the voxel they start at */
-    uint64_t active;  /* cells that hold triangles */
-};
-
-INLINED struct crossings find_crossings(const struct job *job, const struct around *rows, uint32_t w)
-{
-    bool is_last = w + 1 == job->words;
-    uint32_t n_cells = is_last ? job->size[0] - 1 - CELLS_A_WORD * w : CELLS_A_WORD;
-    uint64_t cells = n_cells ? LOW_63 >> (CELLS_A_WORD - n_cells) : 0;
-    uint64_t voxels = is_last ? ~(uint64_t)0 : LOW_63; /* elsewhere the 64th belongs to the next word */
-    uint64_t here = rows->here[w], next_y = rows->next_y[w], next_z = rows->next_z[w], next_yz = rows->next_yz[w];
-    uint64_t any = here | next_y | next_z | next_yz, all = here & next_y & next_z & next_yz;
-    return (struct crossings){
-        .x = (here ^ here >> 1) & cells,
-        .y = (here ^ next_y) & voxels,
-        .z = (here ^ next_z) & voxels,
-        .active = rows->has_cells ? (any | any >> 1) & ~(all & all >> 1) & cells : 0,
-    };
-}
-
-/* Nothing crossed and no cell active: by far the most words. */
-INLINED bool is_uniform(const struct around *rows, uint32_t w)
-{
-    uint64_t here = rows->here[w], next_y = rows->next_y[w], next_z = rows->next_z[w], next_yz = rows->next_yz[w];
-    return !(here | next_y | next_z | next_yz) || !~(here & next_y & next_z & next_yz);
-}
-
-INLINED uint32_t case_at(const struct around *rows, uint32_t w, int bit)
-{
-    return (uint32_t)((rows->here[w] >> bit & 3) | (rows->next_y[w] >> bit & 3) << 2 | (rows->next_z[w] >> bit & 3) << 4 |
-                      (rows->next_yz[w] >> bit & 3) << 6);
-}
-
-INLINED void count_slices(struct job *job, uint32_t from, uint32_t end)
+INLINED void count_slices(struct marching_rows *grid, uint32_t from, uint32_t end)
 {
     for (uint32_t z = from; z < end; z++)
-        for (uint32_t y = 0; y < job->size[1]; y++) {
-            struct around rows = rows_around(job, y, z);
+        for (uint32_t y = 0; y < grid->size[1]; y++) {
+            struct around rows = rows_around(grid, y, z);
             struct row sum = { 0 };
-            for (uint32_t w = 0; w < job->words; w++) {
+            for (uint32_t w = 0; w < grid->words; w++) {
                 if (is_uniform(&rows, w))
                     continue;
-                struct crossings found = find_crossings(job, &rows, w);
+                struct crossings found = find_crossings(grid, &rows, w);
                 sum.x += (uint32_t)__builtin_popcountll(found.x);
                 sum.y += (uint32_t)__builtin_popcountll(found.y);
                 sum.z += (uint32_t)__builtin_popcountll(found.z);
                 for (uint64_t cells = found.active; cells; cells &= cells - 1)
-                    sum.triangles += job->cases[case_at(&rows, w, __builtin_ctzll(cells))].n_triangles;
+                    sum.triangles += grid->cases[case_at(&rows, w, __builtin_ctzll(cells))].n_triangles;
             }
-            job->rows[(size_t)z * job->size[1] + y] = sum;
+            grid->rows[(size_t)z * grid->size[1] + y] = sum;
         }
 }
 
@@ -234,21 +170,21 @@ INLINED float *put(float *at, struct vec3 p)
     return at + 3;
 }
 
-INLINED void write_vertices(const struct job *job, const struct row *row, const struct around *rows, uint32_t y, uint32_t z)
+INLINED void write_vertices(const struct marching_rows *grid, const struct row *row, const struct around *rows, uint32_t y, uint32_t z)
 {
-    const struct affine *map = &job->mask->lps_mm_from_ijk;
+    const struct affine *map = &grid->lps_mm_from_ijk;
     struct vec3 step = map->columns[0];
-    struct vec3 base = affine_point(map, vec3(job->start[0], (double)job->start[1] + y, (double)job->start[2] + z));
+    struct vec3 base = affine_point(map, vec3(grid->start[0], (double)grid->start[1] + y, (double)grid->start[2] + z));
     struct vec3 base_x = vec3_add(base, vec3_scale(step, 0.5));
     struct vec3 base_y = vec3_add(base, vec3_scale(map->columns[1], 0.5));
     struct vec3 base_z = vec3_add(base, vec3_scale(map->columns[2], 0.5));
-    float *at_x = job->mesh->positions_lps_mm + 3 * (size_t)row->x;
-    float *at_y = job->mesh->positions_lps_mm + 3 * (size_t)row->y;
-    float *at_z = job->mesh->positions_lps_mm + 3 * (size_t)row->z;
-    for (uint32_t w = 0; w < job->words; w++) {
+    float *at_x = grid->mesh->positions_lps_mm + 3 * (size_t)row->x;
+    float *at_y = grid->mesh->positions_lps_mm + 3 * (size_t)row->y;
+    float *at_z = grid->mesh->positions_lps_mm + 3 * (size_t)row->z;
+    for (uint32_t w = 0; w < grid->words; w++) {
         if (is_uniform(rows, w))
             continue;
-        struct crossings found = find_crossings(job, rows, w);
+        struct crossings found = find_crossings(grid, rows, w);
         double x = CELLS_A_WORD * (double)w;
         for (uint64_t bits = found.x; bits; bits &= bits - 1)
             at_x = put(at_x, vec3_add(base_x, vec3_scale(step, x + __builtin_ctzll(bits))));
@@ -259,20 +195,15 @@ INLINED void write_vertices(const struct job *job, const struct row *row, const 
     }
 }
 
-/* The vertex that each edge of a row's first cell has, if it is crossed: edges 0..7 as in cube_cases.h. */
-#define FIRST_VERTICES(job, row)                                                                                                 \
-    { (row)->x, (row)[1].x, (row)[(job)->size[1]].x, (row)[(job)->size[1] + 1].x, (row)->y, (row)[(job)->size[1]].y, (row)->z,  \
-      (row)[1].z }
-
-static void write_triangles(const struct job *job, const struct row *row, const struct around *rows)
+static void write_triangles(const struct marching_rows *grid, const struct row *row, const struct around *rows)
 {
-    uint32_t vertex[CUBE_EDGES] = FIRST_VERTICES(job, row);
-    uint32_t *out = job->mesh->indices + 3 * (size_t)row->triangles;
-    for (uint32_t w = 0; w < job->words; w++) {
+    uint32_t vertex[CUBE_EDGES] = FIRST_VERTICES(grid, row);
+    uint32_t *out = grid->mesh->indices + 3 * (size_t)row->triangles;
+    for (uint32_t w = 0; w < grid->words; w++) {
         if (is_uniform(rows, w))
             continue;
-        for (uint64_t cells = find_crossings(job, rows, w).active; cells; cells &= cells - 1) {
-            const struct cube_case *cube = &job->cases[case_at(rows, w, __builtin_ctzll(cells))];
+        for (uint64_t cells = find_crossings(grid, rows, w).active; cells; cells &= cells - 1) {
+            const struct cube_case *cube = &grid->cases[case_at(rows, w, __builtin_ctzll(cells))];
             uint32_t following[8];
             for (int e = 0; e < 8; e++)
                 following[e] = vertex[e] + cube->is_crossed[e];
@@ -289,16 +220,16 @@ static void write_triangles(const struct job *job, const struct row *row, const 
 
 /* The same with the running numbers in one register; all five triangles that a cell could have are written, the next cell's over
  * what is too much. `end` is where this thread's triangles end: the last few must not reach beyond. */
-FAST static void write_triangles_avx2(const struct job *job, const struct row *row, const struct around *rows, const uint32_t *end)
+FAST static void write_triangles_avx2(const struct marching_rows *grid, const struct row *row, const struct around *rows, const uint32_t *end)
 {
-    const uint32_t first[8] = FIRST_VERTICES(job, row);
+    const uint32_t first[8] = FIRST_VERTICES(grid, row);
     __m256i vertex = _mm256_loadu_si256((const __m256i *)first);
-    uint32_t *out = job->mesh->indices + 3 * (size_t)row->triangles;
-    for (uint32_t w = 0; w < job->words; w++) {
+    uint32_t *out = grid->mesh->indices + 3 * (size_t)row->triangles;
+    for (uint32_t w = 0; w < grid->words; w++) {
         if (is_uniform(rows, w))
             continue;
-        for (uint64_t cells = find_crossings(job, rows, w).active; cells; cells &= cells - 1) {
-            const struct cube_case *cube = &job->cases[case_at(rows, w, __builtin_ctzll(cells))];
+        for (uint64_t cells = find_crossings(grid, rows, w).active; cells; cells &= cells - 1) {
+            const struct cube_case *cube = &grid->cases[case_at(rows, w, __builtin_ctzll(cells))];
             __m256i crossed = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)cube->is_crossed));
             __m256i following = _mm256_add_epi32(vertex, crossed);
             __m256i far_face = _mm256_permute4x64_epi64(following, 0xee); /* edges 8..11 */
@@ -322,41 +253,41 @@ FAST static void write_triangles_avx2(const struct job *job, const struct row *r
 }
 #endif
 
-INLINED void write_rows(const struct job *job, size_t from, size_t end, bool use_avx2)
+INLINED void write_rows(const struct marching_rows *grid, size_t from, size_t end, bool use_avx2)
 {
-    const uint32_t *end_of_triangles = job->mesh->indices + 3 * (size_t)job->rows[end].triangles;
+    const uint32_t *end_of_triangles = grid->mesh->indices + 3 * (size_t)grid->rows[end].triangles;
     for (size_t at = from; at < end; at++) {
-        const struct row *row = &job->rows[at];
+        const struct row *row = &grid->rows[at];
         if (row[1].x == row->x && row[1].triangles == row->triangles)
             continue; /* nothing of its own between its beginning and the next row's */
-        uint32_t y = (uint32_t)(at % job->size[1]), z = (uint32_t)(at / job->size[1]);
-        struct around rows = rows_around(job, y, z);
-        write_vertices(job, row, &rows, y, z);
+        uint32_t y = (uint32_t)(at % grid->size[1]), z = (uint32_t)(at / grid->size[1]);
+        struct around rows = rows_around(grid, y, z);
+        write_vertices(grid, row, &rows, y, z);
         if (!rows.has_cells || row[1].triangles == row->triangles)
             continue;
 #if defined(__x86_64__)
         if (use_avx2) {
-            write_triangles_avx2(job, row, &rows, end_of_triangles);
+            write_triangles_avx2(grid, row, &rows, end_of_triangles);
             continue;
         }
 #endif
-        write_triangles(job, row, &rows);
+        write_triangles(grid, row, &rows);
     }
     (void)use_avx2;
     (void)end_of_triangles;
 }
 
 #if defined(__x86_64__)
-FAST static void count_slices_fast(struct job *job, uint32_t from, uint32_t end) { count_slices(job, from, end); }
-FAST static void write_rows_fast(const struct job *job, size_t from, size_t end) { write_rows(job, from, end, true); }
+FAST static void count_slices_fast(struct marching_rows *grid, uint32_t from, uint32_t end) { count_slices(grid, from, end); }
+FAST static void write_rows_fast(const struct marching_rows *grid, size_t from, size_t end) { write_rows(grid, from, end, true); }
 static bool has_fast(void)
 {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("bmi") &&
            __builtin_cpu_supports("bmi2");
 }
 #else
-static void count_slices_fast(struct job *job, uint32_t from, uint32_t end) { count_slices(job, from, end); }
-static void write_rows_fast(const struct job *job, size_t from, size_t end) { write_rows(job, from, end, false); }
+static void count_slices_fast(struct marching_rows *grid, uint32_t from, uint32_t end) { count_slices(grid, from, end); }
+static void write_rows_fast(const struct marching_rows *grid, size_t from, size_t end) { write_rows(grid, from, end, false); }
 static bool has_fast(void) { return false; }
 #endif
 
@@ -366,11 +297,11 @@ static void count_part(void *context, int part, int n_parts)
 {
     struct job *job = context;
     uint32_t from, end;
-    range_of(job->size[2], part, n_parts, &from, &end);
+    range_of(job->grid.size[2], part, n_parts, &from, &end);
     if (job->code == MARCHING_CUBES_PORTABLE)
-        count_slices(job, from, end);
+        count_slices(&job->grid, from, end);
     else
-        count_slices_fast(job, from, end);
+        count_slices_fast(&job->grid, from, end);
 }
 
 /* First row at or behind this share of the triangles: parts with equal work, however the region lies in the grid. */
@@ -378,11 +309,11 @@ static size_t row_at_share(const struct job *job, size_t n_rows, int part, int n
 {
     if (part == n_parts)
         return n_rows;
-    uint64_t wanted = (uint64_t)job->rows[n_rows].triangles * (uint64_t)part / (uint64_t)n_parts;
+    uint64_t wanted = (uint64_t)job->grid.rows[n_rows].triangles * (uint64_t)part / (uint64_t)n_parts;
     size_t low = 0, high = part ? n_rows : 0;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
-        if (job->rows[middle].triangles < wanted)
+        if (job->grid.rows[middle].triangles < wanted)
             low = middle + 1;
         else
             high = middle;
@@ -393,21 +324,23 @@ static size_t row_at_share(const struct job *job, size_t n_rows, int part, int n
 static void write_part(void *context, int part, int n_parts)
 {
     const struct job *job = context;
-    size_t n_rows = (size_t)job->size[1] * job->size[2];
+    size_t n_rows = (size_t)job->grid.size[1] * job->grid.size[2];
     size_t from = row_at_share(job, n_rows, part, n_parts), end = row_at_share(job, n_rows, part + 1, n_parts);
     if (job->code == MARCHING_CUBES_PORTABLE)
-        write_rows(job, from, end, false);
+        write_rows(&job->grid, from, end, false);
     else
-        write_rows_fast(job, from, end);
+        write_rows_fast(&job->grid, from, end);
+    if (job->graph)
+        marching_graph_write(&job->grid, job->graph, from, end);
 }
 
 static bool number_rows(struct job *job, const struct surface_options *options, struct error *err)
 {
-    size_t n_rows = (size_t)job->size[1] * job->size[2];
+    size_t n_rows = (size_t)job->grid.size[1] * job->grid.size[2];
     uint64_t vertices = 0, triangles = 0;
     for (size_t at = 0; at <= n_rows; at++) {
-        struct row n = job->rows[at];
-        job->rows[at] = (struct row){ (uint32_t)vertices, (uint32_t)(vertices + n.x), (uint32_t)(vertices + n.x + n.y),
+        struct row n = job->grid.rows[at];
+        job->grid.rows[at] = (struct row){ (uint32_t)vertices, (uint32_t)(vertices + n.x), (uint32_t)(vertices + n.x + n.y),
                                       (uint32_t)triangles };
         vertices += (uint64_t)n.x + n.y + n.z;
         triangles += n.triangles;
@@ -415,8 +348,8 @@ static bool number_rows(struct job *job, const struct surface_options *options, 
     if (triangles > options->max_triangles || triangles > UINT32_MAX || vertices > UINT32_MAX)
         return error_set(err, ERROR_LIMIT, "a surface of %llu triangles: at most %zu are allowed", (unsigned long long)triangles,
                          options->max_triangles < UINT32_MAX ? options->max_triangles : (size_t)UINT32_MAX);
-    job->mesh = mesh_create((size_t)vertices, (size_t)triangles, err);
-    return job->mesh != NULL;
+    job->grid.mesh = mesh_create((size_t)vertices, (size_t)triangles, err);
+    return job->grid.mesh != NULL;
 }
 
 static struct cube_case cases[2][256]; /* [is_mirrored] */
@@ -428,8 +361,29 @@ static void make_cases(void)
     cube_cases_make(cases[1], true);
 }
 
-struct mesh *marching_cubes_with(enum marching_cubes_code code, const struct mask *mask, const struct surface_options *options,
-                                 struct error *err)
+static bool make_graph(const struct job *job, bool is_closed, struct marching_graph *graph, struct error *err)
+{
+    size_t n = job->grid.mesh->n_vertices;
+    graph->points = mem_large_array(n, sizeof *graph->points, UINT64_MAX, err);
+    graph->links = graph->points ? mem_large_array(n, sizeof *graph->links, UINT64_MAX, err) : NULL;
+    graph->lps_mm_from_at = job->mask->lps_mm_from_ijk;
+    graph->lps_mm_from_at.origin = affine_point(&job->mask->lps_mm_from_ijk,
+                                                vec3(job->grid.start[0], job->grid.start[1], job->grid.start[2]));
+    for (size_t v = 0; graph->links && !is_closed && v < n; v++)
+        for (int slot = 0; slot < 4; slot++)
+            graph->links[v][slot] = (uint32_t)v;
+    return graph->links != NULL;
+}
+
+void marching_graph_finish(struct marching_graph *graph)
+{
+    free(graph->points);
+    free(graph->links);
+    *graph = (struct marching_graph){ 0 };
+}
+
+struct mesh *marching_cubes_run(enum marching_cubes_code code, const struct mask *mask, const struct surface_options *options,
+                                struct marching_graph *graph, struct error *err)
 {
     assert(mask->words <= MAX_MASK_WORDS);
     pthread_once(&cases_once, make_cases);
@@ -437,9 +391,11 @@ struct mesh *marching_cubes_with(enum marching_cubes_code code, const struct mas
     n_parts = n_parts < MAX_THREADS ? n_parts : MAX_THREADS;
     struct job job = {
         .mask = mask,
-        .cases = cases[affine_determinant(&mask->lps_mm_from_ijk) < 0],
+        .grid = { .cases = cases[affine_determinant(&mask->lps_mm_from_ijk) < 0], .lps_mm_from_ijk = mask->lps_mm_from_ijk },
         .code = has_fast() ? code : MARCHING_CUBES_PORTABLE,
+        .graph = graph,
     };
+    struct marching_rows *grid = &job.grid;
     parallel_run(n_parts, measure_extent, &job);
     struct extent extent = join_extents(job.extents, n_parts);
     if (extent.is_empty) {
@@ -448,24 +404,36 @@ struct mesh *marching_cubes_with(enum marching_cubes_code code, const struct mas
         return NULL;
     }
     place_working_grid(&job, &extent, options->close_at_border);
-    size_t n_rows = (size_t)job.size[1] * job.size[2];
+    size_t n_rows = (size_t)grid->size[1] * grid->size[2];
     /* one array for both: fewer and larger pages */
-    job.bits = mem_large_array(n_rows + 1, job.words * sizeof *job.bits + sizeof *job.rows, UINT64_MAX, err);
-    if (job.bits) {
-        job.rows = (struct row *)(job.bits + n_rows * job.words);
-        job.rows[n_rows] = (struct row){ 0 };
+    grid->bits = mem_large_array(n_rows + 1, grid->words * sizeof *grid->bits + sizeof *grid->rows, UINT64_MAX, err);
+    if (grid->bits) {
+        grid->rows = (struct row *)(grid->bits + n_rows * grid->words);
+        grid->rows[n_rows] = (struct row){ 0 };
         parallel_run(n_parts, copy_rows, &job);
         parallel_run(n_parts, count_part, &job);
         if (number_rows(&job, options, err)) {
-            parallel_run(n_parts, write_part, &job);
-            mesh_measure_bounds(job.mesh);
+            if (graph && !make_graph(&job, options->close_at_border, graph, err)) {
+                mesh_unref(grid->mesh);
+                grid->mesh = NULL;
+                marching_graph_finish(graph);
+            } else {
+                parallel_run(n_parts, write_part, &job);
+                mesh_measure_bounds(grid->mesh);
+            }
         }
     }
-    free(job.bits);
-    return job.mesh;
+    free(grid->bits);
+    return grid->mesh;
+}
+
+struct mesh *marching_cubes_with(enum marching_cubes_code code, const struct mask *mask, const struct surface_options *options,
+                                 struct error *err)
+{
+    return marching_cubes_run(code, mask, options, NULL, err);
 }
 
 struct mesh *surface_marching_cubes(const struct mask *mask, const struct surface_options *options, struct error *err)
 {
-    return marching_cubes_with(MARCHING_CUBES_BEST, mask, options, err);
+    return marching_cubes_run(MARCHING_CUBES_BEST, mask, options, NULL, err);
 }

@@ -6,7 +6,8 @@ const struct surface_options surface_defaults = { .n_threads = 0, .max_triangles
 
 const char *surface_algorithm_word(enum surface_algorithm algorithm)
 {
-    return algorithm == SURFACE_EIGHT_CELL ? "eight-cell" : "marching-cubes";
+    static const char *const words[SURFACE_N_ALGORITHMS] = { "marching-cubes", "eight-cell", "smooth" };
+    return words[algorithm];
 }
 
 bool surface_algorithm_from_word(const char *word, enum surface_algorithm *algorithm)
@@ -22,5 +23,9 @@ bool surface_algorithm_from_word(const char *word, enum surface_algorithm *algor
 struct mesh *surface_make(enum surface_algorithm algorithm, const struct mask *mask, const struct surface_options *options,
                           struct error *err)
 {
-    return algorithm == SURFACE_EIGHT_CELL ? surface_eight_cell(mask, options, err) : surface_marching_cubes(mask, options, err);
+    switch (algorithm) {
+    case SURFACE_EIGHT_CELL: return surface_eight_cell(mask, options, err);
+    case SURFACE_SMOOTH: return surface_smooth(mask, options, err);
+    default: return surface_marching_cubes(mask, options, err);
+    }
 }

@@ -13,3 +13,6 @@ uint32_t next_random(uint64_t *state); /* splitmix64, so a block is the same eve
 struct mask *random_mask(uint32_t nx, uint32_t ny, uint32_t nz, uint32_t percent, uint64_t seed, const struct affine *map);
 struct mesh *made_surface(enum surface_algorithm algorithm, const struct mask *mask, int n_threads, bool close_at_border);
 void assert_same_bytes(const struct mesh *a, const struct mesh *b);
+/* Of the surface that cuts every crossed grid edge once and joins no two inside corners across a face, closed at the border: what it
+ * must be, found without any table of cases. */
+long euler_of_surface(const struct mask *mask);

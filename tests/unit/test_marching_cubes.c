@@ -8,52 +8,6 @@ static struct mesh *extract(const struct mask *mask, int n_threads, bool close_a
     return made_surface(SURFACE_MARCHING_CUBES, mask, n_threads, close_at_border);
 }
 
-/* ---- what the surface must be, found without the case table ------------------------------------------------------------- */
-
-/* Groups of inside corners of a cell that hang together along its edges. */
-static int groups_of_corners(const bool inside[8])
-{
-    int group[8], n = 0;
-    for (int c = 0; c < 8; c++)
-        group[c] = inside[c] ? c : -1;
-    for (int round = 0; round < 8; round++)
-        for (int c = 0; c < 8; c++)
-            for (int bit = 1; bit < 8; bit <<= 1)
-                if (inside[c] && inside[c ^ bit] && group[c ^ bit] < group[c])
-                    group[c] = group[c ^ bit];
-    for (int c = 0; c < 8; c++)
-        n += group[c] == c;
-    return n;
-}
-
-/* Euler number of the solid that the surface bounds, put together from its pieces in the cells: a cell holds as many pieces as
- * its inside corners form groups; where cells meet, the pieces on the faces were counted twice and are taken off again, and so
- * on down to grid edges (a piece each if an end is inside) and points. All pieces are contractible, so each counts 1.
- * A closed surface has twice the number of its solid. */
-static long euler_of_surface(const struct mask *mask)
-{
-    long euler = 0;
-    const uint32_t *n = mask->size;
-    for (int64_t k = -1; k < n[2]; k++)
-        for (int64_t j = -1; j < n[1]; j++)
-            for (int64_t i = -1; i < n[0]; i++) {
-                bool in[8];
-                for (int c = 0; c < 8; c++)
-                    in[c] = mask_has(mask, i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
-                euler -= in[0];
-                for (int axis = 1; axis < 8; axis <<= 1)
-                    euler += in[0] || in[axis];
-                for (int leave_out = 1; leave_out < 8; leave_out <<= 1) {
-                    bool face[8] = { false };
-                    for (int c = 0; c < 8; c++)
-                        face[c] = in[c] && !(c & leave_out);
-                    euler -= groups_of_corners(face);
-                }
-                euler += groups_of_corners(in);
-            }
-    return 2 * euler;
-}
-
 /* ---- tests -------------------------------------------------------------------------------------------------------------- */
 
 static void every_corner_case_is_closed_and_encloses_its_corners(void **state)

@@ -1,0 +1,96 @@
+/* The graph of a marching-cubes surface. Walking round the loops of a cell's case goes from crossed edge to crossed edge over the
+ * faces of the cell. The cell on the other side of a face goes the other way over it, so when each of the four cells around a
+ * crossed edge notes where its loop goes next, all four links of the vertex are there, each written once. */
+#include <pthread.h>
+#include <string.h>
+
+#include "core/surface/marching_cubes.h"
+#include "core/surface/marching_rows.h"
+
+/* Of a case: its crossed edges, and for each the next in its loop and which of the four cells around it this cell is. */
+struct steps {
+    uint8_t n;
+    struct {
+        uint8_t edge, next, slot;
+    } of[CUBE_EDGES];
+};
+static struct steps steps_of[256];
+static pthread_once_t once = PTHREAD_ONCE_INIT;
+
+static void make_steps(void)
+{
+    for (int inside = 0; inside < 256; inside++) {
+        struct steps *steps = &steps_of[inside];
+        int8_t next[CUBE_EDGES];
+        cube_case_links(inside, next);
+        for (uint8_t edge = 0; edge < CUBE_EDGES; edge++)
+            if (next[edge] >= 0) {
+                /* along x the edge's number says where in the cell it lies; along y and z its last bit and whether it is on the far face */
+                uint8_t slot = edge < 4 ? edge : (uint8_t)((edge & 1) | (edge >= 8) << 1);
+                steps->of[steps->n].edge = edge;
+                steps->of[steps->n].next = (uint8_t)next[edge];
+                steps->of[steps->n++].slot = slot;
+            }
+    }
+}
+
+static void write_links(const struct marching_rows *grid, const struct row *row, const struct around *rows, uint32_t (*links)[4])
+{
+    uint32_t vertex[CUBE_EDGES] = FIRST_VERTICES(grid, row);
+    for (uint32_t w = 0; w < grid->words; w++) {
+        if (is_uniform(rows, w))
+            continue;
+        for (uint64_t cells = find_crossings(grid, rows, w).active; cells; cells &= cells - 1) {
+            uint32_t inside = case_at(rows, w, __builtin_ctzll(cells));
+            const struct cube_case *cube = &grid->cases[inside];
+            const struct steps *steps = &steps_of[inside];
+            uint32_t following[8];
+            for (int e = 0; e < 8; e++)
+                following[e] = vertex[e] + cube->is_crossed[e];
+            memcpy(vertex + 8, following + 4, 4 * sizeof *vertex);
+            for (int i = 0; i < steps->n; i++)
+                links[vertex[steps->of[i].edge]][steps->of[i].slot] = vertex[steps->of[i].next];
+            memcpy(vertex, following, sizeof following);
+        }
+    }
+}
+
+static struct marching_point *put_points(struct marching_point *to, uint64_t crossed, uint64_t here, uint32_t first, uint32_t y,
+                                         uint32_t z, uint8_t axis)
+{
+    for (uint64_t bits = crossed; bits; bits &= bits - 1) {
+        int bit = __builtin_ctzll(bits);
+        *to = (struct marching_point){ { (int16_t)(2 * (first + (uint32_t)bit)), (int16_t)(2 * y), (int16_t)(2 * z) }, axis,
+                                       here >> bit & 1 ? 1 : -1 };
+        to++->at2[axis]++;
+    }
+    return to;
+}
+
+static void write_points(const struct marching_rows *grid, const struct row *row, const struct around *rows, uint32_t y, uint32_t z,
+                         struct marching_point *points)
+{
+    struct marching_point *x_at = points + row->x, *y_at = points + row->y, *z_at = points + row->z;
+    for (uint32_t w = 0; w < grid->words; w++) {
+        if (is_uniform(rows, w))
+            continue;
+        struct crossings found = find_crossings(grid, rows, w);
+        x_at = put_points(x_at, found.x, rows->here[w], CELLS_A_WORD * w, y, z, 0);
+        y_at = put_points(y_at, found.y, rows->here[w], CELLS_A_WORD * w, y, z, 1);
+        z_at = put_points(z_at, found.z, rows->here[w], CELLS_A_WORD * w, y, z, 2);
+    }
+}
+
+void marching_graph_write(const struct marching_rows *grid, struct marching_graph *graph, size_t from, size_t end)
+{
+    pthread_once(&once, make_steps);
+    for (size_t at = from; at < end; at++) {
+        const struct row *row = &grid->rows[at];
+        uint32_t y = (uint32_t)(at % grid->size[1]), z = (uint32_t)(at / grid->size[1]);
+        struct around rows = rows_around(grid, y, z);
+        if (row[1].x > row->x)
+            write_points(grid, row, &rows, y, z, graph->points);
+        if (rows.has_cells && row[1].triangles > row->triangles)
+            write_links(grid, row, &rows, graph->links);
+    }
+}

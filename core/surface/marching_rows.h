@@ -1,0 +1,82 @@
+#pragma once
+/* Inside of marching cubes: the working grid and what its rows own. See marching_cubes.c. */
+#include "core/region/mask.h"
+#include "core/surface/cube_cases.h"
+#include "core/surface/mesh.h"
+
+enum { CELLS_A_WORD = 63, MAX_MASK_WORDS = VOLUME_MAX_SIDE / 64 };
+#define LOW_63 (~(uint64_t)0 >> 1)
+
+/* Of one row. First how many, then (after the running totals) the number of its first. */
+struct row {
+    uint32_t x, y, z; /* vertices on edges along x, y, z, numbered in this order */
+    uint32_t triangles;
+};
+
+struct marching_rows {
+    const struct cube_case *cases;
+    struct affine lps_mm_from_ijk; /* of the mask */
+    int32_t start[3];   /* mask index of its voxel 0; -1 when an empty layer was put in front */
+    uint32_t size[3];   /* voxels */
+    uint32_t words;     /* in a row */
+    uint64_t *bits;     /* [z][y][words]; owns the rows' memory too */
+    struct row *rows;   /* [z][y], and one more at the end */
+    struct mesh *mesh;
+};
+
+/* Inlined into a version for any processor and one for processors with AVX2 and bit counting. */
+#define INLINED static inline __attribute__((always_inline))
+
+/* A row with its neighbours; at the end of an axis the row stands in for the missing neighbour, so nothing is crossed there. */
+struct around {
+    const uint64_t *here, *next_y, *next_z, *next_yz;
+    bool has_cells;
+};
+
+INLINED struct around rows_around(const struct marching_rows *grid, uint32_t y, uint32_t z)
+{
+    const uint64_t *here = grid->bits + ((size_t)z * grid->size[1] + y) * grid->words;
+    bool has_y = y + 1 < grid->size[1], has_z = z + 1 < grid->size[2];
+    size_t to_y = has_y ? grid->words : 0, to_z = has_z ? (size_t)grid->words * grid->size[1] : 0;
+    return (struct around){ here, here + to_y, here + to_z, here + to_y + to_z, has_y && has_z && grid->size[0] > 1 };
+}
+
+/* What one word of a row owns. */
+struct crossings {
+    uint64_t x, y, z; /* crossed edges, by the voxel they start at */
+    uint64_t active;  /* cells that hold triangles */
+};
+
+INLINED struct crossings find_crossings(const struct marching_rows *grid, const struct around *rows, uint32_t w)
+{
+    bool is_last = w + 1 == grid->words;
+    uint32_t n_cells = is_last ? grid->size[0] - 1 - CELLS_A_WORD * w : CELLS_A_WORD;
+    uint64_t cells = n_cells ? LOW_63 >> (CELLS_A_WORD - n_cells) : 0;
+    uint64_t voxels = is_last ? ~(uint64_t)0 : LOW_63; /* elsewhere the 64th belongs to the next word */
+    uint64_t here = rows->here[w], next_y = rows->next_y[w], next_z = rows->next_z[w], next_yz = rows->next_yz[w];
+    uint64_t any = here | next_y | next_z | next_yz, all = here & next_y & next_z & next_yz;
+    return (struct crossings){
+        .x = (here ^ here >> 1) & cells,
+        .y = (here ^ next_y) & voxels,
+        .z = (here ^ next_z) & voxels,
+        .active = rows->has_cells ? (any | any >> 1) & ~(all & all >> 1) & cells : 0,
+    };
+}
+
+/* Nothing crossed and no cell active: by far the most words. */
+INLINED bool is_uniform(const struct around *rows, uint32_t w)
+{
+    uint64_t here = rows->here[w], next_y = rows->next_y[w], next_z = rows->next_z[w], next_yz = rows->next_yz[w];
+    return !(here | next_y | next_z | next_yz) || !~(here & next_y & next_z & next_yz);
+}
+
+INLINED uint32_t case_at(const struct around *rows, uint32_t w, int bit)
+{
+    return (uint32_t)((rows->here[w] >> bit & 3) | (rows->next_y[w] >> bit & 3) << 2 | (rows->next_z[w] >> bit & 3) << 4 |
+                      (rows->next_yz[w] >> bit & 3) << 6);
+}
+
+/* The vertex that each edge of a row's first cell has, if it is crossed: edges 0..7 as in cube_cases.h. */
+#define FIRST_VERTICES(grid, row)                                                                                                 \
+    { (row)->x, (row)[1].x, (row)[(grid)->size[1]].x, (row)[(grid)->size[1] + 1].x, (row)->y, (row)[(grid)->size[1]].y, (row)->z,  \
+      (row)[1].z }

@@ -1,0 +1,303 @@
+/* Constrained smoothing of a marching-cubes surface. See surface_smooth in surface.h for what it promises.
+ *
+ *   1. marching cubes with the graph of its vertices: four links each (marching_cubes.h)
+ *   2. two low-pass filters on the graph take the stairs away: where each vertex would go if nothing held it. The strong one also
+ *      takes long, flat stairs, but would pull small things together
+ *   3. each vertex goes along its own grid edge to where that edge meets the filtered surface: the strongly filtered one, the more
+ *      gently filtered one the less the strong one stays on the edges thereabouts
+ *   4. each closed piece is moved along its normals until it encloses the volume of its univels (smooth_volume.c)
+ *   5. no vertex leaves the part of its edge that max_shift allows
+ *
+ * A filter is a polynomial in A, the mean over a vertex' four links, put together from Chebyshev polynomials T_n(A) (G. Taubin,
+ * T. Zhang, G. Golub, Optimal Surface Smoothing as Filter Design, ECCV 1996). A is symmetric with eigenvalues within [-1, 1], so
+ * nothing grows. What is kept are displacements e_n from the start p, T_n(A) p = p + e_n, as small numbers keep their digits:
+ * e_0 = 0, e_1 = A p - p, e_(n+1) = 2 (A e_n + e_1) - e_(n-1).
+ *
+ * Every pass reads what the pass before wrote and writes each vertex once, so threads cannot change a byte. The filters work in the
+ * coordinates of the grid: they only take means, which do not ask how long an axis is. */
+#include "core/surface/smooth.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/base/mem.h"
+#include "core/base/parallel.h"
+#include "core/surface/smooth_job.h"
+
+enum { MAX_THREADS = 64, VERTICES_A_THREAD = 8192, CAUTIOUS_ROUNDS = 1, EVEN_ROUNDS = 2 };
+
+/* Found on tilted ellipsoids with slices of 1 to 5.5 times the pixel, against the exact normals. */
+const struct smooth_options smooth_defaults = { 24, 0.035, 0.15, 0.5 - SURFACE_SMOOTH_MARGIN, 8 };
+
+/* The strong filter is trusted where it wants a shift up to the first, not at all from the second on. */
+static const float trusted_shift = 0.5f, distrusted_shift = 0.8f;
+
+static void swap(float4 **a, float4 **b)
+{
+    float4 *kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+/* ---- the filters --------------------------------------------------------------------------------------------------------- */
+
+static void first_step(void *context, int part, int n_parts)
+{
+    struct smooth_job *job = context;
+    const struct marching_point *points = job->graph->points;
+    size_t v, end;
+    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
+        const uint32_t *link = job->graph->links[v];
+        float4 away = { 0 };
+        for (int axis = 0; axis < 3; axis++) {
+            int sum = -4 * points[v].at2[axis];
+            for (int i = 0; i < 4; i++)
+                sum += points[link[i]].at2[axis];
+            away[axis] = (float)sum * 0.125f; /* a mean of four, at2 is twice the place */
+        }
+        job->first[v] = job->now[v] = away;
+        job->before[v] = (float4){ 0 };
+        job->strong[v] = job->strong_weight * away;
+        job->gentle[v] = job->gentle_weight * away;
+    }
+}
+
+static void next_step(void *context, int part, int n_parts)
+{
+    struct smooth_job *job = context;
+    const float4 *now = job->now;
+    float strong = job->strong_weight, gentle = job->gentle_weight;
+    size_t v, end;
+    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
+        const uint32_t *link = job->graph->links[v];
+        float4 mean = (now[link[0]] + now[link[1]] + now[link[2]] + now[link[3]]) * 0.25f;
+        float4 next = 2 * (mean + job->first[v]) - job->before[v];
+        job->before[v] = next;
+        job->strong[v] += strong * next;
+        job->gentle[v] += gentle * next;
+    }
+}
+
+/* Of the Chebyshev polynomials for a step from 1 to 0 at the frequency `band` of 1 - A, times a Hamming window. They add up to 1, so
+ * that what is flat stays where it is. */
+static void make_weights(double band, int n_steps, double weights[SMOOTH_MAX_STEPS + 1])
+{
+    double edge = acos(1 - band), total = 0;
+    for (int n = 0; n <= n_steps; n++) {
+        double window = 0.54 + 0.46 * cos(MATH_PI * n / (n_steps + 1));
+        weights[n] = window * (n ? 2 * sin(n * edge) / (n * MATH_PI) : edge / MATH_PI);
+        total += weights[n];
+    }
+    for (int n = 0; n <= n_steps; n++)
+        weights[n] /= total;
+}
+
+static void filter(struct smooth_job *job)
+{
+    const struct smooth_options *options = &job->options;
+    double strong[SMOOTH_MAX_STEPS + 1], gentle[SMOOTH_MAX_STEPS + 1];
+    make_weights(options->strong_band, options->n_steps, strong);
+    make_weights(options->gentle_band, options->n_steps, gentle);
+    for (int n = 1; n <= options->n_steps; n++) {
+        job->strong_weight = (float)strong[n];
+        job->gentle_weight = (float)gentle[n];
+        parallel_run(job->n_threads, n == 1 ? first_step : next_step, job);
+        if (n > 1)
+            swap(&job->now, &job->before);
+    }
+}
+
+/* ---- back to the edges --------------------------------------------------------------------------------------------------- */
+
+static float4 turn(float4 v) /* y, z, x */
+{
+    return __builtin_shufflevector(v, v, 1, 2, 0, 3);
+}
+
+static float dot(float4 a, float4 b)
+{
+    float4 product = a * b;
+    return product[0] + product[1] + product[2];
+}
+
+/* Across the two lines through a vertex, from where their ends are; of no length in particular, and inward or outward. */
+static float4 normal_of(const float4 ends[4])
+{
+    float4 u = ends[3] - ends[0], w = ends[2] - ends[1];
+    return turn(u * turn(w) - turn(u) * w);
+}
+
+/* Where the edge meets the plane through the displaced vertex. An edge nearly within that plane meets it anywhere: there the vertex'
+ * own way along the edge counts. */
+static float shift_along_edge(float4 normal, float4 displacement, int axis)
+{
+    float along = normal[axis], flat = 0.01f * dot(normal, normal);
+    if (!(flat > 0))
+        return displacement[axis];
+    return (along * dot(normal, displacement) + flat * displacement[axis]) / (along * along + flat);
+}
+
+/* How far the strong filter is to be trusted at each vertex, 0 to 1; into the fourth of `now`. */
+static void judge(void *context, int part, int n_parts)
+{
+    struct smooth_job *job = context;
+    size_t v, end;
+    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
+        const struct marching_point *points = job->graph->points;
+        const uint32_t *link = job->graph->links[v];
+        float4 ends[4];
+        for (int i = 0; i < 4; i++)
+            ends[i] = smooth_start(&points[link[i]]) + job->gentle[link[i]];
+        float shift = fabsf(shift_along_edge(normal_of(ends), job->strong[v], points[v].axis));
+        float trust = (distrusted_shift - shift) / (distrusted_shift - trusted_shift);
+        job->now[v] = (float4){ 0, 0, 0, trust < 0 ? 0 : trust > 1 ? 1 : trust };
+    }
+}
+
+/* Whoever has a neighbour that distrusts it does so too. */
+static void be_cautious(void *context, int part, int n_parts)
+{
+    struct smooth_job *job = context;
+    const float4 *now = job->now;
+    size_t v, end;
+    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
+        const uint32_t *link = job->graph->links[v];
+        float least = now[v][3];
+        for (int i = 0; i < 4; i++)
+            least = now[link[i]][3] < least ? now[link[i]][3] : least;
+        job->before[v] = (float4){ 0, 0, 0, least };
+    }
+}
+
+/* So that no step of trust becomes a step of the surface. */
+static void even_out(void *context, int part, int n_parts)
+{
+    struct smooth_job *job = context;
+    const float4 *now = job->now;
+    size_t v, end;
+    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
+        const uint32_t *link = job->graph->links[v];
+        job->before[v] = (2 * now[v] + now[link[0]] + now[link[1]] + now[link[2]] + now[link[3]]) * (1 / 6.0f);
+    }
+}
+
+static float4 displacement_of(const struct smooth_job *job, size_t v)
+{
+    float trust = job->now[v][3];
+    return trust * job->strong[v] + (1 - trust) * job->gentle[v];
+}
+
+static void settle(void *context, int part, int n_parts)
+{
+    struct smooth_job *job = context;
+    size_t v, end;
+    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
+        const struct marching_point *points = job->graph->points;
+        const uint32_t *link = job->graph->links[v];
+        int axis = points[v].axis;
+        float4 ends[4];
+        for (int i = 0; i < 4; i++)
+            ends[i] = smooth_start(&points[link[i]]) + displacement_of(job, link[i]);
+        float4 normal = normal_of(ends);
+        job->shift[v] = shift_along_edge(normal, displacement_of(job, v), axis);
+        normal /= job->edge_mm; /* of the grid's coordinates to of mm */
+        float square = dot(normal, normal);
+        job->lean[v] = square > 0 ? fabsf(normal[axis]) / sqrtf(square) : 1;
+    }
+}
+
+static void go_to_edges(struct smooth_job *job)
+{
+    parallel_run(job->n_threads, judge, job);
+    for (int round = 0; round < CAUTIOUS_ROUNDS + EVEN_ROUNDS; round++) {
+        parallel_run(job->n_threads, round < CAUTIOUS_ROUNDS ? be_cautious : even_out, job);
+        swap(&job->now, &job->before);
+    }
+    parallel_run(job->n_threads, settle, job);
+}
+
+/* ---- the whole ----------------------------------------------------------------------------------------------------------- */
+
+static void write_positions(void *context, int part, int n_parts)
+{
+    struct smooth_job *job = context;
+    const struct affine *map = &job->graph->lps_mm_from_at;
+    float most = (float)job->options.max_shift;
+    size_t v, end;
+    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
+        const struct marching_point *point = &job->graph->points[v];
+        double at[3] = { point->at2[0] * 0.5, point->at2[1] * 0.5, point->at2[2] * 0.5 };
+        at[point->axis] += (double)smooth_cut(job->shift[v], most);
+        struct vec3 p = affine_point(map, vec3(at[0], at[1], at[2]));
+        float *to = job->mesh->positions_lps_mm + 3 * v;
+        to[0] = (float)p.x;
+        to[1] = (float)p.y;
+        to[2] = (float)p.z;
+    }
+}
+
+static bool smooth(struct smooth_job *job, struct error *err)
+{
+    enum { N_VECTORS = 5, N_FLOATS = 2 };
+    float4 *vectors = mem_large_array(job->n, N_VECTORS * sizeof(float4) + N_FLOATS * sizeof(float), UINT64_MAX, err);
+    if (!vectors)
+        return false;
+    job->first = vectors;
+    job->now = vectors + job->n;
+    job->before = vectors + 2 * job->n;
+    job->strong = vectors + 3 * job->n;
+    job->gentle = vectors + 4 * job->n;
+    job->shift = (float *)(vectors + N_VECTORS * job->n);
+    job->lean = job->shift + job->n;
+    filter(job);
+    go_to_edges(job);
+    bool is_good = job->options.n_volume_steps == 0 || smooth_keep_volume(job, err);
+    parallel_run(job->n_threads, write_positions, job);
+    mesh_measure_bounds(job->mesh);
+    free(vectors);
+    return is_good;
+}
+
+static int threads_for(size_t n_vertices, int n_threads)
+{
+    size_t n = n_threads > 0 ? (size_t)n_threads : (size_t)parallel_cores();
+    size_t worth = n_vertices / VERTICES_A_THREAD + 1; /* fewer vertices are done before a thread has started */
+    n = n < worth ? n : worth;
+    return n < MAX_THREADS ? (int)n : MAX_THREADS;
+}
+
+struct mesh *smooth_with(const struct smooth_options *smoothing, const struct mask *mask, const struct surface_options *options,
+                         struct error *err)
+{
+    assert(smoothing->n_steps >= 1 && smoothing->n_steps <= SMOOTH_MAX_STEPS && smoothing->max_shift < 0.5);
+    struct marching_graph graph = { 0 };
+    struct mesh *mesh = marching_cubes_run(MARCHING_CUBES_BEST, mask, options, &graph, err);
+    if (!mesh)
+        return NULL;
+    const struct affine *map = &mask->lps_mm_from_ijk;
+    struct smooth_job job = {
+        .options = *smoothing,
+        .graph = &graph,
+        .mesh = mesh,
+        .n = mesh->n_vertices,
+        .n_threads = threads_for(mesh->n_vertices, options->n_threads),
+        .edge_mm = { (float)vec3_length(map->columns[0]), (float)vec3_length(map->columns[1]), (float)vec3_length(map->columns[2]), 1 },
+        .is_mirrored = affine_determinant(map) < 0,
+        .univel_mm3 = fabs(affine_determinant(map)),
+    };
+    if (!options->close_at_border)
+        job.options.n_volume_steps = 0; /* what is open encloses nothing */
+    bool is_smooth = smooth(&job, err);
+    marching_graph_finish(&graph);
+    if (!is_smooth) {
+        mesh_unref(mesh);
+        return NULL;
+    }
+    return mesh;
+}
+
+struct mesh *surface_smooth(const struct mask *mask, const struct surface_options *options, struct error *err)
+{
+    return smooth_with(&smooth_defaults, mask, options, err);
+}

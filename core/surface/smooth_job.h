@@ -1,0 +1,48 @@
+#pragma once
+/* Inside of surface_smooth: what its two files share. */
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "core/surface/marching_cubes.h"
+#include "core/surface/smooth.h"
+
+/* x, y, z in the coordinates of the grid and one more, on any processor with registers of that width. */
+typedef float float4 __attribute__((vector_size(16)));
+
+struct smooth_job {
+    struct smooth_options options;
+    const struct marching_graph *graph;
+    struct mesh *mesh;
+    size_t n; /* vertices */
+    int n_threads;
+    float4 edge_mm; /* of a univel; the fourth is 1 */
+    bool is_mirrored;
+    double univel_mm3;
+
+    float4 *first, *now, *before; /* e_1, e_n, e_(n-1), see smooth.c; free for others afterwards */
+    float4 *strong, *gentle;      /* what the two filters add up to */
+    float strong_weight, gentle_weight; /* of this step's polynomial */
+
+    float *shift; /* of each vertex along its own edge, from its middle; what goes beyond max_shift is cut off when it is used */
+    float *lean;  /* how squarely the edge meets the surface: cosine of edge and normal, in mm */
+};
+
+static inline void smooth_range(const struct smooth_job *job, int part, int n_parts, size_t *from, size_t *end)
+{
+    *from = job->n * (size_t)part / (size_t)n_parts;
+    *end = job->n * (size_t)(part + 1) / (size_t)n_parts;
+}
+
+static inline float4 smooth_start(const struct marching_point *point)
+{
+    return (float4){ point->at2[0], point->at2[1], point->at2[2], 0 } * 0.5f;
+}
+
+static inline float smooth_cut(float value, float most)
+{
+    return value > most ? most : value < -most ? -most : value;
+}
+
+/* Moves each closed piece of the surface along its normals until it encloses the volume of its univels (smooth_volume.c).
+ * errors ERROR_MEMORY */
+NODISCARD bool smooth_keep_volume(struct smooth_job *job, struct error *err);
