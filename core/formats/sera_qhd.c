@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "core/formats/gzip.h"
 #include "core/formats/sera_axes.h"
 #include "core/formats/text.h"
+#include "core/formats/zlib_stream.h"
 
 static const double uneven_share = 0.01;  /* of the spacing: less is rounding */
 static const double refused_share = 0.25; /* more than this cannot be shown on an even grid */
@@ -269,8 +269,8 @@ struct volume *qhd_read_pixels(const struct qhd *qhd, const struct bytes *pixels
     struct volume *volume = NULL;
     struct grid grid;
     uint64_t most = slice_bytes * VOLUME_MAX_SIDE < VOLUME_MAX_BYTES ? slice_bytes * VOLUME_MAX_SIDE : VOLUME_MAX_BYTES;
-    bool is_packed = gzip_is(pixels->data, pixels->size);
-    if (is_packed && !gzip_all(pixels->data, pixels->size, name, most, &all, err))
+    bool is_packed;
+    if (!sera_unpack(pixels, name, most, &is_packed, &all, err))
         return NULL;
     const struct bytes *from = is_packed ? &all : pixels;
     uint64_t n_slices = from->size / slice_bytes;

@@ -1,5 +1,5 @@
 #pragma once
-/* SERA's medical images (QSH): a text header .qhd and raw pixels .qim or .qim.gz. Works on bytes in memory. */
+/* SERA's medical images (QSH): a text header .qhd and raw pixels .qim, .qim.gz or .qim.sz. Works on bytes in memory. */
 #include "core/formats/folder.h"
 #include "core/plan/report.h"
 #include "core/volume/volume.h"
@@ -25,7 +25,7 @@ void qhd_finish(struct qhd *qhd);
 NODISCARD bool qhd_parse(const uint8_t *data, size_t size, const char *name, struct qhd *qhd, struct report *report,
                          struct error *err);
 
-/* The pixels, U8 or U16, on the header's grid. pixels may be gzip. The number of bytes is believed over the header's number
+/* The pixels, U8 or U16, on the header's grid. pixels may be gzip, or zlib when name ends with .sz. The number of bytes is believed over the header's number
  * of slices; is_doubtful then says that the header described another image, so that its geometry should be taken from elsewhere
  * if it can be.
  *   errors  ERROR_FORMAT not whole slices, ERROR_UNSUPPORTED slices far from evenly spaced, ERROR_RANGE, ERROR_LIMIT, ERROR_MEMORY */

@@ -9,6 +9,7 @@
 #include "core/formats/gzip.h"
 #include "core/formats/sera_axes.h"
 #include "core/formats/text.h"
+#include "core/formats/zlib_stream.h"
 
 void uvh_finish(struct uvh *uvh)
 {
@@ -330,19 +331,17 @@ struct volume *uvh_read_univels(const struct uvh *uvh, const struct bytes *data,
 {
     size_t n = grid_n_voxels(&uvh->grid);
     const uint32_t *size = uvh->grid.size;
-    bool is_packed = gzip_is(data->data, data->size);
+    bool is_packed = gzip_is(data->data, data->size) || text_has_ending(name, ".sz");
     if (is_packed ? gzip_most(data->size) < n : data->size < n) {
         error_set(err, ERROR_FORMAT, "%s: cut short: %zu bytes%s, but the header says %u x %u x %u univels", name, data->size,
-                  is_packed ? " of gzip" : "", size[0], size[1], size[2]);
+                  is_packed ? ", packed" : "", size[0], size[1], size[2]);
         return NULL;
     }
     struct volume *volume = volume_create(&uvh->grid, VOXEL_U8, err);
     if (!volume)
         return NULL;
     struct bytes all = { 0 };
-    bool is_read = true;
-    if (is_packed)
-        is_read = gzip_all(data->data, data->size, name, (uint64_t)n + 1, &all, err);
+    bool is_read = sera_unpack(data, name, (uint64_t)n + 1, &is_packed, &all, err);
     const struct bytes *from = is_packed ? &all : data;
     if (is_read && from->size != n)
         is_read = error_set(err, ERROR_FORMAT, "%s: %zu bytes of univels, but the header says %u x %u x %u = %zu", name, from->size,

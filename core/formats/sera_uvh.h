@@ -1,5 +1,5 @@
 #pragma once
-/* SERA univels: a text header .uvh (versions 2.0 and 1.0) and its bytes, .uv or .uv.gz. Works on bytes in memory. */
+/* SERA univels: a text header .uvh (versions 2.0 and 1.0) and its bytes, .uv, .uv.gz or .uv.sz. Works on bytes in memory. */
 #include "core/formats/folder.h"
 #include "core/plan/report.h"
 #include "core/region/region.h"
@@ -25,5 +25,5 @@ void uvh_finish(struct uvh *uvh);
 NODISCARD bool uvh_parse(const uint8_t *data, size_t size, const char *name, struct uvh *uvh, struct report *report,
                          struct error *err);
 
-/* The univels as a U8 volume. data may be gzip. errors ERROR_FORMAT not as many bytes as the header's univels; ERROR_MEMORY */
+/* The univels as a U8 volume. data may be gzip, or zlib when name ends with .sz. errors ERROR_FORMAT not as many bytes as the header's univels; ERROR_MEMORY */
 NODISCARD struct volume *uvh_read_univels(const struct uvh *uvh, const struct bytes *data, const char *name, struct error *err);

@@ -116,7 +116,7 @@ static struct dose *find_dose(struct loading *loading, size_t index, bool is_ser
 static void add_component(struct loading *loading, struct dose *dose, struct job *job)
 {
     const struct plan_file_dose *entry = &loading->file->doses[job->index];
-    if (job->format == PART_SERA_RST)
+    if (part_is_sera_dose(job->format))
         plan_add_sera(dose, entry, job->component, &job->doses, &loading->plan->report);
     else
         plan_add_component(dose, entry, job->component, take_volume(job), &loading->plan->report);
@@ -131,7 +131,7 @@ static void add_doses(struct loading *loading)
         if (job->kind != JOB_DOSE && job->kind != JOB_DOSE_MASK)
             continue;
         if (job->index != current)
-            dose = find_dose(loading, job->index, job->format == PART_SERA_RST);
+            dose = find_dose(loading, job->index, part_is_sera_dose(job->format));
         current = job->index;
         if (job->kind == JOB_DOSE) {
             add_component(loading, dose, job);

@@ -34,7 +34,7 @@ static bool dose_is_readable(struct loading *loading, const struct plan_file_dos
         enum part_format format = part_format_of(&loading->folder, path);
         if (format == PART_ABSENT)
             return refuse_format(path, format, err);
-        if (format == PART_NIFTI || format == PART_NRRD || format == PART_SERA_RST)
+        if (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format))
             continue;
         report_add(&loading->plan->report, REPORT_WARNING, "dose.unsupported", path,
                    "The dose \"%s\" is in a format (%s) that this version does not read; the plan is shown without it.", dose->id,

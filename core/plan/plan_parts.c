@@ -23,7 +23,7 @@ enum part_format part_format_of(const struct folder *folder, const char *name)
         const char *ending;
         enum part_format format;
     } endings[] = { { ".nii", PART_NIFTI },     { ".nii.gz", PART_NIFTI },    { ".uvh", PART_UVH },        { ".qim", PART_QSH },
-                    { ".qim.gz", PART_QSH },    { ".qhd", PART_QSH },         { ".pp", PART_PP },          { ".dcm", PART_DICOM },
+                    { ".qim.gz", PART_QSH },    { ".qim.sz", PART_QSH },      { ".qhd", PART_QSH },         { ".pp", PART_PP },          { ".dcm", PART_DICOM },
                     { ".nrrd", PART_NRRD },     { ".nhdr", PART_NRRD },       { ".rst", PART_SERA_RST },  { ".rst.gz", PART_SERA_RST },
                     { ".rstb", PART_SERA_RST }, { ".rstb.gz", PART_SERA_RST }, { ".chd", PART_SERA_DOSE } };
     enum folder_kind kind = folder_look(folder, name, NULL);
@@ -35,6 +35,11 @@ enum part_format part_format_of(const struct folder *folder, const char *name)
         if (text_has_ending(name, endings[i].ending))
             return endings[i].format;
     return is_dicom_file(folder, name) ? PART_DICOM : PART_UNKNOWN;
+}
+
+bool part_is_sera_dose(enum part_format format)
+{
+    return format == PART_SERA_RST || format == PART_SERA_DOSE;
 }
 
 const char *part_format_word(enum part_format format)
@@ -63,8 +68,8 @@ static size_t stem_length(const char *name)
 
 bool part_find_data(const struct folder *folder, const char *header, const char *ending, char data[FOLDER_NAME_SIZE])
 {
-    static const char *const packings[] = { ".gz", "" };
-    for (int i = 0; i < 2; i++) {
+    static const char *const packings[] = { ".gz", ".sz", "" };
+    for (int i = 0; i < 3; i++) {
         int n = snprintf(data, FOLDER_NAME_SIZE, "%.*s%s%s", (int)stem_length(header), header, ending, packings[i]);
         if (n > 0 && n < FOLDER_NAME_SIZE && folder_look(folder, data, NULL) == FOLDER_FILE)
             return true;

@@ -17,6 +17,7 @@ enum part_format {
 };
 /* By the name's ending; a folder and a file without a known ending are looked into for DICOM. */
 enum part_format part_format_of(const struct folder *folder, const char *name);
+bool part_is_sera_dose(enum part_format format); /* of several quantities */
 const char *part_format_word(enum part_format format); /* "NIfTI", "DICOM", ... */
 
 /* plan.json when it is there, else the files that can be told by their names. errors as plan_load */
@@ -26,7 +27,7 @@ NODISCARD struct plan_file *plan_describe(const struct folder *folder, struct re
  * errors as plan_load */
 NODISCARD struct plan_file *plan_recognise(const struct folder *folder, struct report *report, struct error *err);
 
-/* The file of univels beside a .uvh, or of pixels beside a .qhd: stem + ".uv.gz", stem + ".uv"; the packed one wins.
+/* The file of univels beside a .uvh, or of pixels beside a .qhd: stem + ".uv.gz", ".uv.sz", ".uv"; a packed one wins.
  * false when there is none. */
 bool part_find_data(const struct folder *folder, const char *header, const char *ending, char data[FOLDER_NAME_SIZE]);
 

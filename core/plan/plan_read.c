@@ -45,6 +45,8 @@ bool plan_read_part(const struct loading *loading, struct job *job)
                                  &job->is_grid_doubtful, &job->report, &job->err);
         return read_grid(&loading->folder, job, RAW_IMAGE);
     case JOB_DOSE:
+        if (job->format == PART_SERA_DOSE)
+            return plan_read_chd(&loading->folder, job->path, &job->doses, &job->report, &job->err);
         if (job->format == PART_SERA_RST)
             return plan_read_rst(&loading->folder, job->path, &job->doses, &job->report, &job->err);
         return read_grid(&loading->folder, job, RAW_IMAGE);

@@ -200,7 +200,12 @@ static void recognise_file(struct recognition *all, const char *name)
         else
             ignore_one(all, name, "Named like a dose of SERA, but its header is another one's.");
         break;
-    case PART_SERA_DOSE: ignore_one(all, name, "Dose contours of SERA; this version does not read them."); break;
+    case PART_SERA_DOSE:
+        if (part_find_data(all->folder, name, ".cdf", data))
+            add_dose(all, name);
+        else
+            ignore_one(all, name, "There is no table of points, .cdf.sz or .cdf, beside it.");
+        break;
     case PART_DICOM: all->n_dicom++; break;
     default:
         if (text_has_ending(name, ".info") && !file->hierarchy[0])

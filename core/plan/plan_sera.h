@@ -1,5 +1,6 @@
 #pragma once
 /* Inside core/plan: SERA's parts of a plan, each of several files or of several quantities. */
+#include "core/formats/sera_chd.h"
 #include "core/formats/sera_qhd.h"
 #include "core/formats/sera_rst.h"
 #include "core/formats/sera_uvh.h"
@@ -13,6 +14,9 @@ NODISCARD bool plan_read_univels(const struct folder *folder, const char *path, 
 NODISCARD bool plan_read_qsh(const struct folder *folder, const char *path, const char *header, struct volume **image, char modality[16],
                              bool *is_grid_doubtful, struct report *report, struct error *err);
 NODISCARD bool plan_read_rst(const struct folder *folder, const char *path, struct sera_doses *doses, struct report *report,
+                             struct error *err);
+/* path is the header; the table and the images of regions lie beside it. */
+NODISCARD bool plan_read_chd(const struct folder *folder, const char *path, struct sera_doses *doses, struct report *report,
                              struct error *err);
 
 /* What a dose's numbers are in, and per what: as the plan says. is_sera: the format says cGy and a unit of the source. */

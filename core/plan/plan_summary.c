@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/formats/nifti.h"
+#include "core/formats/sera_chd.h"
 #include "core/formats/sera_rst.h"
 #include "core/formats/sera_uvh.h"
 #include "core/formats/text.h"
@@ -176,9 +177,9 @@ static void count_doses(const struct folder *folder, const struct plan_file *fil
         for (size_t c = 0; c < file->doses[i].n_components; c++) {
             count_bytes(folder, file->doses[i].components[c].path, summary);
             enum part_format format = part_format_of(folder, file->doses[i].components[c].path);
-            is_read = is_read && (format == PART_NIFTI || format == PART_NRRD || format == PART_SERA_RST);
-            if (format == PART_SERA_RST && file->doses[i].components[c].quantity == DOSE_TOTAL)
-                n_more += RST_N_DOSES - file->doses[i].n_components;
+            is_read = is_read && (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format));
+            if (part_is_sera_dose(format) && file->doses[i].components[c].quantity == DOSE_TOTAL)
+                n_more += (format == PART_SERA_RST ? RST_N_DOSES : CHD_N_COLUMNS) - file->doses[i].n_components;
         }
         if (is_read)
             n_components += file->doses[i].n_components + n_more;

@@ -77,6 +77,20 @@
     X("dose.sets-differ", "The runs joined in a dose file had different sources.", "The first was used; edit the dose again.")    \
     X("dose.absurd-outside", "A dose is many times higher outside the regions than anywhere inside.",                               \
       "Scale by the largest value inside, or by the file's reference.")                                                           \
+    X("dose.unknown-column", "A column of SERA's contours has a name that is not known, or one that is there twice.",                \
+      "It was left out; check dose_comp in the .chd file.")                                                                        \
+    X("dose.unknown-version", "SERA's contours come from a version that was not tested.", "Compare some values with their source.")  \
+    X("dose.weights-missing", "SERA's contours do not say their weights or ppm.", "1 was taken; check the scale.")                  \
+    X("dose.weight-zero", "A column of SERA's contours was multiplied by 0.", "It was left out; write the contours with weights of 1.") \
+    X("dose.boron-ratio", "Boron in SERA's contours contains each tissue's ratio to blood, which no file stores.",                  \
+      "Write contours with ratios of 1, or use the .rst file.")                                                                    \
+    X("dose.total-boron", "The total of SERA's contours contains boron as they assume it, and may contain weights.",                \
+      "Use the components for anything but a look.")                                                                               \
+    X("dose.planes-uneven", "The planes of SERA's contours are not evenly spaced.", "They were resampled, linearly.")               \
+    X("dose.outside-mesh", "Points of SERA's contours lie outside the dose's mesh.", "They are drawn as nothing and probed as nothing.") \
+    X("dose.no-reference", "A dose file's own reference is 0 or missing.", "Percentages need another reference.")                  \
+    X("dose.mask-unread", "The pictures of regions beside SERA's contours are missing or do not fit.",                             \
+      "Where the dose is valid was taken from its points.")                                                                        \
     X("dose.negative", "A dose holds negative values.", "They are kept; check the source.")                                       \
     X("dose.mask-grid", "The mask of a dose lies on another grid than the dose.", "It is looked up by position.")                 \
     X("beam.from-tracks", "No beam is given; it was taken from the beam line of the tracks.", "Its aperture is unknown.")         \

@@ -269,7 +269,7 @@ static void sera_s_own_dose_has_the_figures_published_with_it(void **state)
         skip();
     struct plan *plan = plan_load(path, "p", NULL, &err);
     assert_string_equal(err.text, "");
-    assert_int_equal(plan->n_doses, 1);
+    assert_int_equal(plan->n_doses, 2);
     const struct dose *dose = &plan->doses[0];
     assert_int_equal(dose->n_components, RST_N_DOSES);
     assert_string_equal(dose->unit, "cGy");
