@@ -61,6 +61,32 @@
     X("region.surroundings", "The filling around the patient is not listed as a region.", "Nothing.")                             \
     X("region.absent", "A region is marked ABSENT by its file and not listed.", "Nothing.")                                       \
     X("region.renamed", "Two regions have the same name.", "They are told apart by their ids; rename one.")                       \
+    X("region.roi-number", "Regions and contours of a structure set do not belong together by their numbers.", \
+      "Check the file; see the line.") \
+    X("region.no-contours", "Regions of a structure set have nothing drawn.", \
+      "Nothing; they are not listed.") \
+    X("region.contours-filled", "How the contours of a region became voxels: the method, both volumes.", \
+      "Nothing.") \
+    X("region.contours-coarse", "The voxels of a region differ from its contours by more than 1 % (5 % below 1 cm3), and finer ones were too many.", \
+      "Its volume and histogram are approximate.") \
+    X("region.contours-refused", "The contours of a region are beyond a limit, so it is not shown.", \
+      "Draw it with fewer points.") \
+    X("region.contours-gap", "Contours are missing between others of a region.", \
+      "Nothing was filled there; check that it is two parts.") \
+    X("region.contours-outside", "Contours reach beyond the image.", \
+      "What lies outside is not shown; check that they belong together.") \
+    X("region.contours-not-planar", "Contours are not flat.", \
+      "They were flattened into their mean plane.") \
+    X("region.contours-left-out", "Contours that enclose nothing, are not numbers, are there twice or tilted were left out.", \
+      "Check the region where it was drawn.") \
+    X("region.contours-open", "Points and open contours enclose nothing.", \
+      "They were left out.") \
+    X("region.contours-count", "A structure set says another number of points than it has.", \
+      "The points there are were taken; check the region.") \
+    X("region.no-frame", "Nothing says that regions and image share a frame of reference.", \
+      "Check that they fit.") \
+    X("region.frame-differs", "Regions were drawn in another frame of reference than the image's.", \
+      "They may be shifted: check that they fit.") \
     X("mask.fractional", "A mask holds values between 0 and 1.", "Half and more counts as inside.")                               \
     X("hierarchy.derived", "No file says what lies inside what; it was derived from containment.",                                 \
       "Check the tree; give a hierarchy in plan.json.")                                                                            \

@@ -1,0 +1,555 @@
+/* RT Structure Sets: made ones for every trap, real ones against pydicom, reference masks and plastimatch. */
+#include "core/formats/dicom/dicom_rtstruct.h"
+
+#include <unistd.h>
+
+#include "core/formats/nifti.h"
+#include "tests/check.h"
+#include "tests/unit/data_folder.h"
+#include "tests/unit/made_contours.h"
+#include "tests/unit/made_mask.h"
+#include "tests/unit/oracle.h"
+#include "tests/unit/rt_files.h"
+
+#define RTSTRUCT "1.2.840.10008.5.1.4.1.1.481.3"
+#define TAG DICOM_TAG
+
+static void put_roi(struct made_dicom *made, int number, const char *name, const char *frame)
+{
+    made_item(made);
+    if (number >= 0)
+        made_integer(made, TAG(0x3006, 0x0022), number);
+    if (frame)
+        made_text(made, TAG(0x3006, 0x0024), "UI", frame);
+    if (name)
+        made_text(made, TAG(0x3006, 0x0026), "LO", name);
+    made_item_end(made);
+}
+
+static void begin_contours(struct made_dicom *made, const char *color)
+{
+    made_item(made);
+    if (color)
+        made_text(made, TAG(0x3006, 0x002a), "IS", color);
+    made_sequence(made, TAG(0x3006, 0x0040));
+}
+
+static void put_contour(struct made_dicom *made, const char *type, long n_said, const double *xyz, size_t n_numbers)
+{
+    made_item(made);
+    if (type)
+        made_text(made, TAG(0x3006, 0x0042), "CS", type);
+    if (n_said >= 0)
+        made_integer(made, TAG(0x3006, 0x0046), n_said);
+    made_numbers(made, TAG(0x3006, 0x0050), xyz, n_numbers);
+    made_item_end(made);
+}
+
+static void end_contours(struct made_dicom *made, int number)
+{
+    made_sequence_end(made);
+    if (number >= 0)
+        made_integer(made, TAG(0x3006, 0x0084), number);
+    made_item_end(made);
+}
+
+static const double triangle[] = { 0, 0, 5, 10, 0, 5, 0, 10, 5 };
+
+static size_t n_lines(const struct report *report, const char *code)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < report->n_lines; i++)
+        n += strcmp(report->lines[i].code, code) == 0;
+    return n;
+}
+
+static const char *sentence(const struct report *report, const char *code)
+{
+    for (size_t i = 0; i < report->n_lines; i++)
+        if (strcmp(report->lines[i].code, code) == 0)
+            return report->lines[i].sentence;
+    fail_msg("no line %s", code);
+    return "";
+}
+
+static struct rtstruct *read_made(struct made_dicom *made, struct report *report)
+{
+    struct rt_file file = rt_file_of(made);
+    struct error err = { 0 };
+    struct rtstruct *set = rtstruct_read(file.file, "made.dcm", report, &err);
+    if (!set)
+        fail_msg("%s", err.text);
+    rt_file_close(&file);
+    made_finish(made);
+    return set;
+}
+
+static void regions_are_joined_by_number_whatever_their_order(void **state)
+{
+    (void)state;
+    struct made_dicom made;
+    made_rt_begin(&made, RTSTRUCT, "RTSTRUCT", "ISO_IR 192");
+    made_text(&made, TAG(0x3006, 0x0002), "SH", "Set");
+    made_sequence(&made, TAG(0x3006, 0x0020));
+    put_roi(&made, 7, "first", "1.2.7");
+    put_roi(&made, 3, "second", "1.2.3");
+    put_roi(&made, 5, "Hypophyse größer", NULL);
+    made_sequence_end(&made);
+    made_sequence(&made, TAG(0x3006, 0x0039));
+    begin_contours(&made, "1\\2\\3");
+    put_contour(&made, "CLOSED_PLANAR", 3, triangle, 9);
+    put_contour(&made, "CLOSEDPLANAR_XOR", 3, triangle, 9);
+    end_contours(&made, 3);
+    begin_contours(&made, NULL);
+    put_contour(&made, NULL, -1, triangle, 9);
+    end_contours(&made, 5);
+    begin_contours(&made, "300\\0\\0");
+    put_contour(&made, "CLOSED_PLANAR", 3, triangle, 9);
+    end_contours(&made, 7);
+    begin_contours(&made, "9\\9\\9"); /* more of the second */
+    put_contour(&made, "CLOSED_PLANAR", 3, triangle, 9);
+    end_contours(&made, 3);
+    made_sequence_end(&made);
+    made_sequence(&made, TAG(0x3006, 0x0080));
+    made_item(&made);
+    made_integer(&made, TAG(0x3006, 0x0084), 3);
+    made_text(&made, TAG(0x3006, 0x00a4), "CS", "GTV");
+    made_item_end(&made);
+    made_sequence_end(&made);
+    struct report report = { 0 };
+    struct rtstruct *set = read_made(&made, &report);
+    assert_int_equal(report.n_lines, 0);
+    assert_string_equal(set->label, "Set");
+    assert_string_equal(set->uid, "1.2.3.4");
+    assert_int_equal(set->n_rois, 3);
+    assert_string_equal(set->rois[0].name, "first");
+    assert_string_equal(set->rois[0].frame_uid, "1.2.7");
+    assert_false(set->rois[0].has_color); /* 300 is no byte */
+    assert_int_equal(set->rois[0].contours.n_contours, 1);
+    assert_string_equal(set->rois[1].name, "second");
+    assert_string_equal(set->rois[1].kind, "GTV");
+    assert_int_equal(set->rois[1].contours.n_contours, 3);
+    assert_true(set->rois[1].has_color);
+    assert_memory_equal(set->rois[1].rgb, ((uint8_t[]){ 9, 9, 9 }), 3);
+    assert_string_equal(set->rois[2].name, "Hypophyse größer");
+    assert_string_equal(set->rois[2].kind, "");
+    assert_int_equal(set->rois[2].contours.contours[0].n_points, 3);
+    assert_memory_equal(set->rois[2].contours.contours[0].points_lps_mm, triangle, sizeof triangle);
+    rtstruct_destroy(set);
+    report_finish(&report);
+}
+
+static void names_come_in_the_file_s_character_set(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *charset, *bytes, *utf8;
+    } names[] = { { "ISO_IR 100", "Kiefergef\xe4\xdf", "Kiefergefäß" },
+                  { "ISO_IR 144", "\xbe\xdf\xe3\xe5\xde\xdb\xec", "Опухоль" },
+                  { "ISO_IR 192", "\xe8\x85\xab\xe7\x98\xa4", "腫瘤" },
+                  { "GB18030", "\xd6\xd7\xc1\xf6", "肿瘤" },
+                  { "\\ISO 2022 IR 87", "\x1b$B<pag\x1b(B", "腫瘍" } };
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        struct made_dicom made;
+        made_rt_begin(&made, RTSTRUCT, "RTSTRUCT", names[i].charset);
+        made_sequence(&made, TAG(0x3006, 0x0020));
+        put_roi(&made, 1, names[i].bytes, NULL);
+        made_sequence_end(&made);
+        made_sequence(&made, TAG(0x3006, 0x0039));
+        begin_contours(&made, NULL);
+        put_contour(&made, "CLOSED_PLANAR", 3, triangle, 9);
+        end_contours(&made, 1);
+        made_sequence_end(&made);
+        struct rtstruct *set = read_made(&made, NULL);
+        assert_string_equal(set->rois[0].name, names[i].utf8);
+        rtstruct_destroy(set);
+    }
+}
+
+static void what_cannot_be_filled_or_joined_is_said(void **state)
+{
+    (void)state;
+    struct made_dicom made;
+    made_rt_begin(&made, RTSTRUCT, "RTSTRUCT", NULL);
+    made_sequence(&made, TAG(0x3006, 0x0020));
+    put_roi(&made, 1, "points", NULL);
+    put_roi(&made, 2, "empty", NULL);
+    put_roi(&made, 2, "twice", NULL);
+    put_roi(&made, -1, "no number", NULL);
+    put_roi(&made, 4, NULL, NULL);
+    made_sequence_end(&made);
+    made_sequence(&made, TAG(0x3006, 0x0039));
+    begin_contours(&made, NULL);
+    put_contour(&made, "POINT", 1, triangle, 3);
+    put_contour(&made, "OPEN_PLANAR", 3, triangle, 9);
+    put_contour(&made, "OPEN_NONPLANAR", 3, triangle, 9);
+    put_contour(&made, "SPLINE", 3, triangle, 9);
+    end_contours(&made, 1);
+    begin_contours(&made, NULL);
+    put_contour(&made, "CLOSED_PLANAR", 99, triangle, 9); /* says 99 points, has 3 */
+    put_contour(&made, "CLOSED_PLANAR", 2, triangle, 8);  /* 2 points and two thirds of another */
+    put_contour(&made, "CLOSED_PLANAR", 0, triangle, 0);
+    end_contours(&made, 4);
+    begin_contours(&made, NULL);
+    put_contour(&made, "CLOSED_PLANAR", 3, triangle, 9);
+    end_contours(&made, 77);
+    begin_contours(&made, NULL);
+    put_contour(&made, "CLOSED_PLANAR", 3, triangle, 9);
+    end_contours(&made, -1);
+    made_sequence_end(&made);
+    struct report report = { 0 };
+    struct rtstruct *set = read_made(&made, &report);
+    assert_int_equal(set->n_rois, 2);
+    assert_string_equal(set->rois[0].name, "ROI 4");
+    assert_int_equal(set->rois[0].contours.n_contours, 2);
+    assert_int_equal(set->rois[0].contours.contours[0].n_points, 3);
+    assert_int_equal(set->rois[0].contours.contours[1].n_points, 2);
+    assert_string_equal(set->rois[1].name, "ROI 77");
+    assert_int_equal(n_lines(&report, "region.roi-number"), 4);
+    assert_int_equal(n_lines(&report, "region.unnamed"), 1);
+    assert_string_equal(sentence(&report, "region.contours-open"),
+                        "\"points\" has 1 points and 3 open contours; they enclose nothing and were left out.");
+    assert_string_equal(sentence(&report, "region.no-contours"),
+                        "2 of 4 regions have no closed contour and are not listed: points, empty.");
+    assert_int_equal(n_lines(&report, "region.contours-count"), 2);
+    rtstruct_destroy(set);
+    report_finish(&report);
+}
+
+static void another_object_is_refused(void **state)
+{
+    (void)state;
+    struct error err = { 0 };
+    struct made_dicom made;
+    made_rt_begin(&made, "1.2.840.10008.5.1.4.1.1.481.2", "RTDOSE", NULL);
+    struct rt_file file = rt_file_of(&made);
+    assert_null(rtstruct_read(file.file, "a/b.dcm", NULL, &err));
+    assert_int_equal(err.code, ERROR_UNSUPPORTED);
+    assert_string_equal(err.text, "a/b.dcm: a DICOM object of modality \"RTDOSE\", expected RTSTRUCT");
+    rt_file_close(&file);
+    made_finish(&made);
+    made_rt_begin(&made, RTSTRUCT, "RTSTRUCT", NULL);
+    file = rt_file_of(&made);
+    assert_null(rtstruct_read(file.file, "a/b.dcm", NULL, &err));
+    assert_string_equal(err.text, "a/b.dcm: no Structure Set ROI Sequence (3006,0020)");
+    rt_file_close(&file);
+    made_finish(&made);
+}
+
+static void more_regions_than_the_limit_are_refused(void **state)
+{
+    (void)state;
+    struct made_dicom made;
+    made_rt_begin(&made, RTSTRUCT, "RTSTRUCT", NULL);
+    made_sequence(&made, TAG(0x3006, 0x0020));
+    for (int i = 0; i < RTSTRUCT_MAX_ROIS + 1; i++)
+        put_roi(&made, i, "x", NULL);
+    made_sequence_end(&made);
+    struct rt_file file = rt_file_of(&made);
+    struct error err = { 0 };
+    assert_null(rtstruct_read(file.file, "x.dcm", NULL, &err));
+    assert_int_equal(err.code, ERROR_LIMIT);
+    assert_string_equal(err.text, "x.dcm: more than 1024 regions");
+    rt_file_close(&file);
+    made_finish(&made);
+}
+
+static void a_frame_of_reference_that_is_missing_or_another_is_said(void **state)
+{
+    (void)state;
+    struct rtstruct_roi rois[] = { { .name = "a", .frame_uid = "1.2" }, { .name = "b", .frame_uid = "1.3" }, { .name = "c" } };
+    struct rtstruct set = { .rois = rois, .n_rois = 3 };
+    struct report report = { 0 };
+    rtstruct_check_frame(&set, "1.2", "rs.dcm", &report);
+    assert_int_equal(report.n_lines, 2);
+    assert_string_equal(sentence(&report, "region.no-frame"), "The regions name no frame of reference, so nothing says that 1 regions fit "
+                                                               "the image: c. They are shown where their coordinates are.");
+    assert_string_equal(sentence(&report, "region.frame-differs"),
+                        "1 regions were drawn in another frame of reference than the image's and may be shifted against it: b.");
+    report_finish(&report);
+    rtstruct_check_frame(&set, "", "rs.dcm", &report);
+    assert_int_equal(report.n_lines, 1);
+    report_finish(&report);
+    set.n_rois = 1;
+    rtstruct_check_frame(&set, "1.2", "rs.dcm", &report);
+    assert_int_equal(report.n_lines, 0);
+    report_finish(&report);
+}
+
+/* ---- real files ------------------------------------------------------------------------------------------------------------------ */
+
+static struct rtstruct *read_real(const char *path, struct report *report)
+{
+    struct rt_file file = rt_file_open(path);
+    struct error err = { 0 };
+    struct rtstruct *set = rtstruct_read(file.file, "rs.dcm", report, &err);
+    if (!set)
+        fail_msg("%s", err.text);
+    rt_file_close(&file);
+    return set;
+}
+
+/* The next field of a line; the line's end is a tab too. */
+static char *field(char **rest)
+{
+    char *from = *rest, *tab = strchr(from, '\t');
+    assert_non_null(tab);
+    *tab = 0;
+    *rest = tab + 1;
+    return from;
+}
+
+static void compare_region(const struct rtstruct_roi *roi, char *rest)
+{
+    assert_int_equal(roi->number, strtol(field(&rest), NULL, 10));
+    assert_string_equal(roi->name, field(&rest));
+    assert_string_equal(roi->kind[0] ? roi->kind : "-", field(&rest));
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(roi->has_color ? roi->rgb[i] : -1, strtol(field(&rest), NULL, 10));
+    assert_int_equal(roi->contours.n_contours, strtoul(field(&rest), NULL, 10));
+    size_t n_points = 0;
+    double sum[3] = { 0 }, area_mm2 = 0;
+    for (size_t c = 0; c < roi->contours.n_contours; c++) {
+        const struct contour *contour = &roi->contours.contours[c];
+        struct vec3 area = vec3(0, 0, 0);
+        for (size_t i = 0; i < contour->n_points; i++) {
+            const double *a = contour->points_lps_mm + 3 * i, *b = contour->points_lps_mm + 3 * ((i + 1) % contour->n_points);
+            const double *o = contour->points_lps_mm;
+            for (int axis = 0; axis < 3; axis++)
+                sum[axis] += a[axis];
+            area = vec3_add(area, vec3_cross(vec3(a[0] - o[0], a[1] - o[1], a[2] - o[2]), vec3(b[0] - o[0], b[1] - o[1], b[2] - o[2])));
+        }
+        area_mm2 += vec3_length(area) / 2;
+        n_points += contour->n_points;
+    }
+    assert_int_equal(n_points, strtoul(field(&rest), NULL, 10));
+    for (int axis = 0; axis < 3; axis++) {
+        double expected = strtod(field(&rest), NULL);
+        assert_close(sum[axis], expected, 1e-6 * (double)n_points); /* sums of other orders */
+    }
+    double expected_mm2 = strtod(field(&rest), NULL);
+    assert_near(area_mm2, expected_mm2, 1e-9);
+    assert_string_equal(roi->frame_uid[0] ? roi->frame_uid : "-", field(&rest));
+}
+
+/* Every region of a file as pydicom reads it. Returns how many; skips without pydicom. */
+static size_t compare_with_pydicom(const char *path, const struct rtstruct *set)
+{
+    static char out[1 << 16];
+    int status = oracle_run((char *[]){ oracle_python(), "tests/oracle/dicom_rtstruct.py", (char *)(uintptr_t)path, NULL }, out, sizeof out);
+    if (status == ORACLE_MISSING)
+        return SIZE_MAX;
+    assert_int_equal(status, 0);
+    size_t n = 0;
+    for (char *line = out, *end; *line; line = end + 1, n++) {
+        end = strchr(line, '\n');
+        assert_non_null(end);
+        *end = '\t';
+        assert_true(n < set->n_rois);
+        compare_region(&set->rois[n], line);
+    }
+    assert_int_equal(n, set->n_rois);
+    return n;
+}
+
+static struct volume *read_mask(const char *path)
+{
+    struct folder folder;
+    struct bytes bytes;
+    struct error err = { 0 };
+    char where[512];
+    snprintf(where, sizeof where, "%s", path);
+    char *slash = strrchr(where, '/');
+    *slash = 0;
+    if (!folder_open(&folder, where, &err) || !folder_read(&folder, slash + 1, UINT32_MAX, UINT64_MAX, &bytes, &err))
+        fail_msg("%s", err.text);
+    folder_close(&folder);
+    struct volume *volume = nifti_read(&bytes, "mask.nii.gz", RAW_MASK, NULL, &err);
+    if (!volume)
+        fail_msg("%s", err.text);
+    bytes_free(&bytes);
+    return volume;
+}
+
+static size_t n_different(const struct mask *mask, const struct volume *reference, size_t *n_both, size_t *n_reference)
+{
+    size_t n = 0;
+    *n_both = *n_reference = 0;
+    for (uint32_t k = 0; k < mask->size[2]; k++)
+        for (uint32_t j = 0; j < mask->size[1]; j++)
+            for (uint32_t i = 0; i < mask->size[0]; i++) {
+                bool ours = mask_has(mask, i, j, k), theirs = volume_label(reference, i, j, k) != 0;
+                n += ours != theirs;
+                *n_both += ours && theirs;
+                *n_reference += theirs;
+            }
+    return n;
+}
+
+static void the_sarcoma_masks_come_out_voxel_for_voxel(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        size_t n_voxels;
+    } sets[] = { { "CT", 117145 }, { "MR_T1", 117145 }, { "PET", 5095 } };
+    for (int i = 0; i < 3; i++) {
+        char archive[64], reference_name[64], reference_path[512], folder[256], path[512];
+        snprintf(archive, sizeof archive, "dicomrt-sts001/%s.tar.xz", sets[i].name);
+        snprintf(reference_name, sizeof reference_name, "dicomrt-sts001/%s_reference_mask.nii.gz", sets[i].name);
+        if (!data_path(reference_name, reference_path, sizeof reference_path) || !rt_unpack(archive, folder))
+            skip();
+        snprintf(path, sizeof path, "%s/%s/mask/RS.dcm", folder, sets[i].name);
+        struct rtstruct *set = read_real(path, NULL);
+        size_t n_compared = compare_with_pydicom(path, set);
+        assert_true(n_compared == 1 || n_compared == SIZE_MAX);
+        struct volume *reference = read_mask(reference_path);
+        struct contour_facts facts;
+        struct mask *mask = contours_fill(&set->rois[0].contours, &reference->grid, &facts);
+        size_t n_both, n_reference;
+        assert_int_equal(n_different(mask, reference, &n_both, &n_reference), 0);
+        assert_int_equal(mask_count(mask), sets[i].n_voxels);
+        assert_near(facts.filled_cm3, facts.polygon_cm3, 0.01);
+        assert_int_equal(facts.n_planes, 31);
+        struct contour_choice choice; /* so the image's own grid is the one taken */
+        struct error err = { 0 };
+        assert_true(contour_choose_grids(&set->rois[0].contours, 1, &reference->grid, &contour_defaults, &choice, &err));
+        assert_int_equal(choice.group, 0);
+        mask_destroy(mask);
+        volume_unref(reference);
+        rtstruct_destroy(set);
+        folder_remove(folder);
+    }
+}
+
+static void the_lung_phantom_has_3_regions_and_29_empty_ones(void **state)
+{
+    (void)state;
+    char folder[256], path[512];
+    if (!rt_unpack("dicomrt-lung-phantom/lung-2.tar.xz", folder))
+        skip();
+    snprintf(path, sizeof path, "%s/lung-2/rtss.dcm", folder);
+    struct report report = { 0 };
+    struct rtstruct *set = read_real(path, &report);
+    assert_int_equal(set->n_rois, 3);
+    assert_string_equal(set->rois[0].name, "Body");
+    assert_string_equal(set->rois[1].name, "Tumor");
+    assert_string_equal(set->rois[2].name, "Lung");
+    assert_non_null(strstr(sentence(&report, "region.no-contours"), "29 of 32 regions have no closed contour"));
+    size_t n_compared = compare_with_pydicom(path, set);
+    assert_true(n_compared == 3 || n_compared == SIZE_MAX);
+    report_finish(&report);
+    rtstruct_destroy(set);
+    folder_remove(folder);
+}
+
+static void the_oncentra_phantom_has_7_regions(void **state)
+{
+    (void)state;
+    char folder[512], path[1024];
+    if (!data_path("dicomrt-oncentra-phantom", folder, sizeof folder) || !rt_find(folder, "RS", 0, path, sizeof path))
+        skip();
+    struct rtstruct *set = read_real(path, NULL);
+    assert_int_equal(set->n_rois, 7);
+    assert_string_equal(set->rois[0].name, "External");
+    assert_string_equal(set->rois[0].kind, "EXTERNAL");
+    assert_string_equal(set->rois[6].name, "Star");
+    assert_string_equal(set->series_uid, "1.3.6.1.4.1.2452.6.1713778621.1221921499.3028853175.878828869");
+    size_t n_compared = compare_with_pydicom(path, set);
+    assert_true(n_compared == 7 || n_compared == SIZE_MAX);
+    rtstruct_destroy(set);
+}
+
+/* plastimatch fills a structure set on its images, one NIfTI mask a region. */
+static bool run_plastimatch(const char *folder, const char *structures, const char *out_folder)
+{
+    static char out[1 << 18];
+    int status = oracle_run((char *[]){ "plastimatch", "convert", "--input", (char *)(uintptr_t)structures, "--referenced-ct",
+                                        (char *)(uintptr_t)folder, "--output-prefix", (char *)(uintptr_t)out_folder, "--prefix-format",
+                                        "nii.gz", "--xor-contours", NULL },
+                            out, sizeof out);
+    return status == 0;
+}
+
+static void compare_with_plastimatch(const struct rtstruct *set, const char *out_folder, size_t n_regions, double least_dice)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < set->n_rois; i++) {
+        char path[1024];
+        snprintf(path, sizeof path, "%s/%s.nii.gz", out_folder, set->rois[i].name);
+        if (access(path, R_OK) != 0)
+            continue;
+        struct volume *reference = read_mask(path);
+        struct mask *mask = contours_fill(&set->rois[i].contours, &reference->grid, NULL);
+        size_t n_both, n_reference, n_ours = mask_count(mask);
+        n_different(mask, reference, &n_both, &n_reference);
+        double dice = 2 * (double)n_both / (double)(n_ours + n_reference);
+        if (!(dice >= least_dice))
+            fail_msg("%s: Dice %.5f, %zu and %zu voxels", set->rois[i].name, dice, n_ours, n_reference);
+        mask_destroy(mask);
+        volume_unref(reference);
+        n++;
+    }
+    assert_int_equal(n, n_regions);
+}
+
+static void plastimatch_fills_the_lung_phantom_voxel_for_voxel(void **state)
+{
+    (void)state;
+    char folder[256], out_folder[256], images[512], structures[512];
+    if (!rt_unpack("dicomrt-lung-phantom/lung-2.tar.xz", folder))
+        skip();
+    folder_make(out_folder);
+    snprintf(images, sizeof images, "%s/lung-2", folder);
+    snprintf(structures, sizeof structures, "%s/lung-2/rtss.dcm", folder);
+    bool is_run = run_plastimatch(images, structures, out_folder);
+    if (is_run) {
+        struct rtstruct *set = read_real(structures, NULL);
+        compare_with_plastimatch(set, out_folder, 3, 1);
+        rtstruct_destroy(set);
+    }
+    folder_remove(folder);
+    folder_remove(out_folder);
+    if (!is_run)
+        skip();
+}
+
+/* Its images alone: plastimatch refuses the portal images beside them. */
+static void plastimatch_fills_the_oncentra_phantom_alike(void **state)
+{
+    (void)state;
+    char folder[512], images[256], out_folder[512], structures[1024], path[1024], out[256];
+    if (!data_path("dicomrt-oncentra-phantom", folder, sizeof folder) || !rt_find(folder, "RS", 0, structures, sizeof structures))
+        skip();
+    folder_make(images);
+    for (size_t i = 0; rt_find(folder, "CT", i, path, sizeof path); i++)
+        assert_int_equal(oracle_run((char *[]){ "cp", path, images, NULL }, out, sizeof out), 0);
+    snprintf(out_folder, sizeof out_folder, "%s/masks", images);
+    bool is_run = run_plastimatch(images, structures, out_folder);
+    if (is_run) {
+        struct rtstruct *set = read_real(structures, NULL);
+        compare_with_plastimatch(set, out_folder, 7, 0.99); /* edges of whole mm on voxels of 0.586 mm: a row more or less */
+        rtstruct_destroy(set);
+    }
+    folder_remove(images);
+    if (!is_run)
+        skip();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(regions_are_joined_by_number_whatever_their_order),
+        cmocka_unit_test(names_come_in_the_file_s_character_set),
+        cmocka_unit_test(what_cannot_be_filled_or_joined_is_said),
+        cmocka_unit_test(another_object_is_refused),
+        cmocka_unit_test(more_regions_than_the_limit_are_refused),
+        cmocka_unit_test(a_frame_of_reference_that_is_missing_or_another_is_said),
+        cmocka_unit_test(the_sarcoma_masks_come_out_voxel_for_voxel),
+        cmocka_unit_test(the_lung_phantom_has_3_regions_and_29_empty_ones),
+        cmocka_unit_test(the_oncentra_phantom_has_7_regions),
+        cmocka_unit_test(plastimatch_fills_the_lung_phantom_voxel_for_voxel),
+        cmocka_unit_test(plastimatch_fills_the_oncentra_phantom_alike),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
