@@ -76,6 +76,8 @@ GEN_SRC := $(GEN)/wire_gen.c $(GEN)/problem_gen.c $(GEN)/openapi.c
 # flags of the processor, which nobody reads.
 EXTRA_core_render_soft_kernels := -O3 -fno-trapping-math
 EXTRA_core_render_soft_kernels_avx2 := -O3 -fno-trapping-math
+# So are those over the cells of a picture.
+EXTRA_core_formats_dicom_dicom_unpack := -O3
 
 obj = $(patsubst %.c,$(B)/obj/%.o,$(patsubst %.cc,$(B)/obj/%.o,$(1)))
 $(B)/obj/%.o: %.cc | $(GEN_STAMP)

@@ -45,3 +45,6 @@ NODISCARD bool dicom_frames_find(const struct dicom_file *file, const char *path
                                  struct error *err);
 /* Sorts by along_mm and drops what lies where another slice does; returns how many are left. */
 size_t dicom_slices_sort(struct dicom_slice *slices, size_t n, size_t *n_repeated);
+
+/* Smallest and largest of n cells of 8 bits unsigned or 16 bits, into range[2], which it widens. */
+void dicom_cells_measure(enum voxel_type type, const void *cells, size_t n, int32_t range[2]);

@@ -1,6 +1,6 @@
 /* Stored values out of the cells a file keeps them in. PS3.5 8.1.1. */
 #include "core/formats/dicom/dicom_file.h"
-#include "core/volume/volume.h"
+#include "core/formats/dicom/dicom_slices.h"
 
 _Static_assert((int)DICOM_MAX_SIDE == (int)VOLUME_MAX_SIDE, "a picture that is read fits into a volume");
 
@@ -41,4 +41,28 @@ void dicom_pixels_unpack(const struct dicom_pixels *pixels, bool is_swapped, voi
         KEEP_BITS(int16_t, uint16_t);
     else
         KEEP_BITS(int32_t, uint32_t);
+}
+
+#define WIDEN(type)                                  \
+    do {                                             \
+        const type *v = cells;                       \
+        type least = v[0], most = v[0];              \
+        for (size_t i = 0; i < n; i++) {             \
+            least = v[i] < least ? v[i] : least;     \
+            most = v[i] > most ? v[i] : most;        \
+        }                                            \
+        range[0] = least < range[0] ? least : range[0]; \
+        range[1] = most > range[1] ? most : range[1];   \
+    } while (0)
+
+void dicom_cells_measure(enum voxel_type type, const void *cells, size_t n, int32_t range[2])
+{
+    if (n == 0)
+        return;
+    if (type == VOXEL_U8)
+        WIDEN(uint8_t);
+    else if (type == VOXEL_I16)
+        WIDEN(int16_t);
+    else if (type == VOXEL_U16)
+        WIDEN(uint16_t);
 }

@@ -1,0 +1,440 @@
+#include "core/formats/dicom/dicom_series.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/base/parallel.h"
+#include "core/formats/dicom/dicom_slices.h"
+#include "core/formats/dicom/dicom_tags.h"
+
+/* One stack being read. */
+struct series {
+    const struct folder *folder;
+    const struct dicom_index *index;
+    const struct dicom_stack *stack;
+    const struct dicom_progress *progress;
+    struct dicom_slice *slices;
+    size_t n_slices;
+    struct dicom_plane plane;
+    enum voxel_type type;
+    bool is_uniform;      /* all slices have one type and scale: cells are kept as stored */
+    size_t plane_cells;
+    uint8_t *cells;       /* of all slices, [n_slices][plane_cells] of type */
+    struct bytes whole;   /* of the one file that holds all frames, when it must be decoded */
+    int32_t range[2];     /* of integer cells */
+    size_t n_done;
+    atomic_size_t next;
+    atomic_bool is_failed;
+    pthread_mutex_t lock; /* of n_done, range and the error */
+    struct error error;
+};
+
+static const struct dicom_object *object_of(const struct series *series, const struct dicom_slice *slice)
+{
+    return &series->index->objects[slice->object];
+}
+
+/* What a thread keeps from one slice to the next. */
+struct reader {
+    struct dicom_file *file; /* decoded from */
+    size_t object;           /* that file is of; SIZE_MAX: none */
+    struct bytes bytes;      /* it was parsed from, unless the series holds them */
+    uint8_t *scratch;        /* one plane as stored */
+    int32_t range[2];
+};
+
+static bool open_file(struct series *series, struct reader *reader, size_t object, struct error *err)
+{
+    if (reader->object == object)
+        return true;
+    dicom_file_destroy(reader->file);
+    bytes_free(&reader->bytes);
+    reader->file = NULL;
+    reader->object = SIZE_MAX;
+    const struct dicom_object *about = &series->index->objects[object];
+    struct bytes bytes = series->whole;
+    if (!bytes.data) {
+        if (!folder_read(series->folder, about->path, (uint64_t)DICOM_MAX_FILE_MIB << 20, UINT64_MAX, &reader->bytes, err))
+            return false;
+        bytes = reader->bytes;
+    }
+    reader->file = dicom_file_parse(bytes.data, bytes.size, about->path, DICOM_WHOLE, err);
+    if (!reader->file)
+        return false;
+    reader->object = object;
+    return true;
+}
+
+static bool same_pixels(const struct dicom_pixels *a, const struct dicom_pixels *b)
+{
+    return a->rows == b->rows && a->columns == b->columns && a->n_frames == b->n_frames && a->bits_allocated == b->bits_allocated &&
+           a->bits_stored == b->bits_stored && a->high_bit == b->high_bit && a->is_signed == b->is_signed;
+}
+
+/* The stored values of a slice: straight from their place in the file, or decoded. */
+static bool read_stored(struct series *series, struct reader *reader, const struct dicom_slice *slice, void *out, struct error *err)
+{
+    const struct dicom_object *object = object_of(series, slice);
+    const struct dicom_image *image = object->image;
+    size_t bytes = series->plane_cells * (image->pixels.bits_allocated / 8);
+    if (!image->has_stored) {
+        struct dicom_pixels now;
+        if (!open_file(series, reader, slice->object, err) || !dicom_pixels_look(reader->file, &now, err))
+            return false;
+        if (!same_pixels(&now, &image->pixels))
+            return error_set(err, ERROR_IO, "%s: the file changed while it was read", object->path);
+        return dicom_pixels_read(reader->file, slice->frame, out, err);
+    }
+    struct folder_part part;
+    if (!folder_open_part(series->folder, object->path, &part, err))
+        return false;
+    bool is_read = part.n_bytes == object->n_bytes
+                       ? folder_read_part(&part, object->path, image->stored.at + (uint64_t)slice->frame * bytes, out, bytes, err)
+                       : error_set(err, ERROR_IO, "%s: the file changed while it was read: %llu bytes, %llu before", object->path,
+                                   (unsigned long long)part.n_bytes, (unsigned long long)object->n_bytes);
+    folder_close_part(&part);
+    if (is_read)
+        dicom_pixels_unpack(&image->pixels, image->stored.is_swapped, out, series->plane_cells);
+    return is_read;
+}
+
+static double stored_value(const struct dicom_pixels *pixels, const uint8_t *cells, size_t i)
+{
+    switch (pixels->bits_allocated) {
+    case 8: return pixels->is_signed ? ((const int8_t *)cells)[i] : cells[i];
+    case 16: return pixels->is_signed ? ((const int16_t *)(const void *)cells)[i] : ((const uint16_t *)(const void *)cells)[i];
+    default: return pixels->is_signed ? (double)((const int32_t *)(const void *)cells)[i] : (double)((const uint32_t *)(const void *)cells)[i];
+    }
+}
+
+static void convert(const struct series *series, const struct dicom_slice *slice, const uint8_t *stored, void *out)
+{
+    const struct dicom_pixels *pixels = &object_of(series, slice)->image->pixels;
+    double slope = series->is_uniform ? 1 : slice->slope, offset = series->is_uniform ? 0 : slice->offset;
+    if (series->type == VOXEL_I16) { /* signed bytes */
+        int16_t *to = out;
+        for (size_t i = 0; i < series->plane_cells; i++)
+            to[i] = ((const int8_t *)stored)[i];
+        return;
+    }
+    float *to = out;
+    for (size_t i = 0; i < series->plane_cells; i++)
+        to[i] = (float)(stored_value(pixels, stored, i) * slope + offset);
+}
+
+static bool is_kept_as_stored(const struct series *series, const struct dicom_pixels *pixels)
+{
+    return series->is_uniform && pixels->bits_allocated / 8 == voxel_size(series->type) && series->type != VOXEL_F32;
+}
+
+static bool read_slice(struct series *series, struct reader *reader, size_t at, struct error *err)
+{
+    const struct dicom_slice *slice = &series->slices[at];
+    const struct dicom_pixels *pixels = &object_of(series, slice)->image->pixels;
+    uint8_t *out = series->cells + at * series->plane_cells * voxel_size(series->type);
+    bool is_direct = is_kept_as_stored(series, pixels);
+    if (!is_direct && !reader->scratch) {
+        reader->scratch = mem_array(series->plane_cells, 4, UINT32_MAX, err);
+        if (!reader->scratch)
+            return false;
+    }
+    if (!read_stored(series, reader, slice, is_direct ? out : reader->scratch, err))
+        return false;
+    if (!is_direct)
+        convert(series, slice, reader->scratch, out);
+    dicom_cells_measure(series->type, out, series->plane_cells, reader->range);
+    return true;
+}
+
+static void fail(struct series *series, const struct error *err)
+{
+    pthread_mutex_lock(&series->lock);
+    if (!atomic_exchange(&series->is_failed, true))
+        series->error = *err;
+    pthread_mutex_unlock(&series->lock);
+}
+
+static void read_part(void *context, int part, int n_parts)
+{
+    struct series *series = context;
+    struct reader reader = { .object = SIZE_MAX, .range = { INT32_MAX, INT32_MIN } };
+    (void)part;
+    (void)n_parts;
+    for (size_t i; (i = atomic_fetch_add(&series->next, 1)) < series->n_slices && !atomic_load(&series->is_failed);) {
+        struct error err = { 0 };
+        bool is_cancelled = series->progress->cancel && atomic_load(series->progress->cancel);
+        if (is_cancelled)
+            error_set(&err, ERROR_CANCELLED, "reading the series was cancelled");
+        if (is_cancelled || !read_slice(series, &reader, i, &err)) {
+            fail(series, &err);
+            break;
+        }
+        pthread_mutex_lock(&series->lock);
+        series->n_done++;
+        if (series->progress->step)
+            series->progress->step(series->progress->context, series->n_done, series->n_slices);
+        pthread_mutex_unlock(&series->lock);
+    }
+    pthread_mutex_lock(&series->lock);
+    series->range[0] = reader.range[0] < series->range[0] ? reader.range[0] : series->range[0];
+    series->range[1] = reader.range[1] > series->range[1] ? reader.range[1] : series->range[1];
+    pthread_mutex_unlock(&series->lock);
+    dicom_file_destroy(reader.file);
+    bytes_free(&reader.bytes);
+    free(reader.scratch);
+}
+
+/* Slices of a stack of files: all of it is in the index. */
+static void slices_of_files(struct series *series)
+{
+    for (size_t i = 0; i < series->stack->n_objects; i++) {
+        const struct dicom_image *image = series->index->objects[series->stack->objects[i]].image;
+        series->slices[i] = (struct dicom_slice){ .object = series->stack->objects[i],
+                                                  .position_lps_mm = { image->position_mm[0], image->position_mm[1], image->position_mm[2] },
+                                                  .slope = image->slope,
+                                                  .offset = image->offset };
+    }
+    series->n_slices = series->stack->n_objects;
+    const struct dicom_image *first = series->index->objects[series->stack->objects[0]].image;
+    memcpy(series->plane.row, first->row, sizeof first->row);
+    memcpy(series->plane.column, first->column, sizeof first->column);
+    memcpy(series->plane.spacing_mm, first->spacing_mm, sizeof first->spacing_mm);
+    series->plane.thickness_mm = first->thickness_mm;
+    struct vec3 row = vec3(first->row[0], first->row[1], first->row[2]), column = vec3(first->column[0], first->column[1], first->column[2]);
+    struct vec3 normal = vec3_normalize(vec3_cross(row, column));
+    for (size_t i = 0; i < series->n_slices; i++)
+        series->slices[i].along_mm = vec3_dot(normal, series->slices[i].position_lps_mm);
+}
+
+/* Opens the head of one object; NULL on failure. bytes: what it stands in, freed by the caller after the file. */
+static struct dicom_file *open_head(const struct series *series, size_t object, struct bytes *bytes, struct error *err)
+{
+    const struct dicom_object *about = &series->index->objects[object];
+    uint64_t most = about->image->has_stored ? about->image->stored.at : UINT64_MAX;
+    if (!folder_read(series->folder, about->path, (uint64_t)DICOM_MAX_FILE_MIB << 20, most, bytes, err))
+        return NULL;
+    return dicom_file_parse(bytes->data, bytes->size, about->path, DICOM_HEAD, err);
+}
+
+static void facts_from(const struct dicom_item *item, struct dicom_series_facts *facts)
+{
+    double centers[DICOM_MAX_WINDOWS], widths[DICOM_MAX_WINDOWS];
+    size_t n = dicom_numbers(item, TAG_WINDOW_CENTER, centers, DICOM_MAX_WINDOWS);
+    size_t n_widths = dicom_numbers(item, TAG_WINDOW_WIDTH, widths, DICOM_MAX_WINDOWS);
+    n = n < n_widths ? n : n_widths;
+    for (size_t i = 0; i < n && i < DICOM_MAX_WINDOWS; i++) {
+        if (!isfinite(centers[i]) || !(widths[i] > 0))
+            continue;
+        struct dicom_window *window = &facts->windows[facts->n_windows++];
+        *window = (struct dicom_window){ .center = centers[i], .width = widths[i] };
+        (void)dicom_text_at(item, TAG_WINDOW_NAME, i, window->name, sizeof window->name);
+    }
+}
+
+static void read_facts(const struct series *series, const struct dicom_file *file, struct dicom_series_facts *facts)
+{
+    const struct dicom_item *root = dicom_root(file), *shared = dicom_item_at(root, TAG_SHARED_GROUPS, 0);
+    const struct dicom_item *frame = dicom_item_at(root, TAG_FRAME_GROUPS, 0);
+    *facts = (struct dicom_series_facts){ 0 };
+    if (!dicom_text(root, TAG_RESCALE_TYPE, facts->unit, sizeof facts->unit))
+        (void)dicom_text(root, TAG_UNITS, facts->unit, sizeof facts->unit);
+    if (strcmp(facts->unit, "US") == 0) /* the standard's word for unspecified */
+        facts->unit[0] = 0;
+    if (!facts->unit[0] && strcmp(series->stack->modality, "CT") == 0)
+        snprintf(facts->unit, sizeof facts->unit, "HU");
+    facts_from(root, facts);
+    if (facts->n_windows == 0 && frame && dicom_n_items(frame, TAG_FRAME_WINDOWS) > 0)
+        facts_from(dicom_item_at(frame, TAG_FRAME_WINDOWS, 0), facts);
+    else if (facts->n_windows == 0 && shared && dicom_n_items(shared, TAG_FRAME_WINDOWS) > 0)
+        facts_from(dicom_item_at(shared, TAG_FRAME_WINDOWS, 0), facts);
+}
+
+/* Slices and facts, from the index or from the head of the one file that holds the frames. */
+static bool find_slices(struct series *series, struct dicom_series_facts *facts, struct report *report, struct error *err)
+{
+    const struct dicom_stack *stack = series->stack;
+    const struct dicom_object *first = &series->index->objects[stack->objects[0]];
+    series->slices = mem_array(stack->n_slices, sizeof *series->slices, UINT32_MAX, err);
+    if (!series->slices)
+        return false;
+    series->plane = (struct dicom_plane){ .rows = stack->rows, .columns = stack->columns };
+    struct bytes bytes = { 0 };
+    struct dicom_file *file = open_head(series, stack->objects[stack->n_objects / 2], &bytes, err);
+    bool is_found = file != NULL;
+    if (file && first->image->has_place)
+        slices_of_files(series);
+    else if (file)
+        is_found = dicom_frames_find(file, first->path, stack->objects[0], first->image->pixels.n_frames, series->slices, &series->n_slices,
+                                     &series->plane, report, err);
+    if (is_found && facts)
+        read_facts(series, file, facts);
+    dicom_file_destroy(file);
+    if (is_found && !first->image->has_place && !first->image->has_stored)
+        series->whole = bytes; /* the frames are decoded from it */
+    else
+        bytes_free(&bytes);
+    return is_found;
+}
+
+/* Scales that cannot be: a slope of nothing makes all values one. */
+static void check_scales(struct series *series, struct report *report)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < series->n_slices; i++) {
+        struct dicom_slice *slice = &series->slices[i];
+        if (slice->slope != 0 && fabs(slice->slope) < 1e30 && fabs(slice->offset) < 1e30)
+            continue;
+        slice->slope = 1;
+        slice->offset = 0;
+        n++;
+    }
+    if (n > 0)
+        report_add(report, REPORT_WARNING, "image.rescale", object_of(series, &series->slices[0])->path, "%zu of %zu slices have a rescale slope "
+                   "of 0 or beyond all use; their values were taken as stored.", n, series->n_slices);
+}
+
+/* The type that holds all slices, and whether they share one scale. */
+static void choose_type(struct series *series, struct report *report)
+{
+    const struct dicom_slice *first = &series->slices[0];
+    const struct dicom_pixels *pixels = &object_of(series, first)->image->pixels;
+    size_t n_lossy = 0, n_inverted = 0, n_scales = 0;
+    series->is_uniform = true;
+    for (size_t i = 0; i < series->n_slices; i++) {
+        const struct dicom_slice *slice = &series->slices[i];
+        const struct dicom_image *image = object_of(series, slice)->image;
+        bool is_same_scale = slice->slope == first->slope && slice->offset == first->offset;
+        n_scales += !is_same_scale;
+        n_lossy += image->is_lossy;
+        n_inverted += image->pixels.is_monochrome1;
+        series->is_uniform = series->is_uniform && is_same_scale && image->pixels.bits_allocated == pixels->bits_allocated &&
+                             image->pixels.is_signed == pixels->is_signed;
+    }
+    if (!series->is_uniform || pixels->bits_allocated == 32)
+        series->type = VOXEL_F32;
+    else if (pixels->bits_allocated == 16)
+        series->type = pixels->is_signed ? VOXEL_I16 : VOXEL_U16;
+    else
+        series->type = pixels->is_signed ? VOXEL_I16 : VOXEL_U8;
+    const char *where = object_of(series, first)->path;
+    if (n_scales > 0)
+        report_add(report, REPORT_NOTE, "image.slopes-differ", where, "%zu of %zu slices have another scale than the first; all were brought to "
+                   "one unit.", n_scales, series->n_slices);
+    if (pixels->bits_allocated == 32 && pixels->bits_stored > 24)
+        report_add(report, REPORT_NOTE, "image.precision", where, "Values of %u bits are kept with 24.", pixels->bits_stored);
+    if (n_lossy > 0)
+        report_add(report, REPORT_NOTE, "image.lossy", where, "%zu of %zu slices were compressed with loss.", n_lossy, series->n_slices);
+    if (n_inverted > 0)
+        report_add(report, REPORT_WARNING, "image.inverted", where, "%zu of %zu slices are MONOCHROME1: their low values are meant to be bright; "
+                   "the values were kept.", n_inverted, series->n_slices);
+}
+
+static bool read_cells(struct series *series, struct error *err)
+{
+    series->range[0] = INT32_MAX;
+    series->range[1] = INT32_MIN;
+    int n_threads = series->progress->n_threads > 0 ? series->progress->n_threads : parallel_cores();
+    n_threads = n_threads < 8 ? n_threads : 8;
+    parallel_run((size_t)n_threads < series->n_slices ? n_threads : (int)series->n_slices, read_part, series);
+    if (!atomic_load(&series->is_failed))
+        return true;
+    if (err)
+        *err = series->error;
+    return false;
+}
+
+#define MIX(type, nearest)                                                                                         \
+    do {                                                                                                           \
+        const type *a = low, *b = high;                                                                            \
+        type *to = out;                                                                                            \
+        for (size_t i = 0; i < n; i++)                                                                             \
+            to[i] = (type)nearest((double)a[i] + weight * ((double)b[i] - (double)a[i]));                          \
+    } while (0)
+
+static void mix_planes(enum voxel_type type, const void *low, const void *high, double weight, void *out, size_t n)
+{
+    switch (type) {
+    case VOXEL_U8: MIX(uint8_t, lrint); break;
+    case VOXEL_I16: MIX(int16_t, lrint); break;
+    case VOXEL_U16: MIX(uint16_t, lrint); break;
+    case VOXEL_F32: MIX(float, ); break;
+    }
+}
+
+static void interpolate(const struct series *series, const struct dicom_layout_of_slices *layout, struct volume *volume)
+{
+    size_t bytes = series->plane_cells * voxel_size(series->type);
+    for (uint32_t k = 0; k < layout->grid.size[2]; k++) {
+        const struct dicom_plane_source *plane = &layout->planes[k];
+        uint8_t *out = (uint8_t *)volume->voxels + k * bytes;
+        if (plane->a == plane->b)
+            memcpy(out, series->cells + plane->a * bytes, bytes);
+        else
+            mix_planes(series->type, series->cells + plane->a * bytes, series->cells + plane->b * bytes, plane->weight, out, series->plane_cells);
+    }
+}
+
+static void measure(const struct series *series, struct volume *volume)
+{
+    if (series->type == VOXEL_F32) {
+        volume_measure(volume);
+        return;
+    }
+    double a = series->range[0] * volume->slope + volume->offset, b = series->range[1] * volume->slope + volume->offset;
+    volume->low = fmin(a, b);
+    volume->high = fmax(a, b);
+}
+
+static struct volume *read_volume(struct series *series, const struct dicom_layout_of_slices *layout, struct error *err)
+{
+    struct volume *volume = volume_create(&layout->grid, series->type, err);
+    if (!volume)
+        return NULL;
+    uint8_t *own = NULL;
+    series->cells = volume->voxels;
+    if (!layout->is_exact) {
+        own = mem_large_array(series->n_slices, series->plane_cells * voxel_size(series->type), VOLUME_MAX_BYTES, err);
+        series->cells = own;
+    }
+    if (!series->cells || !read_cells(series, err)) {
+        free(own);
+        volume_unref(volume);
+        return NULL;
+    }
+    if (own)
+        interpolate(series, layout, volume);
+    free(own);
+    if (series->is_uniform) {
+        volume->slope = series->slices[0].slope;
+        volume->offset = series->slices[0].offset;
+    }
+    measure(series, volume);
+    return volume;
+}
+
+struct volume *dicom_series_read(const struct folder *folder, const struct dicom_index *index, size_t stack,
+                                 const struct dicom_progress *progress, struct dicom_series_facts *facts, struct report *report,
+                                 struct error *err)
+{
+    static const struct dicom_progress quiet;
+    struct series series = { .folder = folder, .index = index, .stack = &index->stacks[stack], .progress = progress ? progress : &quiet };
+    pthread_mutex_init(&series.lock, NULL);
+    struct dicom_layout_of_slices layout = { 0 };
+    struct volume *volume = NULL;
+    series.plane_cells = (size_t)series.stack->rows * series.stack->columns;
+    if (find_slices(&series, facts, report, err) &&
+        dicom_slices_lay_out(series.slices, series.n_slices, &series.plane, index->objects[series.stack->objects[0]].path, &layout, report, err)) {
+        check_scales(&series, report);
+        choose_type(&series, report);
+        volume = read_volume(&series, &layout, err);
+    }
+    pthread_mutex_destroy(&series.lock);
+    free(layout.planes);
+    free(series.slices);
+    bytes_free(&series.whole);
+    return volume;
+}
