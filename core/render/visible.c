@@ -21,7 +21,7 @@ struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t regio
     static const enum surface_algorithm algorithms[] = {
         [SCENE_ALGORITHM_MARCHING_CUBES] = SURFACE_MARCHING_CUBES,
         [SCENE_ALGORITHM_EIGHT_CELL] = SURFACE_EIGHT_CELL,
-        [SCENE_ALGORITHM_SMOOTH] = SURFACE_MARCHING_CUBES,
+        [SCENE_ALGORITHM_SMOOTH] = SURFACE_SMOOTH,
     };
     const struct scene *scene = &snapshot->scene;
     struct shape_key key = {

@@ -23,7 +23,7 @@ static void print_help(void)
     printf("usage: beamroom export DIR REGION -o OUT.stl|OUT.ply|OUT.glb [OPTION]...\n"
            "Writes the surface of a region of the plan in the folder DIR, with everything inside it, for other programs.\n\n"
            "  -o, --output OUT  the file; its ending says whether binary STL, binary PLY or GLB (glTF 2.0)\n"
-           "  --algorithm NAME  marching-cubes (default) or eight-cell, Sera3d's: through the centres of univels\n"
+           "  --algorithm NAME  marching-cubes (default); eight-cell, Sera3d's: through the centres of univels; smooth: without stairs\n"
            "  --normals WHICH   vertex (default) or face: PLY and GLB without vertex normals, for flat shading\n"
            "  --help            this text\n\n"
            "REGION is an id, as beamroom info --json gives it. Points are mm toward the patient's left, back and top (DICOM LPS);\n"
@@ -99,7 +99,7 @@ static bool parse_arguments(int argc, char **argv, struct export_job *job, int *
             break;
         case 'a':
             if (!surface_algorithm_from_word(optarg, &job->algorithm))
-                return command_usage_error("export", "--algorithm '%s' is not marching-cubes or eight-cell", optarg), false;
+                return command_usage_error("export", "--algorithm '%s' is not marching-cubes, eight-cell or smooth", optarg), false;
             break;
         case 'n':
             job->is_faceted = strcmp(optarg, "face") == 0;

@@ -368,7 +368,7 @@ static void surface_file_came(void *context, struct packet *answer, const struct
 
 void api_plan_surface(struct api *api, struct call *call)
 {
-    static const char *const algorithms[] = { "marching-cubes", "eight-cell", NULL }, *const normals[] = { "vertex", "face", NULL },
+    static const char *const algorithms[] = { "marching-cubes", "eight-cell", "smooth", NULL }, *const normals[] = { "vertex", "face", NULL },
                              *const formats[] = { "json", "stl", "ply", "glb", NULL };
     struct fleet_plan plan;
     struct problem problem;

@@ -44,7 +44,7 @@ describe('beamroom', () => {
       [['export', plan, 'brain'], /-o OUT\.stl/],
       [['export', plan, 'brain', '-o', 'x.obj'], /does not end in \.stl, \.ply or \.glb/],
       [['export', plan, 'brain', '-o', 'x.stl', '--normals', 'up'], /--normals 'up'/],
-      [['export', plan, 'brain', '-o', 'x.stl', '--algorithm', 'magic'], /--algorithm 'magic' is not marching-cubes or eight-cell/],
+      [['export', plan, 'brain', '-o', 'x.stl', '--algorithm', 'magic'], /--algorithm 'magic' is not marching-cubes, eight-cell or smooth/],
       [['info'], /one folder is needed, 0 are given/],
       [['info', plan, '--xml'], /'--xml' is not an option/],
       [['phantom', 'a', 'b'], /one folder is needed, 2 are given/],

@@ -213,6 +213,10 @@ describe('a plan', () => {
     assert.equal(cells.algorithm, 'eight-cell');
     assert.equal(cells.univel_volume_mm3, json.univel_volume_mm3);
     assert.ok(cells.volume_mm3 < json.volume_mm3 && cells.triangles / json.triangles > 0.5 && cells.triangles / json.triangles < 0.85, JSON.stringify(cells));
+    const smooth = (await call(`${plan}/regions/brain/surface?algorithm=smooth`)).json;
+    assert.equal(smooth.algorithm, 'smooth');
+    assert.equal(smooth.triangles, json.triangles);
+    assert.ok(Math.abs(smooth.volume_mm3 / json.univel_volume_mm3 - 1) < 0.0015 && smooth.area_mm2 < 0.95 * json.area_mm2, JSON.stringify(smooth));
     assertProblem(await call(`${plan}/regions/liver/surface`), 404, 'not-found');
     assertProblem(await call(`${plan}/regions/brain/surface?algorithm=magic`), 422, 'validation', '/algorithm');
   });

@@ -266,7 +266,7 @@ static void words_and_formats_name_each_other(void **state)
 /* ---- as VTK reads them -------------------------------------------------------------------------------------------------- */
 
 /* An ellipsoid off the middle of a turned grid with unequal spacing, so that no two axes can be taken for each other. */
-static struct mesh *make_ellipsoid(void)
+static struct mesh *make_ellipsoid(enum surface_algorithm algorithm)
 {
     const double c = cos(0.3), s = sin(0.3);
     struct affine map = { { { 1.5 * c, -2 * s, 0 }, { 1.5 * s, 2 * c, 0 }, { 0, 0, 3 } }, { 40, -70, 110 } };
@@ -282,7 +282,7 @@ static struct mesh *make_ellipsoid(void)
                 *voxel++ = pow((i - 20.0) / 15, 2) + pow((j - 16.0) / 14, 2) + pow((k - 14.0) / 12, 2) < 1;
     struct mask *mask = mask_from_labels(layer, (uint16_t[]){ 1 }, 1, 1, &err);
     assert_non_null(mask);
-    struct mesh *mesh = surface_marching_cubes(mask, &surface_defaults, &err);
+    struct mesh *mesh = surface_make(algorithm, mask, &surface_defaults, &err);
     assert_non_null(mesh);
     assert_true(mesh_make_normals(mesh, 1, &err));
     mesh_measure_bounds(mesh);
@@ -291,10 +291,9 @@ static struct mesh *make_ellipsoid(void)
     return mesh;
 }
 
-static void vtk_reads_the_same_triangles_area_volume_and_places_from_every_format(void **state)
+static void assert_vtk_reads_the_same(enum surface_algorithm algorithm)
 {
-    (void)state;
-    struct mesh *mesh = make_ellipsoid();
+    struct mesh *mesh = make_ellipsoid(algorithm);
     struct error err = { 0 };
     char folder[] = "/tmp/beamroom-export-XXXXXX", paths[3][64], out[2048], *at = out;
     assert_non_null(mkdtemp(folder));
@@ -339,6 +338,13 @@ static void vtk_reads_the_same_triangles_area_volume_and_places_from_every_forma
             assert_close(values[6 + axis], high[axis] * scale, tolerance);
         }
     }
+}
+
+static void vtk_reads_the_same_triangles_area_volume_and_places_from_every_format(void **state)
+{
+    (void)state;
+    for (enum surface_algorithm algorithm = 0; algorithm < SURFACE_N_ALGORITHMS; algorithm++)
+        assert_vtk_reads_the_same(algorithm);
 }
 
 int main(void)
