@@ -5,8 +5,8 @@
  *   points   a point a border voxel; solid is the same points. Without has_inner_boundary only the outer boundary.
  *   univels  the faces between inside and outside voxels, two triangles each, corners shared. Closed; where voxels touch along
  *            an edge alone, that edge has four triangles. Encloses exactly the voxels.
- *   nurbs    see nurbs_shape.h
- *   fan      see shape_parts.h
+ *   nurbs    spline surfaces through samples of the outlines (nurbs_nets.h), as a mesh
+ *   fan      triangles between border voxels that are neighbours (shape_parts.h)
  *   surface  surface_make with surface_defaults
  *
  * All but points and solid with has_inner_boundary take a region with everything inside it (mask_from_region). What lies beyond
