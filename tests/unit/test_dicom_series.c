@@ -1,0 +1,594 @@
+/* Series of slices as volumes: made-up slices with every trap that real ones set, and all real ones against pydicom and numpy. */
+#include <stdatomic.h>
+#include <unistd.h>
+
+#include "tests/check.h"
+#include "tests/unit/data_folder.h"
+#include "tests/unit/made_series.h"
+#include "tests/unit/oracle.h"
+
+/* Slices at positions[] along z, the base value 100 z of each; names and numbers run against the positions. */
+static void put_row(const char *folder, const struct made_slice *like, const double *z_mm, int n)
+{
+    for (int i = 0; i < n; i++) {
+        struct made_slice slice = *like;
+        char name[32];
+        slice.position[2] += z_mm[i];
+        slice.base = (int)(100 * z_mm[i]);
+        slice.number = 100 - i;
+        snprintf(name, sizeof name, "IM%04d", (i * 7) % 101);
+        made_slice_put(folder, name, &slice);
+    }
+}
+
+static void check_point(const struct volume *volume, double i, double j, double k, double x, double y, double z)
+{
+    struct vec3 p = affine_point(&volume->grid.lps_mm_from_ijk, vec3(i, j, k));
+    assert_close(p.x, x, 1e-9);
+    assert_close(p.y, y, 1e-9);
+    assert_close(p.z, z, 1e-9);
+}
+
+static void slices_are_sorted_by_position_and_not_by_name_or_number(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    put_row(s.path, &made_slice_defaults, (double[]){ 6, -2, 0, 4, 2 }, 5);
+    scanned_open(&s);
+    assert_int_equal(s.index->n_stacks, 1);
+    struct volume *volume = scanned_read(&s, 0);
+    assert_int_equal(volume->grid.size[0], 3);
+    assert_int_equal(volume->grid.size[1], 2);
+    assert_int_equal(volume->grid.size[2], 5);
+    assert_int_equal(volume->type, VOXEL_I16);
+    for (uint32_t k = 0; k < 5; k++)
+        for (uint32_t j = 0; j < 2; j++)
+            for (uint32_t i = 0; i < 3; i++)
+                assert_close(volume_value(volume, i, j, k), -200 + 200.0 * k + 10 * j + i, 0);
+    check_point(volume, 0, 0, 0, 0, 0, -2);
+    check_point(volume, 2, 1, 4, 2, 1, 6);
+    assert_close(volume->low, -200, 0);
+    assert_close(volume->high, 612, 0);
+    assert_int_equal(s.report.n_lines, 0);
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
+static void pixels_need_not_be_square_and_slices_may_lie_obliquely(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    /* rows run to 0.6 L + 0.8 S, columns to P; the normal is row x column = (-0.8, 0, 0.6) */
+    struct made_slice slice = made_slice_defaults;
+    slice.spacing[0] = 1.5;
+    slice.spacing[1] = 0.5;
+    memcpy(slice.cosines, (double[]){ 0.6, 0, 0.8, 0, 1, 0 }, sizeof slice.cosines);
+    for (int k = 0; k < 3; k++) {
+        char name[16];
+        memcpy(slice.position, (double[]){ 10 - 0.8 * 2 * k, 20, 30 + 0.6 * 2 * k }, sizeof slice.position);
+        slice.base = 100 * k;
+        slice.number = k;
+        snprintf(name, sizeof name, "%d", 9 - k);
+        made_slice_put(s.path, name, &slice);
+    }
+    scanned_open(&s);
+    struct volume *volume = scanned_read(&s, 0);
+    check_point(volume, 0, 0, 0, 10, 20, 30);
+    check_point(volume, 2, 0, 0, 10 + 0.6, 20, 30 + 0.8); /* two pixels of 0.5 mm along the row */
+    check_point(volume, 0, 1, 0, 10, 21.5, 30);           /* one of 1.5 mm down the column */
+    check_point(volume, 0, 0, 2, 10 - 3.2, 20, 30 + 2.4);
+    assert_close(volume_value(volume, 2, 1, 2), 212, 0);
+    assert_int_equal(s.report.n_lines, 0);
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
+static void a_tilted_gantry_stays_a_shear(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    struct made_slice slice = made_slice_defaults; /* each slice 1 mm further back for 2 mm up: atan(1 / 2) = 26.57 degrees */
+    for (int k = 0; k < 4; k++) {
+        char name[16];
+        memcpy(slice.position, (double[]){ 5, 1.0 * k, 2.0 * k }, sizeof slice.position);
+        slice.base = 100 * k;
+        snprintf(name, sizeof name, "%d", k);
+        made_slice_put(s.path, name, &slice);
+    }
+    scanned_open(&s);
+    struct volume *volume = scanned_read(&s, 0);
+    check_point(volume, 0, 0, 0, 5, 0, 0);
+    check_point(volume, 0, 0, 3, 5, 3, 6);
+    check_point(volume, 1, 1, 2, 6, 3, 4);
+    const struct report_line *line = scanned_said(&s, "image.gantry-tilt");
+    assert_non_null(line);
+    assert_non_null(strstr(line->sentence, "26.57 degrees"));
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
+static void missing_slices_are_interpolated_and_named(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    put_row(s.path, &made_slice_defaults, (double[]){ 0, 2, 4, 8, 10, 12, 18 }, 7); /* 6, 14 and 16 are missing */
+    scanned_open(&s);
+    struct volume *volume = scanned_read(&s, 0);
+    assert_int_equal(volume->grid.size[2], 10);
+    for (uint32_t k = 0; k < 10; k++) /* the values grow evenly, so what lies between is known */
+        assert_close(volume_value(volume, 1, 1, k), 200.0 * k + 11, 0);
+    check_point(volume, 0, 0, 9, 0, 0, 18);
+    const struct report_line *line = scanned_said(&s, "image.slices-missing");
+    assert_non_null(line);
+    assert_int_equal(line->severity, REPORT_WARNING);
+    assert_non_null(strstr(line->sentence, "3 between them are missing, at 6.00, 14.00, 16.00 mm"));
+    assert_null(scanned_said(&s, "image.slices-resampled"));
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
+static void uneven_slices_are_brought_to_the_smallest_usual_distance(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    put_row(s.path, &made_slice_defaults, (double[]){ 0, 1, 2, 3, 5.5, 8 }, 6); /* thin slices below, thick ones above */
+    scanned_open(&s);
+    struct volume *volume = scanned_read(&s, 0);
+    assert_int_equal(volume->grid.size[2], 9);
+    for (uint32_t k = 0; k < 9; k++) {
+        assert_close(volume_value(volume, 0, 0, k), 100.0 * k, 0.5); /* whole numbers: half of one */
+        check_point(volume, 0, 0, k, 0, 0, k);
+    }
+    const struct report_line *line = scanned_said(&s, "image.slices-resampled");
+    assert_non_null(line);
+    assert_non_null(strstr(line->sentence, "6 slices between 1 and 2.5 mm apart were interpolated to 9, 1 mm apart; 5 kept their values"));
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
+static void slices_a_little_off_their_places_are_taken_as_even_and_said_so(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    put_row(s.path, &made_slice_defaults, (double[]){ 0, 1.02, 2, 2.99, 4 }, 5); /* up to 2 % of the pitch */
+    scanned_open(&s);
+    struct volume *volume = scanned_read(&s, 0);
+    assert_int_equal(volume->grid.size[2], 5);
+    assert_close(volume_value(volume, 0, 0, 1), 102, 0); /* its own value, not one between */
+    const struct report_line *line = scanned_said(&s, "image.locations-uneven");
+    assert_non_null(line);
+    assert_non_null(strstr(line->sentence, "up to 0.02 mm"));
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
+static void slices_that_lie_on_no_line_are_refused(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    struct made_slice slice = made_slice_defaults;
+    for (int k = 0; k < 4; k++) {
+        char name[16];
+        memcpy(slice.position, (double[]){ k == 2 ? 30 : 0, 0, 2.0 * k }, sizeof slice.position);
+        snprintf(name, sizeof name, "%d", k);
+        made_slice_put(s.path, name, &slice);
+    }
+    scanned_open(&s);
+    struct error err = { 0 };
+    assert_null(dicom_series_read(&s.folder, s.index, 0, NULL, NULL, &s.report, &err));
+    assert_int_equal(err.code, ERROR_UNSUPPORTED);
+    assert_non_null(strstr(err.text, "do not lie on a straight line: one is 30 mm beside it"));
+    scanned_finish(&s);
+}
+
+static void values_are_rescaled_whatever_their_bits_and_sign(void **state)
+{
+    (void)state;
+    static const struct {
+        int bits, stored, is_signed, base;
+        enum voxel_type type;
+    } cases[] = {
+        { 16, 16, 1, -1000, VOXEL_I16 }, { 16, 12, 1, -1000, VOXEL_I16 }, { 16, 16, 0, 60000, VOXEL_U16 }, { 16, 12, 0, 4000, VOXEL_U16 },
+        { 8, 8, 0, 200, VOXEL_U8 },      { 8, 8, 1, -100, VOXEL_I16 },    { 32, 32, 1, -1000, VOXEL_F32 },
+    };
+    static const char *const encodings[] = { MADE_EXPLICIT, MADE_IMPLICIT, MADE_BIG_ENDIAN };
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++)
+        for (size_t e = 0; e < 3; e++) {
+            if (cases[c].bits != 16 && e == 2)
+                continue;
+            struct scanned s = { 0 };
+            folder_make(s.path);
+            struct made_slice slice = made_slice_defaults;
+            slice.transfer_syntax = encodings[e];
+            slice.bits = cases[c].bits;
+            slice.stored = cases[c].stored;
+            slice.is_signed = cases[c].is_signed;
+            slice.base = cases[c].base;
+            slice.has_rescale = true;
+            slice.slope = 0.5;
+            slice.offset = -7;
+            slice.thickness = 3;
+            made_slice_put(s.path, "one", &slice);
+            scanned_open(&s);
+            struct volume *volume = scanned_read(&s, 0);
+            assert_int_equal(volume->type, cases[c].type);
+            for (uint32_t j = 0; j < 2; j++)
+                for (uint32_t i = 0; i < 3; i++)
+                    assert_close(volume_value(volume, i, j, 0), 0.5 * (cases[c].base + 10.0 * j + i) - 7, 0);
+            assert_close(volume->low, 0.5 * cases[c].base - 7, 0);
+            assert_close(volume->high, 0.5 * (cases[c].base + 12) - 7, 0);
+            assert_non_null(scanned_said(&s, "image.single-slice"));
+            check_point(volume, 0, 0, 1, 0, 0, 3); /* as thick as it says */
+            volume_unref(volume);
+            scanned_finish(&s);
+        }
+}
+
+static void slices_with_a_scale_of_their_own_are_brought_to_one_unit(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    for (int k = 0; k < 3; k++) {
+        struct made_slice slice = made_slice_defaults;
+        char name[16];
+        slice.modality = "PT";
+        slice.position[2] = 4 * k;
+        slice.base = 1000;
+        slice.has_rescale = true;
+        slice.slope = 1 + k;
+        snprintf(name, sizeof name, "%d", k);
+        made_slice_put(s.path, name, &slice);
+    }
+    scanned_open(&s);
+    struct volume *volume = scanned_read(&s, 0);
+    assert_int_equal(volume->type, VOXEL_F32);
+    for (uint32_t k = 0; k < 3; k++)
+        assert_close(volume_value(volume, 2, 1, k), 1012.0 * (k + 1), 0);
+    assert_close(volume->high, 3036, 0);
+    assert_non_null(scanned_said(&s, "image.slopes-differ"));
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
+static void a_slope_of_nothing_is_not_believed(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    struct made_slice slice = made_slice_defaults;
+    slice.has_rescale = true;
+    slice.slope = 0;
+    slice.offset = 5;
+    put_row(s.path, &slice, (double[]){ 0, 1 }, 2);
+    scanned_open(&s);
+    struct volume *volume = scanned_read(&s, 0);
+    assert_close(volume_value(volume, 2, 1, 1), 112, 0);
+    assert_non_null(scanned_said(&s, "image.rescale"));
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
+static void inverted_pictures_keep_their_values_and_it_is_said(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    struct made_slice slice = made_slice_defaults;
+    slice.color = "MONOCHROME1";
+    put_row(s.path, &slice, (double[]){ 0, 1 }, 2);
+    scanned_open(&s);
+    struct volume *volume = scanned_read(&s, 0);
+    assert_close(volume_value(volume, 2, 1, 1), 112, 0);
+    assert_non_null(scanned_said(&s, "image.inverted"));
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
+static void directions_off_by_rounding_are_taken_and_worse_ones_are_said(void **state)
+{
+    (void)state;
+    static const struct {
+        double off;
+        bool is_said;
+    } cases[] = { { 2e-10, false }, { 0.01, true } };
+    for (int c = 0; c < 2; c++) {
+        struct scanned s = { 0 };
+        folder_make(s.path);
+        struct made_slice slice = made_slice_defaults;
+        slice.cosines[1] = cases[c].off;
+        put_row(s.path, &slice, (double[]){ 0, 1 }, 2);
+        scanned_open(&s);
+        struct volume *volume = scanned_read(&s, 0);
+        assert_int_equal(scanned_said(&s, "geometry.cosines") != NULL, cases[c].is_said);
+        const struct vec3 *columns = volume->grid.lps_mm_from_ijk.columns;
+        assert_close(vec3_dot(columns[0], columns[1]), 0, 1e-12);
+        assert_close(vec3_length(columns[0]), 1, 1e-12);
+        volume_unref(volume);
+        scanned_finish(&s);
+    }
+}
+
+static void thickness_is_not_taken_for_distance(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    struct made_slice slice = made_slice_defaults;
+    slice.thickness = 1.5;
+    put_row(s.path, &slice, (double[]){ 0, 3, 6 }, 3);
+    scanned_open(&s);
+    struct volume *volume = scanned_read(&s, 0);
+    check_point(volume, 0, 0, 2, 0, 0, 6);
+    const struct report_line *line = scanned_said(&s, "image.thickness-differs");
+    assert_non_null(line);
+    assert_non_null(strstr(line->sentence, "3 mm apart and 1.5 mm thick"));
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
+/* One file of four frames that lie in the order 2, 0, 3, 1; orientation and spacing shared, position and scale of each its own. */
+static void put_enhanced(const char *folder, bool has_all_places)
+{
+    static const int order[] = { 2, 0, 3, 1 };
+    struct made_dicom made;
+    made_begin(&made, MADE_EXPLICIT);
+    made_text(&made, DICOM_TAG(0x0008, 0x0016), "UI", "1.2.840.10008.5.1.4.1.1.4.1");
+    made_text(&made, DICOM_TAG(0x0008, 0x0018), "UI", "1.2.3.4");
+    made_text(&made, DICOM_TAG(0x0008, 0x0060), "CS", "MR");
+    made_text(&made, DICOM_TAG(0x0020, 0x000E), "UI", "1.2.3");
+    made_u16(&made, DICOM_TAG(0x0028, 0x0002), 1);
+    made_text(&made, DICOM_TAG(0x0028, 0x0004), "CS", "MONOCHROME2");
+    made_text(&made, DICOM_TAG(0x0028, 0x0008), "IS", "4");
+    made_u16(&made, DICOM_TAG(0x0028, 0x0010), 1);
+    made_u16(&made, DICOM_TAG(0x0028, 0x0011), 2);
+    made_u16(&made, DICOM_TAG(0x0028, 0x0100), 16);
+    made_u16(&made, DICOM_TAG(0x0028, 0x0101), 16);
+    made_u16(&made, DICOM_TAG(0x0028, 0x0102), 15);
+    made_u16(&made, DICOM_TAG(0x0028, 0x0103), 0);
+    made_sequence(&made, DICOM_TAG(0x5200, 0x9229));
+    made_item(&made);
+    made_sequence(&made, DICOM_TAG(0x0020, 0x9116));
+    made_item(&made);
+    made_text(&made, DICOM_TAG(0x0020, 0x0037), "DS", "0\\1\\0\\0\\0\\-1"); /* sagittal: rows to P, columns to I; the normal is R */
+    made_item_end(&made);
+    made_sequence_end(&made);
+    made_sequence(&made, DICOM_TAG(0x0028, 0x9110));
+    made_item(&made);
+    made_text(&made, DICOM_TAG(0x0018, 0x0050), "DS", "5");
+    made_text(&made, DICOM_TAG(0x0028, 0x0030), "DS", "2\\0.5");
+    made_item_end(&made);
+    made_sequence_end(&made);
+    made_item_end(&made);
+    made_sequence_end(&made);
+    made_sequence(&made, DICOM_TAG(0x5200, 0x9230));
+    for (int f = 0; f < 4; f++) {
+        double position[3] = { -5.0 * order[f], 1, 2 }, slope = 1 + (f == 3);
+        made_item(&made);
+        made_sequence(&made, DICOM_TAG(0x0020, 0x9113));
+        made_item(&made);
+        if (has_all_places || f != 2)
+            made_number(&made, DICOM_TAG(0x0020, 0x0032), "DS", position, 3);
+        made_item_end(&made);
+        made_sequence_end(&made);
+        made_sequence(&made, DICOM_TAG(0x0028, 0x9145));
+        made_item(&made);
+        made_text(&made, DICOM_TAG(0x0028, 0x1052), "DS", "-3");
+        made_number(&made, DICOM_TAG(0x0028, 0x1053), "DS", &slope, 1);
+        made_item_end(&made);
+        made_sequence_end(&made);
+        made_item_end(&made);
+    }
+    made_sequence_end(&made);
+    made_head(&made, DICOM_TAG(0x7FE0, 0x0010), "OW", 16);
+    for (int f = 0; f < 4; f++)
+        made_words(&made, (uint16_t[]){ (uint16_t)(100 * order[f]), (uint16_t)(100 * order[f] + 1) }, 2);
+    folder_put(folder, "enhanced", made.data, made.size);
+    made_finish(&made);
+}
+
+static void frames_of_an_enhanced_image_are_placed_one_by_one(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    put_enhanced(s.path, true);
+    scanned_open(&s);
+    assert_int_equal(s.index->n_stacks, 1);
+    assert_int_equal(s.index->stacks[0].n_slices, 4);
+    struct volume *volume = scanned_read(&s, 0);
+    assert_int_equal(volume->grid.size[2], 4);
+    for (uint32_t k = 0; k < 4; k++)
+        for (uint32_t i = 0; i < 2; i++)
+            assert_close(volume_value(volume, i, 0, k), (100.0 * k + i) * (k == 1 ? 2 : 1) - 3, 0); /* the last frame is slice 1 */
+    check_point(volume, 0, 0, 0, 0, 1, 2);
+    check_point(volume, 2, 0, 0, 0, 2, 2);  /* along the row, 0.5 mm between columns */
+    check_point(volume, 0, 1, 0, 0, 1, 0);  /* down, 2 mm between rows */
+    check_point(volume, 0, 0, 3, -15, 1, 2);
+    volume_unref(volume);
+    scanned_finish(&s);
+
+    folder_make(s.path);
+    put_enhanced(s.path, false);
+    scanned_open(&s);
+    struct error err = { 0 };
+    assert_null(dicom_series_read(&s.folder, s.index, 0, NULL, NULL, &s.report, &err));
+    assert_int_equal(err.code, ERROR_FORMAT);
+    assert_non_null(strstr(err.text, "enhanced: frame 3 of 4 does not say where it lies"));
+    scanned_finish(&s);
+}
+
+static void count_steps(void *context, size_t n_done, size_t n_all)
+{
+    size_t *steps = context;
+    assert_int_equal(n_done, ++*steps);
+    assert_int_equal(n_all, 5);
+}
+
+static void reading_tells_each_slice_and_stops_when_told(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    put_row(s.path, &made_slice_defaults, (double[]){ 0, 1, 2, 3, 4 }, 5);
+    scanned_open(&s);
+    size_t n_steps = 0;
+    atomic_bool cancel;
+    atomic_init(&cancel, false);
+    struct dicom_progress progress = { .step = count_steps, .context = &n_steps, .cancel = &cancel, .n_threads = 2 };
+    struct error err = { 0 };
+    struct volume *volume = dicom_series_read(&s.folder, s.index, 0, &progress, NULL, NULL, &err);
+    assert_non_null(volume);
+    assert_int_equal(n_steps, 5);
+    volume_unref(volume);
+    atomic_store(&cancel, true);
+    assert_null(dicom_series_read(&s.folder, s.index, 0, &progress, NULL, NULL, &err));
+    assert_int_equal(err.code, ERROR_CANCELLED);
+    assert_null(dicom_index_scan(&s.folder, NULL, 0, &progress, NULL, &err));
+    assert_int_equal(err.code, ERROR_CANCELLED);
+    scanned_finish(&s);
+}
+
+static void a_file_that_changes_after_the_scan_is_noticed(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    put_row(s.path, &made_slice_defaults, (double[]){ 0, 1 }, 2);
+    scanned_open(&s);
+    char path[2048];
+    snprintf(path, sizeof path, "%s/%s", s.path, s.index->objects[1].path);
+    assert_int_equal(truncate(path, 600), 0);
+    struct error err = { 0 };
+    assert_null(dicom_series_read(&s.folder, s.index, 0, NULL, NULL, NULL, &err));
+    assert_int_equal(err.code, ERROR_IO);
+    assert_non_null(strstr(err.text, "the file changed"));
+    assert_int_equal(unlink(path), 0);
+    assert_null(dicom_series_read(&s.folder, s.index, 0, NULL, NULL, NULL, &err));
+    assert_int_equal(err.code, ERROR_NOT_FOUND);
+    scanned_finish(&s);
+}
+
+static const struct dicom_stack *stack_of(const struct dicom_index *index, const char *series, size_t *at)
+{
+    for (*at = 0; *at < index->n_stacks; ++*at)
+        if (strcmp(index->stacks[*at].series, series) == 0)
+            return &index->stacks[*at];
+    fail_msg("no stack of the series %s", series);
+    return NULL;
+}
+
+/* One line of the oracle against our volume of the same series. */
+static void compare_series(struct scanned *s, char *line, const char *values_path, double tolerance)
+{
+    char *rest = line;
+    size_t at;
+    (void)stack_of(s->index, strtok_r(line, " ", &rest), &at);
+    struct volume *volume = scanned_read(s, at);
+    const uint32_t *size = volume->grid.size;
+    for (int axis = 0; axis < 3; axis++)
+        assert_int_equal(size[axis], strtol(strtok_r(NULL, " ", &rest), NULL, 10));
+    const struct affine *map = &volume->grid.lps_mm_from_ijk;
+    for (int column = 0; column < 4; column++) {
+        struct vec3 v = column < 3 ? map->columns[column] : map->origin;
+        assert_close(v.x, strtod(strtok_r(NULL, " ", &rest), NULL), 1e-6);
+        assert_close(v.y, strtod(strtok_r(NULL, " ", &rest), NULL), 1e-6);
+        assert_close(v.z, strtod(strtok_r(NULL, " ", &rest), NULL), 1e-6);
+    }
+    FILE *values = fopen(values_path, "rb");
+    assert_non_null(values);
+    double *row = malloc(size[0] * sizeof *row), worst = 0;
+    for (uint32_t k = 0; k < size[2]; k++)
+        for (uint32_t j = 0; j < size[1]; j++) {
+            assert_int_equal(fread(row, sizeof *row, size[0], values), size[0]);
+            for (uint32_t i = 0; i < size[0]; i++)
+                worst = fmax(worst, fabs(volume_value(volume, i, j, k) - row[i]) / fmax(1, fabs(row[i])));
+        }
+    assert_close(worst, 0, tolerance);
+    free(row);
+    fclose(values);
+    volume_unref(volume);
+}
+
+static void real_series_are_what_pydicom_and_numpy_make_of_them(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *archive;
+        int n_series;
+        double tolerance; /* of a value: exact, or that of 32-bit numbers where slices have scales of their own */
+    } sets[] = {
+        { "dicom-head-phantom/S2010.tar.xz", 1, 0 },  { "dicom-mr-head/VS-SEG-001.tar.xz", 1, 0 }, { "dicomrt-sts001/CT.tar.xz", 1, 0 },
+        { "dicomrt-sts001/MR_T1.tar.xz", 1, 0 },      { "dicomrt-sts001/PET.tar.xz", 1, 1e-7 },    { "dicomrt-lung-phantom/lung-2.tar.xz", 1, 0 },
+        { "dicomrt-oncentra-phantom", 1, 0 },
+    };
+    for (size_t i = 0; i < sizeof sets / sizeof sets[0]; i++) {
+        char path[1024], out[300], script[] = "tests/oracle/dicom_series.py", tar[] = "tar", to[] = "-C", unpack[] = "-xJf";
+        if (!data_path(sets[i].archive, path, sizeof path))
+            skip();
+        struct scanned s = { 0 };
+        folder_make(s.path);
+        bool is_archive = strstr(path, ".tar.xz") != NULL;
+        char answer[4096];
+        if (is_archive)
+            assert_int_equal(oracle_run((char *[]){ tar, to, s.path, unpack, path, NULL }, answer, sizeof answer), 0);
+        char own[256];
+        folder_make(own);
+        snprintf(out, sizeof out, "%s/values", own);
+        int status = oracle_run((char *[]){ oracle_python(), script, is_archive ? s.path : path, out, NULL }, answer, sizeof answer);
+        if (status == ORACLE_MISSING) {
+            folder_remove(own);
+            folder_remove(s.path);
+            print_message("no pydicom for Python here\n");
+            skip();
+        }
+        assert_int_equal(status, 0);
+        if (!is_archive) {
+            folder_remove(s.path);
+            memcpy(s.path, path, sizeof path);
+            s.is_kept = true;
+        }
+        scanned_open(&s);
+        int n = 0;
+        for (char *line = answer, *end; (end = strchr(line, '\n')); line = end + 1, n++) {
+            char values[320];
+            *end = 0;
+            snprintf(values, sizeof values, "%s.%d", out, n);
+            compare_series(&s, line, values, sets[i].tolerance);
+        }
+        assert_int_equal(n, sets[i].n_series);
+        scanned_finish(&s);
+        folder_remove(own);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slices_are_sorted_by_position_and_not_by_name_or_number),
+        cmocka_unit_test(pixels_need_not_be_square_and_slices_may_lie_obliquely),
+        cmocka_unit_test(a_tilted_gantry_stays_a_shear),
+        cmocka_unit_test(missing_slices_are_interpolated_and_named),
+        cmocka_unit_test(uneven_slices_are_brought_to_the_smallest_usual_distance),
+        cmocka_unit_test(slices_a_little_off_their_places_are_taken_as_even_and_said_so),
+        cmocka_unit_test(slices_that_lie_on_no_line_are_refused),
+        cmocka_unit_test(values_are_rescaled_whatever_their_bits_and_sign),
+        cmocka_unit_test(slices_with_a_scale_of_their_own_are_brought_to_one_unit),
+        cmocka_unit_test(a_slope_of_nothing_is_not_believed),
+        cmocka_unit_test(inverted_pictures_keep_their_values_and_it_is_said),
+        cmocka_unit_test(directions_off_by_rounding_are_taken_and_worse_ones_are_said),
+        cmocka_unit_test(thickness_is_not_taken_for_distance),
+        cmocka_unit_test(frames_of_an_enhanced_image_are_placed_one_by_one),
+        cmocka_unit_test(reading_tells_each_slice_and_stops_when_told),
+        cmocka_unit_test(a_file_that_changes_after_the_scan_is_noticed),
+        cmocka_unit_test(real_series_are_what_pydicom_and_numpy_make_of_them),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
