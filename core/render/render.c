@@ -7,8 +7,10 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "core/render/gl/renderer.h"
+#include "core/render/overlay.h"
 #include "core/render/soft/soft.h"
 
 /* Either of the two implementations; the other is NULL. */
@@ -16,6 +18,7 @@ struct renderer {
     pthread_t thread;
     struct gl_renderer *gl;
     struct soft_renderer *soft;
+    struct overlay *overlay;
 };
 
 static const char *const words[RENDER_N_BACK_ENDS] = {
@@ -84,6 +87,7 @@ struct renderer *renderer_create(enum render_back_end back_end, struct error *er
 {
     struct renderer *renderer = mem_new(sizeof *renderer);
     renderer->thread = pthread_self();
+    renderer->overlay = overlay_create();
     if (back_end == RENDER_AUTO)
         renderer->gl = create_hardware();
     else if (back_end != RENDER_SOFT) {
@@ -95,6 +99,7 @@ struct renderer *renderer_create(enum render_back_end back_end, struct error *er
         renderer->soft = soft_renderer_create();
     if (renderer->gl || renderer->soft)
         return renderer;
+    overlay_destroy(renderer->overlay);
     free(renderer);
     return NULL;
 }
@@ -106,6 +111,7 @@ void renderer_destroy(struct renderer *renderer)
     assert_thread(renderer);
     gl_renderer_destroy(renderer->gl);
     soft_renderer_destroy(renderer->soft);
+    overlay_destroy(renderer->overlay);
     free(renderer);
 }
 
@@ -117,6 +123,7 @@ const struct render_facts *renderer_facts(const struct renderer *renderer)
 void renderer_forget(struct renderer *renderer, const struct plan *plan)
 {
     assert_thread(renderer);
+    overlay_forget(renderer->overlay, plan);
     if (renderer->gl)
         gl_renderer_forget(renderer->gl, plan);
     else
@@ -129,7 +136,18 @@ struct image *render_snapshot(struct renderer *renderer, const struct snapshot *
     assert_thread(renderer);
     *timing = (struct render_timing){ 0 };
     camera_resolve(snapshot, camera);
-    if (renderer->gl)
-        return gl_renderer_snapshot(renderer->gl, snapshot, options, camera, timing, err);
-    return soft_renderer_snapshot(renderer->soft, snapshot, options, camera, timing, err);
+    struct image *image = renderer->gl ? gl_renderer_snapshot(renderer->gl, snapshot, options, camera, timing, err)
+                                       : soft_renderer_snapshot(renderer->soft, snapshot, options, camera, timing, err);
+    int64_t start_us = clock_now_us();
+    struct overlay_check check;
+    if (image && !overlay_draw(renderer->overlay, snapshot, camera, image, &check, err)) {
+        image_destroy(image);
+        return NULL;
+    }
+    if (image) {
+        timing->n_added_px = check.n_added;
+        timing->n_left_out_px = check.n_left_out;
+        timing->draw_us += clock_now_us() - start_us;
+    }
+    return image;
 }

@@ -34,6 +34,7 @@ struct render_timing {
     int64_t draw_us, read_us;
     size_t n_triangles;
     bool is_light; /* some surface drawn was a reduced one */
+    size_t n_added_px, n_left_out_px; /* the check of a segmentation: what a surface encloses beyond the univels, what it leaves out */
 };
 
 /* The picture, RGBA, opaque, row 0 at the top. Uploads meshes and images on first use and keeps them until renderer_forget.

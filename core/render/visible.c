@@ -10,6 +10,18 @@ const uint8_t visible_background[3] = { 0x08, 0x09, 0x0b };
 
 /* ---- shapes --------------------------------------------------------------------------------------------------------------- */
 
+struct shape_key visible_surface_key(const struct snapshot *snapshot)
+{
+    static const enum surface_algorithm algorithms[] = {
+        [SCENE_ALGORITHM_MARCHING_CUBES] = SURFACE_MARCHING_CUBES,
+        [SCENE_ALGORITHM_EIGHT_CELL] = SURFACE_EIGHT_CELL,
+        [SCENE_ALGORITHM_SMOOTH] = SURFACE_SMOOTH,
+    };
+    struct shape_key key = { .representation = REPRESENTATION_SURFACE, .algorithm = algorithms[snapshot->scene.surface.algorithm] };
+    shape_key_normalise(&key);
+    return key;
+}
+
 struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t region)
 {
     static const enum region_representation representations[] = {
@@ -18,15 +30,10 @@ struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t regio
         [SCENE_REPRESENTATION_SOLID] = REPRESENTATION_SOLID,     [SCENE_REPRESENTATION_NURBS] = REPRESENTATION_NURBS,
         [SCENE_REPRESENTATION_FAN] = REPRESENTATION_FAN,
     };
-    static const enum surface_algorithm algorithms[] = {
-        [SCENE_ALGORITHM_MARCHING_CUBES] = SURFACE_MARCHING_CUBES,
-        [SCENE_ALGORITHM_EIGHT_CELL] = SURFACE_EIGHT_CELL,
-        [SCENE_ALGORITHM_SMOOTH] = SURFACE_SMOOTH,
-    };
     const struct scene *scene = &snapshot->scene;
     struct shape_key key = {
         .representation = representations[snapshot->styles[region].representation],
-        .algorithm = algorithms[scene->surface.algorithm],
+        .algorithm = visible_surface_key(snapshot).algorithm,
         .outline = scene->outline.method == SCENE_OUTLINE_METHOD_TRACED ? OUTLINE_TRACED : OUTLINE_MARCHING_SQUARES,
         .has_inner_boundary = scene->points.inner_boundary,
         .nurbs_order = (int)scene->nurbs.order,
@@ -55,7 +62,8 @@ struct visible_look visible_look(const struct snapshot *snapshot, size_t region,
 /* Only what is made of voxels' terraces needs its light smoothed. */
 int visible_shading_passes(const struct shape_key *key, uint32_t reduction)
 {
-    return key->representation == REPRESENTATION_SURFACE ? shading_passes(reduction) : 0;
+    bool has_terraces = key->representation == REPRESENTATION_SURFACE && key->algorithm != SURFACE_SMOOTH;
+    return has_terraces ? shading_passes(reduction) : 0;
 }
 
 struct visible_cue visible_depth_cue(const struct camera *camera, const struct box3 *box)

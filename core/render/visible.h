@@ -6,6 +6,9 @@
 /* What the scene wants a region drawn as; normalised. */
 struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t region);
 
+/* A surface by the scene's algorithm, whatever regions are drawn as. */
+struct shape_key visible_surface_key(const struct snapshot *snapshot);
+
 /* How a shape is lit and laid down, besides its geometry. */
 struct visible_look {
     bool is_flat;      /* a normal a triangle */

@@ -16,6 +16,17 @@ int scene_image_index(const struct plan *plan, const struct scene *scene)
     return -1;
 }
 
+/* Index of the dose a scene shows, or -1 when the plan has none or none of that id. */
+static int dose_index(const struct plan *plan, const struct scene *scene)
+{
+    if (scene->dose.id[0] == 0)
+        return plan->n_doses ? 0 : -1;
+    for (size_t i = 0; i < plan->n_doses; i++)
+        if (strcmp(plan->doses[i].id, scene->dose.id) == 0)
+            return (int)i;
+    return -1;
+}
+
 static bool check_camera(const struct scene_camera *camera, const struct view *view, char field[128], struct error *err)
 {
     if (view->kind != SCENE_KIND_3D)
@@ -60,6 +71,28 @@ static bool resolve_styles(struct snapshot *snapshot, char field[128], struct er
     return true;
 }
 
+/* What the scene names besides regions. */
+static bool find_things(struct snapshot *snapshot, char field[128], struct error *err)
+{
+    const struct plan *plan = snapshot->plan;
+    const struct scene *scene = &snapshot->scene;
+    snapshot->image = scene_image_index(plan, scene);
+    snapshot->dose = dose_index(plan, scene);
+    if (snapshot->image < 0 && scene->image.id[0]) {
+        snprintf(field, 128, "/image/id");
+        return error_set(err, ERROR_NOT_FOUND, "the plan has no image '%s'", scene->image.id);
+    }
+    if (snapshot->dose < 0 && scene->dose.id[0]) {
+        snprintf(field, 128, "/dose/id");
+        return error_set(err, ERROR_NOT_FOUND, "the plan has no dose '%s'", scene->dose.id);
+    }
+    if (scene->check.region[0] && !region_find(&plan->regions, scene->check.region)) {
+        snprintf(field, 128, "/check/region");
+        return error_set(err, ERROR_NOT_FOUND, "the plan has no region '%s'", scene->check.region);
+    }
+    return true;
+}
+
 struct snapshot *snapshot_create(struct plan *plan, struct scene *scene, struct view *view, uint32_t scene_revision,
                                  char field[128], struct error *err)
 {
@@ -71,12 +104,8 @@ struct snapshot *snapshot_create(struct plan *plan, struct scene *scene, struct 
 
     if (!resolve_styles(snapshot, field, err))
         goto fail;
-    snapshot->image = scene_image_index(plan, &snapshot->scene);
-    if (snapshot->image < 0 && snapshot->scene.image.id[0]) {
-        snprintf(field, 128, "/image/id");
-        error_set(err, ERROR_NOT_FOUND, "the plan has no image '%s'", snapshot->scene.image.id);
+    if (!find_things(snapshot, field, err))
         goto fail;
-    }
     if (!check_camera(&snapshot->view.camera, &snapshot->view, field, err))
         goto fail;
     /* position alone: the target is the plan's centre, which the position must not be */

@@ -11,11 +11,12 @@ struct snapshot {
     uint32_t scene_revision;
     struct scene_region_style *styles; /* owned; by region index of the plan */
     int image;                         /* index of the image shown, or -1 when the plan has none */
+    int dose;                          /* the same of the dose */
     _Atomic int references;
 };
 
 /* Takes scene and view, on failure too (their structs are emptied). Checks them against the plan: every region id known, the
- * image id known (or empty), a camera that can be used (position != target, up not along the line of sight).
+ * image's and the dose's known (or empty), a camera that can be used (position != target, up not along the line of sight).
  *   errors ERROR_NOT_FOUND, ERROR_RANGE; field names the place as a JSON pointer, "/regions/foo" */
 NODISCARD struct snapshot *snapshot_create(struct plan *plan, struct scene *scene, struct view *view, uint32_t scene_revision,
                                            char field[128], struct error *err);

@@ -58,6 +58,7 @@ static struct image *take(struct soft_renderer *soft, struct renderer *other, st
     scene.surface.translucency = shot->is_plain ? SCENE_TRANSLUCENCY_PLAIN : SCENE_TRANSLUCENCY_RIM;
     scene.image.interpolation = shot->is_nearest ? SCENE_INTERPOLATION_NEAREST : SCENE_INTERPOLATION_LINEAR;
     scene.image.slices.coronal.visible = scene.image.slices.sagittal.visible = shot->has_slices;
+    scene.outline.on_slices = false; /* painted over the finished picture, by render.c */
     view.kind = shot->kind;
     view.size_px[0] = width;
     view.size_px[1] = height;

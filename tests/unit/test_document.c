@@ -89,7 +89,7 @@ static void a_patch_with_any_wrong_field_is_refused_whole(void **state)
     expect_refused("{\"image\":{\"window\":{\"width\":0}}}", PROBLEM_VALIDATION, "/image/window/width");
     expect_refused("{\"surface\":{\"normals\":\"flat\"}}", PROBLEM_VALIDATION, "/surface/normals");
     expect_refused("{\"surface\":{\"algorithm\":\"magic\"}}", PROBLEM_VALIDATION, "/surface/algorithm");
-    expect_refused("{\"dose\":{}}", PROBLEM_VALIDATION, "/dose");
+    expect_refused("{\"beam\":{}}", PROBLEM_VALIDATION, "/beam");
     expect_refused("{\"image\":{\"slices\":{\"axial\":{\"position_mm\":1e300}}}}", PROBLEM_VALIDATION, "/image/slices/axial/position_mm");
     expect_refused("[1]", PROBLEM_VALIDATION, "");
 }

@@ -15,7 +15,7 @@ __attribute__((always_inline)) static inline uint32_t light_at(const struct soft
                                                                float ty, float tz)
 {
     const float cosine = nx * tx + ny * ty + nz * tz;
-    const float side = s->is_two_sided & (cosine < 0.0f) ? -1.0f : 1.0f; /* the side that is seen */
+    const float side = (s->is_two_sided & (cosine < 0.0f)) ? -1.0f : 1.0f; /* the side that is seen */
     const float facing = side * cosine;
     float edge = 1.0f - LIGHT_CLAMP(facing);
     edge = LIGHT_CLAMP(edge);

@@ -1,0 +1,399 @@
+/* What is painted over slice panes: outlines where the regions are, the check of a segmentation, the grid of a dose, on grids square
+ * to the patient and on oblique ones; and images on grids of their own. */
+#include "core/plan/plan_shapes.h"
+#include "tests/render/shots.h"
+
+static const struct vec3 origin = { 0, 0, 0 };
+static const enum scene_kind kinds[3] = { SCENE_KIND_AXIAL, SCENE_KIND_CORONAL, SCENE_KIND_SAGITTAL };
+
+static struct grid unit_grid(uint32_t side)
+{
+    const uint32_t size[3] = { side, side, side };
+    return made_grid(side, side, side, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
+}
+
+/* Turned about two axes, voxels of 1.2 x 0.9 x 1.5 mm, the third axis backwards. */
+static struct grid oblique_grid(uint32_t side)
+{
+    const uint32_t size[3] = { side, side, side };
+    double c = cos(0.4), s = sin(0.4), d = cos(0.25), e = sin(0.25);
+    return made_grid(side, side, side,
+                     made_affine(vec3(1.2 * c, 1.2 * s, 0), vec3(-0.9 * s * d, 0.9 * c * d, 0.9 * e), vec3(-1.5 * s * e, 1.5 * c * e, -1.5 * d), size, origin));
+}
+
+static void finish(struct plan *plan)
+{
+    renderer_forget(shots_renderer, plan);
+    plan_destroy(plan);
+}
+
+/* Where a patient point is on a pane: axial and coronal have patient left on the right, sagittal the back; up is anterior, superior. */
+static void on_pane(enum scene_kind kind, struct vec3 p, double pixels_per_mm, double *x, double *y)
+{
+    double right = kind == SCENE_KIND_SAGITTAL ? p.y : p.x, up = kind == SCENE_KIND_AXIAL ? -p.y : p.z;
+    *x = SHOTS_WIDTH / 2.0 + right * pixels_per_mm;
+    *y = SHOTS_HEIGHT / 2.0 - up * pixels_per_mm;
+}
+
+static void set_slices(struct scene *scene, struct vec3 at)
+{
+    scene->image.slices.sagittal.position_mm = at.x;
+    scene->image.slices.coronal.position_mm = at.y;
+    scene->image.slices.axial.position_mm = at.z;
+}
+
+static double no_value(struct vec3 p) { return p.x > 1e9; } /* a black image */
+
+/* ---- outlines ------------------------------------------------------------------------------------------------------------------- */
+
+/* A box off the middle, a different length along each axis; voxel centres at halves. */
+static const struct vec3 box_low = { -8, -3, 2 }, box_high = { 10, 9, 16 };
+static double box_label(struct vec3 p)
+{
+    return p.x > box_low.x && p.x < box_high.x && p.y > box_low.y && p.y < box_high.y && p.z > box_low.z && p.z < box_high.z ? 1 : 0;
+}
+static const struct made_region box[] = { { "box", -1, 0x30ff60 } };
+
+static bool is_green(const uint8_t *pixel) { return pixel[1] > 200 && pixel[0] < 80; }
+
+/* How far outside a rectangle (negative: inside). */
+static double beyond(double x, double y, const double low[2], const double high[2])
+{
+    return fmax(fmax(low[0] - x, x - high[0]), fmax(low[1] - y, y - high[1]));
+}
+
+static void outlines_lie_on_the_regions_border(void **state)
+{
+    (void)state;
+    struct grid grid = unit_grid(40);
+    for (int method = 0; method < 2; method++)
+        for (int k = 0; k < 3; k++) {
+            struct plan *plan = made_plan(&grid, box_label, box, 1);
+            made_plan_add_image(plan, &grid, VOXEL_U8, no_value);
+            struct scene scene = shots_scene(plan);
+            scene.outline.method = method ? SCENE_OUTLINE_METHOD_MARCHING_SQUARES : SCENE_OUTLINE_METHOD_TRACED;
+            scene.outline.width_px = 3;
+            set_slices(&scene, vec3(1.3, 2.2, 7.6));
+            struct image *image = shots_plain(plan, scene, shots_view(kinds[k], origin, 7));
+            /* traced: through the outermost voxels' centres, half a voxel inside; between voxels: on the border */
+            double inset = method ? 0 : 0.5, x[2], y[2];
+            on_pane(kinds[k], vec3_add(box_low, vec3(inset, inset, inset)), 7, &x[0], &y[0]);
+            on_pane(kinds[k], vec3_sub(box_high, vec3(inset, inset, inset)), 7, &x[1], &y[1]);
+            const double low[2] = { fmin(x[0], x[1]), fmin(y[0], y[1]) }, high[2] = { fmax(x[0], x[1]), fmax(y[0], y[1]) };
+            size_t n = 0;
+            for (int row = 0; row < SHOTS_HEIGHT; row++)
+                for (int column = 0; column < SHOTS_WIDTH; column++) {
+                    double off = beyond(column + 0.5, row + 0.5, low, high);
+                    bool is_corner = method && fmin(fabs(column + 0.5 - low[0]), fabs(column + 0.5 - high[0])) < 7 &&
+                                     fmin(fabs(row + 0.5 - low[1]), fabs(row + 0.5 - high[1])) < 7; /* cut off there */
+                    if (fabs(off) < 0.9 && !is_corner) { /* half of 3 px, less half a pixel's softness */
+                        assert_true(is_green(shots_pixel(image, column, row)));
+                        n++;
+                    } else if (fabs(off) > 2.1 && !is_corner)
+                        assert_false(is_green(shots_pixel(image, column, row)));
+                }
+            assert_true(n > 200);
+            image_destroy(image);
+            finish(plan);
+        }
+}
+
+static double ball_label(struct vec3 p) { return vec3_length(vec3_sub(p, vec3(3, -2, 4))) < 12 ? 1 : 0; }
+
+static void outlines_of_oblique_grids_are_within_a_voxel_of_the_truth(void **state)
+{
+    (void)state;
+    struct grid grid = oblique_grid(48);
+    for (int k = 0; k < 3; k++) {
+        struct plan *plan = made_plan(&grid, ball_label, box, 1);
+        made_plan_add_image(plan, &grid, VOXEL_U8, no_value);
+        struct scene scene = shots_scene(plan);
+        scene.outline.method = SCENE_OUTLINE_METHOD_MARCHING_SQUARES;
+        set_slices(&scene, vec3(3, -2, 4));
+        struct image *image = shots_plain(plan, scene, shots_view(kinds[k], origin, 7));
+        double x, y, least = INFINITY, most = 0;
+        on_pane(kinds[k], vec3(3, -2, 4), 7, &x, &y);
+        size_t n = 0;
+        for (int row = 0; row < SHOTS_HEIGHT; row++)
+            for (int column = 0; column < SHOTS_WIDTH; column++)
+                if (is_green(shots_pixel(image, column, row))) {
+                    double radius_mm = hypot(column + 0.5 - x, row + 0.5 - y) / 7;
+                    least = fmin(least, radius_mm);
+                    most = fmax(most, radius_mm);
+                    n++;
+                }
+        assert_true(n > 300);
+        assert_true(least > 12 - 1.4 && most < 12 + 1.4); /* half a voxel's diagonal of 2.1 mm, and the line */
+        image_destroy(image);
+        finish(plan);
+    }
+}
+
+static double nested_label(struct vec3 p)
+{
+    double r = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
+    return r < 5 ? 3 : r < 10 ? 2 : r < 15 ? 1 : 0;
+}
+static const struct made_region nested[] = { { "outer", -1, 0xff3030 }, { "middle", 0, 0x30ff60 }, { "inner", 1, 0x3030ff } };
+
+static void only_visible_regions_have_outlines_and_the_higher_order_is_on_top(void **state)
+{
+    (void)state;
+    struct grid grid = unit_grid(40);
+    struct plan *plan = made_plan(&grid, nested_label, nested, 3);
+    made_plan_add_image(plan, &grid, VOXEL_U8, no_value);
+    struct scene scene = shots_scene(plan);
+    scene.outline.method = SCENE_OUTLINE_METHOD_MARCHING_SQUARES;
+    scene.outline.width_px = 3;
+    set_slices(&scene, vec3(0.5, 0.5, 0.5));
+    shots_style(&scene, "middle")->visible = false;
+    struct image *image = shots_plain(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 8));
+    assert_true(shots_pixel(image, 200 + 15 * 8, 150)[0] > 200);
+    assert_false(is_green(shots_pixel(image, 200 + 10 * 8, 150)));
+    assert_true(shots_pixel(image, 200 + 5 * 8, 150)[2] > 200);
+    image_destroy(image);
+
+    scene = shots_scene(plan);
+    scene.outline.on_slices = false;
+    scene.image.window.center = 100;
+    set_slices(&scene, vec3(0.5, 0.5, 0.5));
+    image = shots_plain(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 8));
+    for (int x = 0; x < SHOTS_WIDTH; x++) /* nothing but the black image */
+        assert_true(shots_pixel(image, x, 150)[0] < 20 && shots_pixel(image, x, 150)[2] < 20);
+    image_destroy(image);
+    finish(plan);
+}
+
+static double all_label(struct vec3 p) { return fabs(p.x) < 10 && fabs(p.y) < 10 && fabs(p.z) < 10 ? 1 : 0; }
+static const struct made_region equals[] = { { "red", -1, 0xff3030 }, { "green", -1, 0x30ff60 } };
+
+static void the_order_decides_between_outlines_that_coincide(void **state)
+{
+    (void)state;
+    struct grid grid = unit_grid(40);
+    for (int top = 0; top < 2; top++) {
+        struct plan *plan = made_plan(&grid, all_label, equals, 2);
+        made_plan_add_image(plan, &grid, VOXEL_U8, no_value);
+        plan->regions.layers[1] = made_volume(&grid, VOXEL_U8, all_label);
+        plan->regions.n_layers = 2;
+        plan->regions.regions[1].layer = 1;
+        plan->regions.regions[1].label = 1;
+        region_set_measure(&plan->regions);
+        struct scene scene = shots_scene(plan);
+        scene.outline.method = SCENE_OUTLINE_METHOD_MARCHING_SQUARES;
+        scene.outline.width_px = 3;
+        shots_style(&scene, top ? "green" : "red")->order = 1;
+        struct image *image = shots_plain(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 8));
+        assert_int_equal(is_green(shots_pixel(image, 200 + 80, 150)), top);
+        image_destroy(image);
+        finish(plan);
+    }
+}
+
+/* ---- the check ------------------------------------------------------------------------------------------------------------------ */
+
+static void the_check_marks_what_the_surface_leaves_out(void **state)
+{
+    (void)state;
+    struct grid grid = unit_grid(40);
+    struct plan *plan = made_plan(&grid, box_label, box, 1);
+    made_plan_add_image(plan, &grid, VOXEL_U8, no_value);
+    struct scene scene = shots_scene(plan);
+    scene.check.visible = true;
+    set_slices(&scene, vec3(1.5, 2.5, 7.5));
+    struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, false };
+    struct render_timing timing;
+    struct image *image = shots_take(plan, scene, shots_view(SCENE_KIND_AXIAL, vec3(1, 3, 0), 16), &options, &timing);
+    /* marching cubes cuts a triangle with legs of half a voxel off each of four corners: 4 x 1/8 mm2, 256 pixels a mm2 */
+    assert_int_equal(timing.n_added_px, 0);
+    assert_close((double)timing.n_left_out_px, 4 * 256 / 8.0, 40); /* a row of 8 pixels each way at every corner's long side */
+    image_destroy(image);
+
+    /* only where it is asked for, and not in space */
+    scene = shots_scene(plan);
+    image = shots_take(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 16), &options, &timing);
+    assert_int_equal(timing.n_left_out_px, 0);
+    image_destroy(image);
+    finish(plan);
+}
+
+/* Takes the place of the region's own shape: a box of triangles `grown` larger than the voxels on every side. */
+static void put_box(struct plan *plan, enum region_representation representation, double grown, bool is_faceted)
+{
+    static const uint32_t quads[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
+    struct error err = { 0 };
+    struct shape *shape = mem_new(sizeof *shape);
+    struct shape_name name = { 0, { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 }, SURFACE_FULL };
+    struct surface_facts facts = { .reduction = 1 };
+    shape->kind = SHAPE_TRIANGLES;
+    shape->is_faceted = is_faceted;
+    shape->references = 1;
+    shape->mesh = mesh_create(8, 12, &err);
+    for (size_t v = 0; v < 8; v++) {
+        shape->mesh->positions_lps_mm[3 * v] = (float)(v & 1 ? box_high.x + grown : box_low.x - grown);
+        shape->mesh->positions_lps_mm[3 * v + 1] = (float)(v & 2 ? box_high.y + grown : box_low.y - grown);
+        shape->mesh->positions_lps_mm[3 * v + 2] = (float)(v & 4 ? box_high.z + grown : box_low.z - grown);
+    }
+    for (size_t q = 0; q < 6; q++)
+        for (size_t c = 0; c < 3; c++) {
+            shape->mesh->indices[6 * q + c] = quads[q][c];
+            shape->mesh->indices[6 * q + 3 + c] = quads[q][c == 0 ? 0 : c + 1];
+        }
+    assert_true(mesh_make_normals(shape->mesh, 1, &err));
+    mesh_measure_bounds(shape->mesh);
+    shape->bounds_lps_mm = shape->mesh->bounds_lps_mm;
+    shape_key_normalise(&name.key);
+    plan_shapes_offer(plan->shapes, &name, shape, &facts);
+    shape_unref(shape);
+}
+
+/* On the border of the voxels to the last bit: at any zoom, at positions within a voxel and on its faces, nothing differs; half a
+ * millimetre larger or smaller, a frame of that width does. An open surface encloses nothing. */
+static void the_check_finds_exactly_what_differs(void **state)
+{
+    (void)state;
+    static const double positions[] = { 3, 4.25, 5.5, 8 }, zooms[] = { 3, 7, 16 };
+    struct grid grid = unit_grid(40);
+    for (int grown = -1; grown <= 1; grown++)
+        for (int fan = 0; fan < 2; fan++) {
+            struct plan *plan = made_plan(&grid, box_label, box, 1);
+            put_box(plan, fan ? REPRESENTATION_FAN : REPRESENTATION_UNIVELS, 0.5 * grown, true);
+            for (int i = 0; i < 36; i++) {
+                struct scene scene = shots_scene(plan);
+                scene.check.visible = true;
+                snprintf(scene.check.region, sizeof scene.check.region, "box");
+                shots_style(&scene, "box")->representation = fan ? SCENE_REPRESENTATION_FAN : SCENE_REPRESENTATION_UNIVELS;
+                double at = positions[i % 4], zoom = zooms[i / 4 % 3];
+                enum scene_kind kind = kinds[i / 12];
+                set_slices(&scene, vec3(at, at, at));
+                struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, false };
+                struct render_timing timing;
+                struct image *image = shots_take(plan, scene, shots_view(kind, vec3(1, 3, 9), zoom), &options, &timing);
+                double width = kind == SCENE_KIND_SAGITTAL ? 12 : 18, height = kind == SCENE_KIND_AXIAL ? 12 : 14;
+                double frame = ((width + grown) * (height + grown) - width * height) * zoom * zoom;
+                double border = 2 * (width + height + 2) * zoom; /* a pixel around */
+                if (fan || grown == 0) {
+                    assert_int_equal(timing.n_added_px, 0);
+                    assert_int_equal(timing.n_left_out_px, 0);
+                } else {
+                    assert_close((double)(grown > 0 ? timing.n_added_px : timing.n_left_out_px), fabs(frame), border);
+                    assert_int_equal(grown > 0 ? timing.n_left_out_px : timing.n_added_px, 0);
+                }
+                if (!fan && grown && kind == SCENE_KIND_AXIAL && zoom > 10) { /* two colours, told apart by brightness as well */
+                    const uint8_t *pixel = shots_pixel(image, 200 + (int)((9 + 0.25 * grown) * zoom), 150);
+                    assert_true(grown > 0 ? pixel[0] > pixel[2] + 50 : pixel[2] > pixel[0] + 50);
+                }
+                image_destroy(image);
+            }
+            finish(plan);
+        }
+}
+
+/* ---- grids of doses --------------------------------------------------------------------------------------------------------------- */
+
+static void give_dose(struct plan *plan, const struct grid *grid)
+{
+    struct dose *dose = &plan->doses[plan->n_doses++];
+    snprintf(dose->id, sizeof dose->id, "dose-%zu", plan->n_doses);
+    snprintf(dose->unit, sizeof dose->unit, "Gy");
+    dose->components[0].values = made_volume(grid, VOXEL_U8, no_value);
+    dose->n_components = 1;
+}
+
+/* Half covered at least. */
+static bool is_white(const uint8_t *pixel) { return pixel[0] > 120 && pixel[1] > 120 && pixel[2] > 120; }
+
+static void a_doses_grid_is_where_its_voxels_are(void **state)
+{
+    (void)state;
+    struct grid grid = unit_grid(40), doses[2] = { oblique_grid(20), unit_grid(10) };
+    struct plan *plan = made_plan(&grid, box_label, box, 1);
+    give_dose(plan, &doses[0]);
+    give_dose(plan, &doses[1]);
+    for (int dose = 0; dose < 2; dose++) {
+        struct scene scene = shots_scene(plan);
+        shots_style(&scene, "box")->visible = false;
+        scene.dose.grid = true;
+        snprintf(scene.dose.id, sizeof scene.dose.id, dose ? "dose-2" : "");
+        struct view view = shots_view_from(origin, vec3(0, -1, 0), vec3(0, 0, 1), 8);
+        struct image *image = shots_plain(plan, scene, view);
+        for (int corner = 0; corner < 8; corner++) /* from the front: right is patient left, up is superior */
+            for (int axis = 1; axis < 8; axis *= 2)
+                for (double t = 0.05; t < 1; t += 0.1) { /* along all twelve edges */
+                    const double half = doses[dose].size[0] / 2.0;
+                    double ijk[3];
+                    for (int a = 0; a < 3; a++)
+                        ijk[a] = half - 0.5 + half * (1 << a == axis ? 2 * t - 1 : corner >> a & 1 ? 1 : -1);
+                    struct vec3 p = affine_point(&doses[dose].lps_mm_from_ijk, vec3(ijk[0], ijk[1], ijk[2]));
+                    assert_true(is_white(shots_pixel(image, (int)(200 + 8 * p.x), (int)(150 - 8 * p.z))));
+                }
+        image_destroy(image);
+    }
+    /* on a pane: the square of 10 mm alone */
+    struct scene scene = shots_scene(plan);
+    shots_style(&scene, "box")->visible = false;
+    scene.dose.grid = true;
+    snprintf(scene.dose.id, sizeof scene.dose.id, "dose-2");
+    struct image *image = shots_plain(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 10));
+    for (int y = 0; y < SHOTS_HEIGHT; y++)
+        for (int x = 0; x < SHOTS_WIDTH; x++) {
+            double off = fabs(fmax(fabs(x + 0.5 - 200), fabs(y + 0.5 - 150)) - 50);
+            if (off < 0.3 || off > 2)
+                assert_int_equal(is_white(shots_pixel(image, x, y)), off < 0.3);
+        }
+    image_destroy(image);
+    finish(plan);
+}
+
+/* ---- images on grids of their own ------------------------------------------------------------------------------------------------- */
+
+static const struct vec3 bright_at = { 7, -5, 6 };
+static double bright_ball(struct vec3 p) { return vec3_length(vec3_sub(p, bright_at)) < 5 ? 200 : 0; }
+
+static void slices_of_every_image_land_where_they_belong(void **state)
+{
+    (void)state;
+    struct grid grids[3] = { unit_grid(40), oblique_grid(48), unit_grid(60) };
+    struct plan *plan = made_plan(&grids[0], box_label, box, 1);
+    for (int i = 0; i < 3; i++)
+        made_plan_add_image(plan, &grids[i], i == 1 ? VOXEL_I16 : VOXEL_U8, bright_ball);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            struct scene scene = shots_scene(plan);
+            snprintf(scene.image.id, sizeof scene.image.id, "image-%d", i + 1);
+            scene.outline.on_slices = false;
+            scene.image.window.center = 100;
+            scene.image.window.width = 200;
+            set_slices(&scene, bright_at);
+            struct image *image = shots_plain(plan, scene, shots_view(kinds[k], origin, 8));
+            double x, y, sum_x = 0, sum_y = 0, n = 0;
+            on_pane(kinds[k], bright_at, 8, &x, &y);
+            for (int row = 0; row < SHOTS_HEIGHT; row++)
+                for (int column = 0; column < SHOTS_WIDTH; column++)
+                    if (shots_pixel(image, column, row)[0] > 128) {
+                        n++;
+                        sum_x += column + 0.5;
+                        sum_y += row + 0.5;
+                    }
+            assert_close(sum_x / n, x, 2.5); /* a third of a voxel: it is 10 voxels across */
+            assert_close(sum_y / n, y, 2.5);
+            assert_close(n, MATH_PI * 25 * 64, 0.12 * MATH_PI * 25 * 64);
+            image_destroy(image);
+        }
+    finish(plan);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(outlines_lie_on_the_regions_border),
+        cmocka_unit_test(outlines_of_oblique_grids_are_within_a_voxel_of_the_truth),
+        cmocka_unit_test(only_visible_regions_have_outlines_and_the_higher_order_is_on_top),
+        cmocka_unit_test(the_order_decides_between_outlines_that_coincide),
+        cmocka_unit_test(the_check_marks_what_the_surface_leaves_out),
+        cmocka_unit_test(the_check_finds_exactly_what_differs),
+        cmocka_unit_test(a_doses_grid_is_where_its_voxels_are),
+        cmocka_unit_test(slices_of_every_image_land_where_they_belong),
+    };
+    return shots_run("panes", tests, sizeof tests / sizeof tests[0]);
+}

@@ -1,0 +1,92 @@
+/* What a scene may name: only what the plan has. */
+#include "core/scene/snapshot.h"
+#include "tests/check.h"
+#include "tests/made_plan.h"
+
+static double label(struct vec3 p) { return p.x > 0 ? 1 : 0; }
+static const struct made_region regions[] = { { "half", -1, 0xffffff } };
+
+static struct plan *make_plan(void)
+{
+    const uint32_t size[3] = { 4, 4, 4 };
+    struct grid grid = made_grid(4, 4, 4, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+    struct plan *plan = made_plan(&grid, label, regions, 1);
+    made_plan_add_image(plan, &grid, VOXEL_U8, label);
+    made_plan_add_image(plan, &grid, VOXEL_U8, label);
+    for (size_t i = 0; i < 2; i++) {
+        struct dose *dose = &plan->doses[plan->n_doses++];
+        snprintf(dose->id, sizeof dose->id, "dose-%zu", i);
+        dose->components[dose->n_components++].values = made_volume(&grid, VOXEL_F32, label);
+    }
+    return plan;
+}
+
+enum named { IMAGE, DOSE, CHECKED };
+
+static struct snapshot *name(struct plan *plan, enum named what, const char *id, char field[128], struct error *err)
+{
+    struct scene scene;
+    struct view view = view_default;
+    scene_for_plan(plan, &scene);
+    snprintf(what == IMAGE ? scene.image.id : what == DOSE ? scene.dose.id : scene.check.region, sizeof scene.image.id, "%s", id);
+    return snapshot_create(plan, &scene, &view, 1, field, err);
+}
+
+static void images_and_doses_are_found_by_their_id_and_the_first_without_one(void **state)
+{
+    (void)state;
+    static const char *const ids[] = { "", "image-1", "image-2", "dose-0", "dose-1" };
+    static const int expected[] = { 0, 0, 1, 0, 1 };
+    struct plan *plan = make_plan();
+    for (int i = 0; i < 5; i++) {
+        struct error err = { 0 };
+        char field[128];
+        struct snapshot *snapshot = name(plan, i < 3 ? IMAGE : DOSE, ids[i], field, &err);
+        assert_string_equal(err.text, "");
+        assert_int_equal(i < 3 ? snapshot->image : snapshot->dose, expected[i]);
+        snapshot_unref(snapshot);
+    }
+    plan_destroy(plan);
+}
+
+static void what_the_plan_does_not_have_is_refused_by_the_fields_place(void **state)
+{
+    (void)state;
+    static const char *const fields[] = { [IMAGE] = "/image/id", [DOSE] = "/dose/id", [CHECKED] = "/check/region" };
+    struct plan *plan = make_plan();
+    for (enum named what = IMAGE; what <= CHECKED; what++) {
+        struct error err = { 0 };
+        char field[128];
+        assert_null(name(plan, what, "nowhere", field, &err));
+        assert_int_equal(err.code, ERROR_NOT_FOUND);
+        assert_string_equal(field, fields[what]);
+        assert_non_null(strstr(err.text, "nowhere"));
+    }
+    plan_destroy(plan);
+}
+
+static void a_plan_without_images_and_doses_has_neither(void **state)
+{
+    (void)state;
+    const uint32_t size[3] = { 4, 4, 4 };
+    struct grid grid = made_grid(4, 4, 4, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+    struct plan *plan = made_plan(&grid, label, regions, 1);
+    struct error err = { 0 };
+    char field[128];
+    struct snapshot *snapshot = name(plan, CHECKED, "half", field, &err);
+    assert_string_equal(err.text, "");
+    assert_int_equal(snapshot->image, -1);
+    assert_int_equal(snapshot->dose, -1);
+    snapshot_unref(snapshot);
+    plan_destroy(plan);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(images_and_doses_are_found_by_their_id_and_the_first_without_one),
+        cmocka_unit_test(what_the_plan_does_not_have_is_refused_by_the_fields_place),
+        cmocka_unit_test(a_plan_without_images_and_doses_has_neither),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
