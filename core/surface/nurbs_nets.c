@@ -166,8 +166,8 @@ static double slice_s_mm(const struct work *work, uint32_t slice)
 
 static bool refuse(const struct work *work, uint32_t slice, struct error *err, const char *why)
 {
-    return error_set(err, ERROR_UNSUPPORTED, "degree bins cannot show this region: slice %u (S %.1f mm) %s; sample the traces instead", slice,
-                     slice_s_mm(work, slice), why);
+    return error_set(err, ERROR_UNSUPPORTED, "degree bins cannot show this region: slice %u (S %.1f mm) %s; sample the traces instead",
+                     slice, slice_s_mm(work, slice), why);
 }
 
 /* The slice's one outline. */

@@ -8,7 +8,7 @@
 
 struct job {
     struct shape_border *border;
-    struct vec3 of_row[9][8]; /* by row of three neighbours and which of them are inside: sum of directions to those outside, in index steps */
+    struct vec3 of_row[9][8]; /* by row of three neighbours and which are inside: sum of directions to the others, in index steps */
     struct vec3 covector[3];  /* a gradient per index step as one per mm */
 };
 

@@ -70,7 +70,8 @@ static bool fill(struct shape *shape, const struct shape_key *key, const struct 
         if (!shape->mesh)
             return false;
         shape->bounds_lps_mm = shape->mesh->bounds_lps_mm;
-        shape->n_bytes += sizeof *shape->mesh + shape->mesh->n_vertices * 6 * sizeof(float) + shape->mesh->n_triangles * 3 * sizeof(uint32_t);
+        shape->n_bytes += sizeof *shape->mesh + shape->mesh->n_vertices * 6 * sizeof(float);
+        shape->n_bytes += shape->mesh->n_triangles * 3 * sizeof(uint32_t);
         return true;
     }
 }

@@ -18,7 +18,9 @@ enum { FACES = 6 };
 
 /* Corners of each face, counter-clockwise seen from outside: bit 0 of a corner's number is x, bit 1 y, bit 2 z. Faces in the order
  * -x +x -y +y -z +z. */
-static const uint8_t face_corners[FACES][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
+static const uint8_t face_corners[FACES][4] = {
+    { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 },
+};
 
 struct job {
     const struct mask *mask;
