@@ -185,6 +185,47 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
+  it('shows a region in every way there is, each picture new and soon, with its figures', async () => {
+    const room = await newRoom();
+    const page = await newPage(`#/rooms/${room}`);
+    await full(page);
+    await page.locator('[data-region="tumour"] button.name').click();
+    await page.locator('button', { hasText: 'Solo' }).click();
+    await full(page);
+    const prints = new Set();
+    const figures = page.locator('dl.figures');
+    for (const [name, made] of [['Univels', /triangles/], ['Outlines', /outlines/], ['Points', /points/], ['Solid', /points/], ['NURBS', /triangles/], ['Fan', /triangles/], ['Surface', /triangles/]]) {
+      const revision = (await header(page, 1)).scene_revision;
+      await page.locator(`[aria-label="Shown as"] >> text="${name}"`).click();
+      await page.waitForFunction((old) => globalThis.beamroom.stats().headers[1].scene_revision > old, revision);
+      await full(page);
+      prints.add((await look(page, 1)).print);
+      await page.waitForFunction((words) => new RegExp(words).test(document.querySelector('dl.figures')?.textContent ?? ''), made.source);
+      assert.match(await figures.textContent(), /Made in/);
+      await shoot(page, `room-${name.toLowerCase()}`);
+    }
+    assert.equal(prints.size, 7, 'seven different pictures');
+    await page.context().close();
+  });
+
+  it('compares the methods on one region, and gives the table as CSV', async () => {
+    const page = await newPage(`#/rooms/${await newRoom()}`);
+    await full(page);
+    await page.locator('[data-region="tumour"] button.name').click();
+    await page.locator('button', { hasText: 'Compare methods' }).click();
+    const dialog = page.locator('[aria-label="Methods compared"]');
+    await dialog.locator('button:not([disabled])', { hasText: 'CSV' }).waitFor({ timeout: 30000 });
+    const rows = await dialog.locator('tbody tr').allTextContents();
+    assert.equal(rows.length, 14);
+    assert.match(rows.find((row) => /Univels/.test(row)), /0\.00 %/, 'univels enclose exactly themselves');
+    await shoot(page, 'compare');
+    const [download] = await Promise.all([page.waitForEvent('download'), dialog.locator('button', { hasText: 'CSV' }).click()]);
+    assert.equal(readFileSync(await download.path(), 'utf8').trim().split('\n').length, 15);
+    await page.keyboard.press('Escape');
+    await dialog.waitFor({ state: 'detached' });
+    await page.context().close();
+  });
+
   it('shows one member what the other does, until one looks for themself', async () => {
     const room = await newRoom();
     const [one, two] = [await newPage(`#/rooms/${room}`), await newPage(`#/rooms/${room}`)];

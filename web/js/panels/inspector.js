@@ -2,16 +2,18 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
-import { crosshair, crosshairPatch, reportSummary, shownImage, soloPatch, windowPresets } from '../state/plan.js';
+import { crosshair, reportSummary, shownImage, windowPresets } from '../state/plan.js';
+import { algorithms } from '../state/shapes.js';
+import { drawingBlocks } from './drawing.js';
+import { numberField, segment } from './fields.js';
 import { number, seconds, significant } from './format.js';
 import { icon } from './icons.js';
+import { regionBlock } from './region.js';
 import { reportLines } from './report.js';
 import { roving } from './tools.js';
 
 const tabs = [['probe', 'Probe'], ['view', 'View'], ['report', 'Report']];
 const sides = [['sagittal', 'Sagittal'], ['coronal', 'Coronal'], ['axial', 'Axial']];
-
-const surfaceFiles = [['stl', 'binary STL'], ['ply', 'binary PLY'], ['glb', 'GLB (glTF 2.0), in metres with the top up']];
 
 export function inspector(world) {
   const { room, ui } = world;
@@ -66,39 +68,7 @@ function doseTable(result, isOld) {
 const componentName = ({ quantity, per_ppm }) => `${quantity[0].toUpperCase()}${quantity.slice(1).replaceAll('-', ' ')}${per_ppm ? ', per ppm' : ''}`;
 const hasWeights = new Set(['weighted-total', 'blood-boron']);
 
-function regionBlock({ api, room, ui }, region) {
-  if (!region) return html`<section class="block"><p class="empty">Choose a region in the tree for its figures.</p></section>`;
-  const plan = room.plan.value;
-  const scene = room.scene.value;
-  const style = scene.regions[region.id];
-  const isDisabled = !room.canChange.value;
-  const change = (patch, event) => room.patchScene({ regions: { [region.id]: patch } }, { view: ui.active.value, at: event.timeStamp });
-  const parent = plan.regions.find((other) => other.id === region.parent);
-  const show = (event) => room.patchScene(crosshairPatch(plan, shownImage(plan, scene), region.center_mm), { view: ui.active.value, at: event.timeStamp });
-  const isAlone = plan.regions.every((other) => Boolean(scene.regions[other.id]?.visible) === (other.id === region.id));
-  return html`<section class="block"><h3>Region ${region.name} <span class="dim">${parent ? `in ${parent.name}` : ''}</span></h3>
-    <dl><dt>Volume</dt><dd>${number(region.volume_cm3, 2)} cm³, ${number(region.voxels)} univels</dd>
-      ${region.touches_edge ? html`<dt>Edge</dt><dd>cut by the edge of the scan</dd>` : nothing}
-      <dt>Opacity</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(style.opacity * 100)))} aria-label="Opacity" ?disabled=${isDisabled}
-        @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField('Opacity in per cent', Math.round(style.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd></dl>
-    <div class="buttons"><button aria-pressed=${isAlone} class=${classMap({ on: isAlone })} ?disabled=${isDisabled} @click=${(event) => room.patchScene(soloPatch(plan.regions, scene, region.id), { view: ui.active.value, at: event.timeStamp })}>${icon('solo')}<span>Solo</span></button>
-      ${region.center_mm ? html`<button ?disabled=${isDisabled} @click=${show}>${icon('target')}<span>Go to centre</span></button>` : nothing}</div>
-    ${region.voxels ? html`<div class="buttons downloads" role="group" aria-label="Download the surface"><span class="dim">Surface, mm LPS</span>${surfaceFiles.map(([format, about]) => html`<a class="button"
-      download href=${api.surfaceUrl(room.planId.value, region.id, format, scene.surface.algorithm)} title=${`Download the surface of ${region.name} as ${about}`}>${format.toUpperCase()}</a>`)}</div>` : nothing}</section>`;
-}
-
 // ---- view -------------------------------------------------------------------------------------------------------------
-
-/** A number with its unit inside the field. */
-function numberField(label, value, unit, isDisabled, change) {
-  return html`<span class="field"><input type="number" step="any" .value=${live(String(value))} aria-label=${label} ?disabled=${isDisabled}
-    @change=${(event) => Number.isFinite(event.target.valueAsNumber) && change(event.target.valueAsNumber, event)}>${unit ? html`<span>${unit}</span>` : nothing}</span>`;
-}
-
-function segment(label, options, chosen, isDisabled, choose) {
-  return html`<div class="segment" role="radiogroup" aria-label=${label} @keydown=${roving}>${options.map(([id, name]) => html`<button role="radio" aria-checked=${id === chosen}
-    tabindex=${id === chosen ? 0 : -1} class=${classMap({ on: id === chosen })} ?disabled=${isDisabled} @click=${(event) => choose(id, event)}>${name}</button>`)}</div>`;
-}
 
 function viewTab(world) {
   const { room, ui, panes } = world;
@@ -111,13 +81,15 @@ function viewTab(world) {
   return html`${image ? imageBlock(world, plan, scene, image, isDisabled, change) : nothing}
     <section class="block"><h3>3-D picture</h3>
       <dl>${room.view(1).document.value ? html`<dt>Projection</dt><dd>${segment('Projection', [['perspective', 'Perspective'], ['parallel', 'Parallel']], camera.projection, isDisabled, (id) => panes()[0].actions.setProjection(id))}</dd>` : nothing}
-        <dt>Surface</dt><dd>${segment('Surface', [['marching-cubes', 'Marching cubes'], ['eight-cell', '8-cell']], scene.surface.algorithm, isDisabled, (algorithm, event) => change({ surface: { algorithm } }, event))}</dd>
+        <dt>Surfaces</dt><dd>${segment('Surface', algorithms, scene.surface.algorithm, isDisabled, (algorithm, event) => change({ surface: { algorithm } }, event))}</dd>
         <dt>Shading</dt><dd>${segment('Shading', [['vertex', 'Smooth'], ['face', 'Faceted']], scene.surface.normals, isDisabled, (normals, event) => change({ surface: { normals } }, event))}</dd>
-        <dt>Translucency</dt><dd>${segment('Translucency', [['rim', 'Rim'], ['plain', 'Plain']], scene.surface.translucency, isDisabled, (translucency, event) => change({ surface: { translucency } }, event))}</dd></dl>
+        <dt>Translucency</dt><dd>${segment('Translucency', [['rim', 'Rim'], ['plain', 'Plain']], scene.surface.translucency, isDisabled, (translucency, event) => change({ surface: { translucency } }, event))}</dd>
+        <dt>Overlaps</dt><dd>${segment('What lies before what', [['exact', 'Exact', 'Each pixel in its own order, also where regions cross'], ['hierarchy', 'By hierarchy', 'Whole regions, inner before outer, as Sera3d does']], scene.surface.translucent_order, isDisabled, (translucent_order, event) => change({ surface: { translucent_order } }, event))}</dd></dl>
       ${image ? html`<div class="checks" role="group" aria-label="Slices in 3-D"><span class="dim">Slices in 3-D</span>${sides.map(([id, name]) => html`<label><input type="checkbox" .checked=${live(scene.image.slices[id].visible)} ?disabled=${isDisabled}
         @change=${(event) => change({ image: { slices: { [id]: { visible: event.target.checked } } } }, event)}>${name}</label>`)}</div>${cullRow(scene, image, isDisabled, change)}` : nothing}
       <div class="buttons looks" role="group" aria-label="Look from">${['anterior', 'posterior', 'left', 'right', 'superior', 'inferior'].map((name) => html`<button ?disabled=${isDisabled} title=${`Look from ${name}`}
-        @click=${(event) => panes()[0].actions.lookFrom(name, event.timeStamp)}>${name[0].toUpperCase()}${name.slice(1)}</button>`)}</div></section>`;
+        @click=${(event) => panes()[0].actions.lookFrom(name, event.timeStamp)}>${name[0].toUpperCase()}${name.slice(1)}</button>`)}</div></section>
+    ${drawingBlocks(world, isDisabled, change)}`;
 }
 
 const cullsNothing = -100000; // proto/scene.json

@@ -1,10 +1,13 @@
 // The room page: the frame of panels round four panes, and what joins them to the room's state.
 import { html } from '../../lib/lit-html.js';
 import { computed, effect, signal } from '../../lib/signals-core.js';
+import { Comparison } from '../state/comparison.js';
 import { crosshair } from '../state/plan.js';
+import { shapeQuery } from '../state/shapes.js';
 import { RoomState } from '../state/room.js';
 import { UiState } from '../state/ui.js';
 import { banner } from './banner.js';
+import { figuresDialog } from './figures.js';
 import { help, toasts } from './float.js';
 import { inspector } from './inspector.js';
 import { mount } from './mount.js';
@@ -15,6 +18,8 @@ import { tree } from './tree.js';
 
 const probeMs = 60;
 const tickMs = 250;
+
+const floating = (world) => html`${help(world)}${figuresDialog(world)}`;
 
 const frame = () => html`<div class="room">
   <a class="skip" href="#picture-1">To the panes</a>
@@ -34,6 +39,8 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const connection = connect(id);
   const room = new RoomState(id, { connection, clock, schedule, notify: ui.notify });
   const probed = signal({ result: null, error: '', isOld: false });
+  const shaped = signal({ region: '', representation: '', result: null, error: '' });
+  const comparison = new Comparison(api, signal([]));
 
   const onPainted = (header, isDrawn) => {
     const answered = room.frameShown(header, isDrawn);
@@ -42,11 +49,11 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, decode, schedule, onPainted }, view));
   connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));
 
-  const world = { room, ui, api, probed, panes: () => panes };
-  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', help]])
+  const world = { room, ui, api, probed, shaped, comparison, panes: () => panes };
+  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), probe(room, api, probed, clock), ...adapt(ui));
-  stops.push(listenKeys(ui));
+  stops.push(listenKeys(ui), shape(room, ui, api, shaped), compare(room, ui, comparison));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);
@@ -109,6 +116,45 @@ function probe(room, api, probed, clock) {
   };
 }
 
+/** Asks for the figures of the chosen region's shape, whenever another region or another shape is chosen. */
+function shape(room, ui, api, shaped) {
+  let asking = null;
+  const wanted = computed(() => {
+    const scene = room.scene.value;
+    const region = room.plan.value?.regions.find((other) => other.id === ui.region.value);
+    const representation = region && scene?.regions[region.id]?.representation;
+    const isReady = room.renderer.value.state === 'ready' && Boolean(representation) && region.voxels > 0;
+    return isReady ? JSON.stringify([region.id, representation, shapeQuery(scene, representation)]) : '';
+  });
+  const stop = effect(() => {
+    asking?.abort();
+    if (!wanted.value) return;
+    const [region, representation, query] = JSON.parse(wanted.value);
+    const { signal: aborted } = asking = new AbortController();
+    shaped.value = { region: '', representation: '', result: null, error: '' };
+    const tell = (answer) => { if (!aborted.aborted) shaped.value = { region, representation, result: null, error: '', ...answer }; };
+    api.surface(room.planId.peek(), region, query, aborted).then((result) => tell({ result }), (error) => tell({ error: error.message }));
+  });
+  return () => {
+    stop();
+    asking?.abort();
+  };
+}
+
+/** Starts the comparison when its dialog opens, or another region is chosen meanwhile. */
+function compare(room, ui, comparison) {
+  const of = computed(() => (ui.popover.value === 'figures' ? ui.region.value : ''));
+  const stop = effect(() => {
+    const region = room.plan.peek()?.regions.find((other) => other.id === of.value);
+    if (region) comparison.start(room.planId.peek(), region, room.scene.peek());
+    else comparison.stop();
+  });
+  return () => {
+    stop();
+    comparison.stop();
+  };
+}
+
 /** Folds what the window has no room for; unfolded again where it has. */
 function adapt(ui) {
   return [['(min-width: 1400px)', ui.isTreeOpen], ['(min-width: 1200px)', ui.isInspectorOpen]].map(([query, isOpen]) => {
@@ -127,7 +173,7 @@ function listenKeys(ui) {
     else if (event.key === '?' && !isTyping) ui.toggle('help');
   };
   const onPress = (event) => {
-    if (ui.popover.value && ui.popover.value !== 'help' && !event.target.closest('.anchor')) ui.popover.value = '';
+    if (ui.popover.value && !['help', 'figures'].includes(ui.popover.value) && !event.target.closest('.anchor')) ui.popover.value = '';
   };
   addEventListener('keydown', onKey);
   addEventListener('pointerdown', onPress);

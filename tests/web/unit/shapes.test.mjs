@@ -1,0 +1,64 @@
+// How the page asks for the figures of shapes, and what it makes of them.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { load } from './page.mjs';
+
+const { figuresCsv, isExportable, methods, representations, shapeQuery, volumeDifference } = await load('state/shapes.js');
+const { Comparison } = await load('state/comparison.js');
+const { signal } = await load('../lib/signals-core.js');
+
+const scene = {
+  surface: { algorithm: 'eight-cell' }, outline: { method: 'marching-squares' },
+  points: { inner_boundary: true }, nurbs: { order: 3, sampling: 'degree-bins', bins: 24 },
+};
+
+test('a shape is asked for with what decides it in this scene, and nothing else', () => {
+  assert.deepEqual(shapeQuery(scene, 'surface'), { representation: 'surface', algorithm: 'eight-cell' });
+  assert.deepEqual(shapeQuery(scene, 'outline'), { representation: 'outline', outline: 'marching-squares' });
+  assert.deepEqual(shapeQuery(scene, 'solid'), { representation: 'solid', inner_boundary: 'true' });
+  assert.deepEqual(shapeQuery(scene, 'nurbs'), { representation: 'nurbs', order: '3', sampling: 'degree-bins', bins: '24' });
+  assert.deepEqual(shapeQuery(scene, 'univels'), { representation: 'univels' });
+});
+
+test('every way of showing a region is compared, under a name of its own', () => {
+  const all = methods(scene);
+  assert.equal(new Set(all.map(({ name }) => name)).size, all.length);
+  assert.deepEqual(new Set(all.map(({ query }) => query.representation)), new Set(representations.map(([word]) => word)));
+  assert.deepEqual(representations.map(([word]) => word).filter(isExportable), ['surface', 'univels', 'nurbs', 'fan']);
+});
+
+test('the difference to the univels is in per cent of theirs', () => {
+  assert.equal(volumeDifference({ volume_mm3: 990, univel_volume_mm3: 1000 }), -1);
+  assert.ok(Number.isNaN(volumeDifference({ volume_mm3: null, univel_volume_mm3: 1000 })));
+});
+
+test('the table for a spreadsheet keeps a name with a comma in one cell, and a refusal as its reason', () => {
+  const [head, one, two] = figuresCsv([
+    { region: 'brain', name: 'Surface, smooth', result: { triangles: 12, ms: 3.5, area_mm2: null } },
+    { region: 'brain', name: 'Fan', error: 'too "many" points' },
+  ]).split('\n');
+  assert.equal(head.split(',').length, 15);
+  assert.match(one, /^brain,"Surface, smooth",12,,,,3\.5,/);
+  assert.match(two, /^brain,Fan,,{11},"too ""many"" points"$/);
+});
+
+test('a comparison fills row by row; a newer one drops what the older still waits for', async () => {
+  const waiting = [];
+  const api = { surface: (plan, region, query, aborted) => new Promise((done, fail) => {
+    waiting.push({ region, query, done, fail });
+    aborted.addEventListener('abort', () => fail(new Error('aborted')));
+  }) };
+  const comparison = new Comparison(api, signal([]));
+  const old = comparison.start('plan', { id: 'brain' }, scene);
+  assert.equal(waiting.length, 1, 'one question at a time');
+  assert.equal(waiting[0].query.frames, '5');
+  waiting[0].done({ triangles: 7 });
+  await new Promise((done) => { setTimeout(done); });
+  assert.deepEqual(comparison.rows.value[0].result, { triangles: 7 });
+  const next = comparison.start('plan', { id: 'tumor' }, scene);
+  await old;
+  assert.ok(comparison.rows.value.every((row) => row.region === 'tumor' && !row.result));
+  comparison.stop();
+  await next;
+  assert.ok(comparison.rows.value.every((row) => !row.result));
+});

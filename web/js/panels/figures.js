@@ -1,0 +1,40 @@
+// The dialog that sets the ways of showing a region side by side, with the figures of each.
+import { html, nothing } from '../../lib/lit-html.js';
+import { figuresCsv, volumeDifference } from '../state/shapes.js';
+import { number } from './format.js';
+import { icon } from './icons.js';
+
+const columns = [
+  ['Polygons', ({ triangles }) => (triangles ? number(triangles) : '–')],
+  ['Vertices', ({ vertices, points }) => number(vertices || points)],
+  ['Made in', ({ ms }) => `${number(ms, 1)} ms`],
+  ['Drawn', ({ frames_per_second: fps }) => (Number.isFinite(fps) ? `${number(fps)} /s` : '–')],
+  ['Area', ({ area_mm2: area }) => (area ? `${number(area / 100, 1)} cm²` : '–')],
+  ['Encloses', ({ volume_mm3: volume }) => (volume ? `${number(volume / 1000, 2)} cm³` : '–')],
+  ['to univels', (row) => { const d = volumeDifference(row); return row.volume_mm3 ? `${d >= 0 ? '+' : ''}${number(d, 2)} %` : '–'; }],
+  ['Off at most', ({ distance_max_mm: distance }) => (Number.isFinite(distance) ? `${number(distance, 2)} mm` : '–')],
+];
+
+function save(rows, name) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([figuresCsv(rows)], { type: 'text/csv' }));
+  link.download = name;
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+export function figuresDialog({ room, ui, comparison }) {
+  const region = room.plan.value?.regions.find((other) => other.id === ui.region.value);
+  if (ui.popover.value !== 'figures' || !region) return nothing;
+  const rows = comparison.rows.value;
+  const n = rows.filter((row) => row.result || row.error).length;
+  return html`<section class="card compare" role="dialog" aria-label="Methods compared">
+    <header><h2>${region.name}: methods compared</h2><span class="grow"></span>
+      <button ?disabled=${n < rows.length} @click=${() => save(rows, `${room.planId.value}-${region.id}-methods.csv`)}>CSV</button>
+      <button class="icon-button" aria-label="Close" @click=${() => { ui.popover.value = ''; }}>${icon('close')}</button></header>
+    <p class="note">${n < rows.length ? html`<span role="status">Working out ${n + 1} of ${rows.length} …</span>` : html`${number(region.volume_cm3, 2)} cm³ in ${number(region.voxels)} univels of its own.`}
+      With all regions inside it. Drawn alone, 650 × 650 pixels, moving picture.</p>
+    <div class="wide"><table><thead><tr><th scope="col">Method</th>${columns.map(([name]) => html`<th scope="col">${name}</th>`)}</tr></thead>
+      <tbody>${rows.map(({ name, result, error }) => html`<tr><th scope="row">${name}</th>${result ? columns.map(([, text]) => html`<td>${text(result)}</td>`)
+        : html`<td colspan=${columns.length} class=${error ? 'why' : 'dim'}>${error ?? '…'}</td>`}</tr>`)}</tbody></table></div></section>`;
+}

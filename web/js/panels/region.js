@@ -1,0 +1,61 @@
+// The region chosen in the tree: its figures, how it is shown, its shape as a file.
+import { html, nothing } from '../../lib/lit-html.js';
+import { classMap } from '../../lib/directives/class-map.js';
+import { live } from '../../lib/directives/live.js';
+import { crosshairPatch, shownImage, soloPatch } from '../state/plan.js';
+import { isExportable, representations, shapeQuery, volumeDifference } from '../state/shapes.js';
+import { numberField, segment } from './fields.js';
+import { number, seconds } from './format.js';
+import { icon } from './icons.js';
+
+const files = [['stl', 'binary STL'], ['ply', 'binary PLY'], ['glb', 'GLB (glTF 2.0), in metres with the top up']];
+
+export function regionBlock(world, region) {
+  const { room, ui } = world;
+  if (!region) return html`<section class="block"><p class="empty">Choose a region in the tree for its figures.</p></section>`;
+  const plan = room.plan.value;
+  const scene = room.scene.value;
+  const style = scene.regions[region.id];
+  const isDisabled = !room.canChange.value;
+  const how = (event) => ({ view: ui.active.value, at: event.timeStamp });
+  const change = (patch, event) => room.patchScene({ regions: { [region.id]: patch } }, how(event));
+  const parent = plan.regions.find((other) => other.id === region.parent);
+  const show = (event) => room.patchScene(crosshairPatch(plan, shownImage(plan, scene), region.center_mm), how(event));
+  const isAlone = plan.regions.every((other) => Boolean(scene.regions[other.id]?.visible) === (other.id === region.id));
+  const isShared = plan.regions.every((other) => scene.regions[other.id]?.representation === style.representation);
+  const share = (event) => room.patchScene({ regions: Object.fromEntries(plan.regions.map(({ id }) => [id, { representation: style.representation }])) }, how(event));
+  return html`<section class="block"><h3>Region ${region.name} <span class="dim">${parent ? `in ${parent.name}` : ''}</span></h3>
+    <dl><dt>Volume</dt><dd>${number(region.volume_cm3, 2)} cm³, ${number(region.voxels)} univels</dd>
+      ${region.touches_edge ? html`<dt>Edge</dt><dd>cut by the edge of the scan</dd>` : nothing}
+      <dt>Opacity</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(style.opacity * 100)))} aria-label="Opacity" ?disabled=${isDisabled}
+        @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField('Opacity in per cent', Math.round(style.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd>
+      <dt title="Higher lies on top where regions overlap">Order</dt><dd>${numberField('Order, higher lies on top', style.order, '', isDisabled, (value, event) => change({ order: Math.min(Math.max(Math.round(value), -1000), 1000) }, event))}</dd></dl>
+    <div class="shown-as"><span class="dim">Shown as</span>${segment('Shown as', representations, style.representation, isDisabled || !region.voxels, (representation, event) => change({ representation }, event))}</div>
+    ${region.voxels ? figures(world, region, style.representation) : nothing}
+    <div class="buttons"><button aria-pressed=${isAlone} class=${classMap({ on: isAlone })} ?disabled=${isDisabled} @click=${(event) => room.patchScene(soloPatch(plan.regions, scene, region.id), how(event))}>${icon('solo')}<span>Solo</span></button>
+      ${region.center_mm ? html`<button ?disabled=${isDisabled} @click=${show}>${icon('target')}<span>Go to centre</span></button>` : nothing}
+      ${plan.regions.length > 1 ? html`<button ?disabled=${isDisabled || isShared} @click=${share}><span>All regions like this</span></button>` : nothing}
+      ${region.voxels ? html`<button aria-haspopup="dialog" @click=${() => { ui.popover.value = 'figures'; }}><span>Compare methods</span></button>` : nothing}</div>
+    ${region.voxels && isExportable(style.representation) ? downloads(world, region, style.representation) : nothing}</section>`;
+}
+
+function downloads({ api, room }, region, representation) {
+  const query = shapeQuery(room.scene.value, representation);
+  return html`<div class="buttons downloads" role="group" aria-label="Download the surface"><span class="dim">Surface, mm LPS</span>${files.map(([format, about]) => html`<a class="button"
+    download href=${api.surfaceUrl(room.planId.value, region.id, { format, ...query })} title=${`Download the surface of ${region.name} as ${about}`}>${format.toUpperCase()}</a>`)}</div>`;
+}
+
+/** The figures of the shape that is shown, as the server worked them out. */
+function figures({ shaped }, region, representation) {
+  const { region: of, representation: as, result, error } = shaped.value;
+  if (of !== region.id || as !== representation || (!result && !error)) return html`<p class="note figures">Working out its figures …</p>`;
+  if (error) return html`<p class="figures err" role="status">${icon('error')} ${error}</p>`;
+  const counts = [['triangles', 'triangles'], ['lines', 'outlines'], ['points', 'points'], ['vertices', 'vertices']]
+    .filter(([name]) => result[name]).map(([name, word]) => `${number(result[name])} ${word}`);
+  const difference = volumeDifference(result);
+  return html`<dl class="figures"><dt>Made of</dt><dd>${counts.join(', ') || 'nothing'}</dd>
+    ${result.area_mm2 ? html`<dt>Area</dt><dd>${number(result.area_mm2 / 100, 1)} cm²</dd>` : nothing}
+    ${result.volume_mm3 ? html`<dt>Encloses</dt><dd>${number(result.volume_mm3 / 1000, 2)} cm³, univels ${difference >= 0 ? '+' : ''}${number(difference, 2)} %</dd>` : nothing}
+    ${Number.isFinite(result.distance_max_mm) ? html`<dt title="Of its vertices, from the border of the univels">Off the univels</dt><dd>${number(result.distance_mean_mm, 2)} mm, at most ${number(result.distance_max_mm, 2)} mm</dd>` : nothing}
+    <dt>Made in</dt><dd>${seconds(result.ms)}</dd></dl>`;
+}
