@@ -83,10 +83,10 @@ enum { PLAN_LIGHT_TRIANGLES = 80000 };
 struct surface_facts {
     size_t n_triangles, n_vertices; /* vertices of triangles or of lines */
     size_t n_lines, n_points;       /* closed outlines; points */
-    double area_mm2, volume_mm3;    /* of triangles; volume: enclosed */
+    double area_mm2, volume_mm3;    /* of triangles; volume: enclosed, not-a-number for a fan, whose triangles overlap */
     double univel_volume_mm3;       /* of the mask the shape is made from, descendants included */
     uint64_t n_univels;
-    double distance_mean_mm, distance_max_mm; /* of the vertices from the border of the univels; not-a-number: not measured */
+    double distance_mean_mm, distance_max_mm; /* by plan_shape_distance; not-a-number: not measured */
     double build_ms;
     uint64_t n_bytes;   /* of memory */
     uint32_t reduction; /* univels in one, along their shortest edge: 1 for FULL, and for a LIGHT one that any reduction would empty */
@@ -102,6 +102,10 @@ struct surface_facts {
  *   returns  one reference, the caller's; NULL on failure
  *   errors   ERROR_RANGE no such region, or one without a voxel; those of surface_make and shape_make */
 NODISCARD struct shape *plan_shape(struct plan *plan, size_t region, const struct shape_key *key, enum surface_detail detail,
+                                   struct surface_facts *facts, struct error *err);
+/* Fills the distances of facts: of the shape's vertices from the border of the univels it was made from. Takes its time, so it is asked
+ * for apart. errors those of shape_distance */
+NODISCARD bool plan_shape_distance(const struct plan *plan, size_t region, const struct shape_key *key, const struct shape *shape,
                                    struct surface_facts *facts, struct error *err);
 /* The same for surfaces, as their mesh. */
 NODISCARD struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,

@@ -1,8 +1,12 @@
 /* What a plan gives of its regions to draw: built on first use, then kept (plan_shapes.h). */
 #include <math.h>
 
+#include "core/base/clock.h"
+#include "core/base/parallel.h"
 #include "core/plan/plan_shapes.h"
 #include "core/plan/plan_surface.h"
+#include "core/surface/shape_distance.h"
+#include "core/surface/shape_make.h"
 
 struct wanted {
     struct plan *plan;
@@ -28,13 +32,43 @@ void plan_count_shape(const struct shape *shape, struct surface_facts *facts)
     }
 }
 
+/* What a shape is made from: with its inner boundary a region is its own univels alone. */
+static struct mask *mask_of(const struct plan *plan, size_t region, const struct shape_key *key, struct error *err)
+{
+    const struct region *what = &plan->regions.regions[region];
+    if (key->has_inner_boundary)
+        return mask_from_labels(plan->regions.layers[what->layer], &what->label, 1, parallel_cores(), err);
+    return mask_from_region(&plan->regions, region, parallel_cores(), err);
+}
+
+static struct shape *build_other(const struct plan *plan, const struct shape_name *name, struct surface_facts *facts, struct error *err)
+{
+    int64_t began_us = clock_now_us();
+    struct shape *shape = shape_make(&name->key, &plan->regions, name->region, 0, err);
+    if (!shape)
+        return NULL;
+    *facts = (struct surface_facts){ .build_ms = (double)(clock_now_us() - began_us) / 1000, .reduction = 1 };
+    struct mask *mask = mask_of(plan, name->region, &name->key, err);
+    if (!mask) {
+        shape_unref(shape);
+        return NULL;
+    }
+    facts->n_univels = mask_count(mask);
+    facts->univel_volume_mm3 = (double)facts->n_univels * fabs(affine_determinant(&mask->lps_mm_from_ijk));
+    mask_destroy(mask);
+    plan_count_shape(shape, facts);
+    if (name->key.representation == REPRESENTATION_FAN)
+        facts->volume_mm3 = NAN; /* its triangles overlap: it encloses nothing */
+    return shape;
+}
+
 static struct shape *build(void *context, const struct shape_name *name, struct surface_facts *facts, struct error *err)
 {
     const struct wanted *wanted = context;
     struct plan *plan = wanted->plan;
     struct shape *shape = NULL;
     if (name->key.representation != REPRESENTATION_SURFACE)
-        error_set(err, ERROR_UNSUPPORTED, "a region as \"%s\"", region_representation_word(name->key.representation));
+        shape = build_other(plan, name, facts, err);
     else if (name->detail == SURFACE_LIGHT)
         shape = plan_build_light_surface(plan, name->region, name->key.algorithm, wanted->reduction, facts, err);
     else
@@ -42,6 +76,22 @@ static struct shape *build(void *context, const struct shape_name *name, struct 
     if (!shape && err)
         error_prefix(err, "region \"%s\"", plan->regions.regions[name->region].name);
     return shape;
+}
+
+bool plan_shape_distance(const struct plan *plan, size_t region, const struct shape_key *key, const struct shape *shape,
+                         struct surface_facts *facts, struct error *err)
+{
+    const float *positions = shape->mesh ? shape->mesh->positions_lps_mm : shape->lines ? shape->lines->positions_lps_mm : shape->points->positions_lps_mm;
+    size_t n = shape->mesh ? shape->mesh->n_vertices : shape->lines ? shape->lines->n_vertices : shape->points->n_points;
+    struct shape_distance distance;
+    struct mask *mask = mask_of(plan, region, key, err);
+    bool is_measured = mask && shape_distance(mask, positions, n, 0, &distance, err);
+    mask_destroy(mask);
+    if (!is_measured)
+        return false;
+    facts->distance_mean_mm = distance.mean_mm;
+    facts->distance_max_mm = distance.max_mm;
+    return true;
 }
 
 struct shape *plan_shape(struct plan *plan, size_t region, const struct shape_key *key, enum surface_detail detail,

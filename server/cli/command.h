@@ -5,6 +5,7 @@
 enum exit_code { EXIT_DONE = 0, EXIT_REFUSED = 1, EXIT_USAGE = 2 };
 
 /* argv[0] is the subcommand's name. */
+int command_bench(int argc, char **argv);
 int command_convert(int argc, char **argv);
 int command_export(int argc, char **argv);
 int command_info(int argc, char **argv);

@@ -5,17 +5,15 @@
 #include <strings.h>
 
 #include "core/base/file_write.h"
-#include "core/surface/mesh_export.h"
 #include "server/cli/command.h"
 #include "server/cli/text.h"
+#include "server/wire/shape_query.h"
 
 #define FILE_MAX_BYTES ((uint64_t)8 << 30)
 
 struct export_job {
     const char *folder, *region, *out;
-    enum mesh_format format;
-    enum surface_algorithm algorithm;
-    bool is_faceted;
+    struct shape_query shape;
 };
 
 static void print_help(void)
@@ -23,7 +21,11 @@ static void print_help(void)
     printf("usage: beamroom export DIR REGION -o OUT.stl|OUT.ply|OUT.glb [OPTION]...\n"
            "Writes the surface of a region of the plan in the folder DIR, with everything inside it, for other programs.\n\n"
            "  -o, --output OUT  the file; its ending says whether binary STL, binary PLY or GLB (glTF 2.0)\n"
-           "  --algorithm NAME  marching-cubes (default); eight-cell, Sera3d's: through the centres of univels; smooth: without stairs\n"
+           "  --as WHAT         surface (default), univels, nurbs or fan: what the region is shown as\n"
+           "  --algorithm NAME  of a surface: smooth, marching-cubes or eight-cell, Sera3d's: through the centres of univels\n"
+           "  --order N         of NURBS: 2 linear, 3 quadratic, 4 cubic (default)\n"
+           "  --sampling HOW    of NURBS: traces (default) or degree-bins\n"
+           "  --bins N          of NURBS: control points around a slice, 8 to 360\n"
            "  --normals WHICH   vertex (default) or face: PLY and GLB without vertex normals, for flat shading\n"
            "  --help            this text\n\n"
            "REGION is an id, as beamroom info --json gives it. Points are mm toward the patient's left, back and top (DICOM LPS);\n"
@@ -55,12 +57,15 @@ static bool export_region(struct plan *plan, const struct export_job *job, struc
     if (!region)
         return false;
     struct surface_facts facts;
-    struct mesh *mesh = plan_surface(plan, (size_t)(region - plan->regions.regions), job->algorithm, SURFACE_FULL, &facts, err);
-    const struct mesh_export_about about = { plan->id, region->id, surface_algorithm_word(job->algorithm), plan->is_phantom, job->is_faceted,
+    const struct shape_query *query = &job->shape;
+    struct shape *shape = plan_shape(plan, (size_t)(region - plan->regions.regions), &query->key, SURFACE_FULL, &facts, err);
+    const char *method = query->key.representation == REPRESENTATION_SURFACE ? surface_algorithm_word(query->key.algorithm)
+                                                                             : region_representation_word(query->key.representation);
+    const struct mesh_export_about about = { plan->id, region->id, method, plan->is_phantom, query->is_faceted || (shape && shape->is_faceted),
                                              { region->rgb[0], region->rgb[1], region->rgb[2] } };
     size_t n_bytes = 0;
-    uint8_t *bytes = mesh ? mesh_export(mesh, job->format, &about, FILE_MAX_BYTES, &n_bytes, err) : NULL;
-    mesh_unref(mesh);
+    uint8_t *bytes = shape ? mesh_export(shape->mesh, query->format, &about, FILE_MAX_BYTES, &n_bytes, err) : NULL;
+    shape_unref(shape);
     bool is_written = bytes && file_write(job->out, bytes, n_bytes, err);
     free(bytes);
     if (is_written) {
@@ -71,55 +76,53 @@ static bool export_region(struct plan *plan, const struct export_job *job, struc
     return is_written;
 }
 
-static bool format_from_path(const char *path, enum mesh_format *format)
+/* The ending that says the format; NULL: none. */
+static const char *format_of_path(const char *path)
 {
+    static const char *const words[] = { "stl", "ply", "glb" };
     const char *dot = strrchr(path, '.');
-    for (enum mesh_format f = MESH_STL; dot && f <= MESH_GLB; f++)
-        if (strcasecmp(dot + 1, mesh_format_word(f)) == 0) {
-            *format = f;
-            return true;
-        }
-    return false;
+    for (size_t i = 0; dot && i < sizeof words / sizeof words[0]; i++)
+        if (strcasecmp(dot + 1, words[i]) == 0)
+            return words[i];
+    return NULL;
 }
 
-/* false with *code when there is nothing to write */
-static bool parse_arguments(int argc, char **argv, struct export_job *job, int *code)
+/* false with *code when there is nothing to write. What decides the shape is read as the API reads it. */
+static bool parse_arguments(int argc, char **argv, struct export_job *job, cJSON *words, int *code)
 {
-    static const struct option long_options[] = { { "output", required_argument, NULL, 'o' },
-                                                  { "algorithm", required_argument, NULL, 'a' },
-                                                  { "normals", required_argument, NULL, 'n' },
-                                                  { "help", no_argument, NULL, 'h' },
-                                                  { NULL, 0, NULL, 0 } };
+    static const struct option long_options[] = {
+        { "output", required_argument, NULL, 'o' },    { "as", required_argument, NULL, 'r' },   { "algorithm", required_argument, NULL, 'a' },
+        { "normals", required_argument, NULL, 'n' },   { "order", required_argument, NULL, 'd' }, { "sampling", required_argument, NULL, 's' },
+        { "bins", required_argument, NULL, 'b' },      { "help", no_argument, NULL, 'h' },       { NULL, 0, NULL, 0 }
+    };
     *code = EXIT_USAGE;
     opterr = 0;
-    for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
+    for (int option, at = -1; (option = getopt_long(argc, argv, "ho:", long_options, &at)) != -1;) {
         switch (option) {
         case 'o':
             job->out = optarg;
-            break;
-        case 'a':
-            if (!surface_algorithm_from_word(optarg, &job->algorithm))
-                return command_usage_error("export", "--algorithm '%s' is not marching-cubes, eight-cell or smooth", optarg), false;
-            break;
-        case 'n':
-            job->is_faceted = strcmp(optarg, "face") == 0;
-            if (!job->is_faceted && strcmp(optarg, "vertex") != 0)
-                return command_usage_error("export", "--normals '%s' is not vertex or face", optarg), false;
             break;
         case 'h':
             print_help();
             *code = EXIT_DONE;
             return false;
-        default:
+        case '?':
             return command_usage_error("export", "'%s' is not an option or lacks its value", argv[optind - 1]), false;
+        default:
+            cJSON_DeleteItemFromObjectCaseSensitive(words, option == 'r' ? "representation" : long_options[at].name);
+            cJSON_AddStringToObject(words, option == 'r' ? "representation" : long_options[at].name, optarg);
         }
     }
     if (argc - optind != 2)
         return command_usage_error("export", "one folder and one region are needed, %d words are given", argc - optind), false;
     if (!job->out)
         return command_usage_error("export", "where to write is needed: -o OUT.stl, OUT.ply or OUT.glb"), false;
-    if (!format_from_path(job->out, &job->format))
+    if (!format_of_path(job->out))
         return command_usage_error("export", "-o '%s' does not end in .stl, .ply or .glb", job->out), false;
+    cJSON_AddStringToObject(words, "format", format_of_path(job->out));
+    struct problem problem;
+    if (!shape_query_read(words, &job->shape, &problem))
+        return command_usage_error("export", "--%s", problem.detail), false;
     job->folder = argv[optind];
     job->region = argv[optind + 1];
     return true;
@@ -130,7 +133,10 @@ int command_export(int argc, char **argv)
     struct export_job job = { 0 };
     struct error err = { 0 };
     int code;
-    if (!parse_arguments(argc, argv, &job, &code))
+    cJSON *words = cJSON_CreateObject();
+    bool is_understood = parse_arguments(argc, argv, &job, words, &code);
+    cJSON_Delete(words);
+    if (!is_understood)
         return code;
     struct plan *plan = command_open_plan("export", job.folder);
     if (!plan)

@@ -10,6 +10,7 @@ static const struct command {
     const char *name, *about;
     int (*run)(int argc, char **argv);
 } commands[] = {
+    { "bench", "measure every way of showing the regions of plans", command_bench },
     { "convert", "write a plan of any format as a plan folder of our own", command_convert },
     { "export", "write the surface of a region as STL, PLY or GLB", command_export },
     { "info", "print what a plan holds and what was noticed while reading it", command_info },

@@ -6,7 +6,8 @@ enum {
     API_MAX_JOBS = 500,        /* ended ones are forgotten oldest first */
     API_MAX_PICTURES = 32,     /* asked of one plan and not answered yet; more are answered with 503 */
     API_MAX_PIXELS = 32 << 20, /* of these together; one alone may be larger */
-    API_MAX_FILES = 4          /* surfaces asked for as files and not answered yet, of all plans: each may have PACKET_MAX_BLOB bytes */
+    API_MAX_FILES = 4,         /* surfaces asked for as files and not answered yet, of all plans: each may have PACKET_MAX_BLOB bytes */
+    API_MAX_TIMINGS = 2        /* shapes being timed, of all plans */
 };
 
 struct api_job {
@@ -23,7 +24,7 @@ struct api {
     int64_t started_us;
     struct api_job jobs[API_MAX_JOBS];
     struct api_picture *pictures; /* being made */
-    size_t n_files;               /* being made */
+    size_t n_files, n_timings;    /* being made */
     size_t n_jobs;    /* ever made; the job of number n is at n % API_MAX_JOBS */
     _Atomic uint64_t n_calls[6], n_calls_us; /* by status / 100; time spent, for /metrics; counted by the HTTP thread */
 };

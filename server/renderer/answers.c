@@ -4,6 +4,7 @@
 
 #include "server/wire/document.h"
 #include "server/wire/packet.h"
+#include "wire_gen.h"
 
 static cJSON *point(struct vec3 p)
 {
@@ -15,44 +16,71 @@ static void add_number(cJSON *json, const char *name, double value)
     cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
 }
 
-cJSON *answer_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, bool is_faceted, struct problem *problem)
+static uint8_t *shape_file(const struct plan *plan, size_t region, const struct shape_query *query, const struct shape *shape, size_t *n_bytes,
+                           struct error *err)
+{
+    const struct region *what = &plan->regions.regions[region];
+    bool is_surface = query->key.representation == REPRESENTATION_SURFACE;
+    const struct mesh_export_about about = {
+        plan->id,         what->id,
+        is_surface ? surface_algorithm_word(query->key.algorithm) : region_representation_word(query->key.representation),
+        plan->is_phantom, query->is_faceted || shape->is_faceted,
+        { what->rgb[0], what->rgb[1], what->rgb[2] }
+    };
+    return mesh_export(shape->mesh, query->format, &about, PACKET_MAX_BLOB, n_bytes, err);
+}
+
+/* What decides the shape, in the words of the query. */
+static void add_key(cJSON *json, const struct shape_query *query)
+{
+    const struct shape_key *key = &query->key;
+    cJSON_AddStringToObject(json, "representation", region_representation_word(key->representation));
+    if (key->representation == REPRESENTATION_SURFACE) {
+        cJSON_AddStringToObject(json, "algorithm", surface_algorithm_word(key->algorithm));
+        cJSON_AddStringToObject(json, "normals", scene_normals_words.words[query->is_faceted]);
+    } else if (key->representation == REPRESENTATION_OUTLINE) {
+        cJSON_AddStringToObject(json, "outline", scene_outline_method_words.words[key->outline]);
+    } else if (key->representation == REPRESENTATION_POINTS || key->representation == REPRESENTATION_SOLID) {
+        cJSON_AddBoolToObject(json, "inner_boundary", key->has_inner_boundary);
+    } else if (key->representation == REPRESENTATION_NURBS) {
+        cJSON_AddNumberToObject(json, "order", key->nurbs_order);
+        cJSON_AddStringToObject(json, "sampling", scene_nurbs_sampling_words.words[key->nurbs_sampling]);
+        cJSON_AddNumberToObject(json, "bins", key->nurbs_bins);
+    }
+}
+
+cJSON *answer_shape(struct plan *plan, size_t region, const struct shape_query *query, uint8_t **file, size_t *n_file, struct problem *problem)
 {
     struct error err = { 0 };
     struct surface_facts facts;
-    struct mesh *mesh = plan_surface(plan, region, algorithm, SURFACE_FULL, &facts, &err);
-    if (!mesh) {
+    *file = NULL;
+    struct shape *shape = plan_shape(plan, region, &query->key, SURFACE_FULL, &facts, &err);
+    bool is_good = shape != NULL, has_mesh = shape && shape->kind == SHAPE_TRIANGLES;
+    if (shape && query->is_file)
+        is_good = (*file = shape_file(plan, region, query, shape, n_file, &err)) != NULL;
+    else if (shape)
+        is_good = plan_shape_distance(plan, region, &query->key, shape, &facts, &err);
+    shape_unref(shape);
+    if (!is_good) {
         problem_from_error(problem, &err);
         return NULL;
     }
-    mesh_unref(mesh);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "region", plan->regions.regions[region].id);
-    cJSON_AddStringToObject(json, "algorithm", surface_algorithm_word(algorithm));
-    cJSON_AddStringToObject(json, "normals", is_faceted ? "face" : "vertex");
+    add_key(json, query);
     add_number(json, "triangles", (double)facts.n_triangles);
     add_number(json, "vertices", (double)facts.n_vertices);
-    add_number(json, "area_mm2", facts.area_mm2);
-    add_number(json, "volume_mm3", facts.volume_mm3);
+    add_number(json, "lines", (double)facts.n_lines);
+    add_number(json, "points", (double)facts.n_points);
+    add_number(json, "area_mm2", has_mesh ? facts.area_mm2 : NAN);
+    add_number(json, "volume_mm3", has_mesh ? facts.volume_mm3 : NAN);
     add_number(json, "univel_volume_mm3", facts.univel_volume_mm3);
     add_number(json, "n_univels", (double)facts.n_univels);
+    add_number(json, "distance_mean_mm", facts.distance_mean_mm);
+    add_number(json, "distance_max_mm", facts.distance_max_mm);
+    add_number(json, "n_bytes", (double)facts.n_bytes);
     add_number(json, "ms", facts.build_ms);
     return json;
-}
-
-uint8_t *answer_surface_file(struct plan *plan, size_t region, enum surface_algorithm algorithm, bool is_faceted,
-                             enum mesh_format format, size_t *n_bytes, struct problem *problem)
-{
-    struct error err = { 0 };
-    struct surface_facts facts;
-    const struct region *what = &plan->regions.regions[region];
-    struct mesh *mesh = plan_surface(plan, region, algorithm, SURFACE_FULL, &facts, &err);
-    const struct mesh_export_about about = { plan->id, what->id, surface_algorithm_word(algorithm), plan->is_phantom, is_faceted,
-                                             { what->rgb[0], what->rgb[1], what->rgb[2] } };
-    uint8_t *bytes = mesh ? mesh_export(mesh, format, &about, PACKET_MAX_BLOB, n_bytes, &err) : NULL;
-    mesh_unref(mesh);
-    if (!bytes)
-        problem_from_error(problem, &err);
-    return bytes;
 }
 
 cJSON *answer_probe(const struct plan *plan, struct vec3 point_lps_mm)

@@ -1,14 +1,13 @@
 #pragma once
 /* Numbers about a plan as JSON bodies of the web API. Pure functions; any thread. */
 #include "core/render/render.h"
-#include "core/surface/mesh_export.h"
-#include "server/wire/json.h"
+#include "server/wire/shape_query.h"
 
-/* {region, algorithm, normals, triangles, vertices, area_mm2, volume_mm3, univel_volume_mm3, n_univels, ms}; NULL with problem */
-NODISCARD cJSON *answer_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, bool is_faceted, struct problem *problem);
-/* The same surface as a file of at most PACKET_MAX_BLOB bytes; free(). NULL with problem */
-NODISCARD uint8_t *answer_surface_file(struct plan *plan, size_t region, enum surface_algorithm algorithm, bool is_faceted,
-                                       enum mesh_format format, size_t *n_bytes, struct problem *problem);
+/* {region, representation, what else decides the shape, triangles, vertices, lines, points, area_mm2, volume_mm3, univel_volume_mm3, n_univels,
+ * distance_mean_mm, distance_max_mm, n_bytes, ms}; null where a shape has no such figure. When the query wants a file also its bytes, at
+ * most PACKET_MAX_BLOB, to free(). NULL with problem */
+NODISCARD cJSON *answer_shape(struct plan *plan, size_t region, const struct shape_query *query, uint8_t **file, size_t *n_file,
+                              struct problem *problem);
 /* {point_lps_mm, regions: [id], images: [{id, value, unit}], doses: [{id, quantity, per_ppm, value, unit, per}]}; innermost region first */
 NODISCARD cJSON *answer_probe(const struct plan *plan, struct vec3 point_lps_mm);
 /* {hits: [{point_lps_mm, region: id | null, distance_mm}]}, front to back */

@@ -55,15 +55,7 @@ static void answer(struct loader *loader, struct plan *plan, struct question *qu
     struct note note = { .type = NOTE_ANSWER, .id = question->id };
     switch (question->what) {
     case QUESTION_SURFACE:
-        note.body = answer_surface(plan, question->region, question->algorithm, question->is_faceted, &note.problem);
-        if (note.body && question->is_file) {
-            note.blob = answer_surface_file(plan, question->region, question->algorithm, question->is_faceted, question->format, &note.n_blob,
-                                            &note.problem);
-            if (!note.blob) {
-                cJSON_Delete(note.body);
-                note.body = NULL;
-            }
-        }
+        note.body = answer_shape(plan, question->region, &question->shape, &note.blob, &note.n_blob, &note.problem);
         break;
     case QUESTION_PROBE: note.body = answer_probe(plan, question->point_lps_mm); break;
     case QUESTION_PICK: note.body = answer_pick(question->snapshot, question->px, question->py); break;

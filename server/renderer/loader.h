@@ -1,18 +1,15 @@
 #pragma once
 /* The threads that read the plan, build surfaces ahead, and answer questions that need no picture. */
-#include "core/surface/mesh_export.h"
 #include "server/renderer/desk.h"
+#include "server/wire/shape_query.h"
 
 struct loader;
 
 struct question {
     enum { QUESTION_SURFACE, QUESTION_PROBE, QUESTION_PICK } what;
     uint64_t id;
-    size_t region;   /* surface */
-    bool is_faceted; /* surface: normals "face" */
-    enum surface_algorithm algorithm; /* surface */
-    bool is_file;    /* surface: also as a file of this format */
-    enum mesh_format format;
+    size_t region;            /* surface */
+    struct shape_query shape; /* surface */
     struct vec3 point_lps_mm;
     struct snapshot *snapshot; /* pick: one reference, taken */
     double px, py;

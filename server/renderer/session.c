@@ -313,20 +313,14 @@ static bool read_question(struct session *session, uint64_t id, const cJSON *jso
     struct problem problem;
     *question = (struct question){ .id = id };
     if (what && strcmp(what, "surface") == 0) {
-        const char *name = json_text(json, "region"), *format = json_text(json, "format");
-        const char *algorithm = json_text(json, "algorithm");
+        const char *name = json_text(json, "region");
         const struct region *region = region_find(&session->plan->regions, name ? name : "");
         question->what = QUESTION_SURFACE;
-        if (algorithm && !surface_algorithm_from_word(algorithm, &question->algorithm)) {
-            problem_set(&problem, PROBLEM_VALIDATION, "/algorithm", "enum", "algorithm is \"%.40s\", expected marching-cubes, eight-cell or smooth",
-                        algorithm);
-        } else if (format && !(question->is_file = mesh_format_from_word(format, &question->format)) && strcmp(format, "json") != 0) {
-            problem_set(&problem, PROBLEM_VALIDATION, "/format", "enum", "format is \"%.40s\", expected json, stl, ply or glb", format);
-        } else if (!region) {
+        if (!region)
             problem_set(&problem, PROBLEM_NOT_FOUND, "/region", "", "the plan has no region \"%.64s\"", name ? name : "");
-        } else {
+        else if (shape_query_read(json, &question->shape, &problem)) {
             question->region = (size_t)(region - session->plan->regions.regions);
-            return is_one_of(session, id, json, "normals", "vertex", "face", &question->is_faceted);
+            return true;
         }
     } else if (what && strcmp(what, "probe") == 0) {
         question->what = QUESTION_PROBE;

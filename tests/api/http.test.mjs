@@ -205,7 +205,7 @@ describe('a plan', () => {
   });
 
   test('gives the surface of a region, whose volume is that of its univels', async () => {
-    const { json } = await call(`${plan}/regions/brain/surface`);
+    const { json } = await call(`${plan}/regions/brain/surface?algorithm=marching-cubes`);
     assert.equal(json.algorithm, 'marching-cubes');
     assert.ok(json.triangles > 50000 && json.vertices > 25000);
     assert.ok(Math.abs(json.volume_mm3 / json.univel_volume_mm3 - 1) < 0.01, JSON.stringify(json));
@@ -219,6 +219,26 @@ describe('a plan', () => {
     assert.ok(Math.abs(smooth.volume_mm3 / json.univel_volume_mm3 - 1) < 0.0015 && smooth.area_mm2 < 0.95 * json.area_mm2, JSON.stringify(smooth));
     assertProblem(await call(`${plan}/regions/liver/surface`), 404, 'not-found');
     assertProblem(await call(`${plan}/regions/brain/surface?algorithm=magic`), 422, 'validation', '/algorithm');
+  });
+
+  test('gives the figures of every way to show a region, and how fast it is drawn', async () => {
+    const shape = async (query) => (await call(`${plan}/regions/tumour/surface?${query}`)).json;
+    const univels = await shape('representation=univels&frames=3');
+    assert.ok(Math.abs(univels.volume_mm3 - univels.univel_volume_mm3) < 1e-3 * univels.univel_volume_mm3);
+    assert.ok(univels.distance_max_mm < 1e-3 && univels.draw_ms > 0, JSON.stringify(univels));
+    assert.ok(Math.abs(univels.frames_per_second - 1000 / univels.draw_ms) < 1e-6 * univels.frames_per_second);
+    for (const representation of ['points', 'solid']) {
+      const points = await shape(`representation=${representation}`);
+      assert.ok(points.points > 100 && points.triangles === 0 && points.area_mm2 === null && points.draw_ms === undefined, JSON.stringify(points));
+    }
+    assert.ok((await shape('representation=outline')).lines > 3);
+    const fan = await shape('representation=fan');
+    assert.ok(fan.triangles > 100 && fan.volume_mm3 === null, 'overlapping triangles enclose nothing');
+    const spline = await shape('representation=nurbs&order=3&bins=24');
+    assert.deepEqual([spline.representation, spline.order, spline.sampling, spline.bins], ['nurbs', 3, 'traces', 24]);
+    assert.ok(spline.distance_mean_mm < spline.distance_max_mm && spline.distance_max_mm < 10, JSON.stringify(spline));
+    assertProblem(await call(`${plan}/regions/tumour/surface?representation=points&format=stl`), 422, 'validation', '/format');
+    assertProblem(await call(`${plan}/regions/tumour/surface?representation=nurbs&order=9`), 422, 'validation', '/order');
   });
 
   test('gives the surface as a file whose size is that of its triangles, to be saved under the names of plan and region', async () => {

@@ -1,0 +1,40 @@
+#pragma once
+/* Every way of showing every region of a plan, measured, and set beside what the thesis on Sera3d measured. */
+#include "core/render/render.h"
+#include "core/surface/shape.h"
+
+enum { BENCH_MAX_METHODS = 24, BENCH_SIZE_PX = 650 }; /* Sera3d's window */
+
+/* One region by one method. */
+struct bench_row {
+    char region[REGION_NAME_SIZE];
+    const char *method; /* borrowed: a constant */
+    struct surface_facts facts;
+    double made_ms; /* median */
+    double draw_ms; /* median, the region alone, full detail, turning; not-a-number when it was not drawn */
+    char refusal[240]; /* not "": why there is no such shape */
+};
+
+struct bench_plan {
+    char name[128];
+    bool is_phantom;
+    struct bench_row *rows; /* [n_rows] */
+    size_t n_rows;
+    /* the thesis's Table 1, on the plan's largest region */
+    char scalp[REGION_NAME_SIZE];
+    struct bench_row table1[3]; /* 8-cell with face normals, 8-cell with vertex normals, marching cubes */
+    double slice_fps;           /* Table 2: one slice inlaid; not-a-number without an image */
+};
+
+struct bench_machine {
+    char processor[128], system[128], back_end[160];
+    int n_cores;
+};
+void bench_machine_look(struct bench_machine *machine, const struct render_facts *facts);
+
+/* Measures one plan. n_repeats builds and 5 n_repeats pictures of each. errors those of rendering */
+NODISCARD bool bench_measure(struct plan *plan, struct renderer *renderer, int n_repeats, struct bench_plan *result, struct error *err);
+void bench_plan_finish(struct bench_plan *result);
+
+/* The page as Markdown, to free(). */
+NODISCARD char *bench_page(const struct bench_machine *machine, const struct bench_plan *plans, size_t n_plans);

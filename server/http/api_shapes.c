@@ -1,0 +1,205 @@
+/* The shape of a region: its figures, how fast it is drawn, or the shape itself as a file. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "server/http/api_inner.h"
+#include "server/wire/document.h"
+#include "server/wire/shape_query.h"
+
+enum { TIMED_PX = 650 }; /* the window in which Sera3d's frame rates were taken */
+
+/* The files a surface is given as. What they are is said here and not by the renderer. PLY has no registered type. */
+static const char *media_type(enum mesh_format format)
+{
+    return format == MESH_STL ? "model/stl" : format == MESH_GLB ? "model/gltf-binary" : "application/octet-stream";
+}
+
+/* One call under way. */
+struct shape_wish {
+    char plan_id[64], region[64];
+    struct shape_query query;
+    cJSON *body;          /* the figures, while pictures are timed */
+    cJSON *render;        /* the packet that asks for one */
+    double draw_ms[SHAPE_QUERY_MAX_FRAMES];
+    int n_drawn;          /* -1: the first, which is not counted, is still to come */
+};
+
+static void wish_destroy(struct api *api, struct shape_wish *wish)
+{
+    api->n_files -= wish->query.is_file;
+    api->n_timings -= !wish->query.is_file && wish->query.n_frames > 0;
+    cJSON_Delete(wish->body);
+    cJSON_Delete(wish->render);
+    free(wish);
+}
+
+static void refuse(struct call *call, struct shape_wish *wish, const struct problem *problem)
+{
+    wish_destroy(call->api, wish);
+    call_answer_problem(call, problem);
+}
+
+static void file_came(struct call *call, struct shape_wish *wish, struct packet *answer)
+{
+    struct problem broken;
+    if (!answer->blob) {
+        problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no surface");
+        refuse(call, wish, &broken);
+        return;
+    }
+    char disposition[192]; /* ids need no quoting */
+    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%.63s-%.63s.%s\"", wish->plan_id, wish->region,
+                   mesh_format_word(wish->query.format));
+    call_add_header(call, "Content-Disposition", disposition);
+    uint8_t *bytes = answer->blob;
+    answer->blob = NULL;
+    const char *type = media_type(wish->query.format);
+    wish_destroy(call->api, wish);
+    call_answer_bytes(call, 200, type, bytes, answer->n_blob);
+}
+
+/* ---- frames per second ---------------------------------------------------------------------------------------------------------- */
+
+static int compare_numbers(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void picture_came(void *context, struct packet *answer, const struct problem *problem);
+
+static void ask_picture(struct call *call, struct shape_wish *wish)
+{
+    const struct api *api = call->api;
+    (void)fleet_request(net_fleet(api->net), wish->plan_id, wish->render, picture_came, call);
+}
+
+static void picture_came(void *context, struct packet *answer, const struct problem *problem)
+{
+    struct call *call = context;
+    struct shape_wish *wish = call->context;
+    if (problem) {
+        refuse(call, wish, problem);
+        return;
+    }
+    if (wish->n_drawn >= 0)
+        wish->draw_ms[wish->n_drawn] = json_number(answer->json, "render_us", 0) / 1000;
+    if (++wish->n_drawn < wish->query.n_frames) {
+        ask_picture(call, wish);
+        return;
+    }
+    qsort(wish->draw_ms, (size_t)wish->n_drawn, sizeof wish->draw_ms[0], compare_numbers);
+    double median_ms = wish->draw_ms[wish->n_drawn / 2];
+    cJSON *body = wish->body;
+    wish->body = NULL;
+    cJSON_AddNumberToObject(body, "draw_ms", median_ms);
+    if (median_ms > 0)
+        cJSON_AddNumberToObject(body, "frames_per_second", 1000 / median_ms);
+    wish_destroy(call->api, wish);
+    call_answer_json(call, 200, body);
+}
+
+/* The region alone in the plan's own scene, at full detail, as while it moves. */
+static cJSON *timed_picture(const struct fleet_plan *plan, const struct shape_wish *wish, struct problem *problem)
+{
+    cJSON *patch = shape_query_scene(&wish->query, wish->region, plan->default_scene);
+    cJSON *scene = scene_document_patch(plan->default_scene, plan->image_ids, plan->default_scene, patch, problem);
+    cJSON_Delete(patch);
+    cJSON *size = cJSON_CreateObject();
+    cJSON_AddItemToObject(size, "size_px", cJSON_CreateIntArray((const int[]){ TIMED_PX, TIMED_PX }, 2));
+    cJSON *view = scene ? view_document_patch(NULL, size, problem) : NULL;
+    cJSON_Delete(size);
+    if (!view) {
+        cJSON_Delete(scene);
+        return NULL;
+    }
+    cJSON *packet = cJSON_CreateObject();
+    cJSON_AddStringToObject(packet, "type", "render");
+    cJSON_AddItemToObject(packet, "scene", scene);
+    cJSON_AddItemToObject(packet, "view", view);
+    cJSON_AddNumberToObject(packet, "quality", 50);
+    cJSON_AddStringToObject(packet, "codec", "jpeg");
+    cJSON_AddStringToObject(packet, "detail", "full");
+    cJSON_AddBoolToObject(packet, "still", false);
+    return packet;
+}
+
+static void shape_came(void *context, struct packet *answer, const struct problem *problem)
+{
+    struct call *call = context;
+    const struct api *api = call->api;
+    struct shape_wish *wish = call->context;
+    struct fleet_plan plan;
+    struct problem broken;
+    if (problem) {
+        refuse(call, wish, problem);
+        return;
+    }
+    if (wish->query.is_file) {
+        file_came(call, wish, answer);
+        return;
+    }
+    if (wish->query.n_frames == 0) {
+        wish_destroy(call->api, wish);
+        api_query_came(call, answer, NULL);
+        return;
+    }
+    wish->body = cJSON_DetachItemFromObjectCaseSensitive(answer->json, "body");
+    if (!wish->body)
+        problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no body");
+    else if (!fleet_plan_find(net_fleet(api->net), wish->plan_id, &plan) || !plan.default_scene)
+        problem_set(&broken, PROBLEM_BUSY, "", "", "the plan was closed meanwhile");
+    else
+        wish->render = timed_picture(&plan, wish, &broken);
+    if (!wish->render) {
+        refuse(call, wish, &broken);
+        return;
+    }
+    wish->n_drawn = -1;
+    ask_picture(call, wish);
+}
+
+/* Both hold much for long. */
+static bool is_free(struct api *api, const struct shape_query *query, struct problem *problem)
+{
+    if (query->is_file && api->n_files == API_MAX_FILES)
+        problem_set(problem, PROBLEM_BUSY, "", "", "%zu surfaces are being written already", api->n_files);
+    else if (query->n_frames > 0 && api->n_timings == API_MAX_TIMINGS)
+        problem_set(problem, PROBLEM_BUSY, "", "", "%zu shapes are being timed already", api->n_timings);
+    else
+        return true;
+    problem->retry_after_ms = 1000;
+    return false;
+}
+
+void api_plan_surface(struct api *api, struct call *call)
+{
+    struct fleet_plan plan;
+    struct problem problem;
+    struct shape_query shape;
+    if (!fleet_plan_find(net_fleet(api->net), call->ids[0], &plan)) {
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no plan \"%.63s\"", call->ids[0]);
+        call_answer_problem(call, &problem);
+        return;
+    }
+    cJSON *query = api_new_query("surface");
+    cJSON_AddStringToObject(query, "region", call->ids[1]);
+    for (const char *const *name = shape_query_names; *name; name++)
+        if (call_query(call, *name))
+            cJSON_AddStringToObject(query, *name, call_query(call, *name));
+    if (!shape_query_read(query, &shape, &problem) || !is_free(api, &shape, &problem)) {
+        cJSON_Delete(query);
+        call_answer_problem(call, &problem);
+        return;
+    }
+    struct shape_wish *wish = mem_new(sizeof *wish);
+    (void)snprintf(wish->plan_id, sizeof wish->plan_id, "%s", call->ids[0]);
+    (void)snprintf(wish->region, sizeof wish->region, "%s", call->ids[1]);
+    wish->query = shape;
+    api->n_files += shape.is_file;
+    api->n_timings += !shape.is_file && shape.n_frames > 0;
+    call->context = wish;
+    api_ask(api, call, wish->plan_id, query, shape_came);
+}
