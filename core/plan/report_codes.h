@@ -119,6 +119,26 @@
       "Where the dose is valid was taken from its points.")                                                                        \
     X("dose.negative", "A dose holds negative values.", "They are kept; check the source.")                                       \
     X("dose.mask-grid", "The mask of a dose lies on another grid than the dose.", "It is looked up by position.")                 \
+    X("beam.left-out", "A beam of a treatment plan cannot be placed in the patient, or is for setting up only.", \
+      "It is not shown; see the line.") \
+    X("beam.none", "A treatment plan has no external beam.", \
+      "Nothing.") \
+    X("beam.position-assumed", "A treatment plan does not say how the patient lies.", \
+      "Check the side a beam comes from.") \
+    X("beam.distance-assumed", "A treatment plan does not say how far the source is.", \
+      "The line begins at an assumed distance; its direction is right.") \
+    X("beam.angle-assumed", "A treatment plan does not give the angle of the gantry.", \
+      "Check the side a beam comes from.") \
+    X("beam.moves", "Table or isocentre move during a beam.", \
+      "The beam is shown as it starts.") \
+    X("beam.pitch", "The gantry is pitched, which is not regarded.", \
+      "The beam's direction is wrong by that angle.") \
+    X("beam.arc", "The gantry turns during a beam.", \
+      "The line is shown where it starts; start and stop are in the list of beams.") \
+    X("beam.control-points", "A treatment plan says another number of control points than it has.", \
+      "Those it has were taken; check the file.") \
+    X("beam.frame-differs", "A treatment plan is in another frame of reference than the image.", \
+      "Its beams may be shifted: check them.") \
     X("beam.from-tracks", "No beam is given; it was taken from the beam line of the tracks.", "Its aperture is unknown.")         \
     X("tracks.unsupported", "A track file is in a format this version does not read.", "The rest is shown without it.")           \
     X("tracks.unit-assumed", "The unit of a track file was decided by comparing it with the patient.",                             \

@@ -15,7 +15,7 @@ def area_mm2(points):
 
 
 for path in sys.argv[1:]:
-    data = pydicom.dcmread(path)
+    data = pydicom.dcmread(path, force=True)
     kinds = {o.ReferencedROINumber: o.get("RTROIInterpretedType", "") for o in data.get("RTROIObservationsSequence", [])}
     drawn = {c.ReferencedROINumber: c for c in data.ROIContourSequence}
     for roi in data.StructureSetROISequence:

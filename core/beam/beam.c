@@ -1,0 +1,75 @@
+#include "core/beam/beam.h"
+
+#include <string.h>
+
+static const char *const position_words[] = { "", "HFS", "HFP", "FFS", "FFP", "HFDR", "HFDL", "FFDR", "FFDL" };
+enum { N_POSITIONS = sizeof position_words / sizeof position_words[0] };
+
+const char *patient_position_word(enum patient_position position)
+{
+    return position_words[position];
+}
+
+bool patient_position_from_word(const char *word, enum patient_position *position)
+{
+    for (int i = 1; i < N_POSITIONS; i++)
+        if (strcmp(word, position_words[i]) == 0) {
+            *position = (enum patient_position)i;
+            return true;
+        }
+    return false;
+}
+
+static double cosine(double deg)
+{
+    return cos(deg * MATH_PI / 180);
+}
+
+static double sine(double deg)
+{
+    return sin(deg * MATH_PI / 180);
+}
+
+/* By the right-hand rule. */
+static struct vec3 about_x(struct vec3 p, double deg)
+{
+    return vec3(p.x, p.y * cosine(deg) - p.z * sine(deg), p.y * sine(deg) + p.z * cosine(deg));
+}
+
+static struct vec3 about_y(struct vec3 p, double deg)
+{
+    return vec3(p.x * cosine(deg) + p.z * sine(deg), p.y, p.z * cosine(deg) - p.x * sine(deg));
+}
+
+static struct vec3 about_z(struct vec3 p, double deg)
+{
+    return vec3(p.x * cosine(deg) - p.y * sine(deg), p.x * sine(deg) + p.y * cosine(deg), p.z);
+}
+
+/* Where the patient's left, back and head point on the table: +x to the right of who stands at its foot and looks to the gantry, +y to
+ * the gantry, +z up. The left is always head x front. */
+static void patient_axes(enum patient_position position, struct vec3 *left, struct vec3 *back, struct vec3 *head)
+{
+    bool is_feet_first = position == PATIENT_FFS || position == PATIENT_FFP || position == PATIENT_FFDR || position == PATIENT_FFDL;
+    *head = vec3(0, is_feet_first ? -1 : 1, 0);
+    switch (position) {
+    case PATIENT_HFP:
+    case PATIENT_FFP: *back = vec3(0, 0, 1); break;
+    case PATIENT_HFDR: /* on the right side, the front turns to the left of who looks */
+    case PATIENT_FFDL: *back = vec3(1, 0, 0); break;
+    case PATIENT_HFDL:
+    case PATIENT_FFDR: *back = vec3(-1, 0, 0); break;
+    default: *back = vec3(0, 0, -1);
+    }
+    *left = vec3_cross(*back, *head);
+}
+
+struct vec3 beam_patient_from_gantry(struct vec3 point_gantry_mm, const struct beam_angles *angles, enum patient_position position)
+{
+    struct vec3 room = about_y(point_gantry_mm, angles->gantry_deg);
+    struct vec3 table = about_z(room, -(angles->couch_deg + angles->eccentric_deg));
+    struct vec3 top = about_y(about_x(table, -angles->pitch_deg), -angles->roll_deg);
+    struct vec3 left, back, head;
+    patient_axes(position, &left, &back, &head);
+    return vec3(vec3_dot(top, left), vec3_dot(top, back), vec3_dot(top, head));
+}

@@ -1,0 +1,408 @@
+#include "core/formats/dicom/dicom_rtplan.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/formats/dicom/dicom_rtplan_opening.h"
+
+#define RTPLAN_CLASS "1.2.840.10008.5.1.4.1.1.481.5"
+#define RTIONPLAN_CLASS "1.2.840.10008.5.1.4.1.1.481.8"
+#define ASSUMED_SAD_MM 1000.0
+#define FURTHEST_MM 1e5 /* isocentres and sources beyond are no numbers of a patient */
+
+enum {
+    SOP_CLASS = DICOM_TAG(0x0008, 0x0016),
+    SOP_INSTANCE = DICOM_TAG(0x0008, 0x0018),
+    MODALITY = DICOM_TAG(0x0008, 0x0060),
+    REFERENCED_INSTANCE = DICOM_TAG(0x0008, 0x1155),
+    PATIENT_POSITION = DICOM_TAG(0x0018, 0x5100),
+    FRAME_UID = DICOM_TAG(0x0020, 0x0052),
+    PLAN_LABEL = DICOM_TAG(0x300a, 0x0002),
+    PLAN_NAME = DICOM_TAG(0x300a, 0x0003),
+    PLAN_DESCRIPTION = DICOM_TAG(0x300a, 0x0004),
+    PLAN_INTENT = DICOM_TAG(0x300a, 0x000a),
+    PLAN_GEOMETRY = DICOM_TAG(0x300a, 0x000c),
+    PRESCRIPTION = DICOM_TAG(0x300a, 0x000e),
+    DOSE_REFERENCE_SEQUENCE = DICOM_TAG(0x300a, 0x0010),
+    DOSE_REFERENCE_TYPE = DICOM_TAG(0x300a, 0x0020),
+    TARGET_DOSE = DICOM_TAG(0x300a, 0x0026),
+    FRACTION_SEQUENCE = DICOM_TAG(0x300a, 0x0070),
+    N_FRACTIONS = DICOM_TAG(0x300a, 0x0078),
+    BEAM_DOSE = DICOM_TAG(0x300a, 0x0084),
+    BEAM_METERSET = DICOM_TAG(0x300a, 0x0086),
+    BEAM_SEQUENCE = DICOM_TAG(0x300a, 0x00b0),
+    MACHINE_NAME = DICOM_TAG(0x300a, 0x00b2),
+    METERSET_UNIT = DICOM_TAG(0x300a, 0x00b3),
+    SOURCE_AXIS_DISTANCE = DICOM_TAG(0x300a, 0x00b4),
+    BEAM_NUMBER = DICOM_TAG(0x300a, 0x00c0),
+    BEAM_NAME = DICOM_TAG(0x300a, 0x00c2),
+    BEAM_DESCRIPTION = DICOM_TAG(0x300a, 0x00c3),
+    RADIATION_TYPE = DICOM_TAG(0x300a, 0x00c6),
+    DELIVERY_TYPE = DICOM_TAG(0x300a, 0x00ce),
+    N_CONTROL_POINTS = DICOM_TAG(0x300a, 0x0110),
+    CONTROL_POINT_SEQUENCE = DICOM_TAG(0x300a, 0x0111),
+    BEAM_ENERGY = DICOM_TAG(0x300a, 0x0114),
+    GANTRY_ANGLE = DICOM_TAG(0x300a, 0x011e),
+    GANTRY_DIRECTION = DICOM_TAG(0x300a, 0x011f),
+    COLLIMATOR_ANGLE = DICOM_TAG(0x300a, 0x0120),
+    SUPPORT_ANGLE = DICOM_TAG(0x300a, 0x0122),
+    ECCENTRIC_ANGLE = DICOM_TAG(0x300a, 0x0125),
+    ISOCENTRE = DICOM_TAG(0x300a, 0x012c),
+    SURFACE_DISTANCE = DICOM_TAG(0x300a, 0x0130),
+    PITCH_ANGLE = DICOM_TAG(0x300a, 0x0140),
+    ROLL_ANGLE = DICOM_TAG(0x300a, 0x0144),
+    GANTRY_PITCH_ANGLE = DICOM_TAG(0x300a, 0x014a),
+    SETUP_SEQUENCE = DICOM_TAG(0x300a, 0x0180),
+    SETUP_NUMBER = DICOM_TAG(0x300a, 0x0182),
+    VIRTUAL_DISTANCES = DICOM_TAG(0x300a, 0x030a),
+    ION_BEAM_SEQUENCE = DICOM_TAG(0x300a, 0x03a2),
+    ION_CONTROL_POINT_SEQUENCE = DICOM_TAG(0x300a, 0x03a8),
+    REFERENCED_BEAM_SEQUENCE = DICOM_TAG(0x300c, 0x0004),
+    REFERENCED_BEAM = DICOM_TAG(0x300c, 0x0006),
+    REFERENCED_STRUCT_SEQUENCE = DICOM_TAG(0x300c, 0x0060),
+    REFERENCED_SETUP = DICOM_TAG(0x300c, 0x006a)
+};
+
+struct reading {
+    const struct dicom_item *root;
+    struct rtplan *plan;
+    struct opening *opening;
+    const char *where;
+    struct report *report;
+};
+
+/* ---- a beam ----------------------------------------------------------------------------------------------------------------------- */
+
+static bool left_out(const struct reading *reading, const struct beam *beam, const char *why)
+{
+    report_add(reading->report, REPORT_WARNING, "beam.left-out", reading->where, "Beam \"%s\" %s; it is not shown.", beam->name, why);
+    return false;
+}
+
+/* Of the setup the beam refers to; the only one there is when it refers to none. */
+static enum patient_position position_of(const struct reading *reading, const struct dicom_item *beam_item, const struct beam *beam)
+{
+    size_t n = dicom_n_items(reading->root, SETUP_SEQUENCE);
+    int64_t wanted;
+    bool is_wanted = dicom_integer(beam_item, REFERENCED_SETUP, &wanted);
+    for (size_t i = 0; i < n; i++) {
+        const struct dicom_item *setup = dicom_item_at(reading->root, SETUP_SEQUENCE, i);
+        int64_t number;
+        if (is_wanted && n > 1 && (!dicom_integer(setup, SETUP_NUMBER, &number) || number != wanted))
+            continue;
+        char word[17];
+        enum patient_position position;
+        if (!dicom_text(setup, PATIENT_POSITION, word, sizeof word))
+            break;
+        if (patient_position_from_word(word, &position))
+            return position;
+        report_add(reading->report, REPORT_WARNING, "beam.position-assumed", reading->where,
+                   "Beam \"%s\": the patient's position is \"%s\", which is not known; head first, on the back (HFS) was taken.", beam->name,
+                   word);
+        return PATIENT_HFS;
+    }
+    report_add(reading->report, REPORT_WARNING, "beam.position-assumed", reading->where,
+               "Beam \"%s\": the plan does not say how the patient lies; head first, on the back (HFS) was taken.", beam->name);
+    return PATIENT_HFS;
+}
+
+static void fill_unknown(struct beam_delivery *d)
+{
+    *d = (struct beam_delivery){ 0 };
+    d->gantry_deg = d->collimator_deg = d->couch_deg = d->energy_mev = d->gantry_stop_deg = NAN;
+    d->sad_mm = d->ssd_mm = d->opening_cm2 = d->dose_gy = d->meterset = NAN;
+    for (int i = 0; i < 2; i++)
+        d->jaws_x_mm[i] = d->jaws_y_mm[i] = d->opening_x_mm[i] = d->opening_y_mm[i] = NAN;
+}
+
+static bool read_distance(const struct dicom_item *item, uint32_t tag, double *mm)
+{
+    double value;
+    if (!dicom_number(item, tag, &value) || !(value > 0 && value <= FURTHEST_MM))
+        return false;
+    *mm = value;
+    return true;
+}
+
+static void read_words(const struct reading *reading, const struct dicom_item *item, size_t index, struct beam *beam)
+{
+    struct beam_delivery *d = &beam->delivery;
+    if (!dicom_integer(item, BEAM_NUMBER, &d->number))
+        d->number = (int64_t)index + 1;
+    if (!dicom_text(item, BEAM_NAME, beam->name, sizeof beam->name) && !dicom_text(item, BEAM_DESCRIPTION, beam->name, sizeof beam->name))
+        snprintf(beam->name, sizeof beam->name, "Beam %lld", (long long)d->number);
+    snprintf(beam->id, sizeof beam->id, "%.*s", (int)sizeof beam->id - 1, beam->name);
+    dicom_text(item, RADIATION_TYPE, d->radiation, sizeof d->radiation);
+    dicom_text(item, MACHINE_NAME, d->machine, sizeof d->machine);
+    dicom_text(item, METERSET_UNIT, d->meterset_unit, sizeof d->meterset_unit);
+    if (!read_distance(item, SOURCE_AXIS_DISTANCE, &d->sad_mm) && !read_distance(item, VIRTUAL_DISTANCES, &d->sad_mm)) {
+        d->sad_mm = ASSUMED_SAD_MM;
+        report_add(reading->report, REPORT_WARNING, "beam.distance-assumed", reading->where,
+                   "Beam \"%s\": the plan does not say how far the source is from the isocentre; %g mm was taken.", beam->name,
+                   ASSUMED_SAD_MM);
+    }
+}
+
+/* What the control points say as they go by; each inherits what it does not say from the one before. */
+struct course {
+    struct beam_angles angles;
+    double collimator_deg;
+    struct vec3 isocentre_lps_mm;
+    bool has_gantry, has_isocentre;
+    bool moves_isocentre, moves_couch, has_gantry_pitch;
+    char direction[8];
+};
+
+static void read_angle(const struct dicom_item *item, uint32_t tag, double *deg)
+{
+    double value;
+    if (dicom_number(item, tag, &value) && fabs(value) <= 36000)
+        *deg = value;
+}
+
+/* From one control point to the next, by the direction the first of them gives. */
+static double travelled_deg(double from_deg, double to_deg, const char *direction)
+{
+    double clockwise = fmod(to_deg - from_deg, 360);
+    clockwise += clockwise < 0 ? 360 : 0;
+    if (strcmp(direction, "CW") == 0)
+        return clockwise;
+    if (strcmp(direction, "CC") == 0)
+        return clockwise > 0 ? clockwise - 360 : 0;
+    return clockwise > 180 ? clockwise - 360 : clockwise; /* no direction: the shorter way */
+}
+
+static void read_control_point(struct course *course, const struct dicom_item *item, bool is_first, struct beam_delivery *d)
+{
+    double gantry_before = course->angles.gantry_deg, couch_before = course->angles.couch_deg, at[3], pitch = 0;
+    course->has_gantry |= dicom_number(item, GANTRY_ANGLE, &pitch);
+    read_angle(item, GANTRY_ANGLE, &course->angles.gantry_deg);
+    read_angle(item, SUPPORT_ANGLE, &course->angles.couch_deg);
+    read_angle(item, ECCENTRIC_ANGLE, &course->angles.eccentric_deg);
+    read_angle(item, PITCH_ANGLE, &course->angles.pitch_deg);
+    read_angle(item, ROLL_ANGLE, &course->angles.roll_deg);
+    read_angle(item, COLLIMATOR_ANGLE, &course->collimator_deg);
+    course->has_gantry_pitch |= dicom_number(item, GANTRY_PITCH_ANGLE, &pitch) && fabs(pitch) > 0.01;
+    if (dicom_numbers(item, ISOCENTRE, at, 3) == 3 && fabs(at[0]) <= FURTHEST_MM && fabs(at[1]) <= FURTHEST_MM && fabs(at[2]) <= FURTHEST_MM) {
+        struct vec3 isocentre = vec3(at[0], at[1], at[2]);
+        if (!course->has_isocentre)
+            course->isocentre_lps_mm = isocentre;
+        course->moves_isocentre |= vec3_length(vec3_sub(isocentre, course->isocentre_lps_mm)) > 0.1;
+        course->has_isocentre = true;
+    }
+    if (is_first) {
+        dicom_number(item, BEAM_ENERGY, &d->energy_mev);
+        read_distance(item, SURFACE_DISTANCE, &d->ssd_mm);
+    } else {
+        d->gantry_travel_deg += travelled_deg(gantry_before, course->angles.gantry_deg, course->direction);
+        course->moves_couch |= fabs(course->angles.couch_deg - couch_before) > 0.1;
+    }
+    dicom_text(item, GANTRY_DIRECTION, course->direction, sizeof course->direction);
+}
+
+/* The collimator's axes in the patient, as the first control point has them. */
+static void place_collimator(struct beam_delivery *d, const struct course *course)
+{
+    const struct beam_angles *angles = &course->angles;
+    double turn = course->collimator_deg * MATH_PI / 180;
+    d->gantry_deg = d->gantry_stop_deg = angles->gantry_deg;
+    d->couch_deg = angles->couch_deg;
+    d->collimator_deg = course->collimator_deg;
+    d->collimator_x_lps = beam_patient_from_gantry(vec3(cos(turn), sin(turn), 0), angles, d->patient_position);
+    d->collimator_y_lps = beam_patient_from_gantry(vec3(-sin(turn), cos(turn), 0), angles, d->patient_position);
+}
+
+static void report_course(const struct reading *reading, const struct beam *beam, const struct course *course)
+{
+    if (!course->has_gantry)
+        report_add(reading->report, REPORT_WARNING, "beam.angle-assumed", reading->where,
+                   "Beam \"%s\": the plan does not give the gantry's angle; 0 was taken.", beam->name);
+    if (course->moves_isocentre || course->moves_couch)
+        report_add(reading->report, REPORT_NOTE, "beam.moves", reading->where,
+                   "Beam \"%s\": %s moves during the beam; it is shown as it starts.", beam->name,
+                   course->moves_isocentre ? "the isocentre" : "the table");
+    if (course->has_gantry_pitch)
+        report_add(reading->report, REPORT_WARNING, "beam.pitch", reading->where,
+                   "Beam \"%s\": the gantry is pitched, which is not regarded; its direction is wrong by that angle.", beam->name);
+    const struct beam_delivery *d = &beam->delivery;
+    if (fabs(d->gantry_travel_deg) > 0.1)
+        report_add(reading->report, REPORT_NOTE, "beam.arc", reading->where,
+                   "Beam \"%s\" turns from %.1f to %.1f degrees over %zu control points; its line is shown where it starts.", beam->name,
+                   d->gantry_deg, d->gantry_stop_deg, d->n_control_points);
+}
+
+/* false without err: left out. */
+static bool read_beam(const struct reading *reading, const struct dicom_item *item, size_t index, bool is_ion, struct beam *beam,
+                      struct error *err)
+{
+    uint32_t sequence = is_ion ? ION_CONTROL_POINT_SEQUENCE : CONTROL_POINT_SEQUENCE;
+    struct beam_delivery *d = &beam->delivery;
+    struct course course = { 0 };
+    char type[17];
+    *beam = (struct beam){ .has_delivery = true, .aperture_mm = NAN };
+    fill_unknown(d);
+    read_words(reading, item, index, beam);
+    d->n_control_points = dicom_n_items(item, sequence);
+    if (d->n_control_points > RTPLAN_MAX_CONTROL_POINTS)
+        return error_set(err, ERROR_LIMIT, "%s: beam \"%s\" has %zu control points; the limit is %d", reading->where, beam->name,
+                         d->n_control_points, RTPLAN_MAX_CONTROL_POINTS);
+    if (dicom_text(item, DELIVERY_TYPE, type, sizeof type) && strcmp(type, "SETUP") == 0)
+        return left_out(reading, beam, "is for setting up the patient and not for treatment");
+    if (d->n_control_points == 0)
+        return left_out(reading, beam, "has no control point");
+    if (!opening_init(reading->opening, item, err)) {
+        error_prefix(err, "%s: beam \"%s\"", reading->where, beam->name);
+        return false;
+    }
+    d->patient_position = position_of(reading, item, beam);
+    for (size_t i = 0; i < d->n_control_points; i++) {
+        const struct dicom_item *point = dicom_item_at(item, sequence, i);
+        read_control_point(&course, point, i == 0, d);
+        opening_move(reading->opening, point);
+        opening_measure(reading->opening, i == 0, d);
+        if (i == 0)
+            place_collimator(d, &course);
+    }
+    if (!course.has_isocentre)
+        return left_out(reading, beam, "has no isocentre, so nothing says where it is in the patient");
+    beam->target_lps_mm = course.isocentre_lps_mm;
+    /* z of the collimator's system points to the source */
+    beam->entry_lps_mm = vec3_add(beam->target_lps_mm, vec3_scale(vec3_cross(d->collimator_x_lps, d->collimator_y_lps), d->sad_mm));
+    d->gantry_stop_deg = course.angles.gantry_deg;
+    beam->aperture_mm = opening_diameter_mm(reading->opening, d);
+    int64_t n_said;
+    if (dicom_integer(item, N_CONTROL_POINTS, &n_said) && n_said != (int64_t)d->n_control_points)
+        report_add(reading->report, REPORT_WARNING, "beam.control-points", reading->where,
+                   "Beam \"%s\" says %lld control points and has %zu; those it has were taken.", beam->name, (long long)n_said,
+                   d->n_control_points);
+    report_course(reading, beam, &course);
+    return true;
+}
+
+/* ---- the plan --------------------------------------------------------------------------------------------------------------------- */
+
+static bool read_beams(const struct reading *reading, struct error *err)
+{
+    struct rtplan *plan = reading->plan;
+    bool is_ion = dicom_n_items(reading->root, BEAM_SEQUENCE) == 0;
+    uint32_t sequence = is_ion ? ION_BEAM_SEQUENCE : BEAM_SEQUENCE;
+    size_t n = dicom_n_items(reading->root, sequence);
+    plan->beams = mem_array(n < RTPLAN_MAX_BEAMS ? n : RTPLAN_MAX_BEAMS, sizeof *plan->beams, UINT64_MAX, err);
+    if (!plan->beams)
+        return false;
+    for (size_t i = 0; i < n; i++) {
+        if (plan->n_beams >= RTPLAN_MAX_BEAMS) {
+            report_add(reading->report, REPORT_WARNING, "beam.left-out", reading->where, "Beams from the %zu. of %zu on are left out: at most %d.",
+                       i + 1, n, RTPLAN_MAX_BEAMS);
+            break;
+        }
+        struct error reason = { 0 };
+        if (read_beam(reading, dicom_item_at(reading->root, sequence, i), i, is_ion, &plan->beams[plan->n_beams], &reason)) {
+            plan->n_beams++;
+        } else if (reason.code != ERROR_NONE) {
+            if (err)
+                *err = reason;
+            return false;
+        }
+    }
+    if (n == 0)
+        report_add(reading->report, REPORT_NOTE, "beam.none", reading->where, "The plan has no external beam.");
+    return true;
+}
+
+/* Meterset and dose of each beam, by fraction group; the first group that has the beam counts. */
+static void read_fractions(const struct reading *reading)
+{
+    struct rtplan *plan = reading->plan;
+    size_t n_groups = dicom_n_items(reading->root, FRACTION_SEQUENCE);
+    for (size_t g = 0; g < n_groups; g++) {
+        const struct dicom_item *group = dicom_item_at(reading->root, FRACTION_SEQUENCE, g);
+        int64_t n_fractions = 0;
+        if (!dicom_integer(group, N_FRACTIONS, &n_fractions) || n_fractions < 0)
+            n_fractions = 0;
+        plan->n_fractions = plan->n_fractions ? plan->n_fractions : n_fractions;
+        size_t n = dicom_n_items(group, REFERENCED_BEAM_SEQUENCE);
+        for (size_t i = 0; i < n; i++) {
+            const struct dicom_item *item = dicom_item_at(group, REFERENCED_BEAM_SEQUENCE, i);
+            int64_t number;
+            if (!dicom_integer(item, REFERENCED_BEAM, &number))
+                continue;
+            for (size_t b = 0; b < plan->n_beams; b++) {
+                struct beam_delivery *d = &plan->beams[b].delivery;
+                if (d->number != number || d->n_fractions != 0 || !isnan(d->meterset))
+                    continue;
+                d->n_fractions = n_fractions;
+                dicom_number(item, BEAM_DOSE, &d->dose_gy);
+                dicom_number(item, BEAM_METERSET, &d->meterset);
+            }
+        }
+    }
+}
+
+static void read_prescription(const struct reading *reading)
+{
+    struct rtplan *plan = reading->plan;
+    plan->target_dose_gy = NAN;
+    size_t n = dicom_n_items(reading->root, DOSE_REFERENCE_SEQUENCE);
+    for (size_t i = 0; i < n; i++) {
+        const struct dicom_item *item = dicom_item_at(reading->root, DOSE_REFERENCE_SEQUENCE, i);
+        char type[17];
+        double dose_gy;
+        if (dicom_text(item, DOSE_REFERENCE_TYPE, type, sizeof type) && strcmp(type, "TARGET") == 0 &&
+            dicom_number(item, TARGET_DOSE, &dose_gy))
+            plan->target_dose_gy = fmax(isnan(plan->target_dose_gy) ? dose_gy : plan->target_dose_gy, dose_gy);
+    }
+}
+
+struct rtplan *rtplan_read(const struct dicom_file *file, const char *where, struct report *report, struct error *err)
+{
+    const struct dicom_item *root = dicom_root(file);
+    char class[DICOM_UID_SIZE], modality[17];
+    dicom_text(root, SOP_CLASS, class, sizeof class);
+    dicom_text(root, MODALITY, modality, sizeof modality);
+    if (strcmp(class, RTPLAN_CLASS) != 0 && strcmp(class, RTIONPLAN_CLASS) != 0 && strcmp(modality, "RTPLAN") != 0) {
+        error_set(err, ERROR_UNSUPPORTED, "%s: a DICOM object of modality \"%s\", expected RTPLAN", where, modality);
+        return NULL;
+    }
+    struct rtplan *plan = mem_new(sizeof *plan);
+    dicom_text(root, PLAN_LABEL, plan->label, sizeof plan->label);
+    dicom_text(root, PLAN_NAME, plan->name, sizeof plan->name);
+    dicom_text(root, PLAN_DESCRIPTION, plan->description, sizeof plan->description);
+    dicom_text(root, PRESCRIPTION, plan->prescription, sizeof plan->prescription);
+    dicom_text(root, PLAN_INTENT, plan->intent, sizeof plan->intent);
+    dicom_text(root, PLAN_GEOMETRY, plan->geometry, sizeof plan->geometry);
+    dicom_text(root, SOP_INSTANCE, plan->uid, sizeof plan->uid);
+    dicom_text(root, FRAME_UID, plan->frame_uid, sizeof plan->frame_uid);
+    const struct dicom_item *structures = dicom_item_at(root, REFERENCED_STRUCT_SEQUENCE, 0);
+    if (structures)
+        dicom_text(structures, REFERENCED_INSTANCE, plan->struct_uid, sizeof plan->struct_uid);
+    struct reading reading = { root, plan, mem_new(sizeof(struct opening)), where, report };
+    bool is_read = read_beams(&reading, err);
+    free(reading.opening);
+    if (!is_read) {
+        rtplan_destroy(plan);
+        return NULL;
+    }
+    read_fractions(&reading);
+    read_prescription(&reading);
+    return plan;
+}
+
+void rtplan_destroy(struct rtplan *plan)
+{
+    if (!plan)
+        return;
+    free(plan->beams);
+    free(plan);
+}
+
+const char *rtplan_beam_name(void *plan, int64_t number)
+{
+    const struct rtplan *known = plan;
+    for (size_t i = 0; known && i < known->n_beams; i++)
+        if (known->beams[i].delivery.number == number)
+            return known->beams[i].name;
+    return NULL;
+}

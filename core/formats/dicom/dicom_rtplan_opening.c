@@ -1,0 +1,271 @@
+#include "core/formats/dicom/dicom_rtplan_opening.h"
+
+#include <string.h>
+
+enum {
+    DEVICE_SEQUENCE = DICOM_TAG(0x300a, 0x00b6),
+    DEVICE_TYPE = DICOM_TAG(0x300a, 0x00b8),
+    DEVICE_N_PAIRS = DICOM_TAG(0x300a, 0x00bc),
+    LEAF_BOUNDARIES = DICOM_TAG(0x300a, 0x00be),
+    BLOCK_SEQUENCE = DICOM_TAG(0x300a, 0x00f4),
+    BLOCK_TYPE = DICOM_TAG(0x300a, 0x00f8),
+    BLOCK_DATA = DICOM_TAG(0x300a, 0x0106),
+    APPLICATOR_SEQUENCE = DICOM_TAG(0x300a, 0x0107),
+    POSITION_SEQUENCE = DICOM_TAG(0x300a, 0x011a),
+    LEAF_POSITIONS = DICOM_TAG(0x300a, 0x011c),
+    APPLICATOR_GEOMETRY = DICOM_TAG(0x300a, 0x0431),
+    APPLICATOR_SHAPE = DICOM_TAG(0x300a, 0x0432),
+    APPLICATOR_OPENING = DICOM_TAG(0x300a, 0x0433),
+    ION_BLOCK_SEQUENCE = DICOM_TAG(0x300a, 0x0436)
+};
+enum { MOST_BLOCK_POINTS = 5000, LEAST_ROUND_POINTS = 12 };
+#define ROUND_SHARE 0.02   /* a block whose points are this near to a circle is one */
+#define WIDE_OPEN_MM 1e4   /* a side that nothing closes */
+
+/* A side of a rectangle that may be open. */
+struct rectangle {
+    double x[2], y[2];
+};
+
+static struct rectangle everything(void)
+{
+    return (struct rectangle){ { -WIDE_OPEN_MM, WIDE_OPEN_MM }, { -WIDE_OPEN_MM, WIDE_OPEN_MM } };
+}
+
+static void narrow(double side[2], double low, double high)
+{
+    side[0] = fmax(side[0], low);
+    side[1] = fmin(side[1], high);
+}
+
+static void widen(double side[2], const double by[2])
+{
+    side[0] = isnan(side[0]) ? by[0] : fmin(side[0], by[0]);
+    side[1] = isnan(side[1]) ? by[1] : fmax(side[1], by[1]);
+}
+
+static bool is_leaves(const struct opening_device *device)
+{
+    return strncmp(device->type, "MLC", 3) == 0;
+}
+
+/* Along which axis the jaws or leaves move: the last letter of "X", "ASYMY", "MLCX". */
+static bool moves_along_x(const struct opening_device *device)
+{
+    size_t n = strlen(device->type);
+    return n > 0 && device->type[n - 1] == 'X';
+}
+
+static bool are_finite(const double *values, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!(fabs(values[i]) <= WIDE_OPEN_MM))
+            return false;
+    return true;
+}
+
+static bool add_device(struct opening *opening, const struct dicom_item *item, struct error *err)
+{
+    int64_t n_pairs = 1;
+    if (opening->n_devices >= OPENING_MAX_DEVICES)
+        return error_set(err, ERROR_LIMIT, "more than %d beam limiting devices", OPENING_MAX_DEVICES);
+    struct opening_device *device = &opening->devices[opening->n_devices];
+    *device = (struct opening_device){ .n_pairs = 1 };
+    if (!dicom_text(item, DEVICE_TYPE, device->type, sizeof device->type))
+        return true; /* of no use without */
+    if (is_leaves(device)) {
+        if (dicom_integer(item, DEVICE_N_PAIRS, &n_pairs) && n_pairs > OPENING_MAX_LEAVES)
+            return error_set(err, ERROR_LIMIT, "a collimator of %lld pairs of leaves; the limit is %d", (long long)n_pairs, OPENING_MAX_LEAVES);
+        size_t n = dicom_numbers(item, LEAF_BOUNDARIES, device->boundaries_mm, OPENING_MAX_LEAVES + 1);
+        if (n < 2 || n > OPENING_MAX_LEAVES + 1 || !are_finite(device->boundaries_mm, n))
+            return true;
+        device->n_pairs = n - 1;
+    }
+    opening->n_devices++;
+    return true;
+}
+
+/* Area, extents and, for a block whose points lie on a circle, the diameter. Coordinates are in the plane of the isocentre. */
+static void add_block(struct opening *opening, const double *xy, size_t n)
+{
+    double doubled = 0, sum_x = 0, sum_y = 0, radius = 0;
+    struct rectangle box = { { INFINITY, -INFINITY }, { INFINITY, -INFINITY } };
+    for (size_t i = 0; i < n; i++) {
+        const double *a = xy + 2 * i, *b = xy + 2 * ((i + 1) % n);
+        doubled += a[0] * b[1] - b[0] * a[1];
+        sum_x += (a[0] + b[0]) * (a[0] * b[1] - b[0] * a[1]);
+        sum_y += (a[1] + b[1]) * (a[0] * b[1] - b[0] * a[1]);
+        box.x[0] = fmin(box.x[0], a[0]);
+        box.x[1] = fmax(box.x[1], a[0]);
+        box.y[0] = fmin(box.y[0], a[1]);
+        box.y[1] = fmax(box.y[1], a[1]);
+    }
+    if (!(fabs(doubled) > 0))
+        return;
+    bool is_another = !isnan(opening->block_cm2);
+    widen(opening->block_x_mm, box.x);
+    widen(opening->block_y_mm, box.y);
+    opening->block_cm2 = fabs(doubled) / 2 / 100 + (is_another ? opening->block_cm2 : 0);
+    double x = sum_x / (3 * doubled), y = sum_y / (3 * doubled), least = INFINITY, most = 0;
+    for (size_t i = 0; i < n; i++) {
+        double r = hypot(xy[2 * i] - x, xy[2 * i + 1] - y);
+        radius += r / (double)n;
+        least = fmin(least, r);
+        most = fmax(most, r);
+    }
+    bool is_round = !is_another && n >= LEAST_ROUND_POINTS && most - least <= 2 * ROUND_SHARE * radius &&
+                    fabs(fabs(doubled) / 2 - MATH_PI * radius * radius) <= 0.1 * MATH_PI * radius * radius;
+    opening->round_mm = is_round ? 2 * radius : NAN;
+}
+
+static void add_blocks(struct opening *opening, const struct dicom_item *beam, uint32_t sequence)
+{
+    size_t n = dicom_n_items(beam, sequence);
+    for (size_t i = 0; i < n; i++) {
+        const struct dicom_item *item = dicom_item_at(beam, sequence, i);
+        char type[17];
+        double xy[2 * MOST_BLOCK_POINTS];
+        if (!dicom_text(item, BLOCK_TYPE, type, sizeof type) || strcmp(type, "APERTURE") != 0)
+            continue;
+        size_t n_values = dicom_numbers(item, BLOCK_DATA, xy, 2 * MOST_BLOCK_POINTS);
+        if (n_values >= 6 && n_values <= 2 * MOST_BLOCK_POINTS && are_finite(xy, n_values - n_values % 2))
+            add_block(opening, xy, n_values / 2);
+    }
+}
+
+bool opening_init(struct opening *opening, const struct dicom_item *beam, struct error *err)
+{
+    opening->n_devices = 0;
+    opening->block_x_mm[0] = opening->block_x_mm[1] = opening->block_y_mm[0] = opening->block_y_mm[1] = NAN;
+    opening->block_cm2 = opening->round_mm = NAN;
+    size_t n = dicom_n_items(beam, DEVICE_SEQUENCE);
+    for (size_t i = 0; i < n; i++)
+        if (!add_device(opening, dicom_item_at(beam, DEVICE_SEQUENCE, i), err))
+            return false;
+    add_blocks(opening, beam, BLOCK_SEQUENCE);
+    add_blocks(opening, beam, ION_BLOCK_SEQUENCE);
+    const struct dicom_item *applicator = dicom_item_at(beam, APPLICATOR_SEQUENCE, 0);
+    const struct dicom_item *geometry = applicator ? dicom_item_at(applicator, APPLICATOR_GEOMETRY, 0) : NULL;
+    char shape[17];
+    double diameter_mm;
+    if (geometry && dicom_text(geometry, APPLICATOR_SHAPE, shape, sizeof shape) && strcmp(shape, "SYM_CIRCULAR") == 0 &&
+        dicom_number(geometry, APPLICATOR_OPENING, &diameter_mm) && diameter_mm > 0 && diameter_mm < WIDE_OPEN_MM)
+        opening->round_mm = diameter_mm;
+    return true;
+}
+
+void opening_move(struct opening *opening, const struct dicom_item *control_point)
+{
+    size_t n = dicom_n_items(control_point, POSITION_SEQUENCE);
+    for (size_t i = 0; i < n; i++) {
+        const struct dicom_item *item = dicom_item_at(control_point, POSITION_SEQUENCE, i);
+        char type[17];
+        double positions[2 * OPENING_MAX_LEAVES];
+        dicom_text(item, DEVICE_TYPE, type, sizeof type);
+        for (size_t d = 0; d < opening->n_devices; d++) {
+            struct opening_device *device = &opening->devices[d];
+            if (strcmp(type, device->type) != 0)
+                continue;
+            size_t n_values = dicom_numbers(item, LEAF_POSITIONS, positions, 2 * OPENING_MAX_LEAVES);
+            if (n_values != 2 * device->n_pairs || !are_finite(positions, n_values))
+                continue;
+            memcpy(device->positions_mm, positions, n_values * sizeof *positions);
+            device->is_placed = true;
+        }
+    }
+}
+
+/* What the jaws leave; false when there are none for a direction. */
+static struct rectangle jaws_of(const struct opening *opening, bool *has_x, bool *has_y)
+{
+    struct rectangle jaws = everything();
+    *has_x = *has_y = false;
+    for (size_t d = 0; d < opening->n_devices; d++) {
+        const struct opening_device *device = &opening->devices[d];
+        if (is_leaves(device) || !device->is_placed)
+            continue;
+        bool is_x = moves_along_x(device);
+        narrow(is_x ? jaws.x : jaws.y, device->positions_mm[0], device->positions_mm[1]);
+        *(is_x ? has_x : has_y) = true;
+    }
+    return jaws;
+}
+
+/* What the leaves leave of the jaws' opening: its hull and its area. */
+static struct rectangle open_between_leaves(const struct opening_device *device, const struct rectangle *jaws, double *mm2)
+{
+    struct rectangle hull = { { INFINITY, -INFINITY }, { INFINITY, -INFINITY } };
+    bool is_x = moves_along_x(device);
+    *mm2 = 0;
+    for (size_t pair = 0; pair < device->n_pairs; pair++) {
+        struct rectangle gap = *jaws;
+        narrow(is_x ? gap.x : gap.y, device->positions_mm[pair], device->positions_mm[device->n_pairs + pair]);
+        narrow(is_x ? gap.y : gap.x, device->boundaries_mm[pair], device->boundaries_mm[pair + 1]);
+        if (!(gap.x[0] < gap.x[1] && gap.y[0] < gap.y[1]))
+            continue;
+        *mm2 += (gap.x[1] - gap.x[0]) * (gap.y[1] - gap.y[0]);
+        hull.x[0] = fmin(hull.x[0], gap.x[0]);
+        hull.x[1] = fmax(hull.x[1], gap.x[1]);
+        hull.y[0] = fmin(hull.y[0], gap.y[0]);
+        hull.y[1] = fmax(hull.y[1], gap.y[1]);
+    }
+    return hull;
+}
+
+/* As it stands: false when it is shut, or nothing says what it is. */
+static bool opening_now(const struct opening *opening, struct rectangle *open, double *cm2)
+{
+    bool has_x, has_y;
+    *open = jaws_of(opening, &has_x, &has_y);
+    struct rectangle jaws = *open;
+    double least_mm2 = (jaws.x[1] - jaws.x[0]) * (jaws.y[1] - jaws.y[0]);
+    for (size_t d = 0; d < opening->n_devices; d++) {
+        if (!is_leaves(&opening->devices[d]) || !opening->devices[d].is_placed)
+            continue;
+        double mm2;
+        struct rectangle hull = open_between_leaves(&opening->devices[d], &jaws, &mm2);
+        narrow(open->x, hull.x[0], hull.x[1]);
+        narrow(open->y, hull.y[0], hull.y[1]);
+        least_mm2 = fmin(least_mm2, mm2);
+        has_x = has_y = true;
+    }
+    if (!isnan(opening->block_cm2)) {
+        narrow(open->x, opening->block_x_mm[0], opening->block_x_mm[1]);
+        narrow(open->y, opening->block_y_mm[0], opening->block_y_mm[1]);
+        least_mm2 = fmin(least_mm2, opening->block_cm2 * 100);
+        has_x = has_y = true;
+    }
+    *cm2 = least_mm2 / 100;
+    return has_x && has_y && open->x[0] < open->x[1] && open->y[0] < open->y[1];
+}
+
+void opening_measure(const struct opening *opening, bool is_first, struct beam_delivery *delivery)
+{
+    struct rectangle open;
+    double cm2;
+    bool is_open = opening_now(opening, &open, &cm2);
+    if (is_open) {
+        widen(delivery->opening_x_mm, open.x);
+        widen(delivery->opening_y_mm, open.y);
+    }
+    if (!is_first)
+        return;
+    bool has_x, has_y;
+    struct rectangle jaws = jaws_of(opening, &has_x, &has_y);
+    if (has_x)
+        memcpy(delivery->jaws_x_mm, jaws.x, sizeof jaws.x);
+    if (has_y)
+        memcpy(delivery->jaws_y_mm, jaws.y, sizeof jaws.y);
+    if (is_open)
+        delivery->opening_cm2 = cm2;
+}
+
+double opening_diameter_mm(const struct opening *opening, const struct beam_delivery *delivery)
+{
+    double least_mm = INFINITY;
+    const double *sides[] = { delivery->opening_x_mm, delivery->opening_y_mm };
+    for (int i = 0; i < 2; i++)
+        if (!isnan(sides[i][0]))
+            least_mm = fmin(least_mm, sides[i][1] - sides[i][0]);
+    return least_mm >= opening->round_mm * (1 - ROUND_SHARE) ? opening->round_mm : NAN;
+}

@@ -1,0 +1,628 @@
+/* RT Plans: where beams come from, by hand geometry for every way a patient can lie, and real plans against pydicom and against what
+ * their own planning systems say of entry points and distances. */
+#include "core/formats/dicom/dicom_rtplan.h"
+
+#include "tests/check.h"
+#include "tests/unit/data_folder.h"
+#include "tests/unit/oracle.h"
+#include "tests/unit/rt_files.h"
+
+#define RTPLAN "1.2.840.10008.5.1.4.1.1.481.5"
+#define TAG DICOM_TAG
+
+static void assert_point(struct vec3 point, double x, double y, double z, double tolerance)
+{
+    if (!(fabs(point.x - x) <= tolerance && fabs(point.y - y) <= tolerance && fabs(point.z - z) <= tolerance))
+        fail_msg("(%g, %g, %g), expected (%g, %g, %g)", point.x, point.y, point.z, x, y, z);
+}
+
+static void the_source_is_where_hand_geometry_puts_it(void **state)
+{
+    (void)state;
+    const double l = 1, r = -1, p = 1, a = -1, s = 1, i = -1; /* left, right; posterior, anterior; superior, inferior */
+    const struct {
+        enum patient_position position;
+        double gantry, couch, x, y, z;
+    } cases[] = {
+        /* gantry at 0 is above the table, at 90 to the right of who stands at its foot and looks to the gantry */
+        { PATIENT_HFS, 0, 0, 0, a, 0 },   { PATIENT_HFS, 90, 0, l, 0, 0 },   { PATIENT_HFS, 180, 0, 0, p, 0 },  { PATIENT_HFS, 270, 0, r, 0, 0 },
+        { PATIENT_HFP, 0, 0, 0, p, 0 },   { PATIENT_HFP, 90, 0, r, 0, 0 },   { PATIENT_HFP, 180, 0, 0, a, 0 },  { PATIENT_HFP, 270, 0, l, 0, 0 },
+        { PATIENT_FFS, 0, 0, 0, a, 0 },   { PATIENT_FFS, 90, 0, r, 0, 0 },   { PATIENT_FFS, 180, 0, 0, p, 0 },  { PATIENT_FFS, 270, 0, l, 0, 0 },
+        { PATIENT_FFP, 0, 0, 0, p, 0 },   { PATIENT_FFP, 90, 0, l, 0, 0 },   { PATIENT_FFP, 180, 0, 0, a, 0 },  { PATIENT_FFP, 270, 0, r, 0, 0 },
+        { PATIENT_HFDR, 0, 0, l, 0, 0 },  { PATIENT_HFDR, 90, 0, 0, p, 0 },  { PATIENT_HFDR, 180, 0, r, 0, 0 }, { PATIENT_HFDR, 270, 0, 0, a, 0 },
+        { PATIENT_HFDL, 0, 0, r, 0, 0 },  { PATIENT_HFDL, 90, 0, 0, a, 0 },  { PATIENT_HFDL, 180, 0, l, 0, 0 }, { PATIENT_HFDL, 270, 0, 0, p, 0 },
+        { PATIENT_FFDR, 0, 0, l, 0, 0 },  { PATIENT_FFDR, 90, 0, 0, a, 0 },  { PATIENT_FFDR, 180, 0, r, 0, 0 }, { PATIENT_FFDR, 270, 0, 0, p, 0 },
+        { PATIENT_FFDL, 0, 0, r, 0, 0 },  { PATIENT_FFDL, 90, 0, 0, p, 0 },  { PATIENT_FFDL, 180, 0, l, 0, 0 }, { PATIENT_FFDL, 270, 0, 0, a, 0 },
+        /* the table turned by 90, against the clock seen from above: its far end, with head or feet, then points to the left of who looks */
+        { PATIENT_HFS, 0, 90, 0, a, 0 },  { PATIENT_HFS, 90, 90, 0, 0, i },  { PATIENT_HFS, 270, 90, 0, 0, s }, { PATIENT_HFS, 90, 270, 0, 0, s },
+        { PATIENT_FFS, 90, 90, 0, 0, s }, { PATIENT_HFP, 90, 90, 0, 0, i },  { PATIENT_FFP, 90, 90, 0, 0, s },  { PATIENT_HFDR, 90, 90, 0, 0, i },
+        { PATIENT_HFS, 90, 180, r, 0, 0 },
+    };
+    for (size_t at = 0; at < sizeof cases / sizeof cases[0]; at++) {
+        struct beam_angles angles = { .gantry_deg = cases[at].gantry, .couch_deg = cases[at].couch };
+        assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, cases[at].position), cases[at].x, cases[at].y, cases[at].z, 1e-12);
+        angles = (struct beam_angles){ .gantry_deg = cases[at].gantry, .eccentric_deg = cases[at].couch };
+        assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, cases[at].position), cases[at].x, cases[at].y, cases[at].z, 1e-12);
+    }
+}
+
+static void oblique_angles_pitch_and_roll_go_the_right_way(void **state)
+{
+    (void)state;
+    /* gantry at 30 leans to the patient's left: sin 30 left, cos 30 in front */
+    struct beam_angles angles = { .gantry_deg = 30 };
+    assert_point(beam_patient_from_gantry(vec3(0, 0, 1000), &angles, PATIENT_HFS), 500, -866.0254038, 0, 1e-6);
+    /* the head lifted by 20 degrees comes nearer to a source above */
+    angles = (struct beam_angles){ .pitch_deg = 20 };
+    assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, PATIENT_HFS), 0, -0.9396926208, 0.3420201433, 1e-9);
+    /* rolled about the axis towards the gantry by 20, the side that was to the right goes down: the source sees more of the other */
+    angles = (struct beam_angles){ .roll_deg = 20 };
+    assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, PATIENT_HFS), -0.3420201433, -0.9396926208, 0, 1e-9);
+    /* the x of the gantry goes with it: from the left at 0 to the back at 90 */
+    angles = (struct beam_angles){ .gantry_deg = 90 };
+    assert_point(beam_patient_from_gantry(vec3(1, 0, 0), &angles, PATIENT_HFS), 0, 1, 0, 1e-12);
+    assert_point(beam_patient_from_gantry(vec3(0, 1, 0), &angles, PATIENT_HFS), 0, 0, 1, 1e-12);
+}
+
+static void positions_have_words(void **state)
+{
+    (void)state;
+    enum patient_position position = PATIENT_POSITION_UNKNOWN;
+    assert_true(patient_position_from_word("FFDL", &position));
+    assert_int_equal(position, PATIENT_FFDL);
+    assert_string_equal(patient_position_word(position), "FFDL");
+    assert_false(patient_position_from_word("SITTING", &position));
+    assert_false(patient_position_from_word("", &position));
+}
+
+/* ---- made plans ------------------------------------------------------------------------------------------------------------------- */
+
+struct made_plan {
+    const char *position;   /* of setup 2; NULL: no setups */
+    const char *radiation;
+    const char *sad, *iso, *gantry;
+    bool is_setup;
+    void (*devices)(struct made_dicom *made);
+    void (*positions)(struct made_dicom *made, int point);
+    int n_points;
+    const char *gantries[4], *directions[4];
+};
+
+static void put_plan(struct made_dicom *made, const struct made_plan *plan)
+{
+    made_rt_begin(made, RTPLAN, "RTPLAN", NULL);
+    made_text(made, TAG(0x300a, 0x0002), "SH", "Label");
+    made_sequence(made, TAG(0x300a, 0x00b0));
+    made_item(made);
+    if (plan->sad)
+        made_text(made, TAG(0x300a, 0x00b4), "DS", plan->sad);
+    if (plan->devices)
+        plan->devices(made);
+    made_integer(made, TAG(0x300a, 0x00c0), 5);
+    made_text(made, TAG(0x300a, 0x00c2), "LO", "Front");
+    if (plan->radiation)
+        made_text(made, TAG(0x300a, 0x00c6), "CS", plan->radiation);
+    if (plan->is_setup)
+        made_text(made, TAG(0x300a, 0x00ce), "CS", "SETUP");
+    made_integer(made, TAG(0x300a, 0x0110), plan->n_points);
+    made_sequence(made, TAG(0x300a, 0x0111));
+    for (int i = 0; i < plan->n_points; i++) {
+        made_item(made);
+        if (plan->positions)
+            plan->positions(made, i);
+        if (plan->gantries[i])
+            made_text(made, TAG(0x300a, 0x011e), "DS", plan->gantries[i]);
+        if (plan->directions[i])
+            made_text(made, TAG(0x300a, 0x011f), "CS", plan->directions[i]);
+        if (plan->iso && i == 0)
+            made_text(made, TAG(0x300a, 0x012c), "DS", plan->iso);
+        made_item_end(made);
+    }
+    made_sequence_end(made);
+    made_integer(made, TAG(0x300c, 0x006a), 2);
+    made_item_end(made);
+    made_sequence_end(made);
+    if (plan->position) {
+        made_sequence(made, TAG(0x300a, 0x0180));
+        for (int i = 1; i <= 2; i++) {
+            made_item(made);
+            made_text(made, TAG(0x0018, 0x5100), "CS", i == 2 ? plan->position : "FFDR");
+            made_integer(made, TAG(0x300a, 0x0182), i);
+            made_item_end(made);
+        }
+        made_sequence_end(made);
+    }
+}
+
+static struct rtplan *read_made(const struct made_plan *plan, struct report *report)
+{
+    struct made_dicom made;
+    put_plan(&made, plan);
+    struct rt_file file = rt_file_of(&made);
+    struct error err = { 0 };
+    struct rtplan *read = rtplan_read(file.file, "made.dcm", report, &err);
+    if (!read)
+        fail_msg("%s", err.text);
+    rt_file_close(&file);
+    made_finish(&made);
+    return read;
+}
+
+static bool has_line(const struct report *report, const char *code)
+{
+    for (size_t i = 0; i < report->n_lines; i++)
+        if (strcmp(report->lines[i].code, code) == 0)
+            return true;
+    return false;
+}
+
+static void a_neutron_beam_lies_between_source_and_isocentre(void **state)
+{
+    (void)state;
+    struct report report = { 0 };
+    struct made_plan made = { .position = "FFS", .radiation = "NEUTRON", .sad = "1800", .iso = "10\\-20\\30", .n_points = 1, .gantries = { "270" } };
+    struct rtplan *plan = read_made(&made, &report);
+    assert_int_equal(report.n_lines, 0);
+    assert_string_equal(plan->label, "Label");
+    assert_int_equal(plan->n_beams, 1);
+    const struct beam *beam = &plan->beams[0];
+    assert_true(beam->has_delivery);
+    assert_string_equal(beam->name, "Front");
+    assert_string_equal(beam->delivery.radiation, "NEUTRON");
+    assert_int_equal(beam->delivery.patient_position, PATIENT_FFS);
+    assert_point(beam->target_lps_mm, 10, -20, 30, 0);
+    assert_point(beam->entry_lps_mm, 1810, -20, 30, 1e-9); /* feet first: 270 is the patient's left */
+    assert_true(isnan(beam->aperture_mm) && isnan(beam->delivery.jaws_x_mm[0]) && isnan(beam->delivery.opening_cm2));
+    assert_string_equal(rtplan_beam_name(plan, 5), "Front");
+    assert_null(rtplan_beam_name(plan, 6));
+    rtplan_destroy(plan);
+}
+
+static void what_a_plan_does_not_say_is_assumed_and_said(void **state)
+{
+    (void)state;
+    struct report report = { 0 };
+    struct made_plan made = { .iso = "1\\2\\3", .n_points = 1 };
+    struct rtplan *plan = read_made(&made, &report);
+    assert_true(has_line(&report, "beam.position-assumed"));
+    assert_true(has_line(&report, "beam.angle-assumed"));
+    assert_true(has_line(&report, "beam.distance-assumed"));
+    assert_int_equal(report.n_lines, 3);
+    assert_point(plan->beams[0].entry_lps_mm, 1, 2 - 1000, 3, 1e-9);
+    rtplan_destroy(plan);
+    report_finish(&report);
+    made = (struct made_plan){ .position = "UPRIGHT", .sad = "-5", .iso = "1\\2\\3", .n_points = 1, .gantries = { "0" } };
+    plan = read_made(&made, &report);
+    assert_true(has_line(&report, "beam.position-assumed"));
+    assert_true(has_line(&report, "beam.distance-assumed"));
+    assert_int_equal(report.n_lines, 2);
+    rtplan_destroy(plan);
+    report_finish(&report);
+}
+
+static void a_beam_that_cannot_be_placed_is_left_out(void **state)
+{
+    (void)state;
+    const struct made_plan plans[] = {
+        { .position = "HFS", .sad = "1000", .n_points = 1, .gantries = { "0" } },                     /* no isocentre */
+        { .position = "HFS", .sad = "1000", .iso = "1\\2", .n_points = 1, .gantries = { "0" } },      /* two thirds of one */
+        { .position = "HFS", .sad = "1000", .iso = "1\\2\\x", .n_points = 1, .gantries = { "0" } },   /* no number */
+        { .position = "HFS", .sad = "1000", .iso = "1\\2\\1e9", .n_points = 1, .gantries = { "0" } }, /* in orbit */
+        { .position = "HFS", .sad = "1000", .iso = "1\\2\\3", .n_points = 0 },                        /* no control point */
+        { .position = "HFS", .sad = "1000", .iso = "1\\2\\3", .n_points = 1, .gantries = { "0" }, .is_setup = true },
+    };
+    for (size_t i = 0; i < sizeof plans / sizeof plans[0]; i++) {
+        struct report report = { 0 };
+        struct rtplan *plan = read_made(&plans[i], &report);
+        assert_int_equal(plan->n_beams, 0);
+        assert_true(has_line(&report, "beam.left-out"));
+        rtplan_destroy(plan);
+        report_finish(&report);
+    }
+}
+
+static void arcs_travel_in_their_direction(void **state)
+{
+    (void)state;
+    const struct {
+        struct made_plan plan;
+        double stop, travel;
+    } cases[] = { { { .n_points = 3, .gantries = { "300", "0", "60" }, .directions = { "CW", NULL, "NONE" } }, 60, 120 },
+                  { { .n_points = 3, .gantries = { "60", "0", "300" }, .directions = { "CC", "CC", "NONE" } }, 300, -120 },
+                  { { .n_points = 4, .gantries = { "181", "300", "60", "179" }, .directions = { "CW" } }, 179, 358 },
+                  { { .n_points = 2, .gantries = { "10", "350" } }, 350, -20 },
+                  { { .n_points = 3, .gantries = { "10", NULL, NULL }, .directions = { "CW" } }, 10, 0 } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct made_plan made = cases[i].plan;
+        made.position = "HFS";
+        made.sad = "1000";
+        made.iso = "0\\0\\0";
+        struct report report = { 0 };
+        struct rtplan *plan = read_made(&made, &report);
+        const struct beam_delivery *d = &plan->beams[0].delivery;
+        assert_close(d->gantry_deg, strtod(made.gantries[0], NULL), 0);
+        assert_close(d->gantry_stop_deg, cases[i].stop, 0);
+        assert_close(d->gantry_travel_deg, cases[i].travel, 1e-9);
+        assert_int_equal(d->n_control_points, made.n_points);
+        assert_int_equal(has_line(&report, "beam.arc"), cases[i].travel != 0);
+        rtplan_destroy(plan);
+        report_finish(&report);
+    }
+}
+
+static void put_device(struct made_dicom *made, const char *type, const char *boundaries)
+{
+    made_item(made);
+    made_text(made, TAG(0x300a, 0x00b8), "CS", type);
+    if (boundaries)
+        made_text(made, TAG(0x300a, 0x00be), "DS", boundaries);
+    made_item_end(made);
+}
+
+static void put_position(struct made_dicom *made, const char *type, const char *positions)
+{
+    made_item(made);
+    made_text(made, TAG(0x300a, 0x00b8), "CS", type);
+    made_text(made, TAG(0x300a, 0x011c), "DS", positions);
+    made_item_end(made);
+}
+
+static void jaws_and_leaves(struct made_dicom *made)
+{
+    made_sequence(made, TAG(0x300a, 0x00b6));
+    put_device(made, "X", NULL);
+    put_device(made, "ASYMY", NULL);
+    put_device(made, "MLCX", "-20\\-10\\0\\10\\20");
+    made_sequence_end(made);
+}
+
+static void three_steps(struct made_dicom *made, int point)
+{
+    if (point == 2)
+        return; /* as before */
+    made_sequence(made, TAG(0x300a, 0x011a));
+    if (point == 0) {
+        put_position(made, "X", "-30\\30");
+        put_position(made, "ASYMY", "-15\\40");
+        put_position(made, "MLCX", "-50\\-5\\-10\\2\\50\\5\\10\\2"); /* the last pair is shut */
+    } else {
+        put_position(made, "ASYMY", "-5\\12");
+        put_position(made, "MLCX", "0\\0\\0\\20\\0\\0\\0\\25");
+        put_position(made, "MLCX", "1\\2\\3"); /* too few: not regarded */
+    }
+    made_sequence_end(made);
+}
+
+static void the_opening_is_what_jaws_and_leaves_leave(void **state)
+{
+    (void)state;
+    struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 3, .gantries = { "0" },
+                              .devices = jaws_and_leaves, .positions = three_steps };
+    struct rtplan *plan = read_made(&made, NULL);
+    const struct beam_delivery *d = &plan->beams[0].delivery;
+    assert_memory_equal(d->jaws_x_mm, ((double[]){ -30, 30 }), sizeof d->jaws_x_mm);
+    assert_memory_equal(d->jaws_y_mm, ((double[]){ -15, 40 }), sizeof d->jaws_y_mm);
+    /* first: leaves at y -20..-10 open -50..50, cut to x -30..30 and y -15..-10; y -10..0 open 10 wide, y 0..10 open 20 wide */
+    assert_close(d->opening_cm2, (60 * 5 + 10 * 10 + 20 * 10) / 100.0, 1e-12);
+    /* second: only the pair at y 10..20, cut to y 10..12, x 20..25; the hull over all is -30..30 by -15..12 */
+    assert_memory_equal(d->opening_x_mm, ((double[]){ -30, 30 }), sizeof d->opening_x_mm);
+    assert_memory_equal(d->opening_y_mm, ((double[]){ -15, 12 }), sizeof d->opening_y_mm);
+    assert_true(isnan(plan->beams[0].aperture_mm));
+    rtplan_destroy(plan);
+}
+
+static void put_block(struct made_dicom *made, size_t n, double rx, double ry)
+{
+    double *xy = malloc(2 * n * sizeof *xy);
+    assert_non_null(xy);
+    for (size_t i = 0; i < n; i++) {
+        xy[2 * i] = 3 + rx * cos(2 * MATH_PI * (double)i / (double)n);
+        xy[2 * i + 1] = -4 + ry * sin(2 * MATH_PI * (double)i / (double)n);
+    }
+    made_sequence(made, TAG(0x300a, 0x00f4));
+    made_item(made);
+    made_text(made, TAG(0x300a, 0x00f8), "CS", "APERTURE");
+    made_numbers(made, TAG(0x300a, 0x0106), xy, 2 * n);
+    made_item_end(made);
+    made_sequence_end(made);
+    free(xy);
+}
+
+static void round_block(struct made_dicom *made) { put_block(made, 36, 60, 60); }
+static void oval_block(struct made_dicom *made) { put_block(made, 36, 60, 50); }
+static void square_block(struct made_dicom *made) { put_block(made, 4, 60, 60); }
+static void round_applicator(struct made_dicom *made)
+{
+    made_sequence(made, TAG(0x300a, 0x0107));
+    made_item(made);
+    made_sequence(made, TAG(0x300a, 0x0431));
+    made_item(made);
+    made_text(made, TAG(0x300a, 0x0432), "CS", "SYM_CIRCULAR");
+    made_element(made, TAG(0x300a, 0x0433), "FL", &(float){ 120 }, sizeof(float));
+    made_item_end(made);
+    made_sequence_end(made);
+    made_item_end(made);
+    made_sequence_end(made);
+}
+
+static void only_a_round_opening_has_a_diameter(void **state)
+{
+    (void)state;
+    const struct {
+        void (*devices)(struct made_dicom *made);
+        double diameter_mm, cm2;
+    } cases[] = { { round_block, 120, 36.0 / 2 * 36 * sin(2 * MATH_PI / 36) },
+                  { oval_block, NAN, 36.0 / 2 * 30 * sin(2 * MATH_PI / 36) },
+                  { square_block, NAN, 72 },
+                  { round_applicator, 120, NAN } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .gantries = { "0" },
+                                  .devices = cases[i].devices };
+        struct rtplan *plan = read_made(&made, NULL);
+        const struct beam *beam = &plan->beams[0];
+        if (isnan(cases[i].diameter_mm))
+            assert_true(isnan(beam->aperture_mm));
+        else
+            assert_near(beam->aperture_mm, cases[i].diameter_mm, 1e-9);
+        if (!isnan(cases[i].cm2))
+            assert_near(beam->delivery.opening_cm2, cases[i].cm2, 1e-6);
+        rtplan_destroy(plan);
+    }
+}
+
+static void another_object_is_refused(void **state)
+{
+    (void)state;
+    struct made_dicom made;
+    made_rt_begin(&made, "1.2.840.10008.5.1.4.1.1.481.3", "RTSTRUCT", NULL);
+    struct rt_file file = rt_file_of(&made);
+    struct error err = { 0 };
+    assert_null(rtplan_read(file.file, "x.dcm", NULL, &err));
+    assert_int_equal(err.code, ERROR_UNSUPPORTED);
+    assert_string_equal(err.text, "x.dcm: a DICOM object of modality \"RTSTRUCT\", expected RTPLAN");
+    rt_file_close(&file);
+    made_finish(&made);
+}
+
+static void many_leaves(struct made_dicom *made)
+{
+    made_sequence(made, TAG(0x300a, 0x00b6));
+    made_item(made);
+    made_text(made, TAG(0x300a, 0x00b8), "CS", "MLCX");
+    made_integer(made, TAG(0x300a, 0x00bc), RTPLAN_MAX_LEAVES + 1);
+    made_item_end(made);
+    made_sequence_end(made);
+}
+
+static void more_than_the_written_limits_is_refused_or_left_out(void **state)
+{
+    (void)state;
+    struct made_plan leaves = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .devices = many_leaves };
+    struct made_dicom made;
+    put_plan(&made, &leaves);
+    struct rt_file file = rt_file_of(&made);
+    struct error err = { 0 };
+    assert_null(rtplan_read(file.file, "x.dcm", NULL, &err));
+    assert_int_equal(err.code, ERROR_LIMIT);
+    assert_string_equal(err.text, "x.dcm: beam \"Front\": a collimator of 401 pairs of leaves; the limit is 400");
+    rt_file_close(&file);
+    made_finish(&made);
+
+    made_rt_begin(&made, RTPLAN, "RTPLAN", NULL);
+    made_sequence(&made, TAG(0x300a, 0x00b0));
+    made_item(&made);
+    made_sequence(&made, TAG(0x300a, 0x0111));
+    for (int i = 0; i < RTPLAN_MAX_CONTROL_POINTS + 1; i++) {
+        made_item(&made);
+        made_item_end(&made);
+    }
+    made_sequence_end(&made);
+    made_item_end(&made);
+    made_sequence_end(&made);
+    file = rt_file_of(&made);
+    assert_null(rtplan_read(file.file, "x.dcm", NULL, &err));
+    assert_string_equal(err.text, "x.dcm: beam \"Beam 1\" has 5001 control points; the limit is 5000");
+    rt_file_close(&file);
+    made_finish(&made);
+
+    made_rt_begin(&made, RTPLAN, "RTPLAN", NULL);
+    made_sequence(&made, TAG(0x300a, 0x00b0));
+    for (int i = 0; i < RTPLAN_MAX_BEAMS + 3; i++) {
+        made_item(&made);
+        made_sequence(&made, TAG(0x300a, 0x0111));
+        made_item(&made);
+        made_text(&made, TAG(0x300a, 0x012c), "DS", "0\\0\\0");
+        made_item_end(&made);
+        made_sequence_end(&made);
+        made_item_end(&made);
+    }
+    made_sequence_end(&made);
+    file = rt_file_of(&made);
+    struct report report = { 0 };
+    struct rtplan *plan = rtplan_read(file.file, "x.dcm", &report, &err);
+    assert_non_null(plan);
+    assert_int_equal(plan->n_beams, RTPLAN_MAX_BEAMS);
+    assert_true(has_line(&report, "beam.left-out"));
+    rtplan_destroy(plan);
+    report_finish(&report);
+    rt_file_close(&file);
+    made_finish(&made);
+}
+
+/* ---- real plans ------------------------------------------------------------------------------------------------------------------- */
+
+static struct rtplan *read_real(const char *path, struct report *report)
+{
+    struct rt_file file = rt_file_open(path);
+    struct error err = { 0 };
+    struct rtplan *plan = rtplan_read(file.file, "rp.dcm", report, &err);
+    if (!plan)
+        fail_msg("%s", err.text);
+    rt_file_close(&file);
+    return plan;
+}
+
+static double next_number(char **rest)
+{
+    char *end;
+    double value = strtod(*rest, &end);
+    assert_true(end > *rest && *end == '\t');
+    *rest = end + 1;
+    return value;
+}
+
+static void assert_same(double value, double expected)
+{
+    if (!(isnan(value) && isnan(expected)))
+        assert_close(value, expected, 1e-9);
+}
+
+static void assert_word(const char *word, char **rest)
+{
+    char *tab = strchr(*rest, '\t');
+    assert_non_null(tab);
+    *tab = 0;
+    assert_string_equal(word, *rest);
+    *rest = tab + 1;
+}
+
+static void compare_beam(const struct beam *beam, char *rest)
+{
+    const struct beam_delivery *d = &beam->delivery;
+    assert_same((double)d->number, next_number(&rest));
+    assert_word(beam->name, &rest);
+    assert_word(d->radiation, &rest);
+    assert_same((double)d->n_control_points, next_number(&rest));
+    assert_same(beam->target_lps_mm.x, next_number(&rest));
+    assert_same(beam->target_lps_mm.y, next_number(&rest));
+    assert_same(beam->target_lps_mm.z, next_number(&rest));
+    assert_same(d->gantry_deg, next_number(&rest));
+    assert_same(d->gantry_stop_deg, next_number(&rest));
+    assert_same(d->collimator_deg, next_number(&rest));
+    assert_same(d->couch_deg, next_number(&rest));
+    assert_same(d->energy_mev, next_number(&rest));
+    assert_same(d->sad_mm, next_number(&rest));
+    assert_same(d->ssd_mm, next_number(&rest));
+    for (int i = 0; i < 2; i++)
+        assert_same(d->jaws_x_mm[i], next_number(&rest));
+    for (int i = 0; i < 2; i++)
+        assert_same(d->jaws_y_mm[i], next_number(&rest));
+    double counted_cm2 = next_number(&rest); /* on points half a mm apart: one row of them on either side of each leaf */
+    assert_close(d->opening_cm2, counted_cm2, 0.05 + 0.002 * counted_cm2);
+    assert_same(d->dose_gy, next_number(&rest));
+    assert_same(d->meterset, next_number(&rest));
+    assert_same((double)d->n_fractions, next_number(&rest));
+    assert_word(patient_position_word(d->patient_position), &rest);
+}
+
+static bool compare_with_pydicom(const char *path, const struct rtplan *plan)
+{
+    static char out[1 << 16];
+    int status = oracle_run((char *[]){ oracle_python(), "tests/oracle/dicom_rtplan.py", (char *)(uintptr_t)path, NULL }, out, sizeof out);
+    if (status == ORACLE_MISSING)
+        return false;
+    assert_int_equal(status, 0);
+    size_t n = 0;
+    for (char *line = out, *end; *line; line = end + 1, n++) {
+        end = strchr(line, '\n');
+        assert_non_null(end);
+        *end = '\t';
+        assert_true(n < plan->n_beams);
+        compare_beam(&plan->beams[n], line);
+    }
+    assert_int_equal(n, plan->n_beams);
+    return true;
+}
+
+/* The point in which the beam's axis meets the surface, by the distance the planning system gives. */
+static struct vec3 surface_point(const struct beam *beam)
+{
+    struct vec3 along = vec3_normalize(vec3_sub(beam->target_lps_mm, beam->entry_lps_mm));
+    return vec3_add(beam->entry_lps_mm, vec3_scale(along, beam->delivery.ssd_mm));
+}
+
+static void ten_square_fields_come_from_the_front(void **state)
+{
+    (void)state;
+    char path[512];
+    if (!data_path("dicomrt-plans/06MV_plan.dcm", path, sizeof path))
+        skip();
+    struct rtplan *plan = read_real(path, NULL);
+    static const double sides_mm[] = { 20, 30, 40, 50, 70, 100, 150, 200, 300, 400 };
+    assert_int_equal(plan->n_beams, 10);
+    for (int i = 0; i < 10; i++) {
+        const struct beam *beam = &plan->beams[i];
+        assert_point(beam->entry_lps_mm, 0, -1200, 0, 1e-9);
+        assert_point(surface_point(beam), 0, -300, 0, 1e-9); /* the file's own Surface Entry Point */
+        assert_close(beam->delivery.jaws_y_mm[1] - beam->delivery.jaws_y_mm[0], sides_mm[i], 1e-9);
+        assert_close(beam->delivery.opening_x_mm[1] - beam->delivery.opening_x_mm[0], sides_mm[i], 1e-9);
+        assert_close(beam->delivery.opening_y_mm[1] - beam->delivery.opening_y_mm[0], sides_mm[i], 1e-9);
+    }
+    compare_with_pydicom(path, plan);
+    rtplan_destroy(plan);
+}
+
+static void two_arcs_turn_from_the_left_and_from_the_right(void **state)
+{
+    (void)state;
+    char path[512];
+    if (!data_path("dicomrt-plans/vmat_example.dcm", path, sizeof path))
+        skip();
+    struct report report = { 0 };
+    struct rtplan *plan = read_real(path, &report);
+    assert_int_equal(plan->n_beams, 2);
+    assert_int_equal(plan->beams[0].delivery.n_control_points, 32);
+    assert_int_equal(plan->beams[1].delivery.n_control_points, 31);
+    assert_point(surface_point(&plan->beams[0]), 51, 0, 0, 1e-9);  /* the file's own Surface Entry Points */
+    assert_point(surface_point(&plan->beams[1]), -51, 0, 0, 1e-9);
+    assert_close(plan->beams[0].delivery.gantry_travel_deg, 60, 1e-9);  /* clockwise from 90 to 150 */
+    assert_close(plan->beams[1].delivery.gantry_travel_deg, -60, 1e-9); /* against the clock from 270 to 210 */
+    assert_close(plan->target_dose_gy, 1, 0);
+    assert_int_equal(plan->n_fractions, 2);
+    assert_string_equal(plan->prescription, "Plan: RxA");
+    assert_true(has_line(&report, "beam.arc"));
+    compare_with_pydicom(path, plan);
+    report_finish(&report);
+    rtplan_destroy(plan);
+}
+
+static void the_oncentra_beams_meet_the_body_at_their_distances(void **state)
+{
+    (void)state;
+    char folder[512], path[1024];
+    if (!data_path("dicomrt-oncentra-phantom", folder, sizeof folder) || !rt_find(folder, "RP", 0, path, sizeof path))
+        skip();
+    struct rtplan *plan = read_real(path, NULL);
+    assert_int_equal(plan->n_beams, 3);
+    assert_string_equal(plan->beams[2].delivery.radiation, "ELECTRON");
+    /* the body's outline at z = 0 is the square x -20..30, y -20..30 of the structure set; distances are given to 0.01 mm */
+    assert_point(surface_point(&plan->beams[0]), 0.29, -20, 0, 0.011);
+    assert_point(surface_point(&plan->beams[1]), 30, 0.59, 0, 0.011);
+    assert_point(surface_point(&plan->beams[2]), 0.29, 30, 0, 0.011);
+    /* beam 2: gantry 90, collimator 90: x of the collimator runs to the head, y to the patient's front (gantry x points to the back) */
+    assert_point(plan->beams[1].delivery.collimator_x_lps, 0, 0, 1, 1e-12);
+    assert_point(plan->beams[1].delivery.collimator_y_lps, 0, -1, 0, 1e-12);
+    compare_with_pydicom(path, plan);
+    rtplan_destroy(plan);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_source_is_where_hand_geometry_puts_it),
+        cmocka_unit_test(oblique_angles_pitch_and_roll_go_the_right_way),
+        cmocka_unit_test(positions_have_words),
+        cmocka_unit_test(a_neutron_beam_lies_between_source_and_isocentre),
+        cmocka_unit_test(what_a_plan_does_not_say_is_assumed_and_said),
+        cmocka_unit_test(a_beam_that_cannot_be_placed_is_left_out),
+        cmocka_unit_test(arcs_travel_in_their_direction),
+        cmocka_unit_test(the_opening_is_what_jaws_and_leaves_leave),
+        cmocka_unit_test(only_a_round_opening_has_a_diameter),
+        cmocka_unit_test(another_object_is_refused),
+        cmocka_unit_test(more_than_the_written_limits_is_refused_or_left_out),
+        cmocka_unit_test(ten_square_fields_come_from_the_front),
+        cmocka_unit_test(two_arcs_turn_from_the_left_and_from_the_right),
+        cmocka_unit_test(the_oncentra_beams_meet_the_body_at_their_distances),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
