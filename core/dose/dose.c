@@ -37,12 +37,17 @@ bool dose_quantity_is_fluence(enum dose_quantity quantity)
     return quantity == DOSE_FAST_FLUENCE || quantity == DOSE_EPITHERMAL_FLUENCE || quantity == DOSE_THERMAL_FLUENCE;
 }
 
-void dose_unit_of(const struct dose *dose, enum dose_quantity quantity, char unit[DOSE_UNIT_SIZE])
+void dose_quantity_unit(const char *dose_unit, enum dose_quantity quantity, char unit[DOSE_UNIT_SIZE])
 {
     if (dose_quantity_is_fluence(quantity))
         snprintf(unit, DOSE_UNIT_SIZE, "1/cm2");
     else
-        snprintf(unit, DOSE_UNIT_SIZE, "%s%s", dose->unit, quantity == DOSE_WEIGHTED_TOTAL && dose->unit[0] ? "(w)" : "");
+        snprintf(unit, DOSE_UNIT_SIZE, "%.16s%s", dose_unit, quantity == DOSE_WEIGHTED_TOTAL && dose_unit[0] ? "(w)" : "");
+}
+
+void dose_unit_of(const struct dose *dose, enum dose_quantity quantity, char unit[DOSE_UNIT_SIZE])
+{
+    dose_quantity_unit(dose->unit, quantity, unit);
 }
 
 void dose_finish(struct dose *dose)

@@ -43,4 +43,5 @@ void dose_finish(struct dose *dose);
 
 /* What the numbers of a quantity are in: the dose's unit, with "(w)" behind it when weights are in them, or "1/cm2". */
 enum { DOSE_UNIT_SIZE = 24 };
+void dose_quantity_unit(const char *dose_unit, enum dose_quantity quantity, char unit[DOSE_UNIT_SIZE]);
 void dose_unit_of(const struct dose *dose, enum dose_quantity quantity, char unit[DOSE_UNIT_SIZE]);

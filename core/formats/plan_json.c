@@ -318,6 +318,38 @@ static bool parse_tracks(const struct place *top, const cJSON *root, struct plan
     return true;
 }
 
+static bool parse_curves(const struct place *top, const cJSON *root, struct plan_file *file)
+{
+    static const char *const known[] = { "id", "name", "path", "per", NULL };
+    const cJSON *list;
+    if (!get_list(top, root, "curves", PLAN_MAX_CURVES, &list))
+        return false;
+    for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
+        struct place at = place_at(top, "curves", (int)file->n_curves);
+        struct plan_file_curve *curve = &file->curves[file->n_curves++];
+        note_unknown_keys(&at, entry, known);
+        if (!get_text(&at, entry, "id", curve->id, sizeof curve->id) || !get_text(&at, entry, "name", curve->name, sizeof curve->name) ||
+            !get_path(&at, entry, "path", true, curve->path) || !get_text(&at, entry, "per", curve->per, sizeof curve->per))
+            return false;
+    }
+    return true;
+}
+
+static bool parse_preferences(const struct place *top, const cJSON *root, struct plan_file *file)
+{
+    static const char *const known[] = { "path", NULL };
+    const cJSON *list;
+    if (!get_list(top, root, "preferences", PLAN_FILE_MAX_PREFERENCES, &list))
+        return false;
+    for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
+        struct place at = place_at(top, "preferences", (int)file->n_preferences);
+        note_unknown_keys(&at, entry, known);
+        if (!get_path(&at, entry, "path", true, file->preferences[file->n_preferences++]))
+            return false;
+    }
+    return true;
+}
+
 static bool parse_hierarchy(const struct place *top, const cJSON *root, struct plan_file *file)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(root, "hierarchy");
@@ -350,7 +382,7 @@ static bool parse_hierarchy(const struct place *top, const cJSON *root, struct p
 static bool parse_plan(const struct place *top, const cJSON *root, struct plan_file *file)
 {
     static const char *const known[] = { "format", "version", "name",      "note",  "phantom", "images",
-                                         "regions", "hierarchy", "doses", "beams", "tracks",  NULL };
+                                         "regions", "hierarchy", "doses", "beams", "tracks", "curves", "preferences", NULL };
     char format[32];
     if (!get_text(top, root, "format", format, sizeof format))
         return false;
@@ -365,7 +397,7 @@ static bool parse_plan(const struct place *top, const cJSON *root, struct plan_f
     if (!get_text(top, root, "name", file->name, sizeof file->name) || !get_text(top, root, "note", file->note, sizeof file->note) ||
         !get_bool(top, root, "phantom", &file->is_phantom) || !parse_images(top, root, file) || !parse_regions(top, root, file) ||
         !parse_hierarchy(top, root, file) || !parse_doses(top, root, file) || !parse_beams(top, root, file) ||
-        !parse_tracks(top, root, file))
+        !parse_tracks(top, root, file) || !parse_curves(top, root, file) || !parse_preferences(top, root, file))
         return false;
     if (file->n_images + file->n_regions + file->n_doses == 0)
         return fail(top, ERROR_FORMAT, "", "names no image, no region and no dose; one part is required");

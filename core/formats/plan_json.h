@@ -8,6 +8,7 @@ enum {
     PLAN_FILE_MAX_BYTES = 4 << 20,
     PLAN_FILE_MAX_PARTS = REGION_MAX, /* entries of "regions" */
     PLAN_FILE_MAX_TRACKS = 16,
+    PLAN_FILE_MAX_PREFERENCES = 16,
     PLAN_FILE_MAX_PAIRS = 1024, /* of the hierarchy */
     PLAN_FILE_MAX_LABELS = 65536
 };
@@ -41,6 +42,10 @@ struct plan_file_tracks {
     char path[FOLDER_NAME_SIZE];
     double mm; /* of one unit; 0 when not given */
 };
+struct plan_file_curve {
+    char id[64], name[128], per[64];
+    char path[FOLDER_NAME_SIZE];
+};
 /* inner lies directly inside outer */
 struct plan_file_pair {
     char outer[REGION_NAME_SIZE], inner[REGION_NAME_SIZE];
@@ -62,6 +67,10 @@ struct plan_file {
     size_t n_beams;
     struct plan_file_tracks tracks[PLAN_FILE_MAX_TRACKS];
     size_t n_tracks;
+    struct plan_file_curve curves[PLAN_MAX_CURVES];
+    size_t n_curves;
+    char preferences[PLAN_FILE_MAX_PREFERENCES][FOLDER_NAME_SIZE];
+    size_t n_preferences;
 };
 
 /* Unknown keys are reported, not refused.

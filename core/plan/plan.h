@@ -4,6 +4,7 @@
 #include <stdatomic.h>
 
 #include "core/beam/beam.h"
+#include "core/dose/curve.h"
 #include "core/dose/dose.h"
 #include "core/plan/report.h"
 #include "core/region/region.h"
@@ -11,7 +12,7 @@
 #include "core/track/track.h"
 #include "core/volume/volume.h"
 
-enum { PLAN_MAX_IMAGES = 16, PLAN_MAX_DOSES = 16, PLAN_MAX_BEAMS = 64 };
+enum { PLAN_MAX_IMAGES = 16, PLAN_MAX_DOSES = 16, PLAN_MAX_BEAMS = 64, PLAN_MAX_CURVES = 16, PLAN_MAX_LEVELS = 32, PLAN_MAX_COLORS = 256 };
 
 struct plan_image {
     char id[64];
@@ -20,6 +21,18 @@ struct plan_image {
     char unit[8];      /* "HU" for CT, "" else */
     struct volume *volume;
     double window_center, window_width; /* a first window that suits the values */
+};
+
+/* How the program the plan comes from showed doses; nothing here is the patient's. */
+struct plan_level {
+    double percent;
+    uint8_t rgb[3];
+};
+struct plan_preferences {
+    struct plan_level levels[PLAN_MAX_LEVELS]; /* isodose levels, in the file's order */
+    size_t n_levels;
+    uint8_t colors[PLAN_MAX_COLORS][3]; /* a colour map, lowest first */
+    size_t n_colors;
 };
 
 struct plan {
@@ -33,6 +46,9 @@ struct plan {
     struct beam beams[PLAN_MAX_BEAMS];
     size_t n_beams;
     struct track_set tracks;
+    struct dose_curve curves[PLAN_MAX_CURVES];
+    size_t n_curves;
+    struct plan_preferences preferences;
     struct report report;
     struct box3 bounds_lps_mm; /* of all regions, else of all images and doses */
     int64_t load_us;

@@ -7,6 +7,7 @@
 #include "core/formats/text.h"
 #include "core/plan/plan_body.h"
 #include "core/plan/plan_bounds.h"
+#include "core/plan/plan_extras.h"
 #include "core/plan/plan_loading.h"
 #include "core/plan/plan_regions.h"
 #include "core/plan/plan_tracks.h"
@@ -217,7 +218,9 @@ bool plan_assemble(struct loading *loading, struct error *err)
     region_builder_finish(&builder);
     if (!is_whole)
         return false;
+    plan_add_preferences(plan, &loading->folder, loading->file);
     add_doses(loading);
+    plan_add_curves(plan, &loading->folder, loading->file);
     plan_measure_body(plan);
     plan_measure_bounds(plan);
     add_beams(loading);

@@ -188,6 +188,8 @@ void plan_destroy(struct plan *plan)
     region_set_finish(&plan->regions);
     for (size_t i = 0; i < plan->n_doses; i++)
         dose_finish(&plan->doses[i]);
+    for (size_t i = 0; i < plan->n_curves; i++)
+        dose_curve_finish(&plan->curves[i]);
     track_set_finish(&plan->tracks);
     report_finish(&plan->report);
     free(plan);

@@ -25,7 +25,9 @@ enum part_format part_format_of(const struct folder *folder, const char *name)
     } endings[] = { { ".nii", PART_NIFTI },     { ".nii.gz", PART_NIFTI },    { ".uvh", PART_UVH },        { ".qim", PART_QSH },
                     { ".qim.gz", PART_QSH },    { ".qim.sz", PART_QSH },      { ".qhd", PART_QSH },         { ".pp", PART_PP },          { ".dcm", PART_DICOM },
                     { ".nrrd", PART_NRRD },     { ".nhdr", PART_NRRD },       { ".rst", PART_SERA_RST },  { ".rst.gz", PART_SERA_RST },
-                    { ".rstb", PART_SERA_RST }, { ".rstb.gz", PART_SERA_RST }, { ".chd", PART_SERA_DOSE } };
+                    { ".rstb", PART_SERA_RST }, { ".rstb.gz", PART_SERA_RST }, { ".chd", PART_SERA_DOSE },
+                    { ".dose", PART_SERA_CURVE }, { ".dose.gz", PART_SERA_CURVE }, { ".rsc", PART_SERA_PREFERENCES },
+                    { ".cmap", PART_SERA_PREFERENCES } };
     enum folder_kind kind = folder_look(folder, name, NULL);
     if (kind == FOLDER_ABSENT)
         return PART_ABSENT;
@@ -34,6 +36,9 @@ enum part_format part_format_of(const struct folder *folder, const char *name)
     for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
         if (text_has_ending(name, endings[i].ending))
             return endings[i].format;
+    const char *slash = strrchr(name, '/');
+    if (text_equal(slash ? slash + 1 : name, "body_data.txt"))
+        return PART_SERA_PREFERENCES;
     return is_dicom_file(folder, name) ? PART_DICOM : PART_UNKNOWN;
 }
 
@@ -54,6 +59,8 @@ const char *part_format_word(enum part_format format)
     case PART_NRRD: return "NRRD";
     case PART_SERA_RST: return "SERA dose";
     case PART_SERA_DOSE: return "SERA dose contours";
+    case PART_SERA_CURVE: return "SERA dose over depth";
+    case PART_SERA_PREFERENCES: return "SERA preferences";
     case PART_UNKNOWN: break;
     }
     return "an unknown format";

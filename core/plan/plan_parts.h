@@ -13,6 +13,8 @@ enum part_format {
     PART_NRRD,
     PART_SERA_RST,  /* dose on a mesh */
     PART_SERA_DOSE, /* .chd: dose on planes */
+    PART_SERA_CURVE, /* .dose: depth and radius along a beam */
+    PART_SERA_PREFERENCES, /* .rsc, .cmap, body_data.txt */
     PART_UNKNOWN
 };
 /* By the name's ending; a folder and a file without a known ending are looked into for DICOM. */

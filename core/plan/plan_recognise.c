@@ -206,6 +206,18 @@ static void recognise_file(struct recognition *all, const char *name)
         else
             ignore_one(all, name, "There is no table of points, .cdf.sz or .cdf, beside it.");
         break;
+    case PART_SERA_CURVE:
+        if (file->n_curves < PLAN_MAX_CURVES)
+            set_name(file->curves[file->n_curves++].path, FOLDER_NAME_SIZE, name);
+        else
+            ignore_one(all, name, "More curves than are read.");
+        break;
+    case PART_SERA_PREFERENCES:
+        if (file->n_preferences < PLAN_FILE_MAX_PREFERENCES)
+            set_name(file->preferences[file->n_preferences++], FOLDER_NAME_SIZE, name);
+        else
+            ignore_one(all, name, "More files of preferences than are read.");
+        break;
     case PART_DICOM: all->n_dicom++; break;
     default:
         if (text_has_ending(name, ".info") && !file->hierarchy[0])

@@ -208,6 +208,9 @@ void plan_summarize(const char *path, struct plan_summary *summary)
         for (size_t i = 0; i < file->n_tracks; i++)
             count_bytes(&folder, file->tracks[i].path, summary);
         add_part(summary, file->n_tracks, "file of tracks", "files of tracks");
+        for (size_t i = 0; i < file->n_curves; i++)
+            count_bytes(&folder, file->curves[i].path, summary);
+        add_part(summary, file->n_curves, "reference curve", "reference curves");
     }
     snprintf(summary->reason, sizeof summary->reason, "%s", summary->is_readable ? "" : err.text);
     plan_file_destroy(file);

@@ -147,6 +147,12 @@
     X("tracks.no-energy", "Tracks without an energy class.", "They are listed in the high class of their kind.")                  \
     X("tracks.zero-length", "Tracks of no length.", "They are left out.")                                                         \
     X("tracks.bad-lines", "Lines of a track file that are not a segment.", "They are left out; check the file.")                  \
+    X("curve.unread", "A reference curve could not be read.", "Check the file; the rest of the plan is whole.")                     \
+    X("preferences.unread", "A file of preferences could not be read.", "Check the file; the rest of the plan is whole.")           \
+    X("preferences.colors", "Regions took colour and opacity from a file of preferences.", "Nothing.")                            \
+    X("preferences.tissues", "Regions took tissue data from a table of tissues, by their names.",                                  \
+      "Check boron ratios and weights against the plan.")                                                                          \
+    X("preferences.levels", "Contour levels are given by more than one file of preferences.", "The first was used; keep one file.")  \
     X("geometry.apart", "Two parts of the plan do not overlap anywhere.",                                                          \
       "One of them may be flipped, shifted or of another patient.")                                                                \
     X("header.unknown-key", "A header has keys that are not known.", "They are ignored.")                                         \

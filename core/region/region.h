@@ -27,6 +27,7 @@ struct region {
     uint32_t low_ijk[3], high_ijk[3]; /* bounding voxels, inclusive */
     struct vec3 centre_lps_mm;       /* mean of voxel centres */
     bool touches_edge;               /* reaches the first or last index of an axis: the scan cuts it */
+    double file_opacity; /* above 0 to 1, as a file gives it; 0: none does */
     /* tissue data from the file; not-a-number where it gives none */
     double boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma;
 };

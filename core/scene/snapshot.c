@@ -182,6 +182,8 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
         entry->value.color_rgb = (uint32_t)region->rgb[0] << 16 | (uint32_t)region->rgb[1] << 8 | region->rgb[2];
         if (region_has_children(set, i))
             entry->value.opacity = region->parent < 0 ? 0.35 : 0.45;
+        if (region->file_opacity > 0 && region->file_opacity < 1) /* SERA's preferences say 100 % of all that nobody set */
+            entry->value.opacity = region->file_opacity;
     }
     const struct region *centre = innermost_region(set);
     struct vec3 at = vec3(0, 0, 0);

@@ -149,6 +149,37 @@ static void print_tracks(const struct track_set *tracks)
         }
 }
 
+static void print_curves(const struct plan *plan)
+{
+    for (size_t i = 0; i < plan->n_curves; i++) {
+        const struct dose_curve *curve = &plan->curves[i];
+        printf("\nCurve ");
+        text_print(stdout, curve->id, 0);
+        printf(", %s per ", curve->unit);
+        text_print(stdout, curve->per, 0);
+        printf(", depth %.4g to %.4g mm, radius %.4g to %.4g mm\n", curve->depths_mm[0], curve->depths_mm[curve->n_depths - 1],
+               curve->radii_mm[0], curve->radii_mm[curve->n_radii - 1]);
+        for (size_t c = 0; c < curve->n_columns; c++) {
+            char unit[DOSE_UNIT_SIZE];
+            double depth, value;
+            dose_quantity_unit(curve->unit, curve->quantities[c], unit);
+            printf("  %-19s%-8s", dose_quantity_word(curve->quantities[c]), curve->is_per_ppm[c] ? " per ppm" : "");
+            if (dose_curve_peak(curve, c, &depth, &value))
+                printf("  at most %.4g %s on the axis, %.4g mm deep", value, unit, depth);
+            printf("\n");
+        }
+    }
+}
+
+static void print_preferences(const struct plan_preferences *preferences)
+{
+    if (preferences->n_levels > 0)
+        printf("\nContour levels\n ");
+    for (size_t i = 0; i < preferences->n_levels; i++)
+        printf(" %.4g %% #%02x%02x%02x%s", preferences->levels[i].percent, preferences->levels[i].rgb[0], preferences->levels[i].rgb[1],
+               preferences->levels[i].rgb[2], i + 1 < preferences->n_levels ? "," : "\n");
+}
+
 static void print_report(const struct report *report)
 {
     if (report->n_lines == 0)
@@ -176,6 +207,8 @@ static void print_plan(const struct plan *plan)
     print_doses(plan);
     print_beams(plan);
     print_tracks(&plan->tracks);
+    print_curves(plan);
+    print_preferences(&plan->preferences);
     print_report(&plan->report);
 }
 

@@ -188,6 +188,56 @@ static cJSON *tracks_object(const struct track_set *tracks)
     return object;
 }
 
+static cJSON *curve_object(const struct dose_curve *curve)
+{
+    cJSON *object = cJSON_CreateObject(), *quantities = cJSON_CreateArray();
+    add(object, "id", cJSON_CreateString(curve->id));
+    add(object, "name", cJSON_CreateString(curve->name));
+    add(object, "unit", cJSON_CreateString(curve->unit));
+    add(object, "per", cJSON_CreateString(curve->per));
+    const double ends[4] = { curve->depths_mm[0], curve->depths_mm[curve->n_depths - 1], curve->radii_mm[0], curve->radii_mm[curve->n_radii - 1] };
+    add(object, "depth_mm", cJSON_CreateDoubleArray(ends, 2));
+    add(object, "radius_mm", cJSON_CreateDoubleArray(ends + 2, 2));
+    for (size_t c = 0; c < curve->n_columns; c++) {
+        cJSON *entry = cJSON_CreateObject();
+        char unit[DOSE_UNIT_SIZE];
+        double depth = NAN, value = NAN;
+        dose_quantity_unit(curve->unit, curve->quantities[c], unit);
+        bool has_peak = dose_curve_peak(curve, c, &depth, &value);
+        add(entry, "quantity", cJSON_CreateString(dose_quantity_word(curve->quantities[c])));
+        add(entry, "unit", cJSON_CreateString(unit));
+        add(entry, "per_ppm", cJSON_CreateBool(curve->is_per_ppm[c]));
+        add(entry, "peak", has_peak ? number(value) : cJSON_CreateNull());
+        add(entry, "peak_depth_mm", has_peak ? number(depth) : cJSON_CreateNull());
+        append(quantities, entry);
+    }
+    add(object, "quantities", quantities);
+    return object;
+}
+
+static cJSON *color_text(const uint8_t rgb[3])
+{
+    char color[8];
+    snprintf(color, sizeof color, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    return cJSON_CreateString(color);
+}
+
+static cJSON *preferences_object(const struct plan_preferences *preferences)
+{
+    cJSON *object = cJSON_CreateObject(), *levels = cJSON_CreateArray(), *colors = cJSON_CreateArray();
+    for (size_t i = 0; i < preferences->n_levels; i++) {
+        cJSON *level = cJSON_CreateObject();
+        add(level, "percent", number(preferences->levels[i].percent));
+        add(level, "color", color_text(preferences->levels[i].rgb));
+        append(levels, level);
+    }
+    for (size_t i = 0; i < preferences->n_colors; i++)
+        append(colors, color_text(preferences->colors[i]));
+    add(object, "levels", levels);
+    add(object, "colors", colors);
+    return object;
+}
+
 static cJSON *report_object(const struct report *report)
 {
     cJSON *object = cJSON_CreateObject(), *lines = cJSON_CreateArray();
@@ -246,6 +296,11 @@ cJSON *plan_document(const struct plan *plan)
     add(object, "doses", doses);
     add(object, "beams", beams);
     add(object, "tracks", tracks_object(&plan->tracks));
+    cJSON *curves = cJSON_CreateArray();
+    for (size_t i = 0; i < plan->n_curves; i++)
+        append(curves, curve_object(&plan->curves[i]));
+    add(object, "curves", curves);
+    add(object, "preferences", preferences_object(&plan->preferences));
     add(object, "report", report_object(&plan->report));
     return object;
 }

@@ -12,6 +12,9 @@
  *     doses:   [ {id, unit, per, masked, components: [ {quantity, unit, per_ppm, grid, low, high, reference, body_high} ]} ],
  *     beams:   [ {id, entry_mm, target_mm, aperture_mm | null} ],
  *     tracks:  {segments, classes: {"neutron-high": n, ...}},
+ *     curves:  [ {id, name, unit, per, depth_mm: [low, high], radius_mm: [low, high],          reference curves along a beam
+ *                 quantities: [ {quantity, unit, per_ppm, peak, peak_depth_mm} ]} ],               peaks are those on the axis
+ *     preferences: {levels: [ {percent, color} ], colors: ["#rrggbb"]},                        of the program the plan comes from
  *     report:  {lines: [ {severity: "note" | "warning" | "error", code, where, sentence} ], dropped} }
  *
  *   grid       {size: [i, j, k], spacing_mm: [i, j, k], orientation: "LPS", lps_mm_from_ijk: 3 rows of 4, bounds_mm}
