@@ -102,19 +102,30 @@ size_t voxel_size(enum voxel_type type)
     return 0;
 }
 
-struct volume *volume_create(const struct grid *grid, enum voxel_type type, struct error *err)
+static struct volume *create(const struct grid *grid, enum voxel_type type,
+                             void *(*allocate)(size_t n, size_t size, uint64_t limit_bytes, struct error *err), struct error *err)
 {
     struct volume *volume = mem_new(sizeof *volume);
     volume->grid = *grid;
     volume->type = type;
     volume->slope = 1;
     atomic_init(&volume->references, 1);
-    volume->voxels = mem_array(grid_n_voxels(grid), voxel_size(type), VOLUME_MAX_BYTES, err);
+    volume->voxels = allocate(grid_n_voxels(grid), voxel_size(type), VOLUME_MAX_BYTES, err);
     if (!volume->voxels) {
         free(volume);
         return NULL;
     }
     return volume;
+}
+
+struct volume *volume_create(const struct grid *grid, enum voxel_type type, struct error *err)
+{
+    return create(grid, type, mem_array, err);
+}
+
+struct volume *volume_create_unset(const struct grid *grid, enum voxel_type type, struct error *err)
+{
+    return create(grid, type, mem_large_array, err);
 }
 
 struct volume *volume_ref(const struct volume *volume)

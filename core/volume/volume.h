@@ -42,6 +42,8 @@ struct volume {
 
 /* Zeroed voxels, slope 1, offset 0. One reference, the caller's. errors ERROR_RANGE, ERROR_LIMIT (VOLUME_MAX_BYTES), ERROR_MEMORY */
 NODISCARD struct volume *volume_create(const struct grid *grid, enum voxel_type type, struct error *err);
+/* The same with voxels that hold anything: for a caller who fills them all. Large ones come on huge pages where there are any. */
+NODISCARD struct volume *volume_create_unset(const struct grid *grid, enum voxel_type type, struct error *err);
 struct volume *volume_ref(const struct volume *volume);
 void volume_unref(const struct volume *volume);
 

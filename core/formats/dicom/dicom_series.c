@@ -391,7 +391,7 @@ static void measure(const struct series *series, struct volume *volume)
 
 static struct volume *read_volume(struct series *series, const struct dicom_layout_of_slices *layout, struct error *err)
 {
-    struct volume *volume = volume_create(&layout->grid, series->type, err);
+    struct volume *volume = volume_create_unset(&layout->grid, series->type, err);
     if (!volume)
         return NULL;
     uint8_t *own = NULL;
