@@ -42,41 +42,51 @@ static void swap(float4 **a, float4 **b)
 
 /* ---- the filters --------------------------------------------------------------------------------------------------------- */
 
-static void first_step(void *context, int part, int n_parts)
+/* One step of the recurrence for the vertices from..end. */
+struct step {
+    int n;                /* gives e_n */
+    const float4 *now;    /* e_(n-1) */
+    float4 *next;         /* holds e_(n-2), gets e_n */
+    float strong, gentle; /* weights of T_n */
+};
+
+static void first_step(const struct smooth_job *job, const struct step *step, size_t from, size_t end)
 {
-    struct smooth_job *job = context;
     const struct marching_point *points = job->graph->points;
-    size_t v, end;
-    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
+    for (size_t v = from; v < end; v++) {
         const uint32_t *link = job->graph->links[v];
-        float4 away = { 0 };
-        for (int axis = 0; axis < 3; axis++) {
-            int sum = -4 * points[v].at2[axis];
-            for (int i = 0; i < 4; i++)
-                sum += points[link[i]].at2[axis];
-            away[axis] = (float)sum * 0.125f; /* a mean of four, at2 is twice the place */
-        }
-        job->first[v] = job->now[v] = away;
-        job->before[v] = (float4){ 0 };
-        job->strong[v] = job->strong_weight * away;
-        job->gentle[v] = job->gentle_weight * away;
+        float4 sum = smooth_start(&points[link[0]]) + smooth_start(&points[link[1]]) + smooth_start(&points[link[2]]) +
+                     smooth_start(&points[link[3]]);
+        float4 away = sum * 0.25f - smooth_start(&points[v]); /* exact: halves */
+        job->first[v] = step->next[v] = away;
+        job->strong[v] = step->strong * away;
+        job->gentle[v] = step->gentle * away;
     }
 }
 
-static void next_step(void *context, int part, int n_parts)
+static void next_step(const struct smooth_job *job, const struct step *step, size_t from, size_t end)
 {
-    struct smooth_job *job = context;
-    const float4 *now = job->now;
-    float strong = job->strong_weight, gentle = job->gentle_weight;
-    size_t v, end;
-    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
+    const float4 *now = step->now;
+    bool has_gentle = step->gentle != 0;
+    for (size_t v = from; v < end; v++) {
         const uint32_t *link = job->graph->links[v];
         float4 mean = (now[link[0]] + now[link[1]] + now[link[2]] + now[link[3]]) * 0.25f;
-        float4 next = 2 * (mean + job->first[v]) - job->before[v];
-        job->before[v] = next;
-        job->strong[v] += strong * next;
-        job->gentle[v] += gentle * next;
+        float4 next = 2 * (mean + job->first[v]);
+        if (step->n > 2) /* e_0 is 0 */
+            next -= step->next[v];
+        step->next[v] = next;
+        job->strong[v] += step->strong * next;
+        if (has_gentle)
+            job->gentle[v] += step->gentle * next;
     }
+}
+
+static void take_step(const struct smooth_job *job, const struct step *step, size_t from, size_t end)
+{
+    if (step->n == 1)
+        first_step(job, step, from, end);
+    else
+        next_step(job, step, from, end);
 }
 
 /* Of the Chebyshev polynomials for a step from 1 to 0 at the frequency `band` of 1 - A, times a Hamming window. They add up to 1, so
@@ -93,18 +103,64 @@ static void make_weights(double band, int n_steps, double weights[SMOOTH_MAX_STE
         weights[n] /= total;
 }
 
+struct filter {
+    struct smooth_job *job;
+    struct step steps[SMOOTH_MAX_STEPS + 1];
+    const struct step *step; /* the one that all threads take */
+};
+
+static void take_part(void *context, int part, int n_parts)
+{
+    const struct filter *filter = context;
+    size_t from, end;
+    smooth_range(filter->job, part, n_parts, &from, &end);
+    take_step(filter->job, filter->step, from, end);
+}
+
+/* Vertices are in the order of slices and linked within three neighbouring ones. So a step can be taken slice by slice behind the
+ * step before it, and what both touch is still in the cache: one thread takes BLOCK steps in one go through the slices. What a step
+ * writes over, e_(n-2) of a slice, the step before has read for the slices around it. */
+static bool take_all_by_slices(const struct filter *filter)
+{
+    enum { BLOCK = 6 };
+    const struct smooth_job *job = filter->job;
+    int32_t n_slices = job->graph->points[job->n - 1].at2[2] / 2 + 1;
+    size_t *begin = mem_array((size_t)n_slices + 1, sizeof *begin, UINT64_MAX, NULL);
+    if (!begin)
+        return false;
+    size_t v = 0;
+    for (int32_t slice = 0; slice <= n_slices; slice++) {
+        while (v < job->n && job->graph->points[v].at2[2] / 2 < slice)
+            v++;
+        begin[slice] = v;
+    }
+    for (int first = 1; first <= job->options.n_steps; first += BLOCK)
+        for (int32_t front = 0; front < n_slices + BLOCK - 1; front++)
+            for (int n = first; n < first + BLOCK && n <= job->options.n_steps; n++) {
+                int32_t slice = front - (n - first);
+                if (slice >= 0 && slice < n_slices)
+                    take_step(job, &filter->steps[n], begin[slice], begin[slice + 1]);
+            }
+    free(begin);
+    return true;
+}
+
 static void filter(struct smooth_job *job)
 {
     const struct smooth_options *options = &job->options;
+    int n_gentle = options->n_steps / 2 > 0 ? options->n_steps / 2 : 1; /* all it takes for the wider band */
     double strong[SMOOTH_MAX_STEPS + 1], gentle[SMOOTH_MAX_STEPS + 1];
+    struct filter filter = { .job = job };
     make_weights(options->strong_band, options->n_steps, strong);
-    make_weights(options->gentle_band, options->n_steps, gentle);
+    make_weights(options->gentle_band, n_gentle, gentle);
+    for (int n = 1; n <= options->n_steps; n++)
+        filter.steps[n] = (struct step){ n, n % 2 ? job->before : job->now, n % 2 ? job->now : job->before, (float)strong[n],
+                                         n <= n_gentle ? (float)gentle[n] : 0 };
+    if (job->n == 0 || (job->n_threads == 1 && take_all_by_slices(&filter)))
+        return;
     for (int n = 1; n <= options->n_steps; n++) {
-        job->strong_weight = (float)strong[n];
-        job->gentle_weight = (float)gentle[n];
-        parallel_run(job->n_threads, n == 1 ? first_step : next_step, job);
-        if (n > 1)
-            swap(&job->now, &job->before);
+        filter.step = &filter.steps[n];
+        parallel_run(job->n_threads, take_part, &filter);
     }
 }
 

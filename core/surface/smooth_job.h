@@ -2,6 +2,7 @@
 /* Inside of surface_smooth: what its two files share. */
 #include <stdbool.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "core/surface/marching_cubes.h"
 #include "core/surface/smooth.h"
@@ -19,9 +20,8 @@ struct smooth_job {
     bool is_mirrored;
     double univel_mm3;
 
-    float4 *first, *now, *before; /* e_1, e_n, e_(n-1), see smooth.c; free for others afterwards */
-    float4 *strong, *gentle;      /* what the two filters add up to */
-    float strong_weight, gentle_weight; /* of this step's polynomial */
+    float4 *first, *now, *before; /* e_1, e_n, e_(n-1), see smooth.c; the last two are free for others afterwards */
+    float4 *strong, *gentle;      /* what the two filters add up to: displacements */
 
     float *shift; /* of each vertex along its own edge, from its middle; what goes beyond max_shift is cut off when it is used */
     float *lean;  /* how squarely the edge meets the surface: cosine of edge and normal, in mm */
@@ -33,9 +33,20 @@ static inline void smooth_range(const struct smooth_job *job, int part, int n_pa
     *end = job->n * (size_t)(part + 1) / (size_t)n_parts;
 }
 
+/* Where a vertex starts; the fourth is of no meaning. */
 static inline float4 smooth_start(const struct marching_point *point)
 {
-    return (float4){ point->at2[0], point->at2[1], point->at2[2], 0 } * 0.5f;
+    typedef int16_t short4 __attribute__((vector_size(8)));
+    short4 at2;
+    memcpy(&at2, point, sizeof at2);
+    return __builtin_convertvector(at2, float4) * 0.5f;
+}
+
+/* Along an axis of the grid. */
+static inline float4 smooth_along(int axis, float length)
+{
+    static const float4 units[3] = { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } };
+    return units[axis] * length;
 }
 
 static inline float smooth_cut(float value, float most)

@@ -1,7 +1,6 @@
 /* The volume of a smoothed surface, piece by piece. A piece is what hangs together of the surface: one closed sheet. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
@@ -14,6 +13,7 @@ struct piece {
     double wanted, volume, before; /* univels within: to be, now, at the step before */
     double area_mm2;
     double swelling_mm; /* of this step */
+    bool is_settled;
 };
 
 struct volume_job {
@@ -82,9 +82,9 @@ static void place(void *context, int part, int n_parts)
     float most = (float)smooth->options.max_shift;
     size_t v, end;
     for (smooth_range(smooth, part, n_parts, &v, &end); v < end; v++) {
-        float4 at = smooth_start(&smooth->graph->points[v]);
-        at[smooth->graph->points[v].axis] += smooth_cut(smooth->shift[v], most);
-        job->at[v] = at;
+        const struct marching_point *point = &smooth->graph->points[v];
+        if (!job->pieces[job->piece_of[v]].is_settled)
+            job->at[v] = smooth_start(point) + smooth_along(point->axis, smooth_cut(smooth->shift[v], most));
     }
 }
 
@@ -109,21 +109,28 @@ static void measure_chunks(void *context, int part, int n_parts)
     for (size_t chunk = job->n_chunks * (size_t)part / (size_t)n_parts; chunk < end; chunk++) {
         double *sums = job->sums + chunk * job->n_pieces;
         memset(sums, 0, job->n_pieces * sizeof *sums);
-        for (size_t t = chunk * CHUNK, last = chunk_end(job, chunk); t < last; t++)
-            sums[job->piece_of[job->smooth->mesh->indices[3 * t]]] += prism(job, t);
+        for (size_t t = chunk * CHUNK, last = chunk_end(job, chunk); t < last; t++) {
+            uint32_t piece = job->piece_of[job->smooth->mesh->indices[3 * t]];
+            if (!job->pieces[piece].is_settled)
+                sums[piece] += prism(job, t);
+        }
     }
 }
 
-/* By chunks that are added in their order, so that threads do not matter; with many pieces by one thread. */
+/* Of the pieces that are not settled. By chunks that are added in their order, so that threads do not matter; with many pieces by one thread. */
 static void measure_volumes(struct volume_job *job)
 {
     double sign = job->smooth->is_mirrored ? -1 : 1;
     for (uint32_t p = 0; p < job->n_pieces; p++)
-        job->pieces[p].volume = 0;
+        if (!job->pieces[p].is_settled)
+            job->pieces[p].volume = 0;
     parallel_run(job->smooth->n_threads, place, job);
     if (!job->sums) {
-        for (size_t t = 0; t < job->smooth->mesh->n_triangles; t++)
-            job->pieces[job->piece_of[job->smooth->mesh->indices[3 * t]]].volume += sign * prism(job, t);
+        for (size_t t = 0; t < job->smooth->mesh->n_triangles; t++) {
+            struct piece *piece = &job->pieces[job->piece_of[job->smooth->mesh->indices[3 * t]]];
+            if (!piece->is_settled)
+                piece->volume += sign * prism(job, t);
+        }
         return;
     }
     parallel_run(job->smooth->n_threads, measure_chunks, job);
@@ -138,6 +145,8 @@ static bool plan_swelling(struct volume_job *job, int step)
     bool is_needed = false;
     for (uint32_t p = 0; p < job->n_pieces; p++) {
         struct piece *piece = &job->pieces[p];
+        if (piece->is_settled)
+            continue;
         double missing = piece->wanted - piece->volume, univels_a_mm = piece->area_mm2 / job->smooth->univel_mm3;
         if (step > 0 && piece->swelling_mm != 0) {
             double seen = (piece->volume - piece->before) / piece->swelling_mm;
@@ -149,6 +158,7 @@ static bool plan_swelling(struct volume_job *job, int step)
             is_off = false; /* the edges end here; before, vertices may have been beyond the ends, coming back */
         piece->before = piece->volume;
         piece->swelling_mm = is_off ? missing / univels_a_mm : 0;
+        piece->is_settled = !is_off;
         is_needed |= is_off;
     }
     return is_needed;
@@ -160,6 +170,8 @@ static void swell(void *context, int part, int n_parts)
     struct smooth_job *smooth = job->smooth;
     size_t v, end;
     for (smooth_range(smooth, part, n_parts, &v, &end); v < end; v++) {
+        if (job->pieces[job->piece_of[v]].is_settled)
+            continue;
         const struct marching_point *point = &smooth->graph->points[v];
         float lean = smooth->lean[v], mm = (float)job->pieces[job->piece_of[v]].swelling_mm;
         /* as far along the edge as moves the surface by mm, but not without end where edge and surface are nearly parallel */
