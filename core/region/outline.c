@@ -45,17 +45,23 @@ struct job {
     uint32_t first_slice, n_slices;
     struct lines *lines; /* [n_slices] */
     atomic_uint next;
+    atomic_size_t n_walk; /* of all slices so far, so that noise is refused before it fills the memory */
     struct error errors[MAX_THREADS];
 };
+
+static bool within_limit(uint64_t n_walk, struct error *err)
+{
+    return n_walk <= OUTLINE_MAX_POINTS || error_set(err, ERROR_LIMIT, "outlines of more than %llu points",
+                                                     (unsigned long long)OUTLINE_MAX_POINTS);
+}
 
 static bool numbers_add(struct numbers *numbers, uint32_t value, struct error *err)
 {
     if (numbers->n == numbers->room) {
         size_t room = numbers->room ? 2 * numbers->room : 64;
-        uint32_t *more = room <= 4 * OUTLINE_MAX_POINTS ? realloc(numbers->at, room * sizeof *more) : NULL;
+        uint32_t *more = realloc(numbers->at, room * sizeof *more);
         if (!more)
-            return error_set(err, room <= 4 * OUTLINE_MAX_POINTS ? ERROR_MEMORY : ERROR_LIMIT, "no memory for %zu points of an outline",
-                             room);
+            return error_set(err, ERROR_MEMORY, "no memory for %zu points of an outline", room);
         numbers->at = more;
         numbers->room = room;
     }
@@ -179,14 +185,20 @@ static bool walk_line(struct sheet *sheet, const struct view *view, struct side 
 }
 
 /* A closed line goes to the right somewhere, along the lower side of a pixel: so looking for those finds all lines. */
-static bool walk_slice(struct sheet *sheet, const struct view *view, struct lines *lines, struct error *err)
+static bool walk_slice(struct job *job, struct sheet *sheet, struct lines *lines, struct error *err)
 {
+    const struct view *view = &job->view;
     for (uint32_t y = 0; y < view->size[1]; y++) {
         size_t row = (y + 1) * (size_t)sheet->width + 1;
         for (uint32_t x = 0; x < view->size[0]; x++) {
             size_t at = row + x;
-            if ((sheet->pixels[at] & (INSIDE | 1 << DOWN)) == INSIDE && !(sheet->pixels[at - (size_t)sheet->width] & INSIDE) &&
-                !walk_line(sheet, view, (struct side){ at, DOWN }, lines, err))
+            if ((sheet->pixels[at] & (INSIDE | 1 << DOWN)) != INSIDE || (sheet->pixels[at - (size_t)sheet->width] & INSIDE))
+                continue;
+            size_t before = lines->walk.n;
+            if (!walk_line(sheet, view, (struct side){ at, DOWN }, lines, err))
+                return false;
+            size_t n = lines->walk.n - before;
+            if (!within_limit(atomic_fetch_add(&job->n_walk, n) + n, err))
                 return false;
         }
     }
@@ -203,7 +215,7 @@ static void walk_part(void *context, int part, int n_parts)
     bool good = sheet_init(&sheet, &job->view, &job->errors[part]);
     for (uint32_t at; good && (at = atomic_fetch_add(&job->next, 1)) < job->n_slices;)
         if (sheet_fill(&sheet, &job->view, job->first_slice + at))
-            good = walk_slice(&sheet, &job->view, &job->lines[at], &job->errors[part]);
+            good = walk_slice(job, &sheet, &job->lines[at], &job->errors[part]);
     sheet_finish(&sheet);
 }
 
@@ -216,11 +228,6 @@ static struct outline_set *set_create(const struct job *job, struct error *err)
         n_points += job->lines[at].halves.n / 2;
         n_walk += job->lines[at].walk.n;
         n_lines += job->lines[at].line.n;
-    }
-    if (n_walk > OUTLINE_MAX_POINTS) {
-        error_set(err, ERROR_LIMIT, "outlines of %llu points: at most %llu are allowed", (unsigned long long)n_walk,
-                  (unsigned long long)OUTLINE_MAX_POINTS);
-        return NULL;
     }
     struct outline_set *set = mem_new(sizeof *set);
     *set = (struct outline_set){ .n_points = n_points, .n_walk = n_walk, .n_lines = n_lines, .n_slices = job->n_slices };
@@ -274,6 +281,7 @@ static struct outline_set *outline_slices(const struct mask *mask, int axis, str
     int n_parts = wanted < MAX_THREADS ? wanted : MAX_THREADS;
     n_parts = (uint32_t)n_parts < n ? n_parts : (int)n;
     atomic_init(&job.next, 0);
+    atomic_init(&job.n_walk, 0);
     parallel_run(n_parts, walk_part, &job);
     const struct error *failed = NULL;
     for (int part = 0; part < n_parts; part++)

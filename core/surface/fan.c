@@ -8,7 +8,7 @@
 #include "core/surface/shape_make.h"
 #include "core/surface/shape_parts.h"
 
-enum { AROUND = 27, MIDDLE = 13, MAX_FAN = 26, MAX_VOXELS = 10000000 };
+enum { AROUND = 27, MIDDLE = 13, MAX_FAN = 26, MAX_VOXELS = 5000000, MAX_ALL = 60000000 };
 
 struct fan {
     uint8_t from[MAX_FAN], to[MAX_FAN]; /* of each triangle the two neighbours, 0..26 as in shape_border_around */
@@ -214,8 +214,9 @@ static struct mesh *join(const struct job *job, struct error *err)
     uint64_t n_all = 0, n_kept = 0;
     for (size_t at = 0; at < n; at++)
         n_all += job->fans[at].n;
-    if (n_all > 3 * (uint64_t)SHAPE_MAX_TRIANGLES) { /* no triangle is in more than three fans */
-        error_set(err, ERROR_LIMIT, "fans of %llu triangles: at most %d are allowed", (unsigned long long)n_all, SHAPE_MAX_TRIANGLES);
+    if (n_all > MAX_ALL) {
+        error_set(err, ERROR_LIMIT, "fans of %llu triangles, some of them in several: at most %d are allowed", (unsigned long long)n_all,
+                  MAX_ALL);
         return NULL;
     }
     struct mesh *mesh = NULL;

@@ -14,7 +14,7 @@
 #include "core/region/region.h"
 #include "core/surface/shape.h"
 
-enum { SHAPE_MAX_TRIANGLES = 40000000, SHAPE_MAX_POINTS = 20000000, SHAPE_MAX_SEGMENTS = 40000000 };
+enum { SHAPE_MAX_TRIANGLES = 40000000, SHAPE_MAX_POINTS = 10000000, SHAPE_MAX_SEGMENTS = 40000000 };
 
 /*   key      normalised
  *   returns  one reference, the caller's; equal input gives equal bytes for any n_threads (0: all cores)

@@ -6,7 +6,9 @@
 #include "core/region/outline.h"
 #include "core/region/outline_walk.h"
 #include "tests/check.h"
+#include "tests/unit/data_folder.h"
 #include "tests/unit/made_mask.h"
+#include "tests/unit/oracle.h"
 #include "tests/unit/sera_head.h"
 
 enum { MAX_TEXT = 2000 };
@@ -289,6 +291,41 @@ static void squares_are_the_sections_of_the_marching_cubes_surface(void **state)
     mask_destroy(mask);
 }
 
+/* Counts and lengths by another program, slice by slice. */
+static void squares_have_the_points_and_the_length_of_vtks(void **state)
+{
+    (void)state;
+    struct mask *mask = random_mask(70, 41, 6, 55, 21, &unit_map);
+    char folder[256], path[512], out[1024], *at = out, *program = "tests/oracle/vtk_squares.py";
+    uint8_t voxels[70 * 41 * 6];
+    for (size_t v = 0; v < sizeof voxels; v++)
+        voxels[v] = mask_has(mask, (int64_t)(v % 70), (int64_t)(v / 70 % 41), (int64_t)(v / 70 / 41));
+    folder_make(folder);
+    folder_put(folder, "mask", voxels, sizeof voxels);
+    snprintf(path, sizeof path, "%s/mask", folder);
+    int status = oracle_run((char *[]){ oracle_python(), program, path, "70", "41", "6", NULL }, out, sizeof out);
+    folder_remove(folder);
+    struct outline_set *set = stack(mask, 2, OUTLINE_MARCHING_SQUARES, 1);
+    for (uint32_t k = 0; status == 0 && k < 6; k++) {
+        uint32_t first = set->line[set->slice[k]], end = set->line[set->slice[k + 1]];
+        double length = 0;
+        for (uint32_t l = set->slice[k]; l < set->slice[k + 1]; l++)
+            for (uint32_t w = set->line[l]; w < set->line[l + 1]; w++) {
+                const float *a = set->points_ijk + 3 * (size_t)set->walk[w];
+                const float *b = set->points_ijk + 3 * (size_t)set->walk[w + 1 < set->line[l + 1] ? w + 1 : set->line[l]];
+                length += hypot((double)(a[0] - b[0]), (double)(a[1] - b[1]));
+            }
+        assert_int_equal(end - first, strtoul(at, &at, 10));
+        assert_int_equal(end - first, strtoul(at, &at, 10));
+        assert_close(length, strtod(at, &at), 1e-4 * length); /* VTK's are floats */
+    }
+    outline_set_destroy(set);
+    mask_destroy(mask);
+    if (status == ORACLE_MISSING)
+        skip();
+    assert_int_equal(status, 0);
+}
+
 static void assert_same_set(const struct outline_set *a, const struct outline_set *b)
 {
     assert_int_equal(a->n_points, b->n_points);
@@ -343,6 +380,22 @@ static void an_empty_mask_has_no_line_and_a_wrong_axis_or_slice_is_refused(void 
     err = (struct error){ 0 };
     assert_null(outline_slice(mask, 2, 2, OUTLINE_TRACED, &err));
     assert_string_equal(err.text, "an outline on slice 2: axis 2 has 2");
+    mask_destroy(mask);
+}
+
+/* A chequered block of pixels that all stand alone in one way of counting, 4 points each: more than may be. */
+static void noise_is_refused_before_it_fills_the_memory(void **state)
+{
+    (void)state;
+    struct mask *mask = mask_make(512, 512, 140, &unit_map);
+    for (uint32_t k = 0; k < 140; k++)
+        for (uint32_t j = 0; j < 512; j++)
+            for (uint32_t w = 0; w < 8; w++)
+                mask->bits[((size_t)k * 512 + j) * 8 + w] = (j + k) % 2 ? 0x5555555555555555u : 0xaaaaaaaaaaaaaaaau;
+    struct error err = { 0 };
+    assert_null(outline_stack(mask, 2, OUTLINE_MARCHING_SQUARES, 2, &err));
+    assert_int_equal(err.code, ERROR_LIMIT);
+    assert_string_equal(err.text, "outlines of more than 67108864 points");
     mask_destroy(mask);
 }
 
@@ -416,8 +469,10 @@ int main(void)
         cmocka_unit_test(every_border_pixel_is_one_point_and_each_step_goes_to_a_neighbour),
         cmocka_unit_test(lines_enclose_the_area_and_have_the_euler_number_of_the_cells),
         cmocka_unit_test(squares_are_the_sections_of_the_marching_cubes_surface),
+        cmocka_unit_test(squares_have_the_points_and_the_length_of_vtks),
         cmocka_unit_test(any_number_of_threads_and_slices_alone_give_the_same),
         cmocka_unit_test(an_empty_mask_has_no_line_and_a_wrong_axis_or_slice_is_refused),
+        cmocka_unit_test(noise_is_refused_before_it_fills_the_memory),
         cmocka_unit_test(a_cut_across_an_oblique_grid_shows_the_voxels_it_goes_through),
         cmocka_unit_test(point_counts_equal_the_original_sera3d_on_its_own_head),
     };
