@@ -30,7 +30,7 @@ export function figuresDialog({ room, ui, comparison }) {
   const n = rows.filter((row) => row.result || row.error).length;
   return html`<section class="card compare" role="dialog" aria-label="Methods compared">
     <header><h2>${region.name}: methods compared</h2><span class="grow"></span>
-      <button ?disabled=${n < rows.length} @click=${() => save(rows, `${room.planId.value}-${region.id}-methods.csv`)}>CSV</button>
+      <button ?disabled=${!rows.length || n < rows.length} @click=${() => save(rows, `${room.planId.value}-${region.id}-methods.csv`)}>CSV</button>
       <button class="icon-button" aria-label="Close" @click=${() => { ui.popover.value = ''; }}>${icon('close')}</button></header>
     <p class="note">${n < rows.length ? html`<span role="status">Working out ${n + 1} of ${rows.length} …</span>` : html`${number(region.volume_cm3, 2)} cm³ in ${number(region.voxels)} univels of its own.`}
       With all regions inside it. Drawn alone, 650 × 650 pixels, moving picture.</p>

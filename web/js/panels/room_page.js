@@ -145,7 +145,8 @@ function shape(room, ui, api, shaped) {
 function compare(room, ui, comparison) {
   const of = computed(() => (ui.popover.value === 'figures' ? ui.region.value : ''));
   const stop = effect(() => {
-    const region = room.plan.peek()?.regions.find((other) => other.id === of.value);
+    const id = of.value;
+    const region = room.plan.peek()?.regions.find((other) => other.id === id);
     if (region) comparison.start(room.planId.peek(), region, room.scene.peek());
     else comparison.stop();
   });

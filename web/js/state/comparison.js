@@ -21,12 +21,14 @@ export class Comparison {
     this.stop();
     const asking = new AbortController();
     this.#asking = asking;
-    this.rows.value = methods(scene).map((method) => ({ ...method, region: region.id }));
-    for (const [i, { query }] of this.rows.value.entries()) {
+    const rows = methods(scene).map((method) => ({ ...method, region: region.id }));
+    this.rows.value = rows;
+    for (const [i, { query }] of rows.entries()) {
       const answer = await this.#api.surface(plan, region.id, { ...query, frames: '5' }, asking.signal)
         .then((result) => ({ result }), (error) => ({ error: error.message }));
       if (asking.signal.aborted) return;
-      this.rows.value = this.rows.value.map((row, n) => (n === i ? { ...row, ...answer } : row));
+      rows[i] = { ...rows[i], ...answer };
+      this.rows.value = [...rows];
     }
   }
 }
