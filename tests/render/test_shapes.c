@@ -187,16 +187,18 @@ static void a_line_through_the_eyes_plane_is_cut_there(void **state)
 static void points_are_squares_of_the_size_the_scene_says(void **state)
 {
     (void)state;
-    static const float positions[3] = { -10, 0, 5 }, normal[3] = { 0, -1, 0 };
+    static const float positions[3] = { -10, 0, 5 }, normals[2][3] = { { 0, -1, 0 }, { 0, 0, 0 } }; /* none: as if it faced the viewer */
     struct plan *plan = make_plan();
-    put(plan, REPRESENTATION_POINTS, make_points(positions, normal, (uint8_t[]){ 128 }, 1));
+    put(plan, REPRESENTATION_POINTS, make_points(positions, normals[0], (uint8_t[]){ 128 }, 1));
+    struct plan *without = make_plan();
+    put(without, REPRESENTATION_POINTS, make_points(positions, normals[1], (uint8_t[]){ 128 }, 1));
     for (int size = 1; size <= 7; size += 3)
         for (int scale = 1; scale <= 2; scale++) {
             struct scene scene = scene_as(plan, SCENE_REPRESENTATION_POINTS);
             shots_style(&scene, "plate")->visible = false;
             scene.points.size_px = size;
             struct render_options options = { SHOTS_WIDTH / scale, SHOTS_HEIGHT / scale, SURFACE_FULL, false };
-            struct image *image = shots_take(plan, scene, shots_view_from(origin, from_front, up, 6.02), &options, NULL);
+            struct image *image = shots_take(size > 4 ? without : plan, scene, shots_view_from(origin, from_front, up, 6.02), &options, NULL);
             double x, y, side = fmax(1, (double)size / scale);
             size_t n = drawn(image, &x, &y);
             assert_true((double)n >= floor(side) * floor(side) && (double)n <= ceil(side) * ceil(side));
@@ -207,6 +209,7 @@ static void points_are_squares_of_the_size_the_scene_says(void **state)
             image_destroy(image);
         }
     finish(plan);
+    finish(without);
 }
 
 static void solid_points_cover_their_voxel_in_the_light_worked_out_before(void **state)

@@ -119,8 +119,8 @@ static const char point_vertex[] =
     "void main() {\n"
     "    vec4 middle = clip_from_lps * vec4(position, 1.0);\n"
     "    vec3 towards = normalize(viewer.xyz - viewer.w * position);\n"
-    "    shade = is_baked != 0 ? vec4(color.rgb * baked, opacity)\n"
-    "                          : light(eye_from_lps * normal, clamp(dot(normal, towards), 0.0, 1.0));\n"
+    "    vec3 n = dot(normal, normal) > 0.25 ? normal : towards;\n" /* none: what is one voxel thin */
+    "    shade = is_baked != 0 ? vec4(color.rgb * baked, opacity) : light(eye_from_lps * n, clamp(dot(n, towards), 0.0, 1.0));\n"
     "    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);\n" /* nothing */
     "    if (middle.z + middle.w < 0.0 || middle.w <= 0.0) return;\n"
     "    vec2 at = middle.xy / middle.w, size = vec2(half_size);\n"

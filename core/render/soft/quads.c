@@ -106,6 +106,19 @@ static void cover(const struct soft_item *item, const struct soft_corner *middle
     half[1] = across[1] / w;
 }
 
+/* The border of what is one voxel thin faces no way more than another: it is lit as if it faced the viewer. */
+static uint32_t live_shade(const struct soft_item *item, size_t p)
+{
+    const struct soft_points *points = &item->shape->points;
+    if (points->nx[p] | points->ny[p] | points->nz[p])
+        return item->vertices[p].shade;
+    const float *viewer = item->lighting.viewer;
+    struct vec3 t = vec3_normalize(vec3((double)(viewer[0] - viewer[3] * points->x[p]), (double)(viewer[1] - viewer[3] * points->y[p]),
+                                        (double)(viewer[2] - viewer[3] * points->z[p])));
+    const float towards[3] = { (float)t.x, (float)t.y, (float)t.z };
+    return soft_light(&item->lighting, towards, towards);
+}
+
 /* From low to high in whole sub-samples, at least one sample, and not far beyond the picture. */
 static void extent(double middle, double half, bool is_covering, int n_samples, int32_t range[2])
 {
@@ -134,7 +147,7 @@ bool soft_keep_points(struct soft_chunk *chunk, int width, int height)
         extent(middle.y / middle.w, half[1], item->look.is_covering, height, y);
         float z = (float)(middle.z / middle.w);
         uint32_t shade = item->look.is_baked ? pack(item->lighting.color, (float)item->shape->shade[p] / 255.0f, item->lighting.opacity)
-                                             : item->vertices[p].shade;
+                                             : live_shade(item, p);
         const struct soft_vertex v[4] = { { x[0], y[1], z, shade }, { x[1], y[1], z, shade }, { x[1], y[0], z, shade }, { x[0], y[0], z, shade } };
         if (!soft_keep_triangle(chunk, (struct soft_vertex[3]){ v[0], v[1], v[2] }, width, height) ||
             !soft_keep_triangle(chunk, (struct soft_vertex[3]){ v[0], v[2], v[3] }, width, height))
