@@ -480,6 +480,10 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
                              layout.transfer_syntax);
         return true;
     }
+    const char *encoding;
+    if (dicom_can_decode(layout.transfer_syntax, &encoding) || DcmXfer(layout.transfer_syntax).isEncapsulated())
+        return error_set(err, ERROR_FORMAT, "%s: byte %zu: pixel data of %llu bytes where the transfer syntax (%s) needs fragments", name,
+                         layout.pixels_at, static_cast<unsigned long long>(layout.pixels_size), encoding);
     uint64_t frame = uint64_t(pixels->rows) * pixels->columns * (pixels->bits_allocated / 8);
     uint64_t needed = frame * pixels->n_frames;
     if (layout.pixels_size < needed)
