@@ -21,8 +21,11 @@ static void swap32(uint32_t *values, size_t n)
     do {                                                                                                                               \
         unsigned_type *cells = values;                                                                                                 \
         for (size_t i = 0; i < n; i++) {                                                                                               \
-            unsigned_type top = (unsigned_type)(cells[i] << up);                                                                       \
-            cells[i] = pixels->is_signed ? (unsigned_type)((signed_type)top >> down) : (unsigned_type)(top >> down);                   \
+            unsigned_type top = (unsigned_type)((uint32_t)cells[i] << up);                                                             \
+            if (pixels->is_signed)                                                                                                     \
+                cells[i] = (unsigned_type)((signed_type)top >> down);                                                                  \
+            else                                                                                                                       \
+                cells[i] = (unsigned_type)(top >> down);                                                                               \
         }                                                                                                                              \
     } while (0)
 
