@@ -180,9 +180,21 @@ static bool get_color(const struct place *place, const cJSON *object, bool *has_
     return true;
 }
 
+/* Of lengths, where a file does not say it, or not rightly; 0 when the plan does not either. */
+static bool get_unit(const struct place *place, const cJSON *object, double *mm)
+{
+    char unit[16];
+    if (!get_text(place, object, "unit", unit, sizeof unit))
+        return false;
+    if (unit[0] && !text_equal(unit, "mm") && !text_equal(unit, "cm"))
+        return fail(place, ERROR_RANGE, "unit", "expected mm or cm");
+    *mm = text_equal(unit, "mm") ? 1 : text_equal(unit, "cm") ? 10 : 0;
+    return true;
+}
+
 static bool parse_images(const struct place *top, const cJSON *root, struct plan_file *file)
 {
-    static const char *const known[] = { "id", "path", "header", "modality", "name", NULL };
+    static const char *const known[] = { "id", "path", "header", "modality", "name", "unit", NULL };
     const cJSON *list;
     if (!get_list(top, root, "images", PLAN_MAX_IMAGES, &list))
         return false;
@@ -193,7 +205,7 @@ static bool parse_images(const struct place *top, const cJSON *root, struct plan
         if (!get_text(&at, entry, "id", image->id, sizeof image->id) || !get_path(&at, entry, "path", true, image->path) ||
             !get_path(&at, entry, "header", false, image->header) ||
             !get_text(&at, entry, "modality", image->modality, sizeof image->modality) ||
-            !get_text(&at, entry, "name", image->name, sizeof image->name))
+            !get_text(&at, entry, "name", image->name, sizeof image->name) || !get_unit(&at, entry, &image->mm))
             return false;
     }
     return true;
@@ -201,7 +213,7 @@ static bool parse_images(const struct place *top, const cJSON *root, struct plan
 
 static bool parse_regions(const struct place *top, const cJSON *root, struct plan_file *file)
 {
-    static const char *const known[] = { "path", "names", "name", "color", NULL };
+    static const char *const known[] = { "path", "names", "name", "color", "unit", NULL };
     const cJSON *list;
     if (!get_list(top, root, "regions", PLAN_FILE_MAX_PARTS, &list))
         return false;
@@ -212,7 +224,7 @@ static bool parse_regions(const struct place *top, const cJSON *root, struct pla
         note_unknown_keys(&at, entry, known);
         if (!get_path(&at, entry, "path", true, region->path) || !get_path(&at, entry, "names", false, region->names) ||
             !get_text(&at, entry, "name", region->name, sizeof region->name) ||
-            !get_color(&at, entry, &region->has_color, region->rgb))
+            !get_color(&at, entry, &region->has_color, region->rgb) || !get_unit(&at, entry, &region->mm))
             return false;
         if (region->name[0] && region->names[0])
             return fail(&at, ERROR_FORMAT, "name", "either \"name\" (a mask) or \"names\" (a label map), not both");
@@ -307,13 +319,9 @@ static bool parse_tracks(const struct place *top, const cJSON *root, struct plan
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
         struct place at = place_at(top, "tracks", (int)file->n_tracks);
         struct plan_file_tracks *tracks = &file->tracks[file->n_tracks++];
-        char unit[16];
         note_unknown_keys(&at, entry, known);
-        if (!get_path(&at, entry, "path", true, tracks->path) || !get_text(&at, entry, "unit", unit, sizeof unit))
+        if (!get_path(&at, entry, "path", true, tracks->path) || !get_unit(&at, entry, &tracks->mm))
             return false;
-        if (unit[0] && !text_equal(unit, "mm") && !text_equal(unit, "cm"))
-            return fail(&at, ERROR_RANGE, "unit", "expected mm or cm");
-        tracks->mm = text_equal(unit, "mm") ? 1 : text_equal(unit, "cm") ? 10 : 0;
     }
     return true;
 }

@@ -19,6 +19,7 @@ struct plan_file_image {
     char header[FOLDER_NAME_SIZE]; /* "" none */
     char modality[16];
     char name[128]; /* for people; "" none */
+    double mm; /* of one unit of a SERA header, whatever that says; 0 when not given */
 };
 struct plan_file_region {
     char path[FOLDER_NAME_SIZE];
@@ -26,6 +27,7 @@ struct plan_file_region {
     char name[REGION_NAME_SIZE];  /* not "": the path is a mask */
     bool has_color;
     uint8_t rgb[3];
+    double mm; /* as of an image */
 };
 struct plan_file_component {
     enum dose_quantity quantity;

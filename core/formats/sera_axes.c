@@ -28,6 +28,13 @@ struct vec3 sera_lps_from_rpi(double rl, double pa, double is)
 static double checked_unit(const struct sera_grid *sera, const char *name, struct report *report)
 {
     double across = 0, largest = 0;
+    if (sera->given_mm > 0) {
+        if (sera->given_mm != sera->mm)
+            report_add(report, REPORT_NOTE, "geometry.unit-given", name,
+                       "The header's unit is %g mm, but the plan says that its numbers count %g mm, and that was used.", sera->mm,
+                       sera->given_mm);
+        return sera->given_mm;
+    }
     for (int a = 0; a < 3; a++) {
         double extent = sera->size[a] * sera->step[a];
         largest = fmax(largest, extent);

@@ -20,11 +20,12 @@ struct sera_grid {
     double step[3]; /* size of a univel along them, in the header's unit */
     struct sera_direction along[3];
     double low[3], high[3]; /* [RL, PA, IS] outer faces, in the header's unit */
-    double mm;              /* of one unit */
+    double mm;              /* of one unit, as the header says */
+    double given_mm;        /* as somebody who knows better says; 0: nobody does */
 };
 
 /* Index 0 lies half a step inside the low face of its axis, or the high face where the index runs against it.
- * A head of metres means that the unit is wrong: millimetres are then taken, and reported.
+ * A head of metres means that the unit is wrong: millimetres are then taken, and reported. A given unit is taken as it is.
  *   errors  ERROR_FORMAT an axis twice; as grid_init */
 NODISCARD bool sera_grid_resolve(const struct sera_grid *sera, const char *name, struct grid *grid, struct report *report,
                                  struct error *err);

@@ -268,8 +268,23 @@ static bool check_columns(struct parser *p)
     return true;
 }
 
+/* Programs that go by seraMC's order show such a file wrongly. */
+static void note_order(const struct parser *p)
+{
+    static const enum dose_quantity usual[CHD_N_COLUMNS] = { DOSE_TOTAL, DOSE_BORON,        DOSE_GAMMA,              DOSE_NITROGEN,       DOSE_FAST,
+                                                             DOSE_FAST_FLUENCE, DOSE_EPITHERMAL_FLUENCE, DOSE_THERMAL_FLUENCE, DOSE_OTHER };
+    for (int i = 0; i < CHD_N_COLUMNS; i++)
+        if (p->chd->has_column[i] && p->chd->quantities[i] != usual[i]) {
+            report_add(p->report, REPORT_NOTE, "dose.column-order", p->name,
+                       "Column %d holds %s, as seraPlan writes it and seraMC does not; all columns were taken by their names.", i,
+                       dose_quantity_word(p->chd->quantities[i]));
+            return;
+        }
+}
+
 static void note_header(const struct parser *p)
 {
+    note_order(p);
     const char *version = p->chd->version;
     if (strncmp(version, "seraMC_", 7) != 0 && strncmp(version, "seraPlan_", 9) != 0)
         report_add(p->report, REPORT_NOTE, "dose.unknown-version", p->name,

@@ -222,7 +222,7 @@ static bool place_slices(const struct qhd *qhd, uint32_t n_slices, const char *n
 static bool make_grid(const struct qhd *qhd, uint32_t n_slices, const char *name, struct grid *grid, struct report *report,
                       struct error *err)
 {
-    struct sera_grid sera = { .size = { qhd->columns, qhd->rows, n_slices }, .mm = qhd->mm };
+    struct sera_grid sera = { .size = { qhd->columns, qhd->rows, n_slices }, .mm = qhd->mm, .given_mm = qhd->given_mm };
     double first, step;
     if (!place_slices(qhd, n_slices, name, &first, &step, report, err))
         return false;

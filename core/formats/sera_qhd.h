@@ -11,6 +11,7 @@ struct qhd {
     uint32_t pixel_bytes;           /* 1 or 2 */
     bool is_big;
     double mm; /* of one unit, as the header says */
+    double given_mm; /* as the plan says, which wins; 0 after qhd_parse */
     double step_columns, step_rows, spacing;
     double reference;
     bool has_spacing, has_reference;

@@ -298,8 +298,14 @@ static void check_orientation(const struct parser *p)
 
 bool uvh_parse(const uint8_t *data, size_t size, const char *name, struct uvh *uvh, struct report *report, struct error *err)
 {
+    return uvh_parse_in(data, size, name, 0, uvh, report, err);
+}
+
+bool uvh_parse_in(const uint8_t *data, size_t size, const char *name, double given_mm, struct uvh *uvh, struct report *report,
+                  struct error *err)
+{
     *uvh = (struct uvh){ .bodies = mem_new(UVH_MAX_BODIES * sizeof *uvh->bodies) };
-    struct parser p = { .name = name, .uvh = uvh, .report = report, .err = err };
+    struct parser p = { .name = name, .uvh = uvh, .grid = { .given_mm = given_mm }, .report = report, .err = err };
     text_start(&p.text, data, size);
     char line[TEXT_LINE_SIZE] = "", *key, *value;
     while (line[0] == 0 && text_line(&p.text, line)) {

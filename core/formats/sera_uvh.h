@@ -25,5 +25,9 @@ void uvh_finish(struct uvh *uvh);
 NODISCARD bool uvh_parse(const uint8_t *data, size_t size, const char *name, struct uvh *uvh, struct report *report,
                          struct error *err);
 
+/* With the millimetres of one unit as the plan gives them, whatever the header says; 0 is uvh_parse. */
+NODISCARD bool uvh_parse_in(const uint8_t *data, size_t size, const char *name, double given_mm, struct uvh *uvh, struct report *report,
+                            struct error *err);
+
 /* The univels as a U8 volume. data may be gzip, or zlib when name ends with .sz. errors ERROR_FORMAT not as many bytes as the header's univels; ERROR_MEMORY */
 NODISCARD struct volume *uvh_read_univels(const struct uvh *uvh, const struct bytes *data, const char *name, struct error *err);

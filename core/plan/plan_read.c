@@ -41,8 +41,9 @@ bool plan_read_part(const struct loading *loading, struct job *job)
     switch (job->kind) {
     case JOB_IMAGE:
         if (job->format == PART_QSH)
-            return plan_read_qsh(&loading->folder, job->path, loading->file->images[job->index].header, &job->volume, job->modality,
-                                 &job->is_grid_doubtful, &job->report, &job->err);
+            return plan_read_qsh(&loading->folder, job->path, loading->file->images[job->index].header,
+                                 loading->file->images[job->index].mm, &job->volume, job->modality, &job->is_grid_doubtful,
+                                  &job->report, &job->err);
         return read_grid(&loading->folder, job, RAW_IMAGE);
     case JOB_DOSE:
         if (job->format == PART_SERA_DOSE)
@@ -53,7 +54,7 @@ bool plan_read_part(const struct loading *loading, struct job *job)
     case JOB_DOSE_MASK: return read_grid(&loading->folder, job, RAW_MASK);
     case JOB_REGION:
         if (job->format == PART_UVH)
-            return plan_read_univels(&loading->folder, job->path, &job->uvh, &job->volume, &job->report, &job->err);
+            return plan_read_univels(&loading->folder, job->path, region->mm, &job->uvh, &job->volume, &job->report, &job->err);
         if (job->format == PART_NRRD && !region->name[0])
             return read_names(&loading->folder, region->names, job) && read_layers(&loading->folder, job);
         return read_names(&loading->folder, region->names, job) &&

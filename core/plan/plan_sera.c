@@ -25,14 +25,14 @@ static bool read_unpacked(const struct folder *folder, const char *name, uint64_
     return is_read;
 }
 
-bool plan_read_univels(const struct folder *folder, const char *path, struct uvh *uvh, struct volume **univels, struct report *report,
-                       struct error *err)
+bool plan_read_univels(const struct folder *folder, const char *path, double given_mm, struct uvh *uvh, struct volume **univels,
+                       struct report *report, struct error *err)
 {
     struct bytes header, data;
     char data_name[FOLDER_NAME_SIZE];
     if (!folder_read(folder, path, UVH_MAX_BYTES, UINT64_MAX, &header, err))
         return false;
-    bool is_read = uvh_parse(header.data, header.size, path, uvh, report, err);
+    bool is_read = uvh_parse_in(header.data, header.size, path, given_mm, uvh, report, err);
     bytes_free(&header);
     if (!is_read)
         return false;
@@ -45,8 +45,8 @@ bool plan_read_univels(const struct folder *folder, const char *path, struct uvh
     return *univels != NULL;
 }
 
-bool plan_read_qsh(const struct folder *folder, const char *path, const char *header, struct volume **image, char modality[16],
-                   bool *is_grid_doubtful, struct report *report, struct error *err)
+bool plan_read_qsh(const struct folder *folder, const char *path, const char *header, double given_mm, struct volume **image,
+                   char modality[16], bool *is_grid_doubtful, struct report *report, struct error *err)
 {
     struct bytes text, pixels;
     struct qhd qhd;
@@ -68,6 +68,7 @@ bool plan_read_qsh(const struct folder *folder, const char *path, const char *he
     bytes_free(&text);
     if (!is_read)
         return false;
+    qhd.given_mm = given_mm;
     snprintf(modality, 16, "%s", qhd.modality);
     if (folder_read(folder, pixel_name, DATA_FILE_MAX_BYTES, UINT64_MAX, &pixels, err)) {
         *image = qhd_read_pixels(&qhd, &pixels, header_name, pixel_name, is_grid_doubtful, report, err);

@@ -12,6 +12,7 @@
       "Left and right may be wrong: export again with an orientation.")                                                            \
     X("geometry.unit-assumed", "The file's unit cannot be right for a patient; another was taken.",                                \
       "Check a known distance; correct the unit in the header.")                                                                   \
+    X("geometry.unit-given", "The plan gives another unit of length than a file's header.", "The plan's was used.")               \
     X("geometry.unit-doubtful", "The grid is too small for a patient in the unit the file gives.",                                 \
       "Check a known distance; correct the unit in the header.")                                                                   \
     X("geometry.extent-differs", "Number of voxels times their size is not the extent the header gives.",                          \
@@ -105,6 +106,7 @@
       "Scale by the largest value inside, or by the file's reference.")                                                           \
     X("dose.unknown-column", "A column of SERA's contours has a name that is not known, or one that is there twice.",                \
       "It was left out; check dose_comp in the .chd file.")                                                                        \
+    X("dose.column-order", "The columns of SERA's contours stand in another order than seraMC's.", "They were taken by their names.") \
     X("dose.unknown-version", "SERA's contours come from a version that was not tested.", "Compare some values with their source.")  \
     X("dose.weights-missing", "SERA's contours do not say their weights or ppm.", "1 was taken; check the scale.")                  \
     X("dose.weight-zero", "A column of SERA's contours was multiplied by 0.", "It was left out; write the contours with weights of 1.") \

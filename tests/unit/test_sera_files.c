@@ -105,6 +105,43 @@ static void mean_weighted_doses_are_those_of_sera_plan_and_sera_mc(void **state)
     plan_destroy(plan);
 }
 
+static void a_wrong_unit_is_taken_for_what_it_must_be_or_for_what_the_plan_says(void **state)
+{
+    (void)state;
+    char folder[256], path[512];
+    struct error err = { 0 };
+    if (!data_path("sera-head", path, sizeof path))
+        skip();
+    folder_make(folder);
+    struct blob header = read_data("sera-head/original/CoryST.uvh"), univels = read_data("sera-head/original/CoryST.uv.gz");
+    folder_put(folder, "a.uvh", header.data, header.size);
+    folder_put(folder, "a.uv.gz", univels.data, univels.size);
+    static const struct {
+        const char *unit, *code;
+        double spacing_mm;
+    } cases[] = { { "", "geometry.unit-assumed", 1.01562 },
+                  { ",\"unit\":\"mm\"", "geometry.unit-given", 1.01562 },
+                  { ",\"unit\":\"cm\"", "", 10.1562 } };
+    for (size_t i = 0; i < 3; i++) {
+        char text[256];
+        int n = snprintf(text, sizeof text, "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.uvh\"%s}]}", cases[i].unit);
+        folder_put(folder, "plan.json", text, (size_t)n);
+        struct plan *plan = plan_load(folder, "p", NULL, &err);
+        assert_string_equal(err.text, "");
+        assert_close(grid_spacing_mm(&plan->regions.layers[0]->grid).x, cases[i].spacing_mm, 1e-9);
+        static const char *const codes[] = { "geometry.unit-assumed", "geometry.unit-given" };
+        for (size_t c = 0; c < 2; c++)
+            assert_int_equal(said(&plan->report, codes[c])[0] != 0, strcmp(codes[c], cases[i].code) == 0);
+        plan_destroy(plan);
+    }
+    folder_put(folder, "plan.json", "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.uvh\",\"unit\":\"ft\"}]}", 83);
+    assert_null(plan_load(folder, "p", NULL, &err));
+    assert_non_null(strstr(err.text, "regions[0].unit: expected mm or cm"));
+    free(header.data);
+    free(univels.data);
+    folder_remove(folder);
+}
+
 /* ---- packed ---------------------------------------------------------------------------------------------------------------------- */
 
 static const char small_uvh[] = "Version: uvh2.0\nDimensionality: mm\nSliceOrientation: Axial\nImageRows: 8\nImageColumns: 8\nImageSlices: 4\n"
@@ -330,6 +367,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mean_weighted_doses_are_those_of_sera_plan_and_sera_mc),
+        cmocka_unit_test(a_wrong_unit_is_taken_for_what_it_must_be_or_for_what_the_plan_says),
         cmocka_unit_test(images_and_univels_may_be_bare_zlib_streams),
         cmocka_unit_test(a_stream_that_swells_is_stopped_at_what_its_header_allows),
         cmocka_unit_test(a_header_of_65535_squared_is_refused),
