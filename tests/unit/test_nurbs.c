@@ -329,6 +329,78 @@ static void a_region_that_divides_goes_on_in_its_largest_part(void **state)
     mask_destroy(mask);
 }
 
+struct expected_net {
+    size_t n_rows;
+    double radius; /* how far its control points lie from (16, 16) at most */
+};
+
+static void assert_nets(const struct mask *mask, const struct expected_net *expected, size_t n)
+{
+    struct nurbs_nets nets;
+    struct error err = { 0 };
+    assert_true(nurbs_nets_make(mask, NURBS_TRACES, 60, 1, &nets, &err));
+    assert_int_equal(nets.n_nets, n);
+    for (size_t at = 0; at < n; at++) {
+        double radius = 0;
+        assert_int_equal(nets.nets[at].n_rows, expected[at].n_rows);
+        for (size_t p = 0; p < nets.nets[at].n_rows * nets.nets[at].n_around; p++)
+            radius = fmax(radius, hypot(nets.nets[at].points[p].x - 16, nets.nets[at].points[p].y - 16));
+        assert_close(radius, expected[at].radius, 0.8);
+    }
+    nurbs_nets_finish(&nets);
+}
+
+/* Two pieces that grow together: the larger goes on, the other ends. */
+static void pieces_that_join_go_on_from_the_largest(void **state)
+{
+    (void)state;
+    struct mask *mask = mask_make(32, 32, 7, &slices_3mm);
+    for (uint32_t k = 0; k < 7; k++)
+        for (uint32_t j = 12; j < 20; j++)
+            for (uint32_t i = 4; i < 28; i++)
+                if (k >= 3 || i < 10 || i > 11)
+                    mask_put(mask, i, j, k);
+    struct nurbs_nets nets;
+    struct error err = { 0 };
+    assert_true(nurbs_nets_make(mask, NURBS_TRACES, 60, 1, &nets, &err));
+    assert_int_equal(nets.n_nets, 2);
+    assert_int_equal(nets.nets[0].n_rows, 3 + 2); /* the narrow one, found first */
+    assert_int_equal(nets.nets[1].n_rows, 7 + 2);
+    nurbs_nets_finish(&nets);
+    mask_destroy(mask);
+}
+
+static bool in_thin_ring(double x, double y, int z)
+{
+    double r = hypot(x - 16, y - 16);
+    return r <= 14.2 && (z < 2 || r >= 12.2);
+}
+
+/* Below the hole lies more of the disc than below the ring; but a hole does not go on in a piece. */
+static void a_disc_goes_on_in_a_thin_ring_and_not_in_its_hole(void **state)
+{
+    (void)state;
+    struct mask *mask = made(32, 32, 5, &slices_3mm, in_thin_ring);
+    assert_nets(mask, (struct expected_net[]){ { 5 + 2, 14.5 }, { 3 + 2, 12 } }, 2);
+    mask_destroy(mask);
+}
+
+static bool in_target(double x, double y, int z)
+{
+    double r = hypot(x - 16, y - 16);
+    (void)z;
+    return r <= 3.2 || (r >= 7.2 && r <= 9.2) || r >= 13.2;
+}
+
+/* Rings within rings and a disc in the middle: each outline is stacked upon its own kind and size. */
+static void rings_within_rings_are_told_apart(void **state)
+{
+    (void)state;
+    struct mask *mask = made(33, 33, 3, &slices_3mm, in_target);
+    assert_nets(mask, (struct expected_net[]){ { 5, 22.6 }, { 5, 9.4 }, { 5, 3.5 }, { 5, 7 }, { 5, 13 } }, 5);
+    mask_destroy(mask);
+}
+
 static bool in_halves(double x, double y, int z)
 {
     return hypot(x - 12, y - 12) <= 9 && z != 3;
@@ -458,6 +530,9 @@ int main(void)
         cmocka_unit_test(a_bay_whose_outline_turns_back_is_refused_for_degree_bins),
         cmocka_unit_test(a_hole_is_refused_for_degree_bins_and_a_surface_of_its_own_from_traces),
         cmocka_unit_test(a_region_that_divides_goes_on_in_its_largest_part),
+        cmocka_unit_test(pieces_that_join_go_on_from_the_largest),
+        cmocka_unit_test(a_disc_goes_on_in_a_thin_ring_and_not_in_its_hole),
+        cmocka_unit_test(rings_within_rings_are_told_apart),
         cmocka_unit_test(a_missing_slice_is_refused_for_degree_bins_and_parts_two_pieces_from_traces),
         cmocka_unit_test(one_univel_is_a_small_spline),
         cmocka_unit_test(corners_join_pieces),
