@@ -239,6 +239,12 @@ static bool parse_component(const struct place *at, const cJSON *entry, struct p
     if (!get_path(at, entry, "path", true, component->path) || !get_text(at, entry, "quantity", word, sizeof word) ||
         !get_bool(at, entry, "per_ppm", &component->is_per_ppm))
         return false;
+    const cJSON *reference = cJSON_GetObjectItemCaseSensitive(entry, "reference");
+    if (reference && !cJSON_IsNull(reference)) {
+        if (!cJSON_IsNumber(reference) || !(reference->valuedouble > 0 && reference->valuedouble <= 1e30))
+            return fail(at, ERROR_RANGE, "reference", "expected a number above 0, the value that counts as 100 %");
+        component->reference = reference->valuedouble;
+    }
     component->quantity = DOSE_TOTAL;
     if (word[0] && !dose_quantity_from_word(word, &component->quantity))
         return fail(at, ERROR_RANGE, "quantity", "expected total, boron, nitrogen, fast, gamma, other, fast-fluence, epithermal-fluence, "
@@ -254,8 +260,8 @@ static bool parse_component(const struct place *at, const cJSON *entry, struct p
 
 static bool parse_doses(const struct place *top, const cJSON *root, struct plan_file *file)
 {
-    static const char *const known[] = { "id", "path", "quantity", "per_ppm", "unit", "per", "mask", "components", NULL };
-    static const char *const known_inside[] = { "path", "quantity", "per_ppm", NULL };
+    static const char *const known[] = { "id", "path", "quantity", "per_ppm", "reference", "unit", "per", "mask", "components", NULL };
+    static const char *const known_inside[] = { "path", "quantity", "per_ppm", "reference", NULL };
     const cJSON *list, *components;
     if (!get_list(top, root, "doses", PLAN_MAX_DOSES, &list))
         return false;

@@ -32,6 +32,7 @@ struct plan_file_region {
 struct plan_file_component {
     enum dose_quantity quantity;
     bool is_per_ppm;
+    double reference; /* what counts as 100 %; 0: not given */
     char path[FOLDER_NAME_SIZE];
 };
 struct plan_file_dose {

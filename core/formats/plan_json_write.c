@@ -129,6 +129,8 @@ static void add_doses(cJSON *root, const struct plan_file *file)
         for (size_t c = 0; c < dose->n_components; c++) {
             cJSON *component = append(components, cJSON_CreateObject());
             add_text(component, "quantity", dose_quantity_word(dose->components[c].quantity));
+            if (dose->components[c].reference > 0)
+                add_number(component, "reference", dose->components[c].reference);
             if (dose->components[c].is_per_ppm)
                 add(component, "per_ppm", cJSON_CreateTrue());
             add_text(component, "path", dose->components[c].path);

@@ -138,8 +138,10 @@ static void add_doses(struct loading *loading)
             add_component(loading, dose, job);
             continue;
         }
+        volume_unref(dose->mask); /* that of a SERA file; the plan's wins */
         dose->mask = take_volume(job);
-        if (memcmp(dose->mask->grid.size, dose->components[0].values->grid.size, sizeof dose->mask->grid.size) != 0)
+        if (dose->n_components > 0 &&
+            memcmp(dose->mask->grid.size, dose->components[0].values->grid.size, sizeof dose->mask->grid.size) != 0)
             report_add(&loading->plan->report, REPORT_NOTE, "dose.mask-grid", job->path,
                        "The mask of the dose \"%s\" lies on another grid; it is looked up by position.", dose->id);
     }

@@ -150,6 +150,7 @@ void plan_add_component(struct dose *dose, const struct plan_file_dose *entry, s
                         struct report *report)
 {
     const struct plan_file_component *from = &entry->components[component];
+    dose->reference[from->quantity] = from->reference;
     add(dose, (struct dose_component){ .quantity = from->quantity, .is_per_ppm = from->is_per_ppm, .values = values }, from->path, report);
 }
 
@@ -171,7 +172,8 @@ void plan_add_sera(struct dose *dose, const struct plan_file_dose *entry, size_t
         bool is_asked = from->quantity == held->quantity || (from->quantity == DOSE_TOTAL && !is_named(entry, held->quantity));
         if (!is_asked || dose->n_components >= DOSE_N_QUANTITIES)
             continue;
-        dose->reference[held->quantity] = doses->reference[held->quantity];
+        bool is_given = from->reference > 0 && from->quantity == held->quantity;
+        dose->reference[held->quantity] = is_given ? from->reference : doses->reference[held->quantity];
         add(dose, *held, from->path, report);
         held->values = NULL;
         is_any = true;

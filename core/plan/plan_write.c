@@ -135,6 +135,7 @@ static void list_doses(struct writing *writing)
             struct plan_file_component *component = &entry->components[entry->n_components++];
             component->quantity = dose->components[c].quantity;
             component->is_per_ppm = dose->components[c].is_per_ppm;
+            component->reference = dose->reference[component->quantity];
             snprintf(component->path, sizeof component->path, "doses/%s-%s.nii.gz", dose->id, dose_quantity_word(component->quantity));
             add_output(writing, dose->components[c].values, component->path);
         }

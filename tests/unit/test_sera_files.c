@@ -183,6 +183,57 @@ static void images_and_univels_may_be_bare_zlib_streams(void **state)
     free(pixels.data);
 }
 
+static const char chd[] = "Version_stamp: seraMC_1C0\nFOV: 13\nxmin: -1\nxmax: 1\nymin: -1\nymax: 1\nnum_cols: 2\nnum_rows: 2\nnum_planes: 1\n"
+                          "z_value_00: 0\ndose_comp_2: gamma\nrbe_val_2: 2\nref_dose_2: 8\ndose_comp_4: fast\nrbe_val_4: 1\n";
+static const char table[] = "-1 -1 0 1 1 1 1 1 1 1 1 1 1\n1 -1 0 1 1 1 1 1 1 1 1 1 1\n-1 1 0 1 1 1 1 1 1 1 1 1 1\n1 1 0 1 1 1 1 1 1 1 1 1 1\n";
+
+static void a_plan_asks_contours_for_a_quantity_and_says_what_is_100_percent(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *dose;
+        size_t n;
+        enum dose_quantity first;
+        double gamma_reference;
+    } cases[] = { { "{\"path\":\"a.chd\"}", 2, DOSE_GAMMA, 4 }, /* the file's 8, less its weight of 2 */
+                  { "{\"path\":\"a.chd\",\"quantity\":\"fast\"}", 1, DOSE_FAST, 0 },
+                  { "{\"path\":\"a.chd\",\"quantity\":\"gamma\",\"reference\":5}", 1, DOSE_GAMMA, 5 },
+                  { "{\"path\":\"a.chd\",\"quantity\":\"nitrogen\"}", 0, DOSE_TOTAL, 0 },
+                  { "{\"path\":\"a.chd\",\"quantity\":\"nitrogen\",\"mask\":\"m.nrrd\"}", 0, DOSE_TOTAL, 0 },
+                  { "{\"path\":\"a.chd\",\"mask\":\"m.nrrd\"}", 2, DOSE_GAMMA, 4 } };
+    char folder[256], text[400];
+    struct error err = { 0 };
+    folder_make(folder);
+    folder_put(folder, "a.chd", chd, sizeof chd - 1);
+    folder_put(folder, "a.cdf", table, sizeof table - 1);
+    static const char mask[] = "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 2 2 2\n"
+                               "space directions: (9,0,0) (0,9,0) (0,0,9)\nspace origin: (0,0,0)\nencoding: raw\n\n\1\1\1\1\1\1\1";
+    folder_put(folder, "m.nrrd", mask, sizeof mask);
+    /* pictures of 16 x 16 of region 1, less one pixel: the file's own mask, which the plan's replaces */
+    uint8_t pictures[256];
+    memset(pictures, 255, sizeof pictures);
+    pictures[0] = 0;
+    folder_put(folder, "a.cmf", pictures, sizeof pictures);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        int n = snprintf(text, sizeof text, "{\"format\":\"beamroom-plan\",\"version\":1,\"doses\":[%s]}", cases[i].dose);
+        folder_put(folder, "plan.json", text, (size_t)n);
+        struct plan *plan = plan_load(folder, "p", NULL, &err);
+        assert_string_equal(err.text, "");
+        assert_int_equal(plan->n_doses, 1);
+        assert_int_equal(plan->doses[0].n_components, cases[i].n);
+        assert_int_equal(said(&plan->report, "dose.no-quantity")[0] != 0, cases[i].n == 0);
+        if (cases[i].n > 0)
+            assert_int_equal(plan->doses[0].components[0].quantity, cases[i].first);
+        assert_close(plan->doses[0].reference[DOSE_GAMMA], cases[i].gamma_reference, 1e-9);
+        plan_destroy(plan);
+    }
+    static const char bad[] = "{\"format\":\"beamroom-plan\",\"version\":1,\"doses\":[{\"path\":\"a.chd\",\"reference\":0}]}";
+    folder_put(folder, "plan.json", bad, sizeof bad - 1);
+    assert_null(plan_load(folder, "p", NULL, &err));
+    assert_non_null(strstr(err.text, "doses[0].reference: expected a number above 0"));
+    folder_remove(folder);
+}
+
 static void a_stream_that_swells_is_stopped_at_what_its_header_allows(void **state)
 {
     (void)state;
@@ -193,9 +244,6 @@ static void a_stream_that_swells_is_stopped_at_what_its_header_allows(void **sta
     struct blob bomb = pack(zeros, BOMB);
     free(zeros);
     static const char *const names[] = { "a.uv.sz", "a.qim.sz", "a.cdf.sz", "a.cmf.sz" };
-    static const char chd[] = "Version_stamp: seraMC_1C0\nFOV: 13\nxmin: -1\nxmax: 1\nymin: -1\nymax: 1\nnum_cols: 2\nnum_rows: 2\nnum_planes: 1\n"
-                              "z_value_00: 0\ndose_comp_2: gamma\nrbe_val_2: 1\n";
-    static const char table[] = "-1 -1 0 1 1 1 1 1 1 1 1 1 1\n1 -1 0 1 1 1 1 1 1 1 1 1 1\n-1 1 0 1 1 1 1 1 1 1 1 1 1\n1 1 0 1 1 1 1 1 1 1 1 1 1\n";
     uint8_t voxels[256] = { 3 };
     for (size_t i = 0; i < 4; i++) {
         folder_make(folder);
@@ -369,6 +417,7 @@ int main(void)
         cmocka_unit_test(mean_weighted_doses_are_those_of_sera_plan_and_sera_mc),
         cmocka_unit_test(a_wrong_unit_is_taken_for_what_it_must_be_or_for_what_the_plan_says),
         cmocka_unit_test(images_and_univels_may_be_bare_zlib_streams),
+        cmocka_unit_test(a_plan_asks_contours_for_a_quantity_and_says_what_is_100_percent),
         cmocka_unit_test(a_stream_that_swells_is_stopped_at_what_its_header_allows),
         cmocka_unit_test(a_header_of_65535_squared_is_refused),
         cmocka_unit_test(damaged_copies_of_every_real_file_are_survived),
