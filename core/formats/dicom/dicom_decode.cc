@@ -137,6 +137,9 @@ bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, 
         return false;
     if (bytes.size() % 2)
         bytes.push_back(0);
+    // CharLS looks at the byte behind the last one of a damaged frame: let it find the end mark there, again and again
+    for (int i = 0; encoding->kind != stream::rle && i < 64; i++)
+        bytes.push_back(i % 2 ? 0xD9 : 0xFF);
 
     DcmDataset image;
     describe(image, pixels);
