@@ -11,7 +11,7 @@
 #include "core/region/mask.h"
 #include "core/surface/surface.h"
 
-enum { MAX_REDUCTION = 8 };
+enum { MAX_REDUCTION = MASK_MAX_FACTOR };
 
 static struct mesh *extract(enum surface_algorithm algorithm, const struct mask *mask, int n_threads, struct error *err)
 {
@@ -56,6 +56,21 @@ struct shape *plan_build_surface(const struct plan *plan, size_t region, enum su
     return shape;
 }
 
+/* How many voxels become one along each axis: as many along the shortest as the reduction says, along others only as many as make
+ * them no longer than that. So thick slices are not thinned before the pixels within them are as large. */
+static void factors_of(const struct mask *mask, uint32_t reduction, uint32_t factors[3])
+{
+    double edge_mm[3], shortest = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        edge_mm[axis] = vec3_length(mask->lps_mm_from_ijk.columns[axis]);
+        shortest = fmin(shortest, edge_mm[axis]);
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        double fits = floor(reduction * shortest / edge_mm[axis] + 1e-6);
+        factors[axis] = fits < 1 ? 1 : fits > reduction ? reduction : (uint32_t)fits;
+    }
+}
+
 /* A small region that the 8-cell algorithm does not draw when reduced so far is reduced less: it must not vanish in motion. */
 struct shape *plan_build_light_surface(const struct plan *plan, size_t region, enum surface_algorithm algorithm, uint32_t reduction,
                                        struct surface_facts *facts, struct error *err)
@@ -64,7 +79,9 @@ struct shape *plan_build_light_surface(const struct plan *plan, size_t region, e
     struct mask *full = mask_from_region(&plan->regions, region, 1, err);
     struct shape *shape = NULL;
     for (uint32_t taken = reduction; full && !shape && taken > 0; taken--) {
-        struct mask *reduced = taken > 1 ? mask_reduce(full, taken, 1, err) : NULL;
+        uint32_t factors[3];
+        factors_of(full, taken, factors);
+        struct mask *reduced = taken > 1 ? mask_reduce(full, factors, 1, err) : NULL;
         struct mesh *mesh = taken == 1 || reduced ? extract(algorithm, reduced ? reduced : full, 1, err) : NULL;
         mask_destroy(reduced);
         if (!mesh)

@@ -20,10 +20,14 @@ NODISCARD struct mask *mask_from_labels(const struct volume *layer, const uint16
 /* A region with everything inside it (its descendants), on the region's own grid: what its outer surface encloses.
  * A descendant on a layer with another grid is left out (it lies inside anyway). errors as above, ERROR_RANGE no such region */
 NODISCARD struct mask *mask_from_region(const struct region_set *set, size_t region, int n_threads, struct error *err);
-/* Every factor x factor x factor block becomes one voxel, inside when at least half of the block that exists is; factor 2..8.
- * A block row at the border may be partial. Geometry follows: every block stays where it is, so the outer faces are the same but
- * for a partial block, which reaches beyond the old one. A region that would vanish keeps the voxel of its fullest block.
- * errors ERROR_RANGE factor, ERROR_MEMORY */
-NODISCARD struct mask *mask_reduce(const struct mask *mask, uint32_t factor, int n_threads, struct error *err);
+/* Bits are left to be written. errors ERROR_MEMORY, ERROR_LIMIT */
+NODISCARD struct mask *mask_create(const uint32_t size[3], const struct affine *lps_mm_from_ijk, struct error *err);
+enum { MASK_MAX_FACTOR = 8 };
+/* Every block of factors[0] x factors[1] x factors[2] voxels becomes one voxel, inside when at least half of the block that exists is,
+ * and also where the shape would otherwise come apart: a sheet thinner than half a block keeps its one layer of blocks, a thread its
+ * chain, a small piece its block, so that nothing closed gets a hole and nothing vanishes. Geometry follows: every block stays where
+ * it is, so the outer faces are the same but for a partial block, which reaches beyond the old one.
+ * factors each 1 to MASK_MAX_FACTOR. errors ERROR_RANGE factors, ERROR_MEMORY */
+NODISCARD struct mask *mask_reduce(const struct mask *mask, const uint32_t factors[3], int n_threads, struct error *err);
 uint64_t mask_count(const struct mask *mask);
 void mask_destroy(struct mask *mask);

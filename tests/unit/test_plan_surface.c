@@ -70,6 +70,35 @@ static void a_small_region_does_not_vanish_in_motion(void **state)
     plan_destroy(plan);
 }
 
+/* Every other slice of 4 mm is a plate. */
+static double plates_label(struct vec3 p)
+{
+    return fabs(p.x) < 67 && fabs(p.y) < 67 && fabs(p.z) < 78 && (long)floor((p.z + 80) / 4) % 2 == 0;
+}
+
+static void thick_slices_are_not_thinned_before_the_pixels_are_as_large(void **state)
+{
+    (void)state;
+    const uint32_t size[3] = { 150, 150, 40 };
+    struct affine map = made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 4), size, vec3(0, 0, 0));
+    struct grid grid = made_grid(150, 150, 40, map);
+    for (enum surface_algorithm algorithm = 0; algorithm < SURFACE_N_ALGORITHMS; algorithm++) {
+        struct plan *plan = made_plan(&grid, plates_label, boxes, 1);
+        struct surface_facts facts;
+        struct error err = { 0 };
+        struct mesh *mesh = plan_surface(plan, 0, algorithm, SURFACE_LIGHT, &facts, &err);
+        assert_non_null(mesh);
+        assert_true(facts.reduction > 1 && facts.reduction <= 5);
+        assert_true(facts.n_triangles <= PLAN_LIGHT_TRIANGLES);
+        /* 19 plates still, each on its own; the 8-cell algorithm draws a plate of one univel as two sheets that share their rim */
+        if (algorithm != SURFACE_EIGHT_CELL)
+            assert_int_equal(mesh_euler(mesh), 2 * 19);
+        assert_close(mesh->bounds_lps_mm.high.z - mesh->bounds_lps_mm.low.z, 37 * 4, 4); /* between outermost centres and a slice more */
+        mesh_unref(mesh);
+        plan_destroy(plan);
+    }
+}
+
 static void seras_head_by_either_algorithm_in_full_and_light(void **state)
 {
     (void)state;
@@ -155,6 +184,7 @@ int main(void)
         cmocka_unit_test(surfaces_are_kept_by_algorithm),
         cmocka_unit_test(a_small_region_does_not_vanish_in_motion),
         cmocka_unit_test(what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds_it),
+        cmocka_unit_test(thick_slices_are_not_thinned_before_the_pixels_are_as_large),
         cmocka_unit_test(seras_head_by_either_algorithm_in_full_and_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

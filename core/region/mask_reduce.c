@@ -1,0 +1,260 @@
+/* Coarser masks that hold together.
+ *
+ *   1. count the voxels of every block
+ *   2. start from all blocks that hold any: what was closed or hung together does so still
+ *   3. go through the blocks that are less than half full, the emptiest first, and take away each that lies at the old outside with a
+ *      neighbour at least as full on its other side, unless that would open a hole, cut something in two or join two cavities
+ *
+ * Inside voxels hang together by faces and outside ones also by edges and corners, as in the surfaces (cube_cases.h). A voxel can be
+ * taken away without consequences when, among its 26 neighbours, the inside ones that it touches by a face hang together by faces
+ * within the 18 that share a face or an edge with it, and the outside ones hang together (G. Bertrand, Simple points, topological
+ * numbers and geodesic neighborhoods in cubic grids, 1994). */
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/base/parallel.h"
+#include "core/region/mask.h"
+
+enum { MAX_THREADS = 64, MAX_WORDS = VOLUME_MAX_SIDE / 64, MAX_COUNT = MASK_MAX_FACTOR * MASK_MAX_FACTOR * MASK_MAX_FACTOR };
+
+struct reduce_job {
+    const struct mask *from;
+    struct mask *to;
+    uint32_t factors[3];
+    uint16_t *counts; /* [k][j][i] of blocks: voxels inside */
+};
+
+static uint32_t part_of_block(uint32_t size, uint32_t block, uint32_t factor)
+{
+    uint32_t left = size - block * factor;
+    return left < factor ? left : factor;
+}
+
+/* ---- counting ------------------------------------------------------------------------------------------------------------- */
+
+/* Which of the n voxels of a row from `first` on are inside; n <= 8, so they lie in at most two words. */
+static uint64_t bits_at(const uint64_t *row, uint32_t first, uint32_t n)
+{
+    uint32_t word = first / 64, shift = first % 64;
+    uint64_t bits = row[word] >> shift;
+    if (shift + n > 64)
+        bits |= row[word + 1] << (64 - shift);
+    return bits & (((uint64_t)1 << n) - 1);
+}
+
+/* The rows of voxels that a row of blocks covers. */
+struct block_row {
+    const uint64_t *first;
+    size_t next_j, next_k; /* words from a row to the next along j and k */
+    uint32_t n_j, n_k;
+    uint64_t any[MAX_WORDS], all[MAX_WORDS]; /* of these rows: inside in one of them, in each of them */
+};
+
+static void block_row_init(struct block_row *rows, const struct mask *from, const uint32_t factors[3], uint32_t j, uint32_t k)
+{
+    rows->next_j = from->words;
+    rows->next_k = (size_t)from->words * from->size[1];
+    rows->first = from->bits + (size_t)k * factors[2] * rows->next_k + (size_t)j * factors[1] * rows->next_j;
+    rows->n_j = part_of_block(from->size[1], j, factors[1]);
+    rows->n_k = part_of_block(from->size[2], k, factors[2]);
+    for (uint32_t w = 0; w < from->words; w++) {
+        uint64_t any = 0, all = ~(uint64_t)0;
+        for (uint32_t dk = 0; dk < rows->n_k; dk++)
+            for (uint32_t dj = 0; dj < rows->n_j; dj++) {
+                uint64_t bits = rows->first[dk * rows->next_k + dj * rows->next_j + w];
+                any |= bits;
+                all &= bits;
+            }
+        rows->any[w] = any;
+        rows->all[w] = all;
+    }
+}
+
+/* Voxels inside in the block of n_i voxels from `first` on. Most blocks are empty or full and need no counting. */
+static uint32_t count_block(const struct block_row *rows, uint32_t first, uint32_t n_i)
+{
+    if (!bits_at(rows->any, first, n_i))
+        return 0;
+    if (bits_at(rows->all, first, n_i) == ((uint64_t)1 << n_i) - 1)
+        return n_i * rows->n_j * rows->n_k;
+    uint32_t n = 0;
+    for (uint32_t dk = 0; dk < rows->n_k; dk++)
+        for (uint32_t dj = 0; dj < rows->n_j; dj++)
+            n += (uint32_t)__builtin_popcountll(bits_at(rows->first + dk * rows->next_k + dj * rows->next_j, first, n_i));
+    return n;
+}
+
+static void count_part(void *context, int part, int n_parts)
+{
+    struct reduce_job *job = context;
+    const struct mask *from = job->from, *to = job->to;
+    struct block_row rows;
+    size_t n_rows = (size_t)to->size[1] * to->size[2], end = n_rows * (size_t)(part + 1) / (size_t)n_parts;
+    for (size_t at = n_rows * (size_t)part / (size_t)n_parts; at < end; at++) {
+        block_row_init(&rows, from, job->factors, (uint32_t)(at % to->size[1]), (uint32_t)(at / to->size[1]));
+        uint64_t *row = to->bits + at * to->words;
+        uint16_t *counts = job->counts + at * to->size[0];
+        memset(row, 0, to->words * sizeof *row);
+        for (uint32_t i = 0; i < to->size[0]; i++) {
+            uint32_t n = count_block(&rows, i * job->factors[0], part_of_block(from->size[0], i, job->factors[0]));
+            counts[i] = (uint16_t)n;
+            row[i / 64] |= (uint64_t)(n > 0) << i % 64;
+        }
+    }
+}
+
+/* ---- what can be taken away ------------------------------------------------------------------------------------------------ */
+
+/* The 27 voxels of a neighbourhood, bit (dx + 1) + 3 (dy + 1) + 9 (dz + 1); the middle is bit 13. */
+enum { MIDDLE = 1 << 13, ALL_27 = (1 << 27) - 1 };
+#define FACES ((1u << 4) | (1u << 10) | (1u << 12) | (1u << 14) | (1u << 16) | (1u << 22))
+#define CORNERS ((1u << 0) | (1u << 2) | (1u << 6) | (1u << 8) | (1u << 18) | (1u << 20) | (1u << 24) | (1u << 26))
+
+static uint32_t neighbourhood(const struct mask *mask, uint32_t i, uint32_t j, uint32_t k)
+{
+    uint32_t found = 0;
+    for (uint32_t dk = 0; dk < 3; dk++)
+        for (uint32_t dj = 0; dj < 3; dj++) {
+            if (j + dj < 1 || k + dk < 1 || j + dj > mask->size[1] || k + dk > mask->size[2])
+                continue;
+            const uint64_t *row = mask->bits + ((size_t)(k + dk - 1) * mask->size[1] + (j + dj - 1)) * mask->words;
+            for (uint32_t di = 0; di < 3; di++)
+                if (i + di >= 1 && i + di <= mask->size[0])
+                    found |= (uint32_t)(row[(i + di - 1) / 64] >> (i + di - 1) % 64 & 1) << (di + 3 * dj + 9 * dk);
+        }
+    return found;
+}
+
+/* Columns of the neighbourhood, so that a step along x does not go over its edge. */
+#define LEFT 0x1249249u  /* dx = -1 */
+#define RIGHT (LEFT << 2)
+
+static uint32_t grow_x(uint32_t set) { return set | (set & ~RIGHT) << 1 | (set & ~LEFT) >> 1; }
+static uint32_t y_steps(uint32_t set)
+{
+    const uint32_t low = 0x1c0e07u, high = low << 6; /* dy = -1, dy = 1 */
+    return (set & ~high) << 3 | (set & ~low) >> 3;
+}
+static uint32_t z_steps(uint32_t set) { return set << 9 | set >> 9; }
+
+static uint32_t grow_by_faces(uint32_t set)
+{
+    return (grow_x(set) | y_steps(set) | z_steps(set)) & ALL_27;
+}
+
+static uint32_t grow_by_all(uint32_t set)
+{
+    set = grow_x(set);
+    set |= y_steps(set);
+    return (set | z_steps(set)) & ALL_27;
+}
+
+static uint32_t spread(uint32_t seed, uint32_t within, uint32_t (*grow)(uint32_t))
+{
+    for (uint32_t grown; (grown = grow(seed) & within) != seed;)
+        seed = grown;
+    return seed;
+}
+
+static bool can_go(uint32_t neighbours)
+{
+    uint32_t inside = neighbours & ~(uint32_t)(MIDDLE | CORNERS), touching = neighbours & FACES;
+    uint32_t outside = ~neighbours & ALL_27 & ~(uint32_t)MIDDLE;
+    if (!touching || !outside)
+        return false; /* alone, or at no border */
+    return (touching & ~spread(touching & (0 - touching), inside, grow_by_faces)) == 0 &&
+           spread(outside & (0 - outside), outside, grow_by_all) == outside;
+}
+
+/* Whether it lies at the outside there was at first, with a neighbour behind it that is at least as full and still there. */
+static bool is_skin(const struct reduce_job *job, uint32_t neighbours, const uint32_t at[3])
+{
+    static const uint32_t bit_of[3] = { 1, 3, 9 };
+    const uint32_t *size = job->to->size;
+    const size_t step[3] = { 1, size[0], (size_t)size[0] * size[1] };
+    const uint16_t *here = job->counts + at[0] + at[1] * step[1] + at[2] * step[2];
+    for (int axis = 0; axis < 3; axis++) {
+        uint32_t below = at[axis] > 0 ? *(here - step[axis]) : 0, above = at[axis] + 1 < size[axis] ? *(here + step[axis]) : 0;
+        if (above == 0 && below >= *here && neighbours >> (13 - bit_of[axis]) & 1)
+            return true;
+        if (below == 0 && above >= *here && neighbours >> (13 + bit_of[axis]) & 1)
+            return true;
+    }
+    return false;
+}
+
+static uint32_t block_size(const struct reduce_job *job, const uint32_t at[3])
+{
+    uint32_t n = 1;
+    for (int axis = 0; axis < 3; axis++)
+        n *= part_of_block(job->from->size[axis], at[axis], job->factors[axis]);
+    return n;
+}
+
+/* The places of blocks less than half full, by how full they are; equals in the order of memory. */
+static bool thin_out(struct reduce_job *job, struct error *err)
+{
+    const uint32_t *size = job->to->size;
+    size_t n_blocks = (size_t)size[0] * size[1] * size[2], first[MAX_COUNT + 2] = { 0 }, n = 0;
+    for (size_t block = 0; block < n_blocks; block++)
+        if (job->counts[block] > 0 && job->counts[block] <= MAX_COUNT / 2)
+            first[job->counts[block] + 1]++;
+    for (size_t count = 0; count <= MAX_COUNT; count++)
+        first[count + 1] += first[count];
+    n = first[MAX_COUNT + 1];
+    uint32_t(*places)[3] = mem_array(n, sizeof *places, UINT64_MAX, err);
+    if (!places)
+        return false;
+    size_t block = 0;
+    for (uint32_t k = 0; k < size[2]; k++)
+        for (uint32_t j = 0; j < size[1]; j++)
+            for (uint32_t i = 0; i < size[0]; i++, block++)
+                if (job->counts[block] > 0 && job->counts[block] <= MAX_COUNT / 2)
+                    memcpy(places[first[job->counts[block]]++], (uint32_t[3]){ i, j, k }, sizeof *places);
+    for (size_t at = 0; at < n; at++) {
+        const uint32_t *place = places[at];
+        size_t row = (size_t)place[2] * size[1] + place[1];
+        if (2 * (uint32_t)job->counts[row * size[0] + place[0]] >= block_size(job, place))
+            continue;
+        uint32_t neighbours = neighbourhood(job->to, place[0], place[1], place[2]);
+        if (is_skin(job, neighbours, place) && can_go(neighbours))
+            job->to->bits[row * job->to->words + place[0] / 64] &= ~((uint64_t)1 << place[0] % 64);
+    }
+    free(places);
+    return true;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------------------------------------- */
+
+struct mask *mask_reduce(const struct mask *mask, const uint32_t factors[3], int n_threads, struct error *err)
+{
+    struct reduce_job job = { .from = mask };
+    uint32_t size[3];
+    struct affine map = mask->lps_mm_from_ijk;
+    for (int axis = 0; axis < 3; axis++) {
+        uint32_t factor = job.factors[axis] = factors[axis];
+        if (factor < 1 || factor > MASK_MAX_FACTOR) {
+            error_set(err, ERROR_RANGE, "a mask reduced by %u: expected 1 to %d", factor, MASK_MAX_FACTOR);
+            return NULL;
+        }
+        size[axis] = (mask->size[axis] + factor - 1) / factor;
+        /* the centre of a block of f voxels lies (f - 1) / 2 voxels behind the centre of its first */
+        map.origin = vec3_add(map.origin, vec3_scale(map.columns[axis], (factor - 1) / 2.0));
+        map.columns[axis] = vec3_scale(map.columns[axis], factor);
+    }
+    job.to = mask_create(size, &map, err);
+    job.counts = job.to ? mem_large_array((size_t)size[0] * size[1] * size[2], sizeof *job.counts, UINT64_MAX, err) : NULL;
+    bool is_good = job.counts != NULL;
+    if (is_good) {
+        int n_parts = n_threads > 0 ? n_threads : parallel_cores();
+        parallel_run(n_parts < MAX_THREADS ? n_parts : MAX_THREADS, count_part, &job);
+        is_good = thin_out(&job, err);
+    }
+    free(job.counts);
+    if (!is_good) {
+        mask_destroy(job.to);
+        return NULL;
+    }
+    return job.to;
+}
