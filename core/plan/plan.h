@@ -127,6 +127,11 @@ NODISCARD bool plan_shape_distance(const struct plan *plan, size_t region, const
 NODISCARD struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,
                                     struct surface_facts *facts, struct error *err);
 
+/* Builds the surfaces of several regions side by side, a thread each, the largest first, for who asks for them later; what fails is
+ * logged. go_on is asked before each that the calling thread takes, false ends the rest; NULL: always. */
+void plan_build_surfaces(struct plan *plan, const size_t *regions, size_t n, enum surface_algorithm algorithm, enum surface_detail detail,
+                         bool (*go_on)(void *context), void *context);
+
 /* Memory that kept shapes may take. */
 #define PLAN_SHAPE_BUDGET_BYTES ((uint64_t)1 << 30) /* unless set otherwise */
 struct plan_shape_usage {

@@ -1,7 +1,11 @@
 /* What a plan gives of its regions to draw: built on first use, then kept (plan_shapes.h). */
 #include <math.h>
+#include <stdatomic.h>
+#include <stdlib.h>
 
 #include "core/base/clock.h"
+#include "core/base/log.h"
+#include "core/base/mem.h"
 #include "core/base/parallel.h"
 #include "core/plan/plan_shapes.h"
 #include "core/plan/plan_surface.h"
@@ -11,6 +15,7 @@
 struct wanted {
     struct plan *plan;
     uint32_t reduction; /* of a light surface */
+    int n_threads;      /* to build a full surface */
 };
 
 void plan_count_shape(const struct shape *shape, struct surface_facts *facts)
@@ -72,7 +77,7 @@ static struct shape *build(void *context, const struct shape_name *name, struct 
     else if (name->detail == SURFACE_LIGHT)
         shape = plan_build_light_surface(plan, name->region, name->key.algorithm, wanted->reduction, facts, err);
     else
-        shape = plan_build_surface(plan, name->region, name->key.algorithm, facts, err);
+        shape = plan_build_surface(plan, name->region, name->key.algorithm, wanted->n_threads, facts, err);
     if (!shape && err)
         error_prefix(err, "region \"%s\"", plan->regions.regions[name->region].name);
     return shape;
@@ -94,12 +99,12 @@ bool plan_shape_distance(const struct plan *plan, size_t region, const struct sh
     return true;
 }
 
-struct shape *plan_shape(struct plan *plan, size_t region, const struct shape_key *key, enum surface_detail detail,
+static struct shape *get(struct plan *plan, size_t region, const struct shape_key *key, enum surface_detail detail, int n_threads,
                          struct surface_facts *facts, struct error *err)
 {
     struct surface_facts unwanted;
     struct shape_name name = { region, *key, SURFACE_FULL };
-    struct wanted wanted = { plan, 1 };
+    struct wanted wanted = { plan, 1, n_threads };
     shape_key_normalise(&name.key);
     if (region >= plan->regions.n_regions) {
         error_set(err, ERROR_RANGE, "region %zu; the plan has %zu", region, plan->regions.n_regions);
@@ -118,6 +123,12 @@ struct shape *plan_shape(struct plan *plan, size_t region, const struct shape_ke
     return plan_shapes_get(plan->shapes, &name, build, &wanted, facts ? facts : &unwanted, err);
 }
 
+struct shape *plan_shape(struct plan *plan, size_t region, const struct shape_key *key, enum surface_detail detail,
+                         struct surface_facts *facts, struct error *err)
+{
+    return get(plan, region, key, detail, parallel_cores(), facts, err);
+}
+
 struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,
                           struct surface_facts *facts, struct error *err)
 {
@@ -127,6 +138,63 @@ struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorit
     shape_unref(shape);
     return mesh;
 }
+
+/* ---- several at once ------------------------------------------------------------------------------------------------------ */
+
+struct crowd {
+    struct plan *plan;
+    size_t *regions; /* the largest first */
+    size_t n;
+    struct shape_key key;
+    enum surface_detail detail;
+    bool (*go_on)(void *context);
+    void *context;
+    atomic_size_t next;
+    atomic_bool is_over;
+};
+
+static void take_regions(void *context, int part, int n_parts)
+{
+    struct crowd *crowd = context;
+    for (size_t at; !atomic_load(&crowd->is_over) && (at = atomic_fetch_add(&crowd->next, 1)) < crowd->n;) {
+        if (part == 0 && crowd->go_on && !crowd->go_on(crowd->context)) {
+            atomic_store(&crowd->is_over, true);
+            return;
+        }
+        struct error err = { 0 };
+        struct shape *shape = get(crowd->plan, crowd->regions[at], &crowd->key, crowd->detail, n_parts > 1 ? 1 : parallel_cores(), NULL, &err);
+        if (!shape)
+            log_warn("surface of region %s: %s", crowd->plan->regions.regions[crowd->regions[at]].id, err.text);
+        shape_unref(shape);
+    }
+}
+
+static double box_of(const struct plan *plan, size_t region)
+{
+    const struct region *what = &plan->regions.regions[region];
+    double size = 1;
+    for (int axis = 0; axis < 3; axis++)
+        size *= (double)what->high_ijk[axis] - what->low_ijk[axis] + 1;
+    return size;
+}
+
+void plan_build_surfaces(struct plan *plan, const size_t *regions, size_t n, enum surface_algorithm algorithm, enum surface_detail detail,
+                         bool (*go_on)(void *context), void *context)
+{
+    struct crowd crowd = { plan, mem_new((n + 1) * sizeof *regions), n, { .representation = REPRESENTATION_SURFACE, .algorithm = algorithm },
+                           detail, go_on, context, 0, false };
+    for (size_t i = 0; i < n; i++) { /* a plan has few */
+        size_t at = i;
+        for (; at > 0 && box_of(plan, crowd.regions[at - 1]) < box_of(plan, regions[i]); at--)
+            crowd.regions[at] = crowd.regions[at - 1];
+        crowd.regions[at] = regions[i];
+    }
+    int n_threads = parallel_cores();
+    parallel_run((size_t)n_threads < n ? n_threads : n > 0 ? (int)n : 1, take_regions, &crowd);
+    free(crowd.regions);
+}
+
+/* ---- memory ---------------------------------------------------------------------------------------------------------------- */
 
 void plan_set_shape_budget(struct plan *plan, uint64_t n_bytes)
 {

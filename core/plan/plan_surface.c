@@ -42,11 +42,10 @@ static struct shape *shape_of(struct mesh *mesh, const struct mask *full, uint32
     return shape;
 }
 
-struct shape *plan_build_surface(const struct plan *plan, size_t region, enum surface_algorithm algorithm, struct surface_facts *facts,
-                                 struct error *err)
+struct shape *plan_build_surface(const struct plan *plan, size_t region, enum surface_algorithm algorithm, int n_threads,
+                                 struct surface_facts *facts, struct error *err)
 {
     int64_t started_us = clock_now_us();
-    int n_threads = parallel_cores();
     struct mask *mask = mask_from_region(&plan->regions, region, n_threads, err);
     if (!mask)
         return NULL;

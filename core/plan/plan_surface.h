@@ -5,7 +5,7 @@
 /* What facts can tell from a shape alone. */
 void plan_count_shape(const struct shape *shape, struct surface_facts *facts);
 /* With all facts. errors as surface_make */
-NODISCARD struct shape *plan_build_surface(const struct plan *plan, size_t region, enum surface_algorithm algorithm,
+NODISCARD struct shape *plan_build_surface(const struct plan *plan, size_t region, enum surface_algorithm algorithm, int n_threads,
                                            struct surface_facts *facts, struct error *err);
 /* reduction 2 or more; on the calling thread alone. */
 NODISCARD struct shape *plan_build_light_surface(const struct plan *plan, size_t region, enum surface_algorithm algorithm,

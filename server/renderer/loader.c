@@ -9,6 +9,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
+#include "core/render/visible.h"
 #include "server/renderer/answers.h"
 
 enum {
@@ -64,51 +65,57 @@ static void answer(struct loader *loader, struct plan *plan, struct question *qu
     question_drop(question);
 }
 
-/* Regions a new room shows, in file order. It shows them by marching cubes; other surfaces are built when they are asked for. */
-static size_t visible_regions(const struct plan *plan, size_t *regions)
+/* What a new room shows: its regions, in file order, and by which algorithm. Other shapes are built when they are asked for. */
+static size_t visible_regions(const struct plan *plan, size_t *regions, enum surface_algorithm *algorithm)
 {
     struct scene scene;
     size_t n = 0;
     scene_for_plan(plan, &scene);
     for (size_t i = 0; i < scene.n_regions; i++) {
         const struct region *region = region_find(&plan->regions, scene.regions[i].id);
-        if (region && region->n_voxels > 0 && scene.regions[i].value.visible && scene.regions[i].value.opacity > 0)
+        const struct scene_region_style *style = &scene.regions[i].value;
+        if (region && region->n_voxels > 0 && style->visible && style->opacity > 0 && style->representation == SCENE_REPRESENTATION_SURFACE)
             regions[n++] = (size_t)(region - plan->regions.regions);
     }
+    *algorithm = visible_surface_key(&(struct snapshot){ .scene = scene }).algorithm;
     scene_finish(&scene);
     return n;
 }
 
-static void build(struct plan *plan, size_t region, enum surface_detail detail)
+struct building {
+    struct loader *loader;
+    int64_t began_us;
+    size_t n, n_begun; /* surfaces */
+    bool is_told;      /* that a first picture may be drawn */
+};
+
+/* Before each surface. Questions go before what is built after BUILT was said. */
+static bool look_around(void *context)
 {
-    struct error err = { 0 };
-    struct surface_facts facts;
-    struct mesh *mesh = plan_surface(plan, region, SURFACE_MARCHING_CUBES, detail, &facts, &err);
-    if (!mesh)
-        log_warn("surface of region %s: %s", plan->regions.regions[region].id, err.text);
-    mesh_unref(mesh);
+    struct building *building = context;
+    struct loader *loader = building->loader;
+    if (!building->is_told && clock_now_us() - building->began_us > BUILD_AHEAD_US) {
+        desk_put(loader->desk, &(struct note){ .type = NOTE_BUILT });
+        building->is_told = true;
+    }
+    for (struct question *question; building->is_told && (question = queue_try_take(loader->slow));)
+        answer(loader, loader->plan, question);
+    if (!building->is_told)
+        tell(loader, "building surfaces", 90 + 10.0 * (double)building->n_begun++ / (double)building->n);
+    return !atomic_load(&loader->cancel);
 }
 
-/* Light surfaces first: they are what a picture that moves needs. Questions go before what is built after BUILT was said. */
+/* Light surfaces first: they are what a picture that moves needs. */
 static void build_ahead(struct loader *loader)
 {
     struct plan *plan = loader->plan;
     size_t *regions = mem_new((plan->regions.n_regions + 1) * sizeof *regions);
-    size_t n = visible_regions(plan, regions);
-    int64_t began_us = clock_now_us();
-    bool is_told = false;
-    for (size_t i = 0; i < 2 * n && !atomic_load(&loader->cancel); i++) {
-        if (!is_told && clock_now_us() - began_us > BUILD_AHEAD_US) {
-            desk_put(loader->desk, &(struct note){ .type = NOTE_BUILT });
-            is_told = true;
-        }
-        for (struct question *question; is_told && (question = queue_try_take(loader->slow));)
-            answer(loader, plan, question);
-        if (!is_told)
-            tell(loader, "building surfaces", 90 + 10.0 * (double)i / (double)(2 * n));
-        build(plan, regions[i % n], i < n ? SURFACE_LIGHT : SURFACE_FULL);
-    }
-    if (!is_told)
+    enum surface_algorithm algorithm;
+    size_t n = visible_regions(plan, regions, &algorithm);
+    struct building building = { loader, clock_now_us(), 2 * n + 1, 0, false };
+    plan_build_surfaces(plan, regions, n, algorithm, SURFACE_LIGHT, look_around, &building);
+    plan_build_surfaces(plan, regions, n, algorithm, SURFACE_FULL, look_around, &building);
+    if (!building.is_told)
         desk_put(loader->desk, &(struct note){ .type = NOTE_BUILT });
     free(regions);
 }

@@ -168,7 +168,7 @@ static void numbers_are_answered(void **state)
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "images")), 1);
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "doses")), 4);
 
-    ask(&world, "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\"}", &reply);
+    ask(&world, "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"algorithm\":\"marching-cubes\"}", &reply);
     json = body(&reply);
     double univels = json_number(json, "n_univels", 0), volume = json_number(json, "univel_volume_mm3", 0);
     assert_close(volume, univels * 4 * 4 * 6.4, 0.5); /* 256 x 256 x 204.8 mm in 64 x 64 x 32 voxels */
