@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/base/mem.h"
 #include "core/render/check.h"
@@ -180,21 +179,11 @@ static bool paint_outline(const struct job *job, size_t region, struct error *er
     return found != NULL;
 }
 
-/* The surface that a region's univels are compared with: what it is drawn as when that is made of triangles, else a surface by the
- * scene's algorithm. */
-static struct shape_key checked_key(const struct snapshot *snapshot, size_t region)
-{
-    struct shape_key key = visible_shape_key(snapshot, region);
-    bool has_triangles = key.representation != REPRESENTATION_OUTLINE && key.representation != REPRESENTATION_POINTS &&
-                         key.representation != REPRESENTATION_SOLID;
-    return has_triangles ? key : visible_surface_key(snapshot);
-}
-
 static bool paint_check(const struct job *job, size_t region, struct overlay_check *check, struct error *err)
 {
     const struct snapshot *snapshot = job->snapshot;
     struct entry wanted = { .plan = snapshot->plan, .region = region, .what = LINES_OF_SHAPE, .plane = pane_plane(snapshot),
-                            .key = checked_key(snapshot, region) };
+                            .key = visible_checked_key(snapshot, region) };
     const struct grid *grid = &snapshot->plan->regions.layers[snapshot->plan->regions.regions[region].layer]->grid;
     struct vec3 spacing = grid_spacing_mm(grid);
     wanted.plane.position_mm += CHECK_NUDGE * fmin(fmin(spacing.x, spacing.y), spacing.z); /* never along faces of voxels */
@@ -237,7 +226,6 @@ static bool paint_regions(const struct job *job, struct overlay_check *check, st
 {
     const struct snapshot *snapshot = job->snapshot;
     const struct region_set *set = &snapshot->plan->regions;
-    const struct scene_check_style *asked = &snapshot->scene.check;
     struct ranked *ranks = mem_array(set->n_regions, sizeof *ranks, UINT64_MAX, err);
     size_t n = 0;
     bool is_good = ranks != NULL;
@@ -248,7 +236,7 @@ static bool paint_regions(const struct job *job, struct overlay_check *check, st
         qsort(ranks, n, sizeof *ranks, compare_ranks);
     for (size_t i = 0; is_good && i < n; i++) {
         size_t region = ranks[i].region;
-        if (asked->visible && (asked->region[0] == 0 || strcmp(asked->region, set->regions[region].id) == 0))
+        if (visible_is_checked(snapshot, region))
             is_good = paint_check(job, region, check, err);
         else if (snapshot->scene.outline.on_slices)
             is_good = paint_outline(job, region, err);

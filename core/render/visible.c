@@ -177,6 +177,47 @@ static int compare_back_to_front(const void *left, const void *right)
     return a->style < b->style ? -1 : a->style > b->style;
 }
 
+/* As find_hidden, as far as it can be told without shapes. */
+static bool may_be_seen(const struct snapshot *snapshot, size_t region)
+{
+    const struct region *regions = snapshot->plan->regions.regions;
+    for (int outer = regions[region].parent; outer >= 0; outer = regions[outer].parent)
+        if (is_drawn(snapshot, (size_t)outer) && snapshot->styles[outer].opacity >= 1 && regions[outer].layer == regions[region].layer &&
+            can_enclose(snapshot, (size_t)outer, region))
+            return false;
+    return true;
+}
+
+struct shape_key visible_checked_key(const struct snapshot *snapshot, size_t region)
+{
+    struct shape_key key = visible_shape_key(snapshot, region);
+    bool has_triangles = key.representation != REPRESENTATION_OUTLINE && key.representation != REPRESENTATION_POINTS &&
+                         key.representation != REPRESENTATION_SOLID;
+    return has_triangles ? key : visible_surface_key(snapshot);
+}
+
+bool visible_is_checked(const struct snapshot *snapshot, size_t region)
+{
+    const struct scene_check_style *check = &snapshot->scene.check;
+    return check->visible && is_drawn(snapshot, region) &&
+           (check->region[0] == 0 || strcmp(check->region, snapshot->plan->regions.regions[region].id) == 0);
+}
+
+size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct visible_want *wants)
+{
+    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
+    size_t n = 0;
+    for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
+        if (is_in_space ? !is_drawn(snapshot, i) || !may_be_seen(snapshot, i) : !visible_is_checked(snapshot, i))
+            continue;
+        struct visible_want *want = &wants[n++];
+        *want = (struct visible_want){ i, is_in_space ? visible_shape_key(snapshot, i) : visible_checked_key(snapshot, i), SURFACE_FULL };
+        if (is_in_space && want->key.representation == REPRESENTATION_SURFACE)
+            want->detail = detail;
+    }
+    return n;
+}
+
 struct visible_shape *visible_shapes(const struct snapshot *snapshot, const struct camera *camera, const struct mat4 *clip_from_lps_mm,
                                          bool is_opaque, visible_bounds *bounds, void *context, size_t *n, struct error *err)
 {

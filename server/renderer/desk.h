@@ -3,9 +3,10 @@
 #include <stdatomic.h>
 
 #include "core/pipeline/pipeline.h"
+#include "core/pipeline/prepare.h"
 #include "server/wire/json.h"
 
-enum note_type { NOTE_GL, NOTE_PROGRESS, NOTE_LOADED, NOTE_FAILED, NOTE_BUILT, NOTE_FRAME, NOTE_ANSWER };
+enum note_type { NOTE_GL, NOTE_PROGRESS, NOTE_LOADED, NOTE_FAILED, NOTE_BUILT, NOTE_FRAME, NOTE_ANSWER, NOTE_PREPARED };
 
 struct note {
     enum note_type type;
@@ -20,6 +21,7 @@ struct note {
     uint8_t *blob;             /* answer: bytes beside the body, the receiver's; NULL when there are none */
     size_t n_blob;
     struct problem problem;
+    struct preparation *preparation; /* prepared: the receiver's; its shapes are built */
 };
 
 struct desk;

@@ -15,15 +15,17 @@
 enum {
     PROGRESS_EVERY_US = 50000,
     BUILD_AHEAD_US = 300000, /* after that a first picture goes ahead with what is there */
-    MAX_QUESTIONS = 256
+    MAX_QUESTIONS = 256,
+    MAX_PREPARATIONS = 2 * PIPELINE_MAX_WAITING
 };
 
 struct loader {
     char *folder, *plan_id;
     struct desk *desk;
     atomic_bool cancel;
-    pthread_t load_thread, quick_thread;
+    pthread_t load_thread, quick_thread, prepare_thread;
     struct queue *slow, *quick; /* questions: surfaces, on the load thread; points, on their own */
+    struct queue *preparations; /* pictures that wait for shapes, on a thread of their own */
     struct plan *plan;          /* the load thread's; the quick one gets it with its first question */
     int64_t told_us;
 };
@@ -155,6 +157,39 @@ static void *quick_main(void *argument)
     return NULL;
 }
 
+static void *prepare_main(void *argument)
+{
+    struct loader *loader = argument;
+    for (struct preparation *preparation; (preparation = queue_take(loader->preparations, -1));) {
+        if (atomic_load(&loader->cancel)) {
+            preparation_destroy(preparation);
+            continue;
+        }
+        preparation_build(preparation);
+        desk_put(loader->desk, &(struct note){ .type = NOTE_PREPARED, .preparation = preparation });
+    }
+    return NULL;
+}
+
+static void drop_preparation(void *item) { preparation_destroy(item); }
+
+static void stop(struct loader *loader, int n_started)
+{
+    const pthread_t threads[] = { loader->load_thread, loader->quick_thread, loader->prepare_thread };
+    atomic_store(&loader->cancel, true);
+    queue_close(loader->slow);
+    queue_close(loader->quick);
+    queue_close(loader->preparations);
+    for (int i = 0; i < n_started; i++)
+        pthread_join(threads[i], NULL);
+    queue_destroy(loader->slow);
+    queue_destroy(loader->quick);
+    queue_destroy(loader->preparations);
+    free(loader->folder);
+    free(loader->plan_id);
+    free(loader);
+}
+
 struct loader *loader_create(const char *folder, const char *plan_id, struct desk *desk, struct error *err)
 {
     struct loader *loader = mem_new(sizeof *loader);
@@ -164,22 +199,22 @@ struct loader *loader_create(const char *folder, const char *plan_id, struct des
     atomic_init(&loader->cancel, false);
     loader->slow = queue_create(MAX_QUESTIONS, question_drop);
     loader->quick = queue_create(MAX_QUESTIONS, question_drop);
-    int failed = pthread_create(&loader->load_thread, NULL, load_main, loader);
-    if (!failed && (failed = pthread_create(&loader->quick_thread, NULL, quick_main, loader)) != 0) {
-        atomic_store(&loader->cancel, true);
-        queue_close(loader->slow);
-        pthread_join(loader->load_thread, NULL);
-    }
-    if (failed) {
-        error_set(err, ERROR_IO, "a thread cannot be started: %s", strerror(failed));
-        queue_destroy(loader->slow);
-        queue_destroy(loader->quick);
-        free(loader->folder);
-        free(loader->plan_id);
-        free(loader);
-        return NULL;
-    }
-    return loader;
+    loader->preparations = queue_create(MAX_PREPARATIONS, drop_preparation);
+    int n_started = 0, failed = pthread_create(&loader->load_thread, NULL, load_main, loader);
+    if (!failed && ++n_started)
+        failed = pthread_create(&loader->quick_thread, NULL, quick_main, loader);
+    if (!failed && ++n_started)
+        failed = pthread_create(&loader->prepare_thread, NULL, prepare_main, loader);
+    if (!failed)
+        return loader;
+    error_set(err, ERROR_IO, "a thread cannot be started: %s", strerror(failed));
+    stop(loader, n_started);
+    return NULL;
+}
+
+bool loader_prepare(struct loader *loader, struct preparation *preparation)
+{
+    return queue_try_put(loader->preparations, preparation);
 }
 
 bool loader_ask(struct loader *loader, const struct question *question)
@@ -194,16 +229,6 @@ bool loader_ask(struct loader *loader, const struct question *question)
 
 void loader_destroy(struct loader *loader)
 {
-    if (!loader)
-        return;
-    atomic_store(&loader->cancel, true);
-    queue_close(loader->slow);
-    queue_close(loader->quick);
-    pthread_join(loader->load_thread, NULL);
-    pthread_join(loader->quick_thread, NULL);
-    queue_destroy(loader->slow);
-    queue_destroy(loader->quick);
-    free(loader->folder);
-    free(loader->plan_id);
-    free(loader);
+    if (loader)
+        stop(loader, 3);
 }

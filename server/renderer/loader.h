@@ -19,5 +19,7 @@ struct question {
 NODISCARD struct loader *loader_create(const char *folder, const char *plan_id, struct desk *desk, struct error *err);
 /* After LOADED. Answered by a note with the same id. Takes what question owns. False: too many wait. */
 NODISCARD bool loader_ask(struct loader *loader, const struct question *question);
+/* Before a picture: builds its shapes, then a note PREPARED. Takes preparation when it returns true. False: too many wait. */
+NODISCARD bool loader_prepare(struct loader *loader, struct preparation *preparation);
 /* Cancels reading, drops what waits, joins. The plan must outlive it. */
 void loader_destroy(struct loader *loader);

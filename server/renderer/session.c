@@ -42,6 +42,7 @@ struct session {
     size_t n_rooms;
     cJSON *default_scene;
     struct drawing drawings[MAX_DRAWINGS];
+    struct prepared *prepared;
     bool is_built, has_gl, is_ready;
     struct problem gl_problem; /* when GL did not start */
     int64_t began_us;
@@ -249,6 +250,37 @@ static bool is_within(struct session *session, uint64_t id, const cJSON *json, c
     return false;
 }
 
+static void say_busy(struct session *session, uint64_t id)
+{
+    struct problem problem;
+    problem_set(&problem, PROBLEM_BUSY, "", "", "too many pictures wait to be drawn");
+    problem.retry_after_ms = 200;
+    say_problem(session, id, &problem);
+}
+
+static struct drawing *find_drawing(struct session *session, uint64_t id)
+{
+    for (size_t i = 0; i < MAX_DRAWINGS; i++)
+        if (session->drawings[i].is_used && session->drawings[i].id == id)
+            return &session->drawings[i];
+    return NULL;
+}
+
+/* To the render thread. Takes preparation. */
+static void submit(struct session *session, struct preparation *preparation)
+{
+    struct error err = { 0 };
+    struct pipeline_request request = preparation->request;
+    snapshot_ref(request.snapshot);
+    preparation_destroy(preparation);
+    if (pipeline_submit(session->pipeline, &request, &err))
+        return;
+    struct drawing *drawing = find_drawing(session, request.id);
+    if (drawing)
+        drawing->is_used = false;
+    say_busy(session, request.id);
+}
+
 static void draw(struct session *session, uint64_t id, const cJSON *json)
 {
     double scale = 100, quality = 85;
@@ -274,20 +306,15 @@ static void draw(struct session *session, uint64_t id, const cJSON *json)
     struct drawing *drawing = session->drawings;
     while (drawing < session->drawings + MAX_DRAWINGS && drawing->is_used)
         drawing++;
-    struct error err = { 0 };
-    bool is_taken = false;
-    if (drawing < session->drawings + MAX_DRAWINGS) {
-        *drawing = (struct drawing){ true, id, revision };
-        is_taken = drawing->is_used = pipeline_submit(session->pipeline, &request, &err);
-    } else {
+    if (drawing == session->drawings + MAX_DRAWINGS) {
         snapshot_unref(snapshot);
+        say_busy(session, id);
+        return;
     }
-    if (!is_taken) {
-        struct problem problem;
-        problem_set(&problem, PROBLEM_BUSY, "", "", "too many pictures wait to be drawn");
-        problem.retry_after_ms = 200;
-        say_problem(session, id, &problem);
-    }
+    *drawing = (struct drawing){ true, id, revision };
+    struct preparation *preparation = preparation_create(&request);
+    if (prepared_has_all(session->prepared, preparation) || !loader_prepare(session->loader, preparation))
+        submit(session, preparation);
 }
 
 static bool read_point(const cJSON *json, struct vec3 *point)
@@ -437,10 +464,8 @@ static void take_loaded(struct session *session, struct note *note)
 
 static void take_frame(struct session *session, const struct pipeline_frame *frame)
 {
-    struct drawing *drawing = session->drawings;
-    while (drawing < session->drawings + MAX_DRAWINGS && !(drawing->is_used && drawing->id == frame->id))
-        drawing++;
-    if (drawing == session->drawings + MAX_DRAWINGS)
+    struct drawing *drawing = find_drawing(session, frame->id);
+    if (!drawing)
         return;
     drawing->is_used = false;
     if (frame->error.code != ERROR_NONE) {
@@ -479,6 +504,11 @@ static void take_note(struct session *session, struct note *note)
     case NOTE_FAILED: say_failed(session, &note->error); break;
     case NOTE_BUILT: session->is_built = true; break;
     case NOTE_FRAME: take_frame(session, &note->frame); break;
+    case NOTE_PREPARED:
+        prepared_add(session->prepared, note->preparation);
+        submit(session, note->preparation);
+        note->preparation = NULL;
+        break;
     case NOTE_ANSWER:
         if (note->body) {
             cJSON *json = packet("answer");
@@ -530,6 +560,7 @@ int session_run(const struct session_options *options)
     struct error err = { 0 };
     session.link = link_create(options->socket);
     session.desk = desk_create();
+    session.prepared = prepared_create();
     if (!session.desk) {
         error_set(&err, ERROR_IO, "no file for the bell: %s", strerror(errno));
     } else {
@@ -548,6 +579,7 @@ int session_run(const struct session_options *options)
     if (session.pipeline)
         pipeline_destroy(session.pipeline);
     desk_destroy(session.desk);
+    prepared_destroy(session.prepared);
     for (size_t i = 0; i < session.n_rooms; i++)
         cJSON_Delete(session.rooms[i].scene);
     cJSON_Delete(session.default_scene);

@@ -1,0 +1,24 @@
+#pragma once
+/* Shapes are built before a picture is given to the render thread, on a thread of their own: so that a picture that needs a new shape
+ * holds up no other, and the pictures of a view that wait for it are drawn as soon as it is there. */
+#include "core/pipeline/pipeline.h"
+#include "core/render/visible.h"
+
+/* A picture that waits for shapes. */
+struct preparation {
+    struct pipeline_request request; /* with its snapshot */
+    struct visible_want *wants;
+    size_t n_wants;
+};
+/* Takes request->snapshot. */
+struct preparation *preparation_create(const struct pipeline_request *request);
+void preparation_destroy(struct preparation *preparation);
+/* Builds what is wanted, several regions at once; what fails is found again by whoever draws it. Any thread. */
+void preparation_build(const struct preparation *preparation);
+
+/* What was built, or tried, before; of one plan, on the main thread. What the plan has dropped since is built by the render thread. */
+struct prepared;
+struct prepared *prepared_create(void);
+void prepared_destroy(struct prepared *prepared);
+bool prepared_has_all(const struct prepared *prepared, const struct preparation *preparation);
+void prepared_add(struct prepared *prepared, const struct preparation *preparation);

@@ -1,0 +1,109 @@
+/* Which shapes a picture waits for, and that they are there when it no longer does. */
+#include "core/pipeline/prepare.h"
+#include "tests/check.h"
+#include "tests/made_plan.h"
+
+static double nested_label(struct vec3 p)
+{
+    double r = vec3_length(p);
+    return r < 4 ? 3 : r < 7 ? 2 : r < 10 ? 1 : 0;
+}
+static const struct made_region nested[] = { { "outer", -1, 0xff0000 }, { "middle", 0, 0x00ff00 }, { "inner", 1, 0x0000ff } };
+
+static struct plan *make_plan(void)
+{
+    const uint32_t size[3] = { 24, 24, 24 };
+    struct grid grid = made_grid(24, 24, 24, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+    return made_plan(&grid, nested_label, nested, 3);
+}
+
+struct asked {
+    enum scene_kind kind;
+    enum scene_representation representation;
+    double opacity; /* of the outer one */
+    const char *checked; /* NULL: no check */
+    enum surface_detail detail;
+};
+
+static struct preparation *prepare(struct plan *plan, const struct asked *asked)
+{
+    struct scene scene;
+    struct view view = view_default;
+    struct error err = { 0 };
+    char field[128];
+    scene_for_plan(plan, &scene);
+    view.kind = asked->kind;
+    for (size_t i = 0; i < scene.n_regions; i++) {
+        scene.regions[i].value.representation = asked->representation;
+        scene.regions[i].value.opacity = i == 0 ? asked->opacity : 1;
+    }
+    scene.check.visible = asked->checked != NULL;
+    snprintf(scene.check.region, sizeof scene.check.region, "%s", asked->checked ? asked->checked : "");
+    struct pipeline_request request = { .snapshot = snapshot_create(plan, &scene, &view, 1, field, &err), .render = { 64, 64, asked->detail, false } };
+    assert_string_equal(err.text, "");
+    return preparation_create(&request);
+}
+
+static void a_picture_wants_the_shapes_that_can_be_seen(void **state)
+{
+    (void)state;
+    static const struct {
+        struct asked asked;
+        size_t n;
+        size_t first;
+        enum region_representation representation;
+        enum surface_detail detail;
+    } cases[] = {
+        { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 1, NULL, SURFACE_LIGHT }, 1, 0, REPRESENTATION_SURFACE, SURFACE_LIGHT }, /* hides all */
+        { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 0.5, NULL, SURFACE_FULL }, 2, 0, REPRESENTATION_SURFACE, SURFACE_FULL },
+        { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 0, NULL, SURFACE_FULL }, 1, 1, REPRESENTATION_SURFACE, SURFACE_FULL },
+        { { SCENE_KIND_3D, SCENE_REPRESENTATION_POINTS, 1, NULL, SURFACE_LIGHT }, 3, 0, REPRESENTATION_POINTS, SURFACE_FULL }, /* one sees through */
+        { { SCENE_KIND_AXIAL, SCENE_REPRESENTATION_UNIVELS, 1, NULL, SURFACE_LIGHT }, 0, 0, REPRESENTATION_SURFACE, SURFACE_FULL },
+        { { SCENE_KIND_AXIAL, SCENE_REPRESENTATION_UNIVELS, 1, "", SURFACE_LIGHT }, 3, 0, REPRESENTATION_UNIVELS, SURFACE_FULL },
+        { { SCENE_KIND_CORONAL, SCENE_REPRESENTATION_OUTLINE, 1, "middle", SURFACE_LIGHT }, 1, 1, REPRESENTATION_SURFACE, SURFACE_FULL },
+    };
+    struct plan *plan = make_plan();
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct preparation *preparation = prepare(plan, &cases[i].asked);
+        assert_int_equal(preparation->n_wants, cases[i].n);
+        if (cases[i].n > 0) {
+            assert_int_equal(preparation->wants[0].region, cases[i].first);
+            assert_int_equal(preparation->wants[0].key.representation, cases[i].representation);
+            assert_int_equal(preparation->wants[0].detail, cases[i].detail);
+        }
+        preparation_destroy(preparation);
+    }
+    plan_destroy(plan);
+}
+
+static void what_was_built_once_is_not_waited_for_again(void **state)
+{
+    (void)state;
+    static const struct asked solid = { SCENE_KIND_3D, SCENE_REPRESENTATION_SOLID, 0.5, NULL, SURFACE_FULL },
+                              points = { SCENE_KIND_3D, SCENE_REPRESENTATION_POINTS, 0.5, NULL, SURFACE_FULL };
+    struct plan *plan = make_plan();
+    struct prepared *prepared = prepared_create();
+    struct preparation *first = prepare(plan, &solid), *again = prepare(plan, &solid), *other = prepare(plan, &points);
+    struct plan_shape_usage usage;
+    assert_false(prepared_has_all(prepared, first));
+    preparation_build(first);
+    plan_shape_usage(plan, &usage);
+    assert_int_equal(usage.n_shapes, 3);
+    prepared_add(prepared, first);
+    assert_true(prepared_has_all(prepared, again));
+    assert_false(prepared_has_all(prepared, other));
+    preparation_destroy(first);
+    preparation_destroy(again);
+    preparation_destroy(other);
+    prepared_destroy(prepared);
+    plan_destroy(plan);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_picture_wants_the_shapes_that_can_be_seen),
+        cmocka_unit_test(what_was_built_once_is_not_waited_for_again),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
