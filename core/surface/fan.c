@@ -54,22 +54,46 @@ static struct vec3 thin_axis(const struct job *job, uint32_t around)
     return vec3_normalize(vec3_cross(columns[(best + 1) % 3], columns[(best + 2) % 3]));
 }
 
-/* Neighbours that are border voxels, by their angle around the normal; equal angles by their number. */
-static int order_around(const struct job *job, uint32_t around, struct vec3 normal, uint8_t order[MAX_FAN], double angles[MAX_FAN])
+/* Grows with the angle from right, counter-clockwise, by half a turn to the direction opposite: what an angle is needed for here,
+ * without its cost. What differs by no more than ROUNDING is the same angle: neighbours that stand one above the other. */
+enum { FULL_TURN = 1 << 16, ROUNDING = 2 };
+
+static int32_t turn_of(struct vec3 offset, struct vec3 right_way, struct vec3 up_way)
 {
-    struct vec3 helper = fabs(normal.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
-    struct vec3 right = vec3_normalize(vec3_cross(helper, normal)), up = vec3_cross(normal, right);
+    double right = vec3_dot(offset, right_way), up = vec3_dot(offset, up_way), sum = fabs(right) + fabs(up);
+    double part = sum > 1e-5 * vec3_length(offset) ? right / sum : 1; /* straight above: as good as any */
+    up = part < 1 ? up : 0;
+    double quarters = up >= 0 ? 1 - part : 3 + part;
+    int32_t turn = (int32_t)(quarters * (FULL_TURN / 4) + 0.5);
+    return turn < FULL_TURN - ROUNDING ? turn : 0;
+}
+
+/* Where angles are counted from: the first neighbour that does not lie straight above or below. */
+static struct vec3 first_way(const struct job *job, uint32_t around, struct vec3 normal)
+{
+    for (int at = 0; at < AROUND; at++) {
+        struct vec3 offset = job->offset[at], flat = vec3_sub(offset, vec3_scale(normal, vec3_dot(offset, normal)));
+        if (at != MIDDLE && (around >> at & 1) && vec3_length(flat) > 1e-3 * vec3_length(offset))
+            return vec3_normalize(flat);
+    }
+    return vec3(0, 0, 0);
+}
+
+/* Neighbours that are border voxels, by their angle around the normal; equal angles by their number. */
+static int order_around(const struct job *job, uint32_t around, struct vec3 normal, uint8_t order[MAX_FAN], int32_t turns[MAX_FAN])
+{
+    struct vec3 right = first_way(job, around, normal), up = vec3_cross(normal, right);
     int n = 0;
     for (int at = 0; at < AROUND; at++) {
         if (at == MIDDLE || !(around >> at & 1))
             continue;
-        double angle = atan2(vec3_dot(job->offset[at], up), vec3_dot(job->offset[at], right));
+        int32_t turn = turn_of(job->offset[at], right, up);
         int hole = n++;
-        for (; hole > 0 && angles[hole - 1] > angle; hole--) {
-            angles[hole] = angles[hole - 1];
+        for (; hole > 0 && turns[hole - 1] > turn + ROUNDING; hole--) {
+            turns[hole] = turns[hole - 1];
             order[hole] = order[hole - 1];
         }
-        angles[hole] = angle;
+        turns[hole] = turn;
         order[hole] = (uint8_t)at;
     }
     return n;
@@ -83,13 +107,13 @@ static void make_fan(const struct job *job, size_t number, struct fan *fan)
     struct vec3 normal = vec3((double)n[0], (double)n[1], (double)n[2]);
     uint32_t around = shape_border_around(border->border, ijk[0], ijk[1], ijk[2]);
     uint8_t order[MAX_FAN];
-    double angles[MAX_FAN];
-    int count = order_around(job, around, vec3_length(normal) > 0 ? normal : thin_axis(job, around), order, angles);
+    int32_t turns[MAX_FAN];
+    int count = order_around(job, around, vec3_length(normal) > 0 ? normal : thin_axis(job, around), order, turns);
     fan->n = 0;
     for (int at = 0; at < count; at++) {
         int next = (at + 1) % count, from = order[at], to = order[next];
-        double gap = angles[next] - angles[at] + (next == 0 ? 2 * MATH_PI : 0);
-        if (gap > MATH_PI || !are_neighbours(from, to)) /* at the edge of a sheet the fan is open */
+        int32_t gap = turns[next] - turns[at] + (next == 0 ? FULL_TURN : 0);
+        if (gap > FULL_TURN / 2 + ROUNDING || !are_neighbours(from, to)) /* at the edge of a sheet the fan is open */
             continue;
         fan->from[fan->n] = (uint8_t)from;
         fan->to[fan->n++] = (uint8_t)to;

@@ -17,15 +17,10 @@ size_t shape_border_number(const struct shape_border *border, int64_t i, int64_t
     const struct mask *mask = border->border;
     if (i < 0 || j < 0 || k < 0 || i >= mask->size[0] || j >= mask->size[1] || k >= mask->size[2])
         return SIZE_MAX;
-    size_t row = (size_t)k * mask->size[1] + (size_t)j;
-    const uint64_t *bits = mask->bits + row * mask->words;
-    uint64_t word = bits[i / 64];
-    if (!(word >> i % 64 & 1))
+    size_t at = ((size_t)k * mask->size[1] + (size_t)j) * mask->words + (size_t)i / 64;
+    if (!(mask->bits[at] >> i % 64 & 1))
         return SIZE_MAX;
-    size_t number = border->first[row] + (size_t)__builtin_popcountll(word & (((uint64_t)1 << i % 64) - 1));
-    for (int64_t w = 0; w < i / 64; w++)
-        number += (size_t)__builtin_popcountll(bits[w]);
-    return number;
+    return border->first[at] + (size_t)__builtin_popcountll(mask->bits[at] & (((uint64_t)1 << i % 64) - 1));
 }
 
 uint32_t shape_border_around(const struct mask *mask, uint32_t i, uint32_t j, uint32_t k)
@@ -87,7 +82,7 @@ static void fill_part(void *context, int part, int n_parts)
     const struct mask *mask = border->border;
     size_t n_rows = (size_t)mask->size[1] * mask->size[2], end = n_rows * (size_t)(part + 1) / (size_t)n_parts;
     for (size_t row = n_rows * (size_t)part / (size_t)n_parts; row < end; row++) {
-        size_t at = border->first[row];
+        size_t at = border->first[row * mask->words];
         uint32_t j = (uint32_t)(row % mask->size[1]), k = (uint32_t)(row / mask->size[1]);
         for (uint32_t w = 0; w < mask->words; w++)
             for (uint64_t left = mask->bits[row * mask->words + w]; left; left &= left - 1, at++) {
@@ -103,26 +98,24 @@ static void fill_part(void *context, int part, int n_parts)
     }
 }
 
-static bool number_rows(struct shape_border *border, size_t max_voxels, struct error *err)
+static bool number_voxels(struct shape_border *border, size_t max_voxels, struct error *err)
 {
     const struct mask *mask = border->border;
-    size_t n_rows = (size_t)mask->size[1] * mask->size[2];
+    size_t n_words = (size_t)mask->size[1] * mask->size[2] * mask->words;
     uint64_t n = mask_count(mask);
     if (n > max_voxels)
         return error_set(err, ERROR_LIMIT, "a border of %llu voxels: at most %zu are allowed", (unsigned long long)n, max_voxels);
     border->n = (size_t)n;
-    border->first = mem_array(n_rows + 1, sizeof *border->first, UINT64_MAX, err);
+    border->first = mem_array(n_words, sizeof *border->first, UINT64_MAX, err);
     border->ijk = border->first ? mem_array(border->n, 3 * sizeof *border->ijk, UINT64_MAX, err) : NULL;
     border->normals = border->ijk ? mem_large_array(border->n, 3 * sizeof *border->normals, UINT64_MAX, err) : NULL;
     if (!border->normals)
         return false;
     uint32_t total = 0;
-    for (size_t row = 0; row < n_rows; row++) {
-        border->first[row] = total;
-        for (uint32_t w = 0; w < mask->words; w++)
-            total += (uint32_t)__builtin_popcountll(mask->bits[row * mask->words + w]);
+    for (size_t at = 0; at < n_words; at++) {
+        border->first[at] = total;
+        total += (uint32_t)__builtin_popcountll(mask->bits[at]);
     }
-    border->first[n_rows] = total;
     return true;
 }
 
@@ -131,7 +124,7 @@ struct shape_border *shape_border_create(const struct mask *mask, size_t max_vox
     struct shape_border *border = mem_new(sizeof *border);
     border->mask = mask;
     border->border = mask_boundary(mask, false, n_threads, err);
-    if (!border->border || !number_rows(border, max_voxels, err)) {
+    if (!border->border || !number_voxels(border, max_voxels, err)) {
         shape_border_destroy(border);
         return NULL;
     }

@@ -5,7 +5,7 @@
 struct shape_border {
     const struct mask *mask;   /* borrowed */
     struct mask *border;       /* the voxels that have a 6-neighbour outside */
-    uint32_t *first;           /* [k][j] number of the first in each row, and one more at the end */
+    uint32_t *first;           /* [k][j][words] number of the first in each word */
     uint16_t *ijk;             /* [n][3] */
     float *normals;            /* [n][3] LPS, unit: away from the inside; 0 0 0 where all sides are alike */
     size_t n;

@@ -468,6 +468,24 @@ static void a_ragged_region_is_closed_from_its_traces_and_refused_for_degree_bin
     plan_destroy(plan);
 }
 
+static void noise_of_any_density_is_closed_and_finite_from_its_traces(void **state)
+{
+    (void)state;
+    for (uint32_t percent = 3; percent < 100; percent += 19)
+        for (int order = 2; order <= 4; order++) {
+            struct mask *mask = random_mask(23, 19, 8, percent, percent, &slices_3mm);
+            struct mesh *mesh = nurbs(mask, order, NURBS_TRACES, 20);
+            for (size_t at = 0; at < 3 * mesh->n_vertices; at++)
+                assert_true(isfinite(mesh->positions_lps_mm[at]));
+            /* a spline stays within the hull of its control points, those of the outlines and half a slice beyond */
+            assert_true(mesh->bounds_lps_mm.low.x >= -0.5 && mesh->bounds_lps_mm.high.x <= 22.5);
+            assert_true(mesh->bounds_lps_mm.low.y >= -0.5 && mesh->bounds_lps_mm.high.y <= 18.5);
+            assert_true(mesh->bounds_lps_mm.low.z >= -1.5 && mesh->bounds_lps_mm.high.z <= 22.5);
+            mesh_unref(mesh);
+            mask_destroy(mask);
+        }
+}
+
 /* Slices across each index axis, both hands, oblique: the surface is never inside out. */
 static void grids_of_any_orientation_give_the_same_volume(void **state)
 {
@@ -537,6 +555,7 @@ int main(void)
         cmocka_unit_test(one_univel_is_a_small_spline),
         cmocka_unit_test(corners_join_pieces),
         cmocka_unit_test(a_ragged_region_is_closed_from_its_traces_and_refused_for_degree_bins),
+        cmocka_unit_test(noise_of_any_density_is_closed_and_finite_from_its_traces),
         cmocka_unit_test(grids_of_any_orientation_give_the_same_volume),
         cmocka_unit_test(seras_brain_is_met_within_a_fraction_of_a_millimetre),
     };
