@@ -134,7 +134,8 @@ static void a_wrong_unit_is_taken_for_what_it_must_be_or_for_what_the_plan_says(
             assert_int_equal(said(&plan->report, codes[c])[0] != 0, strcmp(codes[c], cases[i].code) == 0);
         plan_destroy(plan);
     }
-    folder_put(folder, "plan.json", "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.uvh\",\"unit\":\"ft\"}]}", 83);
+    static const char bad[] = "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.uvh\",\"unit\":\"ft\"}]}";
+    folder_put(folder, "plan.json", bad, sizeof bad - 1);
     assert_null(plan_load(folder, "p", NULL, &err));
     assert_non_null(strstr(err.text, "regions[0].unit: expected mm or cm"));
     free(header.data);
