@@ -455,6 +455,51 @@ static void pictures_of_regions_say_where_the_dose_is_valid(void **state)
     free(table.at);
 }
 
+static void pictures_of_uneven_planes_go_with_the_nearest(void **state)
+{
+    (void)state;
+    enum { SIDE = 16 };
+    struct made made = plain;
+    made.n_planes = 3;
+    made.z[2] = -1.9;
+    made.order[2] = 2;
+    struct text header = make_header(&made), table = make_table(&made);
+    uint8_t pixels[3 * SIDE * SIDE];
+    memset(pixels, 252, 2 * SIDE * SIDE);
+    memset(pixels + 2 * SIDE * SIDE, 0, SIDE * SIDE); /* the last plane is not valid */
+    const struct bytes mask = { pixels, sizeof pixels };
+    struct result result;
+    assert_true(read_both(&header, &table, &mask, &result));
+    assert_int_equal(result.doses.mask->grid.size[2], 4); /* -5, -3.97, -2.93 and -1.9 cm: the third is the nearer to the last */
+    for (uint32_t k = 0; k < 4; k++)
+        assert_int_equal(volume_label(result.doses.mask, 3, 3, k), k < 2);
+    finish(&result);
+    free(header.at);
+    free(table.at);
+}
+
+static void pictures_that_show_other_regions_are_not_believed(void **state)
+{
+    (void)state;
+    static const char header[] = "FOV: 13\nxmin: -.5\nxmax: .5\nymin: -.5\nymax: .5\nnum_cols: 2\nnum_rows: 2\nnum_planes: 1\nz_value_00: 0\n"
+                                 "dose_comp_2: gamma\nrbe_val_2: 1\n";
+    /* region 2 posterior, 1 anterior: 255 / 2 = 127, so 254 below and 127 above */
+    static const char points[] = "-.5 -.5 0 2 1 1 1 1 1 1 1 1 1\n.5 -.5 0 2 1 1 1 1 1 1 1 1 1\n-.5 .5 0 1 1 1 1 1 1 1 1 1 1\n.5 .5 0 1 1 1 1 1 1 1 1 1 1\n";
+    struct text head = { (char *)(uintptr_t)header, sizeof header - 1 }, table = { (char *)(uintptr_t)points, sizeof points - 1 };
+    uint8_t pixels[256];
+    const struct bytes mask = { pixels, sizeof pixels };
+    for (int is_turned = 0; is_turned < 2; is_turned++) {
+        struct result result;
+        for (size_t i = 0; i < sizeof pixels; i++)
+            pixels[i] = (i < 128) != is_turned ? 127 : 254;
+        pixels[0] = 0;
+        assert_true(read_both(&head, &table, &mask, &result));
+        assert_int_equal(result.doses.mask != NULL, !is_turned);
+        assert_int_equal(strstr(said(&result.report, "dose.mask-unread"), "at 100 % of its points") != NULL, is_turned);
+        finish(&result);
+    }
+}
+
 static void numbers_that_are_none_and_a_reference_of_zero_are_counted(void **state)
 {
     (void)state;
@@ -684,6 +729,8 @@ int main(void)
         cmocka_unit_test(a_header_in_millimetres_is_told_by_its_width),
         cmocka_unit_test(points_that_hold_nothing_are_not_blended_with_their_neighbours),
         cmocka_unit_test(pictures_of_regions_say_where_the_dose_is_valid),
+        cmocka_unit_test(pictures_of_uneven_planes_go_with_the_nearest),
+        cmocka_unit_test(pictures_that_show_other_regions_are_not_believed),
         cmocka_unit_test(numbers_that_are_none_and_a_reference_of_zero_are_counted),
         cmocka_unit_test(a_set_that_is_wrong_is_refused_with_its_line),
         cmocka_unit_test(every_cut_and_every_changed_byte_is_survived),
