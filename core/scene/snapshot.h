@@ -56,6 +56,7 @@ struct pick_hit {
     double distance_mm;
 };
 enum { PICK_MAX_HITS = 32 };
-/* Fills hits, returns how many. Only what the scene shows (visible, opacity > 0). Slice panes: the point on the slice with the
+/* Fills hits, returns how many. Only what the scene shows (visible, opacity > 0),
+ * whatever it is drawn as: between lines or points too. Slice panes: the point on the slice with the
  * regions there, innermost first. px, py: pixel centres are at + 0.5. */
 size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, struct pick_hit hits[PICK_MAX_HITS]);

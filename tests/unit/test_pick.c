@@ -83,6 +83,28 @@ static void an_oblique_grid_is_hit_on_its_own_faces(void **state)
     plan_destroy(plan);
 }
 
+static enum scene_representation drawn_as;
+static void draw_as(struct scene *scene)
+{
+    for (size_t i = 0; i < scene->n_regions; i++)
+        scene->regions[i].value.representation = drawn_as;
+}
+
+static void whatever_a_region_is_drawn_as_its_univels_are_hit(void **state)
+{
+    (void)state;
+    struct plan *plan = nested_plan(false);
+    for (drawn_as = SCENE_REPRESENTATION_SURFACE; drawn_as <= SCENE_REPRESENTATION_FAN; drawn_as++) {
+        struct snapshot *snapshot = look(plan, vec3(0.3, -100, 0.7), vec3(0.3, 0, 0.7), draw_as, SCENE_KIND_3D);
+        struct pick_hit hits[PICK_MAX_HITS];
+        assert_int_equal(snapshot_pick(snapshot, 50.5, 50.5, hits), 3); /* between lines and points too */
+        expect_hit(&hits[0], 0, vec3(0.3, -15, 0.7), 85);
+        expect_hit(&hits[2], 2, vec3(0.3, -5, 0.7), 95);
+        snapshot_unref(snapshot);
+    }
+    plan_destroy(plan);
+}
+
 static void every_pixel_agrees_with_small_steps_along_its_ray(void **state)
 {
     (void)state;
@@ -247,6 +269,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ray_enters_regions_on_the_faces_of_their_univels),
         cmocka_unit_test(an_oblique_grid_is_hit_on_its_own_faces),
+        cmocka_unit_test(whatever_a_region_is_drawn_as_its_univels_are_hit),
         cmocka_unit_test(every_pixel_agrees_with_small_steps_along_its_ray),
         cmocka_unit_test(only_what_is_shown_is_hit),
         cmocka_unit_test(from_inside_a_region_its_own_wall_is_not_a_hit),
