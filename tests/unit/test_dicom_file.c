@@ -378,6 +378,29 @@ static void pixels_come_without_their_unused_bits_and_with_their_sign(void **sta
         }
 }
 
+static void two_pixels_of_8_bits_share_a_word_in_either_byte_order(void **state)
+{
+    (void)state;
+    static const char *const native[] = { MADE_EXPLICIT, MADE_BIG_ENDIAN, MADE_BIG_ENDIAN };
+    for (int e = 0; e < 3; e++) {
+        struct made_dicom made;
+        made_image(&made, native[e], 8, 8, 7, false);
+        made_head(&made, DICOM_TAG(0x7FE0, 0x0010), e == 2 ? "OB" : "OW", 6);
+        if (e == 2)
+            made_raw(&made, "\x01\x02\x03\x04\x05\x06", 6); /* bytes have no order */
+        else
+            made_words(&made, (uint16_t[]){ 0x0201, 0x0403, 0x0605 }, 3); /* the first pixel is the low byte: PS3.5 8.1.1 */
+        struct dicom_file *file = parse(&made);
+        uint8_t values[6];
+        struct error err = { 0 };
+        assert_true(dicom_pixels_read(file, 0, values, &err));
+        for (int v = 0; v < 6; v++)
+            assert_int_equal(values[v], v + 1);
+        dicom_file_destroy(file);
+        made_finish(&made);
+    }
+}
+
 static void pixels_that_contradict_themselves_are_refused(void **state)
 {
     (void)state;
@@ -536,6 +559,7 @@ int main(void)
         cmocka_unit_test(what_is_longer_than_what_holds_it_is_refused_with_its_place),
         cmocka_unit_test(every_beginning_of_a_file_is_read_or_refused_with_a_sentence),
         cmocka_unit_test(pixels_come_without_their_unused_bits_and_with_their_sign),
+        cmocka_unit_test(two_pixels_of_8_bits_share_a_word_in_either_byte_order),
         cmocka_unit_test(pixels_that_contradict_themselves_are_refused),
         cmocka_unit_test(the_lossless_encodings_of_one_picture_decode_to_the_same_pixels),
     };

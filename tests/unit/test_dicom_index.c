@@ -325,6 +325,9 @@ static void pictures_that_cannot_be_used_say_why(void **state)
     struct made_slice slice = made_slice_defaults;
     slice.image_type = "ORIGINAL\\PRIMARY\\LOCALIZER";
     made_slice_put(s.path, "localizer", &slice);
+    slice.number = 8;
+    slice.image_type = "ORIGINAL\\PRIMARY\\M\\ND\\MOSAIC";
+    made_slice_put(s.path, "mosaic", &slice);
     slice = made_slice_defaults;
     slice.number = 2;
     slice.color = "PALETTE COLOR";
@@ -361,6 +364,7 @@ static void pictures_that_cannot_be_used_say_why(void **state)
     static const struct {
         const char *path, *words;
     } cases[] = { { "localizer", "it is a localizer" },
+                  { "mosaic", "it is a mosaic of many slices" },
                   { "color", "it is a colour picture (PALETTE COLOR" },
                   { "spacing", "how large its pixels are (0028,0030)" },
                   { "nowhere", "where it lies in the patient (0020,0032)" },

@@ -1,5 +1,5 @@
 #pragma once
-// One compressed frame to stored values, by DCMTK's decoders. The only other C++ header of the project.
+// One compressed frame to stored values, by DCMTK's decoders.
 extern "C" {
 #include "core/formats/dicom/dicom_walk.h"
 }

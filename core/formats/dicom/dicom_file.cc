@@ -3,20 +3,16 @@ extern "C" {
 #include "core/formats/dicom/dicom_walk.h"
 }
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <new>
 #include <string>
 #include <unordered_map>
 #include <vector>
-
-#include <iconv.h>
 
 #include <dcmtk/config/osconfig.h>
 
@@ -26,6 +22,7 @@ extern "C" {
 #include <dcmtk/oflog/oflog.h>
 
 #include "core/formats/dicom/dicom_decode.hh"
+#include "core/formats/dicom/dicom_text.hh"
 
 struct dicom_item {
     DcmItem *item;
@@ -98,65 +95,6 @@ bool raw_text(DcmElement &element, const char **text, size_t *size)
     return false;
 }
 
-bool is_ascii(const char *text, size_t size)
-{
-    return std::all_of(text, text + size, [](char c) { return static_cast<unsigned char>(c) < 128 && c != 27; });
-}
-
-// Length of the character at p, 0 when it is not UTF-8. RFC 3629, table 3-7 of the Unicode standard.
-size_t utf8_length(const unsigned char *p, size_t left)
-{
-    if (p[0] < 0x80)
-        return 1;
-    size_t n = p[0] >= 0xC2 && p[0] <= 0xDF ? 2 : (p[0] & 0xF0) == 0xE0 ? 3 : p[0] >= 0xF0 && p[0] <= 0xF4 ? 4 : 0;
-    if (n == 0 || n > left)
-        return 0;
-    unsigned low = p[0] == 0xE0 ? 0xA0 : p[0] == 0xF0 ? 0x90 : 0x80, high = p[0] == 0xED ? 0x9F : p[0] == 0xF4 ? 0x8F : 0xBF;
-    for (size_t i = 1; i < n; i++, low = 0x80, high = 0xBF)
-        if (p[i] < low || p[i] > high)
-            return 0;
-    return n;
-}
-
-bool is_utf8(const std::string &text)
-{
-    for (size_t at = 0, n; at < text.size(); at += n)
-        if ((n = utf8_length(reinterpret_cast<const unsigned char *>(text.data()) + at, text.size() - at)) == 0)
-            return false;
-    return true;
-}
-
-std::string from_latin1(const std::string &text)
-{
-    std::string out;
-    for (char c : text) {
-        auto byte = static_cast<unsigned char>(c);
-        if (byte < 128) {
-            out += c;
-        } else {
-            out += static_cast<char>(0xC0 | byte >> 6);
-            out += static_cast<char>(0x80 | (byte & 0x3F));
-        }
-    }
-    return out;
-}
-
-// Escape sequences of Japanese sets (ISO-IR 6, 14, 87, 159), which DCMTK over the C library's iconv does not know by their own names.
-bool from_iso2022(const std::string &text, std::string &out)
-{
-    iconv_t converter = iconv_open("UTF-8", "ISO-2022-JP-2");
-    if (converter == reinterpret_cast<iconv_t>(-1))
-        return false;
-    std::string from = text;
-    out.resize(4 * text.size() + 16);
-    char *in = from.data(), *to = out.data();
-    size_t in_left = from.size(), out_left = out.size();
-    bool is_converted = iconv(converter, &in, &in_left, &to, &out_left) != static_cast<size_t>(-1);
-    iconv_close(converter);
-    out.resize(out.size() - out_left);
-    return is_converted && is_utf8(out);
-}
-
 // The character set in force in an item: its own or that of what holds it.
 std::string character_set_of(const dicom_item *item)
 {
@@ -170,8 +108,6 @@ std::string character_set_of(const dicom_item *item)
     return "";
 }
 
-// What cannot be converted by what the file says is taken for UTF-8 when it is that, else for Latin-1: files without a word on their
-// characters are common, and a readable name is better than none.
 std::string to_utf8(const dicom_item *item, std::string text)
 {
     dicom_file &file = *item->file;
@@ -183,44 +119,7 @@ std::string to_utf8(const dicom_item *item, std::string text)
         file.character_set = wanted;
         file.has_converter = true;
     }
-    OFString converted;
-    if (file.converter && file.converter->convertString(text.data(), text.size(), converted, "\\^=").good()) {
-        std::string out(converted.c_str(), converted.size());
-        if (is_utf8(out))
-            return out;
-    }
-    std::string out;
-    if (text.find('\x1B') != std::string::npos && from_iso2022(text, out))
-        return out;
-    return is_utf8(text) ? text : from_latin1(text);
-}
-
-bool is_padding(char c) { return c == ' ' || c == 0 || c == '\t' || c == '\r' || c == '\n'; }
-
-bool put_text(const std::string &text, char *out, size_t size)
-{
-    size_t from = 0, end = text.size();
-    while (end > from && is_padding(text[end - 1]))
-        end--;
-    while (from < end && is_padding(text[from]))
-        from++;
-    size_t n = 0;
-    while (from < end) {
-        auto *p = reinterpret_cast<const unsigned char *>(text.data()) + from;
-        size_t length = utf8_length(p, end - from);
-        if (length == 0 || n + length >= size)
-            break;
-        bool is_control = p[0] < 32 || p[0] == 127 || (p[0] == 0xC2 && length == 2 && p[1] < 0xA0);
-        if (is_control) {
-            out[n++] = ' ';
-        } else {
-            std::memcpy(out + n, p, length);
-            n += length;
-        }
-        from += length;
-    }
-    out[n] = 0;
-    return n > 0;
+    return dicom_text_to_utf8(file.converter.get(), std::move(text));
 }
 
 bool get_text(const dicom_item *item, uint32_t tag, bool is_one, size_t index, char *out, size_t size)
@@ -242,7 +141,7 @@ bool get_text(const dicom_item *item, uint32_t tag, bool is_one, size_t index, c
         return snprintf(out, size, "%.17g", number) > 0;
     }
     std::string text(raw, std::min<size_t>(raw_size, 1 << 20)); // nobody asks for more than a description
-    if (!is_ascii(text.data(), text.size()))
+    if (!dicom_text_is_ascii(text.data(), text.size()))
         text = to_utf8(item, std::move(text));
     size_t from = 0;
     if (is_one) {
@@ -255,42 +154,7 @@ bool get_text(const dicom_item *item, uint32_t tag, bool is_one, size_t index, c
         size_t end = text.find('\\', from);
         text = text.substr(from, end == std::string::npos ? end : end - from);
     }
-    return put_text(text, out, size);
-}
-
-// Decimal strings as people write them: blanks around, a leading plus; else not-a-number. Knows no locale.
-double number_from(const char *from, const char *end)
-{
-    while (from < end && is_padding(*from))
-        from++;
-    while (end > from && is_padding(end[-1]))
-        end--;
-    if (end - from > 1 && *from == '+' && from[1] != '-')
-        from++;
-    double value;
-    auto [stop, error] = std::from_chars(from, end, value);
-    bool is_digits = from < end && (*from == '-' || *from == '.' || (*from >= '0' && *from <= '9')); // not "inf", "nan"
-    if (stop != end || !is_digits || error != std::errc())
-        return std::numeric_limits<double>::quiet_NaN();
-    return value;
-}
-
-size_t numbers_from_text(const char *text, size_t size, double *out, size_t most)
-{
-    while (size > 0 && is_padding(text[size - 1]))
-        size--;
-    if (size == 0)
-        return 0;
-    size_t n = 0;
-    const char *end = text + size;
-    for (const char *from = text;; n++) {
-        auto *stop = static_cast<const char *>(std::memchr(from, '\\', size_t(end - from)));
-        if (n < most)
-            out[n] = number_from(from, stop ? stop : end);
-        if (!stop)
-            return n + 1;
-        from = stop + 1;
-    }
+    return dicom_text_put(text, out, size);
 }
 
 template <typename T> size_t copy_numbers(const T *from, size_t n_bytes, double *out, size_t most)
@@ -493,6 +357,9 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
     return true;
 }
 
+// Bytes (OB) have no order; words (OW) do, also where two pixels of 8 bits share one.
+bool is_swapped(const dicom_layout &layout) { return layout.is_big_endian && std::strcmp(layout.pixels_vr, "OB") != 0; }
+
 bool read_frame(dicom_file &file, uint32_t frame, void *out, error *err)
 {
     dicom_pixels pixels;
@@ -518,7 +385,7 @@ bool read_frame(dicom_file &file, uint32_t frame, void *out, error *err)
         return error_set(err, ERROR_FORMAT, "%s: byte %llu: frame %u needs %zu bytes, the file ends at %zu", name,
                          static_cast<unsigned long long>(at), frame, bytes, layout.size);
     std::memcpy(out, layout.data + at, bytes);
-    dicom_pixels_unpack(&pixels, layout.is_big_endian && (pixels.bits_allocated > 8), out, n);
+    dicom_pixels_unpack(&pixels, is_swapped(layout), out, n);
     return true;
 }
 
@@ -578,7 +445,7 @@ size_t dicom_numbers(const struct dicom_item *item, uint32_t tag, double *out, s
             return 0;
         if (values_of(*element) == values::binary)
             return binary_numbers(*element, out, most);
-        return raw_text(*element, &text, &size) ? numbers_from_text(text, size, out, most) : 0;
+        return raw_text(*element, &text, &size) ? dicom_text_numbers(text, size, out, most) : 0;
     });
 }
 
@@ -649,7 +516,7 @@ bool dicom_pixels_stored(const struct dicom_file *file, struct dicom_stored *sto
     const dicom_layout &layout = file->layout;
     if (!layout.has_pixels || layout.is_encapsulated || layout.inflated)
         return false;
-    *stored = { layout.pixels_at, layout.pixels_size, layout.is_big_endian };
+    *stored = { layout.pixels_at, layout.pixels_size, is_swapped(layout) };
     return true;
 }
 

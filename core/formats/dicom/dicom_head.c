@@ -153,6 +153,10 @@ static void read_image(const struct dicom_file *file, uint64_t n_bytes, struct d
         snprintf(object->reason, sizeof object->reason, "it is a localizer");
         return;
     }
+    if (strstr(image.image_type, "MOSAIC")) {
+        snprintf(object->reason, sizeof object->reason, "it is a mosaic of many slices in one picture");
+        return;
+    }
     bool has_frames = dicom_has(root, TAG_FRAME_GROUPS);
     if (!has_frames && image.pixels.n_frames > 1) {
         snprintf(object->reason, sizeof object->reason, "it has %u frames and does not say where they lie in the patient (5200,9230)",

@@ -10,6 +10,16 @@ static void swap16(uint16_t *values, size_t n)
         values[i] = (uint16_t)(values[i] << 8 | values[i] >> 8);
 }
 
+/* two pixels of 8 bits in each word; the last of an odd number has none to change with */
+static void swap_pairs(uint8_t *values, size_t n)
+{
+    for (size_t i = 0; i + 1 < n; i += 2) {
+        uint8_t first = values[i];
+        values[i] = values[i + 1];
+        values[i + 1] = first;
+    }
+}
+
 static void swap32(uint32_t *values, size_t n)
 {
     for (size_t i = 0; i < n; i++)
@@ -33,6 +43,8 @@ void dicom_pixels_unpack(const struct dicom_pixels *pixels, bool is_swapped, voi
 {
     if (is_swapped && pixels->bits_allocated == 16)
         swap16(values, n);
+    if (is_swapped && pixels->bits_allocated == 8)
+        swap_pairs(values, n);
     if (is_swapped && pixels->bits_allocated == 32)
         swap32(values, n);
     int up = (int)(pixels->bits_allocated - 1 - pixels->high_bit), down = (int)(pixels->bits_allocated - pixels->bits_stored);
