@@ -30,6 +30,7 @@ struct dose_component {
 
 struct dose {
     char id[64];
+    char name[64]; /* for people; "" when the files give none */
     char unit[16]; /* "Gy", "cGy"; as the plan says it, never assumed */
     char per[64];  /* "fraction", "250 kW-min", "minute"; "" when the plan does not say, and the report then says so */
     struct dose_component components[DOSE_N_QUANTITIES];

@@ -9,6 +9,7 @@ enum {
     PLAN_FILE_MAX_PARTS = REGION_MAX, /* entries of "regions" */
     PLAN_FILE_MAX_TRACKS = 16,
     PLAN_FILE_MAX_PREFERENCES = 16,
+    PLAN_FILE_MAX_BEAM_FILES = 16,
     PLAN_FILE_MAX_PAIRS = 1024, /* of the hierarchy */
     PLAN_FILE_MAX_LABELS = 65536
 };
@@ -36,10 +37,13 @@ struct plan_file_component {
     char path[FOLDER_NAME_SIZE];
 };
 struct plan_file_dose {
-    char id[64], unit[16], per[64];
+    char id[64], name[64], unit[16], per[64];
     char mask[FOLDER_NAME_SIZE];
     struct plan_file_component components[DOSE_N_QUANTITIES];
     size_t n_components;
+};
+struct plan_file_beams {
+    char path[FOLDER_NAME_SIZE]; /* RTPLAN: all its beams */
 };
 struct plan_file_tracks {
     char path[FOLDER_NAME_SIZE];
@@ -68,6 +72,8 @@ struct plan_file {
     size_t n_doses;
     struct beam beams[PLAN_MAX_BEAMS];
     size_t n_beams;
+    struct plan_file_beams beam_files[PLAN_FILE_MAX_BEAM_FILES];
+    size_t n_beam_files;
     struct plan_file_tracks tracks[PLAN_FILE_MAX_TRACKS];
     size_t n_tracks;
     struct plan_file_curve curves[PLAN_MAX_CURVES];
@@ -91,6 +97,7 @@ struct label_name {
     /* what beamroom convert writes, so that a plan comes back as it was */
     char id[REGION_ID_SIZE];       /* "" none; an entry with an id is a region even without a voxel */
     int place;                     /* among all regions of the plan, from 1; 0 none */
+    double opacity; /* above 0 to 1; 0 none */
     bool has_tissue;
     struct label_tissue {
         double boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma; /* not-a-number: not given */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "core/formats/plan_json.h"
+#include "core/formats/plan_json_delivery.h"
 
 /* A document is small, so lack of memory ends the program, as with mem_new. */
 static void add(cJSON *object, const char *key, cJSON *value) /* takes value */
@@ -122,6 +123,7 @@ static void add_doses(cJSON *root, const struct plan_file *file)
         const struct plan_file_dose *dose = &file->doses[i];
         cJSON *entry = append(list, cJSON_CreateObject());
         add_text(entry, "id", dose->id);
+        add_text(entry, "name", dose->name);
         add_text(entry, "unit", dose->unit);
         add_text(entry, "per", dose->per);
         add_text(entry, "mask", dose->mask);
@@ -133,9 +135,34 @@ static void add_doses(cJSON *root, const struct plan_file *file)
                 add_number(component, "reference", dose->components[c].reference);
             if (dose->components[c].is_per_ppm)
                 add(component, "per_ppm", cJSON_CreateTrue());
+            if (dose->components[c].reference > 0)
+                add_number(component, "reference", dose->components[c].reference);
             add_text(component, "path", dose->components[c].path);
         }
     }
+}
+
+static void add_delivery(cJSON *beam, const struct beam_delivery *delivery)
+{
+    cJSON *entry = cJSON_CreateObject();
+    add(beam, "delivery", entry);
+    add(entry, "number", cJSON_CreateNumber((double)delivery->number));
+    add_text(entry, "radiation", delivery->radiation);
+    add_text(entry, "machine", delivery->machine);
+    add_text(entry, "patient_position", patient_position_word(delivery->patient_position));
+    for (int i = 0; i < N_DELIVERY_NUMBERS; i++)
+        add_number(entry, delivery_numbers[i].key, *(const double *)((const char *)delivery + delivery_numbers[i].at));
+    for (int i = 0; i < N_DELIVERY_LISTS; i++) {
+        const double *values = (const double *)((const char *)delivery + delivery_lists[i].at);
+        if (!isfinite(values[0]))
+            continue;
+        cJSON *list = add_list(entry, delivery_lists[i].key);
+        for (int v = 0; v < delivery_lists[i].n; v++)
+            append(list, exact_number(values[v]));
+    }
+    add(entry, "n_control_points", cJSON_CreateNumber((double)delivery->n_control_points));
+    add_text(entry, "meterset_unit", delivery->meterset_unit);
+    add(entry, "n_fractions", cJSON_CreateNumber((double)delivery->n_fractions));
 }
 
 static void add_beams(cJSON *root, const struct plan_file *file)
@@ -148,6 +175,9 @@ static void add_beams(cJSON *root, const struct plan_file *file)
         add_point(entry, "entry_mm", beam->entry_lps_mm);
         add_point(entry, "target_mm", beam->target_lps_mm);
         add_number(entry, "aperture_mm", beam->aperture_mm);
+        add_text(entry, "name", beam->name);
+        if (beam->has_delivery)
+            add_delivery(entry, &beam->delivery);
     }
 }
 
@@ -159,6 +189,23 @@ static void add_tracks(cJSON *root, const struct plan_file *file)
         add_text(entry, "path", file->tracks[i].path);
         if (file->tracks[i].mm > 0)
             add_text(entry, "unit", file->tracks[i].mm > 1 ? "cm" : "mm");
+    }
+}
+
+static void add_curves(cJSON *root, const struct plan_file *file)
+{
+    cJSON *list = file->n_curves ? add_list(root, "curves") : NULL;
+    for (size_t i = 0; i < file->n_curves; i++) {
+        cJSON *entry = append(list, cJSON_CreateObject());
+        add_text(entry, "id", file->curves[i].id);
+        add_text(entry, "name", file->curves[i].name);
+        add_text(entry, "per", file->curves[i].per);
+        add_text(entry, "path", file->curves[i].path);
+    }
+    list = file->n_preferences ? add_list(root, "preferences") : NULL;
+    for (size_t i = 0; i < file->n_preferences; i++) {
+        cJSON *entry = append(list, cJSON_CreateObject());
+        add_text(entry, "path", file->preferences[i]);
     }
 }
 
@@ -177,6 +224,7 @@ char *plan_file_text(const struct plan_file *file)
     add_doses(root, file);
     add_beams(root, file);
     add_tracks(root, file);
+    add_curves(root, file);
     return print(root);
 }
 
@@ -193,6 +241,8 @@ char *label_names_text(const struct label_names *names)
             add(entry, "place", cJSON_CreateNumber(label->place));
         if (label->has_color)
             add_color(entry, label->rgb);
+        if (label->opacity > 0)
+            add_number(entry, "opacity", label->opacity);
         add_text(entry, "parent", label->parent);
         if (!label->has_tissue)
             continue;

@@ -50,8 +50,10 @@ struct plan {
     size_t n_curves;
     struct plan_preferences preferences;
     struct report report;
-    struct box3 bounds_lps_mm; /* of all regions, else of all images and doses */
+    struct box3 bounds_lps_mm; /* of all regions, else of all images and doses, else around the beams' targets */
     int64_t load_us;
+    bool is_from_cache;            /* the folder's files were not read this time */
+    struct plan_sources *sources;  /* the files it was made from, for plan_cache_store; NULL: not to be kept */
     struct plan_shapes *shapes; /* kept ones; see plan_shape */
 };
 
@@ -65,7 +67,10 @@ struct plan_progress {
 /* How a plan is opened; all zero: quietly and without a limit. */
 struct plan_load_options {
     struct plan_progress progress;
+    uint64_t max_bytes; /* refuse a plan that will take more, before a voxel is read; 0: no limit */
+    const char *cache_folder; /* where plan_cache_store may have kept it; NULL: nowhere */
 };
+#define PLAN_ESTIMATE_FACTOR 1.5 /* how far the estimate compared with max_bytes may be off, either way */
 
 /* Opens a plan folder: plan.json when there is one, else by what lies in it.
  *   options NULL: all zero
@@ -75,6 +80,11 @@ struct plan_load_options {
 NODISCARD struct plan *plan_load(const char *folder, const char *id, const struct plan_load_options *options,
                                  struct error *err);
 void plan_destroy(struct plan *plan);
+
+/* Keeps an opened plan in a folder of its own, so that it opens fast as long as no file of its folder changes. At once or not at all;
+ * an older one is replaced. Does nothing for a plan that came from there. Any thread.
+ *   errors  ERROR_LIMIT too large (PLAN_CACHE_MAX_MIB), ERROR_IO, ERROR_MEMORY */
+NODISCARD bool plan_cache_store(const struct plan *plan, const char *cache_folder, struct error *err);
 
 /* What a folder holds, without reading voxels: for the list of plans. */
 struct plan_summary {

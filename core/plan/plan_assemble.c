@@ -20,8 +20,7 @@ static struct volume *take_volume(struct job *job)
     return volume;
 }
 
-/* An id that may stand in a URL: from what the plan gives, else from the file's name; unique among those before. */
-static void make_id(char id[64], const char *given, const char *path, const char *const *others, size_t n_others)
+void plan_make_id(char id[64], const char *given, const char *path, const char *const *others, size_t n_others)
 {
     const struct region_set none = { 0 };
     const char *slash = strrchr(path, '/');
@@ -49,8 +48,9 @@ static void add_image(struct loading *loading, struct job *job)
     const char *others[PLAN_MAX_IMAGES];
     for (size_t i = 0; i < plan->n_images; i++)
         others[i] = plan->images[i].id;
-    make_id(image->id, entry->id, entry->path, others, plan->n_images);
-    plan->n_images++;
+    plan_make_id(image->id, entry->id, entry->path, others, plan->n_images);
+    job->image = plan->n_images;
+    loading->image_stacks[plan->n_images++] = job->format == PART_DICOM ? job->stack : -1;
     memcpy(image->name, entry->name, sizeof image->name);
     snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : job->modality);
     image->volume = take_volume(job);
@@ -61,13 +61,19 @@ static void add_image(struct loading *loading, struct job *job)
                        "The CT's values run from %g to %g; HU of a patient begin below 0.", image->volume->low, image->volume->high);
     }
     plan_image_window(image);
+    if (!image->unit[0])
+        snprintf(image->unit, sizeof image->unit, "%.7s", job->facts.unit);
+    if (job->facts.n_windows > 0 && !text_equal(image->modality, "CT")) { /* a CT begins with one window whoever made it */
+        image->window_center = job->facts.windows[0].center;
+        image->window_width = job->facts.windows[0].width;
+    }
 }
 
 /* An image whose header described another one: univels with exactly as many voxels along each axis are the same scan. */
 static void borrow_grid(struct loading *loading, const struct job *job)
 {
     struct plan *plan = loading->plan;
-    struct volume *volume = plan->images[job->index].volume;
+    struct volume *volume = plan->images[job->image].volume;
     for (size_t i = 0; job->is_grid_doubtful && i < loading->n_jobs; i++) {
         const struct job *other = &loading->jobs[i];
         if (!other->uvh.bodies || memcmp(other->uvh.grid.size, volume->grid.size, sizeof volume->grid.size) != 0)
@@ -91,6 +97,8 @@ static bool add_regions(struct loading *loading, struct region_builder *builder,
     }
     if (job->layers)
         return true;
+    if (job->structs)
+        return plan_dicom_add_regions(loading, builder, job, err);
     struct volume *volume = take_volume(job);
     if (job->uvh.bodies)
         return region_builder_add_univels(builder, volume, &job->uvh, job->path, err);
@@ -107,9 +115,10 @@ static struct dose *find_dose(struct loading *loading, size_t index, bool is_ser
     char id[64];
     for (size_t i = 0; i < plan->n_doses; i++)
         others[i] = plan->doses[i].id;
-    make_id(id, entry->id, entry->components[0].path, others, plan->n_doses);
+    plan_make_id(id, entry->id, entry->components[0].path, others, plan->n_doses);
     struct dose *dose = &plan->doses[plan->n_doses++];
     memcpy(dose->id, id, sizeof dose->id);
+    memcpy(dose->name, entry->name, sizeof dose->name);
     plan_dose_units(dose, entry, is_sera, &plan->report);
     return dose;
 }
@@ -123,28 +132,36 @@ static void add_component(struct loading *loading, struct dose *dose, struct job
         plan_add_component(dose, entry, job->component, take_volume(job), &loading->plan->report);
 }
 
-static void add_doses(struct loading *loading)
+static void add_dose_mask(struct loading *loading, struct dose *dose, struct job *job)
+{
+    volume_unref(dose->mask); /* that of a SERA file; the plan's wins */
+    dose->mask = take_volume(job);
+    if (dose->n_components > 0 && memcmp(dose->mask->grid.size, dose->components[0].values->grid.size, sizeof dose->mask->grid.size) != 0)
+        report_add(&loading->plan->report, REPORT_NOTE, "dose.mask-grid", job->path,
+                   "The mask of the dose \"%s\" lies on another grid; it is looked up by position.", dose->id);
+}
+
+/* What an entry of the plan file names; a file or folder of DICOM doses may give several. */
+static void add_dose(struct loading *loading, size_t index)
 {
     struct dose *dose = NULL;
-    size_t current = SIZE_MAX;
     for (size_t i = 0; i < loading->n_jobs; i++) {
         struct job *job = &loading->jobs[i];
-        if (job->kind != JOB_DOSE && job->kind != JOB_DOSE_MASK)
+        if (job->kind != JOB_DOSE || job->index != index)
             continue;
-        if (job->index != current)
-            dose = find_dose(loading, job->index, part_is_sera_dose(job->format));
-        current = job->index;
-        if (job->kind == JOB_DOSE) {
-            add_component(loading, dose, job);
-            continue;
-        }
-        volume_unref(dose->mask); /* that of a SERA file; the plan's wins */
-        dose->mask = take_volume(job);
-        if (dose->n_components > 0 &&
-            memcmp(dose->mask->grid.size, dose->components[0].values->grid.size, sizeof dose->mask->grid.size) != 0)
-            report_add(&loading->plan->report, REPORT_NOTE, "dose.mask-grid", job->path,
-                       "The mask of the dose \"%s\" lies on another grid; it is looked up by position.", dose->id);
+        if (!dose)
+            dose = find_dose(loading, index, part_is_sera_dose(job->format));
+        add_component(loading, dose, job);
     }
+    for (size_t i = 0; dose && i < loading->n_jobs; i++)
+        if (loading->jobs[i].kind == JOB_DOSE_MASK && loading->jobs[i].index == index)
+            add_dose_mask(loading, dose, &loading->jobs[i]);
+}
+
+static void add_doses(struct loading *loading)
+{
+    for (size_t i = 0; i < loading->file->n_doses; i++)
+        add_dose(loading, i);
 }
 
 static bool apply_hierarchy(struct loading *loading, const struct region_builder *builder, struct error *err)
@@ -189,9 +206,10 @@ static void add_beams(struct loading *loading)
         for (size_t b = 0; b < plan->n_beams; b++)
             others[b] = plan->beams[b].id;
         plan->beams[i] = loading->file->beams[i];
-        make_id(plan->beams[i].id, loading->file->beams[i].id, "beam", others, plan->n_beams);
+        plan_make_id(plan->beams[i].id, loading->file->beams[i].id, "beam", others, plan->n_beams);
         plan->n_beams++;
     }
+    plan_dicom_add_beams(loading);
 }
 
 bool plan_assemble(struct loading *loading, struct error *err)
@@ -199,19 +217,23 @@ bool plan_assemble(struct loading *loading, struct error *err)
     struct plan *plan = loading->plan;
     struct region_builder builder;
     bool is_whole = true;
-    loading_phase(loading, "measuring regions", "", 80, 100);
+    uint64_t n_rois = 0;
+    for (size_t i = 0; i < loading->n_jobs; i++)
+        n_rois += loading->jobs[i].structs ? loading->jobs[i].structs->n_rois : 0;
+    loading_begin(loading, n_rois);
     region_builder_init(&builder, &plan->regions, &plan->report);
     for (size_t i = 0; is_whole && i < loading->n_jobs; i++) {
         struct job *job = &loading->jobs[i];
-        if (job->kind == JOB_IMAGE)
+        if (job->kind == JOB_IMAGE && !job->is_failed)
             add_image(loading, job);
-        else if (job->kind == JOB_REGION)
+        else if (job->kind == JOB_REGION && !job->is_failed)
             is_whole = add_regions(loading, &builder, job, err);
     }
     for (size_t i = 0; i < loading->n_jobs; i++)
         if (is_whole && loading->jobs[i].kind == JOB_IMAGE)
             borrow_grid(loading, &loading->jobs[i]);
     if (is_whole) {
+        loading_phase(loading, "measuring regions", "", 95, 100);
         region_builder_order(&builder);
         region_set_measure(&plan->regions);
         note_empty_regions(plan);
@@ -224,7 +246,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
     add_doses(loading);
     plan_add_curves(plan, &loading->folder, loading->file);
     plan_measure_body(plan);
-    plan_measure_bounds(plan);
     add_beams(loading);
+    plan_measure_bounds(plan);
     return plan_add_tracks(plan, &loading->folder, loading->file, err);
 }

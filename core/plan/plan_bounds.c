@@ -34,6 +34,19 @@ static void check_part(struct plan *plan, const struct box3 *regions, const stru
         report_add(&plan->report, REPORT_WARNING, "geometry.apart", "", "The %s \"%s\" and the regions do not overlap anywhere.", what, id);
 }
 
+/* A treatment plan alone: room for a patient around what its beams aim at. */
+static struct box3 box_of_beams(const struct plan *plan)
+{
+    static const double half_mm = 150;
+    struct box3 bounds = box3_empty();
+    for (size_t i = 0; i < plan->n_beams; i++) {
+        struct vec3 target = plan->beams[i].target_lps_mm;
+        box3_add(&bounds, vec3(target.x - half_mm, target.y - half_mm, target.z - half_mm));
+        box3_add(&bounds, vec3(target.x + half_mm, target.y + half_mm, target.z + half_mm));
+    }
+    return bounds;
+}
+
 void plan_measure_bounds(struct plan *plan)
 {
     struct box3 regions = box_of_regions(plan), others = box3_empty();
@@ -49,5 +62,5 @@ void plan_measure_bounds(struct plan *plan)
                 check_part(plan, &regions, &box, "dose", plan->doses[i].id);
             add_box(&others, &box);
         }
-    plan->bounds_lps_mm = box3_is_empty(&regions) ? others : regions;
+    plan->bounds_lps_mm = !box3_is_empty(&regions) ? regions : !box3_is_empty(&others) ? others : box_of_beams(plan);
 }

@@ -13,16 +13,66 @@ static bool refuse_format(const char *path, enum part_format format, struct erro
     return error_set(err, ERROR_UNSUPPORTED, "%s: %s is not read here by this version", path, part_format_word(format));
 }
 
-static void add_job(struct loading *loading, enum job_kind kind, size_t index, size_t component, const char *path)
+static struct job *add_job(struct loading *loading, enum job_kind kind, size_t index, size_t component, const char *path)
 {
     struct job *job = &loading->jobs[loading->n_jobs++];
     job->kind = kind;
     job->index = index;
     job->component = component;
     job->path = path;
+    job->loading = loading;
     job->format = part_format_of(&loading->folder, path);
     folder_look(&loading->folder, path, &job->bytes);
-    loading->n_bytes += job->bytes;
+    return job;
+}
+
+/* A job for each object of the kind at or below the path; returns how many. */
+static size_t add_dicom_jobs(struct loading *loading, enum job_kind kind, enum dicom_kind of, size_t index, size_t component,
+                             const char *path, size_t most)
+{
+    const struct dicom_object *object;
+    size_t n = 0;
+    for (; n < most && (object = plan_dicom_object(loading->parts.dicom, of, path, n)); n++)
+        add_job(loading, kind, index, component, object->path);
+    return n;
+}
+
+static bool refuse_dicom(const struct loading *loading, const char *path, const char *what, struct error *err)
+{
+    const struct dicom_object *other = plan_dicom_object(loading->parts.dicom, DICOM_KIND_OTHER, path, 0);
+    return error_set(err, ERROR_UNSUPPORTED, "%s: no DICOM %s that can be used%s%s", path, what, other ? ": " : "", other ? other->reason : "");
+}
+
+static bool add_image_job(struct loading *loading, size_t i, struct error *err)
+{
+    const char *path = loading->file->images[i].path;
+    enum part_format format = part_format_of(&loading->folder, path);
+    if (format != PART_NIFTI && format != PART_NRRD && format != PART_QSH && format != PART_DICOM)
+        return refuse_format(path, format, err);
+    struct job *job = add_job(loading, JOB_IMAGE, i, 0, path);
+    if (format != PART_DICOM)
+        return true;
+    job->stack = plan_dicom_stack(loading->parts.dicom, path);
+    if (job->stack < 0)
+        return refuse_dicom(loading, path, "image series", err);
+    const struct dicom_stack *stack = &loading->parts.dicom->stacks[job->stack];
+    job->bytes = 0;
+    for (size_t at = 0; at < stack->n_objects; at++)
+        job->bytes += loading->parts.dicom->objects[stack->objects[at]].n_bytes;
+    return true;
+}
+
+static bool add_region_jobs(struct loading *loading, size_t i, struct error *err)
+{
+    const char *path = loading->file->regions[i].path;
+    enum part_format format = part_format_of(&loading->folder, path);
+    if (format == PART_DICOM)
+        return add_dicom_jobs(loading, JOB_REGION, DICOM_KIND_STRUCT, i, 0, path, PLAN_FILE_MAX_PARTS) > 0 ||
+               refuse_dicom(loading, path, "structure set", err);
+    if (format != PART_NIFTI && format != PART_NRRD && format != PART_UVH)
+        return refuse_format(path, format, err);
+    add_job(loading, JOB_REGION, i, 0, path);
+    return true;
 }
 
 /* A dose this version cannot read is left out, and said; images and regions are not. */
@@ -45,33 +95,52 @@ static bool dose_is_readable(struct loading *loading, const struct plan_file_dos
     return true;
 }
 
+static bool add_dose_jobs(struct loading *loading, size_t i, struct error *err)
+{
+    const struct plan_file_dose *dose = &loading->file->doses[i];
+    bool is_readable;
+    if (!dose_is_readable(loading, dose, &is_readable, err))
+        return false;
+    for (size_t c = 0; is_readable && c < dose->n_components; c++) {
+        const char *path = dose->components[c].path;
+        size_t most = dose->n_components > 1 ? 1 : PLAN_DICOM_MAX_DOSES; /* a component is one object */
+        if (part_format_of(&loading->folder, path) != PART_DICOM)
+            add_job(loading, JOB_DOSE, i, c, path);
+        else if (add_dicom_jobs(loading, JOB_DOSE, DICOM_KIND_DOSE, i, c, path, most) == 0)
+            return refuse_dicom(loading, path, "dose", err);
+    }
+    if (is_readable && dose->mask[0])
+        add_job(loading, JOB_DOSE_MASK, i, 0, dose->mask);
+    return true;
+}
+
 bool plan_make_jobs(struct loading *loading, struct error *err)
 {
     const struct plan_file *file = loading->file;
-    size_t most = file->n_images + file->n_regions + file->n_doses * (DOSE_N_QUANTITIES + 1);
-    loading->jobs = mem_new((most + 1) * sizeof *loading->jobs);
-    for (size_t i = 0; i < file->n_images; i++) {
-        enum part_format format = part_format_of(&loading->folder, file->images[i].path);
-        if (format != PART_NIFTI && format != PART_NRRD && format != PART_QSH)
-            return refuse_format(file->images[i].path, format, err);
-        add_job(loading, JOB_IMAGE, i, 0, file->images[i].path);
+    const struct plan_parts *parts = &loading->parts;
+    size_t n_objects = parts->dicom ? parts->dicom->n_objects : 0;
+    /* an entry of plan.json that names a folder may stand for many files, and two entries for the same */
+    size_t most = file->n_images + file->n_regions * (1 + n_objects) + file->n_doses * (DOSE_N_QUANTITIES + 1 + PLAN_DICOM_MAX_DOSES) +
+                  PLAN_DICOM_MAX_DOSES + (file->n_beam_files + 1) * PLAN_DICOM_MAX_PLANS;
+    bool is_made = true;
+    loading->jobs = mem_array(most + 1, sizeof *loading->jobs, UINT32_MAX, err);
+    if (!loading->jobs)
+        return false;
+    for (size_t i = 0; is_made && i < file->n_images; i++)
+        is_made = add_image_job(loading, i, err);
+    for (size_t i = 0; is_made && i < file->n_regions; i++)
+        is_made = add_region_jobs(loading, i, err);
+    for (size_t i = 0; is_made && i < file->n_doses; i++)
+        is_made = add_dose_jobs(loading, i, err);
+    for (size_t i = 0; is_made && i < file->n_beam_files; i++)
+        is_made = add_dicom_jobs(loading, JOB_BEAMS, DICOM_KIND_PLAN, i, 0, file->beam_files[i].path, PLAN_DICOM_MAX_PLANS) > 0 ||
+                  refuse_dicom(loading, file->beam_files[i].path, "treatment plan", err);
+    if (is_made && parts->is_all_dicom) {
+        add_dicom_jobs(loading, JOB_BEAMS, DICOM_KIND_PLAN, JOB_OF_NO_ENTRY, 0, "", PLAN_DICOM_MAX_PLANS);
     }
-    for (size_t i = 0; i < file->n_regions; i++) {
-        enum part_format format = part_format_of(&loading->folder, file->regions[i].path);
-        if (format != PART_NIFTI && format != PART_NRRD && format != PART_UVH)
-            return refuse_format(file->regions[i].path, format, err);
-        add_job(loading, JOB_REGION, i, 0, file->regions[i].path);
-    }
-    for (size_t i = 0; i < file->n_doses; i++) {
-        bool is_readable;
-        if (!dose_is_readable(loading, &file->doses[i], &is_readable, err))
-            return false;
-        for (size_t c = 0; is_readable && c < file->doses[i].n_components; c++)
-            add_job(loading, JOB_DOSE, i, c, file->doses[i].components[c].path);
-        if (is_readable && file->doses[i].mask[0])
-            add_job(loading, JOB_DOSE_MASK, i, 0, file->doses[i].mask);
-    }
-    return true;
+    for (size_t i = 0; i < loading->n_jobs; i++)
+        loading->n_bytes += loading->jobs[i].bytes;
+    return is_made;
 }
 
 static void order_jobs(struct loading *loading)
@@ -83,6 +152,39 @@ static void order_jobs(struct loading *loading)
             loading->order[at] = loading->order[at - 1];
         loading->order[at] = i;
     }
+}
+
+/* Nobody said that this file belongs to the plan, so what is wrong with it need not keep the rest from being seen; it is said. */
+static bool may_be_left_out(const struct loading *loading, const struct job *job)
+{
+    return loading->parts.is_all_dicom && job->format == PART_DICOM &&
+           (job->err.code == ERROR_FORMAT || job->err.code == ERROR_UNSUPPORTED || job->err.code == ERROR_RANGE);
+}
+
+/* Takes failed jobs out of the list. errors: the first one's, when nothing is left */
+static bool leave_out_failed(struct loading *loading, struct error *err)
+{
+    const struct error *first = NULL;
+    size_t n_read = 0;
+    for (size_t i = 0; i < loading->n_jobs; i++) {
+        struct job *job = &loading->jobs[i];
+        n_read += !job->is_failed;
+        if (!job->is_failed)
+            continue;
+        first = first ? first : &job->err;
+        report_add(&loading->plan->report, REPORT_ERROR, "dicom.unreadable", job->path, "Left out: %s", job->err.text);
+    }
+    if (n_read == 0 && first && err)
+        *err = *first;
+    return n_read > 0 || !first;
+}
+
+/* A series is named as people know it, not by the first of its files. */
+static const char *name_of(const struct loading *loading, const struct job *job)
+{
+    if (job->kind == JOB_IMAGE && job->format == PART_DICOM && loading->file->images[job->index].name[0])
+        return loading->file->images[job->index].name;
+    return job->path;
 }
 
 static void work(void *context, int part, int n_parts)
@@ -99,14 +201,15 @@ static void work(void *context, int part, int n_parts)
         if (at > atomic_load(&loading->first_failed))
             continue;
         if (part == 0)
-            loading_phase(loading, "reading", job->path, 5, 80);
-        if (!plan_read_part(loading, job)) {
+            loading_phase(loading, "reading", name_of(loading, job), 5, 80);
+        if (!plan_read_part(loading, job))
             job->is_failed = true;
+        if (job->is_failed && !may_be_left_out(loading, job)) {
             size_t before = atomic_load(&loading->first_failed);
             while (at < before && !atomic_compare_exchange_weak(&loading->first_failed, &before, at)) {
             }
         }
-        loading_work(loading, job->bytes);
+        loading_work(loading, job->bytes - job->bytes_told);
     }
 }
 
@@ -128,6 +231,8 @@ bool plan_run_jobs(struct loading *loading, struct error *err)
             *err = loading->jobs[failed].err;
         return false;
     }
+    if (!leave_out_failed(loading, err))
+        return false;
     for (size_t i = 0; i < loading->n_jobs; i++)
         report_move(&loading->plan->report, &loading->jobs[i].report);
     return true;

@@ -7,6 +7,7 @@
 #include "core/base/mailbox.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
+#include "core/plan/plan_cache.h"
 #include "core/plan/plan_loading.h"
 #include "core/plan/plan_shapes.h"
 
@@ -51,6 +52,8 @@ static void finish_job(struct job *job)
     if (job->layers)
         nrrd_layers_finish(job->layers);
     free(job->layers);
+    rtstruct_destroy(job->structs);
+    rtplan_destroy(job->rtplan);
     uvh_finish(&job->uvh);
     label_names_finish(&job->names);
     report_finish(&job->report);
@@ -64,7 +67,7 @@ static void loading_unref(struct loading *loading)
         finish_job(&loading->jobs[i]);
     free(loading->jobs);
     free(loading->order);
-    plan_file_destroy(loading->file);
+    plan_parts_finish(&loading->parts);
     plan_destroy(loading->plan);
     folder_close(&loading->folder);
     mailbox_destroy(loading->phases);
@@ -72,13 +75,70 @@ static void loading_unref(struct loading *loading)
     free(loading);
 }
 
+static void looked_at(void *context, size_t n_done, size_t n_all)
+{
+    struct loading *loading = context;
+    atomic_store(&loading->work, n_all);
+    atomic_store(&loading->work_done, n_done);
+}
+
+static void cache_begun(void *context, uint64_t n_bytes)
+{
+    struct loading *loading = context;
+    loading_phase(loading, "reading the opened plan", "", 5, 95);
+    loading_begin(loading, n_bytes);
+}
+
+static void cache_read(void *context, uint64_t n_bytes)
+{
+    loading_work(context, n_bytes);
+}
+
+/* The plan as it was when it was last opened, if no file has changed since. */
+static bool load_from_cache(struct loading *loading)
+{
+    struct folder_tree tree;
+    if (!loading->options.cache_folder)
+        return false;
+    if (!folder_walk(&loading->folder, "", NULL, &tree, NULL)) {
+        folder_tree_finish(&tree);
+        return false;
+    }
+    struct plan_sources *sources = plan_sources_create(&tree);
+    const struct plan_cache_reading reading = { loading->options.max_bytes, cache_begun, cache_read, loading, &loading->is_given_up };
+    bool is_read = sources && plan_cache_read(loading->options.cache_folder, sources, &reading, loading->plan);
+    loading->plan->is_from_cache = is_read;
+    loading->plan->sources = sources;
+    return is_read;
+}
+
+/* Parts that were all left out, each for a reason in the report: the gravest line says why nothing is shown. */
+static bool has_anything(const struct plan *plan, struct error *err)
+{
+    const struct report_line *gravest = NULL;
+    if (plan->n_images + plan->regions.n_regions + plan->n_doses + plan->n_beams > 0)
+        return true;
+    for (size_t i = 0; i < plan->report.n_lines; i++)
+        if (!gravest || plan->report.lines[i].severity > gravest->severity)
+            gravest = &plan->report.lines[i];
+    return error_set(err, ERROR_UNSUPPORTED, "nothing is left to show%s%s%s%s", gravest ? "; " : "", gravest ? gravest->where : "",
+                     gravest && gravest->where[0] ? ": " : "", gravest ? gravest->sentence : "");
+}
+
 static bool load(struct loading *loading)
 {
     struct error *err = &loading->err;
     struct plan *plan = loading->plan;
+    if (load_from_cache(loading)) {
+        plan->shapes = plan_shapes_create(PLAN_SHAPE_BUDGET_BYTES);
+        return true;
+    }
     loading_phase(loading, "looking at the folder", "", 0, 5);
-    loading->file = plan_describe(&loading->folder, &plan->report, err);
-    if (!loading->file || !plan_make_jobs(loading, err) || !plan_run_jobs(loading, err) || !plan_assemble(loading, err))
+    const struct dicom_progress looking = { looked_at, loading, &loading->is_given_up, 0 };
+    bool is_described = plan_describe(&loading->folder, &looking, &loading->parts, &plan->report, err);
+    loading->file = loading->parts.file;
+    if (!is_described || !plan_make_jobs(loading, err) || !plan_check_estimate(loading, err) || !plan_run_jobs(loading, err) ||
+        !plan_assemble(loading, err) || !has_anything(plan, err))
         return false;
     memcpy(plan->name, loading->file->name, sizeof plan->name);
     memcpy(plan->note, loading->file->note, sizeof plan->note);
@@ -192,5 +252,6 @@ void plan_destroy(struct plan *plan)
         dose_curve_finish(&plan->curves[i]);
     track_set_finish(&plan->tracks);
     report_finish(&plan->report);
+    plan_sources_destroy(plan->sources);
     free(plan);
 }

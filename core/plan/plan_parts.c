@@ -6,13 +6,14 @@
 
 #include "core/base/mem.h"
 #include "core/formats/text.h"
+#include "core/plan/plan_dicom.h"
 
 static bool is_dicom_file(const struct folder *folder, const char *name)
 {
     struct bytes head;
-    if (!folder_read(folder, name, UINT64_MAX, 132, &head, NULL))
+    if (!folder_read(folder, name, UINT64_MAX, 140, &head, NULL))
         return false;
-    bool is_dicom = head.size == 132 && memcmp(head.data + 128, "DICM", 4) == 0;
+    bool is_dicom = dicom_looks_like(head.data, head.size);
     bytes_free(&head);
     return is_dicom;
 }
@@ -96,16 +97,27 @@ void plan_folder_name(const char *path, char *out, size_t size)
     text_clean(name, out, size);
 }
 
-struct plan_file *plan_describe(const struct folder *folder, struct report *report, struct error *err)
+bool plan_describe(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts, struct report *report,
+                   struct error *err)
 {
+    *parts = (struct plan_parts){ 0 };
     if (folder_look(folder, "plan.json", NULL) == FOLDER_ABSENT)
-        return plan_recognise(folder, report, err);
+        return plan_recognise(folder, progress, parts, report, err);
     struct bytes text;
     if (!folder_read(folder, "plan.json", PLAN_FILE_MAX_BYTES, UINT64_MAX, &text, err))
-        return NULL;
-    struct plan_file *file = plan_file_parse(text.data, text.size, report, err);
+        return false;
+    parts->file = plan_file_parse(text.data, text.size, report, err);
     bytes_free(&text);
-    if (file && !file->name[0])
-        plan_folder_name(folder->path, file->name, sizeof file->name);
-    return file;
+    if (!parts->file)
+        return false;
+    if (!parts->file->name[0])
+        plan_folder_name(folder->path, parts->file->name, sizeof parts->file->name);
+    return plan_dicom_scan_named(folder, parts, progress, report, err);
+}
+
+void plan_parts_finish(struct plan_parts *parts)
+{
+    plan_file_destroy(parts->file);
+    dicom_index_destroy(parts->dicom);
+    *parts = (struct plan_parts){ 0 };
 }

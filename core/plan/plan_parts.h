@@ -1,5 +1,6 @@
 #pragma once
 /* Inside core/plan: what a folder holds, as plan.json says it or as its files suggest, before any voxel is read. */
+#include "core/formats/dicom/dicom_index.h"
 #include "core/formats/plan_json.h"
 #include "core/plan/plan.h"
 
@@ -22,12 +23,23 @@ enum part_format part_format_of(const struct folder *folder, const char *name);
 bool part_is_sera_dose(enum part_format format); /* of several quantities */
 const char *part_format_word(enum part_format format); /* "NIfTI", "DICOM", ... */
 
-/* plan.json when it is there, else the files that can be told by their names. errors as plan_load */
-NODISCARD struct plan_file *plan_describe(const struct folder *folder, struct report *report, struct error *err);
+/* What belongs to the plan. */
+struct plan_parts {
+    struct plan_file *file;
+    struct dicom_index *dicom; /* heads of the DICOM files among the parts; NULL without one */
+    bool is_all_dicom;         /* no plan.json: all doses and treatment plans of the index are parts, too */
+};
+void plan_parts_finish(struct plan_parts *parts);
+
+/* plan.json when it is there, else the files that can be told by names and contents. The caller finishes parts, after a failure too.
+ * errors as plan_load */
+NODISCARD bool plan_describe(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts,
+                             struct report *report, struct error *err);
 
 /* What the files of a folder without a plan.json are, those in folders below included (but folders that are plans of their own).
  * errors as plan_load */
-NODISCARD struct plan_file *plan_recognise(const struct folder *folder, struct report *report, struct error *err);
+NODISCARD bool plan_recognise(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts,
+                              struct report *report, struct error *err);
 
 /* The file of univels beside a .uvh, or of pixels beside a .qhd: stem + ".uv.gz", ".uv.sz", ".uv"; a packed one wins.
  * false when there is none. */

@@ -8,14 +8,16 @@
 #include "core/formats/sera_rst.h"
 #include "core/formats/text.h"
 #include "core/plan/plan_nrrd.h"
-#include "core/plan/plan_parts.h"
+#include "core/plan/plan_dicom.h"
 
 /* A folder without a plan.json: its files, and those in the folders below, become parts by what they are called and what they hold. */
 struct recognition {
     const struct folder *folder;
     struct plan_file *file;
     struct report *report;
+    char **dicom; /* names of files that may be DICOM, of the tree */
     size_t n_dicom;
+    struct error reason; /* why the first file that looked like a part is none */
 };
 
 static bool nifti_is_whole(const struct folder *folder, const char *name)
@@ -149,8 +151,33 @@ static void add_dose(struct recognition *all, const char *name)
     dose->n_components = 1;
 }
 
+/* A grid whose header cannot be read is left out of a plan that nobody wrote down; why is kept for a folder with nothing else. */
+static bool has_good_header(struct recognition *all, const char *name, enum part_format format)
+{
+    struct error err = { 0 };
+    struct bytes head;
+    struct nifti_header nifti;
+    struct nrrd_header nrrd = { 0 };
+    bool is_good = false;
+    if (format == PART_NRRD) {
+        is_good = plan_nrrd_peek(all->folder, name, &nrrd, &err);
+        nrrd_header_finish(&nrrd);
+    } else if (folder_read(all->folder, name, UINT64_MAX, 1 << 16, &head, &err)) {
+        is_good = nifti_peek(&head, name, &nifti, NULL, &err);
+        bytes_free(&head);
+    }
+    if (is_good)
+        return true;
+    report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "Not used: %s", err.text);
+    if (!all->reason.text[0])
+        all->reason = err;
+    return false;
+}
+
 static void add_grid(struct recognition *all, const char *name, enum part_format format)
 {
+    if (!has_good_header(all, name, format))
+        return;
     if (is_label_map(all->folder, name, format)) {
         struct plan_file_region *region = add_region(all, name);
         if (region)
@@ -173,7 +200,7 @@ static void add_qsh(struct recognition *all, const char *name)
         ignore_one(all, name, "There is no file of pixels beside it.");
 }
 
-static void recognise_file(struct recognition *all, const char *name)
+static void recognise_file(struct recognition *all, char *name)
 {
     struct plan_file *file = all->file;
     char data[FOLDER_NAME_SIZE];
@@ -218,7 +245,7 @@ static void recognise_file(struct recognition *all, const char *name)
         else
             ignore_one(all, name, "More files of preferences than are read.");
         break;
-    case PART_DICOM: all->n_dicom++; break;
+    case PART_DICOM: all->dicom[all->n_dicom++] = name; break;
     default:
         if (text_has_ending(name, ".info") && !file->hierarchy[0])
             set_name(file->hierarchy, sizeof file->hierarchy, name);
@@ -226,15 +253,17 @@ static void recognise_file(struct recognition *all, const char *name)
 }
 
 /* Why nothing was recognised, as far as the names tell. */
-static void explain_nothing(const struct folder *folder, const struct folder_tree *tree, size_t n_dicom, struct error *err)
+static void explain_nothing(const struct folder *folder, const struct folder_tree *tree, const struct dicom_index *dicom, struct error *err)
 {
     static const char *const archives[] = { ".tar", ".tar.gz", ".tgz", ".tar.xz", ".zip" };
     char **names = NULL, inner[FOLDER_NAME_SIZE];
     size_t n_names = 0;
-    if (n_dicom > 0) {
-        error_set(err, ERROR_UNSUPPORTED, "%zu DICOM files: DICOM is not read by this version", n_dicom);
-        return;
-    }
+    for (size_t i = 0; dicom && i < dicom->n_objects; i++)
+        if (dicom->objects[i].reason[0]) {
+            error_set(err, ERROR_UNSUPPORTED, "%zu DICOM files, none of which can be shown; %s: %s", dicom->n_objects,
+                      dicom->objects[i].path, dicom->objects[i].reason);
+            return;
+        }
     for (size_t i = 0; i < tree->n_files; i++)
         for (size_t a = 0; a < sizeof archives / sizeof archives[0]; a++)
             if (text_has_ending(tree->files[i].name, archives[a])) {
@@ -263,28 +292,43 @@ static bool is_plan(const struct folder *folder, const char *name)
     return n > 0 && n < (int)sizeof inner && folder_look(folder, inner, NULL) == FOLDER_FILE;
 }
 
-struct plan_file *plan_recognise(const struct folder *folder, struct report *report, struct error *err)
+/* Everything in the tree, by names first; what may be DICOM is then looked at together. */
+static bool recognise_tree(const struct folder *folder, const struct folder_tree *tree, const struct dicom_progress *progress,
+                           struct plan_parts *parts, struct error *reason, struct report *report, struct error *err)
+{
+    struct recognition all = { folder, parts->file, report, mem_new((tree->n_files + 1) * sizeof(char *)), 0, { 0 } };
+    for (size_t i = 0; i < tree->n_files && !(progress && progress->cancel && atomic_load(progress->cancel)); i++)
+        recognise_file(&all, tree->files[i].name);
+    bool is_scanned = plan_dicom_recognise(folder, all.dicom, all.n_dicom, parts, progress, report, err);
+    free(all.dicom);
+    *reason = all.reason;
+    return is_scanned;
+}
+
+bool plan_recognise(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts, struct report *report,
+                    struct error *err)
 {
     struct folder_tree tree;
+    struct error reason = { 0 };
     if (!folder_walk(folder, "", is_plan, &tree, err))
-        return NULL;
-    struct recognition all = { folder, mem_new(sizeof *all.file), report, 0 };
-    struct plan_file *file = all.file;
+        return false;
+    struct plan_file *file = parts->file = mem_new(sizeof *file);
     file->regions = mem_new(PLAN_FILE_MAX_PARTS * sizeof *file->regions);
-    for (size_t i = 0; i < tree.n_files; i++)
-        recognise_file(&all, tree.files[i].name);
     plan_folder_name(folder->path, file->name, sizeof file->name);
     if (tree.is_cut)
         report_add(report, REPORT_WARNING, "plan.too-many-files", "", "Of the folder the first %d files down to %d folders deep were looked "
                    "at; there are more.", FOLDER_MAX_FILES, FOLDER_MAX_DEPTH);
-    if (file->n_images + file->n_regions + file->n_doses == 0) {
-        explain_nothing(folder, &tree, all.n_dicom, err);
-        plan_file_destroy(file);
-        file = NULL;
-    } else {
-        report_add(report, REPORT_NOTE, "plan.recognised", "", "The folder has no plan.json; %zu images, %zu files of regions and %zu "
-                   "doses were found by their names.", file->n_images, file->n_regions, file->n_doses);
+    bool is_known = recognise_tree(folder, &tree, progress, parts, &reason, report, err);
+    bool has_more = plan_dicom_object(parts->dicom, DICOM_KIND_DOSE, "", 0) || plan_dicom_object(parts->dicom, DICOM_KIND_PLAN, "", 0);
+    if (is_known && file->n_images + file->n_regions + file->n_doses == 0 && !has_more) {
+        explain_nothing(folder, &tree, parts->dicom, err);
+        if (reason.text[0] && err)
+            *err = reason;
+        is_known = false;
+    } else if (is_known) {
+        report_add(report, REPORT_NOTE, "plan.recognised", "", "The folder has no plan.json; its parts were found by names and contents: "
+                   "%zu images, %zu files of regions, %zu files of doses.", file->n_images, file->n_regions, file->n_doses);
     }
     folder_tree_finish(&tree);
-    return file;
+    return is_known;
 }

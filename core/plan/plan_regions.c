@@ -7,6 +7,7 @@
 
 #include "core/base/mem.h"
 #include "core/formats/text.h"
+#include "core/region/contour_layer.h"
 #include "core/region/label_rows.h"
 
 void region_builder_init(struct region_builder *builder, struct region_set *set, struct report *report)
@@ -64,6 +65,7 @@ static void take_names(struct region_builder *builder, struct region *region, co
         region->has_file_color = true;
         memcpy(region->rgb, label->rgb, 3);
     }
+    region->file_opacity = label->opacity;
     if (strcmp(label->id, region->id) != 0 && is_free_id(set, label->id))
         memcpy(region->id, label->id, sizeof region->id);
     if (label->has_tissue) {
@@ -144,14 +146,30 @@ static void note_surroundings(struct region_builder *builder, const char *name, 
                "\"%s\" fills the space around the patient and is not listed as a region.", name);
 }
 
+/* The only label of a file without names is what the file is called; else labels are called by their numbers. */
+static void make_name(char name[REGION_NAME_SIZE], uint32_t label, bool is_only, const char *where)
+{
+    const char *slash = strrchr(where, '/');
+    const char *base = slash ? slash + 1 : where;
+    char stem[REGION_NAME_SIZE];
+    snprintf(stem, sizeof stem, "%.*s", (int)strcspn(base, "."), base);
+    if (is_only && stem[0])
+        text_clean(stem, name, REGION_NAME_SIZE);
+    else
+        snprintf(name, REGION_NAME_SIZE, "label %u", label);
+}
+
 static bool add_unnamed(struct region_builder *builder, const uint64_t *counts, const bool *is_named, uint32_t layer, const char *where,
                         struct error *err)
 {
+    size_t n_labels = 0;
+    for (uint32_t label = 1; label < 65536; label++)
+        n_labels += counts[label] > 0;
     for (uint32_t label = 1; label < 65536; label++) {
         if (counts[label] == 0 || is_named[label])
             continue;
-        char name[32];
-        snprintf(name, sizeof name, "label %u", label);
+        char name[REGION_NAME_SIZE];
+        make_name(name, label, n_labels == 1, where);
         report_add(builder->report, REPORT_NOTE, "region.unnamed", where, "%llu voxels carry the label %u, which has no name.",
                    (unsigned long long)counts[label], label);
         if (!add_region(builder, name, layer, (uint16_t)label, where, err))
@@ -321,6 +339,31 @@ bool region_builder_add_mask(struct region_builder *builder, struct volume *mask
     if (region && entry->has_color) {
         region->has_file_color = true;
         memcpy(region->rgb, entry->rgb, 3);
+    }
+    return region != NULL;
+}
+
+bool region_builder_add_bits(struct region_builder *builder, const struct mask *mask, const struct grid *grid, const char *name,
+                             const uint8_t *rgb, const char *where, struct error *err)
+{
+    struct region_set *set = builder->set;
+    uint32_t layer = 0;
+    while (layer < set->n_layers && !(builder->is_packed[layer] && builder->n_labels[layer] < UINT8_MAX &&
+                                      grids_are_equal(grid, &set->layers[layer]->grid) && mask_layer_is_free(mask, set->layers[layer])))
+        layer++;
+    if (layer < set->n_layers) {
+        mask_layer_put(mask, set->layers[layer], (uint16_t)(builder->n_labels[layer] + 1));
+    } else {
+        struct volume *labels = mask_layer_create(mask, err);
+        if (!labels || !add_layer(builder, labels, where, &layer, err))
+            return false;
+        builder->is_packed[layer] = true;
+    }
+    builder->n_labels[layer]++;
+    struct region *region = add_region(builder, name, layer, builder->n_labels[layer], where, err);
+    if (region && rgb) {
+        region->has_file_color = true;
+        memcpy(region->rgb, rgb, 3);
     }
     return region != NULL;
 }

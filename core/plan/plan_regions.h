@@ -3,6 +3,7 @@
 #include "core/formats/plan_json.h"
 #include "core/formats/sera_uvh.h"
 #include "core/plan/plan.h"
+#include "core/region/mask.h"
 
 struct region_builder {
     struct region_set *set;
@@ -24,6 +25,11 @@ NODISCARD bool region_builder_add_univels(struct region_builder *builder, struct
                                           const char *where, struct error *err);
 NODISCARD bool region_builder_add_mask(struct region_builder *builder, struct volume *mask, const struct plan_file_region *entry,
                                        struct error *err);
+
+/* A region of contours: voxels of a grid that others of the same grid may share a layer with. color may be NULL. mask stays the caller's.
+ * errors ERROR_LIMIT, ERROR_MEMORY */
+NODISCARD bool region_builder_add_bits(struct region_builder *builder, const struct mask *mask, const struct grid *grid, const char *name,
+                                       const uint8_t *rgb, const char *where, struct error *err);
 
 /* After the last part: regions that have a place are put there, in front of the others. */
 void region_builder_order(struct region_builder *builder);

@@ -7,7 +7,7 @@
 #include "core/formats/sera_uvh.h"
 #include "core/formats/text.h"
 #include "core/plan/plan_nrrd.h"
-#include "core/plan/plan_parts.h"
+#include "core/plan/plan_dicom.h"
 
 enum { HEAD_BYTES = 1 << 16, NAMES_MAX_BYTES = 16 << 20 };
 
@@ -115,30 +115,83 @@ static size_t count_names(const struct folder *folder, const char *path)
     return n;
 }
 
-static bool check_images(const struct folder *folder, const struct plan_file *file, struct plan_summary *summary, struct error *err)
+/* "CT, 100 slices" for a series; else how many images of the modality there are, with the first of them. */
+static void add_image_part(struct plan_summary *summary, const struct plan_parts *parts, size_t index, int stack)
+{
+    const struct plan_file *file = parts->file;
+    const struct plan_file_image *image = &file->images[index];
+    char part[64];
+    if (stack >= 0) {
+        const struct dicom_stack *of = &parts->dicom->stacks[stack];
+        snprintf(part, sizeof part, "%.16s, %u slice%s", image->modality[0] ? image->modality : of->modality, of->n_slices,
+                 of->n_slices == 1 ? "" : "s");
+        add_part(summary, 1, part, NULL);
+        return;
+    }
+    size_t n = 0;
+    bool is_first = true;
+    for (size_t other = 0; other < file->n_images; other++) {
+        bool is_same = strcmp(file->images[other].modality, image->modality) == 0 && plan_dicom_stack(parts->dicom, file->images[other].path) < 0;
+        n += is_same;
+        is_first = is_first && !(is_same && other < index);
+    }
+    if (is_first && image->modality[0])
+        add_part(summary, n, image->modality, NULL);
+    else if (is_first)
+        add_part(summary, n, "image", "images");
+}
+
+static bool check_images(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary, struct error *err)
 {
     bool is_good = true;
-    for (size_t i = 0; i < file->n_images; i++) {
-        const struct plan_file_image *image = &file->images[i];
+    for (size_t i = 0; i < parts->file->n_images; i++) {
+        const struct plan_file_image *image = &parts->file->images[i];
+        int stack = plan_dicom_stack(parts->dicom, image->path);
         count_bytes(folder, image->path, summary);
-        is_good = is_good && check_image(folder, image, summary, err);
-        size_t n = 0;
-        bool is_first = true;
-        for (size_t other = 0; other < file->n_images; other++) {
-            bool is_same = strcmp(file->images[other].modality, image->modality) == 0;
-            n += is_same;
-            is_first = is_first && !(is_same && other < i);
-        }
-        if (is_first && image->modality[0])
-            add_part(summary, n, image->modality, NULL);
-        else if (is_first)
-            add_part(summary, n, "image", "images");
+        if (stack < 0)
+            is_good = is_good && check_image(folder, image, summary, err);
+        add_image_part(summary, parts, i, stack);
     }
     return is_good;
 }
 
-static bool check_regions(const struct folder *folder, const struct plan_file *file, struct plan_summary *summary, struct error *err)
+/* Regions with contours, and beams, as the sequences of the object say. */
+static size_t count_items(const struct folder *folder, const char *path, uint32_t sequence, uint32_t inner)
 {
+    struct plan_dicom_file opened;
+    if (!plan_dicom_open(folder, path, &opened, NULL))
+        return 0;
+    const struct dicom_item *root = dicom_root(opened.file);
+    size_t n = dicom_n_items(root, sequence), n_filled = 0;
+    for (size_t i = 0; i < n; i++)
+        n_filled += !inner || dicom_n_items(dicom_item_at(root, sequence, i), inner) > 0;
+    plan_dicom_close(&opened);
+    return n_filled;
+}
+
+/* Items of all objects of a kind at or below a path. */
+static size_t count_objects(const struct folder *folder, const struct dicom_index *index, enum dicom_kind kind, const char *path,
+                            struct plan_summary *summary)
+{
+    const struct dicom_object *object;
+    size_t n = 0;
+    for (size_t i = 0; (object = plan_dicom_object(index, kind, path, i)); i++) {
+        if (kind == DICOM_KIND_STRUCT)
+            n += count_items(folder, object->path, DICOM_TAG(0x3006, 0x0039), DICOM_TAG(0x3006, 0x0040));
+        else if (kind == DICOM_KIND_PLAN)
+            n += count_items(folder, object->path, DICOM_TAG(0x300a, 0x00b0), 0) +
+                 count_items(folder, object->path, DICOM_TAG(0x300a, 0x03a2), 0); /* ions */
+        else
+            n++;
+        if (kind == DICOM_KIND_DOSE || !path[0])
+            count_bytes(folder, object->path, summary);
+    }
+    return n;
+}
+
+static bool check_regions(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary, struct error *err)
+{
+    const struct plan_file *file = parts->file;
     size_t n_regions = 0, n_names = 0, n_maps = 0;
     bool is_good = true;
     for (size_t i = 0; i < file->n_regions; i++) {
@@ -147,6 +200,9 @@ static bool check_regions(const struct folder *folder, const struct plan_file *f
         count_bytes(folder, region->path, summary);
         if (format == PART_UVH) {
             is_good = is_good && check_univels(folder, region->path, summary, &n_regions, err);
+        } else if (format == PART_DICOM) {
+            size_t n = count_objects(folder, parts->dicom, DICOM_KIND_STRUCT, region->path, summary);
+            n_regions += region->name[0] && n > 1 ? 1 : n;
         } else if (format != PART_NIFTI && format != PART_NRRD) {
             is_good = is_good && refuse(region->path, format, err);
         } else {
@@ -168,43 +224,69 @@ static bool check_regions(const struct folder *folder, const struct plan_file *f
     return is_good;
 }
 
-static void count_doses(const struct folder *folder, const struct plan_file *file, struct plan_summary *summary)
+static void count_doses(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary)
 {
-    size_t n_components = 0, n_unread = 0;
+    const struct plan_file *file = parts->file;
+    size_t n_components = 0, n_unread = 0, n_objects = 0;
     for (size_t i = 0; i < file->n_doses; i++) {
+        const struct plan_file_dose *dose = &file->doses[i];
+        enum part_format first = part_format_of(folder, dose->components[0].path);
         bool is_read = true;
         size_t n_more = 0; /* one file of SERA holds several */
-        for (size_t c = 0; c < file->doses[i].n_components; c++) {
-            count_bytes(folder, file->doses[i].components[c].path, summary);
-            enum part_format format = part_format_of(folder, file->doses[i].components[c].path);
-            is_read = is_read && (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format));
-            if (part_is_sera_dose(format) && file->doses[i].components[c].quantity == DOSE_TOTAL)
-                n_more += (format == PART_SERA_RST ? RST_N_DOSES : CHD_N_COLUMNS) - file->doses[i].n_components;
+        if (dose->n_components == 1 && first == PART_DICOM) {
+            n_objects += count_objects(folder, parts->dicom, DICOM_KIND_DOSE, dose->components[0].path, summary);
+            continue;
         }
-        if (is_read)
-            n_components += file->doses[i].n_components + n_more;
-        else
-            n_unread++;
+        for (size_t c = 0; c < dose->n_components; c++) {
+            count_bytes(folder, dose->components[c].path, summary);
+            enum part_format format = part_format_of(folder, dose->components[c].path);
+            is_read = is_read && (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format) || format == PART_DICOM);
+            if (part_is_sera_dose(format) && dose->components[c].quantity == DOSE_TOTAL)
+                n_more += (format == PART_SERA_RST ? RST_N_DOSES : CHD_N_COLUMNS) - dose->n_components;
+        }
+        n_components += is_read ? dose->n_components + n_more : 0;
+        n_unread += !is_read;
     }
+    if (parts->is_all_dicom)
+        n_objects += count_objects(folder, parts->dicom, DICOM_KIND_DOSE, "", summary);
+    add_part(summary, n_objects, "dose", "doses");
     add_part(summary, n_components, "dose component", "dose components");
     add_part(summary, n_unread, "dose not read by this version", "doses not read by this version");
+}
+
+static size_t count_beams(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary)
+{
+    size_t n = parts->file->n_beams;
+    for (size_t i = 0; i < parts->file->n_beam_files; i++)
+        n += count_objects(folder, parts->dicom, DICOM_KIND_PLAN, parts->file->beam_files[i].path, summary);
+    return parts->is_all_dicom ? n + count_objects(folder, parts->dicom, DICOM_KIND_PLAN, "", summary) : n;
+}
+
+/* What lies in the files of image series, which are many. */
+static void count_series_bytes(const struct dicom_index *index, struct plan_summary *summary)
+{
+    for (size_t s = 0; index && s < index->n_stacks; s++)
+        for (size_t i = 1; i < index->stacks[s].n_objects; i++) /* the first is counted as the part's path */
+            summary->n_bytes += index->objects[index->stacks[s].objects[i]].n_bytes;
 }
 
 void plan_summarize(const char *path, struct plan_summary *summary)
 {
     struct folder folder = { .fd = -1 };
     struct error err = { 0 };
+    struct plan_parts parts = { 0 };
     *summary = (struct plan_summary){ 0 };
     plan_folder_name(path, summary->name, sizeof summary->name);
-    struct plan_file *file = folder_open(&folder, path, &err) ? plan_describe(&folder, NULL, &err) : NULL;
-    if (file) {
+    if (folder_open(&folder, path, &err) && plan_describe(&folder, NULL, &parts, NULL, &err)) {
+        const struct plan_file *file = parts.file;
         memcpy(summary->name, file->name, sizeof summary->name);
         memcpy(summary->note, file->note, sizeof summary->note);
         summary->is_phantom = file->is_phantom;
-        bool has_images = check_images(&folder, file, summary, &err);
-        summary->is_readable = check_regions(&folder, file, summary, has_images ? &err : NULL) && has_images;
-        count_doses(&folder, file, summary);
-        add_part(summary, file->n_beams, "beam", "beams");
+        bool has_images = check_images(&folder, &parts, summary, &err);
+        summary->is_readable = check_regions(&folder, &parts, summary, has_images ? &err : NULL) && has_images;
+        count_series_bytes(parts.dicom, summary);
+        count_doses(&folder, &parts, summary);
+        add_part(summary, count_beams(&folder, &parts, summary), "beam", "beams");
         for (size_t i = 0; i < file->n_tracks; i++)
             count_bytes(&folder, file->tracks[i].path, summary);
         add_part(summary, file->n_tracks, "file of tracks", "files of tracks");
@@ -213,6 +295,6 @@ void plan_summarize(const char *path, struct plan_summary *summary)
         add_part(summary, file->n_curves, "reference curve", "reference curves");
     }
     snprintf(summary->reason, sizeof summary->reason, "%s", summary->is_readable ? "" : err.text);
-    plan_file_destroy(file);
+    plan_parts_finish(&parts);
     folder_close(&folder);
 }

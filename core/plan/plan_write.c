@@ -13,9 +13,9 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 #include "core/formats/nifti_write.h"
-#include "core/formats/plan_json.h"
+#include "core/plan/plan_write_texts.h"
 
-static const char *const folders[] = { "images", "regions", "doses" };
+static const char *const folders[] = { "images", "regions", "doses", "curves" };
 enum { N_FOLDERS = sizeof folders / sizeof folders[0], MAX_FILES = PLAN_MAX_IMAGES + REGION_MAX_LAYERS + PLAN_MAX_DOSES * (DOSE_N_QUANTITIES + 1) };
 
 /* One file of voxels, written by any thread. */
@@ -78,6 +78,7 @@ static bool write_names(const struct writing *writing, uint32_t layer, const cha
         struct label_name *label = &names.labels[names.n++];
         label->value = region->label;
         label->has_color = region->has_file_color;
+        label->opacity = region->file_opacity;
         memcpy(label->rgb, region->rgb, sizeof label->rgb);
         memcpy(label->name, region->name, sizeof label->name);
         memcpy(label->id, region->id, sizeof label->id);
@@ -129,6 +130,7 @@ static void list_doses(struct writing *writing)
         const struct dose *dose = &plan->doses[i];
         struct plan_file_dose *entry = &writing->file->doses[writing->file->n_doses++];
         memcpy(entry->id, dose->id, sizeof entry->id);
+        memcpy(entry->name, dose->name, sizeof entry->name);
         memcpy(entry->unit, dose->unit, sizeof entry->unit);
         memcpy(entry->per, dose->per, sizeof entry->per);
         for (size_t c = 0; c < dose->n_components; c++) {
@@ -199,37 +201,6 @@ static bool write_volumes(struct writing *writing, struct error *err)
     return true;
 }
 
-/* SERA's columns, in its axes (RL, PA, IS) = (L, -P, S); nine digits bring a float back as it was. */
-static bool write_tracks(struct writing *writing, struct error *err)
-{
-    static const int codes[TRACK_N_CLASSES][2] = {
-        [TRACK_NEUTRON_HIGH] = { 0, 1 }, [TRACK_NEUTRON_MEDIUM] = { 0, 2 }, [TRACK_NEUTRON_LOW] = { 0, 3 },
-        [TRACK_GAMMA_HIGH] = { 1, 1 },   [TRACK_GAMMA_MEDIUM] = { 1, 2 },   [TRACK_GAMMA_LOW] = { 1, 3 },
-        [TRACK_LOST] = { 3, 0 },         [TRACK_BEAM_LINE] = { 2, 0 }
-    };
-    const struct track_set *tracks = &writing->plan->tracks;
-    struct plan_file_tracks *entry = &writing->file->tracks[0];
-    char *text = NULL, path[PATH_MAX];
-    size_t n_bytes = 0;
-    if (tracks->n_segments == 0)
-        return true;
-    snprintf(entry->path, sizeof entry->path, "tracks.pp");
-    entry->mm = 1;
-    writing->file->n_tracks = 1;
-    FILE *out = open_memstream(&text, &n_bytes);
-    for (size_t i = 0; out && i < tracks->n_segments; i++) {
-        const struct track_segment *segment = &tracks->segments[i];
-        const float *a = segment->from_lps_mm, *b = segment->to_lps_mm;
-        fprintf(out, "%.9g %.9g %.9g %.9g %.9g %.9g %d %d\n", (double)a[0], -(double)a[1], (double)a[2], (double)b[0], -(double)b[1],
-                (double)b[2], codes[segment->class][0], codes[segment->class][1]);
-    }
-    bool is_whole = out && !ferror(out) && fclose(out) == 0;
-    join(path, writing->folder, entry->path);
-    bool is_written = is_whole ? file_write(path, text, n_bytes, err) : error_set(err, ERROR_MEMORY, "%s: no memory for the tracks", path);
-    free(text);
-    return is_written;
-}
-
 static bool write_plan_json(const struct writing *writing, struct error *err)
 {
     char path[PATH_MAX];
@@ -253,7 +224,7 @@ static bool write_contents(struct writing *writing, struct error *err)
     list_doses(writing);
     memcpy(file->beams, plan->beams, sizeof file->beams);
     file->n_beams = plan->n_beams;
-    is_written = is_written && write_volumes(writing, err) && write_tracks(writing, err) && write_plan_json(writing, err);
+    is_written = is_written && write_volumes(writing, err) && plan_write_texts(plan, writing->folder, file, err) && write_plan_json(writing, err);
     free(is_kept);
     return is_written;
 }

@@ -8,7 +8,7 @@
 #include "core/base/mem.h"
 #include "core/plan/report_codes.h"
 
-static bool is_known(const char *code)
+bool report_code_is_known(const char *code)
 {
 #define KNOWN(known, meaning, remedy) \
     if (strcmp(code, known) == 0)     \
@@ -20,7 +20,7 @@ static bool is_known(const char *code)
 
 void report_add(struct report *report, enum report_severity severity, const char *code, const char *where, const char *format, ...)
 {
-    assert(is_known(code));
+    assert(report_code_is_known(code));
     if (!report)
         return;
     if (report->n_lines >= REPORT_MAX) {

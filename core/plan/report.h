@@ -24,5 +24,6 @@ void report_add(struct report *report, enum report_severity severity, const char
     PRINTF_LIKE(5, 6);
 /* Appends all lines of from and empties it. */
 void report_move(struct report *to, struct report *from);
+bool report_code_is_known(const char *code);
 void report_finish(struct report *report);
 const char *report_severity_word(enum report_severity severity); /* "note", "warning", "error" */

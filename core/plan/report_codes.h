@@ -155,6 +155,12 @@
     X("preferences.tissues", "Regions took tissue data from a table of tissues, by their names.",                                  \
       "Check boron ratios and weights against the plan.")                                                                          \
     X("preferences.levels", "Contour levels are given by more than one file of preferences.", "The first was used; keep one file.")  \
+    X("dicom.several-studies", "The DICOM files of the folder are of several studies.",                                            \
+      "Check that all are of one patient; keep one plan a folder.")                                                                \
+    X("geometry.frames-differ", "Parts of the plan have different frames of reference.",                                           \
+      "Check that they fit; register the images and export again.")                                                                \
+    X("region.image-chosen", "The image that contours were drawn on is not here, or not named.",                                   \
+      "Check that the regions fit the image; put the series they were drawn on into the folder.")                                  \
     X("geometry.apart", "Two parts of the plan do not overlap anywhere.",                                                          \
       "One of them may be flipped, shifted or of another patient.")                                                                \
     X("header.unknown-key", "A header has keys that are not known.", "They are ignored.")                                         \

@@ -1,4 +1,4 @@
-// Writes what is made from proto/*.json into the folder named on the command line:
+// Writes what is made from proto/*.json, and the list of report codes, into the folder named on the command line:
 //   scene.h scene.c      structs, enums, defaults of scene and view; no JSON, for core
 //   wire_gen.h wire_gen.c  field tables and message structs for server/wire
 //   problem_gen.h problem_gen.c  types of problems
@@ -14,6 +14,7 @@ import { wireScript } from './wire_js.mjs';
 import { openapi, openapiSource } from './openapi.mjs';
 import { problemHeader, problemSource } from './problem_c.mjs';
 import { referencePage } from './reference.mjs';
+import { reportCodes } from './report_codes.mjs';
 
 const proto = join(dirname(fileURLToPath(import.meta.url)), '..');
 const read = (name) => JSON.parse(readFileSync(join(proto, name), 'utf8'));
@@ -32,6 +33,6 @@ write('wire_gen.c', wireSource(scene, messages));
 write('problem_gen.h', problemHeader(problems));
 write('problem_gen.c', problemSource(problems));
 write('wire.js', wireScript(scene, messages));
-write('reference.html', referencePage(scene, messages, problems));
+write('reference.html', referencePage(scene, messages, problems, reportCodes(readFileSync(join(proto, '../core/plan/report_codes.h'), 'utf8'))));
 write('openapi.json', JSON.stringify(api, null, 1));
 write('openapi.c', openapiSource(api));

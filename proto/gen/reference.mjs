@@ -24,7 +24,7 @@ function rows(fields, enums) {
 
 const tableOf = (fields, enums) => `<table><thead><tr><th>Field</th><th>Type</th><th>Range</th><th>Default</th><th>Meaning</th></tr></thead><tbody>\n${rows(fields, enums)}\n</tbody></table>\n`;
 
-export function referencePage(scene, messages, problems) {
+export function referencePage(scene, messages, problems, codes) {
   const enums = { ...scene.enums, ...messages.enums };
   let body = '<h1>Beamroom reference</h1>\n<p><a href="/api/v1/openapi.json">OpenAPI description of the HTTP API</a></p>\n';
   body += `<h2>Scene and view</h2>\n<p>${escape(scene.about)}</p>\n`;
@@ -38,5 +38,8 @@ export function referencePage(scene, messages, problems) {
     body += `<h3 id="message-${escape(message.name)}">${escape(message.name)} <small>from the ${message.from === 'client' ? 'page' : 'server'}</small></h3>\n<p>${escape(message.about)}</p>\n${tableOf(message.fields, enums)}`;
   body += `<h2 id="problems">Problems</h2>\n<p>${escape(problems.about)}</p>\n<table><thead><tr><th>Type</th><th>Status</th><th>Title</th><th>What to do</th></tr></thead><tbody>\n` +
     problems.problems.map((p) => `<tr id="problem-${p.word}"><td><code>/problems/${p.word}</code></td><td>${p.status}</td><td>${escape(p.title)}</td><td>${escape(p.about)}</td></tr>`).join('\n') + '\n</tbody></table>\n';
+  body += '<h2 id="report">Load report</h2>\n<p>What a plan\'s report may say; each line has one of these codes, a severity (note, warning, error), a sentence with the figures, and the file it is about.</p>\n' +
+    '<table><thead><tr><th>Code</th><th>Meaning</th><th>What to do</th></tr></thead><tbody>\n' +
+    codes.map((c) => `<tr id="report-${escape(c.code)}"><td><code>${escape(c.code)}</code></td><td>${escape(c.meaning)}</td><td>${escape(c.remedy)}</td></tr>`).join('\n') + '\n</tbody></table>\n';
   return `<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>Beamroom reference</title>\n<link rel="icon" href="../icon.svg">\n<link rel="stylesheet" href="../css/reference.css">\n<main>\n${body}</main>\n</html>\n`;
 }

@@ -117,6 +117,39 @@ static void print_doses(const struct plan *plan)
     }
 }
 
+static void print_if_given(const char *what, double value, const char *unit)
+{
+    if (isfinite(value))
+        printf("  %s %.5g %s", what, value, unit);
+}
+
+/* What a treatment plan says of the beam, in one or two lines. */
+static void print_delivery(const struct beam *beam)
+{
+    const struct beam_delivery *d = &beam->delivery;
+    printf("    ");
+    text_print(stdout, beam->name, 0);
+    printf("%s", *beam->name ? ": " : "");
+    text_print(stdout, *d->radiation ? d->radiation : "radiation not said", 0);
+    if (*d->machine) {
+        printf(" by ");
+        text_print(stdout, d->machine, 0);
+    }
+    print_if_given("energy", d->energy_mev, "MeV");
+    print_if_given("gantry", d->gantry_deg, "deg");
+    if (isfinite(d->gantry_travel_deg) && d->gantry_travel_deg != 0)
+        print_if_given("to", d->gantry_stop_deg, "deg");
+    print_if_given("couch", d->couch_deg, "deg");
+    print_if_given("collimator", d->collimator_deg, "deg");
+    printf("\n    position %s, %zu control points", patient_position_word(d->patient_position), d->n_control_points);
+    print_if_given("source to axis", d->sad_mm, "mm");
+    if (isfinite(d->opening_x_mm[0]) && isfinite(d->opening_y_mm[0]))
+        printf("  opening %.4g x %.4g mm", d->opening_x_mm[1] - d->opening_x_mm[0], d->opening_y_mm[1] - d->opening_y_mm[0]);
+    print_if_given("dose", d->dose_gy, "Gy a fraction");
+    print_if_given("meterset", d->meterset, d->meterset_unit);
+    printf("\n");
+}
+
 static void print_beams(const struct plan *plan)
 {
     if (plan->n_beams > 0)
@@ -130,7 +163,9 @@ static void print_beams(const struct plan *plan)
         if (isfinite(beam->aperture_mm))
             printf(", aperture %.4g mm\n", beam->aperture_mm);
         else
-            printf(", aperture unknown\n");
+            printf("%s\n", beam->has_delivery ? "" : ", aperture unknown");
+        if (beam->has_delivery)
+            print_delivery(beam);
     }
 }
 

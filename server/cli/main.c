@@ -27,7 +27,8 @@ static void print_help(FILE *out)
     for (int i = 0; i < N_COMMANDS; i++)
         fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].about);
     fputs("\n  beamroom COMMAND --help   what a command takes and gives\n"
-          "  beamroom --version        the version\n\n"
+          "  beamroom --version        the version\n"
+          "  beamroom COMMAND ... --max-mib N   refuse a plan that would take more than N MiB to open\n\n"
           "Exit status: 0 done; 1 refused, with the reason on standard error; 2 wrong usage.\n"
           "For research and plan review; not a medical device.\n",
           out);
@@ -69,9 +70,11 @@ int main(int argc, char **argv)
     }
     for (int i = 0; i < N_COMMANDS; i++)
         if (strcmp(argv[1], commands[i].name) == 0) {
-            int code = commands[i].run(argc - 1, argv + 1);
+            argc--;
+            argv++;
+            int code = command_take_limit(&argc, argv) ? commands[i].run(argc, argv) : EXIT_USAGE;
             if (fflush(stdout) != 0 || ferror(stdout)) {
-                fprintf(stderr, "beamroom %s: standard output cannot be written\n", argv[1]);
+                fprintf(stderr, "beamroom %s: standard output cannot be written\n", argv[0]);
                 return EXIT_REFUSED;
             }
             return code;

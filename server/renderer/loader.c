@@ -15,12 +15,14 @@
 enum {
     PROGRESS_EVERY_US = 50000,
     BUILD_AHEAD_US = 300000, /* after that a first picture goes ahead with what is there */
+    WORTH_KEEPING_US = 50000, /* opening took longer */
     MAX_QUESTIONS = 256,
     MAX_PREPARATIONS = 2 * PIPELINE_MAX_WAITING
 };
 
 struct loader {
-    char *folder, *plan_id;
+    char *folder, *plan_id, *cache_folder;
+    uint64_t max_bytes;
     struct desk *desk;
     atomic_bool cancel;
     pthread_t load_thread, quick_thread, prepare_thread;
@@ -122,11 +124,22 @@ static void build_ahead(struct loader *loader)
     free(regions);
 }
 
+/* A plan that took its time is kept for the next opening; without that it is read again. */
+static void keep(const struct loader *loader, const struct plan *plan)
+{
+    struct error err = { 0 };
+    if (!loader->cache_folder || plan->load_us < WORTH_KEEPING_US || atomic_load(&loader->cancel))
+        return;
+    if (!plan_cache_store(plan, loader->cache_folder, &err))
+        log_warn("the opened plan is not kept: %s", err.text);
+}
+
 static void *load_main(void *argument)
 {
     struct loader *loader = argument;
     struct note note = { .type = NOTE_LOADED };
-    struct plan_load_options options = { .progress = { step, loader, &loader->cancel } };
+    struct plan_load_options options = { .progress = { step, loader, &loader->cancel }, .max_bytes = loader->max_bytes,
+                                         .cache_folder = loader->cache_folder };
     struct plan *plan = plan_load(loader->folder, loader->plan_id, &options, &note.error);
     note.plan = plan;
     if (!plan)
@@ -136,6 +149,7 @@ static void *load_main(void *argument)
     if (!plan)
         return NULL;
     build_ahead(loader);
+    keep(loader, plan);
     for (struct question *question; (question = queue_take(loader->slow, -1));) {
         if (atomic_load(&loader->cancel))
             question_drop(question);
@@ -187,14 +201,17 @@ static void stop(struct loader *loader, int n_started)
     queue_destroy(loader->preparations);
     free(loader->folder);
     free(loader->plan_id);
+    free(loader->cache_folder);
     free(loader);
 }
 
-struct loader *loader_create(const char *folder, const char *plan_id, struct desk *desk, struct error *err)
+struct loader *loader_create(const struct loader_options *options, struct desk *desk, struct error *err)
 {
     struct loader *loader = mem_new(sizeof *loader);
-    loader->folder = mem_copy_text(folder);
-    loader->plan_id = mem_copy_text(plan_id);
+    loader->folder = mem_copy_text(options->folder);
+    loader->plan_id = mem_copy_text(options->plan_id);
+    loader->max_bytes = options->max_bytes;
+    loader->cache_folder = options->cache_folder ? mem_copy_text(options->cache_folder) : NULL;
     loader->desk = desk;
     atomic_init(&loader->cancel, false);
     loader->slow = queue_create(MAX_QUESTIONS, question_drop);

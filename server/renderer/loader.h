@@ -16,7 +16,12 @@ struct question {
 };
 
 /* Starts reading: notes PROGRESS, then LOADED and later BUILT (the surfaces a first picture needs), or FAILED. NULL: no thread. */
-NODISCARD struct loader *loader_create(const char *folder, const char *plan_id, struct desk *desk, struct error *err);
+struct loader_options {
+    const char *folder, *plan_id;
+    uint64_t max_bytes;       /* as plan_load */
+    const char *cache_folder; /* as plan_load */
+};
+NODISCARD struct loader *loader_create(const struct loader_options *options, struct desk *desk, struct error *err);
 /* After LOADED. Answered by a note with the same id. Takes what question owns. False: too many wait. */
 NODISCARD bool loader_ask(struct loader *loader, const struct question *question);
 /* Before a picture: builds its shapes, then a note PREPARED. Takes preparation when it returns true. False: too many wait. */

@@ -177,6 +177,8 @@ int main(int argc, char **argv)
     };
     confine(&limits, confined);
     session->confined = confined;
+    session->cache = arguments.cache;
+    session->max_bytes = arguments.max_bytes;
     if (arguments.scan)
         return scan(arguments.scan);
     if (arguments.is_probe)

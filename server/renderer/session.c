@@ -567,7 +567,9 @@ int session_run(const struct session_options *options)
         struct pipeline_callbacks callbacks = { gl_started, deliver, session.desk };
         session.pipeline = pipeline_create(options->back_end, options->is_stub, &callbacks, &err);
         if (session.pipeline)
-            session.loader = loader_create(options->plan_folder, options->plan_id, session.desk, &err);
+            session.loader = loader_create(&(struct loader_options){ options->plan_folder, options->plan_id, options->max_bytes,
+                                                                              options->cache },
+                                           session.desk, &err);
     }
     if (session.loader)
         loop(&session);

@@ -75,6 +75,7 @@ static cJSON *image_object(const struct plan_image *image)
 {
     cJSON *object = cJSON_CreateObject(), *window = cJSON_CreateObject();
     add(object, "id", cJSON_CreateString(image->id));
+    add(object, "name", cJSON_CreateString(image->name));
     add(object, "modality", cJSON_CreateString(image->modality));
     add(object, "unit", cJSON_CreateString(image->unit));
     add(object, "grid", grid_object(&image->volume->grid));
@@ -146,6 +147,7 @@ static cJSON *dose_object(const struct dose *dose)
 {
     cJSON *object = cJSON_CreateObject(), *components = cJSON_CreateArray();
     add(object, "id", cJSON_CreateString(dose->id));
+    add(object, "name", cJSON_CreateString(dose->name));
     add(object, "unit", cJSON_CreateString(dose->unit));
     add(object, "per", cJSON_CreateString(dose->per));
     add(object, "masked", cJSON_CreateBool(dose->mask != NULL));
@@ -168,6 +170,41 @@ static cJSON *dose_object(const struct dose *dose)
     return object;
 }
 
+static cJSON *span(const double edges[2])
+{
+    if (!isfinite(edges[0]) || !isfinite(edges[1]))
+        return cJSON_CreateNull();
+    return cJSON_CreateDoubleArray(edges, 2);
+}
+
+static cJSON *delivery_object(const struct beam_delivery *delivery)
+{
+    cJSON *object = cJSON_CreateObject();
+    add(object, "number", number((double)delivery->number));
+    add(object, "radiation", cJSON_CreateString(delivery->radiation));
+    add(object, "machine", cJSON_CreateString(delivery->machine));
+    add(object, "patient_position", cJSON_CreateString(patient_position_word(delivery->patient_position)));
+    add(object, "gantry_deg", number(delivery->gantry_deg));
+    add(object, "gantry_stop_deg", number(delivery->gantry_stop_deg));
+    add(object, "gantry_travel_deg", number(delivery->gantry_travel_deg));
+    add(object, "collimator_deg", number(delivery->collimator_deg));
+    add(object, "couch_deg", number(delivery->couch_deg));
+    add(object, "energy_mev", number(delivery->energy_mev));
+    add(object, "sad_mm", number(delivery->sad_mm));
+    add(object, "ssd_mm", number(delivery->ssd_mm));
+    add(object, "jaws_x_mm", span(delivery->jaws_x_mm));
+    add(object, "jaws_y_mm", span(delivery->jaws_y_mm));
+    add(object, "opening_x_mm", span(delivery->opening_x_mm));
+    add(object, "opening_y_mm", span(delivery->opening_y_mm));
+    add(object, "opening_cm2", number(delivery->opening_cm2));
+    add(object, "control_points", number((double)delivery->n_control_points));
+    add(object, "dose_gy", number(delivery->dose_gy));
+    add(object, "meterset", number(delivery->meterset));
+    add(object, "meterset_unit", cJSON_CreateString(delivery->meterset_unit));
+    add(object, "fractions", number((double)delivery->n_fractions));
+    return object;
+}
+
 static cJSON *beam_object(const struct beam *beam)
 {
     cJSON *object = cJSON_CreateObject();
@@ -175,6 +212,8 @@ static cJSON *beam_object(const struct beam *beam)
     add(object, "entry_mm", point(beam->entry_lps_mm));
     add(object, "target_mm", point(beam->target_lps_mm));
     add(object, "aperture_mm", number(beam->aperture_mm));
+    add(object, "name", cJSON_CreateString(beam->name));
+    add(object, "delivery", beam->has_delivery ? delivery_object(&beam->delivery) : cJSON_CreateNull());
     return object;
 }
 

@@ -63,6 +63,7 @@ static void same_regions(const struct region_set *found, const struct region_set
         assert_int_equal(a->has_file_color, b->has_file_color);
         assert_int_equal(a->parent, b->parent);
         assert_int_equal(a->n_voxels, b->n_voxels);
+        same_number(a->file_opacity, b->file_opacity);
         same_number(a->boron_ratio, b->boron_ratio);
         same_number(a->cbe_boron, b->cbe_boron);
         same_number(a->rbe_nitrogen, b->rbe_nitrogen);
@@ -79,8 +80,13 @@ static void same_doses(const struct plan *found, const struct plan *expected, do
     for (size_t d = 0; d < found->n_doses; d++) {
         const struct dose *a = &found->doses[d], *b = &expected->doses[d];
         assert_string_equal(a->id, b->id);
+        assert_string_equal(a->name, b->name);
         assert_string_equal(a->unit, b->unit);
         assert_string_equal(a->per, b->per);
+        for (int q = 0; q < DOSE_N_QUANTITIES; q++) {
+            same_number(a->reference[q], b->reference[q]);
+            same_number(a->body_high[q], b->body_high[q]);
+        }
         assert_int_equal(a->n_components, b->n_components);
         for (size_t c = 0; c < a->n_components; c++) {
             assert_int_equal(a->components[c].quantity, b->components[c].quantity);
@@ -93,6 +99,36 @@ static void same_doses(const struct plan *found, const struct plan *expected, do
     }
 }
 
+static void same_delivery(const struct beam_delivery *a, const struct beam_delivery *b)
+{
+    assert_int_equal(a->number, b->number);
+    assert_string_equal(a->radiation, b->radiation);
+    assert_string_equal(a->machine, b->machine);
+    assert_int_equal(a->patient_position, b->patient_position);
+    same_number(a->gantry_deg, b->gantry_deg);
+    same_number(a->collimator_deg, b->collimator_deg);
+    same_number(a->couch_deg, b->couch_deg);
+    same_number(a->energy_mev, b->energy_mev);
+    same_number(a->gantry_stop_deg, b->gantry_stop_deg);
+    same_number(a->gantry_travel_deg, b->gantry_travel_deg);
+    assert_int_equal(a->n_control_points, b->n_control_points);
+    same_number(a->sad_mm, b->sad_mm);
+    same_number(a->ssd_mm, b->ssd_mm);
+    for (int i = 0; i < 2; i++) {
+        same_number(a->jaws_x_mm[i], b->jaws_x_mm[i]);
+        same_number(a->jaws_y_mm[i], b->jaws_y_mm[i]);
+        same_number(a->opening_x_mm[i], b->opening_x_mm[i]);
+        same_number(a->opening_y_mm[i], b->opening_y_mm[i]);
+    }
+    same_number(a->opening_cm2, b->opening_cm2);
+    same_number(a->collimator_x_lps.x, b->collimator_x_lps.x);
+    same_number(a->collimator_y_lps.z, b->collimator_y_lps.z);
+    same_number(a->dose_gy, b->dose_gy);
+    same_number(a->meterset, b->meterset);
+    assert_string_equal(a->meterset_unit, b->meterset_unit);
+    assert_int_equal(a->n_fractions, b->n_fractions);
+}
+
 static void same_beams(const struct plan *found, const struct plan *expected)
 {
     assert_int_equal(found->n_beams, expected->n_beams);
@@ -102,6 +138,44 @@ static void same_beams(const struct plan *found, const struct plan *expected)
         assert_memory_equal(&a->entry_lps_mm, &b->entry_lps_mm, sizeof a->entry_lps_mm);
         assert_memory_equal(&a->target_lps_mm, &b->target_lps_mm, sizeof a->target_lps_mm);
         same_number(a->aperture_mm, b->aperture_mm);
+        assert_string_equal(a->name, b->name);
+        assert_int_equal(a->has_delivery, b->has_delivery);
+        if (a->has_delivery)
+            same_delivery(&a->delivery, &b->delivery);
+    }
+}
+
+static void same_curves(const struct plan *found, const struct plan *expected)
+{
+    assert_int_equal(found->n_curves, expected->n_curves);
+    for (size_t i = 0; i < found->n_curves; i++) {
+        const struct dose_curve *a = &found->curves[i], *b = &expected->curves[i];
+        assert_string_equal(a->id, b->id);
+        assert_string_equal(a->name, b->name);
+        assert_string_equal(a->unit, b->unit);
+        assert_string_equal(a->per, b->per);
+        assert_int_equal(a->n_depths, b->n_depths);
+        assert_int_equal(a->n_radii, b->n_radii);
+        assert_int_equal(a->n_columns, b->n_columns);
+        assert_close(vec3_length(vec3_sub(a->center_lps_mm, b->center_lps_mm)), 0, 1e-9);
+        for (size_t d = 0; d < a->n_depths; d++)
+            assert_close(a->depths_mm[d], b->depths_mm[d], 1e-9);
+        for (size_t r = 0; r < a->n_radii; r++)
+            assert_close(a->radii_mm[r], b->radii_mm[r], 1e-9);
+        for (size_t c = 0; c < a->n_columns; c++) {
+            assert_int_equal(a->quantities[c], b->quantities[c]);
+            assert_int_equal(a->is_per_ppm[c], b->is_per_ppm[c]);
+            for (size_t p = 0; p < a->n_depths * a->n_radii; p++)
+                same_number((double)a->values[c][p], (double)b->values[c][p]);
+        }
+    }
+    const struct plan_preferences *a = &found->preferences, *b = &expected->preferences;
+    assert_int_equal(a->n_levels, b->n_levels);
+    assert_int_equal(a->n_colors, b->n_colors);
+    assert_memory_equal(a->colors, b->colors, sizeof a->colors);
+    for (size_t i = 0; i < a->n_levels; i++) {
+        assert_memory_equal(a->levels[i].rgb, b->levels[i].rgb, 3);
+        same_number(a->levels[i].percent, b->levels[i].percent);
     }
 }
 
@@ -123,6 +197,7 @@ void assert_same_plan(const struct plan *found, const struct plan *expected, dou
     same_regions(&found->regions, &expected->regions, mm);
     same_doses(found, expected, mm);
     same_beams(found, expected);
+    same_curves(found, expected);
     assert_int_equal(found->tracks.n_segments, expected->tracks.n_segments);
     for (size_t i = 0; i < found->tracks.n_segments; i++) {
         const struct track_segment *a = &found->tracks.segments[i], *b = &expected->tracks.segments[i];

@@ -9,6 +9,7 @@
 #include "tests/check.h"
 #include "tests/made_plan.h"
 #include "tests/unit/data_folder.h"
+#include "tests/unit/oracle.h"
 
 enum { N_IMAGES = 16, SIDE = 512, N_SLICES = 96 };
 
@@ -100,11 +101,98 @@ static void a_load_is_given_up_within_a_fifth_of_a_second_wherever_it_is(void **
     folder_remove(folder);
 }
 
-int main(void)
+/* In a process of its own, as the high-water mark of memory never falls: opens a folder (or nothing) and prints its mark in KiB. */
+static int open_and_tell(const char *folder)
 {
+    struct error err = { 0 };
+    struct plan *plan = folder[0] ? plan_load(folder, "p", NULL, &err) : NULL;
+    FILE *status = fopen("/proc/self/status", "r");
+    char line[256];
+    long kib = -1;
+    while (status && fgets(line, sizeof line, status))
+        if (strncmp(line, "VmHWM:", 6) == 0)
+            kib = strtol(line + 6, NULL, 10);
+    printf("%ld\n", kib);
+    plan_destroy(plan);
+    return folder[0] && !plan;
+}
+
+static long peak_kib(const char *folder)
+{
+    char self[] = "/proc/self/exe", what[] = "--open", path[512], answer[64];
+    snprintf(path, sizeof path, "%s", folder);
+    char *arguments[] = { self, what, path, NULL };
+    assert_int_equal(oracle_run(arguments, answer, sizeof answer), 0);
+    return strtol(answer, NULL, 10);
+}
+
+/* What the refusal says the plan would take, MiB. */
+static double estimated_mib(const char *folder, const char *largest)
+{
+    struct error err = { 0 };
+    struct plan_load_options options = { .max_bytes = 1 << 20 };
+    assert_null(plan_load(folder, "p", &options, &err));
+    assert_int_equal(err.code, ERROR_LIMIT);
+    assert_non_null(strstr(err.text, "1 MiB are allowed"));
+    assert_non_null(strstr(err.text, largest));
+    const char *at = strstr(err.text, "about ");
+    assert_non_null(at);
+    return strtod(at + 6, NULL);
+}
+
+static void a_plan_over_the_limit_is_refused_with_figures_before_it_is_read(void **state)
+{
+    (void)state;
+    char folder[256];
+    make_large_folder(folder);
+    long before = peak_kib("");
+    int64_t began_us = clock_now_us();
+    double estimate_mib = estimated_mib(folder, "image-");
+    assert_true(clock_now_us() - began_us < 500000);
+    double found_mib = (double)(peak_kib(folder) - before) / 1024;
+    print_message("estimate %.0f MiB, measured %.0f MiB\n", estimate_mib, found_mib);
+    assert_true(estimate_mib < found_mib * PLAN_ESTIMATE_FACTOR && found_mib < estimate_mib * PLAN_ESTIMATE_FACTOR);
+
+    struct error err = { 0 };
+    struct plan_load_options options = { .max_bytes = (uint64_t)(estimate_mib + 2) << 20 };
+    struct plan *plan = plan_load(folder, "p", &options, &err);
+    assert_string_equal(err.text, "");
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
+/* Real plans: labels, doses and SERA's files in the sum. */
+static void estimates_of_real_plans_are_within_the_stated_factor(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *largest;
+    } plans[] = { { "glioma-tcga-du7294", "t1c_brain" }, { "gbm-brats2013", "nii.gz" }, { "openkbp-pt99", "nii.gz" } };
+    char path[512];
+    long before = peak_kib("");
+    size_t n = 0;
+    for (size_t i = 0; i < sizeof plans / sizeof plans[0]; i++) {
+        if (!data_path(plans[i].name, path, sizeof path))
+            continue;
+        n++;
+        double estimate_mib = estimated_mib(path, plans[i].largest), found_mib = (double)(peak_kib(path) - before) / 1024;
+        print_message("%s: estimate %.0f MiB, measured %.0f MiB\n", plans[i].name, estimate_mib, found_mib);
+        assert_true(estimate_mib < found_mib * PLAN_ESTIMATE_FACTOR && found_mib < estimate_mib * PLAN_ESTIMATE_FACTOR);
+    }
+    if (n == 0)
+        skip();
+}
+
+int main(int argc, char **argv)
+{
+    if (argc == 3 && strcmp(argv[1], "--open") == 0)
+        return open_and_tell(argv[2]);
+
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(progress_grows_with_the_bytes_read_and_ends_at_100),
         cmocka_unit_test(a_load_is_given_up_within_a_fifth_of_a_second_wherever_it_is),
+        cmocka_unit_test(a_plan_over_the_limit_is_refused_with_figures_before_it_is_read),
+        cmocka_unit_test(estimates_of_real_plans_are_within_the_stated_factor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

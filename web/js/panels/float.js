@@ -35,4 +35,4 @@ export const help = ({ ui }) => (ui.popover.value !== 'help' ? nothing : html`<s
   <header><h2>Keys and mouse</h2><span class="grow"></span><button class="icon-button" aria-label="Close" @click=${() => ui.toggle('help')}>${icon('close')}</button></header>
   <p class="note">Keys act in the pane that has the focus.</p>
   <dl>${keys.map(([key, what]) => html`<dt>${key}</dt><dd>${what}</dd>`)}</dl>
-  <p class="note"><a href="gen/reference.html" target="_blank">Reference: scene, messages, HTTP API, problems</a></p></section>`);
+  <p class="note"><a href="gen/reference.html" target="_blank">Reference: scene, messages, HTTP API, problems, codes of load reports</a></p></section>`);
