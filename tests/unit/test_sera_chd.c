@@ -1,12 +1,8 @@
 /* SERA's dose contours: small sets laid out by hand as seraMC (fixed columns, numbers that touch) and seraPlan (blanks, another order of
- * columns) write them, and the original programs' own set for the sample head. */
+ * columns) write them. */
 #include "core/formats/sera_chd.h"
 #include "core/formats/sera_row.h"
-#include "core/formats/zlib_stream.h"
-#include "core/plan/plan.h"
 #include "tests/check.h"
-#include "tests/unit/data_folder.h"
-#include "tests/unit/oracle.h"
 
 enum { TEXT_SIZE = 1 << 16, COLS = 3, ROWS = 2 };
 
@@ -604,117 +600,6 @@ static void every_cut_and_every_changed_byte_is_survived(void **state)
     free(table.at);
 }
 
-static void sera_s_own_contours_agree_with_its_dose_file(void **state)
-{
-    (void)state;
-    char path[512];
-    struct error err = { 0 };
-    if (!data_path("sera-head", path, sizeof path))
-        skip();
-    struct plan *plan = plan_load(path, "p", NULL, &err);
-    assert_string_equal(err.text, "");
-    assert_int_equal(plan->n_doses, 2);
-    const struct dose *dose = &plan->doses[1];
-    assert_string_equal(dose->id, "contours");
-    assert_int_equal(dose->n_components, 9);
-    const struct volume *thermal = NULL, *boron = NULL;
-    for (size_t c = 0; c < 9; c++) {
-        thermal = dose->components[c].quantity == DOSE_THERMAL_FLUENCE ? dose->components[c].values : thermal;
-        boron = dose->components[c].quantity == DOSE_BORON ? dose->components[c].values : boron;
-    }
-    assert_non_null(boron); /* the card's ratio is 1 everywhere */
-    assert_non_null(thermal);
-    /* 24 points behind the source plane reach 300 times the peak, which is 4.25e11 along the beam (notes beside the data) */
-    assert_near(thermal->high, 1.3e14, 0.02);
-    assert_near(dose->body_high[DOSE_THERMAL_FLUENCE], 4.25e11, 0.05);
-    assert_near(dose->reference[DOSE_THERMAL_FLUENCE], 4.10769e11, 1e-6);
-    assert_non_null(strstr(said(&plan->report, "dose.absurd-outside"), "4 of 9 quantities"));
-    /* the reference point, (PA, RL, IS) (-4.5, 4.5, -4.5): trilinear of the .rst gives 4.010e11; published: they agree within 5 % */
-    double value;
-    assert_true(volume_sample(thermal, vec3(45, 45, -45), &value));
-    assert_near(value, 4.010e11, 0.05);
-    plan_destroy(plan);
-}
-
-/* numpy reads both files itself: our values at its points, and the published agreement between the two. */
-static void numpy_reads_the_same_values_and_the_published_agreement(void **state)
-{
-    (void)state;
-    char folder[512], out[1 << 14];
-    struct error err = { 0 };
-    if (!data_path("sera-head", folder, sizeof folder))
-        skip();
-    char *arguments[] = { oracle_python(), (char[]){ "tests/oracle/sera_contours.py" }, folder, NULL };
-    int status = oracle_run(arguments, out, sizeof out);
-    if (status == ORACLE_MISSING)
-        skip();
-    assert_int_equal(status, 0);
-    struct plan *plan = plan_load(folder, "p", NULL, &err);
-    assert_string_equal(err.text, "");
-    const struct dose *dose = &plan->doses[1];
-    size_t n = 0, n_agreements = 0;
-    char *rest = NULL;
-    for (char *line = strtok_r(out, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
-        double x, y, z, v[9], correlation, ratio;
-        char word[32];
-        if (sscanf(line, "agreement %31s %lf %lf", word, &correlation, &ratio) == 3) {
-            assert_true(correlation >= 0.985 - 5e-4 && correlation <= 0.996 + 5e-4);
-            assert_true(ratio >= 0.997 - 5e-4 && ratio <= 1.05 + 5e-4);
-            n_agreements++;
-            continue;
-        }
-        if (sscanf(line, "point %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", &x, &y, &z, &v[0], &v[1], &v[2], &v[3], &v[4], &v[5],
-                   &v[6], &v[7], &v[8]) != 12)
-            continue;
-        for (size_t c = 0; c < 9; c++) {
-            double value;
-            assert_true(volume_sample(dose->components[c].values, vec3(x, y, z), &value));
-            /* planes lie up to 1e-4 cm beside even ones: a trace of a much larger neighbour */
-            assert_close(value, v[c], 1e-3 * v[c] + 1e-5 * dose->body_high[dose->components[c].quantity]);
-        }
-        n++;
-    }
-    assert_true(n >= 50);
-    assert_int_equal(n_agreements, 4);
-    plan_destroy(plan);
-}
-
-static void a_zlib_stream_is_bounded_whole_and_told_by_its_name(void **state)
-{
-    (void)state;
-    /* from Python's zlib.compress */
-    static const uint8_t head[] = { 0x78, 0x9c, 0x4b, 0x4c, 0x4a, 0x06, 0x00, 0x02, 0x4d, 0x01, 0x27 }; /* "abc" */
-    struct bytes out;
-    struct error err = { 0 };
-    assert_true(zlib_all(head, sizeof head, "a.sz", 3, &out, &err));
-    assert_int_equal(out.size, 3);
-    assert_memory_equal(out.data, "abc", 4);
-    bytes_free(&out);
-    assert_false(zlib_all(head, sizeof head, "a.sz", 2, &out, &err));
-    assert_int_equal(err.code, ERROR_LIMIT);
-    assert_null(out.data);
-    for (size_t n = 0; n < sizeof head; n++) {
-        assert_false(zlib_all(head, n, "a.sz", 100, &out, &err));
-        assert_int_equal(err.code, ERROR_FORMAT);
-    }
-    uint8_t changed[sizeof head];
-    memcpy(changed, head, sizeof head);
-    changed[sizeof head - 1] ^= 1;
-    assert_false(zlib_all(changed, sizeof head, "a.sz", 100, &out, &err));
-    assert_non_null(strstr(err.text, "cut short or damaged"));
-    changed[0] = 0x1f;
-    assert_false(zlib_all(changed, sizeof head, "a.sz", 100, &out, &err));
-    assert_non_null(strstr(err.text, "begins with 1f 9c"));
-    const struct bytes file = { (uint8_t *)(uintptr_t)head, sizeof head };
-    bool is_packed;
-    assert_true(sera_unpack(&file, "raw.qim", 100, &is_packed, &out, &err)); /* raw pixels may begin so */
-    assert_false(is_packed);
-    assert_true(sera_unpack(&file, "A.QIM.SZ", 100, &is_packed, &out, &err));
-    assert_true(is_packed);
-    assert_int_equal(out.size, 3);
-    bytes_free(&out);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -734,9 +619,6 @@ int main(void)
         cmocka_unit_test(numbers_that_are_none_and_a_reference_of_zero_are_counted),
         cmocka_unit_test(a_set_that_is_wrong_is_refused_with_its_line),
         cmocka_unit_test(every_cut_and_every_changed_byte_is_survived),
-        cmocka_unit_test(sera_s_own_contours_agree_with_its_dose_file),
-        cmocka_unit_test(numpy_reads_the_same_values_and_the_published_agreement),
-        cmocka_unit_test(a_zlib_stream_is_bounded_whole_and_told_by_its_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
