@@ -12,6 +12,7 @@ static const uint8_t added_rgb[3] = { 0xff, 0xb0, 0x00 }, left_out_rgb[3] = { 0x
 struct crossings {
     double *x;      /* sorted within a row */
     size_t *starts; /* [height + 1] */
+    double low_px[2], high_px[2]; /* around all lines */
 };
 
 static struct vec3 to_pixels(const struct camera *camera, const struct image *image, const double p[3])
@@ -35,6 +36,14 @@ static int compare(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
+static void widen(struct crossings *box, const struct vec3 *p)
+{
+    box->low_px[0] = fmin(box->low_px[0], p->x);
+    box->low_px[1] = fmin(box->low_px[1], p->y);
+    box->high_px[0] = fmax(box->high_px[0], p->x);
+    box->high_px[1] = fmax(box->high_px[1], p->y);
+}
+
 static bool find_crossings(const struct cut_lines *lines, const struct camera *camera, const struct image *image, struct crossings *out,
                            struct error *err)
 {
@@ -48,8 +57,10 @@ static bool find_crossings(const struct cut_lines *lines, const struct camera *c
     }
     memset(out->starts, 0, ((size_t)height + 2) * sizeof *out->starts);
     for (size_t i = 0; i < lines->n; i++) {
-        for (int end = 0; end < 2; end++)
+        for (int end = 0; end < 2; end++) {
             ends[i][end] = to_pixels(camera, image, lines->ends_lps_mm[i][end]);
+            widen(out, &ends[i][end]);
+        }
         if (rows_of(&ends[i][0], &ends[i][1], height, &first, &last))
             for (int y = first; y <= last; y++)
                 out->starts[y + 2]++;
@@ -84,18 +95,26 @@ static void mark(struct image *image, int x, int y, bool is_added, int period)
 bool check_paint(const struct cut_region *univels, const struct cut_lines *surface, const struct camera *camera, double position_mm,
                  struct image *image, double scale, struct overlay_check *check, struct error *err)
 {
-    struct crossings crossings;
+    struct crossings crossings = { .low_px = { INFINITY, INFINITY }, .high_px = { -INFINITY, -INFINITY } };
     if (!find_crossings(surface, camera, image, &crossings, err))
         return false;
     const double *m = camera->lps_mm_from_clip.m; /* of a parallel view: linear */
     struct vec3 across = vec3_scale(vec3(m[0], m[1], m[2]), 2.0 / image->width_px), down = vec3_scale(vec3(m[4], m[5], m[6]), -2.0 / image->height_px);
     struct vec3 f = camera->forward; /* along a patient axis, up or down it */
     struct vec3 middle = vec3_add(camera->target_lps_mm, vec3_scale(f, (f.x + f.y + f.z) * position_mm - vec3_dot(f, camera->target_lps_mm)));
+    for (int corner = 0; corner < 8; corner++) { /* nothing differs outside of both */
+        const struct box3 *box = &univels->bounds_lps_mm;
+        const double p[3] = { corner & 1 ? box->high.x : box->low.x, corner & 2 ? box->high.y : box->low.y, corner & 4 ? box->high.z : box->low.z };
+        struct vec3 pixel = to_pixels(camera, image, p);
+        widen(&crossings, &pixel);
+    }
+    int low_x = (int)fmax(0, fmin(crossings.low_px[0] - 1, image->width_px)), high_x = (int)fmin(image->width_px - 1, fmax(crossings.high_px[0] + 1, -1));
+    int low_y = (int)fmax(0, fmin(crossings.low_px[1] - 1, image->height_px)), high_y = (int)fmin(image->height_px - 1, fmax(crossings.high_px[1] + 1, -1));
     int period = (int)fmax(4, round(7 * scale));
-    for (int y = 0; y < image->height_px; y++) {
+    for (int y = low_y; y <= high_y; y++) {
         const double *x_crossed = crossings.x + crossings.starts[y];
         size_t n = crossings.starts[y + 1] - crossings.starts[y], passed = 0;
-        for (int x = 0; n % 2 == 0 && x < image->width_px; x++) {
+        for (int x = low_x; n % 2 == 0 && x <= high_x; x++) {
             double at = x + 0.5 + CHECK_NUDGE;
             while (passed < n && x_crossed[passed] <= at)
                 passed++;

@@ -36,11 +36,19 @@ static bool is_same_grid(const struct grid *a, const struct grid *b)
     return memcmp(a->size, b->size, sizeof a->size) == 0 && memcmp(&a->lps_mm_from_ijk, &b->lps_mm_from_ijk, sizeof a->lps_mm_from_ijk) == 0;
 }
 
+static void add_bounds(struct box3 *box, const struct region *region, const struct grid *grid)
+{
+    for (int corner = 0; region->n_voxels > 0 && corner < 8; corner++)
+        box3_add(box, affine_point(&grid->lps_mm_from_ijk, vec3(corner & 1 ? region->high_ijk[0] + 0.5 : region->low_ijk[0] - 0.5,
+                                                               corner & 2 ? region->high_ijk[1] + 0.5 : region->low_ijk[1] - 0.5,
+                                                               corner & 4 ? region->high_ijk[2] + 0.5 : region->low_ijk[2] - 0.5)));
+}
+
 bool cut_region_init(struct cut_region *cut, const struct region_set *set, size_t region, struct error *err)
 {
     size_t *inside = mem_array(set->n_regions, sizeof *inside, UINT64_MAX, err);
     size_t n = inside ? region_with_descendants(set, region, inside) : 0;
-    *cut = (struct cut_region){ .grid = &set->layers[set->regions[region].layer]->grid };
+    *cut = (struct cut_region){ .grid = &set->layers[set->regions[region].layer]->grid, .bounds_lps_mm = box3_empty() };
     cut->parts = inside ? mem_array(n, sizeof *cut->parts, UINT64_MAX, err) : NULL;
     bool is_good = cut->parts != NULL;
     for (size_t i = 0; is_good && i < n; i++) {
@@ -61,6 +69,7 @@ bool cut_region_init(struct cut_region *cut, const struct region_set *set, size_
             cut->n_parts++;
         }
         cut->parts[part].is_inside[one->label] = 1;
+        add_bounds(&cut->bounds_lps_mm, one, cut->grid);
     }
     free(inside);
     if (!is_good)

@@ -19,7 +19,8 @@ void cut_lines_finish(struct cut_lines *lines);
 
 /* A region's univels, those of everything inside it among them. */
 struct cut_region {
-    const struct grid *grid; /* the region's own */
+    const struct grid *grid;   /* the region's own */
+    struct box3 bounds_lps_mm; /* around all of them */
     struct {
         const struct volume *layer;
         uint8_t *is_inside; /* [65536] by label */
