@@ -1,5 +1,5 @@
-/* The neighbour fan (see shape_parts.h). Fans are found by threads, each for its own voxels; then every triangle goes to its corner
- * with the lowest number, where equal ones are found among the few that a voxel can have. */
+/* The neighbour fan (see shape_parts.h). First each voxel's fan is found; then each voxel collects the triangles whose lowest corner it
+ * is, from its own fan and its neighbours', as a set of bits, so that one which several fans have is there once. */
 #include <stdlib.h>
 
 #include "core/base/mem.h"
@@ -8,7 +8,7 @@
 #include "core/surface/shape_make.h"
 #include "core/surface/shape_parts.h"
 
-enum { AROUND = 27, MIDDLE = 13, MAX_FAN = 26, MAX_VOXELS = 5000000, MAX_ALL = 60000000 };
+enum { AROUND = 27, MIDDLE = 13, AFTER = 13, MAX_FAN = 26, MAX_VOXELS = 5000000 };
 
 struct fan {
     uint8_t from[MAX_FAN], to[MAX_FAN]; /* of each triangle the two neighbours, 0..26 as in shape_border_around */
@@ -19,6 +19,9 @@ struct job {
     const struct shape_border *border;
     struct fan *fans;           /* [border->n] */
     struct vec3 offset[AROUND]; /* to each neighbour, mm */
+    uint32_t near[AROUND];      /* bit b: neighbours a and b are neighbours of each other */
+    uint32_t *first;            /* [border->n] triangle of those that each voxel is the lowest corner of; first their count */
+    struct mesh *mesh;
 };
 
 static int step_of(int neighbour, int axis)
@@ -113,7 +116,7 @@ static void make_fan(const struct job *job, size_t number, struct fan *fan)
     for (int at = 0; at < count; at++) {
         int next = (at + 1) % count, from = order[at], to = order[next];
         int32_t gap = turns[next] - turns[at] + (next == 0 ? FULL_TURN : 0);
-        if (gap > FULL_TURN / 2 + ROUNDING || !are_neighbours(from, to)) /* at the edge of a sheet the fan is open */
+        if (gap > FULL_TURN / 2 + ROUNDING || !(job->near[from] >> to & 1)) /* at the edge of a sheet the fan is open */
             continue;
         fan->from[fan->n] = (uint8_t)from;
         fan->to[fan->n++] = (uint8_t)to;
@@ -130,74 +133,58 @@ static void fan_part(void *context, int part, int n_parts)
 
 /* ---- all of them ---------------------------------------------------------------------------------------------------------- */
 
+/* Triangles whose lowest corner a voxel is: bit b - 14 of with[a - 14] for its neighbours a < b. Neighbours are numbered as voxels are
+ * ordered, so those that come after a voxel are 14 to 26. */
 struct triangles {
-    uint32_t *first;    /* [n + 1] of each voxel, those whose lowest corner it is */
-    uint32_t (*ends)[2]; /* the two other corners, ascending */
+    uint16_t with[AFTER];
+    uint32_t number[AFTER]; /* of the neighbours that are there */
 };
 
-static size_t neighbour_number(const struct shape_border *border, size_t number, int neighbour)
+static void add_triangle(struct triangles *triangles, int a, int b)
 {
-    const uint16_t *ijk = border->ijk + 3 * number;
-    return shape_border_number(border, ijk[0] + step_of(neighbour, 0), ijk[1] + step_of(neighbour, 1), ijk[2] + step_of(neighbour, 2));
+    int low = a < b ? a : b, high = a < b ? b : a;
+    triangles->with[low - MIDDLE - 1] |= (uint16_t)(1 << (high - MIDDLE - 1));
 }
 
-static void sort_three(uint32_t v[3])
-{
-    for (int a = 0; a < 2; a++)
-        for (int b = 0; b < 2 - a; b++)
-            if (v[b] > v[b + 1]) {
-                uint32_t swap = v[b];
-                v[b] = v[b + 1];
-                v[b + 1] = swap;
-            }
-}
-
-/* Every triangle of every fan: counted with its lowest corner, or put there. */
-static void deal_out(const struct job *job, struct triangles *all, bool is_counting)
+/* From the voxel's own fan, and from those of its neighbours that come after it. */
+static void gather(const struct job *job, size_t number, struct triangles *triangles)
 {
     const struct shape_border *border = job->border;
-    for (size_t at = 0; at < border->n; at++) {
-        const struct fan *fan = &job->fans[at];
-        size_t numbers[AROUND];
-        uint32_t known = 0;
-        for (int t = 0; t < 2 * fan->n; t++) {
-            int neighbour = t % 2 ? fan->to[t / 2] : fan->from[t / 2];
-            if (!(known >> neighbour & 1))
-                numbers[neighbour] = neighbour_number(border, at, neighbour);
-            known |= (uint32_t)1 << neighbour;
-        }
+    const uint16_t *ijk = border->ijk + 3 * number;
+    const struct fan *own = &job->fans[number];
+    uint32_t around = shape_border_around(border->border, ijk[0], ijk[1], ijk[2]);
+    *triangles = (struct triangles){ { 0 }, { 0 } };
+    for (int t = 0; t < own->n; t++)
+        if (own->from[t] > MIDDLE && own->to[t] > MIDDLE)
+            add_triangle(triangles, own->from[t], own->to[t]);
+    for (int other = MIDDLE + 1; other < AROUND; other++) {
+        if (!(around >> other & 1))
+            continue;
+        size_t there = shape_border_number(border, ijk[0] + step_of(other, 0), ijk[1] + step_of(other, 1), ijk[2] + step_of(other, 2));
+        const struct fan *fan = &job->fans[there];
+        int me = AROUND - 1 - other; /* as seen from there */
+        triangles->number[other - MIDDLE - 1] = (uint32_t)there;
         for (int t = 0; t < fan->n; t++) {
-            uint32_t v[3] = { (uint32_t)at, (uint32_t)numbers[fan->from[t]], (uint32_t)numbers[fan->to[t]] };
-            sort_three(v);
-            if (is_counting) {
-                all->first[v[0] + 2]++;
+            if (fan->from[t] != me && fan->to[t] != me)
                 continue;
-            }
-            uint32_t place = all->first[v[0] + 1]++;
-            all->ends[place][0] = v[1];
-            all->ends[place][1] = v[2];
+            int third = (fan->from[t] == me ? fan->to[t] : fan->from[t]) + other - MIDDLE; /* as seen from here */
+            if (third > MIDDLE)
+                add_triangle(triangles, other, third);
         }
     }
 }
 
-/* Sorted, each once; returns how many. */
-static uint32_t keep_once(uint32_t (*ends)[2], uint32_t n)
+static void count_part(void *context, int part, int n_parts)
 {
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        uint32_t a = ends[i][0], b = ends[i][1], hole = kept;
-        while (hole > 0 && (ends[hole - 1][0] > a || (ends[hole - 1][0] == a && ends[hole - 1][1] > b)))
-            hole--;
-        if (hole > 0 && ends[hole - 1][0] == a && ends[hole - 1][1] == b)
-            continue;
-        for (uint32_t move = kept++; move > hole; move--) {
-            ends[move][0] = ends[move - 1][0];
-            ends[move][1] = ends[move - 1][1];
-        }
-        ends[hole][0] = a;
-        ends[hole][1] = b;
+    struct job *job = context;
+    size_t end = job->border->n * (size_t)(part + 1) / (size_t)n_parts;
+    for (size_t at = job->border->n * (size_t)part / (size_t)n_parts; at < end; at++) {
+        struct triangles triangles;
+        gather(job, at, &triangles);
+        job->first[at] = 0;
+        for (int a = 0; a < AFTER; a++)
+            job->first[at] += (uint32_t)__builtin_popcount(triangles.with[a]);
     }
-    return kept;
 }
 
 static struct vec3 load(const float *at)
@@ -205,85 +192,83 @@ static struct vec3 load(const float *at)
     return vec3((double)at[0], (double)at[1], (double)at[2]);
 }
 
-static void write_mesh(const struct job *job, const struct triangles *all, const uint32_t *kept, struct mesh *mesh)
+static struct vec3 centre_of(const struct shape_border *border, uint32_t number)
 {
-    const struct shape_border *border = job->border;
-    for (size_t at = 0; at < border->n; at++) {
-        const uint16_t *ijk = border->ijk + 3 * at;
-        struct vec3 p = affine_point(&border->mask->lps_mm_from_ijk, vec3(ijk[0], ijk[1], ijk[2]));
-        mesh->positions_lps_mm[3 * at] = (float)p.x;
-        mesh->positions_lps_mm[3 * at + 1] = (float)p.y;
-        mesh->positions_lps_mm[3 * at + 2] = (float)p.z;
-    }
-    uint32_t *out = mesh->indices;
-    for (uint32_t at = 0; at < border->n; at++)
-        for (uint32_t t = all->first[at]; t < all->first[at] + kept[at]; t++) {
-            uint32_t v[3] = { at, all->ends[t][0], all->ends[t][1] };
-            struct vec3 facing = vec3(0, 0, 0), corner[3];
-            for (int c = 0; c < 3; c++) {
-                corner[c] = load(mesh->positions_lps_mm + 3 * (size_t)v[c]);
-                facing = vec3_add(facing, load(border->normals + 3 * (size_t)v[c]));
-            }
-            struct vec3 normal = vec3_cross(vec3_sub(corner[1], corner[0]), vec3_sub(corner[2], corner[0]));
-            bool swap = vec3_dot(normal, facing) < 0;
-            *out++ = v[0];
-            *out++ = v[swap ? 2 : 1];
-            *out++ = v[swap ? 1 : 2];
-        }
+    const uint16_t *ijk = border->ijk + 3 * (size_t)number;
+    return affine_point(&border->mask->lps_mm_from_ijk, vec3(ijk[0], ijk[1], ijk[2]));
 }
 
-static struct mesh *join(const struct job *job, struct error *err)
+static void write_triangle(const struct shape_border *border, const uint32_t v[3], uint32_t *out)
+{
+    struct vec3 facing = vec3(0, 0, 0), corner[3];
+    for (int c = 0; c < 3; c++) {
+        corner[c] = centre_of(border, v[c]);
+        facing = vec3_add(facing, load(border->normals + 3 * (size_t)v[c]));
+    }
+    struct vec3 normal = vec3_cross(vec3_sub(corner[1], corner[0]), vec3_sub(corner[2], corner[0]));
+    bool swap = vec3_dot(normal, facing) < 0;
+    out[0] = v[0];
+    out[1] = v[swap ? 2 : 1];
+    out[2] = v[swap ? 1 : 2];
+}
+
+static void write_part(void *context, int part, int n_parts)
+{
+    struct job *job = context;
+    size_t end = job->border->n * (size_t)(part + 1) / (size_t)n_parts;
+    for (size_t at = job->border->n * (size_t)part / (size_t)n_parts; at < end; at++) {
+        struct triangles triangles;
+        struct vec3 p = centre_of(job->border, (uint32_t)at);
+        uint32_t *out = job->mesh->indices + 3 * (size_t)job->first[at];
+        job->mesh->positions_lps_mm[3 * at] = (float)p.x;
+        job->mesh->positions_lps_mm[3 * at + 1] = (float)p.y;
+        job->mesh->positions_lps_mm[3 * at + 2] = (float)p.z;
+        gather(job, at, &triangles);
+        for (int a = 0; a < AFTER; a++)
+            for (uint32_t left = triangles.with[a]; left; left &= left - 1, out += 3)
+                write_triangle(job->border, (uint32_t[3]){ (uint32_t)at, triangles.number[a], triangles.number[__builtin_ctz(left)] }, out);
+    }
+}
+
+static bool make_mesh(struct job *job, int n_threads, struct error *err)
 {
     size_t n = job->border->n;
-    uint64_t n_all = 0, n_kept = 0;
-    for (size_t at = 0; at < n; at++)
-        n_all += job->fans[at].n;
-    if (n_all > MAX_ALL) {
-        error_set(err, ERROR_LIMIT, "fans of %llu triangles, some of them in several: at most %d are allowed", (unsigned long long)n_all,
-                  MAX_ALL);
-        return NULL;
+    uint64_t total = 0;
+    job->first = mem_array(n, sizeof *job->first, UINT64_MAX, err);
+    if (!job->first)
+        return false;
+    parallel_run(n_threads, count_part, job);
+    for (size_t at = 0; at < n; at++) {
+        uint32_t count = job->first[at];
+        job->first[at] = (uint32_t)total;
+        total += count;
     }
-    struct mesh *mesh = NULL;
-    struct triangles all = { .first = mem_array(n + 2, sizeof *all.first, UINT64_MAX, err) };
-    all.ends = all.first ? mem_array((size_t)n_all, sizeof *all.ends, UINT64_MAX, err) : NULL;
-    uint32_t *kept = all.ends ? mem_array(n, sizeof *kept, UINT64_MAX, err) : NULL;
-    if (kept) {
-        deal_out(job, &all, true);
-        for (size_t at = 0; at < n; at++)
-            all.first[at + 2] += all.first[at + 1];
-        deal_out(job, &all, false);
-        for (size_t at = 0; at < n; at++) {
-            kept[at] = keep_once(all.ends + all.first[at], all.first[at + 1] - all.first[at]);
-            n_kept += kept[at];
-        }
-        if (n_kept > SHAPE_MAX_TRIANGLES)
-            error_set(err, ERROR_LIMIT, "fans of %llu triangles: at most %d are allowed", (unsigned long long)n_kept, SHAPE_MAX_TRIANGLES);
-        else
-            mesh = mesh_create(n, (size_t)n_kept, err);
-    }
-    if (mesh) {
-        write_mesh(job, &all, kept, mesh);
-        mesh_measure_bounds(mesh);
-    }
-    free(kept);
-    free(all.ends);
-    free(all.first);
-    return mesh;
+    if (total > SHAPE_MAX_TRIANGLES)
+        return error_set(err, ERROR_LIMIT, "fans of %llu triangles: at most %d are allowed", (unsigned long long)total, SHAPE_MAX_TRIANGLES);
+    job->mesh = mesh_create(n, (size_t)total, err);
+    if (!job->mesh)
+        return false;
+    parallel_run(n_threads, write_part, job);
+    mesh_measure_bounds(job->mesh);
+    return true;
 }
 
 struct mesh *shape_fan(const struct mask *mask, int n_threads, struct error *err)
 {
     struct shape_border *border = shape_border_create(mask, MAX_VOXELS, n_threads, err);
     struct job job = { .border = border };
-    struct mesh *mesh = NULL;
     job.fans = border ? mem_large_array(border->n, sizeof *job.fans, UINT64_MAX, err) : NULL;
     if (job.fans) {
-        for (int at = 0; at < AROUND; at++)
+        for (int at = 0; at < AROUND; at++) {
             job.offset[at] = affine_vector(&mask->lps_mm_from_ijk, vec3(step_of(at, 0), step_of(at, 1), step_of(at, 2)));
+            for (int other = 0; other < AROUND; other++)
+                job.near[at] |= (uint32_t)are_neighbours(at, other) << other;
+        }
         parallel_run(n_threads, fan_part, &job);
-        mesh = join(&job, err);
+        (void)make_mesh(&job, n_threads, err);
     }
+    free(job.first);
     free(job.fans);
     shape_border_destroy(border);
-    return mesh;
+    return job.mesh;
 }
