@@ -108,10 +108,13 @@ static void print_doses(const struct plan *plan)
             printf("  %.4g to %.4g", component->values->low, component->values->high);
             if (strcmp(unit, dose->unit) != 0)
                 printf(" %s", unit);
-            if (dose->body_high[component->quantity] > 0)
-                printf(", in the regions up to %.4g", dose->body_high[component->quantity]);
-            if (dose->reference[component->quantity] > 0)
-                printf(", 100 %% is %.4g", dose->reference[component->quantity]);
+            double body = dose->body_high[component->quantity], reference = dose->reference[component->quantity];
+            if (body > 0 || reference > 0)
+                printf("\n     ");
+            if (body > 0)
+                printf(" in the regions up to %.4g%s", body, reference > 0 ? ";" : "");
+            if (reference > 0)
+                printf(" 100 %% is %.4g", reference);
             printf("\n");
         }
     }
@@ -212,7 +215,7 @@ static void print_preferences(const struct plan_preferences *preferences)
         printf("\nContour levels\n ");
     for (size_t i = 0; i < preferences->n_levels; i++)
         printf(" %.4g %% #%02x%02x%02x%s", preferences->levels[i].percent, preferences->levels[i].rgb[0], preferences->levels[i].rgb[1],
-               preferences->levels[i].rgb[2], i + 1 < preferences->n_levels ? "," : "\n");
+               preferences->levels[i].rgb[2], i + 1 == preferences->n_levels ? "\n" : i % 6 == 5 ? ",\n " : ",");
 }
 
 static void print_report(const struct report *report)

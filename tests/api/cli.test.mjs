@@ -107,7 +107,7 @@ describe('beamroom info', () => {
     assert.equal(status, 0, stderr);
     const info = JSON.parse(stdout);
     assert.deepEqual(Object.keys(info), ['id', 'name', 'note', 'is_phantom', 'load_ms', 'bounds_mm', 'home', 'images', 'regions',
-      'hierarchy', 'doses', 'beams', 'tracks', 'report']);
+      'hierarchy', 'doses', 'beams', 'tracks', 'curves', 'preferences', 'report']);
     assert.equal(info.id, 'head-one');
     assert.equal(info.is_phantom, true);
     const [image] = info.images;
