@@ -74,21 +74,28 @@ static void numbers_are_read_as_people_write_them_and_the_rest_is_not_a_number(v
     (void)state;
     struct made_dicom made;
     made_begin(&made, MADE_EXPLICIT);
-    made_text(&made, DICOM_TAG(0x0020, 0x0032), "DS", "1.\\.5\\-0\\1E+3\\\\1,5\\abc\\inf\\nan\\ 12.25 \\0x10\\1e999\\--1\\+-1");
+    made_text(&made, DICOM_TAG(0x0020, 0x0032), "DS", "1.\\.5\\-0\\1E+3\\\\1,5\\abc\\inf\\nan\\ 12.25 \\0x10\\1e999\\--1\\+-1\\-inf\\-nan\\-.5\\.\\-\\0.1"
+                                                     "\\123456789012345\\-0.00000000000001\\12345.678901234567");
     struct dicom_file *file = parse(&made);
-    double v[16] = { 0 };
-    assert_int_equal(dicom_numbers(dicom_root(file), DICOM_TAG(0x0020, 0x0032), v, 16), 14);
+    double v[24] = { 0 };
+    assert_int_equal(dicom_numbers(dicom_root(file), DICOM_TAG(0x0020, 0x0032), v, 24), 23);
     assert_close(v[0], 1, 0);
     assert_close(v[1], 0.5, 0);
     assert_close(v[2], 0, 0);
     assert_close(v[3], 1000, 0);
     assert_close(v[9], 12.25, 0);
-    static const int bad[] = { 4, 5, 6, 7, 8, 10, 11, 12, 13 };
+    /* what the compiler reads from the same digits: rounded once, as a decimal number should be */
+    assert_close(v[16], -.5, 0);
+    assert_close(v[19], 0.1, 0);
+    assert_close(v[20], 123456789012345.0, 0);
+    assert_close(v[21], -0.00000000000001, 0);
+    assert_close(v[22], 12345.678901234567, 0);
+    static const int bad[] = { 4, 5, 6, 7, 8, 10, 11, 12, 13, 14, 15, 17, 18 };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         assert_true(isnan(v[bad[i]]));
     /* the count is of all, whatever is filled; one number may be asked for alone */
-    assert_int_equal(dicom_numbers(dicom_root(file), DICOM_TAG(0x0020, 0x0032), v, 2), 14);
-    assert_int_equal(dicom_numbers(dicom_root(file), DICOM_TAG(0x0020, 0x0032), NULL, 0), 14);
+    assert_int_equal(dicom_numbers(dicom_root(file), DICOM_TAG(0x0020, 0x0032), v, 2), 23);
+    assert_int_equal(dicom_numbers(dicom_root(file), DICOM_TAG(0x0020, 0x0032), NULL, 0), 23);
     dicom_file_destroy(file);
     made_finish(&made);
 }

@@ -115,6 +115,34 @@ bool dicom_text_put(const std::string &text, char *out, size_t size)
 
 namespace {
 
+// "-123.45" and its like, up to 15 digits: digits and the power of ten are exact, and so is their quotient when it is rounded once.
+// W. D. Clinger, How to Read Floating Point Numbers Accurately, PLDI 1990. false: something else.
+bool short_decimal(const char *from, const char *end, double *value)
+{
+    static const double tens[] = { 1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15 };
+    bool is_negative = from < end && *from == '-';
+    from += is_negative;
+    unsigned long long digits = 0;
+    int n = 0, n_behind = -1;
+    for (; from < end; from++) {
+        if (*from == '.' && n_behind < 0) {
+            n_behind = 0;
+        } else if (*from >= '0' && *from <= '9' && n < 15) {
+            digits = 10 * digits + static_cast<unsigned>(*from - '0');
+            n++;
+            n_behind += n_behind >= 0;
+        } else {
+            return false;
+        }
+    }
+    if (n == 0)
+        return false;
+    *value = static_cast<double>(digits) / tens[n_behind > 0 ? n_behind : 0];
+    if (is_negative)
+        *value = -*value;
+    return true;
+}
+
 // Decimal strings as people write them: blanks around, a leading plus; else not-a-number. Knows no locale.
 double number_from(const char *from, const char *end)
 {
@@ -125,9 +153,11 @@ double number_from(const char *from, const char *end)
     if (end - from > 1 && *from == '+' && from[1] != '-')
         from++;
     double value;
+    if (short_decimal(from, end, &value))
+        return value;
     auto [stop, error] = std::from_chars(from, end, value);
     bool is_digits = from < end && (*from == '-' || *from == '.' || (*from >= '0' && *from <= '9')); // not "inf", "nan"
-    if (stop != end || !is_digits || error != std::errc())
+    if (stop != end || !is_digits || error != std::errc() || !std::isfinite(value))
         return std::numeric_limits<double>::quiet_NaN();
     return value;
 }
