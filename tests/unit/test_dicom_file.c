@@ -1,15 +1,13 @@
-/* The door to DICOM: elements, texts, numbers, sequences, pixels, and what is refused. Expected values: the bytes written here
- * (PS3.5), and pixels that eight encodings of one picture have in common. */
+/* The door to DICOM: elements, texts, numbers, sequences, and what is refused. Expected values: the bytes written here
+ * (PS3.5). */
 #include "core/formats/dicom/dicom_file.h"
 
-#include <dirent.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "core/formats/dicom/dicom_walk.h"
 #include "server/renderer/confine.h"
 #include "tests/check.h"
-#include "tests/unit/data_folder.h"
 #include "tests/unit/made_dicom.h"
 
 static const char *const encodings[] = { MADE_EXPLICIT, MADE_IMPLICIT, MADE_BIG_ENDIAN };
@@ -330,189 +328,6 @@ static void every_beginning_of_a_file_is_read_or_refused_with_a_sentence(void **
     }
 }
 
-static void made_image(struct made_dicom *made, const char *encoding, uint16_t bits, uint16_t stored, uint16_t high, bool is_signed)
-{
-    made_begin(made, encoding);
-    made_text(made, DICOM_TAG(0x0008, 0x0060), "CS", "CT");
-    made_u16(made, DICOM_TAG(0x0028, 0x0002), 1);
-    made_text(made, DICOM_TAG(0x0028, 0x0004), "CS", "MONOCHROME2");
-    made_u16(made, DICOM_TAG(0x0028, 0x0010), 2);
-    made_u16(made, DICOM_TAG(0x0028, 0x0011), 3);
-    made_u16(made, DICOM_TAG(0x0028, 0x0100), bits);
-    made_u16(made, DICOM_TAG(0x0028, 0x0101), stored);
-    made_u16(made, DICOM_TAG(0x0028, 0x0102), high);
-    made_u16(made, DICOM_TAG(0x0028, 0x0103), is_signed);
-}
-
-static void pixels_come_without_their_unused_bits_and_with_their_sign(void **state)
-{
-    (void)state;
-    static const struct {
-        uint16_t stored, high;
-        bool is_signed;
-        uint16_t cells[6];
-        int expected[6];
-    } cases[] = {
-        { 16, 15, true, { 0, 1, 0xFFFF, 0x8000, 0x7FFF, 0xFC18 }, { 0, 1, -1, -32768, 32767, -1000 } },
-        { 16, 15, false, { 0, 1, 0xFFFF, 0x8000, 0x7FFF, 0xFC18 }, { 0, 1, 65535, 32768, 32767, 64536 } },
-        { 12, 11, false, { 0xF001, 0x0FFF, 0x1000, 0x0800, 5, 0 }, { 1, 4095, 0, 2048, 5, 0 } },   /* an overlay above the value */
-        { 12, 11, true, { 0xF001, 0x0FFF, 0x1000, 0x0800, 5, 0 }, { 1, -1, 0, -2048, 5, 0 } },
-        { 12, 15, false, { 0x0010, 0xFFF0, 0x800F, 0, 0x10, 0x20 }, { 1, 4095, 2048, 0, 1, 2 } }, /* values at the top of the cell */
-        { 12, 13, true, { 0x2000, 0x0004, 0xC003, 0x3FFC, 0, 0 }, { -2048, 1, 0, -1, 0, 0 } },
-    };
-    static const char *const native[] = { MADE_EXPLICIT, MADE_IMPLICIT, MADE_BIG_ENDIAN };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
-        for (size_t e = 0; e < 3; e++) {
-            struct made_dicom made;
-            made_image(&made, native[e], 16, cases[i].stored, cases[i].high, cases[i].is_signed);
-            made_head(&made, DICOM_TAG(0x7FE0, 0x0010), "OW", 12);
-            made_words(&made, cases[i].cells, 6);
-            struct dicom_file *file = parse(&made);
-            struct dicom_pixels pixels;
-            struct error err = { 0 };
-            assert_true(dicom_pixels_look(file, &pixels, &err));
-            assert_int_equal(pixels.rows, 2);
-            assert_int_equal(pixels.columns, 3);
-            assert_int_equal(pixels.n_frames, 1);
-            uint16_t values[6];
-            assert_true(dicom_pixels_read(file, 0, values, &err));
-            for (int v = 0; v < 6; v++)
-                assert_int_equal(cases[i].is_signed ? (int)(int16_t)values[v] : (int)values[v], cases[i].expected[v]);
-            assert_false(dicom_pixels_read(file, 1, values, &err));
-            assert_int_equal(err.code, ERROR_RANGE);
-            dicom_file_destroy(file);
-            made_finish(&made);
-        }
-}
-
-static void two_pixels_of_8_bits_share_a_word_in_either_byte_order(void **state)
-{
-    (void)state;
-    static const char *const native[] = { MADE_EXPLICIT, MADE_BIG_ENDIAN, MADE_BIG_ENDIAN };
-    for (int e = 0; e < 3; e++) {
-        struct made_dicom made;
-        made_image(&made, native[e], 8, 8, 7, false);
-        made_head(&made, DICOM_TAG(0x7FE0, 0x0010), e == 2 ? "OB" : "OW", 6);
-        if (e == 2)
-            made_raw(&made, "\x01\x02\x03\x04\x05\x06", 6); /* bytes have no order */
-        else
-            made_words(&made, (uint16_t[]){ 0x0201, 0x0403, 0x0605 }, 3); /* the first pixel is the low byte: PS3.5 8.1.1 */
-        struct dicom_file *file = parse(&made);
-        uint8_t values[6];
-        struct error err = { 0 };
-        assert_true(dicom_pixels_read(file, 0, values, &err));
-        for (int v = 0; v < 6; v++)
-            assert_int_equal(values[v], v + 1);
-        dicom_file_destroy(file);
-        made_finish(&made);
-    }
-}
-
-static void pixels_that_contradict_themselves_are_refused(void **state)
-{
-    (void)state;
-    static const struct {
-        uint32_t tag;
-        uint16_t value;
-        enum error_code code;
-        const char *words;
-    } cases[] = {
-        { DICOM_TAG(0x0028, 0x0010), 0, ERROR_FORMAT, "rows: found 0, expected 1 to 4096" },
-        { DICOM_TAG(0x0028, 0x0011), 65535, ERROR_LIMIT, "columns: found 65535, expected 1 to 4096" },
-        { DICOM_TAG(0x0028, 0x0010), 4096, ERROR_FORMAT, "pixel data of 12 bytes; 3 x 4096 x 1 pixels of 16 bits need 24576" },
-        { DICOM_TAG(0x0028, 0x0100), 12, ERROR_UNSUPPORTED, "expected 8, 16 or 32" },
-        { DICOM_TAG(0x0028, 0x0101), 17, ERROR_FORMAT, "17 bits up to bit 15 do not fit into 16" },
-        { DICOM_TAG(0x0028, 0x0102), 3, ERROR_FORMAT, "do not fit" },
-        { DICOM_TAG(0x0028, 0x0002), 3, ERROR_UNSUPPORTED, "a colour picture" },
-    };
-    static const uint32_t tags[] = { DICOM_TAG(0x0028, 0x0002), DICOM_TAG(0x0028, 0x0010), DICOM_TAG(0x0028, 0x0011),
-                                     DICOM_TAG(0x0028, 0x0100), DICOM_TAG(0x0028, 0x0101), DICOM_TAG(0x0028, 0x0102) };
-    static const uint16_t good[] = { 1, 2, 3, 16, 16, 15 };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct made_dicom made;
-        made_begin(&made, MADE_EXPLICIT);
-        for (size_t t = 0; t < 6; t++)
-            made_u16(&made, tags[t], tags[t] == cases[i].tag ? cases[i].value : good[t]);
-        made_element(&made, DICOM_TAG(0x7FE0, 0x0010), "OW", "0123456789AB", 12);
-        struct dicom_file *file = parse(&made);
-        struct dicom_pixels pixels;
-        struct error err = { 0 };
-        assert_false(dicom_pixels_look(file, &pixels, &err));
-        if (err.code != cases[i].code || !strstr(err.text, cases[i].words))
-            fail_msg("%s: expected %s with \"%s\"", err.text, error_word(cases[i].code), cases[i].words);
-        uint16_t values[6];
-        assert_false(dicom_pixels_read(file, 0, values, &err));
-        dicom_file_destroy(file);
-        made_finish(&made);
-    }
-}
-
-static uint8_t *read_file(const char *path, size_t *size)
-{
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    fseek(file, 0, SEEK_END);
-    *size = (size_t)ftell(file);
-    rewind(file);
-    uint8_t *data = malloc(*size + 1);
-    assert_int_equal(fread(data, 1, *size, file), *size);
-    fclose(file);
-    return data;
-}
-
-static void the_lossless_encodings_of_one_picture_decode_to_the_same_pixels(void **state)
-{
-    (void)state;
-    char path[1024];
-    if (!data_path("dicom-transfer-syntaxes", path, sizeof path))
-        skip();
-    enum { N = 512 * 512 };
-    int16_t *first = NULL;
-    int n_equal = 0, n_refused = 0, n_lossy = 0;
-    DIR *folder = opendir(path);
-    for (struct dirent *entry; (entry = readdir(folder));) {
-        if (!strstr(entry->d_name, ".dcm_"))
-            continue;
-        char name[2048];
-        snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
-        size_t size;
-        uint8_t *data = read_file(name, &size);
-        struct error err = { 0 };
-        struct dicom_file *file = dicom_file_parse(data, size, entry->d_name, DICOM_WHOLE, &err);
-        assert_string_equal(err.text, "");
-        struct dicom_pixels pixels;
-        if (!dicom_pixels_look(file, &pixels, &err)) {
-            assert_int_equal(err.code, ERROR_UNSUPPORTED);
-            assert_non_null(strstr(err.text, "JPEG 2000"));
-            n_refused++;
-        } else {
-            int16_t *values = malloc(N * sizeof *values);
-            assert_true(dicom_pixels_read(file, 0, values, &err));
-            int worst = 0;
-            for (int i = 0; first && i < N; i++)
-                worst = abs(values[i] - first[i]) > worst ? abs(values[i] - first[i]) : worst;
-            if (strstr(entry->d_name, "1.2.4.51")) {
-                n_lossy++; /* may come first: nothing to compare with */
-                free(values);
-            } else {
-                if (first && worst == 0)
-                    n_equal++;
-                if (first)
-                    free(values);
-                else
-                    first = values;
-            }
-        }
-        dicom_file_destroy(file);
-        free(data);
-    }
-    closedir(folder);
-    free(first);
-    assert_int_equal(n_equal, 6); /* seven lossless ones that are read */
-    assert_int_equal(n_lossy, 1);
-    assert_int_equal(n_refused, 1);
-}
-
 /* In a process that has given up its files: what the library needs of its own is found, before or after. */
 static int read_confined(bool is_prepared)
 {
@@ -565,10 +380,6 @@ int main(void)
         cmocka_unit_test(nesting_in_bytes_of_a_known_length_counts),
         cmocka_unit_test(what_is_longer_than_what_holds_it_is_refused_with_its_place),
         cmocka_unit_test(every_beginning_of_a_file_is_read_or_refused_with_a_sentence),
-        cmocka_unit_test(pixels_come_without_their_unused_bits_and_with_their_sign),
-        cmocka_unit_test(two_pixels_of_8_bits_share_a_word_in_either_byte_order),
-        cmocka_unit_test(pixels_that_contradict_themselves_are_refused),
-        cmocka_unit_test(the_lossless_encodings_of_one_picture_decode_to_the_same_pixels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
