@@ -7,7 +7,7 @@
 #include "server/cli/text.h"
 #include "server/wire/plan_document.h"
 
-enum { LINE_LETTERS = 96, NAME_LETTERS = 34 };
+enum { LINE_LETTERS = 96, NAME_LETTERS = 34, ID_LETTERS = 12 };
 
 static void print_help(void)
 {
@@ -38,7 +38,9 @@ static void print_images(const struct plan *plan)
     for (size_t i = 0; i < plan->n_images; i++) {
         const struct plan_image *image = &plan->images[i];
         printf("  ");
-        text_print(stdout, image->id, 12);
+        text_print(stdout, image->id, ID_LETTERS);
+        if (strlen(image->id) > ID_LETTERS)
+            printf("\n%*s", 2 + ID_LETTERS, ""); /* the columns go on below */
         printf(" ");
         text_print(stdout, image->modality, 4);
         print_grid(&image->volume->grid);
@@ -94,6 +96,11 @@ static void print_doses(const struct plan *plan)
         const struct dose *dose = &plan->doses[i];
         printf("\nDose ");
         text_print(stdout, dose->id, 0);
+        if (*dose->name) {
+            printf(" \"");
+            text_print(stdout, dose->name, 0);
+            printf("\"");
+        }
         printf(", ");
         text_print(stdout, *dose->unit ? dose->unit : "no unit given", 0);
         printf(" per ");
@@ -139,15 +146,18 @@ static void print_delivery(const struct beam *beam)
         text_print(stdout, d->machine, 0);
     }
     print_if_given("energy", d->energy_mev, "MeV");
+    printf("\n  ");
     print_if_given("gantry", d->gantry_deg, "deg");
     if (isfinite(d->gantry_travel_deg) && d->gantry_travel_deg != 0)
         print_if_given("to", d->gantry_stop_deg, "deg");
     print_if_given("couch", d->couch_deg, "deg");
     print_if_given("collimator", d->collimator_deg, "deg");
-    printf("\n    position %s, %zu control points", patient_position_word(d->patient_position), d->n_control_points);
+    printf("  position %s\n    %zu control points", patient_position_word(d->patient_position), d->n_control_points);
     print_if_given("source to axis", d->sad_mm, "mm");
     if (isfinite(d->opening_x_mm[0]) && isfinite(d->opening_y_mm[0]))
         printf("  opening %.4g x %.4g mm", d->opening_x_mm[1] - d->opening_x_mm[0], d->opening_y_mm[1] - d->opening_y_mm[0]);
+    if (isfinite(d->dose_gy) || isfinite(d->meterset))
+        printf("\n  ");
     print_if_given("dose", d->dose_gy, "Gy a fraction");
     print_if_given("meterset", d->meterset, d->meterset_unit);
     printf("\n");

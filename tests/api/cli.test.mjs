@@ -27,7 +27,7 @@ describe('beamroom', () => {
   it('explains itself and each command', () => {
     const help = beamroom('--help');
     assert.equal(help.status, 0);
-    for (const command of ['export', 'info', 'phantom', 'render']) {
+    for (const command of ['convert', 'export', 'info', 'phantom', 'render']) {
       assert.match(help.stdout, new RegExp(`^  ${command} `, 'm'));
       const own = beamroom(command, '--help');
       assert.equal(own.status, 0);
@@ -102,6 +102,26 @@ describe('beamroom info', () => {
     for (const line of stdout.split('\n')) assert.ok([...line].length <= 100, line);
   });
 
+  it('refuses a plan that takes more than it may, with both figures', () => {
+    const small = beamroom('info', plan, '--max-mib', '2');
+    assert.equal(small.status, 1);
+    assert.match(small.stderr, /would take about \d+ MiB, and 2 MiB are allowed; the largest part is \S+ with \d+ MiB/);
+    assert.equal(beamroom('info', '--max-mib=2000', plan).status, 0);
+    assert.match(beamroom('info', plan, '--max-mib', 'x').stderr, /--max-mib needs a number/);
+  });
+
+  it('converts a plan to one that is the same but for the folder', () => {
+    const out = join(folder, 'converted');
+    const made = beamroom('convert', plan, out);
+    assert.equal(made.status, 0, made.stderr);
+    const [before, after] = [plan, out].map((dir) => JSON.parse(beamroom('info', dir, '--json').stdout));
+    for (const part of ['name', 'note', 'is_phantom', 'images', 'regions', 'hierarchy', 'doses', 'beams', 'tracks'])
+      assert.deepEqual(after[part], before[part], part);
+    const again = beamroom('convert', plan, out);
+    assert.equal(again.status, 1);
+    assert.match(again.stderr, /is there already and is not empty/);
+  });
+
   it('gives the same as JSON', () => {
     const { status, stdout, stderr } = beamroom('info', plan, '--json');
     assert.equal(status, 0, stderr);
@@ -133,7 +153,7 @@ describe('beamroom info', () => {
     near(high.gamma, 0.971, 1e-3); // the table's highest
     near(high.boron, 0.1016, 1e-6);
     assert.deepEqual(info.doses[0].components.map(({ per_ppm: perPpm }) => perPpm), [true, false, false, false]);
-    assert.deepEqual(info.beams, [{ id: 'beam-1', entry_mm: [0, 0, 88], target_mm: [0, 0, 10], aperture_mm: 100 }]);
+    assert.deepEqual(info.beams, [{ id: 'beam-1', entry_mm: [0, 0, 88], target_mm: [0, 0, 10], aperture_mm: 100, name: '', delivery: null }]);
     assert.equal(info.tracks.segments, Object.values(info.tracks.classes).reduce((sum, n) => sum + n, 0));
     assert.equal(Object.values(info.tracks.classes).filter((n) => n > 0).length, 8);
     assert.deepEqual(info.report, { lines: [], dropped: 0 });
