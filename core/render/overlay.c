@@ -194,7 +194,7 @@ static bool paint_check(const struct job *job, size_t region, struct overlay_che
     bool is_good = surface->is_open || surface->is_absent ||
                    check_paint(&cut, &surface->lines, job->camera, wanted.plane.position_mm, job->image, job->scale, check, err);
     cut_region_finish(&cut);
-    struct entry border = { .plan = snapshot->plan, .region = region, .what = LINES_OF_BORDER, .plane = pane_plane(snapshot) };
+    struct entry border = { .plan = snapshot->plan, .region = region, .what = LINES_OF_BORDER, .plane = wanted.plane };
     const struct entry *univels = is_good ? lines_of(job->overlay, snapshot->plan, &border, err) : NULL;
     if (!univels)
         return false;

@@ -253,17 +253,21 @@ static void the_check_finds_exactly_what_differs(void **state)
 {
     (void)state;
     static const double positions[] = { 3, 4.25, 5.5, 8 }, zooms[] = { 3, 7, 16 };
-    struct grid grid = unit_grid(40);
+    static const double faces[] = { 16, 9, -8 }; /* of the region itself, by kind: all of it or nothing, for both alike */
+    const uint32_t size[3] = { 40, 40, 40 };
+    struct grid grids[2] = { unit_grid(40), made_grid(40, 40, 40, made_affine(vec3(-1, 0, 0), vec3(0, -1, 0), vec3(0, 0, -1), size, origin)) };
     for (int grown = -1; grown <= 1; grown++)
-        for (int fan = 0; fan < 2; fan++) {
-            struct plan *plan = made_plan(&grid, box_label, box, 1);
+        for (int way = 0; way < 4; way++) {
+            bool fan = way & 1;
+            const struct grid *grid = &grids[way / 2]; /* indices that grow the other way put faces into other voxels */
+            struct plan *plan = made_plan(grid, box_label, box, 1);
             put_box(plan, fan ? REPRESENTATION_FAN : REPRESENTATION_UNIVELS, 0.5 * grown, true);
             for (int i = 0; i < 36; i++) {
                 struct scene scene = shots_scene(plan);
                 scene.check.visible = true;
                 snprintf(scene.check.region, sizeof scene.check.region, "box");
                 shots_style(&scene, "box")->representation = fan ? SCENE_REPRESENTATION_FAN : SCENE_REPRESENTATION_UNIVELS;
-                double at = positions[i % 4], zoom = zooms[i / 4 % 3];
+                double at = grown == 0 && i % 4 == 0 ? faces[i / 12] : positions[i % 4], zoom = zooms[i / 4 % 3];
                 enum scene_kind kind = kinds[i / 12];
                 set_slices(&scene, vec3(at, at, at));
                 struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, false };
