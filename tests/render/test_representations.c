@@ -181,6 +181,43 @@ static void every_way_draws_the_region_where_its_univels_are(void **state)
     finish(plan);
 }
 
+static void every_back_end_draws_every_way_the_same(void **state)
+{
+    (void)state;
+    struct error err = { 0 };
+    struct renderer *soft = renderer_create(RENDER_SOFT, &err), *tested = shots_renderer;
+    struct plan *plan = make_plan();
+    for (int v = 0; v < N_VIEWS; v++)
+        for (size_t w = 0; w < N_WAYS; w++) {
+            struct image *images[2];
+            struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, v % 2 == 0 };
+            for (int i = 0; i < 2; i++) {
+                struct scene scene = make_scene(plan, &ways[w]);
+                shots_style(&scene, "spiky")->opacity = v < 2 ? 0.7 : 1;
+                shots_renderer = i ? soft : tested;
+                images[i] = shots_take(plan, scene, make_view(v), &options, NULL);
+            }
+            shots_renderer = tested;
+            size_t n = (size_t)SHOTS_WIDTH * SHOTS_HEIGHT, n_far = 0;
+            for (size_t i = 0; i < n; i++) {
+                int most = 0;
+                for (size_t c = 0; c < 3; c++) {
+                    int apart = abs(images[0]->rgba[4 * i + c] - images[1]->rgba[4 * i + c]);
+                    most = apart > most ? apart : most;
+                }
+                n_far += most > 8;
+            }
+            if (n_far > n / 250)
+                printf("  %s, view %d: %zu pixels differ\n", ways[w].name, v, n_far);
+            assert_true(n_far <= n / 250); /* edges fall between samples a little differently */
+            image_destroy(images[0]);
+            image_destroy(images[1]);
+        }
+    renderer_forget(soft, plan);
+    renderer_destroy(soft);
+    finish(plan);
+}
+
 /* ---- solid points at any zoom ------------------------------------------------------------------------------------------------------ */
 
 /* Inside the body no pixel may show the background, from so far that a voxel is a third of a pixel to so near that it is a hundred. */
@@ -263,6 +300,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_way_draws_the_region_where_its_univels_are),
+        cmocka_unit_test(every_back_end_draws_every_way_the_same),
         cmocka_unit_test(solid_points_leave_no_gap_at_any_zoom),
         cmocka_unit_test(light_is_of_faces_or_baked_or_live),
     };
