@@ -265,6 +265,43 @@ static void nesting_in_bytes_of_a_known_length_counts(void **state)
     }
 }
 
+/* The library sorts each into place from the end of its list: ten thousand backwards are a hundred million steps. */
+static void a_few_elements_may_be_out_of_order_and_not_many(void **state)
+{
+    (void)state;
+    for (int n = DICOM_MAX_DISORDER; n <= DICOM_MAX_DISORDER + 1; n++) {
+        struct made_dicom made;
+        made_begin(&made, MADE_EXPLICIT);
+        made_text(&made, DICOM_TAG(0x0008, 0x0060), "CS", "CT");
+        for (int i = n; i >= 0; i--)
+            made_text(&made, DICOM_TAG(0x0009, 0x1000 + i), "LO", "");
+        made_text(&made, DICOM_TAG(0x0020, 0x0013), "IS", "5");
+        if (n > DICOM_MAX_DISORDER) {
+            is_refused(&made, ERROR_FORMAT, "more than 64 are not in order");
+        } else {
+            struct dicom_file *file = parse(&made);
+            int64_t number = 0;
+            assert_true(dicom_integer(dicom_root(file), DICOM_TAG(0x0020, 0x0013), &number) && number == 5);
+            assert_true(dicom_has(dicom_root(file), DICOM_TAG(0x0009, 0x1000)));
+            dicom_file_destroy(file);
+        }
+        made_finish(&made);
+    }
+}
+
+static void more_elements_than_any_plan_has_are_refused(void **state)
+{
+    (void)state;
+    struct made_dicom made;
+    made_begin(&made, MADE_EXPLICIT);
+    made_sequence(&made, DICOM_TAG(0x3006, 0x0020));
+    for (int i = 0; i <= DICOM_MAX_ELEMENTS; i++)
+        made_head(&made, DICOM_TAG(0xFFFE, 0xE000), "", 0);
+    made_sequence_end(&made);
+    is_refused(&made, ERROR_LIMIT, "more than 524288 elements");
+    made_finish(&made);
+}
+
 static void what_is_longer_than_what_holds_it_is_refused_with_its_place(void **state)
 {
     (void)state;
@@ -378,6 +415,8 @@ int main(void)
         cmocka_unit_test(sequences_are_entered_item_by_item_and_items_inherit_the_character_set),
         cmocka_unit_test(sequences_may_be_nested_16_deep_and_no_deeper),
         cmocka_unit_test(nesting_in_bytes_of_a_known_length_counts),
+        cmocka_unit_test(a_few_elements_may_be_out_of_order_and_not_many),
+        cmocka_unit_test(more_elements_than_any_plan_has_are_refused),
         cmocka_unit_test(what_is_longer_than_what_holds_it_is_refused_with_its_place),
         cmocka_unit_test(every_beginning_of_a_file_is_read_or_refused_with_a_sentence),
     };

@@ -2,7 +2,7 @@
  * what eight encodings of one picture have in common. */
 #include <dirent.h>
 
-#include "core/formats/dicom/dicom_file.h"
+#include "core/formats/dicom/dicom_series.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/made_dicom.h"
@@ -258,6 +258,42 @@ static void frames_in_several_fragments_are_found_by_the_table_of_offsets(void *
     free(seed);
 }
 
+static void a_file_of_more_frames_than_slices_are_read_is_refused_before_memory_is_taken(void **state)
+{
+    (void)state;
+    struct made_dicom made;
+    made_image(&made, MADE_EXPLICIT, 8, 8, 7, false);
+    struct made_dicom with = { 0 }; /* the same with a number of frames, in its place before the rows */
+    static const uint8_t rows[] = { 0x28, 0x00, 0x10, 0x00 };
+    size_t at = 0;
+    while (memcmp(made.data + at, rows, sizeof rows) != 0)
+        at++;
+    made_raw(&with, made.data, at);
+    made_text(&with, DICOM_TAG(0x0028, 0x0008), "IS", "5000");
+    made_raw(&with, made.data + at, made.size - at);
+    made_sequence(&with, DICOM_TAG(0x5200, 0x9230));
+    made_sequence_end(&with);
+    static const uint8_t pixels[6 * 5000];
+    made_element(&with, DICOM_TAG(0x7FE0, 0x0010), "OB", pixels, sizeof pixels);
+    char path[256];
+    struct folder folder;
+    struct error err = { 0 };
+    folder_make(path);
+    folder_put(path, "frames", with.data, with.size);
+    assert_true(folder_open(&folder, path, &err));
+    struct dicom_index *index = dicom_index_scan(&folder, NULL, 0, NULL, NULL, &err);
+    assert_non_null(index);
+    assert_int_equal(index->n_stacks, 1);
+    assert_null(dicom_series_read(&folder, index, 0, NULL, NULL, NULL, &err));
+    assert_int_equal(err.code, ERROR_LIMIT);
+    assert_non_null(strstr(err.text, "5000 frames; at most 4096 are read"));
+    dicom_index_destroy(index);
+    folder_close(&folder);
+    folder_remove(path);
+    made_finish(&with);
+    made_finish(&made);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -266,6 +302,7 @@ int main(void)
         cmocka_unit_test(pixels_that_contradict_themselves_are_refused),
         cmocka_unit_test(the_lossless_encodings_of_one_picture_decode_to_the_same_pixels),
         cmocka_unit_test(frames_in_several_fragments_are_found_by_the_table_of_offsets),
+        cmocka_unit_test(a_file_of_more_frames_than_slices_are_read_is_refused_before_memory_is_taken),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/formats/dicom/dicom_head.h"
 #include "core/formats/dicom/dicom_stacks.h"
+#include "core/formats/text.h"
 
 /* A file to look at, and what came of it. */
 struct looked {
@@ -126,7 +127,7 @@ enum { MOST_LINES = 20 }; /* of one kind; the others are counted */
 /* Moves what was read into the index; says what could not be. */
 static bool collect(struct scan *scan, struct dicom_index *index, struct report *report, struct error *err)
 {
-    size_t n = 0, n_broken = 0, n_too_many = 0;
+    size_t n = 0, n_broken = 0, n_misnamed = 0, n_too_many = 0;
     for (size_t i = 0; i < scan->n_files; i++)
         n += scan->files[i].result == DICOM_HEAD_READ;
     index->objects = mem_array(n, sizeof *index->objects, UINT64_MAX, err);
@@ -143,6 +144,9 @@ static bool collect(struct scan *scan, struct dicom_index *index, struct report 
             file->path = NULL;
         } else if (file->result == DICOM_HEAD_FOREIGN) {
             index->n_foreign++;
+            if (text_has_ending(file->path, ".dcm") && n_misnamed++ < MOST_LINES)
+                report_add(report, REPORT_WARNING, "dicom.unreadable", file->path, "It is named like DICOM, but has neither \"DICM\" at byte 128 "
+                           "nor an element at its beginning.");
         } else if (file->result == DICOM_HEAD_BROKEN && !file->why) {
             n_too_many++;
         } else if (file->result == DICOM_HEAD_BROKEN && n_broken++ < MOST_LINES) {

@@ -258,6 +258,8 @@ static bool find_slices(struct series *series, struct dicom_series_facts *facts,
 {
     const struct dicom_stack *stack = series->stack;
     const struct dicom_object *first = &series->index->objects[stack->objects[0]];
+    if (stack->n_slices > DICOM_MAX_SLICES)
+        return error_set(err, ERROR_LIMIT, "%s: %u frames; at most %d are read", first->path, stack->n_slices, DICOM_MAX_SLICES);
     series->slices = mem_array(stack->n_slices, sizeof *series->slices, UINT32_MAX, err);
     if (!series->slices)
         return false;

@@ -80,7 +80,7 @@ struct walk {
     const char *name;
     enum dicom_extent extent;
     struct error *err;
-    size_t n_elements;
+    size_t n_elements, n_disorder;
     bool is_cut; /* the failure was only that the data ends */
 };
 
@@ -126,6 +126,7 @@ struct level {
     bool is_open_ended; /* an end mark closes it */
     bool is_sequence, is_implicit, is_big_endian;
     bool is_fragments; /* a sequence whose items hold bytes */
+    uint32_t last_tag; /* of the elements so far */
 };
 
 static bool begins_with_item(const struct walk *walk, const struct element *element)
@@ -181,6 +182,11 @@ static bool step(struct walk *walk, struct level *levels, int *depth, size_t *at
         return wrong_element(walk, &element, inside->is_sequence ? "expected an item of a sequence" : "an item outside a sequence");
     if (!inside->is_sequence && element.tag >> 16 == 0xFFFE)
         return wrong_element(walk, &element, "an end mark of something that is not open");
+    if (!inside->is_sequence && element.tag <= inside->last_tag && ++walk->n_disorder > DICOM_MAX_DISORDER)
+        return error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: element (%04X,%04X) behind (%04X,%04X): more than %d are not in order", walk->name,
+                         element.at, element.tag >> 16, element.tag & 0xFFFF, inside->last_tag >> 16, inside->last_tag & 0xFFFF,
+                         DICOM_MAX_DISORDER);
+    inside->last_tag = element.tag > inside->last_tag ? element.tag : inside->last_tag;
     if (element.value_at > inside->end || (element.length != UNDEFINED && element.length > inside->end - element.value_at)) {
         walk->is_cut = inside->end == walk->size;
         return error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: element (%04X,%04X) says %u bytes, but %s ends after %zu", walk->name,

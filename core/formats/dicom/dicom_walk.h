@@ -5,7 +5,8 @@
 #include "core/formats/dicom/dicom_file.h"
 
 enum {
-    DICOM_MAX_ELEMENTS = 1 << 20,   /* in one file, items included */
+    DICOM_MAX_ELEMENTS = 1 << 19,   /* in one file, items and end marks included: about a second of the library's time */
+    DICOM_MAX_DISORDER = 64,        /* elements behind one with a larger tag; the library looks for the place of each from the end */
     DICOM_MAX_INFLATED_MIB = 128    /* a deflated data set, inflated */
 };
 
