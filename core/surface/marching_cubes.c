@@ -365,14 +365,16 @@ static bool make_graph(const struct job *job, bool is_closed, struct marching_gr
 {
     size_t n = job->grid.mesh->n_vertices;
     graph->points = mem_large_array(n, sizeof *graph->points, UINT64_MAX, err);
-    graph->links = graph->points ? mem_large_array(n, sizeof *graph->links, UINT64_MAX, err) : NULL;
+    if (graph->points && !graph->has_no_links)
+        graph->links = mem_large_array(n, sizeof *graph->links, UINT64_MAX, err);
+    memcpy(graph->start, job->grid.start, sizeof graph->start);
     graph->lps_mm_from_at = job->mask->lps_mm_from_ijk;
     graph->lps_mm_from_at.origin = affine_point(&job->mask->lps_mm_from_ijk,
                                                 vec3(job->grid.start[0], job->grid.start[1], job->grid.start[2]));
     for (size_t v = 0; graph->links && !is_closed && v < n; v++)
         for (int slot = 0; slot < 4; slot++)
             graph->links[v][slot] = (uint32_t)v;
-    return graph->links != NULL;
+    return graph->points && (graph->links || graph->has_no_links);
 }
 
 void marching_graph_finish(struct marching_graph *graph)

@@ -19,6 +19,8 @@ struct marching_graph {
     struct marching_point *points; /* [n_vertices] */
     uint32_t (*links)[4];          /* [n_vertices] */
     struct affine lps_mm_from_at;
+    int32_t start[3];              /* index in the mask of place 0 0 0 */
+    bool has_no_links;             /* set by the caller: they are not wanted, links stays NULL */
 };
 void marching_graph_finish(struct marching_graph *graph);
 

@@ -90,7 +90,7 @@ void marching_graph_write(const struct marching_rows *grid, struct marching_grap
         struct around rows = rows_around(grid, y, z);
         if (row[1].x > row->x)
             write_points(grid, row, &rows, y, z, graph->points);
-        if (rows.has_cells && row[1].triangles > row->triangles)
+        if (graph->links && rows.has_cells && row[1].triangles > row->triangles)
             write_links(grid, row, &rows, graph->links);
     }
 }

@@ -24,6 +24,17 @@ extern const struct surface_options surface_defaults; /* 0, 40 million, true */
  *            ambiguous face always agree. Triangle counts equal vtkFlyingEdges3D's on the same padded mask. */
 NODISCARD struct mesh *surface_marching_cubes(const struct mask *mask, const struct surface_options *options, struct error *err);
 
+/* The same of a field, a dose say: inside is where its value is at least iso. Vertices lie where the value along a grid edge, taken
+ * as linear between the two ends, is iso; in the middle of the edge where an end has no value: it is not finite, which counts as
+ * outside, or lies beyond the grid (close_at_border), half a voxel behind the outermost values.
+ *
+ *   returns  as above; triangles may have no area where a value is exactly iso
+ *   errors   ERROR_RANGE no value is inside, or iso is not finite; ERROR_LIMIT; ERROR_MEMORY
+ *   thread   any; the field is shared and frozen
+ *   source   as above. Triangles and vertices equal vtkFlyingEdges3D's on the same field. */
+NODISCARD struct mesh *surface_marching_cubes_field(const struct volume *field, double iso, const struct surface_options *options,
+                                                    struct error *err);
+
 /* The 8-cell algorithm: vertices at the centres of inside voxels. A region within a cell is the convex hull of the cell's inside
  * corners, and the surface is the boundary of all of them together (corner_cases.c).
  *
