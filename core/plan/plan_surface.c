@@ -18,7 +18,7 @@ static struct mesh *extract(enum surface_algorithm algorithm, const struct mask 
     struct surface_options options = surface_defaults;
     options.n_threads = n_threads;
     struct mesh *mesh = surface_make(algorithm, mask, &options, err);
-    if (mesh && !mesh_make_normals(mesh, n_threads, err)) {
+    if (mesh && !mesh->normals && !mesh_make_normals(mesh, n_threads, err)) {
         mesh_unref(mesh);
         return NULL;
     }

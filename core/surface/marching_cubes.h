@@ -14,7 +14,7 @@ struct marching_point {
 
 /* How vertices hang together: a crossed edge lies on four faces between cells, and on each of them a line of the surface leaves it
  * for another crossed edge. So every vertex has four links, and where two lines pass through it, links 0 and 3 are the ends of one,
- * 1 and 2 of the other. A link is missing only where the border of the grid is left open: there it is the vertex itself. */
+ * 1 and 2 of the other; (link 3 - link 0) x (link 2 - link 1), times the vertex' outward, points outward. A link is missing only where the border of the grid is left open: there it is the vertex itself. */
 struct marching_graph {
     struct marching_point *points; /* [n_vertices] */
     uint32_t (*links)[4];          /* [n_vertices] */

@@ -2,6 +2,7 @@
  * faces of the cell. The cell on the other side of a face goes the other way over it, so when each of the four cells around a
  * crossed edge notes where its loop goes next, all four links of the vertex are there, each written once. */
 #include <pthread.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "core/surface/marching_cubes.h"
@@ -25,8 +26,11 @@ static void make_steps(void)
         cube_case_links(inside, next);
         for (uint8_t edge = 0; edge < CUBE_EDGES; edge++)
             if (next[edge] >= 0) {
-                /* along x the edge's number says where in the cell it lies; along y and z its last bit and whether it is on the far face */
-                uint8_t slot = edge < 4 ? edge : (uint8_t)((edge & 1) | (edge >= 8) << 1);
+                /* where in the cell the edge lies along the two other axes, first the one that follows its own: for an edge along x
+                 * its number says so, for others its last bit (z for y, y for z) and whether it is on the far face of x */
+                uint8_t last = edge & 1, far = edge >= 8;
+                bool is_z = edge >= 4 && (edge & 2);
+                uint8_t slot = edge < 4 ? edge : is_z ? (uint8_t)(far | last << 1) : (uint8_t)(last | far << 1);
                 steps->of[steps->n].edge = edge;
                 steps->of[steps->n].next = (uint8_t)next[edge];
                 steps->of[steps->n++].slot = slot;

@@ -20,7 +20,7 @@ static struct mesh *make_mesh(const struct shape_key *key, const struct mask *ma
     case REPRESENTATION_FAN: mesh = shape_fan(mask, n_threads, err); break;
     default: assert(false);
     }
-    if (mesh && mesh_make_normals(mesh, n_threads, err))
+    if (mesh && (mesh->normals || mesh_make_normals(mesh, n_threads, err)))
         return mesh;
     mesh_unref(mesh);
     return NULL;

@@ -33,6 +33,9 @@ const struct smooth_options smooth_defaults = { 24, 0.035, 0.15, 0.5 - SURFACE_S
 /* The strong filter is trusted where it wants a shift up to the first, not at all from the second on. */
 static const float trusted_shift = 0.5f, distrusted_shift = 0.8f;
 
+/* Cosines of the angle, 26 and 60 degrees, between normals of the two filtered surfaces. */
+static const float agreeing = 0.9f, disagreeing = 0.5f;
+
 static void swap(float4 **a, float4 **b)
 {
     float4 *kept = *a;
@@ -177,7 +180,7 @@ static float dot(float4 a, float4 b)
     return product[0] + product[1] + product[2];
 }
 
-/* Across the two lines through a vertex, from where their ends are; of no length in particular, and inward or outward. */
+/* Across the two lines through a vertex, from where their ends are; of no length in particular, outward times the vertex' outward. */
 static float4 normal_of(const float4 ends[4])
 {
     float4 u = ends[3] - ends[0], w = ends[2] - ends[1];
@@ -244,6 +247,30 @@ static float4 displacement_of(const struct smooth_job *job, size_t v)
     return trust * job->strong[v] + (1 - trust) * job->gentle[v];
 }
 
+/* A normal of unit length in patient space; 0 when it has no direction. */
+static float4 in_lps(const struct smooth_job *job, float4 normal)
+{
+    float4 lps = normal[0] * job->lps_of_normal[0] + normal[1] * job->lps_of_normal[1] + normal[2] * job->lps_of_normal[2];
+    float square = dot(lps, lps);
+    return square > 0 ? lps / sqrtf(square) : lps;
+}
+
+/* What light falls on: the strongly filtered surface, as if nothing held it back, but the less the more it turns away from the one that
+ * is there. */
+static void write_normal(struct smooth_job *job, size_t v, float4 own, float4 strong)
+{
+    float agreement = dot(own, strong), share = (agreement - disagreeing) / (agreeing - disagreeing);
+    share = share < 0 ? 0 : share > 1 ? 1 : share;
+    float4 shown = share * strong + (1 - share) * own;
+    float square = dot(shown, shown);
+    if (!(square > 0)) { /* no direction: the edge's own */
+        shown = job->lps_of_normal[job->graph->points[v].axis] * (float)job->graph->points[v].outward;
+        square = dot(shown, shown);
+    }
+    shown /= sqrtf(square);
+    memcpy(job->mesh->normals + 3 * v, &shown, 3 * sizeof(float));
+}
+
 static void settle(void *context, int part, int n_parts)
 {
     struct smooth_job *job = context;
@@ -255,8 +282,11 @@ static void settle(void *context, int part, int n_parts)
         float4 ends[4];
         for (int i = 0; i < 4; i++)
             ends[i] = smooth_start(&points[link[i]]) + displacement_of(job, link[i]);
-        float4 normal = normal_of(ends);
+        float4 normal = normal_of(ends) * (float)points[v].outward;
         job->shift[v] = shift_along_edge(normal, displacement_of(job, v), axis);
+        for (int i = 0; i < 4; i++)
+            ends[i] = smooth_start(&points[link[i]]) + job->strong[link[i]];
+        write_normal(job, v, in_lps(job, normal), in_lps(job, normal_of(ends) * (float)points[v].outward));
         normal /= job->edge_mm; /* of the grid's coordinates to of mm */
         float square = dot(normal, normal);
         job->lean[v] = square > 0 ? fabsf(normal[axis]) / sqrtf(square) : 1;
@@ -296,6 +326,9 @@ static void write_positions(void *context, int part, int n_parts)
 static bool smooth(struct smooth_job *job, struct error *err)
 {
     enum { N_VECTORS = 5, N_FLOATS = 2 };
+    job->mesh->normals = mem_large_array(job->n, 3 * sizeof(float), UINT64_MAX, err);
+    if (!job->mesh->normals)
+        return false;
     float4 *vectors = mem_large_array(job->n, N_VECTORS * sizeof(float4) + N_FLOATS * sizeof(float), UINT64_MAX, err);
     if (!vectors)
         return false;
@@ -313,6 +346,17 @@ static bool smooth(struct smooth_job *job, struct error *err)
     mesh_measure_bounds(job->mesh);
     free(vectors);
     return is_good;
+}
+
+/* A normal is square to what lies in the surface, so it is mapped by the grid's reciprocal axes: each square to the two others. */
+static void reciprocals_of(const struct affine *map, float4 axes[3])
+{
+    double determinant = affine_determinant(map);
+    for (int axis = 0; axis < 3; axis++) {
+        struct vec3 across = vec3_cross(map->columns[(axis + 1) % 3], map->columns[(axis + 2) % 3]);
+        across = vec3_scale(across, 1 / determinant);
+        axes[axis] = (float4){ (float)across.x, (float)across.y, (float)across.z, 0 };
+    }
 }
 
 static int threads_for(size_t n_vertices, int n_threads)
@@ -342,6 +386,7 @@ struct mesh *smooth_with(const struct smooth_options *smoothing, const struct ma
         .is_mirrored = affine_determinant(map) < 0,
         .univel_mm3 = fabs(affine_determinant(map)),
     };
+    reciprocals_of(map, job.lps_of_normal);
     if (!options->close_at_border)
         job.options.n_volume_steps = 0; /* what is open encloses nothing */
     bool is_smooth = smooth(&job, err);

@@ -17,6 +17,7 @@ struct smooth_job {
     size_t n; /* vertices */
     int n_threads;
     float4 edge_mm; /* of a univel; the fourth is 1 */
+    float4 lps_of_normal[3]; /* what a normal along each axis of the grid is in patient space */
     bool is_mirrored;
     double univel_mm3;
 

@@ -51,7 +51,8 @@ NODISCARD struct mesh *surface_eight_cell(const struct mask *mask, const struct 
  * the side it is on: a mask made from the surface is the mask again. The same vertices and triangles as by marching cubes, so a closed
  * manifold as there: at an ambiguous face each of the two inside corners is cut off alone.
  *
- *   returns  as above. When closed, each piece encloses the volume of its univels to 0.1 %, or as near as the edges allow: things of
+ *   returns  as above, and with vertex normals: those of the surface as it would be without bounds, so that light does not fall on
+ *            where vertices are held back, unless it would face another way. When closed, each piece encloses the volume of its univels to 0.1 %, or as near as the edges allow: things of
  *            a univel or two may stay some percent off.
  *   errors   as above
  *   memory   112 bytes a vertex while it works

@@ -62,6 +62,7 @@ static struct mask *mask_of(const struct body *body)
 
 struct deviation {
     double normal_deg, distance_mm; /* root mean squares over the area */
+    double shown_deg;               /* of the vertex normals, over the vertices */
 };
 
 /* Of each triangle's normal and middle from the ellipsoid's. */
@@ -84,7 +85,16 @@ static struct deviation deviation_of(const struct mesh *mesh, const struct body 
         angles += twice * angle * angle;
         distances += twice * distance * distance;
     }
-    return (struct deviation){ sqrt(angles / area), sqrt(distances / area) };
+    double shown = 0;
+    for (size_t v = 0; mesh->normals && v < mesh->n_vertices; v++) {
+        struct vec3 p = to_body(body, vertex(mesh, v));
+        struct vec3 gradient = vec3(p.x / pow(body->radius_mm[0], 2), p.y / pow(body->radius_mm[1], 2), p.z / pow(body->radius_mm[2], 2));
+        struct vec3 n = vec3((double)mesh->normals[3 * v], (double)mesh->normals[3 * v + 1], (double)mesh->normals[3 * v + 2]);
+        assert_close(vec3_length(n), 1, 1e-5);
+        double angle = acos(fmax(-1, fmin(1, vec3_dot(from_body(body, gradient), n) / vec3_length(gradient)))) * 180 / MATH_PI;
+        shown += angle * angle;
+    }
+    return (struct deviation){ sqrt(angles / area), sqrt(distances / area), sqrt(shown / (double)mesh->n_vertices) };
 }
 
 /* The same of VTK's discrete surface and its windowed sinc filter; false: there is no VTK here. */
@@ -147,6 +157,8 @@ static void no_stair_steps_however_thick_the_slices(void **state)
         if (!(ours.normal_deg < cases[c].most_deg))
             fail_msg("case %zu: normals %.2f degrees off, expected below %.2f", c, ours.normal_deg, cases[c].most_deg);
         assert_true(ours.normal_deg < plain.normal_deg / 5);
+        if (!(ours.shown_deg < cases[c].most_deg))
+            fail_msg("case %zu: vertex normals %.2f degrees off, expected below %.2f", c, ours.shown_deg, cases[c].most_deg);
         assert_true(ours.distance_mm < plain.distance_mm / 1.9);
         has_vtk = has_vtk && deviation_of_vtk(mask, body, &vtk);
         if (has_vtk) { /* 20 iterations, pass band 0.1: its defaults */
@@ -272,9 +284,35 @@ static void random_blocks_are_closed_within_bounds_and_equal_for_any_threads(voi
         for (int n_threads = 2; n_threads < 4; n_threads++) {
             struct mesh *more = extract(mask, n_threads, true);
             assert_same_bytes(one, more);
+            assert_memory_equal(one->normals, more->normals, 3 * one->n_vertices * sizeof *one->normals);
             mesh_unref(more);
         }
         mesh_unref(one);
+        mask_destroy(mask);
+    }
+}
+
+static void vertex_normals_are_unit_and_outward_also_on_mirrored_oblique_grids(void **state)
+{
+    (void)state;
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
+        struct affine map = { { { 0.8, 0.6, 0 }, { -1.2, 1.6, 0 }, { 0, 0, mirrored ? -3 : 3 } }, { 5, 6, 7 } };
+        struct mask *mask = mask_make(40, 30, 20, &map);
+        for (uint32_t at = 0; at < 40 * 30 * 20; at++)
+            if (pow((at % 40 - 19.5) / 17, 2) + pow((at / 40 % 30 - 14.5) / 12, 2) + pow((at / 1200 - 9.5) / 8, 2) < 1)
+                mask_put(mask, at % 40, at / 40 % 30, at / 1200);
+        struct mesh *mesh = extract(mask, 2, true);
+        struct error err = { 0 };
+        float *shown = mesh->normals;
+        mesh->normals = NULL;
+        assert_true(mesh_make_normals(mesh, 1, &err)); /* those of the triangles */
+        for (size_t v = 0; v < mesh->n_vertices; v++) {
+            const float *a = shown + 3 * v, *b = mesh->normals + 3 * v;
+            assert_close(a[0] * a[0] + a[1] * a[1] + a[2] * a[2], 1, 1e-5);
+            assert_true(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0.9f);
+        }
+        free(shown);
+        mesh_unref(mesh);
         mask_destroy(mask);
     }
 }
@@ -368,6 +406,7 @@ int main(void)
         cmocka_unit_test(the_centre_of_every_univel_stays_on_its_side),
         cmocka_unit_test(every_corner_case_is_closed_and_within_bounds),
         cmocka_unit_test(random_blocks_are_closed_within_bounds_and_equal_for_any_threads),
+        cmocka_unit_test(vertex_normals_are_unit_and_outward_also_on_mirrored_oblique_grids),
         cmocka_unit_test(each_piece_keeps_the_volume_of_its_univels),
         cmocka_unit_test(a_hollow_and_a_lone_univel_beside_it_keep_theirs_too),
         cmocka_unit_test(a_plate_of_one_univel_keeps_its_two_sides),
