@@ -36,13 +36,6 @@ static const float trusted_shift = 0.5f, distrusted_shift = 0.8f;
 /* Cosines of the angle, 26 and 60 degrees, between normals of the two filtered surfaces. */
 static const float agreeing = 0.9f, disagreeing = 0.5f;
 
-static void swap(float4 **a, float4 **b)
-{
-    float4 *kept = *a;
-    *a = *b;
-    *b = kept;
-}
-
 /* ---- the filters --------------------------------------------------------------------------------------------------------- */
 
 /* One step of the recurrence for the vertices from..end. */
@@ -197,7 +190,7 @@ static float shift_along_edge(float4 normal, float4 displacement, int axis)
     return (along * dot(normal, displacement) + flat * displacement[axis]) / (along * along + flat);
 }
 
-/* How far the strong filter is to be trusted at each vertex, 0 to 1; into the fourth of `now`. */
+/* How far the strong filter is to be trusted at each vertex, 0 to 1. */
 static void judge(void *context, int part, int n_parts)
 {
     struct smooth_job *job = context;
@@ -210,7 +203,7 @@ static void judge(void *context, int part, int n_parts)
             ends[i] = smooth_start(&points[link[i]]) + job->gentle[link[i]];
         float shift = fabsf(shift_along_edge(normal_of(ends), job->strong[v], points[v].axis));
         float trust = (distrusted_shift - shift) / (distrusted_shift - trusted_shift);
-        job->now[v] = (float4){ 0, 0, 0, trust < 0 ? 0 : trust > 1 ? 1 : trust };
+        job->trust[v] = trust < 0 ? 0 : trust > 1 ? 1 : trust;
     }
 }
 
@@ -218,14 +211,14 @@ static void judge(void *context, int part, int n_parts)
 static void be_cautious(void *context, int part, int n_parts)
 {
     struct smooth_job *job = context;
-    const float4 *now = job->now;
+    const float *trust = job->trust;
     size_t v, end;
     for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
         const uint32_t *link = job->graph->links[v];
-        float least = now[v][3];
+        float least = trust[v];
         for (int i = 0; i < 4; i++)
-            least = now[link[i]][3] < least ? now[link[i]][3] : least;
-        job->before[v] = (float4){ 0, 0, 0, least };
+            least = trust[link[i]] < least ? trust[link[i]] : least;
+        job->next_trust[v] = least;
     }
 }
 
@@ -233,17 +226,17 @@ static void be_cautious(void *context, int part, int n_parts)
 static void even_out(void *context, int part, int n_parts)
 {
     struct smooth_job *job = context;
-    const float4 *now = job->now;
+    const float *trust = job->trust;
     size_t v, end;
     for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
         const uint32_t *link = job->graph->links[v];
-        job->before[v] = (2 * now[v] + now[link[0]] + now[link[1]] + now[link[2]] + now[link[3]]) * (1 / 6.0f);
+        job->next_trust[v] = (2 * trust[v] + trust[link[0]] + trust[link[1]] + trust[link[2]] + trust[link[3]]) * (1 / 6.0f);
     }
 }
 
 static float4 displacement_of(const struct smooth_job *job, size_t v)
 {
-    float trust = job->now[v][3];
+    float trust = job->trust[v];
     return trust * job->strong[v] + (1 - trust) * job->gentle[v];
 }
 
@@ -295,10 +288,14 @@ static void settle(void *context, int part, int n_parts)
 
 static void go_to_edges(struct smooth_job *job)
 {
+    job->trust = (float *)job->now; /* the steps are over */
+    job->next_trust = (float *)job->before;
     parallel_run(job->n_threads, judge, job);
     for (int round = 0; round < CAUTIOUS_ROUNDS + EVEN_ROUNDS; round++) {
         parallel_run(job->n_threads, round < CAUTIOUS_ROUNDS ? be_cautious : even_out, job);
-        swap(&job->now, &job->before);
+        float *written = job->next_trust;
+        job->next_trust = job->trust;
+        job->trust = written;
     }
     parallel_run(job->n_threads, settle, job);
 }
