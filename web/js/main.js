@@ -1,6 +1,7 @@
 // Starts the page: hands the real browser to the modules and shows the page the address names.
 import { Connection } from './net/connection.js';
 import { makeApi } from './net/api.js';
+import { sendPlan } from './net/upload.js';
 import { Hooks } from './hooks.js';
 import { roomPage } from './panels/room_page.js';
 import { startPage } from './panels/start_page.js';
@@ -15,6 +16,8 @@ const schedule = (callback) => requestAnimationFrame(callback);
 const hooks = new Hooks(clock);
 const api = makeApi((...request) => fetch(...request));
 const enter = (room) => { location.hash = `#/rooms/${room}`; };
+
+const send = ({ name, ...task }) => sendPlan({ ...task, url: api.uploadUrl(name), makeRequest: () => new XMLHttpRequest() });
 
 /** The same member again after a reload of this tab. */
 function remembered(room) {
@@ -46,7 +49,7 @@ function route() {
   const host = document.querySelector('#page');
   leave = place === 'rooms' && isId(id)
     ? roomPage(host, id, { api, connect, clock, schedule, decode: (blob) => createImageBitmap(blob), hooks })
-    : startPage(host, { api, clock, enter });
+    : startPage(host, { api, clock, enter, send });
 }
 
 addEventListener('hashchange', route);

@@ -20,6 +20,8 @@ const paths = {
   help: svg`<circle cx="8" cy="8" r="6.2"/><path d="M6.2 6.200a1.9 1.9 0 1 1 2.6 1.900c-.5.2-.8.6-.8 1.200M8 11.500v.1"/>`,
   search: svg`<circle cx="7" cy="7" r="4.8"/><path d="m10.6 10.6 3.9 3.9"/>`,
   people: svg`<circle cx="6" cy="5" r="2.5"/><path d="M1.5 13.500c0-2.8 2-4.5 4.5-4.500s4.5 1.7 4.5 4.500M10.5 2.700a2.5 2.5 0 0 1 0 4.600M12 9.400c1.5.6 2.5 2 2.5 4.1"/>`,
+  upload: svg`<path d="M8 11V2.500M4.5 5.500 8 2l3.5 3.500M2 10v3.500h12V10"/>`,
+  trash: svg`<path d="M2.5 4.500h11M6 4.500V2.500h4v2M4 4.500l.7 9h6.600l.7-9M6.8 7v4M9.2 7v4"/>`,
   close: svg`<path d="m3.5 3.5 9 9M12.5 3.500l-9 9"/>`,
   check: svg`<path d="m2.5 8.5 3.5 3.5 7.5-8"/>`,
   warning: svg`<path d="M8 1.8 15 14H1ZM8 6v4M8 12v.1"/>`,

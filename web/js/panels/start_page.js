@@ -4,6 +4,7 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { reportSummary } from '../state/plan.js';
 import { PlansState } from '../state/plans.js';
+import { UploadsState } from '../state/uploads.js';
 import { isId } from '../wire/check.js';
 import { brand } from './banner.js';
 import { bytes, count, number, seconds } from './format.js';
@@ -11,26 +12,31 @@ import { icon } from './icons.js';
 import { mount, variables } from './mount.js';
 import { reportLines } from './report.js';
 import { roving } from './tools.js';
+import { dropZone, listenDrops, uploadRows } from './upload.js';
 
 const filters = [['all', 'All'], ['ready', 'Ready'], ['warnings', 'With warnings']];
 
 /** @param {HTMLElement} host @param {object} world {api, clock, enter} @returns {() => void} leaves the page */
 export function startPage(host, world) {
   const state = new PlansState(world);
-  const unmount = mount(host, () => page(state, world.enter));
+  const uploads = new UploadsState({ ...world, arrived: (plan) => state.arrived(plan) });
+  const unmount = mount(host, () => page(state, uploads, world.enter));
+  const unlisten = listenDrops(uploads);
   state.start();
   return () => {
     state.stop();
+    uploads.stop();
+    unlisten();
     unmount();
   };
 }
 
-const page = (state, enter) => html`<div class="start">
+const page = (state, uploads, enter) => html`<div class="start">
   <header class="banner">${brand()}<span class="grow"></span>
     <label class="search">${icon('search')}<input type="search" placeholder="Find a plan" aria-label="Find a plan" .value=${state.search.value} @input=${(event) => { state.search.value = event.target.value; }}></label>
     ${join(state, enter)}</header>
-  <main>${list(state)}</main>
-  <aside class="load-report" aria-label="Load report">${report(state)}</aside>
+  <main>${list(state, uploads)}</main>
+  <aside class="load-report" aria-label="Load report"><div class="found">${report(state)}</div>${dropZone(uploads)}</aside>
   <footer class="status">${serverStatus(state)}<span class="grow"></span><b class="research">Research use. Not for diagnosis or treatment decisions.</b></footer></div>`;
 
 function join(state, enter) {
@@ -47,7 +53,7 @@ function join(state, enter) {
       <label for="join-id">Room id or link</label><div class="pair"><input id="join-id" name="room" autocomplete="off" @input=${(event) => event.target.setCustomValidity('')}><button class="primary">Join</button></div></form>` : nothing}</span>`;
 }
 
-function list(state) {
+function list(state, uploads) {
   const plans = state.plans.value;
   const shown = state.shown.value;
   return html`<div class="list-head"><h1>Plans</h1><span class="dim">${plans ? count(plans.length, 'plan') : ''}</span><span class="grow"></span>
@@ -55,8 +61,8 @@ function list(state) {
         class=${classMap({ on: state.filter.value === id })} @click=${() => { state.filter.value = id; }}>${name}</button>`)}</div></div>
     ${state.error.value ? html`<div class="refusal">${icon('error')}<div><b>${state.error.value}</b><p>Trying again every few seconds.</p></div></div>` : nothing}
     <div class="columns" aria-hidden="true"><span>Plan</span><span>Parts</span><span class="end">Size</span><span>State</span></div>
-    <ul class="plans">${repeat(shown, (plan) => plan.id, (plan) => row(state, plan))}</ul>
-    ${plans && !shown.length ? html`<p class="empty">${plans.length ? 'No plan fits the search and the filter.' : 'No plans here. The server looks for them in the folders given with --plans.'}</p>` : nothing}`;
+    <ul class="plans">${uploadRows(uploads)}${repeat(shown, (plan) => plan.id, (plan) => row(state, plan))}</ul>
+    ${plans && !shown.length ? html`<p class="empty">${plans.length ? 'No plan fits the search and the filter.' : 'No plans here. Drop one on this page; the server also looks in the folders given with --plans.'}</p>` : nothing}`;
 }
 
 function row(state, plan) {
@@ -85,9 +91,12 @@ function action(state, plan, job, isChosen) {
     run(plan.id);
   };
   if (job) return html`<button ?disabled=${!job.id} @click=${act((id) => state.cancel(id))}>${icon('close')}<span>Cancel</span></button>`;
-  if (plan.state === 'unreadable') return nothing;
+  if (state.deleting.value === plan.id)
+    return html`<span class="really" role="group" aria-label=${`Delete ${plan.name} for good?`}><button class="danger" @click=${act((id) => state.remove(id))}>Delete for good</button><button @click=${act(() => { state.deleting.value = ''; })}>Keep</button></span>`;
+  const remove = plan.uploaded ? html`<button class="icon-button" title="Delete this uploaded plan" aria-label=${`Delete ${plan.name}`} @click=${act((id) => { state.deleting.value = id; })}>${icon('trash')}</button>` : nothing;
+  if (plan.state === 'unreadable') return remove;
   const word = plan.state === 'failed' ? 'Try again' : 'Open';
-  return html`<button class=${classMap({ primary: isChosen })} aria-label=${`${word} ${plan.name}`} @click=${act((id) => state.open(id))}>${word}</button>`;
+  return html`${remove}<button class=${classMap({ primary: isChosen })} aria-label=${`${word} ${plan.name}`} @click=${act((id) => state.open(id))}>${word}</button>`;
 }
 
 const progress = (job) => html`<div class="progress" role="progressbar" aria-label="Loading" aria-valuemin="0" aria-valuemax="100" aria-valuenow=${Math.round(job.percent ?? 0)}>

@@ -28,6 +28,7 @@ export class PlansState {
     this.filter = signal('all'); // all | ready | warnings
     this.search = signal('');
     this.isJoining = signal(false);
+    this.deleting = signal(''); // the plan whose deletion waits to be confirmed
     this.shown = computed(() => {
       const words = this.search.value.trim().toLowerCase();
       return (this.plans.value ?? []).filter((plan) => {
@@ -76,6 +77,24 @@ export class PlansState {
     const job = this.jobs.value[id];
     if (!job?.id) return;
     await this.#api.cancelJob(job.id).catch((error) => this.#refuse(id, error.message));
+  }
+
+  /** A plan that was just uploaded. */
+  async arrived(id) {
+    await this.#list();
+    if (!this.#isStopped) this.choose(id);
+  }
+
+  /** Deletes an uploaded plan, everything of it. */
+  async remove(id) {
+    this.deleting.value = '';
+    try {
+      await this.#api.removePlan(id);
+      if (this.chosen.value === id) this.chosen.value = '';
+    } catch (error) {
+      this.#refuse(id, error.message);
+    }
+    await this.#list();
   }
 
   /** Follows a job to its end; null when it was cancelled. */

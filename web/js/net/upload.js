@@ -1,0 +1,30 @@
+// One plan on its way to the server. XMLHttpRequest, because it alone tells how much has been sent.
+import { Problem } from './api.js';
+
+/**
+ * @param {{makeRequest: () => XMLHttpRequest, url: string, body: Blob, type: string, onSent: (bytes: number) => void, signal: AbortSignal}} task
+ * @returns {Promise<object>} the job that unpacks it
+ */
+export function sendPlan({ makeRequest, url, body, type, onSent, signal }) {
+  return new Promise((resolve, reject) => {
+    const request = makeRequest();
+    const answer = () => {
+      try {
+        return JSON.parse(request.responseText);
+      } catch {
+        return null;
+      }
+    };
+    request.open('POST', url);
+    request.setRequestHeader('Content-Type', type);
+    request.upload.addEventListener('progress', (event) => onSent(event.loaded));
+    request.addEventListener('load', () => {
+      if (request.status === 202 && answer()) resolve(answer());
+      else reject(new Problem({ status: request.status, ...(answer() ?? { detail: `The server answered ${request.status}.` }) }));
+    });
+    request.addEventListener('error', () => reject(answer() ? new Problem(answer()) : new Problem({ detail: 'The connection broke before the plan was there.' })));
+    request.addEventListener('abort', () => reject(new Problem({ detail: 'The upload was cancelled.' })));
+    signal.addEventListener('abort', () => request.abort());
+    request.send(body);
+  });
+}

@@ -1,0 +1,72 @@
+// The place to drop a plan, and the plans on their way.
+import { html, nothing } from '../../lib/lit-html.js';
+import { classMap } from '../../lib/directives/class-map.js';
+import { repeat } from '../../lib/directives/repeat.js';
+import { filesOfDrop, filesOfInput } from '../net/dropped.js';
+import { bodyOf } from '../net/tar.js';
+import { bytes, number } from './format.js';
+import { icon } from './icons.js';
+import { variables } from './mount.js';
+
+function take(uploads, files) {
+  uploads.error.value = files.length ? '' : 'There is no file in it.';
+  if (files.length) uploads.add(bodyOf(files));
+}
+
+/** Dropping works anywhere on the page. @returns {() => void} */
+export function listenDrops(uploads, target = globalThis) {
+  const isFiles = (event) => event.dataTransfer?.types.includes('Files');
+  const over = (event) => {
+    if (!isFiles(event)) return;
+    event.preventDefault();
+    uploads.isOver.value = true;
+  };
+  const leave = (event) => { if (!event.relatedTarget) uploads.isOver.value = false; };
+  const drop = (event) => {
+    if (!isFiles(event)) return;
+    event.preventDefault();
+    uploads.isOver.value = false;
+    filesOfDrop(event.dataTransfer).then((files) => take(uploads, files), (error) => { uploads.error.value = error.message; });
+  };
+  target.addEventListener('dragover', over);
+  target.addEventListener('dragleave', leave);
+  target.addEventListener('drop', drop);
+  return () => {
+    target.removeEventListener('dragover', over);
+    target.removeEventListener('dragleave', leave);
+    target.removeEventListener('drop', drop);
+  };
+}
+
+export function dropZone(uploads) {
+  const chosen = (event) => {
+    take(uploads, filesOfInput(event.target.files));
+    event.target.value = '';
+  };
+  const choose = (event) => event.currentTarget.parentElement.querySelector('input').click();
+  const picker = (word, input) => html`<span class="anchor"><button @click=${choose}>${word}</button>${input}</span>`;
+  return html`<section class=${classMap({ 'drop-zone': true, over: uploads.isOver.value })} aria-label="Upload">
+    <span class="sign">${icon('upload', 24)}</span><div><p><b>Drop a plan here</b>: a folder, its files, or a zip or tar of it</p>
+      <p class="note">DICOM-RT, SERA, NIfTI, NRRD. It stays on this server; remove names from files before you send them.</p>
+      <div class="buttons">${picker('Choose files', html`<input type="file" multiple tabindex="-1" aria-label="Files of a plan" @change=${chosen}>`)}
+        ${picker('Choose a folder', html`<input type="file" webkitdirectory tabindex="-1" aria-label="Folder of a plan" @change=${chosen}>`)}</div>
+      ${uploads.error.value ? html`<p class="err" role="alert">${icon('error')} ${uploads.error.value}</p>` : nothing}</div></section>`;
+}
+
+const words = ({ state, job, sent, bytes: size }) => {
+  if (state === 'sending') return sent < size ? 'Sending' : 'Sent, waiting for the server';
+  return job?.phase ? `${job.phase[0].toUpperCase()}${job.phase.slice(1)}` : 'Waiting';
+};
+
+function row(uploads, upload) {
+  const percent = upload.state === 'sending' ? (100 * upload.sent) / Math.max(upload.bytes, 1) : upload.job?.percent ?? 0;
+  const hasFailed = upload.state === 'failed';
+  return html`<li class="plan upload" data-upload=${upload.key}><div class="plan-row"><div class="title"><b>${upload.name}</b><code>upload</code></div><div class="parts"></div>
+      <div class="end">${bytes(upload.bytes)}</div><div class="plan-state">${hasFailed ? html`<span class="err">${icon('error')} Refused</span>` : html`<b>Uploading</b>`}</div>
+      <div class="end">${hasFailed ? html`<button @click=${() => uploads.dismiss(upload.key)}>Dismiss</button>` : html`<button @click=${() => uploads.cancel(upload.key)}>${icon('close')}<span>Cancel</span></button>`}</div></div>
+    ${hasFailed ? html`<div class="refusal" role="alert">${icon('error')}<div><p>${upload.error}</p><p class="place">Nothing was kept.</p></div></div>`
+      : html`<div class="progress" role="progressbar" aria-label=${`Upload of ${upload.name}`} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${Math.round(percent)}>
+        <i class="bar" ${variables({ '--fill': `${percent}%` })}></i><b>${number(percent)} %</b><span class="phase">${icon('phase')} ${words(upload)}</span></div>`}</li>`;
+}
+
+export const uploadRows = (uploads) => html`${repeat(uploads.rows.value, ({ key }) => key, (upload) => row(uploads, upload))}`;

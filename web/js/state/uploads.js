@@ -1,0 +1,75 @@
+// Plans on their way to the server: sent, unpacked, looked at, there; or why not.
+import { signal } from '../../lib/signals-core.js';
+
+const jobMs = 200;
+
+export class UploadsState {
+  #api;
+  #clock;
+  #send;
+  #next = 1;
+  #isStopped = false;
+  #aborts = new Map();
+
+  /** @param {object} world {api, clock, send: (task: object) => Promise<object>, arrived: (plan: string) => void} */
+  constructor({ api, clock, send, arrived }) {
+    this.#api = api;
+    this.#clock = clock;
+    this.#send = send;
+    this.arrived = arrived;
+    this.rows = signal([]); // {key, name, bytes, sent, job, error, state: sending | working | done | failed}
+    this.isOver = signal(false); // something is being dragged over the page
+    this.error = signal(''); // of choosing, before anything was sent
+  }
+
+  stop() {
+    this.#isStopped = true;
+    for (const abort of this.#aborts.values()) abort.abort();
+  }
+
+  /** @param {{name: string, body: Blob, type: string}} task */
+  async add({ name, body, type }) {
+    const key = this.#next++;
+    const abort = new AbortController();
+    this.#aborts.set(key, abort);
+    this.rows.value = [...this.rows.value, { key, name, bytes: body.size, sent: 0, job: null, error: '', state: 'sending' }];
+    try {
+      let job = await this.#send({ name, body, type, signal: abort.signal, onSent: (sent) => this.#change(key, { sent }) });
+      while (!this.#isStopped) {
+        this.#change(key, { job, sent: body.size, state: 'working' });
+        if (job.state === 'done') {
+          this.dismiss(key);
+          this.arrived(job.plan);
+          return;
+        }
+        if (job.state === 'cancelled') {
+          this.dismiss(key);
+          return;
+        }
+        if (job.state === 'failed') throw new Error(job.problem?.detail ?? 'The plan was refused.');
+        await new Promise((resolve) => { this.#clock.setTimeout(resolve, jobMs); });
+        job = await this.#api.job(job.id);
+      }
+    } catch (error) {
+      if (abort.signal.aborted) this.dismiss(key);
+      else this.#change(key, { error: error.message, state: 'failed' });
+    }
+  }
+
+  /** Ends it, wherever it is. */
+  async cancel(key) {
+    const row = this.rows.value.find((other) => other.key === key);
+    if (!row) return;
+    if (row.job) await this.#api.cancelJob(row.job.id).catch((error) => this.#change(key, { error: error.message, state: 'failed' }));
+    else this.#aborts.get(key)?.abort();
+  }
+
+  dismiss(key) {
+    this.#aborts.delete(key);
+    this.rows.value = this.rows.value.filter((row) => row.key !== key);
+  }
+
+  #change(key, part) {
+    this.rows.value = this.rows.value.map((row) => (row.key === key ? { ...row, ...part } : row));
+  }
+}
