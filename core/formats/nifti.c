@@ -15,7 +15,7 @@ struct volume *nifti_read(const struct bytes *file, const char *name, enum raw_u
     if (!raw_unpack(&place, name, &unpacked, err))
         return NULL;
     struct raw_voxels voxels = { unpacked.data, grid_n_voxels(&header.grid), header.type, &header.grid, header.slope, header.offset,
-                                 name };
+                                 name, &unpacked.owned };
     struct volume *volume = raw_read(&voxels, use, report, err);
     free(unpacked.owned);
     return volume;

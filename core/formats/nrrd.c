@@ -62,7 +62,8 @@ struct volume *nrrd_read(const struct nrrd_header *header, const struct bytes *d
     }
     if (!unpack(header, data, data_name, &unpacked, err))
         return NULL;
-    struct raw_voxels voxels = { unpacked.data, grid_n_voxels(&header->grid), header->type, &header->grid, 1, 0, data_name };
+    struct raw_voxels voxels = { unpacked.data, grid_n_voxels(&header->grid), header->type, &header->grid, 1, 0, data_name,
+                                 &unpacked.owned };
     struct volume *volume = raw_read(&voxels, use, report, err);
     free(unpacked.owned);
     return volume;
@@ -115,7 +116,7 @@ static struct volume *read_layer(const struct nrrd_header *header, const uint8_t
     const uint8_t *from = voxels + (header->is_layer_fastest ? 1 : n) * layer * header->voxel_bytes;
     if (picked)
         pick_layer(header, from, picked, n);
-    struct raw_voxels raw = { picked ? picked : from, n, header->type, &header->grid, 1, 0, name };
+    struct raw_voxels raw = { picked ? picked : from, n, header->type, &header->grid, 1, 0, name, NULL };
     struct volume *volume = raw_read(&raw, RAW_LABELS, NULL, err);
     if (!volume && header->n_layers > 1 && err)
         error_prefix(err, "layer %u", layer);

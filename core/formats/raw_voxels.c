@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/mem.h"
 #include "core/formats/gzip.h"
 
 uint32_t raw_type_bytes(enum raw_type type)
@@ -60,9 +61,11 @@ bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpa
         return true;
     }
     size_t from = place->is_packed ? 0 : (size_t)place->data_at;
-    uint8_t *buffer = malloc(end - from);
-    if (!buffer)
-        return error_set(err, ERROR_MEMORY, "%s: no memory for %zu bytes", name, end - from);
+    uint8_t *buffer = mem_large_array(end - from, 1, UINT64_MAX, err);
+    if (!buffer) {
+        error_prefix(err, "%s", name);
+        return false;
+    }
     unpacked->data = unpacked->owned = buffer;
     if (!place->is_packed) {
         memcpy(buffer, file->data + from, (size_t)place->data_bytes);
@@ -188,13 +191,32 @@ static void convert(const struct raw_voxels *voxels, struct volume *volume)
     WITH_TYPE(voxels->type, CONVERT)
 }
 
+/* Voxels that are in the file as the volume wants them, in memory of their own: not copied. */
+static bool can_take(const struct raw_voxels *voxels, enum voxel_type type)
+{
+    static const enum raw_type same[] = { [VOXEL_U8] = RAW_U8, [VOXEL_I16] = RAW_I16, [VOXEL_U16] = RAW_U16, [VOXEL_F32] = RAW_F32 };
+    return voxels->owned && *voxels->owned && voxels->type == same[type];
+}
+
+static struct volume *take_voxels(const struct raw_voxels *voxels, enum voxel_type type)
+{
+    uint8_t *owned = *voxels->owned;
+    if (owned != voxels->data)
+        memmove(owned, voxels->data, voxels->n * voxel_size(type));
+    *voxels->owned = NULL;
+    return volume_take(voxels->grid, type, owned);
+}
+
 static struct volume *make_image(const struct raw_voxels *voxels, struct report *report, struct error *err)
 {
     struct span span = measure(voxels);
-    struct volume *volume = volume_create(voxels->grid, image_type(voxels->type, &span), err);
+    enum voxel_type type = image_type(voxels->type, &span);
+    bool is_taken = can_take(voxels, type);
+    struct volume *volume = is_taken ? take_voxels(voxels, type) : volume_create(voxels->grid, type, err);
     if (!volume)
         return NULL;
-    convert(voxels, volume);
+    if (!is_taken)
+        convert(voxels, volume);
     volume->slope = voxels->slope;
     volume->offset = voxels->offset;
     double a = span.low * voxels->slope + voxels->offset, b = span.high * voxels->slope + voxels->offset;

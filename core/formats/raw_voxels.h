@@ -15,6 +15,7 @@ struct raw_voxels {
     const struct grid *grid;
     double slope, offset; /* value = stored * slope + offset */
     const char *name;     /* for the sentences */
+    uint8_t **owned;      /* memory that holds data and may become the volume's: it is NULL then; NULL: there is none */
 };
 
 /* Where the voxels lie in bytes from a file. */

@@ -31,9 +31,12 @@ static uint64_t bytes_kept(enum raw_type type, enum raw_use use)
     }
 }
 
-static struct need need_of_voxels(uint64_t n_voxels, enum raw_type type, enum raw_use use, uint64_t file_bytes, bool is_copied)
+static struct need need_of_voxels(uint64_t n_voxels, enum raw_type type, enum raw_use use, uint64_t file_bytes, bool is_copied,
+                                  bool is_taken)
 {
     uint64_t raw = n_voxels * raw_type_bytes(type);
+    if (use == RAW_IMAGE && is_taken && bytes_kept(type, use) == raw_type_bytes(type))
+        is_copied = false; /* the unpacked voxels become the volume's */
     uint64_t wide = use == RAW_LABELS && type != RAW_U8 ? n_voxels : 0; /* labels are read as 16 bits, then made 8 */
     return (struct need){ n_voxels * bytes_kept(type, use), file_bytes + (is_copied ? raw : 0) + wide };
 }
@@ -47,7 +50,8 @@ static struct need need_of_nifti(const struct folder *folder, const struct job *
         return need;
     if (nifti_peek(&head, job->path, &header, NULL, NULL))
         need = need_of_voxels(grid_n_voxels(&header.grid), header.type, use, job->bytes,
-                              gzip_is(head.data, head.size) || header.is_swapped || header.data_at % 8 != 0);
+                              gzip_is(head.data, head.size) || header.is_swapped || header.data_at % 8 != 0,
+                              gzip_is(head.data, head.size));
     bytes_free(&head);
     return need;
 }
@@ -60,7 +64,7 @@ static struct need need_of_nrrd(const struct folder *folder, const struct job *j
     if (plan_nrrd_peek(folder, job->path, &header, NULL)) {
         if (header.data_file[0])
             folder_look(folder, header.data_file, &file_bytes);
-        need = need_of_voxels(grid_n_voxels(&header.grid) * header.n_layers, header.type, use, file_bytes, true);
+        need = need_of_voxels(grid_n_voxels(&header.grid) * header.n_layers, header.type, use, file_bytes, true, false);
     }
     nrrd_header_finish(&header);
     return need;

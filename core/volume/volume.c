@@ -128,6 +128,17 @@ struct volume *volume_create_unset(const struct grid *grid, enum voxel_type type
     return create(grid, type, mem_large_array, err);
 }
 
+struct volume *volume_take(const struct grid *grid, enum voxel_type type, void *voxels)
+{
+    struct volume *volume = mem_new(sizeof *volume);
+    volume->grid = *grid;
+    volume->type = type;
+    volume->slope = 1;
+    volume->voxels = voxels;
+    atomic_init(&volume->references, 1);
+    return volume;
+}
+
 struct volume *volume_ref(const struct volume *volume)
 {
     struct volume *shared = (struct volume *)volume;

@@ -44,6 +44,8 @@ struct volume {
 NODISCARD struct volume *volume_create(const struct grid *grid, enum voxel_type type, struct error *err);
 /* The same with voxels that hold anything: for a caller who fills them all. Large ones come on huge pages where there are any. */
 NODISCARD struct volume *volume_create_unset(const struct grid *grid, enum voxel_type type, struct error *err);
+/* The same with voxels that are there already, from malloc; takes them. */
+struct volume *volume_take(const struct grid *grid, enum voxel_type type, void *voxels);
 struct volume *volume_ref(const struct volume *volume);
 void volume_unref(const struct volume *volume);
 
