@@ -406,6 +406,8 @@ static void a_folder_of_unreadable_files_does_not_flood_the_report(void **state)
     assert_int_equal(s.index->n_objects, 0);
     assert_int_equal(s.report.n_lines, 21);
     assert_non_null(strstr(s.report.lines[20].sentence, "40 more files"));
+    assert_string_equal(s.report.lines[1].where, "1");
+    assert_true(strncmp(s.report.lines[1].sentence, "byte ", 5) == 0); /* the file is named once */
     scanned_finish(&s);
 }
 

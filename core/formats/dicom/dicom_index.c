@@ -35,7 +35,8 @@ static void look_at(struct scan *scan, struct looked *file, struct bytes *scratc
     file->result = dicom_head_read(scan->folder, file->path, &file->object, scratch, &err);
     if (file->result == DICOM_HEAD_BROKEN) {
         dicom_object_finish(&file->object);
-        file->why = mem_copy_text(err.text);
+        size_t n = strlen(file->path); /* the line of the report names the file itself */
+        file->why = mem_copy_text(strncmp(err.text, file->path, n) == 0 && strncmp(err.text + n, ": ", 2) == 0 ? err.text + n + 2 : err.text);
     }
     if (file->result == DICOM_HEAD_READ && atomic_fetch_add(&scan->n_kept, 1) >= DICOM_MAX_OBJECTS) {
         dicom_object_finish(&file->object);
