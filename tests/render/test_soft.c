@@ -42,6 +42,7 @@ struct shot {
     const char *name;
     enum scene_kind kind;
     bool is_still, is_flat, is_nearest, is_plain, has_slices, is_inside, is_parallel;
+    enum scene_representation representation;
 };
 
 static struct image *take(struct soft_renderer *soft, struct renderer *other, struct plan *plan, const struct shot *shot, int width, int height)
@@ -54,6 +55,8 @@ static struct image *take(struct soft_renderer *soft, struct renderer *other, st
     struct render_timing timing = { 0 };
     struct render_options options = { width, height, SURFACE_FULL, shot->is_still };
     scene_for_plan(plan, &scene);
+    for (size_t i = 0; i < scene.n_regions; i++)
+        scene.regions[i].value.representation = shot->representation;
     scene.surface.normals = shot->is_flat ? SCENE_NORMALS_FACE : SCENE_NORMALS_VERTEX;
     scene.surface.translucency = shot->is_plain ? SCENE_TRANSLUCENCY_PLAIN : SCENE_TRANSLUCENCY_RIM;
     scene.image.interpolation = shot->is_nearest ? SCENE_INTERPOLATION_NEAREST : SCENE_INTERPOLATION_LINEAR;
@@ -87,6 +90,11 @@ static const struct shot shots[] = {
     { .name = "parallel", .kind = SCENE_KIND_3D, .is_parallel = true, .has_slices = true },
     { .name = "from inside", .kind = SCENE_KIND_3D, .is_inside = true, .has_slices = true },
     { .name = "from inside, flat still", .kind = SCENE_KIND_3D, .is_inside = true, .is_flat = true, .is_still = true },
+    { .name = "solid points, still", .kind = SCENE_KIND_3D, .is_still = true, .representation = SCENE_REPRESENTATION_SOLID },
+    { .name = "solid points from inside", .kind = SCENE_KIND_3D, .is_inside = true, .has_slices = true, .representation = SCENE_REPRESENTATION_SOLID },
+    { .name = "points", .kind = SCENE_KIND_3D, .representation = SCENE_REPRESENTATION_POINTS },
+    { .name = "outlines, still", .kind = SCENE_KIND_3D, .is_still = true, .has_slices = true, .representation = SCENE_REPRESENTATION_OUTLINE },
+    { .name = "fans", .kind = SCENE_KIND_3D, .is_parallel = true, .representation = SCENE_REPRESENTATION_FAN },
     { .name = "axial pane", .kind = SCENE_KIND_AXIAL },
     { .name = "coronal pane, nearest", .kind = SCENE_KIND_CORONAL, .is_nearest = true },
     { .name = "sagittal pane, still", .kind = SCENE_KIND_SAGITTAL, .is_still = true },

@@ -100,18 +100,34 @@ static bool can_be_seen(const struct soft_vertex *a, const struct soft_vertex *b
     return (area < 0) & (left <= right) & (top <= bottom) & (left < width) & (right >= 0); /* y is down: counter-clockwise is negative */
 }
 
-bool soft_keep_triangle(struct soft_chunk *chunk, const struct soft_vertex triangle[3], int width, int height)
+static bool keep(struct soft_chunk *chunk, const struct soft_vertex corners[3], uint32_t kind, struct soft_kept kept)
 {
-    struct soft_kept kept;
-    if (!can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept))
-        return true;
     if (!reserve(&chunk->extras, &chunk->extras_capacity, 3 * (chunk->n_extras + 1), sizeof *chunk->extras) ||
         !reserve(&chunk->kept, &chunk->kept_capacity, chunk->n_kept + 1, sizeof *chunk->kept))
         return false;
-    memcpy(&chunk->extras[3 * chunk->n_extras], triangle, 3 * sizeof *triangle);
-    kept.ref = SOFT_EXTRA | (uint32_t)chunk->n_extras++;
+    memcpy(&chunk->extras[3 * chunk->n_extras], corners, 3 * sizeof *corners);
+    kept.ref = kind | (uint32_t)chunk->n_extras++;
     chunk->kept[chunk->n_kept++] = kept;
     return true;
+}
+
+bool soft_keep_triangle(struct soft_chunk *chunk, const struct soft_vertex triangle[3], int width, int height)
+{
+    struct soft_kept kept;
+    return !can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept) || keep(chunk, triangle, SOFT_EXTRA, kept);
+}
+
+bool soft_keep_rectangle(struct soft_chunk *chunk, const struct soft_vertex *low, const struct soft_vertex *high, int width, int height)
+{
+    int left = (low->x + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS, right = ((high->x + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS) - 1;
+    int top = (low->y + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS, bottom = ((high->y + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS) - 1;
+    top = top > 0 ? top : 0;
+    bottom = bottom < height ? bottom : height - 1;
+    if (left > right || top > bottom || left >= width || right < 0)
+        return true;
+    const struct soft_vertex corners[3] = { *low, *high, *high };
+    return keep(chunk, corners, SOFT_EXTRA | SOFT_RECTANGLE,
+                (struct soft_kept){ 0, (uint16_t)(top / SOFT_BAND_ROWS), (uint16_t)(bottom / SOFT_BAND_ROWS) });
 }
 
 /* The light on a triangle of its own plane, seen from its middle; from behind, where that can be, the plane's other side. */

@@ -54,6 +54,8 @@ struct soft_polygon {
 };
 void soft_project(const struct soft_lighting *lighting, double x, double y, double z, struct soft_corner *corner);
 NODISCARD bool soft_keep_triangle(struct soft_chunk *chunk, const struct soft_vertex triangle[3], int width, int height);
+/* From low to high, of low's depth and colour. */
+NODISCARD bool soft_keep_rectangle(struct soft_chunk *chunk, const struct soft_vertex *low, const struct soft_vertex *high, int width, int height);
 /* Cuts off what lies before the near plane or too far out. shade: of all of it, or NULL: the corners'. */
 NODISCARD bool soft_keep_polygon(struct soft_chunk *chunk, struct soft_polygon *polygon, const uint32_t *shade, int width, int height);
 NODISCARD bool soft_keep_lines(struct soft_chunk *chunk, int width, int height);

@@ -53,8 +53,10 @@ struct soft_layer {
 };
 enum { SOFT_MAX_LAYERS = 1024 };
 
-/* Triangles to draw into a band: refs count the triangles of indices, or with SOFT_EXTRA those of extras. */
+/* Triangles to draw into a band: refs count the triangles of indices, or with SOFT_EXTRA those of extras. With SOFT_RECTANGLE too it is
+ * a rectangle of one depth and colour: from the first corner, left and above, to the second; the third is nothing. */
 #define SOFT_EXTRA 0x80000000u
+#define SOFT_RECTANGLE 0x40000000u
 struct soft_triangles {
     const uint32_t *refs;
     size_t n_refs;

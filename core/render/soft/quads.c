@@ -148,9 +148,7 @@ bool soft_keep_points(struct soft_chunk *chunk, int width, int height)
         float z = (float)(middle.z / middle.w);
         uint32_t shade = item->look.is_baked ? pack(item->lighting.color, (float)item->shape->shade[p] / 255.0f, item->lighting.opacity)
                                              : live_shade(item, p);
-        const struct soft_vertex v[4] = { { x[0], y[1], z, shade }, { x[1], y[1], z, shade }, { x[1], y[0], z, shade }, { x[0], y[0], z, shade } };
-        if (!soft_keep_triangle(chunk, (struct soft_vertex[3]){ v[0], v[1], v[2] }, width, height) ||
-            !soft_keep_triangle(chunk, (struct soft_vertex[3]){ v[0], v[2], v[3] }, width, height))
+        if (!soft_keep_rectangle(chunk, &(struct soft_vertex){ x[0], y[0], z, shade }, &(struct soft_vertex){ x[1], y[1], z, shade }, width, height))
             return false;
     }
     return true;
