@@ -70,6 +70,44 @@ static void a_small_region_does_not_vanish_in_motion(void **state)
     plan_destroy(plan);
 }
 
+static bool no_more_than(void *context)
+{
+    size_t *left = context;
+    return (*left)-- > 0;
+}
+
+static void several_surfaces_are_built_at_once_and_are_those_built_one_by_one(void **state)
+{
+    (void)state;
+    struct plan *plan = plan_of_boxes(), *other = plan_of_boxes();
+    struct plan_shape_usage usage;
+    const size_t regions[3] = { 2, 0, 1 };
+    plan_build_surfaces(plan, regions, 3, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL);
+    plan_shape_usage(plan, &usage);
+    assert_int_equal(usage.n_shapes, 3);
+    for (size_t r = 0; r < 3; r++) {
+        struct mesh *together = plan_surface(plan, r, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL);
+        struct mesh *alone = plan_surface(other, r, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL);
+        assert_int_equal(together->n_vertices, alone->n_vertices);
+        assert_memory_equal(together->positions_lps_mm, alone->positions_lps_mm, 3 * alone->n_vertices * sizeof(float));
+        assert_memory_equal(together->normals, alone->normals, 3 * alone->n_vertices * sizeof(float));
+        mesh_unref(together);
+        mesh_unref(alone);
+    }
+    plan_shape_usage(plan, &usage);
+    assert_int_equal(usage.n_shapes, 3); /* they were there */
+    plan_destroy(plan);
+
+    size_t left = 0;
+    plan = plan_of_boxes();
+    plan_build_surfaces(plan, regions, 1, SURFACE_SMOOTH, SURFACE_FULL, no_more_than, &left);
+    plan_shape_usage(plan, &usage);
+    assert_int_equal(usage.n_shapes, 0);
+    plan_build_surfaces(plan, regions, 0, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL); /* nothing is asked for */
+    plan_destroy(plan);
+    plan_destroy(other);
+}
+
 /* Every other slice of 4 mm is a plate. */
 static double plates_label(struct vec3 p)
 {
@@ -184,6 +222,7 @@ int main(void)
         cmocka_unit_test(surfaces_are_kept_by_algorithm),
         cmocka_unit_test(a_small_region_does_not_vanish_in_motion),
         cmocka_unit_test(what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds_it),
+        cmocka_unit_test(several_surfaces_are_built_at_once_and_are_those_built_one_by_one),
         cmocka_unit_test(thick_slices_are_not_thinned_before_the_pixels_are_as_large),
         cmocka_unit_test(seras_head_by_either_algorithm_in_full_and_light),
     };
