@@ -120,6 +120,30 @@
     X("dose.mask-unread", "The pictures of regions beside SERA's contours are missing or do not fit.",                             \
       "Where the dose is valid was taken from its points.")                                                                        \
     X("dose.negative", "A dose holds negative values.", "They are kept; check the source.")                                       \
+    X("dose.offsets-doubtful", "The offsets of a dose's frames begin neither at 0 nor at the first frame's position.", \
+      "Check that the dose lies where it belongs.") \
+    X("dose.offsets-uneven", "The frames of a dose are not evenly spaced.", \
+      "It was interpolated onto even planes.") \
+    X("dose.single-plane", "A dose is a single plane.", \
+      "Nothing; it is as thick as the line says.") \
+    X("dose.all-zero", "A dose is 0 everywhere.", \
+      "It is not listed; export it again if it should not be.") \
+    X("dose.components", "Several objects are the components of one dose, by their descriptions.", \
+      "Check the assignment.") \
+    X("dose.per-ppm", "A boron dose for a known concentration was divided by it.", \
+      "Nothing; the concentration in blood is set beside the picture.") \
+    X("dose.no-ppm", "Nothing says for which concentration a boron dose holds.", \
+      "It does not follow the concentration that is set.") \
+    X("dose.not-summed", "Doses of single beams stand one beside the other.", \
+      "Nothing was added; export the plan's dose for the sum.") \
+    X("dose.type", "A dose object is of a type that may not be a dose.", \
+      "Check what the numbers mean.") \
+    X("dose.left-out", "There are more doses than the limit.", \
+      "Some are not listed.") \
+    X("dose.no-frame", "Nothing says that dose and image share a frame of reference.", \
+      "Check that they fit.") \
+    X("dose.frame-differs", "A dose is in another frame of reference than the image.", \
+      "It may be shifted: check that it fits.") \
     X("dose.mask-grid", "The mask of a dose lies on another grid than the dose.", "It is looked up by position.")                 \
     X("beam.left-out", "A beam of a treatment plan cannot be placed in the patient, or is for setting up only.", \
       "It is not shown; see the line.") \

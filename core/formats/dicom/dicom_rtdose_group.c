@@ -1,0 +1,369 @@
+/* Which objects are the components of one dose, and what doses are called. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/formats/dicom/dicom_rtdose.h"
+#include "core/formats/text.h"
+
+/* ---- words ------------------------------------------------------------------------------------------------------------------------ */
+
+enum { MOST_WORDS = 16, WORD_SIZE = 20 };
+
+struct words {
+    char words[MOST_WORDS][WORD_SIZE]; /* lower case, letters and digits */
+    size_t n;
+};
+
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+/* "B-10 dose (15.5ppm)" gives b 10 dose 15.5 ppm. */
+static void split_words(const char *text, struct words *words)
+{
+    words->n = 0;
+    for (const char *c = text; *c && words->n < MOST_WORDS;) {
+        bool is_number = is_digit(*c);
+        size_t n = 0;
+        const char *from = c;
+        while (is_number ? is_digit(*c) || (*c == '.' && is_digit(c[1])) : is_letter(*c))
+            c++;
+        for (const char *at = from; at < c && n < WORD_SIZE - 1; at++)
+            words->words[words->n][n++] = *at >= 'A' && *at <= 'Z' ? (char)(*at - 'A' + 'a') : *at;
+        words->words[words->n][n] = 0;
+        words->n += n > 0;
+        if (c == from)
+            c++;
+    }
+}
+
+static bool has_word(const struct words *words, const char *word)
+{
+    for (size_t i = 0; i < words->n; i++)
+        if (strcmp(words->words[i], word) == 0)
+            return true;
+    return false;
+}
+
+/* One after the other, either way round: B-10, 10B. */
+static bool has_pair(const struct words *words, const char *one, const char *other)
+{
+    for (size_t i = 0; i + 1 < words->n; i++)
+        if ((strcmp(words->words[i], one) == 0 && strcmp(words->words[i + 1], other) == 0) ||
+            (strcmp(words->words[i], other) == 0 && strcmp(words->words[i + 1], one) == 0))
+            return true;
+    return false;
+}
+
+/* A neutron dose without another word is taken as fast: what is not from boron or gamma. */
+static bool quantity_from_words(const struct words *words, enum dose_quantity *quantity)
+{
+    bool is_neutron = has_word(words, "neutron") || has_word(words, "neutrons");
+    bool is_found[DOSE_N_QUANTITIES] = { false };
+    is_found[DOSE_BORON] = has_word(words, "boron") || has_pair(words, "b", "10");
+    is_found[DOSE_NITROGEN] = has_word(words, "nitrogen") || has_pair(words, "n", "14") || (is_neutron && has_word(words, "thermal"));
+    is_found[DOSE_FAST] = has_word(words, "fast") || has_word(words, "recoil") || has_word(words, "hydrogen") ||
+                          (is_neutron && !is_found[DOSE_NITROGEN] && !is_found[DOSE_BORON] && !has_word(words, "capture"));
+    is_found[DOSE_GAMMA] = has_word(words, "gamma") || has_word(words, "gammas") || has_word(words, "photon") || has_word(words, "photons");
+    size_t n = 0;
+    for (int i = 0; i < DOSE_N_QUANTITIES; i++)
+        if (is_found[i]) {
+            *quantity = (enum dose_quantity)i;
+            n++;
+        }
+    if (n == 0 && has_word(words, "total")) {
+        *quantity = DOSE_TOTAL;
+        n = 1;
+    }
+    return n == 1;
+}
+
+/* The number right before "ppm". */
+static double ppm_from_words(const struct words *words)
+{
+    double ppm;
+    for (size_t i = 1; i < words->n; i++)
+        if (strcmp(words->words[i], "ppm") == 0 && text_number(words->words[i - 1], &ppm) && ppm > 0)
+            return ppm;
+    return NAN;
+}
+
+/* "BNCT:quantity;key=value;..." */
+static bool component_by_grammar(const char *text, enum dose_quantity *quantity, double *ppm)
+{
+    if (strncmp(text, "BNCT:", 5) != 0)
+        return false;
+    char rest[80], *field, *next = rest;
+    snprintf(rest, sizeof rest, "%s", text + 5);
+    bool is_first = true;
+    while ((field = next)) {
+        next = strchr(field, ';');
+        if (next)
+            *next++ = 0;
+        while (*field == ' ')
+            field++;
+        field[strcspn(field, " ")] = 0;
+        double value;
+        if (is_first && !dose_quantity_from_word(field, quantity))
+            return false;
+        if (!is_first && strncmp(field, "ppm=", 4) == 0 && text_number(field + 4, &value) && value > 0)
+            *ppm = value;
+        is_first = false;
+    }
+    return true;
+}
+
+bool rtdose_component_from_text(const char *text, enum dose_quantity *quantity, double *ppm, bool *is_stated)
+{
+    enum dose_quantity found;
+    double found_ppm = NAN;
+    *is_stated = component_by_grammar(text, &found, &found_ppm);
+    if (!*is_stated) {
+        struct words words;
+        split_words(text, &words);
+        if (!quantity_from_words(&words, &found))
+            return false;
+        found_ppm = ppm_from_words(&words);
+    }
+    *quantity = found;
+    *ppm = found_ppm;
+    return true;
+}
+
+/* ---- groups ----------------------------------------------------------------------------------------------------------------------- */
+
+struct grouping {
+    struct rtdose *objects;
+    size_t n_objects;
+    rtdose_beam_name beam_name;
+    void *context;
+    const char *where;
+    struct dose *doses;
+    size_t n_doses, most;
+    struct report *report;
+};
+
+static bool agree(const struct rtdose *a, const struct rtdose *b)
+{
+    return strcmp(a->type, b->type) == 0 && strcmp(a->summation, b->summation) == 0 && strcmp(a->units, b->units) == 0 &&
+           strcmp(a->plan_uid, b->plan_uid) == 0 && strcmp(a->frame_uid, b->frame_uid) == 0 && a->n_beams == b->n_beams &&
+           memcmp(a->beams, b->beams, a->n_beams * sizeof *a->beams) == 0;
+}
+
+/* Words alone make a component only beside another: "photons" in the description of a plan is no gamma component. */
+static bool is_component(const struct grouping *grouping, const struct rtdose *object)
+{
+    if (!object->is_component || object->is_stated)
+        return object->is_component;
+    for (size_t i = 0; i < grouping->n_objects; i++) {
+        const struct rtdose *other = &grouping->objects[i];
+        bool is_other = other->values && other->is_component && other->quantity != object->quantity && other->quantity != DOSE_TOTAL;
+        if (is_other && object->quantity != DOSE_TOTAL && agree(object, other))
+            return true;
+    }
+    return false;
+}
+
+static const char *unit_of(const struct rtdose *object)
+{
+    return strcmp(object->units, "GY") == 0 ? "Gy" : strcmp(object->units, "RELATIVE") == 0 ? "relative" : "";
+}
+
+static const char *per_of(const struct rtdose *object)
+{
+    static const char *const words[][2] = { { "PLAN", "plan" },
+                                            { "MULTI_PLAN", "several plans" },
+                                            { "PLAN_OVERVIEW", "plan overview" },
+                                            { "FRACTION", "fraction" },
+                                            { "BEAM", "beam" },
+                                            { "BRACHY", "brachytherapy setup" },
+                                            { "FRACTION_SESSION", "fraction session" },
+                                            { "BEAM_SESSION", "beam session" },
+                                            { "BRACHY_SESSION", "brachytherapy session" },
+                                            { "CONTROL_POINT", "control point" },
+                                            { "RECORD", "treatment record" } };
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (strcmp(object->summation, words[i][0]) == 0)
+            return words[i][1];
+    return "";
+}
+
+/* Cuts at a whole character. */
+static void put_text(char *out, size_t size, const char *text)
+{
+    size_t n = strlen(text);
+    if (n >= size) {
+        n = size - 1;
+        while (n > 0 && ((unsigned char)text[n] & 0xc0) == 0x80)
+            n--;
+    }
+    memcpy(out, text, n);
+    out[n] = 0;
+}
+
+static bool is_taken(const struct grouping *grouping, const char *name)
+{
+    for (size_t i = 0; i < grouping->n_doses; i++)
+        if (strcmp(grouping->doses[i].id, name) == 0)
+            return true;
+    return false;
+}
+
+/* Description or comment, for a beam's dose with the beam; made unique with a number. */
+static void name_dose(const struct grouping *grouping, const struct rtdose *object, char id[64])
+{
+    char base[200], name[300], numbered[64];
+    const char *text = object->description[0] && !(object->is_stated && strncmp(object->description, "BNCT:", 5) == 0) ? object->description
+                       : object->comment[0] && !object->is_stated                                                      ? object->comment
+                       : object->is_stated                                                                             ? "BNCT"
+                                                                                                                       : "Dose";
+    put_text(base, sizeof base, text);
+    put_text(name, sizeof name, base);
+    const char *beam = object->n_beams == 1 && grouping->beam_name ? grouping->beam_name(grouping->context, object->beams[0]) : NULL;
+    if (object->n_beams == 1 && strncmp(object->summation, "BEAM", 4) == 0) {
+        if (beam)
+            snprintf(name, sizeof name, "%.40s, %s", base, beam);
+        else
+            snprintf(name, sizeof name, "%.40s, beam %lld", base, (long long)object->beams[0]);
+    }
+    char clean[300];
+    text_clean(name, clean, sizeof clean);
+    put_text(numbered, sizeof numbered - 8, clean);
+    put_text(id, 64, numbered);
+    for (int number = 2; is_taken(grouping, id); number++)
+        snprintf(id, 64, "%s (%d)", numbered, number);
+}
+
+static struct dose *new_dose(struct grouping *grouping, const struct rtdose *object)
+{
+    if (grouping->n_doses >= grouping->most) {
+        report_add(grouping->report, REPORT_WARNING, "dose.left-out", grouping->where, "More than %zu doses; \"%s\" is left out.",
+                   grouping->most, object->description);
+        return NULL;
+    }
+    struct dose *dose = &grouping->doses[grouping->n_doses];
+    *dose = (struct dose){ 0 };
+    name_dose(grouping, object, dose->id);
+    snprintf(dose->unit, sizeof dose->unit, "%s", unit_of(object));
+    snprintf(dose->per, sizeof dose->per, "%s", per_of(object));
+    grouping->n_doses++;
+    if (!dose->unit[0])
+        report_add(grouping->report, REPORT_WARNING, "dose.no-unit", grouping->where, "\"%s\": the dose's units are \"%s\".", dose->id,
+                   object->units);
+    if (!dose->per[0])
+        report_add(grouping->report, REPORT_NOTE, "dose.no-per", grouping->where, "\"%s\": the file does not say what was summed.", dose->id);
+    if (strcmp(object->type, "PHYSICAL") != 0 && strcmp(object->type, "EFFECTIVE") != 0)
+        report_add(grouping->report, REPORT_WARNING, "dose.type", grouping->where,
+                   "\"%s\" is of type \"%s\": it may not be a dose but a difference of two.", dose->id, object->type);
+    return dose;
+}
+
+static void add_component(struct dose *dose, struct rtdose *object, enum dose_quantity quantity)
+{
+    struct dose_component *component = &dose->components[dose->n_components++];
+    *component = (struct dose_component){ .quantity = quantity, .values = object->values };
+    object->values = NULL;
+    if ((quantity == DOSE_BORON || quantity == DOSE_BLOOD_BORON) && object->ppm > 0) {
+        component->is_per_ppm = true;
+        component->values->slope /= object->ppm;
+        component->values->offset /= object->ppm;
+        component->values->low /= object->ppm;
+        component->values->high /= object->ppm;
+    }
+}
+
+static bool has_quantity(const struct dose *dose, enum dose_quantity quantity)
+{
+    for (size_t i = 0; i < dose->n_components; i++)
+        if (dose->components[i].quantity == quantity)
+            return true;
+    return false;
+}
+
+/* The object and all that go with it; is_given says which were components before any was taken. */
+static void add_components(struct grouping *grouping, size_t first, const bool *is_given)
+{
+    struct rtdose *object = &grouping->objects[first];
+    const struct rtdose like = *object; /* its values go into the dose */
+    struct dose *dose = new_dose(grouping, object);
+    if (!dose)
+        return;
+    char words[200] = "";
+    for (size_t i = first; i < grouping->n_objects; i++) {
+        struct rtdose *other = &grouping->objects[i];
+        if (!other->values || !is_given[i] || !agree(&like, other) || has_quantity(dose, other->quantity))
+            continue;
+        size_t n = strlen(words);
+        snprintf(words + n, sizeof words - n, "%s%s", n ? ", " : "", dose_quantity_word(other->quantity));
+        if (other->quantity == DOSE_BORON && !(other->ppm > 0))
+            report_add(grouping->report, REPORT_WARNING, "dose.no-ppm", grouping->where,
+                       "\"%s\": nothing says for how much boron-10 the boron dose holds; it is shown as it is.", dose->id);
+        if (other->quantity == DOSE_BORON && other->ppm > 0 && other->ppm != 1)
+            report_add(grouping->report, REPORT_NOTE, "dose.per-ppm", grouping->where,
+                       "\"%s\": the boron dose holds for %g ppm and was divided by that.", dose->id, other->ppm);
+        add_component(dose, other, other->quantity);
+    }
+    report_add(grouping->report, REPORT_NOTE, "dose.components", grouping->where,
+               "\"%s\" is put together from %zu objects by their %s: %s.", dose->id, dose->n_components,
+               like.is_stated ? "descriptions" : "descriptions' words", words);
+}
+
+static void add_alone(struct grouping *grouping, struct rtdose *object)
+{
+    struct dose *dose = new_dose(grouping, object);
+    if (dose)
+        add_component(dose, object, strcmp(object->type, "EFFECTIVE") == 0 ? DOSE_WEIGHTED_TOTAL : DOSE_TOTAL);
+}
+
+static void leave_out_zeros(struct grouping *grouping)
+{
+    for (size_t i = 0; i < grouping->n_objects; i++) {
+        struct rtdose *object = &grouping->objects[i];
+        if (!object->values || !object->is_all_zero)
+            continue;
+        report_add(grouping->report, REPORT_WARNING, "dose.all-zero", grouping->where,
+                   "A dose (\"%s\", %s of %zu beams) is 0 everywhere and is not listed.", object->description, object->summation,
+                   object->n_beams);
+        rtdose_finish(object);
+    }
+}
+
+static void report_beams(const struct grouping *grouping, size_t n_beam_doses, bool has_plan_dose)
+{
+    if (n_beam_doses > 1 && !has_plan_dose)
+        report_add(grouping->report, REPORT_NOTE, "dose.not-summed", grouping->where,
+                   "%zu doses are of single beams and stand one beside the other; they were not added.", n_beam_doses);
+}
+
+size_t rtdose_group(struct rtdose *objects, size_t n_objects, rtdose_beam_name beam_name, void *context, const char *where,
+                    struct dose *doses, size_t most, struct report *report)
+{
+    struct grouping grouping = { objects, n_objects, beam_name, context, where, doses, 0, most, report };
+    size_t n_beam_doses = 0;
+    bool has_plan_dose = false;
+    bool *is_given = mem_new(n_objects + 1);
+    leave_out_zeros(&grouping);
+    for (size_t i = 0; i < n_objects; i++) {
+        is_given[i] = objects[i].values && is_component(&grouping, &objects[i]);
+        n_beam_doses += objects[i].values && !is_given[i] && strcmp(objects[i].summation, "BEAM") == 0;
+        has_plan_dose |= objects[i].values && strcmp(objects[i].summation, "PLAN") == 0;
+    }
+    for (size_t i = 0; i < n_objects; i++) {
+        if (objects[i].values && is_given[i])
+            add_components(&grouping, i, is_given);
+        else if (objects[i].values)
+            add_alone(&grouping, &objects[i]);
+        rtdose_finish(&objects[i]); /* what found no room */
+    }
+    report_beams(&grouping, n_beam_doses, has_plan_dose);
+    free(is_given);
+    return grouping.n_doses;
+}
