@@ -140,6 +140,22 @@ static double estimated_mib(const char *folder, const char *largest)
     return strtod(at + 6, NULL);
 }
 
+/* A sanitizer keeps memory of its own and holds back what is freed, so what it measures says nothing of the program. */
+static void check_estimate(double estimate_mib, double found_mib)
+{
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+    return;
+#endif
+#endif
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    assert_true(estimate_mib < found_mib * PLAN_ESTIMATE_FACTOR && found_mib < estimate_mib * PLAN_ESTIMATE_FACTOR);
+#else
+    (void)estimate_mib;
+    (void)found_mib;
+#endif
+}
+
 static void a_plan_over_the_limit_is_refused_with_figures_before_it_is_read(void **state)
 {
     (void)state;
@@ -151,7 +167,7 @@ static void a_plan_over_the_limit_is_refused_with_figures_before_it_is_read(void
     assert_true(clock_now_us() - began_us < 500000);
     double found_mib = (double)(peak_kib(folder) - before) / 1024;
     print_message("estimate %.0f MiB, measured %.0f MiB\n", estimate_mib, found_mib);
-    assert_true(estimate_mib < found_mib * PLAN_ESTIMATE_FACTOR && found_mib < estimate_mib * PLAN_ESTIMATE_FACTOR);
+    check_estimate(estimate_mib, found_mib);
 
     struct error err = { 0 };
     struct plan_load_options options = { .max_bytes = (uint64_t)(estimate_mib + 2) << 20 };
@@ -177,7 +193,7 @@ static void estimates_of_real_plans_are_within_the_stated_factor(void **state)
         n++;
         double estimate_mib = estimated_mib(path, plans[i].largest), found_mib = (double)(peak_kib(path) - before) / 1024;
         print_message("%s: estimate %.0f MiB, measured %.0f MiB\n", plans[i].name, estimate_mib, found_mib);
-        assert_true(estimate_mib < found_mib * PLAN_ESTIMATE_FACTOR && found_mib < estimate_mib * PLAN_ESTIMATE_FACTOR);
+        check_estimate(estimate_mib, found_mib);
     }
     if (n == 0)
         skip();
