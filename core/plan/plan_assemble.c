@@ -128,6 +128,8 @@ static void add_component(struct loading *loading, struct dose *dose, struct job
     const struct plan_file_dose *entry = &loading->file->doses[job->index];
     if (part_is_sera_dose(job->format))
         plan_add_sera(dose, entry, job->component, &job->doses, &loading->plan->report);
+    else if (job->format == PART_DICOM)
+        plan_dicom_add_component(loading, dose, job);
     else
         plan_add_component(dose, entry, job->component, take_volume(job), &loading->plan->report);
 }
@@ -144,11 +146,21 @@ static void add_dose_mask(struct loading *loading, struct dose *dose, struct job
 /* What an entry of the plan file names; a file or folder of DICOM doses may give several. */
 static void add_dose(struct loading *loading, size_t index)
 {
+    struct plan *plan = loading->plan;
+    const struct plan_file_dose *entry = &loading->file->doses[index];
     struct dose *dose = NULL;
+    size_t before = plan->n_doses;
+    bool is_grouped = false;
     for (size_t i = 0; i < loading->n_jobs; i++) {
         struct job *job = &loading->jobs[i];
-        if (job->kind != JOB_DOSE || job->index != index)
+        if (job->kind != JOB_DOSE || job->index != index || is_grouped)
             continue;
+        if (job->format == PART_DICOM && entry->n_components == 1) {
+            plan_dicom_add_doses(loading, index, entry);
+            dose = plan->n_doses > before ? &plan->doses[before] : NULL;
+            is_grouped = true;
+            continue;
+        }
         if (!dose)
             dose = find_dose(loading, index, part_is_sera_dose(job->format));
         add_component(loading, dose, job);
@@ -162,6 +174,8 @@ static void add_doses(struct loading *loading)
 {
     for (size_t i = 0; i < loading->file->n_doses; i++)
         add_dose(loading, i);
+    if (loading->parts.is_all_dicom)
+        plan_dicom_add_doses(loading, JOB_OF_NO_ENTRY, NULL);
 }
 
 static bool apply_hierarchy(struct loading *loading, const struct region_builder *builder, struct error *err)

@@ -84,7 +84,7 @@ static bool dose_is_readable(struct loading *loading, const struct plan_file_dos
         enum part_format format = part_format_of(&loading->folder, path);
         if (format == PART_ABSENT)
             return refuse_format(path, format, err);
-        if (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format))
+        if (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format) || format == PART_DICOM)
             continue;
         report_add(&loading->plan->report, REPORT_WARNING, "dose.unsupported", path,
                    "The dose \"%s\" is in a format (%s) that this version does not read; the plan is shown without it.", dose->id,
@@ -136,6 +136,7 @@ bool plan_make_jobs(struct loading *loading, struct error *err)
         is_made = add_dicom_jobs(loading, JOB_BEAMS, DICOM_KIND_PLAN, i, 0, file->beam_files[i].path, PLAN_DICOM_MAX_PLANS) > 0 ||
                   refuse_dicom(loading, file->beam_files[i].path, "treatment plan", err);
     if (is_made && parts->is_all_dicom) {
+        add_dicom_jobs(loading, JOB_DOSE, DICOM_KIND_DOSE, JOB_OF_NO_ENTRY, 0, "", PLAN_DICOM_MAX_DOSES);
         add_dicom_jobs(loading, JOB_BEAMS, DICOM_KIND_PLAN, JOB_OF_NO_ENTRY, 0, "", PLAN_DICOM_MAX_PLANS);
     }
     for (size_t i = 0; i < loading->n_jobs; i++)

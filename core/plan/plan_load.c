@@ -53,6 +53,7 @@ static void finish_job(struct job *job)
         nrrd_layers_finish(job->layers);
     free(job->layers);
     rtstruct_destroy(job->structs);
+    rtdose_finish(&job->rtdose);
     rtplan_destroy(job->rtplan);
     uvh_finish(&job->uvh);
     label_names_finish(&job->names);

@@ -66,6 +66,8 @@ static bool read_rt_object(const struct loading *loading, struct job *job)
     bool is_read = false;
     if (job->kind == JOB_REGION)
         is_read = (job->structs = rtstruct_read(opened.file, job->path, &job->report, &job->err)) != NULL;
+    else if (job->kind == JOB_DOSE)
+        is_read = rtdose_read(opened.file, job->path, &job->rtdose, &job->report, &job->err);
     else
         is_read = (job->rtplan = rtplan_read(opened.file, job->path, &job->report, &job->err)) != NULL;
     plan_dicom_close(&opened);

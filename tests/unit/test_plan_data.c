@@ -22,7 +22,7 @@ static const struct expected folders[] = {
     { "dicom-mr-head", NULL, 1, 0, 0, 0 },
     { "dicom-transfer-syntaxes", NULL, 2, 0, 0, 0 }, /* the lossless slice, and the lossy one that derives from it */
     { "dicomrt-lung-phantom", NULL, 1, 3, 0, 0 },
-    { "dicomrt-oncentra-phantom", NULL, 1, 7, 0, 3 },
+    { "dicomrt-oncentra-phantom", NULL, 1, 7, 3, 3 }, /* the fourth dose is all zero */
     { "dicomrt-plans", NULL, 0, 0, 0, 12 },
     { "dicomrt-sts001", NULL, 3, 6, 0, 0 }, /* three structure sets, three reference masks */
     { "eclipse-ent-dose", NULL, 0, 16, 1, 0 },
@@ -30,6 +30,7 @@ static const struct expected folders[] = {
     { "glioma-tcga-du7294", NULL, 2, 4, 0, 0 },
     { "head-colin27", NULL, 1, 116, 0, 0 },
     { "hostile", "nothing is left to show", 0, 0, 0, 0 },
+    { "hostile/empty_dose", "is 0 everywhere", 0, 0, 0, 0 },
     { "hostile-dicom", "", 0, 0, 0, 0 },
     { "matrad-phantoms", "no plan itself, but the folder BOXPHANTOM in it is one", 0, 0, 0, 0 },
     { "matrad-phantoms/BOXPHANTOM", NULL, 1, 2, 0, 0 },
@@ -183,6 +184,19 @@ static void the_lung_phantom_has_its_three_regions(void **state)
     plan_destroy(plan);
 }
 
+/* The value of the dose whose largest value this is. */
+static double dose_at(const struct plan *plan, double largest, struct vec3 point)
+{
+    for (size_t d = 0; d < plan->n_doses; d++) {
+        double value;
+        const struct volume *values = plan->doses[d].components[0].values;
+        if (fabs(values->high - largest) < 1e-6 && volume_sample(values, point, &value))
+            return value;
+    }
+    fail_msg("no dose with a maximum of %g Gy at %g %g %g", largest, point.x, point.y, point.z);
+    return 0;
+}
+
 static void check_beam(const struct plan *plan, const char *name, struct vec3 isocentre, double gantry_deg)
 {
     for (size_t b = 0; b < plan->n_beams; b++) {
@@ -220,7 +234,9 @@ static void check_against_pydicom(const char *folder, size_t least_doses, size_t
             char *word = strtok_r(NULL, "\t", &at);
             v[i] = word ? strtod(word, NULL) : 0;
         }
-        if (strcmp(kind, "beam") == 0 && ++n_beams)
+        if (strcmp(kind, "dose") == 0 && ++n_doses)
+            assert_close(dose_at(plan, strtod(name, NULL), vec3(v[0], v[1], v[2])), v[3], 1e-6);
+        else if (strcmp(kind, "beam") == 0 && ++n_beams)
             check_beam(plan, name, vec3(v[0], v[1], v[2]), v[3]);
         else if (strcmp(kind, "region") == 0 && ++n_regions)
             assert_near(region_of(plan, name)->volume_cm3, v[0], 0.01);
@@ -238,7 +254,7 @@ static void oncentras_phantom_is_what_pydicom_says(void **state)
     (void)state;
     if (!is_there("dicomrt-oncentra-phantom"))
         skip();
-    check_against_pydicom("dicomrt-oncentra-phantom", 0, 5, 3);
+    check_against_pydicom("dicomrt-oncentra-phantom", 60, 5, 3);
 }
 
 static void the_lung_phantom_is_what_pydicom_says(void **state)
