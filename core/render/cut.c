@@ -1,5 +1,6 @@
 #include "core/render/cut.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -154,12 +155,12 @@ static bool pixel_map(const struct grid *grid, const struct cut_plane *plane, st
     return true;
 }
 
-/* A row of pixels; index: their place in the grid. */
-static void cut_row(const struct cut_region *cut, const struct affine *index, uint32_t v, uint32_t n, uint64_t *bits)
+/* Pixels first .. end - 1 of a row; index: their place in the grid. */
+static void cut_row(const struct cut_region *cut, const struct affine *index, uint32_t v, uint32_t first_u, uint32_t end_u, uint64_t *bits)
 {
     struct vec3 step = index->columns[0], first = affine_point(index, vec3(0, v, 0));
     const uint32_t *size = cut->grid->size;
-    for (uint32_t u = 0; u < n; u++) {
+    for (uint32_t u = first_u; u < end_u; u++) {
         double i = floor(first.x + step.x * u + 0.5), j = floor(first.y + step.y * u + 0.5), k = floor(first.z + step.z * u + 0.5);
         if (!(i >= 0 && j >= 0 && k >= 0 && i < size[0] && j < size[1] && k < size[2]))
             continue;
@@ -170,20 +171,48 @@ static void cut_row(const struct cut_region *cut, const struct affine *index, ui
     }
 }
 
+/* Which pixels the region's box covers, and one more on every side: most regions are small. */
+static void find_pixels(const struct cut_region *cut, const struct affine *map, const uint32_t size[2], uint32_t first[2], uint32_t end[2])
+{
+    const struct box3 *box = &cut->bounds_lps_mm;
+    struct affine pixel;
+    double low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
+    bool is_inverted = affine_invert(map, &pixel);
+    assert(is_inverted); /* made of a grid's axes */
+    for (int corner = 0; corner < 8; corner++) {
+        struct vec3 p = affine_point(&pixel, vec3(corner & 1 ? box->high.x : box->low.x, corner & 2 ? box->high.y : box->low.y,
+                                                  corner & 4 ? box->high.z : box->low.z));
+        const double at[2] = { p.x, p.y };
+        for (int i = 0; i < 2; i++) {
+            low[i] = fmin(low[i], at[i]);
+            high[i] = fmax(high[i], at[i]);
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        first[i] = (uint32_t)fmin(fmax(floor(low[i]) - 1, 0), size[i]);
+        end[i] = (uint32_t)fmin(fmax(ceil(high[i]) + 2, 0), size[i]);
+    }
+}
+
 bool cut_univels(const struct cut_region *cut, const struct cut_plane *plane, struct mask **mask, struct error *err)
 {
     struct affine map;
     uint32_t size[3] = { 0, 0, 1 };
     *mask = NULL;
-    if (!pixel_map(cut->grid, plane, &map, size))
+    const struct box3 *box = &cut->bounds_lps_mm;
+    int axis = patient_axis(plane);
+    if (box3_is_empty(box) || plane->position_mm < along(box->low, axis) || plane->position_mm > along(box->high, axis) ||
+        !pixel_map(cut->grid, plane, &map, size))
         return true;
     struct mask *made = mask_create(size, &map, err);
     if (!made)
         return false;
     memset(made->bits, 0, (size_t)made->words * size[1] * sizeof *made->bits);
     struct affine index = affine_compose(&cut->grid->ijk_from_lps_mm, &map);
-    for (uint32_t v = 0; v < size[1]; v++)
-        cut_row(cut, &index, v, size[0], made->bits + (size_t)v * made->words);
+    uint32_t first[2], end[2];
+    find_pixels(cut, &map, size, first, end);
+    for (uint32_t v = first[1]; v < end[1]; v++)
+        cut_row(cut, &index, v, first[0], end[0], made->bits + (size_t)v * made->words);
     *mask = made;
     return true;
 }

@@ -33,7 +33,7 @@ bool cut_region_holds(const struct cut_region *cut, struct vec3 point_lps_mm);
 
 /* The pixels on the plane that hold univels, as a mask of one slice: where the grid lies square to the patient its own voxels, else
  * (an oblique grid) pixels as large as its smallest spacing, each carrying the voxel at its centre. *mask NULL: the plane misses
- * the grid. errors ERROR_MEMORY, ERROR_LIMIT */
+ * the region. errors ERROR_MEMORY, ERROR_LIMIT */
 NODISCARD bool cut_univels(const struct cut_region *cut, const struct cut_plane *plane, struct mask **mask, struct error *err);
 /* Adds a slice's outlines; a pixel alone is a small diamond. errors of outline_slice */
 NODISCARD bool cut_outlines(const struct mask *slice, enum outline_method method, struct cut_lines *lines, struct error *err);

@@ -9,8 +9,8 @@
 #include "core/render/paint.h"
 #include "core/render/visible.h"
 
-/* Slices kept: a few seconds of scrolling. */
-enum { MAX_ENTRIES = 256 };
+/* Kept at most: three panes of all regions a plan can have, if their lines are not too many. */
+enum { MAX_ENTRIES = 3 * REGION_MAX + 512, MAX_LINES = 2 << 20 }; /* 48 bytes each */
 static const uint32_t grid_rgb = 0xf4f6f8, univel_rgb = 0xffffff;
 
 enum lines_of { LINES_OF_OUTLINE, LINES_OF_BORDER, LINES_OF_SHAPE };
@@ -30,7 +30,6 @@ struct entry {
 
 struct overlay {
     struct entry *first; /* newest first */
-    size_t n;
 };
 
 struct overlay *overlay_create(void)
@@ -53,7 +52,6 @@ void overlay_forget(struct overlay *overlay, const struct plan *plan)
             continue;
         }
         *at = entry->next;
-        overlay->n--;
         entry_destroy(entry);
     }
 }
@@ -101,16 +99,16 @@ static bool fill_shape(struct entry *entry, struct plan *plan, struct error *err
     return is_good;
 }
 
-/* Drops the oldest beyond what is kept; what was just made stays. */
+/* Drops the oldest beyond what is kept. */
 static void trim(struct overlay *overlay)
 {
     struct entry **at = &overlay->first;
-    for (size_t i = 0; i < MAX_ENTRIES && *at; i++)
+    size_t n_lines = 0;
+    for (size_t i = 0; *at && i < MAX_ENTRIES && (n_lines += (*at)->lines.n) <= MAX_LINES; i++)
         at = &(*at)->next;
     while (*at) {
         struct entry *entry = *at;
         *at = entry->next;
-        overlay->n--;
         entry_destroy(entry);
     }
 }
@@ -134,7 +132,6 @@ static const struct entry *lines_of(struct overlay *overlay, struct plan *plan, 
     }
     made->next = overlay->first;
     overlay->first = made;
-    overlay->n++;
     return made;
 }
 
