@@ -101,7 +101,8 @@ struct plan_summary {
 void plan_summarize(const char *folder, struct plan_summary *summary);
 
 /* Detail of a surface: FULL is every univel; LIGHT is for moving pictures: the mask reduced until all surfaces of the
- * plan by the same algorithm stay together under PLAN_LIGHT_TRIANGLES (or the reduction reaches 8). */
+ * plan by the same algorithm stay together under PLAN_LIGHT_TRIANGLES (or the reduction reaches 8): so many univels become one along
+ * their shortest edge, along longer ones as many as make it no longer (mask_reduce). */
 enum surface_detail { SURFACE_FULL, SURFACE_LIGHT };
 enum { PLAN_LIGHT_TRIANGLES = 80000 };
 

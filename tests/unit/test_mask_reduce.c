@@ -54,9 +54,26 @@ static void thin_shapes_keep_their_shape_when_reduced(void **state)
     }
 }
 
+static void a_plate_keeps_its_extent_but_for_a_rim_of_one_block(void **state)
+{
+    (void)state;
+    struct error err = { 0 };
+    struct mask *mask = mask_make(64, 64, 12, &unit_map);
+    for (uint32_t at = 0; at < 48 * 48; at++)
+        mask_put(mask, 8 + at % 48, 8 + at / 48, 5); /* a quarter of each block it is in */
+    struct mask *coarse = mask_reduce(mask, (uint32_t[]){ 4, 4, 4 }, 1, &err);
+    for (uint32_t j = 3; j <= 12; j++)
+        for (uint32_t i = 3; i <= 12; i++)
+            assert_true(mask_has(coarse, i, j, 1));
+    assert_true(mask_count(coarse) <= 12 * 12);
+    mask_destroy(coarse);
+    mask_destroy(mask);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plate_keeps_its_extent_but_for_a_rim_of_one_block),
         cmocka_unit_test(thin_shapes_keep_their_shape_when_reduced),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

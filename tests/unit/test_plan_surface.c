@@ -187,17 +187,19 @@ static void what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds
     struct shape *small = shape_of(plan, 1, SURFACE_MARCHING_CUBES, &facts);
     struct shape *lone = shape_of(plan, 2, SURFACE_MARCHING_CUBES, NULL);
     struct shape *again = shape_of(plan, 1, SURFACE_MARCHING_CUBES, NULL); /* so the lone one is the oldest */
+    struct shape *cells = shape_of(plan, 1, SURFACE_EIGHT_CELL, NULL);
     assert_ptr_equal(small, again);
     assert_int_equal(facts.n_bytes, small->n_bytes);
     assert_true(facts.n_bytes >= facts.n_triangles * 12 + facts.n_vertices * 24);
     plan_shape_usage(plan, &usage);
-    assert_int_equal(usage.n_shapes, 2);
-    assert_int_equal(usage.n_bytes, small->n_bytes + lone->n_bytes);
+    assert_int_equal(usage.n_shapes, 3);
+    assert_int_equal(usage.n_bytes, small->n_bytes + lone->n_bytes + cells->n_bytes);
 
     plan_set_shape_budget(plan, usage.n_bytes - 1);
     plan_shape_usage(plan, &usage);
-    assert_int_equal(usage.n_shapes, 1);
-    assert_int_equal(usage.n_bytes, small->n_bytes);
+    assert_int_equal(usage.n_shapes, 2);
+    assert_int_equal(usage.n_bytes, small->n_bytes + cells->n_bytes);
+    plan_set_shape_budget(plan, lone->n_bytes);
     assert_int_equal(lone->mesh->n_triangles, 8); /* an octahedron still, as this test holds it */
     struct shape *rebuilt = shape_of(plan, 2, SURFACE_MARCHING_CUBES, NULL); /* takes the place of the other */
     assert_ptr_not_equal(rebuilt, lone);
@@ -212,6 +214,7 @@ static void what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds
     shape_unref(small);
     shape_unref(again);
     shape_unref(lone);
+    shape_unref(cells);
     shape_unref(rebuilt);
     plan_destroy(plan);
 }
