@@ -21,9 +21,24 @@ static bool get_unit(const struct place *place, const cJSON *object, double *mm)
     return true;
 }
 
+/* {"center": 40, "width": 400} */
+static bool get_window(const struct place *place, const cJSON *object, struct plan_file_image *image)
+{
+    const cJSON *window = cJSON_GetObjectItemCaseSensitive(object, "window");
+    if (!window || cJSON_IsNull(window))
+        return true;
+    const cJSON *center = cJSON_GetObjectItemCaseSensitive(window, "center"), *width = cJSON_GetObjectItemCaseSensitive(window, "width");
+    if (!cJSON_IsNumber(center) || !cJSON_IsNumber(width) || !(fabs(center->valuedouble) <= 1e12) ||
+        !(width->valuedouble > 0 && width->valuedouble <= 1e12))
+        return place_fail(place, ERROR_RANGE, "window", "expected a center, and a width above 0");
+    image->window_center = center->valuedouble;
+    image->window_width = width->valuedouble;
+    return true;
+}
+
 static bool parse_images(const struct place *top, const cJSON *root, struct plan_file *file)
 {
-    static const char *const known[] = { "id", "path", "header", "modality", "name", "unit", NULL };
+    static const char *const known[] = { "id", "path", "header", "modality", "name", "unit", "value_unit", "window", NULL };
     const cJSON *list;
     if (!place_list(top, root, "images", PLAN_MAX_IMAGES, &list))
         return false;
@@ -34,7 +49,8 @@ static bool parse_images(const struct place *top, const cJSON *root, struct plan
         if (!place_text(&at, entry, "id", image->id, sizeof image->id) || !place_path(&at, entry, "path", true, image->path) ||
             !place_path(&at, entry, "header", false, image->header) ||
             !place_text(&at, entry, "modality", image->modality, sizeof image->modality) ||
-            !place_text(&at, entry, "name", image->name, sizeof image->name) || !get_unit(&at, entry, &image->mm))
+            !place_text(&at, entry, "name", image->name, sizeof image->name) || !get_unit(&at, entry, &image->mm) ||
+            !place_text(&at, entry, "value_unit", image->value_unit, sizeof image->value_unit) || !get_window(&at, entry, image))
             return false;
     }
     return true;

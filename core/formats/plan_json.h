@@ -20,6 +20,8 @@ struct plan_file_image {
     char header[FOLDER_NAME_SIZE]; /* "" none */
     char modality[16];
     char name[128]; /* for people; "" none */
+    char value_unit[8]; /* of its values, "HU"; "" none */
+    double window_center, window_width; /* a first window; width 0: none */
     double mm; /* of one unit of a SERA header, whatever that says; 0 when not given */
 };
 struct plan_file_region {

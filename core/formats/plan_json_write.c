@@ -86,6 +86,13 @@ static void add_images(cJSON *root, const struct plan_file *file)
         add_text(entry, "modality", image->modality);
         add_text(entry, "path", image->path);
         add_text(entry, "header", image->header);
+        add_text(entry, "value_unit", image->value_unit);
+        if (!(image->window_width > 0))
+            continue;
+        cJSON *window = cJSON_CreateObject();
+        add(entry, "window", window);
+        add_number(window, "center", image->window_center);
+        add_number(window, "width", image->window_width);
     }
 }
 

@@ -63,7 +63,12 @@ static void add_image(struct loading *loading, struct job *job)
     plan_image_window(image);
     if (!image->unit[0])
         snprintf(image->unit, sizeof image->unit, "%.7s", job->facts.unit);
-    if (job->facts.n_windows > 0 && !text_equal(image->modality, "CT")) { /* a CT begins with one window whoever made it */
+    if (entry->value_unit[0])
+        memcpy(image->unit, entry->value_unit, sizeof image->unit);
+    if (entry->window_width > 0) {
+        image->window_center = entry->window_center;
+        image->window_width = entry->window_width;
+    } else if (job->facts.n_windows > 0 && !text_equal(image->modality, "CT")) { /* a CT begins with one window whoever made it */
         image->window_center = job->facts.windows[0].center;
         image->window_width = job->facts.windows[0].width;
     }

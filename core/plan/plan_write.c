@@ -61,6 +61,9 @@ static void list_images(struct writing *writing)
         memcpy(image->id, plan->images[i].id, sizeof image->id);
         memcpy(image->name, plan->images[i].name, sizeof image->name);
         memcpy(image->modality, plan->images[i].modality, sizeof image->modality);
+        memcpy(image->value_unit, plan->images[i].unit, sizeof image->value_unit);
+        image->window_center = plan->images[i].window_center;
+        image->window_width = plan->images[i].window_width;
         snprintf(image->path, sizeof image->path, "images/%s.nii.gz", plan->images[i].id);
         add_output(writing, plan->images[i].volume, image->path);
     }

@@ -6,9 +6,11 @@
 #include <unistd.h>
 
 #include "core/plan/plan.h"
+#include "core/plan/plan_write.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/oracle.h"
+#include "tests/unit/same_plan.h"
 
 /* What is expected of a folder; reason NULL: it opens with these. */
 struct expected {
@@ -299,6 +301,28 @@ static void images_keep_their_own_grids(void **state)
     }
 }
 
+/* DICOM to NIfTI and plan.json, and back: the same plan, matrices to 1e-6 mm. */
+static void dicom_plans_come_back_from_their_conversion(void **state)
+{
+    (void)state;
+    static const char *const names[] = { "dicomrt-oncentra-phantom", "dicomrt-sts001", "dicomrt-plans", "dicom-mr-head" };
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        char out[300];
+        struct error err;
+        if (!is_there(names[i]))
+            skip();
+        struct plan *plan = load(names[i], &err);
+        assert_string_equal(err.text, "");
+        snprintf(out, sizeof out, "%s/converted-%zu", unpacked, i);
+        assert_true(plan_write(plan, out, &err));
+        struct plan *again = plan_load(out, "p", NULL, &err);
+        assert_string_equal(err.text, "");
+        assert_same_plan(again, plan, 1e-6);
+        plan_destroy(plan);
+        plan_destroy(again);
+    }
+}
+
 static int remove_all(void **state)
 {
     (void)state;
@@ -316,6 +340,7 @@ int main(void)
         cmocka_unit_test(oncentras_phantom_is_what_pydicom_says),
         cmocka_unit_test(the_lung_phantom_is_what_pydicom_says),
         cmocka_unit_test(images_keep_their_own_grids),
+        cmocka_unit_test(dicom_plans_come_back_from_their_conversion),
     };
     return cmocka_run_group_tests(tests, NULL, remove_all);
 }
