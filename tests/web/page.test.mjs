@@ -154,6 +154,20 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
+  it('shows the box of a dose\'s grid', async () => {
+    const room = await newRoom();
+    const page = await newPage(`#/rooms/${room}`);
+    await full(page);
+    const before = await look(page, 1);
+    await page.locator('[data-dose="goorley"] .eye').click();
+    await page.waitForFunction(() => globalThis.beamroom.stats().headers[1].scene_revision > 1);
+    await full(page);
+    assert.notEqual((await look(page, 1)).print, before.print);
+    const { json } = await call(`${daemon.url}/api/v1/rooms/${room}/scene`);
+    assert.deepEqual((json.scene ?? json).dose, { id: 'goorley', grid: true });
+    await page.context().close();
+  });
+
   it('downloads the surface of the chosen region in three formats', async () => {
     const page = await newPage(`#/rooms/${await newRoom()}`);
     await full(page);

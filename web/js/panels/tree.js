@@ -3,8 +3,8 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { repeat } from '../../lib/directives/repeat.js';
-import { shownImage, soloPatch } from '../state/plan.js';
-import { number, windowText } from './format.js';
+import { beamWords, doseWords, shownImage, soloPatch } from '../state/plan.js';
+import { count, number, windowText } from './format.js';
 import { icon } from './icons.js';
 import { variables } from './mount.js';
 
@@ -17,7 +17,7 @@ export function tree({ room, ui }) {
   return html`
     <header class="panel-head"><h2>Plan</h2><span class="grow"></span>
       <button class="icon-button" title="Fold" aria-label="Fold the plan's parts" @click=${() => { ui.isTreeOpen.value = false; }}>${icon('chevronLeft')}</button></header>
-    <div class="scroll">${plan ? html`${images(room, plan)}${regions(room, ui, plan)}` : html`<p class="empty">The plan is being loaded.</p>`}</div>`;
+    <div class="scroll">${plan ? html`${images(room, plan)}${regions(room, ui, plan)}${doses(room, ui, plan)}${beams(plan)}` : html`<p class="empty">The plan is being loaded.</p>`}</div>`;
 }
 
 function section(title, note, rows) {
@@ -76,4 +76,28 @@ function row(room, ui, plan, region) {
     <span class="percent"><input type="number" min="0" max="100" step="1" .value=${live(String(percent))} aria-label=${`Opacity of ${region.name} in per cent`} ?disabled=${isDisabled}
       @change=${(event) => Number.isFinite(event.target.valueAsNumber) && change({ opacity: Math.min(Math.max(event.target.valueAsNumber, 0), 100) / 100 }, event)}> %</span>
   </li>`;
+}
+
+/** Doses, whose grids can be shown over the picture. */
+function doses(room, ui, plan) {
+  const scene = room.scene.value;
+  if (!scene || !plan.doses.length) return nothing;
+  const shown = scene.dose.grid ? plan.doses.find((dose) => dose.id === scene.dose.id) ?? plan.doses[0] : null;
+  const row = (dose) => {
+    const isShown = dose === shown;
+    const toggle = (event) => room.patchScene({ dose: { id: dose.id, grid: !isShown } }, { view: ui.active.value, at: event.timeStamp });
+    return html`<li class="row" data-dose=${dose.id} title=${doseWords(dose)}><button class="eye" aria-pressed=${isShown} aria-label=${`Show the grid of ${dose.name || dose.id}`} title="Show or hide the box of its grid"
+      ?disabled=${!room.canChange.value} @click=${toggle}>${icon(isShown ? 'eye' : 'eyeOff')}</button><span class="clipped">${dose.name || dose.id}</span><span class="tail">${dose.unit}</span></li>`;
+  };
+  return section('Doses', shown ? 'grid shown' : '', html`<ul class="rows">${plan.doses.map(row)}</ul>`);
+}
+
+function beams(plan) {
+  const rows = [
+    ...plan.beams.map((beam) => [beam.name || beam.id, beamWords(beam)]),
+    ...(plan.nTracks ? [['Particle tracks', count(plan.nTracks, 'segment')]] : []),
+    ...plan.curves.map((curve) => [curve.name || curve.id, 'reference curve']),
+  ];
+  if (!rows.length) return nothing;
+  return section('Beams', '', html`<ul class="rows">${rows.map(([name, words]) => html`<li class="row plain" title=${`${name}: ${words}`}><span class="clipped">${name}</span><span class="tail clipped">${words}</span></li>`)}</ul>`);
 }

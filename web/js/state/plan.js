@@ -51,6 +51,8 @@ export function readPlan(document) {
     hierarchy: document.hierarchy ?? 'none',
     doses: document.doses ?? [],
     beams: document.beams ?? [],
+    curves: document.curves ?? [],
+    nTracks: document.tracks?.segments ?? 0,
     report: readReport(document.report),
     loadMs: document.load_ms ?? null,
     bounds: document.bounds_mm ?? { low: [-100, -100, -100], high: [100, 100, 100] },
@@ -112,4 +114,18 @@ export function windowPresets(image) {
 export function soloPatch(regions, scene, id) {
   const isAlone = regions.every((region) => Boolean(scene.regions[region.id]?.visible) === (region.id === id));
   return { regions: Object.fromEntries(regions.map((region) => [region.id, { visible: isAlone || region.id === id }])) };
+}
+
+/** "Gy per fraction, total" of a dose; what it cannot say it leaves out. */
+export function doseWords(dose) {
+  const per = dose.per ? ` per ${dose.per.replace(/^per /, '')}` : '';
+  const quantities = dose.components.map(({ quantity, per_ppm: perPpm }) => (perPpm ? `${quantity} per ppm` : quantity));
+  return [`${dose.unit || 'no unit'}${per}`, ...quantities].join(', ');
+}
+
+/** "gantry 90°, 120 mm" of a beam */
+export function beamWords(beam) {
+  const { delivery: d } = beam;
+  const gantry = d && d.gantry_deg !== null && `gantry ${d.gantry_deg}°${d.gantry_stop_deg !== null && d.gantry_stop_deg !== d.gantry_deg ? ` to ${d.gantry_stop_deg}°` : ''}`;
+  return [d?.radiation?.toLowerCase(), gantry, beam.aperture_mm && `aperture ${beam.aperture_mm} mm`].filter(Boolean).join(', ');
 }
