@@ -51,6 +51,7 @@ endif
 
 DCMTK_LIBS := -ldcmjpeg -lijg8 -lijg12 -lijg16 -ldcmjpls -ldcmtkcharls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++
 CORE_LIBS := $(DCMTK_LIBS) -lturbojpeg -lspng -ldeflate -lz -lcjson -ldl -lm
+UNPACK_LIBS := -larchive
 SERVER_LIBS := -lmicrohttpd -lwebsockets -lcjson -lm
 
 c_files = $(if $(wildcard $(1)),$(sort $(shell find $(wildcard $(1)) -name '*.c')))
@@ -71,6 +72,7 @@ WIRE_SRC := $(call c_files,server/wire)
 SERVER_SRC := $(call c_files,server/room server/net server/http server/ws server/fleet server/store server/auth)
 DAEMON_SRC := $(call c_files,server/daemon)
 RENDERER_SRC := $(call c_files,server/renderer)
+UNPACK_SRC := $(filter-out %_run.c,$(sort $(wildcard server/renderer/unpack*.c)))
 CLI_SRC := $(call c_files,server/cli)
 GEN_SRC := $(GEN)/wire_gen.c $(GEN)/problem_gen.c $(GEN)/openapi.c
 
@@ -101,7 +103,7 @@ $(B)/lib%.a:
 $(B)/beamroomd: $(call obj,$(DAEMON_SRC)) $(B)/libserver.a $(B)/libwire.a $(B)/libcore.a
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(SERVER_LIBS)
 $(B)/beamroom-render: $(call obj,$(RENDERER_SRC)) $(B)/libwire.a $(B)/libcore.a
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CORE_LIBS)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CORE_LIBS) $(UNPACK_LIBS)
 $(B)/beamroom: $(call obj,$(CLI_SRC)) $(B)/libwire.a $(B)/libcore.a
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CORE_LIBS)
 
@@ -154,6 +156,9 @@ $(B)/unit/test_confine $(B)/unit/test_dicom_file: $(call obj,server/renderer/con
 $(eval $(call c_programs,render,test,-lcmocka))
 $(eval $(call c_programs,bench,bench,))
 $(eval $(call c_programs,fuzz,fuzz,-fsanitize=fuzzer))
+$(B)/unit/test_unpack: | $(B)/beamroom-render
+$(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: $(call obj,$(UNPACK_SRC))
+$(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: private CORE_LIBS += $(UNPACK_LIBS)
 
 # ---- suites; each ends with "name: N passed, N failed, N skipped" -----------------------------------------------------------
 export BEAMROOM_BIN := $(abspath $(B))

@@ -26,6 +26,9 @@
 #define FS_READ (LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR)
 #define FS_RUN (FS_READ | LANDLOCK_ACCESS_FS_EXECUTE)
 #define FS_DEVICE (FS_READ | LANDLOCK_ACCESS_FS_WRITE_FILE | FS_IOCTL_DEV)
+#define FS_UNPACK                                                                                                                    \
+    (FS_READ | LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_MAKE_DIR |                           \
+     LANDLOCK_ACCESS_FS_REMOVE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR | FS_REFER)
 
 struct ruleset { /* struct landlock_ruleset_attr of the newest kernels */
     uint64_t fs, net, scoped;
@@ -110,6 +113,8 @@ static long restrict_files(const struct confine_options *options)
     if (options->cache_folder)
         allow(rules, options->cache_folder, known & ~(FS_IOCTL_DEV | LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_MAKE_CHAR |
                                                       LANDLOCK_ACCESS_FS_MAKE_BLOCK | LANDLOCK_ACCESS_FS_MAKE_SOCK));
+    if (options->unpack_folder)
+        allow(rules, options->unpack_folder, FS_UNPACK & known);
     long failed = syscall(SYS_landlock_restrict_self, rules, 0);
     int reason = errno;
     close(rules);
@@ -132,6 +137,8 @@ void confine(const struct confine_options *options, char got[128])
     char files[40], calls[40];
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, 1024);
+    if (options->cpu_seconds > 0)
+        limit(RLIMIT_CPU, (rlim_t)options->cpu_seconds);
     if (!SECCOMP_IS_RELAXED) { /* a sanitizer maps terabytes, and looks at its own process from outside */
         /* of its own writable memory, not of addresses: a graphics driver reserves far more of those than it uses */
         if (options->max_bytes > 0)

@@ -10,6 +10,8 @@ struct confine_options {
     const char *cache_folder; /* may be written; NULL: nothing may */
     uint64_t max_bytes;       /* writable memory of its own; 0: no limit */
     bool needs_gpu;           /* device files of graphics drivers stay open to it */
+    const char *unpack_folder; /* files and folders may be made, moved and removed in it, and nothing else; NULL: nothing may */
+    uint64_t cpu_seconds;     /* of processor time, then the kernel ends the process; 0: no limit */
 };
 
 /* Call before any other thread starts. got: what holds now, "landlock 3, seccomp, no-new-privs"; what is missing is named with the

@@ -13,6 +13,7 @@
 #include "server/renderer/answers.h"
 #include "server/renderer/confine.h"
 #include "server/renderer/session.h"
+#include "server/renderer/unpack_run.h"
 
 enum { EXIT_USAGE = 2 };
 
@@ -21,10 +22,15 @@ static void print_help(void)
     fputs("usage: beamroom-render --socket-fd FD --plan-folder DIR --plan-id ID --cache DIR [OPTION]...\n"
           "       beamroom-render --scan DIR\n"
           "       beamroom-render --probe-gl [--gl BACK-END]\n"
+          "       beamroom-render --unpack ARCHIVE --into FOLDER --max-unpacked-bytes N\n"
           "Reads one plan, draws it and answers questions about it. beamroomd starts one of these for each open plan and speaks\n"
-          "with it over a socket; by hand only --scan and --probe-gl are of use.\n\n"
+          "with it over a socket; by hand only --scan, --probe-gl and --unpack are of use.\n\n"
           "  --scan DIR         print as JSON what the plan folder DIR holds, without reading voxels, and end\n"
           "  --probe-gl         print as JSON how pictures can be drawn on this machine, and end\n"
+          "  --unpack ARCHIVE   unpack a zip, or a tar (plain, gzip, bzip2, xz, zstd), printing one JSON object a line: percent, and\n"
+          "                     last done or problem; whatever breaks a rule refuses all of it\n"
+          "  --into FOLDER      an empty folder to unpack into\n"
+          "  --max-unpacked-bytes N  most bytes that may come out of the archive\n"
           "  --gl BACK-END      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
           "  --stub             no graphics: grey pictures of the right size, for tests\n"
           "  --socket-fd FD     number of the open socket to the daemon\n"
@@ -35,15 +41,15 @@ static void print_help(void)
           "  --help, --version  this text, the version\n\n"
           "It gives up the network, other programs and other files before it reads a plan, as far as the kernel offers that.\n"
           "Exit status: 0 done, or the daemon closed the socket; 1 the connection broke, or GL does not start (--probe-gl);\n"
-          "2 wrong usage; 3 the plan cannot be read.\n",
+          "2 wrong usage; 3 the plan cannot be read, or the archive was refused.\n",
           stdout);
 }
 
 struct arguments {
     struct session_options session;
-    const char *scan, *cache;
+    const char *scan, *cache, *archive, *into;
     bool is_probe;
-    uint64_t max_bytes;
+    uint64_t max_bytes, max_unpacked_bytes; /* the second 0: not said */
 };
 
 static int refuse(const char *what, const char *value)
@@ -63,14 +69,16 @@ static bool read_number(const char *text, unsigned long long most, unsigned long
 /* -1: go on; else the exit status. */
 static int read_arguments(int argc, char **argv, struct arguments *arguments)
 {
-    enum { HELP = 256, VERSION, SOCKET, FOLDER, ID, CACHE, GL, STUB, MAX_BYTES, SCAN, PROBE };
+    enum { HELP = 256, VERSION, SOCKET, FOLDER, ID, CACHE, GL, STUB, MAX_BYTES, SCAN, PROBE, UNPACK, INTO, MAX_UNPACKED };
     static const struct option options[] = {
         { "help", no_argument, NULL, HELP },           { "version", no_argument, NULL, VERSION },
         { "socket-fd", required_argument, NULL, SOCKET }, { "plan-folder", required_argument, NULL, FOLDER },
         { "plan-id", required_argument, NULL, ID },    { "cache", required_argument, NULL, CACHE },
         { "gl", required_argument, NULL, GL },         { "stub", no_argument, NULL, STUB },
         { "max-bytes", required_argument, NULL, MAX_BYTES }, { "scan", required_argument, NULL, SCAN },
-        { "probe-gl", no_argument, NULL, PROBE },      { NULL, 0, NULL, 0 },
+        { "probe-gl", no_argument, NULL, PROBE },      { "unpack", required_argument, NULL, UNPACK },
+        { "into", required_argument, NULL, INTO },     { "max-unpacked-bytes", required_argument, NULL, MAX_UNPACKED },
+        { NULL, 0, NULL, 0 },
     };
     *arguments = (struct arguments){ .session = { .socket = -1 } };
     unsigned long long number;
@@ -98,12 +106,23 @@ static int read_arguments(int argc, char **argv, struct arguments *arguments)
             break;
         case SCAN: arguments->scan = optarg; break;
         case PROBE: arguments->is_probe = true; break;
+        case UNPACK: arguments->archive = optarg; break;
+        case INTO: arguments->into = optarg; break;
+        case MAX_UNPACKED:
+            if (!read_number(optarg, UINT64_MAX, &number) || number == 0)
+                return refuse("--max-unpacked-bytes needs a number of bytes, not", optarg);
+            arguments->max_unpacked_bytes = number;
+            break;
         default: return refuse("wrong usage", NULL);
         }
     }
     if (optind < argc)
         return refuse("what is meant by", argv[optind]);
     const struct session_options *session = &arguments->session;
+    if (arguments->archive || arguments->into || arguments->max_unpacked_bytes > 0) {
+        bool is_whole = arguments->archive && arguments->into && arguments->max_unpacked_bytes > 0;
+        return is_whole ? -1 : refuse("--unpack, --into and --max-unpacked-bytes are needed together", NULL);
+    }
     if (arguments->scan || arguments->is_probe)
         return -1;
     if (session->socket < 0 || !session->plan_folder || !session->plan_id || !arguments->cache)
@@ -161,6 +180,8 @@ int main(int argc, char **argv)
         return status;
     struct session_options *session = &arguments.session;
     (void)signal(SIGPIPE, SIG_IGN);
+    if (arguments.archive)
+        return unpack_run(arguments.archive, arguments.into, arguments.max_unpacked_bytes, arguments.max_bytes);
     /* compiled shaders are code: one plan's renderer must not leave any for another's, so they stay in the plan's own cache */
     if (arguments.cache) {
         (void)setenv("MESA_SHADER_CACHE_DIR", arguments.cache, 1);

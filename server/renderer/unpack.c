@@ -1,0 +1,370 @@
+#define _GNU_SOURCE
+#include "server/renderer/unpack.h"
+
+#include <archive.h>
+#include <archive_entry.h>
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "core/base/clock.h"
+#include "core/base/log.h"
+#include "server/renderer/unpack_name.h"
+#include "server/renderer/unpack_source.h"
+#include "server/renderer/unpack_write.h"
+
+enum { HEADER_BYTES = 2048 }; /* of a tar, around each entry */
+
+struct unpacker {
+    const struct unpack_options *options;
+    struct archive *archive;
+    struct unpack_source source;
+    struct unpack_writer writer;
+    struct unpack_names names;
+    struct unpack_result result;
+    struct problem problem;
+    uint64_t most;                 /* bytes of all entries together */
+    uint64_t n_read;               /* of them, litter too */
+    uint32_t n_entries;
+    char top[FOLDER_NAME_SIZE];    /* the first part of every name so far */
+    bool has_one_top, is_top_folder;
+    char last_parent[FOLDER_NAME_SIZE]; /* whose folders are all made */
+    int64_t start_cpu_ms, told_us;
+    double percent;
+};
+
+uint64_t unpack_cpu_seconds(uint64_t archive_bytes, uint64_t max_bytes)
+{
+    return UNPACK_CPU_S + archive_bytes / UNPACK_CPU_BYTES_PER_S + max_bytes / UNPACK_CPU_BYTES_PER_S;
+}
+
+static int64_t cpu_ms(void)
+{
+    struct timespec now;
+    return clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now) == 0 ? (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000 : 0;
+}
+
+static void tell(struct unpacker *unpacker)
+{
+    int64_t now_us = clock_now_us();
+    if (!unpacker->options->progress || now_us - unpacker->told_us < (int64_t)UNPACK_PERCENT_MS * 1000 || unpacker->source.n_bytes == 0)
+        return;
+    /* a zip's directory stands at its end and is read first: what counts is how much was read */
+    double percent = 100.0 * (double)unpacker->source.n_read / (double)unpacker->source.n_bytes;
+    unpacker->told_us = now_us;
+    unpacker->percent = percent < 100.0 ? percent : 100.0;
+    unpacker->options->progress(unpacker->options->context, unpacker->percent);
+}
+
+/* Asked at every block. */
+static bool goes_on(void *context)
+{
+    struct unpacker *unpacker = context;
+    struct problem *problem = &unpacker->source.problem;
+    const struct unpack_options *options = unpacker->options;
+    if (options->is_cancelled && options->is_cancelled(options->context))
+        return problem_set(problem, PROBLEM_CANCELLED, "", "", "unpacking was cancelled");
+    uint64_t seconds = unpack_cpu_seconds(unpacker->source.n_read, unpacker->n_read);
+    if (cpu_ms() - unpacker->start_cpu_ms > (int64_t)seconds * 1000)
+        return problem_set(problem, PROBLEM_TIMEOUT, "", "",
+                           "unpacking %llu bytes took more than %llu s of processor time; no honest archive needs as much",
+                           (unsigned long long)unpacker->n_read, (unsigned long long)seconds);
+    tell(unpacker);
+    return true;
+}
+
+/* What the library found wrong, or the source did. */
+static bool refuse_damaged(struct unpacker *unpacker, const char *name)
+{
+    if (unpacker->source.problem.type != PROBLEM_NONE) {
+        unpacker->problem = unpacker->source.problem;
+        return false;
+    }
+    char shown[UNPACK_SHOWN_SIZE], words[UNPACK_SHOWN_SIZE];
+    const char *said = archive_error_string(unpacker->archive);
+    unpack_show(name, shown);
+    unpack_show(said ? said : "it cannot be read", words);
+    return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
+                       *shown ? "entry \"%s\": damaged: %s; expected is an archive that is whole" : "%sthe archive is damaged: %s; expected is one that is whole",
+                       shown, words);
+}
+
+static bool refuse_unknown(struct unpacker *unpacker)
+{
+    if (unpack_source_has(&unpacker->source, 0, "PK\3\4", 4))
+        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
+                           "a zip whose directory at its end is missing or damaged; was all of it sent?");
+    static const struct {
+        const char *bytes;
+        size_t n;
+        const char *words;
+    } known[] = { { "Rar!", 4, "a RAR archive" }, { "7z\xbc\xaf\x27\x1c", 6, "a 7-Zip archive" }, { "\x1f\x8b", 2, "gzip data of something else" },
+                  { "BZh", 3, "bzip2 data of something else" }, { "\xfd" "7zXZ", 5, "xz data of something else" },
+                  { "\x28\xb5\x2f\xfd", 4, "zstd data of something else" }, { "MSCF", 4, "a cabinet file" } };
+    const char *found = unpacker->source.n_bytes == 0 ? "an empty file" : "neither";
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (unpack_source_has(&unpacker->source, 0, known[i].bytes, known[i].n))
+            found = known[i].words;
+    return problem_set(&unpacker->problem, PROBLEM_MEDIA_TYPE, "", "",
+                       "found is %s; expected is a zip, or a tar as it is or within gzip, bzip2, xz or zstd", found);
+}
+
+static bool refuse_entry(struct unpacker *unpacker, const char *name, const char *code, const char *found, const char *expected)
+{
+    char shown[UNPACK_SHOWN_SIZE];
+    unpack_show(name, shown);
+    return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", code, "entry \"%s\": %s; expected %s", shown, found, expected);
+}
+
+static bool check_kind(struct unpacker *unpacker, struct archive_entry *entry, const char *raw, bool *is_folder)
+{
+    static const char files[] = "are files and folders";
+    if (archive_entry_hardlink(entry))
+        return refuse_entry(unpacker, raw, "type", "a hard link", files);
+    switch (archive_entry_filetype(entry)) {
+    case AE_IFREG: *is_folder = false; break;
+    case AE_IFDIR: *is_folder = true; break;
+    case AE_IFLNK: return refuse_entry(unpacker, raw, "type", "a symbolic link", files);
+    case AE_IFCHR:
+    case AE_IFBLK: return refuse_entry(unpacker, raw, "type", "a device", files);
+    case AE_IFIFO: return refuse_entry(unpacker, raw, "type", "a named pipe", files);
+    case AE_IFSOCK: return refuse_entry(unpacker, raw, "type", "a socket", files);
+    default: return refuse_entry(unpacker, raw, "type", "of an unknown kind", files);
+    }
+    if (archive_entry_symlink(entry))
+        return refuse_entry(unpacker, raw, "type", "a symbolic link", files);
+    if (archive_entry_is_encrypted(entry))
+        return refuse_entry(unpacker, raw, "unsupported", "encrypted", "is an archive without a password");
+    if (archive_entry_sparse_count(entry) > 0)
+        return refuse_entry(unpacker, raw, "unsupported", "a file with holes", "are files that are stored whole");
+    return true;
+}
+
+/* The folders above a name, made where they are not yet there. */
+static bool make_parents(struct unpacker *unpacker, const char *name, size_t n)
+{
+    if (strlen(unpacker->last_parent) == n && memcmp(unpacker->last_parent, name, n) == 0)
+        return true;
+    for (size_t end = 0; end < n; end++) {
+        end += strcspn(name + end, "/");
+        enum unpack_known known = unpack_names_add(&unpacker->names, name, end, true, &unpacker->problem);
+        if (known == UNPACK_REFUSED || (known == UNPACK_NEW && !unpack_make_folder(&unpacker->writer, name, end, &unpacker->problem)))
+            return false;
+    }
+    memcpy(unpacker->last_parent, name, n);
+    unpacker->last_parent[n] = 0;
+    return true;
+}
+
+static void note_top(struct unpacker *unpacker, const char *name, bool is_folder)
+{
+    size_t n = strcspn(name, "/");
+    if (unpacker->top[0] == 0) {
+        memcpy(unpacker->top, name, n);
+        unpacker->top[n] = 0;
+        unpacker->has_one_top = true;
+        unpacker->is_top_folder = is_folder || name[n] == '/';
+    } else if (strlen(unpacker->top) != n || memcmp(unpacker->top, name, n) != 0) {
+        unpacker->has_one_top = false;
+    }
+}
+
+static bool is_within(struct unpacker *unpacker, const char *name)
+{
+    if (unpacker->n_read <= unpacker->most)
+        return true;
+    char shown[UNPACK_SHOWN_SIZE];
+    unpack_show(name, shown);
+    if (unpacker->most == unpacker->options->max_bytes)
+        return problem_set(&unpacker->problem, PROBLEM_TOO_LARGE, "", "",
+                           "entry \"%s\": more than %llu bytes come out of the archive by then; at most so many are allowed", shown,
+                           (unsigned long long)unpacker->most);
+    return problem_set(&unpacker->problem, PROBLEM_TOO_LARGE, "", "",
+                       "entry \"%s\": more than %llu bytes come out of an archive of %llu; at most %d times its size is allowed", shown,
+                       (unsigned long long)unpacker->most, (unsigned long long)unpacker->source.n_bytes, UNPACK_MAX_RATIO);
+}
+
+/* Reads the entry's data to their end; file -1: for their check sum alone. */
+static bool copy_data(struct unpacker *unpacker, struct archive_entry *entry, const char *name, int file, uint64_t *n_bytes)
+{
+    *n_bytes = 0;
+    for (;;) {
+        const void *data;
+        size_t n;
+        la_int64_t at;
+        int status = archive_read_data_block(unpacker->archive, &data, &n, &at);
+        if (status == ARCHIVE_EOF)
+            break;
+        if (status != ARCHIVE_OK)
+            return refuse_damaged(unpacker, name);
+        if (n == 0)
+            continue;
+        if (at < 0 || (uint64_t)at != *n_bytes)
+            return refuse_entry(unpacker, name, "unsupported", "a file with holes", "are files that are stored whole");
+        *n_bytes += n;
+        unpacker->n_read += n;
+        if (!is_within(unpacker, name))
+            return false;
+        if (file >= 0 && !unpack_write(file, name, data, n, &unpacker->problem))
+            return false;
+    }
+    if (!archive_entry_size_is_set(entry) || (uint64_t)archive_entry_size(entry) == *n_bytes)
+        return true;
+    char found[96], expected[64];
+    (void)snprintf(found, sizeof found, "%llu bytes of data", (unsigned long long)*n_bytes);
+    (void)snprintf(expected, sizeof expected, "are %lld, as its header says", (long long)archive_entry_size(entry));
+    return refuse_entry(unpacker, name, "format", found, expected);
+}
+
+static bool write_file(struct unpacker *unpacker, struct archive_entry *entry, const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    if (!make_parents(unpacker, name, slash ? (size_t)(slash - name) : 0))
+        return false;
+    if (unpack_names_add(&unpacker->names, name, strlen(name), false, &unpacker->problem) != UNPACK_NEW)
+        return false;
+    int file;
+    uint64_t n_bytes;
+    if (!unpack_make_file(&unpacker->writer, name, &file, &unpacker->problem))
+        return false;
+    bool is_done = copy_data(unpacker, entry, name, file, &n_bytes);
+    if (file >= 0 && close(file) != 0 && is_done)
+        is_done = problem_set(&unpacker->problem, PROBLEM_INTERNAL, "", "", "a file cannot be written to its end");
+    unpacker->result.n_files++;
+    unpacker->result.n_bytes += n_bytes;
+    return is_done;
+}
+
+static bool take_entry(struct unpacker *unpacker, struct archive_entry *entry)
+{
+    if (++unpacker->n_entries > UNPACK_MAX_ENTRIES)
+        return problem_set(&unpacker->problem, PROBLEM_TOO_LARGE, "", "", "the archive has more than %d entries; at most so many are allowed",
+                           UNPACK_MAX_ENTRIES);
+    char name[FOLDER_NAME_SIZE];
+    const char *raw = archive_entry_pathname(entry);
+    bool is_folder = false;
+    uint64_t n_bytes;
+    if (!raw)
+        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "pattern", "entry %lu has no name that can be read; expected is UTF-8",
+                           (unsigned long)unpacker->n_entries);
+    if (!check_kind(unpacker, entry, raw, &is_folder) || !unpack_name(raw, is_folder, name, &unpacker->problem))
+        return false;
+    if (unpack_is_litter(name))
+        return copy_data(unpacker, entry, name, -1, &n_bytes);
+    if (name[0])
+        note_top(unpacker, name, is_folder);
+    if (!is_folder)
+        return write_file(unpacker, entry, name);
+    if (!copy_data(unpacker, entry, name, -1, &n_bytes))
+        return false;
+    if (n_bytes > 0)
+        return refuse_entry(unpacker, raw, "format", "a folder with data", "is none");
+    return make_parents(unpacker, name, strlen(name));
+}
+
+/* A tar that is cut between two entries looks whole, but for the zeros it ends with. */
+static bool check_end(struct unpacker *unpacker)
+{
+    static const uint8_t zeros[512];
+    bool is_tar = (archive_format(unpacker->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_TAR;
+    bool is_bare = !unpacker->source.is_gzip && archive_filter_count(unpacker->archive) <= 1;
+    uint64_t n_bytes = unpacker->source.n_bytes;
+    if (is_tar && is_bare && (n_bytes < sizeof zeros || !unpack_source_has(&unpacker->source, n_bytes - sizeof zeros, zeros, sizeof zeros)))
+        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
+                           "the tar ends without its end mark, 512 bytes of zero; was all of it sent?");
+    if (!unpack_source_drain(&unpacker->source))
+        return refuse_damaged(unpacker, "");
+    return true;
+}
+
+static bool walk(struct unpacker *unpacker)
+{
+    struct archive *archive = unpacker->archive;
+    int status = archive_read_open1(archive);
+    while (status == ARCHIVE_OK) {
+        struct archive_entry *entry;
+        status = archive_read_next_header(archive, &entry);
+        if (status == ARCHIVE_OK && archive_filter_count(archive) > 2)
+            return problem_set(&unpacker->problem, PROBLEM_MEDIA_TYPE, "", "",
+                               "compressed more than once; expected is a zip, or a tar as it is or within gzip, bzip2, xz or zstd");
+        if (status == ARCHIVE_OK && !goes_on(unpacker))
+            return refuse_damaged(unpacker, "");
+        if (status == ARCHIVE_OK && !take_entry(unpacker, entry))
+            return false;
+    }
+    if (status != ARCHIVE_EOF)
+        return archive_format(archive) == 0 && unpacker->source.problem.type == PROBLEM_NONE ? refuse_unknown(unpacker)
+                                                                                            : refuse_damaged(unpacker, "");
+    if (!check_end(unpacker))
+        return false;
+    if (unpacker->result.n_files == 0)
+        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "required", "the archive holds no file; expected are the files of a plan");
+    return !unpacker->has_one_top || !unpacker->is_top_folder || unpack_lift(&unpacker->writer, unpacker->top, &unpacker->problem);
+}
+
+/* What is not asked for here is not read: no other kind of archive, no other program to undo compression. */
+static bool choose_kinds(struct archive *archive)
+{
+    /* zips by the directory at their end alone: without it nothing tells a link from a file, and a cut zip from a whole one */
+    return archive_read_support_format_zip_seekable(archive) == ARCHIVE_OK && archive_read_support_format_tar(archive) == ARCHIVE_OK &&
+           archive_read_support_filter_bzip2(archive) == ARCHIVE_OK && archive_read_support_filter_xz(archive) == ARCHIVE_OK &&
+           archive_read_support_filter_zstd(archive) == ARCHIVE_OK &&
+           archive_read_set_option(archive, "tar", "read_concatenated_archives", "1") == ARCHIVE_OK; /* to its end, so that all is checked */
+}
+
+static bool run(struct unpacker *unpacker, int archive, int folder)
+{
+    struct stat facts;
+    struct problem *problem = &unpacker->problem;
+    uint64_t n_bytes = fstat(archive, &facts) == 0 && facts.st_size > 0 ? (uint64_t)facts.st_size : 0;
+    uint64_t by_ratio = n_bytes > UINT64_MAX / UNPACK_MAX_RATIO ? UINT64_MAX : n_bytes * UNPACK_MAX_RATIO;
+    if (by_ratio < UNPACK_FREE_BYTES)
+        by_ratio = UNPACK_FREE_BYTES;
+    unpacker->most = unpacker->options->max_bytes < by_ratio ? unpacker->options->max_bytes : by_ratio;
+    uint64_t headers = (uint64_t)UNPACK_MAX_ENTRIES * HEADER_BYTES, around = n_bytes > headers ? n_bytes : headers;
+    uint64_t undone = unpacker->most > UINT64_MAX - around ? UINT64_MAX : unpacker->most + around;
+    if (folder >= 0 && !unpack_is_empty(folder, problem))
+        return false;
+    unpacker->archive = archive_read_new();
+    bool is_ready = unpacker->archive && choose_kinds(unpacker->archive);
+    bool is_done = is_ready || problem_set(problem, PROBLEM_INTERNAL, "", "", "the library that reads archives does not start");
+    if (is_done && !unpack_source_open(&unpacker->source, unpacker->archive, archive, undone, goes_on, unpacker))
+        is_done = refuse_damaged(unpacker, "");
+    is_done = is_done && walk(unpacker);
+    (void)archive_read_free(unpacker->archive);
+    unpack_source_finish(&unpacker->source);
+    unpack_writer_finish(&unpacker->writer);
+    if (!is_done && folder >= 0 && !unpack_clear(folder))
+        log_warn("something of the archive stayed behind");
+    return is_done;
+}
+
+bool unpack(int archive, int folder, const struct unpack_options *options, struct unpack_result *result, struct problem *problem)
+{
+    struct unpacker *unpacker = calloc(1, sizeof *unpacker);
+    *result = (struct unpack_result){ 0 };
+    if (!unpacker)
+        return problem_set(problem, PROBLEM_INTERNAL, "", "", "no memory to unpack");
+    unpacker->options = options;
+    unpacker->start_cpu_ms = cpu_ms();
+    unpacker->told_us = clock_now_us();
+    unpack_writer_init(&unpacker->writer, folder);
+    /* the library turns names into the locale's bytes, and what is a capital letter is asked of it: UTF-8, for this thread alone */
+    locale_t utf8 = newlocale(LC_CTYPE_MASK, "C.UTF-8", (locale_t)0), before = utf8 ? uselocale(utf8) : (locale_t)0;
+    bool is_done = run(unpacker, archive, folder);
+    if (utf8) {
+        (void)uselocale(before);
+        freelocale(utf8);
+    }
+    if (is_done)
+        *result = unpacker->result;
+    else if (problem)
+        *problem = unpacker->problem;
+    unpack_names_finish(&unpacker->names);
+    free(unpacker);
+    return is_done;
+}
