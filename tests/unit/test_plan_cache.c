@@ -235,6 +235,42 @@ static void no_bits_of_the_fields_can_make_an_impossible_plan(void **state)
     world_end(&world);
 }
 
+static bool is_accepted(struct plan *changed)
+{
+    struct fields written = { 0 };
+    fields_plan(&written, changed);
+    struct fields fields = { .is_reading = true, .data = written.data, .size = written.size };
+    struct plan *plan = mem_new(sizeof *plan);
+    fields_plan(&fields, plan);
+    plan_destroy(plan);
+    free(written.data);
+    return !fields.is_bad;
+}
+
+static void regions_inside_themselves_and_ids_for_two_are_not_accepted(void **state)
+{
+    (void)state;
+    struct world world;
+    world_start(&world);
+    struct region *regions = world.first->regions.regions;
+    assert_true(world.first->regions.n_regions >= 2);
+    assert_true(is_accepted(world.first));
+    int parents[2] = { regions[0].parent, regions[1].parent };
+    regions[0].parent = 1;
+    regions[1].parent = 0;
+    assert_false(is_accepted(world.first));
+    regions[0].parent = parents[0];
+    regions[1].parent = parents[1];
+    char id[REGION_ID_SIZE];
+    memcpy(id, regions[1].id, sizeof id);
+    memcpy(regions[1].id, regions[0].id, sizeof id);
+    assert_false(is_accepted(world.first));
+    memcpy(regions[1].id, "../x", 5);
+    assert_false(is_accepted(world.first));
+    memcpy(regions[1].id, id, sizeof id);
+    world_end(&world);
+}
+
 static void a_cache_for_less_memory_than_it_needs_is_not_read(void **state)
 {
     (void)state;
@@ -255,6 +291,7 @@ int main(void)
         cmocka_unit_test(a_file_that_changes_appears_or_goes_away_makes_the_cache_void),
         cmocka_unit_test(a_damaged_cache_is_not_believed_and_is_written_anew),
         cmocka_unit_test(no_bits_of_the_fields_can_make_an_impossible_plan),
+        cmocka_unit_test(regions_inside_themselves_and_ids_for_two_are_not_accepted),
         cmocka_unit_test(a_cache_for_less_memory_than_it_needs_is_not_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
