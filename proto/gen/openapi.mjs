@@ -45,6 +45,7 @@ export function openapi(http, scene, version) {
     responses.default = { description: `A problem: ${route.problems.join(', ') || 'internal'}.`, content: { 'application/problem+json': { schema: { $ref: '#/components/schemas/problem' } } } };
     const operation = { summary: route.about, parameters, responses };
     if (route.body === 'scene') operation.requestBody = { required: true, content: { 'application/merge-patch+json': { schema: { type: 'object' } } } };
+    else if (Array.isArray(route.body)) operation.requestBody = { required: true, content: Object.fromEntries(route.body.map((type) => [type, { schema: { type: 'string', format: 'binary' } }])) };
     else if (route.body) operation.requestBody = { required: true, content: { 'application/json': { schema: { type: 'object', additionalProperties: false,
       required: Object.entries(route.body).filter(([, [, about]]) => about.includes('required')).map(([name]) => name),
       properties: Object.fromEntries(Object.entries(route.body).map(([name, [type, about]]) => [name, { type, description: about }])) } } } };

@@ -87,6 +87,7 @@ static bool serve(const struct options *options, const char *data_folder, const 
         .fleet = { .plan_folders = (const char *const *)options->plan_folders,
                    .n_plan_folders = options->n_plan_folders,
                    .data_folder = data_folder,
+                   .max_unpacked_bytes = (uint64_t)options->max_unpacked_mib << 20,
                    .renderer_path = options->renderer_path,
                    .gl = options->gl ? options->gl : "auto",
                    .stub_renderer = options->stub_renderer,
@@ -98,7 +99,11 @@ static bool serve(const struct options *options, const char *data_folder, const 
         .room = { .max_members = (int)options->max_members },
         .allowed_origin = options->allowed_origin,
     };
-    const struct http_options http_options = { .web_folder = web_folder };
+    char upload_folder[PATH_SIZE + 16];
+    (void)snprintf(upload_folder, sizeof upload_folder, "%s/uploads", data_folder);
+    const struct http_options http_options = { .web_folder = web_folder,
+                                               .upload_folder = upload_folder,
+                                               .max_upload_bytes = (uint64_t)options->max_upload_mib << 20 };
     struct net *net = net_create(&net_options, err);
     struct http *http = net ? http_create(net, &http_options, err) : NULL;
     struct acceptor *acceptor = http ? acceptor_create(options->listen ? options->listen : "127.0.0.1:8080", net, http, err) : NULL;
@@ -164,7 +169,7 @@ int main(int argc, char **argv)
     else if (ok)
         ok = default_web_folder(web_folder, &err);
     if (ok && options.n_plan_folders == 0)
-        log_warn("no --plans folder: there is nothing to show");
+        log_warn("no --plans folder: only uploaded plans can be shown");
     ok = ok && serve(&options, data_folder, web_folder, &err);
     if (!ok)
         log_error("%s", err.text);

@@ -13,7 +13,7 @@
 #include "core/base/mem.h"
 #include "server/fleet/news.h"
 
-static const struct fleet_times default_times = { .ping = 2000, .silent = 8000, .stall = 120000, .request = 30000, .scan = 5000 };
+static const struct fleet_times default_times = { .ping = 2000, .silent = 8000, .stall = 120000, .request = 30000, .scan = 5000, .unpack = 120000 };
 
 const char *fleet_state_word(enum fleet_state state)
 {
@@ -105,7 +105,7 @@ static void forget_documents(struct plan_entry *plan)
     plan->document = plan->default_scene = NULL;
 }
 
-static void close_plan(struct fleet *fleet, struct plan_entry *plan, const char *why)
+void plan_entry_close(struct fleet *fleet, struct plan_entry *plan, const char *why)
 {
     struct problem problem;
     problem_set(&problem, PROBLEM_CANCELLED, "", "", "the plan was closed: %s", why);
@@ -137,7 +137,7 @@ static bool make_room(struct fleet *fleet)
         return true;
     if (!oldest)
         return false;
-    close_plan(fleet, oldest, "another plan needs its place");
+    plan_entry_close(fleet, oldest, "another plan needs its place");
     return true;
 }
 
@@ -174,7 +174,7 @@ void fleet_close(struct fleet *fleet, const char *plan_id)
 {
     struct plan_entry *plan = plan_entry_find(fleet, plan_id);
     if (plan && has_renderer(plan))
-        close_plan(fleet, plan, "somebody asked for it");
+        plan_entry_close(fleet, plan, "somebody asked for it");
 }
 
 void fleet_hold(struct fleet *fleet, const char *plan_id)
@@ -197,7 +197,7 @@ void fleet_release(struct fleet *fleet, const char *plan_id)
 
 static void list_folders(struct fleet *fleet)
 {
-    fleet->wants_listing = !watch_list_folders(fleet->watch, (const char *const *)fleet->plan_folders, fleet->options.n_plan_folders);
+    fleet->wants_listing = !watch_list_folders(fleet->watch, (const char *const *)fleet->plan_folders, fleet->options.n_plan_folders + 1);
     fleet->is_listing = !fleet->wants_listing;
 }
 
@@ -226,7 +226,11 @@ static void take_event(struct fleet *fleet, struct watch_event *event)
             plan->memory_bytes = event->memory_bytes;
         break;
     case WATCH_PACKET: news_packet(fleet, event); break;
-    case WATCH_ENDED: news_ended(fleet, event); break;
+    case WATCH_LINE: (void)uploads_take_event(fleet, event); break;
+    case WATCH_ENDED:
+        if (!uploads_take_event(fleet, event))
+            news_ended(fleet, event);
+        break;
     case WATCH_FOLDERS:
         fleet->is_listing = false;
         plans_take_folders(fleet, &event->found);
@@ -257,11 +261,13 @@ static void tell_news(struct fleet *fleet)
 
 void fleet_handle_events(struct fleet *fleet)
 {
+    plans_drop_removed(fleet);
     for (struct watch_event *event; (event = watch_take(fleet->watch));) {
         take_event(fleet, event);
         watch_event_destroy(event);
     }
     plans_start_scans(fleet);
+    uploads_go_on(fleet);
     tell_news(fleet);
 }
 
@@ -278,18 +284,20 @@ static void tick_plan(struct fleet *fleet, struct plan_entry *plan, int64_t now_
         plan_entry_fail(fleet, plan, &problem);
     }
     if (fleet->options.idle_close_s > 0 && is_unused(fleet, plan) && now_us - plan->used_us > fleet->options.idle_close_s * 1000000LL)
-        close_plan(fleet, plan, "nobody used it");
+        plan_entry_close(fleet, plan, "nobody used it");
 }
 
 void fleet_tick(struct fleet *fleet)
 {
     int64_t now_us = clock_now_us();
+    plans_drop_removed(fleet);
     for (size_t i = 0; i < fleet->n_plans; i++)
         tick_plan(fleet, fleet->plans[i], now_us);
     asks_keep_time(fleet, now_us);
     if (fleet->wants_listing && !fleet->is_listing)
         list_folders(fleet);
     plans_start_scans(fleet);
+    uploads_go_on(fleet);
     tell_news(fleet);
 }
 
@@ -297,7 +305,7 @@ void fleet_tick(struct fleet *fleet)
 
 size_t fleet_n_plans(const struct fleet *fleet) { return fleet->n_plans; }
 
-static void describe(const struct plan_entry *plan, struct fleet_plan *out)
+static void describe(const struct fleet *fleet, const struct plan_entry *plan, struct fleet_plan *out)
 {
     bool is_failed = plan->state == FLEET_FAILED || plan->state == FLEET_UNREADABLE;
     *out = (struct fleet_plan){
@@ -306,6 +314,7 @@ static void describe(const struct plan_entry *plan, struct fleet_plan *out)
         .name = plan->name,
         .note = plan->note,
         .is_phantom = plan->is_phantom,
+        .is_uploaded = uploads_owns(fleet, plan->folder),
         .state = plan->state,
         .phase = plan->phase,
         .percent = plan->percent,
@@ -325,9 +334,9 @@ static void describe(const struct plan_entry *plan, struct fleet_plan *out)
 
 bool fleet_plan_at(const struct fleet *fleet, size_t index, struct fleet_plan *plan)
 {
-    if (index >= fleet->n_plans)
+    if (index >= fleet->n_plans || fleet->plans[index]->is_removed)
         return false;
-    describe(fleet->plans[index], plan);
+    describe(fleet, fleet->plans[index], plan);
     return true;
 }
 
@@ -335,7 +344,7 @@ bool fleet_plan_find(const struct fleet *fleet, const char *id, struct fleet_pla
 {
     const struct plan_entry *entry = plan_entry_find(fleet, id);
     if (entry)
-        describe(entry, plan);
+        describe(fleet, entry, plan);
     return entry != NULL;
 }
 
@@ -390,11 +399,14 @@ static void set_times(struct fleet *fleet)
         fleet->times.request = asked->request;
     if (asked->scan > 0)
         fleet->times.scan = asked->scan;
+    if (asked->unpack > 0)
+        fleet->times.unpack = asked->unpack;
 }
 
 static void fleet_free(struct fleet *fleet)
 {
     watch_destroy(fleet->watch);
+    uploads_end(fleet);
     for (size_t i = 0; i < fleet->n_plans; i++)
         plan_entry_destroy(fleet->plans[i]);
     free(fleet->plans);
@@ -422,7 +434,7 @@ struct fleet *fleet_create(const struct fleet_options *options, struct error *er
     fleet->options = *options;
     set_times(fleet);
     fleet->plans = mem_new(FLEET_MAX_PLANS * sizeof *fleet->plans);
-    fleet->plan_folders = mem_new((options->n_plan_folders + 1) * sizeof *fleet->plan_folders);
+    fleet->plan_folders = mem_new((options->n_plan_folders + 2) * sizeof *fleet->plan_folders);
     for (size_t i = 0; i < options->n_plan_folders; i++)
         fleet->plan_folders[i] = mem_copy_text(options->plan_folders[i]);
     fleet->data_folder = mem_copy_text(options->data_folder);
@@ -434,8 +446,9 @@ struct fleet *fleet_create(const struct fleet_options *options, struct error *er
         error_set(err, ERROR_NOT_FOUND, "the renderer %s cannot be run: %s", fleet->renderer_path, strerror(errno));
         goto fail;
     }
-    if (!make_cache_folder(fleet->data_folder, err))
+    if (!make_cache_folder(fleet->data_folder, err) || !uploads_begin(fleet, err))
         goto fail;
+    fleet->plan_folders[options->n_plan_folders] = mem_copy_text(fleet->plans_home); /* last: a plan that was here before keeps its id */
     struct watch_options watching = { fleet->times.ping, fleet->times.silent, options->wake, options->context };
     fleet->watch = watch_create(&watching, err);
     if (!fleet->watch)

@@ -10,7 +10,10 @@ enum {
     FLEET_MAX_PLANS = 2000,
     FLEET_MAX_RESTARTS = 3,    /* within 60 s; then failed */
     FLEET_MAX_REQUESTS = 4096, /* unanswered ones, of all plans; more are answered with PROBLEM_BUSY */
-    FLEET_MAX_SCANS = 2        /* plan folders looked at at once */
+    FLEET_MAX_SCANS = 2,       /* plan folders looked at at once */
+    FLEET_MAX_UPLOADS = 16,    /* archives that wait, are unpacked or looked at; more are refused with PROBLEM_BUSY */
+    FLEET_MAX_UNPACKING = 2,   /* of these, unpacked at once */
+    FLEET_KEPT_UPLOADS = 500   /* ended ones that can still be asked about */
 };
 
 /* How long things may take, in ms; 0: the default, in brackets. */
@@ -20,6 +23,7 @@ struct fleet_times {
     int stall;   /* reading a plan without getting further; then failed [120000] */
     int request; /* an answer; a picture that is not there by then also ends the renderer [30000] */
     int scan;    /* looking at a plan folder, looking for GL [5000] */
+    int unpack;  /* unpacking an archive without getting further; then failed [120000] */
 };
 
 struct fleet;
@@ -38,7 +42,9 @@ const char *fleet_state_word(enum fleet_state state); /* "unreadable", "not-load
 struct fleet_options {
     const char *const *plan_folders; /* each: a folder of plans, or itself a plan; n_plan_folders of them */
     size_t n_plan_folders;
-    const char *data_folder;     /* our state; caches in data/cache/<plan id> */
+    const char *data_folder;     /* our state; caches in data/cache/<plan id>, uploaded plans in data/plans, what is on its way there in
+                                    data/uploads, which is emptied at start */
+    uint64_t max_unpacked_bytes; /* of one uploaded archive; 0: 8 GiB */
     const char *renderer_path;   /* beamroom-render; NULL: beside our own executable */
     const char *gl;              /* "auto", ... handed on */
     bool stub_renderer;          /* --stub: no GL at all, for tests */
@@ -61,7 +67,7 @@ void fleet_tick(struct fleet *fleet);
 /* A plan as the list knows it. Strings and documents are borrowed until the next call into the fleet. */
 struct fleet_plan {
     const char *id, *folder, *name, *note;
-    bool is_phantom;
+    bool is_phantom, is_uploaded;
     enum fleet_state state;
     const char *phase; /* while starting, loading or restarting */
     double percent;
@@ -89,6 +95,26 @@ void fleet_close(struct fleet *fleet, const char *plan_id);
 /* Rooms using it: not closed for idleness while held. Counts. */
 void fleet_hold(struct fleet *fleet, const char *plan_id);
 void fleet_release(struct fleet *fleet, const char *plan_id);
+
+/* Takes a plan out of the server for good: only one in data/plans. Its renderer ends, its folder and cache are gone from the list at once
+ * and from the disk soon. Whoever holds it must have let go. false: PROBLEM_NOT_FOUND, PROBLEM_FORBIDDEN, PROBLEM_STORAGE */
+NODISCARD bool fleet_remove_plan(struct fleet *fleet, const char *plan_id, struct problem *problem);
+
+/* An archive on its way to becoming a plan in data/plans. */
+enum fleet_upload_state { UPLOAD_QUEUED, UPLOAD_RUNNING, UPLOAD_DONE, UPLOAD_FAILED, UPLOAD_CANCELLED };
+struct fleet_upload {
+    enum fleet_upload_state state;
+    const char *phase;  /* "" when it has ended */
+    double percent;
+    const char *plan_id; /* done; else NULL */
+    const struct problem *problem; /* failed; else NULL */
+};
+/* Begins to unpack. archive: a file in data/uploads, ours from now on, also on failure; name: what people call it, for the plan's id.
+ * Returns its number; 0 with problem. */
+uint64_t fleet_upload(struct fleet *fleet, const char *archive, const char *name, struct problem *problem);
+bool fleet_upload_find(const struct fleet *fleet, uint64_t number, struct fleet_upload *upload);
+/* Ends it and removes what it made; nothing when it has ended. */
+void fleet_upload_cancel(struct fleet *fleet, uint64_t number);
 
 /* Tells the renderer something without an answer (scene, forget). packet is borrowed. false: not ready. */
 bool fleet_tell(struct fleet *fleet, const char *plan_id, const cJSON *packet);

@@ -1,6 +1,7 @@
 #pragma once
 /* What the fleet's files share: its plans, its requests, its state. Everything on the net thread; nothing of this is for others. */
 #include "server/fleet/fleet.h"
+#include "server/fleet/remover.h"
 #include "server/fleet/watch.h"
 
 enum {
@@ -25,6 +26,7 @@ struct plan_entry {
     /* looking at the folder */
     uint64_t fingerprint, scan; /* scan: number of the process that looks; 0 none */
     bool wants_scan, is_gone;   /* gone: no longer in the plan folders */
+    bool is_removed;            /* for good: nobody finds it any more, and it is freed when no event is about it */
 
     /* the renderer */
     uint64_t process; /* 0: none */
@@ -67,6 +69,10 @@ struct fleet {
     struct plan_entry **plans; /* FLEET_MAX_PLANS */
     size_t n_plans;
     bool list_has_changed, is_listing, wants_listing;
+    struct remover *remover;
+    struct upload *uploads; /* newest first */
+    char *plans_home, *uploads_home; /* data/plans, data/uploads; absolute, links resolved */
+    uint64_t n_trash;
     struct fleet_ask *asks;
     size_t n_asks;
     uint64_t last_number; /* of processes and requests */
@@ -85,6 +91,22 @@ void plans_start_scans(struct fleet *fleet);
 /* True: the event was about a scan. */
 bool plans_scan_ended(struct fleet *fleet, const struct watch_event *event);
 
+/* What a program that looked at a folder printed; NULL with a reason when it gave nothing. */
+NODISCARD cJSON *plans_scan_document(const struct watch_event *event, char reason[240]);
+/* The plan whose folder this is; NULL. */
+struct plan_entry *plan_entry_in_folder(const struct fleet *fleet, const char *folder);
+/* Frees those that were removed. Never while somebody walks through the list. */
+void plans_drop_removed(struct fleet *fleet);
+
+/* uploads.c: archives to plans in data/plans, and away again */
+NODISCARD bool uploads_begin(struct fleet *fleet, struct error *err); /* makes the folders, clears what an earlier run left */
+void uploads_end(struct fleet *fleet);
+void uploads_go_on(struct fleet *fleet); /* starts what waits, notices that a new plan is listed */
+/* True: the event was about an upload. */
+bool uploads_take_event(struct fleet *fleet, const struct watch_event *event);
+/* Lies below data/plans. */
+bool uploads_owns(const struct fleet *fleet, const char *folder);
+
 /* requests.c */
 void asks_send_waiting(struct fleet *fleet, struct plan_entry *plan);
 /* plan NULL: those of every plan. only_sent: what still waits for READY goes on waiting. Delivered by asks_deliver_failed. */
@@ -96,6 +118,7 @@ bool asks_has_any(const struct fleet *fleet, const struct plan_entry *plan);
 bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packet *packet);
 
 /* fleet.c */
+void plan_entry_close(struct fleet *fleet, struct plan_entry *plan, const char *why); /* its renderer ends, waiting requests fail */
 void plan_entry_change(struct fleet *fleet, struct plan_entry *plan, enum fleet_state state);
 /* A renderer that is stuck or lies: ends it; it is started again as after a crash. */
 void plan_entry_kill(struct fleet *fleet, struct plan_entry *plan, const char *reason);

@@ -1,6 +1,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
@@ -11,7 +12,7 @@ enum { MAX_PARTS = 32 };
 struct plan_entry *plan_entry_find(const struct fleet *fleet, const char *id)
 {
     for (size_t i = 0; i < fleet->n_plans; i++)
-        if (strcmp(fleet->plans[i]->id, id) == 0)
+        if (!fleet->plans[i]->is_removed && strcmp(fleet->plans[i]->id, id) == 0)
             return fleet->plans[i];
     return NULL;
 }
@@ -35,10 +36,10 @@ void plan_entry_destroy(struct plan_entry *plan)
     free(plan);
 }
 
-static struct plan_entry *find_folder(const struct fleet *fleet, const char *folder)
+struct plan_entry *plan_entry_in_folder(const struct fleet *fleet, const char *folder)
 {
     for (size_t i = 0; i < fleet->n_plans; i++)
-        if (strcmp(fleet->plans[i]->folder, folder) == 0)
+        if (!fleet->plans[i]->is_removed && strcmp(fleet->plans[i]->folder, folder) == 0)
             return fleet->plans[i];
     return NULL;
 }
@@ -66,6 +67,14 @@ static bool is_at_rest(const struct fleet *fleet, const struct plan_entry *plan)
     return plan->process == 0 && plan->restart_at_us == 0 && plan->scan == 0 && plan->n_holds == 0 && !asks_has_any(fleet, plan);
 }
 
+static void drop(struct fleet *fleet, size_t index)
+{
+    plan_entry_destroy(fleet->plans[index]);
+    memmove(fleet->plans + index, fleet->plans + index + 1, (fleet->n_plans - index - 1) * sizeof *fleet->plans);
+    fleet->n_plans--;
+    fleet->list_has_changed = true;
+}
+
 void plans_take_folders(struct fleet *fleet, const struct folder_list *found)
 {
     if (found->problem[0])
@@ -75,9 +84,11 @@ void plans_take_folders(struct fleet *fleet, const struct folder_list *found)
     for (size_t i = 0; i < fleet->n_plans; i++)
         fleet->plans[i]->is_gone = true;
     for (size_t i = 0; i < found->n_folders; i++) {
-        struct plan_entry *plan = find_folder(fleet, found->folders[i].path);
+        struct plan_entry *plan = plan_entry_in_folder(fleet, found->folders[i].path);
         if (!plan) {
-            if (fleet->n_plans < FLEET_MAX_PLANS)
+            /* an uploaded one that was removed while the folders were looked at is no new plan */
+            bool is_there = !uploads_owns(fleet, found->folders[i].path) || access(found->folders[i].path, F_OK) == 0;
+            if (is_there && fleet->n_plans < FLEET_MAX_PLANS)
                 add_plan(fleet, &found->folders[i]);
             continue;
         }
@@ -88,19 +99,22 @@ void plans_take_folders(struct fleet *fleet, const struct folder_list *found)
         }
     }
     for (size_t i = fleet->n_plans; i-- > 0;)
-        if (fleet->plans[i]->is_gone && is_at_rest(fleet, fleet->plans[i])) {
-            plan_entry_destroy(fleet->plans[i]);
-            memmove(fleet->plans + i, fleet->plans + i + 1, (fleet->n_plans - i - 1) * sizeof *fleet->plans);
-            fleet->n_plans--;
-            fleet->list_has_changed = true;
-        }
+        if (fleet->plans[i]->is_gone && is_at_rest(fleet, fleet->plans[i]))
+            drop(fleet, i);
+}
+
+void plans_drop_removed(struct fleet *fleet)
+{
+    for (size_t i = fleet->n_plans; i-- > 0;)
+        if (fleet->plans[i]->is_removed && is_at_rest(fleet, fleet->plans[i]))
+            drop(fleet, i);
 }
 
 void plans_start_scans(struct fleet *fleet)
 {
     for (size_t i = 0; i < fleet->n_plans && fleet->n_scans < FLEET_MAX_SCANS; i++) {
         struct plan_entry *plan = fleet->plans[i];
-        if (!plan->wants_scan || plan->scan)
+        if (!plan->wants_scan || plan->scan || plan->is_removed)
             continue;
         plan->scan = fleet_number(fleet);
         char **arguments = fleet_arguments((const char *const[]){ fleet->renderer_path, "--scan", plan->folder, NULL });
@@ -147,6 +161,24 @@ static bool take_summary(struct plan_entry *plan, const cJSON *json, char reason
     return false;
 }
 
+cJSON *plans_scan_document(const struct watch_event *event, char reason[240])
+{
+    struct problem problem = { 0 };
+    if (event->is_exit && event->status == 0) {
+        cJSON *json = json_read(event->output ? event->output : "", event->n_output, &problem);
+        if (json)
+            return json;
+        (void)snprintf(reason, 240, "looking at the plan gave no description of it");
+    } else if (event->signal && !event->reason[0]) {
+        (void)snprintf(reason, 240, "the program that looks at plans stopped (signal %d)", event->signal);
+    } else if (event->reason[0]) {
+        (void)snprintf(reason, 240, "looking at the plan %.200s", event->reason);
+    } else {
+        (void)snprintf(reason, 240, "the program that looks at plans ended with status %d", event->status);
+    }
+    return NULL;
+}
+
 bool plans_scan_ended(struct fleet *fleet, const struct watch_event *event)
 {
     struct plan_entry *plan = NULL;
@@ -159,18 +191,10 @@ bool plans_scan_ended(struct fleet *fleet, const struct watch_event *event)
     fleet->n_scans--;
     char reason[240] = "";
     bool is_readable = false;
-    struct problem problem = { 0 };
-    if (event->is_exit && event->status == 0) {
-        cJSON *json = json_read(event->output ? event->output : "", event->n_output, &problem);
+    cJSON *json = plans_scan_document(event, reason);
+    if (json)
         is_readable = take_summary(plan, json, reason);
-        cJSON_Delete(json);
-    } else if (event->signal && !event->reason[0]) {
-        (void)snprintf(reason, sizeof reason, "the program that looks at plans stopped (signal %d)", event->signal);
-    } else if (event->reason[0]) {
-        (void)snprintf(reason, sizeof reason, "looking at the plan %.200s", event->reason);
-    } else {
-        (void)snprintf(reason, sizeof reason, "the program that looks at plans ended with status %d", event->status);
-    }
+    cJSON_Delete(json);
     if (plan->state == FLEET_CLOSED || plan->state == FLEET_UNREADABLE || plan->state == FLEET_FAILED) {
         plan_entry_change(fleet, plan, is_readable ? FLEET_CLOSED : FLEET_UNREADABLE);
         plan->problem = (struct problem){ 0 };

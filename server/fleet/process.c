@@ -35,7 +35,8 @@ struct chunk {
 
 struct process {
     uint64_t number;
-    bool is_program;
+    bool is_program, is_teller;
+    int limit_ms;
     struct child child;
     struct process_news news;
     struct packet_reader *reader;
@@ -83,11 +84,13 @@ static void give(struct process *process, struct watch_event *event)
     process->news.event(process->news.context, event);
 }
 
-struct process *process_create(uint64_t number, char *const argv[], int limit_ms, const struct process_news *news, int64_t now_us)
+struct process *process_create(uint64_t number, char *const argv[], int limit_ms, bool is_teller, const struct process_news *news, int64_t now_us)
 {
     struct process *process = mem_new(sizeof *process);
     process->number = number;
     process->is_program = limit_ms > 0;
+    process->is_teller = is_teller;
+    process->limit_ms = limit_ms;
     process->news = *news;
     process->last = &process->outgoing;
     process->heard_us = process->pinged_us = now_us;
@@ -293,6 +296,30 @@ static bool read_packets(struct process *process, size_t *n_read, int64_t now_us
     return process->child.channel >= 0 && !process_is_throttled(process);
 }
 
+/* A teller's whole lines go out at once, one event each. */
+static void take_lines(struct process *process, int64_t now_us)
+{
+    size_t begin = 0;
+    for (const char *end; (end = memchr(process->output + begin, '\n', process->n_output - begin));) {
+        size_t n = (size_t)(end - (process->output + begin));
+        struct watch_event *event = event_new(process, WATCH_LINE);
+        event->output = mem_new(n + 1);
+        memcpy(event->output, process->output + begin, n);
+        event->n_output = n;
+        event->memory_bytes = 1024 + JSON_WEIGHT * n;
+        event->lane = process->lane;
+        atomic_fetch_add(&process->lane->references, 1);
+        atomic_fetch_add(&process->lane->unhandled, event->memory_bytes);
+        give(process, event);
+        begin += n + 1;
+    }
+    if (begin == 0)
+        return;
+    process->limit_at_us = now_us + (int64_t)process->limit_ms * 1000;
+    process->n_output -= begin;
+    memmove(process->output, process->output + begin, process->n_output);
+}
+
 static bool read_output(struct process *process, size_t *n_read, int64_t now_us)
 {
     if (!process->output)
@@ -311,6 +338,8 @@ static bool read_output(struct process *process, size_t *n_read, int64_t now_us)
         return false;
     }
     process->n_output += (size_t)n;
+    if (process->is_teller)
+        take_lines(process, now_us);
     *n_read += (size_t)n;
     return true;
 }
@@ -393,6 +422,8 @@ static void tell_end(struct process *process)
     event->status = event->is_exit ? WEXITSTATUS(process->status) : 0;
     event->signal = process->child.pid > 0 && WIFSIGNALED(process->status) ? WTERMSIG(process->status) : 0;
     memcpy(event->reason, process->reason, sizeof event->reason);
+    if (process->output)
+        process->output[process->n_output] = 0; /* of a teller: lines that have gone out stood there */
     event->output = process->output;
     event->n_output = process->n_output;
     process->output = NULL;

@@ -12,8 +12,9 @@ struct process_news { /* how a process gives its events away */
     void *context;
 };
 
-/* Starts it; never NULL: one that could not be started has ended already. argv is borrowed. limit_ms: a program's; 0 for renderers. */
-struct process *process_create(uint64_t number, char *const argv[], int limit_ms, const struct process_news *news, int64_t now_us);
+/* Starts it; never NULL: one that could not be started has ended already. argv is borrowed. limit_ms: a program's; 0 for renderers.
+ * is_teller: a program whose lines are told one by one; each gives it limit_ms more. */
+struct process *process_create(uint64_t number, char *const argv[], int limit_ms, bool is_teller, const struct process_news *news, int64_t now_us);
 void process_destroy(struct process *process); /* kills and reaps when still there */
 uint64_t process_number(const struct process *process);
 /* Appends to what is to be sent; takes bytes. A process that leaves too much unread is ended. */

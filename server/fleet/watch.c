@@ -32,6 +32,7 @@ struct order {
     uint64_t number;
     char **argv; /* start: the program; list: the folders */
     int limit_ms;
+    bool is_teller;
     uint8_t *bytes;
     size_t n_bytes;
     bool is_hung;
@@ -107,6 +108,15 @@ bool watch_start_program(struct watch *watch, uint64_t number, char **argv, int 
     struct order *order = order_new(ORDER_START, number);
     order->argv = argv;
     order->limit_ms = limit_ms > 0 ? limit_ms : 1;
+    return give_order(watch, order);
+}
+
+bool watch_start_teller(struct watch *watch, uint64_t number, char **argv, int silent_ms)
+{
+    struct order *order = order_new(ORDER_START, number);
+    order->argv = argv;
+    order->limit_ms = silent_ms > 0 ? silent_ms : 1;
+    order->is_teller = true;
     return give_order(watch, order);
 }
 
@@ -202,7 +212,7 @@ static void start(struct watch *watch, const struct order *order)
         give_event(watch, event);
         return;
     }
-    watch->processes[watch->n_processes++] = process_create(order->number, order->argv, order->limit_ms, &news, clock_now_us());
+    watch->processes[watch->n_processes++] = process_create(order->number, order->argv, order->limit_ms, order->is_teller, &news, clock_now_us());
 }
 
 static void obey(struct watch *watch, struct order *order)

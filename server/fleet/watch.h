@@ -7,7 +7,7 @@
 #include "server/wire/packet.h"
 
 enum {
-    WATCH_MAX_OUTPUT = 256 << 10,   /* bytes a program may print */
+    WATCH_MAX_OUTPUT = 256 << 10,   /* bytes a program may print; of a teller: in one line */
     WATCH_MAX_OUTGOING = 64 << 20,  /* bytes one renderer may leave unread before it counts as hung */
     WATCH_MAX_UNHANDLED = 256 << 20 /* weight of one renderer's packets not yet handled; then it is not read from */
 };
@@ -16,6 +16,7 @@ enum watch_event_type {
     WATCH_STARTED, /* pid */
     WATCH_PACKET,  /* packet */
     WATCH_MEMORY,  /* memory_bytes */
+    WATCH_LINE,    /* output: one line a teller printed, without its end */
     WATCH_ENDED,   /* the last of its number: how, and for a program what it printed */
     WATCH_FOLDERS  /* found */
 };
@@ -31,7 +32,7 @@ struct watch_event {
     bool is_exit;    /* it ended by itself, with status; else by signal, or it never started */
     int status, signal;
     char reason[240]; /* why we ended it, or why it could not be started; "" when it ended by itself */
-    char *output;     /* n_output bytes and a final zero; NULL for renderers */
+    char *output;     /* n_output bytes and a final zero; NULL for renderers; of a teller: what followed its last line */
     size_t n_output;
     struct watch_lane *lane; /* the watch's own accounting */
 };
@@ -52,6 +53,8 @@ void watch_destroy(struct watch *watch);
 /* Orders. false: the queue is full, nothing was done. argv is taken (each string and the array free()d), on failure too. */
 NODISCARD bool watch_start_renderer(struct watch *watch, uint64_t number, char **argv);
 NODISCARD bool watch_start_program(struct watch *watch, uint64_t number, char **argv, int limit_ms);
+/* A program that tells line by line how far it is (WATCH_LINE); it may be silent for silent_ms. */
+NODISCARD bool watch_start_teller(struct watch *watch, uint64_t number, char **argv, int silent_ms);
 NODISCARD bool watch_send(struct watch *watch, uint64_t number, uint8_t *bytes, size_t n_bytes); /* takes bytes */
 /* Ends a process: is_hung kills at once, else its socket closes and it has 1 s. reason goes into its WATCH_ENDED. */
 void watch_stop(struct watch *watch, uint64_t number, bool is_hung, const char *reason);

@@ -15,7 +15,9 @@ const struct api_route api_routes[] = {
     { "GET", "/api/v1/version", api_version },
     { "GET", "/api/v1/openapi.json", api_openapi },
     { "GET", "/api/v1/plans", api_plans },
+    { "POST", "/api/v1/plans", api_plan_upload },
     { "GET", "/api/v1/plans/{plan}", api_plan },
+    { "DELETE", "/api/v1/plans/{plan}", api_plan_delete },
     { "POST", "/api/v1/plans/{plan}/open", api_plan_open },
     { "POST", "/api/v1/plans/{plan}/close", api_plan_close },
     { "GET", "/api/v1/jobs/{job}", api_job },
@@ -82,15 +84,6 @@ static const char *method_word(enum call_method method)
     return words[method];
 }
 
-/* A page of another origin must not change anything here with the person's own browser. */
-static bool origin_is_own(const struct call *call)
-{
-    if (!call->origin || call->method == CALL_GET || call->method == CALL_HEAD)
-        return true;
-    const char *authority = strstr(call->origin, "://");
-    return authority && call->host && strcmp(authority + 3, call->host) == 0;
-}
-
 void api_handle(struct api *api, struct call *call)
 {
     struct problem problem;
@@ -102,8 +95,7 @@ void api_handle(struct api *api, struct call *call)
         call_answer_problem(call, &call->early);
         return;
     }
-    if (!origin_is_own(call)) {
-        problem_set(&problem, PROBLEM_FORBIDDEN, "", "", "the origin %.100s may not change anything here", call->origin);
+    if (!call_origin_is_own(call, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }

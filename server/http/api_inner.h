@@ -10,9 +10,13 @@ enum {
     API_MAX_TIMINGS = 2        /* shapes being timed, of all plans */
 };
 
+enum api_job_state { JOB_QUEUED, JOB_RUNNING, JOB_DONE, JOB_FAILED, JOB_CANCELLED };
+
 struct api_job {
-    char id[40], plan_id[64];
-    enum { JOB_RUNNING, JOB_DONE, JOB_FAILED, JOB_CANCELLED } state;
+    char id[40], plan_id[64]; /* plan: "" until an upload is done */
+    const char *kind;         /* "open", "upload" */
+    uint64_t upload;          /* the fleet's number of it; 0: opens a plan */
+    enum api_job_state state;
     char phase[200];
     double percent;
     struct problem problem; /* failed */
@@ -31,6 +35,11 @@ struct api {
 
 /* Brings the states of running jobs up to date with their plans'. */
 void api_update_jobs(struct api *api);
+void api_update_upload(struct api *api, struct api_job *job);
+/* A new job; the oldest is forgotten. */
+struct api_job *api_job_new(struct api *api, const char *kind);
+/* 202 with the job and where it is. */
+void api_job_answer(struct api *api, struct call *call, struct api_job *job);
 
 void api_healthz(struct api *api, struct call *call);
 void api_readyz(struct api *api, struct call *call);
@@ -40,6 +49,8 @@ void api_openapi(struct api *api, struct call *call);
 
 void api_plans(struct api *api, struct call *call);
 void api_plan(struct api *api, struct call *call);
+void api_plan_upload(struct api *api, struct call *call);
+void api_plan_delete(struct api *api, struct call *call);
 void api_plan_open(struct api *api, struct call *call);
 void api_plan_close(struct api *api, struct call *call);
 void api_job(struct api *api, struct call *call);

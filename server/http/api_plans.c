@@ -13,6 +13,7 @@ static cJSON *plan_head(const struct fleet_plan *plan)
     cJSON_AddStringToObject(json, "name", plan->name);
     cJSON_AddStringToObject(json, "note", plan->note);
     cJSON_AddBoolToObject(json, "is_phantom", plan->is_phantom);
+    cJSON_AddBoolToObject(json, "uploaded", plan->is_uploaded);
     cJSON_AddStringToObject(json, "state", fleet_state_word(plan->state));
     cJSON_AddItemToObject(json, "parts", plan->parts ? cJSON_Duplicate(plan->parts, true) : cJSON_CreateArray());
     cJSON_AddNumberToObject(json, "n_bytes", (double)plan->n_bytes);
@@ -80,10 +81,11 @@ void api_plan(struct api *api, struct call *call)
 
 static cJSON *job_document(const struct api_job *job)
 {
-    static const char *const words[] = { "running", "done", "failed", "cancelled" };
+    static const char *const words[] = { "queued", "running", "done", "failed", "cancelled" };
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "id", job->id);
-    cJSON_AddStringToObject(json, "plan", job->plan_id);
+    cJSON_AddStringToObject(json, "kind", job->kind);
+    cJSON_AddItemToObject(json, "plan", job->plan_id[0] ? cJSON_CreateString(job->plan_id) : cJSON_CreateNull());
     cJSON_AddStringToObject(json, "state", words[job->state]);
     cJSON_AddStringToObject(json, "phase", job->phase);
     cJSON_AddNumberToObject(json, "percent", job->percent);
@@ -97,8 +99,12 @@ static cJSON *job_document(const struct api_job *job)
 static void update_job(struct api *api, struct api_job *job)
 {
     struct fleet_plan plan;
-    if (job->state != JOB_RUNNING)
+    if (job->state != JOB_RUNNING && job->state != JOB_QUEUED)
         return;
+    if (job->upload) {
+        api_update_upload(api, job);
+        return;
+    }
     if (!fleet_plan_find(net_fleet(api->net), job->plan_id, &plan)) {
         job->state = JOB_FAILED;
         problem_set(&job->problem, PROBLEM_NOT_FOUND, "", "", "the plan is gone");
@@ -133,6 +139,26 @@ void api_update_jobs(struct api *api)
         update_job(api, &api->jobs[n % API_MAX_JOBS]);
 }
 
+struct api_job *api_job_new(struct api *api, const char *kind)
+{
+    struct api_job *job = &api->jobs[api->n_jobs % API_MAX_JOBS];
+    memset(job, 0, sizeof *job);
+    api->n_jobs++;
+    (void)snprintf(job->id, sizeof job->id, "%s-%zu", kind, api->n_jobs);
+    job->kind = kind;
+    job->state = JOB_RUNNING;
+    return job;
+}
+
+void api_job_answer(struct api *api, struct call *call, struct api_job *job)
+{
+    char location[80];
+    update_job(api, job);
+    (void)snprintf(location, sizeof location, "/api/v1/jobs/%s", job->id);
+    call_add_header(call, "Location", location);
+    call_answer_json(call, 202, job_document(job));
+}
+
 void api_plan_open(struct api *api, struct call *call)
 {
     struct fleet_plan plan;
@@ -143,16 +169,9 @@ void api_plan_open(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    struct api_job *job = &api->jobs[api->n_jobs % API_MAX_JOBS];
-    memset(job, 0, sizeof *job);
-    (void)snprintf(job->id, sizeof job->id, "open-%zu", api->n_jobs + 1);
+    struct api_job *job = api_job_new(api, "open");
     (void)snprintf(job->plan_id, sizeof job->plan_id, "%s", call->ids[0]);
-    api->n_jobs++;
-    update_job(api, job);
-    char location[80];
-    (void)snprintf(location, sizeof location, "/api/v1/jobs/%s", job->id);
-    call_add_header(call, "Location", location);
-    call_answer_json(call, 202, job_document(job));
+    api_job_answer(api, call, job);
 }
 
 void api_plan_close(struct api *api, struct call *call)
@@ -188,7 +207,10 @@ void api_job_cancel(struct api *api, struct call *call)
     struct api_job *job = find_job(api, call);
     if (!job)
         return;
-    if (job->state == JOB_RUNNING) {
+    if (job->upload) {
+        fleet_upload_cancel(net_fleet(api->net), job->upload);
+        update_job(api, job);
+    } else if (job->state == JOB_RUNNING) {
         job->is_cancel_asked = true;
         fleet_close(net_fleet(api->net), job->plan_id);
         update_job(api, job);

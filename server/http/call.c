@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
@@ -37,6 +38,9 @@ void call_destroy(struct call *call)
     free(call->origin);
     free(call->host);
     free(call->body);
+    if (call->upload_path)
+        (void)unlink(call->upload_path); /* nobody kept it */
+    free(call->upload_path);
     free(call->bytes);
     free(call);
 }
@@ -130,17 +134,27 @@ void call_answer_nothing(struct call *call, int status)
     finish(call, status, "");
 }
 
-static bool media_type_is(const char *content_type, const char *media_type)
+bool call_media_type_is(const struct call *call, const char *media_type)
 {
+    const char *given = call->content_type;
     size_t n = strlen(media_type);
-    return strncasecmp(content_type, media_type, n) == 0 && (content_type[n] == 0 || content_type[n] == ';' || content_type[n] == ' ');
+    return given && strncasecmp(given, media_type, n) == 0 && (given[n] == 0 || given[n] == ';' || given[n] == ' ');
+}
+
+bool call_origin_is_own(const struct call *call, struct problem *problem)
+{
+    if (!call->origin || call->method == CALL_GET || call->method == CALL_HEAD)
+        return true;
+    const char *authority = strstr(call->origin, "://");
+    return (authority && call->host && strcmp(authority + 3, call->host) == 0) ||
+           problem_set(problem, PROBLEM_FORBIDDEN, "", "", "the origin %.100s may not change anything here", call->origin);
 }
 
 bool call_read_object(struct call *call, const char *const *media_types, cJSON **object)
 {
     struct problem problem;
     const char *const *type = media_types;
-    while (*type && !(call->content_type && media_type_is(call->content_type, *type)))
+    while (*type && !call_media_type_is(call, *type))
         type++;
     if (!*type) {
         problem_set(&problem, PROBLEM_MEDIA_TYPE, "", "", "Content-Type is \"%.60s\", expected %s", call->content_type ? call->content_type : "",

@@ -33,6 +33,8 @@ struct call {
     char *if_match, *if_none_match, *content_type, *origin, *host; /* NULL when not sent */
     char *body;
     size_t n_body;
+    char *upload_path; /* an archive's body lies here instead; whoever keeps the file sets it to NULL */
+    uint64_t n_upload;
     struct problem early; /* found while reading the request: answered instead of the route */
 
     /* the answer */
@@ -64,6 +66,10 @@ void call_answer_text(struct call *call, int status, const char *media_type, con
 void call_answer_nothing(struct call *call, int status);
 void call_add_header(struct call *call, const char *name, const char *value); /* before the answer */
 
+/* Whether its Content-Type is media_type, parameters aside. */
+bool call_media_type_is(const struct call *call, const char *media_type);
+/* A page of another origin must not change anything here with the person's own browser. False with problem. */
+NODISCARD bool call_origin_is_own(const struct call *call, struct problem *problem);
 /* The body as a JSON object. media_types: NULL-terminated, which are read. false: the call has been answered with the problem. */
 NODISCARD bool call_read_object(struct call *call, const char *const *media_types, cJSON **object);
 /* A query parameter as a finite number. NULL text: *value unchanged. */

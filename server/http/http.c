@@ -14,11 +14,13 @@
 #include "core/base/mem.h"
 #include "server/http/api.h"
 #include "server/http/files.h"
+#include "server/http/intake.h"
 
 struct http {
     struct net *net;
     struct api *api;
     struct files *files;
+    struct intake *intake;
     struct MHD_Daemon *daemon;
     pthread_mutex_t asking; /* held while a task is posted: after http_stop_asking none is */
     bool is_stopping;
@@ -32,7 +34,8 @@ struct request {
     struct http *http;
     struct MHD_Connection *connection;
     atomic_bool is_answered; /* set on the net thread before the connection is resumed */
-    bool is_posted;
+    bool is_posted, is_archive;
+    struct intake_file *archive; /* while it is received */
     size_t n_dropped; /* bytes of the body beyond what is read */
 };
 
@@ -160,6 +163,38 @@ static bool refuses_body(struct MHD_Connection *connection, struct call *call)
     return true;
 }
 
+/* The body will be an archive. False: it is refused, and the sender is to hear so before it comes. */
+static bool begin_archive(struct request *request)
+{
+    struct call *call = request->call;
+    const char *length = MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, "Content-Length");
+    const char *expect = MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, "Expect");
+    unsigned long long n = length ? strtoull(length, NULL, 10) : 0;
+    request->is_archive = true;
+    if (call->early.type == PROBLEM_NONE)
+        request->archive = intake_begin(request->http->intake, call, !length ? -1 : n < INT64_MAX ? (int64_t)n : INT64_MAX, &call->early);
+    return request->archive || !(expect || n > HTTP_MAX_DROPPED);
+}
+
+/* More of it. After a refusal the rest is read and dropped, as of other bodies. */
+static bool add_archive(struct request *request, const char *bytes, size_t n)
+{
+    if (request->archive && intake_add(request->archive, bytes, n, &request->call->early))
+        return true;
+    intake_drop(request->archive);
+    request->archive = NULL;
+    request->n_dropped += n;
+    return request->n_dropped <= HTTP_MAX_DROPPED;
+}
+
+static void finish_archive(struct request *request)
+{
+    struct call *call = request->call;
+    if (request->archive)
+        call->upload_path = intake_finish(request->archive, &call->n_upload, &call->early);
+    request->archive = NULL;
+}
+
 static struct request *request_create(struct http *http, struct MHD_Connection *connection, const char *url, const char *method)
 {
     struct request *request = mem_new(sizeof *request);
@@ -225,14 +260,14 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
     (void)version;
     if (!request) {
         *state = request = request_create(http, connection, url, method);
-        if (refuses_body(connection, request->call)) {
+        if (intake_is_for(request->call) ? !begin_archive(request) : refuses_body(connection, request->call)) {
             request->is_posted = true;
             ask(http, request);
         }
         return MHD_YES;
     }
     if (*n_upload) {
-        bool goes_on = add_body(request, upload, *n_upload);
+        bool goes_on = request->is_archive ? add_archive(request, upload, *n_upload) : add_body(request, upload, *n_upload);
         *n_upload = 0;
         return goes_on ? MHD_YES : MHD_NO;
     }
@@ -243,6 +278,7 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
         const struct file *file = http->files && (verb == CALL_GET || verb == CALL_HEAD) ? files_find(http->files, request->call->path) : NULL;
         if (file)
             return send_file(connection, file);
+        finish_archive(request);
         request->is_posted = true;
         ask(http, request);
     }
@@ -257,6 +293,7 @@ static void completed(void *context, struct MHD_Connection *connection, void **s
     (void)code;
     if (!request)
         return;
+    intake_drop(request->archive);
     call_destroy(request->call);
     free(request);
     *state = NULL;
@@ -275,6 +312,7 @@ struct http *http_create(struct net *net, const struct http_options *options, st
     struct http *http = mem_new(sizeof *http);
     http->net = net;
     http->api = api_create(net);
+    http->intake = intake_create(options->upload_folder, options->max_upload_bytes);
     pthread_mutex_init(&http->asking, NULL);
     if (options->web_folder) {
         http->files = files_create(options->web_folder, err);
@@ -312,6 +350,7 @@ void http_destroy(struct http *http)
         MHD_stop_daemon(http->daemon);
     pthread_mutex_destroy(&http->asking);
     files_destroy(http->files);
+    intake_destroy(http->intake);
     api_destroy(http->api);
     free(http);
 }

@@ -5,12 +5,14 @@
 
 #include "server/net/net.h"
 
-enum { HTTP_MAX_CONNECTIONS = 500, HTTP_MAX_PER_ADDRESS = 200, HTTP_TIMEOUT_S = 60, HTTP_MAX_DROPPED = 64 << 20 /* bytes of a body beyond the limit that are read before the connection is cut */ };
+enum { HTTP_MAX_CONNECTIONS = 500, HTTP_MAX_PER_ADDRESS = 200, HTTP_TIMEOUT_S = 60 /* without a byte either way */, HTTP_MAX_DROPPED = 64 << 20 /* bytes of a body beyond the limit that are read before the connection is cut */ };
 
 struct http;
 
 struct http_options {
-    const char *web_folder; /* the page; NULL: the API alone */
+    const char *web_folder;    /* the page; NULL: the API alone */
+    const char *upload_folder; /* where archives are received; NULL: they are not */
+    uint64_t max_upload_bytes;
 };
 
 /* errors ERROR_IO, ERROR_LIMIT, ERROR_NOT_FOUND. net outlives it. */

@@ -11,9 +11,10 @@ export const demo = process.env.BEAMROOM_DEMO ?? resolve('build/demo/plans');
 /** Real plans, when this machine has them; tests that need them skip otherwise. */
 export const realData = [process.env.BEAMROOM_DATA, '../shared/data'].filter(Boolean).map((p) => resolve(p)).find(existsSync);
 
-/** @returns {Promise<{url: string, child: import('node:child_process').ChildProcess, log: () => string, stop: () => Promise<number|null>}>} */
-export async function startDaemon({ plans = [demo], args = [] } = {}) {
-  const data = mkdtempSync(join(tmpdir(), 'beamroom-test-'));
+/** data: a state folder to use and to keep.
+ *  @returns {Promise<{url: string, data: string, child: import('node:child_process').ChildProcess, log: () => string, stop: () => Promise<number|null>}>} */
+export async function startDaemon({ plans = [demo], args = [], data: given } = {}) {
+  const data = given ?? mkdtempSync(join(tmpdir(), 'beamroom-test-'));
   const child = spawn(join(bin, 'beamroomd'), ['--listen', '127.0.0.1:0', '--data', data, '--web', web, ...plans.flatMap((p) => ['--plans', p]), ...args],
     { stdio: ['ignore', 'pipe', 'pipe'] });
   let log = '';
@@ -32,10 +33,10 @@ export async function startDaemon({ plans = [demo], args = [] } = {}) {
     const code = await Promise.race([ended, new Promise((late) => { timer = setTimeout(late, 10000, null); })]);
     clearTimeout(timer); /* else the test run waits for it */
     if (code === null) child.kill('SIGKILL');
-    rmSync(data, { recursive: true, force: true });
+    if (!given) rmSync(data, { recursive: true, force: true });
     return code;
   };
-  return { url, child, log: () => log, stop };
+  return { url, child, data, log: () => log, stop };
 }
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));

@@ -64,7 +64,7 @@ describe('the server', () => {
     assertProblem(await call(`${api}/nothing`), 404, 'not-found');
     const wrong = await call(`${api}/plans`, 'DELETE');
     assertProblem(wrong, 405, 'method');
-    assert.equal(wrong.headers.get('allow'), 'GET');
+    assert.equal(wrong.headers.get('allow'), 'GET, POST');
     assertProblem(await call(`${api}/rooms`, 'POST', { plan: 'phantom' }, { Origin: 'https://elsewhere.example' }), 403, 'forbidden');
     assertProblem(await call(`${api}/plans/${'x'.repeat(64)}`), 404, 'not-found');
     assertProblem(await call(`${api}/plans/UPPER`), 404, 'not-found');

@@ -1,0 +1,545 @@
+/* Archives to plans: an archive in data/uploads is unpacked beside itself by a confined program, looked at like any plan folder, and
+ * moved to data/plans, where the list finds it. What is no plan, was cancelled or is taken out again is removed. */
+#define _GNU_SOURCE
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/base/clock.h"
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/fleet/parts.h"
+
+enum {
+    MAX_WRAPPING = 8,        /* folders that hold nothing but one folder, from the archive's top down */
+    MAX_SAME_NAME = 999,     /* plans of one name; folder_make_id leaves room for the number */
+    LIST_WITHIN_US = 30000000 /* how long the list may take to find a new plan */
+};
+
+static const uint64_t default_max_unpacked_bytes = UINT64_C(8) << 30;
+
+enum stage {
+    STAGE_WAITING,
+    STAGE_UNPACKING, /* process unpacks */
+    STAGE_LOOKING,   /* process looks at root */
+    STAGE_LISTING,   /* moved to data/plans; the list does not know it yet */
+    STAGE_OVER       /* ended; while process is there, it is being ended and what it made is still there */
+};
+
+struct upload {
+    struct upload *next;
+    uint64_t number, process; /* process: 0 none */
+    enum fleet_upload_state state;
+    enum stage stage;
+    char *archive, *folder; /* what is removed in the end */
+    char *root;             /* of the plan: folder, or the only folder inside; once moved: in data/plans */
+    char base_id[PLAN_ID_SIZE], plan_id[PLAN_ID_SIZE];
+    double percent;
+    bool has_said_end; /* the unpacker: done or a problem */
+    struct problem problem;
+    uint64_t n_bytes, n_files;
+    int64_t began_us, list_until_us;
+};
+
+/* ---- the folders ---- */
+
+static char *path_in(const char *folder, const char *name)
+{
+    size_t n = strlen(folder) + strlen(name) + 2;
+    char *path = mem_new(n);
+    (void)snprintf(path, n, "%s/%s", folder, name);
+    return path;
+}
+
+/* Moves a file or folder to a name of its own in data/uploads and has it removed. errno when it could not be moved. */
+static bool throw_away(struct fleet *fleet, const char *path)
+{
+    char name[96];
+    (void)snprintf(name, sizeof name, "trash-%lld-%d-%llu", (long long)clock_now_us(), (int)getpid(), (unsigned long long)++fleet->n_trash);
+    char *trash = path_in(fleet->uploads_home, name);
+    if (rename(path, trash) != 0) {
+        free(trash);
+        return false;
+    }
+    remover_put(fleet->remover, trash);
+    return true;
+}
+
+static char *make_home(const struct fleet *fleet, const char *name, struct error *err)
+{
+    char *path = path_in(fleet->data_folder, name), *real = NULL;
+    if (mkdir(path, 0700) != 0 && errno != EEXIST)
+        error_set(err, ERROR_IO, "%s cannot be made: %s", path, strerror(errno));
+    else if (!(real = realpath(path, NULL)))
+        error_set(err, ERROR_IO, "%s: %s", path, strerror(errno));
+    else if (strlen(real) > PATH_MAX / 2) {
+        error_set(err, ERROR_LIMIT, "the data folder's path is too long");
+        free(real);
+        real = NULL;
+    }
+    free(path);
+    return real;
+}
+
+static bool clear_leftovers(struct fleet *fleet, struct error *err)
+{
+    DIR *folder = opendir(fleet->uploads_home);
+    if (!folder)
+        return error_set(err, ERROR_IO, "%s: %s", fleet->uploads_home, strerror(errno));
+    char **names = mem_new(REMOVER_MAX_WAITING * sizeof *names); /* moved only after the listing, which must not see them again */
+    size_t n = 0;
+    for (const struct dirent *entry; n < REMOVER_MAX_WAITING && (entry = readdir(folder));)
+        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+            names[n++] = mem_copy_text(entry->d_name);
+    closedir(folder);
+    for (size_t i = 0; i < n; i++) {
+        char *path = path_in(fleet->uploads_home, names[i]);
+        if (!throw_away(fleet, path))
+            log_warn("a leftover in %s cannot be moved: %s", fleet->uploads_home, strerror(errno));
+        free(path);
+        free(names[i]);
+    }
+    free(names);
+    if (n > 0)
+        log_info("%zu leftovers of uploads are removed", n);
+    return true;
+}
+
+bool uploads_begin(struct fleet *fleet, struct error *err)
+{
+    fleet->plans_home = make_home(fleet, "plans", err);
+    fleet->uploads_home = fleet->plans_home ? make_home(fleet, "uploads", err) : NULL;
+    fleet->remover = fleet->uploads_home ? remover_create(err) : NULL;
+    return fleet->remover && clear_leftovers(fleet, err);
+}
+
+static void upload_free(struct upload *upload)
+{
+    free(upload->archive);
+    free(upload->folder);
+    free(upload->root);
+    free(upload);
+}
+
+void uploads_end(struct fleet *fleet)
+{
+    remover_destroy(fleet->remover);
+    while (fleet->uploads) {
+        struct upload *next = fleet->uploads->next;
+        upload_free(fleet->uploads);
+        fleet->uploads = next;
+    }
+    free(fleet->plans_home);
+    free(fleet->uploads_home);
+}
+
+bool uploads_owns(const struct fleet *fleet, const char *folder)
+{
+    size_t n = strlen(fleet->plans_home);
+    return strncmp(folder, fleet->plans_home, n) == 0 && folder[n] == '/';
+}
+
+/* ---- one upload ---- */
+
+static bool is_over(const struct upload *upload)
+{
+    return upload->stage == STAGE_OVER;
+}
+
+static void clean(struct fleet *fleet, const struct upload *upload)
+{
+    if (!throw_away(fleet, upload->archive) && errno != ENOENT)
+        log_warn("upload %llu: its archive cannot be removed: %s", (unsigned long long)upload->number, strerror(errno));
+    if (!throw_away(fleet, upload->folder) && errno != ENOENT)
+        log_warn("upload %llu: its folder cannot be removed: %s", (unsigned long long)upload->number, strerror(errno));
+}
+
+static void end(struct fleet *fleet, struct upload *upload, enum fleet_upload_state state)
+{
+    upload->state = state;
+    upload->stage = STAGE_OVER;
+    if (upload->process)
+        watch_stop(fleet->watch, upload->process, true, "is no longer wanted"); /* its end cleans up: it may still write */
+    else
+        clean(fleet, upload);
+    fleet->options.wake(fleet->options.context);
+}
+
+static void fail(struct fleet *fleet, struct upload *upload, const struct problem *problem)
+{
+    upload->problem = *problem;
+    log_info("upload %llu: failed: %s", (unsigned long long)upload->number, problem_word(problem->type)); /* the detail may hold names of files */
+    end(fleet, upload, UPLOAD_FAILED);
+}
+
+static void start_unpacking(struct fleet *fleet, struct upload *upload)
+{
+    char limit[32];
+    struct problem problem;
+    if (mkdir(upload->folder, 0700) != 0) {
+        problem_set(&problem, PROBLEM_STORAGE, "", "", "no folder can be made for what is in the archive: %s", strerror(errno));
+        fail(fleet, upload, &problem);
+        return;
+    }
+    (void)snprintf(limit, sizeof limit, "%llu",
+                   (unsigned long long)(fleet->options.max_unpacked_bytes ? fleet->options.max_unpacked_bytes : default_max_unpacked_bytes));
+    const char *words[] = { fleet->renderer_path, "--unpack", upload->archive, "--into", upload->folder, "--max-unpacked-bytes", limit, NULL };
+    upload->state = UPLOAD_RUNNING;
+    upload->stage = STAGE_UNPACKING;
+    upload->process = fleet_number(fleet);
+    if (!watch_start_teller(fleet->watch, upload->process, fleet_arguments(words), fleet->times.unpack)) {
+        upload->process = 0;
+        problem_set(&problem, PROBLEM_BUSY, "", "", "too much is waiting to be told to renderers");
+        fail(fleet, upload, &problem);
+    }
+}
+
+/* The only thing in a folder, when that is a folder; what archivers of other systems add does not count. */
+static bool find_only_folder(const char *path, char name[NAME_MAX + 1])
+{
+    DIR *folder = opendir(path);
+    size_t n = 0;
+    bool is_folder = false;
+    if (!folder)
+        return false;
+    for (const struct dirent *entry; n < 2 && (entry = readdir(folder));) {
+        struct stat facts;
+        if (entry->d_name[0] == '.' || strcmp(entry->d_name, "__MACOSX") == 0)
+            continue;
+        n++;
+        is_folder = fstatat(dirfd(folder), entry->d_name, &facts, AT_SYMLINK_NOFOLLOW) == 0 && S_ISDIR(facts.st_mode);
+        (void)snprintf(name, NAME_MAX + 1, "%s", entry->d_name);
+    }
+    closedir(folder);
+    return n == 1 && is_folder;
+}
+
+static void start_looking(struct fleet *fleet, struct upload *upload)
+{
+    char name[NAME_MAX + 1];
+    struct problem problem;
+    upload->root = mem_copy_text(upload->folder);
+    for (int i = 0; i < MAX_WRAPPING && find_only_folder(upload->root, name); i++) {
+        char *inner = path_in(upload->root, name);
+        free(upload->root);
+        upload->root = inner;
+    }
+    upload->stage = STAGE_LOOKING;
+    upload->process = fleet_number(fleet);
+    char **arguments = fleet_arguments((const char *const[]){ fleet->renderer_path, "--scan", upload->root, NULL });
+    if (watch_start_program(fleet->watch, upload->process, arguments, fleet->times.scan))
+        return;
+    upload->process = 0;
+    problem_set(&problem, PROBLEM_BUSY, "", "", "too much is waiting to be told to renderers");
+    fail(fleet, upload, &problem);
+}
+
+/* Moves the root to a folder of its own in data/plans. errno when that fails. */
+static bool move_home(struct fleet *fleet, struct upload *upload)
+{
+    for (int i = 1; i <= MAX_SAME_NAME; i++) {
+        char id[PLAN_ID_SIZE];
+        if (i == 1)
+            (void)snprintf(id, sizeof id, "%s", upload->base_id);
+        else
+            (void)snprintf(id, sizeof id, "%.52s-%d", upload->base_id, i);
+        if (plan_entry_find(fleet, id))
+            continue;
+        char *home = path_in(fleet->plans_home, id);
+        if (mkdir(home, 0700) == 0) { /* nobody else has it, and a folder may replace an empty one */
+            if (rename(upload->root, home) == 0) {
+                free(upload->root);
+                upload->root = home;
+                return true;
+            }
+            int why = errno;
+            (void)rmdir(home);
+            errno = why;
+        }
+        free(home);
+        if (errno != EEXIST)
+            return false;
+    }
+    errno = EEXIST;
+    return false;
+}
+
+static void take_home(struct fleet *fleet, struct upload *upload)
+{
+    struct problem problem;
+    if (chmod(upload->root, 0700) == 0 && move_home(fleet, upload)) {
+        upload->stage = STAGE_LISTING;
+        upload->list_until_us = clock_now_us() + LIST_WITHIN_US;
+        clean(fleet, upload);
+        fleet_rescan(fleet);
+        return;
+    }
+    problem_set(&problem, PROBLEM_STORAGE, "", "", "the plan cannot be moved to where the server keeps uploaded plans: %s", strerror(errno));
+    fail(fleet, upload, &problem);
+}
+
+/* The plan that came of it: in its folder, or, of a collection, inside. */
+static const struct plan_entry *find_made(const struct fleet *fleet, const struct upload *upload)
+{
+    const struct plan_entry *made = plan_entry_in_folder(fleet, upload->root);
+    size_t n = strlen(upload->root);
+    for (size_t i = 0; i < fleet->n_plans && !made; i++) {
+        const struct plan_entry *plan = fleet->plans[i];
+        if (!plan->is_removed && strncmp(plan->folder, upload->root, n) == 0 && plan->folder[n] == '/')
+            made = plan;
+    }
+    return made;
+}
+
+static void look_for_it(struct fleet *fleet, struct upload *upload, int64_t now_us)
+{
+    const struct plan_entry *plan = find_made(fleet, upload);
+    struct problem problem;
+    if (plan && (plan->wants_scan || plan->scan))
+        return; /* done means that its parts are known */
+    if (plan) {
+        (void)snprintf(upload->plan_id, sizeof upload->plan_id, "%s", plan->id);
+        upload->state = UPLOAD_DONE;
+        upload->stage = STAGE_OVER;
+        log_info("upload %llu: plan %s: %llu files, %llu bytes in %lld ms", (unsigned long long)upload->number, plan->id,
+                 (unsigned long long)upload->n_files, (unsigned long long)upload->n_bytes, (long long)((now_us - upload->began_us) / 1000));
+    } else if (now_us > upload->list_until_us) {
+        problem_set(&problem, PROBLEM_LIMIT, "", "", "the list of plans has no place for it: at most %d are listed", FLEET_MAX_PLANS);
+        (void)throw_away(fleet, upload->root);
+        fail(fleet, upload, &problem);
+    } else if (!fleet->is_listing) {
+        fleet_rescan(fleet);
+    }
+}
+
+/* ---- what its processes say ---- */
+
+static uint64_t count_of(const cJSON *json, const char *name)
+{
+    double value = json_number(json, name, 0);
+    return value >= 0 && value < 9e15 ? (uint64_t)value : 0;
+}
+
+static void take_line(struct upload *upload, const char *text, size_t n)
+{
+    struct problem problem;
+    cJSON *json = json_read(text, n, &problem);
+    const cJSON *said = cJSON_GetObjectItemCaseSensitive(json, "problem");
+    double percent = json_number(json, "percent", NAN);
+    if (percent >= upload->percent && percent <= 100)
+        upload->percent = percent;
+    if (said) {
+        (void)problem_from_json(said, &upload->problem);
+        upload->has_said_end = true;
+    } else if (json_flag(json, "done", false)) {
+        upload->n_files = count_of(json, "n_files");
+        upload->n_bytes = count_of(json, "n_bytes");
+        upload->has_said_end = true;
+    }
+    cJSON_Delete(json);
+}
+
+static void unpacking_ended(struct fleet *fleet, struct upload *upload, const struct watch_event *event)
+{
+    struct problem problem = upload->problem;
+    if (event->is_exit && event->status == 0 && upload->has_said_end && problem.type == PROBLEM_NONE) {
+        start_looking(fleet, upload);
+        return;
+    }
+    if (problem.type == PROBLEM_NONE && event->reason[0])
+        problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "the program that unpacks %.180s", event->reason);
+    else if (problem.type == PROBLEM_NONE && event->signal)
+        problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "the program that unpacks stopped (signal %d)", event->signal);
+    else if (problem.type == PROBLEM_NONE)
+        problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "the program that unpacks ended with status %d and said nothing", event->status);
+    fail(fleet, upload, &problem);
+}
+
+static void looking_ended(struct fleet *fleet, struct upload *upload, const struct watch_event *event)
+{
+    char reason[240] = "";
+    cJSON *json = plans_scan_document(event, reason);
+    const char *said = json_text(json, "reason");
+    if (json_flag(json, "readable", false)) {
+        take_home(fleet, upload);
+    } else {
+        struct problem problem;
+        problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "%.250s", said && said[0] ? said : reason[0] ? reason : "there is no plan in the archive");
+        fail(fleet, upload, &problem);
+    }
+    cJSON_Delete(json);
+}
+
+bool uploads_take_event(struct fleet *fleet, const struct watch_event *event)
+{
+    struct upload *upload = fleet->uploads;
+    while (upload && !(upload->process && upload->process == event->number))
+        upload = upload->next;
+    if (!upload)
+        return false;
+    if (event->type == WATCH_LINE) {
+        if (upload->stage == STAGE_UNPACKING)
+            take_line(upload, event->output, event->n_output);
+        return true;
+    }
+    upload->process = 0;
+    switch (upload->stage) {
+    case STAGE_UNPACKING: unpacking_ended(fleet, upload, event); break;
+    case STAGE_LOOKING: looking_ended(fleet, upload, event); break;
+    case STAGE_OVER: clean(fleet, upload); break;
+    case STAGE_WAITING:
+    case STAGE_LISTING: break;
+    }
+    return true;
+}
+
+void uploads_go_on(struct fleet *fleet)
+{
+    int64_t now_us = clock_now_us();
+    for (;;) {
+        struct upload *oldest = NULL; /* that waits */
+        int n_unpacking = 0;
+        for (struct upload *upload = fleet->uploads; upload; upload = upload->next) {
+            n_unpacking += upload->stage == STAGE_UNPACKING || upload->stage == STAGE_LOOKING;
+            if (upload->stage == STAGE_WAITING)
+                oldest = upload; /* the newest comes first */
+        }
+        if (!oldest || n_unpacking >= FLEET_MAX_UNPACKING)
+            break;
+        start_unpacking(fleet, oldest);
+    }
+    for (struct upload *upload = fleet->uploads; upload; upload = upload->next)
+        if (upload->stage == STAGE_LISTING)
+            look_for_it(fleet, upload, now_us);
+}
+
+/* ---- for others ---- */
+
+static void forget_old(struct fleet *fleet)
+{
+    size_t n = 0;
+    for (struct upload **at = &fleet->uploads; *at;) {
+        struct upload *upload = *at;
+        if (++n > FLEET_KEPT_UPLOADS && is_over(upload) && !upload->process) {
+            *at = upload->next;
+            upload_free(upload);
+        } else {
+            at = &upload->next;
+        }
+    }
+}
+
+/* "Head.tar.gz" is called "Head". */
+static void make_base_id(const char *name, char id[PLAN_ID_SIZE])
+{
+    static const char *const endings[] = { ".zip", ".tar.gz", ".tgz", ".tar", ".gz" };
+    char bare[256];
+    (void)snprintf(bare, sizeof bare, "%s", name);
+    size_t n = strlen(bare);
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+        size_t n_ending = strlen(endings[i]);
+        if (n > n_ending && strcasecmp(bare + n - n_ending, endings[i]) == 0) {
+            bare[n - n_ending] = 0;
+            break;
+        }
+    }
+    folder_make_id(bare, id);
+}
+
+uint64_t fleet_upload(struct fleet *fleet, const char *archive, const char *name, struct problem *problem)
+{
+    int n_going_on = 0;
+    for (const struct upload *upload = fleet->uploads; upload; upload = upload->next)
+        n_going_on += !is_over(upload) || upload->process;
+    if (n_going_on >= FLEET_MAX_UPLOADS) {
+        (void)throw_away(fleet, archive);
+        problem_set(problem, PROBLEM_BUSY, "", "", "%d archives are waiting to be unpacked already", FLEET_MAX_UPLOADS);
+        problem->retry_after_ms = 10000;
+        return 0;
+    }
+    forget_old(fleet);
+    struct upload *upload = mem_new(sizeof *upload);
+    upload->number = fleet_number(fleet);
+    upload->archive = mem_copy_text(archive);
+    size_t n = strlen(archive), n_ending = strlen(".part");
+    upload->folder = mem_new(n + n_ending);
+    bool is_part = n > n_ending && strcmp(archive + n - n_ending, ".part") == 0;
+    (void)snprintf(upload->folder, n + n_ending, "%.*s%s", (int)(is_part ? n - n_ending : n), archive, is_part ? "" : ".out");
+    make_base_id(name, upload->base_id);
+    upload->began_us = clock_now_us();
+    upload->next = fleet->uploads;
+    fleet->uploads = upload;
+    uploads_go_on(fleet);
+    return upload->number;
+}
+
+static struct upload *find(const struct fleet *fleet, uint64_t number)
+{
+    struct upload *upload = fleet->uploads;
+    while (upload && upload->number != number)
+        upload = upload->next;
+    return upload;
+}
+
+bool fleet_upload_find(const struct fleet *fleet, uint64_t number, struct fleet_upload *out)
+{
+    static const char *const phases[] = { "waiting for its turn", "unpacking", "looking at it", "looking at it", "" };
+    const struct upload *upload = find(fleet, number);
+    if (!upload)
+        return false;
+    *out = (struct fleet_upload){ .state = upload->state,
+                                  .phase = phases[upload->stage],
+                                  .percent = upload->state == UPLOAD_DONE ? 100 : upload->percent,
+                                  .plan_id = upload->state == UPLOAD_DONE ? upload->plan_id : NULL,
+                                  .problem = upload->state == UPLOAD_FAILED ? &upload->problem : NULL };
+    return true;
+}
+
+void fleet_upload_cancel(struct fleet *fleet, uint64_t number)
+{
+    struct upload *upload = find(fleet, number);
+    if (!upload || is_over(upload))
+        return;
+    if (upload->stage == STAGE_LISTING && !throw_away(fleet, upload->root))
+        log_warn("upload %llu: its plan cannot be removed: %s", (unsigned long long)number, strerror(errno));
+    if (upload->stage == STAGE_LISTING)
+        fleet_rescan(fleet);
+    log_info("upload %llu: cancelled", (unsigned long long)number);
+    end(fleet, upload, UPLOAD_CANCELLED);
+}
+
+bool fleet_remove_plan(struct fleet *fleet, const char *plan_id, struct problem *problem)
+{
+    struct plan_entry *plan = plan_entry_find(fleet, plan_id);
+    if (!plan)
+        return problem_set(problem, PROBLEM_NOT_FOUND, "", "", "there is no plan \"%.64s\"", plan_id);
+    if (!uploads_owns(fleet, plan->folder))
+        return problem_set(problem, PROBLEM_FORBIDDEN, "", "", "the plan lies in a folder that the server does not own: only uploaded plans are deleted");
+    if (!throw_away(fleet, plan->folder) && errno != ENOENT)
+        return problem_set(problem, PROBLEM_STORAGE, "", "", "the plan's folder cannot be moved away: %s", strerror(errno));
+    /* of a collection: the folder around it, once it is empty */
+    char *around = mem_copy_text(plan->folder);
+    *strrchr(around, '/') = 0;
+    if (uploads_owns(fleet, around))
+        (void)rmdir(around);
+    free(around);
+    if (plan->process)
+        watch_stop(fleet->watch, plan->process, true, "draws a plan that is deleted"); /* at once: it may be writing to its cache */
+    plan_entry_close(fleet, plan, "it is deleted");
+    char cache[PATH_MAX];
+    (void)snprintf(cache, sizeof cache, "%s/cache/%s", fleet->data_folder, plan->id);
+    if (!throw_away(fleet, cache) && errno != ENOENT)
+        log_warn("plan %s: its cache cannot be removed: %s", plan->id, strerror(errno));
+    plan->is_removed = true;
+    fleet->list_has_changed = true;
+    fleet_rescan(fleet);
+    return true;
+}

@@ -1,0 +1,66 @@
+/* Plans that come as archives, and go again. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/base/log.h"
+#include "server/http/api_inner.h"
+
+/* The body is in a file by now: server/http/intake.h. */
+void api_plan_upload(struct api *api, struct call *call)
+{
+    struct problem problem;
+    const char *name = call_query(call, "name");
+    if (!call->upload_path || call->n_upload == 0) {
+        problem_set(&problem, PROBLEM_VALIDATION, "", "length", "the body is empty, expected a zip, tar or tar.gz of a plan");
+        call_answer_problem(call, &problem);
+        return;
+    }
+    uint64_t number = fleet_upload(net_fleet(api->net), call->upload_path, name ? name : "", &problem);
+    free(call->upload_path); /* the fleet's now */
+    call->upload_path = NULL;
+    if (!number) {
+        call_answer_problem(call, &problem);
+        return;
+    }
+    struct api_job *job = api_job_new(api, "upload");
+    job->upload = number;
+    log_info("upload %llu: %llu bytes", (unsigned long long)number, (unsigned long long)call->n_upload);
+    api_job_answer(api, call, job);
+}
+
+void api_update_upload(struct api *api, struct api_job *job)
+{
+    struct fleet_upload upload;
+    if (!fleet_upload_find(net_fleet(api->net), job->upload, &upload)) {
+        job->state = JOB_FAILED;
+        problem_set(&job->problem, PROBLEM_NOT_FOUND, "", "", "the upload is forgotten");
+        return;
+    }
+    static const int states[] = { [UPLOAD_QUEUED] = JOB_QUEUED, [UPLOAD_RUNNING] = JOB_RUNNING, [UPLOAD_DONE] = JOB_DONE,
+                                  [UPLOAD_FAILED] = JOB_FAILED, [UPLOAD_CANCELLED] = JOB_CANCELLED };
+    job->state = (enum api_job_state)states[upload.state];
+    (void)snprintf(job->phase, sizeof job->phase, "%s", upload.phase);
+    job->percent = upload.percent;
+    if (upload.plan_id)
+        (void)snprintf(job->plan_id, sizeof job->plan_id, "%s", upload.plan_id);
+    if (upload.problem)
+        job->problem = *upload.problem;
+}
+
+void api_plan_delete(struct api *api, struct call *call)
+{
+    struct fleet *fleet = net_fleet(api->net);
+    struct fleet_plan plan;
+    struct problem problem = { 0 };
+    /* the rooms go first, but only when the plan will */
+    if (fleet_plan_find(fleet, call->ids[0], &plan) && plan.is_uploaded)
+        for (size_t i = net_n_rooms(api->net); i-- > 0;)
+            if (strcmp(room_plan_id(net_room_at(api->net, i)), call->ids[0]) == 0)
+                net_room_delete(api->net, room_id(net_room_at(api->net, i)));
+    if (fleet_remove_plan(fleet, call->ids[0], &problem))
+        call_answer_nothing(call, 204);
+    else
+        call_answer_problem(call, &problem);
+}
