@@ -187,7 +187,7 @@ bool plan_check_estimate(const struct loading *loading, struct error *err)
     if (bytes <= loading->options.max_bytes || !largest)
         return true;
     struct need need = need_of(loading, largest);
-    return error_set(err, ERROR_LIMIT, "reading the plan would take about %.0f MiB, and %.0f MiB are allowed; the largest part is %s with %.0f "
+    return error_set(err, ERROR_LIMIT, "reading the plan would take about %.0f MiB of memory, and %.0f MiB are allowed; the largest part is %s with %.0f "
                      "MiB", (double)bytes / 1048576, (double)loading->options.max_bytes / 1048576, largest->path,
                      (double)(need.kept + need.work) / 1048576);
 }

@@ -105,7 +105,7 @@ describe('beamroom info', () => {
   it('refuses a plan that takes more than it may, with both figures', () => {
     const small = beamroom('info', plan, '--max-mib', '2');
     assert.equal(small.status, 1);
-    assert.match(small.stderr, /would take about \d+ MiB, and 2 MiB are allowed; the largest part is \S+ with \d+ MiB/);
+    assert.match(small.stderr, /would take about \d+ MiB of memory, and 2 MiB are allowed; the largest part is \S+ with \d+ MiB/);
     assert.equal(beamroom('info', '--max-mib=2000', plan).status, 0);
     assert.match(beamroom('info', plan, '--max-mib', 'x').stderr, /--max-mib needs a number/);
   });
