@@ -51,6 +51,7 @@ struct visible_look visible_look(const struct snapshot *snapshot, size_t region,
     bool is_line = kind == REPRESENTATION_OUTLINE, is_point = kind == REPRESENTATION_POINTS || kind == REPRESENTATION_SOLID;
     return (struct visible_look){
         .is_flat = scene->surface.normals == SCENE_NORMALS_FACE,
+        .rounding = kind == REPRESENTATION_UNIVELS && scene->surface.normals == SCENE_NORMALS_VERTEX ? VISIBLE_ROUNDING : 0,
         .is_two_sided = kind == REPRESENTATION_FAN || kind == REPRESENTATION_NURBS,
         .is_rim = !is_line && !is_point && snapshot->styles[region].opacity < 1 && scene->surface.translucency == SCENE_TRANSLUCENCY_RIM,
         .is_baked = kind == REPRESENTATION_SOLID && scene->points.solid == SCENE_SOLID_LIGHTING_BAKED,
@@ -62,7 +63,7 @@ struct visible_look visible_look(const struct snapshot *snapshot, size_t region,
 /* Only what is made of voxels' terraces needs its light smoothed. */
 int visible_shading_passes(const struct shape_key *key, uint32_t reduction)
 {
-    bool has_terraces = key->representation == REPRESENTATION_SURFACE && key->algorithm != SURFACE_SMOOTH;
+    bool has_terraces = key->representation == REPRESENTATION_UNIVELS || (key->representation == REPRESENTATION_SURFACE && key->algorithm != SURFACE_SMOOTH);
     return has_terraces ? shading_passes(reduction) : 0;
 }
 

@@ -23,9 +23,11 @@ size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail
 struct shape_key visible_checked_key(const struct snapshot *snapshot, size_t region);
 bool visible_is_checked(const struct snapshot *snapshot, size_t region);
 
+#define VISIBLE_ROUNDING 0.45
 /* How a shape is lit and laid down, besides its geometry. */
 struct visible_look {
     bool is_flat;      /* a normal a triangle */
+    double rounding;   /* univels: share of the light that falls as on a rounded surface, so that boxes that face the same way can be told apart */
     bool is_two_sided; /* open surfaces: seen from behind too */
     bool is_rim;       /* denser towards the silhouette */
     bool is_baked;     /* points: light worked out in advance */

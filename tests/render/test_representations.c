@@ -276,6 +276,7 @@ static void light_is_of_faces_or_baked_or_live(void **state)
     for (int side = 0; side < 2; side++) {
         struct vec3 from = vec3(side ? 1 : 0, side ? 0 : -1, 0);
         struct scene scene = make_scene(plan, &ways[0]);
+        scene.surface.normals = SCENE_NORMALS_FACE;
         image = shots_plain(plan, scene, shots_view_from(origin, from, up, 8));
         for (int x = 200 - 70; x <= 200 + 70; x += 7)
             for (int c = 0; c < 3; c++)
@@ -296,6 +297,35 @@ static void light_is_of_faces_or_baked_or_live(void **state)
     finish(plan);
 }
 
+static double ball_label(struct vec3 p) { return vec3_length(p) < 12 ? 1 : 0; }
+
+/* Seen along an axis all faces of univels that show are parallel: one colour by faces alone, and a ball looks like a disk. */
+static void univels_that_face_the_same_way_are_told_apart_unless_light_is_to_be_of_faces(void **state)
+{
+    (void)state;
+    const uint32_t size[3] = { 30, 30, 30 };
+    struct grid grid = made_grid(30, 30, 30, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
+    struct plan *plan = made_plan(&grid, ball_label, spiky, 1);
+    int spread[2];
+    for (int is_rounded = 0; is_rounded < 2; is_rounded++) {
+        struct scene scene = make_scene(plan, &ways[0]);
+        scene.surface.normals = is_rounded ? SCENE_NORMALS_VERTEX : SCENE_NORMALS_FACE;
+        struct image *image = shots_plain(plan, scene, shots_view_from(origin, vec3(0, -1, 0), up, 8));
+        int low = 255, high = 0;
+        for (int y = 150 - 60; y <= 150 + 60; y++)
+            for (int x = 200 - 60; x <= 200 + 60; x++) {
+                int value = shots_pixel(image, x, y)[0];
+                low = value < low ? value : low;
+                high = value > high ? value : high;
+            }
+        spread[is_rounded] = high - low;
+        image_destroy(image);
+    }
+    assert_true(spread[0] <= 2);
+    assert_true(spread[1] >= 15);
+    finish(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -303,6 +333,7 @@ int main(void)
         cmocka_unit_test(every_back_end_draws_every_way_the_same),
         cmocka_unit_test(solid_points_leave_no_gap_at_any_zoom),
         cmocka_unit_test(light_is_of_faces_or_baked_or_live),
+        cmocka_unit_test(univels_that_face_the_same_way_are_told_apart_unless_light_is_to_be_of_faces),
     };
     return shots_run("representations", tests, sizeof tests / sizeof tests[0]);
 }

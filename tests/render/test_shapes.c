@@ -275,6 +275,7 @@ static void open_surfaces_are_seen_from_both_sides_and_closed_ones_from_outside(
         for (int side = 0; side < 2; side++) {
             struct scene scene = scene_as(plan, kinds[k].asked);
             shots_style(&scene, "plate")->visible = false;
+            scene.surface.normals = SCENE_NORMALS_FACE; /* univels are rounded off a little else */
             struct image *image = shots_plain(plan, scene, shots_view_from(origin, vec3(0, side ? 1 : -1, 0), up, 6));
             const uint8_t *pixel = shots_pixel(image, side ? 200 + 90 : 200 - 90, 150 + 20); /* its front faces y < 0 */
             if (side && !kinds[k].is_two_sided)

@@ -48,28 +48,37 @@ static const char smooth_fragment[] =
     "out vec4 result;\n"
     "void main() { result = shade; }\n";
 
+/* rounding: share of the light that falls as on a rounded surface (visible.h). */
 static const char faceted_vertex[] =
     "layout(location = 0) in vec3 position;\n"
+    "layout(location = 1) in vec3 normal;\n"
     "uniform mat4 clip_from_lps;\n"
+    "uniform mat3 eye_from_lps;\n"
     "uniform vec4 viewer;\n"
+    "uniform float rounding;\n"
     "out vec3 towards;\n" /* linear over a triangle in perspective; its derivatives are the triangle's plane */
     "out vec3 place;\n"
+    "out vec4 rounded;\n"
     "void main() {\n"
     "    towards = viewer.xyz - viewer.w * position;\n"
     "    place = position;\n"
+    "    rounded = vec4(0.0);\n"
+    "    if (rounding > 0.0) rounded = light(eye_from_lps * normal, clamp(dot(normal, normalize(towards)), 0.0, 1.0));\n"
     "    gl_Position = clip_from_lps * vec4(position, 1.0);\n"
     "}\n";
 
 static const char faceted_fragment[] =
     "uniform mat3 eye_from_lps;\n"
+    "uniform float rounding;\n"
     "in vec3 towards;\n"
     "in vec3 place;\n"
+    "in vec4 rounded;\n"
     "out vec4 result;\n"
     "void main() {\n"
     "    vec3 n = normalize(cross(dFdx(place), dFdy(place)));\n"
     "    float facing = dot(n, normalize(towards));\n"
     "    if (facing < 0.0) n = -n;\n" /* the visible side of the triangle */
-    "    result = light(eye_from_lps * n, min(abs(facing), 1.0));\n"
+    "    result = mix(light(eye_from_lps * n, min(abs(facing), 1.0)), rounded, rounding);\n"
     "}\n";
 
 /* Lines and points are rectangles square to the picture: an instance of four corners each, laid out here as
@@ -264,7 +273,7 @@ static bool create(const struct gl *gl, struct gl_program *program, const char *
         { &program->source, "source" }, { &program->palette, "palette" }, { &program->grey, "grey" },
         { &program->cull, "cull" }, { &program->scale, "scale" }, { &program->depths, "depths" }, { &program->before, "before" },
         { &program->n_layers, "n_layers" }, { &program->rank_depth, "rank_depth" },
-        { &program->is_two_sided, "is_two_sided" }, { &program->is_baked, "is_baked" }, { &program->is_covering, "is_covering" },
+        { &program->is_two_sided, "is_two_sided" }, { &program->rounding, "rounding" }, { &program->is_baked, "is_baked" }, { &program->is_covering, "is_covering" },
         { &program->half_size, "half_size" }, { &program->half_view, "half_view" }, { &program->cue, "cue" }, { &program->edges, "edges" },
     };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++)
@@ -283,7 +292,7 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
     char constants[80];
     *programs = (struct gl_programs){ 0 };
     if (create(gl, &programs->smooth, "smooth", surface_light, smooth_vertex, "", smooth_fragment, err) &&
-        create(gl, &programs->faceted, "faceted", "", faceted_vertex, surface_light, faceted_fragment, err) &&
+        create(gl, &programs->faceted, "faceted", surface_light, faceted_vertex, surface_light, faceted_fragment, err) &&
         create(gl, &programs->lines, "lines", line_constants(constants), line_vertex, "", smooth_fragment, err) &&
         create(gl, &programs->points, "points", surface_light, point_vertex, "", smooth_fragment, err) &&
         create(gl, &programs->compose, "compose", "", test_vertex, "", compose_fragment, err) &&

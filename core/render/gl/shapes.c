@@ -73,6 +73,7 @@ static const struct gl_program *use_program(const struct gl_frame *frame, const 
     gl->Uniform1f(program->opacity, (float)item->style->opacity);
     gl->Uniform1i(program->is_rim, item->look.is_rim);
     gl->Uniform1i(program->is_two_sided, item->look.is_two_sided);
+    gl->Uniform1f(program->rounding, (float)item->look.rounding);
     return program;
 }
 

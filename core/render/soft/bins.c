@@ -168,6 +168,15 @@ bool soft_keep_polygon(struct soft_chunk *chunk, struct soft_polygon *polygon, c
     return true;
 }
 
+/* A corner's light: of the triangle, and as far as the look wants it of the corner's own normal. */
+static uint32_t round_off(const struct soft_item *item, uint32_t flat, uint32_t own)
+{
+    uint32_t share = (uint32_t)lround(256 * item->look.rounding), mixed = 0;
+    for (int shift = 0; shift < 32; shift += 8)
+        mixed |= ((flat >> shift & 255) * (256 - share) + (own >> shift & 255) * share + 128) >> 8 << shift;
+    return mixed;
+}
+
 static bool keep_clipped(struct soft_chunk *chunk, const uint32_t *corners, const uint32_t *shade, int width, int height)
 {
     const struct soft_item *item = chunk->item;
@@ -177,10 +186,13 @@ static bool keep_clipped(struct soft_chunk *chunk, const uint32_t *corners, cons
         struct soft_corner *corner = &polygon.corners[i];
         soft_project(&item->lighting, (double)points->x[corners[i]], (double)points->y[corners[i]], (double)points->z[corners[i]], corner);
         corner->own = &item->vertices[corners[i]];
+        uint32_t own = shade ? round_off(item, *shade, corner->own->shade) : corner->own->shade;
         for (int c = 0; c < 4; c++)
-            corner->shade[c] = (double)((shade ? *shade : corner->own->shade) >> 8 * c & 255);
+            corner->shade[c] = (double)(own >> 8 * c & 255);
+        if (item->look.rounding > 0)
+            corner->own = NULL; /* its light is not this */
     }
-    return soft_keep_polygon(chunk, &polygon, shade, width, height);
+    return soft_keep_polygon(chunk, &polygon, item->look.rounding > 0 ? NULL : shade, width, height);
 }
 
 static bool is_in_picture(const struct soft_vertex *a, const struct soft_vertex *b, const struct soft_vertex *c)
@@ -207,8 +219,11 @@ static bool keep_special(struct soft_chunk *chunk, const uint32_t *corners, int 
         triangle[2] = vertices[corners[1]];
         is_seen = can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept);
     }
-    if (is_seen && is_flat)
-        triangle[0].shade = triangle[1].shade = triangle[2].shade = flat_shade(item, corners);
+    if (is_seen && is_flat) {
+        uint32_t flat = flat_shade(item, corners);
+        for (int i = 0; i < 3; i++)
+            triangle[i].shade = round_off(item, flat, triangle[i].shade);
+    }
     return !is_seen || soft_keep_triangle(chunk, triangle, width, height);
 }
 
