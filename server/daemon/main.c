@@ -155,7 +155,8 @@ int main(int argc, char **argv)
     sigaddset(&signals, SIGTERM);
     sigprocmask(SIG_BLOCK, &signals, NULL);
     signal(SIGPIPE, SIG_IGN);
-    struct rlimit no_core = { 0, 0 }; /* memory holds patients' data */
+    (void)umask(0077); /* what we and our children write is patients' data */
+    struct rlimit no_core = { 0, 0 }; /* and so is what is in memory */
     (void)setrlimit(RLIMIT_CORE, &no_core);
 
     bool ok = !options.gl || gl_is_known(options.gl, &err);

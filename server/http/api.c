@@ -38,10 +38,11 @@ const struct api_route api_routes[] = {
 };
 const size_t api_n_routes = sizeof api_routes / sizeof api_routes[0];
 
-struct api *api_create(struct net *net)
+struct api *api_create(struct net *net, uint64_t max_upload_bytes)
 {
     struct api *api = mem_new(sizeof *api);
     api->net = net;
+    api->max_upload_bytes = max_upload_bytes;
     api->started_us = clock_now_us();
     return api;
 }

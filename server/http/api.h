@@ -5,7 +5,7 @@
 
 struct api;
 
-struct api *api_create(struct net *net);
+struct api *api_create(struct net *net, uint64_t max_upload_bytes); /* 0: no uploads */
 void api_destroy(struct api *api);
 
 struct api_route {

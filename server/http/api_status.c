@@ -47,6 +47,7 @@ void api_version(struct api *api, struct call *call)
     cJSON_AddNumberToObject(answer, "protocol", WIRE_PROTOCOL);
     cJSON_AddItemToObject(answer, "gl", gl ? cJSON_Duplicate(gl, true) : cJSON_CreateNull());
     cJSON_AddItemToObject(answer, "problem", problem ? problem_to_json(problem) : cJSON_CreateNull());
+    cJSON_AddNumberToObject(answer, "max_upload_bytes", (double)api->max_upload_bytes);
     cJSON_AddStringToObject(answer, "intended_use", "Research and plan review. Not a medical device.");
     call_answer_json(call, 200, answer);
 }

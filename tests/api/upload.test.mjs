@@ -9,6 +9,7 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { bin, call, demo, openPlan, sleep, startDaemon, until } from './daemon.mjs';
 import { readPng } from './png.mjs';
+import { Client } from './ws_client.mjs';
 
 let home, daemon, api;
 
@@ -84,9 +85,13 @@ describe('an archive', () => {
       const png = readPng(Buffer.from(await picture.arrayBuffer()));
       assert.equal(png.width, 80);
       const room = (await call(`${api}/rooms`, 'POST', { plan: job.plan })).json;
+      const client = await Client.open(daemon.url, `/api/v1/rooms/${room.id}/ws`);
+      client.send({ type: 'hello', protocol: 1 });
+      await client.message('welcome');
 
       assert.equal((await call(`${api}/plans/${job.plan}`, 'DELETE')).status, 204);
       assert.equal((await call(`${api}/plans/${job.plan}`)).status, 404);
+      assert.match((await client.message('bye')).reason, /closed/);
       assert.equal((await call(`${api}/rooms/${room.id}`)).status, 404);
       assert.ok(!uploaded().includes(job.plan));
       assert.deepEqual(await settled(), []);
@@ -138,6 +143,7 @@ describe('what is refused', () => {
       (answer) => { answer.resume(); done(answer.statusCode); }).end('PK'));
     assert.equal(status, 403);
     assert.deepEqual(await settled(), []);
+    assert.equal((await call(`${api}/version`)).json.max_upload_bytes, 2048 * 2 ** 20);
   });
 
   test('more than may be, at once when the sender says how much', async () => {

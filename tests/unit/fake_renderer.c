@@ -194,11 +194,61 @@ static int scan_main(const char *folder)
     return 0;
 }
 
+/* The archive's text says how it behaves; "NAME/WORDS" unpacks to a plan folder NAME whose behaviour is WORDS. */
+static int unpack_main(const char *archive, const char *folder)
+{
+    char inside[256] = "", path[512];
+    FILE *file = fopen(archive, "r");
+    if (!file || !fgets(inside, sizeof inside, file))
+        return 2;
+    fclose(file);
+    (void)setvbuf(stdout, NULL, _IOLBF, 0);
+    puts("{\"percent\": 12.5}");
+    snprintf(path, sizeof path, "%s/half", folder);
+    if (strcmp(inside, "hangs") == 0) {
+        (void)mkdir(path, 0700);
+        for (;;)
+            pause();
+    }
+    if (strcmp(inside, "refuses") == 0) {
+        puts("{\"problem\": {\"type\": \"/problems/validation\", \"detail\": \"entry 3 leads out of the folder\"}}");
+        return 3;
+    }
+    if (strcmp(inside, "dies") == 0)
+        die();
+    if (strcmp(inside, "says-nothing") == 0)
+        return 0;
+    if (strcmp(inside, "floods") == 0)
+        for (;;)
+            puts("{\"percent\": 13}");
+    if (strcmp(inside, "one-line") == 0)
+        for (;;)
+            putchar('x');
+    if (strcmp(inside, "lies") == 0)
+        puts("{\"percent\": 1e999}\nnot JSON\n[]\n{\"percent\": 3}\n{\"percent\": 101}");
+    char *slash = strchr(inside, '/');
+    if (slash) {
+        *slash = 0;
+        snprintf(path, sizeof path, "%s/%s", folder, inside);
+        (void)mkdir(path, 0700);
+        snprintf(path, sizeof path, "%s/%s/behave", folder, inside);
+    } else {
+        snprintf(path, sizeof path, "%s/behave", folder);
+    }
+    file = fopen(path, "w");
+    if (!file || fputs(slash ? slash + 1 : "", file) < 0 || fclose(file) != 0)
+        return 2;
+    puts("{\"done\": true, \"n_files\": 1, \"n_bytes\": 9}");
+    return 0;
+}
+
 int fake_renderer_main(int argc, char **argv)
 {
     const char *folder = argument(argc, argv, "--plan-folder"), *id = argument(argc, argv, "--plan-id");
     if (folder && id)
         return renderer_main(folder, id);
+    if (argument(argc, argv, "--unpack"))
+        return unpack_main(argument(argc, argv, "--unpack"), argument(argc, argv, "--into"));
     if (argument(argc, argv, "--scan"))
         return scan_main(argument(argc, argv, "--scan"));
     return puts("{\"back_end\":\"made-up\",\"is_software\":true}") < 0;

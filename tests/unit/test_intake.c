@@ -1,0 +1,192 @@
+/* Archives as they are received: limits, and that nothing stays behind. */
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/base/mem.h"
+#include "server/http/intake.h"
+#include "tests/check.h"
+
+static char folder[64];
+
+static int make_folder(void **state)
+{
+    (void)state;
+    snprintf(folder, sizeof folder, "/tmp/beamroom-intake-XXXXXX");
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    return rmdir(folder); /* fails where a test left a file */
+}
+
+static struct call *archive_call(const char *content_type)
+{
+    struct call *call = call_create();
+    call->method = CALL_POST;
+    call_set_path(call, "/api/v1/plans");
+    call->content_type = content_type ? mem_copy_text(content_type) : NULL;
+    return call;
+}
+
+static void only_a_post_to_the_plans_is_one(void **state)
+{
+    (void)state;
+    static const struct {
+        enum call_method method;
+        const char *path;
+        bool is_one;
+    } cases[] = { { CALL_POST, "/api/v1/plans", true },  { CALL_POST, "/api/v1/plans/", true }, { CALL_GET, "/api/v1/plans", false },
+                  { CALL_POST, "/api/v1/plans/x", false }, { CALL_POST, "/api/v1/rooms", false }, { CALL_POST, "/api/v2/plans", false } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct call *call = call_create();
+        call->method = cases[i].method;
+        call_set_path(call, cases[i].path);
+        assert_int_equal(intake_is_for(call), cases[i].is_one);
+        call_destroy(call);
+    }
+}
+
+static enum problem_type refusal(struct intake *intake, const char *content_type, const char *origin, int64_t length)
+{
+    struct call *call = archive_call(content_type);
+    struct problem problem = { 0 };
+    call->origin = origin ? mem_copy_text(origin) : NULL;
+    call->host = mem_copy_text("here.example:8080");
+    struct intake_file *file = intake_begin(intake, call, length, &problem);
+    intake_drop(file);
+    call_destroy(call);
+    assert_int_equal(file == NULL, problem.type != PROBLEM_NONE);
+    return problem.type;
+}
+
+static void what_may_not_come_is_refused_before_it_does(void **state)
+{
+    (void)state;
+    struct intake *intake = intake_create(folder, 1000), *none = intake_create(NULL, 1000), *lost = intake_create("/nowhere", 1000);
+    assert_int_equal(refusal(intake, "application/zip", NULL, 1000), PROBLEM_NONE);
+    assert_int_equal(refusal(intake, "APPLICATION/X-TAR; x=y", NULL, -1), PROBLEM_NONE);
+    assert_int_equal(refusal(intake, "application/gzip", "http://here.example:8080", 0), PROBLEM_NONE);
+    assert_int_equal(refusal(intake, "application/octet-stream", NULL, 5), PROBLEM_NONE);
+    assert_int_equal(refusal(intake, "application/zipper", NULL, 5), PROBLEM_MEDIA_TYPE);
+    assert_int_equal(refusal(intake, "multipart/form-data", NULL, 5), PROBLEM_MEDIA_TYPE);
+    assert_int_equal(refusal(intake, NULL, NULL, 5), PROBLEM_MEDIA_TYPE);
+    assert_int_equal(refusal(intake, "application/zip", "http://elsewhere.example", 5), PROBLEM_FORBIDDEN);
+    assert_int_equal(refusal(intake, "application/zip", NULL, 1001), PROBLEM_TOO_LARGE);
+    assert_int_equal(refusal(intake, "application/zip", NULL, INT64_MAX), PROBLEM_TOO_LARGE);
+    assert_int_equal(refusal(none, "application/zip", NULL, 5), PROBLEM_STORAGE);
+    assert_int_equal(refusal(lost, "application/zip", NULL, 5), PROBLEM_STORAGE);
+    intake_destroy(intake);
+    intake_destroy(none);
+    intake_destroy(lost);
+}
+
+static void more_than_the_disk_holds_is_refused_before_it_comes(void **state)
+{
+    (void)state;
+    struct intake *intake = intake_create(folder, UINT64_MAX);
+    assert_int_equal(refusal(intake, "application/zip", NULL, INT64_C(1) << 60), PROBLEM_STORAGE);
+    intake_destroy(intake);
+}
+
+static void it_ends_at_the_limit_and_not_before(void **state)
+{
+    (void)state;
+    struct intake *intake = intake_create(folder, 10);
+    struct call *call = archive_call("application/zip");
+    struct problem problem = { 0 };
+    struct intake_file *file = intake_begin(intake, call, -1, &problem);
+    assert_non_null(file);
+    assert_true(intake_add(file, "01234", 5, &problem));
+    assert_true(intake_add(file, "56789", 5, &problem));
+    assert_false(intake_add(file, "x", 1, &problem));
+    assert_int_equal(problem.type, PROBLEM_TOO_LARGE);
+    intake_drop(file);
+    call_destroy(call);
+    intake_destroy(intake);
+}
+
+static void what_has_come_whole_is_ours_alone_to_read(void **state)
+{
+    (void)state;
+    struct intake *intake = intake_create(folder, 10);
+    struct call *call = archive_call("application/zip");
+    struct problem problem = { 0 };
+    struct intake_file *file = intake_begin(intake, call, 5, &problem);
+    uint64_t n_bytes = 0;
+    assert_non_null(file);
+    assert_true(intake_add(file, "01234", 5, &problem));
+    char *path = intake_finish(file, &n_bytes, &problem);
+    assert_non_null(path);
+    assert_int_equal(n_bytes, 5);
+    struct stat facts;
+    assert_int_equal(stat(path, &facts), 0);
+    assert_int_equal(facts.st_size, 5);
+    assert_int_equal(facts.st_mode & 0777, 0600);
+    call->upload_path = path;
+    call_destroy(call); /* nobody kept it */
+    assert_int_equal(n_bytes, facts.st_size);
+    intake_destroy(intake);
+}
+
+/* A limit on the size of files stands for a full disk: the system refuses the write in the same way. */
+static void a_disk_that_takes_no_more_is_said(void **state)
+{
+    (void)state;
+    struct intake *intake = intake_create(folder, 1 << 20);
+    struct call *call = archive_call("application/zip");
+    struct problem problem = { 0 };
+    struct rlimit before, low = { 0 };
+    struct intake_file *file = intake_begin(intake, call, -1, &problem);
+    assert_non_null(file);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    low = (struct rlimit){ .rlim_cur = 8, .rlim_max = before.rlim_max };
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
+    bool is_added = intake_add(file, "0123456789", 10, &problem); /* eight are written, the rest is refused */
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    assert_false(is_added);
+    assert_int_equal(problem.type, PROBLEM_STORAGE);
+    assert_true(strlen(problem.detail) > 20);
+    intake_drop(file);
+    call_destroy(call);
+    intake_destroy(intake);
+}
+
+static void a_fifth_at_once_is_told_when_to_come_again(void **state)
+{
+    (void)state;
+    struct intake *intake = intake_create(folder, 10);
+    struct call *call = archive_call("application/zip");
+    struct intake_file *files[INTAKE_MAX_FILES];
+    struct problem problem = { 0 };
+    for (int i = 0; i < INTAKE_MAX_FILES; i++) {
+        files[i] = intake_begin(intake, call, 5, &problem);
+        assert_non_null(files[i]);
+    }
+    assert_null(intake_begin(intake, call, 5, &problem));
+    assert_int_equal(problem.type, PROBLEM_BUSY);
+    assert_true(problem.retry_after_ms > 0);
+    for (int i = 0; i < INTAKE_MAX_FILES; i++)
+        intake_drop(files[i]);
+    assert_int_equal(refusal(intake, "application/zip", NULL, 5), PROBLEM_NONE);
+    call_destroy(call);
+    intake_destroy(intake);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(only_a_post_to_the_plans_is_one),
+        cmocka_unit_test_setup_teardown(what_may_not_come_is_refused_before_it_does, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(more_than_the_disk_holds_is_refused_before_it_comes, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(it_ends_at_the_limit_and_not_before, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(what_has_come_whole_is_ours_alone_to_read, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(a_disk_that_takes_no_more_is_said, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(a_fifth_at_once_is_told_when_to_come_again, make_folder, remove_folder),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
