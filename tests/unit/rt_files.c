@@ -22,7 +22,7 @@ struct rt_file rt_file_open(const char *path)
     const char *slash = strrchr(path, '/');
     char folder_path[512];
     struct folder folder;
-    struct bytes bytes;
+    struct bytes bytes = { NULL, 0 };
     struct error err = { 0 };
     snprintf(folder_path, sizeof folder_path, "%.*s", (int)(slash - path), path);
     if (!folder_open(&folder, folder_path, &err) || !folder_read(&folder, slash + 1, UINT32_MAX, UINT64_MAX, &bytes, &err))

@@ -62,7 +62,7 @@ static int confined(const struct places *at, const char *needed, int (*attempt)(
     assert_true(child >= 0);
     if (child == 0) {
         char got[128];
-        confine(&(struct confine_options){ at->plan, at->cache, 0, true }, got);
+        confine(&(struct confine_options){ .plan_folder = at->plan, .cache_folder = at->cache, .needs_gpu = true }, got);
         bool is_missing = strstr(got, "landlock not") ? strcmp(needed, "landlock") == 0 : strstr(got, "no seccomp") != NULL;
         _exit(is_missing ? 77 : attempt(at));
     }
