@@ -93,8 +93,16 @@ static bool refuse_damaged(struct unpacker *unpacker, const char *name)
                        shown, words);
 }
 
+static bool refuse_no_file(struct unpacker *unpacker)
+{
+    return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "required", "the archive holds no file; expected are the files of a plan");
+}
+
 static bool refuse_unknown(struct unpacker *unpacker)
 {
+    uint32_t n_entries;
+    if (unpack_source_zip_entries(&unpacker->source, &n_entries) && n_entries == 0)
+        return refuse_no_file(unpacker);
     if (unpack_source_has(&unpacker->source, 0, "PK\3\4", 4))
         return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
                            "a zip whose directory at its end is missing or damaged; was all of it sent?");
@@ -102,10 +110,11 @@ static bool refuse_unknown(struct unpacker *unpacker)
         const char *bytes;
         size_t n;
         const char *words;
-    } known[] = { { "Rar!", 4, "a RAR archive" }, { "7z\xbc\xaf\x27\x1c", 6, "a 7-Zip archive" }, { "\x1f\x8b", 2, "gzip data of something else" },
-                  { "BZh", 3, "bzip2 data of something else" }, { "\xfd" "7zXZ", 5, "xz data of something else" },
-                  { "\x28\xb5\x2f\xfd", 4, "zstd data of something else" }, { "MSCF", 4, "a cabinet file" } };
-    const char *found = unpacker->source.n_bytes == 0 ? "an empty file" : "neither";
+    } known[] = { { "Rar!", 4, "a RAR archive" }, { "7z\xbc\xaf\x27\x1c", 6, "a 7-Zip archive" }, { "\x1f\x8b", 2, "gzip data, of something else" },
+                  { "BZh", 3, "bzip2 data, damaged or of something else" },
+                  { "\xfd" "7zXZ", 5, "xz data, damaged or of something else" },
+                  { "\x28\xb5\x2f\xfd", 4, "zstd data, damaged or of something else" }, { "MSCF", 4, "a cabinet file" } };
+    const char *found = unpacker->source.n_bytes == 0 ? "an empty file" : "none of these";
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (unpack_source_has(&unpacker->source, 0, known[i].bytes, known[i].n))
             found = known[i].words;
@@ -266,11 +275,17 @@ static bool take_entry(struct unpacker *unpacker, struct archive_entry *entry)
     return make_parents(unpacker, name, strlen(name));
 }
 
-/* A tar that is cut between two entries looks whole, but for the zeros it ends with. */
+/* A tar that is cut between two entries looks whole, but for the zeros it ends with. A zip may name the same bytes as many files; the
+ * library takes the first. */
 static bool check_end(struct unpacker *unpacker)
 {
     static const uint8_t zeros[512];
     bool is_tar = (archive_format(unpacker->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_TAR;
+    uint32_t n_said;
+    if (!is_tar && unpack_source_zip_entries(&unpacker->source, &n_said) && n_said != unpacker->n_entries)
+        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
+                           "the zip's directory says that it holds %lu entries; found are %lu that do not overlap", (unsigned long)n_said,
+                           (unsigned long)unpacker->n_entries);
     bool is_bare = !unpacker->source.is_gzip && archive_filter_count(unpacker->archive) <= 1;
     uint64_t n_bytes = unpacker->source.n_bytes;
     if (is_tar && is_bare && (n_bytes < sizeof zeros || !unpack_source_has(&unpacker->source, n_bytes - sizeof zeros, zeros, sizeof zeros)))
@@ -288,7 +303,7 @@ static bool walk(struct unpacker *unpacker)
     while (status == ARCHIVE_OK) {
         struct archive_entry *entry;
         status = archive_read_next_header(archive, &entry);
-        if (status == ARCHIVE_OK && archive_filter_count(archive) > 2)
+        if (status == ARCHIVE_OK && archive_filter_count(archive) > (unpacker->source.is_gzip ? 1 : 2))
             return problem_set(&unpacker->problem, PROBLEM_MEDIA_TYPE, "", "",
                                "compressed more than once; expected is a zip, or a tar as it is or within gzip, bzip2, xz or zstd");
         if (status == ARCHIVE_OK && !goes_on(unpacker))
@@ -302,7 +317,7 @@ static bool walk(struct unpacker *unpacker)
     if (!check_end(unpacker))
         return false;
     if (unpacker->result.n_files == 0)
-        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "required", "the archive holds no file; expected are the files of a plan");
+        return refuse_no_file(unpacker);
     return !unpacker->has_one_top || !unpacker->is_top_folder || unpack_lift(&unpacker->writer, unpacker->top, &unpacker->problem);
 }
 

@@ -2,6 +2,7 @@
 #include "server/renderer/unpack_source.h"
 
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -125,6 +126,23 @@ bool unpack_source_has(const struct unpack_source *source, uint64_t at, const vo
 {
     uint8_t found[512];
     return n <= sizeof found && pread(source->file, found, n, (off_t)at) == (ssize_t)n && memcmp(found, expected, n) == 0;
+}
+
+/* End of central directory record: APPNOTE 4.3.16; a comment of up to 65535 bytes follows it. */
+bool unpack_source_zip_entries(const struct unpack_source *source, uint32_t *n_entries)
+{
+    enum { RECORD = 22, MOST = RECORD + 65535, N_ENTRIES_AT = 10 };
+    uint64_t n = source->n_bytes < MOST ? source->n_bytes : MOST;
+    uint8_t *tail = malloc(MOST);
+    bool is_found = false;
+    if (tail && n >= RECORD && pread(source->file, tail, n, (off_t)(source->n_bytes - n)) == (ssize_t)n)
+        for (uint64_t at = n - RECORD + 1; at-- > 0 && !is_found;)
+            if (memcmp(tail + at, "PK\5\6", 4) == 0) {
+                is_found = true;
+                *n_entries = tail[at + N_ENTRIES_AT] | (uint32_t)tail[at + N_ENTRIES_AT + 1] << 8;
+            }
+    free(tail);
+    return is_found && *n_entries != 0xffff; /* then the number is elsewhere (ZIP64) */
 }
 
 bool unpack_source_drain(struct unpack_source *source)
