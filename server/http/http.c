@@ -23,6 +23,7 @@ struct http {
     struct intake *intake;
     struct MHD_Daemon *daemon;
     pthread_mutex_t asking; /* held while a task is posted: after http_stop_asking none is */
+    size_t max_archive_dropped; /* bytes of an archive beyond the limit that are read: a sender who streams hears why it was refused */
     bool is_stopping;
     size_t n_refused; /* connections, since the log said so last */
     int64_t logged_us;
@@ -184,7 +185,7 @@ static bool add_archive(struct request *request, const char *bytes, size_t n)
     intake_drop(request->archive);
     request->archive = NULL;
     request->n_dropped += n;
-    return request->n_dropped <= HTTP_MAX_DROPPED;
+    return request->n_dropped <= request->http->max_archive_dropped;
 }
 
 static void finish_archive(struct request *request)
@@ -312,6 +313,7 @@ struct http *http_create(struct net *net, const struct http_options *options, st
     struct http *http = mem_new(sizeof *http);
     http->net = net;
     http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0);
+    http->max_archive_dropped = options->max_upload_bytes > HTTP_MAX_DROPPED ? (size_t)options->max_upload_bytes : HTTP_MAX_DROPPED;
     http->intake = intake_create(options->upload_folder, options->max_upload_bytes);
     pthread_mutex_init(&http->asking, NULL);
     if (options->web_folder) {

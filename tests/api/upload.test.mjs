@@ -47,13 +47,13 @@ async function send(base, name, body, { type = 'application/octet-stream', heade
 const jobEnd = (base, job, ms = 20000) => until(async () => (await call(`${base}/jobs/${job.id}`)).json, (j) => j.state !== 'running' && j.state !== 'queued', ms);
 
 /** Headers and the first bytes of a body over a bare connection; the answer's text so far. */
-function half(url, length, bytes = '') {
+function half(url, length, bytes = '', headers = '') {
   const { hostname, port } = new URL(url);
   const socket = connect(Number(port), hostname);
   let text = '';
   socket.on('data', (more) => { text += more; });
   socket.on('error', () => {});
-  socket.write(`POST /api/v1/plans?name=half HTTP/1.1\r\nHost: x\r\nContent-Type: application/zip\r\nContent-Length: ${length}\r\n\r\n${bytes}`);
+  socket.write(`POST /api/v1/plans?name=half HTTP/1.1\r\nHost: x\r\nContent-Type: application/zip\r\nContent-Length: ${length}\r\n${headers}\r\n${bytes}`);
   return { socket, text: () => text };
 }
 
@@ -151,6 +151,10 @@ describe('what is refused', () => {
     await until(text, (t) => t.includes('\r\n\r\n'), 3000);
     assert.match(text(), /^HTTP\/1\.1 413 /);
     socket.destroy();
+    const polite = half(small.url, 2 ** 20 + 1, '', 'Expect: 100-continue\r\n');
+    await until(polite.text, (t) => t.includes('\r\n\r\n'), 3000);
+    assert.match(polite.text(), /^HTTP\/1\.1 413 /); /* and no 100 before it */
+    polite.socket.destroy();
     const sent = await send(`${small.url}/api/v1`, 'x', Buffer.alloc(2 ** 20 + 1));
     assert.equal(sent.status, 413);
     assert.match(sent.json.detail, /1 MiB/);

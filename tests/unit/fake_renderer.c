@@ -225,7 +225,13 @@ static int unpack_main(const char *archive, const char *folder)
         for (;;)
             putchar('x');
     if (strcmp(inside, "lies") == 0)
-        puts("{\"percent\": 1e999}\nnot JSON\n[]\n{\"percent\": 3}\n{\"percent\": 101}");
+        puts("{\"percent\": 1e999}\nnot JSON\n[]\n{\"percent\": 3}\n{\"percent\": 101}\n{\"percent\": 12.75}");
+    while (strcmp(inside, "lies") == 0)
+        pause();
+    for (int i = 0; strcmp(inside, "slow") == 0 && i < 20; i++) {
+        puts("{\"percent\": 14}");
+        nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
+    }
     char *slash = strchr(inside, '/');
     if (slash) {
         *slash = 0;

@@ -202,7 +202,23 @@ static void impossible_progress_is_not_believed(void **state)
     (void)state;
     struct world world;
     start(&world);
-    assert_int_equal(wait_for_end(&world, begin_upload(&world, "x", "lies")).state, UPLOAD_DONE);
+    uint64_t number = begin_upload(&world, "x", "lies");
+    double most = 0, now = 0;
+    for (int64_t until_us = clock_now_us() + 10000000; now != 12.75 && clock_now_us() < until_us; world_step(&world)) {
+        now = upload_of(&world, number).percent;
+        most = now > most ? now : most;
+        assert_close(now, most, 0); /* never back */
+    }
+    assert_close(most, 12.75, 0); /* said after all the others */
+    world_end(&world);
+}
+
+static void one_that_is_slow_but_says_so_is_left_alone(void **state)
+{
+    (void)state;
+    struct world world;
+    start_with(&world, 1000); /* it takes two seconds and is never silent for longer than a tenth */
+    assert_int_equal(wait_for_end(&world, begin_upload(&world, "x", "slow")).state, UPLOAD_DONE);
     world_end(&world);
 }
 
@@ -282,6 +298,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(what_cannot_be_unpacked_says_why),
         cmocka_unit_test(what_is_no_plan_says_why),
         cmocka_unit_test(impossible_progress_is_not_believed),
+        cmocka_unit_test(one_that_is_slow_but_says_so_is_left_alone),
         cmocka_unit_test(cancelling_ends_the_unpacker_and_leaves_nothing),
         cmocka_unit_test(more_archives_than_the_limit_are_refused_and_removed),
         cmocka_unit_test(what_an_earlier_run_left_is_removed_at_start),
