@@ -313,7 +313,7 @@ struct http *http_create(struct net *net, const struct http_options *options, st
     struct http *http = mem_new(sizeof *http);
     http->net = net;
     http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0);
-    http->max_archive_dropped = options->max_upload_bytes > HTTP_MAX_DROPPED ? (size_t)options->max_upload_bytes : HTTP_MAX_DROPPED;
+    http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes : HTTP_MIN_ARCHIVE_DROPPED;
     http->intake = intake_create(options->upload_folder, options->max_upload_bytes);
     pthread_mutex_init(&http->asking, NULL);
     if (options->web_folder) {

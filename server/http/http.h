@@ -5,7 +5,13 @@
 
 #include "server/net/net.h"
 
-enum { HTTP_MAX_CONNECTIONS = 500, HTTP_MAX_PER_ADDRESS = 200, HTTP_TIMEOUT_S = 60 /* without a byte either way */, HTTP_MAX_DROPPED = 64 << 20 /* bytes of a body beyond the limit that are read before the connection is cut */ };
+enum {
+    HTTP_MAX_CONNECTIONS = 500,
+    HTTP_MAX_PER_ADDRESS = 200,
+    HTTP_TIMEOUT_S = 60,               /* without a byte either way */
+    HTTP_MAX_DROPPED = 64 << 20,       /* bytes of a body beyond the limit that are read before the connection is cut */
+    HTTP_MIN_ARCHIVE_DROPPED = 1 << 30 /* of an archive: these, or as many as one may have if that is more */
+};
 
 struct http;
 
