@@ -22,7 +22,7 @@ static void print_help(void)
            "Writes the surface of a region of the plan in the folder DIR, with everything inside it, for other programs.\n\n"
            "  -o, --output OUT  the file; its ending says whether binary STL, binary PLY or GLB (glTF 2.0)\n"
            "  --as WHAT         surface (default), univels, nurbs or fan: what the region is shown as\n"
-           "  --algorithm NAME  of a surface: smooth, marching-cubes or eight-cell, Sera3d's: through the centres of univels\n"
+           "  --algorithm NAME  of a surface: smooth (default), marching-cubes or eight-cell, Sera3d's: through the centres of univels\n"
            "  --order N         of NURBS: 2 linear, 3 quadratic, 4 cubic (default)\n"
            "  --sampling HOW    of NURBS: traces (default) or degree-bins\n"
            "  --bins N          of NURBS: control points around a slice, 8 to 360\n"
