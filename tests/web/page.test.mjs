@@ -154,6 +154,40 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
+  it('takes a plan that is dropped or chosen, shows it, and deletes it after a second question', async () => {
+    const page = await newPage();
+    await page.locator('[aria-label="Folder of a plan"]').setInputFiles(join(demo, 'phantom'));
+    const row = page.locator('[data-plan="phantom-2"]');
+    await row.waitFor({ timeout: 30000 });
+    await shoot(page, 'start-uploaded');
+    assert.match(await row.textContent(), /Phantom: modified Snyder head/);
+    const id = await row.getAttribute('data-plan');
+    await row.locator('button', { hasText: 'Open' }).click();
+    await full(page);
+    assert.ok((await look(page, 1)).lit > 0.02);
+    await page.goto(`${daemon.url}/#/`);
+    await page.locator(`[data-plan="${id}"] [aria-label^="Delete"]`).click();
+    await page.locator('button', { hasText: 'Keep' }).click();
+    await page.locator(`[data-plan="${id}"] [aria-label^="Delete"]`).click();
+    await shoot(page, 'start-delete');
+    await page.locator('button', { hasText: 'Delete for good' }).click();
+    await page.locator(`[data-plan="${id}"]`).waitFor({ state: 'detached' });
+    assert.equal((await call(`${daemon.url}/api/v1/plans/${id}`)).status, 404);
+    await page.context().close();
+  });
+
+  it('says why an archive was refused, and keeps nothing of it', async () => {
+    const page = await newPage();
+    await page.locator('[aria-label="Files of a plan"]').setInputFiles([{ name: 'notes.zip', mimeType: 'application/zip', buffer: Buffer.from('no archive at all') }]);
+    const refusal = page.locator('.upload [role="alert"]');
+    await refusal.waitFor();
+    assert.match(await refusal.textContent(), /Nothing was kept/);
+    await shoot(page, 'start-upload-refused');
+    await page.locator('.upload button', { hasText: 'Dismiss' }).click();
+    await page.locator('.upload').waitFor({ state: 'detached' });
+    await page.context().close();
+  });
+
   it('shows the box of a dose\'s grid', async () => {
     const room = await newRoom();
     const page = await newPage(`#/rooms/${room}`);
