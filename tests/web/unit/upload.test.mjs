@@ -109,3 +109,9 @@ test('cancelling while it is sent stops the sending; later it cancels the job', 
   await adding;
   assert.deepEqual(state.rows.value, []);
 });
+
+test('what is larger than the server takes is not sent at all', async () => {
+  const state = new UploadsState({ api: {}, clock: {}, send: () => assert.fail('was sent'), arrived: () => {}, limit: () => 3 });
+  await state.add({ name: 'head', body: new Blob(['1234']), type: 'application/zip' });
+  assert.match(state.rows.value[0].error, /at most 1 MB/);
+});

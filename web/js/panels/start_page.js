@@ -19,7 +19,7 @@ const filters = [['all', 'All'], ['ready', 'Ready'], ['warnings', 'With warnings
 /** @param {HTMLElement} host @param {object} world {api, clock, enter} @returns {() => void} leaves the page */
 export function startPage(host, world) {
   const state = new PlansState(world);
-  const uploads = new UploadsState({ ...world, arrived: (plan) => state.arrived(plan) });
+  const uploads = new UploadsState({ ...world, arrived: (plan) => state.arrived(plan), limit: () => state.version.value?.max_upload_bytes ?? Infinity });
   const unmount = mount(host, () => page(state, uploads, world.enter));
   const unlisten = listenDrops(uploads);
   state.start();
@@ -36,7 +36,7 @@ const page = (state, uploads, enter) => html`<div class="start">
     <label class="search">${icon('search')}<input type="search" placeholder="Find a plan" aria-label="Find a plan" .value=${state.search.value} @input=${(event) => { state.search.value = event.target.value; }}></label>
     ${join(state, enter)}</header>
   <main>${list(state, uploads)}</main>
-  <aside class="load-report" aria-label="Load report"><div class="found">${report(state)}</div>${dropZone(uploads)}</aside>
+  <aside class="load-report" aria-label="Load report"><div class="found">${report(state)}</div>${dropZone(uploads, state.version.value?.max_upload_bytes)}</aside>
   <footer class="status">${serverStatus(state)}<span class="grow"></span><b class="research">Research use. Not for diagnosis or treatment decisions.</b></footer></div>`;
 
 function join(state, enter) {

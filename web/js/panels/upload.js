@@ -38,7 +38,7 @@ export function listenDrops(uploads, target = globalThis) {
   };
 }
 
-export function dropZone(uploads) {
+export function dropZone(uploads, limit) {
   const chosen = (event) => {
     take(uploads, filesOfInput(event.target.files));
     event.target.value = '';
@@ -47,7 +47,7 @@ export function dropZone(uploads) {
   const picker = (word, input) => html`<span class="anchor"><button @click=${choose}>${word}</button>${input}</span>`;
   return html`<section class=${classMap({ 'drop-zone': true, over: uploads.isOver.value })} aria-label="Upload">
     <span class="sign">${icon('upload', 24)}</span><div><p><b>Drop a plan here</b>: a folder, its files, or a zip or tar of it</p>
-      <p class="note">DICOM-RT, SERA, NIfTI, NRRD. It stays on this server; remove names from files before you send them.</p>
+      <p class="note">DICOM-RT, SERA, NIfTI, NRRD${limit ? `, at most ${bytes(limit)}` : ''}. It stays on this server; remove names from files before you send them.</p>
       <div class="buttons">${picker('Choose files', html`<input type="file" multiple tabindex="-1" aria-label="Files of a plan" @change=${chosen}>`)}
         ${picker('Choose a folder', html`<input type="file" webkitdirectory tabindex="-1" aria-label="Folder of a plan" @change=${chosen}>`)}</div>
       ${uploads.error.value ? html`<p class="err" role="alert">${icon('error')} ${uploads.error.value}</p>` : nothing}</div></section>`;

@@ -3,6 +3,8 @@ import { signal } from '../../lib/signals-core.js';
 
 const jobMs = 200;
 
+const megabytes = (n) => `${Math.ceil(n / 1e6)} MB`;
+
 export class UploadsState {
   #api;
   #clock;
@@ -11,11 +13,12 @@ export class UploadsState {
   #isStopped = false;
   #aborts = new Map();
 
-  /** @param {object} world {api, clock, send: (task: object) => Promise<object>, arrived: (plan: string) => void} */
-  constructor({ api, clock, send, arrived }) {
+  /** @param {object} world {api, clock, send: (task: object) => Promise<object>, arrived: (plan: string) => void, limit: () => number} limit in bytes; Infinity while it is not known */
+  constructor({ api, clock, send, arrived, limit = () => Infinity }) {
     this.#api = api;
     this.#clock = clock;
     this.#send = send;
+    this.limit = limit;
     this.arrived = arrived;
     this.rows = signal([]); // {key, name, bytes, sent, job, error, state: sending | working | done | failed}
     this.isOver = signal(false); // something is being dragged over the page
@@ -34,6 +37,7 @@ export class UploadsState {
     this.#aborts.set(key, abort);
     this.rows.value = [...this.rows.value, { key, name, bytes: body.size, sent: 0, job: null, error: '', state: 'sending' }];
     try {
+      if (body.size > this.limit()) throw new Error(`${megabytes(body.size)}; the server takes plans of at most ${megabytes(this.limit())}.`);
       let job = await this.#send({ name, body, type, signal: abort.signal, onSent: (sent) => this.#change(key, { sent }) });
       while (!this.#isStopped) {
         this.#change(key, { job, sent: body.size, state: 'working' });
