@@ -282,7 +282,7 @@ static bool check_end(struct unpacker *unpacker)
     static const uint8_t zeros[512];
     bool is_tar = (archive_format(unpacker->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_TAR;
     uint32_t n_said;
-    if (!is_tar && unpack_source_zip_entries(&unpacker->source, &n_said) && n_said != unpacker->n_entries)
+    if (!is_tar && unpack_source_zip_entries(&unpacker->source, &n_said) && n_said != (unpacker->n_entries & 0xffff)) /* older programs count on from 0 */
         return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
                            "the zip's directory says that it holds %lu entries; found are %lu that do not overlap", (unsigned long)n_said,
                            (unsigned long)unpacker->n_entries);
