@@ -114,12 +114,12 @@ static bool refuse_unknown(struct unpacker *unpacker)
                   { "BZh", 3, "bzip2 data, damaged or of something else" },
                   { "\xfd" "7zXZ", 5, "xz data, damaged or of something else" },
                   { "\x28\xb5\x2f\xfd", 4, "zstd data, damaged or of something else" }, { "MSCF", 4, "a cabinet file" } };
-    const char *found = unpacker->source.n_bytes == 0 ? "an empty file" : "none of these";
+    const char *found = unpacker->source.n_bytes == 0 ? "an empty file" : "something else";
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (unpack_source_has(&unpacker->source, 0, known[i].bytes, known[i].n))
             found = known[i].words;
     return problem_set(&unpacker->problem, PROBLEM_MEDIA_TYPE, "", "",
-                       "found is %s; expected is a zip, or a tar as it is or within gzip, bzip2, xz or zstd", found);
+                       "no archive that is read here: found is %s, expected a zip, or a tar as it is or within gzip, bzip2, xz or zstd", found);
 }
 
 static bool refuse_entry(struct unpacker *unpacker, const char *name, const char *code, const char *found, const char *expected)
@@ -242,7 +242,7 @@ static bool write_file(struct unpacker *unpacker, struct archive_entry *entry, c
         return false;
     bool is_done = copy_data(unpacker, entry, name, file, &n_bytes);
     if (file >= 0 && close(file) != 0 && is_done)
-        is_done = problem_set(&unpacker->problem, PROBLEM_INTERNAL, "", "", "a file cannot be written to its end");
+        is_done = problem_set(&unpacker->problem, PROBLEM_STORAGE, "", "", "a file cannot be written to its end");
     unpacker->result.n_files++;
     unpacker->result.n_bytes += n_bytes;
     return is_done;

@@ -27,7 +27,8 @@ static bool refuse(struct problem *problem, const char *name, const char *what)
     int reason = errno;
     char shown[UNPACK_SHOWN_SIZE];
     unpack_show(name, shown);
-    return problem_set(problem, PROBLEM_INTERNAL, "", "", "entry \"%s\": %s: %s", shown, what, strerror(reason));
+    bool is_full = reason == ENOSPC || reason == EDQUOT || reason == EFBIG;
+    return problem_set(problem, is_full ? PROBLEM_STORAGE : PROBLEM_INTERNAL, "", "", "entry \"%s\": %s: %s", shown, what, strerror(reason));
 }
 
 /* Opens the folder a name of n bytes is in, step by step; base: its last part. */
