@@ -229,7 +229,7 @@ static void damage_is_noticed(void **state)
         { "overlap.zip", PROBLEM_VALIDATION, "says that it holds 200 entries; found are 1 that" },
         { "cut.tar", PROBLEM_VALIDATION, "Truncated" },
         { "cut-between.tar", PROBLEM_VALIDATION, "without its end mark" },
-        { "header.tar", PROBLEM_MEDIA_TYPE, "none of these" },
+        { "header.tar", PROBLEM_MEDIA_TYPE, "found is something else" },
         { "crc.tar.gz", PROBLEM_VALIDATION, "incorrect data check" },
         { "cut.tar.gz", PROBLEM_VALIDATION, "gzip data end early" },
         { "no-sum.tar.gz", PROBLEM_VALIDATION, "gzip data end early" },
@@ -248,9 +248,9 @@ static void what_is_no_plan_in_an_archive_is_refused(void **state)
     (void)state;
     static const struct refusal list[] = {
         { "empty", PROBLEM_MEDIA_TYPE, "an empty file" },
-        { "text", PROBLEM_MEDIA_TYPE, "none of these" },
+        { "text", PROBLEM_MEDIA_TYPE, "found is something else" },
         { "some.rar", PROBLEM_MEDIA_TYPE, "a RAR archive" },
-        { "cpio", PROBLEM_MEDIA_TYPE, "none of these" },
+        { "cpio", PROBLEM_MEDIA_TYPE, "found is something else" },
         { "text.gz", PROBLEM_MEDIA_TYPE, "gzip data, of something else" },
         { "no-file.tar", PROBLEM_VALIDATION, "holds no file" },
         { "no-entry.zip", PROBLEM_VALIDATION, "holds no file" },
