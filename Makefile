@@ -146,7 +146,7 @@ $(1)_HELP := $(filter-out tests/$(1)/$(2)_%,$(call c_files,tests/$(1)))
 $(1)_BIN := $(patsubst tests/$(1)/%.c,$(B)/$(1)/%,$(filter tests/$(1)/$(2)_%,$(call c_files,tests/$(1))))
 $(B)/$(1)/%: $(B)/obj/tests/$(1)/%.o $$(call obj,$$($(1)_HELP)) $(B)/libserver.a $(B)/libwire.a $(B)/libcore.a
 	@mkdir -p $$(@D)
-	$$(Q)$$(CC) $$(LDFLAGS) -o $$@ $$^ $$(CORE_LIBS) $$(SERVER_LIBS) $(3)
+	$$(Q)$$(CC) $$(LDFLAGS) -o $$@ $$(filter %.o,$$^) $$(filter %.a,$$^) $$(CORE_LIBS) $$(SERVER_LIBS) $(3)
 .PHONY: $(1)-programs
 $(1)-programs: $$($(1)_BIN)
 endef

@@ -13,7 +13,7 @@
 #include "core/base/mem.h"
 #include "server/fleet/news.h"
 
-static const struct fleet_times default_times = { .ping = 2000, .silent = 8000, .stall = 120000, .request = 30000, .scan = 5000, .unpack = 120000 };
+static const struct fleet_times default_times = { .ping = 2000, .silent = 8000, .stall = 120000, .request = 30000, .scan = 30000, .unpack = 120000 };
 
 const char *fleet_state_word(enum fleet_state state)
 {
@@ -424,7 +424,7 @@ static void start_probe(struct fleet *fleet)
 {
     const char *words[] = { fleet->renderer_path, "--probe-gl", "--gl", fleet->gl_word, fleet->options.stub_renderer ? "--stub" : NULL, NULL };
     fleet->probe = fleet_number(fleet);
-    if (!watch_start_program(fleet->watch, fleet->probe, fleet_arguments(words), fleet->times.scan * 4))
+    if (!watch_start_program(fleet->watch, fleet->probe, fleet_arguments(words), fleet->times.scan))
         fleet->probe = 0;
 }
 

@@ -10,20 +10,22 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
 
 struct intake {
     char *folder;
     uint64_t max_bytes, last_number;
-    int n_files;
+    int n_files, window_ms;
 };
 
 struct intake_file {
     struct intake *intake;
     char *path;
     int fd;
-    uint64_t n_bytes;
+    uint64_t n_bytes, window_bytes; /* in all, and since the window began */
+    int64_t window_us;
 };
 
 struct intake *intake_create(const char *folder, uint64_t max_bytes)
@@ -31,7 +33,13 @@ struct intake *intake_create(const char *folder, uint64_t max_bytes)
     struct intake *intake = mem_new(sizeof *intake);
     intake->folder = folder ? mem_copy_text(folder) : NULL;
     intake->max_bytes = max_bytes;
+    intake->window_ms = INTAKE_WINDOW_MS;
     return intake;
+}
+
+void intake_set_window_ms(struct intake *intake, int ms)
+{
+    intake->window_ms = ms;
 }
 
 void intake_destroy(struct intake *intake)
@@ -120,12 +128,31 @@ struct intake_file *intake_begin(struct intake *intake, const struct call *call,
         free(file);
         return NULL;
     }
+    file->window_us = clock_now_us();
     intake->n_files++;
     return file;
 }
 
+/* A sender that trickles would hold one of the few places for ever. */
+static bool is_fast_enough(struct intake_file *file, size_t n, struct problem *problem)
+{
+    int64_t now_us = clock_now_us();
+    file->window_bytes += n;
+    if (now_us - file->window_us < (int64_t)file->intake->window_ms * 1000)
+        return true;
+    bool is_enough = file->window_bytes >= INTAKE_WINDOW_BYTES;
+    if (!is_enough)
+        problem_set(problem, PROBLEM_TIMEOUT, "", "", "%" PRIu64 " bytes came in %.0f s; at least %d are expected", file->window_bytes,
+                    (double)(now_us - file->window_us) / 1e6, INTAKE_WINDOW_BYTES);
+    file->window_us = now_us;
+    file->window_bytes = 0;
+    return is_enough;
+}
+
 bool intake_add(struct intake_file *file, const char *bytes, size_t n, struct problem *problem)
 {
+    if (!is_fast_enough(file, n, problem))
+        return false;
     if (n > file->intake->max_bytes - file->n_bytes)
         return refuse_size(file->intake, problem);
     while (n > 0) {

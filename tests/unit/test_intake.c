@@ -156,6 +156,28 @@ static void a_disk_that_takes_no_more_is_said(void **state)
     intake_destroy(intake);
 }
 
+static void who_trickles_gives_the_place_back(void **state)
+{
+    (void)state;
+    struct intake *intake = intake_create(folder, 1 << 20);
+    struct call *call = archive_call("application/zip");
+    static const char much[INTAKE_WINDOW_BYTES];
+    for (int is_fast = 0; is_fast < 2; is_fast++) {
+        struct problem problem = { 0 };
+        intake_set_window_ms(intake, INTAKE_WINDOW_MS);
+        struct intake_file *file = intake_begin(intake, call, -1, &problem);
+        assert_non_null(file);
+        assert_true(intake_add(file, much, is_fast ? sizeof much : 1, &problem)); /* within the window anything may come */
+        intake_set_window_ms(intake, 1);
+        usleep(2000);
+        assert_int_equal(intake_add(file, "x", 1, &problem), is_fast);
+        assert_int_equal(problem.type, is_fast ? PROBLEM_NONE : PROBLEM_TIMEOUT);
+        intake_drop(file);
+    }
+    call_destroy(call);
+    intake_destroy(intake);
+}
+
 static void a_fifth_at_once_is_told_when_to_come_again(void **state)
 {
     (void)state;
@@ -186,6 +208,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(it_ends_at_the_limit_and_not_before, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(what_has_come_whole_is_ours_alone_to_read, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(a_disk_that_takes_no_more_is_said, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(who_trickles_gives_the_place_back, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(a_fifth_at_once_is_told_when_to_come_again, make_folder, remove_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
