@@ -277,9 +277,11 @@ static void settle(void *context, int part, int n_parts)
             ends[i] = smooth_start(&points[link[i]]) + displacement_of(job, link[i]);
         float4 normal = normal_of(ends) * (float)points[v].outward;
         job->shift[v] = shift_along_edge(normal, displacement_of(job, v), axis);
-        for (int i = 0; i < 4; i++)
-            ends[i] = smooth_start(&points[link[i]]) + job->strong[link[i]];
-        write_normal(job, v, in_lps(job, normal), in_lps(job, normal_of(ends) * (float)points[v].outward));
+        if (job->mesh->normals) {
+            for (int i = 0; i < 4; i++)
+                ends[i] = smooth_start(&points[link[i]]) + job->strong[link[i]];
+            write_normal(job, v, in_lps(job, normal), in_lps(job, normal_of(ends) * (float)points[v].outward));
+        }
         normal /= job->edge_mm; /* of the grid's coordinates to of mm */
         float square = dot(normal, normal);
         job->lean[v] = square > 0 ? fabsf(normal[axis]) / sqrtf(square) : 1;
@@ -323,8 +325,7 @@ static void write_positions(void *context, int part, int n_parts)
 static bool smooth(struct smooth_job *job, struct error *err)
 {
     enum { N_VECTORS = 5, N_FLOATS = 2 };
-    job->mesh->normals = mem_large_array(job->n, 3 * sizeof(float), UINT64_MAX, err);
-    if (!job->mesh->normals)
+    if (job->has_normals && !(job->mesh->normals = mem_large_array(job->n, 3 * sizeof(float), UINT64_MAX, err)))
         return false;
     float4 *vectors = mem_large_array(job->n, N_VECTORS * sizeof(float4) + N_FLOATS * sizeof(float), UINT64_MAX, err);
     if (!vectors)
@@ -381,6 +382,7 @@ struct mesh *smooth_with(const struct smooth_options *smoothing, const struct ma
         .n_threads = threads_for(mesh->n_vertices, options->n_threads),
         .edge_mm = { (float)vec3_length(map->columns[0]), (float)vec3_length(map->columns[1]), (float)vec3_length(map->columns[2]), 1 },
         .is_mirrored = affine_determinant(map) < 0,
+        .has_normals = !options->without_normals,
         .univel_mm3 = fabs(affine_determinant(map)),
     };
     reciprocals_of(map, job.lps_of_normal);

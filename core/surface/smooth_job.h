@@ -19,6 +19,7 @@ struct smooth_job {
     float4 edge_mm; /* of a univel; the fourth is 1 */
     float4 lps_of_normal[3]; /* what a normal along each axis of the grid is in patient space */
     bool is_mirrored;
+    bool has_normals;
     double univel_mm3;
 
     float4 *first, *now, *before; /* e_1, e_n, e_(n-1), see smooth.c; the last two are free for others afterwards */

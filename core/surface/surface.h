@@ -12,6 +12,7 @@ struct surface_options {
     int n_threads;        /* 0: all cores */
     size_t max_triangles; /* refuse to build more than this */
     bool close_at_border; /* what lies beyond the grid counts as outside, so a region cut by the scan is closed */
+    bool without_normals; /* surface_smooth alone: no normals, as the others */
 };
 extern const struct surface_options surface_defaults; /* 0, 40 million, true */
 
@@ -51,7 +52,7 @@ NODISCARD struct mesh *surface_eight_cell(const struct mask *mask, const struct 
  * the side it is on: a mask made from the surface is the mask again. The same vertices and triangles as by marching cubes, so a closed
  * manifold as there: at an ambiguous face each of the two inside corners is cut off alone.
  *
- *   returns  as above, and with vertex normals: those of the surface as it would be without bounds, so that light does not fall on
+ *   returns  as above, and with vertex normals unless without_normals: those of the surface as it would be without bounds, so that light does not fall on
  *            where vertices are held back, unless it would face another way. When closed, each piece encloses the volume of its univels to 0.1 %, or as near as the edges allow: things of
  *            a univel or two may stay some percent off.
  *   errors   as above

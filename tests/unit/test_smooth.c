@@ -384,6 +384,28 @@ static void a_plate_of_one_univel_keeps_its_two_sides(void **state)
     mask_destroy(mask);
 }
 
+static void without_normals_the_surface_is_the_same(void **state)
+{
+    (void)state;
+    struct affine map = { { { 0.8, 0.6, 0 }, { -1.2, 1.6, 0 }, { 0, 0, -3 } }, { 5, 6, 7 } };
+    struct mask *mask = random_mask(12, 11, 10, 40, 5, &map);
+    struct error err = { 0 };
+    struct surface_options options = surface_defaults;
+    struct mesh *with = surface_smooth(mask, &options, &err);
+    options.without_normals = true;
+    struct mesh *bare = surface_smooth(mask, &options, &err);
+    assert_non_null(with);
+    assert_non_null(bare);
+    assert_non_null(with->normals);
+    assert_null(bare->normals);
+    assert_int_equal(bare->n_vertices, with->n_vertices);
+    assert_memory_equal(bare->positions_lps_mm, with->positions_lps_mm, 3 * with->n_vertices * sizeof(float));
+    assert_memory_equal(bare->indices, with->indices, 3 * with->n_triangles * sizeof(uint32_t));
+    mesh_unref(with);
+    mesh_unref(bare);
+    mask_destroy(mask);
+}
+
 static void an_empty_mask_and_too_many_triangles_are_refused(void **state)
 {
     (void)state;
@@ -410,6 +432,7 @@ int main(void)
         cmocka_unit_test(each_piece_keeps_the_volume_of_its_univels),
         cmocka_unit_test(a_hollow_and_a_lone_univel_beside_it_keep_theirs_too),
         cmocka_unit_test(a_plate_of_one_univel_keeps_its_two_sides),
+        cmocka_unit_test(without_normals_the_surface_is_the_same),
         cmocka_unit_test(an_empty_mask_and_too_many_triangles_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
