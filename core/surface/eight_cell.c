@@ -15,6 +15,7 @@
 
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
+#include "core/surface/bit_rows.h"
 #include "core/surface/corner_cases.h"
 #include "core/surface/surface.h"
 
@@ -168,34 +169,14 @@ static void count_part(void *context, int part, int n_parts)
     }
 }
 
-/* Counts become the numbers of the first; gives the total. What no longer fits 32 bits is refused before it is used. */
-static uint64_t run_totals(uint32_t *counts, size_t n)
-{
-    uint64_t total = 0;
-    for (size_t i = 0; i < n; i++) {
-        uint32_t count = counts[i];
-        counts[i] = (uint32_t)total;
-        total += count;
-    }
-    counts[n] = (uint32_t)total;
-    return total;
-}
-
 /* ---- writing ------------------------------------------------------------------------------------------------------------- */
 
 static void write_vertices(const struct job *job, int64_t j, int64_t k)
 {
     const struct mask *mask = job->mask;
     size_t row = row_number(mask, j, k);
-    float *at = job->mesh->positions_lps_mm + 3 * (size_t)job->first_vertex[row];
-    for (uint32_t w = 0; w < mask->words; w++)
-        for (uint64_t left = job->used[row * mask->words + w]; left; left &= left - 1) {
-            double i = 64.0 * w + __builtin_ctzll(left);
-            struct vec3 p = affine_point(&mask->lps_mm_from_ijk, vec3(i, (double)j, (double)k));
-            *at++ = (float)p.x;
-            *at++ = (float)p.y;
-            *at++ = (float)p.z;
-        }
+    row_write_vertices(job->used + row * mask->words, mask->words, &mask->lps_mm_from_ijk, vec3(0, (double)j, (double)k),
+                       job->mesh->positions_lps_mm + 3 * (size_t)job->first_vertex[row]);
 }
 
 static void write_triangles(const struct job *job, int64_t y, int64_t z)
@@ -270,7 +251,7 @@ static bool extract(struct job *job, const struct surface_options *options, int 
         return false;
     atomic_store(&job->next, 0);
     parallel_run(n_threads, count_part, job);
-    uint64_t vertices = run_totals(job->first_vertex, n_rows), triangles = run_totals(job->first_triangle, n_cell_rows);
+    uint64_t vertices = rows_number(job->first_vertex, n_rows), triangles = rows_number(job->first_triangle, n_cell_rows);
     if (triangles > options->max_triangles || triangles > UINT32_MAX || vertices > UINT32_MAX)
         return error_set(err, ERROR_LIMIT, "a surface of %llu triangles: at most %zu are allowed", (unsigned long long)triangles,
                          options->max_triangles < UINT32_MAX ? options->max_triangles : (size_t)UINT32_MAX);

@@ -11,6 +11,7 @@
 
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
+#include "core/surface/bit_rows.h"
 #include "core/surface/shape_make.h"
 #include "core/surface/shape_parts.h"
 
@@ -116,32 +117,13 @@ static void count_part(void *context, int part, int n_parts)
         }
 }
 
-static uint64_t run_totals(uint32_t *counts, size_t n)
-{
-    uint64_t total = 0;
-    for (size_t i = 0; i < n; i++) {
-        uint32_t count = counts[i];
-        counts[i] = (uint32_t)total;
-        total += count;
-    }
-    counts[n] = (uint32_t)total;
-    return total;
-}
-
 /* ---- writing ------------------------------------------------------------------------------------------------------------- */
 
 static void write_corners(const struct job *job, uint32_t j, uint32_t k)
 {
     size_t row = corner_row(job, j, k);
-    float *at = job->mesh->positions_lps_mm + 3 * (size_t)job->first_vertex[row];
-    for (uint32_t w = 0; w < job->corner_words; w++)
-        for (uint64_t left = job->used[row * job->corner_words + w]; left; left &= left - 1) {
-            double i = 64.0 * w + __builtin_ctzll(left) - 0.5;
-            struct vec3 p = affine_point(&job->mask->lps_mm_from_ijk, vec3(i, j - 0.5, k - 0.5));
-            *at++ = (float)p.x;
-            *at++ = (float)p.y;
-            *at++ = (float)p.z;
-        }
+    row_write_vertices(job->used + row * job->corner_words, job->corner_words, &job->mask->lps_mm_from_ijk, vec3(-0.5, j - 0.5, k - 0.5),
+                       job->mesh->positions_lps_mm + 3 * (size_t)job->first_vertex[row]);
 }
 
 static uint32_t *write_face(uint32_t *out, const uint32_t vertices[8], int face, bool is_mirrored)
@@ -214,7 +196,7 @@ static bool extract(struct job *job, int n_threads, struct error *err)
         return false;
     atomic_store(&job->next, 0);
     parallel_run(n_threads, count_part, job);
-    uint64_t vertices = run_totals(job->first_vertex, n_corner_rows), faces = run_totals(job->first_face, n_rows);
+    uint64_t vertices = rows_number(job->first_vertex, n_corner_rows), faces = rows_number(job->first_face, n_rows);
     if (2 * faces > SHAPE_MAX_TRIANGLES) /* so their corners fit 32 bits as well */
         return error_set(err, ERROR_LIMIT, "univels with %llu triangles: at most %d are allowed", (unsigned long long)(2 * faces),
                          SHAPE_MAX_TRIANGLES);

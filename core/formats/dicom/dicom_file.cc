@@ -321,11 +321,11 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
                          pixels->bits_allocated);
     pixels->n_samples = optional_integer(file, 0x00280002, 1);
     char color[20];
-    if (!dicom_text(&file->root, 0x00280004, color, sizeof color))
-        std::strcpy(color, "MONOCHROME2");
+    bool has_color = dicom_text(&file->root, 0x00280004, color, sizeof color);
     pixels->is_monochrome1 = std::strcmp(color, "MONOCHROME1") == 0;
-    if (pixels->n_samples != 1 || (!pixels->is_monochrome1 && std::strcmp(color, "MONOCHROME2") != 0))
-        return error_set(err, ERROR_UNSUPPORTED, "%s: it is a colour picture (%s, %u samples a pixel); only grey ones are read", name, color,
+    if (pixels->n_samples != 1 || (has_color && !pixels->is_monochrome1 && std::strcmp(color, "MONOCHROME2") != 0))
+        return error_set(err, ERROR_UNSUPPORTED, "%s: it is a colour picture (%s, %u samples a pixel); only grey ones are read", name,
+                         has_color ? color : "kind not said",
                          pixels->n_samples);
     pixels->bits_stored = optional_integer(file, 0x00280101, pixels->bits_allocated);
     pixels->high_bit = optional_integer(file, 0x00280102, pixels->bits_stored - 1);
