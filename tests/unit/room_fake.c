@@ -253,3 +253,11 @@ size_t fake_n_heard(const struct fake_page *page, const char *type)
     }
     return n;
 }
+
+void fake_turn(struct fake_room *room, struct fake_page *page, int degrees, unsigned input)
+{
+    fake_say(room, page,
+             "{\"type\":\"view.patch\",\"view\":1,\"input\":%u,\"patch\":{\"camera\":{\"position_mm\":[%d,-900,0],\"target_mm\":[0,0,0],"
+             "\"up\":[0,0,1]}}}",
+             input, degrees);
+}

@@ -56,3 +56,5 @@ void fake_settle(struct fake_room *fake, struct fake_page *const *pages, size_t 
 /* The newest message of a type that a page got, as JSON to be deleted; NULL: none. */
 cJSON *fake_heard(const struct fake_page *page, const char *type);
 size_t fake_n_heard(const struct fake_page *page, const char *type);
+/* Turns the camera of the page's first view. */
+void fake_turn(struct fake_room *room, struct fake_page *page, int degrees, unsigned input);

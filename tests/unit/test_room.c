@@ -1,5 +1,4 @@
-/* Pacing: when pictures are asked for and who gets them (design.md 6). */
-#include "server/room/pace.h"
+/* When pictures are asked for, and who gets them (design.md 6). */
 #include "tests/unit/room_fake.h"
 
 static struct fake_room fake;
@@ -20,14 +19,6 @@ static int end(void **state)
     fake_page_end(&ann);
     fake_page_end(&ben);
     return 0;
-}
-
-static void turn(struct fake_page *page, int degrees, unsigned input)
-{
-    fake_say(&fake, page,
-             "{\"type\":\"view.patch\",\"view\":1,\"input\":%u,\"patch\":{\"camera\":{\"position_mm\":[%d,-900,0],\"target_mm\":[0,0,0],"
-             "\"up\":[0,0,1]}}}",
-             input, degrees);
 }
 
 static double camera_x(const struct fake_request *request)
@@ -67,7 +58,7 @@ static void a_still_follows_150_ms_after_the_last_change(void **state)
     fake_join(&fake, &ann, false);
     settle_one();
     for (int i = 0; i < 5; i++) { /* changes 100 ms apart: no still between them */
-        turn(&ann, i + 1, 0);
+        fake_turn(&fake, &ann, i + 1, 0);
         assert_false(fake_newest(&fake)->is_still);
         fake_draw(&fake, fake_newest(&fake));
         fake_shown(&fake, &ann);
@@ -111,12 +102,12 @@ static void a_change_that_changes_nothing_is_not_drawn(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, false);
-    turn(&ann, 3, 0);
+    fake_turn(&fake, &ann, 3, 0);
     settle_one();
     size_t before = fake.n_requests;
     uint32_t revision;
     (void)room_scene(fake.room, &revision);
-    turn(&ann, 3, 0);
+    fake_turn(&fake, &ann, 3, 0);
     fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"input\":9,\"patch\":{\"regions\":{\"brain\":{\"visible\":true}}}}");
     fake_pass(&fake, 1000);
     assert_int_equal(fake.n_requests, before);
@@ -130,11 +121,11 @@ static void an_input_that_changes_nothing_is_answered_by_the_picture_that_is_the
 {
     (void)state;
     fake_join(&fake, &ann, false);
-    turn(&ann, 3, 4);
+    fake_turn(&fake, &ann, 3, 4);
     settle_one();
     assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 4);
     size_t n_drawn = fake.n_requests, n_frames = ann.n_frames;
-    turn(&ann, 3, 5);
+    fake_turn(&fake, &ann, 3, 5);
     assert_int_equal(ann.n_frames, n_frames + 1);
     assert_int_equal(ann.frames[n_frames].input_id, 5);
     assert_true(ann.frames[n_frames].flags & FRAME_STILL);
@@ -148,7 +139,7 @@ static void a_followers_resizing_that_does_not_take_the_lead_is_answered(void **
 {
     (void)state;
     fake_join(&fake, &ann, true);
-    turn(&ann, 3, 1);
+    fake_turn(&fake, &ann, 3, 1);
     settle_one();
     fake_join(&fake, &ben, true);
     settle_two();
@@ -163,7 +154,7 @@ static void no_more_than_two_unshown_frames_are_ever_sent(void **state)
     (void)state;
     fake_join(&fake, &ann, false);
     for (int i = 0; i < 50; i++) { /* never acknowledged */
-        turn(&ann, i, 0);
+        fake_turn(&fake, &ann, i, 0);
         fake_pass(&fake, 20);
         for (struct fake_request *request; (request = fake_oldest(&fake));)
             fake_draw(&fake, request);
@@ -177,7 +168,7 @@ static void when_credit_returns_the_newest_state_is_drawn(void **state)
     (void)state;
     fake_join(&fake, &ann, false);
     for (int i = 0; i < 50; i++) {
-        turn(&ann, i, 0);
+        fake_turn(&fake, &ann, i, 0);
         fake_pass(&fake, 20);
         for (struct fake_request *request; (request = fake_oldest(&fake));)
             fake_draw(&fake, request);
@@ -192,14 +183,14 @@ static void an_acknowledgement_counts_for_all_earlier_frames(void **state)
     (void)state;
     fake_join(&fake, &ann, false);
     fake_draw(&fake, fake_oldest(&fake));
-    turn(&ann, 1, 0);
+    fake_turn(&fake, &ann, 1, 0);
     fake_draw(&fake, fake_oldest(&fake));
     assert_int_equal(ann.n_frames, 2);
-    turn(&ann, 2, 0);
+    fake_turn(&fake, &ann, 2, 0);
     assert_int_equal(fake_outstanding(&fake), 0);
     fake_say(&fake, &ann, "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":2}");
     fake_draw(&fake, fake_oldest(&fake));
-    turn(&ann, 3, 0);
+    fake_turn(&fake, &ann, 3, 0);
     fake_draw(&fake, fake_oldest(&fake)); /* two more, so both had been given back */
     assert_int_equal(ann.n_frames, 4);
 }
@@ -223,7 +214,7 @@ static void while_two_pictures_are_being_made_nothing_more_is_asked_for(void **s
     (void)state;
     fake_join(&fake, &ann, false);
     for (int i = 1; i < 40; i++) {
-        turn(&ann, i, 0);
+        fake_turn(&fake, &ann, i, 0);
         fake_pass(&fake, 10);
         assert_true(fake_outstanding(&fake) <= 2);
     }
@@ -239,11 +230,11 @@ static void a_second_picture_is_asked_for_when_the_first_should_be_drawn(void **
     fake_join(&fake, &ann, false);
     fake_draw_slow(&fake, fake_oldest(&fake), 20000); /* now it is known that drawing takes 20 ms */
     fake_shown(&fake, &ann);
-    turn(&ann, 1, 0);
-    turn(&ann, 2, 0);
+    fake_turn(&fake, &ann, 1, 0);
+    fake_turn(&fake, &ann, 2, 0);
     assert_int_equal(fake_outstanding(&fake), 1);
     fake_pass(&fake, 19);
-    turn(&ann, 3, 0);
+    fake_turn(&fake, &ann, 3, 0);
     assert_int_equal(fake_outstanding(&fake), 1);
     fake_pass(&fake, 1);
     assert_int_equal(fake_outstanding(&fake), 2);
@@ -256,10 +247,10 @@ static void a_frame_is_not_sent_out_of_order(void **state)
     fake_join(&fake, &ann, false);
     settle_one();
     size_t before = ann.n_frames;
-    turn(&ann, 1, 0);
+    fake_turn(&fake, &ann, 1, 0);
     struct fake_request *older = fake_newest(&fake);
     fake_pass(&fake, 60);
-    turn(&ann, 2, 0);
+    fake_turn(&fake, &ann, 2, 0);
     struct fake_request *newer = fake_newest(&fake);
     assert_ptr_not_equal(older, newer);
     fake_draw(&fake, newer);
@@ -273,14 +264,14 @@ static void a_change_does_not_wait_for_a_slow_still(void **state)
     (void)state;
     fake_join(&fake, &ann, false);
     settle_one();
-    turn(&ann, 1, 0);
+    fake_turn(&fake, &ann, 1, 0);
     fake_draw(&fake, fake_oldest(&fake));
     fake_shown(&fake, &ann);
     fake_pass(&fake, 150);
     struct fake_request *still = fake_newest(&fake);
     assert_true(still->is_still);
     for (int i = 2; i < 30; i++) { /* the still takes for ever; moving pictures go on */
-        turn(&ann, i, 0);
+        fake_turn(&fake, &ann, i, 0);
         struct fake_request *moving = fake_newest(&fake);
         assert_ptr_not_equal(moving, still);
         assert_false(moving->is_still);
@@ -307,7 +298,7 @@ static void a_slow_member_does_not_slow_another(void **state)
     settle_two();
     size_t ann_before = ann.n_frames, ben_before = ben.n_frames;
     for (int i = 0; i < 20; i++) { /* Ben acknowledges nothing */
-        turn(&ann, i + 1, 0);
+        fake_turn(&fake, &ann, i + 1, 0);
         fake_pass(&fake, 20);
         fake_draw(&fake, fake_oldest(&fake));
         fake_shown(&fake, &ann);
@@ -334,7 +325,7 @@ static void two_followers_share_one_render(void **state)
     fake_join(&fake, &ben, true);
     settle_two();
     size_t before = fake.n_requests, ann_before = ann.n_frames, ben_before = ben.n_frames;
-    turn(&ann, 5, 0);
+    fake_turn(&fake, &ann, 5, 0);
     assert_int_equal(fake.n_requests, before + 1);
     fake_draw(&fake, fake_oldest(&fake));
     assert_int_equal(ann.n_frames, ann_before + 1);
@@ -350,7 +341,7 @@ static void own_views_are_drawn_each_for_itself(void **state)
     fake_join(&fake, &ben, false);
     settle_two();
     size_t before = fake.n_requests, ben_before = ben.n_frames;
-    turn(&ann, 5, 0);
+    fake_turn(&fake, &ann, 5, 0);
     fake_pass(&fake, 50);
     assert_int_equal(fake.n_requests, before + 1);
     fake_draw(&fake, fake_oldest(&fake));
@@ -376,10 +367,10 @@ static void a_frame_carries_the_newest_input_it_shows_and_none_newer(void **stat
     (void)state;
     fake_join(&fake, &ann, false);
     settle_one();
-    turn(&ann, 1, 11);
+    fake_turn(&fake, &ann, 1, 11);
     struct fake_request *first = fake_newest(&fake);
-    turn(&ann, 2, 12); /* after the first was asked for */
-    turn(&ann, 3, 13);
+    fake_turn(&fake, &ann, 2, 12); /* after the first was asked for */
+    fake_turn(&fake, &ann, 3, 13);
     fake_draw(&fake, first);
     assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 11);
     fake_shown(&fake, &ann);
@@ -393,7 +384,7 @@ static void input_numbers_are_each_members_own(void **state)
     fake_join(&fake, &ann, true);
     fake_join(&fake, &ben, true);
     settle_two();
-    turn(&ann, 1, 77);
+    fake_turn(&fake, &ann, 1, 77);
     fake_draw(&fake, fake_newest(&fake));
     assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 77);
     assert_int_equal(ben.frames[ben.n_frames - 1].input_id, 0);
@@ -404,10 +395,10 @@ static void many_inputs_between_two_pictures_are_never_reported_too_early(void *
     (void)state;
     fake_join(&fake, &ann, false);
     settle_one();
-    turn(&ann, 1, 100);
+    fake_turn(&fake, &ann, 1, 100);
     struct fake_request *first = fake_newest(&fake);
     for (unsigned i = 0; i < 200; i++)
-        turn(&ann, 2 + (int)i, 101 + i);
+        fake_turn(&fake, &ann, 2 + (int)i, 101 + i);
     fake_draw(&fake, first);
     assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 100);
     fake_shown(&fake, &ann);
@@ -460,7 +451,7 @@ static void a_picture_that_cannot_be_is_told_once_and_not_asked_for_again(void *
     assert_int_equal(json_number(problem, "view", 0), 1);
     assert_string_equal(json_text(cJSON_GetObjectItemCaseSensitive(problem, "problem"), "type"), "/problems/validation");
     cJSON_Delete(problem);
-    turn(&ann, 8, 21); /* another view of it may well be drawn */
+    fake_turn(&fake, &ann, 8, 21); /* another view of it may well be drawn */
     settle_one();
     assert_true(ann.frames[ann.n_frames - 1].flags & FRAME_STILL);
     assert_int_equal(fake_n_heard(&ann, "problem"), 1);
@@ -472,13 +463,13 @@ static void a_new_renderer_is_told_the_scene_and_draws_everything_anew(void **st
     fake_join(&fake, &ann, false);
     fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.25}}}}");
     settle_one();
-    turn(&ann, 8, 21);
+    fake_turn(&fake, &ann, 8, 21);
     struct fake_request *lost = fake_newest(&fake);
     room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, NULL, 0, NULL);
     cJSON *said = fake_heard(&ann, "renderer");
     assert_string_equal(json_text(said, "state"), "restarting");
     cJSON_Delete(said);
-    turn(&ann, 9, 22); /* patches go on; nothing is asked for */
+    fake_turn(&fake, &ann, 9, 22); /* patches go on; nothing is asked for */
     size_t before = fake.n_requests, scenes = fake.n_scenes, frames = ann.n_frames;
     uint32_t revision;
     (void)room_scene(fake.room, &revision);
@@ -497,89 +488,6 @@ static void a_new_renderer_is_told_the_scene_and_draws_everything_anew(void **st
     assert_int_equal(ann.frames[ann.n_frames - 1].input_id, 22);
     settle_one();
     assert_true(ann.frames[ann.n_frames - 1].flags & FRAME_STILL);
-}
-
-static void software_starts_whole_but_with_light_surfaces(void **state)
-{
-    (void)state;
-    fake_join(&fake, &ann, false);
-    assert_int_equal(fake_newest(&fake)->scale_percent, 100);
-    assert_int_equal(fake_newest(&fake)->quality, 80);
-    assert_true(fake_newest(&fake)->light);
-    assert_false(fake_newest(&fake)->full_color);
-}
-
-static void a_graphics_card_starts_at_full_size_and_detail(void **state)
-{
-    (void)state;
-    fake_plan_ready(&fake, false);
-    fake_join(&fake, &ann, false);
-    assert_int_equal(fake_newest(&fake)->scale_percent, 100);
-    assert_int_equal(fake_newest(&fake)->quality, 80);
-    assert_false(fake_newest(&fake)->light);
-}
-
-/* moves for a while; returns the scale asked for last */
-static int drag(int n, int64_t interval_ms, uint32_t render_us)
-{
-    int scale = 0;
-    for (int i = 0; i < n; i++) {
-        static int x;
-        turn(&ann, ++x, 0);
-        struct fake_request *request = fake_newest(&fake);
-        scale = request->scale_percent;
-        fake_pass(&fake, interval_ms);
-        fake_draw_slow(&fake, request, render_us);
-        fake_shown(&fake, &ann);
-    }
-    return scale;
-}
-
-static void slow_pictures_become_smaller_and_fast_ones_larger_again(void **state)
-{
-    (void)state;
-    fake_plan_ready(&fake, false);
-    fake_join(&fake, &ann, false);
-    settle_one();
-    assert_int_equal(drag(10, 60, 60000), 50); /* 4 steps of 3 pictures: 100, 75, 60, 50 */
-    assert_int_equal(drag(30, 15, 8000), 50);  /* less than a second of fast ones */
-    assert_int_equal(drag(80, 15, 8000), 60);
-    assert_int_equal(drag(300, 15, 8000), 100);
-}
-
-static void late_acknowledgements_make_pictures_smaller(void **state)
-{
-    (void)state;
-    fake_plan_ready(&fake, false);
-    fake_join(&fake, &ann, false);
-    settle_one();
-    assert_int_equal(drag(10, 15, 8000), 100);
-    int scale = 0;
-    for (int i = 0; i < 40; i++) {
-        turn(&ann, 1000 + i, 0);
-        struct fake_request *request = fake_newest(&fake);
-        scale = request->scale_percent;
-        fake_draw_slow(&fake, request, 8000);
-        fake_pass(&fake, 140);
-        fake_shown(&fake, &ann);
-    }
-    assert_int_equal(scale, 50);
-}
-
-static void a_step_up_that_does_not_hold_is_tried_less_and_less_often(void **state)
-{
-    struct pace pace;
-    int n_up = 0;
-    int64_t now_us = 1;
-    (void)state;
-    pace_start(&pace, false);
-    for (int i = 0; i < 60 * 25; i++, now_us += 40000) { /* one minute: full size is too slow, three quarters are fast */
-        int before = pace.step;
-        pace_drawn(&pace, pace.step == 0 ? 50000 : 10000, 2000, 0, 1, now_us);
-        n_up += pace.step < before;
-    }
-    /* after 1, 2, 4, 8, 16 s and then not within the minute */
-    assert_int_equal(n_up, 5);
 }
 
 int main(void)
@@ -612,11 +520,6 @@ int main(void)
         T(a_still_that_failed_is_asked_for_again),
         T(a_picture_that_cannot_be_is_told_once_and_not_asked_for_again),
         T(a_new_renderer_is_told_the_scene_and_draws_everything_anew),
-        T(software_starts_whole_but_with_light_surfaces),
-        T(a_graphics_card_starts_at_full_size_and_detail),
-        T(slow_pictures_become_smaller_and_fast_ones_larger_again),
-        T(late_acknowledgements_make_pictures_smaller),
-        T(a_step_up_that_does_not_hold_is_tried_less_and_less_often),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,218 +1,26 @@
 /* SERA's dose contours: small sets laid out by hand as seraMC (fixed columns, numbers that touch) and seraPlan (blanks, another order of
  * columns) write them. */
-#include "core/formats/sera_chd.h"
 #include "core/formats/sera_row.h"
-#include "tests/check.h"
-
-enum { TEXT_SIZE = 1 << 16, COLS = 3, ROWS = 2 };
-
-static const char *const sera_mc[9] = { "total", "boron", "gamma", "nitrogen", "fast", "fast fluence", "epithermal fluence", "thermal fluence",
-                                        "other" };
-static const char *const sera_plan[9] = { "total", "boron", "gamma", "nitrogen", "fast", "other", "fast fluence", "epithermal fluence",
-                                          "thermal fluence" };
-
-/* What a set says; the defaults are seraMC's. */
-struct made {
-    const char *version, *const *names;
-    double fov;
-    size_t n_planes;
-    double z[4];         /* as the header lists them */
-    size_t order[4];     /* which of them the table gives when */
-    double ppm, weight;  /* of boron */
-    double other_weight; /* of gamma, nitrogen, fast and other */
-    double ratio;        /* tissue to blood, of region 7 alone */
-    bool is_plan;        /* seraPlan's layout of a line */
-    const char *more;    /* a further line of the header */
-    const char *special; /* a word instead of the gamma of the first point */
-};
-static const struct made plain = { .version = "seraMC_1C0", .names = sera_mc, .fov = 10, .n_planes = 2, .z = { -5, -4 }, .order = { 0, 1 },
-                                   .ppm = 1, .weight = 1, .other_weight = 1, .ratio = 1, .more = "" };
-
-struct text {
-    char *at;
-    size_t n;
-};
-
-static void PRINTF_LIKE(2, 3) put(struct text *text, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    text->n += (size_t)vsnprintf(text->at + text->n, TEXT_SIZE - text->n, format, arguments);
-    va_end(arguments);
-    assert_true(text->n < TEXT_SIZE);
-}
-
-/* A number in ten characters as Fortran writes 1PE10.3: "-1.000E+00" leaves no blank. */
-static void word10(char out[16], double value)
-{
-    snprintf(out, 16, "%10.3E", value);
-}
-
-/* Physical values at a point: each quantity its own, growing with the point's number. */
-static double physical(enum dose_quantity quantity, size_t point)
-{
-    double x = 1 + 0.01 * (double)point;
-    switch (quantity) {
-    case DOSE_BLOOD_BORON:
-    case DOSE_BORON: return 7.3e-12 * 1e11 * x;
-    case DOSE_GAMMA: return 20 * x;
-    case DOSE_NITROGEN: return 5 * x;
-    case DOSE_FAST: return 2 * x;
-    case DOSE_OTHER: return 0.1 * x;
-    case DOSE_FAST_FLUENCE: return 2e9 * x;
-    case DOSE_EPITHERMAL_FLUENCE: return 3e10 * x;
-    case DOSE_THERMAL_FLUENCE: return 1e11 * x;
-    default: return 0;
-    }
-}
-
-static double printed(const struct made *made, const char *name, size_t point, int region)
-{
-    double boron = physical(DOSE_BORON, point) * made->ppm * made->weight * (region == 7 ? made->ratio : 1);
-    double others = (physical(DOSE_GAMMA, point) + physical(DOSE_NITROGEN, point) + physical(DOSE_FAST, point) + physical(DOSE_OTHER, point)) *
-                    made->other_weight;
-    if (strcmp(name, "total") == 0)
-        return boron + others;
-    if (strcmp(name, "boron") == 0)
-        return boron;
-    const struct {
-        const char *name;
-        enum dose_quantity quantity;
-    } rest[] = { { "gamma", DOSE_GAMMA }, { "nitrogen", DOSE_NITROGEN }, { "fast", DOSE_FAST }, { "other", DOSE_OTHER } };
-    for (size_t i = 0; i < 4; i++)
-        if (strcmp(name, rest[i].name) == 0)
-            return physical(rest[i].quantity, point) * made->other_weight;
-    return physical(name[0] == 'f' ? DOSE_FAST_FLUENCE : name[0] == 'e' ? DOSE_EPITHERMAL_FLUENCE : DOSE_THERMAL_FLUENCE, point);
-}
-
-static struct text make_header(const struct made *made)
-{
-    struct text text = { malloc(TEXT_SIZE), 0 };
-    put(&text, "Version_stamp:  %s\nFOV:              %.5E\nxmin:            -1.00000E+00\nxmax:             1.00000E+00\n", made->version,
-        made->fov);
-    put(&text, "ymin:            -1.00000E+00\nymax:             1.00000E+00\nx_in_field:              1\ny_in_field:              2\n"
-               "z_in_field:              3\nnum_cols:               %d\nnum_rows:               %d\nrun_title:      head: one field\n"
-               "num_planes:             %zu\n", COLS, ROWS, made->n_planes);
-    for (int i = 0; i < 9; i++) {
-        const char *name = made->names[i];
-        bool is_boron = strcmp(name, "boron") == 0, is_other = strstr("gamma nitrogen fast other", name) != NULL;
-        put(&text, "dose_comp_%d:    %-40s\nconc_%d:           %.5E\nrbe_val_%d:        %.5E\nref_dose_%d:       %.5E\n", i, name, i,
-            is_boron ? made->ppm : 1.0, i, is_boron ? made->weight : is_other ? made->other_weight : 1.0, i,
-            printed(made, name, 0, 6) * 1.25);
-    }
-    put(&text, "number_beams:            1\nphi_val_00:       5.50000E+01\ntheta_val_00:    -1.40000E+02\n%s", made->more);
-    for (size_t p = 0; p < made->n_planes; p++)
-        put(&text, "z_value_%02zu:      %.5E\n", p, made->z[p]);
-    return text;
-}
-
-/* The number of a point: x fastest, then y from the posterior up, then planes as the header counts them. */
-static struct text make_table(const struct made *made)
-{
-    struct text text = { malloc(TEXT_SIZE), 0 };
-    for (size_t p = 0; p < made->n_planes; p++)
-        for (size_t r = 0; r < ROWS; r++)
-            for (size_t c = 0; c < COLS; c++) {
-                size_t plane = made->order[p], point = (plane * ROWS + r) * COLS + c;
-                int region = c == 0 ? 6 : 7;
-                double at[3] = { -1 + (double)c, -1 + 2 * (double)r, made->z[plane] / made->fov };
-                for (int i = 0; i < 3; i++) {
-                    char word[16];
-                    word10(word, at[i]);
-                    put(&text, made->is_plan ? "%s " : "%s", word);
-                }
-                put(&text, "%4d", region);
-                for (int i = 0; i < 9; i++) {
-                    char word[16];
-                    word10(word, printed(made, made->names[i], point, region));
-                    if (made->special && i == 2 && point == 0)
-                        snprintf(word, sizeof word, "%10s", made->special);
-                    put(&text, made->is_plan ? " %s" : "%s", word);
-                }
-                put(&text, "\n");
-            }
-    return text;
-}
-
-struct result {
-    struct chd chd;
-    struct sera_doses doses;
-    struct report report;
-    struct error err;
-};
-
-static bool read_both(const struct text *header, const struct text *table, const struct bytes *mask, struct result *result)
-{
-    *result = (struct result){ 0 };
-    if (!chd_parse((const uint8_t *)header->at, header->n, "a.chd", &result->chd, &result->report, &result->err))
-        return false;
-    struct chd_files files = { .table = { (uint8_t *)table->at, table->n }, .name = "a.chd", .table_name = "a.cdf.sz", .mask_name = "a.cmf.sz" };
-    if (mask)
-        files.mask = *mask;
-    return chd_read(&result->chd, &files, &result->doses, &result->report, &result->err);
-}
-
-static void finish(struct result *result)
-{
-    chd_finish(&result->chd);
-    sera_doses_finish(&result->doses);
-    report_finish(&result->report);
-}
-
-static struct result read_made(const struct made *made)
-{
-    struct text header = make_header(made), table = make_table(made);
-    struct result result;
-    if (!read_both(&header, &table, NULL, &result))
-        fail_msg("%s", result.err.text);
-    free(header.at);
-    free(table.at);
-    return result;
-}
-
-static const struct volume *volume_of(const struct sera_doses *doses, enum dose_quantity quantity)
-{
-    for (size_t i = 0; i < doses->n_components; i++)
-        if (doses->components[i].quantity == quantity)
-            return doses->components[i].values;
-    return NULL;
-}
-
-static const char *said(const struct report *report, const char *code)
-{
-    for (size_t i = 0; i < report->n_lines; i++)
-        if (strcmp(report->lines[i].code, code) == 0)
-            return report->lines[i].sentence;
-    return "";
-}
-
-/* Four digits are printed. */
-static void check_quantity(const struct sera_doses *doses, enum dose_quantity quantity)
-{
-    const struct volume *values = volume_of(doses, quantity);
-    assert_non_null(values);
-    for (uint32_t point = 0; point < values->grid.size[2] * ROWS * COLS; point++)
-        assert_near(volume_value(values, point % COLS, point / COLS % ROWS, point / COLS / ROWS), physical(quantity, point), 6e-4);
-}
+#include "tests/unit/made_chd.h"
 
 static void columns_are_found_by_their_names_whoever_wrote_them(void **state)
 {
     (void)state;
     for (int writer = 0; writer < 4; writer++) {
-        struct made made = plain;
-        made.names = writer % 2 ? sera_plan : sera_mc;
+        struct made_chd made = chd_plain;
+        made.names = writer % 2 ? chd_sera_plan : chd_sera_mc;
         made.version = writer % 2 ? "seraPlan_1C0" : "seraMC_1A0";
         made.is_plan = writer >= 2;
-        struct result result = read_made(&made);
+        struct chd_result result = chd_read_made(&made);
         static const enum dose_quantity all[] = { DOSE_BLOOD_BORON, DOSE_GAMMA, DOSE_NITROGEN, DOSE_FAST, DOSE_OTHER, DOSE_FAST_FLUENCE,
                                                   DOSE_EPITHERMAL_FLUENCE, DOSE_THERMAL_FLUENCE };
         assert_int_equal(result.doses.n_components, 9);
         for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-            check_quantity(&result.doses, all[i]);
+            chd_check_quantity(&result.doses, all[i]);
         assert_near(result.doses.reference[DOSE_THERMAL_FLUENCE], 1.25e11, 1e-5);
         assert_near(result.doses.reference[DOSE_OTHER], 0.125, 1e-5);
-        assert_true((strstr(said(&result.report, "dose.column-order"), "Column 5 holds other") != NULL) == (writer % 2 == 1));
-        finish(&result);
+        assert_true((strstr(chd_said(&result.report, "dose.column-order"), "Column 5 holds other") != NULL) == (writer % 2 == 1));
+        chd_result_finish(&result);
     }
 }
 
@@ -243,8 +51,8 @@ static void negative_numbers_that_touch_are_told_apart_by_their_columns(void **s
 static void fov_is_half_the_width_and_rows_run_toward_the_front(void **state)
 {
     (void)state;
-    struct result result = read_made(&plain);
-    const struct grid *grid = &volume_of(&result.doses, DOSE_GAMMA)->grid;
+    struct chd_result result = chd_read_made(&chd_plain);
+    const struct grid *grid = &chd_volume_of(&result.doses, DOSE_GAMMA)->grid;
     /* FOV 10 cm: x runs from -100 to 100 mm in three columns; y from the posterior (P +100) up; z -5 and -4 cm */
     struct vec3 first = affine_point(&grid->lps_mm_from_ijk, vec3(0, 0, 0)), last = affine_point(&grid->lps_mm_from_ijk, vec3(2, 1, 1));
     assert_close(first.x, -100, 1e-6);
@@ -253,99 +61,99 @@ static void fov_is_half_the_width_and_rows_run_toward_the_front(void **state)
     assert_close(last.x, 100, 1e-6);
     assert_close(last.y, -100, 1e-6);
     assert_close(last.z, -40, 1e-6);
-    finish(&result);
+    chd_result_finish(&result);
 }
 
 static void planes_are_placed_by_their_z_and_not_by_their_order(void **state)
 {
     (void)state;
-    struct made made = plain;
+    struct made_chd made = chd_plain;
     made.n_planes = 4;
     const double z[4] = { -1, -4, -2, -3 };
     const size_t order[4] = { 2, 0, 3, 1 };
     memcpy(made.z, z, sizeof z);
     memcpy(made.order, order, sizeof order);
-    struct result result = read_made(&made);
-    const struct volume *gamma = volume_of(&result.doses, DOSE_GAMMA);
+    struct chd_result result = chd_read_made(&made);
+    const struct volume *gamma = chd_volume_of(&result.doses, DOSE_GAMMA);
     assert_close(affine_point(&gamma->grid.lps_mm_from_ijk, vec3(0, 0, 0)).z, -40, 1e-6);
     static const size_t header_plane[4] = { 1, 3, 2, 0 }; /* rising */
     for (uint32_t k = 0; k < 4; k++)
-        assert_near(volume_value(gamma, 1, 1, k), physical(DOSE_GAMMA, header_plane[k] * 6 + 4), 6e-4);
-    finish(&result);
+        assert_near(volume_value(gamma, 1, 1, k), chd_physical(DOSE_GAMMA, header_plane[k] * 6 + 4), 6e-4);
+    chd_result_finish(&result);
 }
 
 static void uneven_planes_are_resampled_and_said_so_or_refused(void **state)
 {
     (void)state;
-    struct made made = plain;
+    struct made_chd made = chd_plain;
     made.n_planes = 3;
     const double z[4] = { -5, -4, -2 };
     memcpy(made.z, z, sizeof z);
     made.order[2] = 2;
-    struct result result = read_made(&made);
-    const struct volume *gamma = volume_of(&result.doses, DOSE_GAMMA);
+    struct chd_result result = chd_read_made(&made);
+    const struct volume *gamma = chd_volume_of(&result.doses, DOSE_GAMMA);
     assert_int_equal(gamma->grid.size[2], 4); /* -5, -4, -3, -2 cm */
-    assert_non_null(strstr(said(&result.report, "dose.planes-uneven"), "resampled to 4 planes every 10 mm"));
-    assert_near(volume_value(gamma, 0, 0, 0), physical(DOSE_GAMMA, 0), 6e-4);
-    assert_near(volume_value(gamma, 0, 0, 1), physical(DOSE_GAMMA, 6), 6e-4);
-    assert_near(volume_value(gamma, 0, 0, 2), (physical(DOSE_GAMMA, 6) + physical(DOSE_GAMMA, 12)) / 2, 6e-4);
-    assert_near(volume_value(gamma, 0, 0, 3), physical(DOSE_GAMMA, 12), 6e-4);
-    finish(&result);
+    assert_non_null(strstr(chd_said(&result.report, "dose.planes-uneven"), "resampled to 4 planes every 10 mm"));
+    assert_near(volume_value(gamma, 0, 0, 0), chd_physical(DOSE_GAMMA, 0), 6e-4);
+    assert_near(volume_value(gamma, 0, 0, 1), chd_physical(DOSE_GAMMA, 6), 6e-4);
+    assert_near(volume_value(gamma, 0, 0, 2), (chd_physical(DOSE_GAMMA, 6) + chd_physical(DOSE_GAMMA, 12)) / 2, 6e-4);
+    assert_near(volume_value(gamma, 0, 0, 3), chd_physical(DOSE_GAMMA, 12), 6e-4);
+    chd_result_finish(&result);
     made.z[2] = made.z[1] + 0.0011; /* 5 cm and 0.011 mm apart */
     made.z[0] = -9;
-    struct text header = make_header(&made), table = make_table(&made);
-    assert_false(read_both(&header, &table, NULL, &result));
+    struct chd_text header = chd_make_header(&made), table = chd_make_table(&made);
+    assert_false(chd_read_both(&header, &table, NULL, &result));
     assert_int_equal(result.err.code, ERROR_UNSUPPORTED);
     free(header.at);
     free(table.at);
-    finish(&result);
+    chd_result_finish(&result);
 }
 
 static void weights_and_ppm_are_divided_away_and_a_weighted_total_keeps_its_name(void **state)
 {
     (void)state;
-    struct made made = plain;
+    struct made_chd made = chd_plain;
     made.ppm = 15;
     made.weight = 1.3;
     made.other_weight = 3.2;
-    struct result result = read_made(&made);
+    struct chd_result result = chd_read_made(&made);
     /* 12 points are too few to say that the ratio is 1: boron keeps the name that says so */
-    assert_null(volume_of(&result.doses, DOSE_TOTAL));
-    assert_null(volume_of(&result.doses, DOSE_BORON));
-    const struct volume *total = volume_of(&result.doses, DOSE_WEIGHTED_TOTAL), *boron = volume_of(&result.doses, DOSE_BLOOD_BORON);
+    assert_null(chd_volume_of(&result.doses, DOSE_TOTAL));
+    assert_null(chd_volume_of(&result.doses, DOSE_BORON));
+    const struct volume *total = chd_volume_of(&result.doses, DOSE_WEIGHTED_TOTAL), *boron = chd_volume_of(&result.doses, DOSE_BLOOD_BORON);
     assert_non_null(total);
     assert_non_null(boron);
-    assert_near(volume_value(total, 0, 0, 0), printed(&made, "total", 0, 6), 6e-4);
-    assert_near(volume_value(boron, 2, 1, 1), physical(DOSE_BORON, 11), 6e-4);
-    assert_near(result.doses.reference[DOSE_BLOOD_BORON], 1.25 * physical(DOSE_BORON, 0), 1e-5);
-    check_quantity(&result.doses, DOSE_GAMMA);
-    check_quantity(&result.doses, DOSE_NITROGEN);
-    check_quantity(&result.doses, DOSE_FAST);
-    check_quantity(&result.doses, DOSE_OTHER);
-    check_quantity(&result.doses, DOSE_THERMAL_FLUENCE);
-    assert_non_null(strstr(said(&result.report, "dose.total-boron"), "weighted, with 15 ppm"));
-    finish(&result);
+    assert_near(volume_value(total, 0, 0, 0), chd_printed(&made, "total", 0, 6), 6e-4);
+    assert_near(volume_value(boron, 2, 1, 1), chd_physical(DOSE_BORON, 11), 6e-4);
+    assert_near(result.doses.reference[DOSE_BLOOD_BORON], 1.25 * chd_physical(DOSE_BORON, 0), 1e-5);
+    chd_check_quantity(&result.doses, DOSE_GAMMA);
+    chd_check_quantity(&result.doses, DOSE_NITROGEN);
+    chd_check_quantity(&result.doses, DOSE_FAST);
+    chd_check_quantity(&result.doses, DOSE_OTHER);
+    chd_check_quantity(&result.doses, DOSE_THERMAL_FLUENCE);
+    assert_non_null(strstr(chd_said(&result.report, "dose.total-boron"), "weighted, with 15 ppm"));
+    chd_result_finish(&result);
     made.weight = 0;
-    result = read_made(&made);
-    assert_null(volume_of(&result.doses, DOSE_BLOOD_BORON));
-    assert_non_null(strstr(said(&result.report, "dose.weight-zero"), "boron"));
-    finish(&result);
+    result = chd_read_made(&made);
+    assert_null(chd_volume_of(&result.doses, DOSE_BLOOD_BORON));
+    assert_non_null(strstr(chd_said(&result.report, "dose.weight-zero"), "boron"));
+    chd_result_finish(&result);
 }
 
 /* Needs some points a region: a set of 40 columns. */
-static struct result read_wide(double ratio)
+static struct chd_result read_wide(double ratio)
 {
-    struct text header = { malloc(TEXT_SIZE), 0 }, table = { malloc(TEXT_SIZE), 0 };
-    struct result result;
-    put(&header, "Version_stamp: seraMC_1C0\nFOV: 10\nxmin: -1\nxmax: 1\nymin: -1\nymax: 1\nnum_cols: 41\nnum_rows: 2\nnum_planes: 1\n"
+    struct chd_text header = { malloc(CHD_TEXT_SIZE), 0 }, table = { malloc(CHD_TEXT_SIZE), 0 };
+    struct chd_result result;
+    chd_put(&header, "Version_stamp: seraMC_1C0\nFOV: 10\nxmin: -1\nxmax: 1\nymin: -1\nymax: 1\nnum_cols: 41\nnum_rows: 2\nnum_planes: 1\n"
                  "z_value_00: 0\nref_dose_7: 1E11\nconc_1: 10\n");
     for (int i = 0; i < 9; i++)
-        put(&header, "dose_comp_%d: %s\nrbe_val_%d: 1\n", i, sera_mc[i], i);
-    put(&header, "conc_0: 1\n");
+        chd_put(&header, "dose_comp_%d: %s\nrbe_val_%d: 1\n", i, chd_sera_mc[i], i);
+    chd_put(&header, "conc_0: 1\n");
     for (int r = 0; r < 2; r++)
         for (int c = 0; c < 41; c++)
-            put(&table, "%.4f %d 0 %d 1 %.5E 1 1 1 1 1 1E11 1\n", -1 + c * 0.05, 2 * r - 1, 6 + r, 10 * 0.73 * (r == 1 ? ratio : 1));
-    if (!read_both(&header, &table, NULL, &result))
+            chd_put(&table, "%.4f %d 0 %d 1 %.5E 1 1 1 1 1 1E11 1\n", -1 + c * 0.05, 2 * r - 1, 6 + r, 10 * 0.73 * (r == 1 ? ratio : 1));
+    if (!chd_read_both(&header, &table, NULL, &result))
         fail_msg("%s", result.err.text);
     free(header.at);
     free(table.at);
@@ -355,83 +163,83 @@ static struct result read_wide(double ratio)
 static void boron_is_physical_only_where_every_tissue_holds_as_much_as_blood(void **state)
 {
     (void)state;
-    struct result result = read_wide(1);
-    assert_non_null(volume_of(&result.doses, DOSE_BORON));
-    assert_close(volume_value(volume_of(&result.doses, DOSE_BORON), 3, 1, 0), 0.73, 1e-6);
-    assert_non_null(strstr(said(&result.report, "dose.boron-ratio"), "as much boron as blood"));
-    finish(&result);
+    struct chd_result result = read_wide(1);
+    assert_non_null(chd_volume_of(&result.doses, DOSE_BORON));
+    assert_close(volume_value(chd_volume_of(&result.doses, DOSE_BORON), 3, 1, 0), 0.73, 1e-6);
+    assert_non_null(strstr(chd_said(&result.report, "dose.boron-ratio"), "as much boron as blood"));
+    chd_result_finish(&result);
     result = read_wide(3.5); /* a tumour's */
-    assert_null(volume_of(&result.doses, DOSE_BORON));
-    assert_close(volume_value(volume_of(&result.doses, DOSE_BLOOD_BORON), 3, 1, 0), 3.5 * 0.73, 1e-5);
-    assert_non_null(strstr(said(&result.report, "dose.boron-ratio"), "does not store"));
-    assert_non_null(volume_of(&result.doses, DOSE_TOTAL)); /* no weights in it */
-    finish(&result);
+    assert_null(chd_volume_of(&result.doses, DOSE_BORON));
+    assert_close(volume_value(chd_volume_of(&result.doses, DOSE_BLOOD_BORON), 3, 1, 0), 3.5 * 0.73, 1e-5);
+    assert_non_null(strstr(chd_said(&result.report, "dose.boron-ratio"), "does not store"));
+    assert_non_null(chd_volume_of(&result.doses, DOSE_TOTAL)); /* no weights in it */
+    chd_result_finish(&result);
 }
 
 static void any_version_is_read_when_its_keys_are_there(void **state)
 {
     (void)state;
-    struct made made = plain;
+    struct made_chd made = chd_plain;
     made.version = "seraMC_2B7";
-    struct result result = read_made(&made);
-    assert_string_equal(said(&result.report, "dose.unknown-version"), "");
-    finish(&result);
+    struct chd_result result = chd_read_made(&made);
+    assert_string_equal(chd_said(&result.report, "dose.unknown-version"), "");
+    chd_result_finish(&result);
     made.version = "another 1.0";
-    result = read_made(&made);
-    assert_non_null(strstr(said(&result.report, "dose.unknown-version"), "\"another 1.0\""));
-    check_quantity(&result.doses, DOSE_GAMMA);
-    finish(&result);
+    result = chd_read_made(&made);
+    assert_non_null(strstr(chd_said(&result.report, "dose.unknown-version"), "\"another 1.0\""));
+    chd_check_quantity(&result.doses, DOSE_GAMMA);
+    chd_result_finish(&result);
 }
 
 static void a_header_in_millimetres_is_told_by_its_width(void **state)
 {
     (void)state;
-    struct made made = plain;
+    struct made_chd made = chd_plain;
     made.fov = 129.999;
     made.z[0] = -50;
     made.z[1] = -44.5;
-    struct result result = read_made(&made);
-    struct vec3 first = affine_point(&volume_of(&result.doses, DOSE_GAMMA)->grid.lps_mm_from_ijk, vec3(0, 0, 0));
+    struct chd_result result = chd_read_made(&made);
+    struct vec3 first = affine_point(&chd_volume_of(&result.doses, DOSE_GAMMA)->grid.lps_mm_from_ijk, vec3(0, 0, 0));
     assert_close(first.x, -129.999, 1e-6);
     assert_close(first.z, -50, 1e-6);
-    assert_non_null(strstr(said(&result.report, "geometry.unit-assumed"), "2.60 m wide in centimetres"));
-    finish(&result);
+    assert_non_null(strstr(chd_said(&result.report, "geometry.unit-assumed"), "2.60 m wide in centimetres"));
+    chd_result_finish(&result);
 }
 
 static void points_that_hold_nothing_are_not_blended_with_their_neighbours(void **state)
 {
     (void)state;
-    struct text header = make_header(&plain), table = make_table(&plain);
-    struct result result;
+    struct chd_text header = chd_make_header(&chd_plain), table = chd_make_table(&chd_plain);
+    struct chd_result result;
     /* the first point: zeros alone; the second: region 0 */
     for (int i = 0; i < 9; i++)
         memcpy(table.at + 34 + 10 * i, i % 2 ? " 0.000E+00" : "  .000E+00", 10);
     memcpy(table.at + 125 + 30, "   0", 4);
-    assert_true(read_both(&header, &table, NULL, &result));
-    const struct volume *gamma = volume_of(&result.doses, DOSE_GAMMA);
+    assert_true(chd_read_both(&header, &table, NULL, &result));
+    const struct volume *gamma = chd_volume_of(&result.doses, DOSE_GAMMA);
     double value;
     assert_true(isnan(volume_value(gamma, 0, 0, 0)));
     assert_true(isnan(volume_value(gamma, 1, 0, 0)));
     assert_false(volume_sample(gamma, vec3(-95, 95, -50), &value));
     assert_true(volume_sample(gamma, vec3(95, -95, -38), &value));
     assert_true(gamma->low > 10);
-    assert_non_null(strstr(said(&result.report, "dose.outside-mesh"), "2 of 12 points"));
+    assert_non_null(strstr(chd_said(&result.report, "dose.outside-mesh"), "2 of 12 points"));
     free(header.at);
     free(table.at);
-    finish(&result);
+    chd_result_finish(&result);
 }
 
 static void pictures_of_regions_say_where_the_dose_is_valid(void **state)
 {
     (void)state;
     enum { SIDE = 256 };
-    struct text header = make_header(&plain), table = make_table(&plain);
+    struct chd_text header = chd_make_header(&chd_plain), table = chd_make_table(&chd_plain);
     struct bytes mask = { malloc(2 * SIDE * SIDE), 2 * SIDE * SIDE };
-    struct result result;
+    struct chd_result result;
     /* two regions, 6 and 7 of 7: 255 / 7 = 36; the left third is 6; the foremost ten rows hold nothing */
     for (size_t i = 0; i < mask.size; i++)
         mask.data[i] = i / SIDE % SIDE < 10 ? 0 : (uint8_t)(36 * (i % SIDE < 60 ? 6 : 7));
-    assert_true(read_both(&header, &table, &mask, &result));
+    assert_true(chd_read_both(&header, &table, &mask, &result));
     assert_non_null(result.doses.mask);
     uint32_t at[3];
     assert_true(volume_voxel_at(result.doses.mask, vec3(0, -99, -50), at)); /* P -99: foremost */
@@ -440,12 +248,12 @@ static void pictures_of_regions_say_where_the_dose_is_valid(void **state)
     assert_int_equal(volume_label(result.doses.mask, at[0], at[1], at[2]), 1);
     assert_true(volume_voxel_at(result.doses.mask, vec3(0, -91, -50), at)); /* 10 rows of 200 / 256 mm end at 92.19 */
     assert_int_equal(volume_label(result.doses.mask, at[0], at[1], at[2]), 1);
-    finish(&result);
+    chd_result_finish(&result);
     mask.size -= SIDE;
-    assert_true(read_both(&header, &table, &mask, &result));
+    assert_true(chd_read_both(&header, &table, &mask, &result));
     assert_null(result.doses.mask);
-    assert_non_null(strstr(said(&result.report, "dose.mask-unread"), "are not 2 square pictures"));
-    finish(&result);
+    assert_non_null(strstr(chd_said(&result.report, "dose.mask-unread"), "are not 2 square pictures"));
+    chd_result_finish(&result);
     free(mask.data);
     free(header.at);
     free(table.at);
@@ -455,21 +263,21 @@ static void pictures_of_uneven_planes_go_with_the_nearest(void **state)
 {
     (void)state;
     enum { SIDE = 16 };
-    struct made made = plain;
+    struct made_chd made = chd_plain;
     made.n_planes = 3;
     made.z[2] = -1.9;
     made.order[2] = 2;
-    struct text header = make_header(&made), table = make_table(&made);
+    struct chd_text header = chd_make_header(&made), table = chd_make_table(&made);
     uint8_t pixels[3 * SIDE * SIDE];
     memset(pixels, 252, 2 * SIDE * SIDE);
     memset(pixels + 2 * SIDE * SIDE, 0, SIDE * SIDE); /* the last plane is not valid */
     const struct bytes mask = { pixels, sizeof pixels };
-    struct result result;
-    assert_true(read_both(&header, &table, &mask, &result));
+    struct chd_result result;
+    assert_true(chd_read_both(&header, &table, &mask, &result));
     assert_int_equal(result.doses.mask->grid.size[2], 4); /* -5, -3.97, -2.93 and -1.9 cm: the third is the nearer to the last */
     for (uint32_t k = 0; k < 4; k++)
         assert_int_equal(volume_label(result.doses.mask, 3, 3, k), k < 2);
-    finish(&result);
+    chd_result_finish(&result);
     free(header.at);
     free(table.at);
 }
@@ -481,18 +289,18 @@ static void pictures_that_show_other_regions_are_not_believed(void **state)
                                  "dose_comp_2: gamma\nrbe_val_2: 1\n";
     /* region 2 posterior, 1 anterior: 255 / 2 = 127, so 254 below and 127 above */
     static const char points[] = "-.5 -.5 0 2 1 1 1 1 1 1 1 1 1\n.5 -.5 0 2 1 1 1 1 1 1 1 1 1\n-.5 .5 0 1 1 1 1 1 1 1 1 1 1\n.5 .5 0 1 1 1 1 1 1 1 1 1 1\n";
-    struct text head = { (char *)(uintptr_t)header, sizeof header - 1 }, table = { (char *)(uintptr_t)points, sizeof points - 1 };
+    struct chd_text head = { (char *)(uintptr_t)header, sizeof header - 1 }, table = { (char *)(uintptr_t)points, sizeof points - 1 };
     uint8_t pixels[256];
     const struct bytes mask = { pixels, sizeof pixels };
     for (int is_turned = 0; is_turned < 2; is_turned++) {
-        struct result result;
+        struct chd_result result;
         for (size_t i = 0; i < sizeof pixels; i++)
             pixels[i] = (i < 128) != is_turned ? 127 : 254;
         pixels[0] = 0;
-        assert_true(read_both(&head, &table, &mask, &result));
+        assert_true(chd_read_both(&head, &table, &mask, &result));
         assert_int_equal(result.doses.mask != NULL, !is_turned);
-        assert_int_equal(strstr(said(&result.report, "dose.mask-unread"), "at 100 % of its points") != NULL, is_turned);
-        finish(&result);
+        assert_int_equal(strstr(chd_said(&result.report, "dose.mask-unread"), "at 100 % of its points") != NULL, is_turned);
+        chd_result_finish(&result);
     }
 }
 
@@ -502,37 +310,37 @@ static void numbers_that_are_none_and_a_reference_of_zero_are_counted(void **sta
     static const struct {
         const char *word, *sentence;
     } bad[] = { { "**********", "1 values too large" }, { "NaN", "and 1 that are no numbers" }, { "1E99", "1 values too large" } };
-    struct made made = plain;
+    struct made_chd made = chd_plain;
     for (size_t i = 0; i < 3; i++) {
         made.special = bad[i].word;
-        struct result result = read_made(&made);
-        assert_true(isnan(volume_value(volume_of(&result.doses, DOSE_GAMMA), 0, 0, 0)));
-        assert_near(volume_value(volume_of(&result.doses, DOSE_NITROGEN), 0, 0, 0), 5, 1e-3);
-        assert_non_null(strstr(said(&result.report, "dose.bad-values"), bad[i].sentence));
-        assert_non_null(strstr(said(&result.report, "dose.bad-values"), "first in line 1"));
-        finish(&result);
+        struct chd_result result = chd_read_made(&made);
+        assert_true(isnan(volume_value(chd_volume_of(&result.doses, DOSE_GAMMA), 0, 0, 0)));
+        assert_near(volume_value(chd_volume_of(&result.doses, DOSE_NITROGEN), 0, 0, 0), 5, 1e-3);
+        assert_non_null(strstr(chd_said(&result.report, "dose.bad-values"), bad[i].sentence));
+        assert_non_null(strstr(chd_said(&result.report, "dose.bad-values"), "first in line 1"));
+        chd_result_finish(&result);
     }
     made.special = "  2.0-101";
     made.more = "ref_dose_2: .0E+00\nref_dose_3: ********\n";
-    struct result result = read_made(&made);
-    assert_close(volume_value(volume_of(&result.doses, DOSE_GAMMA), 0, 0, 0), 0, 1e-30);
+    struct chd_result result = chd_read_made(&made);
+    assert_close(volume_value(chd_volume_of(&result.doses, DOSE_GAMMA), 0, 0, 0), 0, 1e-30);
     assert_close(result.doses.reference[DOSE_GAMMA], 0, 0);
-    assert_non_null(strstr(said(&result.report, "dose.no-reference"), "1 of 9"));
-    assert_non_null(strstr(said(&result.report, "header.bad-number"), "ref_dose_3"));
-    finish(&result);
+    assert_non_null(strstr(chd_said(&result.report, "dose.no-reference"), "1 of 9"));
+    assert_non_null(strstr(chd_said(&result.report, "header.bad-number"), "ref_dose_3"));
+    chd_result_finish(&result);
 }
 
 static void expect_header(const char *more, enum error_code code, const char *words)
 {
-    struct made made = plain;
-    struct result result;
+    struct made_chd made = chd_plain;
+    struct chd_result result;
     made.more = more;
-    struct text header = make_header(&made), table = make_table(&made);
-    if (read_both(&header, &table, NULL, &result) || result.err.code != code || !strstr(result.err.text, words) || !strstr(result.err.text, "a.c"))
+    struct chd_text header = chd_make_header(&made), table = chd_make_table(&made);
+    if (chd_read_both(&header, &table, NULL, &result) || result.err.code != code || !strstr(result.err.text, words) || !strstr(result.err.text, "a.c"))
         fail_msg("%s: \"%s\"", more, result.err.text);
     free(header.at);
     free(table.at);
-    finish(&result);
+    chd_result_finish(&result);
 }
 
 static void a_set_that_is_wrong_is_refused_with_its_line(void **state)
@@ -551,22 +359,22 @@ static void a_set_that_is_wrong_is_refused_with_its_line(void **state)
     expect_header("FOV: 20\n", ERROR_FORMAT, "a.cdf.sz: line 1: the point (-1, -1, -0.5) is not one");
     expect_header("num_rows: 3\n", ERROR_FORMAT, "12 points, but the header says 3 x 3 x 2 = 18");
     expect_header("num_planes: 1\n", ERROR_FORMAT, "a.cdf.sz: line 7: more points than the 3 x 2 x 1");
-    struct text header = make_header(&plain), table = make_table(&plain);
-    struct result result;
+    struct chd_text header = chd_make_header(&chd_plain), table = chd_make_table(&chd_plain);
+    struct chd_result result;
     size_t whole = table.n;
     table.n = 300;
-    assert_false(read_both(&header, &table, NULL, &result));
+    assert_false(chd_read_both(&header, &table, NULL, &result));
     assert_non_null(strstr(result.err.text, "line 3: 50 characters, expected 13 numbers in columns"));
-    finish(&result);
+    chd_result_finish(&result);
     table.n = whole;
     memcpy(table.at + 125, table.at, 125);
-    assert_false(read_both(&header, &table, NULL, &result));
+    assert_false(chd_read_both(&header, &table, NULL, &result));
     assert_non_null(strstr(result.err.text, "line 2: the point (-1, -1, -0.5) is there twice"));
-    finish(&result);
+    chd_result_finish(&result);
     header.n = 20;
-    assert_false(read_both(&header, &table, NULL, &result));
+    assert_false(chd_read_both(&header, &table, NULL, &result));
     assert_non_null(strstr(result.err.text, "the key FOV is missing"));
-    finish(&result);
+    chd_result_finish(&result);
     free(header.at);
     free(table.at);
 }
@@ -574,25 +382,25 @@ static void a_set_that_is_wrong_is_refused_with_its_line(void **state)
 static void every_cut_and_every_changed_byte_is_survived(void **state)
 {
     (void)state;
-    struct text header = make_header(&plain), table = make_table(&plain);
-    struct result result;
+    struct chd_text header = chd_make_header(&chd_plain), table = chd_make_table(&chd_plain);
+    struct chd_result result;
     for (int which = 0; which < 2; which++) {
-        struct text *text = which ? &table : &header;
+        struct chd_text *text = which ? &table : &header;
         size_t whole = text->n;
         for (size_t n = 0; n < whole; n += which ? 1 : 3) {
-            struct text part = { malloc(n + 1), n }; /* of exactly that size, for the address sanitizer */
+            struct chd_text part = { malloc(n + 1), n }; /* of exactly that size, for the address sanitizer */
             memcpy(part.at, text->at, n);
-            if (!read_both(which ? &header : &part, which ? &part : &table, NULL, &result))
+            if (!chd_read_both(which ? &header : &part, which ? &part : &table, NULL, &result))
                 assert_true(result.err.text[0] != 0);
-            finish(&result);
+            chd_result_finish(&result);
             free(part.at);
         }
         for (size_t i = 0; i < whole; i++)
             for (int bit = 0; bit < 8; bit += 3) {
                 text->at[i] = (char)(text->at[i] ^ 1 << bit);
-                if (!read_both(&header, &table, NULL, &result))
+                if (!chd_read_both(&header, &table, NULL, &result))
                     assert_true(result.err.text[0] != 0);
-                finish(&result);
+                chd_result_finish(&result);
                 text->at[i] = (char)(text->at[i] ^ 1 << bit);
             }
     }

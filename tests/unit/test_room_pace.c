@@ -1,0 +1,118 @@
+/* Pacing: how large pictures are while they move (design.md 6). */
+#include "server/room/pace.h"
+#include "tests/unit/room_fake.h"
+
+static struct fake_room fake;
+static struct fake_page ann;
+
+static int start(void **state)
+{
+    (void)state;
+    fake_room_start(&fake, 0);
+    fake_plan_ready(&fake, true);
+    return 0;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    fake_room_end(&fake);
+    fake_page_end(&ann);
+    return 0;
+}
+
+static void software_starts_whole_but_with_light_surfaces(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    assert_int_equal(fake_newest(&fake)->scale_percent, 100);
+    assert_int_equal(fake_newest(&fake)->quality, 80);
+    assert_true(fake_newest(&fake)->light);
+    assert_false(fake_newest(&fake)->full_color);
+}
+
+static void a_graphics_card_starts_at_full_size_and_detail(void **state)
+{
+    (void)state;
+    fake_plan_ready(&fake, false);
+    fake_join(&fake, &ann, false);
+    assert_int_equal(fake_newest(&fake)->scale_percent, 100);
+    assert_int_equal(fake_newest(&fake)->quality, 80);
+    assert_false(fake_newest(&fake)->light);
+}
+
+/* moves for a while; returns the scale asked for last */
+static int drag(int n, int64_t interval_ms, uint32_t render_us)
+{
+    int scale = 0;
+    for (int i = 0; i < n; i++) {
+        static int x;
+        fake_turn(&fake, &ann, ++x, 0);
+        struct fake_request *request = fake_newest(&fake);
+        scale = request->scale_percent;
+        fake_pass(&fake, interval_ms);
+        fake_draw_slow(&fake, request, render_us);
+        fake_shown(&fake, &ann);
+    }
+    return scale;
+}
+
+static void slow_pictures_become_smaller_and_fast_ones_larger_again(void **state)
+{
+    (void)state;
+    fake_plan_ready(&fake, false);
+    fake_join(&fake, &ann, false);
+    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    assert_int_equal(drag(10, 60, 60000), 50); /* 4 steps of 3 pictures: 100, 75, 60, 50 */
+    assert_int_equal(drag(30, 15, 8000), 50);  /* less than a second of fast ones */
+    assert_int_equal(drag(80, 15, 8000), 60);
+    assert_int_equal(drag(300, 15, 8000), 100);
+}
+
+static void late_acknowledgements_make_pictures_smaller(void **state)
+{
+    (void)state;
+    fake_plan_ready(&fake, false);
+    fake_join(&fake, &ann, false);
+    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    assert_int_equal(drag(10, 15, 8000), 100);
+    int scale = 0;
+    for (int i = 0; i < 40; i++) {
+        fake_turn(&fake, &ann, 1000 + i, 0);
+        struct fake_request *request = fake_newest(&fake);
+        scale = request->scale_percent;
+        fake_draw_slow(&fake, request, 8000);
+        fake_pass(&fake, 140);
+        fake_shown(&fake, &ann);
+    }
+    assert_int_equal(scale, 50);
+}
+
+static void a_step_up_that_does_not_hold_is_tried_less_and_less_often(void **state)
+{
+    struct pace pace;
+    int n_up = 0;
+    int64_t now_us = 1;
+    (void)state;
+    pace_start(&pace, false);
+    for (int i = 0; i < 60 * 25; i++, now_us += 40000) { /* one minute: full size is too slow, three quarters are fast */
+        int before = pace.step;
+        pace_drawn(&pace, pace.step == 0 ? 50000 : 10000, 2000, 0, 1, now_us);
+        n_up += pace.step < before;
+    }
+    /* after 1, 2, 4, 8, 16 s and then not within the minute */
+    assert_int_equal(n_up, 5);
+}
+
+int main(void)
+{
+#define T(name) cmocka_unit_test_setup_teardown(name, start, end)
+    const struct CMUnitTest tests[] = {
+        T(software_starts_whole_but_with_light_surfaces),
+        T(a_graphics_card_starts_at_full_size_and_detail),
+        T(slow_pictures_become_smaller_and_fast_ones_larger_again),
+        T(late_acknowledgements_make_pictures_smaller),
+        T(a_step_up_that_does_not_hold_is_tried_less_and_less_often),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
