@@ -13,6 +13,8 @@
 #include "core/base/mem.h"
 #include "server/fleet/news.h"
 
+enum { EVENTS_A_TURN = 256 };
+
 static const struct fleet_times default_times = { .ping = 2000, .silent = 8000, .stall = 120000, .request = 30000, .scan = 30000, .unpack = 120000 };
 
 const char *fleet_state_word(enum fleet_state state)
@@ -262,10 +264,14 @@ static void tell_news(struct fleet *fleet)
 void fleet_handle_events(struct fleet *fleet)
 {
     plans_drop_removed(fleet);
-    for (struct watch_event *event; (event = watch_take(fleet->watch));) {
+    struct watch_event *event;
+    int n = 0;
+    for (; n < EVENTS_A_TURN && (event = watch_take(fleet->watch)); n++) {
         take_event(fleet, event);
         watch_event_destroy(event);
     }
+    if (n == EVENTS_A_TURN) /* a process that talks without end shares the thread with everyone */
+        fleet->options.wake(fleet->options.context);
     plans_start_scans(fleet);
     uploads_go_on(fleet);
     tell_news(fleet);

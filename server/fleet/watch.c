@@ -51,7 +51,7 @@ struct watch {
     int bell; /* rung after an order */
     /* the thread's own */
     struct process *processes[MAX_PROCESSES];
-    size_t n_processes;
+    size_t n_processes, next; /* next: whose turn it is */
     struct held_event *held, **last_held;
     bool is_quitting;
     int64_t quit_at_us;
@@ -267,6 +267,21 @@ static void wait_for_something(struct watch *watch)
         return; /* nothing was ordered */
 }
 
+/* Each process has its turn: one that fills the queue, and so ends a round, must not keep the others from theirs. */
+static void step_next(struct watch *watch, int64_t now_us)
+{
+    watch->next = watch->next < watch->n_processes ? watch->next : 0;
+    struct process *process = watch->processes[watch->next];
+    if (watch->is_quitting && now_us >= watch->quit_at_us)
+        process_stop(process, true, "", now_us);
+    if (process_step(process, &watch->options, now_us)) {
+        process_destroy(process);
+        watch->processes[watch->next] = watch->processes[--watch->n_processes];
+    } else {
+        watch->next++;
+    }
+}
+
 static void *watch_main(void *argument)
 {
     struct watch *watch = argument;
@@ -276,14 +291,8 @@ static void *watch_main(void *argument)
             obey(watch, order);
         flush_held(watch);
         int64_t now_us = clock_now_us();
-        for (size_t i = watch->n_processes; i-- > 0 && (!watch->held || watch->is_quitting);) {
-            if (watch->is_quitting && now_us >= watch->quit_at_us)
-                process_stop(watch->processes[i], true, "", now_us);
-            if (process_step(watch->processes[i], &watch->options, now_us)) {
-                process_destroy(watch->processes[i]);
-                watch->processes[i] = watch->processes[--watch->n_processes];
-            }
-        }
+        for (size_t n = watch->n_processes; n > 0 && (!watch->held || watch->is_quitting); n--)
+            step_next(watch, now_us);
     }
     return NULL;
 }

@@ -5,7 +5,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "core/base/clock.h"
 #include "tests/check.h"
 
 static void wake(void *context) { atomic_fetch_add(&((struct world *)context)->n_wakes, 1); }
@@ -63,10 +62,18 @@ struct fleet_plan world_plan_of(struct world *world, const char *id)
 void world_wait_for_state(struct world *world, const char *id, enum fleet_state state)
 {
     struct fleet_plan plan = { 0 };
-    for (int64_t until_us = clock_now_us() + 20000000; clock_now_us() < until_us; world_step(world))
-        if (fleet_plan_find(world->fleet, id, &plan) && plan.state == state)
-            return;
-    fail_msg("%s is %s, expected %s (%s)", id, fleet_state_word(plan.state), fleet_state_word(state), plan.problem ? plan.problem->detail : "");
+    WORLD_UNTIL(world, fleet_plan_find(world->fleet, id, &plan) && plan.state == state);
+    if (plan.state != state)
+        fail_msg("%s is %s, expected %s (%s)", id, fleet_state_word(plan.state), fleet_state_word(state), plan.problem ? plan.problem->detail : "");
+}
+
+static size_t n_looked_at(const struct world *world)
+{
+    size_t n = 0;
+    struct fleet_plan plan;
+    for (size_t i = 0; fleet_plan_at(world->fleet, i, &plan); i++)
+        n += plan.state == FLEET_UNREADABLE || cJSON_GetArraySize(plan.parts) > 0;
+    return n;
 }
 
 void world_start(struct world *world, size_t n_plans)
@@ -74,15 +81,9 @@ void world_start(struct world *world, size_t n_plans)
     struct error err = { 0 };
     world->fleet = fleet_create(&world->options, &err);
     assert_string_equal(err.text, "");
-    for (int64_t until_us = clock_now_us() + 20000000; clock_now_us() < until_us; world_step(world)) {
-        size_t n_looked_at = 0;
-        struct fleet_plan plan;
-        for (size_t i = 0; fleet_plan_at(world->fleet, i, &plan); i++)
-            n_looked_at += plan.state == FLEET_UNREADABLE || cJSON_GetArraySize(plan.parts) > 0;
-        if (n_looked_at >= n_plans)
-            return;
-    }
-    fail_msg("%zu plans were not listed", n_plans);
+    WORLD_UNTIL(world, n_looked_at(world) >= n_plans);
+    if (n_looked_at(world) < n_plans)
+        fail_msg("%zu plans were not listed", n_plans);
 }
 
 void world_remove_folder(const char *path)
@@ -147,8 +148,7 @@ uint64_t world_ask(struct world *world, const char *id, const char *type, struct
 
 void world_wait_for_reply(struct world *world, struct reply *reply)
 {
-    for (int64_t until_us = clock_now_us() + 30000000; reply->n == 0 && clock_now_us() < until_us;)
-        world_step(world);
+    WORLD_UNTIL(world, reply->n > 0);
     assert_int_equal(reply->n, 1);
 }
 

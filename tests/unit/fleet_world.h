@@ -3,6 +3,7 @@
 #include <stdatomic.h>
 #include <stddef.h>
 
+#include "core/base/clock.h"
 #include "server/fleet/fleet.h"
 
 struct world {
@@ -34,6 +35,10 @@ void world_start(struct world *world, size_t n_plans);
 void world_end(struct world *world);
 void world_remove_folder(const char *path);
 void world_step(struct world *world); /* one turn of what the net thread does */
+/* Turns until the condition holds; after a minute, for machines that are busy with other things, whatever it says. */
+#define WORLD_UNTIL(world, condition) \
+    for (int64_t until_us_ = clock_now_us() + 60000000; !(condition) && clock_now_us() < until_us_;) \
+    world_step(world)
 struct fleet_plan world_plan_of(struct world *world, const char *id);
 void world_wait_for_state(struct world *world, const char *id, enum fleet_state state);
 void world_open_plan(struct world *world, const char *id);

@@ -52,8 +52,7 @@ static void a_plan_is_listed_opened_drawn_and_closed(void **state)
     pid_t pid = plan.pid;
     fleet_close(world.fleet, "head-of-mr-x");
     assert_int_equal(world_plan_of(&world, "head-of-mr-x").state, FLEET_CLOSED);
-    for (int i = 0; i < 1000 && kill(pid, 0) == 0; i++)
-        world_step(&world);
+    WORLD_UNTIL(&world, kill(pid, 0) != 0);
     assert_int_equal(kill(pid, 0), -1);
     world_end(&world);
 }

@@ -354,8 +354,7 @@ static void with_gl_a_frame_of_the_demo_plan_comes_and_comes_again(void **state)
     begin_head(&world, false, phantom_defaults.size);
     world_start(&world, 1);
     const struct problem *problem = NULL;
-    for (int64_t until_us = clock_now_us() + 20000000; !fleet_gl(world.fleet, &problem) && !problem && clock_now_us() < until_us;)
-        world_step(&world);
+    WORLD_UNTIL(&world, fleet_gl(world.fleet, &problem) || problem);
     if (!fleet_gl(world.fleet, NULL)) {
         world_end(&world);
         skip(); /* nothing here can draw */

@@ -65,16 +65,13 @@ static struct fleet_upload upload_of(struct world *world, uint64_t number)
 
 static struct fleet_upload wait_for_end(struct world *world, uint64_t number)
 {
-    for (int64_t until_us = clock_now_us() + 20000000; clock_now_us() < until_us; world_step(world))
-        if (upload_of(world, number).state > UPLOAD_RUNNING)
-            break;
+    WORLD_UNTIL(world, upload_of(world, number).state > UPLOAD_RUNNING);
     return upload_of(world, number);
 }
 
 static void wait_until_empty(struct world *world)
 {
-    for (int64_t until_us = clock_now_us() + 10000000; n_in(world, "uploads") > 0 && clock_now_us() < until_us;)
-        world_step(world);
+    WORLD_UNTIL(world, n_in(world, "uploads") == 0);
     assert_int_equal(n_in(world, "uploads"), 0);
 }
 
@@ -122,8 +119,7 @@ static void an_archive_becomes_a_plan_and_goes_again(void **state)
     assert_int_equal(n_in(&world, "plans"), 0);
     assert_int_equal(n_in(&world, "cache"), 0);
     wait_until_empty(&world);
-    for (int i = 0; i < 1000 && (kill(pid, 0) == 0 || fleet_n_plans(world.fleet) != 1); i++) /* its end is told by an event */
-        world_step(&world);
+    WORLD_UNTIL(&world, kill(pid, 0) != 0 && fleet_n_plans(world.fleet) == 1); /* its end is told by an event */
     assert_int_equal(kill(pid, 0), -1);
     assert_int_equal(fleet_n_plans(world.fleet), 1);
     assert_false(fleet_remove_plan(world.fleet, "mr-x", &problem));
@@ -204,7 +200,7 @@ static void impossible_progress_is_not_believed(void **state)
     start(&world);
     uint64_t number = begin_upload(&world, "x", "lies");
     double most = 0, now = 0;
-    for (int64_t until_us = clock_now_us() + 10000000; now != 12.75 && clock_now_us() < until_us; world_step(&world)) {
+    for (int64_t until_us = clock_now_us() + 60000000; now != 12.75 && clock_now_us() < until_us; world_step(&world)) {
         now = upload_of(&world, number).percent;
         most = now > most ? now : most;
         assert_close(now, most, 0); /* never back */
@@ -230,8 +226,7 @@ static void cancelling_ends_the_unpacker_and_leaves_nothing(void **state)
     uint64_t hanging = begin_upload(&world, "x", "hangs"), flooding = begin_upload(&world, "y", "floods");
     uint64_t waiting = begin_upload(&world, "z", "a/");
     assert_int_equal(upload_of(&world, waiting).state, UPLOAD_QUEUED); /* two at once */
-    for (int i = 0; i < 2000 && upload_of(&world, hanging).percent < 12; i++)
-        world_step(&world);
+    WORLD_UNTIL(&world, upload_of(&world, hanging).percent >= 12 && upload_of(&world, flooding).percent >= 13);
     assert_close(upload_of(&world, hanging).percent, 12.5, 0);
     assert_string_equal(upload_of(&world, hanging).phase, "unpacking");
     fleet_upload_cancel(world.fleet, hanging);
