@@ -1,5 +1,4 @@
 /* Contours become voxels: against hand counts, formulas, and a slow test of every voxel. */
-#include <time.h>
 
 #include "tests/check.h"
 #include "tests/unit/made_contours.h"
@@ -361,13 +360,6 @@ static void what_lies_beyond_the_grid_is_cut_and_counted(void **state)
     contour_set_finish(&set);
 }
 
-static double now_s(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* n teeth between the left and the right, or between bottom and top. */
 static struct contour_set made_comb(size_t n, bool is_upright, double height)
 {
@@ -392,10 +384,10 @@ static void a_million_points_are_filled_or_refused_in_time(void **state)
         struct contour_set set = made_comb(1000000, is_upright, 500);
         struct error err = { 0 };
         struct contour_facts facts;
-        double start_s = now_s();
+        double start_s = cpu_s();
         struct mask *mask = contour_fill(&set, &grid, &contour_defaults, &facts, &err);
         assert_true(mask || err.code == ERROR_LIMIT);
-        assert_true(now_s() - start_s < 20); /* under sanitizers too; a second else */
+        assert_true(cpu_s() - start_s < 20); /* under sanitizers too; a second else */
         mask_destroy(mask);
         contour_set_finish(&set);
     }

