@@ -103,7 +103,8 @@ static bool serve(const struct options *options, const char *data_folder, const 
     (void)snprintf(upload_folder, sizeof upload_folder, "%s/uploads", data_folder);
     const struct http_options http_options = { .web_folder = web_folder,
                                                .upload_folder = upload_folder,
-                                               .max_upload_bytes = (uint64_t)options->max_upload_mib << 20 };
+                                               .max_upload_bytes = (uint64_t)options->max_upload_mib << 20,
+                                               .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20 };
     struct net *net = net_create(&net_options, err);
     struct http *http = net ? http_create(net, &http_options, err) : NULL;
     struct acceptor *acceptor = http ? acceptor_create(options->listen ? options->listen : "127.0.0.1:8080", net, http, err) : NULL;

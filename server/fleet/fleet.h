@@ -11,7 +11,7 @@ enum {
     FLEET_MAX_RESTARTS = 3,    /* within 60 s; then failed */
     FLEET_MAX_REQUESTS = 4096, /* unanswered ones, of all plans; more are answered with PROBLEM_BUSY */
     FLEET_MAX_SCANS = 2,       /* plan folders looked at at once */
-    FLEET_MAX_UPLOADS = 16,    /* archives that wait, are unpacked or looked at; more are refused with PROBLEM_BUSY */
+    FLEET_MAX_UPLOADS = 16,    /* archives that wait, are unpacked or looked at; more are refused with PROBLEM_LIMIT */
     FLEET_MAX_UNPACKING = 2,   /* of these, unpacked at once */
     FLEET_KEPT_UPLOADS = 500   /* ended ones that can still be asked about */
 };

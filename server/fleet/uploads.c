@@ -461,7 +461,7 @@ uint64_t fleet_upload(struct fleet *fleet, const char *archive, const char *name
         n_going_on += !is_over(upload) || upload->process;
     if (n_going_on >= FLEET_MAX_UPLOADS) {
         (void)throw_away(fleet, archive);
-        problem_set(problem, PROBLEM_BUSY, "", "", "%d archives are waiting to be unpacked already", FLEET_MAX_UPLOADS);
+        problem_set(problem, PROBLEM_LIMIT, "", "", "%d archives are waiting to be unpacked already; at most so many may wait", FLEET_MAX_UPLOADS);
         problem->retry_after_ms = 10000;
         return 0;
     }

@@ -314,7 +314,7 @@ struct http *http_create(struct net *net, const struct http_options *options, st
     http->net = net;
     http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0);
     http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes : HTTP_MIN_ARCHIVE_DROPPED;
-    http->intake = intake_create(options->upload_folder, options->max_upload_bytes);
+    http->intake = intake_create(options->upload_folder, options->max_upload_bytes, options->disk_reserve_bytes);
     pthread_mutex_init(&http->asking, NULL);
     if (options->web_folder) {
         http->files = files_create(options->web_folder, err);

@@ -19,6 +19,7 @@ struct http_options {
     const char *web_folder;    /* the page; NULL: the API alone */
     const char *upload_folder; /* where archives are received; NULL: they are not */
     uint64_t max_upload_bytes;
+    uint64_t disk_reserve_bytes; /* stay free on its disk */
 };
 
 /* errors ERROR_IO, ERROR_LIMIT, ERROR_NOT_FOUND. net outlives it. */

@@ -17,6 +17,9 @@
 struct intake {
     char *folder;
     uint64_t max_bytes, last_number;
+    uint64_t reserve_bytes, n_promised; /* promised: what all files may still write of what they were granted */
+    uint64_t (*free_bytes)(void *context, int *failed);
+    void *context;
     int n_files, window_ms;
 };
 
@@ -25,16 +28,35 @@ struct intake_file {
     char *path;
     int fd;
     uint64_t n_bytes, window_bytes; /* in all, and since the window began */
+    uint64_t promised;              /* granted and not written yet */
+    uint64_t n_unlooked;            /* written since the disk was last looked at */
     int64_t window_us;
 };
 
-struct intake *intake_create(const char *folder, uint64_t max_bytes)
+static uint64_t ask_disk(void *context, int *failed)
+{
+    const struct intake *intake = context;
+    struct statvfs disk;
+    *failed = statvfs(intake->folder, &disk) != 0 ? errno : 0;
+    return *failed ? 0 : (uint64_t)disk.f_bavail * disk.f_frsize;
+}
+
+struct intake *intake_create(const char *folder, uint64_t max_bytes, uint64_t reserve_bytes)
 {
     struct intake *intake = mem_new(sizeof *intake);
     intake->folder = folder ? mem_copy_text(folder) : NULL;
     intake->max_bytes = max_bytes;
+    intake->reserve_bytes = reserve_bytes;
     intake->window_ms = INTAKE_WINDOW_MS;
+    intake->free_bytes = ask_disk;
+    intake->context = intake;
     return intake;
+}
+
+void intake_set_disk(struct intake *intake, uint64_t (*free_bytes)(void *context, int *failed), void *context)
+{
+    intake->free_bytes = free_bytes;
+    intake->context = context;
 }
 
 void intake_set_window_ms(struct intake *intake, int ms)
@@ -86,15 +108,46 @@ static bool check_sender(const struct call *call, struct problem *problem)
                        call->content_type ? call->content_type : "");
 }
 
-static bool check_space(const struct intake *intake, int64_t length, struct problem *problem)
+/* Whether the disk holds what all files were granted, and more beside it, and the reserve stays free. */
+static bool check_space(const struct intake *intake, uint64_t more, struct problem *problem)
 {
-    struct statvfs disk;
-    uint64_t needed = INTAKE_SPARE_BYTES + (length > 0 ? (uint64_t)length : 0);
-    if (statvfs(intake->folder, &disk) != 0)
-        return refuse_storage(errno, problem);
-    uint64_t n_free = (uint64_t)disk.f_bavail * disk.f_frsize;
-    return n_free >= needed || problem_set(problem, PROBLEM_STORAGE, "", "", "the server's disk has %" PRIu64 " MiB free, and %" PRIu64 " MiB are needed",
-                                           n_free >> 20, needed >> 20);
+    int failed;
+    uint64_t n_free = intake->free_bytes(intake->context, &failed);
+    if (failed)
+        return refuse_storage(failed, problem);
+    uint64_t kept = intake->reserve_bytes + intake->n_promised; /* a few files of at most INT64_MAX in all: each was granted */
+    if (n_free >= kept && n_free - kept >= more)
+        return true;
+    return problem_set(problem, PROBLEM_STORAGE, "", "",
+                       "the server's disk has %" PRIu64 " MiB free; expected are %" PRIu64 " MiB for this archive, %" PRIu64
+                       " for others that are being received, and %" PRIu64 " that stay free",
+                       n_free >> 20, (more + (1 << 20) - 1) >> 20, intake->n_promised >> 20, intake->reserve_bytes >> 20);
+}
+
+static void promise(struct intake_file *file, uint64_t n)
+{
+    file->promised += n;
+    file->intake->n_promised += n;
+}
+
+/* Before n bytes are written. A length that was announced is granted as a whole, one that was not in steps; and every step the disk is
+ * looked at again, because others write to it too. */
+static bool is_granted(struct intake_file *file, size_t n, struct problem *problem)
+{
+    struct intake *intake = file->intake;
+    if (n > file->promised) {
+        uint64_t left = intake->max_bytes - file->n_bytes, step = INTAKE_STEP_BYTES < left ? INTAKE_STEP_BYTES : left;
+        step = step > n ? step : n; /* n is within the limit: the caller has seen to that */
+        if (!check_space(intake, step, problem))
+            return false;
+        promise(file, step);
+        file->n_unlooked = 0;
+    } else if (file->n_unlooked >= INTAKE_STEP_BYTES) {
+        if (!check_space(intake, 0, problem))
+            return false;
+        file->n_unlooked = 0;
+    }
+    return true;
 }
 
 struct intake_file *intake_begin(struct intake *intake, const struct call *call, int64_t length, struct problem *problem)
@@ -110,11 +163,11 @@ struct intake_file *intake_begin(struct intake *intake, const struct call *call,
         return NULL;
     }
     if (intake->n_files >= INTAKE_MAX_FILES) {
-        problem_set(problem, PROBLEM_BUSY, "", "", "%d archives are being received already, which is as many as may be", INTAKE_MAX_FILES);
+        problem_set(problem, PROBLEM_LIMIT, "", "", "%d archives are being received already; at most so many are at once", INTAKE_MAX_FILES);
         problem->retry_after_ms = INTAKE_RETRY_MS;
         return NULL;
     }
-    if (!check_space(intake, length, problem))
+    if (!check_space(intake, length > 0 ? (uint64_t)length : 0, problem))
         return NULL;
     size_t n = strlen(intake->folder) + 32;
     struct intake_file *file = mem_new(sizeof *file);
@@ -129,6 +182,7 @@ struct intake_file *intake_begin(struct intake *intake, const struct call *call,
         return NULL;
     }
     file->window_us = clock_now_us();
+    promise(file, length > 0 ? (uint64_t)length : 0);
     intake->n_files++;
     return file;
 }
@@ -155,6 +209,8 @@ bool intake_add(struct intake_file *file, const char *bytes, size_t n, struct pr
         return false;
     if (n > file->intake->max_bytes - file->n_bytes)
         return refuse_size(file->intake, problem);
+    if (!is_granted(file, n, problem))
+        return false;
     while (n > 0) {
         ssize_t n_written = write(file->fd, bytes, n);
         if (n_written < 0 && errno == EINTR)
@@ -164,6 +220,9 @@ bool intake_add(struct intake_file *file, const char *bytes, size_t n, struct pr
         bytes += n_written;
         n -= (size_t)n_written;
         file->n_bytes += (uint64_t)n_written;
+        file->n_unlooked += (uint64_t)n_written;
+        file->promised -= (uint64_t)n_written;
+        file->intake->n_promised -= (uint64_t)n_written;
     }
     return true;
 }
@@ -171,6 +230,7 @@ bool intake_add(struct intake_file *file, const char *bytes, size_t n, struct pr
 static void release(struct intake_file *file)
 {
     file->intake->n_files--;
+    file->intake->n_promised -= file->promised;
     free(file->path);
     free(file);
 }

@@ -177,8 +177,8 @@ describe('what is refused', () => {
     assert.equal((await until(waiting, (names) => names.length === 4)).length, 4);
     for (const name of waiting()) assert.equal(statSync(join(daemon.data, 'uploads', name)).mode & 0o777, 0o600);
     const fifth = await send(api, 'x', Buffer.from('PK'));
-    assert.equal(fifth.status, 503);
-    assert.equal(fifth.json.type, '/problems/busy');
+    assert.equal(fifth.status, 429);
+    assert.equal(fifth.json.type, '/problems/limit');
     assert.ok(Number(fifth.headers.get('retry-after')) > 0);
     for (const { socket } of four) socket.destroy();
     assert.deepEqual(await settled(), []);

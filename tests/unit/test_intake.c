@@ -66,7 +66,7 @@ static enum problem_type refusal(struct intake *intake, const char *content_type
 static void what_may_not_come_is_refused_before_it_does(void **state)
 {
     (void)state;
-    struct intake *intake = intake_create(folder, 1000), *none = intake_create(NULL, 1000), *lost = intake_create("/nowhere", 1000);
+    struct intake *intake = intake_create(folder, 1000, 0), *none = intake_create(NULL, 1000, 0), *lost = intake_create("/nowhere", 1000, 0);
     assert_int_equal(refusal(intake, "application/zip", NULL, 1000), PROBLEM_NONE);
     assert_int_equal(refusal(intake, "APPLICATION/X-TAR; x=y", NULL, -1), PROBLEM_NONE);
     assert_int_equal(refusal(intake, "application/gzip", "http://here.example:8080", 0), PROBLEM_NONE);
@@ -87,7 +87,7 @@ static void what_may_not_come_is_refused_before_it_does(void **state)
 static void more_than_the_disk_holds_is_refused_before_it_comes(void **state)
 {
     (void)state;
-    struct intake *intake = intake_create(folder, UINT64_MAX);
+    struct intake *intake = intake_create(folder, UINT64_MAX, 0);
     assert_int_equal(refusal(intake, "application/zip", NULL, INT64_C(1) << 60), PROBLEM_STORAGE);
     intake_destroy(intake);
 }
@@ -95,7 +95,7 @@ static void more_than_the_disk_holds_is_refused_before_it_comes(void **state)
 static void it_ends_at_the_limit_and_not_before(void **state)
 {
     (void)state;
-    struct intake *intake = intake_create(folder, 10);
+    struct intake *intake = intake_create(folder, 10, 0);
     struct call *call = archive_call("application/zip");
     struct problem problem = { 0 };
     struct intake_file *file = intake_begin(intake, call, -1, &problem);
@@ -112,7 +112,7 @@ static void it_ends_at_the_limit_and_not_before(void **state)
 static void what_has_come_whole_is_ours_alone_to_read(void **state)
 {
     (void)state;
-    struct intake *intake = intake_create(folder, 10);
+    struct intake *intake = intake_create(folder, 10, 0);
     struct call *call = archive_call("application/zip");
     struct problem problem = { 0 };
     struct intake_file *file = intake_begin(intake, call, 5, &problem);
@@ -136,7 +136,7 @@ static void what_has_come_whole_is_ours_alone_to_read(void **state)
 static void a_disk_that_takes_no_more_is_said(void **state)
 {
     (void)state;
-    struct intake *intake = intake_create(folder, 1 << 20);
+    struct intake *intake = intake_create(folder, 1 << 20, 0);
     struct call *call = archive_call("application/zip");
     struct problem problem = { 0 };
     struct rlimit before, low = { 0 };
@@ -156,10 +156,122 @@ static void a_disk_that_takes_no_more_is_said(void **state)
     intake_destroy(intake);
 }
 
+/* A disk of its own: what is free is what it had less what lies in the folder, and less what others took. */
+static uint64_t disk_bytes, taken_bytes;
+
+static uint64_t free_bytes(void *context, int *failed)
+{
+    (void)context;
+    uint64_t n = taken_bytes;
+    for (int i = 1; i <= 8; i++) {
+        char path[96];
+        struct stat facts;
+        snprintf(path, sizeof path, "%s/%d.part", folder, i);
+        if (stat(path, &facts) == 0)
+            n += (uint64_t)facts.st_size;
+    }
+    *failed = 0;
+    return disk_bytes > n ? disk_bytes - n : 0;
+}
+
+static const char block[1 << 20];
+
+/* Four senders that do not say how much comes, in turn, until none may go on: what is free then. */
+static void streams_that_come_together_leave_the_reserve(void **state)
+{
+    (void)state;
+    const uint64_t reserve = 40 << 20;
+    struct intake *intake = intake_create(folder, UINT64_C(1) << 32, reserve);
+    struct call *call = archive_call("application/zip");
+    struct intake_file *files[INTAKE_MAX_FILES];
+    struct problem problem = { 0 };
+    bool goes_on[INTAKE_MAX_FILES];
+    int n_going = INTAKE_MAX_FILES, n_blocks = 0, failed;
+    disk_bytes = 100 << 20;
+    taken_bytes = 0;
+    intake_set_disk(intake, free_bytes, NULL);
+    for (int i = 0; i < INTAKE_MAX_FILES; i++) {
+        files[i] = intake_begin(intake, call, -1, &problem);
+        assert_non_null(files[i]);
+        goes_on[i] = true;
+    }
+    for (int i = 0; n_going > 0; i = (i + 1) % INTAKE_MAX_FILES) {
+        if (!goes_on[i])
+            continue;
+        goes_on[i] = intake_add(files[i], block, sizeof block, &problem);
+        assert_true(free_bytes(NULL, &failed) >= reserve);
+        n_blocks += goes_on[i];
+        if (!goes_on[i]) {
+            assert_int_equal(problem.type, PROBLEM_STORAGE);
+            assert_non_null(strstr(problem.detail, "40 that stay free"));
+            n_going--;
+        }
+    }
+    assert_in_range(n_blocks, 60 - INTAKE_MAX_FILES * (INTAKE_STEP_BYTES >> 20), 60); /* MiB: the disk less the reserve, to a step each */
+    for (int i = 0; i < INTAKE_MAX_FILES; i++)
+        intake_drop(files[i]);
+    assert_int_equal(free_bytes(NULL, &failed), disk_bytes);
+    call_destroy(call);
+    intake_destroy(intake);
+}
+
+static void what_was_announced_is_kept_for_its_sender(void **state)
+{
+    (void)state;
+    struct intake *intake = intake_create(folder, UINT64_C(1) << 32, 10 << 20);
+    struct call *call = archive_call("application/zip");
+    struct problem problem = { 0 };
+    disk_bytes = 100 << 20;
+    taken_bytes = 0;
+    intake_set_disk(intake, free_bytes, NULL);
+    struct intake_file *large = intake_begin(intake, call, 60 << 20, &problem);
+    assert_non_null(large);
+    assert_null(intake_begin(intake, call, 31 << 20, &problem)); /* 100 - 10 - 60 are 30 */
+    assert_int_equal(problem.type, PROBLEM_STORAGE);
+    struct intake_file *other = intake_begin(intake, call, 30 << 20, &problem);
+    assert_non_null(other);
+    struct intake_file *stream = intake_begin(intake, call, -1, &problem);
+    assert_non_null(stream);
+    assert_false(intake_add(stream, block, sizeof block, &problem));
+    assert_int_equal(problem.type, PROBLEM_STORAGE);
+    intake_drop(stream);
+    intake_drop(other); /* and what it was granted is free again */
+    other = intake_begin(intake, call, 30 << 20, &problem);
+    assert_non_null(other);
+    for (int i = 0; i < 60; i++)
+        assert_true(intake_add(large, block, sizeof block, &problem));
+    intake_drop(other);
+    intake_drop(large);
+    call_destroy(call);
+    intake_destroy(intake);
+}
+
+static void a_disk_that_others_fill_meanwhile_is_noticed(void **state)
+{
+    (void)state;
+    struct intake *intake = intake_create(folder, UINT64_C(1) << 32, 10 << 20);
+    struct call *call = archive_call("application/zip");
+    struct problem problem = { 0 };
+    disk_bytes = 100 << 20;
+    taken_bytes = 0;
+    intake_set_disk(intake, free_bytes, NULL);
+    struct intake_file *file = intake_begin(intake, call, 60 << 20, &problem);
+    assert_non_null(file);
+    taken_bytes = 80 << 20;
+    int n = 0;
+    while (n < 60 && intake_add(file, block, sizeof block, &problem))
+        n++;
+    assert_int_equal(n, INTAKE_STEP_BYTES >> 20); /* it is looked at once a step */
+    assert_int_equal(problem.type, PROBLEM_STORAGE);
+    intake_drop(file);
+    call_destroy(call);
+    intake_destroy(intake);
+}
+
 static void who_trickles_gives_the_place_back(void **state)
 {
     (void)state;
-    struct intake *intake = intake_create(folder, 1 << 20);
+    struct intake *intake = intake_create(folder, 1 << 20, 0);
     struct call *call = archive_call("application/zip");
     static const char much[INTAKE_WINDOW_BYTES];
     for (int is_fast = 0; is_fast < 2; is_fast++) {
@@ -181,7 +293,7 @@ static void who_trickles_gives_the_place_back(void **state)
 static void a_fifth_at_once_is_told_when_to_come_again(void **state)
 {
     (void)state;
-    struct intake *intake = intake_create(folder, 10);
+    struct intake *intake = intake_create(folder, 10, 0);
     struct call *call = archive_call("application/zip");
     struct intake_file *files[INTAKE_MAX_FILES];
     struct problem problem = { 0 };
@@ -190,7 +302,8 @@ static void a_fifth_at_once_is_told_when_to_come_again(void **state)
         assert_non_null(files[i]);
     }
     assert_null(intake_begin(intake, call, 5, &problem));
-    assert_int_equal(problem.type, PROBLEM_BUSY);
+    assert_int_equal(problem.type, PROBLEM_LIMIT);
+    assert_int_equal(problem_status(problem.type), 429);
     assert_true(problem.retry_after_ms > 0);
     for (int i = 0; i < INTAKE_MAX_FILES; i++)
         intake_drop(files[i]);
@@ -208,6 +321,9 @@ int main(void)
         cmocka_unit_test_setup_teardown(it_ends_at_the_limit_and_not_before, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(what_has_come_whole_is_ours_alone_to_read, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(a_disk_that_takes_no_more_is_said, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(streams_that_come_together_leave_the_reserve, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(what_was_announced_is_kept_for_its_sender, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(a_disk_that_others_fill_meanwhile_is_noticed, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(who_trickles_gives_the_place_back, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(a_fifth_at_once_is_told_when_to_come_again, make_folder, remove_folder),
     };

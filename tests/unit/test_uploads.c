@@ -251,7 +251,7 @@ static void more_archives_than_the_limit_are_refused_and_removed(void **state)
     for (int i = 0; i < FLEET_MAX_UPLOADS; i++)
         numbers[i] = begin_upload(&world, "x", "hangs");
     assert_int_equal(try_upload(&world, "x", "hangs", &problem), 0);
-    assert_int_equal(problem.type, PROBLEM_BUSY);
+    assert_int_equal(problem.type, PROBLEM_LIMIT);
     assert_true(problem.retry_after_ms > 0);
     for (int i = FLEET_MAX_UPLOADS; i-- > 0;)
         fleet_upload_cancel(world.fleet, numbers[i]);
