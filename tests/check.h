@@ -23,6 +23,16 @@
 /* relative: |value - expected| <= share * |expected| */
 #define assert_near(value, expected, share) assert_close(value, expected, (share) * fabs((double)(expected)))
 
+/* Each coordinate of a point (x, y, z) */
+#define assert_point(point, x_, y_, z_, tolerance)                                                                 \
+    do {                                                                                                           \
+        double found_[3] = { (point).x, (point).y, (point).z }, expected_[3] = { x_, y_, z_ };                     \
+        for (int axis_ = 0; axis_ < 3; axis_++)                                                                    \
+            if (!(fabs(found_[axis_] - expected_[axis_]) <= (tolerance)))                                          \
+                fail_msg("%s is (%.9g, %.9g, %.9g), expected (%.9g, %.9g, %.9g) within %.3g", #point, found_[0],   \
+                         found_[1], found_[2], expected_[0], expected_[1], expected_[2], (double)(tolerance));     \
+    } while (0)
+
 /* What this program and its ended children have used of processors, s: a limit on it holds on a busy machine too. */
 static inline double cpu_s(void)
 {

@@ -2,11 +2,10 @@
 #include "tests/unit/data_folder.h"
 
 #include <ftw.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "tests/check.h"
 
 bool data_path(const char *name, char *path, size_t size)
 {
@@ -34,6 +33,37 @@ void folder_put(const char *folder, const char *name, const void *data, size_t s
     FILE *file = fopen(path, "wb");
     if (!file || fwrite(data, 1, size, file) != size || fclose(file) != 0)
         abort();
+}
+
+void folder_put_text(const char *folder, const char *name, const char *text)
+{
+    folder_put(folder, name, text, strlen(text));
+}
+
+void folder_put_data(const char *folder, const char *name, const char *from)
+{
+    char path[1024];
+    size_t size;
+    assert_true(data_path(from, path, sizeof path));
+    uint8_t *bytes = file_bytes(path, &size);
+    folder_put(folder, name, bytes, size);
+    free(bytes);
+}
+
+uint8_t *file_bytes(const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        fail_msg("%s cannot be read", path);
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    *size = (size_t)ftell(file);
+    rewind(file);
+    uint8_t *bytes = malloc(*size + 1);
+    assert_non_null(bytes);
+    assert_int_equal(fread(bytes, 1, *size, file), *size);
+    bytes[*size] = 0;
+    fclose(file);
+    return bytes;
 }
 
 static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *where)

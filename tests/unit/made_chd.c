@@ -146,14 +146,6 @@ const struct volume *chd_volume_of(const struct sera_doses *doses, enum dose_qua
     return NULL;
 }
 
-const char *chd_said(const struct report *report, const char *code)
-{
-    for (size_t i = 0; i < report->n_lines; i++)
-        if (strcmp(report->lines[i].code, code) == 0)
-            return report->lines[i].sentence;
-    return "";
-}
-
 /* Four digits are printed. */
 void chd_check_quantity(const struct sera_doses *doses, enum dose_quantity quantity)
 {

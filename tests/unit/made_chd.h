@@ -46,5 +46,4 @@ bool chd_read_both(const struct chd_text *header, const struct chd_text *table, 
 void chd_result_finish(struct chd_result *result);
 struct chd_result chd_read_made(const struct made_chd *made);
 const struct volume *chd_volume_of(const struct sera_doses *doses, enum dose_quantity quantity);
-const char *chd_said(const struct report *report, const char *code); /* the sentence, "" when there is none */
 void chd_check_quantity(const struct sera_doses *doses, enum dose_quantity quantity); /* against chd_physical; four digits are printed */

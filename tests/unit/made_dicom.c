@@ -1,7 +1,6 @@
 #include "tests/unit/made_dicom.h"
 
-#include <stdlib.h>
-#include <string.h>
+#include "tests/check.h"
 
 void made_raw(struct made_dicom *made, const void *bytes, size_t n)
 {
@@ -102,4 +101,13 @@ void made_finish(struct made_dicom *made)
 {
     free(made->data);
     *made = (struct made_dicom){ 0 };
+}
+
+struct dicom_file *made_parse(const struct made_dicom *made)
+{
+    struct error err = { 0 };
+    struct dicom_file *file = dicom_file_parse(made->data, made->size, "made.dcm", DICOM_WHOLE, &err);
+    assert_string_equal(err.text, "");
+    assert_non_null(file);
+    return file;
 }

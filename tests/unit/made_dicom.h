@@ -20,6 +20,8 @@ struct made_dicom {
 void made_begin(struct made_dicom *made, const char *transfer_syntax);
 void made_finish(struct made_dicom *made); /* frees */
 void made_raw(struct made_dicom *made, const void *bytes, size_t n);
+/* The file, read whole; fails the test when it is refused. */
+struct dicom_file *made_parse(const struct made_dicom *made);
 /* Elements; values of text kinds are padded to an even length. */
 void made_element(struct made_dicom *made, uint32_t tag, const char *vr, const void *value, size_t n);
 void made_text(struct made_dicom *made, uint32_t tag, const char *vr, const char *text);

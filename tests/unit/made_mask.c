@@ -5,6 +5,16 @@
 
 const struct affine unit_map = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { 0, 0, 0 } };
 
+struct volume *layer_make(uint32_t nx, uint32_t ny, uint32_t nz, enum voxel_type type, const struct affine *map)
+{
+    struct grid grid;
+    struct error err = { 0 };
+    assert_true(grid_init(&grid, (uint32_t[3]){ nx, ny, nz }, map, &err));
+    struct volume *layer = volume_create(&grid, type, &err);
+    assert_non_null(layer);
+    return layer;
+}
+
 struct mask *mask_make(uint32_t nx, uint32_t ny, uint32_t nz, const struct affine *map)
 {
     struct mask *mask = mem_new(sizeof *mask);
@@ -25,6 +35,15 @@ bool mask_has(const struct mask *mask, int64_t i, int64_t j, int64_t k)
     if (i < 0 || j < 0 || k < 0 || i >= mask->size[0] || j >= mask->size[1] || k >= mask->size[2])
         return false;
     return mask->bits[((size_t)k * mask->size[1] + (size_t)j) * mask->words + (size_t)i / 64] >> (i % 64) & 1;
+}
+
+struct mask *mask_of_corners(int inside, const struct affine *map)
+{
+    struct mask *mask = mask_make(2, 2, 2, map);
+    for (uint32_t c = 0; c < 8; c++)
+        if (inside >> c & 1)
+            mask_put(mask, c & 1, c >> 1 & 1, c >> 2);
+    return mask;
 }
 
 uint32_t next_random(uint64_t *state)

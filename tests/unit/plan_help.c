@@ -3,12 +3,23 @@
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 
-bool report_has(const struct report *report, const char *code)
+static const struct report_line *line_of(const struct report *report, const char *code)
 {
     for (size_t i = 0; i < report->n_lines; i++)
         if (strcmp(report->lines[i].code, code) == 0)
-            return true;
-    return false;
+            return &report->lines[i];
+    return NULL;
+}
+
+bool report_has(const struct report *report, const char *code)
+{
+    return line_of(report, code) != NULL;
+}
+
+const char *report_said(const struct report *report, const char *code)
+{
+    const struct report_line *line = line_of(report, code);
+    return line ? line->sentence : "";
 }
 
 struct plan *plan_of_folder(const char *folder, struct error *err)

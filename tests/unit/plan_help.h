@@ -1,8 +1,10 @@
 #pragma once
-/* Plans for tests: opened, and asked for their parts. */
+/* Plans for tests: opened, and asked for their parts; and what a report says. */
 #include "core/plan/plan.h"
 
 bool report_has(const struct report *report, const char *code);
+/* The sentence of the first line with the code; "" without one. */
+const char *report_said(const struct report *report, const char *code);
 struct plan *plan_of_folder(const char *folder, struct error *err);
 /* Of the real data; NULL when they are not there. */
 struct plan *plan_of_data(const char *name);

@@ -110,9 +110,3 @@ void made_integer(struct made_dicom *made, uint32_t tag, long value)
     snprintf(text, sizeof text, "%ld", value);
     made_text(made, tag, "IS", text);
 }
-
-void assert_point(struct vec3 point, double x, double y, double z, double tolerance)
-{
-    if (!(fabs(point.x - x) <= tolerance && fabs(point.y - y) <= tolerance && fabs(point.z - z) <= tolerance))
-        fail_msg("(%g, %g, %g), expected (%g, %g, %g)", point.x, point.y, point.z, x, y, z);
-}

@@ -1,6 +1,5 @@
 #pragma once
 /* DICOM-RT files for tests: real ones out of their archives, and the beginnings of made ones. */
-#include "core/math/vec.h"
 #include "tests/unit/made_dicom.h"
 
 /* A file in memory, parsed whole; fails the test when it cannot be. */
@@ -21,4 +20,3 @@ bool rt_find(const char *folder, const char *beginning, size_t which, char *path
 void made_rt_begin(struct made_dicom *made, const char *sop_class, const char *modality, const char *charset);
 void made_numbers(struct made_dicom *made, uint32_t tag, const double *values, size_t n); /* DS */
 void made_integer(struct made_dicom *made, uint32_t tag, long value);                     /* IS */
-void assert_point(struct vec3 point, double x, double y, double z, double tolerance);

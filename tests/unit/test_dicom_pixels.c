@@ -7,15 +7,6 @@
 #include "tests/unit/data_folder.h"
 #include "tests/unit/made_dicom.h"
 
-static struct dicom_file *parse(const struct made_dicom *made)
-{
-    struct error err = { 0 };
-    struct dicom_file *file = dicom_file_parse(made->data, made->size, "made.dcm", DICOM_WHOLE, &err);
-    assert_string_equal(err.text, "");
-    assert_non_null(file);
-    return file;
-}
-
 static void made_image(struct made_dicom *made, const char *encoding, uint16_t bits, uint16_t stored, uint16_t high, bool is_signed)
 {
     made_begin(made, encoding);
@@ -53,7 +44,7 @@ static void pixels_come_without_their_unused_bits_and_with_their_sign(void **sta
             made_image(&made, native[e], 16, cases[i].stored, cases[i].high, cases[i].is_signed);
             made_head(&made, DICOM_TAG(0x7FE0, 0x0010), "OW", 12);
             made_words(&made, cases[i].cells, 6);
-            struct dicom_file *file = parse(&made);
+            struct dicom_file *file = made_parse(&made);
             struct dicom_pixels pixels;
             struct error err = { 0 };
             assert_true(dicom_pixels_look(file, &pixels, &err));
@@ -83,7 +74,7 @@ static void two_pixels_of_8_bits_share_a_word_in_either_byte_order(void **state)
             made_raw(&made, "\x01\x02\x03\x04\x05\x06", 6); /* bytes have no order */
         else
             made_words(&made, (uint16_t[]){ 0x0201, 0x0403, 0x0605 }, 3); /* the first pixel is the low byte: PS3.5 8.1.1 */
-        struct dicom_file *file = parse(&made);
+        struct dicom_file *file = made_parse(&made);
         uint8_t values[6];
         struct error err = { 0 };
         assert_true(dicom_pixels_read(file, 0, values, &err));
@@ -120,7 +111,7 @@ static void pixels_that_contradict_themselves_are_refused(void **state)
         for (size_t t = 0; t < 6; t++)
             made_u16(&made, tags[t], tags[t] == cases[i].tag ? cases[i].value : good[t]);
         made_element(&made, DICOM_TAG(0x7FE0, 0x0010), "OW", "0123456789AB", 12);
-        struct dicom_file *file = parse(&made);
+        struct dicom_file *file = made_parse(&made);
         struct dicom_pixels pixels;
         struct error err = { 0 };
         assert_false(dicom_pixels_look(file, &pixels, &err));
@@ -131,19 +122,6 @@ static void pixels_that_contradict_themselves_are_refused(void **state)
         dicom_file_destroy(file);
         made_finish(&made);
     }
-}
-
-static uint8_t *read_file(const char *path, size_t *size)
-{
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    fseek(file, 0, SEEK_END);
-    *size = (size_t)ftell(file);
-    rewind(file);
-    uint8_t *data = malloc(*size + 1);
-    assert_int_equal(fread(data, 1, *size, file), *size);
-    fclose(file);
-    return data;
 }
 
 static void the_lossless_encodings_of_one_picture_decode_to_the_same_pixels(void **state)
@@ -162,7 +140,7 @@ static void the_lossless_encodings_of_one_picture_decode_to_the_same_pixels(void
         char name[2048];
         snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
         size_t size;
-        uint8_t *data = read_file(name, &size);
+        uint8_t *data = file_bytes(name, &size);
         struct error err = { 0 };
         struct dicom_file *file = dicom_file_parse(data, size, entry->d_name, DICOM_WHOLE, &err);
         assert_string_equal(err.text, "");
@@ -229,7 +207,7 @@ static void frames_in_several_fragments_are_found_by_the_table_of_offsets(void *
 {
     (void)state;
     size_t size;
-    uint8_t *seed = read_file("tests/fuzz/corpus/dicom/jpeg-ls", &size); /* stored values 10 y + x, by another program's encoder */
+    uint8_t *seed = file_bytes("tests/fuzz/corpus/dicom/jpeg-ls", &size); /* stored values 10 y + x, by another program's encoder */
     size_t at = size;
     while (at > 2 && !(seed[at - 2] == 0xFF && seed[at - 1] == 0xD8))
         at--;
@@ -238,7 +216,7 @@ static void frames_in_several_fragments_are_found_by_the_table_of_offsets(void *
     for (int has_table = 0; has_table < 2; has_table++) {
         struct made_dicom made;
         made_fragments(&made, seed + at - 2, n, has_table);
-        struct dicom_file *file = parse(&made);
+        struct dicom_file *file = made_parse(&made);
         for (uint32_t f = 0; f < 2; f++) {
             int16_t values[64];
             struct error err = { 0 };

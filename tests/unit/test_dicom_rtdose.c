@@ -6,6 +6,7 @@
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/oracle.h"
+#include "tests/unit/plan_help.h"
 #include "tests/unit/rt_files.h"
 
 #define RTDOSE "1.2.840.10008.5.1.4.1.1.481.2"
@@ -100,14 +101,6 @@ static struct rtdose read_good(const struct made_dose *dose, struct report *repo
     return read;
 }
 
-static bool has_line(const struct report *report, const char *code)
-{
-    for (size_t i = 0; i < report->n_lines; i++)
-        if (strcmp(report->lines[i].code, code) == 0)
-            return true;
-    return false;
-}
-
 static void assert_dose_at(const struct rtdose *dose, double x, double y, double z, double expected)
 {
     double value;
@@ -169,7 +162,7 @@ static void uneven_frames_are_interpolated_and_said(void **state)
     struct made_dose made = plain;
     made.offsets = "0\\2\\8";
     struct rtdose dose = read_good(&made, &report);
-    assert_true(has_line(&report, "dose.offsets-uneven"));
+    assert_true(report_has(&report, "dose.offsets-uneven"));
     assert_int_equal(dose.values->grid.size[2], 5);
     assert_dose_at(&dose, 10, 20, 32, 50);             /* a frame: 100 stored */
     assert_dose_at(&dose, 10, 20, 34, 50 + 50 / 3.0);  /* a third of the way to 200 stored */
@@ -178,14 +171,14 @@ static void uneven_frames_are_interpolated_and_said(void **state)
     report_finish(&report);
     made.offsets = "7\\9\\11";
     dose = read_good(&made, &report);
-    assert_true(has_line(&report, "dose.offsets-doubtful"));
+    assert_true(report_has(&report, "dose.offsets-doubtful"));
     assert_dose_at(&dose, 10, 20, 32, 50);
     rtdose_finish(&dose);
     report_finish(&report);
     made.n_frames = 1;
     made.offsets = NULL;
     dose = read_good(&made, &report);
-    assert_true(has_line(&report, "dose.single-plane"));
+    assert_true(report_has(&report, "dose.single-plane"));
     rtdose_finish(&dose);
     report_finish(&report);
 }
@@ -294,7 +287,7 @@ static void components_that_agree_become_one_dose(void **state)
     assert_string_equal(doses[1].per, "fraction");
     assert_int_equal(doses[2].components[0].quantity, DOSE_WEIGHTED_TOTAL);
     assert_string_equal(doses[2].id, "Weighted");
-    assert_true(has_line(&report, "dose.all-zero") && has_line(&report, "dose.components") && has_line(&report, "dose.per-ppm"));
+    assert_true(report_has(&report, "dose.all-zero") && report_has(&report, "dose.components") && report_has(&report, "dose.per-ppm"));
     for (int i = 0; i < 3; i++)
         dose_finish(&doses[i]);
     report_finish(&report);
@@ -321,7 +314,7 @@ static void a_word_alone_makes_no_component_and_beams_are_not_added(void **state
         assert_string_equal(doses[i].per, "beam");
         dose_finish(&doses[i]);
     }
-    assert_true(has_line(&report, "dose.not-summed"));
+    assert_true(report_has(&report, "dose.not-summed"));
     report_finish(&report);
     made[0].description = "Boron";
     made[1].description = "Photons";
@@ -356,7 +349,7 @@ static void the_oncentra_doses_have_their_maxima(void **state)
     struct dose doses[8];
     size_t n = rtdose_group(objects, 4, rtplan_beam_name, plan, "", doses, 8, &report);
     assert_int_equal(n, 3);
-    assert_true(has_line(&report, "dose.all-zero") && has_line(&report, "dose.not-summed"));
+    assert_true(report_has(&report, "dose.all-zero") && report_has(&report, "dose.not-summed"));
     const struct {
         const char *id;
         double high;

@@ -9,6 +9,7 @@
 #include "tests/unit/made_contours.h"
 #include "tests/unit/made_mask.h"
 #include "tests/unit/oracle.h"
+#include "tests/unit/plan_help.h"
 #include "tests/unit/rt_files.h"
 
 #define RTSTRUCT "1.2.840.10008.5.1.4.1.1.481.3"
@@ -61,15 +62,6 @@ static size_t n_lines(const struct report *report, const char *code)
     for (size_t i = 0; i < report->n_lines; i++)
         n += strcmp(report->lines[i].code, code) == 0;
     return n;
-}
-
-static const char *sentence(const struct report *report, const char *code)
-{
-    for (size_t i = 0; i < report->n_lines; i++)
-        if (strcmp(report->lines[i].code, code) == 0)
-            return report->lines[i].sentence;
-    fail_msg("no line %s", code);
-    return "";
 }
 
 static struct rtstruct *read_made(struct made_dicom *made, struct report *report)
@@ -207,9 +199,9 @@ static void what_cannot_be_filled_or_joined_is_said(void **state)
     assert_string_equal(set->rois[1].name, "ROI 77");
     assert_int_equal(n_lines(&report, "region.roi-number"), 4);
     assert_int_equal(n_lines(&report, "region.unnamed"), 1);
-    assert_string_equal(sentence(&report, "region.contours-open"),
+    assert_string_equal(report_said(&report, "region.contours-open"),
                         "\"points\" has 1 points and 3 open contours; they enclose nothing and were left out.");
-    assert_string_equal(sentence(&report, "region.no-contours"),
+    assert_string_equal(report_said(&report, "region.no-contours"),
                         "2 of 4 regions have no closed contour and are not listed: points, empty.");
     assert_int_equal(n_lines(&report, "region.contours-count"), 2);
     rtstruct_destroy(set);
@@ -262,9 +254,9 @@ static void a_frame_of_reference_that_is_missing_or_another_is_said(void **state
     struct report report = { 0 };
     rtstruct_check_frame(&set, "1.2", "rs.dcm", &report);
     assert_int_equal(report.n_lines, 2);
-    assert_string_equal(sentence(&report, "region.no-frame"), "The regions name no frame of reference, so nothing says that 1 regions fit "
+    assert_string_equal(report_said(&report, "region.no-frame"), "The regions name no frame of reference, so nothing says that 1 regions fit "
                                                                "the image: c. They are shown where their coordinates are.");
-    assert_string_equal(sentence(&report, "region.frame-differs"),
+    assert_string_equal(report_said(&report, "region.frame-differs"),
                         "1 regions were drawn in another frame of reference than the image's and may be shifted against it: b.");
     report_finish(&report);
     rtstruct_check_frame(&set, "", "rs.dcm", &report);
@@ -354,16 +346,9 @@ static size_t compare_with_pydicom(const char *path, const struct rtstruct *set)
 
 static struct volume *read_mask(const char *path)
 {
-    struct folder folder;
     struct bytes bytes;
     struct error err = { 0 };
-    char where[512];
-    snprintf(where, sizeof where, "%s", path);
-    char *slash = strrchr(where, '/');
-    *slash = 0;
-    if (!folder_open(&folder, where, &err) || !folder_read(&folder, slash + 1, UINT32_MAX, UINT64_MAX, &bytes, &err))
-        fail_msg("%s", err.text);
-    folder_close(&folder);
+    bytes.data = file_bytes(path, &bytes.size);
     struct volume *volume = nifti_read(&bytes, "mask.nii.gz", RAW_MASK, NULL, &err);
     if (!volume)
         fail_msg("%s", err.text);
@@ -435,7 +420,7 @@ static void the_lung_phantom_has_3_regions_and_29_empty_ones(void **state)
     assert_string_equal(set->rois[0].name, "Body");
     assert_string_equal(set->rois[1].name, "Tumor");
     assert_string_equal(set->rois[2].name, "Lung");
-    assert_non_null(strstr(sentence(&report, "region.no-contours"), "29 of 32 regions have no closed contour"));
+    assert_non_null(strstr(report_said(&report, "region.no-contours"), "29 of 32 regions have no closed contour"));
     size_t n_compared = compare_with_pydicom(path, set);
     assert_true(n_compared == 3 || n_compared == SIZE_MAX);
     report_finish(&report);

@@ -22,10 +22,7 @@ static void put_row(const char *folder, const struct made_slice *like, const dou
 
 static void check_point(const struct volume *volume, double i, double j, double k, double x, double y, double z)
 {
-    struct vec3 p = affine_point(&volume->grid.lps_mm_from_ijk, vec3(i, j, k));
-    assert_close(p.x, x, 1e-9);
-    assert_close(p.y, y, 1e-9);
-    assert_close(p.z, z, 1e-9);
+    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(i, j, k)), x, y, z, 1e-9);
 }
 
 static void slices_are_sorted_by_position_and_not_by_name_or_number(void **state)

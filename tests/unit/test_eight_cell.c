@@ -104,10 +104,7 @@ static void every_corner_case_is_closed_and_is_the_hull_of_its_corners(void **st
         struct affine map = unit_map;
         map.columns[1].y = mirrored ? -1 : 1;
         for (int inside = 1; inside < 256; inside++) {
-            struct mask *mask = mask_make(2, 2, 2, &map);
-            for (uint32_t c = 0; c < 8; c++)
-                if (inside >> c & 1)
-                    mask_put(mask, c & 1, c >> 1 & 1, c >> 2);
+            struct mask *mask = mask_of_corners(inside, &map);
             struct mesh *mesh = extract(mask, 1, true);
             assert_closed(mesh);
             assert_close(mesh_volume_mm3(mesh), hull_volume(inside), 1e-6);

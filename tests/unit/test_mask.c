@@ -2,26 +2,7 @@
 #include "core/region/mask.h"
 #include "core/region/mask_pack.h"
 #include "tests/check.h"
-
-static const struct affine unit_map = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { 0, 0, 0 } };
-
-static uint32_t next_random(uint64_t *state)
-{
-    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return (uint32_t)((z ^ z >> 31) >> 32);
-}
-
-static struct volume *layer_make(uint32_t nx, uint32_t ny, uint32_t nz, enum voxel_type type, const struct affine *map)
-{
-    struct grid grid;
-    struct error err = { 0 };
-    assert_true(grid_init(&grid, (uint32_t[3]){ nx, ny, nz }, map, &err));
-    struct volume *layer = volume_create(&grid, type, &err);
-    assert_non_null(layer);
-    return layer;
-}
+#include "tests/unit/made_mask.h"
 
 static struct volume *random_layer(uint32_t nx, uint32_t ny, uint32_t nz, enum voxel_type type, uint32_t n_values, uint64_t seed)
 {
@@ -34,7 +15,8 @@ static struct volume *random_layer(uint32_t nx, uint32_t ny, uint32_t nz, enum v
     return layer;
 }
 
-static bool mask_has(const struct mask *mask, uint32_t i, uint32_t j, uint32_t k)
+/* Of a row's words, also behind its end. */
+static bool bit_at(const struct mask *mask, uint32_t i, uint32_t j, uint32_t k)
 {
     return mask->bits[((size_t)k * mask->size[1] + j) * mask->words + i / 64] >> i % 64 & 1;
 }
@@ -65,7 +47,7 @@ static void assert_holds(const struct mask *mask, const struct volume *layer, co
                 for (size_t l = 0; i < mask->size[0] && l < n_labels; l++)
                     expected |= volume_label(layer, i, j, k) == labels[l];
                 count += expected;
-                if (mask_has(mask, i, j, k) != expected)
+                if (bit_at(mask, i, j, k) != expected)
                     fail_msg("voxel %u %u %u is %d", i, j, k, !expected);
             }
     assert_int_equal(mask_count(mask), count);

@@ -1,6 +1,7 @@
 #include "core/formats/nifti.h"
 #include "tests/check.h"
 #include "tests/unit/nifti_bytes.h"
+#include "tests/unit/plan_help.h"
 
 enum { U8 = 2, I16 = 4, I32 = 8, F32 = 16, F64 = 64, I8 = 256, U16 = 512, U32 = 768, I64 = 1024, U64 = 1280, RGB = 128 };
 
@@ -11,21 +12,6 @@ static struct volume *read_from(const struct nifti_bytes *file, enum raw_use use
     struct bytes bytes = { file->data, file->size };
     *err = (struct error){ 0 };
     return nifti_read(&bytes, "a.nii", use, report, err);
-}
-
-static void assert_point(struct vec3 p, double x, double y, double z)
-{
-    assert_close(p.x, x, 1e-4);
-    assert_close(p.y, y, 1e-4);
-    assert_close(p.z, z, 1e-4);
-}
-
-static bool report_has(const struct report *report, const char *code)
-{
-    for (size_t i = 0; i < report->n_lines; i++)
-        if (strcmp(report->lines[i].code, code) == 0)
-            return true;
-    return false;
 }
 
 static void the_sform_becomes_patient_lps(void **state)
@@ -39,7 +25,7 @@ static void the_sform_becomes_patient_lps(void **state)
     struct volume *volume = read_from(&file, RAW_IMAGE, NULL, &err);
     assert_non_null(volume);
     /* by hand: RAS (10 - 4*3, 20 + 2*1, 30 + 3*2) = (-2, 22, 36), so LPS (2, -22, 36) */
-    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 2, 3)), 2, -22, 36);
+    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 2, 3)), 2, -22, 36, 1e-4);
     int sign;
     assert_int_equal(grid_index_axis(&volume->grid, 0, &sign), 2); /* L along k */
     assert_int_equal(sign, 1);
@@ -67,12 +53,12 @@ static void the_qform_is_a_rotation_with_a_sign_for_k(void **state)
     struct volume *volume = read_from(&file, RAW_IMAGE, NULL, &err);
     assert_non_null(volume);
     /* RAS of (1,1,1): (5 - 2, 6 - 3, 7 - 4) = (3, 3, 3); LPS (-3, -3, 3) */
-    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), -3, -3, 3);
+    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), -3, -3, 3, 1e-4);
     volume_unref(volume);
     /* A quarter turn about S: (0, 0, sin 45): i goes to RAS +y. */
     nifti_put_f32(&file, 264, sqrt(0.5));
     volume = read_from(&file, RAW_IMAGE, NULL, &err);
-    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 0, 0)), -5, -8, 7);
+    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 0, 0)), -5, -8, 7, 1e-4);
     volume_unref(volume);
     nifti_bytes_free(&file);
 }
@@ -92,7 +78,7 @@ static void the_sform_wins_and_a_missing_orientation_is_said(void **state)
     nifti_put_i16(&file, 252, 1);
     nifti_put_f32(&file, 268, 100);
     volume = read_from(&file, RAW_IMAGE, &report, &err);
-    assert_point(volume->grid.lps_mm_from_ijk.origin, 0, 0, 0);
+    assert_point(volume->grid.lps_mm_from_ijk.origin, 0, 0, 0, 1e-4);
     assert_true(report_has(&report, "geometry.forms-disagree"));
     volume_unref(volume);
     report_finish(&report);
@@ -305,7 +291,7 @@ static void nifti_2_is_read(void **state)
         struct volume *volume = read_from(&file, RAW_IMAGE, NULL, &err);
         assert_string_equal(err.text, "");
         assert_close(volume_value(volume, 1, 0, 0), 9, 0);
-        assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 0, 0)), -2.5, 0, 0);
+        assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 0, 0)), -2.5, 0, 0, 1e-4);
         volume_unref(volume);
         nifti_bytes_free(&file);
     }

@@ -4,6 +4,7 @@
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/nifti_bytes.h"
+#include "tests/unit/plan_help.h"
 
 #define LPS "space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n"
 #define BYTES "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"
@@ -42,21 +43,6 @@ static void expect_refusal(const char *head, size_t n, enum error_code code, con
     report_finish(&report);
 }
 
-static const char *report_line(const struct report *report, const char *code)
-{
-    for (size_t i = 0; i < report->n_lines; i++)
-        if (strcmp(report->lines[i].code, code) == 0)
-            return report->lines[i].sentence;
-    return NULL;
-}
-
-static void assert_point(struct vec3 p, double x, double y, double z)
-{
-    assert_close(p.x, x, 1e-9);
-    assert_close(p.y, y, 1e-9);
-    assert_close(p.z, z, 1e-9);
-}
-
 static void the_space_says_how_the_axes_lie_in_the_patient(void **state)
 {
     (void)state;
@@ -77,7 +63,7 @@ static void the_space_says_how_the_axes_lie_in_the_patient(void **state)
         struct report report = { 0 };
         struct volume *volume = read_from(head, eight, 8, RAW_IMAGE, &report, &err);
         assert_string_equal(err.text, "");
-        assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), cases[i].x, cases[i].y, cases[i].z);
+        assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), cases[i].x, cases[i].y, cases[i].z, 1e-9);
         grid_letters(&volume->grid, letters);
         assert_string_equal(letters, cases[i].letters);
         assert_int_equal(report.n_lines, 0);
@@ -96,7 +82,7 @@ static void a_left_handed_grid_keeps_its_handedness(void **state)
                                       "space origin: (-99,99,-78)\n\n", eight, 8, RAW_IMAGE, NULL, &err);
     assert_string_equal(err.text, "");
     assert_true(affine_determinant(&volume->grid.lps_mm_from_ijk) < 0);
-    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), -98.5, 98.5, -72);
+    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), -98.5, 98.5, -72, 1e-9);
     volume_unref(volume);
 }
 
@@ -121,10 +107,10 @@ static void what_the_file_leaves_open_is_reported(void **state)
         struct report report = { 0 };
         struct volume *volume = read_from(head, eight, 8, RAW_IMAGE, &report, &err);
         assert_string_equal(err.text, "");
-        const char *sentence = report_line(&report, "geometry.assumed");
-        if (!sentence || !strstr(sentence, cases[i].words))
-            fail_msg("%s: \"%s\"", cases[i].fields, sentence ? sentence : "");
-        assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), cases[i].x, cases[i].y, cases[i].z);
+        const char *sentence = report_said(&report, "geometry.assumed");
+        if (!strstr(sentence, cases[i].words))
+            fail_msg("%s: \"%s\"", cases[i].fields, sentence);
+        assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), cases[i].x, cases[i].y, cases[i].z, 1e-9);
         volume_unref(volume);
         report_finish(&report);
     }
@@ -136,11 +122,11 @@ static void units_of_the_space_become_millimetres(void **state)
     struct error err;
     struct report report = { 0 };
     struct volume *volume = read_from(BYTES LPS "space units: \"cm\" \"cm\" \"cm\"\n\n", eight, 8, RAW_IMAGE, &report, &err);
-    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), 10, 10, 10);
+    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), 10, 10, 10, 1e-9);
     assert_int_equal(report.n_lines, 0);
     volume_unref(volume);
     volume = read_from(BYTES LPS "space units: \"furlong\" \"mm\" \"mm\"\n\n", eight, 8, RAW_IMAGE, &report, &err);
-    assert_non_null(strstr(report_line(&report, "geometry.unit-assumed"), "Line 9: the unit \"furlong\""));
+    assert_non_null(strstr(report_said(&report, "geometry.unit-assumed"), "Line 9: the unit \"furlong\""));
     volume_unref(volume);
     report_finish(&report);
 }
@@ -341,11 +327,6 @@ static void overlapping_segments_come_as_layers_with_names_and_colours(void **st
     }
 }
 
-static void put_text(const char *folder, const char *name, const char *text)
-{
-    folder_put(folder, name, text, strlen(text));
-}
-
 static struct plan *load(const char *folder, struct error *err)
 {
     *err = (struct error){ 0 };
@@ -360,10 +341,10 @@ static void segments_and_detached_headers_open_as_a_plan(void **state)
     folder_make(folder);
     struct bytes seg = make(SEG_HEAD SEGMENTS "\n", seg_layers_together, 8);
     folder_put(folder, "x.seg.nrrd", seg.data, seg.size);
-    put_text(folder, "mr/i.nhdr", BYTES LPS "data file: i.raw\n"); /* no empty line: nothing follows it */
+    folder_put_text(folder, "mr/i.nhdr", BYTES LPS "data file: i.raw\n"); /* no empty line: nothing follows it */
     folder_put(folder, "mr/i.raw", eight, 8);
-    put_text(folder, "plan.json", "{\"format\":\"beamroom-plan\",\"version\":1,\"images\":[{\"path\":\"mr/i.nhdr\"}],\"regions\":[{\"path\":"
-             "\"x.seg.nrrd\"},{\"path\":\"mr/i.nhdr\",\"name\":\"All\"}],\"doses\":[{\"path\":\"mr/i.nhdr\",\"mask\":\"mr/i.nhdr\"}]}");
+    folder_put_text(folder, "plan.json", "{\"format\":\"beamroom-plan\",\"version\":1,\"images\":[{\"path\":\"mr/i.nhdr\"}],\"regions\":[{\"path\":"
+                    "\"x.seg.nrrd\"},{\"path\":\"mr/i.nhdr\",\"name\":\"All\"}],\"doses\":[{\"path\":\"mr/i.nhdr\",\"mask\":\"mr/i.nhdr\"}]}");
     struct plan *plan = load(folder, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(plan->regions.n_regions, 4);
@@ -373,12 +354,12 @@ static void segments_and_detached_headers_open_as_a_plan(void **state)
     assert_true(tumour->has_file_color);
     assert_string_equal(margin->name, "Margin");
     assert_int_not_equal(margin->layer, tumour->layer);
-    assert_point(margin->centre_lps_mm, 5, 5, 0); /* (1,0) and (0,1) */
+    assert_point(margin->centre_lps_mm, 5, 5, 0, 1e-9); /* (1,0) and (0,1) */
     assert_int_equal(plan->regions.regions[3].n_voxels, 7);
     assert_close(plan->images[0].volume->high, 7, 0);
     assert_int_equal(plan->n_doses, 1);
     assert_string_equal(plan->doses[0].unit, ""); /* nobody said it */
-    assert_non_null(report_line(&plan->report, "dose.no-unit"));
+    assert_true(report_has(&plan->report, "dose.no-unit"));
     plan_destroy(plan);
     struct plan_summary summary;
     plan_summarize(folder, &summary);
@@ -390,14 +371,14 @@ static void segments_and_detached_headers_open_as_a_plan(void **state)
 
     folder_make(folder); /* without a plan.json: what names segments is regions, whatever it is called */
     folder_put(folder, "x.nrrd", seg.data, seg.size);
-    put_text(folder, "i.nhdr", BYTES LPS "data file: ./i.raw\n");
+    folder_put_text(folder, "i.nhdr", BYTES LPS "data file: ./i.raw\n");
     plan_summarize(folder, &summary);
     assert_true(summary.is_readable); /* nobody named the one without its voxels: it is left out, and said */
     assert_int_equal(summary.n_parts, 1);
     plan = load(folder, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(plan->n_images, 0);
-    assert_non_null(strstr(report_line(&plan->report, "plan.ignored-file"), "i.nhdr: its data file i.raw is not there"));
+    assert_non_null(strstr(report_said(&plan->report, "plan.ignored-file"), "i.nhdr: its data file i.raw is not there"));
     plan_destroy(plan);
     folder_put(folder, "i.raw", eight, 8);
     plan = load(folder, &err);

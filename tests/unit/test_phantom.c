@@ -10,6 +10,7 @@
 #include "core/phantom/plan_text.h"
 #include "core/phantom/tracks.h"
 #include "tests/check.h"
+#include "tests/unit/data_folder.h"
 
 /* ---- anatomy --------------------------------------------------------------------------------------------------------- */
 
@@ -265,19 +266,6 @@ static char *in_folder(char path[512], const char *name)
     return path;
 }
 
-static size_t read_file(const char *path, char **bytes)
-{
-    FILE *in = fopen(path, "rb");
-    assert_non_null(in);
-    struct stat what;
-    assert_int_equal(fstat(fileno(in), &what), 0);
-    *bytes = malloc((size_t)what.st_size + 1);
-    assert_int_equal(fread(*bytes, 1, (size_t)what.st_size, in), what.st_size);
-    (*bytes)[what.st_size] = 0;
-    fclose(in);
-    return (size_t)what.st_size;
-}
-
 static const struct phantom_options small = { { 32, 32, 16 }, 3 };
 
 static void equal_seeds_give_equal_bytes(void **state)
@@ -291,12 +279,12 @@ static void equal_seeds_give_equal_bytes(void **state)
     const char *names[] = { "plan.json", "README.txt", "labels.json", "ct.nii.gz", "labels.nii.gz", "tracks.pp", "dose/boron.nii.gz",
                             "dose/nitrogen.nii.gz", "dose/fast.nii.gz", "dose/gamma.nii.gz", "dose/valid.nii.gz" };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        char *bytes_a, *bytes_b;
+        size_t n, n_b;
         snprintf(path_a, sizeof path_a, "%s/%s", a, names[i]);
         snprintf(path_b, sizeof path_b, "%s/%s", b, names[i]);
-        size_t n = read_file(path_a, &bytes_a);
+        uint8_t *bytes_a = file_bytes(path_a, &n), *bytes_b = file_bytes(path_b, &n_b);
         assert_true(n > 0);
-        assert_int_equal(read_file(path_b, &bytes_b), n);
+        assert_int_equal(n_b, n);
         assert_memory_equal(bytes_a, bytes_b, n);
         free(bytes_a);
         free(bytes_b);
@@ -366,10 +354,10 @@ static void a_folder_is_replaced_only_when_asked_and_only_when_it_is_a_phantom(v
     assert_int_equal(err.code, ERROR_STATE);
     assert_non_null(strstr(err.text, "dose/mine.txt"));
     assert_true(is_there(other));
-    char *bytes; /* and the phantom that was there is whole */
+    size_t n; /* and the phantom that was there is whole */
     snprintf(other, sizeof other, "%s/plan.json", path);
-    assert_true(read_file(other, &bytes) > 100);
-    free(bytes);
+    free(file_bytes(other, &n));
+    assert_true(n > 100);
 }
 
 static void a_phantom_that_cannot_be_written_leaves_nothing_behind(void **state)
@@ -405,9 +393,11 @@ static void an_oblique_left_handed_grid_keeps_its_geometry_in_the_header(void **
     assert_non_null(volume);
     volume->slope = 2;
     volume->offset = -5;
-    char path[512], *bytes;
+    char path[512];
+    size_t n;
     assert_true(nifti_write(in_folder(path, "oblique.nii"), volume, "by hand", &err));
-    assert_int_equal(read_file(path, &bytes), 352 + 12 * 2);
+    uint8_t *bytes = file_bytes(path, &n);
+    assert_int_equal(n, 352 + 12 * 2);
     float srow[12], pixdim[4], quaternion[3], offset[3], scale[2];
     memcpy(srow, bytes + 280, sizeof srow);
     memcpy(pixdim, bytes + 76, sizeof pixdim);

@@ -25,9 +25,15 @@ static struct nifti_bytes nested_boxes(void)
     return file;
 }
 
-static void put_text(const char *folder, const char *name, const char *text)
+#define PLAN(parts) "{\"format\":\"beamroom-plan\",\"version\":1," parts "}"
+
+/* A folder with the boxes in a file of this name. */
+static void make_folder_of_boxes(char folder[256], const char *name)
 {
-    folder_put(folder, name, text, strlen(text));
+    folder_make(folder);
+    struct nifti_bytes file = nested_boxes();
+    folder_put(folder, name, file.data, file.size);
+    nifti_bytes_free(&file);
 }
 
 static void a_plan_without_a_tree_gets_one_from_what_encloses_what(void **state)
@@ -35,15 +41,13 @@ static void a_plan_without_a_tree_gets_one_from_what_encloses_what(void **state)
     (void)state;
     char folder[256];
     struct error err;
-    folder_make(folder);
-    struct nifti_bytes file = nested_boxes();
-    folder_put(folder, "labels.nii", file.data, file.size);
-    put_text(folder, "names.json",
-             "{\"labels\":[{\"value\":1,\"name\":\"Skin\",\"color\":\"#ff8000\"},{\"value\":2,\"name\":\"Skull\"},"
-             "{\"value\":3,\"name\":\"Brain\",\"color\":[0,0.5,1]},{\"value\":9,\"name\":\"none\"}]}");
-    put_text(folder, "plan.json",
-             "{\"format\":\"beamroom-plan\",\"version\":1,\"name\":\"boxes\",\"phantom\":true,\"regions\":[{\"path\":\"labels.nii\","
-             "\"names\":\"names.json\"}],\"colour\":1}");
+    make_folder_of_boxes(folder, "labels.nii");
+    folder_put_text(folder, "names.json",
+                    "{\"labels\":[{\"value\":1,\"name\":\"Skin\",\"color\":\"#ff8000\"},{\"value\":2,\"name\":\"Skull\"},"
+                    "{\"value\":3,\"name\":\"Brain\",\"color\":[0,0.5,1]},{\"value\":9,\"name\":\"none\"}]}");
+    folder_put_text(folder, "plan.json",
+                    "{\"format\":\"beamroom-plan\",\"version\":1,\"name\":\"boxes\",\"phantom\":true,\"regions\":[{\"path\":\"labels.nii\","
+                    "\"names\":\"names.json\"}],\"colour\":1}");
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
     assert_true(plan->is_phantom);
@@ -81,7 +85,6 @@ static void a_plan_without_a_tree_gets_one_from_what_encloses_what(void **state)
     plan_probe(plan, vec3(NAN, 0, 0), &probe);
     assert_int_equal(probe.n_regions, 0);
     plan_destroy(plan);
-    nifti_bytes_free(&file);
     folder_remove(folder);
 }
 
@@ -90,12 +93,10 @@ static void a_tree_from_the_plan_wins_and_unknown_names_and_circles_are_reported
     (void)state;
     char folder[256];
     struct error err;
-    folder_make(folder);
-    struct nifti_bytes file = nested_boxes();
-    folder_put(folder, "labels.nii", file.data, file.size);
-    put_text(folder, "plan.json",
-             "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"labels.nii\"}],"
-             "\"hierarchy\":{\"label 3\":[\"label 1\",\"nobody\"],\"label 1\":[\"label 3\",\"label 2\"]}}");
+    make_folder_of_boxes(folder, "labels.nii");
+    folder_put_text(folder, "plan.json",
+                    "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"labels.nii\"}],"
+                    "\"hierarchy\":{\"label 3\":[\"label 1\",\"nobody\"],\"label 1\":[\"label 3\",\"label 2\"]}}");
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(plan->regions.hierarchy, HIERARCHY_FILE);
@@ -106,7 +107,6 @@ static void a_tree_from_the_plan_wins_and_unknown_names_and_circles_are_reported
     assert_true(report_has(&plan->report, "hierarchy.unknown-name"));
     assert_true(report_has(&plan->report, "region.unnamed"));
     plan_destroy(plan);
-    nifti_bytes_free(&file);
     folder_remove(folder);
 }
 
@@ -115,10 +115,8 @@ static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
     (void)state;
     char folder[256];
     struct error err;
-    folder_make(folder);
-    struct nifti_bytes file = nested_boxes();
-    folder_put(folder, "labels.nii", file.data, file.size);
-    put_text(folder, "plan.json", "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"labels.nii\"}]}");
+    make_folder_of_boxes(folder, "labels.nii");
+    folder_put_text(folder, "plan.json", PLAN("\"regions\":[{\"path\":\"labels.nii\"}]"));
     struct plan *plan = plan_of_folder(folder, &err);
     size_t skin = (size_t)(region_of(plan, "label-1") - plan->regions.regions);
     struct surface_facts facts, light;
@@ -141,7 +139,6 @@ static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
     assert_null(plan_surface(plan, 99, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err));
     assert_int_equal(err.code, ERROR_RANGE);
     plan_destroy(plan);
-    nifti_bytes_free(&file);
     folder_remove(folder);
 }
 
@@ -164,10 +161,8 @@ static void many_threads_get_the_same_surfaces(void **state)
     (void)state;
     char folder[256];
     struct error err;
-    folder_make(folder);
-    struct nifti_bytes file = nested_boxes();
-    folder_put(folder, "labels.nii", file.data, file.size);
-    put_text(folder, "plan.json", "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"labels.nii\"}]}");
+    make_folder_of_boxes(folder, "labels.nii");
+    folder_put_text(folder, "plan.json", PLAN("\"regions\":[{\"path\":\"labels.nii\"}]"));
     struct crowd crowd = { .plan = plan_of_folder(folder, &err) };
     parallel_run(4, ask_for_all, &crowd);
     for (size_t r = 0; r < 3; r++)
@@ -178,7 +173,6 @@ static void many_threads_get_the_same_surfaces(void **state)
                 mesh_unref(crowd.meshes[part][r][detail]);
             }
     plan_destroy(crowd.plan);
-    nifti_bytes_free(&file);
     folder_remove(folder);
 }
 
@@ -227,9 +221,9 @@ static void masks_share_a_layer_until_they_overlap_or_their_grids_differ(void **
     put_row(folder, "c.nii", (const uint8_t[4]){ 0, 0, 1, 1 }, 1);
     put_row(folder, "d.nii", (const uint8_t[4]){ 0, 0, 0, 1 }, 2);
     put_row(folder, "e.nii", (const uint8_t[4]){ 0, 0, 0, 0 }, 1);
-    put_text(folder, "plan.json",
-             "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.nii\",\"name\":\"A\"},{\"path\":\"b.nii\",\"name\":"
-             "\"B\"},{\"path\":\"c.nii\",\"name\":\"C\"},{\"path\":\"d.nii\",\"name\":\"D\"},{\"path\":\"e.nii\",\"name\":\"A\"}]}");
+    folder_put_text(folder, "plan.json",
+                    "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.nii\",\"name\":\"A\"},{\"path\":\"b.nii\",\"name\":"
+                    "\"B\"},{\"path\":\"c.nii\",\"name\":\"C\"},{\"path\":\"d.nii\",\"name\":\"D\"},{\"path\":\"e.nii\",\"name\":\"A\"}]}");
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(plan->regions.n_layers, 3); /* a with b and e; c; d */
@@ -246,13 +240,11 @@ static void masks_share_a_layer_until_they_overlap_or_their_grids_differ(void **
 static void expect_refused(const char *folder, const char *json, enum error_code code, const char *said)
 {
     struct error err;
-    put_text(folder, "plan.json", json);
+    folder_put_text(folder, "plan.json", json);
     struct plan *plan = plan_of_folder(folder, &err);
     if (plan || err.code != code || !strstr(err.text, said))
         fail_msg("%s\n  gave %s: %s\n  expected %s with \"%s\"", json, error_word(err.code), err.text, error_word(code), said);
 }
-
-#define PLAN(parts) "{\"format\":\"beamroom-plan\",\"version\":1," parts "}"
 
 static void a_plan_never_leaves_its_folder(void **state)
 {
@@ -271,7 +263,7 @@ static void a_plan_never_leaves_its_folder(void **state)
     snprintf(target, sizeof target, "%s/secret.nii", outside);
     assert_int_equal(symlink(target, link), 0);
     struct error err;
-    put_text(folder, "plan.json", PLAN("\"images\":[{\"path\":\"link.nii\"}]"));
+    folder_put_text(folder, "plan.json", PLAN("\"images\":[{\"path\":\"link.nii\"}]"));
     assert_null(plan_of_folder(folder, &err));
     assert_non_null(strstr(err.text, "link.nii"));
     unlink(link);
@@ -292,9 +284,7 @@ static void a_plan_that_is_wrong_is_refused_with_the_place(void **state)
 {
     (void)state;
     char folder[256];
-    folder_make(folder);
-    struct nifti_bytes file = nested_boxes();
-    folder_put(folder, "a.nii", file.data, file.size);
+    make_folder_of_boxes(folder, "a.nii");
     expect_refused(folder, "{\n\"format\": \"beamroom-plan\",\n oops }", ERROR_FORMAT, "plan.json: line 3");
     expect_refused(folder, "[]", ERROR_FORMAT, "expected an object");
     expect_refused(folder, "{\"version\":1}", ERROR_FORMAT, "format");
@@ -316,11 +306,12 @@ static void a_plan_that_is_wrong_is_refused_with_the_place(void **state)
                    ERROR_FORMAT, "beams[0].entry_mm");
     expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"}],\"tracks\":[{\"path\":\"a.pp\",\"unit\":\"m\"}]"), ERROR_RANGE,
                    "tracks[0].unit");
-    put_text(folder, "c.dcm", "not one");
+    folder_put_text(folder, "c.dcm", "not one");
     expect_refused(folder, PLAN("\"images\":[{\"path\":\"c.dcm\"}]"), ERROR_UNSUPPORTED, "c.dcm: no DICOM image series");
+    struct nifti_bytes file = nested_boxes();
     folder_put(folder, "cut.nii", file.data, 400);
-    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"},{\"path\":\"cut.nii\"}]"), ERROR_FORMAT, "cut.nii: cut short");
     nifti_bytes_free(&file);
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"},{\"path\":\"cut.nii\"}]"), ERROR_FORMAT, "cut.nii: cut short");
     folder_remove(folder);
 }
 
@@ -329,16 +320,14 @@ static void a_dose_in_a_format_not_read_is_left_out_and_said(void **state)
     (void)state;
     char folder[256];
     struct error err;
-    folder_make(folder);
-    struct nifti_bytes file = nested_boxes();
-    folder_put(folder, "a.nii", file.data, file.size);
-    put_text(folder, "d.uvh", "not one");
-    put_text(folder, "plan.json",
-             PLAN("\"images\":[{\"path\":\"a.nii\",\"modality\":\"CT\"}],\"doses\":[{\"id\":\"x\",\"path\":\"d.uvh\"},"
-                  "{\"id\":\"Run 1\",\"unit\":\"Gy\",\"per\":\"fraction\",\"mask\":\"a.nii\",\"components\":[{\"quantity\":\"boron\","
-                  "\"path\":\"a.nii\",\"per_ppm\":true},{\"quantity\":\"gamma\",\"path\":\"a.nii\"}]}],"
-                  "\"beams\":[{\"id\":\"B\",\"entry_mm\":[0,0,0],\"target_mm\":[0,0,9],\"aperture_mm\":120},"
-                  "{\"entry_mm\":[0,0,1],\"target_mm\":[0,0,9]}]"));
+    make_folder_of_boxes(folder, "a.nii");
+    folder_put_text(folder, "d.uvh", "not one");
+    folder_put_text(folder, "plan.json",
+                    PLAN("\"images\":[{\"path\":\"a.nii\",\"modality\":\"CT\"}],\"doses\":[{\"id\":\"x\",\"path\":\"d.uvh\"},"
+                         "{\"id\":\"Run 1\",\"unit\":\"Gy\",\"per\":\"fraction\",\"mask\":\"a.nii\",\"components\":[{\"quantity\":\"boron\","
+                         "\"path\":\"a.nii\",\"per_ppm\":true},{\"quantity\":\"gamma\",\"path\":\"a.nii\"}]}],"
+                         "\"beams\":[{\"id\":\"B\",\"entry_mm\":[0,0,0],\"target_mm\":[0,0,9],\"aperture_mm\":120},"
+                         "{\"entry_mm\":[0,0,1],\"target_mm\":[0,0,9]}]"));
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
     assert_true(report_has(&plan->report, "dose.unsupported"));
@@ -368,7 +357,6 @@ static void a_dose_in_a_format_not_read_is_left_out_and_said(void **state)
     assert_true(summary.is_readable);
     assert_string_equal(summary.parts[0], "CT");
     assert_string_equal(summary.parts[1], "2 dose components");
-    nifti_bytes_free(&file);
     folder_remove(folder);
 }
 
@@ -381,13 +369,13 @@ static void an_image_beside_the_regions_is_reported(void **state)
     put_row(folder, "mask.nii", (const uint8_t[4]){ 1, 1, 0, 0 }, 1);
     put_row(folder, "near.nii", (const uint8_t[4]){ 1, 2, 3, 4 }, 1);
     put_row(folder, "mirrored.nii", (const uint8_t[4]){ 1, 2, 3, 4 }, -1);
-    put_text(folder, "plan.json", PLAN("\"images\":[{\"path\":\"near.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
+    folder_put_text(folder, "plan.json", PLAN("\"images\":[{\"path\":\"near.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
     struct plan *plan = plan_of_folder(folder, &err);
     assert_false(report_has(&plan->report, "geometry.apart"));
     plan_destroy(plan);
     put_row(folder, "mask.nii", (const uint8_t[4]){ 0, 0, 1, 1 }, 1);
-    put_text(folder, "plan.json",
-             PLAN("\"images\":[{\"path\":\"mirrored.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
+    folder_put_text(folder, "plan.json",
+                    PLAN("\"images\":[{\"path\":\"mirrored.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
     plan = plan_of_folder(folder, &err);
     assert_true(report_has(&plan->report, "geometry.apart"));
     assert_close(plan->bounds_lps_mm.high.x, -1.5, 1e-9); /* of the region alone: RAS x 1.5 .. 3.5 */
@@ -399,15 +387,12 @@ static void loading_can_be_cancelled_and_tells_how_far_it_is(void **state)
 {
     (void)state;
     char folder[256];
-    folder_make(folder);
-    struct nifti_bytes file = nested_boxes();
-    folder_put(folder, "a.nii", file.data, file.size);
+    make_folder_of_boxes(folder, "a.nii");
     atomic_bool cancel = true;
     struct plan_load_options options = { .progress.cancel = &cancel };
     struct error err = { 0 };
     assert_null(plan_load(folder, "p", &options, &err));
     assert_int_equal(err.code, ERROR_CANCELLED);
-    nifti_bytes_free(&file);
     folder_remove(folder);
 }
 

@@ -156,19 +156,6 @@ static void a_file_that_changes_appears_or_goes_away_makes_the_cache_void(void *
     world_end(&world);
 }
 
-static uint8_t *read_file(const char *path, size_t *n)
-{
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    fseek(file, 0, SEEK_END);
-    *n = (size_t)ftell(file);
-    rewind(file);
-    uint8_t *bytes = malloc(*n + 1);
-    assert_int_equal(fread(bytes, 1, *n, file), *n);
-    fclose(file);
-    return bytes;
-}
-
 static void a_damaged_cache_is_not_believed_and_is_written_anew(void **state)
 {
     (void)state;
@@ -176,7 +163,7 @@ static void a_damaged_cache_is_not_believed_and_is_written_anew(void **state)
     struct error err = { 0 };
     size_t n;
     world_start(&world);
-    uint8_t *bytes = read_file(world.file, &n);
+    uint8_t *bytes = file_bytes(world.file, &n);
     uint64_t head_bytes;
     memcpy(&head_bytes, bytes + 40, sizeof head_bytes);
     for (size_t at = 0; at < n; at = at < 4096 ? at + 7 : at + 1031) { /* a flipped bit */

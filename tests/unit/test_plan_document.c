@@ -1,19 +1,15 @@
 #include "server/wire/plan_document.h"
 #include "tests/check.h"
+#include "tests/unit/made_mask.h"
 
 static struct volume *make_volume(enum voxel_type type)
 {
     /* 2 x 3 x 4 voxels of 1, 2, 3 mm; i to the left, j to the back, k down */
     struct affine map = { { { 1, 0, 0 }, { 0, 2, 0 }, { 0, 0, -3 } }, { 10, 20, 30 } };
-    struct grid grid;
-    struct error err = { 0 };
-    assert_true(grid_init(&grid, (uint32_t[3]){ 2, 3, 4 }, &map, &err));
-    struct volume *volume = volume_create(&grid, type, &err);
-    assert_non_null(volume);
-    return volume;
+    return layer_make(2, 3, 4, type, &map);
 }
 
-static void assert_point(const cJSON *point, double x, double y, double z)
+static void assert_json_point(const cJSON *point, double x, double y, double z)
 {
     assert_int_equal(cJSON_GetArraySize(point), 3);
     assert_close(cJSON_GetArrayItem(point, 0)->valuedouble, x, 1e-12);
@@ -65,29 +61,29 @@ static void a_plan_is_told_with_units_and_null_where_nothing_is_known(void **sta
     /* axial looks from the feet up, square to the patient, at the middle of the image: (10.5, 22, 25.5) */
     const cJSON *axial = item(item(document, "home"), "axial");
     assert_string_equal(item(axial, "projection")->valuestring, "parallel");
-    assert_point(item(axial, "target_mm"), 10.5, 22, 25.5);
-    assert_point(item(axial, "up"), 0, -1, 0);
+    assert_json_point(item(axial, "target_mm"), 10.5, 22, 25.5);
+    assert_json_point(item(axial, "up"), 0, -1, 0);
     assert_true(cJSON_GetArrayItem(item(axial, "position_mm"), 2)->valuedouble < 25.5);
     assert_string_equal(item(item(item(document, "home"), "3d"), "projection")->valuestring, "perspective");
     assert_int_equal(cJSON_GetArraySize(item(document, "home")), 4);
 
     const cJSON *image = cJSON_GetArrayItem(item(document, "images"), 0), *grid = item(image, "grid");
     assert_close(item(image, "low")->valuedouble, -1000, 0);
-    assert_point(item(grid, "size"), 2, 3, 4);
-    assert_point(item(grid, "spacing_mm"), 1, 2, 3);
+    assert_json_point(item(grid, "size"), 2, 3, 4);
+    assert_json_point(item(grid, "spacing_mm"), 1, 2, 3);
     assert_string_equal(item(grid, "orientation")->valuestring, "LPI");
     const cJSON *last_row = cJSON_GetArrayItem(item(grid, "lps_mm_from_ijk"), 2);
     assert_int_equal(cJSON_GetArraySize(last_row), 4);
     assert_close(cJSON_GetArrayItem(last_row, 2)->valuedouble, -3, 0);
     assert_close(cJSON_GetArrayItem(last_row, 3)->valuedouble, 30, 0);
-    assert_point(item(item(grid, "bounds_mm"), "low"), 9.5, 19, 19.5); /* k = 3.5: 30 - 10.5 */
-    assert_point(item(item(grid, "bounds_mm"), "high"), 11.5, 25, 31.5);
+    assert_json_point(item(item(grid, "bounds_mm"), "low"), 9.5, 19, 19.5); /* k = 3.5: 30 - 10.5 */
+    assert_json_point(item(item(grid, "bounds_mm"), "high"), 11.5, 25, 31.5);
 
     const cJSON *skin = cJSON_GetArrayItem(item(document, "regions"), 0), *gone = cJSON_GetArrayItem(item(document, "regions"), 1);
     assert_string_equal(item(skin, "color")->valuestring, "#0102ff");
     assert_true(cJSON_IsNull(item(skin, "parent")));
-    assert_point(item(item(skin, "bounds_mm"), "low"), 9.5, 19, 25.5); /* voxels (0,0,0) and (0,0,1) */
-    assert_point(item(item(skin, "bounds_mm"), "high"), 10.5, 21, 31.5);
+    assert_json_point(item(item(skin, "bounds_mm"), "low"), 9.5, 19, 25.5); /* voxels (0,0,0) and (0,0,1) */
+    assert_json_point(item(item(skin, "bounds_mm"), "high"), 10.5, 21, 31.5);
     assert_close(item(item(skin, "tissue"), "boron_ratio")->valuedouble, 1.5, 0);
     assert_true(cJSON_IsNull(item(item(skin, "tissue"), "cbe_boron")));
     assert_string_equal(item(gone, "parent")->valuestring, "skin");
@@ -95,7 +91,7 @@ static void a_plan_is_told_with_units_and_null_where_nothing_is_known(void **sta
     assert_true(cJSON_IsNull(item(gone, "center_mm")) && cJSON_IsNull(item(gone, "bounds_mm")));
 
     const cJSON *beam = cJSON_GetArrayItem(item(document, "beams"), 0);
-    assert_point(item(beam, "entry_mm"), 1, 2, 3);
+    assert_json_point(item(beam, "entry_mm"), 1, 2, 3);
     assert_true(cJSON_IsNull(item(beam, "aperture_mm")));
     assert_int_equal(cJSON_GetArraySize(item(item(document, "tracks"), "classes")), TRACK_N_CLASSES);
 
@@ -122,7 +118,7 @@ static void doses_tracks_and_the_report_keep_their_words(void **state)
     plan.report.n_dropped = 7;
 
     cJSON *document = plan_document(&plan);
-    assert_point(item(item(document, "bounds_mm"), "high"), 4, 5, 6);
+    assert_json_point(item(item(document, "bounds_mm"), "high"), 4, 5, 6);
     const cJSON *dose = cJSON_GetArrayItem(item(document, "doses"), 0);
     assert_string_equal(item(dose, "unit")->valuestring, "cGy");
     assert_string_equal(item(dose, "per")->valuestring, "fraction");

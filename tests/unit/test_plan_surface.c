@@ -3,6 +3,7 @@
 #include "tests/check.h"
 #include "tests/made_plan.h"
 #include "tests/unit/data_folder.h"
+#include "tests/unit/plan_help.h"
 
 /* A box of 134^3 voxels, far from it one of 2^3, one of a single voxel. */
 static double boxes_label(struct vec3 p)
@@ -140,12 +141,9 @@ static void thick_slices_are_not_thinned_before_the_pixels_are_as_large(void **s
 static void seras_head_by_either_algorithm_in_full_and_light(void **state)
 {
     (void)state;
-    char path[512];
-    struct error err = { 0 };
-    if (!data_path("sera-head", path, sizeof path))
+    struct plan *plan = plan_of_data("sera-head");
+    if (!plan)
         skip();
-    struct plan *plan = plan_load(path, "p", NULL, &err);
-    assert_non_null(plan);
     size_t n_light = 0;
     for (size_t r = 0; r < plan->regions.n_regions; r++) {
         struct surface_facts cubes, cells, light;

@@ -30,22 +30,17 @@ static void put_grid(const char *folder, const char *name, enum voxel_type type)
     volume_unref(volume);
 }
 
-static void put_text(const char *folder, const char *name, const char *text)
-{
-    folder_put(folder, name, text, strlen(text));
-}
-
 static void files_of_all_folders_are_listed_in_order_with_what_tells_a_change(void **state)
 {
     (void)state;
     char folder[256], link[300], outside[256], target[300];
     folder_make(folder);
     folder_make(outside);
-    put_text(outside, "secret", "x");
-    put_text(folder, "b", "12345");
-    put_text(folder, "a/z", "1");
-    put_text(folder, "a/.hidden", "1");
-    put_text(folder, ".git/config", "1");
+    folder_put_text(outside, "secret", "x");
+    folder_put_text(folder, "b", "12345");
+    folder_put_text(folder, "a/z", "1");
+    folder_put_text(folder, "a/.hidden", "1");
+    folder_put_text(folder, ".git/config", "1");
     snprintf(link, sizeof link, "%s/round", folder);
     assert_int_equal(symlink(".", link), 0);
     snprintf(link, sizeof link, "%s/out", folder);
@@ -92,7 +87,7 @@ static void folders_are_entered_so_deep_and_no_deeper(void **state)
     for (int depth = 1; depth <= FOLDER_MAX_DEPTH + 1; depth++) {
         n += (size_t)snprintf(path + n, sizeof path - n, "/d");
         assert_int_equal(mkdir(path, 0700), 0);
-        put_text(path, "f", "1");
+        folder_put_text(path, "f", "1");
     }
     struct folder opened;
     struct folder_tree tree;
@@ -113,10 +108,10 @@ static void parts_are_found_in_folders_below_and_plans_of_their_own_are_left_out
     folder_make(folder);
     put_grid(folder, "t1.nii.gz", VOXEL_F32);
     put_grid(folder, "segmentation/parts.nii.gz", VOXEL_U8);
-    put_text(folder, "segmentation/parts.json", "{\"labels\": [{\"value\": 1, \"name\": \"brain\"}, {\"value\": 2, \"name\": \"tumour\"}]}");
+    folder_put_text(folder, "segmentation/parts.json", "{\"labels\": [{\"value\": 1, \"name\": \"brain\"}, {\"value\": 2, \"name\": \"tumour\"}]}");
     put_grid(folder, "plan/dose_total.nii.gz", VOXEL_F32);
     put_grid(folder, "other/ct.nii.gz", VOXEL_F32);
-    put_text(folder, "other/plan.json", "{}");
+    folder_put_text(folder, "other/plan.json", "{}");
     struct error err = { 0 };
     struct plan *plan = plan_load(folder, "p", NULL, &err);
     assert_string_equal(err.text, "");

@@ -1,6 +1,7 @@
 #include "core/base/clock.h"
 #include "core/region/region.h"
 #include "tests/check.h"
+#include "tests/unit/made_mask.h"
 
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 #define IS_SANITIZED true
@@ -13,16 +14,7 @@
 #define IS_SANITIZED false
 #endif
 
-static struct volume *layer_make(uint32_t nx, uint32_t ny, uint32_t nz, enum voxel_type type)
-{
-    struct affine map = { { { 2, 0, 0 }, { 0, 2, 0 }, { 0, 0, 2 } }, { 0, 0, 0 } };
-    struct grid grid;
-    struct error err = { 0 };
-    assert_true(grid_init(&grid, (uint32_t[3]){ nx, ny, nz }, &map, &err));
-    struct volume *layer = volume_create(&grid, type, &err);
-    assert_non_null(layer);
-    return layer;
-}
+static const struct affine map_2mm = { { { 2, 0, 0 }, { 0, 2, 0 }, { 0, 0, 2 } }, { 0, 0, 0 } };
 
 static void put_label(struct volume *layer, uint32_t i, uint32_t j, uint32_t k, uint16_t label)
 {
@@ -100,7 +92,7 @@ static void regions_are_measured_in_both_label_types(void **state)
     const enum voxel_type types[2] = { VOXEL_U8, VOXEL_U16 };
     for (int t = 0; t < 2; t++) {
         uint16_t label = t ? 300 : 30;
-        struct volume *layer = layer_make(21, 9, 7, types[t]);
+        struct volume *layer = layer_make(21, 9, 7, types[t], &map_2mm);
         put_box(layer, (uint32_t[3]){ 1, 2, 3 }, (uint32_t[3]){ 18, 4, 6 }, label);
         struct region_set set = set_make(&layer, 1, (uint32_t[]){ 0, 0 }, (uint16_t[]){ label, 77 }, 2);
         const struct region *region = &set.regions[0];
@@ -119,7 +111,7 @@ static void regions_are_measured_in_both_label_types(void **state)
 static void shells_are_put_into_one_another(void **state)
 {
     (void)state;
-    struct volume *layer = layer_make(20, 20, 20, VOXEL_U8);
+    struct volume *layer = layer_make(20, 20, 20, VOXEL_U8, &map_2mm);
     BOX(layer, 2, 17, 1);
     BOX(layer, 4, 15, 2);
     BOX(layer, 6, 13, 3);
@@ -143,7 +135,7 @@ static void shells_are_put_into_one_another(void **state)
 static void a_brain_cut_by_the_scan_still_lies_in_the_scalp(void **state)
 {
     (void)state;
-    struct volume *layer = layer_make(20, 20, 20, VOXEL_U8);
+    struct volume *layer = layer_make(20, 20, 20, VOXEL_U8, &map_2mm);
     put_box(layer, (uint32_t[3]){ 2, 2, 0 }, (uint32_t[3]){ 17, 17, 17 }, 1);
     put_box(layer, (uint32_t[3]){ 5, 5, 0 }, (uint32_t[3]){ 14, 14, 14 }, 2);
     struct region_set set = set_make(&layer, 1, (uint32_t[2]){ 0 }, (uint16_t[]){ 1, 2 }, 2);
@@ -156,7 +148,7 @@ static void a_brain_cut_by_the_scan_still_lies_in_the_scalp(void **state)
 static void neighbours_and_half_buried_regions_have_no_parent(void **state)
 {
     (void)state;
-    struct volume *layer = layer_make(20, 20, 20, VOXEL_U8);
+    struct volume *layer = layer_make(20, 20, 20, VOXEL_U8, &map_2mm);
     put_box(layer, (uint32_t[3]){ 2, 2, 2 }, (uint32_t[3]){ 9, 17, 17 }, 1);
     put_box(layer, (uint32_t[3]){ 10, 2, 2 }, (uint32_t[3]){ 17, 17, 17 }, 2);
     put_box(layer, (uint32_t[3]){ 4, 4, 16 }, (uint32_t[3]){ 7, 7, 19 }, 3); /* sticks out */
@@ -171,7 +163,7 @@ static void neighbours_and_half_buried_regions_have_no_parent(void **state)
 static void a_region_in_a_notch_does_not_lie_inside(void **state)
 {
     (void)state;
-    struct volume *layer = layer_make(20, 20, 20, VOXEL_U8);
+    struct volume *layer = layer_make(20, 20, 20, VOXEL_U8, &map_2mm);
     BOX(layer, 2, 17, 1);
     put_box(layer, (uint32_t[3]){ 8, 8, 8 }, (uint32_t[3]){ 11, 11, 17 }, 0);
     put_box(layer, (uint32_t[3]){ 8, 8, 8 }, (uint32_t[3]){ 11, 11, 11 }, 2); /* a cube, open to one of its six sides */
@@ -184,7 +176,7 @@ static void a_region_in_a_notch_does_not_lie_inside(void **state)
 static void regions_on_other_layers_lie_inside_when_their_voxels_do(void **state)
 {
     (void)state;
-    struct volume *layers[3] = { layer_make(20, 20, 20, VOXEL_U8), layer_make(20, 20, 20, VOXEL_U8), layer_make(12, 12, 12, VOXEL_U8) };
+    struct volume *layers[3] = { layer_make(20, 20, 20, VOXEL_U8, &map_2mm), layer_make(20, 20, 20, VOXEL_U8, &map_2mm), layer_make(12, 12, 12, VOXEL_U8, &map_2mm) };
     BOX(layers[0], 2, 17, 1);
     BOX(layers[1], 4, 15, 1);
     BOX(layers[2], 5, 9, 1);
@@ -202,7 +194,7 @@ static void regions_on_other_layers_lie_inside_when_their_voxels_do(void **state
 static void two_equal_masks_make_no_circle(void **state)
 {
     (void)state;
-    struct volume *layers[2] = { layer_make(9, 9, 9, VOXEL_U8), layer_make(9, 9, 9, VOXEL_U8) };
+    struct volume *layers[2] = { layer_make(9, 9, 9, VOXEL_U8, &map_2mm), layer_make(9, 9, 9, VOXEL_U8, &map_2mm) };
     BOX(layers[0], 2, 6, 1);
     BOX(layers[1], 2, 6, 1);
     struct region_set set = set_make(layers, 2, (uint32_t[]){ 0, 1 }, (uint16_t[]){ 1, 1 }, 2);
@@ -215,7 +207,7 @@ static void two_equal_masks_make_no_circle(void **state)
 static void a_tree_of_five_labels_in_256_256_128_takes_under_50_ms(void **state)
 {
     (void)state;
-    struct volume *layer = layer_make(256, 256, 128, VOXEL_U8);
+    struct volume *layer = layer_make(256, 256, 128, VOXEL_U8, &map_2mm);
     for (uint16_t n = 0; n < 5; n++)
         put_box(layer, (uint32_t[3]){ 10u + 20u * n, 10u + 20u * n, 5u + 10u * n },
                 (uint32_t[3]){ 245u - 20u * n, 245u - 20u * n, 122u - 10u * n }, (uint16_t)(n + 1));

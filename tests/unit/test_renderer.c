@@ -7,6 +7,7 @@
 #include "core/base/clock.h"
 #include "core/phantom/phantom.h"
 #include "tests/check.h"
+#include "tests/unit/data_folder.h"
 #include "tests/unit/fleet_world.h"
 
 #define PLAN "head"
@@ -244,13 +245,8 @@ static void a_plan_that_cannot_be_read_fails_with_the_loaders_sentence(void **st
 {
     (void)state;
     struct world world;
-    char path[600];
     begin_head(&world, true, small);
-    snprintf(path, sizeof path, "%s/%s/labels.nii.gz", world.plans, PLAN);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs("no image at all", file);
-    fclose(file);
+    folder_put_text(world.plans, PLAN "/labels.nii.gz", "no image at all");
     world_start(&world, 1);
     struct fleet_plan plan = world_plan_of(&world, PLAN);
     if (plan.state == FLEET_CLOSED) { /* seen only when it is read */
@@ -268,23 +264,13 @@ static void a_file_name_that_is_no_utf8_comes_out_readable(void **state)
 {
     (void)state;
     struct world world;
-    char path[800];
+    char text[400], name[3 * 90 + 1] = "";
     begin_head(&world, true, small);
-    snprintf(path, sizeof path, "%s/%s/plan.json", world.plans, PLAN);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs("{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"", file);
-    for (int i = 0; i < 90; i++)
-        fputs("\xe2\x82\xac", file); /* the euro sign, three bytes */
-    fputs(".nii\"}]}", file);
-    fclose(file);
-    snprintf(path, sizeof path, "%s/latin1", world.plans);
-    assert_int_equal(mkdir(path, 0700), 0);
-    snprintf(path, sizeof path, "%s/latin1/K\xf6pf.nii", world.plans);
-    file = fopen(path, "w");
-    assert_non_null(file);
-    fputs("no image", file);
-    fclose(file);
+    for (size_t i = 0; i < 90; i++)
+        memcpy(name + 3 * i, "\xe2\x82\xac", 4); /* the euro sign, three bytes */
+    snprintf(text, sizeof text, "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"%s.nii\"}]}", name);
+    folder_put_text(world.plans, PLAN "/plan.json", text);
+    folder_put_text(world.plans, "latin1/K\xf6pf.nii", "no image");
     world_start(&world, 2);
     static const char *const ids[] = { PLAN, "latin1" };
     for (int i = 0; i < 2; i++) {

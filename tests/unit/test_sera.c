@@ -7,21 +7,7 @@
 #include "core/formats/text.h"
 #include "tests/check.h"
 #include "tests/unit/nifti_bytes.h"
-
-static bool report_has(const struct report *report, const char *code)
-{
-    for (size_t i = 0; i < report->n_lines; i++)
-        if (strcmp(report->lines[i].code, code) == 0)
-            return true;
-    return false;
-}
-
-static void assert_point(struct vec3 p, double x, double y, double z)
-{
-    assert_close(p.x, x, 1e-6);
-    assert_close(p.y, y, 1e-6);
-    assert_close(p.z, z, 1e-6);
-}
+#include "tests/unit/plan_help.h"
 
 /* 4 columns of 2, 3 rows of 3, 2 slices of 5; faces RL -40..., given as words so that tests can change them. */
 struct uvh_words {
@@ -56,8 +42,8 @@ static void the_standard_axial_header_puts_row_0_in_front(void **state)
     struct report report = { 0 };
     assert_true(parse(&plain, &uvh, &report, &err));
     /* faces, so centres lie half a univel inside: RL 110, PA 70 - 10 = 60 (P = -60), IS -25 */
-    assert_point(affine_point(&uvh.grid.lps_mm_from_ijk, vec3(0, 0, 0)), 110, -60, -25);
-    assert_point(affine_point(&uvh.grid.lps_mm_from_ijk, vec3(3, 2, 1)), 170, -20, 25);
+    assert_point(affine_point(&uvh.grid.lps_mm_from_ijk, vec3(0, 0, 0)), 110, -60, -25, 1e-6);
+    assert_point(affine_point(&uvh.grid.lps_mm_from_ijk, vec3(3, 2, 1)), 170, -20, 25, 1e-6);
     assert_int_equal(uvh.n_bodies, 1);
     assert_string_equal(uvh.bodies[0].name, "brain");
     assert_int_equal(uvh.bodies[0].uvval, 3);
@@ -97,7 +83,7 @@ static void all_axis_codes_in_all_places_put_the_first_univel_where_the_header_s
             double rpi[3];
             for (int a = 0; a < 3; a++)
                 rpi[axis[a]] = signs >> a & 1 ? high[axis[a]] - steps[a] / 2 : low[axis[a]] + steps[a] / 2;
-            assert_point(uvh.grid.lps_mm_from_ijk.origin, rpi[0], -rpi[1], rpi[2]);
+            assert_point(uvh.grid.lps_mm_from_ijk.origin, rpi[0], -rpi[1], rpi[2], 1e-6);
             uvh_finish(&uvh);
         }
 }
@@ -164,7 +150,7 @@ static void version_1_is_positional_and_in_centimetres(void **state)
     assert_int_equal(uvh.grid.size[1], 3);
     assert_int_equal(uvh.grid.size[2], 2);
     /* RL: -40 + 10; PA: row 0 is the most anterior, -30 + 3 * 20 - 10 = 20, P = -20; IS: -50 + 25 */
-    assert_point(uvh.grid.lps_mm_from_ijk.origin, -30, -20, -25);
+    assert_point(uvh.grid.lps_mm_from_ijk.origin, -30, -20, -25, 1e-6);
     assert_string_equal(uvh.bodies[0].name, "left eye");
     assert_int_equal(uvh.bodies[0].uvval, 2);
     uvh_finish(&uvh);
@@ -299,8 +285,8 @@ static void an_axial_image_lies_centred_with_row_0_in_front(void **state)
     assert_false(is_doubtful);
     assert_close(volume_value(volume, 2, 1, 1), 77, 0);
     /* RL -40 + 10; PA 45 - 15 = 30, P = -30; the slice position is a centre */
-    assert_point(volume->grid.lps_mm_from_ijk.origin, -30, -30, -10);
-    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(3, 2, 1)), 30, 30, 40);
+    assert_point(volume->grid.lps_mm_from_ijk.origin, -30, -30, -10, 1e-6);
+    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(3, 2, 1)), 30, 30, 40, 1e-6);
     assert_true(report_has(&report, "geometry.centred"));
     volume_unref(volume);
     report_finish(&report);
@@ -315,13 +301,13 @@ static void coronal_and_sagittal_images_follow_their_convention(void **state)
     struct error err;
     /* coronal: columns RL+, rows IS-, slices PA+ */
     struct volume *volume = read_image("Coronal", "mm", "1", 2, where, pixels, 24, &is_doubtful, NULL, &err);
-    assert_point(volume->grid.lps_mm_from_ijk.origin, -30, 10, 30);
-    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), -10, -40, 0);
+    assert_point(volume->grid.lps_mm_from_ijk.origin, -30, 10, 30, 1e-6);
+    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), -10, -40, 0, 1e-6);
     volume_unref(volume);
     /* sagittal: columns PA-, rows IS-, slices RL+ */
     volume = read_image("Sagittal", "mm", "1", 2, where, pixels, 24, &is_doubtful, NULL, &err);
-    assert_point(volume->grid.lps_mm_from_ijk.origin, -10, -30, 30);
-    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), 40, -10, 0);
+    assert_point(volume->grid.lps_mm_from_ijk.origin, -10, -30, 30, 1e-6);
+    assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), 40, -10, 0, 1e-6);
     volume_unref(volume);
 }
 

@@ -2,6 +2,7 @@
  * columns) write them. */
 #include "core/formats/sera_row.h"
 #include "tests/unit/made_chd.h"
+#include "tests/unit/plan_help.h"
 
 static void columns_are_found_by_their_names_whoever_wrote_them(void **state)
 {
@@ -19,7 +20,7 @@ static void columns_are_found_by_their_names_whoever_wrote_them(void **state)
             chd_check_quantity(&result.doses, all[i]);
         assert_near(result.doses.reference[DOSE_THERMAL_FLUENCE], 1.25e11, 1e-5);
         assert_near(result.doses.reference[DOSE_OTHER], 0.125, 1e-5);
-        assert_true((strstr(chd_said(&result.report, "dose.column-order"), "Column 5 holds other") != NULL) == (writer % 2 == 1));
+        assert_true((strstr(report_said(&result.report, "dose.column-order"), "Column 5 holds other") != NULL) == (writer % 2 == 1));
         chd_result_finish(&result);
     }
 }
@@ -93,7 +94,7 @@ static void uneven_planes_are_resampled_and_said_so_or_refused(void **state)
     struct chd_result result = chd_read_made(&made);
     const struct volume *gamma = chd_volume_of(&result.doses, DOSE_GAMMA);
     assert_int_equal(gamma->grid.size[2], 4); /* -5, -4, -3, -2 cm */
-    assert_non_null(strstr(chd_said(&result.report, "dose.planes-uneven"), "resampled to 4 planes every 10 mm"));
+    assert_non_null(strstr(report_said(&result.report, "dose.planes-uneven"), "resampled to 4 planes every 10 mm"));
     assert_near(volume_value(gamma, 0, 0, 0), chd_physical(DOSE_GAMMA, 0), 6e-4);
     assert_near(volume_value(gamma, 0, 0, 1), chd_physical(DOSE_GAMMA, 6), 6e-4);
     assert_near(volume_value(gamma, 0, 0, 2), (chd_physical(DOSE_GAMMA, 6) + chd_physical(DOSE_GAMMA, 12)) / 2, 6e-4);
@@ -131,12 +132,12 @@ static void weights_and_ppm_are_divided_away_and_a_weighted_total_keeps_its_name
     chd_check_quantity(&result.doses, DOSE_FAST);
     chd_check_quantity(&result.doses, DOSE_OTHER);
     chd_check_quantity(&result.doses, DOSE_THERMAL_FLUENCE);
-    assert_non_null(strstr(chd_said(&result.report, "dose.total-boron"), "weighted, with 15 ppm"));
+    assert_non_null(strstr(report_said(&result.report, "dose.total-boron"), "weighted, with 15 ppm"));
     chd_result_finish(&result);
     made.weight = 0;
     result = chd_read_made(&made);
     assert_null(chd_volume_of(&result.doses, DOSE_BLOOD_BORON));
-    assert_non_null(strstr(chd_said(&result.report, "dose.weight-zero"), "boron"));
+    assert_non_null(strstr(report_said(&result.report, "dose.weight-zero"), "boron"));
     chd_result_finish(&result);
 }
 
@@ -166,12 +167,12 @@ static void boron_is_physical_only_where_every_tissue_holds_as_much_as_blood(voi
     struct chd_result result = read_wide(1);
     assert_non_null(chd_volume_of(&result.doses, DOSE_BORON));
     assert_close(volume_value(chd_volume_of(&result.doses, DOSE_BORON), 3, 1, 0), 0.73, 1e-6);
-    assert_non_null(strstr(chd_said(&result.report, "dose.boron-ratio"), "as much boron as blood"));
+    assert_non_null(strstr(report_said(&result.report, "dose.boron-ratio"), "as much boron as blood"));
     chd_result_finish(&result);
     result = read_wide(3.5); /* a tumour's */
     assert_null(chd_volume_of(&result.doses, DOSE_BORON));
     assert_close(volume_value(chd_volume_of(&result.doses, DOSE_BLOOD_BORON), 3, 1, 0), 3.5 * 0.73, 1e-5);
-    assert_non_null(strstr(chd_said(&result.report, "dose.boron-ratio"), "does not store"));
+    assert_non_null(strstr(report_said(&result.report, "dose.boron-ratio"), "does not store"));
     assert_non_null(chd_volume_of(&result.doses, DOSE_TOTAL)); /* no weights in it */
     chd_result_finish(&result);
 }
@@ -182,11 +183,11 @@ static void any_version_is_read_when_its_keys_are_there(void **state)
     struct made_chd made = chd_plain;
     made.version = "seraMC_2B7";
     struct chd_result result = chd_read_made(&made);
-    assert_string_equal(chd_said(&result.report, "dose.unknown-version"), "");
+    assert_string_equal(report_said(&result.report, "dose.unknown-version"), "");
     chd_result_finish(&result);
     made.version = "another 1.0";
     result = chd_read_made(&made);
-    assert_non_null(strstr(chd_said(&result.report, "dose.unknown-version"), "\"another 1.0\""));
+    assert_non_null(strstr(report_said(&result.report, "dose.unknown-version"), "\"another 1.0\""));
     chd_check_quantity(&result.doses, DOSE_GAMMA);
     chd_result_finish(&result);
 }
@@ -202,7 +203,7 @@ static void a_header_in_millimetres_is_told_by_its_width(void **state)
     struct vec3 first = affine_point(&chd_volume_of(&result.doses, DOSE_GAMMA)->grid.lps_mm_from_ijk, vec3(0, 0, 0));
     assert_close(first.x, -129.999, 1e-6);
     assert_close(first.z, -50, 1e-6);
-    assert_non_null(strstr(chd_said(&result.report, "geometry.unit-assumed"), "2.60 m wide in centimetres"));
+    assert_non_null(strstr(report_said(&result.report, "geometry.unit-assumed"), "2.60 m wide in centimetres"));
     chd_result_finish(&result);
 }
 
@@ -223,7 +224,7 @@ static void points_that_hold_nothing_are_not_blended_with_their_neighbours(void 
     assert_false(volume_sample(gamma, vec3(-95, 95, -50), &value));
     assert_true(volume_sample(gamma, vec3(95, -95, -38), &value));
     assert_true(gamma->low > 10);
-    assert_non_null(strstr(chd_said(&result.report, "dose.outside-mesh"), "2 of 12 points"));
+    assert_non_null(strstr(report_said(&result.report, "dose.outside-mesh"), "2 of 12 points"));
     free(header.at);
     free(table.at);
     chd_result_finish(&result);
@@ -252,7 +253,7 @@ static void pictures_of_regions_say_where_the_dose_is_valid(void **state)
     mask.size -= SIDE;
     assert_true(chd_read_both(&header, &table, &mask, &result));
     assert_null(result.doses.mask);
-    assert_non_null(strstr(chd_said(&result.report, "dose.mask-unread"), "are not 2 square pictures"));
+    assert_non_null(strstr(report_said(&result.report, "dose.mask-unread"), "are not 2 square pictures"));
     chd_result_finish(&result);
     free(mask.data);
     free(header.at);
@@ -299,7 +300,7 @@ static void pictures_that_show_other_regions_are_not_believed(void **state)
         pixels[0] = 0;
         assert_true(chd_read_both(&head, &table, &mask, &result));
         assert_int_equal(result.doses.mask != NULL, !is_turned);
-        assert_int_equal(strstr(chd_said(&result.report, "dose.mask-unread"), "at 100 % of its points") != NULL, is_turned);
+        assert_int_equal(strstr(report_said(&result.report, "dose.mask-unread"), "at 100 % of its points") != NULL, is_turned);
         chd_result_finish(&result);
     }
 }
@@ -316,8 +317,8 @@ static void numbers_that_are_none_and_a_reference_of_zero_are_counted(void **sta
         struct chd_result result = chd_read_made(&made);
         assert_true(isnan(volume_value(chd_volume_of(&result.doses, DOSE_GAMMA), 0, 0, 0)));
         assert_near(volume_value(chd_volume_of(&result.doses, DOSE_NITROGEN), 0, 0, 0), 5, 1e-3);
-        assert_non_null(strstr(chd_said(&result.report, "dose.bad-values"), bad[i].sentence));
-        assert_non_null(strstr(chd_said(&result.report, "dose.bad-values"), "first in line 1"));
+        assert_non_null(strstr(report_said(&result.report, "dose.bad-values"), bad[i].sentence));
+        assert_non_null(strstr(report_said(&result.report, "dose.bad-values"), "first in line 1"));
         chd_result_finish(&result);
     }
     made.special = "  2.0-101";
@@ -325,8 +326,8 @@ static void numbers_that_are_none_and_a_reference_of_zero_are_counted(void **sta
     struct chd_result result = chd_read_made(&made);
     assert_close(volume_value(chd_volume_of(&result.doses, DOSE_GAMMA), 0, 0, 0), 0, 1e-30);
     assert_close(result.doses.reference[DOSE_GAMMA], 0, 0);
-    assert_non_null(strstr(chd_said(&result.report, "dose.no-reference"), "1 of 9"));
-    assert_non_null(strstr(chd_said(&result.report, "header.bad-number"), "ref_dose_3"));
+    assert_non_null(strstr(report_said(&result.report, "dose.no-reference"), "1 of 9"));
+    assert_non_null(strstr(report_said(&result.report, "header.bad-number"), "ref_dose_3"));
     chd_result_finish(&result);
 }
 

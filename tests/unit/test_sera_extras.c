@@ -5,16 +5,9 @@
 #include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
+#include "tests/unit/plan_help.h"
 
 enum { TEXT_SIZE = 1 << 15 };
-
-static const char *said(const struct report *report, const char *code)
-{
-    for (size_t i = 0; i < report->n_lines; i++)
-        if (strcmp(report->lines[i].code, code) == 0)
-            return report->lines[i].sentence;
-    return "";
-}
 
 /* ---- tables -------------------------------------------------------------------------------------------------------------------- */
 
@@ -88,14 +81,14 @@ static void a_table_has_its_depths_radii_and_columns(void **state)
     assert_true(dose_curve_peak(&curve, 0, &depth, &value));
     assert_close(depth, 15, 1e-9);
     assert_close(value, 21, 1e-5);
-    assert_non_null(strstr(said(&report, "dose.outside-mesh"), "1 of 9 points"));
+    assert_non_null(strstr(report_said(&report, "dose.outside-mesh"), "1 of 9 points"));
     dose_curve_finish(&curve);
     report_finish(&report);
     n = make_table(text, "**********");
     assert_true(read_table(text, n, &curve, &report, &err));
     assert_false(dose_curve_value(&curve, 1, 0, 0, &value));
-    assert_non_null(strstr(said(&report, "dose.bad-values"), "1 values too large"));
-    assert_non_null(strstr(said(&report, "dose.bad-values"), "line 9"));
+    assert_non_null(strstr(report_said(&report, "dose.bad-values"), "1 values too large"));
+    assert_non_null(strstr(report_said(&report, "dose.bad-values"), "line 9"));
     dose_curve_finish(&curve);
     report_finish(&report);
 }
@@ -161,18 +154,6 @@ static const struct dose_curve *curve_of(const struct plan *plan, const char *id
     return NULL;
 }
 
-static void copy_data(const char *from, const char *folder, const char *name)
-{
-    char path[600], *buffer = malloc(8 << 20);
-    assert_true(data_path(from, path, sizeof path));
-    FILE *in = fopen(path, "rb");
-    assert_non_null(in);
-    size_t n = fread(buffer, 1, 8 << 20, in);
-    fclose(in);
-    folder_put(folder, name, buffer, n);
-    free(buffer);
-}
-
 static void published_tables_have_their_published_figures(void **state)
 {
     (void)state;
@@ -181,11 +162,11 @@ static void published_tables_have_their_published_figures(void **state)
     if (!data_path("sera-st/beam/BPTB_B_8cm.dose.gz", folder, sizeof folder))
         skip();
     folder_make(folder);
-    copy_data("sera-st/beam/BPTB_B_8cm.dose.gz", folder, "BPTB_B_8cm.dose.gz");
-    copy_data("sera-st/beam/LTright.dose.gz", folder, "LTright.dose.gz");
-    copy_data("sera-head/generated/head1.dose", folder, "head1.dose");
-    copy_data("sera-st/ST.uv.gz", folder, "ST.uv.gz");
-    copy_data("sera-st/ST.uvh", folder, "ST.uvh");
+    folder_put_data(folder, "BPTB_B_8cm.dose.gz", "sera-st/beam/BPTB_B_8cm.dose.gz");
+    folder_put_data(folder, "LTright.dose.gz", "sera-st/beam/LTright.dose.gz");
+    folder_put_data(folder, "head1.dose", "sera-head/generated/head1.dose");
+    folder_put_data(folder, "ST.uv.gz", "sera-st/ST.uv.gz");
+    folder_put_data(folder, "ST.uvh", "sera-st/ST.uvh");
     struct plan *plan = plan_load(folder, "p", NULL, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(plan->n_curves, 3);
@@ -261,7 +242,7 @@ static void preferences_give_colours_levels_maps_and_tissues(void **state)
     assert_close(eye->opacity, 0.4, 1e-9);
     assert_null(rsc_find(&rsc, "left_ey"));
     assert_null(rsc_find(&rsc, "left_eyes"));
-    assert_non_null(strstr(said(&report, "header.bad-number"), "1 values are not numbers in range, the first in line 7"));
+    assert_non_null(strstr(report_said(&report, "header.bad-number"), "1 values are not numbers in range, the first in line 7"));
     report_finish(&report);
     assert_true(read_rsc("view contour lines:True\ncontour levels:\n10:White\n90:Red\nMax:Blue\n", "seradose_prefs.rsc", &rsc, NULL, &err));
     assert_int_equal(rsc.n_levels, 2);
@@ -325,10 +306,10 @@ static void preferences_fill_only_what_regions_do_not_have(void **state)
     assert_close(plan->preferences.levels[0].percent, 80, 0);
     assert_int_equal(plan->preferences.levels[0].rgb[1], 255);
     assert_int_equal(plan->preferences.n_colors, 2);
-    assert_non_null(strstr(said(&plan->report, "preferences.colors"), "2 regions without a colour"));
-    assert_non_null(strstr(said(&plan->report, "preferences.tissues"), "1 regions"));
-    assert_non_null(strstr(said(&plan->report, "preferences.unread"), "y.cmap: line 1"));
-    assert_non_null(strstr(said(&plan->report, "curve.unread"), "z.dose: line 1"));
+    assert_non_null(strstr(report_said(&plan->report, "preferences.colors"), "2 regions without a colour"));
+    assert_non_null(strstr(report_said(&plan->report, "preferences.tissues"), "1 regions"));
+    assert_non_null(strstr(report_said(&plan->report, "preferences.unread"), "y.cmap: line 1"));
+    assert_non_null(strstr(report_said(&plan->report, "curve.unread"), "z.dose: line 1"));
     plan_destroy(plan);
     folder_remove(folder);
 }
@@ -362,7 +343,7 @@ static void a_plan_file_names_curves_and_preferences(void **state)
     assert_string_equal(plan->curves[1].id, "b");
     assert_string_equal(plan->curves[2].id, "b-2");
     assert_string_equal(plan->curves[2].per, "unit of the source");
-    assert_non_null(strstr(said(&plan->report, "curve.unread"), "gone.dose"));
+    assert_non_null(strstr(report_said(&plan->report, "curve.unread"), "gone.dose"));
     assert_int_equal(plan->preferences.n_levels, 1);
     plan_destroy(plan);
     folder_remove(folder);

@@ -7,36 +7,21 @@
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/oracle.h"
+#include "tests/unit/plan_help.h"
 
-static const char *said(const struct report *report, const char *code)
-{
-    for (size_t i = 0; i < report->n_lines; i++)
-        if (strcmp(report->lines[i].code, code) == 0)
-            return report->lines[i].sentence;
-    return "";
-}
-
-struct blob {
-    uint8_t *data;
-    size_t size;
-};
-
-static struct blob read_data(const char *name)
+static struct bytes read_data(const char *name)
 {
     char path[600];
+    struct bytes blob;
     assert_true(data_path(name, path, sizeof path));
-    FILE *in = fopen(path, "rb");
-    assert_non_null(in);
-    struct blob blob = { malloc(8 << 20), 0 };
-    blob.size = fread(blob.data, 1, 8 << 20, in);
-    fclose(in);
+    blob.data = file_bytes(path, &blob.size);
     return blob;
 }
 
-static struct blob pack(const uint8_t *data, size_t size)
+static struct bytes pack(const uint8_t *data, size_t size)
 {
     uLongf n = compressBound((uLong)size);
-    struct blob blob = { malloc(n), 0 };
+    struct bytes blob = { malloc(n), 0 };
     assert_int_equal(compress2(blob.data, &n, data, (uLong)size, 9), Z_OK);
     blob.size = n;
     return blob;
@@ -88,12 +73,9 @@ static double mean_weighted(const struct plan *plan, const struct dose *dose, co
 static void mean_weighted_doses_are_those_of_sera_plan_and_sera_mc(void **state)
 {
     (void)state;
-    char path[512];
-    struct error err = { 0 };
-    if (!data_path("sera-head", path, sizeof path))
+    struct plan *plan = plan_of_data("sera-head");
+    if (!plan)
         skip();
-    struct plan *plan = plan_load(path, "p", NULL, &err);
-    assert_string_equal(err.text, "");
     /* Published, at 15 ppm in blood: seraPlan 455.2 and 22.87 cGy, from the mesh, between whose cells it interpolates in a way of its own
      * (1 to 3 % at a point, so 2 % of a mean); seraMC 453.1 and 22.81, whose own interpolated points the contours are. */
     static const char *const ids[] = { "tumor", "brain" };
@@ -114,7 +96,7 @@ static void a_wrong_unit_is_taken_for_what_it_must_be_or_for_what_the_plan_says(
     if (!data_path("sera-head", path, sizeof path))
         skip();
     folder_make(folder);
-    struct blob header = read_data("sera-head/original/CoryST.uvh"), univels = read_data("sera-head/original/CoryST.uv.gz");
+    struct bytes header = read_data("sera-head/original/CoryST.uvh"), univels = read_data("sera-head/original/CoryST.uv.gz");
     folder_put(folder, "a.uvh", header.data, header.size);
     folder_put(folder, "a.uv.gz", univels.data, univels.size);
     static const struct {
@@ -132,7 +114,7 @@ static void a_wrong_unit_is_taken_for_what_it_must_be_or_for_what_the_plan_says(
         assert_close(grid_spacing_mm(&plan->regions.layers[0]->grid).x, cases[i].spacing_mm, 1e-9);
         static const char *const codes[] = { "geometry.unit-assumed", "geometry.unit-given" };
         for (size_t c = 0; c < 2; c++)
-            assert_int_equal(said(&plan->report, codes[c])[0] != 0, strcmp(codes[c], cases[i].code) == 0);
+            assert_int_equal(report_said(&plan->report, codes[c])[0] != 0, strcmp(codes[c], cases[i].code) == 0);
         plan_destroy(plan);
     }
     static const char bad[] = "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.uvh\",\"unit\":\"ft\"}]}";
@@ -149,28 +131,20 @@ static void a_wrong_unit_is_taken_for_what_it_must_be_or_for_what_the_plan_says(
 static void sera_s_own_contours_agree_with_its_dose_file(void **state)
 {
     (void)state;
-    char path[512];
-    struct error err = { 0 };
-    if (!data_path("sera-head", path, sizeof path))
+    struct plan *plan = plan_of_data("sera-head");
+    if (!plan)
         skip();
-    struct plan *plan = plan_load(path, "p", NULL, &err);
-    assert_string_equal(err.text, "");
     assert_int_equal(plan->n_doses, 2);
     const struct dose *dose = &plan->doses[1];
     assert_string_equal(dose->id, "contours");
     assert_int_equal(dose->n_components, 9);
-    const struct volume *thermal = NULL, *boron = NULL;
-    for (size_t c = 0; c < 9; c++) {
-        thermal = dose->components[c].quantity == DOSE_THERMAL_FLUENCE ? dose->components[c].values : thermal;
-        boron = dose->components[c].quantity == DOSE_BORON ? dose->components[c].values : boron;
-    }
-    assert_non_null(boron); /* the card's ratio is 1 everywhere */
-    assert_non_null(thermal);
+    component_of(dose, DOSE_BORON); /* it is there, as the card's ratio is 1 everywhere */
+    const struct volume *thermal = component_of(dose, DOSE_THERMAL_FLUENCE);
     /* 24 points behind the source plane reach 300 times the peak, which is 4.25e11 along the beam (notes beside the data) */
     assert_near(thermal->high, 1.3e14, 0.02);
     assert_near(dose->body_high[DOSE_THERMAL_FLUENCE], 4.25e11, 0.05);
     assert_near(dose->reference[DOSE_THERMAL_FLUENCE], 4.10769e11, 1e-6);
-    assert_non_null(strstr(said(&plan->report, "dose.absurd-outside"), "4 of 9 quantities"));
+    assert_non_null(strstr(report_said(&plan->report, "dose.absurd-outside"), "4 of 9 quantities"));
     /* the reference point, (PA, RL, IS) (-4.5, 4.5, -4.5): trilinear of the .rst gives 4.010e11; published: they agree within 5 % */
     double value;
     assert_true(volume_sample(thermal, vec3(45, 45, -45), &value));
@@ -277,7 +251,7 @@ static void images_and_univels_may_be_bare_zlib_streams(void **state)
         voxels[i] = (uint8_t)(i % 5);
         raw[i] = (uint8_t)i;
     }
-    struct blob univels = pack(voxels, sizeof voxels), pixels = pack(raw, sizeof raw);
+    struct bytes univels = pack(voxels, sizeof voxels), pixels = pack(raw, sizeof raw);
     folder_make(folder);
     folder_put(folder, "a.uvh", small_uvh, sizeof small_uvh - 1);
     folder_put(folder, "a.uv.sz", univels.data, univels.size);
@@ -336,7 +310,7 @@ static void a_plan_asks_contours_for_a_quantity_and_says_what_is_100_percent(voi
         assert_string_equal(err.text, "");
         assert_int_equal(plan->n_doses, 1);
         assert_int_equal(plan->doses[0].n_components, cases[i].n);
-        assert_int_equal(said(&plan->report, "dose.no-quantity")[0] != 0, cases[i].n == 0);
+        assert_int_equal(report_said(&plan->report, "dose.no-quantity")[0] != 0, cases[i].n == 0);
         if (cases[i].n > 0)
             assert_int_equal(plan->doses[0].components[0].quantity, cases[i].first);
         assert_close(plan->doses[0].reference[DOSE_GAMMA], cases[i].gamma_reference, 1e-9);
@@ -356,7 +330,7 @@ static void a_stream_that_swells_is_stopped_at_what_its_header_allows(void **sta
     char folder[256];
     struct error err = { 0 };
     uint8_t *zeros = calloc(1, BOMB);
-    struct blob bomb = pack(zeros, BOMB);
+    struct bytes bomb = pack(zeros, BOMB);
     free(zeros);
     static const char *const names[] = { "a.uv.sz", "a.qim.sz", "a.cdf.sz", "a.cmf.sz" };
     uint8_t voxels[256] = { 3 };
@@ -461,14 +435,14 @@ static void damaged_copies_of_every_real_file_are_survived(void **state)
     if (!data_path("sera-head", unused, sizeof unused))
         skip();
     for (size_t p = 0; p < sizeof parts / sizeof parts[0]; p++) {
-        struct blob whole = { 0 };
+        struct bytes whole = { 0 };
         folder_make(folder);
         for (int f = 2; f >= 0; f--) {
             char name[600];
             if (!parts[p].name[f])
                 continue;
             snprintf(name, sizeof name, "sera-head/%s", parts[p].from[f]);
-            struct blob blob = read_data(name);
+            struct bytes blob = read_data(name);
             folder_put(folder, parts[p].name[f], blob.data, blob.size);
             if (f == 0)
                 whole = blob;
@@ -503,9 +477,7 @@ static void a_folder_of_sera_s_files_opens_without_a_plan_file(void **state)
     folder_make(folder);
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         snprintf(name, sizeof name, "sera-head/%s", names[i]);
-        struct blob blob = read_data(name);
-        folder_put(folder, strchr(names[i], '/') + 1, blob.data, blob.size);
-        free(blob.data);
+        folder_put_data(folder, strchr(names[i], '/') + 1, name);
     }
     struct plan *plan = plan_load(folder, "p", NULL, &err);
     assert_string_equal(err.text, "");
@@ -517,8 +489,8 @@ static void a_folder_of_sera_s_files_opens_without_a_plan_file(void **state)
     assert_close(plan->preferences.levels[3].percent, 70, 0);
     assert_int_equal(plan->preferences.levels[3].rgb[0] << 16 | plan->preferences.levels[3].rgb[1] << 8 | plan->preferences.levels[3].rgb[2],
                      0xffff00);
-    assert_string_equal(said(&plan->report, "preferences.colors"), ""); /* head.uvh has its own */
-    assert_non_null(strstr(said(&plan->report, "tracks.unit-assumed"), "taken as mm"));
+    assert_string_equal(report_said(&plan->report, "preferences.colors"), ""); /* head.uvh has its own */
+    assert_non_null(strstr(report_said(&plan->report, "tracks.unit-assumed"), "taken as mm"));
     plan_destroy(plan);
     struct plan_summary summary;
     plan_summarize(folder, &summary);

@@ -3,6 +3,7 @@
 #include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
+#include "tests/unit/plan_help.h"
 
 struct text {
     char *at;
@@ -219,14 +220,6 @@ static void every_cut_and_every_changed_byte_is_survived(void **state)
     free(whole.at);
 }
 
-static const char *report_line(const struct report *report, const char *code)
-{
-    for (size_t i = 0; i < report->n_lines; i++)
-        if (strcmp(report->lines[i].code, code) == 0)
-            return report->lines[i].sentence;
-    return "";
-}
-
 static void a_plan_may_ask_for_all_of_it_or_for_one_quantity(void **state)
 {
     (void)state;
@@ -244,8 +237,8 @@ static void a_plan_may_ask_for_all_of_it_or_for_one_quantity(void **state)
     assert_int_equal(plan->doses[0].n_components, RST_N_DOSES);
     assert_string_equal(plan->doses[0].unit, "cGy");
     assert_string_equal(plan->doses[0].per, "unit of the source");
-    assert_non_null(strstr(report_line(&plan->report, "dose.unit-differs"), "is in Gy; a file of SERA is in cGy"));
-    assert_non_null(strstr(report_line(&plan->report, "dose.no-per"), "one unit of the source"));
+    assert_non_null(strstr(report_said(&plan->report, "dose.unit-differs"), "is in Gy; a file of SERA is in cGy"));
+    assert_non_null(strstr(report_said(&plan->report, "dose.no-per"), "one unit of the source"));
     assert_int_equal(plan->doses[1].n_components, 2);
     assert_string_equal(plan->doses[1].per, "250 kW-min");
     assert_int_equal(plan->doses[1].components[0].quantity, DOSE_GAMMA);
@@ -263,12 +256,9 @@ static void a_plan_may_ask_for_all_of_it_or_for_one_quantity(void **state)
 static void sera_s_own_dose_has_the_figures_published_with_it(void **state)
 {
     (void)state;
-    char path[512];
-    struct error err = { 0 };
-    if (!data_path("sera-head", path, sizeof path))
+    struct plan *plan = plan_of_data("sera-head");
+    if (!plan)
         skip();
-    struct plan *plan = plan_load(path, "p", NULL, &err);
-    assert_string_equal(err.text, "");
     assert_int_equal(plan->n_doses, 2);
     const struct dose *dose = &plan->doses[0];
     assert_int_equal(dose->n_components, RST_N_DOSES);
