@@ -17,18 +17,24 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/net/net.h"
+#include "server/http/head.h"
 #include "server/http/http.h"
+#include "server/wire/refusal.h"
 
 struct pending {
     int socket; /* -1: free */
     struct sockaddr_storage address;
     socklen_t n_address;
     int64_t until_us;
+    bool is_refused;  /* has been told; what it still sends is dropped, or its system would take the answer back */
+    size_t n_dropped;
 };
 
 struct acceptor {
     struct net *net;
     struct http *http;
+    const struct hosts *hosts;
+    char bytes[HEAD_MAX_BYTES]; /* of the head that is looked at */
     int listener, epoll, stop;
     pthread_t thread;
     bool has_thread;
@@ -65,10 +71,16 @@ static void accept_one(struct acceptor *acceptor, int socket, const struct socka
             n_same += same_address(&acceptor->pending[i].address, address);
     }
     if (!slot || n_same >= ACCEPTOR_MAX_PENDING_PER_ADDRESS) {
-        close(socket); /* the oldest ones run into their time limit soon */
+        struct problem problem; /* the oldest ones run into their time limit soon */
+        problem_set(&problem, PROBLEM_LIMIT, "", "", "too many connections that have not said what they want: at most %d in all, %d from one address",
+                    ACCEPTOR_MAX_PENDING, ACCEPTOR_MAX_PENDING_PER_ADDRESS);
+        problem.retry_after_ms = ACCEPTOR_HEAD_MS;
+        refusal_send(socket, &problem);
+        (void)refusal_drain(socket, HEAD_MAX_BYTES);
+        close(socket);
         return;
     }
-    *slot = (struct pending){ socket, *address, n_address, clock_now_us() + ACCEPTOR_FIRST_LINE_MS * 1000LL };
+    *slot = (struct pending){ .socket = socket, .address = *address, .n_address = n_address, .until_us = clock_now_us() + ACCEPTOR_HEAD_MS * 1000LL };
     acceptor->n_pending++;
     /* edge-triggered: a peek leaves the bytes there, and only new ones may wake us */
     struct epoll_event event = { .events = EPOLLIN | EPOLLRDHUP | EPOLLET, .data.u64 = (uint64_t)(slot - acceptor->pending) };
@@ -96,40 +108,66 @@ static void accept_all(struct acceptor *acceptor)
     }
 }
 
-/* "GET /api/v1/rooms/<anything>/ws HTTP/1.1" */
-static bool is_websocket(const char *line, size_t n)
+static void refuse(struct pending *slot, const struct problem *problem)
 {
-    static const char prefix[] = "GET /api/v1/rooms/";
-    const size_t n_prefix = sizeof prefix - 1;
-    if (n < n_prefix || memcmp(line, prefix, n_prefix) != 0)
+    refusal_send(slot->socket, problem);
+    slot->is_refused = true;
+    slot->until_us = clock_now_us() + ACCEPTOR_LINGER_MS * 1000LL;
+}
+
+/* Of one that was refused. true: the slot is done with. */
+static bool linger(struct pending *slot)
+{
+    enum { AT_ONCE = 64 << 10 };
+    slot->n_dropped += AT_ONCE; /* at most */
+    if (refusal_drain(slot->socket, AT_ONCE) && slot->n_dropped < ACCEPTOR_MAX_DROPPED)
         return false;
-    const char *target = line + n_prefix, *end = line + n;
-    const char *stop = target;
-    while (stop < end && *stop != ' ' && *stop != '?')
-        stop++;
-    return stop - target > 3 && memcmp(stop - 3, "/ws", 3) == 0;
+    close(slot->socket);
+    return true;
 }
 
 /* Looks at what has come. has_ended: nothing more will. true: the slot is done with. */
 static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended)
 {
-    char bytes[ACCEPTOR_MAX_FIRST_LINE];
-    ssize_t n = recv(slot->socket, bytes, sizeof bytes, MSG_PEEK | MSG_DONTWAIT);
+    struct problem problem;
+    if (slot->is_refused)
+        return linger(slot);
+    ssize_t n = recv(slot->socket, acceptor->bytes, sizeof acceptor->bytes, MSG_PEEK | MSG_DONTWAIT);
     if (n < 0 && (errno == EAGAIN || errno == EINTR))
         return false;
-    const char *line_end = n > 0 ? memchr(bytes, '\n', (size_t)n) : NULL;
-    if (n <= 0 || (has_ended && !line_end)) {
+    if (n <= 0) {
         close(slot->socket);
         return true;
     }
-    if (!line_end && n < ACCEPTOR_MAX_FIRST_LINE)
+    enum head_kind kind = head_look(acceptor->bytes, (size_t)n, acceptor->hosts, &problem);
+    if (kind == HEAD_INCOMPLETE && !has_ended)
         return false;
+    if (kind == HEAD_INCOMPLETE)
+        head_refuse_incomplete(acceptor->bytes, (size_t)n, true, 0, &problem);
+    if (kind == HEAD_INCOMPLETE || kind == HEAD_REFUSED) {
+        refuse(slot, &problem);
+        return linger(slot);
+    }
     epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, slot->socket, NULL);
-    if (line_end && is_websocket(bytes, (size_t)(line_end - bytes)))
+    if (kind == HEAD_WEBSOCKET)
         net_adopt(acceptor->net, slot->socket);
     else
         http_add_connection(acceptor->http, slot->socket, (const struct sockaddr *)&slot->address, slot->n_address);
     return true;
+}
+
+/* Its time is over. true: the slot is done with. */
+static bool end_late(struct acceptor *acceptor, struct pending *slot)
+{
+    struct problem problem;
+    ssize_t n = slot->is_refused ? 0 : recv(slot->socket, acceptor->bytes, sizeof acceptor->bytes, MSG_PEEK | MSG_DONTWAIT);
+    if (n <= 0) { /* one that said nothing expects no answer: browsers open connections before they need them */
+        close(slot->socket);
+        return true;
+    }
+    head_refuse_incomplete(acceptor->bytes, (size_t)n, false, ACCEPTOR_HEAD_MS, &problem);
+    refuse(slot, &problem);
+    return linger(slot);
 }
 
 static int drop_late(struct acceptor *acceptor)
@@ -139,12 +177,10 @@ static int drop_late(struct acceptor *acceptor)
         struct pending *slot = &acceptor->pending[i];
         if (slot->socket < 0)
             continue;
-        if (now_us >= slot->until_us) {
-            close(slot->socket);
+        if (now_us >= slot->until_us && end_late(acceptor, slot))
             free_slot(acceptor, slot);
-        } else if (slot->until_us < next_us) {
+        else if (slot->until_us < next_us)
             next_us = slot->until_us;
-        }
     }
     return next_us == INT64_MAX ? -1 : (int)((next_us - now_us) / 1000) + 1;
 }
@@ -207,9 +243,10 @@ static bool watch(struct acceptor *acceptor, int fd, uint64_t tag)
     return fd >= 0 && epoll_ctl(acceptor->epoll, EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
-struct acceptor *acceptor_create(const char *listen_at, struct net *net, struct http *http, struct error *err)
+struct acceptor *acceptor_create(const char *listen_at, struct net *net, struct http *http, const struct hosts *hosts, struct error *err)
 {
     struct acceptor *acceptor = mem_new(sizeof *acceptor);
+    acceptor->hosts = hosts;
     acceptor->net = net;
     acceptor->http = http;
     acceptor->listener = -1;

@@ -15,6 +15,7 @@
 #include "server/daemon/acceptor.h"
 #include "server/net/net.h"
 #include "server/daemon/options.h"
+#include "server/http/hosts.h"
 #include "server/http/http.h"
 
 enum { PATH_SIZE = 4096 };
@@ -101,13 +102,15 @@ static bool serve(const struct options *options, const char *data_folder, const 
     };
     char upload_folder[PATH_SIZE + 16];
     (void)snprintf(upload_folder, sizeof upload_folder, "%s/uploads", data_folder);
+    struct hosts *hosts = hosts_create((const char *const *)options->public_names, options->n_public_names);
     const struct http_options http_options = { .web_folder = web_folder,
                                                .upload_folder = upload_folder,
                                                .max_upload_bytes = (uint64_t)options->max_upload_mib << 20,
-                                               .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20 };
+                                               .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
+                                               .hosts = hosts };
     struct net *net = net_create(&net_options, err);
     struct http *http = net ? http_create(net, &http_options, err) : NULL;
-    struct acceptor *acceptor = http ? acceptor_create(options->listen ? options->listen : "127.0.0.1:8080", net, http, err) : NULL;
+    struct acceptor *acceptor = http ? acceptor_create(options->listen ? options->listen : "127.0.0.1:8080", net, http, hosts, err) : NULL;
     if (acceptor) {
         sigset_t signals;
         int signal_number = 0;
@@ -125,6 +128,7 @@ static bool serve(const struct options *options, const char *data_folder, const 
         http_stop_asking(http);
     net_destroy(net);
     http_destroy(http);
+    hosts_destroy(hosts);
     return acceptor != NULL;
 }
 

@@ -7,7 +7,7 @@
 
 #include "core/base/mem.h"
 
-enum kind { KIND_FOLDERS, KIND_TEXT, KIND_COUNT, KIND_FLAG, KIND_LEVEL };
+enum kind { KIND_FOLDERS, KIND_TEXT, KIND_COUNT, KIND_FLAG, KIND_LEVEL, KIND_NAMES };
 
 /* One row a setting: flag --name VALUE, key "name = value". */
 struct setting {
@@ -36,6 +36,7 @@ static const struct setting settings[] = {
     { "max-unpacked-mib", "N", "what may come out of one, in MiB; default 8192", KIND_COUNT, AT(max_unpacked_mib), 1, 1 << 24 },
     { "disk-reserve-mib", "N", "what uploads leave free on the disk of --data, in MiB; default 64", KIND_COUNT, AT(disk_reserve_mib), 0, 1 << 24 },
     { "allow-origin", "ORIGIN", "a further origin whose pages may open WebSockets, as https://beamroom.example", KIND_TEXT, AT(allowed_origin), 0, 0 },
+    { "public-name", "NAME", "a name people reach this server by, as beamroom.example; may be repeated; * for any", KIND_NAMES, AT(public_names), 0, 0 },
     { "log-level", "LEVEL", "debug, info (default), warning or error", KIND_LEVEL, AT(log_level), 0, 0 },
     { "stub", NULL, "draw grey pictures instead of using GL; for tests", KIND_FLAG, AT(stub_renderer), 0, 0 },
 };
@@ -80,6 +81,13 @@ static bool set(struct options *options, const struct setting *setting, const ch
         if (options->n_plan_folders == OPTIONS_MAX_PLAN_FOLDERS)
             return error_set(err, ERROR_LIMIT, "more than %d plan folders", OPTIONS_MAX_PLAN_FOLDERS);
         options->plan_folders[options->n_plan_folders++] = mem_copy_text(value);
+        return true;
+    case KIND_NAMES:
+        if (options->n_public_names == OPTIONS_MAX_NAMES)
+            return error_set(err, ERROR_LIMIT, "more than %d public names", OPTIONS_MAX_NAMES);
+        if (!*value || strpbrk(value, ":/ \t[]"))
+            return error_set(err, ERROR_FORMAT, "public-name is \"%.80s\", expected a name alone, as beamroom.example", value);
+        options->public_names[options->n_public_names++] = mem_copy_text(value);
         return true;
     case KIND_TEXT: {
         char **text = (char **)(void *)at;
@@ -186,6 +194,8 @@ void options_finish(struct options *options)
 {
     for (size_t i = 0; i < options->n_plan_folders; i++)
         free(options->plan_folders[i]);
+    for (size_t i = 0; i < options->n_public_names; i++)
+        free(options->public_names[i]);
     free(options->data_folder);
     free(options->web_folder);
     free(options->listen);

@@ -6,11 +6,13 @@
 #include "core/base/error.h"
 #include "core/base/log.h"
 
-enum { OPTIONS_MAX_PLAN_FOLDERS = 64, OPTIONS_MAX_LINE = 4096 };
+enum { OPTIONS_MAX_PLAN_FOLDERS = 64, OPTIONS_MAX_NAMES = 64, OPTIONS_MAX_LINE = 4096 };
 
 struct options {
     char *plan_folders[OPTIONS_MAX_PLAN_FOLDERS];
     size_t n_plan_folders;
+    char *public_names[OPTIONS_MAX_NAMES];
+    size_t n_public_names;
     char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin; /* NULL: not said */
     int64_t max_renderers, max_renderer_mib, plan_idle_close_s, room_idle_close_s, max_rooms, max_members;
     int64_t max_upload_mib, max_unpacked_mib, disk_reserve_mib;

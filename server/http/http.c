@@ -1,6 +1,7 @@
 #include "server/http/http.h"
 
 #include <ctype.h>
+#include <fcntl.h>
 #include <microhttpd.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -8,19 +9,23 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/http/api.h"
 #include "server/http/files.h"
+#include "server/http/head.h"
 #include "server/http/intake.h"
+#include "server/wire/refusal.h"
 
 struct http {
     struct net *net;
     struct api *api;
     struct files *files;
     struct intake *intake;
+    const struct hosts *hosts;
     struct MHD_Daemon *daemon;
     pthread_mutex_t asking; /* held while a task is posted: after http_stop_asking none is */
     size_t max_archive_dropped; /* bytes of an archive beyond the limit that are read: a sender who streams hears why it was refused */
@@ -213,6 +218,8 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     call->content_type = copy_header(connection, "Content-Type");
     call->origin = copy_header(connection, "Origin");
     call->host = copy_header(connection, "Host");
+    if (call->early.type == PROBLEM_NONE)
+        head_host_is_ours(http->hosts, MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host"), &call->early);
     return request;
 }
 
@@ -276,7 +283,7 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
         return send_answer(connection, request);
     if (!request->is_posted) {
         enum call_method verb = request->call->method;
-        const struct file *file = http->files && (verb == CALL_GET || verb == CALL_HEAD) ? files_find(http->files, request->call->path) : NULL;
+        const struct file *file = http->files && request->call->early.type == PROBLEM_NONE && (verb == CALL_GET || verb == CALL_HEAD) ? files_find(http->files, request->call->path) : NULL;
         if (file)
             return send_file(connection, file);
         finish_archive(request);
@@ -312,6 +319,7 @@ struct http *http_create(struct net *net, const struct http_options *options, st
 {
     struct http *http = mem_new(sizeof *http);
     http->net = net;
+    http->hosts = options->hosts;
     http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0);
     http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes : HTTP_MIN_ARCHIVE_DROPPED;
     http->intake = intake_create(options->upload_folder, options->max_upload_bytes, options->disk_reserve_bytes);
@@ -371,6 +379,18 @@ static void log_refusal(struct http *http)
 
 void http_add_connection(struct http *http, int socket, const struct sockaddr *address, socklen_t n_address)
 {
-    if (MHD_add_connection(http->daemon, socket, address, n_address) != MHD_YES)
-        log_refusal(http); /* the library has closed the socket */
+    int second = fcntl(socket, F_DUPFD_CLOEXEC, 3); /* the library closes what it does not take, without a word */
+    if (MHD_add_connection(http->daemon, socket, address, n_address) != MHD_YES) {
+        struct problem problem;
+        problem_set(&problem, PROBLEM_LIMIT, "", "", "too many connections: at most %d in all, %d from one address", HTTP_MAX_CONNECTIONS,
+                    HTTP_MAX_PER_ADDRESS);
+        problem.retry_after_ms = HTTP_RETRY_MS;
+        if (second >= 0) {
+            (void)refusal_drain(second, HEAD_MAX_BYTES); /* its head, which nobody has read */
+            refusal_send(second, &problem);
+        }
+        log_refusal(http);
+    }
+    if (second >= 0)
+        (void)close(second);
 }

@@ -196,7 +196,7 @@ static bool is_fast_enough(struct intake_file *file, size_t n, struct problem *p
         return true;
     bool is_enough = file->window_bytes >= INTAKE_WINDOW_BYTES;
     if (!is_enough)
-        problem_set(problem, PROBLEM_TIMEOUT, "", "", "%" PRIu64 " bytes came in %.0f s; at least %d are expected", file->window_bytes,
+        problem_set(problem, PROBLEM_TOO_SLOW, "", "", "%" PRIu64 " bytes came in %.0f s; at least %d are expected", file->window_bytes,
                     (double)(now_us - file->window_us) / 1e6, INTAKE_WINDOW_BYTES);
     file->window_us = now_us;
     file->window_bytes = 0;

@@ -29,7 +29,7 @@ bool intake_is_for(const struct call *call);
 /* Begins with one. length: the bytes that are announced, -1 when the sender does not say. NULL with problem:
  * PROBLEM_FORBIDDEN, PROBLEM_MEDIA_TYPE, PROBLEM_TOO_LARGE, PROBLEM_LIMIT, PROBLEM_STORAGE */
 NODISCARD struct intake_file *intake_begin(struct intake *intake, const struct call *call, int64_t length, struct problem *problem);
-/* More of it. false with problem (PROBLEM_TOO_LARGE, PROBLEM_STORAGE, PROBLEM_TIMEOUT when too little comes): drop it. */
+/* More of it. false with problem (PROBLEM_TOO_LARGE, PROBLEM_STORAGE, PROBLEM_TOO_SLOW when too little comes): drop it. */
 NODISCARD bool intake_add(struct intake_file *file, const char *bytes, size_t n, struct problem *problem);
 /* All has come: gives the file's path, free() it, and its size. Takes file. NULL with problem, and nothing is left. */
 NODISCARD char *intake_finish(struct intake_file *file, uint64_t *n_bytes, struct problem *problem);

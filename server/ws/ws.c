@@ -9,11 +9,13 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/wire/message.h"
+#include "server/wire/refusal.h"
 
 enum {
     LARGEST_SEND = 1 << 20,    /* in one call; less than a frame makes it several times slower */
@@ -92,23 +94,47 @@ static bool origin_is_allowed(const struct ws *ws, struct lws *wsi)
     return authority && strcasecmp(authority, host) == 0;
 }
 
-static int refuse(struct ws *ws, struct lws *wsi, unsigned status)
+/* The library's own refusals are pages of HTML; this one is a problem like all others. */
+static int refuse(struct ws *ws, struct lws *wsi, const struct problem *problem)
 {
+    size_t n;
+    char *text = refusal_write(problem, &n);
+    unsigned char *bytes = mem_new(LWS_PRE + n);
+    memcpy(bytes + LWS_PRE, text, n);
     ws->counters.refused++;
-    (void)lws_return_http_status(wsi, status, NULL);
+    (void)lws_write(wsi, bytes + LWS_PRE, n, LWS_WRITE_HTTP_FINAL);
+    free(bytes);
+    free(text);
     return -1;
 }
 
 static int confirm_upgrade(struct ws *ws, struct lws *wsi, const char *to)
 {
-    char id[64];
-    if (strcasecmp(to, "websocket") != 0)
-        return refuse(ws, wsi, HTTP_STATUS_BAD_REQUEST);
-    if (!read_path(wsi, id) || !ws->callbacks.has_room(ws->callbacks.context, id))
-        return refuse(ws, wsi, HTTP_STATUS_NOT_FOUND);
-    if (!origin_is_allowed(ws, wsi))
-        return refuse(ws, wsi, HTTP_STATUS_FORBIDDEN);
+    char id[64], origin[101] = "";
+    struct problem problem;
+    if (strcasecmp(to, "websocket") != 0) {
+        problem_set(&problem, PROBLEM_UPGRADE, "", "", "Upgrade is \"%.40s\"; expected is websocket", to);
+        return refuse(ws, wsi, &problem);
+    }
+    if (!read_path(wsi, id) || !ws->callbacks.has_room(ws->callbacks.context, id)) {
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no such room; expected is the id of one that is open");
+        return refuse(ws, wsi, &problem);
+    }
+    if (!origin_is_allowed(ws, wsi)) {
+        (void)lws_hdr_copy(wsi, origin, sizeof origin, WSI_TOKEN_ORIGIN);
+        problem_set(&problem, PROBLEM_FORBIDDEN, "", "", "the origin \"%.100s\" may not open a WebSocket; expected is the server's own, or that of --allow-origin",
+                    origin);
+        return refuse(ws, wsi, &problem);
+    }
     return 0;
+}
+
+/* The acceptor lets nothing else through. */
+static int refuse_plain(struct ws *ws, struct lws *wsi)
+{
+    struct problem problem;
+    problem_set(&problem, PROBLEM_UPGRADE, "", "", "no handshake of a WebSocket; expected is one (RFC 6455)");
+    return refuse(ws, wsi, &problem);
 }
 
 static void set_option(int socket, int level, int name, int value)
@@ -126,10 +152,20 @@ void ws_adopt(struct ws *ws, int socket)
     set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
     set_option(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, UNSENT_AT_MOST);
     set_option(socket, SOL_SOCKET, SO_SNDBUF, SEND_BUFFER);
-    if (!lws_adopt_socket_vhost(ws->vhost, socket)) { /* closes it */
+    int second = fcntl(socket, F_DUPFD_CLOEXEC, 3); /* the library closes what it does not take, without a word */
+    if (!lws_adopt_socket_vhost(ws->vhost, socket)) {
+        struct problem problem;
+        problem_set(&problem, PROBLEM_LIMIT, "", "", "too many WebSockets are open; at most %d are", WS_MAX_CONNECTIONS);
+        problem.retry_after_ms = WS_RETRY_MS;
+        if (second >= 0) {
+            (void)refusal_drain(second, WS_MAX_HEAD);
+            refusal_send(second, &problem);
+        }
         ws->counters.refused++;
         log_warn("a connection could not be taken over: too many, or no memory");
     }
+    if (second >= 0)
+        (void)close(second);
 }
 
 /* ---- what goes out -------------------------------------------------------------------------------------------------- */
@@ -351,7 +387,7 @@ static int handle(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     struct ws_connection *connection = user;
     switch (reason) {
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE: return confirm_upgrade(ws, wsi, in);
-    case LWS_CALLBACK_HTTP: return refuse(ws, wsi, HTTP_STATUS_NOT_FOUND);
+    case LWS_CALLBACK_HTTP: return refuse_plain(ws, wsi);
     case LWS_CALLBACK_ESTABLISHED: return opened(ws, connection, wsi);
     case LWS_CALLBACK_RECEIVE: return receive(connection, in, n);
     case LWS_CALLBACK_RECEIVE_PONG: connection->heard_us = clock_now_us(); return 0;
@@ -386,6 +422,7 @@ struct ws *ws_create(const struct ws_callbacks *callbacks, const char *allowed_o
                                               .vhost_name = "rooms",
                                               .options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_VALIDATE_UTF8,
                                               .timeout_secs = 5,
+                                              .max_http_header_data = WS_MAX_HEAD,
                                               .fd_limit_per_thread = WS_MAX_CONNECTIONS,
                                               .count_threads = 1,
                                               .user = ws };

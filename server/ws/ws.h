@@ -14,6 +14,8 @@ enum {
     WS_MAX_TEXTS = 256,        /* waiting for one connection; more: closed as too slow */
     WS_MAX_TEXT_BYTES = 4 << 20,
     WS_MAX_CONNECTIONS = 2000,
+    WS_MAX_HEAD = 16 << 10,    /* of a handshake; the acceptor lets less through */
+    WS_RETRY_MS = 5000,
 };
 
 struct ws;

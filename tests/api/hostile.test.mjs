@@ -75,9 +75,9 @@ after(async () => {
 });
 
 /** Writes bytes to a connection of its own; what comes back until it is closed, or for ms. */
-function exchange(bytes, ms = 1500) {
+function exchange(bytes, ms = 1500, where = url, endsAtOnce = false) {
   return new Promise((done) => {
-    const { hostname, port } = new URL(url);
+    const { hostname, port } = new URL(where);
     let got = '';
     const socket = connect(Number(port), hostname);
     const end = () => { socket.destroy(); done(got); };
@@ -87,38 +87,111 @@ function exchange(bytes, ms = 1500) {
     socket.on('error', () => {});
     socket.on('close', () => { clearTimeout(timer); done(got); });
     socket.write(bytes);
+    if (endsAtOnce) socket.end();
   });
 }
 
-const get = (target, lines = '') => `GET ${target} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n${lines}\r\n`;
-const post = (lines, body) => Buffer.concat([Buffer.from(`POST /api/v1/rooms HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Type: application/json\r\n${lines}\r\n`), Buffer.from(body)]);
+const get = (target, lines = '') => `GET ${target} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n${lines}\r\n`;
+const post = (lines, body) => Buffer.concat([Buffer.from(`POST /api/v1/rooms HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Type: application/json\r\n${lines}\r\n`), Buffer.from(body)]);
 const statusOf = (answer) => Number(/^HTTP\/1\.[01] (\d+)/.exec(answer)?.[1] ?? 0);
 const openFiles = () => readdirSync(`/proc/${daemon.child.pid}/fd`).length;
 
 describe('a stranger on the line', () => {
-  test('is refused with a status for what is no request of ours, and nothing else happens', async () => {
+  test('is refused with a problem that says what is wrong with a request, and nothing else happens', async () => {
+    const handshake = (room, { drop = '', more = '' } = {}) => ['Connection: Upgrade', 'Upgrade: websocket', 'Sec-WebSocket-Version: 13', 'Sec-WebSocket-Key: AAECAwQFBgcICQoLDA0ODw==']
+      .reduce((text, line) => (drop && line.startsWith(drop) ? text : `${text}${line}\r\n`), `GET /api/v1/rooms/${room}/ws HTTP/1.1\r\nHost: localhost\r\n`) + `${more}\r\n`;
+    const room = (await call(`${api}/rooms`, 'POST', { plan: 'good' })).json.id;
     const cases = [
-      ['a header of 200 KB', get('/healthz', `X: ${'a'.repeat(200000)}\r\n`), [431]],
-      ['an address of 200 KB', get(`/${'a'.repeat(200000)}`), [414, 431]],
-      ['another version', 'GET /healthz HTTP/9.9\r\nHost: x\r\n\r\n', [505]],
-      ['a method nobody knows', get('/healthz').replace('GET', 'BREW'), [405]],
-      ['a body with a wrong length', post('Content-Length: -5\r\n', ''), [400]],
+      ['a header of 200 KB', get('/healthz', `X: ${'a'.repeat(200000)}\r\n`), 431, /32768 bytes/],
+      ['an address of 200 KB', get(`/${'a'.repeat(200000)}`), 414, /24576 bytes/],
+      ['an address of 20 KB', get(`/${'a'.repeat(20000)}`), 404, /20001 bytes/],
+      ['101 headers', get('/healthz', 'X: y\r\n'.repeat(99)), 431, /100 headers/],
+      ['another version', 'GET /healthz HTTP/9.9\r\nHost: localhost\r\n\r\n', 505, /HTTP\/9\.9/],
+      ['no version', 'GET /healthz\r\n\r\n', 400, /line 1/],
+      ['the beginning of TLS', Buffer.concat([Buffer.from('16030100f8010000f40303', 'hex'), Buffer.from('\n')]), 400, /line 1/],
+      ['a method nobody knows', get('/healthz').replace('GET', 'BREW'), 405, /GET/],
+      ['a header without a colon', get('/healthz', 'nonsense\r\n'), 400, /header 3, "nonsense"/],
+      ['a header over two lines', get('/healthz', 'A: b\r\n c\r\n'), 400, /header 4/],
+      ['a NUL in a header', get('/healthz', 'A: b\0c\r\n'), 400, /control character/],
+      ['no Host', 'GET /healthz HTTP/1.1\r\n\r\n', 400, /Host is there 0 times/],
+      ['two of them', get('/healthz', 'Host: localhost\r\n'), 400, /Host is there 2 times/],
+      ['a body with a wrong length', post('Content-Length: -5\r\n', ''), 400, /Content-Length is "-5"/],
+      ['two lengths', post('Content-Length: 2\r\nContent-Length: 3\r\n', '{}'), 400, /there 2 times/],
+      ['a length and chunks', post('Content-Length: 2\r\nTransfer-Encoding: chunked\r\n', '0\r\n\r\n'), 400, /both/],
+      ['a coding nobody knows', post('Transfer-Encoding: gzip\r\n', ''), 400, /"gzip"/],
+      ['a NUL in an address', get('/healthz%00x'), 404, /healthz%00x/],
+      ['bytes that are no UTF-8 in an address', get('/api/v1/plans/%ff%fe%0d%0aX:y'), 404, /is not an id/],
+      ['a NUL in JSON', post('Content-Length: 23\r\n', '{"plan":"good\\u0000xy"}'), 400, /u0000/],
+      ['200 KB of brackets', post('Content-Length: 200000\r\n', '['.repeat(200000)), 400, /nested/],
+      ['a handshake without a key', handshake(room, { drop: 'Sec-WebSocket-Key' }), 400, /Sec-WebSocket-Key is ""/],
+      ['a handshake of a version nobody knows', handshake(room, { drop: 'Sec-WebSocket-Version', more: 'Sec-WebSocket-Version: 8\r\n' }), 426, /is "8"; expected is 13/],
+      ['a handshake that does not say Upgrade', handshake(room, { drop: 'Upgrade' }), 426, /first request/],
+      ['a handshake whose Connection does not', handshake(room, { drop: 'Connection' }), 426, /Connection is ""/],
+      ['a handshake for a room that is not there', handshake('zzzz-zzzz'), 404, /no such room/],
+      ['a handshake of another page', handshake(room, { more: 'Origin: http://evil.example\r\n' }), 403, /evil\.example/],
+      ['a handshake with 13 KB of cookies', handshake(room, { more: `Cookie: ${'a'.repeat(13000)}\r\n` }), 431, /12288/],
+    ];
+    for (const [what, bytes, status, words] of cases) {
+      const answer = await exchange(bytes), [head, body] = [answer.slice(0, answer.indexOf('\r\n\r\n')), answer.slice(answer.indexOf('\r\n\r\n') + 4)];
+      assert.equal(statusOf(answer), status, `${what}: ${answer.slice(0, 200)}`);
+      assert.match(head, /content-type: application\/problem\+json/i, what);
+      const problem = JSON.parse(body);
+      assert.equal(problem.status, status, what);
+      assert.match(problem.type, /^\/problems\/[a-z-]+$/, what);
+      assert.match(problem.detail, words, what);
+    }
+    const large = await exchange(handshake(room, { more: `Cookie: ${'a'.repeat(11000)}\r\n` }), 300);
+    assert.equal(statusOf(large), 101, 'as much as is read of a handshake, the library behind takes too');
+    assert.equal((await call(`${url}/healthz`)).status, 200);
+  });
+
+  test('is refused with a status at least for what the library behind refuses by itself', async () => {
+    const first = 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n'; /* only the first request of a connection is seen before it */
+    const cases = [
       ['chunks without a size', post('Transfer-Encoding: chunked\r\n', 'zz\r\n{}\r\n'), [400]],
       ['a chunk of 2^72', post('Transfer-Encoding: chunked\r\n', 'ffffffffffffffffff\r\n{}\r\n'), [400, 413]],
-      ['a NUL in an address', get('/healthz%00x'), [404]],
-      ['bytes that are no UTF-8 in an address', get('/api/v1/plans/%ff%fe%0d%0aX:y'), [404]],
-      ['a NUL in JSON', post('Content-Length: 23\r\n', '{"plan":"good\\u0000xy"}'), [400]],
-      ['200 KB of brackets', post('Content-Length: 200000\r\n', '['.repeat(200000)), [400]],
-      ['a handshake without a key', get('/api/v1/rooms/x/ws', 'Upgrade: websocket\r\n'), [0, 400, 404]],
+      ['a later request with a header of 200 KB', first + get('/healthz', `X: ${'a'.repeat(200000)}\r\n`), [431]],
+      ['a later request with a wrong length', first + post('Content-Length: -5\r\n', ''), [400]],
+      ['a later request of another version', `${first}GET /healthz HTTP/9.9\r\nHost: localhost\r\n\r\n`, [505]],
     ];
-    for (const [what, bytes, expected] of cases)
-      assert.ok(expected.includes(statusOf(await exchange(bytes))), `${what}: expected ${expected.join(' or ')}`);
+    for (const [what, bytes, expected] of cases) {
+      const answer = await exchange(bytes), last = answer.slice(Math.max(answer.lastIndexOf('HTTP/1.'), 0));
+      assert.ok(expected.includes(statusOf(last)), `${what}: ${last.slice(0, 100)}`);
+    }
     assert.equal((await call(`${url}/healthz`)).status, 200);
+  });
+
+  test('that gave its own name our address gets nothing, whichever request of a connection it is', async () => {
+    const evil = (path) => get(path).replace('Host: localhost', 'Host: evil.example:8080');
+    for (const bytes of [evil('/'), evil('/api/v1/plans'), evil('/healthz'), `GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n${evil('/api/v1/plans')}`, `GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n${evil('/')}`]) {
+      const answer = await exchange(bytes), last = answer.slice(answer.lastIndexOf('HTTP/1.1'));
+      assert.equal(statusOf(last), 421);
+      const problem = JSON.parse(last.slice(last.indexOf('\r\n\r\n') + 4));
+      assert.equal(problem.type, '/problems/misdirected');
+      assert.match(problem.detail, /evil\.example:8080.*--public-name/);
+    }
+    const named = await startDaemon({ plans: [], args: ['--stub', '--public-name', 'beamroom.example', '--public-name', 'other.example'] });
+    try {
+      for (const [host, status] of [['beamroom.example', 200], ['Other.Example:443', 200], ['evil.example', 421]])
+        assert.equal(statusOf(await exchange(get('/healthz').replace('localhost', host), 1500, named.url)), status, host);
+    } finally {
+      await named.stop();
+    }
+  });
+
+  test('hears what is missing when it ends early or comes too slowly', async () => {
+    const problemOf = (answer) => JSON.parse(answer.slice(answer.indexOf('\r\n\r\n') + 4));
+    const early = await exchange('GET /hea', 3000, url, true);
+    assert.equal(statusOf(early), 400);
+    assert.match(problemOf(early).detail, /ended after 8 bytes/);
+    const slow = await exchange('GET /healthz HTTP/1.1\r\n', 30000);
+    assert.equal(statusOf(slow), 408);
+    assert.match(problemOf(slow).detail, /23 bytes .* in 5 s; expected is the empty line/);
   });
 
   test('hears at once that a body is too large, when it waits to be told', async () => {
     const start = Date.now();
-    const answer = await exchange('POST /api/v1/rooms HTTP/1.1\r\nHost: x\r\nExpect: 100-continue\r\nContent-Type: application/json\r\nContent-Length: 2000000000\r\n\r\n', 5000);
+    const answer = await exchange('POST /api/v1/rooms HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Type: application/json\r\nContent-Length: 2000000000\r\n\r\n', 5000);
     assert.equal(statusOf(answer), 413);
     assert.match(answer, /application\/problem\+json/);
     assert.ok(Date.now() - start < 2000);
@@ -129,7 +202,7 @@ describe('a stranger on the line', () => {
   });
 
   test('is answered in order when it asks for several things at once', async () => {
-    const answer = await exchange('GET /healthz HTTP/1.1\r\nHost: x\r\n\r\nGET /nothing HTTP/1.1\r\nHost: x\r\n\r\n' + get('/healthz'));
+    const answer = await exchange('GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\nGET /nothing HTTP/1.1\r\nHost: localhost\r\n\r\n' + get('/healthz'));
     assert.deepEqual([...answer.matchAll(/HTTP\/1\.1 (\d+)/g)].map((m) => m[1]), ['200', '404', '200']);
   });
 
@@ -139,7 +212,7 @@ describe('a stranger on the line', () => {
     const sockets = Array.from({ length: 300 }, (_, i) => {
       const socket = connect(Number(port), hostname);
       socket.on('error', () => {});
-      if (i % 3) socket.write(i % 3 === 1 ? 'GET /hea' : 'POST /api/v1/rooms HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\n{');
+      if (i % 3) socket.write(i % 3 === 1 ? 'GET /hea' : 'POST /api/v1/rooms HTTP/1.1\r\nHost: localhost\r\nContent-Length: 100\r\n\r\n{');
       return socket;
     });
     await sleep(300);

@@ -102,23 +102,12 @@ describe('the server', () => {
     socket.on('data', (bytes) => {
       got += bytes;
       if (/\r\n\r\nok\n$/.test(got))
-        socket.write('GET /api/v1/rooms/x/ws HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n');
+        socket.write('GET /api/v1/rooms/x/ws HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n');
     });
-    socket.write('GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n');
+    socket.write('GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n');
     await closed;
     assert.match(got, /HTTP\/1\.1 426 /);
     assert.match(got, /connection: close/i);
-  });
-
-  test('drops a connection that does not say what it wants within 5 s', async () => {
-    const { hostname, port } = new URL(url);
-    const start = Date.now();
-    const socket = connect(Number(port), hostname);
-    socket.on('error', () => {});
-    socket.write('GET /heal');
-    await new Promise((done) => socket.on('close', done));
-    const waited = Date.now() - start;
-    assert.ok(waited > 4000 && waited < 8000, `closed after ${waited} ms`);
   });
 });
 

@@ -53,7 +53,7 @@ function half(url, length, bytes = '', headers = '') {
   let text = '';
   socket.on('data', (more) => { text += more; });
   socket.on('error', () => {});
-  socket.write(`POST /api/v1/plans?name=half HTTP/1.1\r\nHost: x\r\nContent-Type: application/zip\r\nContent-Length: ${length}\r\n${headers}\r\n${bytes}`);
+  socket.write(`POST /api/v1/plans?name=half HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/zip\r\nContent-Length: ${length}\r\n${headers}\r\n${bytes}`);
   return { socket, text: () => text };
 }
 

@@ -283,7 +283,7 @@ static void who_trickles_gives_the_place_back(void **state)
         intake_set_window_ms(intake, 1);
         usleep(2000);
         assert_int_equal(intake_add(file, "x", 1, &problem), is_fast);
-        assert_int_equal(problem.type, is_fast ? PROBLEM_NONE : PROBLEM_TIMEOUT);
+        assert_int_equal(problem.type, is_fast ? PROBLEM_NONE : PROBLEM_TOO_SLOW);
         intake_drop(file);
     }
     call_destroy(call);

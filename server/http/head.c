@@ -1,0 +1,316 @@
+#include "server/http/head.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+struct text { /* a piece of the head */
+    const char *at;
+    size_t n;
+};
+
+/* What matters of the headers. */
+struct fields {
+    struct text host, upgrade, connection, key, version, length, coding;
+    size_t n_hosts, n_lengths, n_codings, n_keys, n_versions;
+};
+
+struct head {
+    const char *begin;
+    struct text method, target;
+    int minor; /* of HTTP/1.x */
+    struct fields fields;
+    struct problem *problem;
+};
+
+enum { SHOWN_SIZE = 61 };
+
+/* Foreign bytes as they may stand in a sentence. */
+static const char *show(struct text text, char shown[SHOWN_SIZE])
+{
+    size_t n = text.n < SHOWN_SIZE - 1 ? text.n : SHOWN_SIZE - 1;
+    for (size_t i = 0; i < n; i++)
+        shown[i] = text.at[i] >= 32 && text.at[i] < 127 ? text.at[i] : '?';
+    shown[n] = 0;
+    return shown;
+}
+
+static bool is_word(struct text text, const char *word) { return text.n == strlen(word) && strncasecmp(text.at, word, text.n) == 0; }
+
+/* RFC 9110 5.6.2 */
+static bool is_token(struct text text)
+{
+    for (size_t i = 0; i < text.n; i++)
+        if (!isalnum((unsigned char)text.at[i]) && !memchr("!#$%&'*+-.^_`|~", text.at[i], 15))
+            return false;
+    return text.n > 0;
+}
+
+static struct text trim(struct text text)
+{
+    while (text.n && (*text.at == ' ' || *text.at == '\t')) {
+        text.at++;
+        text.n--;
+    }
+    while (text.n && (text.at[text.n - 1] == ' ' || text.at[text.n - 1] == '\t'))
+        text.n--;
+    return text;
+}
+
+/* Whether a list of words, parted by commas, has one. */
+static bool has_word(struct text list, const char *word)
+{
+    while (list.n) {
+        const char *comma = memchr(list.at, ',', list.n);
+        size_t n = comma ? (size_t)(comma - list.at) : list.n;
+        if (is_word(trim((struct text){ list.at, n }), word))
+            return true;
+        n += comma != NULL;
+        list.at += n;
+        list.n -= n;
+    }
+    return false;
+}
+
+/* The next line, without its end; false: it is not there yet. */
+static bool next_line(const char **at, const char *end, struct text *line)
+{
+    const char *newline = memchr(*at, '\n', (size_t)(end - *at));
+    if (!newline)
+        return false;
+    *line = (struct text){ *at, (size_t)(newline - *at) };
+    if (line->n && newline[-1] == '\r')
+        line->n--;
+    *at = newline + 1;
+    return true;
+}
+
+static bool refuse_line(const struct head *head, struct text line, const char *expected)
+{
+    char shown[SHOWN_SIZE];
+    return problem_set(head->problem, PROBLEM_REQUEST, "", "", "line 1, the request line, is \"%s\"; expected is %s", show(line, shown), expected);
+}
+
+/* METHOD SP TARGET SP HTTP/1.x */
+static bool read_request_line(struct head *head, struct text line)
+{
+    static const char form[] = "a method, an address and HTTP/1.1, parted by single spaces";
+    const char *end = line.at + line.n, *space = memchr(line.at, ' ', line.n);
+    const char *second = space ? memchr(space + 1, ' ', (size_t)(end - space - 1)) : NULL;
+    if (!second)
+        return refuse_line(head, line, form);
+    head->method = (struct text){ line.at, (size_t)(space - line.at) };
+    head->target = (struct text){ space + 1, (size_t)(second - space - 1) };
+    struct text version = { second + 1, (size_t)(end - second - 1) };
+    if (!is_token(head->method) || head->method.n > 32)
+        return refuse_line(head, line, "that it begins with a method, as GET");
+    for (size_t i = 0; i < head->target.n; i++)
+        if ((unsigned char)head->target.at[i] <= 32 || head->target.at[i] == 127)
+            return refuse_line(head, line, "an address without control characters");
+    bool is_path = head->target.n && head->target.at[0] == '/';
+    bool is_whole = head->target.n > 7 && (strncasecmp(head->target.at, "http://", 7) == 0 || strncasecmp(head->target.at, "https://", 8) == 0);
+    if (!is_path && !is_whole && !is_word(head->target, "*"))
+        return refuse_line(head, line, "an address that begins with \"/\" or \"http://\"");
+    if (version.n != 8 || memcmp(version.at, "HTTP/", 5) != 0 || !isdigit((unsigned char)version.at[5]) || version.at[6] != '.' ||
+        !isdigit((unsigned char)version.at[7]))
+        return refuse_line(head, line, form);
+    head->minor = version.at[7] - '0';
+    if (version.at[5] != '1' || head->minor > 1)
+        return problem_set(head->problem, PROBLEM_HTTP_VERSION, "", "", "the request is of HTTP/%.3s; expected is HTTP/1.1 or HTTP/1.0", version.at + 5);
+    return true;
+}
+
+static bool refuse_field(const struct head *head, size_t number, struct text line, const char *found)
+{
+    char shown[SHOWN_SIZE];
+    return problem_set(head->problem, PROBLEM_REQUEST, "", "", "header %zu, \"%s\": %s; expected is \"Name: value\" on one line", number,
+                       show(line, shown), found);
+}
+
+static void note_field(struct fields *fields, struct text name, struct text value)
+{
+    const struct {
+        const char *name;
+        struct text *value;
+        size_t *n;
+    } known[] = { { "Host", &fields->host, &fields->n_hosts },
+                  { "Content-Length", &fields->length, &fields->n_lengths },
+                  { "Transfer-Encoding", &fields->coding, &fields->n_codings },
+                  { "Sec-WebSocket-Key", &fields->key, &fields->n_keys },
+                  { "Sec-WebSocket-Version", &fields->version, &fields->n_versions },
+                  { "Upgrade", &fields->upgrade, NULL },
+                  { "Connection", &fields->connection, NULL } };
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+        if (is_word(name, known[i].name)) {
+            *known[i].value = value;
+            if (known[i].n)
+                ++*known[i].n;
+        }
+}
+
+static bool read_field(struct head *head, size_t number, struct text line)
+{
+    const char *colon = memchr(line.at, ':', line.n);
+    if (line.at[0] == ' ' || line.at[0] == '\t')
+        return refuse_field(head, number, line, "it goes on from the line before");
+    if (!colon)
+        return refuse_field(head, number, line, "without a colon");
+    struct text name = { line.at, (size_t)(colon - line.at) }, value = trim((struct text){ colon + 1, line.n - name.n - 1 });
+    if (!is_token(name))
+        return refuse_field(head, number, line, "a name that is none");
+    for (size_t i = 0; i < value.n; i++)
+        if (((unsigned char)value.at[i] < 32 && value.at[i] != '\t') || value.at[i] == 127)
+            return refuse_field(head, number, line, "a control character in its value");
+    note_field(&head->fields, name, value);
+    return true;
+}
+
+/* How long the body is must be said once and plainly: where two readers may differ, one is deceived. */
+static bool check_length(const struct head *head)
+{
+    const struct fields *fields = &head->fields;
+    char shown[SHOWN_SIZE];
+    if (fields->n_lengths > 1)
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "Content-Length is there %zu times; expected is once", fields->n_lengths);
+    if (fields->n_codings > 1)
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "Transfer-Encoding is there %zu times; expected is once", fields->n_codings);
+    if (fields->n_lengths && fields->n_codings)
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "both Content-Length and Transfer-Encoding are there; expected is one of them");
+    if (fields->n_codings && (head->minor == 0 || !is_word(fields->coding, "chunked")))
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "Transfer-Encoding is \"%s\" in HTTP/1.%d; expected is \"chunked\" in HTTP/1.1",
+                           show(fields->coding, shown), head->minor);
+    if (!fields->n_lengths)
+        return true;
+    bool is_number = fields->length.n > 0 && fields->length.n <= 18; /* far less than 2^63 */
+    for (size_t i = 0; i < fields->length.n; i++)
+        is_number = is_number && isdigit((unsigned char)fields->length.at[i]);
+    return is_number || problem_set(head->problem, PROBLEM_REQUEST, "", "", "Content-Length is \"%s\"; expected is a number of at most 18 digits",
+                                    show(fields->length, shown));
+}
+
+static bool refuse_host(struct problem *problem, struct text host)
+{
+    char shown[SHOWN_SIZE];
+    return problem_set(problem, PROBLEM_MISDIRECTED, "", "",
+                       "Host is \"%s\"; expected is an address, localhost, this machine's name, or one that --public-name gave", show(host, shown));
+}
+
+static bool check_host(const struct head *head, const struct hosts *hosts)
+{
+    const struct fields *fields = &head->fields;
+    if (fields->n_hosts > 1 || (fields->n_hosts == 0 && head->minor > 0))
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "Host is there %zu times; HTTP/1.1 expects it once", fields->n_hosts);
+    return fields->n_hosts == 0 || hosts_allow(hosts, fields->host.at, fields->host.n) || refuse_host(head->problem, fields->host);
+}
+
+bool head_host_is_ours(const struct hosts *hosts, const char *host, struct problem *problem)
+{
+    struct text text = { host, host ? strlen(host) : 0 };
+    return !host || hosts_allow(hosts, host, text.n) || refuse_host(problem, text);
+}
+
+/* "/api/v1/rooms/<anything>/ws" */
+static bool is_room_address(struct text target)
+{
+    static const char before[] = "/api/v1/rooms/";
+    const size_t n_before = sizeof before - 1;
+    const char *question = target.n ? memchr(target.at, '?', target.n) : NULL;
+    size_t n = question ? (size_t)(question - target.at) : target.n;
+    return n > n_before + 3 && memcmp(target.at, before, n_before) == 0 && memcmp(target.at + n - 3, "/ws", 3) == 0;
+}
+
+/* 16 bytes in base64 */
+static bool is_key(struct text key)
+{
+    if (key.n != 24 || key.at[22] != '=' || key.at[23] != '=')
+        return false;
+    for (size_t i = 0; i < 22; i++)
+        if (!isalnum((unsigned char)key.at[i]) && key.at[i] != '+' && key.at[i] != '/')
+            return false;
+    return true;
+}
+
+/* RFC 6455 4.2.1 */
+static bool check_handshake(const struct head *head, size_t n_bytes)
+{
+    const struct fields *fields = &head->fields;
+    struct problem *problem = head->problem;
+    char shown[SHOWN_SIZE];
+    if (head->minor == 0)
+        return problem_set(problem, PROBLEM_UPGRADE, "", "", "the handshake is of HTTP/1.0; expected is HTTP/1.1");
+    if (!has_word(fields->connection, "upgrade"))
+        return problem_set(problem, PROBLEM_UPGRADE, "", "", "the handshake's Connection is \"%s\"; expected is that it says Upgrade",
+                           show(fields->connection, shown));
+    if (fields->n_versions != 1 || !is_word(fields->version, "13"))
+        return problem_set(problem, PROBLEM_UPGRADE, "", "", "the handshake's Sec-WebSocket-Version is \"%s\"; expected is 13, once",
+                           show(fields->version, shown));
+    if (fields->n_keys != 1 || !is_key(fields->key))
+        return problem_set(problem, PROBLEM_REQUEST, "", "", "the handshake's Sec-WebSocket-Key is \"%s\"; expected are 16 bytes in base64, once",
+                           show(fields->key, shown));
+    if (fields->n_codings || (fields->n_lengths && !is_word(fields->length, "0")))
+        return problem_set(problem, PROBLEM_REQUEST, "", "", "the handshake announces a body; expected is none");
+    if (n_bytes > HEAD_MAX_WEBSOCKET)
+        return problem_set(problem, PROBLEM_HEADERS_TOO_LARGE, "", "", "a handshake of %zu bytes; at most %d are read", n_bytes, HEAD_MAX_WEBSOCKET);
+    return true;
+}
+
+static enum head_kind refuse_size(const struct head *head, const char *line, const char *end)
+{
+    size_t n_line = (size_t)((line ? line : end) - head->begin);
+    if (n_line > HEAD_MAX_LINE)
+        (void)problem_set(head->problem, PROBLEM_ADDRESS_TOO_LONG, "", "", "the request line has more than %d bytes; at most so many are read",
+                          HEAD_MAX_LINE);
+    else
+        (void)problem_set(head->problem, PROBLEM_HEADERS_TOO_LARGE, "", "",
+                          "the request's head has more than %d bytes; at most so many, in %d headers, are read", HEAD_MAX_BYTES, HEAD_MAX_FIELDS);
+    return HEAD_REFUSED;
+}
+
+enum head_kind head_look(const char *bytes, size_t n, const struct hosts *hosts, struct problem *problem)
+{
+    struct head head = { .begin = bytes, .problem = problem };
+    const char *at = bytes, *end = bytes + n;
+    struct text line;
+    size_t n_fields = 0;
+    for (int i = 0; i < HEAD_MAX_EMPTY && end - at >= 1 && (*at == '\n' || (*at == '\r' && end - at >= 2 && at[1] == '\n')); i++)
+        head.begin = at += *at == '\r' ? 2 : 1;
+    bool has_line = next_line(&at, end, &line);
+    const char *after_line = has_line ? at : NULL;
+    if ((has_line ? line.n : (size_t)(end - head.begin)) > HEAD_MAX_LINE)
+        return refuse_size(&head, after_line, end);
+    if (!has_line)
+        return n >= HEAD_MAX_BYTES ? refuse_size(&head, NULL, end) : HEAD_INCOMPLETE;
+    if (!read_request_line(&head, line))
+        return HEAD_REFUSED;
+    for (;;) {
+        bool is_whole = next_line(&at, end, &line);
+        if ((size_t)(at - bytes) > HEAD_MAX_BYTES || (!is_whole && n >= HEAD_MAX_BYTES))
+            return refuse_size(&head, after_line, end);
+        if (!is_whole)
+            return HEAD_INCOMPLETE;
+        if (line.n == 0)
+            break;
+        if (++n_fields > HEAD_MAX_FIELDS)
+            return refuse_size(&head, after_line, end);
+        if (!read_field(&head, n_fields, line))
+            return HEAD_REFUSED;
+    }
+    if (!check_length(&head) || !check_host(&head, hosts))
+        return HEAD_REFUSED;
+    bool is_get = head.method.n == 3 && memcmp(head.method.at, "GET", 3) == 0;
+    if (!is_get || !is_room_address(head.target) || !has_word(head.fields.upgrade, "websocket"))
+        return HEAD_HTTP;
+    return check_handshake(&head, (size_t)(at - bytes)) ? HEAD_WEBSOCKET : HEAD_REFUSED;
+}
+
+void head_refuse_incomplete(const char *bytes, size_t n, bool has_ended, int waited_ms, struct problem *problem)
+{
+    bool has_line = n > 0 && memchr(bytes, '\n', n);
+    const char *missing = has_line ? "the empty line after the headers" : "a request line";
+    if (has_ended)
+        (void)problem_set(problem, PROBLEM_REQUEST, "", "", "the sender ended after %zu bytes of the request's head; expected is %s", n, missing);
+    else
+        (void)problem_set(problem, PROBLEM_TOO_SLOW, "", "", "%zu bytes of the request's head came in %g s; expected is %s by then", n,
+                          waited_ms / 1000.0, missing);
+}

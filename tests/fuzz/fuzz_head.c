@@ -1,0 +1,22 @@
+/* The head of a first request. What is refused has a sentence; a beginning is waited for, or refused as the whole is. */
+#include "server/http/head.h"
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
+{
+    static struct hosts *hosts;
+    struct problem whole = { 0 }, part = { 0 };
+    if (!hosts)
+        hosts = hosts_create(NULL, 0);
+    enum head_kind kind = head_look((const char *)data, n, hosts, &whole);
+    REQUIRE((kind == HEAD_REFUSED) == (whole.type != PROBLEM_NONE));
+    REQUIRE(kind != HEAD_REFUSED || strlen(whole.detail) > 20);
+    for (const char *byte = whole.detail; *byte; byte++)
+        REQUIRE(*byte >= 32 && *byte < 127);
+    if (n == 0 || n > HEAD_MAX_BYTES)
+        return 0;
+    size_t n_part = n > 64 ? n - data[n - 1] % 64 - 1 : n / 2;
+    enum head_kind early = head_look((const char *)data, n_part, hosts, &part);
+    REQUIRE(early == HEAD_INCOMPLETE || (early == kind && strcmp(part.detail, whole.detail) == 0));
+    return 0;
+}

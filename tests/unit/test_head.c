@@ -1,0 +1,258 @@
+/* The head of a first request: who gets the connection, and what is said where nobody does. */
+#include <unistd.h>
+
+#include "server/http/head.h"
+#include "server/wire/json.h"
+#include "server/wire/refusal.h"
+#include "tests/check.h"
+
+static struct hosts *hosts;
+
+static int make_hosts(void **state)
+{
+    (void)state;
+    static const char *const names[] = { "Beamroom.Example" };
+    hosts = hosts_create(names, 1);
+    return 0;
+}
+
+static int drop_hosts(void **state)
+{
+    (void)state;
+    hosts_destroy(hosts);
+    return 0;
+}
+
+static enum head_kind look(const char *bytes, size_t n, struct problem *problem)
+{
+    *problem = (struct problem){ 0 };
+    return head_look(bytes, n, hosts, problem);
+}
+
+#define HOST "Host: localhost:8080\r\n"
+#define SHAKE "GET /api/v1/rooms/a/ws HTTP/1.1\r\n" HOST "Connection: keep-alive, Upgrade\r\nUpgrade: WebSocket\r\n"
+#define VERSION "Sec-WebSocket-Version: 13\r\n"
+#define KEY "Sec-WebSocket-Key: AAECAwQFBgcICQoLDA0ODw==\r\n"
+
+struct expected {
+    const char *bytes;
+    enum head_kind kind;
+    enum problem_type type;
+    const char *words;
+};
+
+static void assert_each(const struct expected *list, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        struct problem problem;
+        enum head_kind kind = look(list[i].bytes, strlen(list[i].bytes), &problem);
+        if (kind != list[i].kind || problem.type != list[i].type || (list[i].words && !strstr(problem.detail, list[i].words)))
+            fail_msg("\"%s\": kind %d (expected %d), type %d (expected %d), \"%s\" (expected \"%s\")", list[i].bytes, (int)kind, (int)list[i].kind,
+                     (int)problem.type, (int)list[i].type, problem.detail, list[i].words ? list[i].words : "");
+    }
+}
+#define CHECK_EACH(list) assert_each(list, sizeof(list) / sizeof *(list))
+
+static void what_is_whole_and_plain_goes_on(void **state)
+{
+    (void)state;
+    static const struct expected list[] = {
+        { "GET / HTTP/1.1\r\n" HOST "\r\n", HEAD_HTTP, PROBLEM_NONE, NULL },
+        { "GET / HTTP/1.0\r\n\r\n", HEAD_HTTP, PROBLEM_NONE, NULL }, /* as a probe of a proxy asks: RFC 9112 3.2 wants Host of 1.1 alone */
+        { "\r\n\nGET / HTTP/1.1\n" HOST "\n", HEAD_HTTP, PROBLEM_NONE, NULL },
+        { "BREW /x HTTP/1.1\r\n" HOST "\r\n", HEAD_HTTP, PROBLEM_NONE, NULL }, /* which methods there are is the API's to say */
+        { "GET http://elsewhere/x HTTP/1.1\r\n" HOST "\r\n", HEAD_HTTP, PROBLEM_NONE, NULL },
+        { "POST /x HTTP/1.1\r\n" HOST "Content-Length: 5\r\n\r\nhello", HEAD_HTTP, PROBLEM_NONE, NULL },
+        { "POST /x HTTP/1.1\r\n" HOST "Transfer-Encoding: Chunked\r\n\r\n", HEAD_HTTP, PROBLEM_NONE, NULL },
+        { "GET / HTTP/1.1\r\nhost:\tBEAMROOM.example.:80  \r\nX: \xc3\xa9\r\n\r\n", HEAD_HTTP, PROBLEM_NONE, NULL },
+        { "GET /api/v1/rooms/a/ws HTTP/1.1\r\n" HOST "\r\n", HEAD_HTTP, PROBLEM_NONE, NULL }, /* no handshake: the API says how */
+        { SHAKE VERSION KEY "\r\n", HEAD_WEBSOCKET, PROBLEM_NONE, NULL },
+        { SHAKE VERSION KEY "Content-Length: 0\r\n\r\n", HEAD_WEBSOCKET, PROBLEM_NONE, NULL },
+        { "", HEAD_INCOMPLETE, PROBLEM_NONE, NULL },
+        { "\r", HEAD_INCOMPLETE, PROBLEM_NONE, NULL },
+        { "GET / HTTP/1.1\r\n" HOST, HEAD_INCOMPLETE, PROBLEM_NONE, NULL },
+        { "GET / HTTP/1.1\r\n" HOST "\r", HEAD_INCOMPLETE, PROBLEM_NONE, NULL },
+    };
+    CHECK_EACH(list);
+}
+
+static void what_is_not_is_told_which_line_and_what_was_expected(void **state)
+{
+    (void)state;
+    static const struct expected list[] = {
+        { "\x16\x03\x01 hello\n", HEAD_REFUSED, PROBLEM_REQUEST, "line 1, the request line, is \"??? hello\"; expected is" },
+        { "GET /\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "parted by single spaces" },
+        { "GET  / HTTP/1.1\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "line 1" },
+        { "GET / HTTP/1.1 \r\n", HEAD_REFUSED, PROBLEM_REQUEST, "line 1" },
+        { "G\"T / HTTP/1.1\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "begins with a method" },
+        { "GET /\x01 HTTP/1.1\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "without control characters" },
+        { "CONNECT a:1 HTTP/1.1\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "begins with \"/\"" },
+        { "PRI * HTTP/2.0\r\n", HEAD_REFUSED, PROBLEM_HTTP_VERSION, "of HTTP/2.0; expected is HTTP/1.1" },
+        { "GET / HTTP/1.2\r\n", HEAD_REFUSED, PROBLEM_HTTP_VERSION, "of HTTP/1.2" },
+        { "GET / HTTP/1.1\r\n" HOST "what\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "header 2, \"what\": without a colon" },
+        { "GET / HTTP/1.1\r\n" HOST "A: b\r\n c: d\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "header 3, \" c: d\": it goes on" },
+        { "GET / HTTP/1.1\r\nHost : a\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "header 1, \"Host : a\": a name that is none" },
+        { "GET / HTTP/1.1\r\nA: b\rc\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "header 1, \"A: b?c\": a control character" },
+        { "GET / HTTP/1.1\r\n\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "Host is there 0 times" },
+        { "GET / HTTP/1.1\r\n" HOST HOST "\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "Host is there 2 times" },
+        { "GET / HTTP/1.1\r\n" HOST "Content-Length: -5\r\n\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "Content-Length is \"-5\"; expected" },
+        { "GET / HTTP/1.1\r\n" HOST "Content-Length:\r\n\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "Content-Length is \"\"" },
+        { "GET / HTTP/1.1\r\n" HOST "Content-Length: 1234567890123456789\r\n\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "at most 18 digits" },
+        { "GET / HTTP/1.1\r\n" HOST "Content-Length: 5\r\ncontent-length: 5\r\n\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "Content-Length is there 2" },
+        { "GET / HTTP/1.1\r\n" HOST "Content-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "both Content-Length" },
+        { "GET / HTTP/1.1\r\n" HOST "Transfer-Encoding: gzip, chunked\r\n\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "is \"gzip, chunked\"" },
+        { "GET / HTTP/1.0\r\n" HOST "Transfer-Encoding: chunked\r\n\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "in HTTP/1.0; expected" },
+        { SHAKE VERSION "\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "Sec-WebSocket-Key is \"\"" },
+        { SHAKE VERSION "Sec-WebSocket-Key: AAECAwQFBgcICQoLDA0ODw\r\n\r\n", HEAD_REFUSED, PROBLEM_REQUEST, "16 bytes in base64" },
+        { SHAKE KEY "\r\n", HEAD_REFUSED, PROBLEM_UPGRADE, "Version is \"\"; expected is 13" },
+        { SHAKE KEY "Sec-WebSocket-Version: 8\r\n\r\n", HEAD_REFUSED, PROBLEM_UPGRADE, "Version is \"8\"" },
+        { SHAKE VERSION KEY "Content-Length: 3\r\n\r\nabc", HEAD_REFUSED, PROBLEM_REQUEST, "announces a body" },
+        { "GET /api/v1/rooms/a/ws HTTP/1.1\r\n" HOST "Upgrade: websocket\r\n" VERSION KEY "\r\n", HEAD_REFUSED, PROBLEM_UPGRADE, "Connection is \"\"" },
+        { "GET /api/v1/rooms/a/ws HTTP/1.0\r\n" HOST "Upgrade: websocket\r\n\r\n", HEAD_REFUSED, PROBLEM_UPGRADE, "HTTP/1.0; expected is HTTP/1.1" },
+    };
+    CHECK_EACH(list);
+    struct problem problem;
+    static const char nul[] = "GET / HTTP/1.1\r\nA: b\0c\r\n";
+    assert_int_equal(look(nul, sizeof nul - 1, &problem), HEAD_REFUSED);
+    assert_non_null(strstr(problem.detail, "\"A: b?c\": a control character"));
+}
+
+/* n bytes: a request line of n_line with its end, then one header and the empty line, filled up with the letter a. */
+static void fill(char *bytes, size_t n, size_t n_line)
+{
+    static const char first[] = "GET /", version[] = " HTTP/1.1\r\n", host[] = HOST "A: ", last[] = "\r\n\r\n";
+    memset(bytes, 'a', n);
+    memcpy(bytes, first, sizeof first - 1);
+    memcpy(bytes + n_line - (sizeof version - 1), version, sizeof version - 1);
+    memcpy(bytes + n_line, host, sizeof host - 1);
+    memcpy(bytes + n - (sizeof last - 1), last, sizeof last - 1);
+}
+
+static void the_limits_hold_to_the_byte(void **state)
+{
+    (void)state;
+    static char bytes[HEAD_MAX_BYTES + 1];
+    struct problem problem;
+    fill(bytes, HEAD_MAX_BYTES, 100);
+    assert_int_equal(look(bytes, HEAD_MAX_BYTES, &problem), HEAD_HTTP);
+    fill(bytes, HEAD_MAX_BYTES + 1, 100);
+    assert_int_equal(look(bytes, HEAD_MAX_BYTES + 1, &problem), HEAD_REFUSED);
+    assert_int_equal(problem.type, PROBLEM_HEADERS_TOO_LARGE);
+    assert_int_equal(problem_status(problem.type), 431);
+    assert_int_equal(look(bytes, HEAD_MAX_BYTES, &problem), HEAD_REFUSED); /* and no more of it is waited for */
+    assert_int_equal(look(bytes, HEAD_MAX_BYTES - 1, &problem), HEAD_INCOMPLETE);
+    fill(bytes, HEAD_MAX_BYTES, HEAD_MAX_LINE + 2); /* without the line's end it is HEAD_MAX_LINE */
+    assert_int_equal(look(bytes, HEAD_MAX_BYTES, &problem), HEAD_HTTP);
+    fill(bytes, HEAD_MAX_BYTES, HEAD_MAX_LINE + 3);
+    assert_int_equal(look(bytes, HEAD_MAX_BYTES, &problem), HEAD_REFUSED);
+    assert_int_equal(problem.type, PROBLEM_ADDRESS_TOO_LONG);
+    assert_int_equal(problem_status(problem.type), 414);
+    for (int more = 0; more < 2; more++) {
+        size_t n = (size_t)snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n" HOST);
+        for (int i = 1; i < HEAD_MAX_FIELDS + more; i++)
+            n += (size_t)snprintf(bytes + n, sizeof bytes - n, "A: b\r\n");
+        n += (size_t)snprintf(bytes + n, sizeof bytes - n, "\r\n");
+        assert_int_equal(look(bytes, n, &problem), more ? HEAD_REFUSED : HEAD_HTTP);
+        n = (size_t)snprintf(bytes, sizeof bytes, SHAKE VERSION KEY "Cookie: %*s\r\n\r\n", HEAD_MAX_WEBSOCKET, "a");
+        char *cookie = strstr(bytes, "Cookie: ") + 8;
+        memset(cookie, 'a', HEAD_MAX_WEBSOCKET);
+        size_t too_many = n - HEAD_MAX_WEBSOCKET - (size_t)more;
+        memmove(cookie, cookie + too_many, n - too_many - (size_t)(cookie - bytes));
+        assert_int_equal(look(bytes, n - too_many, &problem), more ? HEAD_REFUSED : HEAD_WEBSOCKET);
+        assert_int_equal(problem.type, more ? PROBLEM_HEADERS_TOO_LARGE : PROBLEM_NONE);
+    }
+}
+
+static void a_beginning_is_waited_for_or_refused_as_the_whole_is(void **state)
+{
+    (void)state;
+    static const char *const wholes[] = { "GET / HTTP/1.1\r\n" HOST "\r\n", SHAKE VERSION KEY "\r\n", SHAKE KEY "\r\n", "\r\nGET / HTTP/1.1\nA : b\n\n",
+                                          "GET / HTTP/1.1\r\nHost: evil\r\n\r\n" };
+    for (size_t i = 0; i < sizeof wholes / sizeof wholes[0]; i++) {
+        struct problem whole, part;
+        size_t n = strlen(wholes[i]);
+        enum head_kind kind = look(wholes[i], n, &whole);
+        for (size_t k = 0; k < n; k++) {
+            enum head_kind found = look(wholes[i], k, &part);
+            assert_true(found == HEAD_INCOMPLETE || (found == kind && strcmp(part.detail, whole.detail) == 0));
+        }
+    }
+}
+
+static void only_our_own_names_are_answered_to(void **state)
+{
+    (void)state;
+    char own[HOSTS_MAX_NAME + 1] = "";
+    assert_int_equal(gethostname(own, sizeof own - 1), 0);
+    const struct {
+        const char *host;
+        bool is_ours;
+    } cases[] = { { "localhost", true },       { "LOCALHOST:1", true },      { "a.localhost:8080", true }, { "127.0.0.1:8080", true },
+                  { "10.1.2.3", true },        { "[::1]:8080", true },       { "[fe80::1]", true },        { own, true },
+                  { "beamroom.example", true }, { "beamroom.example:443", true }, { "BEAMROOM.EXAMPLE.", true },
+                  { "evil.example", false },   { "evil.example:8080", false }, { "localhost.evil.example", false }, { "notlocalhost", false },
+                  { "127.0.0.1.evil.example", false }, { "a.beamroom.example", false }, { "", false }, { ":8080", false }, { "[::1", false },
+                  { "[::1]evil", false },      { "[evil]", false },          { "localhost:evil", false },  { "localhost@evil", false },
+                  { "0x7f.1", false },         { ".localhost", false } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        if (hosts_allow(hosts, cases[i].host, strlen(cases[i].host)) != cases[i].is_ours)
+            fail_msg("%s", cases[i].host);
+    static const char *const any[] = { "*" };
+    struct hosts *all = hosts_create(any, 1);
+    assert_true(hosts_allow(all, "evil.example", 12));
+    hosts_destroy(all);
+    struct problem problem = { 0 };
+    assert_false(head_host_is_ours(hosts, "evil.example", &problem));
+    assert_int_equal(problem_status(problem.type), 421);
+    assert_true(head_host_is_ours(hosts, NULL, &problem));
+}
+
+static void who_does_not_come_to_an_end_is_told_what_is_missing(void **state)
+{
+    (void)state;
+    struct problem problem;
+    head_refuse_incomplete("GET /", 5, true, 0, &problem);
+    assert_string_equal(problem.detail, "the sender ended after 5 bytes of the request's head; expected is a request line");
+    assert_int_equal(problem_status(problem.type), 400);
+    head_refuse_incomplete("GET / HTTP/1.1\n", 15, false, 5000, &problem);
+    assert_string_equal(problem.detail, "15 bytes of the request's head came in 5 s; expected is the empty line after the headers by then");
+    assert_int_equal(problem_status(problem.type), 408);
+}
+
+static void a_refusal_is_a_whole_answer_of_http(void **state)
+{
+    (void)state;
+    struct problem problem, again;
+    for (int type = PROBLEM_NONE + 1; type < PROBLEM_N_TYPES; type++) {
+        size_t n;
+        problem_set(&problem, (enum problem_type)type, "", "", "a \"quoted\"\r\nsentence");
+        problem.retry_after_ms = type == PROBLEM_LIMIT ? 1001 : 0;
+        char *text = refusal_write(&problem, &n), *body = strstr(text, "\r\n\r\n");
+        assert_int_equal(strlen(text), n);
+        assert_non_null(body);
+        assert_int_equal(strtol(strstr(text, "Content-Length: ") + 16, NULL, 10), strlen(body + 4));
+        assert_int_equal(strtol(text + 9, NULL, 10), problem_status(problem.type));
+        assert_non_null(strstr(text, "Content-Type: application/problem+json\r\n"));
+        assert_int_equal(strstr(text, "Retry-After: 2\r\n") != NULL, type == PROBLEM_LIMIT);
+        cJSON *json = json_read(body + 4, strlen(body + 4), &again);
+        assert_true(problem_from_json(json, &again));
+        assert_int_equal(again.type, type);
+        assert_string_equal(again.detail, problem.detail);
+        cJSON_Delete(json);
+        free(text);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_whole_and_plain_goes_on),
+        cmocka_unit_test(what_is_not_is_told_which_line_and_what_was_expected),
+        cmocka_unit_test(the_limits_hold_to_the_byte),
+        cmocka_unit_test(a_beginning_is_waited_for_or_refused_as_the_whole_is),
+        cmocka_unit_test(only_our_own_names_are_answered_to),
+        cmocka_unit_test(who_does_not_come_to_an_end_is_told_what_is_missing),
+        cmocka_unit_test(a_refusal_is_a_whole_answer_of_http),
+    };
+    return cmocka_run_group_tests(tests, make_hosts, drop_hosts);
+}
