@@ -25,7 +25,8 @@
 #include "core/base/parallel.h"
 #include "core/surface/smooth_job.h"
 
-enum { MAX_THREADS = 64, VERTICES_A_THREAD = 8192, CAUTIOUS_ROUNDS = 1, EVEN_ROUNDS = 2 };
+enum { MAX_THREADS = 64, VERTICES_A_THREAD = 8192, CAUTIOUS_ROUNDS = 1, EVEN_ROUNDS = 2,
+       MAX_PASSES_TO_EDGES = 4 + CAUTIOUS_ROUNDS + EVEN_ROUNDS };
 
 /* Found on tilted ellipsoids with slices of 1 to 5.5 times the pixel, against the exact normals. */
 const struct smooth_options smooth_defaults = { 24, 0.035, 0.15, 0.5 - SURFACE_SMOOTH_MARGIN, 8 };
@@ -36,53 +37,190 @@ static const float trusted_shift = 0.5f, distrusted_shift = 0.8f;
 /* Cosines of the angle, 26 and 60 degrees, between normals of the two filtered surfaces. */
 static const float agreeing = 0.9f, disagreeing = 0.5f;
 
-/* ---- the filters --------------------------------------------------------------------------------------------------------- */
+/* ---- passes over the vertices --------------------------------------------------------------------------------------------- */
 
-/* One step of the recurrence for the vertices from..end. */
-struct step {
-    int n;                /* gives e_n */
-    const float4 *now;    /* e_(n-1) */
-    float4 *next;         /* holds e_(n-2), gets e_n */
-    float strong, gentle; /* weights of T_n */
+/* Of the recurrence that are added up at once, as they are all there: the less often goes what they are added to to memory and back. */
+enum { MAX_TERMS = 3 };
+
+/* What is done to every vertex from what the pass before left of it and of those it is linked to. */
+struct pass {
+    void (*take)(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end);
+    /* of a step of the recurrence */
+    const float4 *now; /* e_(n-1) */
+    float4 *next;      /* holds e_(n-2), gets e_n */
+    int n_terms;       /* so many of them, the last e_n, are added to what the filters give */
+    bool has_gentle;
+    float strong[MAX_TERMS], gentle[MAX_TERMS]; /* weights of e_n, e_(n-1), e_(n-2) */
+    /* of one that spreads trust */
+    const float *trust;
+    float *next_trust;
 };
 
-static void first_step(const struct smooth_job *job, const struct step *step, size_t from, size_t end)
+/* Vertices are in the order of slices and linked within three neighbouring ones. So a pass can follow the one before it slice by slice,
+ * and what both touch is still in the cache: BLOCK passes are taken in one go through the slices. What a pass writes over in a slice,
+ * those before it have read for the slices around it. */
+enum { BLOCK = 6 };
+
+struct passes {
+    const struct smooth_job *job;
+    const struct pass *pass, *end; /* that are taken now */
+    size_t *begin;                 /* first vertex of each slice, and one more at the end */
+    int32_t n_slices;
+    int32_t tiles[MAX_THREADS + 1]; /* slices where the threads' shares begin */
+    int n_tiles;
+};
+
+/* The slices from..end of the first pass; every further one begins and ends `begins` and `ends` slices later. */
+static void take_tile(const struct passes *passes, int32_t from, int32_t end, int begins, int ends)
 {
+    int32_t n = (int32_t)(passes->end - passes->pass);
+    for (int32_t front = from - n; front < end + 2 * n; front++)
+        for (int32_t i = 0; i < n; i++) {
+            int32_t slice = front - i;
+            if (slice >= from + i * begins && slice < end + i * ends)
+                passes->pass[i].take(passes->job, &passes->pass[i], passes->begin[slice], passes->begin[slice + 1]);
+        }
+}
+
+/* A thread goes as far as it can without the slices of others: at each pass one slice less at either end. */
+static void take_own(void *context, int part, int n_parts)
+{
+    const struct passes *passes = context;
+    take_tile(passes, passes->tiles[part], passes->tiles[part + 1], part > 0, part + 1 < n_parts ? -1 : 0);
+}
+
+/* Then what is left between two threads' slices: at each pass one slice more at either end. */
+static void take_between(void *context, int part, int n_parts)
+{
+    const struct passes *passes = context;
+    (void)n_parts;
+    take_tile(passes, passes->tiles[part + 1], passes->tiles[part + 1], -1, 1);
+}
+
+static void take_share(void *context, int part, int n_parts)
+{
+    const struct passes *passes = context;
+    size_t from, end;
+    smooth_range(passes->job, part, n_parts, &from, &end);
+    passes->pass->take(passes->job, passes->pass, from, end);
+}
+
+/* Slices for each thread, with about as many vertices; false when they are too few for what take_own leaves to take_between. */
+static bool share_slices(struct passes *passes)
+{
+    passes->n_tiles = passes->job->n_threads;
+    passes->tiles[0] = 0;
+    for (int tile = 1; tile <= passes->n_tiles; tile++) {
+        size_t wanted = passes->job->n * (size_t)tile / (size_t)passes->n_tiles;
+        int32_t slice = passes->tiles[tile - 1];
+        while (slice < passes->n_slices && passes->begin[slice] < wanted)
+            slice++;
+        passes->tiles[tile] = tile < passes->n_tiles ? slice : passes->n_slices;
+        if (passes->n_tiles > 1 && passes->tiles[tile] - passes->tiles[tile - 1] < 2 * BLOCK)
+            return false;
+    }
+    return true;
+}
+
+static bool find_slices(struct passes *passes, struct error *err)
+{
+    const struct smooth_job *job = passes->job;
+    const struct marching_point *points = job->graph->points;
+    passes->n_slices = job->n ? points[job->n - 1].at2[2] / 2 + 1 : 0;
+    passes->begin = mem_array((size_t)passes->n_slices + 1, sizeof *passes->begin, UINT64_MAX, err);
+    if (!passes->begin)
+        return false;
+    size_t v = 0;
+    for (int32_t slice = 0; slice <= passes->n_slices; slice++) {
+        while (v < job->n && points[v].at2[2] / 2 < slice)
+            v++;
+        passes->begin[slice] = v;
+    }
+    return true;
+}
+
+static bool take_passes(const struct smooth_job *job, const struct pass *all, size_t n, struct error *err)
+{
+    struct passes passes = { .job = job };
+    if (!find_slices(&passes, err))
+        return false;
+    bool is_shared = share_slices(&passes);
+    for (size_t at = 0, step = is_shared ? BLOCK : 1; at < n; at += step) {
+        passes.pass = all + at;
+        passes.end = all + (at + step < n ? at + step : n);
+        parallel_run(is_shared ? passes.n_tiles : job->n_threads, is_shared ? take_own : take_share, &passes);
+        if (is_shared && passes.n_tiles > 1)
+            parallel_run(passes.n_tiles - 1, take_between, &passes);
+    }
+    free(passes.begin);
+    return true;
+}
+
+/* ---- the filters --------------------------------------------------------------------------------------------------------- */
+
+typedef uint16_t short4 __attribute__((vector_size(8))); /* the numbers of a marching_point: at2 and one of no meaning */
+
+static inline short4 load_point(const struct marching_point *point)
+{
+    short4 at2;
+    memcpy(&at2, point, sizeof at2);
+    return at2;
+}
+
+static void first_step(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+{
+    typedef int16_t signed4 __attribute__((vector_size(8)));
     const struct marching_point *points = job->graph->points;
     for (size_t v = from; v < end; v++) {
         const uint32_t *link = job->graph->links[v];
-        float4 sum = smooth_start(&points[link[0]]) + smooth_start(&points[link[1]]) + smooth_start(&points[link[2]]) +
-                     smooth_start(&points[link[3]]);
-        float4 away = sum * 0.25f - smooth_start(&points[v]); /* exact: halves */
-        job->first[v] = step->next[v] = away;
-        job->strong[v] = step->strong * away;
-        job->gentle[v] = step->gentle * away;
+        short4 sum = load_point(&points[link[0]]) + load_point(&points[link[1]]) + load_point(&points[link[2]]) + load_point(&points[link[3]]);
+        signed4 eighths = (signed4)(sum - load_point(&points[v]) * 4); /* links are near: a few */
+        float4 away = __builtin_convertvector(eighths, float4) * 0.125f;
+        job->before[v] = (float4){ 0, 0, 0, 0 };
+        job->first[v] = job->now[v] = away;
+        job->strong[v] = pass->strong[0] * away;
+        job->gentle[v] = pass->gentle[0] * away;
     }
 }
 
-static void next_step(const struct smooth_job *job, const struct step *step, size_t from, size_t end)
+static inline float4 add_terms(float4 sum, const float weights[MAX_TERMS], float4 next, float4 now, float4 before, int n_terms)
 {
-    const float4 *now = step->now;
-    bool has_gentle = step->gentle != 0;
+    if (n_terms > 2)
+        sum += weights[2] * before;
+    if (n_terms > 1)
+        sum += weights[1] * now;
+    return sum + weights[0] * next;
+}
+
+static inline __attribute__((always_inline)) void next_steps(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end,
+                                                             int n_terms, bool has_gentle)
+{
+    const float4 *now = pass->now, *first = job->first;
+    float4 *to = pass->next, *strong = job->strong, *gentle = job->gentle;
     for (size_t v = from; v < end; v++) {
         const uint32_t *link = job->graph->links[v];
         float4 mean = (now[link[0]] + now[link[1]] + now[link[2]] + now[link[3]]) * 0.25f;
-        float4 next = 2 * (mean + job->first[v]);
-        if (step->n > 2) /* e_0 is 0 */
-            next -= step->next[v];
-        step->next[v] = next;
-        job->strong[v] += step->strong * next;
-        if (has_gentle)
-            job->gentle[v] += step->gentle * next;
+        float4 before = to[v], next = 2 * (mean + first[v]) - before;
+        to[v] = next;
+        if (n_terms > 0)
+            strong[v] = add_terms(strong[v], pass->strong, next, now[v], before, n_terms);
+        if (n_terms > 0 && has_gentle)
+            gentle[v] = add_terms(gentle[v], pass->gentle, next, now[v], before, n_terms);
     }
 }
 
-static void take_step(const struct smooth_job *job, const struct step *step, size_t from, size_t end)
+static void next_step(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
-    if (step->n == 1)
-        first_step(job, step, from, end);
+    if (pass->n_terms == 0)
+        next_steps(job, pass, from, end, 0, false);
+    else if (pass->n_terms == 1)
+        next_steps(job, pass, from, end, 1, pass->has_gentle);
+    else if (pass->n_terms == 2)
+        next_steps(job, pass, from, end, 2, pass->has_gentle);
+    else if (pass->has_gentle)
+        next_steps(job, pass, from, end, 3, true);
     else
-        next_step(job, step, from, end);
+        next_steps(job, pass, from, end, 3, false);
 }
 
 /* Of the Chebyshev polynomials for a step from 1 to 0 at the frequency `band` of 1 - A, times a Hamming window. They add up to 1, so
@@ -99,65 +237,29 @@ static void make_weights(double band, int n_steps, double weights[SMOOTH_MAX_STE
         weights[n] /= total;
 }
 
-struct filter {
-    struct smooth_job *job;
-    struct step steps[SMOOTH_MAX_STEPS + 1];
-    const struct step *step; /* the one that all threads take */
-};
-
-static void take_part(void *context, int part, int n_parts)
-{
-    const struct filter *filter = context;
-    size_t from, end;
-    smooth_range(filter->job, part, n_parts, &from, &end);
-    take_step(filter->job, filter->step, from, end);
-}
-
-/* Vertices are in the order of slices and linked within three neighbouring ones. So a step can be taken slice by slice behind the
- * step before it, and what both touch is still in the cache: one thread takes BLOCK steps in one go through the slices. What a step
- * writes over, e_(n-2) of a slice, the step before has read for the slices around it. */
-static bool take_all_by_slices(const struct filter *filter)
-{
-    enum { BLOCK = 6 };
-    const struct smooth_job *job = filter->job;
-    int32_t n_slices = job->graph->points[job->n - 1].at2[2] / 2 + 1;
-    size_t *begin = mem_array((size_t)n_slices + 1, sizeof *begin, UINT64_MAX, NULL);
-    if (!begin)
-        return false;
-    size_t v = 0;
-    for (int32_t slice = 0; slice <= n_slices; slice++) {
-        while (v < job->n && job->graph->points[v].at2[2] / 2 < slice)
-            v++;
-        begin[slice] = v;
-    }
-    for (int first = 1; first <= job->options.n_steps; first += BLOCK)
-        for (int32_t front = 0; front < n_slices + BLOCK - 1; front++)
-            for (int n = first; n < first + BLOCK && n <= job->options.n_steps; n++) {
-                int32_t slice = front - (n - first);
-                if (slice >= 0 && slice < n_slices)
-                    take_step(job, &filter->steps[n], begin[slice], begin[slice + 1]);
-            }
-    free(begin);
-    return true;
-}
-
-static void filter(struct smooth_job *job)
+/* The steps of both filters; passes has room for SMOOTH_MAX_STEPS. */
+static size_t plan_filters(const struct smooth_job *job, struct pass *passes)
 {
     const struct smooth_options *options = &job->options;
     int n_gentle = options->n_steps / 2 > 0 ? options->n_steps / 2 : 1; /* all it takes for the wider band */
     double strong[SMOOTH_MAX_STEPS + 1], gentle[SMOOTH_MAX_STEPS + 1];
-    struct filter filter = { .job = job };
     make_weights(options->strong_band, options->n_steps, strong);
     make_weights(options->gentle_band, n_gentle, gentle);
-    for (int n = 1; n <= options->n_steps; n++)
-        filter.steps[n] = (struct step){ n, n % 2 ? job->before : job->now, n % 2 ? job->now : job->before, (float)strong[n],
-                                         n <= n_gentle ? (float)gentle[n] : 0 };
-    if (job->n == 0 || (job->n_threads == 1 && take_all_by_slices(&filter)))
-        return;
-    for (int n = 1; n <= options->n_steps; n++) {
-        filter.step = &filter.steps[n];
-        parallel_run(job->n_threads, take_part, &filter);
+    passes[0] = (struct pass){ .take = first_step, .strong = { (float)strong[1] }, .gentle = { (float)gentle[1] } };
+    for (int n = 2, added = 1; n <= options->n_steps; n++) {
+        struct pass *pass = &passes[n - 1];
+        *pass = (struct pass){ .take = next_step, .now = n % 2 ? job->before : job->now, .next = n % 2 ? job->now : job->before };
+        if (n - added < MAX_TERMS && n < options->n_steps)
+            continue;
+        pass->n_terms = n - added;
+        pass->has_gentle = added < n_gentle;
+        for (int term = 0; term < pass->n_terms; term++) {
+            pass->strong[term] = (float)strong[n - term];
+            pass->gentle[term] = n - term <= n_gentle ? (float)gentle[n - term] : 0;
+        }
+        added = n;
     }
+    return (size_t)options->n_steps;
 }
 
 /* ---- back to the edges --------------------------------------------------------------------------------------------------- */
@@ -190,54 +292,61 @@ static float shift_along_edge(float4 normal, float4 displacement, int axis)
     return (along * dot(normal, displacement) + flat * displacement[axis]) / (along * along + flat);
 }
 
-/* How far the strong filter is to be trusted at each vertex, 0 to 1. */
-static void judge(void *context, int part, int n_parts)
+static void go_gently(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
-    struct smooth_job *job = context;
-    size_t v, end;
-    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
-        const struct marching_point *points = job->graph->points;
+    (void)pass;
+    for (size_t v = from; v < end; v++)
+        job->first[v] = smooth_start(&job->graph->points[v]) + job->gentle[v];
+}
+
+/* How far the strong filter is to be trusted at each vertex, 0 to 1. */
+static void judge(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+{
+    const float4 *at = job->first;
+    for (size_t v = from; v < end; v++) {
         const uint32_t *link = job->graph->links[v];
-        float4 ends[4];
-        for (int i = 0; i < 4; i++)
-            ends[i] = smooth_start(&points[link[i]]) + job->gentle[link[i]];
-        float shift = fabsf(shift_along_edge(normal_of(ends), job->strong[v], points[v].axis));
+        const float4 ends[4] = { at[link[0]], at[link[1]], at[link[2]], at[link[3]] };
+        float shift = fabsf(shift_along_edge(normal_of(ends), job->strong[v], job->graph->points[v].axis));
         float trust = (distrusted_shift - shift) / (distrusted_shift - trusted_shift);
-        job->trust[v] = trust < 0 ? 0 : trust > 1 ? 1 : trust;
+        pass->next_trust[v] = trust < 0 ? 0 : trust > 1 ? 1 : trust;
     }
 }
 
 /* Whoever has a neighbour that distrusts it does so too. */
-static void be_cautious(void *context, int part, int n_parts)
+static void be_cautious(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
-    struct smooth_job *job = context;
-    const float *trust = job->trust;
-    size_t v, end;
-    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
+    const float *trust = pass->trust;
+    for (size_t v = from; v < end; v++) {
         const uint32_t *link = job->graph->links[v];
         float least = trust[v];
         for (int i = 0; i < 4; i++)
             least = trust[link[i]] < least ? trust[link[i]] : least;
-        job->next_trust[v] = least;
+        pass->next_trust[v] = least;
     }
 }
 
 /* So that no step of trust becomes a step of the surface. */
-static void even_out(void *context, int part, int n_parts)
+static void even_out(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
-    struct smooth_job *job = context;
-    const float *trust = job->trust;
-    size_t v, end;
-    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
+    const float *trust = pass->trust;
+    for (size_t v = from; v < end; v++) {
         const uint32_t *link = job->graph->links[v];
-        job->next_trust[v] = (2 * trust[v] + trust[link[0]] + trust[link[1]] + trust[link[2]] + trust[link[3]]) * (1 / 6.0f);
+        pass->next_trust[v] = (2 * trust[v] + trust[link[0]] + trust[link[1]] + trust[link[2]] + trust[link[3]]) * (1 / 6.0f);
     }
 }
 
-static float4 displacement_of(const struct smooth_job *job, size_t v)
+/* Where the vertices go by both filters, and by the strong one for the normals. */
+static void go(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
-    float trust = job->trust[v];
-    return trust * job->strong[v] + (1 - trust) * job->gentle[v];
+    for (size_t v = from; v < end; v++) {
+        float trust = pass->trust[v];
+        float4 start = smooth_start(&job->graph->points[v]), strong = job->strong[v];
+        float4 displacement = trust * strong + (1 - trust) * job->gentle[v];
+        job->gentle[v] = displacement;
+        job->now[v] = start + displacement;
+        if (job->has_normals)
+            job->first[v] = start + strong;
+    }
 }
 
 /* A normal of unit length in patient space; 0 when it has no direction. */
@@ -250,7 +359,7 @@ static float4 in_lps(const struct smooth_job *job, float4 normal)
 
 /* What light falls on: the strongly filtered surface, as if nothing held it back, but the less the more it turns away from the one that
  * is there. */
-static void write_normal(struct smooth_job *job, size_t v, float4 own, float4 strong)
+static void write_normal(const struct smooth_job *job, size_t v, float4 own, float4 strong)
 {
     float agreement = dot(own, strong), share = (agreement - disagreeing) / (agreeing - disagreeing);
     share = share < 0 ? 0 : share > 1 ? 1 : share;
@@ -264,42 +373,42 @@ static void write_normal(struct smooth_job *job, size_t v, float4 own, float4 st
     memcpy(job->mesh->normals + 3 * v, &shown, 3 * sizeof(float));
 }
 
-static void settle(void *context, int part, int n_parts)
+static void settle(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
-    struct smooth_job *job = context;
-    size_t v, end;
-    for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
-        const struct marching_point *points = job->graph->points;
+    (void)pass;
+    for (size_t v = from; v < end; v++) {
+        const struct marching_point *point = &job->graph->points[v];
         const uint32_t *link = job->graph->links[v];
-        int axis = points[v].axis;
-        float4 ends[4];
-        for (int i = 0; i < 4; i++)
-            ends[i] = smooth_start(&points[link[i]]) + displacement_of(job, link[i]);
-        float4 normal = normal_of(ends) * (float)points[v].outward;
-        job->shift[v] = shift_along_edge(normal, displacement_of(job, v), axis);
-        if (job->mesh->normals) {
-            for (int i = 0; i < 4; i++)
-                ends[i] = smooth_start(&points[link[i]]) + job->strong[link[i]];
-            write_normal(job, v, in_lps(job, normal), in_lps(job, normal_of(ends) * (float)points[v].outward));
+        const float4 *at = job->now;
+        float4 normal = normal_of((float4[4]){ at[link[0]], at[link[1]], at[link[2]], at[link[3]] }) * (float)point->outward;
+        job->shift[v] = shift_along_edge(normal, job->gentle[v], point->axis);
+        if (job->has_normals) {
+            at = job->first;
+            float4 strong = normal_of((float4[4]){ at[link[0]], at[link[1]], at[link[2]], at[link[3]] }) * (float)point->outward;
+            write_normal(job, v, in_lps(job, normal), in_lps(job, strong));
         }
         normal /= job->edge_mm; /* of the grid's coordinates to of mm */
         float square = dot(normal, normal);
-        job->lean[v] = square > 0 ? fabsf(normal[axis]) / sqrtf(square) : 1;
+        job->lean[v] = square > 0 ? fabsf(normal[point->axis]) / sqrtf(square) : 1;
     }
 }
 
-static void go_to_edges(struct smooth_job *job)
+/* passes has room for MAX_PASSES_TO_EDGES. */
+static size_t plan_way_to_edges(const struct smooth_job *job, struct pass *passes)
 {
-    job->trust = (float *)job->now; /* the steps are over */
-    job->next_trust = (float *)job->before;
-    parallel_run(job->n_threads, judge, job);
+    size_t n = 0;
+    float *trust = job->shift, *next_trust = job->lean; /* not written before all is settled */
+    passes[n++] = (struct pass){ .take = go_gently };
+    passes[n++] = (struct pass){ .take = judge, .next_trust = trust };
     for (int round = 0; round < CAUTIOUS_ROUNDS + EVEN_ROUNDS; round++) {
-        parallel_run(job->n_threads, round < CAUTIOUS_ROUNDS ? be_cautious : even_out, job);
-        float *written = job->next_trust;
-        job->next_trust = job->trust;
-        job->trust = written;
+        passes[n++] = (struct pass){ .take = round < CAUTIOUS_ROUNDS ? be_cautious : even_out, .trust = trust, .next_trust = next_trust };
+        float *written = next_trust;
+        next_trust = trust;
+        trust = written;
     }
-    parallel_run(job->n_threads, settle, job);
+    passes[n++] = (struct pass){ .take = go, .trust = trust };
+    passes[n++] = (struct pass){ .take = settle };
+    return n;
 }
 
 /* ---- the whole ----------------------------------------------------------------------------------------------------------- */
@@ -337,8 +446,13 @@ static bool smooth(struct smooth_job *job, struct error *err)
     job->gentle = vectors + 4 * job->n;
     job->shift = (float *)(vectors + N_VECTORS * job->n);
     job->lean = job->shift + job->n;
-    filter(job);
-    go_to_edges(job);
+    struct pass passes[SMOOTH_MAX_STEPS + MAX_PASSES_TO_EDGES];
+    size_t n_passes = plan_filters(job, passes);
+    n_passes += plan_way_to_edges(job, passes + n_passes);
+    if (!take_passes(job, passes, n_passes, err)) {
+        free(vectors);
+        return false;
+    }
     bool is_good = job->options.n_volume_steps == 0 || smooth_keep_volume(job, err);
     parallel_run(job->n_threads, write_positions, job);
     mesh_measure_bounds(job->mesh);

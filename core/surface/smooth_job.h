@@ -22,10 +22,9 @@ struct smooth_job {
     bool has_normals;
     double univel_mm3;
 
-    float4 *first, *now, *before; /* e_1, e_n, e_(n-1), see smooth.c; the last two are free for others afterwards */
+    float4 *first, *now, *before; /* e_1, e_n, e_(n-1), see smooth.c; free for others afterwards */
     float4 *strong, *gentle;      /* what the two filters add up to: displacements */
 
-    float *trust, *next_trust;    /* in the strong filter, see smooth.c; where now and before were */
     float *shift; /* of each vertex along its own edge, from its middle; what goes beyond max_shift is cut off when it is used */
     float *lean;  /* how squarely the edge meets the surface: cosine of edge and normal, in mm */
 };

@@ -276,9 +276,12 @@ static void random_blocks_are_closed_within_bounds_and_equal_for_any_threads(voi
             }
             mask_destroy(mask);
         }
-    /* large enough that three threads are worth it; few pieces, then very many */
-    for (uint32_t percent = 3; percent < 60; percent += 50) {
-        struct mask *mask = random_mask(130, 70, 40, percent, percent, &map);
+    /* large enough that three threads are worth it; few pieces, then very many; and with fewer slices than threads can share */
+    static const uint32_t sizes[][3] = { { 130, 70, 40 }, { 300, 200, 6 } };
+    for (uint32_t each = 0; each < 4; each++) {
+        uint32_t percent = each % 2 ? 53 : 3;
+        const uint32_t *size = sizes[each / 2];
+        struct mask *mask = random_mask(size[0], size[1], size[2], percent, percent, &map);
         struct mesh *one = extract(mask, 1, true);
         assert_true(one->n_vertices > 3 * 8192);
         for (int n_threads = 2; n_threads < 4; n_threads++) {
