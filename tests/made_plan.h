@@ -28,6 +28,13 @@ static inline struct affine made_affine(struct vec3 i_mm, struct vec3 j_mm, stru
     return map;
 }
 
+/* side^3 voxels of 1 mm along L, P and S, their middle at the patient's origin. */
+static inline struct grid made_cube_grid(uint32_t side)
+{
+    const uint32_t size[3] = { side, side, side };
+    return made_grid(side, side, side, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+}
+
 static inline struct volume *made_volume(const struct grid *grid, enum voxel_type type, double (*value)(struct vec3 lps_mm))
 {
     struct error err = { 0 };

@@ -89,11 +89,23 @@ struct image *shots_plain(struct plan *plan, struct scene scene, struct view vie
     return shots_take(plan, scene, view, &options, NULL);
 }
 
+void shots_forget(struct plan *plan)
+{
+    renderer_forget(shots_renderer, plan);
+    plan_destroy(plan);
+}
+
 const uint8_t *shots_pixel(const struct image *image, int x, int y)
 {
     assert_in_range(x, 0, image->width_px - 1);
     assert_in_range(y, 0, image->height_px - 1);
     return &image->rgba[4 * ((size_t)y * (size_t)image->width_px + (size_t)x)];
+}
+
+void shots_expect_color(const uint8_t *pixel, const double color[3])
+{
+    for (int c = 0; c < 3; c++)
+        assert_close(pixel[c], 255 * color[c], 2);
 }
 
 size_t shots_centroid(const struct image *image, int channel, double *x_px, double *y_px)

@@ -30,7 +30,12 @@ struct image *shots_take(struct plan *plan, struct scene scene, struct view view
 /* Full size, full detail, not anti-aliased. */
 struct image *shots_plain(struct plan *plan, struct scene scene, struct view view);
 
+/* The plan is destroyed, and what the renderer keeps of it. */
+void shots_forget(struct plan *plan);
+
 const uint8_t *shots_pixel(const struct image *image, int x, int y);
+/* Shares of red, green and blue, within 2 of 255: a rounding each for light, blend and store. */
+void shots_expect_color(const uint8_t *pixel, const double color[3]);
 /* Mean position of the pixels whose named channel (0 red, 1 green, 2 blue) is larger than both others by 40; how many. */
 size_t shots_centroid(const struct image *image, int channel, double *x_px, double *y_px);
 

@@ -6,12 +6,6 @@
 static const struct vec3 origin = { 0, 0, 0 };
 static const enum scene_kind kinds[3] = { SCENE_KIND_AXIAL, SCENE_KIND_CORONAL, SCENE_KIND_SAGITTAL };
 
-static struct grid unit_grid(uint32_t side)
-{
-    const uint32_t size[3] = { side, side, side };
-    return made_grid(side, side, side, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
-}
-
 /* Turned about two axes, voxels of 1.2 x 0.9 x 1.5 mm, the third axis backwards. */
 static struct grid oblique_grid(uint32_t side)
 {
@@ -19,12 +13,6 @@ static struct grid oblique_grid(uint32_t side)
     double c = cos(0.4), s = sin(0.4), d = cos(0.25), e = sin(0.25);
     return made_grid(side, side, side,
                      made_affine(vec3(1.2 * c, 1.2 * s, 0), vec3(-0.9 * s * d, 0.9 * c * d, 0.9 * e), vec3(-1.5 * s * e, 1.5 * c * e, -1.5 * d), size, origin));
-}
-
-static void finish(struct plan *plan)
-{
-    renderer_forget(shots_renderer, plan);
-    plan_destroy(plan);
 }
 
 /* Where a patient point is on a pane: axial and coronal have patient left on the right, sagittal the back; up is anterior, superior. */
@@ -65,7 +53,7 @@ static double beyond(double x, double y, const double low[2], const double high[
 static void outlines_lie_on_the_regions_border(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(40);
+    struct grid grid = made_cube_grid(40);
     for (int method = 0; method < 2; method++)
         for (int k = 0; k < 3; k++) {
             struct plan *plan = made_plan(&grid, box_label, box, 1);
@@ -94,7 +82,7 @@ static void outlines_lie_on_the_regions_border(void **state)
                 }
             assert_true(n > 200);
             image_destroy(image);
-            finish(plan);
+            shots_forget(plan);
         }
 }
 
@@ -125,7 +113,7 @@ static void outlines_of_oblique_grids_are_within_a_voxel_of_the_truth(void **sta
         assert_true(n > 300);
         assert_true(least > 12 - 1.4 && most < 12 + 1.4); /* half a voxel's diagonal of 2.1 mm, and the line */
         image_destroy(image);
-        finish(plan);
+        shots_forget(plan);
     }
 }
 
@@ -139,7 +127,7 @@ static const struct made_region nested[] = { { "outer", -1, 0xff3030 }, { "middl
 static void only_visible_regions_have_outlines_and_the_higher_order_is_on_top(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(40);
+    struct grid grid = made_cube_grid(40);
     struct plan *plan = made_plan(&grid, nested_label, nested, 3);
     made_plan_add_image(plan, &grid, VOXEL_U8, no_value);
     struct scene scene = shots_scene(plan);
@@ -161,7 +149,7 @@ static void only_visible_regions_have_outlines_and_the_higher_order_is_on_top(vo
     for (int x = 0; x < SHOTS_WIDTH; x++) /* nothing but the black image */
         assert_true(shots_pixel(image, x, 150)[0] < 20 && shots_pixel(image, x, 150)[2] < 20);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static double all_label(struct vec3 p) { return fabs(p.x) < 10 && fabs(p.y) < 10 && fabs(p.z) < 10 ? 1 : 0; }
@@ -170,7 +158,7 @@ static const struct made_region equals[] = { { "red", -1, 0xff3030 }, { "green",
 static void the_order_decides_between_outlines_that_coincide(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(40);
+    struct grid grid = made_cube_grid(40);
     for (int top = 0; top < 2; top++) {
         struct plan *plan = made_plan(&grid, all_label, equals, 2);
         made_plan_add_image(plan, &grid, VOXEL_U8, no_value);
@@ -186,7 +174,7 @@ static void the_order_decides_between_outlines_that_coincide(void **state)
         struct image *image = shots_plain(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 8));
         assert_int_equal(is_green(shots_pixel(image, 200 + 80, 150)), top);
         image_destroy(image);
-        finish(plan);
+        shots_forget(plan);
     }
 }
 
@@ -195,7 +183,7 @@ static void the_order_decides_between_outlines_that_coincide(void **state)
 static void the_check_marks_what_the_surface_leaves_out(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(40);
+    struct grid grid = made_cube_grid(40);
     struct plan *plan = made_plan(&grid, box_label, box, 1);
     made_plan_add_image(plan, &grid, VOXEL_U8, no_value);
     struct scene scene = shots_scene(plan);
@@ -214,7 +202,7 @@ static void the_check_marks_what_the_surface_leaves_out(void **state)
     image = shots_take(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 16), &options, &timing);
     assert_int_equal(timing.n_left_out_px, 0);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* Takes the place of the region's own shape: a box of triangles `grown` larger than the voxels on every side. */
@@ -255,7 +243,7 @@ static void the_check_finds_exactly_what_differs(void **state)
     static const double positions[] = { 3, 4.25, 5.5, 8 }, zooms[] = { 3, 7, 16 };
     static const double faces[] = { 16, 9, -8 }; /* of the region itself, by kind: all of it or nothing, for both alike */
     const uint32_t size[3] = { 40, 40, 40 };
-    struct grid grids[2] = { unit_grid(40), made_grid(40, 40, 40, made_affine(vec3(-1, 0, 0), vec3(0, -1, 0), vec3(0, 0, -1), size, origin)) };
+    struct grid grids[2] = { made_cube_grid(40), made_grid(40, 40, 40, made_affine(vec3(-1, 0, 0), vec3(0, -1, 0), vec3(0, 0, -1), size, origin)) };
     for (int grown = -1; grown <= 1; grown++)
         for (int way = 0; way < 4; way++) {
             bool fan = way & 1;
@@ -289,7 +277,7 @@ static void the_check_finds_exactly_what_differs(void **state)
                 }
                 image_destroy(image);
             }
-            finish(plan);
+            shots_forget(plan);
         }
 }
 
@@ -310,7 +298,7 @@ static bool is_white(const uint8_t *pixel) { return pixel[0] > 120 && pixel[1] >
 static void a_doses_grid_is_where_its_voxels_are(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(40), doses[2] = { oblique_grid(20), unit_grid(10) };
+    struct grid grid = made_cube_grid(40), doses[2] = { oblique_grid(20), made_cube_grid(10) };
     struct plan *plan = made_plan(&grid, box_label, box, 1);
     give_dose(plan, &doses[0]);
     give_dose(plan, &doses[1]);
@@ -346,7 +334,7 @@ static void a_doses_grid_is_where_its_voxels_are(void **state)
                 assert_int_equal(is_white(shots_pixel(image, x, y)), off < 0.3);
         }
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* ---- images on grids of their own ------------------------------------------------------------------------------------------------- */
@@ -357,7 +345,7 @@ static double bright_ball(struct vec3 p) { return vec3_length(vec3_sub(p, bright
 static void slices_of_every_image_land_where_they_belong(void **state)
 {
     (void)state;
-    struct grid grids[3] = { unit_grid(40), oblique_grid(48), unit_grid(60) };
+    struct grid grids[3] = { made_cube_grid(40), oblique_grid(48), made_cube_grid(60) };
     struct plan *plan = made_plan(&grids[0], box_label, box, 1);
     for (int i = 0; i < 3; i++)
         made_plan_add_image(plan, &grids[i], i == 1 ? VOXEL_I16 : VOXEL_U8, bright_ball);
@@ -384,7 +372,7 @@ static void slices_of_every_image_land_where_they_belong(void **state)
             assert_close(n, MATH_PI * 25 * 64, 0.12 * MATH_PI * 25 * 64);
             image_destroy(image);
         }
-    finish(plan);
+    shots_forget(plan);
 }
 
 int main(void)

@@ -5,24 +5,6 @@
 static const struct vec3 origin = { 0, 0, 0 };
 static const struct vec3 from_front = { 0, -1, 0 }, up = { 0, 0, 1 };
 
-static struct grid unit_grid(uint32_t side)
-{
-    const uint32_t size[3] = { side, side, side };
-    return made_grid(side, side, side, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
-}
-
-static void finish(struct plan *plan)
-{
-    renderer_forget(shots_renderer, plan);
-    plan_destroy(plan);
-}
-
-static void expect_color(const uint8_t *pixel, const double color[3])
-{
-    for (int c = 0; c < 3; c++)
-        assert_close(pixel[c], 255 * color[c], 2); /* a rounding each for light, blend and store */
-}
-
 /* ---- winding, depth, blending ---------------------------------------------------------------------------------------------- */
 
 static double ball_label(struct vec3 p) { return vec3_length(p) <= 20 ? 1 : 0; }
@@ -31,7 +13,7 @@ static const struct made_region ball[] = { { "ball", -1, 0xc8c8c8 } };
 static void the_near_side_of_a_ball_is_seen_lit_from_the_upper_right(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(50);
+    struct grid grid = made_cube_grid(50);
     struct plan *plan = made_plan(&grid, ball_label, ball, 1);
     struct image *image = shots_plain(plan, shots_scene(plan), shots_view_from(origin, from_front, up, 6));
     int right = shots_pixel(image, 200 + 60, 150 - 60)[0], left = shots_pixel(image, 200 - 60, 150 + 60)[0];
@@ -40,7 +22,7 @@ static void the_near_side_of_a_ball_is_seen_lit_from_the_upper_right(void **stat
     assert_close(shots_pixel(image, 200, 150)[0], 255 * shots_facing_light(grey, true), 8); /* averaged normals of voxels: a few levels */
     assert_memory_equal(shots_pixel(image, 2, 2), shots_background, 3);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* Nested boxes, half sides 12, 24, 36; labels 3, 2, 1. Their front faces are flat, so in the middle normals are exact. */
@@ -62,7 +44,7 @@ static void translucent_surfaces_blend_from_the_inside_out(void **state)
     (void)state;
     static const double outer[3] = { 1, 0x80 / 255.0, 0x40 / 255.0 }, middle[3] = { 0x40 / 255.0, 1, 0x80 / 255.0 },
                         inner[3] = { 0x80 / 255.0, 0x40 / 255.0, 1 };
-    struct grid grid = unit_grid(80);
+    struct grid grid = made_cube_grid(80);
     struct plan *plan = made_plan(&grid, nested_label, nested, 3);
     struct scene scene = shots_scene(plan);
     scene.surface.translucency = SCENE_TRANSLUCENCY_PLAIN;
@@ -73,7 +55,7 @@ static void translucent_surfaces_blend_from_the_inside_out(void **state)
     blend(expected, inner, 1);
     blend(expected, middle, 0.5);
     blend(expected, outer, 0.25);
-    expect_color(shots_pixel(image, 200, 150), expected);
+    shots_expect_color(shots_pixel(image, 200, 150), expected);
     image_destroy(image);
 
     /* all three translucent, with rims: facing squarely, alpha is 0.3 of the opacity */
@@ -86,15 +68,15 @@ static void translucent_surfaces_blend_from_the_inside_out(void **state)
     blend(rims, inner, 0.3 * 0.7);
     blend(rims, middle, 0.3 * 0.8);
     blend(rims, outer, 0.3 * 0.9);
-    expect_color(shots_pixel(image, 200, 150), rims);
+    shots_expect_color(shots_pixel(image, 200, 150), rims);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static void an_opaque_surface_hides_what_it_encloses(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(80);
+    struct grid grid = made_cube_grid(80);
     struct plan *plan = made_plan(&grid, nested_label, nested, 3);
     struct render_timing all, outer;
     struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, false };
@@ -108,7 +90,7 @@ static void an_opaque_surface_hides_what_it_encloses(void **state)
     assert_int_equal(all.n_triangles, outer.n_triangles); /* and is not even drawn */
     image_destroy(a);
     image_destroy(b);
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* Two separate slabs, one before the other, and a third region of two slabs joined at the side: a fold. */
@@ -127,7 +109,7 @@ static void separate_translucent_surfaces_blend_by_distance_from_either_side(voi
 {
     (void)state;
     static const double front[3] = { 1, 0x80 / 255.0, 0x40 / 255.0 }, back[3] = { 0x40 / 255.0, 0x80 / 255.0, 1 };
-    struct grid grid = unit_grid(70);
+    struct grid grid = made_cube_grid(70);
     struct plan *plan = made_plan(&grid, slabs_label, slabs, 2);
     for (int side = 0; side < 2; side++) {
         struct scene scene = shots_scene(plan);
@@ -137,10 +119,10 @@ static void separate_translucent_surfaces_blend_by_distance_from_either_side(voi
         double expected[3] = { 0x08 / 255.0, 0x09 / 255.0, 0x0b / 255.0 };
         blend(expected, side ? front : back, 0.5);
         blend(expected, side ? back : front, 0.5);
-        expect_color(shots_pixel(image, 200, 150), expected);
+        shots_expect_color(shots_pixel(image, 200, 150), expected);
         image_destroy(image);
     }
-    finish(plan);
+    shots_forget(plan);
 }
 
 static double fold_label(struct vec3 p)
@@ -152,7 +134,7 @@ static void a_folded_translucent_surface_shows_its_front_sheet_once(void **state
 {
     (void)state;
     static const double color[3] = { 1, 0x80 / 255.0, 0x40 / 255.0 };
-    struct grid grid = unit_grid(70);
+    struct grid grid = made_cube_grid(70);
     struct plan *plan = made_plan(&grid, fold_label, slabs, 1);
     for (int side = 0; side < 2; side++) { /* whichever order the triangles come in */
         struct scene scene = shots_scene(plan);
@@ -161,10 +143,10 @@ static void a_folded_translucent_surface_shows_its_front_sheet_once(void **state
         struct image *image = shots_plain(plan, scene, shots_view_from(origin, vec3(0, side ? 1 : -1, 0), up, 3));
         double expected[3] = { 0x08 / 255.0, 0x09 / 255.0, 0x0b / 255.0 };
         blend(expected, color, 0.5);
-        expect_color(shots_pixel(image, 200, 150), expected);
+        shots_expect_color(shots_pixel(image, 200, 150), expected);
         image_destroy(image);
     }
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* ---- size ---------------------------------------------------------------------------------------------------------------------- */
@@ -183,7 +165,7 @@ static void measure_silhouette(const struct image *image, int *width_px, int *he
 static void silhouettes_are_as_large_as_the_projection_says(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(60);
+    struct grid grid = made_cube_grid(60);
     struct plan *plan = made_plan(&grid, box_label, ball, 1); /* 40 x 40 x 20 mm between outer voxel faces */
     int width_px, height_px;
     struct image *image = shots_plain(plan, shots_scene(plan), shots_view_from(origin, from_front, up, 5));
@@ -203,13 +185,13 @@ static void silhouettes_are_as_large_as_the_projection_says(void **state)
     assert_close(width_px, 40 * pixels_per_mm, 1);
     assert_close(height_px, 20 * pixels_per_mm, 1);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static void fewer_pixels_show_the_same_view(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(60);
+    struct grid grid = made_cube_grid(60);
     struct plan *plan = made_plan(&grid, box_label, ball, 1);
     struct render_options options = { SHOTS_WIDTH / 2, SHOTS_HEIGHT / 2, SURFACE_FULL, false };
     struct image *image = shots_take(plan, shots_scene(plan), shots_view_from(origin, from_front, up, 5), &options, NULL);
@@ -219,13 +201,13 @@ static void fewer_pixels_show_the_same_view(void **state)
     assert_close(width_px, 40 * 5 / 2, 1);
     assert_close(height_px, 20 * 5 / 2, 1);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static void what_is_out_of_sight_is_not_drawn_and_what_is_partly_in_sight_is(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(60);
+    struct grid grid = made_cube_grid(60);
     struct plan *plan = made_plan(&grid, box_label, ball, 1);
     struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, false };
     struct render_timing timing;
@@ -238,7 +220,7 @@ static void what_is_out_of_sight_is_not_drawn_and_what_is_partly_in_sight_is(voi
     assert_memory_not_equal(shots_pixel(image, SHOTS_WIDTH - 2, SHOTS_HEIGHT / 2), shots_background, 3);
     assert_memory_equal(shots_pixel(image, SHOTS_WIDTH - 8, SHOTS_HEIGHT / 2), shots_background, 3);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* ---- greys --------------------------------------------------------------------------------------------------------------------- */
@@ -263,7 +245,7 @@ static void every_voxel_has_the_grey_its_window_says(void **state)
         double center, width;
     } cases[] = { { VOXEL_I16, ramp, 20, 333 }, { VOXEL_F32, ramp, -50, 400 }, { VOXEL_U16, high_ramp, 40000, 500 },
                   { VOXEL_U8, small_ramp, 100, 50 } };
-    struct grid grid = unit_grid(60);
+    struct grid grid = made_cube_grid(60);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct plan *plan = made_plan(&grid, empty_label, ball, 0);
         made_plan_add_image(plan, &grid, cases[i].type, cases[i].value);
@@ -278,14 +260,14 @@ static void every_voxel_has_the_grey_its_window_says(void **state)
         }
         assert_memory_equal(shots_pixel(image, 200 + 31 * 4, 150), shots_background, 3); /* beyond the grid */
         image_destroy(image);
-        finish(plan);
+        shots_forget(plan);
     }
 }
 
 static void linear_interpolation_is_linear(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(60);
+    struct grid grid = made_cube_grid(60);
     struct plan *plan = made_plan(&grid, empty_label, ball, 0);
     made_plan_add_image(plan, &grid, VOXEL_F32, ramp);
     struct scene scene = shots_scene(plan);
@@ -294,13 +276,13 @@ static void linear_interpolation_is_linear(void **state)
     for (int x = 200 - 100; x < 200 + 100; x++)
         assert_close(shots_pixel(image, x, 150)[0], 127.5 + 255 * 10 * ((x + 0.5 - 200) / 8.0) / 300, 1.5);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static void a_slice_in_space_leaves_out_what_is_below_the_threshold(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(60);
+    struct grid grid = made_cube_grid(60);
     struct plan *plan = made_plan(&grid, empty_label, ball, 0);
     made_plan_add_image(plan, &grid, VOXEL_I16, ramp); /* 10 a millimetre to the left */
     struct scene scene = shots_scene(plan);
@@ -318,7 +300,7 @@ static void a_slice_in_space_leaves_out_what_is_below_the_threshold(void **state
     image = shots_plain(plan, scene, shots_view(SCENE_KIND_CORONAL, origin, 4));
     assert_close(shots_pixel(image, 200 - 10 * 4, 150)[0], 255 * 200 / 600.0, 3);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static double holed(struct vec3 p) { return vec3_length(p) < 5 ? NAN : 100; }
@@ -326,7 +308,7 @@ static double holed(struct vec3 p) { return vec3_length(p) < 5 ? NAN : 100; }
 static void what_is_not_a_number_is_not_drawn(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(30);
+    struct grid grid = made_cube_grid(30);
     struct plan *plan = made_plan(&grid, empty_label, ball, 0);
     made_plan_add_image(plan, &grid, VOXEL_F32, holed);
     struct scene scene = shots_scene(plan);
@@ -335,7 +317,7 @@ static void what_is_not_a_number_is_not_drawn(void **state)
     assert_memory_equal(shots_pixel(image, 200, 150), shots_background, 3);
     assert_int_equal(shots_pixel(image, 200 + 40, 150)[0], 255);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static void a_grid_beyond_the_drivers_limit_is_refused_with_its_size(void **state)
@@ -360,7 +342,7 @@ static void a_grid_beyond_the_drivers_limit_is_refused_with_its_size(void **stat
     }
     image_destroy(image);
     snapshot_unref(snapshot);
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* ---- stills, light surfaces, repeatability --------------------------------------------------------------------------------------- */
@@ -381,7 +363,7 @@ static size_t count_between(const struct image *image)
 static void stills_have_smooth_edges(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(60);
+    struct grid grid = made_cube_grid(60);
     struct plan *plan = made_plan(&grid, box_label, ball, 1);
     size_t n[2];
     for (int is_still = 0; is_still < 2; is_still++) {
@@ -394,7 +376,7 @@ static void stills_have_smooth_edges(void **state)
     }
     /* marching cubes bevels the box's edges by half a voxel, 2.5 pixels here, which may shade differently: compare, do not count */
     assert_true(n[1] > n[0] + 300); /* the outline is 600 pixels long, about 3 of 4 of them cut by a slanted edge */
-    finish(plan);
+    shots_forget(plan);
 }
 
 static double large_box_label(struct vec3 p) { return fabs(p.x) < 65 && fabs(p.y) < 65 && fabs(p.z) < 65 ? 1 : 0; }
@@ -402,7 +384,7 @@ static double large_box_label(struct vec3 p) { return fabs(p.x) < 65 && fabs(p.y
 static void light_surfaces_are_marked_and_lighter(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(134);
+    struct grid grid = made_cube_grid(134);
     struct plan *plan = made_plan(&grid, large_box_label, ball, 1); /* 6 x 130 x 130 squares: 200 000 triangles */
     struct render_timing full, light;
     struct view view = shots_view_from(origin, from_front, up, 2);
@@ -412,7 +394,7 @@ static void light_surfaces_are_marked_and_lighter(void **state)
     assert_true(light.is_light);
     assert_true(full.n_triangles > 6 * 128 * 128 * 2);
     assert_true(light.n_triangles <= PLAN_LIGHT_TRIANGLES);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static double specks_label(struct vec3 p)
@@ -426,7 +408,7 @@ static const struct made_region specks[] = { { "box", -1, 0xff8040 }, { "speck",
 static void the_scene_says_how_regions_become_surfaces(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(40);
+    struct grid grid = made_cube_grid(40);
     struct plan *plan = made_plan(&grid, specks_label, specks, 2);
     struct view view = shots_view_from(origin, from_front, up, 10);
     struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, false };
@@ -448,13 +430,13 @@ static void the_scene_says_how_regions_become_surfaces(void **state)
             assert_int_equal(timing.n_triangles, 0);
         image_destroy(image);
     }
-    finish(plan);
+    shots_forget(plan);
 }
 
 static void equal_snapshots_give_equal_bytes(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(80);
+    struct grid grid = made_cube_grid(80);
     struct plan *plan = made_plan(&grid, nested_label, nested, 3);
     made_plan_add_image(plan, &grid, VOXEL_I16, ramp);
     struct image *images[2];
@@ -472,13 +454,13 @@ static void equal_snapshots_give_equal_bytes(void **state)
     assert_memory_equal(images[0]->rgba, images[1]->rgba, (size_t)SHOTS_WIDTH * SHOTS_HEIGHT * 4);
     image_destroy(images[0]);
     image_destroy(images[1]);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static void large_stills_have_no_seam_between_bands(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(60);
+    struct grid grid = made_cube_grid(60);
     struct plan *plan = made_plan(&grid, box_label, ball, 1);
     struct view view = shots_view_from(origin, from_front, up, 1);
     view.size_px[0] = 4096; /* 4096 x 2048 pixels with 4 samples: two bands */
@@ -491,7 +473,7 @@ static void large_stills_have_no_seam_between_bands(void **state)
     assert_close(width_px, 40 * 60, 2);
     assert_close(height_px, 20 * 60, 2);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 int main(void)

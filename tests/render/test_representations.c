@@ -40,12 +40,6 @@ static struct plan *make_plan(void)
     return made_plan(&grid, spiky_label, spiky, 1);
 }
 
-static void finish(struct plan *plan)
-{
-    renderer_forget(shots_renderer, plan);
-    plan_destroy(plan);
-}
-
 /* ---- the truth: which pixels' rays meet a univel --------------------------------------------------------------------------------- */
 
 enum { N_VIEWS = 4 };
@@ -178,7 +172,7 @@ static void every_way_draws_the_region_where_its_univels_are(void **state)
                 image_destroy(image);
             }
     }
-    finish(plan);
+    shots_forget(plan);
 }
 
 static void every_back_end_draws_every_way_the_same(void **state)
@@ -215,7 +209,7 @@ static void every_back_end_draws_every_way_the_same(void **state)
         }
     renderer_forget(soft, plan);
     renderer_destroy(soft);
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* ---- solid points at any zoom ------------------------------------------------------------------------------------------------------ */
@@ -256,7 +250,7 @@ static void solid_points_leave_no_gap_at_any_zoom(void **state)
             snapshot_unref(snapshot);
             image_destroy(image);
         }
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* ---- light --------------------------------------------------------------------------------------------------------------------------- */
@@ -268,8 +262,7 @@ static double block_label(struct vec3 p) { return fabs(p.x) < 10 && fabs(p.y) < 
 static void light_is_of_faces_or_baked_or_live(void **state)
 {
     (void)state;
-    const uint32_t size[3] = { 30, 30, 30 };
-    struct grid grid = made_grid(30, 30, 30, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
+    struct grid grid = made_cube_grid(30);
     struct plan *plan = made_plan(&grid, block_label, spiky, 1);
     static const double color[3] = { 0xf0 / 255.0, 0xc0 / 255.0, 0x80 / 255.0 };
     struct image *image;
@@ -294,7 +287,7 @@ static void light_is_of_faces_or_baked_or_live(void **state)
         }
     assert_int_equal(baked[0], baked[1]);
     assert_true(abs(live[0] - live[1]) > 5);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static double ball_label(struct vec3 p) { return vec3_length(p) < 12 ? 1 : 0; }
@@ -303,8 +296,7 @@ static double ball_label(struct vec3 p) { return vec3_length(p) < 12 ? 1 : 0; }
 static void univels_that_face_the_same_way_are_told_apart_unless_light_is_to_be_of_faces(void **state)
 {
     (void)state;
-    const uint32_t size[3] = { 30, 30, 30 };
-    struct grid grid = made_grid(30, 30, 30, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
+    struct grid grid = made_cube_grid(30);
     struct plan *plan = made_plan(&grid, ball_label, spiky, 1);
     int spread[2];
     for (int is_rounded = 0; is_rounded < 2; is_rounded++) {
@@ -323,7 +315,7 @@ static void univels_that_face_the_same_way_are_told_apart_unless_light_is_to_be_
     }
     assert_true(spread[0] <= 2);
     assert_true(spread[1] >= 15);
-    finish(plan);
+    shots_forget(plan);
 }
 
 int main(void)

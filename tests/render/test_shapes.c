@@ -18,15 +18,8 @@ static double label(struct vec3 p)
 
 static struct plan *make_plan(void)
 {
-    const uint32_t size[3] = { 60, 60, 60 };
-    struct grid grid = made_grid(60, 60, 60, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
+    struct grid grid = made_cube_grid(60);
     return made_plan(&grid, label, two, 2);
-}
-
-static void finish(struct plan *plan)
-{
-    renderer_forget(shots_renderer, plan);
-    plan_destroy(plan);
 }
 
 /* Takes shape. */
@@ -131,7 +124,7 @@ static void a_line_is_as_wide_as_the_scene_says_in_its_regions_colour(void **sta
         for (int c = 0; c < 3; c++)
             assert_close(pixel[c], 255 * orange[c], 1); /* nearest part of its box: its own colour */
         image_destroy(image);
-        finish(plan);
+        shots_forget(plan);
     }
 }
 
@@ -153,7 +146,7 @@ static void lines_behind_something_are_hidden_and_far_ones_are_darker(void **sta
     assert_true(far_right[2] > far_right[0]); /* the plate */
     assert_close(near_right[0], 0xf0, 1);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static void a_line_through_the_eyes_plane_is_cut_there(void **state)
@@ -179,7 +172,7 @@ static void a_line_through_the_eyes_plane_is_cut_there(void **state)
         assert_memory_not_equal(shots_pixel(image, (int)px, (int)py), shots_background, 3);
     }
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* ---- points ------------------------------------------------------------------------------------------------------------------- */
@@ -208,8 +201,8 @@ static void points_are_squares_of_the_size_the_scene_says(void **state)
                 assert_close(shots_pixel(image, (int)x, (int)y)[c], 255 * shots_facing_light(orange[c], true), 2);
             image_destroy(image);
         }
-    finish(plan);
-    finish(without);
+    shots_forget(plan);
+    shots_forget(without);
 }
 
 static void solid_points_cover_their_voxel_in_the_light_worked_out_before(void **state)
@@ -236,7 +229,7 @@ static void solid_points_cover_their_voxel_in_the_light_worked_out_before(void *
                 assert_close(pixel[c], 255 * (is_live ? shots_facing_light(orange[c], true) : orange[c] * 100 / 255), 2);
             image_destroy(image);
         }
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* ---- triangles ---------------------------------------------------------------------------------------------------------------- */
@@ -287,7 +280,7 @@ static void open_surfaces_are_seen_from_both_sides_and_closed_ones_from_outside(
                 assert_memory_not_equal(pixel, shots_background, 3);
             image_destroy(image);
         }
-        finish(plan);
+        shots_forget(plan);
     }
 }
 
@@ -311,7 +304,7 @@ static void translucent_points_and_lines_show_what_lies_behind(void **state)
             assert_close(shots_pixel(image, at, 150)[c], 255 * 0.5 * over + 0.5 * shots_background[c], 2);
         }
         image_destroy(image);
-        finish(plan);
+        shots_forget(plan);
     }
 }
 
@@ -370,7 +363,7 @@ static void every_back_end_draws_the_same(void **state)
             image_destroy(images[0]);
             image_destroy(images[1]);
             renderer_forget(soft, plan);
-            finish(plan);
+            shots_forget(plan);
         }
     renderer_destroy(soft);
 }

@@ -221,8 +221,7 @@ static void closed_surfaces_have_no_cracks(void **state)
 {
     (void)state;
     static const double distances_mm[] = { 45, 100, 400, 3000 };
-    const uint32_t size[3] = { 70, 70, 70 };
-    struct grid grid = made_grid(70, 70, 70, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
+    struct grid grid = made_cube_grid(70);
     struct plan *plan = made_plan(&grid, ball_label, ball, 1);
     for (size_t i = 0; i < sizeof distances_mm / sizeof distances_mm[0]; i++) {
         struct view view = shots_view_from(origin, vec3(0.31, -1, 0.17), up, 1);
@@ -255,8 +254,7 @@ static double cube_label(struct vec3 p) { return fabs(p.x) < 20 && fabs(p.y) < 2
 static void a_face_close_to_the_eye_fills_the_picture(void **state)
 {
     (void)state;
-    const uint32_t size[3] = { 60, 60, 60 };
-    struct grid grid = made_grid(60, 60, 60, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
+    struct grid grid = made_cube_grid(60);
     struct plan *plan = made_plan(&grid, cube_label, ball, 1);
     struct view view = shots_view_from(vec3(0.3, 0, 0.2), vec3(0, -1, 0), up, 2000); /* 2000 pixels a millimetre */
     struct image *image = shots_plain(plan, shots_scene(plan), view);

@@ -7,28 +7,10 @@ static const struct vec3 from_front = { 0, -1, 0 }, up = { 0, 0, 1 };
 static const struct made_region red_and_blue[] = { { "red", -1, 0xff2020 }, { "blue", -1, 0x2020ff } };
 static const double red[3] = { 1, 0x20 / 255.0, 0x20 / 255.0 }, blue[3] = { 0x20 / 255.0, 0x20 / 255.0, 1 };
 
-static struct grid unit_grid(uint32_t side)
-{
-    const uint32_t size[3] = { side, side, side };
-    return made_grid(side, side, side, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
-}
-
-static void finish(struct plan *plan)
-{
-    renderer_forget(shots_renderer, plan);
-    plan_destroy(plan);
-}
-
 static void blend(double under[3], const double rgb[3], double alpha)
 {
     for (int c = 0; c < 3; c++)
         under[c] = alpha * shots_facing_light(rgb[c], false) + (1 - alpha) * under[c];
-}
-
-static void expect_color(const uint8_t *pixel, const double color[3])
-{
-    for (int c = 0; c < 3; c++)
-        assert_close(pixel[c], 255 * color[c], 2); /* a rounding each for light, blend and store */
 }
 
 /* Red is a plate; blue has a plate before it on the left (screen) and one behind it on the right. Whole regions in one order are
@@ -55,23 +37,23 @@ static struct scene woven_scene(const struct plan *plan, enum scene_translucent_
 static void regions_that_cross_blend_in_each_pixels_own_order(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(70);
+    struct grid grid = made_cube_grid(70);
     struct plan *plan = made_plan(&grid, woven_label, red_and_blue, 2);
     struct image *image = shots_plain(plan, woven_scene(plan, SCENE_TRANSLUCENT_ORDER_EXACT), shots_view_from(origin, from_front, up, 4));
     for (int side = 0; side < 2; side++) {
         double expected[3] = { 0x08 / 255.0, 0x09 / 255.0, 0x0b / 255.0 };
         blend(expected, side ? blue : red, side ? 0.7 : 0.5); /* left: red lies behind */
         blend(expected, side ? red : blue, side ? 0.5 : 0.7);
-        expect_color(shots_pixel(image, side ? 260 : 140, 150), expected);
+        shots_expect_color(shots_pixel(image, side ? 260 : 140, 150), expected);
     }
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static void the_scene_can_lay_whole_regions_over_each_other(void **state)
 {
     (void)state;
-    struct grid grid = unit_grid(70);
+    struct grid grid = made_cube_grid(70);
     struct plan *plan = made_plan(&grid, woven_label, red_and_blue, 2);
     for (int top = 0; top < 2; top++) { /* the higher order lies on top, on both sides and although blue is nearer */
         struct scene scene = woven_scene(plan, SCENE_TRANSLUCENT_ORDER_HIERARCHY);
@@ -80,11 +62,11 @@ static void the_scene_can_lay_whole_regions_over_each_other(void **state)
         double expected[3] = { 0x08 / 255.0, 0x09 / 255.0, 0x0b / 255.0 };
         blend(expected, top ? red : blue, top ? 0.5 : 0.7);
         blend(expected, top ? blue : red, top ? 0.7 : 0.5);
-        expect_color(shots_pixel(image, 140, 150), expected);
-        expect_color(shots_pixel(image, 260, 150), expected);
+        shots_expect_color(shots_pixel(image, 140, 150), expected);
+        shots_expect_color(shots_pixel(image, 260, 150), expected);
         image_destroy(image);
     }
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* ---- two balls that cross, each on a layer of its own -------------------------------------------------------------------------- */
@@ -96,7 +78,7 @@ static double second_ball(struct vec3 p) { return vec3_length(vec3_sub(p, middle
 
 static struct plan *make_crossing_balls(bool is_swapped)
 {
-    struct grid grid = unit_grid(64);
+    struct grid grid = made_cube_grid(64);
     struct made_region swapped[2] = { red_and_blue[1], red_and_blue[0] };
     struct plan *plan = made_plan(&grid, first_ball, is_swapped ? swapped : red_and_blue, 2);
     plan->regions.layers[1] = made_volume(&grid, VOXEL_U8, second_ball);
@@ -149,7 +131,7 @@ static void crossing_balls_have_the_nearer_one_on_top_everywhere(void **state)
         }
     assert_true(n_checked[0] > 1000 && n_checked[1] > 1000);
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 static void shuffle_triangles(struct plan *plan, size_t region)
@@ -186,9 +168,9 @@ static void the_order_of_regions_and_of_triangles_makes_no_difference(void **sta
         image_destroy(a);
         image_destroy(b);
         image_destroy(c);
-        finish(plan);
-        finish(swapped);
-        finish(shuffled);
+        shots_forget(plan);
+        shots_forget(swapped);
+        shots_forget(shuffled);
     }
 }
 
@@ -213,7 +195,7 @@ static void every_back_end_draws_the_same(void **state)
     }
     renderer_forget(soft, plan);
     renderer_destroy(soft);
-    finish(plan);
+    shots_forget(plan);
 }
 
 /* ---- many ------------------------------------------------------------------------------------------------------------------ */
@@ -238,7 +220,7 @@ static void many_regions_are_all_drawn(void **state)
         snprintf(ids[i], sizeof ids[i], "r%d", i);
         regions[i] = (struct made_region){ ids[i], -1, i == 0 ? 0x2020ffu : 0xff2020u };
     }
-    struct grid grid = unit_grid(80);
+    struct grid grid = made_cube_grid(80);
     struct plan *plan = made_plan(&grid, plates_label, regions, PLATES + 1);
     struct scene scene = shots_scene(plan);
     scene.surface.translucency = SCENE_TRANSLUCENCY_PLAIN;
@@ -255,7 +237,7 @@ static void many_regions_are_all_drawn(void **state)
                 assert_close(pixel[c], 255 * expected[c], 12); /* averaged normals of a plate of 4 x 4 voxels; without it: 60 off */
         }
     image_destroy(image);
-    finish(plan);
+    shots_forget(plan);
 }
 
 int main(void)

@@ -275,8 +275,7 @@ static double shifted_shells(struct vec3 p) { return shells(vec3_sub(p, vec3(3, 
 static void a_new_room_sees_through_to_the_innermost_region(void **state)
 {
     (void)state;
-    const uint32_t size[3] = { 41, 41, 41 };
-    struct grid grid = made_grid(41, 41, 41, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+    struct grid grid = made_cube_grid(41);
     struct plan *plan = made_plan(&grid, shifted_shells, tree, 3);
     made_plan_add_image(plan, &grid, VOXEL_U8, no_label);
     struct scene scene;

@@ -72,8 +72,7 @@ static const struct made_region ball[] = { { "ball", -1, 0xff0000 } };
 
 static struct plan *small_plan(void)
 {
-    const uint32_t size[3] = { 16, 16, 16 };
-    struct grid grid = made_grid(16, 16, 16, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+    struct grid grid = made_cube_grid(16);
     return made_plan(&grid, label, ball, 1);
 }
 

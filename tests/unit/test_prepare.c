@@ -12,8 +12,7 @@ static const struct made_region nested[] = { { "outer", -1, 0xff0000 }, { "middl
 
 static struct plan *make_plan(void)
 {
-    const uint32_t size[3] = { 24, 24, 24 };
-    struct grid grid = made_grid(24, 24, 24, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+    struct grid grid = made_cube_grid(24);
     return made_plan(&grid, nested_label, nested, 3);
 }
 

@@ -8,8 +8,7 @@ static const struct made_region one[] = { { "one", -1, 0xffffff } };
 
 static struct mesh *mesh_of(double (*label)(struct vec3 p))
 {
-    const uint32_t size[3] = { 50, 50, 50 };
-    struct grid grid = made_grid(50, 50, 50, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+    struct grid grid = made_cube_grid(50);
     struct plan *plan = made_plan(&grid, label, one, 1);
     struct surface_facts facts;
     struct error err = { 0 };

@@ -8,8 +8,7 @@ static const struct made_region regions[] = { { "half", -1, 0xffffff } };
 
 static struct plan *make_plan(void)
 {
-    const uint32_t size[3] = { 4, 4, 4 };
-    struct grid grid = made_grid(4, 4, 4, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+    struct grid grid = made_cube_grid(4);
     struct plan *plan = made_plan(&grid, label, regions, 1);
     made_plan_add_image(plan, &grid, VOXEL_U8, label);
     made_plan_add_image(plan, &grid, VOXEL_U8, label);
@@ -68,8 +67,7 @@ static void what_the_plan_does_not_have_is_refused_by_the_fields_place(void **st
 static void a_plan_without_images_and_doses_has_neither(void **state)
 {
     (void)state;
-    const uint32_t size[3] = { 4, 4, 4 };
-    struct grid grid = made_grid(4, 4, 4, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+    struct grid grid = made_cube_grid(4);
     struct plan *plan = made_plan(&grid, label, regions, 1);
     struct error err = { 0 };
     char field[128];
