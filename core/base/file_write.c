@@ -47,3 +47,16 @@ bool file_write(const char *path, const void *bytes, size_t n_bytes, struct erro
     }
     return true;
 }
+
+bool file_folder_paths(const char *folder, char place[FILE_FOLDER_SIZE], char partial[PATH_MAX], struct error *err)
+{
+    size_t n = strlen(folder);
+    while (n > 1 && folder[n - 1] == '/')
+        n--;
+    if (n == 0 || n >= FILE_FOLDER_SIZE)
+        return error_set(err, ERROR_RANGE, "a folder's path has 1 to %d bytes, this one %zu", FILE_FOLDER_SIZE - 1, n);
+    memcpy(place, folder, n);
+    place[n] = 0;
+    snprintf(partial, PATH_MAX, "%s.partial-%ld", place, (long)getpid());
+    return true;
+}

@@ -24,7 +24,7 @@ const struct phantom_options phantom_defaults = { { 256, 256, 128 }, 1 };
 static const char *const files[] = { "plan.json",           "README.txt",         "labels.json",      "ct.nii.gz",
                                      "labels.nii.gz",       "tracks.pp",          "dose/boron.nii.gz", "dose/nitrogen.nii.gz",
                                      "dose/fast.nii.gz",    "dose/gamma.nii.gz",  "dose/valid.nii.gz" };
-enum { N_FILES = sizeof files / sizeof *files, FOLDER_MAX = PATH_MAX - 64 };
+enum { N_FILES = sizeof files / sizeof *files };
 
 static bool join(char path[PATH_MAX], const char *folder, const char *name)
 {
@@ -227,18 +227,9 @@ static bool check_options(const struct phantom_options *options, struct error *e
 
 bool phantom_write(const char *folder, const struct phantom_options *options, bool replace, struct error *err)
 {
-    char place[FOLDER_MAX], partial[PATH_MAX];
-    size_t n = strlen(folder);
-    while (n > 1 && folder[n - 1] == '/')
-        n--;
-    if (n == 0 || n >= sizeof place)
-        return error_set(err, ERROR_RANGE, "a folder's path has 1 to %zu bytes, this one %zu", sizeof place - 1, n);
-    memcpy(place, folder, n);
-    place[n] = 0;
-    snprintf(partial, sizeof partial, "%s.partial-%ld", place, (long)getpid());
-
+    char place[FILE_FOLDER_SIZE], partial[PATH_MAX];
     bool is_filled;
-    if (!check_options(options, err) || !check_folder(place, replace, &is_filled, err))
+    if (!file_folder_paths(folder, place, partial, err) || !check_options(options, err) || !check_folder(place, replace, &is_filled, err))
         return false;
     if (mkdir(partial, 0777) != 0)
         return error_set(err, ERROR_IO, "%s: cannot be created: %s", place, strerror(errno));

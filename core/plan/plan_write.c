@@ -303,16 +303,8 @@ static void remove_all(const char *folder)
 bool plan_write(const struct plan *plan, const char *folder, struct error *err)
 {
     struct writing writing = { .plan = plan };
-    char place[PATH_MAX - 64];
-    size_t n = strlen(folder);
-    while (n > 1 && folder[n - 1] == '/')
-        n--;
-    if (n == 0 || n >= sizeof place)
-        return error_set(err, ERROR_RANGE, "a folder's path has 1 to %zu bytes, this one %zu", sizeof place - 1, n);
-    memcpy(place, folder, n);
-    place[n] = 0;
-    snprintf(writing.folder, sizeof writing.folder, "%s.partial-%ld", place, (long)getpid());
-    if (!check_target(place, err) || !make_folders(writing.folder, err))
+    char place[FILE_FOLDER_SIZE];
+    if (!file_folder_paths(folder, place, writing.folder, err) || !check_target(place, err) || !make_folders(writing.folder, err))
         return false;
     writing.outputs = mem_new(MAX_FILES * sizeof *writing.outputs);
     writing.file = mem_new(sizeof *writing.file);

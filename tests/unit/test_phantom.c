@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "core/base/file_write.h"
 #include "core/formats/nifti_write.h"
 #include "core/phantom/depth_dose.h"
 #include "core/phantom/head.h"
@@ -378,6 +379,13 @@ static void a_phantom_that_cannot_be_written_leaves_nothing_behind(void **state)
     assert_false(is_there(path));
     assert_false(phantom_write("", &small, false, &err));
     assert_int_equal(err.code, ERROR_RANGE);
+    char place[FILE_FOLDER_SIZE], partial[PATH_MAX], longest[FILE_FOLDER_SIZE + 2] = { 0 };
+    memset(longest, 'a', FILE_FOLDER_SIZE);
+    assert_false(file_folder_paths(longest, place, partial, &err));
+    assert_non_null(strstr(err.text, "has 1 to 4031 bytes, this one 4032"));
+    longest[FILE_FOLDER_SIZE - 1] = '/'; /* slashes at its end do not count */
+    assert_true(file_folder_paths(longest, place, partial, &err));
+    assert_int_equal(strlen(place), 4031);
 }
 
 /* The header's geometry by hand, for a grid that is oblique and left-handed. */
