@@ -22,6 +22,7 @@ export class PointerReader {
   #mode = null;
   #start = null;
   #isDrag = false;
+  #isStartDue = false; // a finger's start waits: a second finger makes it none
   #lastTap = null;
   #longTimer = 0;
   #wheelRest = 0;
@@ -59,6 +60,7 @@ export class PointerReader {
     clearTimeout(this.#longTimer);
     if (this.#fingers.size > 1) {
       this.#isDrag = true;
+      this.#isStartDue = false;
       this.#mode = 'pinch';
       return;
     }
@@ -66,13 +68,21 @@ export class PointerReader {
     this.#start = { ...point, shift: event.shiftKey };
     const isRight = event.button === 2 || (event.button === 0 && event.ctrlKey);
     this.#mode = isRight ? 'zoom' : event.button === 1 || event.shiftKey ? 'pan' : 'primary';
+    this.#isStartDue = true;
     if (event.pointerType === 'touch') this.#longTimer = setTimeout(() => this.#long(event.timeStamp), longMs);
+    else this.#begin(point);
+  }
+
+  #begin(point) {
+    if (!this.#isStartDue) return;
+    this.#isStartDue = false;
     this.#handlers.start(this.#mode, point);
   }
 
   #long(at) {
     if (this.#isDrag || this.#fingers.size !== 1) return;
     this.#isDrag = true; // what follows is no tap
+    this.#isStartDue = false;
     this.#mode = 'held';
     this.#handlers.longPress({ x: this.#start.x, y: this.#start.y, at });
   }
@@ -91,6 +101,7 @@ export class PointerReader {
     if (!this.#isDrag && Math.hypot(point.x - this.#start.x, point.y - this.#start.y) < slopPx) return;
     this.#isDrag = true;
     clearTimeout(this.#longTimer);
+    if (this.#mode !== 'held') this.#begin(this.#start);
     this.#fingers.set(event.pointerId, point);
     if (this.#mode !== 'held') this.#handlers.move(this.#mode, { ...point, dx: point.x - before.x, dy: point.y - before.y, at });
   }
@@ -122,6 +133,7 @@ export class PointerReader {
       this.#handlers.doubleTap({ ...point, touch: event.pointerType === 'touch', at });
       return;
     }
+    this.#begin(point);
     this.#lastTap = { ...point, at };
     this.#handlers.tap({ ...point, shift: this.#start.shift, at });
   }

@@ -1,0 +1,56 @@
+// A daemon with the demo plan and a browser for it, for the tests of the page.
+import { existsSync, mkdirSync } from 'node:fs';
+import { join } from 'node:path';
+import { bin, call, demo, openPlan, startDaemon } from '../api/daemon.mjs';
+
+const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const artifacts = 'build/test-artifacts';
+const flags = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync'];
+
+/** What these tests need and is not there: they skip then. */
+export const missing = [chromiumPath, join(bin, 'beamroomd'), join(demo, 'phantom/plan.json')].find((path) => !existsSync(path));
+
+/** @param {{plans?: string[], args?: string[]}} how */
+export async function startWorld({ plans = [], args = [] } = {}) {
+  mkdirSync(artifacts, { recursive: true });
+  const daemon = await startDaemon({ plans: [demo, ...plans], args });
+  const { chromium } = await import('playwright-core');
+  const browser = await chromium.launch({ executablePath: chromiumPath, headless: true, args: flags });
+  const errors = [];
+  return {
+    daemon,
+    errors,
+    async newRoom(plan = 'phantom') {
+      await openPlan(daemon.url, plan);
+      return (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan })).json.id;
+    },
+    /** @param {string} address behind the daemon's @param {object} options of the browser's context */
+    async newPage(address = '', options = {}) {
+      const context = await browser.newContext({ viewport: { width: 1600, height: 1000 }, ...options });
+      context.setDefaultTimeout(20000);
+      const page = await context.newPage();
+      page.on('pageerror', (error) => errors.push(error.message));
+      await page.goto(`${daemon.url}/${address}`);
+      return page;
+    },
+    async scene(room) {
+      const { json } = await call(`${daemon.url}/api/v1/rooms/${room}/scene`);
+      return json.scene ?? json;
+    },
+    async stop() {
+      await browser.close();
+      await daemon.stop();
+    },
+  };
+}
+
+/** Until the picture of a view is at rest. */
+export const full = (page, view = 1) => page.waitForFunction((n) => globalThis.beamroom?.stats().badges[n] === 'full', view);
+
+/** Until the picture shows the scene as it is after this revision. */
+export const newer = (page, view, revision) => page.waitForFunction(([n, old]) => globalThis.beamroom.stats().headers[n].scene_revision > old, [view, revision]);
+
+export const header = (page, view) => page.evaluate((n) => globalThis.beamroom.stats().headers[n], view);
+
+export const shoot = (page, name) => page.screenshot({ path: `${artifacts}/${name}.png` });

@@ -1,0 +1,157 @@
+// Fingers on the pictures: what a tablet sends, through the real browser and the real daemon.
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
+
+const tablet = { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true };
+
+describe('fingers', { skip: missing && `${missing} is not there` }, () => {
+  let world;
+  let room;
+  let page;
+  let touch; // (type, points) as the screen tells the browser
+
+  before(async () => { world = await startWorld(); });
+  after(async () => { await world?.stop(); });
+
+  const open = async () => {
+    room = await world.newRoom();
+    page = await world.newPage(`#/rooms/${room}`, tablet);
+    for (const view of [1, 2]) await full(page, view);
+    const devtools = await page.context().newCDPSession(page);
+    touch = (type, points) => devtools.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  };
+  const middle = async (view) => {
+    const box = await page.locator(`#picture-${view}`).boundingBox();
+    return [box.x + box.width / 2, box.y + box.height / 2];
+  };
+  /** Fingers from their first places to their last, in steps. */
+  const gesture = async (from, to, { steps = 8 } = {}) => {
+    await touch('touchStart', from);
+    for (let step = 1; step <= steps; step++)
+      await touch('touchMove', from.map(([x, y], finger) => [x + ((to[finger][0] - x) * step) / steps, y + ((to[finger][1] - y) * step) / steps]));
+    await touch('touchEnd', []);
+  };
+  const matrixOf = async (view) => Object.values((await header(page, view)).clip_from_lps_mm);
+  /** Until a picture with another matrix has come to rest. */
+  const turned = async (view, before) => {
+    await page.waitForFunction(([n, old]) => Object.values(globalThis.beamroom.stats().headers[n].clip_from_lps_mm).some((value, at) => Math.abs(value - old[at]) > 1e-4), [view, before]);
+    await full(page, view);
+    return matrixOf(view);
+  };
+  /** Where in the picture, px from its left and top, a patient point is. */
+  const pixelOf = async (view, point) => {
+    const { width, height } = await page.locator(`#picture-${view}`).boundingBox();
+    const m = await matrixOf(view);
+    const row = (r) => m[r] * point[0] + m[4 + r] * point[1] + m[8 + r] * point[2] + m[12 + r];
+    return [((row(0) / row(3) + 1) / 2) * width, ((1 - row(1) / row(3)) / 2) * height];
+  };
+  const crosshairOf = async () => {
+    const { sagittal, coronal, axial } = (await world.scene(room)).image.slices;
+    return [sagittal.position_mm, coronal.position_mm, axial.position_mm];
+  };
+  const near = (found, expected, tolerance, words) => assert.ok(found.every((value, at) => Math.abs(value - expected[at]) <= tolerance), `${words}: ${found}, expected ${expected}`);
+
+  it('one finger turns the 3-D picture as a mouse does: 225 px are 90 degrees', async () => {
+    await open();
+    const [x, y] = await middle(1);
+    const before = await matrixOf(1);
+    await gesture([[x - 112, y]], [[x + 113, y]], { steps: 15 });
+    await turned(1, before);
+    await page.waitForFunction(() => document.querySelector('[data-view="1"] [data-letters]').dataset.letters === 'P A S I');
+    await page.context().close();
+  });
+
+  it('two fingers move the 3-D picture with them and zoom it, and turn nothing', async () => {
+    await open();
+    const [x, y] = await middle(1);
+    const before = await matrixOf(1);
+    await gesture([[x - 40, y], [x + 40, y]], [[x - 10, y + 30], [x + 70, y + 30]]);
+    const moved = await turned(1, before);
+    assert.ok(moved[12] > before[12] && moved[13] < before[13], 'to the right and down, as the fingers');
+    assert.equal(await page.locator('[data-view="1"] [data-letters]').getAttribute('data-letters'), 'R L S I', 'not turned');
+    await gesture([[x - 40, y], [x + 40, y]], [[x - 80, y], [x + 80, y]]);
+    const zoomed = await turned(1, moved);
+    // perspective: w at the patient's origin is the distance to the eye, which two times the spread halves
+    assert.ok(zoomed[15] < moved[15] * 0.75, `nearer: ${moved[15]} mm, then ${zoomed[15]} mm`);
+    await page.context().close();
+  });
+
+  it('one finger on a slice takes the crosshair along, in all panes', async () => {
+    await open();
+    const box = await page.locator('#picture-2').boundingBox();
+    const [x, y] = await middle(2);
+    const { scene_revision: revision } = await header(page, 2);
+    await gesture([[x - 50, y - 40]], [[x + 30, y + 20]]);
+    await newer(page, 2, revision);
+    await full(page, 2);
+    const point = await crosshairOf();
+    near(await pixelOf(2, point), [x + 30 - box.x, y + 20 - box.y], 1, 'the crosshair is under the finger');
+    await newer(page, 4, revision);
+    assert.match(await page.locator('[data-view="4"] .where').textContent(), new RegExp(`P ${String(Math.abs(point[1]).toFixed(1)).replace('.', '\\.')}|P .${Math.abs(point[1]).toFixed(1)}`));
+    await page.context().close();
+  });
+
+  it('two fingers on a slice move and zoom it about the point between them; the crosshair stays in the patient', async () => {
+    await open();
+    const box = await page.locator('#picture-2').boundingBox();
+    const [x, y] = await middle(2);
+    const point = await crosshairOf();
+    const at = await pixelOf(2, point);
+    let before = await matrixOf(2);
+    await gesture([[x - 40, y], [x + 40, y]], [[x - 15, y + 35], [x + 65, y + 35]]);
+    before = await turned(2, before);
+    near(await pixelOf(2, point), [at[0] + 25, at[1] + 35], 1.5, 'the picture moved with the fingers');
+    const held = await pixelOf(2, point);
+    await gesture([[x - 40, y], [x + 40, y]], [[x - 80, y], [x + 80, y]]);
+    await turned(2, before);
+    const about = [x - box.x, y - box.y];
+    near(await pixelOf(2, point), held.map((value, axis) => about[axis] + 2 * (value - about[axis])), 2.5, 'twice as large about the middle of the fingers');
+    assert.deepEqual(await crosshairOf(), point);
+    await shoot(page, 'touch-slice');
+    await page.context().close();
+  });
+
+  it('a finger that is left of two does nothing', async () => {
+    await open();
+    const [x, y] = await middle(1);
+    const before = await matrixOf(1);
+    await touch('touchStart', [[x - 40, y], [x + 40, y]]);
+    await touch('touchMove', [[x - 40, y + 20], [x + 40, y + 20]]);
+    await turned(1, before);
+    const held = await page.evaluate(() => JSON.stringify(globalThis.beamroom.stats().headers[1].clip_from_lps_mm));
+    await touch('touchEnd', [[x - 40, y + 20]]); // what is still down
+    for (let step = 1; step <= 6; step++) await touch('touchMove', [[x - 40 + 20 * step, y + 20]]);
+    await touch('touchEnd', []);
+    await page.locator('[data-view="1"] button[aria-label="Maximise 3-D"]').tap(); // a round trip after it: the size changes
+    await page.waitForFunction(() => globalThis.beamroom.stats().headers[1].width_px > 800);
+    assert.equal(await page.locator('[data-view="1"] [data-letters]').getAttribute('data-letters'), 'R L S I', held);
+    await page.context().close();
+  });
+
+  it('a finger that rests sets the crosshair there and shows the probe', async () => {
+    await open();
+    const box = await page.locator('#picture-2').boundingBox();
+    const [x, y] = [box.x + box.width / 2 + 20, box.y + box.height / 2 + 10];
+    const { scene_revision: revision } = await header(page, 2);
+    await touch('touchStart', [[x, y]]);
+    await newer(page, 2, revision);
+    await touch('touchEnd', []);
+    near(await pixelOf(2, await crosshairOf()), [20 + box.width / 2, 10 + box.height / 2], 1, 'under the finger');
+    await page.context().close();
+  });
+
+  it('every control is large enough for a finger', async () => {
+    await open();
+    await page.locator('.tree .rail').tap();
+    await page.locator('[data-region="tumour"] button.name').tap();
+    const small = await page.evaluate(() => [...document.querySelectorAll('.room button, .room a.button')].filter((button) => button.checkVisibility())
+      .map((button) => ({ name: button.getAttribute('aria-label') ?? button.textContent.trim(), height: button.getBoundingClientRect().height }))
+      .filter(({ height }) => height < 44 && height > 1));
+    assert.deepEqual(small.filter(({ name }) => !/^(Full|Live|Reduced|Stale)/.test(name)), []);
+    await shoot(page, 'touch-tree');
+    await page.context().close();
+  });
+
+  it('has had no error', () => assert.deepEqual(world.errors, []));
+});
