@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from './page.mjs';
 
-const { bytes, windowText } = await load('panels/format.js');
+const { bytes, unitText, windowText } = await load('panels/format.js');
 
 test('a size is never made up: what was not counted is a dash', () => {
   assert.equal(bytes(0), '–');
@@ -17,4 +17,10 @@ test('a size is never made up: what was not counted is a dash', () => {
 test('a window is written centre first, with the unit of its image', () => {
   assert.match(windowText({ center: 40, width: 400 }, 'HU'), /^C 40\s+W 400 HU$/);
   assert.match(windowText({ center: 0.5, width: 1 }, ''), /^C 0\.50\s+W 1\.00$/);
+});
+
+test('powers in units are raised, names that end in a digit are left alone', () => {
+  assert.equal(unitText('1/cm2'), '1/cm²');
+  assert.equal(unitText('minute at 1e10 n/cm2/s'), 'minute at 1e10 n/cm²/s');
+  assert.equal(unitText('mm3, beam2, m3'), 'mm³, beam2, m³');
 });

@@ -5,6 +5,7 @@ import { load } from './page.mjs';
 
 const { figuresCsv, isExportable, methods, representations, shapeQuery, volumeDifference } = await load('state/shapes.js');
 const { Comparison } = await load('state/comparison.js');
+const { Refusals, inQuestion, nameSome } = await load('state/refusals.js');
 const { signal } = await load('../lib/signals-core.js');
 
 const scene = {
@@ -69,4 +70,39 @@ test('a dose says its unit, what it is per and what it holds; a beam says where 
   assert.equal(doseWords({ unit: '', per: '', components: [] }), 'no unit');
   assert.equal(beamWords({ aperture_mm: 120, delivery: null }), 'aperture 120 mm');
   assert.equal(beamWords({ aperture_mm: null, delivery: { radiation: 'NEUTRON', gantry_deg: 90, gantry_stop_deg: 150 } }), 'neutron, gantry 90° to 150°');
+});
+
+// ---- what is missing from the picture ---------------------------------------------------------------------------------------
+
+const style = (representation, change = {}) => ({ visible: true, opacity: 1, representation, ...change });
+
+test('only visible regions shown as splines are in question', () => {
+  const plan = { regions: ['a', 'b', 'c', 'd', 'e'].map((id) => ({ id, voxels: id === 'e' ? 0 : 9 })) };
+  const regions = { a: style('nurbs'), b: style('surface'), c: style('nurbs', { visible: false }), d: style('nurbs', { opacity: 0 }), e: style('nurbs') };
+  assert.deepEqual(inQuestion(plan, { ...scene, regions }).map(({ id }) => id), ['a']);
+  assert.deepEqual(inQuestion(null, null), []);
+});
+
+test('a refused region is known with its reason, each is asked for once, and who is busy has refused nothing', async () => {
+  const asked = [];
+  const api = { surface: async (plan, region) => {
+    asked.push(region);
+    if (region === 'hollow') throw Object.assign(new Error('hollow'), { status: 422 });
+    if (region === 'late') throw Object.assign(new Error('busy'), { status: 503 });
+    return {};
+  } };
+  const refusals = new Refusals(api, signal({}));
+  const questions = ['round', 'hollow', 'late'].map((id) => ({ id, query: { bins: '36' } }));
+  await refusals.ask('p', questions);
+  assert.deepEqual(refusals.reasons.value, { hollow: 'hollow' });
+  await refusals.ask('p', questions);
+  assert.deepEqual(asked, ['round', 'hollow', 'late', 'late']);
+  await refusals.ask('p', questions.slice(0, 1));
+  assert.deepEqual(refusals.reasons.value, {}, 'only of what is shown');
+});
+
+test('a few names are named, many counted', () => {
+  assert.equal(nameSome(['liver']), 'liver');
+  assert.equal(nameSome(['liver', 'colon', 'aorta']), 'liver, colon and aorta');
+  assert.equal(nameSome(['liver', 'colon', 'aorta', 'rib']), 'liver, colon and 2 more');
 });

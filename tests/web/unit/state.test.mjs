@@ -123,6 +123,31 @@ test('after a lost connection every open picture is asked for again', () => {
   assert.equal(room.revision.value, 9);
 });
 
+test('a size that comes before the connection, or without one, is the one asked for', () => {
+  const connection = new FakeConnection();
+  const room = new RoomState('r', { connection, clock: { now: () => 0 }, schedule: () => {}, notify: () => {} });
+  const welcome = { type: 'welcome', room: 'r', member: 'm1', secret: 's', name: 'n', plan_id: 'p', plan: { id: 'p' }, revision: 1, scene, gl: '' };
+  const opened = () => connection.sent.filter(({ type }) => type === 'view.open').map(({ document }) => document.size_px);
+  room.showView(1, [456, 218]); // before the page has its final layout
+  room.showView(1, [456, 270]);
+  connection.sent.length = 0;
+  connection.news(welcome);
+  assert.deepEqual(opened(), [[456, 270]]);
+  const lost = new Event('lost');
+  lost.detail = { retryMs: 500 };
+  connection.dispatchEvent(lost);
+  room.showView(1, [800, 600]);
+  connection.sent.length = 0;
+  connection.news(welcome);
+  assert.deepEqual(opened(), [[800, 600]]);
+});
+
+test('a member who has left is here no more', () => {
+  const { room, connection } = roomWorld();
+  connection.news({ type: 'members', members: [{ id: 'm1', name: 'A', connected: true }, { id: 'm2', name: 'B', connected: false }] });
+  assert.deepEqual(['m1', 'm2', 'm3', ''].map((id) => room.isHere(id)), [true, false, false, false]);
+});
+
 test('the time an input waits ends with the picture that shows it', () => {
   const { room, connection, flush } = roomWorld();
   room.showView(1, [800, 600]);

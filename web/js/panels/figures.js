@@ -28,7 +28,7 @@ export function figuresDialog({ room, ui, comparison }) {
   if (ui.popover.value !== 'figures' || !region) return nothing;
   const rows = comparison.rows.value;
   const n = rows.filter((row) => row.result || row.error).length;
-  return html`<section class="card compare" role="dialog" aria-label="Methods compared">
+  return html`<section class="card compare" role="dialog" tabindex="-1" aria-label="Methods compared">
     <header><h2>${region.name}: methods compared</h2><span class="grow"></span>
       <button ?disabled=${!rows.length || n < rows.length} @click=${() => save(rows, `${room.planId.value}-${region.id}-methods.csv`)}>CSV</button>
       <button class="icon-button" aria-label="Close" @click=${() => { ui.popover.value = ''; }}>${icon('close')}</button></header>

@@ -31,7 +31,7 @@ const keys = [
   ['Esc', 'Leave tool, popover, message, full pane'],
 ];
 
-export const help = ({ ui }) => (ui.popover.value !== 'help' ? nothing : html`<section class="card help" role="dialog" aria-label="Keys and mouse">
+export const help = ({ ui }) => (ui.popover.value !== 'help' ? nothing : html`<section class="card help" role="dialog" tabindex="-1" aria-label="Keys and mouse">
   <header><h2>Keys and mouse</h2><span class="grow"></span><button class="icon-button" aria-label="Close" @click=${() => ui.toggle('help')}>${icon('close')}</button></header>
   <p class="note">Keys act in the pane that has the focus.</p>
   <dl>${keys.map(([key, what]) => html`<dt>${key}</dt><dd>${what}</dd>`)}</dl>

@@ -35,6 +35,9 @@ export const seconds = (ms) => (ms < 1000 ? `${number(ms)} ms` : `${number(ms / 
 
 export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;
 
+/** "1/cm²" of a unit as files write it, "1/cm2" */
+export const unitText = (unit) => unit.replace(/\b([cm]?m)([23])\b/g, (_, metre, power) => `${metre}${power === '2' ? '²' : '³'}`);
+
 /** "C 40  W 400 HU", the way windows are written everywhere. */
 export const windowText = ({ center, width }, unit) => {
   const digits = width < 10 ? 2 : 0;

@@ -6,7 +6,7 @@ import { crosshair, reportSummary, shownImage, windowPresets } from '../state/pl
 import { algorithms } from '../state/shapes.js';
 import { drawingBlocks } from './drawing.js';
 import { numberField, segment } from './fields.js';
-import { number, seconds, significant } from './format.js';
+import { number, seconds, significant, unitText } from './format.js';
 import { icon } from './icons.js';
 import { regionBlock } from './region.js';
 import { reportLines } from './report.js';
@@ -59,9 +59,9 @@ function doseTable(result, isOld) {
   const ids = [...new Set(result.doses.map((dose) => dose.id))];
   return ids.map((id) => {
     const rows = result.doses.filter((dose) => dose.id === id);
-    return html`<section class="block"><h3>Dose <span class="dim">${id}</span></h3><table class=${classMap({ old: isOld })}><thead><tr><th>Component</th><th>${rows[0].unit}</th></tr></thead>
-      <tbody>${rows.map((dose) => html`<tr><td>${componentName(dose)}</td><td>${dose.value === null ? 'not known here' : significant(dose.value)}${dose.unit === rows[0].unit ? '' : ` ${dose.unit}`}</td></tr>`)}</tbody></table>
-      <p class="note">${rows[0].per ? `Per ${rows[0].per.replace(/^per /, '')}. ` : ''}Physical, no weights${rows.some(({ quantity }) => hasWeights.has(quantity)) ? ', but for weighted total and blood boron: there the file has put them in' : ''}.</p></section>`;
+    return html`<section class="block"><h3>Dose <span class="dim">${id}</span></h3><table class=${classMap({ old: isOld })}><thead><tr><th>Component</th><th>${unitText(rows[0].unit)}</th></tr></thead>
+      <tbody>${rows.map((dose) => html`<tr><td>${componentName(dose)}</td><td>${dose.value === null ? 'not known here' : significant(dose.value)}${dose.unit === rows[0].unit ? '' : ` ${unitText(dose.unit)}`}</td></tr>`)}</tbody></table>
+      <p class="note">${rows[0].per ? `Per ${unitText(rows[0].per.replace(/^per /, ''))}. ` : ''}Physical, no weights${rows.some(({ quantity }) => hasWeights.has(quantity)) ? ', but for weighted total and blood boron: there the file has put them in' : ''}.</p></section>`;
   });
 }
 

@@ -5,6 +5,7 @@ import { live } from '../../lib/directives/live.js';
 import { computed, signal } from '../../lib/signals-core.js';
 import { fidelity } from '../state/fidelity.js';
 import { crosshair, shownImage } from '../state/plan.js';
+import { nameSome } from '../state/refusals.js';
 import { describe, planes } from '../view/camera.js';
 import { overlay } from '../view/overlay.js';
 import { Painter } from '../view/painter.js';
@@ -22,16 +23,18 @@ export class Pane {
   #room;
   #ui;
   #view;
+  #refused;
   #size = signal([0, 0]);
   #resizeTimer = 0;
   #stops = [];
   #lastCaption = '';
 
-  /** @param {HTMLElement} host @param {object} world {room, ui, api, decode, schedule, onPainted} */
-  constructor(host, { room, ui, api, decode, schedule, onPainted }, view) {
+  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, decode, schedule, onPainted} */
+  constructor(host, { room, ui, api, refused, decode, schedule, onPainted }, view) {
     this.#room = room;
     this.#ui = ui;
     this.#view = view;
+    this.#refused = refused;
     this.host = host;
     this.actions = new PaneActions(room, ui, api, view.number);
     this.badge = computed(() => fidelity({
@@ -105,6 +108,7 @@ export class Pane {
           <svg class="overlay" aria-hidden="true">${this.#overlay()}</svg>
           ${this.#cover()}
         </div>
+        ${this.#legend()}
         ${this.#slider()}
       </div>
       <p class="hidden" id=${`caption-${n}`} aria-live="polite">${this.#caption()}</p>`;
@@ -131,6 +135,12 @@ export class Pane {
       ${badge.why && this.#ui.popover.value === name ? html`<div class="popover badge-why" role="status"><b class=${badge.state}>${icon(badge.state, 12)} ${badge.text}</b><p>${badge.why}</p></div>` : nothing}</span>`;
   }
 
+  /** Somebody who left leads nobody: then the shared view is only where it was left. */
+  get #leader() {
+    const { isFollowing, movedBy } = this.#view;
+    return isFollowing.value && this.#room.isHere(movedBy.value) ? movedBy.value : '';
+  }
+
   #followBar() {
     const view = this.#view;
     const act = (isFollowing) => this.#room.follow(view.number, isFollowing);
@@ -140,8 +150,8 @@ export class Pane {
       return html`<div class="follow-bar"><b>Own view</b><span class="dim">${from}</span><span class="grow"></span>
         <button class="primary" @click=${() => act(true)}>Return</button></div>`;
     }
-    if (!view.movedBy.value) return nothing;
-    const name = this.#room.nameOf(view.movedBy.value);
+    if (!this.#leader) return nothing;
+    const name = this.#room.nameOf(this.#leader);
     return html`<div class="follow-bar"><span class="avatar small">${initials(name)}</span><span class="follow-text"><b>Following ${name}</b></span><span class="grow"></span>
       <button @click=${() => act(false)}>Look for yourself <kbd>F</kbd></button></div>`;
   }
@@ -159,7 +169,7 @@ export class Pane {
       kind: view.kind, header, box, pane,
       point: crosshair(scene),
       pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
-      topPx: view.isFollowing.value && !view.movedBy.value ? 0 : parseInt(getComputedStyle(this.host).getPropertyValue('--follow'), 10),
+      topPx: view.isFollowing.value && !this.#leader ? 0 : parseInt(getComputedStyle(this.host).getPropertyValue('--follow'), 10),
       windowText: image ? windowText(scene.image.window, image.unit) : 'No image: regions',
     });
   }
@@ -179,6 +189,25 @@ export class Pane {
     const plan = this.#room.plan.value;
     if (!plan || this.#view.kind === '3d' || plan.images.length || plan.regions.length) return nothing;
     return html`<div class="cover quiet"><p>No image and no region in this plan: nothing to cut through.</p></div>`;
+  }
+
+  /** What the picture cannot say itself: the regions that are missing from it, and what the colours of the check mean. */
+  #legend() {
+    const scene = this.#room.scene.value;
+    const plan = this.#room.plan.value;
+    if (!scene || !plan || !this.#view.painted.value) return nothing;
+    if (this.#view.kind !== '3d')
+      return scene.check.visible && plan.regions.length ? html`<ul class="legend" aria-label="Colours of the check">
+        <li><i class="beyond"></i>surface beyond univels</li><li><i class="within"></i>univels beyond surface</li></ul>` : nothing;
+    const missing = plan.regions.filter(({ id }) => this.#refused.value[id]);
+    if (!missing.length) return nothing;
+    const show = () => {
+      this.#ui.region.value = missing[0].id;
+      this.#ui.tab.value = 'probe';
+      this.#ui.isInspectorOpen.value = true;
+    };
+    return html`<div class="legend missing" role="status"><span class="warn">${icon('warning', 12)}</span><p>Not shown as NURBS: ${nameSome(missing.map(({ name }) => name))}</p>
+      <button title=${this.#refused.value[missing[0].id]} aria-label=${`Why ${missing[0].name} is not shown`} @click=${show}>Why?</button></div>`;
   }
 
   #slider() {

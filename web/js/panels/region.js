@@ -36,7 +36,13 @@ export function regionBlock(world, region) {
       ${region.center_mm ? html`<button ?disabled=${isDisabled} @click=${show}>${icon('target')}<span>Go to centre</span></button>` : nothing}
       ${plan.regions.length > 1 ? html`<button ?disabled=${isDisabled || isShared} @click=${share}><span>All regions like this</span></button>` : nothing}
       ${region.voxels ? html`<button aria-haspopup="dialog" @click=${() => { ui.popover.value = 'figures'; }}><span>Compare methods</span></button>` : nothing}</div>
-    ${region.voxels && isExportable(style.representation) ? downloads(world, region, style.representation) : nothing}</section>`;
+    ${region.voxels && isExportable(style.representation) && !isRefused(world, region, style.representation) ? downloads(world, region, style.representation) : nothing}</section>`;
+}
+
+/** What the server cannot build can be no file either. */
+function isRefused({ shaped, refused }, region, representation) {
+  const { region: of, representation: as, error } = shaped.value;
+  return Boolean(of === region.id && as === representation && error) || (representation === 'nurbs' && Boolean(refused.value[region.id]));
 }
 
 function downloads({ api, room }, region, representation) {

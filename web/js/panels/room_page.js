@@ -3,6 +3,7 @@ import { html } from '../../lib/lit-html.js';
 import { computed, effect, signal } from '../../lib/signals-core.js';
 import { Comparison } from '../state/comparison.js';
 import { crosshair } from '../state/plan.js';
+import { Refusals, inQuestion } from '../state/refusals.js';
 import { shapeQuery } from '../state/shapes.js';
 import { RoomState } from '../state/room.js';
 import { UiState } from '../state/ui.js';
@@ -41,19 +42,20 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const probed = signal({ result: null, error: '', isOld: false });
   const shaped = signal({ region: '', representation: '', result: null, error: '' });
   const comparison = new Comparison(api, signal([]));
+  const refusals = new Refusals(api, signal({}));
 
   const onPainted = (header, isDrawn) => {
     const answered = room.frameShown(header, isDrawn);
     hooks.painted(header, answered);
   };
-  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, decode, schedule, onPainted }, view));
+  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused: refusals.reasons, decode, schedule, onPainted }, view));
   connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));
 
-  const world = { room, ui, api, probed, shaped, comparison, panes: () => panes };
+  const world = { room, ui, api, probed, shaped, refused: refusals.reasons, comparison, panes: () => panes };
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), probe(room, api, probed, clock), ...adapt(ui));
-  stops.push(listenKeys(ui), shape(room, ui, api, shaped), compare(room, ui, comparison));
+  stops.push(listenKeys(ui), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);
@@ -141,6 +143,18 @@ function shape(room, ui, api, shaped) {
   };
 }
 
+/** Finds out which regions are missing from the picture, whenever others are shown or they are shown in another way. */
+function refuse(room, refusals) {
+  const questions = computed(() => (room.renderer.value.state === 'ready' ? JSON.stringify(inQuestion(room.plan.value, room.scene.value)) : ''));
+  const stop = effect(() => {
+    if (questions.value) refusals.ask(room.planId.peek(), JSON.parse(questions.value));
+  });
+  return () => {
+    stop();
+    refusals.stop();
+  };
+}
+
 /** Starts the comparison when its dialog opens, or another region is chosen meanwhile. */
 function compare(room, ui, comparison) {
   const of = computed(() => (ui.popover.value === 'figures' ? ui.region.value : ''));
@@ -164,6 +178,23 @@ function adapt(ui) {
     set();
     media.addEventListener('change', set);
     return () => media.removeEventListener('change', set);
+  });
+}
+
+/** A dialog takes the focus, and gives it back to what opened it. */
+function moveFocus(host, ui) {
+  let opener = null;
+  const isDialog = computed(() => ['help', 'figures'].includes(ui.popover.value));
+  return effect(() => {
+    const isOpen = isDialog.value;
+    if (!isOpen && !opener) return;
+    if (isOpen) opener = document.activeElement;
+    queueMicrotask(() => { // once it is drawn
+      const dialog = host.querySelector('[role="dialog"]');
+      if (isOpen) return void dialog?.focus();
+      if (document.activeElement === document.body) opener?.focus();
+      opener = null;
+    });
   });
 }
 

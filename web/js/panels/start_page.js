@@ -65,9 +65,12 @@ function list(state, uploads) {
     ${plans && !shown.length ? html`<p class="empty">${plans.length ? 'No plan fits the search and the filter.' : 'No plans here. Drop one on this page; the server also looks in the folders given with --plans.'}</p>` : nothing}`;
 }
 
+/** Why the plan cannot be opened, as far as it is known. */
+const refusalOf = (state, plan) => state.refusals.value[plan.id] || (['failed', 'unreadable'].includes(plan.state) ? plan.reason : '');
+
 function row(state, plan) {
   const job = state.jobs.value[plan.id];
-  const refusal = state.refusals.value[plan.id] || (['failed', 'unreadable'].includes(plan.state) ? plan.reason : '');
+  const refusal = refusalOf(state, plan);
   const isChosen = state.chosen.value === plan.id;
   return html`<li class=${classMap({ plan: true, chosen: isChosen })} data-plan=${plan.id} @click=${() => state.choose(plan.id)}>
     <div class="plan-row"><div class="title"><b>${plan.name}</b>${plan.is_phantom ? html`<span class="tag phantom">PHANTOM</span>` : nothing}<code>${plan.id}</code></div>
@@ -106,10 +109,12 @@ function report(state) {
   const plan = state.plans.value?.find((other) => other.id === state.chosen.value);
   if (!plan) return html`<header><h2>Load report</h2></header><p class="empty">Choose a plan to see what was noticed while loading it.</p>`;
   const found = state.report.value?.plan === plan.id ? state.report.value : null;
+  const refusal = refusalOf(state, plan);
   return html`<header><h2>Load report</h2><code>${plan.id}</code></header>
     ${found ? html`<p class="note">${reportSummary(found)}${found.loadMs === null ? '' : `, loaded in ${seconds(found.loadMs)}`}</p>` : nothing}
     ${plan.note ? html`<p class="plan-note">${plan.note}</p>` : nothing}
-    ${found ? reportLines(found) : html`<p class="empty">The plan is not loaded. Open it to see what was noticed.</p>`}`;
+    ${found ? reportLines(found) : refusal ? html`<ul class="report"><li><span class="err">${icon('error')}</span><div><p><b class="err">Refused</b></p><p>${refusal}</p><p class="place">Nothing was loaded.</p></div></li></ul>`
+      : html`<p class="empty">The plan is not loaded. Open it to see what was noticed.</p>`}`;
 }
 
 function serverStatus(state) {

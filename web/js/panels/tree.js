@@ -4,20 +4,20 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { beamWords, doseWords, shownImage, soloPatch } from '../state/plan.js';
-import { count, number, windowText } from './format.js';
+import { count, number, significant, windowText } from './format.js';
 import { icon } from './icons.js';
 import { variables } from './mount.js';
 
 const hierarchyWords = { file: 'hierarchy from file', derived: 'hierarchy derived', none: '' };
 
-export function tree({ room, ui }) {
+export function tree({ room, ui, refused }) {
   const plan = room.plan.value;
   if (!ui.isTreeOpen.value)
     return html`<button class="icon-button rail" title="Show the plan's parts" aria-label="Show the plan's parts" @click=${() => { ui.isTreeOpen.value = true; }}>${icon('tree')}</button>`;
   return html`
     <header class="panel-head"><h2>Plan</h2><span class="grow"></span>
       <button class="icon-button" title="Fold" aria-label="Fold the plan's parts" @click=${() => { ui.isTreeOpen.value = false; }}>${icon('chevronLeft')}</button></header>
-    <div class="scroll">${plan ? html`${images(room, plan)}${regions(room, ui, plan)}${doses(room, ui, plan)}${beams(plan)}` : html`<p class="empty">The plan is being loaded.</p>`}</div>`;
+    <div class="scroll">${plan ? html`${images(room, plan)}${regions(room, ui, plan, refused)}${doses(room, ui, plan)}${beams(plan)}` : html`<p class="empty">The plan is being loaded.</p>`}</div>`;
 }
 
 function section(title, note, rows) {
@@ -36,10 +36,10 @@ function images(room, plan) {
       <span class="tail">${image === shown && scene ? windowText(scene.image.window, '') : ''}</span></button>`));
 }
 
-function regions(room, ui, plan) {
+function regions(room, ui, plan, refused) {
   if (!plan.regions.length) return section('Regions', '', html`<p class="empty">No regions in this plan.</p>`);
   const note = hierarchyWords[plan.hierarchy] ?? '';
-  return section('Regions', note, html`<ul class="rows" @keydown=${walk}>${repeat(plan.regions, (region) => region.id, (region) => row(room, ui, plan, region))}</ul>`);
+  return section('Regions', note, html`<ul class="rows" @keydown=${walk}>${repeat(plan.regions, (region) => region.id, (region) => row(room, ui, plan, region, refused.value[region.id]))}</ul>`);
 }
 
 /** Up and down move between rows. */
@@ -52,7 +52,7 @@ function walk(event) {
   event.preventDefault();
 }
 
-function row(room, ui, plan, region) {
+function row(room, ui, plan, region, refusal) {
   const scene = room.scene.value;
   const style = scene?.regions[region.id];
   if (!style) return nothing;
@@ -68,8 +68,10 @@ function row(room, ui, plan, region) {
       @click=${toggle}>${icon(style.visible ? 'eye' : 'eyeOff')}</button>
     <input type="color" .value=${live(style.color)} aria-label=${`Colour of ${region.name}`} title="Colour" ?disabled=${isDisabled}
       @input=${(event) => change({ color: event.target.value }, event)}>
-    <button class="name" title=${`${region.name}, ${number(region.volume_cm3, 2)} cm³`} aria-pressed=${ui.region.value === region.id}
+    <button class="name" title=${`${region.name}, ${number(region.volume_cm3, 2)} cm³`} aria-pressed=${ui.region.value === region.id} aria-label=${`${region.name}, ${number(region.volume_cm3, 2)} cm³`}
       @click=${() => { ui.region.value = ui.region.value === region.id ? '' : region.id; }}>${region.name}</button>
+    ${refusal ? html`<span class="refused warn" role="img" aria-label=${`Not in the 3-D picture: ${refusal}`} title=${`Not in the 3-D picture: ${refusal}`}>${icon('warning')}</span>` : nothing}
+    <span class="tail volume" aria-hidden="true">${region.voxels ? `${significant(region.volume_cm3)} cm³` : 'empty'}</span>
     <input type="range" class="mini" min="0" max="100" step="1" .value=${live(String(percent))} ${variables({ '--fill': `${percent}%` })}
       aria-label=${`Opacity of ${region.name}`} title="Opacity" ?disabled=${isDisabled}
       @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>

@@ -64,6 +64,11 @@ export class RoomState {
     return this.members.value.find((other) => other.id === member)?.name ?? 'another member';
   }
 
+  /** Whether this member is in the room now. */
+  isHere(member) {
+    return this.members.value.some((other) => other.id === member && other.connected !== false);
+  }
+
   // ---- what the person does ---------------------------------------------------------------------------------------
 
   /** Changes the scene for everybody. view: where it was done; at: when (event time), for measuring. */
@@ -89,7 +94,9 @@ export class RoomState {
     const view = this.view(number);
     if (view.isOpen.value) {
       const [width, height] = view.document.value.size_px ?? [];
-      if (width !== sizePx[0] || height !== sizePx[1]) this.patchView(number, { size_px: sizePx });
+      if (width === sizePx[0] && height === sizePx[1]) return;
+      if (this.link.value.state === 'open') this.patchView(number, { size_px: sizePx });
+      else view.restart({ ...view.document.value, size_px: sizePx }); // opened with this size once there is a connection
       return;
     }
     view.isOpen.value = true;

@@ -1,0 +1,70 @@
+// Sizes of windows: nothing that matters is cut, whatever the window.
+import assert from 'node:assert/strict';
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { full, header, missing, shoot, startWorld } from './browser.mjs';
+
+const sizes = [[1600, 1000], [1280, 720], [1180, 820], [800, 500], [820, 1180]]; // 800 x 500: 1600 x 1000 at 200 %
+
+describe('sizes of windows', { skip: missing && `${missing} is not there` }, () => {
+  let world;
+  let folder;
+
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), 'beamroom-layout-'));
+    mkdirSync(join(folder, 'a-head-with-a-very-long-name'));
+    writeFileSync(join(folder, 'a-head-with-a-very-long-name/plan.json'),
+      JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'PHANTOM_with_a_name_that_nobody_can_break', images: [{ id: 'ct', path: 'ct.nii' }] }));
+    writeFileSync(join(folder, 'a-head-with-a-very-long-name/ct.nii'), 'no image at all');
+    world = await startWorld({ plans: [folder] });
+  });
+  after(async () => {
+    await world?.stop();
+    if (folder) rmSync(folder, { recursive: true, force: true });
+  });
+
+  /** Elements that reach out of what they stand in. */
+  const cut = (page, selector, inside) => page.evaluate(([what, where]) => [...document.querySelectorAll(what)].filter((element) => element.checkVisibility()).flatMap((element) => {
+    const box = element.getBoundingClientRect();
+    const outer = element.closest(where).getBoundingClientRect();
+    return box.right > outer.right + 0.5 || box.left < outer.left - 0.5 || element.scrollWidth > element.clientWidth + 1 ? [`${element.textContent.trim().slice(0, 40)} ${box.left}..${box.right} in ${outer.left}..${outer.right}`] : [];
+  }), [selector, inside]);
+
+  for (const [width, height] of sizes) {
+    it(`a room at ${width} x ${height}: the line on research use is whole, every pane has its letters`, async () => {
+      const page = await world.newPage(`#/rooms/${await world.newRoom()}`, { viewport: { width, height } });
+      for (const view of [1, 2, 3, 4]) await full(page, view);
+      assert.deepEqual(await cut(page, '.research', '.status'), []);
+      for (const view of [1, 2, 3, 4]) {
+        const { width_px, height_px } = await header(page, view);
+        const box = await page.locator(`#picture-${view}`).boundingBox();
+        assert.ok(Math.abs(width_px - box.width) <= 1 && Math.abs(height_px - box.height) <= 1, `pane ${view}: picture ${width_px} x ${height_px}, pane ${box.width} x ${box.height}`);
+        assert.ok(box.height > height / 5, `pane ${view} is ${box.height} px high`);
+      }
+      await shoot(page, `layout-${width}x${height}`);
+      await page.context().close();
+    });
+
+    it(`the list of plans at ${width} x ${height}: names and buttons stay in their rows`, async () => {
+      const page = await world.newPage('', { viewport: { width, height } });
+      await page.locator('[data-plan] .refusal').waitFor();
+      assert.deepEqual(await cut(page, '.research', '.status'), []);
+      assert.deepEqual(await cut(page, '.plan button', '.plan-row'), []);
+      assert.deepEqual(await cut(page, '.plan .title', '.plan-row'), []);
+      await shoot(page, `layout-start-${width}x${height}`);
+      await page.context().close();
+    });
+  }
+
+  it('the load report of a plan that is refused says why', async () => {
+    const page = await world.newPage();
+    await page.locator('[data-plan="a-head-with-a-very-long-name"]').click();
+    await page.locator('.load-report .report', { hasText: 'Refused' }).waitFor();
+    assert.match(await page.locator('.load-report .report').textContent(), /ct\.nii/);
+    await page.context().close();
+  });
+
+  it('has had no error', () => assert.deepEqual(world.errors, []));
+});

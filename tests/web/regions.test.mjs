@@ -1,0 +1,141 @@
+// Regions in the tree, in the picture's legend and in dialogs: what the page says about what is and is not drawn.
+import assert from 'node:assert/strict';
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
+
+const side = 40; // univels of 1 mm
+
+/** A label map as NIfTI-1: 1 a ball, 2 two balls side by side on the same slices. */
+function labels() {
+  const bytes = Buffer.alloc(352 + side ** 3);
+  bytes.writeInt32LE(348, 0);
+  [3, side, side, side, 1, 1, 1, 1].forEach((value, at) => bytes.writeInt16LE(value, 40 + 2 * at));
+  bytes.writeInt16LE(2, 70); // unsigned bytes
+  bytes.writeInt16LE(8, 72);
+  [1, 1, 1, 1].forEach((value, at) => bytes.writeFloatLE(value, 76 + 4 * at));
+  bytes.writeFloatLE(352, 108);
+  bytes.writeInt8(2, 123); // mm
+  bytes.writeInt16LE(1, 254); // sform
+  [[1, 0, 0], [0, 1, 0], [0, 0, 1]].forEach((row, r) => row.forEach((value, c) => bytes.writeFloatLE(value, 280 + 16 * r + 4 * c)));
+  bytes.write('n+1\0', 344, 'latin1');
+  for (let k = 0; k < side; k++)
+    for (let j = 0; j < side; j++)
+      for (let i = 0; i < side; i++) {
+        const within = (x, y, z, radius) => Math.hypot(i - x, j - y, k - z) < radius;
+        bytes[352 + i + side * (j + side * k)] = within(20, 12, 20, 8) ? 1 : within(10, 30, 20, 6) || within(28, 30, 20, 6) ? 2 : 0;
+      }
+  return bytes;
+}
+
+describe('regions on the page', { skip: missing && `${missing} is not there` }, () => {
+  let world;
+  let folder;
+
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), 'beamroom-regions-'));
+    mkdirSync(join(folder, 'balls'));
+    writeFileSync(join(folder, 'balls/labels.nii'), labels());
+    writeFileSync(join(folder, 'balls/names.json'), JSON.stringify({ labels: [{ value: 1, name: 'ball' }, { value: 2, name: 'pair' }] }));
+    writeFileSync(join(folder, 'balls/plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Balls', regions: [{ path: 'labels.nii', names: 'names.json' }] }));
+    world = await startWorld({ plans: [folder] });
+  });
+  after(async () => {
+    await world?.stop();
+    if (folder) rmSync(folder, { recursive: true, force: true });
+  });
+
+  const choose = async (page, label, name) => {
+    const { scene_revision: revision } = await header(page, 1);
+    await page.locator(`[aria-label="${label}"] >> text="${name}"`).click();
+    await newer(page, 1, revision);
+  };
+
+  it('a region that degree bins cannot show is named in the picture and in the tree, with the reason, and is no file', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
+    await full(page);
+    await page.locator('[data-region="pair"] button.name').click();
+    await choose(page, 'Shown as', 'NURBS');
+    await page.locator('button', { hasText: 'All regions like this' }).click();
+    await page.locator('[aria-label="Download the surface"]').waitFor();
+    assert.equal(await page.locator('.legend.missing').count(), 0, 'traces can show both');
+    await page.locator('[role="tab"]', { hasText: 'View' }).click();
+    await choose(page, 'Control points', 'Degree bins');
+    const legend = page.locator('[data-view="1"] .legend.missing');
+    await legend.waitFor();
+    assert.match(await legend.textContent(), /Not shown as NURBS: pair/);
+    assert.equal(await page.locator('.pane:not([data-view="1"]) .legend').count(), 0, 'slices show its outline all the same');
+    assert.match(await page.locator('[data-region="pair"] .refused').getAttribute('aria-label'), /2 pieces/);
+    assert.equal(await page.locator('[data-region="ball"] .refused').count(), 0);
+    await shoot(page, 'regions-refused');
+    await page.locator('[data-region="ball"] button.name').click();
+    await legend.locator('button').click(); // why: the figures of the one that is missing
+    await page.locator('.figures.err', { hasText: '2 pieces' }).waitFor();
+    assert.equal(await page.locator('[aria-label="Download the surface"]').count(), 0, 'what cannot be built is no file');
+    await page.locator('[data-region="pair"] .eye').click(); // hidden: nothing is missing
+    await legend.waitFor({ state: 'detached' });
+    await page.context().close();
+  });
+
+  it('the tree shows every region\'s volume; the slider takes its place under the pointer and the focus', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
+    await full(page);
+    const volume = page.locator('[data-region="ball"] .volume');
+    // 4/3 pi 8^3 mm3 = 2.14 cm3, less or more by how a ball of 8 univels is cut into boxes: 2 %
+    assert.ok(Math.abs(parseFloat(await volume.textContent()) - 2.145) < 0.045, await volume.textContent());
+    assert.match(await volume.textContent(), / cm³$/);
+    assert.ok(await volume.isVisible());
+    const slider = page.locator('[data-region="ball"] input.mini');
+    assert.equal(await slider.evaluate((input) => getComputedStyle(input).opacity), '0');
+    await slider.focus();
+    assert.equal(await slider.evaluate((input) => getComputedStyle(input).opacity), '1');
+    assert.equal(await volume.isVisible(), false);
+    await page.keyboard.press('ArrowLeft');
+    await page.waitForFunction(() => document.querySelector('[data-region="ball"] .percent input').value === '99');
+    await page.context().close();
+  });
+
+  it('the colours of the check have a legend in every slice pane', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
+    await full(page);
+    await page.locator('[role="tab"]', { hasText: 'View' }).click();
+    const legends = page.locator('.legend[aria-label="Colours of the check"]');
+    assert.equal(await legends.count(), 0);
+    await page.locator('label', { hasText: 'Mark where surface and univels differ' }).click();
+    await legends.nth(2).waitFor();
+    assert.equal(await legends.count(), 3);
+    await page.context().close();
+  });
+
+  it('a dialog takes the focus and gives it back', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
+    await full(page);
+    await page.locator('[data-region="ball"] button.name').click();
+    const opener = page.locator('button', { hasText: 'Compare methods' });
+    await opener.focus();
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => document.activeElement?.getAttribute('role') === 'dialog');
+    await page.keyboard.press('Escape');
+    await page.waitForFunction(() => document.activeElement?.textContent.trim() === 'Compare methods');
+    await page.context().close();
+  });
+
+  it('nobody is followed who has left', async () => {
+    const room = await world.newRoom('balls');
+    const one = await world.newPage(`#/rooms/${room}`);
+    await full(one);
+    await one.locator('#picture-1').focus();
+    await one.keyboard.press('ArrowLeft');
+    await full(one);
+    const two = await world.newPage(`#/rooms/${room}`);
+    await two.locator('[data-view="1"] .follow-bar', { hasText: 'Following' }).waitFor();
+    await one.context().close();
+    await two.locator('.follow-bar').first().waitFor({ state: 'detached' });
+    await full(two);
+    await two.context().close();
+  });
+
+  it('has had no error', () => assert.deepEqual(world.errors, []));
+});
