@@ -228,7 +228,7 @@ static int unpack_main(const char *archive, const char *folder)
         puts("{\"percent\": 1e999}\nnot JSON\n[]\n{\"percent\": 3}\n{\"percent\": 101}\n{\"percent\": 12.75}");
     while (strcmp(inside, "lies") == 0)
         pause();
-    for (int i = 0; strcmp(inside, "slow") == 0 && i < 20; i++) {
+    for (int i = 0; strcmp(inside, "slow") == 0 && i < 40; i++) {
         puts("{\"percent\": 14}");
         nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
     }

@@ -105,7 +105,9 @@ static int try_files(const struct places *at)
         return 5;
     if (can_open("/etc/passwd", O_RDONLY) || can_open("/root", O_RDONLY | O_DIRECTORY) || can_open("/home", O_RDONLY | O_DIRECTORY))
         return 6;
-    if (unlink(at->plan_file) == 0 || mkdir("/tmp/beamroom-escape", 0700) == 0)
+    char escape[96];
+    snprintf(escape, sizeof escape, "%s/new", at->elsewhere);
+    if (unlink(at->plan_file) == 0 || mkdir(escape, 0700) == 0)
         return 7;
     if (!can_open("/usr/share", O_RDONLY | O_DIRECTORY) || !can_open("/proc/self/maps", O_RDONLY) || !can_open("/dev/null", O_RDWR))
         return 8;

@@ -1,4 +1,3 @@
-#include "core/base/clock.h"
 #include "core/region/region.h"
 #include "tests/check.h"
 #include "tests/unit/made_mask.h"
@@ -212,20 +211,19 @@ static void a_tree_of_five_labels_in_256_256_128_takes_under_50_ms(void **state)
         put_box(layer, (uint32_t[3]){ 10u + 20u * n, 10u + 20u * n, 5u + 10u * n },
                 (uint32_t[3]){ 245u - 20u * n, 245u - 20u * n, 122u - 10u * n }, (uint16_t)(n + 1));
     struct region_set set = set_make(&layer, 1, (uint32_t[5]){ 0 }, (uint16_t[]){ 1, 2, 3, 4, 5 }, 5);
-    int64_t best_us = INT64_MAX;
+    double best_s = INFINITY;
     for (int run = 0; run < 5; run++) {
         for (int i = 0; i < 5; i++)
             set.regions[i].parent = -1;
-        int64_t started_us = clock_now_us();
+        double started_s = cpu_s();
         region_set_derive_hierarchy(&set);
-        int64_t took_us = clock_now_us() - started_us;
-        best_us = took_us < best_us ? took_us : best_us;
+        best_s = fmin(best_s, cpu_s() - started_s);
     }
     for (int i = 1; i < 5; i++)
         assert_int_equal(set.regions[i].parent, i - 1);
-    print_message("tree of five labels: %.1f ms\n", (double)best_us / 1000);
+    print_message("tree of five labels: %.1f ms\n", 1000 * best_s);
     if (!IS_SANITIZED)
-        assert_true(best_us < 50000);
+        assert_true(best_s < 0.05);
     region_set_finish(&set);
 }
 

@@ -213,7 +213,7 @@ static void one_that_is_slow_but_says_so_is_left_alone(void **state)
 {
     (void)state;
     struct world world;
-    start_with(&world, 1000); /* it takes two seconds and is never silent for longer than a tenth */
+    start_with(&world, 3000); /* it takes four seconds and is never silent for longer than a tenth */
     assert_int_equal(wait_for_end(&world, begin_upload(&world, "x", "slow")).state, UPLOAD_DONE);
     world_end(&world);
 }
