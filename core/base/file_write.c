@@ -22,6 +22,7 @@ static bool write_all(int file, const char *bytes, size_t n_bytes)
     return true;
 }
 
+/* The reason is to be read also behind a long path. */
 bool file_write(const char *path, const void *bytes, size_t n_bytes, struct error *err)
 {
     char partial[PATH_MAX];
@@ -30,7 +31,7 @@ bool file_write(const char *path, const void *bytes, size_t n_bytes, struct erro
         return error_set(err, ERROR_LIMIT, "the path is longer than %d bytes", PATH_MAX);
     int file = open(partial, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (file < 0)
-        return error_set(err, ERROR_IO, "%s: cannot be created: %s", path, strerror(errno));
+        return error_set(err, ERROR_IO, "%.180s: cannot be created: %s", path, strerror(errno));
     bool is_written = write_all(file, bytes, n_bytes);
     int reason = errno;
     if (close(file) != 0 && is_written) {
@@ -43,7 +44,7 @@ bool file_write(const char *path, const void *bytes, size_t n_bytes, struct erro
     }
     if (!is_written) {
         unlink(partial);
-        return error_set(err, ERROR_IO, "%s: cannot be written: %s", path, strerror(reason));
+        return error_set(err, ERROR_IO, "%.180s: cannot be written: %s", path, strerror(reason));
     }
     return true;
 }

@@ -42,10 +42,13 @@ struct beam_delivery {
     int64_t n_fractions;        /* 0 when the plan does not say */
 };
 
+#define BEAM_MAX_APERTURE_MM 2000.0
+#define BEAM_MAX_PLACE_MM 1e6  /* no coordinate of a beam is further out */
+#define BEAM_MIN_LENGTH_MM 1e-6 /* entry and target are further apart */
 struct beam {
     char id[64];
-    struct vec3 entry_lps_mm, target_lps_mm; /* never the same point; from a plan: source at the first control point, isocentre */
-    double aperture_mm;                      /* diameter; not-a-number when unknown or not round */
+    struct vec3 entry_lps_mm, target_lps_mm; /* BEAM_MIN_LENGTH_MM apart; from a plan: source at the first control point, isocentre */
+    double aperture_mm;                      /* diameter up to BEAM_MAX_APERTURE_MM; not-a-number when unknown or not round */
     bool has_delivery;                       /* a treatment plan gave it */
     char name[65];                           /* as the plan gives it, UTF-8; "" without one */
     struct beam_delivery delivery;

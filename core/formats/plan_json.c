@@ -21,6 +21,8 @@ static bool get_unit(const struct place *place, const cJSON *object, double *mm)
     return true;
 }
 
+#define WINDOW_MOST 1e300 /* values of an image may be as large as its numbers hold */
+
 /* {"center": 40, "width": 400} */
 static bool get_window(const struct place *place, const cJSON *object, struct plan_file_image *image)
 {
@@ -28,8 +30,8 @@ static bool get_window(const struct place *place, const cJSON *object, struct pl
     if (!window || cJSON_IsNull(window))
         return true;
     const cJSON *center = cJSON_GetObjectItemCaseSensitive(window, "center"), *width = cJSON_GetObjectItemCaseSensitive(window, "width");
-    if (!cJSON_IsNumber(center) || !cJSON_IsNumber(width) || !(fabs(center->valuedouble) <= 1e12) ||
-        !(width->valuedouble > 0 && width->valuedouble <= 1e12))
+    if (!cJSON_IsNumber(center) || !cJSON_IsNumber(width) || !(fabs(center->valuedouble) <= WINDOW_MOST) ||
+        !(width->valuedouble > 0 && width->valuedouble <= WINDOW_MOST))
         return place_fail(place, ERROR_RANGE, "window", "expected a center, and a width above 0");
     image->window_center = center->valuedouble;
     image->window_width = width->valuedouble;

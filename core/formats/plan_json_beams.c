@@ -4,6 +4,10 @@
 #include "core/formats/plan_json_delivery.h"
 #include "core/formats/plan_json_inner.h"
 
+/* A treatment plan may hold any number; a count is one that a double holds exactly. */
+#define MOST_NUMBER 1e300
+#define MOST_COUNT 9007199254740992.0
+
 static bool parse_numbers(const struct place *at, const cJSON *item, const char *key, int n, double *out)
 {
     bool is_list = n > 1;
@@ -15,8 +19,10 @@ static bool parse_numbers(const struct place *at, const cJSON *item, const char 
         return place_fail(at, ERROR_FORMAT, key, n == 2 ? "expected two numbers" : "expected three numbers");
     for (int i = 0; i < n; i++) {
         const cJSON *number = is_list ? cJSON_GetArrayItem(item, i) : item;
-        if (!cJSON_IsNumber(number) || !(fabs(number->valuedouble) <= 1e9))
-            return place_fail(at, ERROR_RANGE, key, "expected numbers of at most 1e9");
+        if (is_list && cJSON_IsNull(number))
+            continue;
+        if (!cJSON_IsNumber(number) || !(fabs(number->valuedouble) <= MOST_NUMBER))
+            return place_fail(at, ERROR_RANGE, key, "expected numbers of at most 1e300");
         out[i] = number->valuedouble;
     }
     return true;
@@ -30,8 +36,8 @@ static bool parse_count(const struct place *at, const cJSON *item, const char *k
         return false;
     if (isnan(value))
         return true;
-    if (value != floor(value))
-        return place_fail(at, ERROR_RANGE, key, "expected a whole number");
+    if (value != floor(value) || fabs(value) > MOST_COUNT)
+        return place_fail(at, ERROR_RANGE, key, "expected a whole number of at most 2^53");
     *out = (int64_t)value;
     return true;
 }
@@ -97,12 +103,12 @@ bool plan_json_beams(const struct place *top, const cJSON *root, struct plan_fil
             !parse_delivery(&at, entry, beam) || !place_point(&at, entry, "entry_mm", &beam->entry_lps_mm) ||
             !place_point(&at, entry, "target_mm", &beam->target_lps_mm))
             return false;
-        if (vec3_length(vec3_sub(beam->entry_lps_mm, beam->target_lps_mm)) < 1e-6)
+        if (vec3_length(vec3_sub(beam->entry_lps_mm, beam->target_lps_mm)) < BEAM_MIN_LENGTH_MM)
             return place_fail(&at, ERROR_RANGE, "target_mm", "is the same point as entry_mm");
         const cJSON *aperture = cJSON_GetObjectItemCaseSensitive(entry, "aperture_mm");
         beam->aperture_mm = NAN;
         if (aperture && !cJSON_IsNull(aperture)) {
-            if (!cJSON_IsNumber(aperture) || !(aperture->valuedouble > 0 && aperture->valuedouble <= 2000))
+            if (!cJSON_IsNumber(aperture) || !(aperture->valuedouble > 0 && aperture->valuedouble <= BEAM_MAX_APERTURE_MM))
                 return place_fail(&at, ERROR_RANGE, "aperture_mm", "expected a diameter above 0 and at most 2000 mm");
             beam->aperture_mm = aperture->valuedouble;
         }

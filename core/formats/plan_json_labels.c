@@ -11,8 +11,8 @@ static bool get_weight(const struct place *place, const cJSON *object, const cha
     *out = NAN;
     if (!item || cJSON_IsNull(item))
         return true;
-    if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= 1000))
-        return place_fail(place, ERROR_RANGE, key, "expected a number from 0 to 1000");
+    if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= 1e6)) /* as SERA's files */
+        return place_fail(place, ERROR_RANGE, key, "expected a number from 0 to 1000000");
     *out = item->valuedouble;
     return true;
 }

@@ -96,8 +96,8 @@ bool place_point(const struct place *place, const cJSON *object, const char *key
         return place_fail(place, ERROR_FORMAT, key, "expected three numbers, millimetres");
     for (int i = 0; i < 3; i++) {
         const cJSON *number = cJSON_GetArrayItem(item, i);
-        if (!cJSON_IsNumber(number) || !(fabs(number->valuedouble) <= 1e5))
-            return place_fail(place, ERROR_RANGE, key, "expected three numbers of at most 100000 mm");
+        if (!cJSON_IsNumber(number) || !(fabs(number->valuedouble) <= BEAM_MAX_PLACE_MM))
+            return place_fail(place, ERROR_RANGE, key, "expected three numbers of at most 1000000 mm");
         v[i] = number->valuedouble;
     }
     *out = vec3(v[0], v[1], v[2]);

@@ -138,8 +138,6 @@ static void add_doses(cJSON *root, const struct plan_file *file)
         for (size_t c = 0; c < dose->n_components; c++) {
             cJSON *component = append(components, cJSON_CreateObject());
             add_text(component, "quantity", dose_quantity_word(dose->components[c].quantity));
-            if (dose->components[c].reference > 0)
-                add_number(component, "reference", dose->components[c].reference);
             if (dose->components[c].is_per_ppm)
                 add(component, "per_ppm", cJSON_CreateTrue());
             if (dose->components[c].reference > 0)
@@ -153,7 +151,7 @@ static void add_delivery(cJSON *beam, const struct beam_delivery *delivery)
 {
     cJSON *entry = cJSON_CreateObject();
     add(beam, "delivery", entry);
-    add(entry, "number", cJSON_CreateNumber((double)delivery->number));
+    add_number(entry, "number", (double)delivery->number);
     add_text(entry, "radiation", delivery->radiation);
     add_text(entry, "machine", delivery->machine);
     add_text(entry, "patient_position", patient_position_word(delivery->patient_position));
@@ -161,15 +159,16 @@ static void add_delivery(cJSON *beam, const struct beam_delivery *delivery)
         add_number(entry, delivery_numbers[i].key, *(const double *)((const char *)delivery + delivery_numbers[i].at));
     for (int i = 0; i < N_DELIVERY_LISTS; i++) {
         const double *values = (const double *)((const char *)delivery + delivery_lists[i].at);
-        if (!isfinite(values[0]))
-            continue;
-        cJSON *list = add_list(entry, delivery_lists[i].key);
+        int n_known = 0;
         for (int v = 0; v < delivery_lists[i].n; v++)
-            append(list, exact_number(values[v]));
+            n_known += isfinite(values[v]);
+        cJSON *list = n_known > 0 ? add_list(entry, delivery_lists[i].key) : NULL;
+        for (int v = 0; list && v < delivery_lists[i].n; v++)
+            append(list, isfinite(values[v]) ? exact_number(values[v]) : cJSON_CreateNull());
     }
-    add(entry, "n_control_points", cJSON_CreateNumber((double)delivery->n_control_points));
+    add_number(entry, "n_control_points", (double)delivery->n_control_points);
     add_text(entry, "meterset_unit", delivery->meterset_unit);
-    add(entry, "n_fractions", cJSON_CreateNumber((double)delivery->n_fractions));
+    add_number(entry, "n_fractions", (double)delivery->n_fractions);
 }
 
 static void add_beams(cJSON *root, const struct plan_file *file)

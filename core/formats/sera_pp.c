@@ -66,6 +66,13 @@ static void put_point(float out[3], double rl, double pa, double is)
     out[2] = (float)lps.z;
 }
 
+/* As 32-bit numbers hold it. */
+static bool has_no_length(const struct track_segment *segment)
+{
+    const float *a = segment->from_lps_mm, *b = segment->to_lps_mm;
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 static void tell(const struct counts *counts, const char *name, struct report *report)
 {
     if (counts->n_bad > 0)
@@ -96,15 +103,16 @@ bool pp_parse(const uint8_t *data, size_t size, const char *name, struct track_s
             continue;
         }
         counts.n_segments++;
-        if (v[0] == v[3] && v[1] == v[4] && v[2] == v[5]) {
+        if (!grow(set, &capacity, name, err))
+            return false;
+        struct track_segment *segment = &set->segments[set->n_segments];
+        put_point(segment->from_lps_mm, v[0], v[1], v[2]);
+        put_point(segment->to_lps_mm, v[3], v[4], v[5]);
+        if (has_no_length(segment)) {
             counts.n_zero_length++;
             continue;
         }
-        if (!grow(set, &capacity, name, err))
-            return false;
-        struct track_segment *segment = &set->segments[set->n_segments++];
-        put_point(segment->from_lps_mm, v[0], v[1], v[2]);
-        put_point(segment->to_lps_mm, v[3], v[4], v[5]);
+        set->n_segments++;
         segment->class = class;
         set->n_of_class[class]++;
     }
@@ -161,11 +169,30 @@ double pp_unit_mm(const struct track_set *set, size_t first, double given_mm, co
     return likely_mm;
 }
 
-void pp_scale(struct track_set *set, size_t first, double mm)
+static bool scale_point(float point[3], double mm)
 {
-    for (size_t i = first; i < set->n_segments; i++)
-        for (int axis = 0; axis < 3; axis++) {
-            set->segments[i].from_lps_mm[axis] = (float)((double)set->segments[i].from_lps_mm[axis] * mm);
-            set->segments[i].to_lps_mm[axis] = (float)((double)set->segments[i].to_lps_mm[axis] * mm);
-        }
+    bool is_near = true;
+    for (int axis = 0; axis < 3; axis++) {
+        double at_mm = (double)point[axis] * mm;
+        point[axis] = (float)at_mm;
+        is_near = is_near && fabs(at_mm) <= PP_MAX_PLACE_MM;
+    }
+    return is_near;
+}
+
+void pp_scale(struct track_set *set, size_t first, double mm, const char *name, struct report *report)
+{
+    size_t n_kept = first, n_read = set->n_segments - first;
+    for (size_t i = first; i < set->n_segments; i++) {
+        struct track_segment *segment = &set->segments[i];
+        bool is_from_near = scale_point(segment->from_lps_mm, mm), is_to_near = scale_point(segment->to_lps_mm, mm);
+        if (is_from_near && is_to_near)
+            set->segments[n_kept++] = *segment;
+        else
+            set->n_of_class[segment->class]--;
+    }
+    set->n_segments = n_kept;
+    if (n_kept - first < n_read)
+        report_add(report, REPORT_WARNING, "tracks.far", name, "%zu of %zu segments end more than %g m away and were left out.",
+                   n_read - (n_kept - first), n_read, PP_MAX_PLACE_MM / 1000);
 }

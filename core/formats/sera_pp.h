@@ -5,6 +5,7 @@
 #include "core/track/track.h"
 
 enum { PP_MAX_BYTES = 256 << 20 };
+#define PP_MAX_PLACE_MM 1e6 /* segments that end further out are no particles of a treatment room */
 
 /* Segments in the file's own unit, already turned to LPS; appended to set.
  *   errors  ERROR_FORMAT not one line is a segment, ERROR_LIMIT more than TRACK_MAX_SEGMENTS, ERROR_MEMORY */
@@ -15,4 +16,5 @@ NODISCARD bool pp_parse(const uint8_t *data, size_t size, const char *name, stru
  * makes their spread the more like the patient's. An empty box gives 1. */
 double pp_unit_mm(const struct track_set *set, size_t first, double given_mm, const struct box3 *patient_lps_mm, const char *name,
                   struct report *report);
-void pp_scale(struct track_set *set, size_t first, double mm);
+/* Into millimetres; segments beyond PP_MAX_PLACE_MM are left out. */
+void pp_scale(struct track_set *set, size_t first, double mm, const char *name, struct report *report);

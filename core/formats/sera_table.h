@@ -4,7 +4,7 @@
 #include "core/dose/curve.h"
 #include "core/plan/report.h"
 
-#define SERA_TABLE_MAX_BYTES ((uint64_t)128 << 20)
+#define SERA_TABLE_MAX_BYTES ((uint64_t)192 << 20)
 
 /* id, name and per are left empty; unit is cGy. Points of zeros alone lie outside the run's mesh and become not-a-number.
  *   errors  ERROR_FORMAT (with the line), ERROR_LIMIT, ERROR_MEMORY; curve is then empty */

@@ -51,7 +51,7 @@ void plan_add_curves(struct plan *plan, const struct folder *folder, const struc
         snprintf(stem, sizeof stem, "%.*s", (int)strcspn(base, "."), base);
         make_id(plan, entry->id, stem, id);
         memcpy(curve.id, id, sizeof curve.id);
-        text_clean(entry->name[0] ? entry->name : stem, curve.name, sizeof curve.name);
+        text_clean(entry->name[0] ? entry->name : stem[0] ? stem : id, curve.name, sizeof curve.name);
         snprintf(curve.per, sizeof curve.per, "%s", entry->per[0] ? entry->per : "unit of the source");
         if (!entry->per[0])
             report_add(&plan->report, REPORT_NOTE, "dose.no-per", entry->path,
@@ -116,7 +116,10 @@ static void apply(struct plan *plan, const struct rsc *rsc, const char *path)
             const struct rsc_level *level = &rsc->levels[kept->n_levels];
             kept->levels[kept->n_levels] = (struct plan_level){ level->percent, { level->rgb[0], level->rgb[1], level->rgb[2] } };
         }
-    if (rsc->n_colors > 0 && kept->n_colors == 0) {
+    if (rsc->n_colors > 0 && kept->n_colors > 0) {
+        report_add(&plan->report, REPORT_NOTE, "preferences.map", path, "A colour map is there already, from a file before it; this one was "
+                   "not taken.");
+    } else if (rsc->n_colors > 0) {
         kept->n_colors = rsc->n_colors;
         memcpy(kept->colors, rsc->colors, sizeof kept->colors);
     }

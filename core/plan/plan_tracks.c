@@ -14,7 +14,8 @@ static bool add_file(struct plan *plan, const struct folder *folder, const struc
     bool is_read = pp_parse(bytes.data, bytes.size, entry->path, &plan->tracks, &plan->report, err);
     bytes_free(&bytes);
     if (is_read)
-        pp_scale(&plan->tracks, first, pp_unit_mm(&plan->tracks, first, entry->mm, &plan->bounds_lps_mm, entry->path, &plan->report));
+        pp_scale(&plan->tracks, first, pp_unit_mm(&plan->tracks, first, entry->mm, &plan->bounds_lps_mm, entry->path, &plan->report),
+                 entry->path, &plan->report);
     return is_read;
 }
 
@@ -28,12 +29,13 @@ static void beam_from_tracks(struct plan *plan)
 {
     for (size_t i = 0; plan->n_beams == 0 && i < plan->tracks.n_segments; i++) {
         const struct track_segment *segment = &plan->tracks.segments[i];
-        if (segment->class != TRACK_BEAM_LINE)
+        struct vec3 from = point_of(segment->from_lps_mm), to = point_of(segment->to_lps_mm);
+        if (segment->class != TRACK_BEAM_LINE || vec3_length(vec3_sub(from, to)) < BEAM_MIN_LENGTH_MM)
             continue;
         struct beam *beam = &plan->beams[plan->n_beams++];
         *beam = (struct beam){ .id = "beam-1",
-                               .entry_lps_mm = point_of(segment->from_lps_mm),
-                               .target_lps_mm = point_of(segment->to_lps_mm),
+                               .entry_lps_mm = from,
+                               .target_lps_mm = to,
                                .aperture_mm = NAN };
         report_add(&plan->report, REPORT_NOTE, "beam.from-tracks", "", "The plan gives no beam; the beam line of the tracks was taken, "
                    "from the source plane to the target. Its aperture is unknown.");

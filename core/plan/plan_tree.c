@@ -17,18 +17,27 @@ struct names {
     size_t n_edges;
 };
 
-static size_t find_name(struct names *names, const struct region_set *set, const char *name)
+/* An id comes before a name: our own plan.json speaks of ids, and another region may be named like one. Files of others know names. */
+static int find_region(const struct region_set *set, const char *name, bool is_by_id)
+{
+    const struct region *known = is_by_id ? region_find(set, name) : NULL;
+    if (known)
+        return (int)(known - set->regions);
+    for (size_t r = 0; r < set->n_regions; r++)
+        if (text_equal(set->regions[r].name, name) || strcmp(set->regions[r].id, name) == 0)
+            return (int)r;
+    return -1;
+}
+
+static size_t find_name(struct names *names, const struct region_set *set, const char *name, bool is_by_id)
 {
     for (size_t i = 0; i < names->n; i++)
         if (text_equal(names->name[i], name))
             return i;
     size_t at = names->n++;
     names->name[at] = name;
-    names->region[at] = -1;
+    names->region[at] = find_region(set, name, is_by_id);
     names->depth[at] = -1;
-    for (size_t r = 0; r < set->n_regions && names->region[at] < 0; r++)
-        if (text_equal(set->regions[r].name, name) || strcmp(set->regions[r].id, name) == 0)
-            names->region[at] = (int)r;
     return at;
 }
 
@@ -92,7 +101,7 @@ void region_set_apply_pairs(struct region_set *set, const struct plan_file_pair 
                            .edges = mem_new(most * sizeof(size_t[2])) };
     uint8_t *marks = mem_new(most);
     for (size_t i = 0; i < n_pairs; i++) {
-        size_t outer = find_name(&names, set, pairs[i].outer), inner = find_name(&names, set, pairs[i].inner);
+        size_t outer = find_name(&names, set, pairs[i].outer, is_strict), inner = find_name(&names, set, pairs[i].inner, is_strict);
         memset(marks, 0, most);
         if (leads_to(&names, outer, inner, marks)) {
             report_add(report, REPORT_WARNING, "hierarchy.cycle", where, "\"%s > %s\" would put a region inside itself; left out.",

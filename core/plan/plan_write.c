@@ -23,6 +23,7 @@ struct output {
     char name[FOLDER_NAME_SIZE];
     const struct volume *volume;
     const bool *is_kept; /* of a label layer: which labels to write; NULL: all voxels as they are */
+    uint64_t n_cleared;  /* voxels of the others */
     bool is_failed;
     struct error err;
 };
@@ -33,6 +34,7 @@ struct writing {
     struct output *outputs;
     size_t n_outputs;
     atomic_size_t next;
+    atomic_bool is_failed; /* some output; the rest is not begun */
     struct plan_file *file;
 };
 
@@ -126,6 +128,7 @@ static bool list_regions(struct writing *writing, bool (*is_kept)[65536], struct
     return true;
 }
 
+/* No id has a '_', so that no two doses' files are called the same. */
 static void list_doses(struct writing *writing)
 {
     const struct plan *plan = writing->plan;
@@ -141,11 +144,11 @@ static void list_doses(struct writing *writing)
             component->quantity = dose->components[c].quantity;
             component->is_per_ppm = dose->components[c].is_per_ppm;
             component->reference = dose->reference[component->quantity];
-            snprintf(component->path, sizeof component->path, "doses/%s-%s.nii.gz", dose->id, dose_quantity_word(component->quantity));
+            snprintf(component->path, sizeof component->path, "doses/%s_%s.nii.gz", dose->id, dose_quantity_word(component->quantity));
             add_output(writing, dose->components[c].values, component->path);
         }
         if (dose->mask) {
-            snprintf(entry->mask, sizeof entry->mask, "doses/%s-valid.nii.gz", dose->id);
+            snprintf(entry->mask, sizeof entry->mask, "doses/%s_valid.nii.gz", dose->id);
             add_output(writing, dose->mask, entry->mask);
         }
     }
@@ -154,17 +157,20 @@ static void list_doses(struct writing *writing)
 /* ---- writing it ------------------------------------------------------------------------------------------------------- */
 
 /* A copy of a label layer with the labels of no region cleared. */
-static struct volume *copy_kept(const struct volume *layer, const bool *is_kept, struct error *err)
+static struct volume *copy_kept(const struct volume *layer, const bool *is_kept, uint64_t *n_cleared, struct error *err)
 {
     struct volume *copy = volume_create(&layer->grid, layer->type, err);
     size_t n = grid_n_voxels(&layer->grid);
+    *n_cleared = 0;
     for (size_t i = 0; copy && i < n; i++) {
         if (layer->type == VOXEL_U8) {
             uint8_t label = ((const uint8_t *)layer->voxels)[i];
             ((uint8_t *)copy->voxels)[i] = is_kept[label] ? label : 0;
+            *n_cleared += label != 0 && !is_kept[label];
         } else {
             uint16_t label = ((const uint16_t *)layer->voxels)[i];
             ((uint16_t *)copy->voxels)[i] = is_kept[label] ? label : 0;
+            *n_cleared += label != 0 && !is_kept[label];
         }
     }
     return copy;
@@ -176,7 +182,7 @@ static bool write_output(const struct writing *writing, struct output *output)
     join(path, writing->folder, output->name);
     if (!output->is_kept)
         return nifti_write_exact(path, output->volume, NULL, &output->err);
-    struct volume *kept = copy_kept(output->volume, output->is_kept, &output->err);
+    struct volume *kept = copy_kept(output->volume, output->is_kept, &output->n_cleared, &output->err);
     bool is_written = kept && nifti_write_exact(path, kept, NULL, &output->err);
     volume_unref(kept);
     return is_written;
@@ -187,13 +193,17 @@ static void write_some(void *context, int part, int n_parts)
     (void)part;
     (void)n_parts;
     struct writing *writing = context;
-    for (size_t at; (at = atomic_fetch_add(&writing->next, 1)) < writing->n_outputs;)
+    for (size_t at; !atomic_load(&writing->is_failed) && (at = atomic_fetch_add(&writing->next, 1)) < writing->n_outputs;) {
         writing->outputs[at].is_failed = !write_output(writing, &writing->outputs[at]);
+        if (writing->outputs[at].is_failed)
+            atomic_store(&writing->is_failed, true);
+    }
 }
 
 static bool write_volumes(struct writing *writing, struct error *err)
 {
     atomic_init(&writing->next, 0);
+    atomic_init(&writing->is_failed, false);
     parallel_run(parallel_cores(), write_some, writing);
     for (size_t i = 0; i < writing->n_outputs; i++)
         if (writing->outputs[i].is_failed) {
@@ -208,8 +218,11 @@ static bool write_plan_json(const struct writing *writing, struct error *err)
 {
     char path[PATH_MAX];
     char *text = plan_file_text(writing->file);
+    size_t n = strlen(text);
+    struct plan_file *again = plan_file_parse((const uint8_t *)text, n, NULL, err); /* nobody is left with a plan that does not open */
     join(path, writing->folder, "plan.json");
-    bool is_written = file_write(path, text, strlen(text), err);
+    bool is_written = again && file_write(path, text, n, err);
+    plan_file_destroy(again);
     free(text);
     return is_written;
 }
@@ -249,21 +262,26 @@ static bool check_target(const char *folder, struct error *err)
 {
     struct stat about;
     if (lstat(folder, &about) != 0)
-        return errno == ENOENT ? true : error_set(err, ERROR_IO, "%s: %s", folder, strerror(errno));
+        return errno == ENOENT ? true : error_set(err, ERROR_IO, "%.180s: %s", folder, strerror(errno));
     if (!S_ISDIR(about.st_mode))
         return error_set(err, ERROR_STATE, "%s is there and is no folder", folder);
     return is_empty(folder) || error_set(err, ERROR_STATE, "%s is there already and is not empty", folder);
 }
 
-static bool make_folders(const char *folder, struct error *err)
+static bool make_folder(const char *folder, const char *asked_for, struct error *err)
+{
+    return mkdir(folder, 0777) == 0 || error_set(err, ERROR_IO, "%.180s: cannot be created: %s", asked_for, strerror(errno));
+}
+
+static bool make_inner_folders(const char *folder, const char *asked_for, struct error *err)
 {
     char path[PATH_MAX];
-    bool is_made = mkdir(folder, 0777) == 0;
-    for (int i = 0; is_made && i < N_FOLDERS; i++) {
+    for (int i = 0; i < N_FOLDERS; i++) {
         join(path, folder, folders[i]);
-        is_made = mkdir(path, 0777) == 0;
+        if (!make_folder(path, asked_for, err))
+            return false;
     }
-    return is_made || error_set(err, ERROR_IO, "%s: cannot be created: %s", folder, strerror(errno));
+    return true;
 }
 
 /* Folders that nothing went into are not part of the plan. */
@@ -300,24 +318,48 @@ static void remove_all(const char *folder)
     (void)rmdir(folder);
 }
 
-bool plan_write(const struct plan *plan, const char *folder, struct error *err)
+/* The folder it is built in is gone after a failure; its files are called by the one asked for. */
+static void name_as_asked(const char *folder, const char *asked_for, struct error *err)
+{
+    size_t n = strlen(folder);
+    char rest[sizeof err->text];
+    if (!err || strncmp(err->text, folder, n) != 0)
+        return;
+    memcpy(rest, err->text + n, strlen(err->text + n) + 1);
+    error_set(err, err->code, "%.180s%s", asked_for, rest);
+}
+
+static void tell_lost(const struct writing *writing, struct report *lost)
+{
+    for (size_t i = 0; i < writing->n_outputs; i++)
+        if (writing->outputs[i].n_cleared > 0)
+            report_add(lost, REPORT_NOTE, "write.labels-cleared", writing->outputs[i].name,
+                       "%llu voxels that carry a label of no region, such as the filling around the patient, are written as 0.",
+                       (unsigned long long)writing->outputs[i].n_cleared);
+}
+
+bool plan_write(const struct plan *plan, const char *folder, struct report *lost, struct error *err)
 {
     struct writing writing = { .plan = plan };
     char place[FILE_FOLDER_SIZE];
-    if (!file_folder_paths(folder, place, writing.folder, err) || !check_target(place, err) || !make_folders(writing.folder, err))
+    if (!file_folder_paths(folder, place, writing.folder, err) || !check_target(place, err) || !make_folder(writing.folder, place, err))
         return false;
     writing.outputs = mem_new(MAX_FILES * sizeof *writing.outputs);
     writing.file = mem_new(sizeof *writing.file);
     writing.file->regions = mem_new((REGION_MAX_LAYERS + 1) * sizeof *writing.file->regions);
     writing.file->pairs = mem_new(PLAN_FILE_MAX_PAIRS * sizeof *writing.file->pairs);
-    bool is_written = write_contents(&writing, err);
+    bool is_written = make_inner_folders(writing.folder, place, err) && write_contents(&writing, err);
     if (is_written) {
         remove_empty(writing.folder);
         if (rename(writing.folder, place) != 0)
-            is_written = error_set(err, ERROR_IO, "%s: cannot be created: %s", place, strerror(errno));
+            is_written = error_set(err, ERROR_IO, "%.180s: cannot be created: %s", place, strerror(errno));
     }
-    if (!is_written)
+    if (is_written) {
+        tell_lost(&writing, lost);
+    } else {
         remove_all(writing.folder);
+        name_as_asked(writing.folder, place, err);
+    }
     plan_file_destroy(writing.file);
     free(writing.outputs);
     return is_written;

@@ -52,18 +52,33 @@ static bool write_tracks(const struct track_set *tracks, const char *folder, str
     return sheet_close(&sheet, folder, entry->path, err);
 }
 
-/* A value that is none is printed as SERA's Fortran prints what does not fit; a point without any is all zeros, outside the mesh. */
+/* Centimetres that times ten are the very millimetres, which were read from centimetres: a double nearby does it. */
+static double cm_of(double mm)
+{
+    double cm = mm / 10;
+    for (int step = -2; step <= 2; step++) {
+        double near = mm / 10;
+        for (int i = 0; i < abs(step); i++)
+            near = nextafter(near, step < 0 ? -INFINITY : INFINITY);
+        if (near * 10 == mm)
+            cm = near;
+    }
+    return cm;
+}
+
+/* A value that is none is printed as SERA's Fortran prints what does not fit; a point without any is all zeros, outside the mesh.
+ * All values are as wide, so that no line is as long as one of SERA's own columns, which readers go by. */
 static void print_point(FILE *out, const struct dose_curve *curve, size_t point)
 {
     bool is_nothing = true;
     for (size_t c = 0; c < curve->n_columns; c++)
         is_nothing = is_nothing && isnan(curve->values[c][point]);
-    fprintf(out, "%.15g %.15g 0 0", curve->depths_mm[point / curve->n_radii] / 10, curve->radii_mm[point % curve->n_radii] / 10);
+    fprintf(out, "%.17g %.17g 0 0", cm_of(curve->depths_mm[point / curve->n_radii]), cm_of(curve->radii_mm[point % curve->n_radii]));
     for (size_t c = 0; c < curve->n_columns; c++)
         if (is_nothing)
-            fprintf(out, " 0.000E+00");
+            fprintf(out, " 0.00000000E+00");
         else if (isnan(curve->values[c][point]))
-            fprintf(out, " *********");
+            fprintf(out, " **************");
         else
             fprintf(out, " %.8E", (double)curve->values[c][point]);
     fputc('\n', out);
@@ -79,7 +94,7 @@ static bool write_curve(const struct dose_curve *curve, const char *folder, stru
     sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
     struct vec3 center = curve->center_lps_mm; /* the file's order is (PA, RL, IS), in cm */
     if (sheet.out)
-        fprintf(sheet.out, "Center Point %.15g %.15g %.15g\nno. d,r points used %zu\n", -center.y / 10, center.x / 10, center.z / 10,
+        fprintf(sheet.out, "Center Point %.17g %.17g %.17g\nno. d,r points used %zu\n", -cm_of(center.y), cm_of(center.x), cm_of(center.z),
                 curve->n_depths);
     for (size_t point = 0; sheet.out && point < curve->n_depths * curve->n_radii; point++)
         print_point(sheet.out, curve, point);
@@ -95,7 +110,7 @@ static bool write_preferences(const struct plan_preferences *preferences, const 
         sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
         for (size_t i = 0; sheet.out && i < preferences->n_levels; i++) {
             const struct plan_level *level = &preferences->levels[i];
-            fprintf(sheet.out, "contour_level: %.15g %d %d %d\n", level->percent, level->rgb[0] * TO_16_BITS, level->rgb[1] * TO_16_BITS,
+            fprintf(sheet.out, "contour_level: %.17g %d %d %d\n", level->percent, level->rgb[0] * TO_16_BITS, level->rgb[1] * TO_16_BITS,
                     level->rgb[2] * TO_16_BITS);
         }
         char *name = file->preferences[file->n_preferences++];

@@ -172,12 +172,14 @@
     X("tracks.unit-doubtful", "The unit given for a track file does not suit the patient's size.", "Check \"unit\" in plan.json.") \
     X("tracks.no-energy", "Tracks without an energy class.", "They are listed in the high class of their kind.")                  \
     X("tracks.zero-length", "Tracks of no length.", "They are left out.")                                                         \
+    X("tracks.far", "Tracks that end further away than any treatment room.", "They are left out; check the unit in plan.json.")    \
     X("tracks.bad-lines", "Lines of a track file that are not a segment.", "They are left out; check the file.")                  \
     X("curve.unread", "A reference curve could not be read.", "Check the file; the rest of the plan is whole.")                     \
     X("preferences.unread", "A file of preferences could not be read.", "Check the file; the rest of the plan is whole.")           \
     X("preferences.colors", "Regions took colour and opacity from a file of preferences.", "Nothing.")                            \
     X("preferences.tissues", "Regions took tissue data from a table of tissues, by their names.",                                  \
       "Check boron ratios and weights against the plan.")                                                                          \
+    X("preferences.map", "There are several colour maps.", "The first was taken; name the wanted one in plan.json.") \
     X("preferences.levels", "Contour levels are given by more than one file of preferences.", "The first was used; keep one file.")  \
     X("dicom.several-studies", "The DICOM files of the folder are of several studies.",                                            \
       "Check that all are of one patient; keep one plan a folder.")                                                                \
@@ -187,5 +189,6 @@
       "Check that the regions fit the image; put the series they were drawn on into the folder.")                                  \
     X("geometry.apart", "Two parts of the plan do not overlap anywhere.",                                                          \
       "One of them may be flipped, shifted or of another patient.")                                                                \
+    X("write.labels-cleared", "Voxels of a label map that belong to no region were not written.", "Nothing; no region loses a voxel.") \
     X("header.unknown-key", "A header has keys that are not known.", "They are ignored.")                                         \
     X("header.bad-number", "A header has a value that is not a number.", "It is ignored.")

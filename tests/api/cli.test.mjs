@@ -115,7 +115,7 @@ describe('beamroom info', () => {
     const made = beamroom('convert', plan, out);
     assert.equal(made.status, 0, made.stderr);
     const [before, after] = [plan, out].map((dir) => JSON.parse(beamroom('info', dir, '--json').stdout));
-    for (const part of ['name', 'note', 'is_phantom', 'images', 'regions', 'hierarchy', 'doses', 'beams', 'tracks'])
+    for (const part of ['name', 'note', 'is_phantom', 'images', 'regions', 'hierarchy', 'doses', 'beams', 'tracks', 'curves', 'preferences'])
       assert.deepEqual(after[part], before[part], part);
     const again = beamroom('convert', plan, out);
     assert.equal(again.status, 1);

@@ -14,7 +14,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
         struct box3 patient = { { -80, -100, -60 }, { 80, 100, 120 } };
         double mm = pp_unit_mm(&set, 0, 0, &patient, "fuzz.pp", &report);
         REQUIRE(isfinite(mm) && mm > 0);
-        pp_scale(&set, 0, mm);
+        pp_scale(&set, 0, mm, "t.pp", NULL);
         for (size_t i = 0; i < set.n_segments; i++) {
             REQUIRE(set.segments[i].class < TRACK_N_CLASSES);
             for (int axis = 0; axis < 3; axis++)

@@ -3,10 +3,31 @@
 #include "core/region/mask.h"
 #include "tests/check.h"
 
+/* Who adds a field to a plan is stopped here until it is compared below: a conversion or a cache that loses it would not be noticed. */
+#define IS_COMPARED_UP_TO(type, bytes) _Static_assert(sizeof(void *) != 8 || sizeof(type) == (bytes), "compare the new field of " #type)
+IS_COMPARED_UP_TO(struct plan, 54736);
+IS_COMPARED_UP_TO(struct plan_image, 240);
+IS_COMPARED_UP_TO(struct plan_preferences, 1296);
+IS_COMPARED_UP_TO(struct region, 328);
+IS_COMPARED_UP_TO(struct region_set, 2080);
+IS_COMPARED_UP_TO(struct dose, 576);
+IS_COMPARED_UP_TO(struct dose_component, 16);
+IS_COMPARED_UP_TO(struct dose_curve, 480);
+IS_COMPARED_UP_TO(struct beam, 464);
+IS_COMPARED_UP_TO(struct track_segment, 28);
+IS_COMPARED_UP_TO(struct volume, 264);
+
 static void same_number(double found, double expected)
 {
     if (!(isnan(found) && isnan(expected)) && found != expected)
         fail_msg("%.17g instead of %.17g", found, expected);
+}
+
+static void same_vector(struct vec3 found, struct vec3 expected)
+{
+    same_number(found.x, expected.x);
+    same_number(found.y, expected.y);
+    same_number(found.z, expected.z);
 }
 
 static void same_grid(const struct grid *found, const struct grid *expected, double mm)
@@ -62,7 +83,13 @@ static void same_regions(const struct region_set *found, const struct region_set
         assert_memory_equal(a->rgb, b->rgb, 3);
         assert_int_equal(a->has_file_color, b->has_file_color);
         assert_int_equal(a->parent, b->parent);
+        assert_int_equal(a->label, b->label);
         assert_int_equal(a->n_voxels, b->n_voxels);
+        assert_close(a->volume_cm3, b->volume_cm3, mm * b->volume_cm3);
+        assert_memory_equal(a->low_ijk, b->low_ijk, sizeof a->low_ijk);
+        assert_memory_equal(a->high_ijk, b->high_ijk, sizeof a->high_ijk);
+        assert_close(vec3_length(vec3_sub(a->centre_lps_mm, b->centre_lps_mm)), 0, mm);
+        assert_int_equal(a->touches_edge, b->touches_edge);
         same_number(a->file_opacity, b->file_opacity);
         same_number(a->boron_ratio, b->boron_ratio);
         same_number(a->cbe_boron, b->cbe_boron);
@@ -121,8 +148,8 @@ static void same_delivery(const struct beam_delivery *a, const struct beam_deliv
         same_number(a->opening_y_mm[i], b->opening_y_mm[i]);
     }
     same_number(a->opening_cm2, b->opening_cm2);
-    same_number(a->collimator_x_lps.x, b->collimator_x_lps.x);
-    same_number(a->collimator_y_lps.z, b->collimator_y_lps.z);
+    same_vector(a->collimator_x_lps, b->collimator_x_lps);
+    same_vector(a->collimator_y_lps, b->collimator_y_lps);
     same_number(a->dose_gy, b->dose_gy);
     same_number(a->meterset, b->meterset);
     assert_string_equal(a->meterset_unit, b->meterset_unit);
@@ -135,8 +162,8 @@ static void same_beams(const struct plan *found, const struct plan *expected)
     for (size_t i = 0; i < found->n_beams; i++) {
         const struct beam *a = &found->beams[i], *b = &expected->beams[i];
         assert_string_equal(a->id, b->id);
-        assert_memory_equal(&a->entry_lps_mm, &b->entry_lps_mm, sizeof a->entry_lps_mm);
-        assert_memory_equal(&a->target_lps_mm, &b->target_lps_mm, sizeof a->target_lps_mm);
+        same_vector(a->entry_lps_mm, b->entry_lps_mm);
+        same_vector(a->target_lps_mm, b->target_lps_mm);
         same_number(a->aperture_mm, b->aperture_mm);
         assert_string_equal(a->name, b->name);
         assert_int_equal(a->has_delivery, b->has_delivery);
@@ -157,11 +184,11 @@ static void same_curves(const struct plan *found, const struct plan *expected)
         assert_int_equal(a->n_depths, b->n_depths);
         assert_int_equal(a->n_radii, b->n_radii);
         assert_int_equal(a->n_columns, b->n_columns);
-        assert_close(vec3_length(vec3_sub(a->center_lps_mm, b->center_lps_mm)), 0, 1e-9);
+        same_vector(a->center_lps_mm, b->center_lps_mm);
         for (size_t d = 0; d < a->n_depths; d++)
-            assert_close(a->depths_mm[d], b->depths_mm[d], 1e-9);
+            same_number(a->depths_mm[d], b->depths_mm[d]);
         for (size_t r = 0; r < a->n_radii; r++)
-            assert_close(a->radii_mm[r], b->radii_mm[r], 1e-9);
+            same_number(a->radii_mm[r], b->radii_mm[r]);
         for (size_t c = 0; c < a->n_columns; c++) {
             assert_int_equal(a->quantities[c], b->quantities[c]);
             assert_int_equal(a->is_per_ppm[c], b->is_per_ppm[c]);
@@ -199,6 +226,7 @@ void assert_same_plan(const struct plan *found, const struct plan *expected, dou
     same_beams(found, expected);
     same_curves(found, expected);
     assert_int_equal(found->tracks.n_segments, expected->tracks.n_segments);
+    assert_memory_equal(found->tracks.n_of_class, expected->tracks.n_of_class, sizeof found->tracks.n_of_class);
     for (size_t i = 0; i < found->tracks.n_segments; i++) {
         const struct track_segment *a = &found->tracks.segments[i], *b = &expected->tracks.segments[i];
         assert_memory_equal(a->from_lps_mm, b->from_lps_mm, sizeof a->from_lps_mm);

@@ -29,7 +29,7 @@ static void assert_comes_back(const char *path)
     struct plan *plan = load(path);
     folder_make(folder);
     snprintf(out, sizeof out, "%s/out", folder);
-    assert_true(plan_write(plan, out, &err));
+    assert_true(plan_write(plan, out, NULL, &err));
     struct plan *again = load(out);
     assert_same_plan(again, plan, EXACT_MM);
     plan_destroy(plan);
@@ -119,7 +119,9 @@ static void a_made_plan_comes_back_with_all_its_peculiarities(void **state)
 static void real_plans_come_back(void **state)
 {
     (void)state;
-    static const char *const names[] = { "sera-head", "openkbp-pt99", "mr-tumour-nrrd", "eclipse-ent-dose", "glioma-tcga-du7294" };
+    static const char *const names[] = { "sera-head",        "sera-head/generated", "sera-head/original", /* without a plan.json: curves, levels, colours */
+                                         "sera-st",          "openkbp-pt99",        "mr-tumour-nrrd",     "matrad-phantoms/BOXPHANTOM",
+                                         "eclipse-ent-dose", "eclipse-ent-dose/struct", "glioma-tcga-du7294", "dicomrt-oncentra-phantom" };
     char path[512];
     size_t n = 0;
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
@@ -139,12 +141,12 @@ static void a_folder_that_holds_something_is_left_alone_and_a_failure_leaves_not
     folder_make(folder);
     put_plan(folder);
     struct plan *plan = load(folder);
-    assert_false(plan_write(plan, folder, &err));
+    assert_false(plan_write(plan, folder, NULL, &err));
     assert_int_equal(err.code, ERROR_STATE);
     snprintf(out, sizeof out, "%s/plan.json", folder);
-    assert_false(plan_write(plan, out, &err));
+    assert_false(plan_write(plan, out, NULL, &err));
     snprintf(out, sizeof out, "%s/absent/out", folder);
-    assert_false(plan_write(plan, out, &err));
+    assert_false(plan_write(plan, out, NULL, &err));
     assert_int_equal(err.code, ERROR_IO);
     snprintf(path, sizeof path, "%s/absent", folder);
     assert_int_not_equal(access(path, F_OK), 0);

@@ -305,7 +305,7 @@ static void images_keep_their_own_grids(void **state)
 static void dicom_plans_come_back_from_their_conversion(void **state)
 {
     (void)state;
-    static const char *const names[] = { "dicomrt-oncentra-phantom", "dicomrt-sts001", "dicomrt-plans", "dicom-mr-head" };
+    static const char *const names[] = { "dicomrt-oncentra-phantom", "dicomrt-sts001", "dicomrt-plans", "dicom-mr-head", "dicomrt-lung-phantom" };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         char out[300];
         struct error err;
@@ -314,7 +314,7 @@ static void dicom_plans_come_back_from_their_conversion(void **state)
         struct plan *plan = load(names[i], &err);
         assert_string_equal(err.text, "");
         snprintf(out, sizeof out, "%s/converted-%zu", unpacked, i);
-        assert_true(plan_write(plan, out, &err));
+        assert_true(plan_write(plan, out, NULL, &err));
         struct plan *again = plan_load(out, "p", NULL, &err);
         assert_string_equal(err.text, "");
         assert_same_plan(again, plan, 1e-6);

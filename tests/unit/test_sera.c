@@ -439,7 +439,7 @@ static void the_unit_of_tracks_is_judged_by_the_patient(void **state)
     assert_true(report_has(&report, "tracks.unit-assumed"));
     assert_close(pp_unit_mm(&set, 0, 1, &head, "a.pp", &report), 1, 0); /* what the plan says stands, with a warning */
     assert_true(report_has(&report, "tracks.unit-doubtful"));
-    pp_scale(&set, 0, 10);
+    pp_scale(&set, 0, 10, "t.pp", NULL);
     assert_close(set.segments[0].from_lps_mm[0], -90, 0);
     report_finish(&report);
     assert_close(pp_unit_mm(&set, 0, 0, &head, "a.pp", &report), 1, 0);

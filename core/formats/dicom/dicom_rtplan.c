@@ -10,6 +10,7 @@
 #define RTPLAN_CLASS "1.2.840.10008.5.1.4.1.1.481.5"
 #define RTIONPLAN_CLASS "1.2.840.10008.5.1.4.1.1.481.8"
 #define ASSUMED_SAD_MM 1000.0
+#define NEAREST_MM 1e-3  /* distances below are none */
 #define FURTHEST_MM 1e5 /* isocentres and sources beyond are no numbers of a patient */
 
 enum {
@@ -120,7 +121,7 @@ static void fill_unknown(struct beam_delivery *d)
 static bool read_distance(const struct dicom_item *item, uint32_t tag, double *mm)
 {
     double value;
-    if (!dicom_number(item, tag, &value) || !(value > 0 && value <= FURTHEST_MM))
+    if (!dicom_number(item, tag, &value) || !(value >= NEAREST_MM && value <= FURTHEST_MM))
         return false;
     *mm = value;
     return true;
@@ -271,7 +272,8 @@ static bool read_beam(const struct reading *reading, const struct dicom_item *it
     /* z of the collimator's system points to the source */
     beam->entry_lps_mm = vec3_add(beam->target_lps_mm, vec3_scale(vec3_cross(d->collimator_x_lps, d->collimator_y_lps), d->sad_mm));
     d->gantry_stop_deg = course.angles.gantry_deg;
-    beam->aperture_mm = opening_diameter_mm(reading->opening, d);
+    double diameter_mm = opening_diameter_mm(reading->opening, d);
+    beam->aperture_mm = diameter_mm > 0 && diameter_mm <= BEAM_MAX_APERTURE_MM ? diameter_mm : NAN;
     int64_t n_said;
     if (dicom_integer(item, N_CONTROL_POINTS, &n_said) && n_said != (int64_t)d->n_control_points)
         report_add(reading->report, REPORT_WARNING, "beam.control-points", reading->where,
