@@ -30,6 +30,7 @@ struct unpacker {
     uint64_t most;                 /* bytes of all entries together */
     uint64_t n_read;               /* of them, litter too */
     uint32_t n_entries;
+    int64_t entry_at;              /* of a tar: where the last one begins */
     char top[FOLDER_NAME_SIZE];    /* the first part of every name so far */
     bool has_one_top, is_top_folder;
     char last_parent[FOLDER_NAME_SIZE]; /* whose folders are all made */
@@ -88,14 +89,40 @@ static bool refuse_damaged(struct unpacker *unpacker, const char *name)
     const char *said = archive_error_string(unpacker->archive);
     unpack_show(name, shown);
     unpack_show(said ? said : "it cannot be read", words);
+    if (*shown)
+        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format", "entry \"%s\": damaged: %s; expected is an archive that is whole", shown,
+                           words);
     return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
-                       *shown ? "entry \"%s\": damaged: %s; expected is an archive that is whole" : "%sthe archive is damaged: %s; expected is one that is whole",
-                       shown, words);
+                       "the archive is damaged after entry %lu, before byte %llu of %llu: %s; expected is one that is whole",
+                       (unsigned long)unpacker->n_entries, (unsigned long long)unpacker->source.at, (unsigned long long)unpacker->source.n_bytes,
+                       words);
+}
+
+static bool is_tar(const struct unpacker *unpacker)
+{
+    return (archive_format(unpacker->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_TAR;
+}
+
+/* A sentence about an entry names it; here comes which it is, as names may be there twice, be cut or look like others. */
+static void add_place(struct unpacker *unpacker)
+{
+    static const char before[] = "entry \"", many[] = "more than";
+    struct problem *problem = &unpacker->problem;
+    char said[sizeof problem->detail], place[64] = "";
+    bool names_it = strncmp(problem->detail, before, sizeof before - 1) == 0;
+    if (unpacker->n_entries == 0 || (!names_it && strncmp(problem->detail, many, sizeof many - 1) != 0))
+        return;
+    memcpy(said, problem->detail, sizeof said);
+    if (is_tar(unpacker))
+        (void)snprintf(place, sizeof place, " at byte %lld of the tar", (long long)unpacker->entry_at);
+    (void)snprintf(problem->detail, sizeof problem->detail, "entry %lu%s%s%.*s", (unsigned long)unpacker->n_entries, place, names_it ? ", \"" : ": ",
+                   (int)(sizeof said - sizeof place), said + (names_it ? sizeof before - 1 : 0));
 }
 
 static bool refuse_no_file(struct unpacker *unpacker)
 {
-    return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "required", "the archive holds no file; expected are the files of a plan");
+    return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "required", "the archive holds no file in %lu entries; expected are the files of a plan",
+                       (unsigned long)unpacker->n_entries);
 }
 
 static bool refuse_unknown(struct unpacker *unpacker)
@@ -105,7 +132,8 @@ static bool refuse_unknown(struct unpacker *unpacker)
         return refuse_no_file(unpacker);
     if (unpack_source_has(&unpacker->source, 0, "PK\3\4", 4))
         return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
-                           "a zip whose directory at its end is missing or damaged; was all of it sent?");
+                           "a zip of %llu bytes whose directory at its end is missing or damaged; expected is its end mark, PK 5 6, in the last 65557 bytes: was all of it sent?",
+                           (unsigned long long)unpacker->source.n_bytes);
     static const struct {
         const char *bytes;
         size_t n;
@@ -114,12 +142,19 @@ static bool refuse_unknown(struct unpacker *unpacker)
                   { "BZh", 3, "bzip2 data, damaged or of something else" },
                   { "\xfd" "7zXZ", 5, "xz data, damaged or of something else" },
                   { "\x28\xb5\x2f\xfd", 4, "zstd data, damaged or of something else" }, { "MSCF", 4, "a cabinet file" } };
-    const char *found = unpacker->source.n_bytes == 0 ? "an empty file" : "something else";
+    uint8_t first[4];
+    char other[64];
+    const char *found = unpacker->source.n_bytes == 0 ? "an empty file" : other;
+    size_t n_first = unpack_source_first(&unpacker->source, first, sizeof first);
+    size_t n_other = (size_t)snprintf(other, sizeof other, "something else, at byte 0%s", n_first ? "" : " nothing");
+    for (size_t i = 0; i < n_first; i++)
+        n_other += (size_t)snprintf(other + n_other, sizeof other - n_other, " %02x", first[i]);
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (unpack_source_has(&unpacker->source, 0, known[i].bytes, known[i].n))
             found = known[i].words;
     return problem_set(&unpacker->problem, PROBLEM_MEDIA_TYPE, "", "",
-                       "no archive that is read here: found is %s, expected a zip, or a tar as it is or within gzip, bzip2, xz or zstd", found);
+                       "no archive that is read here: found is %s (%llu bytes), expected a zip, or a tar as it is or within gzip, bzip2, xz or zstd", found,
+                       (unsigned long long)unpacker->source.n_bytes);
 }
 
 static bool refuse_entry(struct unpacker *unpacker, const char *name, const char *code, const char *found, const char *expected)
@@ -254,6 +289,7 @@ static bool take_entry(struct unpacker *unpacker, struct archive_entry *entry)
         return problem_set(&unpacker->problem, PROBLEM_TOO_LARGE, "", "", "the archive has more than %d entries; at most so many are allowed",
                            UNPACK_MAX_ENTRIES);
     char name[FOLDER_NAME_SIZE];
+    unpacker->entry_at = archive_read_header_position(unpacker->archive);
     const char *raw = archive_entry_pathname(entry);
     bool is_folder = false;
     uint64_t n_bytes;
@@ -280,17 +316,17 @@ static bool take_entry(struct unpacker *unpacker, struct archive_entry *entry)
 static bool check_end(struct unpacker *unpacker)
 {
     static const uint8_t zeros[512];
-    bool is_tar = (archive_format(unpacker->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_TAR;
     uint32_t n_said;
-    if (!is_tar && unpack_source_zip_entries(&unpacker->source, &n_said) && n_said != (unpacker->n_entries & 0xffff)) /* older programs count on from 0 */
+    if (!is_tar(unpacker) && unpack_source_zip_entries(&unpacker->source, &n_said) && n_said != (unpacker->n_entries & 0xffff)) /* older programs count on from 0 */
         return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
                            "the zip's directory says that it holds %lu entries; found are %lu that do not overlap", (unsigned long)n_said,
                            (unsigned long)unpacker->n_entries);
     bool is_bare = !unpacker->source.is_gzip && archive_filter_count(unpacker->archive) <= 1;
     uint64_t n_bytes = unpacker->source.n_bytes;
-    if (is_tar && is_bare && (n_bytes < sizeof zeros || !unpack_source_has(&unpacker->source, n_bytes - sizeof zeros, zeros, sizeof zeros)))
+    if (is_tar(unpacker) && is_bare && (n_bytes < sizeof zeros || !unpack_source_has(&unpacker->source, n_bytes - sizeof zeros, zeros, sizeof zeros)))
         return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
-                           "the tar ends without its end mark, 512 bytes of zero; was all of it sent?");
+                           "the tar ends at byte %llu, after entry %lu, without its end mark, 512 bytes of zero; was all of it sent?",
+                           (unsigned long long)n_bytes, (unsigned long)unpacker->n_entries);
     if (!unpack_source_drain(&unpacker->source))
         return refuse_damaged(unpacker, "");
     return true;
@@ -305,7 +341,7 @@ static bool walk(struct unpacker *unpacker)
         status = archive_read_next_header(archive, &entry);
         if (status == ARCHIVE_OK && archive_filter_count(archive) > (unpacker->source.is_gzip ? 1 : 2))
             return problem_set(&unpacker->problem, PROBLEM_MEDIA_TYPE, "", "",
-                               "compressed more than once; expected is a zip, or a tar as it is or within gzip, bzip2, xz or zstd");
+                               "compressed more than once, from byte 0 on; expected is a zip, or a tar as it is or within gzip, bzip2, xz or zstd");
         if (status == ARCHIVE_OK && !goes_on(unpacker))
             return refuse_damaged(unpacker, "");
         if (status == ARCHIVE_OK && !take_entry(unpacker, entry))
@@ -350,6 +386,8 @@ static bool run(struct unpacker *unpacker, int archive, int folder)
     if (is_done && !unpack_source_open(&unpacker->source, unpacker->archive, archive, undone, goes_on, unpacker))
         is_done = refuse_damaged(unpacker, "");
     is_done = is_done && walk(unpacker);
+    if (!is_done)
+        add_place(unpacker);
     (void)archive_read_free(unpacker->archive);
     unpack_source_finish(&unpacker->source);
     unpack_writer_finish(&unpacker->writer);

@@ -1,7 +1,7 @@
 #pragma once
 /* Unpacks an archive somebody sent into an empty folder: zip, or tar as it is or within gzip, bzip2, xz or zstd. The archive is hostile
  * until it is read: what it may hold and how much of it is written down here, and the first thing that breaks a rule refuses all of it
- * with a sentence that names the entry, what was found and what is expected. Then nothing of it stays behind. Knows nothing of plans.
+ * with a sentence that names the entry, its number and in a tar the byte it begins at, what was found and what is expected. Then nothing of it stays behind. Knows nothing of plans.
  *
  * Names. Relative, parts parted by '/' ('\' counts as one); parts that are "." are left out. Refused: absolute names, drive letters,
  * "..", empty parts, control characters, a part or a name too long, the same name twice, also in another case. A byte that is not of

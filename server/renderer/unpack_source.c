@@ -17,8 +17,8 @@ static bool is_within(struct unpack_source *source, uint64_t n_undone)
     if (n_undone <= source->most)
         return true;
     return problem_set(&source->problem, PROBLEM_TOO_LARGE, "", "",
-                       "the archive's %llu bytes unpack to more than %llu; at most so many are allowed for it", (unsigned long long)source->n_bytes,
-                       (unsigned long long)source->most);
+                       "the archive's %llu bytes unpack to more than %llu by byte %llu; at most so many are allowed for it",
+                       (unsigned long long)source->n_bytes, (unsigned long long)source->most, (unsigned long long)source->at);
 }
 
 /* Next block of the file; -1: source->problem says why. */
@@ -103,7 +103,8 @@ static la_ssize_t read_gzip(struct archive *archive, void *context, const void *
         if (stream->avail_in == 0) {
             ssize_t n = read_block(source);
             if (n == 0)
-                (void)fail(source, PROBLEM_VALIDATION, "format", "the archive's gzip data end early; expected is their check sum at the end");
+                (void)problem_set(&source->problem, PROBLEM_VALIDATION, "", "format",
+                                  "the archive's gzip data end early, at byte %llu; expected is their check sum at the end", (unsigned long long)source->at);
             if (n <= 0)
                 return ARCHIVE_FATAL;
             stream->next_in = source->bytes;
@@ -120,6 +121,12 @@ static la_ssize_t read_gzip(struct archive *archive, void *context, const void *
     size_t n = sizeof source->plain - stream->avail_out;
     source->n_plain += n;
     return is_within(source, source->n_plain) ? (la_ssize_t)n : ARCHIVE_FATAL;
+}
+
+size_t unpack_source_first(const struct unpack_source *source, uint8_t *bytes, size_t n)
+{
+    ssize_t n_read = pread(source->file, bytes, n, 0);
+    return n_read > 0 ? (size_t)n_read : 0;
 }
 
 bool unpack_source_has(const struct unpack_source *source, uint64_t at, const void *expected, size_t n)

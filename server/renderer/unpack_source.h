@@ -27,6 +27,8 @@ NODISCARD bool unpack_source_open(struct unpack_source *source, struct archive *
                                   bool (*goes_on)(void *context), void *context);
 /* Whether the bytes at an offset are these. */
 bool unpack_source_has(const struct unpack_source *source, uint64_t at, const void *expected, size_t n);
+/* The first bytes, at most n; how many there are. */
+size_t unpack_source_first(const struct unpack_source *source, uint8_t *bytes, size_t n);
 /* How many entries a zip's directory says it has; false: there is none, or they are too many for its plain form. */
 bool unpack_source_zip_entries(const struct unpack_source *source, uint32_t *n_entries);
 /* gzip: reads on to its end, so that all of it has been checked. */

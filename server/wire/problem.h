@@ -9,7 +9,7 @@ struct problem {
     enum problem_type type;
     char code[32];      /* validation: "type", "range", "enum", "unknown-field", "required", "duplicate", "length", "pattern", "count" */
     char pointer[160];  /* RFC 6901, "/image/window/width"; "" the whole */
-    char detail[256];   /* a sentence: what was found, what was expected */
+    char detail[320];   /* a sentence: what was found, what was expected */
     int retry_after_ms; /* 0: not said */
 };
 

@@ -69,12 +69,24 @@ static int count_names(const char *path)
     return n;
 }
 
+/* An entry's number, or bytes. */
+static bool names_a_place(const char *detail)
+{
+    for (const char *at = detail; (at = strpbrk(at, "0123456789")); at++)
+        if ((at - detail >= 6 && memcmp(at - 6, "entry ", 6) == 0) || (at - detail >= 5 && memcmp(at - 5, "byte ", 5) == 0) ||
+            strncmp(at + strspn(at, "0123456789"), " bytes", 6) == 0 || strncmp(at + strspn(at, "0123456789"), " entries", 8) == 0)
+            return true;
+    return false;
+}
+
 static void assert_refused(const char *name, enum problem_type type, const char *words)
 {
     struct run run;
     begin(&run, name, NULL);
     int n_left = count_names(run.folder);
     folder_remove(run.folder);
+    if (!names_a_place(run.problem.detail))
+        fail_msg("%s: \"%s\" says nowhere where", name, run.problem.detail);
     if (run.is_done || run.problem.type != type || !strstr(run.problem.detail, words) || n_left != 0)
         fail_msg("%s: done %d, type %d (expected %d), \"%s\" (expected \"%s\"), %d names left", name, run.is_done, (int)run.problem.type, (int)type,
                  run.problem.detail, words, n_left);
@@ -182,6 +194,35 @@ static void names_that_lead_astray_are_refused(void **state)
             assert_refused(name, list[i].type, list[i].words);
         }
     assert_refused("name-back.zip", PROBLEM_VALIDATION, "\"..\" in its name");
+}
+
+/* Python's zipfile and tarfile say which entry it is and where it begins. */
+static void the_entry_that_is_refused_is_found_by_its_number_and_place(void **state)
+{
+    (void)state;
+    char path[512], name[64];
+    int number, n = 0;
+    long offset;
+    if (!has_archives)
+        skip();
+    snprintf(path, sizeof path, "%s/places.txt", archives);
+    FILE *places = fopen(path, "r");
+    assert_non_null(places);
+    while (fscanf(places, "%63s %d %ld", name, &number, &offset) == 3) {
+        struct run run;
+        char expected[96];
+        begin(&run, name, NULL);
+        folder_remove(run.folder);
+        if (offset < 0)
+            snprintf(expected, sizeof expected, "entry %d, \"", number);
+        else
+            snprintf(expected, sizeof expected, "entry %d at byte %ld of the tar, \"", number, offset);
+        if (run.is_done || strncmp(run.problem.detail, expected, strlen(expected)) != 0)
+            fail_msg("%s: \"%s\" (expected \"%s\")", name, run.problem.detail, expected);
+        n++;
+    }
+    fclose(places);
+    assert_true(n >= 30);
 }
 
 static void a_name_is_there_once(void **state)
@@ -428,6 +469,7 @@ int main(void)
         cmocka_unit_test(every_kind_of_archive_gives_the_same_files),
         cmocka_unit_test(names_are_kept_or_made_safe),
         cmocka_unit_test(names_that_lead_astray_are_refused),
+        cmocka_unit_test(the_entry_that_is_refused_is_found_by_its_number_and_place),
         cmocka_unit_test(a_name_is_there_once),
         cmocka_unit_test(only_files_and_folders_come_out),
         cmocka_unit_test(damage_is_noticed),
