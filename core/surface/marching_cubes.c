@@ -216,8 +216,6 @@ static void write_triangles(const struct marching_rows *grid, const struct row *
 }
 
 #if defined(__x86_64__)
-#define FAST __attribute__((target("avx2,popcnt,bmi,bmi2")))
-
 /* The same with the running numbers in one register; all five triangles that a cell could have are written, the next cell's over
  * what is too much. `end` is where this thread's triangles end: the last few must not reach beyond. */
 FAST static void write_triangles_avx2(const struct marching_rows *grid, const struct row *row, const struct around *rows, const uint32_t *end)
@@ -253,7 +251,7 @@ FAST static void write_triangles_avx2(const struct marching_rows *grid, const st
 }
 #endif
 
-INLINED void write_rows(const struct marching_rows *grid, size_t from, size_t end, bool use_avx2)
+INLINED void write_rows(const struct marching_rows *grid, size_t from, size_t end, bool has_positions, bool use_avx2)
 {
     const uint32_t *end_of_triangles = grid->mesh->indices + 3 * (size_t)grid->rows[end].triangles;
     for (size_t at = from; at < end; at++) {
@@ -262,7 +260,8 @@ INLINED void write_rows(const struct marching_rows *grid, size_t from, size_t en
             continue; /* nothing of its own between its beginning and the next row's */
         uint32_t y = (uint32_t)(at % grid->size[1]), z = (uint32_t)(at / grid->size[1]);
         struct around rows = rows_around(grid, y, z);
-        write_vertices(grid, row, &rows, y, z);
+        if (has_positions)
+            write_vertices(grid, row, &rows, y, z);
         if (!rows.has_cells || row[1].triangles == row->triangles)
             continue;
 #if defined(__x86_64__)
@@ -279,7 +278,10 @@ INLINED void write_rows(const struct marching_rows *grid, size_t from, size_t en
 
 #if defined(__x86_64__)
 FAST static void count_slices_fast(struct marching_rows *grid, uint32_t from, uint32_t end) { count_slices(grid, from, end); }
-FAST static void write_rows_fast(const struct marching_rows *grid, size_t from, size_t end) { write_rows(grid, from, end, true); }
+FAST static void write_rows_fast(const struct marching_rows *grid, size_t from, size_t end, bool has_positions)
+{
+    write_rows(grid, from, end, has_positions, true);
+}
 static bool has_fast(void)
 {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("bmi") &&
@@ -287,7 +289,10 @@ static bool has_fast(void)
 }
 #else
 static void count_slices_fast(struct marching_rows *grid, uint32_t from, uint32_t end) { count_slices(grid, from, end); }
-static void write_rows_fast(const struct marching_rows *grid, size_t from, size_t end) { write_rows(grid, from, end, false); }
+static void write_rows_fast(const struct marching_rows *grid, size_t from, size_t end, bool has_positions)
+{
+    write_rows(grid, from, end, has_positions, false);
+}
 static bool has_fast(void) { return false; }
 #endif
 
@@ -326,12 +331,13 @@ static void write_part(void *context, int part, int n_parts)
     const struct job *job = context;
     size_t n_rows = (size_t)job->grid.size[1] * job->grid.size[2];
     size_t from = row_at_share(job, n_rows, part, n_parts), end = row_at_share(job, n_rows, part + 1, n_parts);
+    bool has_positions = !job->graph || !job->graph->has_no_positions;
     if (job->code == MARCHING_CUBES_PORTABLE)
-        write_rows(&job->grid, from, end, false);
+        write_rows(&job->grid, from, end, has_positions, false);
     else
-        write_rows_fast(&job->grid, from, end);
+        write_rows_fast(&job->grid, from, end, has_positions);
     if (job->graph)
-        marching_graph_write(&job->grid, job->graph, from, end);
+        marching_graph_write(job->code, &job->grid, job->graph, from, end);
 }
 
 static bool number_rows(struct job *job, const struct surface_options *options, struct error *err)
@@ -421,7 +427,8 @@ struct mesh *marching_cubes_run(enum marching_cubes_code code, const struct mask
                 marching_graph_finish(graph);
             } else {
                 parallel_run(n_parts, write_part, &job);
-                mesh_measure_bounds(grid->mesh);
+                if (!graph || !graph->has_no_positions)
+                    mesh_measure_bounds(grid->mesh);
             }
         }
     }

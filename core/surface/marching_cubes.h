@@ -21,6 +21,7 @@ struct marching_graph {
     struct affine lps_mm_from_at;
     int32_t start[3];              /* index in the mask of place 0 0 0 */
     bool has_no_links;             /* set by the caller: they are not wanted, links stays NULL */
+    bool has_no_positions;         /* set by the caller, who writes the mesh's positions, and its bounds, itself */
 };
 void marching_graph_finish(struct marching_graph *graph);
 
@@ -32,4 +33,5 @@ NODISCARD struct mesh *marching_cubes_with(enum marching_cubes_code code, const 
 
 struct marching_rows;
 /* Points and links of the vertices that rows from..end own, and those of the cells they own (marching_graph.c). */
-void marching_graph_write(const struct marching_rows *grid, struct marching_graph *graph, size_t from, size_t end);
+void marching_graph_write(enum marching_cubes_code code, const struct marching_rows *grid, struct marching_graph *graph, size_t from,
+                          size_t end);

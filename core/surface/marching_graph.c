@@ -18,6 +18,12 @@ struct steps {
 static struct steps steps_of[256];
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 
+/* Where write_links has the vertex of an edge. */
+static uint8_t place_of(uint8_t edge)
+{
+    return edge < 8 ? edge : (uint8_t)(edge + 4);
+}
+
 static void make_steps(void)
 {
     for (int inside = 0; inside < 256; inside++) {
@@ -31,35 +37,42 @@ static void make_steps(void)
                 uint8_t last = edge & 1, far = edge >= 8;
                 bool is_z = edge >= 4 && (edge & 2);
                 uint8_t slot = edge < 4 ? edge : is_z ? (uint8_t)(far | last << 1) : (uint8_t)(last | far << 1);
-                steps->of[steps->n].edge = edge;
-                steps->of[steps->n].next = (uint8_t)next[edge];
+                steps->of[steps->n].edge = place_of(edge);
+                steps->of[steps->n].next = place_of((uint8_t)next[edge]);
                 steps->of[steps->n++].slot = slot;
             }
     }
 }
 
-static void write_links(const struct marching_rows *grid, const struct row *row, const struct around *rows, uint32_t (*links)[4])
+typedef uint32_t eight __attribute__((vector_size(32)));
+
+INLINED void write_links(const struct marching_rows *grid, const struct row *row, const struct around *rows, uint32_t (*links)[4])
 {
-    uint32_t vertex[CUBE_EDGES] = FIRST_VERTICES(grid, row);
+    typedef uint8_t eight_bytes __attribute__((vector_size(8)));
+    const uint32_t first[8] = FIRST_VERTICES(grid, row);
+    union {
+        eight of[2]; /* edges 0 to 7 of the cell; of the next one, whose 4 to 7 are this one's 8 to 11 */
+        uint32_t number[16];
+    } vertex;
+    memcpy(&vertex.of[1], first, sizeof first);
     for (uint32_t w = 0; w < grid->words; w++) {
         if (is_uniform(rows, w))
             continue;
         for (uint64_t cells = find_crossings(grid, rows, w).active; cells; cells &= cells - 1) {
             uint32_t inside = case_at(rows, w, __builtin_ctzll(cells));
-            const struct cube_case *cube = &grid->cases[inside];
             const struct steps *steps = &steps_of[inside];
-            uint32_t following[8];
-            for (int e = 0; e < 8; e++)
-                following[e] = vertex[e] + cube->is_crossed[e];
-            memcpy(vertex + 8, following + 4, 4 * sizeof *vertex);
+            eight_bytes is_crossed;
+            memcpy(&is_crossed, grid->cases[inside].is_crossed, sizeof is_crossed);
+            eight here = vertex.of[1];
+            vertex.of[0] = here;
+            vertex.of[1] = here + __builtin_convertvector(is_crossed, eight);
             for (int i = 0; i < steps->n; i++)
-                links[vertex[steps->of[i].edge]][steps->of[i].slot] = vertex[steps->of[i].next];
-            memcpy(vertex, following, sizeof following);
+                links[vertex.number[steps->of[i].edge]][steps->of[i].slot] = vertex.number[steps->of[i].next];
         }
     }
 }
 
-static struct marching_point *put_points(struct marching_point *to, uint64_t crossed, uint64_t here, uint32_t first, uint32_t y,
+INLINED struct marching_point *put_points(struct marching_point *to, uint64_t crossed, uint64_t here, uint32_t first, uint32_t y,
                                          uint32_t z, uint8_t axis)
 {
     for (uint64_t bits = crossed; bits; bits &= bits - 1) {
@@ -71,7 +84,7 @@ static struct marching_point *put_points(struct marching_point *to, uint64_t cro
     return to;
 }
 
-static void write_points(const struct marching_rows *grid, const struct row *row, const struct around *rows, uint32_t y, uint32_t z,
+INLINED void write_points(const struct marching_rows *grid, const struct row *row, const struct around *rows, uint32_t y, uint32_t z,
                          struct marching_point *points)
 {
     struct marching_point *x_at = points + row->x, *y_at = points + row->y, *z_at = points + row->z;
@@ -85,9 +98,8 @@ static void write_points(const struct marching_rows *grid, const struct row *row
     }
 }
 
-void marching_graph_write(const struct marching_rows *grid, struct marching_graph *graph, size_t from, size_t end)
+INLINED void write_graph(const struct marching_rows *grid, const struct marching_graph *graph, size_t from, size_t end)
 {
-    pthread_once(&once, make_steps);
     for (size_t at = from; at < end; at++) {
         const struct row *row = &grid->rows[at];
         uint32_t y = (uint32_t)(at % grid->size[1]), z = (uint32_t)(at / grid->size[1]);
@@ -97,4 +109,26 @@ void marching_graph_write(const struct marching_rows *grid, struct marching_grap
         if (graph->links && rows.has_cells && row[1].triangles > row->triangles)
             write_links(grid, row, &rows, graph->links);
     }
+}
+
+#if defined(__x86_64__)
+FAST static void write_graph_fast(const struct marching_rows *grid, const struct marching_graph *graph, size_t from, size_t end)
+{
+    write_graph(grid, graph, from, end);
+}
+#else
+static void write_graph_fast(const struct marching_rows *grid, const struct marching_graph *graph, size_t from, size_t end)
+{
+    write_graph(grid, graph, from, end);
+}
+#endif
+
+void marching_graph_write(enum marching_cubes_code code, const struct marching_rows *grid, struct marching_graph *graph, size_t from,
+                          size_t end)
+{
+    pthread_once(&once, make_steps);
+    if (code == MARCHING_CUBES_PORTABLE)
+        write_graph(grid, graph, from, end);
+    else
+        write_graph_fast(grid, graph, from, end);
 }

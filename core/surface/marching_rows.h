@@ -26,6 +26,9 @@ struct marching_rows {
 
 /* Inlined into a version for any processor and one for processors with AVX2 and bit counting. */
 #define INLINED static inline __attribute__((always_inline))
+#if defined(__x86_64__)
+#define FAST __attribute__((target("avx2,popcnt,bmi,bmi2")))
+#endif
 
 /* A row with its neighbours; at the end of an axis the row stands in for the missing neighbour, so nothing is crossed there. */
 struct around {

@@ -264,11 +264,6 @@ static size_t plan_filters(const struct smooth_job *job, struct pass *passes)
 
 /* ---- back to the edges --------------------------------------------------------------------------------------------------- */
 
-static float4 turn(float4 v) /* y, z, x */
-{
-    return __builtin_shufflevector(v, v, 1, 2, 0, 3);
-}
-
 static float dot(float4 a, float4 b)
 {
     float4 product = a * b;
@@ -279,7 +274,7 @@ static float dot(float4 a, float4 b)
 static float4 normal_of(const float4 ends[4])
 {
     float4 u = ends[3] - ends[0], w = ends[2] - ends[1];
-    return turn(u * turn(w) - turn(u) * w);
+    return smooth_turn(u * smooth_turn(w) - smooth_turn(u) * w);
 }
 
 /* Where the edge meets the plane through the displaced vertex. An edge nearly within that plane meets it anywhere: there the vertex'
@@ -483,7 +478,7 @@ struct mesh *smooth_with(const struct smooth_options *smoothing, const struct ma
                          struct error *err)
 {
     assert(smoothing->n_steps >= 1 && smoothing->n_steps <= SMOOTH_MAX_STEPS && smoothing->max_shift < 0.5);
-    struct marching_graph graph = { 0 };
+    struct marching_graph graph = { .has_no_positions = true };
     struct mesh *mesh = marching_cubes_run(MARCHING_CUBES_BEST, mask, options, &graph, err);
     if (!mesh)
         return NULL;

@@ -51,6 +51,11 @@ static inline float4 smooth_along(int axis, float length)
     return units[axis] * length;
 }
 
+static inline float4 smooth_turn(float4 v) /* y, z, x */
+{
+    return __builtin_shufflevector(v, v, 1, 2, 0, 3);
+}
+
 static inline float smooth_cut(float value, float most)
 {
     return value > most ? most : value < -most ? -most : value;

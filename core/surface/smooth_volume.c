@@ -23,7 +23,7 @@ struct volume_job {
     uint32_t *piece_of; /* [n_vertices] */
     float4 *at;         /* [n_vertices] */
     double *sums;       /* [n_chunks][n_pieces] */
-    size_t n_chunks;
+    size_t n_chunks, chunk_size; /* of triangles */
 };
 
 static uint32_t root_of(uint32_t *up, uint32_t v)
@@ -43,8 +43,8 @@ static void find_pieces(struct volume_job *job)
         const uint32_t *link = job->smooth->graph->links[v];
         uint32_t root = up[v] = v;
         for (int i = 0; i < 4; i++) {
-            if (link[i] >= v)
-                continue; /* seen from there */
+            if (link[i] >= v || up[link[i]] == root)
+                continue; /* seen from there; known */
             uint32_t other = root_of(up, link[i]);
             if (other < root) {
                 up[root] = other;
@@ -66,73 +66,78 @@ static void measure_wanted(struct volume_job *job)
     const struct smooth_job *smooth = job->smooth;
     float4 edge = smooth->edge_mm;
     const float faces_mm2[3] = { edge[1] * edge[2], edge[2] * edge[0], edge[0] * edge[1] };
-    for (size_t v = 0; v < smooth->n; v++) {
-        const struct marching_point *point = &smooth->graph->points[v];
-        struct piece *piece = &job->pieces[job->piece_of[v]];
-        if (point->axis == 0)
-            piece->wanted += point->outward * (point->at2[0] * 0.5);
-        piece->area_mm2 += (double)(faces_mm2[point->axis] * smooth->lean[v]);
+    for (size_t v = 0, end; v < smooth->n; v = end) { /* a run of vertices of one piece at a time: its sums stay at hand */
+        uint32_t number = job->piece_of[v];
+        struct piece *piece = &job->pieces[number];
+        double wanted = piece->wanted, area_mm2 = piece->area_mm2;
+        for (end = v; end < smooth->n && job->piece_of[end] == number; end++) {
+            const struct marching_point *point = &smooth->graph->points[end];
+            if (point->axis == 0)
+                wanted += point->outward * (point->at2[0] * 0.5);
+            area_mm2 += (double)(faces_mm2[point->axis] * smooth->lean[end]);
+        }
+        piece->wanted = wanted;
+        piece->area_mm2 = area_mm2;
     }
 }
 
-static void place(void *context, int part, int n_parts)
+static inline void place(const struct volume_job *job, size_t v)
 {
-    struct volume_job *job = context;
-    const struct smooth_job *smooth = job->smooth;
-    float most = (float)smooth->options.max_shift;
+    const struct marching_point *point = &job->smooth->graph->points[v];
+    float most = (float)job->smooth->options.max_shift;
+    job->at[v] = smooth_start(point) + smooth_along(point->axis, smooth_cut(job->smooth->shift[v], most));
+}
+
+static void place_all(void *context, int part, int n_parts)
+{
+    const struct volume_job *job = context;
     size_t v, end;
-    for (smooth_range(smooth, part, n_parts, &v, &end); v < end; v++) {
-        const struct marching_point *point = &smooth->graph->points[v];
-        if (!job->pieces[job->piece_of[v]].is_settled)
-            job->at[v] = smooth_start(point) + smooth_along(point->axis, smooth_cut(smooth->shift[v], most));
-    }
+    for (smooth_range(job->smooth, part, n_parts, &v, &end); v < end; v++)
+        place(job, v);
 }
 
 /* In a right-handed grid the volume of the prism along x between a triangle and x = 0, positive where it faces x. */
-static double prism(const struct volume_job *job, size_t triangle)
+static inline double prism(const float4 *at, const uint32_t v[3])
 {
-    const uint32_t *v = job->smooth->mesh->indices + 3 * triangle;
-    float4 a = job->at[v[0]], u = job->at[v[1]] - a, w = job->at[v[2]] - a;
-    return (double)((u[1] * w[2] - u[2] * w[1]) * (a[0] + (u[0] + w[0]) / 3)) / 2;
+    float4 a = at[v[0]], u = at[v[1]] - a, w = at[v[2]] - a;
+    float4 across = u * smooth_turn(w) - smooth_turn(u) * w; /* z, x, y */
+    float4 middle = a + (u + w) / 3;
+    return (double)(across[1] * middle[0]) / 2;
 }
 
-static size_t chunk_end(const struct volume_job *job, size_t chunk)
+static void measure_chunk(const struct volume_job *job, size_t chunk)
 {
-    size_t end = (chunk + 1) * CHUNK, n = job->smooth->mesh->n_triangles;
-    return end < n ? end : n;
+    const uint32_t *indices = job->smooth->mesh->indices;
+    double *sums = job->sums + chunk * job->n_pieces;
+    size_t end = (chunk + 1) * job->chunk_size, n = job->smooth->mesh->n_triangles;
+    end = end < n ? end : n;
+    memset(sums, 0, job->n_pieces * sizeof *sums);
+    for (size_t t = chunk * job->chunk_size, last; t < end; t = last) { /* a run of triangles of one piece at a time */
+        uint32_t piece = job->piece_of[indices[3 * t]];
+        bool is_settled = job->pieces[piece].is_settled;
+        double sum = sums[piece];
+        for (last = t; last < end && job->piece_of[indices[3 * last]] == piece; last++)
+            if (!is_settled)
+                sum += prism(job->at, indices + 3 * last);
+        sums[piece] = sum;
+    }
 }
 
 static void measure_chunks(void *context, int part, int n_parts)
 {
-    struct volume_job *job = context;
+    const struct volume_job *job = context;
     size_t end = job->n_chunks * (size_t)(part + 1) / (size_t)n_parts;
-    for (size_t chunk = job->n_chunks * (size_t)part / (size_t)n_parts; chunk < end; chunk++) {
-        double *sums = job->sums + chunk * job->n_pieces;
-        memset(sums, 0, job->n_pieces * sizeof *sums);
-        for (size_t t = chunk * CHUNK, last = chunk_end(job, chunk); t < last; t++) {
-            uint32_t piece = job->piece_of[job->smooth->mesh->indices[3 * t]];
-            if (!job->pieces[piece].is_settled)
-                sums[piece] += prism(job, t);
-        }
-    }
+    for (size_t chunk = job->n_chunks * (size_t)part / (size_t)n_parts; chunk < end; chunk++)
+        measure_chunk(job, chunk);
 }
 
-/* Of the pieces that are not settled. By chunks that are added in their order, so that threads do not matter; with many pieces by one thread. */
+/* Of the pieces that are not settled. Chunks are added in their order, so that threads do not matter. */
 static void measure_volumes(struct volume_job *job)
 {
     double sign = job->smooth->is_mirrored ? -1 : 1;
     for (uint32_t p = 0; p < job->n_pieces; p++)
         if (!job->pieces[p].is_settled)
             job->pieces[p].volume = 0;
-    parallel_run(job->smooth->n_threads, place, job);
-    if (!job->sums) {
-        for (size_t t = 0; t < job->smooth->mesh->n_triangles; t++) {
-            struct piece *piece = &job->pieces[job->piece_of[job->smooth->mesh->indices[3 * t]]];
-            if (!piece->is_settled)
-                piece->volume += sign * prism(job, t);
-        }
-        return;
-    }
     parallel_run(job->smooth->n_threads, measure_chunks, job);
     for (size_t chunk = 0; chunk < job->n_chunks; chunk++)
         for (uint32_t p = 0; p < job->n_pieces; p++)
@@ -176,6 +181,7 @@ static void swell(void *context, int part, int n_parts)
         float lean = smooth->lean[v], mm = (float)job->pieces[job->piece_of[v]].swelling_mm;
         /* as far along the edge as moves the surface by mm, but not without end where edge and surface are nearly parallel */
         smooth->shift[v] += (float)point->outward * mm * lean / ((lean * lean + 0.1f) * smooth->edge_mm[point->axis]);
+        place(job, v);
     }
 }
 
@@ -185,16 +191,17 @@ bool smooth_keep_volume(struct smooth_job *smooth, struct error *err)
         .smooth = smooth,
         .at = smooth->now,
         .piece_of = (uint32_t *)smooth->before,
-        .n_chunks = (smooth->mesh->n_triangles + CHUNK - 1) / CHUNK,
     };
     find_pieces(&job);
     job.pieces = mem_array(job.n_pieces, sizeof *job.pieces, UINT64_MAX, err);
-    bool is_split = job.n_pieces <= MAX_PIECES_SPLIT;
-    if (job.pieces && is_split)
+    job.chunk_size = job.n_pieces <= MAX_PIECES_SPLIT ? CHUNK : smooth->mesh->n_triangles + 1; /* many pieces: all of it by one thread */
+    job.n_chunks = (smooth->mesh->n_triangles + job.chunk_size - 1) / job.chunk_size;
+    if (job.pieces)
         job.sums = mem_array(job.n_chunks * job.n_pieces, sizeof *job.sums, UINT64_MAX, err);
-    bool is_good = job.pieces && (!is_split || job.sums);
+    bool is_good = job.pieces && job.sums;
     if (is_good) {
         measure_wanted(&job);
+        parallel_run(smooth->n_threads, place_all, &job);
         for (int step = 0; step < smooth->options.n_volume_steps; step++) {
             measure_volumes(&job);
             if (!plan_swelling(&job, step))
