@@ -35,6 +35,8 @@ struct pipeline {
     size_t n_waiting;  /* requests not yet taken by the render thread; guarded by mutex */
     size_t n_drawn;    /* pictures not yet taken by the encoder; guarded by mutex */
     uint64_t n_asked_to_forget, n_forgotten; /* guarded by mutex */
+    uint64_t dropped[PIPELINE_MAX_WAITING]; /* newest ids that are not to be drawn, a ring; guarded by mutex */
+    size_t n_dropped;                       /* ever; guarded by mutex */
     bool is_stopping;  /* guarded by mutex */
 };
 
@@ -144,6 +146,16 @@ static struct job *next_job(struct pipeline *pipeline, struct agenda *agenda)
     return job;
 }
 
+/* Under the mutex. */
+static bool is_dropped(const struct pipeline *pipeline, uint64_t id)
+{
+    size_t n = pipeline->n_dropped < PIPELINE_MAX_WAITING ? pipeline->n_dropped : PIPELINE_MAX_WAITING;
+    for (size_t i = 0; i < n; i++)
+        if (pipeline->dropped[i] == id)
+            return true;
+    return false;
+}
+
 static void *render_main(void *argument)
 {
     struct pipeline *pipeline = argument;
@@ -166,9 +178,9 @@ static void *render_main(void *argument)
         }
         pthread_mutex_lock(&pipeline->mutex);
         pipeline->n_waiting--;
-        bool stopping = pipeline->is_stopping;
+        bool unwanted = pipeline->is_stopping || is_dropped(pipeline, job->request.id);
         pthread_mutex_unlock(&pipeline->mutex);
-        if (stopping) {
+        if (unwanted) {
             job_destroy(job);
             continue;
         }
@@ -252,6 +264,13 @@ bool pipeline_submit(struct pipeline *pipeline, const struct pipeline_request *r
         return true;
     job_destroy(job);
     return error_set(err, ERROR_LIMIT, "%d pictures are waiting to be drawn already", PIPELINE_MAX_WAITING);
+}
+
+void pipeline_drop(struct pipeline *pipeline, uint64_t id)
+{
+    pthread_mutex_lock(&pipeline->mutex);
+    pipeline->dropped[pipeline->n_dropped++ % PIPELINE_MAX_WAITING] = id; /* no more than that can wait */
+    pthread_mutex_unlock(&pipeline->mutex);
 }
 
 void pipeline_forget(struct pipeline *pipeline, const struct plan *plan)

@@ -39,6 +39,9 @@ NODISCARD struct pipeline *pipeline_create(enum render_back_end back_end, bool s
  * decides what is worth asking for. */
 enum { PIPELINE_MAX_WAITING = 64 };
 NODISCARD bool pipeline_submit(struct pipeline *pipeline, const struct pipeline_request *request, struct error *err);
+/* Nobody wants this one any more: it is not drawn unless it is being drawn already, and then it is delivered all the same. Any
+ * thread. */
+void pipeline_drop(struct pipeline *pipeline, uint64_t id);
 /* Waits for both threads; requests still waiting are dropped undelivered. */
 void pipeline_destroy(struct pipeline *pipeline);
 /* Before the render thread draws again: forget what is kept for a plan; returns when done. */

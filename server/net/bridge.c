@@ -129,6 +129,25 @@ void bridge_render(void *context, struct room *room, const struct room_render *r
     cJSON_Delete(packet);
 }
 
+void bridge_forget(void *context, struct room *room, uint64_t request)
+{
+    struct net *net = context;
+    struct place *place = place_with(net, room);
+    struct asked *asked = place ? place->asked : NULL; /* no place: the room is being closed, and all of it forgotten already */
+    while (asked && asked->room_request != request)
+        asked = asked->next;
+    if (!asked)
+        return;
+    cJSON *packet = cJSON_CreateObject();
+    cJSON_AddStringToObject(packet, "type", "drop");
+    cJSON_AddNumberToObject(packet, "id", (double)asked->fleet_request);
+    (void)fleet_tell(net->fleet, room_plan_id(room), packet); /* not ready: it was never sent */
+    cJSON_Delete(packet);
+    fleet_forget_request(net->fleet, asked->fleet_request);
+    unlink_asked(asked);
+    free(asked);
+}
+
 void bridge_scene_changed(void *context, struct room *room, const cJSON *scene, uint32_t revision)
 {
     struct net *net = context;

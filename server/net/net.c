@@ -197,7 +197,7 @@ struct room *net_room_create(struct net *net, const char *plan_id, struct proble
     if (!fleet_open(net->fleet, plan_id, problem))
         return NULL;
     fleet_hold(net->fleet, plan_id);
-    const struct room_callbacks callbacks = { bridge_render, bridge_scene_changed, send_text, send_frame, close_connection, net };
+    const struct room_callbacks callbacks = { bridge_render, bridge_forget, bridge_scene_changed, send_text, send_frame, close_connection, net };
     struct place *place = mem_new(sizeof *place);
     *place = (struct place){ .net = net, .room = room_create(id, plan_id, &callbacks, &net->limits), .state = FLEET_CLOSED };
     net->places[net->n_places++] = place;

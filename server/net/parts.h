@@ -54,6 +54,7 @@ struct net {
 
 /* bridge.c: callbacks of rooms and of the fleet; context is the net */
 void bridge_render(void *context, struct room *room, const struct room_render *request);
+void bridge_forget(void *context, struct room *room, uint64_t request);
 void bridge_scene_changed(void *context, struct room *room, const cJSON *scene, uint32_t revision);
 void bridge_fleet_changed(void *context, const char *plan_id);
 /* What the room has not been told yet of its plan's state. */

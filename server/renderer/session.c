@@ -271,13 +271,13 @@ static void submit(struct session *session, struct preparation *preparation)
 {
     struct error err = { 0 };
     struct pipeline_request request = preparation->request;
-    snapshot_ref(request.snapshot);
-    preparation_destroy(preparation);
-    if (pipeline_submit(session->pipeline, &request, &err))
-        return;
     struct drawing *drawing = find_drawing(session, request.id);
     if (drawing)
-        drawing->is_used = false;
+        snapshot_ref(request.snapshot);
+    preparation_destroy(preparation);
+    if (!drawing || pipeline_submit(session->pipeline, &request, &err)) /* none: dropped meanwhile */
+        return;
+    drawing->is_used = false;
     say_busy(session, request.id);
 }
 
@@ -401,6 +401,12 @@ static void take_packet(struct session *session, cJSON *json)
         take_scene(session, json);
     } else if (strcmp(type, "forget") == 0) {
         forget_room(session, json_text(json, "room"));
+    } else if (strcmp(type, "drop") == 0) {
+        struct drawing *drawing = find_drawing(session, id >= 0 && id < 9e15 ? (uint64_t)id : 0);
+        if (drawing) {
+            drawing->is_used = false;
+            pipeline_drop(session->pipeline, drawing->id);
+        }
     } else if (is_request && !session->is_ready) {
         struct problem problem;
         problem_set(&problem, PROBLEM_BUSY, "", "", "the plan is still being read");

@@ -57,7 +57,9 @@ static void view_leave(struct room *room, struct member_view *view)
     view->n_waiting = 0;
     view->sent_number = 0;
     view->lag_least_us = view->lag_excess_us = 0;
-    if (stream && !stream->is_shared) /* shared ones stay for those who come later */
+    if (stream && stream->is_shared) /* stays for those who come later */
+        stream_left(room, stream);
+    else if (stream)
         stream_destroy(room, stream);
 }
 

@@ -116,6 +116,7 @@ void view_input(struct member_view *view, uint32_t input);
 /* stream.c */
 struct stream *stream_create(struct room *room, cJSON *view, bool is_shared); /* takes view */
 void stream_destroy(struct room *room, struct stream *stream);
+void stream_left(struct room *room, struct stream *stream); /* a view of it was closed: the last one's pictures are not waited for */
 bool stream_set_view(struct room *room, struct stream *stream, cJSON *view);  /* takes view; true when it differs */
 void stream_changed(struct room *room, struct stream *stream);
 void streams_changed(struct room *room, bool scene_is_new);

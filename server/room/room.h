@@ -32,6 +32,8 @@ struct room_picture {
 struct room_callbacks {
     /* ask for a picture; answered by room_picture_came or room_picture_failed with the same request, later */
     void (*render)(void *context, struct room *room, const struct room_render *request);
+    /* nobody waits for this picture any more: it need not be drawn, and is not answered */
+    void (*forget)(void *context, struct room *room, uint64_t request);
     /* the room's scene changed (or the renderer is new): make it known to the renderer before the next render */
     void (*scene_changed)(void *context, struct room *room, const cJSON *scene, uint32_t revision);
     /* a text message for one connection; text is borrowed */

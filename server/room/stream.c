@@ -59,8 +59,33 @@ struct stream *stream_create(struct room *room, cJSON *view, bool is_shared)
     return stream;
 }
 
+static bool forget_requests(struct room *room, struct stream *stream)
+{
+    bool has_some = false;
+    for (int i = 0; i < 2; i++)
+        if (stream->requests[i].number) {
+            room->callbacks.forget(room->callbacks.context, room, stream->requests[i].number);
+            stream->requests[i].number = 0;
+            has_some = true;
+        }
+    return has_some;
+}
+
+void stream_left(struct room *room, struct stream *stream)
+{
+    for (int m = 0; m < room->n_members; m++)
+        for (int v = 0; v < ROOM_MAX_VIEWS; v++)
+            if (room->members[m]->views[v].stream == stream)
+                return;
+    if (!forget_requests(room, stream))
+        return;
+    stream->asked_version = stream->latest_version; /* who comes next wants them again */
+    stream->still_asked_version = stream->latest_is_still ? stream->latest_version : 0;
+}
+
 void stream_destroy(struct room *room, struct stream *stream)
 {
+    (void)forget_requests(room, stream);
     struct stream **at = &room->streams;
     while (*at != stream)
         at = &(*at)->next;

@@ -24,6 +24,16 @@ static void render(void *context, struct room *room, const struct room_render *r
         asked[n_asked++] = request->request;
 }
 
+static void forget(void *context, struct room *room, uint64_t request)
+{
+    bool was_asked = false;
+    (void)context;
+    (void)room;
+    for (size_t i = 0; i < n_asked; i++)
+        was_asked = was_asked || asked[i] == request;
+    REQUIRE(was_asked || n_asked == MAX_ASKED);
+}
+
 static void scene_changed(void *context, struct room *room, const cJSON *scene, uint32_t revision)
 {
     static uint32_t last;
@@ -131,7 +141,7 @@ static void take_line(struct room *room, const char *line, size_t n, int64_t *no
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
 {
-    const struct room_callbacks callbacks = { render, scene_changed, send_text, send_frame, close_connection, NULL };
+    const struct room_callbacks callbacks = { render, forget, scene_changed, send_text, send_frame, close_connection, NULL };
     struct room *room = room_create("7q4k-m2wz", "head", &callbacks, NULL);
     int64_t now_us = 1000000;
     log_start("fuzz", LOG_ERROR); /* pictures that fail are the everyday here */

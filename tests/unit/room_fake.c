@@ -18,6 +18,17 @@ static void render(void *context, struct room *room, const struct room_render *r
                                                                 .light = request->light };
 }
 
+static void forget(void *context, struct room *room, uint64_t request)
+{
+    struct fake_room *fake = context;
+    (void)room;
+    for (size_t i = 0; i < fake->n_requests; i++)
+        if (fake->requests[i].request == request) {
+            assert_false(fake->requests[i].is_answered);
+            fake->requests[i].is_forgotten = true; /* the answer may be on its way all the same */
+        }
+}
+
 static void scene_changed(void *context, struct room *room, const cJSON *scene, uint32_t revision)
 {
     struct fake_room *fake = context;
@@ -55,7 +66,7 @@ static void close_page(void *context, void *connection)
 
 void fake_room_start(struct fake_room *fake, int max_members)
 {
-    struct room_callbacks callbacks = { render, scene_changed, send_text, send_frame, close_page, fake };
+    struct room_callbacks callbacks = { render, forget, scene_changed, send_text, send_frame, close_page, fake };
     struct room_limits limits = { max_members };
     memset(fake, 0, sizeof *fake);
     fake->now_us = 1000000000;
@@ -146,18 +157,23 @@ void fake_pass(struct fake_room *fake, int64_t ms)
     fake->now_us = end_us;
 }
 
+static bool is_outstanding(const struct fake_request *request)
+{
+    return !request->is_answered && !request->is_forgotten;
+}
+
 size_t fake_outstanding(const struct fake_room *fake)
 {
     size_t n = 0;
     for (size_t i = 0; i < fake->n_requests; i++)
-        n += !fake->requests[i].is_answered;
+        n += is_outstanding(&fake->requests[i]);
     return n;
 }
 
 struct fake_request *fake_oldest(struct fake_room *fake)
 {
     for (size_t i = 0; i < fake->n_requests; i++)
-        if (!fake->requests[i].is_answered)
+        if (is_outstanding(&fake->requests[i]))
             return &fake->requests[i];
     return NULL;
 }
@@ -165,7 +181,7 @@ struct fake_request *fake_oldest(struct fake_room *fake)
 struct fake_request *fake_newest(struct fake_room *fake)
 {
     for (size_t i = fake->n_requests; i-- > 0;)
-        if (!fake->requests[i].is_answered)
+        if (is_outstanding(&fake->requests[i]))
             return &fake->requests[i];
     return NULL;
 }

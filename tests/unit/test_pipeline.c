@@ -174,6 +174,30 @@ static void moving_pictures_overtake_stills_but_not_for_ever(void **state)
     receiver_finish(&receiver);
 }
 
+static void what_is_dropped_while_it_waits_is_not_drawn(void **state)
+{
+    (void)state;
+    struct receiver receiver;
+    receiver_init(&receiver);
+    receiver.hold_ms = 50;
+    struct plan *plan = small_plan();
+    struct pipeline *pipeline = start(&receiver);
+    struct error err = { 0 };
+    /* while the first is delivered at most five others are drawn: two drawn, one on the way to them, one with the encoder */
+    for (uint64_t id = 1; id <= 20; id++)
+        assert_true(submit(pipeline, plan, id, 64, &err));
+    for (uint64_t id = 10; id <= 19; id++)
+        pipeline_drop(pipeline, id);
+    pipeline_drop(pipeline, 1000); /* never asked for */
+    wait_for(&receiver, 10);
+    for (size_t i = 0; i < 9; i++)
+        assert_int_equal(receiver.ids[i], i + 1);
+    assert_int_equal(receiver.ids[9], 20);
+    pipeline_destroy(pipeline);
+    plan_destroy(plan);
+    receiver_finish(&receiver);
+}
+
 static void a_picture_that_cannot_be_drawn_comes_back_as_an_error(void **state)
 {
     (void)state;
@@ -267,6 +291,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_come_back_in_order_and_none_is_lost),
         cmocka_unit_test(moving_pictures_overtake_stills_but_not_for_ever),
+        cmocka_unit_test(what_is_dropped_while_it_waits_is_not_drawn),
         cmocka_unit_test(a_picture_that_cannot_be_drawn_comes_back_as_an_error),
         cmocka_unit_test(more_than_the_limit_is_refused_and_never_blocks),
         cmocka_unit_test(it_can_be_destroyed_in_any_state),

@@ -306,6 +306,32 @@ static void a_view_that_is_closed_gets_nothing_more(void **state)
     assert_string_equal(refused(&ann), "404 /view");
 }
 
+static void pictures_of_a_closed_view_are_waited_for_by_nobody(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    fake_join(&fake, &ben, true);
+    struct fake_request *request = fake_newest(&fake);
+    fake_say(&fake, &ann, "{\"type\":\"view.close\",\"view\":1}");
+    assert_false(request->is_forgotten); /* ben looks still */
+    fake_say(&fake, &ben, "{\"type\":\"view.close\",\"view\":1}");
+    assert_true(request->is_forgotten);
+    assert_int_equal(fake_outstanding(&fake), 0);
+    fake_pass(&fake, 1000);
+    assert_int_equal(fake_outstanding(&fake), 0); /* and nothing is asked for meanwhile */
+    fake_say(&fake, &ann, "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"kind\":\"3d\",\"size_px\":[800,600]}}");
+    assert_true(fake_outstanding(&fake) > 0); /* who comes back wants it again */
+    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    assert_true(ann.frames[ann.n_frames - 1].flags & FRAME_STILL);
+
+    fake_say(&fake, &ann, "{\"type\":\"view.follow\",\"view\":1,\"follow\":false}");
+    fake_turn(&fake, &ann, 30, 7); /* an own view, and its page goes away without a word */
+    request = fake_newest(&fake);
+    assert_non_null(request);
+    room_connection_closed(fake.room, &ann, fake.now_us);
+    assert_true(request->is_forgotten);
+}
+
 static void a_frame_of_a_view_closed_meanwhile_may_still_be_acknowledged(void **state)
 {
     (void)state;
@@ -468,6 +494,7 @@ int main(void)
         T(an_own_view_starts_as_a_copy_and_goes_its_own_way),
         T(each_kind_has_its_own_shared_view),
         T(a_view_that_is_closed_gets_nothing_more),
+        T(pictures_of_a_closed_view_are_waited_for_by_nobody),
         T(a_frame_of_a_view_closed_meanwhile_may_still_be_acknowledged),
         T(an_override_shows_another_scene_to_one_view),
         T(a_view_number_outside_one_to_eight_is_refused),

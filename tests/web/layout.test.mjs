@@ -58,6 +58,23 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     });
   }
 
+  it('a pane maximised while all four are being drawn, and back: the other three come anew', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom()}`);
+    for (const view of [1, 2, 3, 4]) await full(page, view);
+    const { scene_revision: revision } = await header(page, 2);
+    for (let turn = 0; turn < 3; turn++) {
+      await page.locator('[data-region="scalp"] .eye').click(); // all four are asked for
+      await page.locator('[aria-label="Maximise 3-D"]').click(); // three of them are closed before they came
+      await full(page);
+      await page.locator('[aria-label="Restore 3-D"]').click();
+    }
+    for (const view of [1, 2, 3, 4]) {
+      await page.waitForFunction(([n, old]) => globalThis.beamroom.stats().headers[n].scene_revision === old + 3, [view, revision]);
+      await full(page, view);
+    }
+    await page.context().close();
+  });
+
   it('the load report of a plan that is refused says why', async () => {
     const page = await world.newPage();
     await page.locator('[data-plan="a-head-with-a-very-long-name"]').click();
