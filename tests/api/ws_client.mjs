@@ -91,7 +91,7 @@ export class Client {
   #news() { for (const look of [...this.#waiting]) look(); }
 
   /** Waits until test() gives something true, and gives that. */
-  until(test, what = 'something', ms = 10000) {
+  until(test, what = 'something', ms = 60000) {
     return new Promise((done, failed) => {
       let timer;
       const look = () => {
