@@ -109,8 +109,8 @@ struct fleet_upload {
     const char *plan_id; /* done; else NULL */
     const struct problem *problem; /* failed; else NULL */
 };
-/* Begins to unpack. archive: a file in data/uploads, ours from now on, also on failure; name: what people call it, for the plan's id.
- * Returns its number; 0 with problem. */
+/* Begins to unpack. archive: a file in data/uploads, ours from now on, also on failure; name: what everybody may know it by, for
+ * the plan's id; "": it is called after the day, upload-2026-07-01, with a number where there is one already. Returns its number; 0 with problem. */
 uint64_t fleet_upload(struct fleet *fleet, const char *archive, const char *name, struct problem *problem);
 bool fleet_upload_find(const struct fleet *fleet, uint64_t number, struct fleet_upload *upload);
 /* Ends it and removes what it made; nothing when it has ended. */

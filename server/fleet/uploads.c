@@ -11,6 +11,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "core/base/clock.h"
@@ -437,9 +438,14 @@ static void forget_old(struct fleet *fleet)
     }
 }
 
-/* "Head.tar.gz" is called "Head". */
+/* "Head.tar.gz" is called "Head". Without a name the plan is called after the day: what an archive is called on somebody's disk is often
+ * a patient's name, and an id is in addresses, lists and logs. */
 static void make_base_id(const char *name, char id[PLAN_ID_SIZE])
 {
+    time_t now = time(NULL);
+    struct tm day;
+    if (!name[0] && gmtime_r(&now, &day) && strftime(id, PLAN_ID_SIZE, "upload-%Y-%m-%d", &day) > 0)
+        return;
     static const char *const endings[] = { ".zip", ".tar.gz", ".tgz", ".tar", ".gz" };
     char bare[256];
     (void)snprintf(bare, sizeof bare, "%s", name);

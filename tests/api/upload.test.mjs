@@ -106,6 +106,22 @@ describe('an archive', () => {
     for (const id of ids) assert.equal((await call(`${api}/plans/${id}`, 'DELETE')).status, 204);
   });
 
+  test('without a name is called after the day, whatever it holds; its own name is nowhere', async () => {
+    const post = async (query) => (await (await fetch(`${api}/plans${query}`, { method: 'POST', headers: { 'Content-Type': 'application/zip', 'Content-Disposition': 'attachment; filename="Doe John.zip"' },
+      body: readFileSync(join(home, 'whole.zip')) })).json());
+    const days = [new Date().toISOString().slice(0, 10)];
+    const jobs = [];
+    for (const query of ['', '?name=', '']) jobs.push(await jobEnd(api, await post(query)));
+    days.push(new Date().toISOString().slice(0, 10)); /* midnight may lie between */
+    const expected = days.flatMap((day) => ['', '-2', '-3'].map((more) => `upload-${day}${more}`));
+    for (const { plan } of jobs) {
+      assert.ok(expected.includes(plan), plan);
+      assert.equal((await call(`${api}/plans/${plan}`, 'DELETE')).status, 204);
+    }
+    assert.equal(new Set(jobs.map(({ plan }) => plan)).size, 3);
+    assert.doesNotMatch(daemon.log(), /doe/i);
+  });
+
   test('that is no plan fails with the reason and leaves nothing', async () => {
     const before = uploaded();
     const job = await jobEnd(api, (await send(api, 'letters', join(home, 'letters.tar'))).json);

@@ -148,7 +148,7 @@ static void plans_of_one_name_get_numbers_and_keep_them(void **state)
     assert_string_equal(wait_for_end(&world, begin_upload(&world, "Head", "a/")).plan_id, "head-2"); /* beside the one that is read */
     assert_string_equal(wait_for_end(&world, begin_upload(&world, "head.zip", "a/")).plan_id, "head-3");
     assert_string_equal(wait_for_end(&world, begin_upload(&world, "../../etc", "a/")).plan_id, "etc");
-    assert_string_equal(wait_for_end(&world, begin_upload(&world, "", "a/")).plan_id, "plan");
+    assert_string_equal(wait_for_end(&world, begin_upload(&world, "***.zip", "a/")).plan_id, "plan"); /* nothing of it is left */
     fleet_destroy(world.fleet);
     world.fleet = NULL;
     world_start(&world, 5);
@@ -156,6 +156,22 @@ static void plans_of_one_name_get_numbers_and_keep_them(void **state)
     assert_true(world_plan_of(&world, "head-2").is_uploaded);
     assert_true(world_plan_of(&world, "head-3").is_uploaded);
     assert_false(world_plan_of(&world, "head").is_uploaded);
+    world_end(&world);
+}
+
+static void a_plan_without_a_name_is_called_after_the_day(void **state)
+{
+    (void)state;
+    struct world world;
+    start(&world);
+    for (int i = 0; i < 2; i++) {
+        const char *id = wait_for_end(&world, begin_upload(&world, "", "a/")).plan_id;
+        int year, month, day, number = 1, n = sscanf(id, "upload-%4d-%2d-%2d-%d", &year, &month, &day, &number);
+        assert_true(n == 3 || (n == 4 && i > 0 && number == 2)); /* another day may have begun */
+        assert_in_range(year, 2020, 9999);
+        assert_in_range(month, 1, 12);
+        assert_in_range(day, 1, 31);
+    }
     world_end(&world);
 }
 
@@ -289,6 +305,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(an_archive_becomes_a_plan_and_goes_again),
         cmocka_unit_test(a_plan_of_a_configured_folder_is_never_removed),
         cmocka_unit_test(plans_of_one_name_get_numbers_and_keep_them),
+        cmocka_unit_test(a_plan_without_a_name_is_called_after_the_day),
         cmocka_unit_test(a_plan_removed_while_it_is_looked_at_stays_away_and_its_name_is_free),
         cmocka_unit_test(what_cannot_be_unpacked_says_why),
         cmocka_unit_test(what_is_no_plan_says_why),

@@ -159,6 +159,12 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
   it('takes a plan that is dropped or chosen, shows it, and deletes it after a second question', async () => {
     const page = await newPage();
     await page.locator('[aria-label="Folder of a plan"]').setInputFiles(join(demo, 'phantom'));
+    const naming = page.locator('.upload form');
+    await naming.waitFor();
+    assert.match(await naming.textContent(), /phantom.*no patient's name/s);
+    await shoot(page, 'start-upload-naming');
+    await naming.locator('input').fill('Phantom 2');
+    await naming.locator('button', { hasText: 'Send' }).click();
     const row = page.locator('[data-plan="phantom-2"]');
     await row.waitFor({ timeout: 60000 });
     await shoot(page, 'start-uploaded');
@@ -181,6 +187,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
   it('says why an archive was refused, and keeps nothing of it', async () => {
     const page = await newPage();
     await page.locator('[aria-label="Files of a plan"]').setInputFiles([{ name: 'notes.zip', mimeType: 'application/zip', buffer: Buffer.from('no archive at all') }]);
+    await page.locator('.upload input[name="name"]').press('Enter');
     const refusal = page.locator('.upload [role="alert"]');
     await refusal.waitFor();
     assert.match(await refusal.textContent(), /Nothing was kept/);

@@ -17,7 +17,7 @@ const hooks = new Hooks(clock);
 const api = makeApi((...request) => fetch(...request));
 const enter = (room) => { location.hash = `#/rooms/${room}`; };
 
-const send = ({ name, ...task }) => sendPlan({ ...task, url: api.uploadUrl(name), makeRequest: () => new XMLHttpRequest() });
+const send = ({ publicName, ...task }) => sendPlan({ ...task, url: api.uploadUrl(publicName), makeRequest: () => new XMLHttpRequest() });
 
 /** The same member again after a reload of this tab. */
 function remembered(room) {

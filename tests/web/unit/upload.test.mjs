@@ -89,13 +89,13 @@ test('an upload goes from sending over the server\'s job to a plan, and its row 
       seen.push(state.rows.value[0].sent);
       return { id: 'upload-1', state: 'queued' };
     });
-  await state.add({ name: 'head', body: new Blob(['12345']), type: 'application/zip' });
+  await state.send(state.offer({ name: 'head', body: new Blob(['12345']), type: 'application/zip' }), '');
   assert.deepEqual([seen, arrived, state.rows.value], [[3], ['head'], []]);
 });
 
 test('a refused plan stays with the reason until it is dismissed', async () => {
   const { state, arrived } = world([{ id: 'upload-1', state: 'failed', problem: { detail: 'entry 3 leads out of the folder' } }], async () => ({ id: 'upload-1', state: 'queued' }));
-  await state.add({ name: 'head', body: new Blob(['1']), type: 'application/zip' });
+  await state.send(state.offer({ name: 'head', body: new Blob(['1']), type: 'application/zip' }), '');
   const [row] = state.rows.value;
   assert.deepEqual([row.state, row.error, arrived], ['failed', 'entry 3 leads out of the folder', []]);
   state.dismiss(row.key);
@@ -104,7 +104,7 @@ test('a refused plan stays with the reason until it is dismissed', async () => {
 
 test('cancelling while it is sent stops the sending; later it cancels the job', async () => {
   const { state } = world([], ({ signal }) => new Promise((_, reject) => { signal.addEventListener('abort', () => reject(new Error('cancelled'))); }));
-  const adding = state.add({ name: 'head', body: new Blob(['1']), type: 'application/zip' });
+  const adding = state.send(state.offer({ name: 'head', body: new Blob(['1']), type: 'application/zip' }), '');
   state.cancel(state.rows.value[0].key);
   await adding;
   assert.deepEqual(state.rows.value, []);
@@ -112,6 +112,28 @@ test('cancelling while it is sent stops the sending; later it cancels the job', 
 
 test('what is larger than the server takes is not sent at all', async () => {
   const state = new UploadsState({ api: {}, clock: {}, send: () => assert.fail('was sent'), arrived: () => {}, limit: () => 3 });
-  await state.add({ name: 'head', body: new Blob(['1234']), type: 'application/zip' });
+  await state.send(state.offer({ name: 'head', body: new Blob(['1234']), type: 'application/zip' }), '');
   assert.match(state.rows.value[0].error, /at most 1 MB/);
+});
+
+test('what is sent carries the name that was given for everybody, never the file\'s; nothing is sent before', async () => {
+  const sent = [];
+  const { state } = world([], async (task) => { sent.push(task); return { id: 'upload-1', state: 'cancelled' }; });
+  const key = state.offer({ name: 'Doe John 1950', body: new Blob(['1']), type: 'application/zip' });
+  assert.deepEqual([state.rows.value[0].state, state.rows.value[0].name, sent], ['asking', 'Doe John 1950', []]);
+  await state.send(key, '  head one ');
+  await state.send(key, 'again'); // one press too many
+  assert.deepEqual(sent.map(({ signal, onSent, body, ...rest }) => rest), [{ publicName: 'head one', type: 'application/zip' }]);
+  assert.ok(!JSON.stringify(sent).includes('Doe'));
+  const other = state.offer({ name: 'x', body: new Blob(['1']), type: 'application/zip' });
+  state.cancel(other);
+  await state.send(other, 'x');
+  assert.deepEqual([state.rows.value, sent.length], [[], 1]);
+});
+
+test('without a name none is in the address', async () => {
+  const { makeApi } = await load('net/api.js');
+  const api = makeApi(async () => {});
+  assert.doesNotMatch(api.uploadUrl(''), /name/);
+  assert.match(api.uploadUrl('head one'), /\/plans\?name=head%20one$/);
 });

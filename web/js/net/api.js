@@ -37,7 +37,7 @@ export function makeApi(fetch, base = 'api/v1') {
     plan: (plan, signal) => call('GET', `plans/${id(plan)}`, { signal }),
     openPlan: (plan) => call('POST', `plans/${id(plan)}/open`, { body: {} }),
     removePlan: (plan) => call('DELETE', `plans/${id(plan)}`),
-    uploadUrl: (name) => `${base}/plans?name=${id(name)}`,
+    uploadUrl: (name) => (name ? `${base}/plans?name=${id(name)}` : `${base}/plans`),
     job: (job, signal) => call('GET', `jobs/${id(job)}`, { signal }),
     cancelJob: (job) => call('DELETE', `jobs/${id(job)}`),
     makeRoom: (plan) => call('POST', 'rooms', { body: { plan } }),

@@ -10,7 +10,7 @@ import { variables } from './mount.js';
 
 function take(uploads, files) {
   uploads.error.value = files.length ? '' : 'There is no file in it.';
-  if (files.length) uploads.add(bodyOf(files));
+  if (files.length) uploads.offer(bodyOf(files));
 }
 
 /** Dropping works anywhere on the page. @returns {() => void} */
@@ -58,7 +58,22 @@ const words = ({ state, job, sent, bytes: size }) => {
   return job?.phase ? `${job.phase[0].toUpperCase()}${job.phase.slice(1)}` : 'Waiting';
 };
 
+/** What is chosen on this computer is often called after the patient, and what everybody sees is not: it is asked for. */
+function asking(uploads, upload) {
+  const submit = (event) => {
+    event.preventDefault();
+    uploads.send(upload.key, new FormData(event.target).get('name'));
+  };
+  const day = new Date().toISOString().slice(0, 10);
+  return html`<li class="plan upload" data-upload=${upload.key}><form class="naming" @submit=${submit}>
+    <p class="what"><b>${upload.name}</b> <span>${bytes(upload.bytes)}</span></p>
+    <label>Name on this server <input name="name" maxlength="60" autocomplete="off" placeholder=${`upload-${day}`} aria-describedby=${`naming-${upload.key}`}></label>
+    <button class="primary" type="submit">${icon('upload')}<span>Send</span></button><button type="button" @click=${() => uploads.cancel(upload.key)}>${icon('close')}<span>Cancel</span></button>
+    <p class="note" id=${`naming-${upload.key}`}>Everybody who opens this page sees it, also in addresses: no patient's name. Left empty, it is the day.</p></form></li>`;
+}
+
 function row(uploads, upload) {
+  if (upload.state === 'asking') return asking(uploads, upload);
   const percent = upload.state === 'sending' ? (100 * upload.sent) / Math.max(upload.bytes, 1) : upload.job?.percent ?? 0;
   const hasFailed = upload.state === 'failed';
   return html`<li class="plan upload" data-upload=${upload.key}><div class="plan-row"><div class="title"><b>${upload.name}</b><code>upload</code></div><div class="parts"></div>

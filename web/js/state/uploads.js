@@ -1,4 +1,5 @@
-// Plans on their way to the server: sent, unpacked, looked at, there; or why not.
+// Plans on their way to the server: chosen, named, sent, unpacked, looked at, there; or why not. What a file or folder is called stays
+// here: it is often a patient's name, and everybody sees the names of plans.
 import { signal } from '../../lib/signals-core.js';
 
 const jobMs = 200;
@@ -12,6 +13,7 @@ export class UploadsState {
   #next = 1;
   #isStopped = false;
   #aborts = new Map();
+  #tasks = new Map();
 
   /** @param {object} world {api, clock, send: (task: object) => Promise<object>, arrived: (plan: string) => void, limit: () => number} limit in bytes; Infinity while it is not known */
   constructor({ api, clock, send, arrived, limit = () => Infinity }) {
@@ -20,7 +22,7 @@ export class UploadsState {
     this.#send = send;
     this.limit = limit;
     this.arrived = arrived;
-    this.rows = signal([]); // {key, name, bytes, sent, job, error, state: sending | working | done | failed}
+    this.rows = signal([]); // {key, name, bytes, sent, job, error, state: asking | sending | working | failed}; name: for this page alone
     this.isOver = signal(false); // something is being dragged over the page
     this.error = signal(''); // of choosing, before anything was sent
   }
@@ -30,15 +32,26 @@ export class UploadsState {
     for (const abort of this.#aborts.values()) abort.abort();
   }
 
-  /** @param {{name: string, body: Blob, type: string}} task */
-  async add({ name, body, type }) {
+  /** Waits for what everybody may call it: send(). @param {{name: string, body: Blob, type: string}} task @returns {number} its key */
+  offer({ name, body, type }) {
     const key = this.#next++;
+    this.#tasks.set(key, { body, type });
+    this.rows.value = [...this.rows.value, { key, name, bytes: body.size, sent: 0, job: null, error: '', state: 'asking' }];
+    return key;
+  }
+
+  /** @param {string} publicName '' lets the server choose */
+  async send(key, publicName) {
+    const task = this.#tasks.get(key);
+    if (!task) return;
+    this.#tasks.delete(key);
+    const { body, type } = task;
     const abort = new AbortController();
     this.#aborts.set(key, abort);
-    this.rows.value = [...this.rows.value, { key, name, bytes: body.size, sent: 0, job: null, error: '', state: 'sending' }];
+    this.#change(key, { state: 'sending' });
     try {
       if (body.size > this.limit()) throw new Error(`${megabytes(body.size)}; the server takes plans of at most ${megabytes(this.limit())}.`);
-      let job = await this.#send({ name, body, type, signal: abort.signal, onSent: (sent) => this.#change(key, { sent }) });
+      let job = await this.#send({ publicName: publicName.trim(), body, type, signal: abort.signal, onSent: (sent) => this.#change(key, { sent }) });
       while (!this.#isStopped) {
         this.#change(key, { job, sent: body.size, state: 'working' });
         if (job.state === 'done') {
@@ -64,12 +77,14 @@ export class UploadsState {
   async cancel(key) {
     const row = this.rows.value.find((other) => other.key === key);
     if (!row) return;
-    if (row.job) await this.#api.cancelJob(row.job.id).catch((error) => this.#change(key, { error: error.message, state: 'failed' }));
+    if (row.state === 'asking') this.dismiss(key);
+    else if (row.job) await this.#api.cancelJob(row.job.id).catch((error) => this.#change(key, { error: error.message, state: 'failed' }));
     else this.#aborts.get(key)?.abort();
   }
 
   dismiss(key) {
     this.#aborts.delete(key);
+    this.#tasks.delete(key);
     this.rows.value = this.rows.value.filter((row) => row.key !== key);
   }
 
