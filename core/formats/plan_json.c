@@ -40,7 +40,7 @@ static bool get_window(const struct place *place, const cJSON *object, struct pl
 
 static bool parse_images(const struct place *top, const cJSON *root, struct plan_file *file)
 {
-    static const char *const known[] = { "id", "path", "header", "modality", "name", "unit", "value_unit", "window", NULL };
+    static const char *const known[] = { "id", "path", "header", "modality", "name", "unit", "value_unit", "window", "inverted", NULL };
     const cJSON *list;
     if (!place_list(top, root, "images", PLAN_MAX_IMAGES, &list))
         return false;
@@ -52,7 +52,8 @@ static bool parse_images(const struct place *top, const cJSON *root, struct plan
             !place_path(&at, entry, "header", false, image->header) ||
             !place_text(&at, entry, "modality", image->modality, sizeof image->modality) ||
             !place_text(&at, entry, "name", image->name, sizeof image->name) || !get_unit(&at, entry, &image->mm) ||
-            !place_text(&at, entry, "value_unit", image->value_unit, sizeof image->value_unit) || !get_window(&at, entry, image))
+            !place_text(&at, entry, "value_unit", image->value_unit, sizeof image->value_unit) ||
+            !place_bool(&at, entry, "inverted", &image->is_inverted) || !get_window(&at, entry, image))
             return false;
     }
     return true;

@@ -87,6 +87,8 @@ static void add_images(cJSON *root, const struct plan_file *file)
         add_text(entry, "path", image->path);
         add_text(entry, "header", image->header);
         add_text(entry, "value_unit", image->value_unit);
+        if (image->is_inverted)
+            add(entry, "inverted", cJSON_CreateTrue());
         if (!(image->window_width > 0))
             continue;
         cJSON *window = cJSON_CreateObject();

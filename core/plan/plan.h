@@ -21,6 +21,7 @@ struct plan_image {
     char unit[8];      /* "HU" for CT, "" else */
     struct volume *volume;
     double window_center, window_width; /* a first window that suits the values */
+    bool is_inverted; /* low values are meant to be white (DICOM's MONOCHROME1); the values are as in the file */
 };
 
 /* How the program the plan comes from showed doses; nothing here is the patient's. */

@@ -60,6 +60,7 @@ static void add_image(struct loading *loading, struct job *job)
             report_add(&plan->report, REPORT_WARNING, "image.hu-doubtful", entry->path,
                        "The CT's values run from %g to %g; HU of a patient begin below 0.", image->volume->low, image->volume->high);
     }
+    image->is_inverted = entry->is_inverted || job->facts.is_inverted;
     plan_image_window(image);
     if (!image->unit[0])
         snprintf(image->unit, sizeof image->unit, "%.7s", job->facts.unit);

@@ -152,6 +152,7 @@ static void fields_images(struct fields *fields, struct plan *plan)
         fields_finite(fields, &image->window_center);
         fields_finite(fields, &image->window_width);
         require(fields, image->window_width > 0);
+        fields_bool(fields, &image->is_inverted);
     }
 }
 

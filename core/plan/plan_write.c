@@ -64,6 +64,7 @@ static void list_images(struct writing *writing)
         memcpy(image->name, plan->images[i].name, sizeof image->name);
         memcpy(image->modality, plan->images[i].modality, sizeof image->modality);
         memcpy(image->value_unit, plan->images[i].unit, sizeof image->value_unit);
+        image->is_inverted = plan->images[i].is_inverted;
         image->window_center = plan->images[i].window_center;
         image->window_width = plan->images[i].window_width;
         snprintf(image->path, sizeof image->path, "images/%s.nii.gz", plan->images[i].id);

@@ -49,7 +49,8 @@
     X("image.thickness-differs", "The thickness of the slices is not the distance between them.",                                 \
       "Nothing; the distance between their positions was used.")                                                                  \
     X("image.single-slice", "The image has one slice.", "Its thickness was taken from the file, or is 1 mm.")                     \
-    X("image.inverted", "The image asks for low values to be bright (MONOCHROME1).", "The values were kept; they are drawn dark.") \
+    X("image.inverted", "The image asks for low values to be white (MONOCHROME1).",                                                \
+      "They are drawn so, and the values stay; the scene's image.low_values, a switch in the page, makes them black.")             \
     X("image.slopes-differ", "Slices have a scale of their own.", "Nothing; all were brought to one unit.")                       \
     X("image.rescale", "The scale of values is not one that can be used.", "Check the values; they were taken as stored.")        \
     X("image.lossy", "The pixels were compressed with loss.", "Do not measure small differences in them.")                        \

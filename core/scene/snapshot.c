@@ -16,6 +16,12 @@ int scene_image_index(const struct plan *plan, const struct scene *scene)
     return -1;
 }
 
+bool snapshot_is_low_white(const struct snapshot *snapshot)
+{
+    enum scene_low_values wanted = snapshot->scene.image.low_values;
+    return wanted == SCENE_LOW_VALUES_OWN ? snapshot->plan->images[snapshot->image].is_inverted : wanted == SCENE_LOW_VALUES_WHITE;
+}
+
 /* Index of the dose a scene shows, or -1 when the plan has none or none of that id. */
 static int dose_index(const struct plan *plan, const struct scene *scene)
 {
@@ -199,6 +205,9 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
         scene->image.window.center = plan->images[0].window_center;
         scene->image.window.width = plan->images[0].window_width;
         const struct scene_window *window = &scene->image.window;
-        scene->image.cull_below = strcmp(plan->images[0].unit, "HU") == 0 ? -500 : window->center - 0.45 * window->width;
+        if (strcmp(plan->images[0].unit, "HU") == 0)
+            scene->image.cull_below = -500;
+        else if (!plan->images[0].is_inverted) /* else what is low is bright, and no air */
+            scene->image.cull_below = window->center - 0.45 * window->width;
     }
 }

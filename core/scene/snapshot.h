@@ -30,6 +30,8 @@ void scene_for_plan(const struct plan *plan, struct scene *scene);
 
 /* The image a scene shows: its index, or -1 when the plan has none or none of that id. */
 int scene_image_index(const struct plan *plan, const struct scene *scene);
+/* Whether low values of the image shown are white: as the scene says, else as the image asks. image >= 0 */
+bool snapshot_is_low_white(const struct snapshot *snapshot);
 /* Where the slice of a pane lies along its patient axis; kind is not 3-D. */
 double scene_slice_position_mm(const struct scene *scene, enum scene_kind kind);
 

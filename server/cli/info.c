@@ -46,7 +46,7 @@ static void print_images(const struct plan *plan)
         print_grid(&image->volume->grid);
         printf("  %.6g to %.6g%s", image->volume->low, image->volume->high, *image->unit ? " " : "");
         text_print(stdout, image->unit, 0);
-        printf("\n");
+        printf("%s\n", image->is_inverted ? ", low values white" : "");
     }
 }
 

@@ -84,6 +84,7 @@ static cJSON *image_object(const struct plan_image *image)
     add(window, "center", number(image->window_center));
     add(window, "width", number(image->window_width));
     add(object, "window", window);
+    add(object, "is_inverted", cJSON_CreateBool(image->is_inverted));
     return object;
 }
 

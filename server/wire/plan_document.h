@@ -4,7 +4,7 @@
  *
  *   { id, name, note, phantom, load_ms, bounds_mm: {low, high} | null,
  *     home: {"3d": camera, axial, coronal, sagittal},                 where a view without a camera is taken from; as in a view
- *     images:  [ {id, modality, unit, grid, low, high, window: {center, width}} ],
+ *     images:  [ {id, modality, unit, grid, low, high, window: {center, width}, is_inverted} ],
  *     regions: [ {id, name, color: "#rrggbb", color_from_file, parent: id | null, depth, grid, label, voxels, volume_cm3,
  *                 center_mm, bounds_mm, touches_edge,
  *                 tissue: {boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma} } ],    null: the plan does not say

@@ -375,6 +375,70 @@ static void slices_of_every_image_land_where_they_belong(void **state)
     shots_forget(plan);
 }
 
+/* ---- low values white ------------------------------------------------------------------------------------------------------------- */
+
+static double ramp(struct vec3 p) { return 100 + 5 * p.x; }
+
+/* 0 to 255 of a value, and the other way round; a level for rounding. */
+static void expect_ramp(struct plan *plan, enum scene_low_values low_values, bool is_low_white)
+{
+    struct scene scene = shots_scene(plan);
+    scene.outline.on_slices = false;
+    scene.image.window.center = 100;
+    scene.image.window.width = 200;
+    scene.image.low_values = low_values;
+    set_slices(&scene, origin);
+    struct image *image = shots_plain(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 5));
+    for (double x_mm = -18; x_mm <= 18; x_mm += 4) {
+        double x, y, share = fmin(fmax(ramp(vec3(x_mm, 0, 0)) / 200, 0), 1);
+        on_pane(SCENE_KIND_AXIAL, vec3(x_mm, 0, 0), 5, &x, &y);
+        const uint8_t *pixel = shots_pixel(image, (int)(x - 0.5), (int)y);
+        assert_close(pixel[0], 255 * (is_low_white ? 1 - share : share), 1.5);
+        assert_int_equal(pixel[0], pixel[2]);
+    }
+    assert_memory_equal(shots_pixel(image, 2, 2), shots_background, 3); /* beside the image it is dark either way */
+    image_destroy(image);
+}
+
+static void low_values_are_white_where_image_or_scene_say_so(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(50);
+    struct plan *plan = made_plan(&grid, box_label, box, 1);
+    made_plan_add_image(plan, &grid, VOXEL_F32, ramp);
+    for (int is_inverted = 0; is_inverted < 2; is_inverted++) {
+        plan->images[0].is_inverted = is_inverted;
+        expect_ramp(plan, SCENE_LOW_VALUES_OWN, is_inverted);
+        expect_ramp(plan, SCENE_LOW_VALUES_BLACK, false);
+        expect_ramp(plan, SCENE_LOW_VALUES_WHITE, true);
+    }
+    shots_forget(plan);
+}
+
+/* In space the left half, whose values are below the limit, is left out whichever way the greys go. */
+static void what_is_left_out_goes_by_values_and_not_by_greys(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(50);
+    struct plan *plan = made_plan(&grid, box_label, box, 1);
+    made_plan_add_image(plan, &grid, VOXEL_F32, ramp);
+    for (int i = 0; i < 2; i++) {
+        struct scene scene = shots_scene(plan);
+        shots_style(&scene, "box")->visible = false;
+        scene.image.window.center = 100;
+        scene.image.window.width = 200;
+        scene.image.cull_below = 100;
+        scene.image.low_values = i ? SCENE_LOW_VALUES_WHITE : SCENE_LOW_VALUES_BLACK;
+        scene.image.slices.axial.visible = true;
+        set_slices(&scene, origin);
+        struct image *image = shots_plain(plan, scene, shots_view_from(origin, vec3(0, 0, -1), vec3(0, -1, 0), 5)); /* as the axial pane */
+        assert_memory_equal(shots_pixel(image, SHOTS_WIDTH / 2 - 50, SHOTS_HEIGHT / 2), shots_background, 3); /* 10 mm to either side */
+        assert_close(shots_pixel(image, SHOTS_WIDTH / 2 + 49, SHOTS_HEIGHT / 2)[0], i ? 255 * 0.25 : 255 * 0.75, 2);
+        image_destroy(image);
+    }
+    shots_forget(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -386,6 +450,8 @@ int main(void)
         cmocka_unit_test(the_check_finds_exactly_what_differs),
         cmocka_unit_test(a_doses_grid_is_where_its_voxels_are),
         cmocka_unit_test(slices_of_every_image_land_where_they_belong),
+        cmocka_unit_test(low_values_are_white_where_image_or_scene_say_so),
+        cmocka_unit_test(what_is_left_out_goes_by_values_and_not_by_greys),
     };
     return shots_run("panes", tests, sizeof tests / sizeof tests[0]);
 }

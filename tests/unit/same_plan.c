@@ -5,8 +5,8 @@
 
 /* Who adds a field to a plan is stopped here until it is compared below: a conversion or a cache that loses it would not be noticed. */
 #define IS_COMPARED_UP_TO(type, bytes) _Static_assert(sizeof(void *) != 8 || sizeof(type) == (bytes), "compare the new field of " #type)
-IS_COMPARED_UP_TO(struct plan, 54736);
-IS_COMPARED_UP_TO(struct plan_image, 240);
+IS_COMPARED_UP_TO(struct plan, 54864);
+IS_COMPARED_UP_TO(struct plan_image, 248);
 IS_COMPARED_UP_TO(struct plan_preferences, 1296);
 IS_COMPARED_UP_TO(struct region, 328);
 IS_COMPARED_UP_TO(struct region_set, 2080);
@@ -217,6 +217,7 @@ void assert_same_plan(const struct plan *found, const struct plan *expected, dou
         assert_string_equal(found->images[i].name, expected->images[i].name);
         assert_string_equal(found->images[i].modality, expected->images[i].modality);
         assert_string_equal(found->images[i].unit, expected->images[i].unit);
+        assert_int_equal(found->images[i].is_inverted, expected->images[i].is_inverted);
         same_number(found->images[i].window_center, expected->images[i].window_center);
         same_number(found->images[i].window_width, expected->images[i].window_width);
         same_volume(found->images[i].volume, expected->images[i].volume, mm);

@@ -1,4 +1,5 @@
 /* All real image series against what pydicom and numpy make of them: place and value of every voxel. */
+#include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/made_series.h"
@@ -97,10 +98,54 @@ static void real_series_are_what_pydicom_and_numpy_make_of_them(void **state)
     }
 }
 
+/* pydicom's pixel_array leaves MONOCHROME1 as it is stored, and so do we; the plan says that low values are to be white. */
+static void an_inverted_series_has_the_values_that_pydicom_reads(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    char own[256], out[300], values[320], answer[4096], script[] = "tests/oracle/dicom_series.py";
+    folder_make(s.path);
+    folder_make(own);
+    snprintf(out, sizeof out, "%s/values", own);
+    snprintf(values, sizeof values, "%s.0", out);
+    for (int k = 0; k < 3; k++) {
+        struct made_slice slice = made_slice_defaults;
+        char name[8];
+        slice.color = "MONOCHROME1";
+        slice.modality = "MR";
+        slice.position[2] = 2 * k;
+        slice.base = 300 - 100 * k;
+        slice.has_rescale = true;
+        slice.slope = -0.5; /* the values after it count */
+        slice.offset = 7;
+        snprintf(name, sizeof name, "%d", k);
+        made_slice_put(s.path, name, &slice);
+    }
+    int status = oracle_run((char *[]){ oracle_python(), script, s.path, out, NULL }, answer, sizeof answer);
+    if (status == 0) {
+        struct error err = { 0 };
+        scanned_open(&s);
+        answer[strcspn(answer, "\n")] = 0;
+        compare_series(&s, answer, values, 0);
+        struct plan *plan = plan_load(s.path, "p", NULL, &err);
+        assert_string_equal(err.text, "");
+        assert_true(plan->images[0].is_inverted);
+        plan_destroy(plan);
+        scanned_finish(&s);
+    } else {
+        folder_remove(s.path);
+    }
+    folder_remove(own);
+    if (status == ORACLE_MISSING)
+        skip();
+    assert_int_equal(status, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(real_series_are_what_pydicom_and_numpy_make_of_them),
+        cmocka_unit_test(an_inverted_series_has_the_values_that_pydicom_reads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -288,20 +288,41 @@ static void a_slope_of_nothing_is_not_believed(void **state)
     scanned_finish(&s);
 }
 
+/* MONOCHROME1 is about greys: the values are the file's. Of a mixture the larger part decides, and it is a warning. */
 static void inverted_pictures_keep_their_values_and_it_is_said(void **state)
 {
     (void)state;
-    struct scanned s = { 0 };
-    folder_make(s.path);
-    struct made_slice slice = made_slice_defaults;
-    slice.color = "MONOCHROME1";
-    put_row(s.path, &slice, (double[]){ 0, 1 }, 2);
-    scanned_open(&s);
-    struct volume *volume = scanned_read(&s, 0);
-    assert_close(volume_value(volume, 2, 1, 1), 112, 0);
-    assert_non_null(scanned_said(&s, "image.inverted"));
-    volume_unref(volume);
-    scanned_finish(&s);
+    static const struct {
+        int n_inverted;
+        enum report_severity severity;
+    } rows[] = { { 0, REPORT_ERROR }, { 1, REPORT_WARNING }, { 2, REPORT_WARNING }, { 3, REPORT_NOTE } };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        struct scanned s = { 0 };
+        struct dicom_series_facts facts = { 0 };
+        struct error err = { 0 };
+        folder_make(s.path);
+        for (int k = 0; k < 3; k++) {
+            struct made_slice slice = made_slice_defaults;
+            char name[8];
+            slice.color = k < rows[i].n_inverted ? "MONOCHROME1" : "MONOCHROME2";
+            slice.position[2] = k;
+            slice.base = 100 * k;
+            snprintf(name, sizeof name, "%d", k);
+            made_slice_put(s.path, name, &slice);
+        }
+        scanned_open(&s);
+        struct volume *volume = dicom_series_read(&s.folder, s.index, 0, NULL, &facts, &s.report, &err);
+        assert_string_equal(err.text, "");
+        assert_close(volume_value(volume, 2, 1, 1), 112, 0);
+        assert_close(volume->low, 0, 0);
+        assert_int_equal(facts.is_inverted, rows[i].n_inverted >= 2);
+        const struct report_line *line = scanned_said(&s, "image.inverted");
+        assert_int_equal(line != NULL, rows[i].n_inverted > 0);
+        if (line)
+            assert_int_equal(line->severity, rows[i].severity);
+        volume_unref(volume);
+        scanned_finish(&s);
+    }
 }
 
 static void directions_off_by_rounding_are_taken_and_worse_ones_are_said(void **state)

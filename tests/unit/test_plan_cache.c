@@ -15,7 +15,7 @@
 #include "tests/unit/data_folder.h"
 #include "tests/unit/same_plan.h"
 
-enum { SIZE_IMAGE = 240, SIZE_REGION = 328, SIZE_DOSE = 576, SIZE_BEAM = 464, SIZE_SEGMENT = 28, SIZE_VOLUME = 264, SIZE_PLAN = 54736 };
+enum { SIZE_IMAGE = 248, SIZE_REGION = 328, SIZE_DOSE = 576, SIZE_BEAM = 464, SIZE_SEGMENT = 28, SIZE_VOLUME = 264, SIZE_PLAN = 54864 };
 
 static struct plan *load(const char *folder, const char *cache)
 {
@@ -46,7 +46,7 @@ static void put_grid(const char *folder, const char *name, enum voxel_type type,
 static void put_plan(const char *folder)
 {
     static const char text[] =
-        "{\"format\": \"beamroom-plan\", \"version\": 1, \"name\": \"kept\", \"images\": [{\"id\": \"mr\", \"path\": \"mr.nii.gz\", \"modality\": "
+        "{\"format\": \"beamroom-plan\", \"version\": 1, \"name\": \"kept\", \"images\": [{\"id\": \"mr\", \"inverted\": true, \"path\": \"mr.nii.gz\", \"modality\": "
         "\"MR\"}], \"regions\": [{\"path\": \"labels.nii.gz\"}], \"doses\": [{\"id\": \"d\", \"unit\": \"Gy\", \"path\": \"dose.nii.gz\", "
         "\"mask\": \"labels.nii.gz\"}], \"beams\": [{\"entry_mm\": [0, 0, 9], \"target_mm\": [0, 0, 0]}],"
         "\"tracks\": [{\"path\": \"t.pp\", \"unit\": \"mm\"}]}";

@@ -48,6 +48,30 @@ static void images_and_doses_are_found_by_their_id_and_the_first_without_one(voi
     plan_destroy(plan);
 }
 
+/* What lies below is left out in space, as air; where low values are white they are no air, but HU are HU. */
+static void a_new_room_leaves_out_air_and_not_what_is_white(void **state)
+{
+    (void)state;
+    static const struct {
+        bool is_inverted;
+        const char *unit;
+        double cull_below;
+    } images[] = { { false, "", 100 - 0.45 * 200 }, { true, "", -100000 }, { false, "HU", -500 }, { true, "HU", -500 } };
+    struct plan *plan = make_plan();
+    plan->images[0].window_center = 100;
+    plan->images[0].window_width = 200;
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
+        struct scene scene;
+        plan->images[0].is_inverted = images[i].is_inverted;
+        snprintf(plan->images[0].unit, sizeof plan->images[0].unit, "%s", images[i].unit);
+        scene_for_plan(plan, &scene);
+        assert_close(scene.image.cull_below, images[i].cull_below, 1e-9);
+        assert_int_equal(scene.image.low_values, SCENE_LOW_VALUES_OWN);
+        scene_finish(&scene);
+    }
+    plan_destroy(plan);
+}
+
 static void what_the_plan_does_not_have_is_refused_by_the_fields_place(void **state)
 {
     (void)state;
@@ -85,6 +109,7 @@ int main(void)
         cmocka_unit_test(images_and_doses_are_found_by_their_id_and_the_first_without_one),
         cmocka_unit_test(what_the_plan_does_not_have_is_refused_by_the_fields_place),
         cmocka_unit_test(a_plan_without_images_and_doses_has_neither),
+        cmocka_unit_test(a_new_room_leaves_out_air_and_not_what_is_white),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

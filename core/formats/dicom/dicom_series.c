@@ -300,7 +300,7 @@ static void check_scales(struct series *series, struct report *report)
 }
 
 /* The type that holds all slices, and whether they share one scale. */
-static void choose_type(struct series *series, struct report *report)
+static void choose_type(struct series *series, struct dicom_series_facts *facts, struct report *report)
 {
     const struct dicom_slice *first = &series->slices[0];
     const struct dicom_pixels *pixels = &object_of(series, first)->image->pixels;
@@ -330,9 +330,13 @@ static void choose_type(struct series *series, struct report *report)
         report_add(report, REPORT_NOTE, "image.precision", where, "Values of %u bits are kept with 24.", pixels->bits_stored);
     if (n_lossy > 0)
         report_add(report, REPORT_NOTE, "image.lossy", where, "%zu of %zu slices were compressed with loss.", n_lossy, series->n_slices);
+    bool is_inverted = n_inverted > series->n_slices / 2;
+    if (facts)
+        facts->is_inverted = is_inverted;
     if (n_inverted > 0)
-        report_add(report, REPORT_WARNING, "image.inverted", where, "%zu of %zu slices are MONOCHROME1: their low values are meant to be bright; "
-                   "the values were kept.", n_inverted, series->n_slices);
+        report_add(report, n_inverted < series->n_slices ? REPORT_WARNING : REPORT_NOTE, "image.inverted", where, "%zu of %zu slices are "
+                   "MONOCHROME1: their low values are meant to be white. %s are drawn so; the values are as in the file.", n_inverted,
+                   series->n_slices, n_inverted == series->n_slices ? "They" : is_inverted ? "All slices" : "None");
 }
 
 static bool read_cells(struct series *series, struct error *err)
@@ -431,7 +435,7 @@ struct volume *dicom_series_read(const struct folder *folder, const struct dicom
     if (find_slices(&series, facts, report, err) &&
         dicom_slices_lay_out(series.slices, series.n_slices, &series.plane, index->objects[series.stack->objects[0]].path, &layout, report, err)) {
         check_scales(&series, report);
-        choose_type(&series, report);
+        choose_type(&series, facts, report);
         volume = read_volume(&series, &layout, err);
     }
     pthread_mutex_destroy(&series.lock);

@@ -14,6 +14,7 @@ struct dicom_series_facts {
     char unit[17]; /* "HU", "BQML", ...; "" when not said */
     struct dicom_window windows[DICOM_MAX_WINDOWS];
     size_t n_windows;
+    bool is_inverted; /* MONOCHROME1: low values are meant to be white; they are given as the file has them */
 };
 
 /* Slices are read into place, several at once. Where they lie on a line at even distances their grid is theirs exactly, sheared when the

@@ -157,6 +157,7 @@ static const char slice_vertex[] =
 static const char image_fragment[] =
     "uniform sampler3D source;\n"
     "uniform vec2 grey;\n" /* stored value to 0 .. 1 */
+    "uniform vec2 ends;\n" /* what 0 and 1 are drawn as */
     "uniform float cull;\n" /* in the same scale: what is below is left out */
     "in vec3 at;\n"
     "out vec4 result;\n"
@@ -165,7 +166,7 @@ static const char image_fragment[] =
     "    if (isnan(value) || isinf(value)) discard;\n"
     "    if (value * grey.x + grey.y < cull)\n"
     "        discard;\n"
-    "    result = vec4(vec3(clamp(value * grey.x + grey.y, 0.0, 1.0)), 1.0);\n"
+    "    result = vec4(vec3(mix(ends.x, ends.y, clamp(value * grey.x + grey.y, 0.0, 1.0))), 1.0);\n"
     "}\n";
 
 static const char labels_fragment[] =
@@ -270,7 +271,7 @@ static bool create(const struct gl *gl, struct gl_program *program, const char *
     } uniforms[] = {
         { &program->clip_from_lps, "clip_from_lps" }, { &program->eye_from_lps, "eye_from_lps" }, { &program->viewer, "viewer" },
         { &program->color, "color" }, { &program->opacity, "opacity" }, { &program->is_rim, "is_rim" },
-        { &program->source, "source" }, { &program->palette, "palette" }, { &program->grey, "grey" },
+        { &program->source, "source" }, { &program->palette, "palette" }, { &program->grey, "grey" }, { &program->ends, "ends" },
         { &program->cull, "cull" }, { &program->scale, "scale" }, { &program->depths, "depths" }, { &program->before, "before" },
         { &program->n_layers, "n_layers" }, { &program->rank_depth, "rank_depth" },
         { &program->is_two_sided, "is_two_sided" }, { &program->rounding, "rounding" }, { &program->is_baked, "is_baked" }, { &program->is_covering, "is_covering" },

@@ -90,6 +90,8 @@ static bool draw_image_slice(const struct gl_frame *frame, enum scene_kind kind,
     gl->UniformMatrix4fv(program->clip_from_lps, 1, GL_FALSE, frame->clip_from_lps);
     gl->Uniform2f(program->grey, (float)(image->value_per_unit / style->window.width),
                   (float)((image->value_at_zero - low) / style->window.width));
+    bool is_low_white = snapshot_is_low_white(snapshot);
+    gl->Uniform2f(program->ends, is_low_white ? 1 : 0, is_low_white ? 0 : 1);
     bool is_culled = snapshot->view.kind == SCENE_KIND_3D;
     gl->Uniform1f(program->cull, is_culled ? (float)((style->cull_below - low) / style->window.width) : -INFINITY);
     gl->Uniform1i(program->source, 0);

@@ -112,6 +112,7 @@ static void add_image(struct soft_frame *frame, enum scene_kind kind, double pos
     plane->texture.grey_scale = (float)(volume->slope / width);
     plane->texture.grey_offset = (float)((volume->offset - low) / width);
     plane->texture.cull = is_in_space ? (float)((style->cull_below - low) / width) : -INFINITY;
+    plane->texture.flip = snapshot_is_low_white(snapshot) ? 255 : 0;
     plane->texture.is_linear = style->interpolation != SCENE_INTERPOLATION_NEAREST;
     plane->texture.has_depth = is_in_space;
 }

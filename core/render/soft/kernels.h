@@ -76,6 +76,7 @@ struct soft_texture {
     enum soft_voxel type;
     uint32_t size[3];
     float grey_scale, grey_offset, cull; /* grey = value * scale + offset, 0 .. 1; left out where less than cull */
+    uint32_t flip;                       /* 255: grey 0 is white, 1 is black; else 0 */
     const uint32_t *palette;             /* by label; NULL: grey */
     bool is_linear, has_depth;
 };

@@ -17,6 +17,7 @@ test('a size is never made up: what was not counted is a dash', () => {
 test('a window is written centre first, with the unit of its image', () => {
   assert.match(windowText({ center: 40, width: 400 }, 'HU'), /^C 40\s+W 400 HU$/);
   assert.match(windowText({ center: 0.5, width: 1 }, ''), /^C 0\.50\s+W 1\.00$/);
+  assert.match(windowText({ center: 40, width: 400 }, 'HU', true), /^C 40\s+W 400 HU\s+low white$/);
 });
 
 test('powers in units are raised, names that end in a digit are left alone', () => {

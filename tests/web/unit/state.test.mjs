@@ -7,7 +7,7 @@ const { Replica } = await load('state/replica.js');
 const { RoomState } = await load('state/room.js');
 const { fidelity, worst } = await load('state/fidelity.js');
 const { Connection } = await load('net/connection.js');
-const { soloPatch } = await load('state/plan.js');
+const { isLowWhite, soloPatch } = await load('state/plan.js');
 
 test('an own change shows at once; the server\'s order wins', () => {
   const replica = new Replica({ opacity: 1, color: 'red' });
@@ -224,4 +224,10 @@ test('solo shows one region only, and all again the second time', () => {
   assert.deepEqual(soloPatch(regions, both, 'b').regions, { a: { visible: false }, b: { visible: true } });
   const alone = { regions: { a: { visible: false }, b: { visible: true } } };
   assert.deepEqual(soloPatch(regions, alone, 'b').regions, { a: { visible: true }, b: { visible: true } });
+});
+
+test('low values are white where the scene says so, else where the image does', () => {
+  for (const isInverted of [false, true])
+    for (const [low_values, expected] of [['own', isInverted], ['black', false], ['white', true]])
+      assert.equal(isLowWhite({ isInverted }, { image: { low_values } }), expected);
 });

@@ -39,7 +39,7 @@ export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;
 export const unitText = (unit) => unit.replace(/\b([cm]?m)([23])\b/g, (_, metre, power) => `${metre}${power === '2' ? '²' : '³'}`);
 
 /** "C 40  W 400 HU", the way windows are written everywhere. */
-export const windowText = ({ center, width }, unit) => {
+export const windowText = ({ center, width }, unit, isInverted = false) => {
   const digits = width < 10 ? 2 : 0;
-  return `C ${number(center, digits)}  W ${number(width, digits)}${unit ? ` ${unit}` : ''}`;
+  return `C ${number(center, digits)}  W ${number(width, digits)}${unit ? ` ${unit}` : ''}${isInverted ? '  low white' : ''}`;
 };

@@ -2,7 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
-import { crosshair, reportSummary, shownImage, windowPresets } from '../state/plan.js';
+import { crosshair, isLowWhite, reportSummary, shownImage, windowPresets } from '../state/plan.js';
 import { algorithms } from '../state/shapes.js';
 import { drawingBlocks } from './drawing.js';
 import { numberField, segment } from './fields.js';
@@ -108,9 +108,10 @@ function imageBlock({ panes, ui }, plan, scene, image, isDisabled, change) {
   const setWindow = (value, event) => panes()[ui.active.value - 1].actions.setWindow({ ...window, ...value }, event.timeStamp);
   const isNow = (preset) => Math.abs(preset.center - window.center) < 0.06 && Math.abs(preset.width - window.width) < 0.06;
   return html`<section class="block"><h3>Image ${image.modality}</h3>
-    ${plan.images.length > 1 ? html`<dl><dt>Image</dt><dd>${segment('Image', plan.images.map((other) => [other.id, `${other.modality} ${other.id}`]), image.id, isDisabled, (id, event) => change({ image: { id, window: plan.images.find((other) => other.id === id).window } }, event))}</dd></dl>` : nothing}
+    ${plan.images.length > 1 ? html`<dl><dt>Image</dt><dd>${segment('Image', plan.images.map((other) => [other.id, `${other.modality} ${other.id}`]), image.id, isDisabled, (id, event) => change({ image: { id, window: plan.images.find((other) => other.id === id).window, low_values: null } }, event))}</dd></dl>` : nothing}
     <dl><dt>Centre</dt><dd>${numberField('Window centre', Math.round(window.center * 10) / 10, image.unit, isDisabled, (center, event) => setWindow({ center }, event))}</dd>
       <dt>Width</dt><dd>${numberField('Window width', Math.round(window.width * 10) / 10, image.unit, isDisabled, (width, event) => setWindow({ width: Math.max(width, 0.1) }, event))}</dd>
+      <dt>Low values</dt><dd>${segment('Low values', [['black', 'Black'], ['white', 'White', 'The values stay; only their greys go the other way']], isLowWhite(image, scene) ? 'white' : 'black', isDisabled, (low_values, event) => change({ image: { low_values } }, event))}</dd>
       <dt>Between voxels</dt><dd>${segment('Interpolation', [['linear', 'Linear'], ['nearest', 'Nearest']], scene.image.interpolation, isDisabled, (interpolation, event) => change({ image: { interpolation } }, event))}</dd></dl>
     <div class="buttons looks" role="group" aria-label="Window presets">${windowPresets(image).map((preset) => html`<button class=${classMap({ on: isNow(preset) })} aria-pressed=${isNow(preset)} ?disabled=${isDisabled} title=${`Key ${preset.key}`}
       @click=${(event) => setWindow({ center: preset.center, width: preset.width }, event)}>${preset.name} <kbd>${preset.key}</kbd></button>`)}</div></section>`;

@@ -4,7 +4,7 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { computed, signal } from '../../lib/signals-core.js';
 import { fidelity } from '../state/fidelity.js';
-import { crosshair, shownImage } from '../state/plan.js';
+import { crosshair, isLowWhite, shownImage } from '../state/plan.js';
 import { nameSome } from '../state/refusals.js';
 import { describe, planes } from '../view/camera.js';
 import { overlay } from '../view/overlay.js';
@@ -170,7 +170,7 @@ export class Pane {
       point: crosshair(scene),
       pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
       topPx: view.isFollowing.value && !this.#leader ? 0 : parseInt(getComputedStyle(this.host).getPropertyValue('--follow'), 10),
-      windowText: image ? windowText(scene.image.window, image.unit) : 'No image: regions',
+      windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : 'No image: regions',
     });
   }
 

@@ -16,6 +16,7 @@ function readImage(image) {
     low: image.low ?? 0,
     high: image.high ?? 1,
     window: image.window,
+    isInverted: image.is_inverted ?? false,
     size: grid.size,
     bounds: grid.bounds_mm,
     stepMm: spacingAlong(grid.lps_mm_from_ijk),
@@ -95,6 +96,9 @@ export function crosshairPatch(plan, image, point) {
   const [sagittal, coronal, axial] = position.map((position_mm) => ({ position_mm }));
   return { image: { slices: { sagittal, coronal, axial } } };
 }
+
+/** Whether low values of the image are white: as the scene says, else as the image asks. */
+export const isLowWhite = (image, scene) => (scene.image.low_values === 'own' ? image.isInverted : scene.image.low_values === 'white');
 
 /** Window presets by key; 5 is the image's full range. Hounsfield units only where the image has them. */
 export function windowPresets(image) {
