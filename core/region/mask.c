@@ -9,19 +9,33 @@
 
 enum { MAX_THREADS = 64 };
 
-struct mask *mask_create(const uint32_t size[3], const struct affine *lps_mm_from_ijk, struct error *err)
+typedef void *allocate(size_t n, size_t size, uint64_t limit_bytes, struct error *err);
+
+static struct mask *create(const uint32_t size[3], const struct affine *lps_mm_from_ijk, allocate *bits, struct error *err)
 {
     struct mask *mask = mem_new(sizeof *mask);
     for (int axis = 0; axis < 3; axis++)
         mask->size[axis] = size[axis];
     mask->words = (size[0] + 63) / 64;
+    mask->end_j = size[1];
+    mask->end_k = size[2];
     mask->lps_mm_from_ijk = *lps_mm_from_ijk;
-    mask->bits = mem_large_array((size_t)size[1] * size[2], mask->words * sizeof *mask->bits, VOLUME_MAX_BYTES, err);
+    mask->bits = bits((size_t)size[1] * size[2], mask->words * sizeof *mask->bits, VOLUME_MAX_BYTES, err);
     if (!mask->bits) {
         free(mask);
         return NULL;
     }
     return mask;
+}
+
+struct mask *mask_create(const uint32_t size[3], const struct affine *lps_mm_from_ijk, struct error *err)
+{
+    return create(size, lps_mm_from_ijk, mem_large_array, err);
+}
+
+struct mask *mask_create_empty(const uint32_t size[3], const struct affine *lps_mm_from_ijk, struct error *err)
+{
+    return create(size, lps_mm_from_ijk, mem_array, err);
 }
 
 void mask_destroy(struct mask *mask)
@@ -40,8 +54,11 @@ static size_t mask_n_words(const struct mask *mask)
 uint64_t mask_count(const struct mask *mask)
 {
     uint64_t n = 0;
-    for (size_t at = 0, end = mask_n_words(mask); at < end; at++)
-        n += (uint64_t)__builtin_popcountll(mask->bits[at]);
+    for (uint32_t k = mask->low_k; k < mask->end_k; k++) {
+        const uint64_t *slice = mask->bits + (size_t)k * mask->size[1] * mask->words;
+        for (size_t at = (size_t)mask->low_j * mask->words, end = (size_t)mask->end_j * mask->words; at < end; at++)
+            n += (uint64_t)__builtin_popcountll(slice[at]);
+    }
     return n;
 }
 
@@ -106,21 +123,6 @@ struct mask *mask_from_labels(const struct volume *layer, const uint16_t *labels
 
 /* ---- a region and what is inside it ------------------------------------------------------------------------------------- */
 
-/* The same voxels: corners of the one grid lie within a hundredth of a voxel of the other's. */
-static bool is_same_grid(const struct grid *a, const struct grid *b)
-{
-    for (int axis = 0; axis < 3; axis++)
-        if (a->size[axis] != b->size[axis])
-            return false;
-    for (int corner = 0; corner < 8; corner++) {
-        struct vec3 at = vec3(corner & 1 ? a->size[0] - 1 : 0, corner & 2 ? a->size[1] - 1 : 0, corner & 4 ? a->size[2] - 1 : 0);
-        struct vec3 off = vec3_sub(affine_point(&b->ijk_from_lps_mm, affine_point(&a->lps_mm_from_ijk, at)), at);
-        if (!(vec3_length(off) < 0.01))
-            return false;
-    }
-    return true;
-}
-
 struct mask *mask_from_region(const struct region_set *set, size_t region, int n_threads, struct error *err)
 {
     if (region >= set->n_regions) {
@@ -135,7 +137,7 @@ struct mask *mask_from_region(const struct region_set *set, size_t region, int n
     bool good = labels != NULL;
     for (size_t step = 0; good && step <= set->n_layers; step++) {
         size_t layer = step == 0 ? own_layer : step - 1; /* own layer first, as it sets the grid */
-        if ((step > 0 && layer == own_layer) || !is_same_grid(&set->layers[layer]->grid, &set->layers[own_layer]->grid))
+        if ((step > 0 && layer == own_layer) || !grid_is_same(&set->layers[layer]->grid, &set->layers[own_layer]->grid))
             continue;
         size_t n = 0;
         for (size_t i = 0; i < n_inside; i++)

@@ -56,8 +56,9 @@ static void measure_extent(void *context, int part, int n_parts)
     struct extent extent = { .is_empty = true };
     uint64_t columns[MAX_MASK_WORDS] = { 0 };
     uint32_t k, end;
-    for (range_of(mask->size[2], part, n_parts, &k, &end); k < end; k++)
-        for (uint32_t j = 0; j < mask->size[1]; j++) {
+    range_of(mask->end_k - mask->low_k, part, n_parts, &k, &end);
+    for (k += mask->low_k, end += mask->low_k; k < end; k++)
+        for (uint32_t j = mask->low_j; j < mask->end_j; j++) {
             const uint64_t *row = mask->bits + ((size_t)k * mask->size[1] + j) * mask->words;
             uint64_t any = 0;
             for (uint32_t w = 0; w < mask->words; w++) {

@@ -26,6 +26,20 @@ bool grid_init(struct grid *grid, const uint32_t size[3], const struct affine *l
     return true;
 }
 
+bool grid_is_same(const struct grid *a, const struct grid *b)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (a->size[axis] != b->size[axis])
+            return false;
+    for (int corner = 0; corner < 8; corner++) {
+        struct vec3 at = vec3(corner & 1 ? a->size[0] - 1 : 0, corner & 2 ? a->size[1] - 1 : 0, corner & 4 ? a->size[2] - 1 : 0);
+        struct vec3 off = vec3_sub(affine_point(&b->ijk_from_lps_mm, affine_point(&a->lps_mm_from_ijk, at)), at);
+        if (!(vec3_length(off) < 0.01))
+            return false;
+    }
+    return true;
+}
+
 size_t grid_n_voxels(const struct grid *grid)
 {
     return (size_t)grid->size[0] * grid->size[1] * grid->size[2];

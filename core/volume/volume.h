@@ -20,6 +20,7 @@ struct grid {
 NODISCARD bool grid_init(struct grid *grid, const uint32_t size[3], const struct affine *lps_mm_from_ijk, struct error *err);
 size_t grid_n_voxels(const struct grid *grid);
 double grid_voxel_mm3(const struct grid *grid);
+bool grid_is_same(const struct grid *a, const struct grid *b); /* corners of the one lie within a hundredth of a voxel of the other's */
 struct vec3 grid_spacing_mm(const struct grid *grid);   /* lengths of the three columns */
 struct box3 grid_bounds_lps_mm(const struct grid *grid); /* outer faces of the outermost voxels */
 /* Index axis (0, 1, 2) most nearly along the patient axis (0 = L, 1 = P, 2 = S). A permutation: axes are dealt out by the

@@ -17,11 +17,9 @@ struct volume *layer_make(uint32_t nx, uint32_t ny, uint32_t nz, enum voxel_type
 
 struct mask *mask_make(uint32_t nx, uint32_t ny, uint32_t nz, const struct affine *map)
 {
-    struct mask *mask = mem_new(sizeof *mask);
-    *mask = (struct mask){ { nx, ny, nz }, (nx + 63) / 64, *map, NULL };
     struct error err = { 0 };
-    mask->bits = mem_array((size_t)ny * nz, mask->words * sizeof *mask->bits, UINT64_MAX, &err);
-    assert_non_null(mask->bits);
+    struct mask *mask = mask_create_empty((const uint32_t[3]){ nx, ny, nz }, map, &err);
+    assert_non_null(mask);
     return mask;
 }
 

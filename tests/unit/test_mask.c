@@ -1,6 +1,8 @@
 #include "core/base/mem.h"
 #include "core/region/mask.h"
+#include "core/region/boundary.h"
 #include "core/region/mask_pack.h"
+#include "core/region/mask_sweep.h"
 #include "tests/check.h"
 #include "tests/unit/made_mask.h"
 
@@ -249,6 +251,67 @@ static void a_small_region_does_not_vanish_when_reduced(void **state)
     volume_unref(layer);
 }
 
+/* Regions 0 to 8 on four layers: nested, two with one label, one without a voxel; layer 2 lies on another grid, layer 3 has less in it. */
+static void one_sweep_gives_the_masks_that_are_made_one_by_one(void **state)
+{
+    (void)state;
+    enum { N = 9 };
+    struct affine other = unit_map;
+    other.origin.x = 0.5;
+    struct region regions[N] = {
+        { .parent = -1, .label = 1 }, { .parent = 0, .label = 2 },  { .parent = 1, .label = 3 },  { .parent = -1, .label = 2 },
+        { .parent = 1, .layer = 1, .label = 4 }, { .parent = 1, .layer = 2, .label = 1 }, { .parent = 5, .layer = 2, .label = 2 },
+        { .parent = -1, .label = 99 }, { .parent = 4, .layer = 3, .label = 3000 },
+    };
+    static const uint32_t sizes[][3] = { { 1, 1, 1 }, { 64, 3, 4 }, { 63, 5, 2 }, { 65, 4, 7 }, { 130, 9, 6 }, { 200, 30, 11 } };
+    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
+        for (uint32_t n_values = 2; n_values < 300; n_values *= 6) {
+            const uint32_t *size = sizes[s];
+            struct region_set set = { .n_layers = 4, .regions = regions, .n_regions = N };
+            set.layers[0] = random_layer(size[0], size[1], size[2], VOXEL_U8, n_values < 256 ? n_values : 256, s);
+            set.layers[1] = random_layer(size[0], size[1], size[2], VOXEL_U16, n_values, s + 70);
+            set.layers[2] = layer_make(size[0], size[1], size[2], VOXEL_U8, &other);
+            set.layers[3] = layer_make(size[0], size[1], size[2], VOXEL_U16, &unit_map);
+            memset(set.layers[2]->voxels, 2, grid_n_voxels(&set.layers[2]->grid)); /* whole words of one label */
+            memset(set.layers[1]->voxels, 0, (size_t)size[0] * size[1] * sizeof(uint16_t)); /* its masks begin with the second slice, */
+            ((uint16_t *)set.layers[3]->voxels)[0] = 3000;                                 /* but with a later layer's first */
+            struct mask_wish wishes[2 * N];
+            for (size_t w = 0; w < 2 * N; w++)
+                wishes[w] = (struct mask_wish){ w % N, w >= N };
+            for (int n_threads = 0; n_threads < 4; n_threads++) {
+                struct error err = { 0 };
+                struct mask *masks[2 * N];
+                assert_true(mask_sweep(&set, wishes, 2 * N, n_threads, masks, &err));
+                for (size_t w = 0; w < 2 * N; w++) {
+                    struct mask *alone = w < N ? mask_from_region(&set, w, 1, &err) : mask_from_region_own(&set, w - N, 1, &err);
+                    assert_same_bits(masks[w], alone);
+                    assert_memory_equal(&masks[w]->lps_mm_from_ijk, &alone->lps_mm_from_ijk, sizeof alone->lps_mm_from_ijk);
+                    assert_int_equal(mask_count(masks[w]), mask_count(alone)); /* nothing lies beyond the reach that is told */
+                    mask_destroy(alone);
+                    mask_destroy(masks[w]);
+                }
+            }
+            for (size_t layer = 0; layer < 4; layer++)
+                volume_unref(set.layers[layer]);
+        }
+}
+
+static void a_sweep_refuses_what_masks_refuse(void **state)
+{
+    (void)state;
+    struct region region = { .parent = -1, .label = 1 };
+    struct region_set set = { .n_layers = 1, .regions = &region, .n_regions = 1 };
+    struct error err = { 0 };
+    struct mask *none = NULL;
+    set.layers[0] = layer_make(4, 4, 4, VOXEL_F32, &unit_map);
+    assert_false(mask_sweep(&set, &(struct mask_wish){ 0, false }, 1, 1, &none, &err));
+    assert_int_equal(err.code, ERROR_UNSUPPORTED);
+    assert_false(mask_sweep(&set, &(struct mask_wish){ 1, false }, 1, 1, &none, &err));
+    assert_int_equal(err.code, ERROR_RANGE);
+    assert_null(none);
+    volume_unref(set.layers[0]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -256,6 +319,8 @@ int main(void)
         cmocka_unit_test(labels_above_255_are_found_in_wide_layers_and_never_in_bytes),
         cmocka_unit_test(vector_and_portable_packing_give_the_same_bits),
         cmocka_unit_test(no_labels_and_images_are_refused),
+        cmocka_unit_test(one_sweep_gives_the_masks_that_are_made_one_by_one),
+        cmocka_unit_test(a_sweep_refuses_what_masks_refuse),
         cmocka_unit_test(a_region_brings_its_descendants_on_the_same_grid),
         cmocka_unit_test(reducing_keeps_what_is_half_full_and_nothing_that_is_empty),
         cmocka_unit_test(a_reduced_mask_keeps_its_outer_faces),
