@@ -2,7 +2,6 @@
  * numpy stacking the same files; all voxels compared. And what 20,000 files that are no DICOM cost. */
 #include <fcntl.h>
 #include <math.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,10 +13,9 @@
 #include "core/base/clock.h"
 #include "core/formats/dicom/dicom_series.h"
 #include "core/formats/nifti.h"
+#include "tests/bench/peer.h"
 
 enum { ROUNDS = 3, OURS = 5, CONVERTER = 2, N_UNRELATED = 20000 }; /* each round runs all three, so that all meet the same machine */
-
-extern char **environ;
 
 static const char folder_path[] = "build/bench/dicom", out_path[] = "build/bench/dicom-out", values_path[] = "build/bench/dicom-out/values";
 
@@ -31,34 +29,6 @@ static double median(double *ms, int n)
 {
     qsort(ms, (size_t)n, sizeof *ms, compare);
     return ms[n / 2];
-}
-
-/* Runs a program to its end; line: the first line it prints. Milliseconds, negative when it cannot run here. */
-static double run(const char *const *arguments, char *line, int size)
-{
-    int ends[2];
-    line[0] = 0;
-    if (pipe(ends) != 0)
-        return -1;
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    posix_spawn_file_actions_addclose(&actions, ends[0]);
-    int64_t began = clock_now_us();
-    pid_t pid;
-    int failed = posix_spawnp(&pid, arguments[0], &actions, NULL, (char *const *)(uintptr_t)arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    FILE *from = fdopen(ends[0], "r");
-    if (!fgets(line, size, from))
-        line[0] = 0;
-    for (char rest[256]; fgets(rest, sizeof rest, from);) {
-    }
-    fclose(from);
-    int status = 1;
-    if (!failed)
-        waitpid(pid, &status, 0);
-    return failed || status != 0 ? -1 : (double)(clock_now_us() - began) / 1e3;
 }
 
 static struct volume *load(const char *path, int n_threads)
@@ -173,7 +143,7 @@ int main(void)
     (void)mkdir("build/bench", 0755);
     (void)mkdir(out_path, 0755);
     if (access("build/bench/dicom/IM0001", R_OK) != 0 &&
-        run((const char *[]){ python, "tests/bench/dicom_make.py", folder_path, NULL }, line, sizeof line) < 0) {
+        peer_run_ms((const char *[]){ python, "tests/bench/dicom_make.py", folder_path, NULL }, line, sizeof line) < 0) {
         fprintf(stderr, "bench_dicom: no pydicom to make the series with\n");
         return 77;
     }
@@ -188,9 +158,9 @@ int main(void)
             volume_unref(volume);
         }
         for (int i = 0; i < CONVERTER; i++)
-            converter[round * CONVERTER + i] = run((const char *[]){ "dcm2niix", "-z", "n", "-b", "n", "-w", "1", "-f", "series", "-o", out_path,
+            converter[round * CONVERTER + i] = peer_run_ms((const char *[]){ "dcm2niix", "-z", "n", "-b", "n", "-w", "1", "-f", "series", "-o", out_path,
                                                                      folder_path, NULL }, line, sizeof line);
-        stack[round] = run((const char *[]){ python, "tests/bench/pydicom_load.py", folder_path, values_path, NULL }, line, sizeof line) < 0
+        stack[round] = peer_run_ms((const char *[]){ python, "tests/bench/pydicom_load.py", folder_path, values_path, NULL }, line, sizeof line) < 0
                            ? -1 : strtod(line, NULL);
     }
     struct volume *volume = load(folder_path, 2);

@@ -1,18 +1,14 @@
 /* Opening the demo plan (image, labels, four dose components, tracks; five packed volumes of 256 x 256 x 128 and less), against
  * nibabel unpacking the same volumes to arrays, in one run. Ours does more: names, tree, checks, bounds. */
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "core/base/clock.h"
 #include "core/plan/plan.h"
+#include "tests/bench/peer.h"
 
 enum { REPEATS = 9 };
-
-extern char **environ;
 
 static int compare(const void *a, const void *b)
 {
@@ -23,26 +19,10 @@ static int compare(const void *a, const void *b)
 /* Median time the script takes for one load, as it says itself; 0 when it cannot run here. */
 static double nibabel_ms(const char *folder)
 {
-    const char *python = getenv("PYTHON") ? getenv("PYTHON") : "/usr/bin/python3";
-    char *arguments[] = { (char *)(uintptr_t)python, "tests/bench/nibabel_load.py", (char *)(uintptr_t)folder, NULL };
-    int ends[2];
-    if (pipe(ends) != 0)
-        return 0;
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    posix_spawn_file_actions_addclose(&actions, ends[0]);
-    pid_t pid;
-    int failed = posix_spawnp(&pid, python, &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    char line[64] = "";
-    FILE *from = fdopen(ends[0], "r");
-    double ms = !failed && fgets(line, sizeof line, from) ? strtod(line, NULL) : 0;
-    fclose(from);
-    if (!failed)
-        waitpid(pid, NULL, 0);
-    return ms;
+    char line[64];
+    return peer_run_ms((const char *const[]){ peer_python(), "tests/bench/nibabel_load.py", folder, NULL }, line, sizeof line) < 0
+               ? 0
+               : strtod(line, NULL);
 }
 
 int main(void)

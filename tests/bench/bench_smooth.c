@@ -2,21 +2,19 @@
  * vtkWindowedSincPolyDataFilter: the two take turns on the same labels, in one run, and the median of each counts. Both start from the
  * labels. And vertex normals of a surface of 156 thousand polygons, as many as the thesis on Sera3d counts on its head. */
 #include <math.h>
-#include <spawn.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "core/base/clock.h"
 #include "core/base/parallel.h"
-#include "core/region/mask.h"
+#include "core/region/mask_sweep.h"
 #include "core/surface/surface.h"
+#include "tests/bench/peer.h"
 
 enum { NX = 512, NY = 512, NZ = 200, N_REGIONS = 12, REPEATS = 5, NORMAL_REPEATS = 31 };
-
-extern char **environ;
 
 static _Noreturn void die(const char *what, const struct error *err)
 {
@@ -89,48 +87,50 @@ static struct volume *make_labels(void)
 
 /* ---- VTK ------------------------------------------------------------------------------------------------------------------ */
 
-struct peer {
-    pid_t pid;
-    FILE *to, *from;
-    char name[128];
+struct vtk {
+    struct peer peer;
+    char path[PEER_PATH_SIZE], name[128];
 };
 
-static bool peer_start(struct peer *peer, const struct volume *labels, char *path)
+static bool vtk_start(struct vtk *vtk, const struct volume *labels)
 {
-    int file = mkstemp(path), in[2], out[2];
-    size_t n = grid_n_voxels(&labels->grid);
-    FILE *copy = file < 0 ? NULL : fdopen(file, "w");
-    if (!copy || fwrite(labels->voxels, 1, n, copy) != n || fclose(copy) != 0 || pipe(in) != 0 || pipe(out) != 0)
-        die("temporary file or pipe", NULL);
-    char *python = getenv("PYTHON") ? getenv("PYTHON") : (char[]){ "/usr/bin/python3" }, size[4][16];
-    char *arguments[] = { python, "tests/bench/vtk_smooth.py", path, size[0], size[1], size[2], size[3], NULL };
+    char size[4][16], line[64], version[16];
     const int numbers[4] = { NX, NY, NZ, N_REGIONS };
+    int n_threads;
+    if (!peer_write_file(vtk->path, labels->voxels, grid_n_voxels(&labels->grid)))
+        die("temporary file", NULL);
     for (int i = 0; i < 4; i++)
         snprintf(size[i], sizeof size[i], "%d", numbers[i]);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, in[0], STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
-    posix_spawn_file_actions_addclose(&actions, in[1]);
-    posix_spawn_file_actions_addclose(&actions, out[0]);
-    int failed = posix_spawnp(&peer->pid, python, &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(in[0]);
-    close(out[1]);
-    peer->to = fdopen(in[1], "w");
-    peer->from = fdopen(out[0], "r");
-    char line[64], version[16];
-    int n_threads;
-    if (failed || !fgets(line, sizeof line, peer->from) || sscanf(line, "%15s %d", version, &n_threads) != 2)
+    const char *arguments[] = { peer_python(), "tests/bench/vtk_smooth.py", vtk->path, size[0], size[1], size[2], size[3], NULL };
+    if (!peer_start(&vtk->peer, arguments, line, sizeof line) || sscanf(line, "%15s %d", version, &n_threads) != 2)
         return false;
-    snprintf(peer->name, sizeof peer->name, "VTK %s, discrete flying edges and windowed sinc, %d threads", version, n_threads);
+    snprintf(vtk->name, sizeof vtk->name, "VTK %s, discrete flying edges and windowed sinc, %d threads", version, n_threads);
     return true;
+}
+
+struct vtk_times { /* ms */
+    double extract, smooth;
+    double processor; /* of all threads */
+};
+
+static struct vtk_times vtk_run(struct vtk *vtk, size_t n_triangles)
+{
+    char line[128];
+    struct vtk_times times;
+    size_t n_theirs;
+    if (!peer_ask(&vtk->peer, "\n", line, sizeof line) ||
+        sscanf(line, "%lf %lf %lf %zu", &times.extract, &times.smooth, &times.processor, &n_theirs) != 4)
+        die("the VTK side", NULL);
+    if (n_theirs != n_triangles)
+        die("not the same number of triangles as VTK", NULL);
+    return times;
 }
 
 /* ---- ours ----------------------------------------------------------------------------------------------------------------- */
 
 struct times { /* ms */
     double mask, smooth; /* smooth: from the labels on, masks included, to vertices with normals */
+    double processor;    /* of all threads */
 };
 
 static double since_ms(int64_t *began_us)
@@ -141,18 +141,24 @@ static double since_ms(int64_t *began_us)
     return ms;
 }
 
-/* All regions at once: threads take one after the other, the largest first, each on its own, as a plan does when it is opened. */
+static double processor_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
+/* All regions at once: their masks from one sweep, then threads take one after the other, the largest first, each on its own, as a plan
+ * does when it is opened. */
 struct task {
-    const struct volume *labels;
+    struct mask *masks[N_REGIONS];
     bool is_bare; /* without normals */
     struct mesh *meshes[N_REGIONS]; /* kept to the end, as a plan keeps them, and VTK does */
-    struct times times[N_REGIONS];
     atomic_int next;
 };
 
 static void take_regions(void *context, int part, int n_parts)
 {
-    static const uint16_t by_size[N_REGIONS] = { 1, 2, 3, 4, 10, 12, 11, 6, 5, 7, 8, 9 };
     struct task *task = context;
     struct error err = { 0 };
     struct surface_options options = surface_defaults;
@@ -161,32 +167,39 @@ static void take_regions(void *context, int part, int n_parts)
     (void)part;
     (void)n_parts;
     for (int at; (at = atomic_fetch_add(&task->next, 1)) < N_REGIONS;) {
-        int64_t began_us = clock_now_us();
-        struct mask *mask = mask_from_labels(task->labels, &by_size[at], 1, 1, &err);
-        task->times[at].mask = since_ms(&began_us);
-        struct mesh *mesh = mask ? surface_smooth(mask, &options, &err) : NULL;
-        if (!mesh)
+        task->meshes[at] = surface_smooth(task->masks[at], &options, &err);
+        if (!task->meshes[at])
             die("surface", &err);
-        task->meshes[at] = mesh;
-        mask_destroy(mask);
+        mask_destroy(task->masks[at]);
     }
 }
 
-static struct times run_once(const struct volume *labels, int n_threads, bool is_bare, size_t *n_triangles)
+static struct times run_once(struct volume *labels, int n_threads, bool is_bare, size_t *n_triangles)
 {
-    struct task task = { .labels = labels, .is_bare = is_bare };
-    struct times times = { 0 };
+    static const uint16_t by_size[N_REGIONS] = { 1, 2, 3, 4, 10, 12, 11, 6, 5, 7, 8, 9 };
+    struct region regions[N_REGIONS];
+    struct mask_wish wishes[N_REGIONS];
+    for (size_t r = 0; r < N_REGIONS; r++) {
+        regions[r] = (struct region){ .parent = -1, .label = by_size[r] };
+        wishes[r] = (struct mask_wish){ r, false };
+    }
+    const struct region_set set = { .layers = { labels }, .n_layers = 1, .regions = regions, .n_regions = N_REGIONS };
+    struct task task = { .is_bare = is_bare };
+    struct times times = { .processor = processor_ms() };
+    struct error err = { 0 };
     int64_t began_us = clock_now_us();
+    if (!mask_sweep(&set, wishes, N_REGIONS, n_threads, task.masks, &err))
+        die("masks", &err);
+    times.mask = since_ms(&began_us);
     atomic_init(&task.next, 0);
     parallel_run(n_threads, take_regions, &task);
-    times.smooth = since_ms(&began_us);
+    times.smooth = times.mask + since_ms(&began_us);
+    times.processor = processor_ms() - times.processor;
     *n_triangles = 0;
     for (int r = 0; r < N_REGIONS; r++) {
-        times.mask += task.times[r].mask;
         *n_triangles += task.meshes[r]->n_triangles;
-    }
-    for (int r = 0; r < N_REGIONS; r++)
         mesh_unref(task.meshes[r]);
+    }
     return times;
 }
 
@@ -202,12 +215,13 @@ static double median(double *values, size_t n)
     return values[n / 2];
 }
 
-static void bench_regions(const struct volume *labels, const struct peer *peer)
+static void bench_regions(struct volume *labels, struct vtk *vtk)
 {
     /* as VTK does it; and with the normals that a picture needs */
     static const char *const ways[3] = { "without normals, 2 threads", "with vertex normals, 1 thread", "with vertex normals, 2 threads" };
     enum { N_WAYS = sizeof ways / sizeof *ways };
-    double ours[N_WAYS][REPEATS], mask[N_WAYS][REPEATS], theirs[REPEATS], extract[REPEATS];
+    double ours[N_WAYS][REPEATS], mask[N_WAYS][REPEATS], processor[N_WAYS][REPEATS];
+    double theirs[REPEATS], their_extract[REPEATS], their_processor[REPEATS];
     size_t n_triangles = 0;
     for (int repeat = -1; repeat < REPEATS; repeat++) { /* the first warms up and does not count */
         int at = repeat < 0 ? 0 : repeat;
@@ -215,29 +229,26 @@ static void bench_regions(const struct volume *labels, const struct peer *peer)
             struct times times = run_once(labels, way == 1 ? 1 : 2, way == 0, &n_triangles);
             mask[way][at] = times.mask;
             ours[way][at] = times.smooth;
+            processor[way][at] = times.processor;
         }
-        char line[128];
-        double smooth_ms;
-        size_t n_theirs;
-        if (!peer)
+        if (!vtk)
             continue;
-        fputs("\n", peer->to);
-        fflush(peer->to);
-        if (!fgets(line, sizeof line, peer->from) || sscanf(line, "%lf %lf %zu", &extract[at], &smooth_ms, &n_theirs) != 3)
-            die("the VTK side", NULL);
-        if (n_theirs != n_triangles)
-            die("not the same number of triangles as VTK", NULL);
-        theirs[at] = extract[at] + smooth_ms;
+        struct vtk_times times = vtk_run(vtk, n_triangles);
+        theirs[at] = times.extract + times.smooth;
+        their_extract[at] = times.extract;
+        their_processor[at] = times.processor;
     }
-    double vtk = peer ? median(theirs, REPEATS) : 0, vtk_extract = peer ? median(extract, REPEATS) : 0;
+    double vtk_ms = vtk ? median(theirs, REPEATS) : 0, vtk_extract = vtk ? median(their_extract, REPEATS) : 0;
+    double vtk_processor = vtk ? median(their_processor, REPEATS) : 0;
     for (int way = 0; way < N_WAYS; way++) {
-        double ms = median(ours[way], REPEATS);
+        double ms = median(ours[way], REPEATS), busy = median(processor[way], REPEATS);
         printf("{\"name\":\"12 regions of 512 x 512 x 200, smooth, %s\",\"value\":%.1f,\"unit\":\"ms\"", ways[way], ms);
-        if (peer)
-            printf(",\"peer\":\"%s\",\"peer_value\":%.1f,\"ratio\":%.2f", peer->name, vtk, vtk / ms);
-        printf(",\"note\":\"%zu triangles; masks %.1f of all threads' time%s", n_triangles, median(mask[way], REPEATS), way == 0 ? "; at least x5 asked for" : "");
-        if (peer)
-            printf("; theirs: flying edges %.1f of it", vtk_extract);
+        if (vtk)
+            printf(",\"peer\":\"%s\",\"peer_value\":%.1f,\"ratio\":%.2f", vtk->name, vtk_ms, vtk_ms / ms);
+        printf(",\"note\":\"%zu triangles; masks %.1f of it%s; processor time %.0f", n_triangles, median(mask[way], REPEATS),
+               way == 0 ? "; at least x5 asked for" : "", busy);
+        if (vtk)
+            printf(", theirs %.0f, x%.2f; theirs: flying edges %.1f of it", vtk_processor, vtk_processor / busy, vtk_extract);
         printf("\"}\n");
     }
     fflush(stdout);
@@ -287,18 +298,14 @@ static void bench_thesis(void)
 int main(void)
 {
     struct volume *labels = make_labels();
-    struct peer peer = { 0 };
-    char path[] = "/tmp/beamroom-bench-XXXXXX";
-    bool has_peer = peer_start(&peer, labels, path);
-    if (!has_peer)
+    struct vtk vtk;
+    bool has_vtk = vtk_start(&vtk, labels);
+    if (!has_vtk)
         fprintf(stderr, "bench_smooth: no VTK for Python here: our times only\n");
-    bench_regions(labels, has_peer ? &peer : NULL);
+    bench_regions(labels, has_vtk ? &vtk : NULL);
     bench_thesis();
-    fclose(peer.to); /* the script ends at the end of its input */
-    fclose(peer.from);
-    if (peer.pid > 0)
-        waitpid(peer.pid, NULL, 0);
-    unlink(path);
+    (void)peer_end(&vtk.peer);
+    unlink(vtk.path);
     volume_unref(labels);
     return 0;
 }

@@ -1,20 +1,17 @@
 /* Extraction of regions of a 256 x 256 x 128 volume, against vtkFlyingEdges3D: the two take turns on the same labels, in one
  * run, and the median of each counts. Ours starts from the labels and includes making the mask; VTK's starts from a ready mask. */
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "core/base/clock.h"
 #include "core/phantom/head.h"
 #include "core/region/mask.h"
 #include "core/surface/surface.h"
+#include "tests/bench/peer.h"
 
 enum { REPEATS = 15, N_SETS = 3, N_VOLUMES = 2 };
-
-extern char **environ;
 
 static const struct {
     const char *name, *text;
@@ -73,57 +70,39 @@ static struct volume *make_labels(bool is_ragged)
 
 /* ---- VTK ---------------------------------------------------------------------------------------------------------------- */
 
-struct peer {
-    pid_t pid;
-    FILE *to, *from;
+struct vtk {
+    struct peer peer;
+    char path[PEER_PATH_SIZE];
     char name[2][64]; /* on one thread, on all */
 };
 
-static bool peer_start(struct peer *peer, const struct volume *labels, char *path)
+static bool vtk_start(struct vtk *vtk, const struct volume *labels)
 {
-    int file = mkstemp(path), in[2], out[2];
-    size_t n = grid_n_voxels(&labels->grid);
-    if (file < 0 || write(file, labels->voxels, n) != (ssize_t)n || pipe(in) != 0 || pipe(out) != 0)
-        die("temporary file or pipe", NULL);
-    close(file);
-    const char *python = getenv("PYTHON") ? getenv("PYTHON") : "/usr/bin/python3";
-    char size[3][16], *arguments[16] = { (char *)python, "tests/bench/vtk_flying_edges.py", path, size[0], size[1], size[2] };
+    char size[3][16], line[64], version[16];
+    int n_threads;
+    if (!peer_write_file(vtk->path, labels->voxels, grid_n_voxels(&labels->grid)))
+        die("temporary file", NULL);
     for (size_t axis = 0; axis < 3; axis++)
         snprintf(size[axis], sizeof size[axis], "%u", labels->grid.size[axis]);
-    for (size_t s = 0; s < N_SETS; s++)
-        arguments[6 + s] = (char *)sets[s].text;
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, in[0], STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
-    posix_spawn_file_actions_addclose(&actions, in[1]);
-    posix_spawn_file_actions_addclose(&actions, out[0]);
-    int failed = posix_spawnp(&peer->pid, python, &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(in[0]);
-    close(out[1]);
-    peer->to = fdopen(in[1], "w");
-    peer->from = fdopen(out[0], "r");
-    char line[64], version[16];
-    int n_threads;
-    if (failed || !fgets(line, sizeof line, peer->from) || sscanf(line, "%15s %d", version, &n_threads) != 2)
+    const char *arguments[] = { peer_python(), "tests/bench/vtk_flying_edges.py", vtk->path, size[0], size[1], size[2],
+                                sets[0].text,  sets[1].text,                      sets[2].text, NULL };
+    if (!peer_start(&vtk->peer, arguments, line, sizeof line) || sscanf(line, "%15s %d", version, &n_threads) != 2)
         return false;
-    snprintf(peer->name[0], sizeof peer->name[0], "vtkFlyingEdges3D %s, 1 thread", version);
-    snprintf(peer->name[1], sizeof peer->name[1], "vtkFlyingEdges3D %s, %d threads", version, n_threads);
+    snprintf(vtk->name[0], sizeof vtk->name[0], "vtkFlyingEdges3D %s, 1 thread", version);
+    snprintf(vtk->name[1], sizeof vtk->name[1], "vtkFlyingEdges3D %s, %d threads", version, n_threads);
     return true;
 }
 
-/* 0 without a peer. */
-static double peer_time_ms(const struct peer *peer, size_t set, bool with_normals, bool on_all, size_t n_triangles)
+/* 0 without VTK. */
+static double vtk_time_ms(struct vtk *vtk, size_t set, bool with_normals, bool on_all, size_t n_triangles)
 {
-    if (!peer)
+    if (!vtk)
         return 0;
-    char line[128];
+    char question[64], line[128];
     double ms;
     size_t n_theirs;
-    fprintf(peer->to, "%zu %d %d\n", set, with_normals, !on_all);
-    fflush(peer->to);
-    if (!fgets(line, sizeof line, peer->from) || sscanf(line, "%lf %zu", &ms, &n_theirs) != 2)
+    snprintf(question, sizeof question, "%zu %d %d\n", set, with_normals, !on_all);
+    if (!peer_ask(&vtk->peer, question, line, sizeof line) || sscanf(line, "%lf %zu", &ms, &n_theirs) != 2)
         die("the VTK side", NULL);
     if (n_theirs != n_triangles)
         die("not the same number of triangles as VTK", NULL);
@@ -199,7 +178,7 @@ static void print_result(const char *name, struct spread ours, const char *peer,
     fflush(stdout);
 }
 
-static void bench_set(const struct volume *labels, const char *volume, size_t set, const struct peer *peer)
+static void bench_set(const struct volume *labels, const char *volume, size_t set, struct vtk *vtk)
 {
     struct times all[2][REPEATS]; /* on one thread, on two */
     size_t n_triangles = 0;
@@ -207,25 +186,25 @@ static void bench_set(const struct volume *labels, const char *volume, size_t se
         for (int two = 0; two < 2; two++) {
             struct times *times = &all[two][repeat < 0 ? 0 : repeat];
             *times = run_once(labels, set, 1 + two, &n_triangles);
-            times->vtk = peer_time_ms(peer, set, false, false, n_triangles);
-            times->vtk_all = peer_time_ms(peer, set, false, true, n_triangles);
-            times->vtk_normals = peer_time_ms(peer, set, true, false, n_triangles);
-            times->vtk_all_normals = peer_time_ms(peer, set, true, true, n_triangles);
+            times->vtk = vtk_time_ms(vtk, set, false, false, n_triangles);
+            times->vtk_all = vtk_time_ms(vtk, set, false, true, n_triangles);
+            times->vtk_normals = vtk_time_ms(vtk, set, true, false, n_triangles);
+            times->vtk_all_normals = vtk_time_ms(vtk, set, true, true, n_triangles);
         }
     static const char *const threads[2] = { "1 thread", "2 threads" };
-    const char *region = sets[set].name, *one = peer ? peer->name[0] : NULL, *every = peer ? peer->name[1] : NULL;
+    const char *region = sets[set].name, *one = vtk ? vtk->name[0] : NULL, *every = vtk ? vtk->name[1] : NULL;
     for (size_t two = 0; two < 2; two++) {
         const struct times *times = all[two];
         char name[128];
         struct spread surface = spread_of(times, offsetof(struct times, surface));
         struct spread with_normals = spread_of(times, offsetof(struct times, with_normals));
-        struct spread vtk[2] = { spread_of(times, offsetof(struct times, vtk)), spread_of(times, offsetof(struct times, vtk_all)) };
+        struct spread theirs[2] = { spread_of(times, offsetof(struct times, vtk)), spread_of(times, offsetof(struct times, vtk_all)) };
         snprintf(name, sizeof name, "surface of %s, %s, %s", region, volume, threads[two]);
-        print_result(name, surface, two ? every : one, vtk[two], n_triangles);
+        print_result(name, surface, two ? every : one, theirs[two], n_triangles);
         if (set > 0)
             continue;
         if (!two)
-            print_result(name, surface, every, vtk[1], n_triangles);
+            print_result(name, surface, every, theirs[1], n_triangles);
         snprintf(name, sizeof name, "surface with normals of %s, %s, %s", region, volume, threads[two]);
         print_result(name, with_normals, two ? every : one,
                      spread_of(times, two ? offsetof(struct times, vtk_all_normals) : offsetof(struct times, vtk_normals)), n_triangles);
@@ -240,18 +219,14 @@ int main(void)
 {
     for (int v = 0; v < N_VOLUMES; v++) {
         struct volume *labels = make_labels(v == 1);
-        struct peer peer = { 0 };
-        char path[] = "/tmp/beamroom-bench-XXXXXX";
-        bool has_peer = peer_start(&peer, labels, path);
-        if (!has_peer)
+        struct vtk vtk;
+        bool has_vtk = vtk_start(&vtk, labels);
+        if (!has_vtk)
             fprintf(stderr, "bench_surface: no VTK for Python here: our times only\n");
         for (size_t set = 0; set < N_SETS; set++)
-            bench_set(labels, volumes[v], set, has_peer ? &peer : NULL);
-        fclose(peer.to); /* the script ends at the end of its input */
-        fclose(peer.from);
-        if (peer.pid > 0)
-            waitpid(peer.pid, NULL, 0);
-        unlink(path);
+            bench_set(labels, volumes[v], set, has_vtk ? &vtk : NULL);
+        (void)peer_end(&vtk.peer);
+        unlink(vtk.path);
         volume_unref(labels);
     }
     return 0;
