@@ -7,6 +7,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { load } from './page.mjs';
 
+const { filesOfDrop } = await load('net/dropped.js');
 const { bodyOf, tarOf } = await load('net/tar.js');
 const { sendPlan } = await load('net/upload.js');
 const { UploadsState } = await load('state/uploads.js');
@@ -136,4 +137,11 @@ test('without a name none is in the address', async () => {
   const api = makeApi(async () => {});
   assert.doesNotMatch(api.uploadUrl(''), /name/);
   assert.match(api.uploadUrl('head one'), /\/plans\?name=head%20one$/);
+});
+
+test('what another program hands over is a file without an entry, and goes as one', async () => {
+  const item = (entry, file) => ({ kind: 'file', webkitGetAsEntry: () => entry, getAsFile: () => file });
+  const entry = { isFile: true, fullPath: '/b.nii', file: (resolve) => resolve({ name: 'b.nii' }) };
+  const items = [item(null, { name: 'mail.zip' }), item(entry, { name: 'b.nii' }), { kind: 'string' }, item(null, null)];
+  assert.deepEqual((await filesOfDrop({ items })).map(({ path }) => path), ['b.nii', 'mail.zip']);
 });

@@ -17,9 +17,13 @@ async function walk(entry, files) {
 
 /** @param {DataTransfer} data @returns {Promise<{path: string, file: File}[]>} in order of path */
 export async function filesOfDrop(data) {
-  const dropped = [...data.items].filter((item) => item.kind === 'file').map((item) => item.webkitGetAsEntry()).filter(Boolean);
+  // what comes from another program, as an archive out of a mail, is a file without an entry; both must be asked for before the first wait
+  const dropped = [...data.items].filter((item) => item.kind === 'file').map((item) => ({ entry: item.webkitGetAsEntry?.(), file: item.getAsFile() }));
   const files = [];
-  for (const entry of dropped) await walk(entry, files);
+  for (const { entry, file } of dropped) {
+    if (entry) await walk(entry, files);
+    else if (file) files.push({ path: file.name, file });
+  }
   return files.sort((a, b) => (a.path < b.path ? -1 : 1));
 }
 

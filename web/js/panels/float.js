@@ -9,6 +9,11 @@ export const toasts = ({ ui }) => html`${repeat(ui.toasts.value, (toast) => toas
   <div class="toast" role=${kind === 'err' ? 'alert' : 'status'}><span class=${kind}>${icon(signs[kind])}</span><span>${text}</span>
     <button class="icon-button small" aria-label="Dismiss" @click=${() => ui.dismiss(id)}>${icon('close', 12)}</button><i></i></div>`)}`;
 
+/** A room that will not come back: why, and the way out. What was seen last stays behind it. */
+export const ended = ({ room }) => (room.link.value.state !== 'ended' ? nothing : html`<section class="card ended" role="alert">${icon('disconnected')}
+  <div><b>You are no longer in this room</b><p>${room.link.value.reason ? `${room.link.value.reason[0].toUpperCase()}${room.link.value.reason.slice(1)}.` : 'The server gave no reason.'}</p></div>
+  <a class="button" href="#/">All plans</a></section>`);
+
 const keys = [
   ['Left drag', 'Turn in 3-D, crosshair in slices'],
   ['Middle drag, Shift + left drag', 'Move the picture'],

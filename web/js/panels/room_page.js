@@ -9,7 +9,7 @@ import { RoomState } from '../state/room.js';
 import { UiState } from '../state/ui.js';
 import { banner } from './banner.js';
 import { figuresDialog } from './figures.js';
-import { help, toasts } from './float.js';
+import { ended, help, toasts } from './float.js';
 import { inspector } from './inspector.js';
 import { mount } from './mount.js';
 import { Pane } from './pane.js';
@@ -20,7 +20,7 @@ import { tree } from './tree.js';
 const probeMs = 60;
 const tickMs = 250;
 
-const floating = (world) => html`${help(world)}${figuresDialog(world)}`;
+const floating = (world) => html`${help(world)}${figuresDialog(world)}${ended(world)}`;
 
 const frame = () => html`<div class="room">
   <a class="skip" href="#picture-1">To the panes</a>

@@ -2,6 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { repeat } from '../../lib/directives/repeat.js';
+import { effect } from '../../lib/signals-core.js';
 import { reportSummary } from '../state/plan.js';
 import { PlansState } from '../state/plans.js';
 import { UploadsState } from '../state/uploads.js';
@@ -19,17 +20,29 @@ const filters = [['all', 'All'], ['ready', 'Ready'], ['warnings', 'With warnings
 /** @param {HTMLElement} host @param {object} world {api, clock, enter} @returns {() => void} leaves the page */
 export function startPage(host, world) {
   const state = new PlansState(world);
-  const uploads = new UploadsState({ ...world, arrived: (plan) => state.arrived(plan), limit: () => state.version.value?.max_upload_bytes ?? Infinity });
+  const uploads = new UploadsState({ ...world, arrived: (plan) => state.arrived(plan).then(() => reveal(host, plan)), limit: () => state.version.value?.max_upload_bytes ?? Infinity });
   const unmount = mount(host, () => page(state, uploads, world.enter));
   const unlisten = listenDrops(uploads);
+  let newest = 0;
+  const unscroll = effect(() => { // what was just chosen stands at the top, wherever one was, and asks for its name
+    const { key = 0 } = uploads.rows.value.at(-1) ?? {};
+    if (key > newest) queueMicrotask(() => {
+      host.querySelector('main').scrollTo(0, 0);
+      host.querySelector(`[data-upload="${key}"] input[name="name"]`)?.focus({ preventScroll: true });
+    });
+    newest = Math.max(newest, key);
+  });
   state.start();
   return () => {
     state.stop();
     uploads.stop();
     unlisten();
+    unscroll();
     unmount();
   };
 }
+
+const reveal = (host, plan) => host.querySelector(`[data-plan="${CSS.escape(plan)}"]`)?.scrollIntoView({ block: 'nearest' });
 
 const page = (state, uploads, enter) => html`<div class="start">
   <header class="banner">${brand()}<span class="grow"></span>

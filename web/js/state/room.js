@@ -52,6 +52,7 @@ export class RoomState {
     connection.addEventListener('lost', (event) => this.#lose(event.detail.retryMs));
     connection.addEventListener('ended', (event) => {
       this.link.value = { state: 'ended', retryAt: 0, reason: event.detail.reason };
+      this.latencyMs.value = null;
     });
   }
 
