@@ -114,8 +114,10 @@ static void ten_square_fields_come_from_the_front(void **state)
         assert_close(beam->delivery.opening_x_mm[1] - beam->delivery.opening_x_mm[0], sides_mm[i], 1e-9);
         assert_close(beam->delivery.opening_y_mm[1] - beam->delivery.opening_y_mm[0], sides_mm[i], 1e-9);
     }
-    compare_with_pydicom(path, plan);
+    bool is_compared = compare_with_pydicom(path, plan);
     rtplan_destroy(plan);
+    if (!is_compared)
+        skip(); /* no pydicom here; all before it held */
 }
 
 static void two_arcs_turn_from_the_left_and_from_the_right(void **state)
@@ -137,9 +139,11 @@ static void two_arcs_turn_from_the_left_and_from_the_right(void **state)
     assert_int_equal(plan->n_fractions, 2);
     assert_string_equal(plan->prescription, "Plan: RxA");
     assert_true(report_has(&report, "beam.arc"));
-    compare_with_pydicom(path, plan);
+    bool is_compared = compare_with_pydicom(path, plan);
     report_finish(&report);
     rtplan_destroy(plan);
+    if (!is_compared)
+        skip(); /* no pydicom here; all before it held */
 }
 
 static void the_oncentra_beams_meet_the_body_at_their_distances(void **state)
@@ -158,8 +162,10 @@ static void the_oncentra_beams_meet_the_body_at_their_distances(void **state)
     /* beam 2: gantry 90, collimator 90: x of the collimator runs to the head, y to the patient's front (gantry x points to the back) */
     assert_point(plan->beams[1].delivery.collimator_x_lps, 0, 0, 1, 1e-12);
     assert_point(plan->beams[1].delivery.collimator_y_lps, 0, -1, 0, 1e-12);
-    compare_with_pydicom(path, plan);
+    bool is_compared = compare_with_pydicom(path, plan);
     rtplan_destroy(plan);
+    if (!is_compared)
+        skip(); /* no pydicom here; all before it held */
 }
 
 int main(void)

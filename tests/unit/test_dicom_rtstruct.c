@@ -324,7 +324,7 @@ static void compare_region(const struct rtstruct_roi *roi, char *rest)
     assert_string_equal(roi->frame_uid[0] ? roi->frame_uid : "-", field(&rest));
 }
 
-/* Every region of a file as pydicom reads it. Returns how many; skips without pydicom. */
+/* Every region of a file as pydicom reads it. Returns how many; SIZE_MAX without pydicom. */
 static size_t compare_with_pydicom(const char *path, const struct rtstruct *set)
 {
     static char out[1 << 16];
@@ -378,6 +378,7 @@ static void the_sarcoma_masks_come_out_voxel_for_voxel(void **state)
         const char *name;
         size_t n_voxels;
     } sets[] = { { "CT", 117145 }, { "MR_T1", 117145 }, { "PET", 5095 } };
+    bool is_compared = true;
     for (int i = 0; i < 3; i++) {
         char archive[64], reference_name[64], reference_path[512], folder[256], path[512];
         snprintf(archive, sizeof archive, "dicomrt-sts001/%s.tar.xz", sets[i].name);
@@ -388,6 +389,7 @@ static void the_sarcoma_masks_come_out_voxel_for_voxel(void **state)
         struct rtstruct *set = read_real(path, NULL);
         size_t n_compared = compare_with_pydicom(path, set);
         assert_true(n_compared == 1 || n_compared == SIZE_MAX);
+        is_compared = n_compared == 1;
         struct volume *reference = read_mask(reference_path);
         struct contour_facts facts;
         struct mask *mask = contours_fill(&set->rois[0].contours, &reference->grid, &facts);
@@ -405,6 +407,8 @@ static void the_sarcoma_masks_come_out_voxel_for_voxel(void **state)
         rtstruct_destroy(set);
         folder_remove(folder);
     }
+    if (!is_compared)
+        skip(); /* no pydicom here; all else held */
 }
 
 static void the_lung_phantom_has_3_regions_and_29_empty_ones(void **state)
@@ -426,6 +430,8 @@ static void the_lung_phantom_has_3_regions_and_29_empty_ones(void **state)
     report_finish(&report);
     rtstruct_destroy(set);
     folder_remove(folder);
+    if (n_compared == SIZE_MAX)
+        skip(); /* no pydicom here; all else held */
 }
 
 static void the_oncentra_phantom_has_7_regions(void **state)
@@ -443,6 +449,8 @@ static void the_oncentra_phantom_has_7_regions(void **state)
     size_t n_compared = compare_with_pydicom(path, set);
     assert_true(n_compared == 7 || n_compared == SIZE_MAX);
     rtstruct_destroy(set);
+    if (n_compared == SIZE_MAX)
+        skip(); /* no pydicom here; all else held */
 }
 
 /* plastimatch fills a structure set on its images, one NIfTI mask a region. */
