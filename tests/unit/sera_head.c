@@ -1,10 +1,10 @@
 #include "tests/unit/sera_head.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <zlib.h>
 
 #include "core/base/mem.h"
+#include "core/region/boundary.h"
+#include "tests/check.h"
 #include "tests/unit/data_folder.h"
 
 struct volume *sera_head_read(void)
@@ -43,6 +43,14 @@ struct region_set *sera_head_regions(struct volume *layer)
     }
     region_set_measure(set);
     return set;
+}
+
+struct mask *sera_head_mask(const struct region_set *set, size_t region, bool is_own)
+{
+    struct error err = { 0 };
+    struct mask *mask = is_own ? mask_from_region_own(set, region, 2, &err) : mask_from_region(set, region, 2, &err);
+    assert_non_null(mask);
+    return mask;
 }
 
 void sera_head_destroy(struct region_set *set)

@@ -445,9 +445,7 @@ static void point_counts_equal_the_original_sera3d_on_its_own_head(void **state)
     struct region_set *set = sera_head_regions(layer);
     for (size_t r = 0; r < 3; r++)
         for (int is_own = 0; is_own < 2; is_own++) {
-            struct error err = { 0 };
-            struct mask *mask = is_own ? mask_from_region_own(set, r, 2, &err) : mask_from_region(set, r, 2, &err);
-            assert_non_null(mask);
+            struct mask *mask = sera_head_mask(set, r, is_own);
             struct outline_set *lines = stack(mask, 2, OUTLINE_TRACED, 2);
             assert_int_equal(lines->n_points, (is_own ? alone : with_hierarchy)[r]);
             outline_set_destroy(lines);
