@@ -18,6 +18,9 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     writeFileSync(join(folder, 'a-head-with-a-very-long-name/plan.json'),
       JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'PHANTOM_with_a_name_that_nobody_can_break', images: [{ id: 'ct', path: 'ct.nii' }] }));
     writeFileSync(join(folder, 'a-head-with-a-very-long-name/ct.nii'), 'no image at all');
+    mkdirSync(join(folder, 'beams'));
+    writeFileSync(join(folder, 'beams/plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Beams alone',
+      beams: [{ id: 'b1', entry_mm: [0, -100, 0], target_mm: [0, 0, 0], aperture_mm: 120 }] }));
     world = await startWorld({ plans: [folder] });
   });
   after(async () => {
@@ -72,6 +75,36 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
       await page.waitForFunction(([n, old]) => globalThis.beamroom.stats().headers[n].scene_revision === old + 3, [view, revision]);
       await full(page, view);
     }
+    await page.context().close();
+  });
+
+  it('the comparison of methods shows its table in every window', async () => {
+    for (const [width, height] of sizes) {
+      const page = await world.newPage(`#/rooms/${await world.newRoom()}`, { viewport: { width, height } });
+      await full(page);
+      if (width < 1400) await page.locator('[aria-label="Show the plan\'s parts"]').click(); // folded in smaller windows
+      await page.locator('[data-region="tumour"] button.name').click();
+      if (width < 1200) {
+        await page.locator('[aria-label="Fold the plan\'s parts"]').click();
+        await page.locator('[aria-label="Show the inspector"]').click();
+      }
+      await page.locator('button', { hasText: 'Compare methods' }).click();
+      await page.locator('[aria-label="Methods compared"] tbody tr', { hasText: 'Univels' }).locator('td', { hasText: 'cm³' }).waitFor();
+      const dialog = await page.locator('[aria-label="Methods compared"]').boundingBox();
+      assert.ok(dialog.x >= 0 && dialog.x + dialog.width <= width && dialog.y + dialog.height <= height, `${width} x ${height}: within the window`);
+      if (width === 1180) await shoot(page, 'layout-compare-1180');
+      await page.context().close();
+    }
+  });
+
+  it('a plan of beams alone says that there is nothing to draw, and nothing runs through the words', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom('beams')}`);
+    for (const view of [1, 2]) {
+      await full(page, view);
+      await page.locator(`[data-view="${view}"] .cover.quiet`, { hasText: 'nothing to' }).waitFor();
+    }
+    assert.equal(await page.locator('.overlay .crosshair, .overlay .marker').count(), 0);
+    await shoot(page, 'layout-beams');
     await page.context().close();
   });
 

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from './page.mjs';
 
-const { bytes, unitText, windowText } = await load('panels/format.js');
+const { bytes, unitText, volume, windowText } = await load('panels/format.js');
 
 test('a size is never made up: what was not counted is a dash', () => {
   assert.equal(bytes(0), '–');
@@ -24,4 +24,8 @@ test('powers in units are raised, names that end in a digit are left alone', () 
   assert.equal(unitText('1/cm2'), '1/cm²');
   assert.equal(unitText('minute at 1e10 n/cm2/s'), 'minute at 1e10 n/cm²/s');
   assert.equal(unitText('mm3, beam2, m3'), 'mm³, beam2, m³');
+});
+
+test('a volume in a list has the figures that count, and is never none when there is one', () => {
+  assert.deepEqual([67.152, 1043.1, 9.999, 0.027, 0.0031, 0].map(volume), ['67.2 cm³', '1043 cm³', '10.0 cm³', '0.03 cm³', '< 0.01 cm³', '0.00 cm³']);
 });

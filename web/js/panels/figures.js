@@ -34,7 +34,7 @@ export function figuresDialog({ room, ui, comparison }) {
       <button class="icon-button" aria-label="Close" @click=${() => { ui.popover.value = ''; }}>${icon('close')}</button></header>
     <p class="note">${n < rows.length ? html`<span role="status">Working out ${n + 1} of ${rows.length} …</span>` : html`${number(region.volume_cm3, 2)} cm³ in ${number(region.voxels)} univels of its own.`}
       With all regions inside it. Drawn alone, 650 × 650 pixels, moving picture.</p>
-    <div class="wide"><table><thead><tr><th scope="col">Method</th>${columns.map(([name]) => html`<th scope="col">${name}</th>`)}</tr></thead>
+    <div class="table"><table><thead><tr><th scope="col">Method</th>${columns.map(([name]) => html`<th scope="col">${name}</th>`)}</tr></thead>
       <tbody>${rows.map(({ name, result, error }) => html`<tr><th scope="row">${name}</th>${result ? columns.map(([, text]) => html`<td>${text(result)}</td>`)
         : html`<td colspan=${columns.length} class=${error ? 'why' : 'dim'}>${error ?? '…'}</td>`}</tr>`)}</tbody></table></div></section>`;
 }

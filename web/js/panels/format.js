@@ -31,6 +31,12 @@ export function bytes(n) {
   return n < 1e9 ? `${number(n / 1e6, 1)} MB` : `${number(n / 1e9, 1)} GB`;
 }
 
+/** "67.2 cm³": as many figures as a list needs */
+export function volume(cm3) {
+  if (cm3 > 0 && cm3 < 0.005) return '< 0.01 cm³';
+  return `${number(cm3, cm3 < 9.995 ? 2 : cm3 < 99.95 ? 1 : 0)} cm³`;
+}
+
 export const seconds = (ms) => (ms < 1000 ? `${number(ms)} ms` : `${number(ms / 1000, 1)} s`);
 
 export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;

@@ -164,13 +164,14 @@ export class Pane {
     if (!header || !scene || pane[0] < 2) return nothing;
     const box = this.#box;
     const fullWidth = (header.width_px * 100) / header.scale_percent;
-    const image = shownImage(this.#room.plan.value, scene);
+    const plan = this.#room.plan.value;
+    const image = shownImage(plan, scene);
     return overlay({
       kind: view.kind, header, box, pane,
-      point: crosshair(scene),
+      point: image || plan?.regions.length ? crosshair(scene) : null, // nothing to point at
       pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
       topPx: view.isFollowing.value && !this.#leader ? 0 : parseInt(getComputedStyle(this.host).getPropertyValue('--follow'), 10),
-      windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : 'No image: regions',
+      windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : plan?.regions.length ? 'No image: regions' : '',
     });
   }
 
@@ -187,8 +188,8 @@ export class Pane {
 
   #emptyWords() {
     const plan = this.#room.plan.value;
-    if (!plan || this.#view.kind === '3d' || plan.images.length || plan.regions.length) return nothing;
-    return html`<div class="cover quiet"><p>No image and no region in this plan: nothing to cut through.</p></div>`;
+    if (!plan || plan.images.length || plan.regions.length) return nothing;
+    return html`<div class="cover quiet"><p>No image and no region in this plan: nothing to ${this.#view.kind === '3d' ? 'draw' : 'cut through'}.</p></div>`;
   }
 
   /** What the picture cannot say itself: the regions that are missing from it, and what the colours of the check mean. */

@@ -4,7 +4,7 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { beamWords, doseWords, shownImage, soloPatch } from '../state/plan.js';
-import { count, number, significant, windowText } from './format.js';
+import { count, number, volume, windowText } from './format.js';
 import { icon } from './icons.js';
 import { variables } from './mount.js';
 
@@ -71,7 +71,7 @@ function row(room, ui, plan, region, refusal) {
     <button class="name" title=${`${region.name}, ${number(region.volume_cm3, 2)} cm³`} aria-pressed=${ui.region.value === region.id} aria-label=${`${region.name}, ${number(region.volume_cm3, 2)} cm³`}
       @click=${() => { ui.region.value = ui.region.value === region.id ? '' : region.id; }}>${region.name}</button>
     ${refusal ? html`<span class="refused warn" role="img" aria-label=${`Not in the 3-D picture: ${refusal}`} title=${`Not in the 3-D picture: ${refusal}`}>${icon('warning')}</span>` : nothing}
-    <span class="tail volume" aria-hidden="true">${region.voxels ? `${significant(region.volume_cm3)} cm³` : 'empty'}</span>
+    <span class="tail volume" aria-hidden="true">${region.voxels ? volume(region.volume_cm3) : 'empty'}</span>
     <input type="range" class="mini" min="0" max="100" step="1" .value=${live(String(percent))} ${variables({ '--fill': `${percent}%` })}
       aria-label=${`Opacity of ${region.name}`} title="Opacity" ?disabled=${isDisabled}
       @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>
