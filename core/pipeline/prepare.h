@@ -7,7 +7,7 @@
 /* A picture that waits for shapes. */
 struct preparation {
     struct pipeline_request request; /* with its snapshot */
-    struct visible_want *wants;
+    struct plan_want *wants;
     size_t n_wants;
 };
 /* Takes request->snapshot. */

@@ -139,8 +139,15 @@ NODISCARD bool plan_shape_distance(const struct plan *plan, size_t region, const
 NODISCARD struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,
                                     struct surface_facts *facts, struct error *err);
 
-/* Builds the surfaces of several regions side by side, a thread each, the largest first, for who asks for them later; what fails is
- * logged. go_on is asked before each that the calling thread takes, false ends the rest; NULL: always. */
+/* Builds the shapes of several regions side by side, a thread each, in this order, for who asks for them later; what fails is logged.
+ * go_on is asked at the beginning and before each that the calling thread takes, false ends the rest; NULL: always. */
+struct plan_want {
+    size_t region;
+    struct shape_key key;
+    enum surface_detail detail;
+};
+void plan_build_shapes(struct plan *plan, const struct plan_want *wants, size_t n, bool (*go_on)(void *context), void *context);
+/* The same for surfaces, the largest region first. */
 void plan_build_surfaces(struct plan *plan, const size_t *regions, size_t n, enum surface_algorithm algorithm, enum surface_detail detail,
                          bool (*go_on)(void *context), void *context);
 

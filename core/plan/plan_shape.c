@@ -7,15 +7,19 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
+#include "core/plan/plan_masks.h"
 #include "core/plan/plan_shapes.h"
 #include "core/plan/plan_surface.h"
+#include "core/region/boundary.h"
 #include "core/surface/shape_distance.h"
 #include "core/surface/shape_make.h"
 
 struct wanted {
     struct plan *plan;
     uint32_t reduction; /* of a light surface */
-    int n_threads;      /* to build a full surface */
+    int n_threads;      /* to build it */
+    struct plan_masks *masks; /* NULL: the mask is made for this one alone; else it is this wish of these */
+    size_t wish;
 };
 
 void plan_count_shape(const struct shape *shape, struct surface_facts *facts)
@@ -40,29 +44,23 @@ void plan_count_shape(const struct shape *shape, struct surface_facts *facts)
 /* What a shape is made from: with its inner boundary a region is its own univels alone. */
 static struct mask *mask_of(const struct plan *plan, size_t region, const struct shape_key *key, struct error *err)
 {
-    const struct region *what = &plan->regions.regions[region];
     if (key->has_inner_boundary)
-        return mask_from_labels(plan->regions.layers[what->layer], &what->label, 1, parallel_cores(), err);
+        return mask_from_region_own(&plan->regions, region, parallel_cores(), err);
     return mask_from_region(&plan->regions, region, parallel_cores(), err);
 }
 
-static struct shape *build_other(const struct plan *plan, const struct shape_name *name, struct surface_facts *facts, struct error *err)
+static struct shape *build_other(const struct shape_key *key, const struct mask *mask, int n_threads, struct surface_facts *facts,
+                                 struct error *err)
 {
     int64_t began_us = clock_now_us();
-    struct shape *shape = shape_make(&name->key, &plan->regions, name->region, 0, err);
+    struct shape *shape = shape_make_from_mask(key, mask, n_threads, err);
     if (!shape)
         return NULL;
-    *facts = (struct surface_facts){ .build_ms = (double)(clock_now_us() - began_us) / 1000, .reduction = 1 };
-    struct mask *mask = mask_of(plan, name->region, &name->key, err);
-    if (!mask) {
-        shape_unref(shape);
-        return NULL;
-    }
-    facts->n_univels = mask_count(mask);
+    *facts = (struct surface_facts){ .reduction = 1, .n_univels = mask_count(mask) };
+    facts->build_ms = (double)(clock_now_us() - began_us) / 1000;
     facts->univel_volume_mm3 = (double)facts->n_univels * fabs(affine_determinant(&mask->lps_mm_from_ijk));
-    mask_destroy(mask);
     plan_count_shape(shape, facts);
-    if (name->key.representation == REPRESENTATION_FAN)
+    if (key->representation == REPRESENTATION_FAN)
         facts->volume_mm3 = NAN; /* its triangles overlap: it encloses nothing */
     return shape;
 }
@@ -70,16 +68,21 @@ static struct shape *build_other(const struct plan *plan, const struct shape_nam
 static struct shape *build(void *context, const struct shape_name *name, struct surface_facts *facts, struct error *err)
 {
     const struct wanted *wanted = context;
-    struct plan *plan = wanted->plan;
     struct shape *shape = NULL;
-    if (name->key.representation != REPRESENTATION_SURFACE)
-        shape = build_other(plan, name, facts, err);
-    else if (name->detail == SURFACE_LIGHT)
-        shape = plan_build_light_surface(plan, name->region, name->key.algorithm, wanted->reduction, facts, err);
-    else
-        shape = plan_build_surface(plan, name->region, name->key.algorithm, wanted->n_threads, facts, err);
+    int64_t began_us = clock_now_us();
+    struct mask *mask = wanted->masks ? plan_masks_take(wanted->masks, wanted->wish, err)
+                                      : mask_of(wanted->plan, name->region, &name->key, err);
+    double mask_ms = (double)(clock_now_us() - began_us) / 1000;
+    if (mask && name->key.representation != REPRESENTATION_SURFACE)
+        shape = build_other(&name->key, mask, wanted->n_threads, facts, err);
+    else if (mask && name->detail == SURFACE_LIGHT)
+        shape = plan_build_light_surface(mask, name->key.algorithm, wanted->reduction, facts, err);
+    else if (mask)
+        shape = plan_build_surface(mask, name->key.algorithm, wanted->n_threads, facts, err);
+    mask_destroy(mask);
+    facts->build_ms += mask_ms;
     if (!shape && err)
-        error_prefix(err, "region \"%s\"", plan->regions.regions[name->region].name);
+        error_prefix(err, "region \"%s\"", wanted->plan->regions.regions[name->region].name);
     return shape;
 }
 
@@ -99,34 +102,32 @@ bool plan_shape_distance(const struct plan *plan, size_t region, const struct sh
     return true;
 }
 
-static struct shape *get(struct plan *plan, size_t region, const struct shape_key *key, enum surface_detail detail, int n_threads,
-                         struct surface_facts *facts, struct error *err)
+/* What a shape is kept as, with the reduction it has; false: there is none. */
+static bool name_of(struct plan *plan, const struct plan_want *want, struct shape_name *name, uint32_t *reduction, struct error *err)
 {
-    struct surface_facts unwanted;
-    struct shape_name name = { region, *key, SURFACE_FULL };
-    struct wanted wanted = { plan, 1, n_threads };
-    shape_key_normalise(&name.key);
-    if (region >= plan->regions.n_regions) {
-        error_set(err, ERROR_RANGE, "region %zu; the plan has %zu", region, plan->regions.n_regions);
-        return NULL;
+    *name = (struct shape_name){ want->region, want->key, SURFACE_FULL };
+    *reduction = 1;
+    shape_key_normalise(&name->key);
+    if (want->region >= plan->regions.n_regions)
+        return error_set(err, ERROR_RANGE, "region %zu; the plan has %zu", want->region, plan->regions.n_regions);
+    if (plan->regions.regions[want->region].n_voxels == 0)
+        return error_set(err, ERROR_RANGE, "the region \"%s\" has no voxel", plan->regions.regions[want->region].name);
+    if (want->detail == SURFACE_LIGHT && name->key.representation == REPRESENTATION_SURFACE) {
+        *reduction = plan_light_reduction(plan, name->key.algorithm, err);
+        name->detail = *reduction > 1 ? SURFACE_LIGHT : SURFACE_FULL;
     }
-    if (plan->regions.regions[region].n_voxels == 0) {
-        error_set(err, ERROR_RANGE, "the region \"%s\" has no voxel", plan->regions.regions[region].name);
-        return NULL;
-    }
-    if (detail == SURFACE_LIGHT && name.key.representation == REPRESENTATION_SURFACE) {
-        wanted.reduction = plan_light_reduction(plan, name.key.algorithm, err);
-        if (wanted.reduction == 0)
-            return NULL;
-        name.detail = wanted.reduction > 1 ? SURFACE_LIGHT : SURFACE_FULL;
-    }
-    return plan_shapes_get(plan->shapes, &name, build, &wanted, facts ? facts : &unwanted, err);
+    return *reduction > 0;
 }
 
 struct shape *plan_shape(struct plan *plan, size_t region, const struct shape_key *key, enum surface_detail detail,
                          struct surface_facts *facts, struct error *err)
 {
-    return get(plan, region, key, detail, parallel_cores(), facts, err);
+    struct surface_facts unwanted;
+    struct shape_name name;
+    struct wanted wanted = { .plan = plan, .n_threads = parallel_cores() };
+    if (!name_of(plan, &(struct plan_want){ region, *key, detail }, &name, &wanted.reduction, err))
+        return NULL;
+    return plan_shapes_get(plan->shapes, &name, build, &wanted, facts ? facts : &unwanted, err);
 }
 
 struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,
@@ -143,30 +144,68 @@ struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorit
 
 struct crowd {
     struct plan *plan;
-    size_t *regions; /* the largest first */
+    const struct plan_want *wants;
     size_t n;
-    struct shape_key key;
-    enum surface_detail detail;
+    struct shape_name *names; /* [n_missing] */
+    uint32_t *reductions;     /* [n_missing] */
+    size_t n_missing;
+    struct plan_masks *masks; /* a wish for each that is missing */
     bool (*go_on)(void *context);
     void *context;
     atomic_size_t next;
     atomic_bool is_over;
 };
 
-static void take_regions(void *context, int part, int n_parts)
+static void take_shapes(void *context, int part, int n_parts)
 {
     struct crowd *crowd = context;
-    for (size_t at; !atomic_load(&crowd->is_over) && (at = atomic_fetch_add(&crowd->next, 1)) < crowd->n;) {
+    for (size_t at; !atomic_load(&crowd->is_over) && (at = atomic_fetch_add(&crowd->next, 1)) < crowd->n_missing;) {
         if (part == 0 && crowd->go_on && !crowd->go_on(crowd->context)) {
             atomic_store(&crowd->is_over, true);
             return;
         }
         struct error err = { 0 };
-        struct shape *shape = get(crowd->plan, crowd->regions[at], &crowd->key, crowd->detail, n_parts > 1 ? 1 : parallel_cores(), NULL, &err);
+        struct surface_facts facts;
+        struct wanted wanted = { crowd->plan, crowd->reductions[at], n_parts > 1 ? 1 : parallel_cores(), crowd->masks, at };
+        struct shape *shape = plan_shapes_get(crowd->plan->shapes, &crowd->names[at], build, &wanted, &facts, &err);
         if (!shape)
-            log_warn("surface of region %s: %s", crowd->plan->regions.regions[crowd->regions[at]].id, err.text);
+            log_warn("shape of region %s: %s", crowd->plan->regions.regions[crowd->names[at].region].id, err.text);
         shape_unref(shape);
     }
+}
+
+/* Those that are not there yet, and a wish for the mask of each. */
+static void find_missing(struct crowd *crowd)
+{
+    struct mask_wish *wishes = mem_new((crowd->n + 1) * sizeof *wishes);
+    for (size_t i = 0; i < crowd->n; i++) {
+        struct error err = { 0 };
+        struct shape_name *name = &crowd->names[crowd->n_missing];
+        if (!name_of(crowd->plan, &crowd->wants[i], name, &crowd->reductions[crowd->n_missing], &err))
+            log_warn("shape of region %zu: %s", crowd->wants[i].region, err.text);
+        else if (!plan_shapes_has(crowd->plan->shapes, name))
+            wishes[crowd->n_missing++] = (struct mask_wish){ name->region, name->key.has_inner_boundary };
+    }
+    crowd->masks = plan_masks_create(crowd->plan, wishes, crowd->n_missing, PLAN_MASKS_BYTES);
+    free(wishes);
+}
+
+void plan_build_shapes(struct plan *plan, const struct plan_want *wants, size_t n, bool (*go_on)(void *context), void *context)
+{
+    struct crowd crowd = { .plan = plan, .wants = wants, .n = n, .go_on = go_on, .context = context };
+    size_t n_threads = (size_t)parallel_cores();
+    if (go_on && !go_on(context))
+        return;
+    crowd.names = mem_new((n + 1) * sizeof *crowd.names);
+    crowd.reductions = mem_new((n + 1) * sizeof *crowd.reductions);
+    atomic_init(&crowd.next, 0);
+    atomic_init(&crowd.is_over, false);
+    find_missing(&crowd);
+    if (crowd.n_missing > 0)
+        parallel_run((int)(n_threads < crowd.n_missing ? n_threads : crowd.n_missing), take_shapes, &crowd);
+    plan_masks_destroy(crowd.masks);
+    free(crowd.names);
+    free(crowd.reductions);
 }
 
 static double box_of(const struct plan *plan, size_t region)
@@ -181,17 +220,15 @@ static double box_of(const struct plan *plan, size_t region)
 void plan_build_surfaces(struct plan *plan, const size_t *regions, size_t n, enum surface_algorithm algorithm, enum surface_detail detail,
                          bool (*go_on)(void *context), void *context)
 {
-    struct crowd crowd = { plan, mem_new((n + 1) * sizeof *regions), n, { .representation = REPRESENTATION_SURFACE, .algorithm = algorithm },
-                           detail, go_on, context, 0, false };
+    struct plan_want *wants = mem_new((n + 1) * sizeof *wants);
     for (size_t i = 0; i < n; i++) { /* a plan has few */
         size_t at = i;
-        for (; at > 0 && box_of(plan, crowd.regions[at - 1]) < box_of(plan, regions[i]); at--)
-            crowd.regions[at] = crowd.regions[at - 1];
-        crowd.regions[at] = regions[i];
+        for (; at > 0 && box_of(plan, wants[at - 1].region) < box_of(plan, regions[i]); at--)
+            wants[at] = wants[at - 1];
+        wants[at] = (struct plan_want){ regions[i], { .representation = REPRESENTATION_SURFACE, .algorithm = algorithm }, detail };
     }
-    int n_threads = parallel_cores();
-    parallel_run((size_t)n_threads < n ? n_threads : n > 0 ? (int)n : 1, take_regions, &crowd);
-    free(crowd.regions);
+    plan_build_shapes(plan, wants, n, go_on, context);
+    free(wants);
 }
 
 /* ---- memory ---------------------------------------------------------------------------------------------------------------- */

@@ -143,6 +143,14 @@ struct shape *plan_shapes_get(struct plan_shapes *shapes, const struct shape_nam
     return shape;
 }
 
+bool plan_shapes_has(struct plan_shapes *shapes, const struct shape_name *name)
+{
+    pthread_mutex_lock(&shapes->lock);
+    bool has = find(shapes, name) != NULL;
+    pthread_mutex_unlock(&shapes->lock);
+    return has;
+}
+
 void plan_shapes_offer(struct plan_shapes *shapes, const struct shape_name *name, const struct shape *shape,
                        const struct surface_facts *facts)
 {

@@ -22,6 +22,8 @@ typedef struct shape *plan_shape_build(void *context, const struct shape_name *n
  * wait for it. A failure is not kept, memory may come back: whoever waited tries in turn. One reference, the caller's. */
 NODISCARD struct shape *plan_shapes_get(struct plan_shapes *shapes, const struct shape_name *name, plan_shape_build *build, void *context,
                                         struct surface_facts *facts, struct error *err);
+/* Whether it is kept, or being built. It may be gone by the time it is asked for. */
+bool plan_shapes_has(struct plan_shapes *shapes, const struct shape_name *name);
 /* Keeps a shape that was built on the way to something else, unless there is one of its name. Takes a reference of its own. */
 void plan_shapes_offer(struct plan_shapes *shapes, const struct shape_name *name, const struct shape *shape,
                        const struct surface_facts *facts);

@@ -7,6 +7,7 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
+#include "core/plan/plan_masks.h"
 #include "core/plan/plan_shapes.h"
 #include "core/region/mask.h"
 #include "core/surface/surface.h"
@@ -42,17 +43,12 @@ static struct shape *shape_of(struct mesh *mesh, const struct mask *full, uint32
     return shape;
 }
 
-struct shape *plan_build_surface(const struct plan *plan, size_t region, enum surface_algorithm algorithm, int n_threads,
-                                 struct surface_facts *facts, struct error *err)
+struct shape *plan_build_surface(const struct mask *mask, enum surface_algorithm algorithm, int n_threads, struct surface_facts *facts,
+                                 struct error *err)
 {
     int64_t started_us = clock_now_us();
-    struct mask *mask = mask_from_region(&plan->regions, region, n_threads, err);
-    if (!mask)
-        return NULL;
     struct mesh *mesh = extract(algorithm, mask, n_threads, err);
-    struct shape *shape = mesh ? shape_of(mesh, mask, 1, started_us, facts) : NULL;
-    mask_destroy(mask);
-    return shape;
+    return mesh ? shape_of(mesh, mask, 1, started_us, facts) : NULL;
 }
 
 /* How many voxels become one along each axis: as many along the shortest as the reduction says, along others only as many as make
@@ -71,13 +67,12 @@ static void factors_of(const struct mask *mask, uint32_t reduction, uint32_t fac
 }
 
 /* A small region that the 8-cell algorithm does not draw when reduced so far is reduced less: it must not vanish in motion. */
-struct shape *plan_build_light_surface(const struct plan *plan, size_t region, enum surface_algorithm algorithm, uint32_t reduction,
+struct shape *plan_build_light_surface(const struct mask *full, enum surface_algorithm algorithm, uint32_t reduction,
                                        struct surface_facts *facts, struct error *err)
 {
     int64_t started_us = clock_now_us();
-    struct mask *full = mask_from_region(&plan->regions, region, 1, err);
     struct shape *shape = NULL;
-    for (uint32_t taken = reduction; full && !shape && taken > 0; taken--) {
+    for (uint32_t taken = reduction; !shape && taken > 0; taken--) {
         uint32_t factors[3];
         factors_of(full, taken, factors);
         struct mask *reduced = taken > 1 ? mask_reduce(full, factors, 1, err) : NULL;
@@ -90,7 +85,6 @@ struct shape *plan_build_light_surface(const struct plan *plan, size_t region, e
         else
             mesh_unref(mesh);
     }
-    mask_destroy(full);
     return shape;
 }
 
@@ -108,6 +102,7 @@ struct lighting {
     struct ladder *ladders; /* [n_regions] */
     bool is_tried[MAX_REDUCTION + 1];
     uint32_t factor; /* being tried */
+    struct plan_masks *masks; /* of all regions, in their order */
     atomic_size_t next;
     atomic_bool is_failed;
 };
@@ -122,8 +117,11 @@ static void reduce_some(void *context, int part, int n_parts)
         struct ladder *ladder = &lighting->ladders[r];
         if (set->regions[r].n_voxels == 0)
             continue;
-        ladder->shape[lighting->factor] = plan_build_light_surface(lighting->plan, r, lighting->algorithm, lighting->factor,
-                                                                   &ladder->facts[lighting->factor], NULL);
+        struct mask *mask = plan_masks_take(lighting->masks, r, NULL);
+        if (mask)
+            ladder->shape[lighting->factor] = plan_build_light_surface(mask, lighting->algorithm, lighting->factor,
+                                                                       &ladder->facts[lighting->factor], NULL);
+        mask_destroy(mask);
         if (!ladder->shape[lighting->factor])
             atomic_store(&lighting->is_failed, true);
     }
@@ -135,9 +133,15 @@ static size_t triangles_at(struct lighting *lighting, uint32_t factor)
     size_t n_regions = lighting->plan->regions.n_regions, n = 0;
     int n_threads = parallel_cores();
     if (!lighting->is_tried[factor]) {
+        struct mask_wish *wishes = mem_new((n_regions + 1) * sizeof *wishes);
+        for (size_t r = 0; r < n_regions; r++)
+            wishes[r] = (struct mask_wish){ r, false };
         lighting->factor = factor;
+        lighting->masks = plan_masks_create(lighting->plan, wishes, n_regions, PLAN_MASKS_BYTES);
+        free(wishes);
         atomic_store(&lighting->next, 0);
         parallel_run((size_t)n_threads < n_regions ? n_threads : (int)n_regions, reduce_some, lighting);
+        plan_masks_destroy(lighting->masks);
         lighting->is_tried[factor] = true;
     }
     for (size_t r = 0; r < n_regions; r++)
@@ -165,9 +169,15 @@ static uint32_t find_reduction(struct lighting *lighting, size_t n_at_two)
  * the first step of the ladder promises that. */
 static bool full_is_light(struct plan *plan, enum surface_algorithm algorithm, size_t n_at_two)
 {
-    size_t n = 0;
+    size_t n = 0, n_regions = plan->regions.n_regions, n_drawn = 0;
     if (n_at_two > PLAN_LIGHT_TRIANGLES / 3)
         return false;
+    size_t *regions = mem_new((n_regions + 1) * sizeof *regions);
+    for (size_t r = 0; r < n_regions; r++)
+        if (plan->regions.regions[r].n_voxels > 0)
+            regions[n_drawn++] = r;
+    plan_build_surfaces(plan, regions, n_drawn, algorithm, SURFACE_FULL, NULL, NULL);
+    free(regions);
     for (size_t r = 0; r < plan->regions.n_regions; r++) {
         if (plan->regions.regions[r].n_voxels == 0)
             continue;

@@ -204,15 +204,15 @@ bool visible_is_checked(const struct snapshot *snapshot, size_t region)
            (check->region[0] == 0 || strcmp(check->region, snapshot->plan->regions.regions[region].id) == 0);
 }
 
-size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct visible_want *wants)
+size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct plan_want *wants)
 {
     bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
     size_t n = 0;
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
         if (is_in_space ? !is_drawn(snapshot, i) || !may_be_seen(snapshot, i) : !visible_is_checked(snapshot, i))
             continue;
-        struct visible_want *want = &wants[n++];
-        *want = (struct visible_want){ i, is_in_space ? visible_shape_key(snapshot, i) : visible_checked_key(snapshot, i), SURFACE_FULL };
+        struct plan_want *want = &wants[n++];
+        *want = (struct plan_want){ i, is_in_space ? visible_shape_key(snapshot, i) : visible_checked_key(snapshot, i), SURFACE_FULL };
         if (is_in_space && want->key.representation == REPRESENTATION_SURFACE)
             want->detail = detail;
     }

@@ -9,15 +9,9 @@ struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t regio
 /* A surface by the scene's algorithm, whatever regions are drawn as. */
 struct shape_key visible_surface_key(const struct snapshot *snapshot);
 
-/* One of the shapes that a picture is made of. */
-struct visible_want {
-    size_t region;
-    struct shape_key key;
-    enum surface_detail detail;
-};
 /* The shapes that a picture of the snapshot needs, as far as the scene tells; wants holds as many as the plan has regions. Returns how
  * many. For building them before the picture is drawn: what is missing here the renderer has built itself. */
-size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct visible_want *wants);
+size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct plan_want *wants);
 /* What a region's univels are compared with by the scene's check: what it is drawn as when that is made of triangles, else a surface by
  * the scene's algorithm. */
 struct shape_key visible_checked_key(const struct snapshot *snapshot, size_t region);

@@ -76,23 +76,30 @@ static bool fill(struct shape *shape, const struct shape_key *key, const struct 
     }
 }
 
-struct shape *shape_make(const struct shape_key *key, const struct region_set *set, size_t region, int n_threads, struct error *err)
+struct shape *shape_make_from_mask(const struct shape_key *key, const struct mask *mask, int n_threads, struct error *err)
 {
-    bool is_own = key->has_inner_boundary;
-    struct mask *mask = is_own ? mask_from_region_own(set, region, n_threads, err) : mask_from_region(set, region, n_threads, err);
-    if (!mask)
-        return NULL;
     int n = n_threads > 0 ? n_threads : parallel_cores();
-    n = n < SHAPE_MAX_THREADS ? n : SHAPE_MAX_THREADS;
     struct shape *shape = mem_new(sizeof *shape);
     *shape = (struct shape){ .bounds_lps_mm = box3_empty(), .n_bytes = sizeof *shape };
     atomic_init(&shape->references, 1);
-    bool good = mask_count(mask) > 0 || error_set(err, ERROR_RANGE, "region %s has no voxel%s", set->regions[region].id,
-                                                  is_own ? " of its own" : "");
-    good = good && fill(shape, key, mask, n, err);
-    mask_destroy(mask);
-    if (good)
+    bool good = mask_count(mask) > 0 || error_set(err, ERROR_RANGE, "no voxel%s", key->has_inner_boundary ? " of its own" : "");
+    if (good && fill(shape, key, mask, n < SHAPE_MAX_THREADS ? n : SHAPE_MAX_THREADS, err))
         return shape;
     shape_unref(shape);
     return NULL;
+}
+
+struct shape *shape_make(const struct shape_key *key, const struct region_set *set, size_t region, int n_threads, struct error *err)
+{
+    struct mask *mask = key->has_inner_boundary ? mask_from_region_own(set, region, n_threads, err)
+                                                : mask_from_region(set, region, n_threads, err);
+    if (!mask)
+        return NULL;
+    struct shape *shape = NULL;
+    if (mask_count(mask) > 0)
+        shape = shape_make_from_mask(key, mask, n_threads, err);
+    else
+        error_set(err, ERROR_RANGE, "region %s has no voxel%s", set->regions[region].id, key->has_inner_boundary ? " of its own" : "");
+    mask_destroy(mask);
+    return shape;
 }

@@ -1,5 +1,5 @@
 /* The surfaces a plan keeps, by algorithm and detail. */
-#include "core/plan/plan.h"
+#include "core/plan/plan_masks.h"
 #include "tests/check.h"
 #include "tests/made_plan.h"
 #include "tests/unit/data_folder.h"
@@ -107,6 +107,70 @@ static void several_surfaces_are_built_at_once_and_are_those_built_one_by_one(vo
     plan_build_surfaces(plan, regions, 0, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL); /* nothing is asked for */
     plan_destroy(plan);
     plan_destroy(other);
+}
+
+static void assert_same_shape(const struct shape *a, const struct shape *b)
+{
+    assert_int_equal(a->kind, b->kind);
+    assert_int_equal(a->n_bytes, b->n_bytes);
+    if (a->mesh) {
+        assert_memory_equal(a->mesh->positions_lps_mm, b->mesh->positions_lps_mm, 3 * b->mesh->n_vertices * sizeof(float));
+        assert_memory_equal(a->mesh->indices, b->mesh->indices, 3 * b->mesh->n_triangles * sizeof(uint32_t));
+        assert_memory_equal(a->mesh->normals, b->mesh->normals, 3 * b->mesh->n_vertices * sizeof(float));
+    }
+    if (a->points)
+        assert_memory_equal(a->points->positions_lps_mm, b->points->positions_lps_mm, 3 * b->points->n_points * sizeof(float));
+}
+
+static void shapes_of_all_kinds_built_at_once_are_those_built_one_by_one(void **state)
+{
+    (void)state;
+    struct plan *plan = plan_of_boxes(), *other = plan_of_boxes();
+    const struct plan_want wants[] = {
+        { 0, { .representation = REPRESENTATION_UNIVELS }, SURFACE_FULL },
+        { 0, { .representation = REPRESENTATION_POINTS, .has_inner_boundary = true }, SURFACE_FULL },
+        { 1, { .representation = REPRESENTATION_FAN }, SURFACE_LIGHT },
+        { 1, { .representation = REPRESENTATION_SURFACE, .algorithm = SURFACE_MARCHING_CUBES }, SURFACE_LIGHT },
+        { 2, { .representation = REPRESENTATION_SURFACE, .algorithm = SURFACE_EIGHT_CELL }, SURFACE_FULL },
+        { 9, { .representation = REPRESENTATION_POINTS }, SURFACE_FULL }, /* there is no such region */
+    };
+    enum { N = sizeof wants / sizeof *wants };
+    plan_build_shapes(plan, wants, N, NULL, NULL);
+    plan_build_shapes(plan, wants, N, NULL, NULL); /* all are there */
+    for (size_t i = 0; i + 1 < N; i++) {
+        struct surface_facts facts, alone_facts;
+        struct shape *together = plan_shape(plan, wants[i].region, &wants[i].key, wants[i].detail, &facts, NULL);
+        struct shape *alone = plan_shape(other, wants[i].region, &wants[i].key, wants[i].detail, &alone_facts, NULL);
+        assert_same_shape(together, alone);
+        assert_int_equal(facts.n_univels, alone_facts.n_univels);
+        assert_int_equal(facts.reduction, alone_facts.reduction);
+        shape_unref(together);
+        shape_unref(alone);
+    }
+    plan_destroy(plan);
+    plan_destroy(other);
+}
+
+static void masks_are_the_regions_however_many_are_made_at_once_and_asked_for_again(void **state)
+{
+    (void)state;
+    struct plan *plan = plan_of_boxes();
+    const struct mask_wish wishes[] = { { 0, false }, { 1, true }, { 2, false }, { 0, true } };
+    const uint64_t one = (uint64_t)3 * 8 * 150 * 150, most[] = { 0, one, 2 * one, UINT64_MAX };
+    const size_t order[] = { 1, 0, 3, 1, 2 };
+    for (size_t m = 0; m < 4; m++) {
+        struct error err = { 0 };
+        struct plan_masks *masks = plan_masks_create(plan, wishes, 4, most[m]);
+        for (size_t i = 0; i < 5; i++) {
+            struct mask *mask = plan_masks_take(masks, order[i], &err), *alone = mask_from_region(&plan->regions, wishes[order[i]].region, 1, &err);
+            assert_non_null(mask);
+            assert_memory_equal(mask->bits, alone->bits, one);
+            mask_destroy(mask);
+            mask_destroy(alone);
+        }
+        plan_masks_destroy(masks); /* with what nobody took */
+    }
+    plan_destroy(plan);
 }
 
 /* Every other slice of 4 mm is a plate. */
@@ -224,6 +288,8 @@ int main(void)
         cmocka_unit_test(a_small_region_does_not_vanish_in_motion),
         cmocka_unit_test(what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds_it),
         cmocka_unit_test(several_surfaces_are_built_at_once_and_are_those_built_one_by_one),
+        cmocka_unit_test(shapes_of_all_kinds_built_at_once_are_those_built_one_by_one),
+        cmocka_unit_test(masks_are_the_regions_however_many_are_made_at_once_and_asked_for_again),
         cmocka_unit_test(thick_slices_are_not_thinned_before_the_pixels_are_as_large),
         cmocka_unit_test(seras_head_by_either_algorithm_in_full_and_light),
     };
