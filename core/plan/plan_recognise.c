@@ -252,8 +252,18 @@ static void recognise_file(struct recognition *all, char *name)
     }
 }
 
-/* Why nothing was recognised, as far as the names tell. */
-static void explain_nothing(const struct folder *folder, const struct folder_tree *tree, const struct dicom_index *dicom, struct error *err)
+/* The first file that ought to be DICOM and could not be read. */
+static const struct report_line *find_unreadable(const struct report *report, size_t from)
+{
+    for (size_t i = from; report && i < report->n_lines; i++)
+        if (strcmp(report->lines[i].code, "dicom.unreadable") == 0 && report->lines[i].where[0])
+            return &report->lines[i];
+    return NULL;
+}
+
+/* Why nothing was recognised, as far as the names tell. unreadable: NULL when no DICOM file was. */
+static void explain_nothing(const struct folder *folder, const struct folder_tree *tree, const struct dicom_index *dicom,
+                            const struct report_line *unreadable, struct error *err)
 {
     static const char *const archives[] = { ".tar", ".tar.gz", ".tgz", ".tar.xz", ".zip" };
     char **names = NULL, inner[FOLDER_NAME_SIZE];
@@ -271,6 +281,10 @@ static void explain_nothing(const struct folder *folder, const struct folder_tre
                           tree->files[i].name);
                 return;
             }
+    if (unreadable) {
+        error_set(err, ERROR_NOT_FOUND, "no plan.json, and nothing to show in the folder; %s: %s", unreadable->where, unreadable->sentence);
+        return;
+    }
     error_set(err, ERROR_NOT_FOUND, "no plan.json, and no file in the folder is an image, regions or a dose that this version reads");
     if (!folder_list(folder, &names, &n_names, NULL))
         return;
@@ -315,13 +329,14 @@ bool plan_recognise(const struct folder *folder, const struct dicom_progress *pr
     struct plan_file *file = parts->file = mem_new(sizeof *file);
     file->regions = mem_new(PLAN_FILE_MAX_PARTS * sizeof *file->regions);
     plan_folder_name(folder->path, file->name, sizeof file->name);
+    size_t n_before = report ? report->n_lines : 0;
     if (tree.is_cut)
         report_add(report, REPORT_WARNING, "plan.too-many-files", "", "Of the folder the first %d files down to %d folders deep were looked "
                    "at; there are more.", FOLDER_MAX_FILES, FOLDER_MAX_DEPTH);
     bool is_known = recognise_tree(folder, &tree, progress, parts, &reason, report, err);
     bool has_more = plan_dicom_object(parts->dicom, DICOM_KIND_DOSE, "", 0) || plan_dicom_object(parts->dicom, DICOM_KIND_PLAN, "", 0);
     if (is_known && file->n_images + file->n_regions + file->n_doses == 0 && !has_more) {
-        explain_nothing(folder, &tree, parts->dicom, err);
+        explain_nothing(folder, &tree, parts->dicom, find_unreadable(report, n_before), err);
         if (reason.text[0] && err)
             *err = reason;
         is_known = false;

@@ -33,7 +33,8 @@ static void files_of_other_kinds_are_passed_over(void **state)
     assert_int_equal(s.index->n_stacks, 1);
     assert_int_equal(s.report.n_lines, 1); /* only what says by its name that it is DICOM is worth a line */
     assert_string_equal(s.report.lines[0].where, "empty.dcm");
-    assert_non_null(strstr(s.report.lines[0].sentence, "named like DICOM"));
+    assert_non_null(strstr(s.report.lines[0].sentence, "Named like DICOM"));
+    assert_non_null(strstr(s.report.lines[0].sentence, "found an empty file"));
     scanned_finish(&s);
 }
 

@@ -127,12 +127,27 @@ static void parts_are_found_in_folders_below_and_plans_of_their_own_are_left_out
     folder_remove(folder);
 }
 
+/* A data set whose first byte is that of something else is none: no reader finds its elements (pydicom with force and dcmdump do not). */
+static void a_folder_of_what_only_is_named_dicom_is_refused_with_what_was_found(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err = { 0 };
+    folder_make(folder);
+    folder_put(folder, "cut/shifted.dcm", "\x20\x08\x00\x05\x00" "CS\x0a\x00ISO_IR 100", 19);
+    assert_null(plan_load(folder, "p", NULL, &err));
+    assert_non_null(strstr(err.text, "cut/shifted.dcm: "));
+    assert_non_null(strstr(err.text, "byte 0: expected \"DICM\" at byte 128, or an element of group 0002 or 0008 here; found 20 08 00 05"));
+    folder_remove(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(files_of_all_folders_are_listed_in_order_with_what_tells_a_change),
         cmocka_unit_test(folders_are_entered_so_deep_and_no_deeper),
         cmocka_unit_test(parts_are_found_in_folders_below_and_plans_of_their_own_are_left_out),
+        cmocka_unit_test(a_folder_of_what_only_is_named_dicom_is_refused_with_what_was_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

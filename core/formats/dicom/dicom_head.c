@@ -241,6 +241,16 @@ static bool grow(struct bytes *scratch, size_t size, const char *path, struct er
     return scratch->data ? true : error_set(err, ERROR_MEMORY, "%s: no memory for %zu bytes", path, size);
 }
 
+static enum dicom_head_result say_foreign(const uint8_t *data, size_t n, const char *path, struct error *err)
+{
+    char found[16] = "";
+    for (size_t i = 0; i < n && i < 4; i++)
+        (void)snprintf(found + 3 * i, sizeof found - 3 * i, " %02x", data[i]);
+    (void)error_set(err, ERROR_FORMAT, "%s: byte 0: expected \"DICM\" at byte 128, or an element of group 0002 or 0008 here; found%s", path,
+                    n > 0 ? found : " an empty file");
+    return DICOM_HEAD_FOREIGN;
+}
+
 static enum dicom_head_result describe(const struct dicom_file *file, uint64_t n_bytes, struct dicom_object *object)
 {
     const char *name;
@@ -272,7 +282,7 @@ enum dicom_head_result dicom_head_read(const struct folder *folder, const char *
         if (!grow(scratch, n, path, err) || !folder_read_part(&part, path, 0, scratch->data, n, err))
             break;
         if (!dicom_looks_like(scratch->data, n)) {
-            result = DICOM_HEAD_FOREIGN;
+            result = say_foreign(scratch->data, n, path, err);
             break;
         }
         dicom_file_destroy(file);

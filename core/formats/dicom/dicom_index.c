@@ -16,7 +16,7 @@ struct looked {
     char *path; /* moves into object */
     enum dicom_head_result result;
     struct dicom_object object;
-    char *why; /* BROKEN */
+    char *why; /* BROKEN, or FOREIGN and named like DICOM */
 };
 
 struct scan {
@@ -33,8 +33,10 @@ static void look_at(struct scan *scan, struct looked *file, struct bytes *scratc
 {
     struct error err = { 0 };
     file->result = dicom_head_read(scan->folder, file->path, &file->object, scratch, &err);
-    if (file->result == DICOM_HEAD_BROKEN) {
+    bool is_misnamed = file->result == DICOM_HEAD_FOREIGN && text_has_ending(file->path, ".dcm");
+    if (file->result == DICOM_HEAD_BROKEN)
         dicom_object_finish(&file->object);
+    if (file->result == DICOM_HEAD_BROKEN || is_misnamed) {
         size_t n = strlen(file->path); /* the line of the report names the file itself */
         file->why = mem_copy_text(strncmp(err.text, file->path, n) == 0 && strncmp(err.text + n, ": ", 2) == 0 ? err.text + n + 2 : err.text);
     }
@@ -145,9 +147,8 @@ static bool collect(struct scan *scan, struct dicom_index *index, struct report 
             file->path = NULL;
         } else if (file->result == DICOM_HEAD_FOREIGN) {
             index->n_foreign++;
-            if (text_has_ending(file->path, ".dcm") && n_misnamed++ < MOST_LINES)
-                report_add(report, REPORT_WARNING, "dicom.unreadable", file->path, "It is named like DICOM, but has neither \"DICM\" at byte 128 "
-                           "nor an element at its beginning.");
+            if (file->why && n_misnamed++ < MOST_LINES)
+                report_add(report, REPORT_WARNING, "dicom.unreadable", file->path, "Named like DICOM, and is none: %s", file->why);
         } else if (file->result == DICOM_HEAD_BROKEN && !file->why) {
             n_too_many++;
         } else if (file->result == DICOM_HEAD_BROKEN && n_broken++ < MOST_LINES) {
