@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from './page.mjs';
 
-const { bytes, unitText, volume, windowText } = await load('panels/format.js');
+const { bytes, signed, unitText, volume, windowText } = await load('panels/format.js');
 
 test('a size is never made up: what was not counted is a dash', () => {
   assert.equal(bytes(0), '–');
@@ -28,4 +28,8 @@ test('powers in units are raised, names that end in a digit are left alone', () 
 
 test('a volume in a list has the figures that count, and is never none when there is one', () => {
   assert.deepEqual([67.152, 1043.1, 9.999, 0.027, 0.0031, 0].map(volume), ['67.2 cm³', '1043 cm³', '10.0 cm³', '0.03 cm³', '< 0.01 cm³', '0.00 cm³']);
+});
+
+test('a difference carries its sign, none carries none', () => {
+  assert.deepEqual([0.312, -0.04, 1e-14, -1e-14, 0].map((value) => signed(value, 2)), ['+0.31', '\u22120.04', '0.00', '0.00', '0.00']);
 });

@@ -1,7 +1,7 @@
 // The dialog that sets the ways of showing a region side by side, with the figures of each.
 import { html, nothing } from '../../lib/lit-html.js';
 import { figuresCsv, volumeDifference } from '../state/shapes.js';
-import { number } from './format.js';
+import { number, signed } from './format.js';
 import { icon } from './icons.js';
 
 const columns = [
@@ -11,7 +11,7 @@ const columns = [
   ['Drawn', ({ frames_per_second: fps }) => (Number.isFinite(fps) ? `${number(fps)} /s` : '–')],
   ['Area', ({ area_mm2: area }) => (area ? `${number(area / 100, 1)} cm²` : '–')],
   ['Encloses', ({ volume_mm3: volume }) => (volume ? `${number(volume / 1000, 2)} cm³` : '–')],
-  ['to univels', (row) => { const d = volumeDifference(row); return row.volume_mm3 ? `${d >= 0 ? '+' : ''}${number(d, 2)} %` : '–'; }],
+  ['to univels', (row) => (row.volume_mm3 ? `${signed(volumeDifference(row), 2)} %` : '–')],
   ['Off at most', ({ distance_max_mm: distance }) => (Number.isFinite(distance) ? `${number(distance, 2)} mm` : '–')],
 ];
 

@@ -12,6 +12,12 @@ export function number(value, digits = 0) {
   return `${value < 0 && !isZero ? minus : ''}${grouped}${rest ? `.${rest}` : ''}`;
 }
 
+/** With its sign, unless it is none: "+0.31", "−0.04", "0.00". */
+export function signed(value, digits) {
+  const text = number(value, digits);
+  return value > 0 && /[1-9]/.test(text) ? `+${text}` : text;
+}
+
 /** Three figures that count. */
 export function significant(value) {
   if (!Number.isFinite(value)) return '–';

@@ -5,7 +5,7 @@ import { live } from '../../lib/directives/live.js';
 import { crosshairPatch, shownImage, soloPatch } from '../state/plan.js';
 import { isExportable, representations, shapeQuery, volumeDifference } from '../state/shapes.js';
 import { numberField, segment } from './fields.js';
-import { number, seconds } from './format.js';
+import { number, seconds, signed } from './format.js';
 import { icon } from './icons.js';
 
 const files = [['stl', 'binary STL'], ['ply', 'binary PLY'], ['glb', 'GLB (glTF 2.0), in metres with the top up']];
@@ -61,7 +61,7 @@ function figures({ shaped }, region, representation) {
   const difference = volumeDifference(result);
   return html`<dl class="figures"><dt>Made of</dt><dd>${counts.join(', ') || 'nothing'}</dd>
     ${result.area_mm2 ? html`<dt>Area</dt><dd>${number(result.area_mm2 / 100, 1)} cm²</dd>` : nothing}
-    ${result.volume_mm3 ? html`<dt>Encloses</dt><dd>${number(result.volume_mm3 / 1000, 2)} cm³, univels ${difference >= 0 ? '+' : ''}${number(difference, 2)} %</dd>` : nothing}
+    ${result.volume_mm3 ? html`<dt>Encloses</dt><dd>${number(result.volume_mm3 / 1000, 2)} cm³, ${signed(difference, 2)} % to univels</dd>` : nothing}
     ${Number.isFinite(result.distance_max_mm) ? html`<dt title="Of its vertices, from the border of the univels">Off the univels</dt><dd>${number(result.distance_mean_mm, 2)} mm, at most ${number(result.distance_max_mm, 2)} mm</dd>` : nothing}
     <dt>Made in</dt><dd>${seconds(result.ms)}</dd></dl>`;
 }
