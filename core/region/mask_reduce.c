@@ -22,7 +22,7 @@ struct reduce_job {
     const struct mask *from;
     struct mask *to;
     uint32_t factors[3];
-    uint16_t *counts; /* [k][j][i] of blocks: voxels inside */
+    uint16_t *counts; /* [k][j][i] of blocks: voxels inside; 0 where nobody wrote */
 };
 
 static uint32_t part_of_block(uint32_t size, uint32_t block, uint32_t factor)
@@ -33,14 +33,14 @@ static uint32_t part_of_block(uint32_t size, uint32_t block, uint32_t factor)
 
 /* ---- counting ------------------------------------------------------------------------------------------------------------- */
 
-/* Which of the n voxels of a row from `first` on are inside; n <= 8, so they lie in at most two words. */
+/* Which of the n voxels of a row from `first` on are inside; 1 <= n <= 64, so they lie in at most two words. */
 static uint64_t bits_at(const uint64_t *row, uint32_t first, uint32_t n)
 {
     uint32_t word = first / 64, shift = first % 64;
     uint64_t bits = row[word] >> shift;
     if (shift + n > 64)
         bits |= row[word + 1] << (64 - shift);
-    return bits & (((uint64_t)1 << n) - 1);
+    return bits & ~(uint64_t)0 >> (64 - n);
 }
 
 /* The rows of voxels that a row of blocks covers. */
@@ -85,22 +85,36 @@ static uint32_t count_block(const struct block_row *rows, uint32_t first, uint32
     return n;
 }
 
+/* A row of blocks; 64 voxels at a time, as most of a row is empty or full. What is empty is so already. */
+static void count_row(const struct reduce_job *job, const struct block_row *rows, uint64_t *bits, uint16_t *counts)
+{
+    uint32_t n_blocks = job->to->size[0], n_voxels = job->from->size[0], factor = job->factors[0], n;
+    for (uint32_t i = 0; i < n_blocks; i += n) {
+        uint32_t first = i * factor;
+        n = n_blocks - i < 64 / factor ? n_blocks - i : 64 / factor;
+        uint32_t n_here = n * factor < n_voxels - first ? n * factor : n_voxels - first;
+        if (!bits_at(rows->any, first, n_here))
+            continue;
+        bool is_full = n_here == n * factor && bits_at(rows->all, first, n_here) == ~(uint64_t)0 >> (64 - n_here);
+        for (uint32_t block = i; block < i + n; block++) {
+            counts[block] = (uint16_t)(is_full ? factor * rows->n_j * rows->n_k
+                                               : count_block(rows, block * factor, part_of_block(n_voxels, block, factor)));
+            bits[block / 64] |= (uint64_t)(counts[block] > 0) << block % 64;
+        }
+    }
+}
+
 static void count_part(void *context, int part, int n_parts)
 {
     struct reduce_job *job = context;
-    const struct mask *from = job->from, *to = job->to;
+    const struct mask *to = job->to;
     struct block_row rows;
-    size_t n_rows = (size_t)to->size[1] * to->size[2], end = n_rows * (size_t)(part + 1) / (size_t)n_parts;
+    size_t n_j = to->end_j - to->low_j, n_rows = n_j * (to->end_k - to->low_k), end = n_rows * (size_t)(part + 1) / (size_t)n_parts;
     for (size_t at = n_rows * (size_t)part / (size_t)n_parts; at < end; at++) {
-        block_row_init(&rows, from, job->factors, (uint32_t)(at % to->size[1]), (uint32_t)(at / to->size[1]));
-        uint64_t *row = to->bits + at * to->words;
-        uint16_t *counts = job->counts + at * to->size[0];
-        memset(row, 0, to->words * sizeof *row);
-        for (uint32_t i = 0; i < to->size[0]; i++) {
-            uint32_t n = count_block(&rows, i * job->factors[0], part_of_block(from->size[0], i, job->factors[0]));
-            counts[i] = (uint16_t)n;
-            row[i / 64] |= (uint64_t)(n > 0) << i % 64;
-        }
+        uint32_t j = to->low_j + (uint32_t)(at % n_j), k = to->low_k + (uint32_t)(at / n_j);
+        size_t row = (size_t)k * to->size[1] + j;
+        block_row_init(&rows, job->from, job->factors, j, k);
+        count_row(job, &rows, to->bits + row * to->words, job->counts + row * to->size[0]);
     }
 }
 
@@ -192,36 +206,62 @@ static uint32_t block_size(const struct reduce_job *job, const uint32_t at[3])
     return n;
 }
 
-/* The places of blocks less than half full, by how full they are; equals in the order of memory. */
+struct thinning {
+    struct reduce_job *job;
+    size_t first[MAX_COUNT + 2]; /* by how full: how many; then where the next goes */
+    uint32_t (*places)[3];
+};
+
+/* Calls found for each block that is not empty and less than half full, in the order of memory. */
+static void each_thin(struct thinning *thinning, void (*found)(struct thinning *thinning, uint16_t count, const uint32_t at[3]))
+{
+    const struct reduce_job *job = thinning->job;
+    const struct mask *to = job->to;
+    const uint32_t most = job->factors[0] * job->factors[1] * job->factors[2];
+    for (uint32_t k = to->low_k; k < to->end_k; k++)
+        for (uint32_t j = to->low_j; j < to->end_j; j++) {
+            size_t row = (size_t)k * to->size[1] + j;
+            for (uint32_t w = 0; w < to->words; w++)
+                for (uint64_t left = to->bits[row * to->words + w]; left; left &= left - 1) {
+                    const uint32_t at[3] = { 64 * w + (uint32_t)__builtin_ctzll(left), j, k };
+                    uint16_t count = job->counts[row * to->size[0] + at[0]];
+                    if (2u * count < most && 2u * count < block_size(job, at))
+                        found(thinning, count, at);
+                }
+        }
+}
+
+static void count_thin(struct thinning *thinning, uint16_t count, const uint32_t at[3])
+{
+    (void)at;
+    thinning->first[count + 1]++;
+}
+
+static void place_thin(struct thinning *thinning, uint16_t count, const uint32_t at[3])
+{
+    memcpy(thinning->places[thinning->first[count]++], at, sizeof *thinning->places);
+}
+
+/* By how full they are; equals in the order of memory. */
 static bool thin_out(struct reduce_job *job, struct error *err)
 {
-    const uint32_t *size = job->to->size;
-    size_t n_blocks = (size_t)size[0] * size[1] * size[2], first[MAX_COUNT + 2] = { 0 }, n = 0;
-    for (size_t block = 0; block < n_blocks; block++)
-        if (job->counts[block] > 0 && job->counts[block] <= MAX_COUNT / 2)
-            first[job->counts[block] + 1]++;
+    struct thinning thinning = { .job = job };
+    each_thin(&thinning, count_thin);
     for (size_t count = 0; count <= MAX_COUNT; count++)
-        first[count + 1] += first[count];
-    n = first[MAX_COUNT + 1];
-    uint32_t(*places)[3] = mem_array(n, sizeof *places, UINT64_MAX, err);
-    if (!places)
+        thinning.first[count + 1] += thinning.first[count];
+    size_t n = thinning.first[MAX_COUNT + 1];
+    thinning.places = mem_array(n, sizeof *thinning.places, UINT64_MAX, err);
+    if (!thinning.places)
         return false;
-    size_t block = 0;
-    for (uint32_t k = 0; k < size[2]; k++)
-        for (uint32_t j = 0; j < size[1]; j++)
-            for (uint32_t i = 0; i < size[0]; i++, block++)
-                if (job->counts[block] > 0 && job->counts[block] <= MAX_COUNT / 2)
-                    memcpy(places[first[job->counts[block]]++], (uint32_t[3]){ i, j, k }, sizeof *places);
+    each_thin(&thinning, place_thin);
     for (size_t at = 0; at < n; at++) {
-        const uint32_t *place = places[at];
-        size_t row = (size_t)place[2] * size[1] + place[1];
-        if (2 * (uint32_t)job->counts[row * size[0] + place[0]] >= block_size(job, place))
-            continue;
+        const uint32_t *place = thinning.places[at];
+        size_t row = (size_t)place[2] * job->to->size[1] + place[1];
         uint32_t neighbours = neighbourhood(job->to, place[0], place[1], place[2]);
         if (is_skin(job, neighbours, place) && can_go(neighbours))
             job->to->bits[row * job->to->words + place[0] / 64] &= ~((uint64_t)1 << place[0] % 64);
     }
-    free(places);
+    free(thinning.places);
     return true;
 }
 
@@ -243,10 +283,14 @@ struct mask *mask_reduce(const struct mask *mask, const uint32_t factors[3], int
         map.origin = vec3_add(map.origin, vec3_scale(map.columns[axis], (factor - 1) / 2.0));
         map.columns[axis] = vec3_scale(map.columns[axis], factor);
     }
-    job.to = mask_create(size, &map, err);
-    job.counts = job.to ? mem_large_array((size_t)size[0] * size[1] * size[2], sizeof *job.counts, UINT64_MAX, err) : NULL;
+    job.to = mask_create_empty(size, &map, err);
+    job.counts = job.to ? mem_array((size_t)size[0] * size[1] * size[2], sizeof *job.counts, UINT64_MAX, err) : NULL;
     bool is_good = job.counts != NULL;
     if (is_good) {
+        job.to->low_j = mask->low_j / factors[1];
+        job.to->end_j = (mask->end_j + factors[1] - 1) / factors[1];
+        job.to->low_k = mask->low_k / factors[2];
+        job.to->end_k = (mask->end_k + factors[2] - 1) / factors[2];
         int n_parts = n_threads > 0 ? n_threads : parallel_cores();
         parallel_run(n_parts < MAX_THREADS ? n_parts : MAX_THREADS, count_part, &job);
         is_good = thin_out(&job, err);
