@@ -155,8 +155,8 @@ static void voxels_that_are_not_written_are_said(void **state)
     folder_remove(folder);
 }
 
-/* 3 x 3 points; the first holds three values that are none and five that fill 15 columns, 114 characters as SERA's own columns have when
- * such a value is written as its Fortran does. */
+/* 3 x 3 points, some of the first one's values none. Three of those as SERA's Fortran prints them, three of 15 columns and two with a sign
+ * would make a first line of 114 characters, by which readers know SERA's own columns. */
 static void add_curve(struct plan *plan, const char *name, size_t n_gaps)
 {
     enum { N = 3 };
@@ -173,15 +173,15 @@ static void add_curve(struct plan *plan, const char *name, size_t n_gaps)
     curve->radii_mm = mem_new(N * sizeof(double));
     curve->center_lps_mm = vec3(1.234567 * 10, -0.1 * 10, 7.7777777 * 10);
     for (int i = 0; i < N; i++) {
-        curve->depths_mm[i] = 0.1 * i * 10;
-        curve->radii_mm[i] = 0.3 * i * 10; /* 0.3 x 10 and 0.6 x 10 are not what tens of millimetres divided would print */
+        curve->depths_mm[i] = i / 3.0 * 10; /* needs all 17 digits */
+        curve->radii_mm[i] = 0.3 * i * 10;
     }
     for (size_t c = 0; c < 8; c++) {
         curve->quantities[c] = columns[c];
         curve->is_per_ppm[c] = columns[c] == DOSE_BORON;
         curve->values[c] = mem_new(N * N * sizeof(float));
         for (size_t p = 0; p < N * N; p++)
-            curve->values[c][p] = p == 4 || (p == 0 && c < n_gaps) ? NAN : 1.23456789F * (float)(c + 1) + (float)p;
+            curve->values[c][p] = p == 4 || (p == 0 && c < n_gaps) ? NAN : 1.23456789F * (c > 5 ? -1 : 1) * (float)(c + 1) + (float)p;
     }
 }
 

@@ -2,7 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
-import { crosshair, isLowWhite, reportSummary, shownImage, windowPresets } from '../state/plan.js';
+import { crosshair, imagePatch, isLowWhite, reportSummary, shownImage, windowPresets } from '../state/plan.js';
 import { algorithms } from '../state/shapes.js';
 import { drawingBlocks } from './drawing.js';
 import { numberField, segment } from './fields.js';
@@ -98,7 +98,7 @@ const cullsNothing = -100000; // proto/scene.json
 function cullRow(scene, image, isDisabled, change) {
   const { cull_below: value } = scene.image;
   const isOn = value > cullsNothing;
-  return html`<div class="checks cull"><label title="Slices in the 3-D view leave out darker values"><input type="checkbox" .checked=${live(isOn)} ?disabled=${isDisabled}
+  return html`<div class="checks cull"><label title="Slices in the 3-D view leave out lower values"><input type="checkbox" .checked=${live(isOn)} ?disabled=${isDisabled}
     @change=${(event) => change({ image: { cull_below: event.target.checked ? null : cullsNothing } }, event)}>Leave out below</label>
     ${isOn ? numberField('Leave out values below', Math.round(value * 10) / 10, image.unit, isDisabled, (cull_below, event) => change({ image: { cull_below } }, event)) : nothing}</div>`;
 }
@@ -108,7 +108,7 @@ function imageBlock({ panes, ui }, plan, scene, image, isDisabled, change) {
   const setWindow = (value, event) => panes()[ui.active.value - 1].actions.setWindow({ ...window, ...value }, event.timeStamp);
   const isNow = (preset) => Math.abs(preset.center - window.center) < 0.06 && Math.abs(preset.width - window.width) < 0.06;
   return html`<section class="block"><h3>Image ${image.modality}</h3>
-    ${plan.images.length > 1 ? html`<dl><dt>Image</dt><dd>${segment('Image', plan.images.map((other) => [other.id, `${other.modality} ${other.id}`]), image.id, isDisabled, (id, event) => change({ image: { id, window: plan.images.find((other) => other.id === id).window, low_values: null } }, event))}</dd></dl>` : nothing}
+    ${plan.images.length > 1 ? html`<dl><dt>Image</dt><dd>${segment('Image', plan.images.map((other) => [other.id, `${other.modality} ${other.id}`]), image.id, isDisabled, (id, event) => change(imagePatch(plan.images.find((other) => other.id === id)), event))}</dd></dl>` : nothing}
     <dl><dt>Centre</dt><dd>${numberField('Window centre', Math.round(window.center * 10) / 10, image.unit, isDisabled, (center, event) => setWindow({ center }, event))}</dd>
       <dt>Width</dt><dd>${numberField('Window width', Math.round(window.width * 10) / 10, image.unit, isDisabled, (width, event) => setWindow({ width: Math.max(width, 0.1) }, event))}</dd>
       <dt>Low values</dt><dd>${segment('Low values', [['black', 'Black'], ['white', 'White', 'The values stay; only their greys go the other way']], isLowWhite(image, scene) ? 'white' : 'black', isDisabled, (low_values, event) => change({ image: { low_values } }, event))}</dd>

@@ -3,7 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { repeat } from '../../lib/directives/repeat.js';
-import { beamWords, doseWords, shownImage, soloPatch } from '../state/plan.js';
+import { beamWords, doseWords, imagePatch, shownImage, soloPatch } from '../state/plan.js';
 import { count, number, volume, windowText } from './format.js';
 import { icon } from './icons.js';
 import { variables } from './mount.js';
@@ -31,7 +31,7 @@ function images(room, plan) {
   return section('Images', '', plan.images.map((image) => html`
     <button class=${classMap({ row: true, selected: plan.images.length > 1 && image === shown })} ?disabled=${!room.canChange.value}
       title=${`${image.size.join(' × ')} voxels`} aria-pressed=${image === shown}
-      @click=${() => image !== shown && room.patchScene({ image: { id: image.id, window: image.window } })}>
+      @click=${() => image !== shown && room.patchScene(imagePatch(image))}>
       ${icon('image')}<span class="name">${image.modality}</span><span class="dim">${plan.images.length > 1 ? image.id : ''}</span><span class="grow"></span>
       <span class="tail">${image === shown && scene ? windowText(scene.image.window, '') : ''}</span></button>`));
 }

@@ -100,6 +100,9 @@ export function crosshairPatch(plan, image, point) {
 /** Whether low values of the image are white: as the scene says, else as the image asks. */
 export const isLowWhite = (image, scene) => (scene.image.low_values === 'own' ? image.isInverted : scene.image.low_values === 'white');
 
+/** Another image is shown as it asks. */
+export const imagePatch = ({ id, window }) => ({ image: { id, window, low_values: 'own' } });
+
 /** Window presets by key; 5 is the image's full range. Hounsfield units only where the image has them. */
 export function windowPresets(image) {
   if (!image) return [];
