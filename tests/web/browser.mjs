@@ -28,7 +28,7 @@ export async function startWorld({ plans = [], args = [] } = {}) {
     /** @param {string} address behind the daemon's @param {object} options of the browser's context */
     async newPage(address = '', options = {}) {
       const context = await browser.newContext({ viewport: { width: 1600, height: 1000 }, ...options });
-      context.setDefaultTimeout(20000);
+      context.setDefaultTimeout(60000); // waits for states, however busy the machine
       const page = await context.newPage();
       page.on('pageerror', (error) => errors.push(error.message));
       await page.goto(`${daemon.url}/${address}`);

@@ -41,9 +41,12 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
       for (const view of [1, 2, 3, 4]) await full(page, view);
       assert.deepEqual(await cut(page, '.research', '.status'), []);
       for (const view of [1, 2, 3, 4]) {
-        const { width_px, height_px } = await header(page, view);
+        await page.waitForFunction((n) => { // the picture has the size of its pane
+          const { width_px, height_px } = globalThis.beamroom.stats().headers[n];
+          const { width, height } = document.querySelector(`#picture-${n}`).getBoundingClientRect();
+          return Math.abs(width_px - width) <= 1 && Math.abs(height_px - height) <= 1;
+        }, view);
         const box = await page.locator(`#picture-${view}`).boundingBox();
-        assert.ok(Math.abs(width_px - box.width) <= 1 && Math.abs(height_px - box.height) <= 1, `pane ${view}: picture ${width_px} x ${height_px}, pane ${box.width} x ${box.height}`);
         assert.ok(box.height > height / 5, `pane ${view} is ${box.height} px high`);
       }
       await shoot(page, `layout-${width}x${height}`);

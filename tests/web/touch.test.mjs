@@ -1,6 +1,7 @@
 // Fingers on the pictures: what a tablet sends, through the real browser and the real daemon.
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
+import { until } from '../api/daemon.mjs';
 import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
 
 const tablet = { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true };
@@ -50,7 +51,12 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     const { sagittal, coronal, axial } = (await world.scene(room)).image.slices;
     return [sagittal.position_mm, coronal.position_mm, axial.position_mm];
   };
-  const near = (found, expected, tolerance, words) => assert.ok(found.every((value, at) => Math.abs(value - expected[at]) <= tolerance), `${words}: ${found}, expected ${expected}`);
+  /** Waits until what is asked for comes as near as that: the last step of a gesture may still be on its way. */
+  const comesNear = async (ask, expected, tolerance, words) => {
+    const isNear = (found) => found.every((value, at) => Math.abs(value - expected[at]) <= tolerance);
+    const found = await until(ask, isNear, 60000);
+    assert.ok(isNear(found), `${words}: ${found}, expected ${expected}`);
+  };
 
   it('one finger turns the 3-D picture as a mouse does: 225 px are 90 degrees', async () => {
     await open();
@@ -67,13 +73,13 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     const [x, y] = await middle(1);
     const before = await matrixOf(1);
     await gesture([[x - 40, y], [x + 40, y]], [[x - 10, y + 30], [x + 70, y + 30]]);
-    const moved = await turned(1, before);
+    const moved = await until(() => matrixOf(1), (m) => m[12] > before[12] && m[13] < before[13], 60000);
     assert.ok(moved[12] > before[12] && moved[13] < before[13], 'to the right and down, as the fingers');
     assert.equal(await page.locator('[data-view="1"] [data-letters]').getAttribute('data-letters'), 'R L S I', 'not turned');
     await gesture([[x - 40, y], [x + 40, y]], [[x - 80, y], [x + 80, y]]);
-    const zoomed = await turned(1, moved);
-    // perspective: w at the patient's origin is the distance to the eye, which two times the spread halves
-    assert.ok(zoomed[15] < moved[15] * 0.75, `nearer: ${moved[15]} mm, then ${zoomed[15]} mm`);
+    // perspective: w at the patient's origin is its distance to the eye along the line of sight; moving leaves it, twice the spread lessens it
+    const zoomed = await until(() => matrixOf(1), (m) => m[15] < before[15] * 0.75, 60000);
+    assert.ok(zoomed[15] < before[15] * 0.75, `nearer: ${before[15]} mm, then ${zoomed[15]} mm`);
     await page.context().close();
   });
 
@@ -83,10 +89,8 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     const [x, y] = await middle(2);
     const { scene_revision: revision } = await header(page, 2);
     await gesture([[x - 50, y - 40]], [[x + 30, y + 20]]);
-    await newer(page, 2, revision);
-    await full(page, 2);
+    await comesNear(async () => pixelOf(2, await crosshairOf()), [x + 30 - box.x, y + 20 - box.y], 1, 'the crosshair is under the finger');
     const point = await crosshairOf();
-    near(await pixelOf(2, point), [x + 30 - box.x, y + 20 - box.y], 1, 'the crosshair is under the finger');
     await newer(page, 4, revision);
     assert.match(await page.locator('[data-view="4"] .where').textContent(), new RegExp(`P ${String(Math.abs(point[1]).toFixed(1)).replace('.', '\\.')}|P .${Math.abs(point[1]).toFixed(1)}`));
     await page.context().close();
@@ -98,15 +102,12 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     const [x, y] = await middle(2);
     const point = await crosshairOf();
     const at = await pixelOf(2, point);
-    let before = await matrixOf(2);
     await gesture([[x - 40, y], [x + 40, y]], [[x - 15, y + 35], [x + 65, y + 35]]);
-    before = await turned(2, before);
-    near(await pixelOf(2, point), [at[0] + 25, at[1] + 35], 1.5, 'the picture moved with the fingers');
+    await comesNear(() => pixelOf(2, point), [at[0] + 25, at[1] + 35], 1.5, 'the picture moved with the fingers');
     const held = await pixelOf(2, point);
     await gesture([[x - 40, y], [x + 40, y]], [[x - 80, y], [x + 80, y]]);
-    await turned(2, before);
     const about = [x - box.x, y - box.y];
-    near(await pixelOf(2, point), held.map((value, axis) => about[axis] + 2 * (value - about[axis])), 2.5, 'twice as large about the middle of the fingers');
+    await comesNear(() => pixelOf(2, point), held.map((value, axis) => about[axis] + 2 * (value - about[axis])), 2.5, 'twice as large about the middle of the fingers');
     assert.deepEqual(await crosshairOf(), point);
     await shoot(page, 'touch-slice');
     await page.context().close();
@@ -137,7 +138,7 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     await touch('touchStart', [[x, y]]);
     await newer(page, 2, revision);
     await touch('touchEnd', []);
-    near(await pixelOf(2, await crosshairOf()), [20 + box.width / 2, 10 + box.height / 2], 1, 'under the finger');
+    await comesNear(async () => pixelOf(2, await crosshairOf()), [20 + box.width / 2, 10 + box.height / 2], 1, 'under the finger');
     await page.context().close();
   });
 

@@ -45,7 +45,7 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     const field = page.locator('.upload input[name="name"]');
     await field.waitFor();
     await page.waitForFunction(() => document.activeElement?.name === 'name'); // the keyboard goes on where it is asked
-    assert.ok(await isInView(field), 'what is asked can be seen');
+    assert.ok(await until(() => isInView(field), Boolean, 60000), 'what is asked can be seen');
     return devtools;
   };
   const uploaded = async () => (await call(`${world.daemon.url}/api/v1/plans`)).json.plans.filter((plan) => plan.uploaded).map((plan) => plan.id);
@@ -59,8 +59,7 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     await one.keyboard.type('Kopf 1');
     await one.keyboard.press('Enter');
     await one.locator('[data-plan="kopf-1"].chosen').waitFor();
-    await until(() => isInView(one.locator('[data-plan="kopf-1"]')), Boolean);
-    assert.ok(await isInView(one.locator('[data-plan="kopf-1"]')), 'the new plan can be seen');
+    assert.ok(await until(() => isInView(one.locator('[data-plan="kopf-1"]')), Boolean, 60000), 'the new plan can be seen');
     await two.locator('[data-plan="kopf-1"]').waitFor(); // its list finds it by itself
     await two.locator('[data-plan="kopf-1"] button', { hasText: 'Open' }).click();
     await full(two);
@@ -90,7 +89,7 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     const refusal = page.locator('.upload [role="alert"]');
     await refusal.waitFor();
     assert.match(await refusal.textContent(), /no file in the folder is an image/);
-    assert.ok(await isInView(refusal), 'in view');
+    assert.ok(await until(() => isInView(refusal), Boolean, 60000), 'in view');
     await shoot(page, 'drop-refused');
     await page.context().close();
   });
@@ -107,7 +106,7 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     assert.match(await progress.textContent(), /%\s+Sending/);
     await page.locator('.upload button', { hasText: 'Cancel' }).click();
     await page.locator('.upload').waitFor({ state: 'detached' });
-    assert.deepEqual(await until(uploaded, (ids) => ids.length === 0), []);
+    assert.deepEqual(await until(uploaded, (ids) => ids.length === 0, 60000), []);
     await page.context().close();
   });
 
