@@ -13,21 +13,6 @@ void contour_set_finish(struct contour_set *set)
     *set = (struct contour_set){ 0 };
 }
 
-static struct mask *empty_mask(const struct grid *grid, struct error *err)
-{
-    struct mask *mask = mem_new(sizeof *mask);
-    mask->words = (grid->size[0] + 63) / 64;
-    mask->lps_mm_from_ijk = grid->lps_mm_from_ijk;
-    for (int axis = 0; axis < 3; axis++)
-        mask->size[axis] = grid->size[axis];
-    mask->bits = mem_array((size_t)mask->words * grid->size[1] * grid->size[2], sizeof *mask->bits, VOLUME_MAX_BYTES, err);
-    if (!mask->bits) {
-        free(mask);
-        return NULL;
-    }
-    return mask;
-}
-
 /* Whether a contour has a point beyond the outer faces of the grid, by more than rounding. */
 static bool is_outside(const struct contour *contour, const struct grid *grid)
 {
@@ -64,7 +49,7 @@ struct mask *contour_fill(const struct contour_set *set, const struct grid *grid
     struct contour_facts found = planes.facts;
     uint64_t n_voxels = 0;
     struct contour_raster *raster = contour_raster_create(&planes, grid, err);
-    struct mask *mask = raster ? empty_mask(grid, err) : NULL;
+    struct mask *mask = raster ? mask_create_empty(grid->size, &grid->lps_mm_from_ijk, err) : NULL;
     if (mask && (!contour_raster_fill(raster, grid, mask->bits, options->n_threads, CONTOUR_MAX_MEETINGS, &n_voxels, err) ||
                  (facts && !measure(raster, &planes, &found, err)))) {
         mask_destroy(mask);
