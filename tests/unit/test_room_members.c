@@ -324,6 +324,14 @@ static void pictures_of_a_closed_view_are_waited_for_by_nobody(void **state)
     fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
     assert_true(ann.frames[ann.n_frames - 1].flags & FRAME_STILL);
 
+    fake_turn(&fake, &ann, 10, 5);
+    fake_say(&fake, &ann, "{\"type\":\"view.close\",\"view\":1}");
+    assert_int_equal(fake_outstanding(&fake), 0);
+    fake_say(&fake, &ann, "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"kind\":\"3d\",\"size_px\":[800,600]}}");
+    assert_int_equal(fake_outstanding(&fake), 1); /* at once, long before a still is due */
+    assert_false(fake_newest(&fake)->is_still);
+    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+
     fake_say(&fake, &ann, "{\"type\":\"view.follow\",\"view\":1,\"follow\":false}");
     fake_turn(&fake, &ann, 30, 7); /* an own view, and its page goes away without a word */
     request = fake_newest(&fake);
