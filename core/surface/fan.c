@@ -21,6 +21,9 @@ struct job {
     struct vec3 offset[AROUND]; /* to each neighbour, mm */
     uint32_t near[AROUND];      /* bit b: neighbours a and b are neighbours of each other */
     uint32_t *first;            /* [border->n] triangle of those that each voxel is the lowest corner of; first their count */
+    /* [border->n], triangles whose lowest corner each voxel is: bit b - 14 of with[a - 14] for its neighbours a < b. Neighbours are
+     * numbered as voxels are ordered, so those that come after a voxel are 14 to 26. */
+    uint16_t (*with)[AFTER];
     struct mesh *mesh;
 };
 
@@ -133,43 +136,37 @@ static void fan_part(void *context, int part, int n_parts)
 
 /* ---- all of them ---------------------------------------------------------------------------------------------------------- */
 
-/* Triangles whose lowest corner a voxel is: bit b - 14 of with[a - 14] for its neighbours a < b. Neighbours are numbered as voxels are
- * ordered, so those that come after a voxel are 14 to 26. */
-struct triangles {
-    uint16_t with[AFTER];
-    uint32_t number[AFTER]; /* of the neighbours that are there */
-};
-
-static void add_triangle(struct triangles *triangles, int a, int b)
+/* Adds the triangle of neighbours a and b. */
+static void add_triangle(uint16_t with[AFTER], int a, int b)
 {
     int low = a < b ? a : b, high = a < b ? b : a;
-    triangles->with[low - MIDDLE - 1] |= (uint16_t)(1 << (high - MIDDLE - 1));
+    with[low - MIDDLE - 1] |= (uint16_t)(1 << (high - MIDDLE - 1));
+}
+
+static size_t number_of(const struct shape_border *border, const uint16_t *ijk, int neighbour)
+{
+    return shape_border_number(border, ijk[0] + step_of(neighbour, 0), ijk[1] + step_of(neighbour, 1), ijk[2] + step_of(neighbour, 2));
 }
 
 /* From the voxel's own fan, and from those of its neighbours that come after it. */
-static void gather(const struct job *job, size_t number, struct triangles *triangles)
+static void gather(const struct job *job, size_t number, uint16_t with[AFTER])
 {
     const struct shape_border *border = job->border;
     const uint16_t *ijk = border->ijk + 3 * number;
     const struct fan *own = &job->fans[number];
     uint32_t around = shape_border_around(border->border, ijk[0], ijk[1], ijk[2]);
-    *triangles = (struct triangles){ { 0 }, { 0 } };
     for (int t = 0; t < own->n; t++)
         if (own->from[t] > MIDDLE && own->to[t] > MIDDLE)
-            add_triangle(triangles, own->from[t], own->to[t]);
-    for (int other = MIDDLE + 1; other < AROUND; other++) {
-        if (!(around >> other & 1))
-            continue;
-        size_t there = shape_border_number(border, ijk[0] + step_of(other, 0), ijk[1] + step_of(other, 1), ijk[2] + step_of(other, 2));
-        const struct fan *fan = &job->fans[there];
-        int me = AROUND - 1 - other; /* as seen from there */
-        triangles->number[other - MIDDLE - 1] = (uint32_t)there;
+            add_triangle(with, own->from[t], own->to[t]);
+    for (uint32_t left = around >> (MIDDLE + 1) << (MIDDLE + 1); left; left &= left - 1) {
+        int other = __builtin_ctz(left), me = AROUND - 1 - other; /* as seen from there */
+        const struct fan *fan = &job->fans[number_of(border, ijk, other)];
         for (int t = 0; t < fan->n; t++) {
             if (fan->from[t] != me && fan->to[t] != me)
                 continue;
             int third = (fan->from[t] == me ? fan->to[t] : fan->from[t]) + other - MIDDLE; /* as seen from here */
             if (third > MIDDLE)
-                add_triangle(triangles, other, third);
+                add_triangle(with, other, third);
         }
     }
 }
@@ -179,11 +176,9 @@ static void count_part(void *context, int part, int n_parts)
     struct job *job = context;
     size_t end = job->border->n * (size_t)(part + 1) / (size_t)n_parts;
     for (size_t at = job->border->n * (size_t)part / (size_t)n_parts; at < end; at++) {
-        struct triangles triangles;
-        gather(job, at, &triangles);
-        job->first[at] = 0;
+        gather(job, at, job->with[at]);
         for (int a = 0; a < AFTER; a++)
-            job->first[at] += (uint32_t)__builtin_popcount(triangles.with[a]);
+            job->first[at] += (uint32_t)__builtin_popcount(job->with[at][a]);
     }
 }
 
@@ -217,16 +212,21 @@ static void write_part(void *context, int part, int n_parts)
     struct job *job = context;
     size_t end = job->border->n * (size_t)(part + 1) / (size_t)n_parts;
     for (size_t at = job->border->n * (size_t)part / (size_t)n_parts; at < end; at++) {
-        struct triangles triangles;
+        const uint16_t *ijk = job->border->ijk + 3 * at, *with = job->with[at];
+        uint32_t number[AFTER] = { 0 }; /* of the neighbours that are corners */
+        uint16_t corners = 0;
         struct vec3 p = centre_of(job->border, (uint32_t)at);
         uint32_t *out = job->mesh->indices + 3 * (size_t)job->first[at];
         job->mesh->positions_lps_mm[3 * at] = (float)p.x;
         job->mesh->positions_lps_mm[3 * at + 1] = (float)p.y;
         job->mesh->positions_lps_mm[3 * at + 2] = (float)p.z;
-        gather(job, at, &triangles);
         for (int a = 0; a < AFTER; a++)
-            for (uint32_t left = triangles.with[a]; left; left &= left - 1, out += 3)
-                write_triangle(job->border, (uint32_t[3]){ (uint32_t)at, triangles.number[a], triangles.number[__builtin_ctz(left)] }, out);
+            corners = (uint16_t)(corners | with[a] | (with[a] != 0) << a);
+        for (uint32_t left = corners; left; left &= left - 1)
+            number[__builtin_ctz(left)] = (uint32_t)number_of(job->border, ijk, __builtin_ctz(left) + MIDDLE + 1);
+        for (int a = 0; a < AFTER; a++)
+            for (uint32_t left = with[a]; left; left &= left - 1, out += 3)
+                write_triangle(job->border, (uint32_t[3]){ (uint32_t)at, number[a], number[__builtin_ctz(left)] }, out);
     }
 }
 
@@ -235,7 +235,8 @@ static bool make_mesh(struct job *job, int n_threads, struct error *err)
     size_t n = job->border->n;
     uint64_t total = 0;
     job->first = mem_array(n, sizeof *job->first, UINT64_MAX, err);
-    if (!job->first)
+    job->with = job->first ? mem_array(n, sizeof *job->with, UINT64_MAX, err) : NULL;
+    if (!job->with)
         return false;
     parallel_run(n_threads, count_part, job);
     for (size_t at = 0; at < n; at++) {
@@ -268,6 +269,7 @@ struct mesh *shape_fan(const struct mask *mask, int n_threads, struct error *err
         (void)make_mesh(&job, n_threads, err);
     }
     free(job.first);
+    free(job.with);
     free(job.fans);
     shape_border_destroy(border);
     return job.mesh;
