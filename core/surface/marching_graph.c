@@ -34,12 +34,12 @@ static void make_steps(void)
             if (next[edge] >= 0) {
                 /* where in the cell the edge lies along the two other axes, first the one that follows its own: for an edge along x
                  * its number says so, for others its last bit (z for y, y for z) and whether it is on the far face of x */
-                uint8_t last = edge & 1, far = edge >= 8;
+                unsigned last = edge & 1, far = edge >= 8;
                 bool is_z = edge >= 4 && (edge & 2);
-                uint8_t slot = edge < 4 ? edge : is_z ? (uint8_t)(far | last << 1) : (uint8_t)(last | far << 1);
+                unsigned slot = edge < 4 ? edge : is_z ? far | last << 1 : last | far << 1;
                 steps->of[steps->n].edge = place_of(edge);
                 steps->of[steps->n].next = place_of((uint8_t)next[edge]);
-                steps->of[steps->n++].slot = slot;
+                steps->of[steps->n++].slot = (uint8_t)slot;
             }
     }
 }

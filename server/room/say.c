@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "server/room/parts.h"
+#include "server/wire/document.h"
 #include "server/wire/message.h"
 
 static void copy_text(char *to, size_t size, const char *from)
@@ -86,7 +87,7 @@ void say_plan(struct room *room)
 
 void say_scene(struct room *room, const cJSON *patch, struct member *by, uint32_t input, bool to_all)
 {
-    cJSON *copy = cJSON_Duplicate(patch, true);
+    cJSON *copy = document_told_patch(room->scene, patch);
     struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->revision, .patch = copy } };
     if (by)
         copy_text(message.scene.by, sizeof message.scene.by, by->id);

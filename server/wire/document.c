@@ -56,6 +56,19 @@ cJSON *scene_document_patch(const cJSON *defaults, const char *const *image_ids,
     return check_scene(defaults, image_ids, json_merge(current, patch), problem);
 }
 
+cJSON *document_told_patch(const cJSON *document, const cJSON *patch)
+{
+    if (cJSON_IsNull(patch) && document)
+        return cJSON_Duplicate(document, true);
+    if (!cJSON_IsObject(patch))
+        return cJSON_Duplicate(patch, true);
+    cJSON *told = cJSON_CreateObject();
+    const cJSON *field;
+    cJSON_ArrayForEach(field, patch)
+        cJSON_AddItemToObject(told, field->string, document_told_patch(cJSON_GetObjectItemCaseSensitive(document, field->string), field));
+    return told;
+}
+
 cJSON *scene_document_for_view(const cJSON *defaults, const char *const *image_ids, const cJSON *scene, const cJSON *view,
                                struct problem *problem)
 {

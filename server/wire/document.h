@@ -7,7 +7,9 @@
  * image_ids: the plan's images, NULL-terminated. Returns the complete new document; NULL with problem, current untouched. */
 NODISCARD cJSON *scene_document_patch(const cJSON *defaults, const char *const *image_ids, const cJSON *current, const cJSON *patch,
                                       struct problem *problem);
-/* The same for a view; current NULL: a new one. */
+/* What to tell those who keep a copy of document, into which patch has gone: patch, with what it gave its default back as it is there. */
+NODISCARD cJSON *document_told_patch(const cJSON *document, const cJSON *patch);
+/* As scene_document_patch, for a view; current NULL: a new one. */
 NODISCARD cJSON *view_document_patch(const cJSON *current, const cJSON *patch, struct problem *problem);
 /* The scene a view shows: scene with the view's override applied, checked as above. */
 NODISCARD cJSON *scene_document_for_view(const cJSON *defaults, const char *const *image_ids, const cJSON *scene, const cJSON *view,

@@ -63,6 +63,24 @@ static void a_patch_changes_what_it_names_and_null_gives_the_plans_value_back(vo
     cJSON_Delete(two);
 }
 
+static void who_keeps_a_copy_is_told_what_null_became(void **state)
+{
+    (void)state;
+    cJSON *defaults = plan_defaults();
+    cJSON *one = patched(defaults, defaults, "{\"regions\":{\"brain\":{\"opacity\":0.2}},\"image\":{\"window\":{\"width\":80}}}");
+    cJSON *patch = parse("{\"regions\":{\"brain\":null,\"tumor\":{\"opacity\":0.5}},\"image\":{\"window\":{\"width\":null}}}");
+    cJSON *two = scene_document_patch(defaults, images, one, patch, NULL);
+    cJSON *told = document_told_patch(two, patch);
+    cJSON *copy = json_merge(one, told); /* by RFC 7396 alone, as the page does it: null would take the field away */
+    assert_true(cJSON_Compare(copy, two, true));
+    assert_true(cJSON_Compare(at(told, "regions.brain"), at(defaults, "regions.brain"), true));
+    assert_close(at(told, "image.window.width")->valuedouble, at(defaults, "image.window.width")->valuedouble, 0);
+    assert_null(cJSON_GetObjectItem(told, "surface")); /* no more than was said */
+    cJSON *all[] = { defaults, one, patch, two, told, copy };
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        cJSON_Delete(all[i]);
+}
+
 static void expect_refused(const char *patch, enum problem_type type, const char *pointer)
 {
     cJSON *defaults = plan_defaults(), *before = plan_defaults(), *json = parse(patch);
@@ -170,6 +188,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_patch_changes_what_it_names_and_null_gives_the_plans_value_back),
+        cmocka_unit_test(who_keeps_a_copy_is_told_what_null_became),
         cmocka_unit_test(a_patch_with_any_wrong_field_is_refused_whole),
         cmocka_unit_test(a_view_gets_defaults_and_keeps_its_override),
         cmocka_unit_test(merge_patches_follow_the_examples_of_the_standard),
