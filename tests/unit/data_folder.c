@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/formats/nifti_write.h"
 #include "tests/check.h"
 
 bool data_path(const char *name, char *path, size_t size)
@@ -48,6 +49,15 @@ void folder_put_data(const char *folder, const char *name, const char *from)
     uint8_t *bytes = file_bytes(path, &size);
     folder_put(folder, name, bytes, size);
     free(bytes);
+}
+
+void folder_put_volume(const char *folder, const char *name, struct volume *volume)
+{
+    char path[600];
+    struct error err = { 0 };
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    assert_true(nifti_write_exact(path, volume, NULL, &err));
+    volume_unref(volume);
 }
 
 uint8_t *file_bytes(const char *path, size_t *size)

@@ -37,15 +37,6 @@ static void assert_comes_back(const char *path)
     folder_remove(folder);
 }
 
-static void put_volume(const char *folder, const char *name, struct volume *volume)
-{
-    char path[600];
-    struct error err = { 0 };
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    assert_true(nifti_write_exact(path, volume, NULL, &err));
-    volume_unref(volume);
-}
-
 static struct volume *sheared_volume(enum voxel_type type, double spacing_mm)
 {
     struct error err = { 0 };
@@ -92,12 +83,12 @@ static void put_plan(const char *folder)
     }
     folder_put(folder, "plan.json", text, sizeof text - 1);
     folder_put(folder, "t.pp", tracks, sizeof tracks - 1);
-    put_volume(folder, "a.nii.gz", a);
-    put_volume(folder, "b.nii", b);
-    put_volume(folder, "m0.nii", made_mask(3, 3));
-    put_volume(folder, "m1.nii", made_mask(0, 6));
-    put_volume(folder, "m2.nii", made_mask(2, 4));
-    put_volume(folder, "m3.nii", made_mask(3, 5));
+    folder_put_volume(folder, "a.nii.gz", a);
+    folder_put_volume(folder, "b.nii", b);
+    folder_put_volume(folder, "m0.nii", made_mask(3, 3));
+    folder_put_volume(folder, "m1.nii", made_mask(0, 6));
+    folder_put_volume(folder, "m2.nii", made_mask(2, 4));
+    folder_put_volume(folder, "m3.nii", made_mask(3, 5));
 }
 
 static void a_made_plan_comes_back_with_all_its_peculiarities(void **state)

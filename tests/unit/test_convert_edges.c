@@ -5,7 +5,6 @@
 #include <sys/resource.h>
 
 #include "core/formats/folder.h"
-#include "core/formats/nifti_write.h"
 #include "core/plan/plan_write.h"
 #include "tests/check.h"
 #include "tests/made_plan.h"
@@ -22,15 +21,6 @@ static struct plan *load(const char *folder)
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
     return plan;
-}
-
-static void put_volume(const char *folder, const char *name, struct volume *volume)
-{
-    char path[600];
-    struct error err = { 0 };
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    assert_true(nifti_write_exact(path, volume, NULL, &err));
-    volume_unref(volume);
 }
 
 static struct volume *cube(enum voxel_type type)
@@ -68,10 +58,10 @@ static struct plan *load_made(const char *folder)
         ((float *)two->voxels)[i] = -(float)i / 3;
     }
     folder_put_text(folder, "plan.json", text);
-    put_volume(folder, "image.nii.gz", image);
-    put_volume(folder, "labels.nii.gz", boxes());
-    put_volume(folder, "1.nii", one);
-    put_volume(folder, "2.nii", two);
+    folder_put_volume(folder, "image.nii.gz", image);
+    folder_put_volume(folder, "labels.nii.gz", boxes());
+    folder_put_volume(folder, "1.nii", one);
+    folder_put_volume(folder, "2.nii", two);
     struct plan *plan = load(folder);
     assert_int_equal(plan->regions.n_regions, N_REGIONS);
     assert_int_equal(plan->n_doses, 3);
@@ -322,7 +312,7 @@ static void tracks_that_end_beyond_a_kilometre_are_left_out_and_said(void **stat
     folder_make(folder);
     folder_put_text(folder, "plan.json", text);
     folder_put_text(folder, "t.pp", tracks);
-    put_volume(folder, "labels.nii.gz", boxes());
+    folder_put_volume(folder, "labels.nii.gz", boxes());
     struct plan *plan = load(folder);
     assert_int_equal(plan->tracks.n_segments, 2);
     assert_int_equal(plan->tracks.n_of_class[TRACK_NEUTRON_MEDIUM], 0);

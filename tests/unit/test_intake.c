@@ -176,20 +176,27 @@ static uint64_t free_bytes(void *context, int *failed)
 
 static const char block[1 << 20];
 
+/* On a disk of 100 MiB with nothing on it, of which some stay free. */
+static struct intake *intake_on_disk(uint64_t reserve)
+{
+    disk_bytes = 100 << 20;
+    taken_bytes = 0;
+    struct intake *intake = intake_create(folder, UINT64_C(1) << 32, reserve);
+    intake_set_disk(intake, free_bytes, NULL);
+    return intake;
+}
+
 /* Four senders that do not say how much comes, in turn, until none may go on: what is free then. */
 static void streams_that_come_together_leave_the_reserve(void **state)
 {
     (void)state;
     const uint64_t reserve = 40 << 20;
-    struct intake *intake = intake_create(folder, UINT64_C(1) << 32, reserve);
+    struct intake *intake = intake_on_disk(reserve);
     struct call *call = archive_call("application/zip");
     struct intake_file *files[INTAKE_MAX_FILES];
     struct problem problem = { 0 };
     bool goes_on[INTAKE_MAX_FILES];
     int n_going = INTAKE_MAX_FILES, n_blocks = 0, failed;
-    disk_bytes = 100 << 20;
-    taken_bytes = 0;
-    intake_set_disk(intake, free_bytes, NULL);
     for (int i = 0; i < INTAKE_MAX_FILES; i++) {
         files[i] = intake_begin(intake, call, -1, &problem);
         assert_non_null(files[i]);
@@ -218,12 +225,9 @@ static void streams_that_come_together_leave_the_reserve(void **state)
 static void what_was_announced_is_kept_for_its_sender(void **state)
 {
     (void)state;
-    struct intake *intake = intake_create(folder, UINT64_C(1) << 32, 10 << 20);
+    struct intake *intake = intake_on_disk(10 << 20);
     struct call *call = archive_call("application/zip");
     struct problem problem = { 0 };
-    disk_bytes = 100 << 20;
-    taken_bytes = 0;
-    intake_set_disk(intake, free_bytes, NULL);
     struct intake_file *large = intake_begin(intake, call, 60 << 20, &problem);
     assert_non_null(large);
     assert_null(intake_begin(intake, call, 31 << 20, &problem)); /* 100 - 10 - 60 are 30 */
@@ -249,12 +253,9 @@ static void what_was_announced_is_kept_for_its_sender(void **state)
 static void a_disk_that_others_fill_meanwhile_is_noticed(void **state)
 {
     (void)state;
-    struct intake *intake = intake_create(folder, UINT64_C(1) << 32, 10 << 20);
+    struct intake *intake = intake_on_disk(10 << 20);
     struct call *call = archive_call("application/zip");
     struct problem problem = { 0 };
-    disk_bytes = 100 << 20;
-    taken_bytes = 0;
-    intake_set_disk(intake, free_bytes, NULL);
     struct intake_file *file = intake_begin(intake, call, 60 << 20, &problem);
     assert_non_null(file);
     taken_bytes = 80 << 20;
