@@ -80,8 +80,9 @@ static struct shape *build(void *context, const struct shape_name *name, struct 
     else if (mask)
         shape = plan_build_surface(mask, name->key.algorithm, wanted->n_threads, facts, err);
     mask_destroy(mask);
-    facts->build_ms += mask_ms;
-    if (!shape && err)
+    if (shape)
+        facts->build_ms += mask_ms;
+    else if (err)
         error_prefix(err, "region \"%s\"", wanted->plan->regions.regions[name->region].name);
     return shape;
 }
