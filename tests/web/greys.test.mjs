@@ -54,11 +54,12 @@ describe('greys on the page', { skip: missing && `${missing} is not there` }, ()
     /* the panel's choice, and what the three slices say; fails when it does not come to that */
     const shows = (name, nSlices) => page.waitForFunction(([wanted, n]) => document.querySelector('[aria-label="Low values"] [aria-checked="true"]')?.textContent === wanted &&
       [...document.querySelectorAll('text.caption')].filter((caption) => caption.textContent.includes('low white')).length === n, [name, nSlices]);
-    const choose = async (label, name) => {
+    const click = async (what) => {
       const { scene_revision: revision } = await header(page, 1);
-      await page.locator(`[aria-label="${label}"] >> text="${name}"`).click();
+      await page.locator(what).click();
       await newer(page, 1, revision);
     };
+    const choose = (label, name) => click(`[aria-label="${label}"] >> text="${name}"`);
     await page.getByRole('tab', { name: 'View' }).click();
     await shows('White', 3);
     await full(page, 2);
@@ -73,7 +74,7 @@ describe('greys on the page', { skip: missing && `${missing} is not there` }, ()
     await full(page, 2);
     await shoot(page, 'greys-black');
     await choose('Low values', 'White');
-    await page.locator('button.row:has-text("film")').click();
+    await click('button.row:has-text("film")');
     await page.waitForFunction(() => document.querySelector('button.row.selected')?.textContent.includes('film'));
     await shows('White', 3);
     assert.equal((await world.scene(room)).image.low_values, 'own');
