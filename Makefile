@@ -167,16 +167,17 @@ export BEAMROOM_DEMO := $(abspath build/demo/plans)
 LABEL = $(1)$(if $(filter release,$(VARIANT)),, ($(VARIANT)))
 # The thread sanitizer of this compiler cannot map its shadow where addresses are randomised widely.
 RUNNER := $(if $(findstring thread,$(SAN)),$(shell setarch -R true 2>/dev/null && echo setarch -R))
-# Sanitizers are slow: their programs run side by side, and the thread sanitizer's are those that start threads.
+# Programs run side by side, but for pictures, whose back ends use all cores themselves. The thread sanitizer is slow: its programs
+# are those that start threads of their own, or the first of those that read plans by the same ones.
 ONE_THREAD := sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pixels dicom_oracle dicom_hostile dicom_rtdose dicom_rtplan \
-    dicom_rtstruct nifti nifti_oracle nrrd unpack document message frame plan_document shape_query
+    dicom_rtstruct nifti nifti_oracle nrrd unpack document message frame plan_document shape_query head convert convert_edges plan_real
 UNIT_RUN = $(if $(findstring thread,$(SAN)),$(filter-out $(ONE_THREAD:%=$(B)/unit/test_%),$(unit_BIN)),$(unit_BIN))
-PARALLEL := $(if $(SAN),$(shell nproc),1)
+PARALLEL := $(shell nproc)
 .PHONY: test-unit test-render test-api test-web test-install test lint
 test-unit: $(UNIT_RUN)
 	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,unit)" $(UNIT_RUN)
 test-render: $(render_BIN)
-	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,render)" $(render_BIN)
+	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(if $(SAN),$(PARALLEL),1) tests/run_programs.sh "$(call LABEL,render)" $(render_BIN)
 test-api: all demo
 	$(Q)tests/run_node.sh api $(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs))
 test-web: all demo

@@ -45,7 +45,7 @@ suite unit-address-undefined "$jobs" SAN=address,undefined test-unit
 suite unit-thread "$jobs" SAN=thread test-unit
 suite render-address-undefined "$jobs" SAN=address,undefined test-render
 suite render-thread "$jobs" SAN=thread test-render
-suite fuzz fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-5}"
+suite fuzz fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-3}"
 
 echo
 printf '%s\n' "${rows[@]}"
