@@ -21,8 +21,6 @@ static bool get_unit(const struct place *place, const cJSON *object, double *mm)
     return true;
 }
 
-#define WINDOW_MOST 1e300 /* values of an image may be as large as its numbers hold */
-
 /* {"center": 40, "width": 400} */
 static bool get_window(const struct place *place, const cJSON *object, struct plan_file_image *image)
 {
@@ -30,9 +28,9 @@ static bool get_window(const struct place *place, const cJSON *object, struct pl
     if (!window || cJSON_IsNull(window))
         return true;
     const cJSON *center = cJSON_GetObjectItemCaseSensitive(window, "center"), *width = cJSON_GetObjectItemCaseSensitive(window, "width");
-    if (!cJSON_IsNumber(center) || !cJSON_IsNumber(width) || !(fabs(center->valuedouble) <= WINDOW_MOST) ||
-        !(width->valuedouble > 0 && width->valuedouble <= WINDOW_MOST))
-        return place_fail(place, ERROR_RANGE, "window", "expected a center, and a width above 0");
+    if (!cJSON_IsNumber(center) || !cJSON_IsNumber(width) || !(fabs(center->valuedouble) <= PLAN_WINDOW_FARTHEST) ||
+        !(width->valuedouble >= PLAN_WINDOW_NARROWEST && width->valuedouble <= PLAN_WINDOW_WIDEST))
+        return place_fail(place, ERROR_RANGE, "window", "expected a center within 1e12 of 0, and a width from 1e-15 to 2e12");
     image->window_center = center->valuedouble;
     image->window_width = width->valuedouble;
     return true;

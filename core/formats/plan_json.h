@@ -22,7 +22,7 @@ struct plan_file_image {
     char name[128]; /* for people; "" none */
     char value_unit[8]; /* of its values, "HU"; "" none */
     bool is_inverted;   /* low values are meant to be white */
-    double window_center, window_width; /* a first window; width 0: none */
+    double window_center, window_width; /* a first window, within PLAN_WINDOW_...; width 0: none */
     double mm; /* of one unit of a SERA header, whatever that says; 0 when not given */
 };
 struct plan_file_region {

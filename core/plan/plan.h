@@ -13,6 +13,11 @@
 #include "core/volume/volume.h"
 
 enum { PLAN_MAX_IMAGES = 16, PLAN_MAX_DOSES = 16, PLAN_MAX_BEAMS = 64, PLAN_MAX_CURVES = 16, PLAN_MAX_LEVELS = 32, PLAN_MAX_COLORS = 256 };
+/* Windows a scene can have (proto/scene.json), from counts of neutrons per source particle to becquerels: center within plus or minus
+ * FARTHEST, width; a wider one of a file's is cut to them. */
+#define PLAN_WINDOW_FARTHEST 1e12
+#define PLAN_WINDOW_NARROWEST 1e-15
+#define PLAN_WINDOW_WIDEST 2e12
 
 struct plan_image {
     char id[64];
@@ -20,7 +25,7 @@ struct plan_image {
     char modality[16]; /* "CT", "MR", ...; "" unknown */
     char unit[8];      /* "HU" for CT, "" else */
     struct volume *volume;
-    double window_center, window_width; /* a first window that suits the values */
+    double window_center, window_width; /* a first window that suits the values; within the limits above */
     bool is_inverted; /* low values are meant to be white (DICOM's MONOCHROME1); the values are as in the file */
 };
 

@@ -73,6 +73,7 @@ static void add_image(struct loading *loading, struct job *job)
         image->window_center = job->facts.windows[0].center;
         image->window_width = job->facts.windows[0].width;
     }
+    plan_image_window_limit(image);
 }
 
 /* An image whose header described another one: univels with exactly as many voxels along each axis are the same scan. */

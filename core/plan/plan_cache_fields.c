@@ -151,7 +151,7 @@ static void fields_images(struct fields *fields, struct plan *plan)
         require(fields, image->volume != NULL);
         fields_finite(fields, &image->window_center);
         fields_finite(fields, &image->window_width);
-        require(fields, image->window_width > 0);
+        require(fields, fabs(image->window_center) <= PLAN_WINDOW_FARTHEST && image->window_width >= PLAN_WINDOW_NARROWEST && image->window_width <= PLAN_WINDOW_WIDEST);
         fields_bool(fields, &image->is_inverted);
     }
 }

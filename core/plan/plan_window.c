@@ -60,3 +60,9 @@ void plan_image_window(struct plan_image *image)
     }
     window_from_values(image);
 }
+
+void plan_image_window_limit(struct plan_image *image)
+{
+    image->window_center = fmin(fmax(image->window_center, -PLAN_WINDOW_FARTHEST), PLAN_WINDOW_FARTHEST);
+    image->window_width = fmin(fmax(image->window_width, PLAN_WINDOW_NARROWEST), PLAN_WINDOW_WIDEST);
+}

@@ -4,3 +4,5 @@
 
 /* CT: soft tissue. Else from the values: percentiles 0.1 and 99.9. The volume is measured. */
 void plan_image_window(struct plan_image *image);
+/* Into what a scene can show: PLAN_WINDOW_... */
+void plan_image_window_limit(struct plan_image *image);

@@ -1,5 +1,6 @@
 #include "core/scene/snapshot.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -208,6 +209,6 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
         if (strcmp(plan->images[0].unit, "HU") == 0)
             scene->image.cull_below = -500;
         else if (!plan->images[0].is_inverted) /* else what is low is bright, and no air */
-            scene->image.cull_below = window->center - 0.45 * window->width;
+            scene->image.cull_below = fmax(window->center - 0.45 * window->width, -PLAN_WINDOW_FARTHEST);
     }
 }

@@ -56,7 +56,7 @@ static void a_new_room_leaves_out_air_and_not_what_is_white(void **state)
         bool is_inverted;
         const char *unit;
         double cull_below;
-    } images[] = { { false, "", 100 - 0.45 * 200 }, { true, "", -100000 }, { false, "HU", -500 }, { true, "HU", -500 } };
+    } images[] = { { false, "", 100 - 0.45 * 200 }, { true, "", -1e12 }, { false, "HU", -500 }, { true, "HU", -500 } };
     struct plan *plan = make_plan();
     plan->images[0].window_center = 100;
     plan->images[0].window_width = 200;

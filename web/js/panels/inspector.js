@@ -92,7 +92,7 @@ function viewTab(world) {
     ${drawingBlocks(world, isDisabled, change)}`;
 }
 
-const cullsNothing = -100000; // proto/scene.json
+const cullsNothing = -1e12; // proto/scene.json
 
 /** What slices in the 3-D view leave out, so that air hides nothing. */
 function cullRow(scene, image, isDisabled, change) {
@@ -100,7 +100,7 @@ function cullRow(scene, image, isDisabled, change) {
   const isOn = value > cullsNothing;
   return html`<div class="checks cull"><label title="Slices in the 3-D view leave out lower values"><input type="checkbox" .checked=${live(isOn)} ?disabled=${isDisabled}
     @change=${(event) => change({ image: { cull_below: event.target.checked ? null : cullsNothing } }, event)}>Leave out below</label>
-    ${isOn ? numberField('Leave out values below', Math.round(value * 10) / 10, image.unit, isDisabled, (cull_below, event) => change({ image: { cull_below } }, event)) : nothing}</div>`;
+    ${isOn ? numberField('Leave out values below', Number(value.toPrecision(6)), image.unit, isDisabled, (cull_below, event) => change({ image: { cull_below } }, event)) : nothing}</div>`;
 }
 
 function imageBlock({ panes, ui }, plan, scene, image, isDisabled, change) {
