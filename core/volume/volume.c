@@ -1,5 +1,6 @@
 #include "core/volume/volume.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 
@@ -19,6 +20,12 @@ bool grid_init(struct grid *grid, const uint32_t size[3], const struct affine *l
     struct affine inverse;
     if (!affine_invert(lps_mm_from_ijk, &inverse))
         return error_set(err, ERROR_RANGE, "the index-to-patient matrix is singular or not finite");
+    for (int corner = 0; corner < 8; corner++) {
+        struct vec3 at = affine_point(lps_mm_from_ijk, vec3(corner & 1 ? size[0] - 1 : 0, corner & 2 ? size[1] - 1 : 0, corner & 4 ? size[2] - 1 : 0));
+        if (!(fmax(fmax(fabs(at.x), fabs(at.y)), fabs(at.z)) <= GRID_FARTHEST_MM))
+            return error_set(err, ERROR_RANGE, "a grid's corner lies at L %g P %g S %g mm; expected within %g mm of the origin: are origin and spacing in mm?",
+                             at.x, at.y, at.z, GRID_FARTHEST_MM);
+    }
     for (int axis = 0; axis < 3; axis++)
         grid->size[axis] = size[axis];
     grid->lps_mm_from_ijk = *lps_mm_from_ijk;

@@ -10,13 +10,17 @@
 enum { VOLUME_MAX_SIDE = 4096 };
 #define VOLUME_MAX_BYTES ((uint64_t)4 << 30)
 
+/* No voxel is further from the origin along any axis, as a scene's slices (proto/scene.json): no treatment room is as large. */
+#define GRID_FARTHEST_MM 10000.0
+
 struct grid {
     uint32_t size[3];              /* voxels along i, j, k; each 1..VOLUME_MAX_SIDE */
     struct affine lps_mm_from_ijk; /* voxel centres at whole indices; any orientation, either handedness, never singular */
     struct affine ijk_from_lps_mm; /* its inverse; grid_init keeps the two in step */
 };
 
-/* errors ERROR_RANGE a side out of range, a singular or not finite matrix (spacings outside 1e-4..1e4 mm included) */
+/* errors ERROR_RANGE a side out of range, a singular or not finite matrix (spacings outside 1e-4..1e4 mm included), a voxel
+ * beyond GRID_FARTHEST_MM */
 NODISCARD bool grid_init(struct grid *grid, const uint32_t size[3], const struct affine *lps_mm_from_ijk, struct error *err);
 size_t grid_n_voxels(const struct grid *grid);
 double grid_voxel_mm3(const struct grid *grid);

@@ -87,9 +87,24 @@ static void sampling_is_linear_inside_and_refuses_outside(void **state)
     volume_unref(volume);
 }
 
+static void a_grid_that_reaches_out_of_the_room_is_refused_with_its_corner(void **state)
+{
+    (void)state;
+    const uint32_t size[3] = { 11, 2, 2 };
+    struct grid grid;
+    struct affine map = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { GRID_FARTHEST_MM - 10, 0, 0 } };
+    struct error err = { 0 };
+    assert_true(grid_init(&grid, size, &map, &err)); /* the last voxel is at the limit */
+    map.origin.x += 1;
+    assert_false(grid_init(&grid, size, &map, &err));
+    assert_int_equal(err.code, ERROR_RANGE);
+    assert_non_null(strstr(err.text, "L 10001 P 0 S 0 mm; expected within 10000 mm"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_grid_that_reaches_out_of_the_room_is_refused_with_its_corner),
         cmocka_unit_test(an_index_goes_to_the_patient_and_back),
         cmocka_unit_test(a_grid_says_toward_which_side_each_index_grows),
         cmocka_unit_test(a_singular_or_absurd_geometry_is_refused),
