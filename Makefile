@@ -1,7 +1,8 @@
 # All that is made goes to build/<variant>/; what is the same for every variant to build/gen (generated code), build/web
 # (the page) and build/demo (the demo plan).
 #   make            the programs and the page               make run     install what is missing, build, demo plan, serve
-#   make test       everything (see tests/README.md)        make install PREFIX=/usr/local DESTDIR=
+#   make test       every kind of test (tests/README.md)    make test-deep  the long ones: sanitizers, clang, fuzzing
+#   make install PREFIX=/usr/local DESTDIR=
 #   make test-unit test-render test-api test-web            one suite
 #   make bench  lint  fuzz  cover  clean
 # Variables: CC=gcc|clang  SAN=address,undefined|thread  WERROR=1  V=1  FUZZ_SECONDS=60
@@ -173,7 +174,7 @@ ONE_THREAD := sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pix
     dicom_rtstruct nifti nifti_oracle nrrd unpack document message frame plan_document shape_query head convert convert_edges plan_real
 UNIT_RUN = $(if $(findstring thread,$(SAN)),$(filter-out $(ONE_THREAD:%=$(B)/unit/test_%),$(unit_BIN)),$(unit_BIN))
 PARALLEL := $(shell nproc)
-.PHONY: test-unit test-render test-api test-web test-install test lint
+.PHONY: test-unit test-render test-api test-web test-install test test-deep lint
 test-unit: $(UNIT_RUN)
 	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,unit)" $(UNIT_RUN)
 test-render: $(render_BIN)
@@ -188,7 +189,10 @@ lint: $(GEN_STAMP)
 	$(Q)tests/lint.sh
 test:
 	@deploy/packages build run test
-	@tests/all.sh
+	@tests/all.sh test
+test-deep:
+	@deploy/packages build run test
+	@tests/all.sh deep
 
 # ---- fuzzing: a variant of its own, every source instrumented ------------------------------------------------------------------
 .PHONY: fuzz

@@ -1,7 +1,8 @@
 #!/bin/bash
-# Every suite, one after the other: what `make test` runs. Each suite's full output stays in build/test/<suite>.log.
-# Ends with one line, "N passed, N failed, N skipped", over everything.
+# Suites one after the other: tests/all.sh test|deep, what `make test` and `make test-deep` run. Each suite's full output
+# stays in build/test/<suite>.log. Ends with one line, "N passed, N failed, N skipped", over all of them.
 set -u
+group=${1:-}
 logs=build/test
 mkdir -p "$logs"
 jobs=-j$(nproc)
@@ -33,19 +34,29 @@ suite() { # suite NAME MAKE-ARGUMENT...
 }
 
 programs="unit-programs render-programs bench-programs"
-suite build-gcc "$jobs" WERROR=1 all $programs
-suite lint lint
-suite unit "$jobs" test-unit
-suite render "$jobs" test-render
-suite api "$jobs" test-api
-suite web "$jobs" test-web
-suite install "$jobs" test-install
-suite build-clang "$jobs" CC=clang WERROR=1 programs $programs
-suite unit-address-undefined "$jobs" SAN=address,undefined test-unit
-suite unit-thread "$jobs" SAN=thread test-unit
-suite render-address-undefined "$jobs" SAN=address,undefined test-render
-suite render-thread "$jobs" SAN=thread test-render
-suite fuzz fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-3}"
+case $group in
+test)
+    suite build-gcc "$jobs" WERROR=1 all $programs
+    suite lint lint
+    suite unit "$jobs" test-unit
+    suite render "$jobs" test-render
+    suite api "$jobs" test-api
+    suite web "$jobs" test-web
+    suite install "$jobs" test-install
+    ;;
+deep)
+    suite build-clang "$jobs" CC=clang WERROR=1 programs $programs
+    suite unit-address-undefined "$jobs" SAN=address,undefined test-unit
+    suite unit-thread "$jobs" SAN=thread test-unit
+    suite render-address-undefined "$jobs" SAN=address,undefined test-render
+    suite render-thread "$jobs" SAN=thread test-render
+    suite fuzz fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-3}"
+    ;;
+*)
+    echo "usage: tests/all.sh test|deep" >&2
+    exit 2
+    ;;
+esac
 
 echo
 printf '%s\n' "${rows[@]}"
