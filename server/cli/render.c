@@ -12,6 +12,7 @@
 #include "server/cli/command.h"
 #include "server/cli/text.h"
 #include "server/wire/document.h"
+#include "server/wire/plan_document.h"
 
 enum { DOCUMENT_MAX_BYTES = 1 << 20, DEFAULT_QUALITY = 92 };
 
@@ -77,13 +78,13 @@ static cJSON *read_document(const char *path, struct error *err)
 }
 
 /* The plan's first scene with the file's patch. NULL with err. */
-static cJSON *make_scene(const cJSON *defaults, const char *const *image_ids, const char *path, struct error *err)
+static cJSON *make_scene(const cJSON *document, const cJSON *defaults, const char *path, struct error *err)
 {
     struct problem problem = { 0 };
     cJSON *patch = path ? read_document(path, err) : cJSON_CreateObject();
     if (!patch)
         return NULL;
-    cJSON *scene = scene_document_patch(defaults, image_ids, defaults, patch, &problem);
+    cJSON *scene = scene_document_patch(document, defaults, defaults, patch, &problem);
     cJSON_Delete(patch);
     if (!scene)
         refuse_problem(path ? path : "scene", &problem, err);
@@ -117,9 +118,6 @@ static cJSON *make_view(const char *path, const int size_px[2], struct error *er
 /* Scene and view of the job as a snapshot. NULL with err. */
 static struct snapshot *make_snapshot(struct plan *plan, const struct render_job *job, struct error *err)
 {
-    const char *image_ids[PLAN_MAX_IMAGES + 1] = { NULL };
-    for (size_t i = 0; i < plan->n_images; i++)
-        image_ids[i] = plan->images[i].id;
     struct scene scene = { 0 };
     struct view view = { 0 };
     struct problem problem = { 0 };
@@ -127,12 +125,13 @@ static struct snapshot *make_snapshot(struct plan *plan, const struct render_job
     char field[128] = "";
 
     scene_for_plan(plan, &scene);
-    cJSON *defaults = scene_write(&scene), *scene_json = NULL, *shown_json = NULL, *view_json = NULL;
+    cJSON *document = plan_document(plan), *defaults = scene_write(&scene);
+    cJSON *scene_json = NULL, *shown_json = NULL, *view_json = NULL;
     scene_finish(&scene);
-    if (!(scene_json = make_scene(defaults, image_ids, job->scene_path, err)) ||
+    if (!(scene_json = make_scene(document, defaults, job->scene_path, err)) ||
         !(view_json = make_view(job->view_path, job->size_px, err)))
         goto done;
-    if (!(shown_json = scene_document_for_view(defaults, image_ids, scene_json, view_json, &problem))) {
+    if (!(shown_json = scene_document_for_view(document, defaults, scene_json, view_json, &problem))) {
         refuse_problem(job->view_path ? job->view_path : "view", &problem, err);
         goto done;
     }
@@ -149,6 +148,7 @@ static struct snapshot *make_snapshot(struct plan *plan, const struct render_job
     if (!snapshot && *field)
         error_prefix(err, "%s", field);
 done:
+    cJSON_Delete(document);
     cJSON_Delete(defaults);
     cJSON_Delete(scene_json);
     cJSON_Delete(shown_json);

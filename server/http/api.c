@@ -283,9 +283,7 @@ cJSON *api_view_parameter(struct call *call)
     cJSON *view = patch ? view_document_patch(NULL, patch, &problem) : NULL;
     cJSON_Delete(patch);
     if (!view) {
-        char pointer[sizeof problem.pointer];
-        memcpy(pointer, problem.pointer, sizeof pointer);
-        (void)snprintf(problem.pointer, sizeof problem.pointer, "/view%.*s", (int)sizeof pointer - 8, pointer);
+        problem_below(&problem, "/view");
         call_answer_problem(call, &problem);
     }
     return view;

@@ -253,13 +253,6 @@ static bool check_wish(const cJSON *body, struct problem *problem)
     return true;
 }
 
-static void prefix_pointer(struct problem *problem, const char *prefix)
-{
-    char pointer[sizeof problem->pointer];
-    memcpy(pointer, problem->pointer, sizeof pointer);
-    (void)snprintf(problem->pointer, sizeof problem->pointer, "%s%.*s", prefix, (int)(sizeof pointer - strlen(prefix) - 1), pointer);
-}
-
 static void render_when_ready(void *context, struct packet *answer, const struct problem *not_ready)
 {
     struct call *call = context;
@@ -274,21 +267,21 @@ static void render_when_ready(void *context, struct packet *answer, const struct
         return;
     }
     cJSON *scene = NULL, *view = NULL, *shown = NULL, *nothing = cJSON_CreateObject();
-    if (!fleet_plan_find(net_fleet(api->net), wish->plan_id, &plan) || !plan.default_scene) {
+    if (!fleet_plan_find(net_fleet(api->net), wish->plan_id, &plan) || !plan.document || !plan.default_scene) {
         problem_set(&problem, PROBLEM_BUSY, "", "", "the plan was closed meanwhile");
         goto refuse;
     }
     const cJSON *scene_patch = cJSON_GetObjectItemCaseSensitive(wish->body, "scene");
     const cJSON *view_patch = cJSON_GetObjectItemCaseSensitive(wish->body, "view");
-    scene = scene_document_patch(plan.default_scene, plan.image_ids, plan.default_scene, scene_patch ? scene_patch : nothing, &problem);
+    scene = scene_document_patch(plan.document, plan.default_scene, plan.default_scene, scene_patch ? scene_patch : nothing, &problem);
     if (!scene) {
-        prefix_pointer(&problem, "/scene");
+        problem_below(&problem, "/scene");
         goto refuse;
     }
     view = view_document_patch(NULL, view_patch ? view_patch : nothing, &problem);
-    shown = view ? scene_document_for_view(plan.default_scene, plan.image_ids, scene, view, &problem) : NULL;
+    shown = view ? scene_document_for_view(plan.document, plan.default_scene, scene, view, &problem) : NULL;
     if (!shown) {
-        prefix_pointer(&problem, "/view");
+        problem_below(&problem, "/view");
         goto refuse;
     }
     api_render(api, call, wish->plan_id, shown, 0, view, json_text(wish->body, "format"), json_number(wish->body, "quality", 92));
@@ -361,13 +354,12 @@ struct pick_wish {
     double px, py;
 };
 
-static void ask_pick(struct api *api, struct call *call, const struct pick_wish *wish, const cJSON *defaults, const char *const *image_ids,
-                     const cJSON *scene)
+static void ask_pick(struct api *api, struct call *call, const struct pick_wish *wish, const struct fleet_plan *plan, const cJSON *scene)
 {
     struct problem problem;
-    cJSON *shown = scene_document_for_view(defaults, image_ids, scene, wish->view, &problem);
+    cJSON *shown = scene_document_for_view(plan->document, plan->default_scene, scene, wish->view, &problem);
     if (!shown) {
-        prefix_pointer(&problem, "/view");
+        problem_below(&problem, "/view");
         call_answer_problem(call, &problem);
         return;
     }
@@ -392,7 +384,7 @@ static void pick_when_ready(void *context, struct packet *answer, const struct p
     (void)answer;
     if (not_ready) {
         call_answer_problem(call, not_ready);
-    } else if (!fleet_plan_find(net_fleet(api->net), wish->plan_id, &plan) || !plan.default_scene) {
+    } else if (!fleet_plan_find(net_fleet(api->net), wish->plan_id, &plan) || !plan.document || !plan.default_scene) {
         problem_set(&problem, PROBLEM_BUSY, "", "", "the plan was closed meanwhile");
         call_answer_problem(call, &problem);
     } else if (room_id && (!room || strcmp(room_plan_id(room), wish->plan_id) != 0)) {
@@ -400,7 +392,7 @@ static void pick_when_ready(void *context, struct packet *answer, const struct p
         call_answer_problem(call, &problem);
     } else {
         const cJSON *scene = room ? room_scene(room, &revision) : NULL;
-        ask_pick(api, call, wish, plan.default_scene, plan.image_ids, scene ? scene : plan.default_scene);
+        ask_pick(api, call, wish, &plan, scene ? scene : plan.default_scene);
     }
     cJSON_Delete(wish->view);
     free(wish);

@@ -178,7 +178,6 @@ void api_room_snapshot(struct api *api, struct call *call)
 {
     struct problem problem;
     struct room *room;
-    struct fleet_plan plan;
     uint32_t revision;
     const cJSON *scene = find_scene(api, call, &room, &revision);
     if (!scene)
@@ -191,15 +190,13 @@ void api_room_snapshot(struct api *api, struct call *call)
     cJSON *view = api_view_parameter(call);
     if (!view)
         return;
-    const char *plan_id = room_plan_id(room);
-    bool is_known = fleet_plan_find(net_fleet(api->net), plan_id, &plan);
-    cJSON *shown = is_known ? scene_document_for_view(plan.default_scene, plan.image_ids, scene, view, &problem) : NULL;
-    if (!is_known)
-        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "the plan of this room is gone");
-    if (shown)
-        api_render(api, call, plan_id, shown, revision, view, call_query(call, "format"), quality);
-    else
+    cJSON *shown = room_scene_for_view(room, view, &problem);
+    if (shown) {
+        api_render(api, call, room_plan_id(room), shown, revision, view, call_query(call, "format"), quality);
+    } else {
+        problem_below(&problem, "/view");
         call_answer_problem(call, &problem);
+    }
     cJSON_Delete(shown);
     cJSON_Delete(view);
 }

@@ -105,7 +105,7 @@ static void picture_came(void *context, struct packet *answer, const struct prob
 static cJSON *timed_picture(const struct fleet_plan *plan, const struct shape_wish *wish, struct problem *problem)
 {
     cJSON *patch = shape_query_scene(&wish->query, wish->region, plan->default_scene);
-    cJSON *scene = scene_document_patch(plan->default_scene, plan->image_ids, plan->default_scene, patch, problem);
+    cJSON *scene = scene_document_patch(plan->document, plan->default_scene, plan->default_scene, patch, problem);
     cJSON_Delete(patch);
     cJSON *size = cJSON_CreateObject();
     cJSON_AddItemToObject(size, "size_px", cJSON_CreateIntArray((const int[]){ TIMED_PX, TIMED_PX }, 2));
@@ -149,7 +149,7 @@ static void shape_came(void *context, struct packet *answer, const struct proble
     wish->body = cJSON_DetachItemFromObjectCaseSensitive(answer->json, "body");
     if (!wish->body)
         problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no body");
-    else if (!fleet_plan_find(net_fleet(api->net), wish->plan_id, &plan) || !plan.default_scene)
+    else if (!fleet_plan_find(net_fleet(api->net), wish->plan_id, &plan) || !plan.document || !plan.default_scene)
         problem_set(&broken, PROBLEM_BUSY, "", "", "the plan was closed meanwhile");
     else
         wish->render = timed_picture(&plan, wish, &broken);

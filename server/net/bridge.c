@@ -169,8 +169,7 @@ static void tell_ready(struct place *place, const struct fleet_plan *plan)
     char words[200];
     (void)snprintf(words, sizeof words, "%s%s%s", back_end ? back_end : "", back_end && renderer ? ", " : "", renderer ? renderer : "");
     place->generation = plan->generation;
-    room_plan_ready(place->room, plan->document, plan->default_scene, plan->image_ids, words, json_flag(gl, "is_software", true),
-                    clock_now_us());
+    room_plan_ready(place->room, plan->document, plan->default_scene, words, json_flag(gl, "is_software", true), clock_now_us());
 }
 
 static void tell_state(struct place *place, const struct fleet_plan *plan)

@@ -85,7 +85,6 @@ struct room {
     double percent;
     struct problem problem; /* when failed */
     cJSON *plan, *defaults, *scene; /* NULL before the plan is ready */
-    char **image_ids;               /* NULL-terminated */
     uint32_t revision;
     char gl[200];
     bool is_software;
@@ -126,6 +125,8 @@ void stream_send(struct room *room, struct member *member, struct member_view *v
 void stream_acknowledged(struct room *room, struct member_view *view, uint32_t sequence);
 int64_t streams_pump(struct room *room); /* asks for what is due; when to come again */
 bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem);
+/* After a plan was loaded: an override that does not fit it is taken out of its view, and who looks is told. */
+void streams_remove_bad_overrides(struct room *room);
 int view_kind(const cJSON *view);
 
 /* say.c */

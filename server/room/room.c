@@ -31,11 +31,7 @@ static void forget_plan(struct room *room)
 {
     cJSON_Delete(room->plan);
     cJSON_Delete(room->defaults);
-    for (char **id = room->image_ids; id && *id; id++)
-        free(*id);
-    free(room->image_ids);
     room->plan = room->defaults = NULL;
-    room->image_ids = NULL;
 }
 
 void room_destroy(struct room *room)
@@ -65,25 +61,10 @@ const char *room_plan_id(const struct room *room)
 
 /* ---- the renderer --------------------------------------------------------------------------------------------------- */
 
-static char **copy_ids(const char *const *ids)
-{
-    size_t n = 0;
-    while (ids && ids[n])
-        n++;
-    char **copy = mem_new((n + 1) * sizeof copy[0]);
-    for (size_t i = 0; i < n; i++)
-        copy[i] = mem_copy_text(ids[i]);
-    return copy;
-}
-
-/* The scene goes on after a restart; a plan that was changed on disk meanwhile may have lost what it names. */
+/* The scene goes on after a restart; a plan that was changed on disk meanwhile may have lost ids that it names. */
 static void renew_scene(struct room *room)
 {
-    cJSON *nothing = cJSON_CreateObject();
-    cJSON *scene = room->scene ? scene_document_patch(room->defaults, (const char *const *)room->image_ids, room->scene, nothing, NULL) : NULL;
-    cJSON_Delete(nothing);
-    if (!scene)
-        scene = cJSON_Duplicate(room->defaults, true);
+    cJSON *scene = room->scene ? scene_document_renew(room->plan, room->defaults, room->scene) : cJSON_Duplicate(room->defaults, true);
     if (!room->scene || !cJSON_Compare(scene, room->scene, true))
         room->revision++;
     cJSON_Delete(room->scene);
@@ -98,14 +79,13 @@ static void set_state(struct room *room, enum wire_renderer_state state, const c
     room->problem = problem ? *problem : (struct problem){ 0 };
 }
 
-void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *const *image_ids, const char *gl,
-                     bool is_software, int64_t now_us)
+void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl, bool is_software,
+                     int64_t now_us)
 {
     room->now_us = now_us;
     forget_plan(room);
     room->plan = cJSON_Duplicate(plan_document, true);
     room->defaults = cJSON_Duplicate(default_scene, true);
-    room->image_ids = copy_ids(image_ids);
     (void)snprintf(room->gl, sizeof room->gl, "%s", gl ? gl : "");
     if (room->is_software != is_software) {
         room->is_software = is_software;
@@ -116,6 +96,7 @@ void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
     streams_forget_requests(room);
     streams_changed(room, true);
     say_plan(room);
+    streams_remove_bad_overrides(room);
     say_renderer(room, NULL);
     room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
     (void)streams_pump(room);
@@ -145,7 +126,7 @@ static bool apply_patch(struct room *room, const cJSON *patch, struct member *by
             problem->retry_after_ms = 500;
         return false;
     }
-    cJSON *scene = scene_document_patch(room->defaults, (const char *const *)room->image_ids, room->scene, patch, problem);
+    cJSON *scene = scene_document_patch(room->plan, room->defaults, room->scene, patch, problem);
     if (!scene)
         return false;
     bool has_changed = !cJSON_Compare(scene, room->scene, true);
@@ -291,6 +272,11 @@ const cJSON *room_scene(const struct room *room, uint32_t *revision)
     if (revision)
         *revision = room->revision;
     return room->scene;
+}
+
+cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct problem *problem)
+{
+    return scene_document_for_view(room->plan, room->defaults, room->scene, view, problem);
 }
 
 bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, struct problem *problem)

@@ -49,16 +49,18 @@ struct room_limits {
     int max_members; /* at most ROOM_MAX_MEMBERS */
 };
 
-/* plan_document, defaults and image_ids may come later (room_plan_ready). id: URL-safe, random, not guessable. */
+/* plan_document and default_scene come later (room_plan_ready). id: URL-safe, random, not guessable. */
 struct room *room_create(const char *id, const char *plan_id, const struct room_callbacks *callbacks, const struct room_limits *limits);
 void room_destroy(struct room *room); /* says bye to every connection first */
 const char *room_id(const struct room *room);
 const char *room_plan_id(const struct room *room);
 
 /* The renderer's state: a member hears it; pictures are asked for only while ready. Each new renderer process tells
- * room_plan_ready; coming back to ready asks for everything anew, and what the old one still owed is forgotten. */
-void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *const *image_ids, const char *gl,
-                     bool is_software, int64_t now_us);
+ * room_plan_ready; coming back to ready asks for everything anew, and what the old one still owed is forgotten. Until the first one is ready
+ * the scene cannot be changed; while another is being started it can, checked by the plan as it was. Ids that the plan does not
+ * have (any more) are then taken out of the scene, and overrides with such ids out of their views, whose members are told. */
+void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl, bool is_software,
+                     int64_t now_us);
 void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent, const struct problem *problem);
 
 /* Connections: opaque pointers of the caller's. A connection becomes a member with hello. */
@@ -77,6 +79,8 @@ int64_t room_tick(struct room *room, int64_t now_us);
 
 /* The shared scene, for HTTP: NULL before the plan is ready. */
 const cJSON *room_scene(const struct room *room, uint32_t *revision);
+/* The scene with the override of a view, which need not be one of the room's; room_scene is not NULL. NULL with problem. */
+NODISCARD cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct problem *problem);
 NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, struct problem *problem);
 /* {id, plan, revision, members: [...], created_at...}: what GET /rooms/{id} gives. */
 NODISCARD cJSON *room_document(const struct room *room);

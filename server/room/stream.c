@@ -32,8 +32,8 @@ static bool has_override(const cJSON *view)
 bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem)
 {
     if (!room->scene || !has_override(view))
-        return true; /* before the plan is known it cannot be said; looked at again when it is used */
-    cJSON *shown = scene_document_for_view(room->defaults, (const char *const *)room->image_ids, room->scene, view, problem);
+        return true; /* before the plan is known it cannot be said; looked at again when it is (streams_remove_bad_overrides) */
+    cJSON *shown = room_scene_for_view(room, view, problem);
     cJSON_Delete(shown);
     return shown != NULL;
 }
@@ -141,6 +141,31 @@ void streams_forget_requests(struct room *room)
     }
 }
 
+static void tell_override_is_gone(struct room *room, const struct stream *stream, const struct problem *problem)
+{
+    for (int m = 0; m < room->n_members; m++)
+        for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
+            struct member *member = room->members[m];
+            if (member->views[v].stream != stream || !member->connection)
+                continue;
+            say_view(room, member, v, stream->mover);
+            say_problem(room, member->connection, message_descriptions[MESSAGE_VIEW_OPEN].name, v + 1, 0, problem);
+        }
+}
+
+void streams_remove_bad_overrides(struct room *room)
+{
+    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+        struct problem problem = { 0 };
+        if (override_is_valid(room, stream->view, &problem))
+            continue;
+        cJSON_DeleteItemFromObjectCaseSensitive(stream->view, "override");
+        stream->scene_is_old = true;
+        stream_changed(room, stream);
+        tell_override_is_gone(room, stream, &problem);
+    }
+}
+
 void streams_restart_pace(struct room *room)
 {
     for (struct stream *stream = room->streams; stream; stream = stream->next)
@@ -187,9 +212,9 @@ static void make_scene(struct room *room, struct stream *stream)
     if (!has_override(stream->view))
         return;
     struct problem problem = { 0 };
-    stream->scene = scene_document_for_view(room->defaults, (const char *const *)room->image_ids, room->scene, stream->view, &problem);
-    if (!stream->scene) /* said before the plan was known, and not of this plan */
-        log_warn("room %s: a view's override does not apply: %s", room->id, problem.detail);
+    stream->scene = room_scene_for_view(room, stream->view, &problem);
+    if (!stream->scene) /* it was checked when it was set, and when the plan was loaded */
+        log_error("room %s: a view's override does not apply: %s", room->id, problem.detail);
 }
 
 static void ask(struct room *room, struct stream *stream, bool is_still)

@@ -3,32 +3,85 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Region ids and the image id must be the plan's. */
-static bool names_are_known(const cJSON *defaults, const char *const *image_ids, const cJSON *document, struct problem *problem)
+/* The fields of a scene that name something of the plan, and where the plan document lists what there is. An empty id names nothing. */
+static const struct reference {
+    const char *object, *id;        /* the field; id NULL: the keys of object are the ids */
+    const char *list, *list_member; /* of the plan document; what a member is called */
+} references[] = {
+    { "regions", NULL, "regions", "region" },
+    { "check", "region", "regions", "region" },
+    { "image", "id", "images", "image" },
+    { "dose", "id", "doses", "dose" },
+};
+enum { N_REFERENCES = sizeof references / sizeof references[0] };
+
+/* The member of list with this id, or NULL. The search begins at *next and leaves it behind the member found: ids that are asked for
+ * in the list's order are found at once. */
+static const cJSON *find_member(const cJSON *list, const cJSON **next, const char *id)
 {
-    const cJSON *known = cJSON_GetObjectItemCaseSensitive(defaults, "regions");
-    const cJSON *regions = cJSON_GetObjectItemCaseSensitive(document, "regions");
-    const cJSON *region;
-    cJSON_ArrayForEach(region, regions)
-    {
-        if (!cJSON_GetObjectItemCaseSensitive(known, region->string)) {
-            char pointer[128];
-            (void)snprintf(pointer, sizeof pointer, "/regions/%.63s", region->string);
-            return problem_set(problem, PROBLEM_NOT_FOUND, pointer, "", "the plan has no region \"%.63s\"", region->string);
+    const cJSON *first = list ? list->child : NULL, *start = *next ? *next : first, *member = start;
+    while (member) {
+        const char *member_id = json_text(member, "id");
+        const cJSON *after = member->next ? member->next : first;
+        if (member_id && strcmp(member_id, id) == 0) {
+            *next = after;
+            return member;
+        }
+        member = after == start ? NULL : after;
+    }
+    return NULL;
+}
+
+static bool unknown_id(const struct reference *reference, const char *id, struct problem *problem)
+{
+    char pointer[160];
+    (void)snprintf(pointer, sizeof pointer, "/%s/%s", reference->object, reference->id ? reference->id : id);
+    return problem_set(problem, PROBLEM_VALIDATION, pointer, "unknown-id", "%s: the plan has no %s \"%.63s\"", pointer, reference->list_member, id);
+}
+
+/* Every id in the document, a scene whose fields were checked, must be the plan's. */
+static bool ids_are_known(const cJSON *plan, const cJSON *document, struct problem *problem)
+{
+    for (size_t i = 0; i < N_REFERENCES; i++) {
+        const struct reference *reference = &references[i];
+        const cJSON *list = cJSON_GetObjectItemCaseSensitive(plan, reference->list), *next = NULL;
+        const cJSON *object = cJSON_GetObjectItemCaseSensitive(document, reference->object), *member;
+        if (reference->id) {
+            const char *id = json_text(object, reference->id);
+            if (id && id[0] && !find_member(list, &next, id))
+                return unknown_id(reference, id, problem);
+            continue;
+        }
+        cJSON_ArrayForEach(member, object)
+        {
+            if (!find_member(list, &next, member->string))
+                return unknown_id(reference, member->string, problem);
         }
     }
-    const char *image = json_text(cJSON_GetObjectItemCaseSensitive(document, "image"), "id");
-    if (!image || image[0] == 0)
-        return true;
-    for (const char *const *id = image_ids; id && *id; id++)
-        if (strcmp(*id, image) == 0)
-            return true;
-    return problem_set(problem, PROBLEM_NOT_FOUND, "/image/id", "", "the plan has no image \"%.63s\"", image);
+    return true;
+}
+
+/* Takes ids the plan does not have out of a scene. */
+static void remove_unknown_ids(const cJSON *plan, cJSON *document)
+{
+    for (size_t i = 0; i < N_REFERENCES; i++) {
+        const struct reference *reference = &references[i];
+        const cJSON *list = cJSON_GetObjectItemCaseSensitive(plan, reference->list), *next = NULL;
+        cJSON *object = cJSON_GetObjectItemCaseSensitive(document, reference->object);
+        const char *id = reference->id ? json_text(object, reference->id) : NULL;
+        if (id && id[0] && !find_member(list, &next, id))
+            cJSON_DeleteItemFromObjectCaseSensitive(object, reference->id);
+        for (cJSON *member = reference->id || !object ? NULL : object->child, *following; member; member = following) {
+            following = member->next;
+            if (!find_member(list, &next, member->string))
+                cJSON_Delete(cJSON_DetachItemViaPointer(object, member));
+        }
+    }
 }
 
 /* Members of the map that a merge left incomplete (a region's style with only "opacity") are completed from defaults by laying the
  * document over them: what the document does not say is the default's. */
-static cJSON *check_scene(const cJSON *defaults, const char *const *image_ids, cJSON *merged, struct problem *problem)
+static cJSON *check_scene(const cJSON *plan, const cJSON *defaults, cJSON *merged, struct problem *problem)
 {
     struct scene scene;
     /* the checks run on what was said, so that the pointer names what the sender wrote */
@@ -37,7 +90,7 @@ static cJSON *check_scene(const cJSON *defaults, const char *const *image_ids, c
         return NULL;
     }
     scene_finish(&scene);
-    if (!names_are_known(defaults, image_ids, merged, problem)) {
+    if (!ids_are_known(plan, merged, problem)) {
         cJSON_Delete(merged);
         return NULL;
     }
@@ -46,14 +99,21 @@ static cJSON *check_scene(const cJSON *defaults, const char *const *image_ids, c
     return complete;
 }
 
-cJSON *scene_document_patch(const cJSON *defaults, const char *const *image_ids, const cJSON *current, const cJSON *patch,
-                            struct problem *problem)
+cJSON *scene_document_patch(const cJSON *plan, const cJSON *defaults, const cJSON *current, const cJSON *patch, struct problem *problem)
 {
     if (!cJSON_IsObject(patch)) {
         problem_set(problem, PROBLEM_VALIDATION, "", "type", "a merge patch on the scene must be an object");
         return NULL;
     }
-    return check_scene(defaults, image_ids, json_merge(current, patch), problem);
+    return check_scene(plan, defaults, json_merge(current, patch), problem);
+}
+
+cJSON *scene_document_renew(const cJSON *plan, const cJSON *defaults, const cJSON *current)
+{
+    cJSON *kept = cJSON_Duplicate(current, true);
+    remove_unknown_ids(plan, kept);
+    cJSON *scene = check_scene(plan, defaults, kept, NULL);
+    return scene ? scene : cJSON_Duplicate(defaults, true);
 }
 
 cJSON *document_told_patch(const cJSON *document, const cJSON *patch)
@@ -69,18 +129,14 @@ cJSON *document_told_patch(const cJSON *document, const cJSON *patch)
     return told;
 }
 
-cJSON *scene_document_for_view(const cJSON *defaults, const char *const *image_ids, const cJSON *scene, const cJSON *view,
-                               struct problem *problem)
+cJSON *scene_document_for_view(const cJSON *plan, const cJSON *defaults, const cJSON *scene, const cJSON *view, struct problem *problem)
 {
     const cJSON *override = cJSON_GetObjectItemCaseSensitive(view, "override");
     if (!cJSON_IsObject(override))
         return cJSON_Duplicate(scene, true);
-    cJSON *shown = check_scene(defaults, image_ids, json_merge(scene, override), problem);
-    if (!shown && problem) { /* the place is inside the view's override */
-        char pointer[sizeof problem->pointer];
-        memcpy(pointer, problem->pointer, sizeof pointer);
-        (void)snprintf(problem->pointer, sizeof problem->pointer, "/override%.*s", (int)sizeof pointer - 12, pointer);
-    }
+    cJSON *shown = check_scene(plan, defaults, json_merge(scene, override), problem);
+    if (!shown && problem)
+        problem_below(problem, "/override");
     return shown;
 }
 

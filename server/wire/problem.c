@@ -18,6 +18,13 @@ bool problem_set(struct problem *problem, enum problem_type type, const char *po
     return false;
 }
 
+void problem_below(struct problem *problem, const char *prefix)
+{
+    char pointer[sizeof problem->pointer];
+    memcpy(pointer, problem->pointer, sizeof pointer);
+    (void)snprintf(problem->pointer, sizeof problem->pointer, "%s%.*s", prefix, (int)(sizeof pointer - strlen(prefix) - 1), pointer);
+}
+
 bool problem_from_error(struct problem *problem, const struct error *err)
 {
     enum problem_type type = PROBLEM_INTERNAL;

@@ -179,7 +179,7 @@ describe('a plan', () => {
   test('refuses a wrong picture with the field that is wrong', async () => {
     const ask = (body, headers) => call(`${plan}/render`, 'POST', body, headers);
     assertProblem(await ask({ view: { size_px: [5, 200] } }), 422, 'validation', '/view/size_px/0');
-    assertProblem(await ask({ scene: { regions: { liver: {} } } }), 404, 'not-found', '/scene/regions/liver');
+    assertProblem(await ask({ scene: { regions: { liver: {} } } }), 422, 'validation', '/scene/regions/liver');
     assertProblem(await ask({ scene: { regions: { brain: { opacity: 2 } } } }), 422, 'validation', '/scene/regions/brain/opacity');
     assertProblem(await ask({ format: 'gif' }), 422, 'validation', '/format');
     assertProblem(await ask({ quality: 0 }), 422, 'validation', '/quality');

@@ -131,7 +131,7 @@ describe('messages', () => {
     client.send({ type: 'scene.patch', input: 5, patch: { regions: { 'no-such-region': { visible: false } } } });
     const said = await client.message('problem', (m) => m.input === 5);
     assert.equal(said.to, 'scene.patch');
-    assert.equal(said.problem.status, 404);
+    assert.equal(said.problem.status, 422);
     assert.equal(said.problem.pointer, '/regions/no-such-region');
     client.send({ type: 'scene.patch', input: 6, patch: { image: { window: { width: -1, center: 10 } } } });
     assert.equal((await client.message('problem', (m) => m.input === 6)).problem.pointer, '/image/window/width');

@@ -2,7 +2,12 @@
 #include "server/wire/document.h"
 #include "tests/fuzz/fuzz.h"
 
-static const char *const image_ids[] = { "ct", "mr-1", NULL };
+static cJSON *plan_of_scenes(void)
+{
+    static const char text[] = "{\"images\":[{\"id\":\"ct\"},{\"id\":\"mr-1\"}],\"regions\":[{\"id\":\"scalp\"},{\"id\":\"brain\"},{\"id\":\"tumour\"}],"
+                               "\"doses\":[{\"id\":\"plan\"}]}";
+    return json_read(text, strlen(text), NULL);
+}
 
 /* What a renderer would give for a plan with three regions. */
 static cJSON *plan_defaults(void)
@@ -18,10 +23,10 @@ static cJSON *plan_defaults(void)
     return json;
 }
 
-static void scene_patch(const cJSON *defaults, const cJSON *patch)
+static void scene_patch(const cJSON *plan, const cJSON *defaults, const cJSON *patch)
 {
     struct problem problem = { 0 };
-    cJSON *document = scene_document_patch(defaults, image_ids, defaults, patch, &problem);
+    cJSON *document = scene_document_patch(plan, defaults, defaults, patch, &problem);
     if (!document) {
         REQUIRE(problem.type != PROBLEM_NONE && problem.detail[0] != '\0');
         return;
@@ -32,14 +37,14 @@ static void scene_patch(const cJSON *defaults, const cJSON *patch)
     scene_finish(&scene);
 
     cJSON *nothing = cJSON_CreateObject();
-    cJSON *same = scene_document_patch(defaults, image_ids, document, nothing, &problem);
+    cJSON *same = scene_document_patch(plan, defaults, document, nothing, &problem);
     REQUIRE(same && cJSON_Compare(document, same, true));
     cJSON_Delete(same);
     cJSON_Delete(nothing);
     cJSON_Delete(document);
 }
 
-static void view_patch(const cJSON *defaults, const cJSON *patch)
+static void view_patch(const cJSON *plan, const cJSON *defaults, const cJSON *patch)
 {
     struct problem problem = { 0 };
     cJSON *document = view_document_patch(NULL, patch, &problem);
@@ -52,7 +57,7 @@ static void view_patch(const cJSON *defaults, const cJSON *patch)
     REQUIRE(view.size_px[0] > 0 && view.size_px[1] > 0);
     view_finish(&view);
 
-    cJSON *scene = scene_document_for_view(defaults, image_ids, defaults, document, &problem);
+    cJSON *scene = scene_document_for_view(plan, defaults, defaults, document, &problem);
     if (scene) {
         struct scene read;
         REQUIRE(scene_read(scene, &read, &problem));
@@ -72,8 +77,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
         REQUIRE(problem.type != PROBLEM_NONE && problem.detail[0] != '\0');
         return 0;
     }
-    cJSON *defaults = plan_defaults();
-    (data[0] % 2 == 0 ? scene_patch : view_patch)(defaults, patch);
+    cJSON *plan = plan_of_scenes(), *defaults = plan_defaults();
+    (data[0] % 2 == 0 ? scene_patch : view_patch)(plan, defaults, patch);
+    cJSON_Delete(plan);
     cJSON_Delete(defaults);
     cJSON_Delete(patch);
     return 0;

@@ -102,13 +102,15 @@ static void follow_acknowledgement(struct page *page, const char *text, size_t n
 static void plan_ready(struct room *room, int64_t now_us)
 {
     static const char text[] = "{\"regions\":{\"scalp\":{\"visible\":true},\"brain\":{\"opacity\":0.5}}}";
+    static const char document[] = "{\"id\":\"head\",\"images\":[{\"id\":\"ct\"}],\"regions\":[{\"id\":\"scalp\"},{\"id\":\"brain\"}]}";
     struct scene scene;
-    cJSON *said = json_read(text, strlen(text), NULL);
+    cJSON *said = json_read(text, strlen(text), NULL), *plan = json_read(document, strlen(document), NULL);
     REQUIRE(scene_read(said, &scene, NULL));
     cJSON *defaults = scene_write(&scene);
-    room_plan_ready(room, said, defaults, (const char *const[]){ "ct", NULL }, "fuzz", true, now_us);
+    room_plan_ready(room, plan, defaults, "fuzz", true, now_us);
     scene_finish(&scene);
     cJSON_Delete(said);
+    cJSON_Delete(plan);
     cJSON_Delete(defaults);
 }
 

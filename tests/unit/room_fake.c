@@ -95,22 +95,42 @@ static void tick(struct fake_room *fake)
     fake->again_us = room_tick(fake->room, fake->now_us);
 }
 
-void fake_plan_ready(struct fake_room *fake, bool is_software)
+/* A plan document and default scene of a plan with these regions. */
+static void ready(struct fake_room *fake, const char *const *region_ids, bool is_software)
 {
-    static const char defaults[] = "{\"regions\":{\"scalp\":{\"visible\":true,\"color\":\"#e0c0a0\",\"opacity\":0.4},"
-                                   "\"brain\":{\"visible\":true,\"color\":\"#e0a0a0\",\"opacity\":1}}}";
-    struct problem problem = { 0 };
-    struct scene scene;
-    cJSON *said = json_read(defaults, strlen(defaults), &problem);
-    assert_true(scene_read(said, &scene, &problem));
-    cJSON *complete = scene_write(&scene), *plan = cJSON_CreateObject();
+    struct scene scene = scene_default;
+    struct scene_region_style_entry entries[4] = { { .id = "" } };
+    cJSON *plan = cJSON_CreateObject();
     cJSON_AddStringToObject(plan, "id", "head");
-    room_plan_ready(fake->room, plan, complete, (const char *const[]){ "ct", NULL }, "osmesa llvmpipe", is_software, fake->now_us);
-    scene_finish(&scene);
-    cJSON_Delete(said);
+    cJSON *images = cJSON_AddArrayToObject(plan, "images"), *regions = cJSON_AddArrayToObject(plan, "regions");
+    cJSON *image = cJSON_CreateObject();
+    cJSON_AddStringToObject(image, "id", "ct");
+    cJSON_AddItemToArray(images, image);
+    for (; *region_ids; region_ids++) {
+        struct scene_region_style_entry *entry = &entries[scene.n_regions++];
+        entry->value = scene_region_style_default;
+        entry->value.opacity = scene.n_regions == 1 ? 0.4 : 1;
+        (void)snprintf(entry->id, sizeof entry->id, "%s", *region_ids);
+        cJSON *region = cJSON_CreateObject();
+        cJSON_AddStringToObject(region, "id", *region_ids);
+        cJSON_AddItemToArray(regions, region);
+    }
+    scene.regions = entries;
+    cJSON *complete = scene_write(&scene);
+    room_plan_ready(fake->room, plan, complete, "osmesa llvmpipe", is_software, fake->now_us);
     cJSON_Delete(complete);
     cJSON_Delete(plan);
     tick(fake);
+}
+
+void fake_plan_ready(struct fake_room *fake, bool is_software)
+{
+    ready(fake, (const char *const[]){ "scalp", "brain", NULL }, is_software);
+}
+
+void fake_other_plan_ready(struct fake_room *fake)
+{
+    ready(fake, (const char *const[]){ "brain", NULL }, true);
 }
 
 void fake_say(struct fake_room *fake, struct fake_page *page, const char *format, ...)

@@ -32,7 +32,10 @@ struct fake_room {
 
 void fake_room_start(struct fake_room *fake, int max_members); /* the plan is not ready yet */
 void fake_room_end(struct fake_room *fake);
+/* A plan with an image "ct" and the regions "scalp" (opacity 0.4) and "brain". */
 void fake_plan_ready(struct fake_room *fake, bool is_software);
+/* The same without "scalp", as after its files were changed. */
+void fake_other_plan_ready(struct fake_room *fake);
 void fake_page_end(struct fake_page *page);
 
 void fake_say(struct fake_room *fake, struct fake_page *page, const char *format, ...) PRINTF_LIKE(3, 4);

@@ -35,7 +35,7 @@ static const char *heard(struct fake_page *page, const char *type, const char *f
     return text;
 }
 
-/* Pointer and status of the newest problem, as "404 /regions/liver". */
+/* Pointer and status of the newest problem, as "422 /regions/liver". */
 static const char *refused(struct fake_page *page)
 {
     static char text[256];
@@ -365,7 +365,7 @@ static void an_override_shows_another_scene_to_one_view(void **state)
     scene = fake_newest(&fake)->scene;
     assert_close(json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "brain"), "opacity", 0), 0.5, 0);
     fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"liver\":{\"visible\":false}}}}}");
-    assert_string_equal(refused(&ann), "404 /override/regions/liver");
+    assert_string_equal(refused(&ann), "422 /override/regions/liver");
 }
 
 static void a_view_number_outside_one_to_eight_is_refused(void **state)
@@ -414,7 +414,7 @@ static void a_bad_patch_is_refused_whole_and_only_its_sender_hears_it(void **sta
     (void)room_scene(fake.room, &before);
     fake_say(&fake, &ann,
              "{\"type\":\"scene.patch\",\"input\":4,\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.9},\"liver\":{\"visible\":true}}}}");
-    assert_string_equal(refused(&ann), "404 /regions/liver");
+    assert_string_equal(refused(&ann), "422 /regions/liver");
     fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"scalp\":{\"opacity\":2}}}}");
     assert_string_equal(refused(&ann), "422 /regions/scalp/opacity");
     fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"size_px\":[8,8]}}");
@@ -466,6 +466,67 @@ static void before_the_plan_is_loaded_views_wait_and_the_scene_cannot_change(voi
     fake_page_end(&page);
 }
 
+/* Whether the newest view document that a page was told has no override. */
+static bool override_is_gone(const struct fake_page *page)
+{
+    cJSON *said = fake_heard(page, "view");
+    const cJSON *override = cJSON_GetObjectItem(cJSON_GetObjectItem(said, "document"), "override");
+    bool is_gone = said && (!override || cJSON_IsNull(override) || !override->child);
+    cJSON_Delete(said);
+    return is_gone;
+}
+
+static void an_override_said_too_early_is_taken_out_and_told_when_the_plan_has_no_such_region(void **state)
+{
+    struct fake_room early;
+    (void)state;
+    fake_room_start(&early, 3);
+    struct fake_page page = { 0 };
+    fake_hello(&early, &page);
+    fake_say(&early, &page, "{\"type\":\"view.open\",\"view\":1,\"document\":{\"override\":{\"regions\":{\"liver\":{\"visible\":false}}}}}");
+    fake_say(&early, &page, "{\"type\":\"view.open\",\"view\":2,\"document\":{\"override\":{\"regions\":{\"brain\":{\"visible\":false}}}}}");
+    assert_int_equal(fake_n_heard(&page, "problem"), 0);
+    fake_plan_ready(&early, true);
+    assert_string_equal(refused(&page), "422 /override/regions/liver");
+    assert_int_equal(fake_n_heard(&page, "problem"), 1);
+    assert_true(override_is_gone(&page));
+    /* view 1 shows the room's scene and can be moved, view 2 keeps its own */
+    assert_int_equal(early.n_requests, 2);
+    assert_true((early.requests[0].scene == NULL) != (early.requests[1].scene == NULL));
+    fake_draw(&early, &early.requests[0]);
+    fake_draw(&early, &early.requests[1]);
+    fake_turn(&early, &page, 3, 7);
+    assert_int_equal(fake_n_heard(&page, "problem"), 1);
+    assert_null(fake_newest(&early)->scene);
+    fake_room_end(&early);
+    fake_page_end(&page);
+}
+
+static void after_a_restart_with_another_plan_nothing_names_what_is_gone(void **state)
+{
+    uint32_t before, after;
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"scalp\":{\"visible\":false}}}}}");
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.3}},\"check\":{\"region\":\"scalp\"}}}");
+    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, NULL, 0, NULL);
+    /* while it restarts, the plan as it was decides */
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"check\":{\"region\":\"liver\"}}}");
+    assert_string_equal(refused(&ann), "422 /check/region");
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.7}}}}");
+    (void)room_scene(fake.room, &before);
+    fake_other_plan_ready(&fake);
+    const cJSON *scene = room_scene(fake.room, &after), *regions = cJSON_GetObjectItem(scene, "regions");
+    assert_int_equal(after, before + 1); /* it is another scene: its ETag is another */
+    assert_null(cJSON_GetObjectItem(regions, "scalp"));
+    assert_close(json_number(cJSON_GetObjectItem(regions, "brain"), "opacity", 0), 0.3, 1e-12);
+    assert_string_equal(json_text(cJSON_GetObjectItem(scene, "check"), "region"), "");
+    assert_string_equal(refused(&ann), "422 /override/regions/scalp");
+    assert_true(override_is_gone(&ann));
+    assert_null(fake_newest(&fake)->scene); /* drawn as the room's */
+}
+
 static void a_plan_that_cannot_be_loaded_says_why(void **state)
 {
     struct problem problem = { 0 };
@@ -510,6 +571,8 @@ int main(void)
         T(a_bad_patch_is_refused_whole_and_only_its_sender_hears_it),
         T(a_message_over_64_kib_is_refused),
         T(before_the_plan_is_loaded_views_wait_and_the_scene_cannot_change),
+        T(an_override_said_too_early_is_taken_out_and_told_when_the_plan_has_no_such_region),
+        T(after_a_restart_with_another_plan_nothing_names_what_is_gone),
         T(a_plan_that_cannot_be_loaded_says_why),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

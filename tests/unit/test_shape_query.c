@@ -94,11 +94,11 @@ static void the_scene_of_a_shape_shows_it_alone(void **state)
     scene.regions = entries;
     scene.n_regions = 2;
     scene.image.slices.coronal.visible = true;
-    static const char *const images[] = { NULL };
+    cJSON *plan = cJSON_Parse("{\"regions\":[{\"id\":\"brain\"},{\"id\":\"tumor\"}],\"images\":[],\"doses\":[]}");
     struct problem problem = { 0 };
     struct shape_query query = good("{\"representation\":\"nurbs\",\"order\":\"2\",\"bins\":\"12\"}");
     cJSON *document = scene_write(&scene), *patch = shape_query_scene(&query, "brain", document);
-    cJSON *patched = scene_document_patch(document, images, document, patch, &problem);
+    cJSON *patched = scene_document_patch(plan, document, document, patch, &problem);
     struct scene shown;
     assert_non_null(patched);
     assert_true(scene_read(patched, &shown, &problem));
@@ -109,6 +109,7 @@ static void the_scene_of_a_shape_shows_it_alone(void **state)
     assert_int_equal(shown.nurbs.order, 2);
     assert_int_equal(shown.nurbs.bins, 12);
     scene_finish(&shown);
+    cJSON_Delete(plan);
     cJSON_Delete(document);
     cJSON_Delete(patch);
     cJSON_Delete(patched);
