@@ -173,6 +173,7 @@ struct api_picture {
     struct call *call;
     char plan_id[64];
     double n_pixels;
+    bool has_revision; /* of a room's scene */
 };
 
 static double pixels_of(const cJSON *view)
@@ -182,7 +183,7 @@ static double pixels_of(const cJSON *view)
 }
 
 /* Scripts and rooms share a plan's renderer: how much a script may put before the others has an end. */
-static bool start_picture(struct api *api, struct call *call, const char *plan_id, const cJSON *view)
+static bool start_picture(struct api *api, struct call *call, const char *plan_id, const cJSON *view, bool has_revision)
 {
     size_t n = 0;
     double n_pixels = pixels_of(view), n_before = 0;
@@ -202,27 +203,31 @@ static bool start_picture(struct api *api, struct call *call, const char *plan_i
     picture->next = api->pictures;
     picture->call = call;
     picture->n_pixels = n_pixels;
+    picture->has_revision = has_revision;
     (void)snprintf(picture->plan_id, sizeof picture->plan_id, "%s", plan_id);
     api->pictures = picture;
     return true;
 }
 
-static void end_picture(struct api *api, const struct call *call)
+/* Whether it was of a room's scene. */
+static bool end_picture(struct api *api, const struct call *call)
 {
     for (struct api_picture **at = &api->pictures; *at; at = &(*at)->next)
         if ((*at)->call == call) {
             struct api_picture *picture = *at;
+            bool has_revision = picture->has_revision;
             *at = picture->next;
             free(picture);
-            return;
+            return has_revision;
         }
+    return false;
 }
 
 static void picture_came(void *context, struct packet *answer, const struct problem *problem)
 {
     struct call *call = context;
     struct problem broken;
-    end_picture(call->api, call);
+    bool has_revision = end_picture(call->api, call);
     if (problem) {
         call_answer_problem(call, problem);
         return;
@@ -232,18 +237,19 @@ static void picture_came(void *context, struct packet *answer, const struct prob
         call_answer_problem(call, &broken);
         return;
     }
-    char timing[96], revision[16];
+    char timing[96], revision[24];
     (void)snprintf(timing, sizeof timing, "render;dur=%.1f, encode;dur=%.1f", json_number(answer->json, "render_us", 0) / 1000,
                    json_number(answer->json, "encode_us", 0) / 1000);
     (void)snprintf(revision, sizeof revision, "%.0f", json_number(answer->json, "scene_revision", 0));
     call_add_header(call, "Server-Timing", timing);
-    call_add_header(call, "Beamroom-Revision", revision);
+    if (has_revision)
+        call_add_header(call, "Beamroom-Revision", revision);
     uint8_t *bytes = answer->blob;
     answer->blob = NULL;
     call_answer_bytes(call, 200, bytes[0] == 0xff ? "image/jpeg" : "image/png", bytes, answer->n_blob);
 }
 
-void api_render(struct api *api, struct call *call, const char *plan_id, const cJSON *scene, uint32_t revision, const cJSON *view,
+void api_render(struct api *api, struct call *call, const char *plan_id, const cJSON *scene, const uint32_t *revision, const cJSON *view,
                 const char *format, double quality)
 {
     struct problem problem;
@@ -258,12 +264,13 @@ void api_render(struct api *api, struct call *call, const char *plan_id, const c
         call_answer_problem(call, &problem);
         return;
     }
-    if (!start_picture(api, call, plan_id, view))
+    if (!start_picture(api, call, plan_id, view, revision != NULL))
         return;
     cJSON *packet = cJSON_CreateObject();
     cJSON_AddStringToObject(packet, "type", "render");
     cJSON_AddItemToObject(packet, "scene", cJSON_Duplicate(scene, true));
-    cJSON_AddNumberToObject(packet, "revision", revision);
+    if (revision)
+        cJSON_AddNumberToObject(packet, "scene_revision", *revision);
     cJSON_AddItemToObject(packet, "view", cJSON_Duplicate(view, true));
     cJSON_AddNumberToObject(packet, "scale_percent", 100);
     cJSON_AddNumberToObject(packet, "quality", quality);

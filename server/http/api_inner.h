@@ -71,8 +71,9 @@ void api_room_members(struct api *api, struct call *call);
 void api_room_snapshot(struct api *api, struct call *call);
 void api_room_ws(struct api *api, struct call *call);
 
-/* A picture for a call: asks the plan's renderer and answers the call with the bytes. scene and view are complete documents, borrowed. */
-void api_render(struct api *api, struct call *call, const char *plan_id, const cJSON *scene, uint32_t revision, const cJSON *view,
+/* A picture for a call: asks the plan's renderer and answers the call with the bytes. scene and view are complete documents, borrowed.
+ * revision: of a room's scene, said in the answer; NULL: not a room's. */
+void api_render(struct api *api, struct call *call, const char *plan_id, const cJSON *scene, const uint32_t *revision, const cJSON *view,
                 const char *format, double quality);
 /* A query for a call: answered with the renderer's body. Takes query. */
 void api_query(struct api *api, struct call *call, const char *plan_id, cJSON *query);

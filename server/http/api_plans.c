@@ -284,7 +284,7 @@ static void render_when_ready(void *context, struct packet *answer, const struct
         problem_below(&problem, "/view");
         goto refuse;
     }
-    api_render(api, call, wish->plan_id, shown, 0, view, json_text(wish->body, "format"), json_number(wish->body, "quality", 92));
+    api_render(api, call, wish->plan_id, shown, NULL, view, json_text(wish->body, "format"), json_number(wish->body, "quality", 92));
     goto done;
 refuse:
     call_answer_problem(call, &problem);

@@ -192,7 +192,7 @@ void api_room_snapshot(struct api *api, struct call *call)
         return;
     cJSON *shown = room_scene_for_view(room, view, &problem);
     if (shown) {
-        api_render(api, call, room_plan_id(room), shown, revision, view, call_query(call, "format"), quality);
+        api_render(api, call, room_plan_id(room), shown, &revision, view, call_query(call, "format"), quality);
     } else {
         problem_below(&problem, "/view");
         call_answer_problem(call, &problem);

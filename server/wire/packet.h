@@ -6,8 +6,9 @@
  * daemon to renderer
  *   scene    {type, room, revision, scene}            the room's scene document, complete; replaces the room's last
  *   forget   {type, room}                             a room is gone
- *   render   {type, id, room | scene, view, scale_percent, quality, codec: "jpeg"|"png", full_color, detail: "full"|"light", still}
- *            scene: a complete document for this picture alone (HTTP render, overrides); else the room's
+ *   render   {type, id, room | scene, scene_revision?, view, scale_percent, quality, codec: "jpeg"|"png", full_color, detail: "full"|"light", still}
+ *            scene: a complete document for this picture alone (HTTP render, overrides); else the room's. scene_revision comes back
+ *            in frame; left out: the room's, or 0
  *   query    {type, id, what: "surface"|"probe"|"pick"|"ready", ...arguments}   ready: answered with an empty body;
  *            surface with format "stl", "ply" or "glb": answered with the file as blob
  *   ping     {type}                                   answered with pong at once, by the main thread

@@ -356,6 +356,23 @@ describe('a room', () => {
     assertProblem(await call(`${room}/snapshot?view=nojson`), 400, 'json');
   });
 
+  test('says with its snapshot which revision was drawn: the one its scene has as ETag', async () => {
+    const snapshot = async () => {
+      const answer = await fetch(`${room}/snapshot?view=${encodeURIComponent('{"size_px":[32,32]}')}`);
+      await answer.arrayBuffer();
+      return [answer.status, answer.headers.get('beamroom-revision')];
+    };
+    const etag = async () => JSON.parse((await call(`${room}/scene`)).headers.get('etag'));
+    const before = await etag();
+    assert.deepEqual(await snapshot(), [200, before]);
+    await call(`${room}/scene`, 'PATCH', { regions: { brain: { opacity: 0.31 } } }, { 'If-Match': '*' });
+    assert.equal(await etag(), String(Number(before) + 1));
+    assert.deepEqual(await snapshot(), [200, await etag()]);
+    const picture = await fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: '{"view":{"size_px":[32,32]}}' });
+    await picture.arrayBuffer();
+    assert.equal(picture.headers.get('beamroom-revision'), null, 'a picture without a room has no revision');
+  });
+
   test('is gone when it has been closed', async () => {
     assert.equal((await call(room, 'DELETE')).status, 204);
     assertProblem(await call(room), 404, 'not-found');
