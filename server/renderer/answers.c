@@ -163,16 +163,3 @@ cJSON *answer_gl(const struct render_facts *facts, bool is_stub)
     cJSON_AddBoolToObject(json, "is_software", facts->is_software);
     return json;
 }
-
-cJSON *answer_home(const struct plan *plan)
-{
-    static const char *const kinds[] = { [SCENE_KIND_3D] = "3d", [SCENE_KIND_AXIAL] = "axial", [SCENE_KIND_CORONAL] = "coronal",
-                                         [SCENE_KIND_SAGITTAL] = "sagittal" };
-    cJSON *json = cJSON_CreateObject();
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        struct scene_camera camera;
-        camera_home(plan, (enum scene_kind)i, &camera);
-        cJSON_AddItemToObject(json, kinds[i], camera_write(&camera));
-    }
-    return json;
-}

@@ -16,5 +16,3 @@ NODISCARD cJSON *answer_pick(const struct snapshot *snapshot, double px, double 
 NODISCARD cJSON *answer_summary(const struct plan_summary *summary);
 /* {back_end, vendor, renderer, version, is_software} */
 NODISCARD cJSON *answer_gl(const struct render_facts *facts, bool is_stub);
-/* The cameras a view starts from, by kind. */
-NODISCARD cJSON *answer_home(const struct plan *plan);

@@ -130,9 +130,8 @@ static void say_ready_when_it_is(struct session *session)
     if (session->is_ready || !session->plan || !session->is_built || !session->has_gl)
         return;
     session->is_ready = true;
-    cJSON *json = packet("ready"), *document = plan_document(session->plan);
-    cJSON_AddItemToObject(document, "home", answer_home(session->plan));
-    cJSON_AddItemToObject(json, "plan", document);
+    cJSON *json = packet("ready");
+    cJSON_AddItemToObject(json, "plan", plan_document(session->plan));
     cJSON_AddItemToObject(json, "scene", cJSON_Duplicate(session->default_scene, true));
     cJSON_AddStringToObject(json, "confined", session->options->confined);
     cJSON_AddNumberToObject(json, "memory_bytes", resident_bytes());

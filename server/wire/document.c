@@ -36,7 +36,7 @@ static bool unknown_id(const struct reference *reference, const char *id, struct
 {
     char pointer[160];
     (void)snprintf(pointer, sizeof pointer, "/%s/%s", reference->object, reference->id ? reference->id : id);
-    return problem_set(problem, PROBLEM_VALIDATION, pointer, "unknown-id", "%s: the plan has no %s \"%.63s\"", pointer, reference->list_member, id);
+    return problem_set(problem, PROBLEM_VALIDATION, pointer, "unknown-id", "the plan has no %s \"%.63s\"", reference->list_member, id);
 }
 
 /* Every id in the document, a scene whose fields were checked, must be the plan's. */

@@ -6,6 +6,7 @@ import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { web } from './daemon.mjs';
+import { parseStrict } from './strict_json.mjs';
 
 const bin = join(process.env.BEAMROOM_BIN ?? 'build/release', 'beamroom');
 const beamroom = (...args) => {
@@ -114,7 +115,7 @@ describe('beamroom info', () => {
     const out = join(folder, 'converted');
     const made = beamroom('convert', plan, out);
     assert.equal(made.status, 0, made.stderr);
-    const [before, after] = [plan, out].map((dir) => JSON.parse(beamroom('info', dir, '--json').stdout));
+    const [before, after] = [plan, out].map((dir) => parseStrict(beamroom('info', dir, '--json').stdout));
     for (const part of ['name', 'note', 'is_phantom', 'images', 'regions', 'hierarchy', 'doses', 'beams', 'tracks', 'curves', 'preferences'])
       assert.deepEqual(after[part], before[part], part);
     const again = beamroom('convert', plan, out);
@@ -125,7 +126,7 @@ describe('beamroom info', () => {
   it('gives the same as JSON', () => {
     const { status, stdout, stderr } = beamroom('info', plan, '--json');
     assert.equal(status, 0, stderr);
-    const info = JSON.parse(stdout);
+    const info = parseStrict(stdout);
     assert.deepEqual(Object.keys(info), ['id', 'name', 'note', 'is_phantom', 'load_ms', 'bounds_mm', 'home', 'images', 'regions',
       'hierarchy', 'doses', 'beams', 'tracks', 'curves', 'preferences', 'report']);
     assert.equal(info.id, 'head-one');

@@ -4,6 +4,7 @@ import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { createInterface } from 'node:readline';
+import { parseStrict } from './strict_json.mjs';
 
 export const bin = process.env.BEAMROOM_BIN ?? resolve('build/release');
 export const web = process.env.BEAMROOM_WEB ?? resolve('build/web');
@@ -51,14 +52,13 @@ export async function until(ask, suits, ms = 60000) {
   }
 }
 
-/** fetch with JSON in and out. */
+/** fetch with JSON in and out; throws where the answer says it is JSON and is not, or has a name twice. */
 export async function call(url, method = 'GET', body, headers = {}) {
   const answer = await fetch(url, { method, headers: { ...(body !== undefined && { 'Content-Type': 'application/json' }), ...headers },
     body: body === undefined || typeof body === 'string' ? body : JSON.stringify(body) });
-  const text = await answer.text();
-  let json;
-  try { json = JSON.parse(text); } catch { json = undefined; }
-  return { status: answer.status, headers: answer.headers, type: answer.headers.get('content-type') ?? '', text, json };
+  const text = await answer.text(), type = answer.headers.get('content-type') ?? '';
+  const json = /^application\/(.*\+)?json\b/.test(type) && text ? parseStrict(text) : undefined;
+  return { status: answer.status, headers: answer.headers, type, text, json };
 }
 
 /** Loads a plan and waits for it. */

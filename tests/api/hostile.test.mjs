@@ -9,6 +9,7 @@ import { after, before, describe, test } from 'node:test';
 import { gunzipSync, gzipSync } from 'node:zlib';
 import { bin, call, openPlan, realData, sleep, startDaemon, until } from './daemon.mjs';
 import { Client } from './ws_client.mjs';
+import { parseStrict } from './strict_json.mjs';
 
 let folder, daemon, url, api;
 
@@ -138,7 +139,7 @@ describe('a stranger on the line', () => {
       const answer = await exchange(bytes), [head, body] = [answer.slice(0, answer.indexOf('\r\n\r\n')), answer.slice(answer.indexOf('\r\n\r\n') + 4)];
       assert.equal(statusOf(answer), status, `${what}: ${answer.slice(0, 200)}`);
       assert.match(head, /content-type: application\/problem\+json/i, what);
-      const problem = JSON.parse(body);
+      const problem = parseStrict(body);
       assert.equal(problem.status, status, what);
       assert.match(problem.type, /^\/problems\/[a-z-]+$/, what);
       assert.match(problem.detail, words, what);
@@ -169,7 +170,7 @@ describe('a stranger on the line', () => {
     for (const bytes of [evil('/'), evil('/api/v1/plans'), evil('/healthz'), `GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n${evil('/api/v1/plans')}`, `GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n${evil('/')}`]) {
       const answer = await exchange(bytes), last = answer.slice(answer.lastIndexOf('HTTP/1.1'));
       assert.equal(statusOf(last), 421);
-      const problem = JSON.parse(last.slice(last.indexOf('\r\n\r\n') + 4));
+      const problem = parseStrict(last.slice(last.indexOf('\r\n\r\n') + 4));
       assert.equal(problem.type, '/problems/misdirected');
       assert.match(problem.detail, /evil\.example:8080.*--public-name/);
     }
@@ -183,7 +184,7 @@ describe('a stranger on the line', () => {
   });
 
   test('hears what is missing when it ends early or comes too slowly', async () => {
-    const problemOf = (answer) => JSON.parse(answer.slice(answer.indexOf('\r\n\r\n') + 4));
+    const problemOf = (answer) => parseStrict(answer.slice(answer.indexOf('\r\n\r\n') + 4));
     const early = await exchange('GET /hea', { endsAtOnce: true });
     assert.equal(statusOf(early), 400);
     assert.match(problemOf(early).detail, /ended after 8 bytes/);

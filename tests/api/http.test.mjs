@@ -7,6 +7,7 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { call, demo, openPlan, startDaemon, until } from './daemon.mjs';
 import { centreOf, readPng } from './png.mjs';
+import { parseStrict } from './strict_json.mjs';
 
 let daemon, url, api, plan, broken;
 
@@ -247,7 +248,7 @@ describe('a plan', () => {
     assert.match(head, /comment unit mm\n.*LPS.*\ncomment plan phantom\ncomment region tumour\n/);
     const glb = await file('format=glb');
     assert.deepEqual([glb.status, glb.type, glb.name], [200, 'model/gltf-binary', 'attachment; filename="phantom-tumour.glb"']);
-    const jsonOf = ({ bytes }) => JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
+    const jsonOf = ({ bytes }) => parseStrict(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
     const gltf = jsonOf(glb);
     assert.equal(gltf.asset.version, '2.0');
     assert.equal(gltf.accessors[gltf.meshes[0].primitives[0].attributes.POSITION].count, facts.vertices);

@@ -10,6 +10,7 @@ import { after, before, describe, test } from 'node:test';
 import { bin, call, demo, openPlan, sleep, startDaemon, until } from './daemon.mjs';
 import { readPng } from './png.mjs';
 import { Client } from './ws_client.mjs';
+import { parseStrict } from './strict_json.mjs';
 
 let home, daemon, api;
 
@@ -41,7 +42,7 @@ async function send(base, name, body, { type = 'application/octet-stream', heade
   const answer = await fetch(`${base}/plans?name=${encodeURIComponent(name)}`, { method: 'POST', headers: { 'Content-Type': type, ...headers }, body: bytes,
     ...(bytes instanceof ReadableStream && { duplex: 'half' }) });
   const text = await answer.text();
-  return { status: answer.status, headers: answer.headers, text, json: JSON.parse(text) };
+  return { status: answer.status, headers: answer.headers, text, json: parseStrict(text) };
 }
 
 const jobEnd = (base, job) => until(async () => (await call(`${base}/jobs/${job.id}`)).json, (j) => j.state !== 'running' && j.state !== 'queued');
@@ -288,7 +289,7 @@ test('300 MB pass through without the memory growing and without others waiting'
     const post = request({ hostname, port, path: '/api/v1/plans?name=big', method: 'POST', headers: { 'Content-Type': 'application/x-tar' } }, (answer) => {
       let text = '';
       answer.on('data', (more) => { text += more; });
-      answer.on('end', () => done({ status: answer.statusCode, json: JSON.parse(text) }));
+      answer.on('end', () => done({ status: answer.statusCode, json: parseStrict(text) }));
     });
     post.on('error', failed);
     createReadStream(big, { highWaterMark: 1 << 20 }).pipe(post);

@@ -1,6 +1,7 @@
 // A small WebSocket client over a plain socket: Node 18 has none, and ours can also misbehave (fragments, bad masks, not reading).
 import { createHash, randomBytes } from 'node:crypto';
 import { connect } from 'node:net';
+import { parseStrict } from './strict_json.mjs';
 
 const TEXT = 1, BINARY = 2, CLOSE = 8, PING = 9, PONG = 10;
 
@@ -79,7 +80,7 @@ export class Client {
     if (!isFinal) return true;
     const [kind, ...parts] = this.#fragment;
     const whole = Buffer.concat(parts);
-    if (kind === TEXT) this.messages.push(JSON.parse(whole.toString('utf8')));
+    if (kind === TEXT) this.messages.push(parseStrict(whole.toString('utf8')));
     else if (kind === BINARY) {
       const frame = readFrame(whole);
       this.frames.push(frame);
