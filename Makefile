@@ -157,6 +157,8 @@ $(B)/unit/test_confine $(B)/unit/test_dicom_file: $(call obj,server/renderer/con
 $(eval $(call c_programs,render,test,-lcmocka))
 $(eval $(call c_programs,bench,bench,))
 $(eval $(call c_programs,fuzz,fuzz,-fsanitize=fuzzer))
+$(B)/fuzz/fuzz_plan_parts: $(call obj,$(addprefix tests/unit/,data_folder.c made_chd.c made_dicom.c made_dose.c))
+$(B)/fuzz/fuzz_plan_parts: private CORE_LIBS += -lcmocka
 $(B)/unit/test_unpack: | $(B)/beamroom-render
 $(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: $(call obj,$(UNPACK_SRC))
 $(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: private CORE_LIBS += $(UNPACK_LIBS)

@@ -114,15 +114,26 @@ static bool add_regions(struct loading *loading, struct region_builder *builder,
     return region_builder_add_labels(builder, volume, &job->names, job->path, err);
 }
 
-static struct dose *find_dose(struct loading *loading, size_t index, bool is_sera)
+bool plan_has_room_for_dose(struct plan *plan, const char *id, const char *where)
+{
+    if (plan->n_doses < PLAN_MAX_DOSES)
+        return true;
+    report_add(&plan->report, REPORT_WARNING, "plan.ignored-file", where, "More than %d doses; \"%s\" was left out.", PLAN_MAX_DOSES, id);
+    return false;
+}
+
+/* The dose of an entry of the plan file, still without components; NULL when the plan is full. */
+static struct dose *start_dose(struct loading *loading, size_t index, bool is_sera)
 {
     struct plan *plan = loading->plan;
     const struct plan_file_dose *entry = &loading->file->doses[index];
-    const char *others[PLAN_MAX_DOSES];
+    const char *others[PLAN_MAX_DOSES], *path = entry->components[0].path;
     char id[64];
+    if (!plan_has_room_for_dose(plan, entry->id[0] ? entry->id : path, path))
+        return NULL;
     for (size_t i = 0; i < plan->n_doses; i++)
         others[i] = plan->doses[i].id;
-    plan_make_id(id, entry->id, entry->components[0].path, others, plan->n_doses);
+    plan_make_id(id, entry->id, path, others, plan->n_doses);
     struct dose *dose = &plan->doses[plan->n_doses++];
     memcpy(dose->id, id, sizeof dose->id);
     memcpy(dose->name, entry->name, sizeof dose->name);
@@ -169,7 +180,9 @@ static void add_dose(struct loading *loading, size_t index)
             continue;
         }
         if (!dose)
-            dose = find_dose(loading, index, part_is_sera_dose(job->format));
+            dose = start_dose(loading, index, part_is_sera_dose(job->format));
+        if (!dose)
+            return;
         add_component(loading, dose, job);
     }
     for (size_t i = 0; dose && i < loading->n_jobs; i++)

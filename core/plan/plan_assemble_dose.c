@@ -40,9 +40,7 @@ static void add_group(struct loading *loading, struct rtdose *objects, size_t n,
     for (size_t i = 0; i < n_doses; i++) {
         const char *others[PLAN_MAX_DOSES];
         char name[64];
-        if (plan->n_doses >= PLAN_MAX_DOSES) {
-            report_add(&plan->report, REPORT_WARNING, "plan.ignored-file", where, "More than %d doses; \"%s\" was left out.", PLAN_MAX_DOSES,
-                       doses[i].id);
+        if (!plan_has_room_for_dose(plan, doses[i].id, where)) {
             dose_finish(&doses[i]);
             continue;
         }

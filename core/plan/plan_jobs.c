@@ -13,7 +13,8 @@ static bool refuse_format(const char *path, enum part_format format, struct erro
     return error_set(err, ERROR_UNSUPPORTED, "%s: %s is not read here by this version", path, part_format_word(format));
 }
 
-static struct job *add_job(struct loading *loading, enum job_kind kind, size_t index, size_t component, const char *path)
+static struct job *add_job(struct loading *loading, enum job_kind kind, size_t index, size_t component, const char *path,
+                           enum part_format format)
 {
     struct job *job = &loading->jobs[loading->n_jobs++];
     job->kind = kind;
@@ -21,7 +22,7 @@ static struct job *add_job(struct loading *loading, enum job_kind kind, size_t i
     job->component = component;
     job->path = path;
     job->loading = loading;
-    job->format = part_format_of(&loading->folder, path);
+    job->format = format;
     folder_look(&loading->folder, path, &job->bytes);
     return job;
 }
@@ -33,7 +34,7 @@ static size_t add_dicom_jobs(struct loading *loading, enum job_kind kind, enum d
     const struct dicom_object *object;
     size_t n = 0;
     for (; n < most && (object = plan_dicom_object(loading->parts.dicom, of, path, n)); n++)
-        add_job(loading, kind, index, component, object->path);
+        add_job(loading, kind, index, component, object->path, PART_DICOM); /* whatever the file is called */
     return n;
 }
 
@@ -49,7 +50,7 @@ static bool add_image_job(struct loading *loading, size_t i, struct error *err)
     enum part_format format = part_format_of(&loading->folder, path);
     if (format != PART_NIFTI && format != PART_NRRD && format != PART_QSH && format != PART_DICOM)
         return refuse_format(path, format, err);
-    struct job *job = add_job(loading, JOB_IMAGE, i, 0, path);
+    struct job *job = add_job(loading, JOB_IMAGE, i, 0, path, format);
     if (format != PART_DICOM)
         return true;
     job->stack = plan_dicom_stack(loading->parts.dicom, path);
@@ -71,7 +72,7 @@ static bool add_region_jobs(struct loading *loading, size_t i, struct error *err
                refuse_dicom(loading, path, "structure set", err);
     if (format != PART_NIFTI && format != PART_NRRD && format != PART_UVH)
         return refuse_format(path, format, err);
-    add_job(loading, JOB_REGION, i, 0, path);
+    add_job(loading, JOB_REGION, i, 0, path, format);
     return true;
 }
 
@@ -104,13 +105,14 @@ static bool add_dose_jobs(struct loading *loading, size_t i, struct error *err)
     for (size_t c = 0; is_readable && c < dose->n_components; c++) {
         const char *path = dose->components[c].path;
         size_t most = dose->n_components > 1 ? 1 : PLAN_DICOM_MAX_DOSES; /* a component is one object */
-        if (part_format_of(&loading->folder, path) != PART_DICOM)
-            add_job(loading, JOB_DOSE, i, c, path);
+        enum part_format format = part_format_of(&loading->folder, path);
+        if (format != PART_DICOM)
+            add_job(loading, JOB_DOSE, i, c, path, format);
         else if (add_dicom_jobs(loading, JOB_DOSE, DICOM_KIND_DOSE, i, c, path, most) == 0)
             return refuse_dicom(loading, path, "dose", err);
     }
     if (is_readable && dose->mask[0])
-        add_job(loading, JOB_DOSE_MASK, i, 0, dose->mask);
+        add_job(loading, JOB_DOSE_MASK, i, 0, dose->mask, part_format_of(&loading->folder, dose->mask));
     return true;
 }
 

@@ -84,6 +84,9 @@ NODISCARD bool plan_read_part(struct loading *loading, struct job *job);
 /* An id that may stand in a URL: from what the plan gives, else from the file's name; unique among those before. */
 void plan_make_id(char id[64], const char *given, const char *path, const char *const *others, size_t n_others);
 
+/* False when the plan holds PLAN_MAX_DOSES doses; then the report says that this one, from the file where, was left out. */
+NODISCARD bool plan_has_room_for_dose(struct plan *plan, const char *id, const char *where);
+
 /* The stack an image of the plan was read from; NULL when it was not DICOM. */
 const struct dicom_stack *plan_dicom_stack_of(const struct loading *loading, size_t image);
 

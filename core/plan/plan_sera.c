@@ -1,5 +1,6 @@
 #include "core/plan/plan_sera.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -141,6 +142,7 @@ void plan_dose_units(struct dose *dose, const struct plan_file_dose *entry, bool
 
 static void add(struct dose *dose, struct dose_component component, const char *path, struct report *report)
 {
+    assert(dose->n_components < DOSE_N_QUANTITIES); /* a dose has each quantity once */
     dose->components[dose->n_components++] = component;
     if (component.values->low < 0)
         report_add(report, REPORT_WARNING, "dose.negative", path, "The smallest value is %g.", component.values->low);
