@@ -6,7 +6,7 @@
 #include <string.h>
 #include <zlib.h>
 
-enum { WINDOW_GZIP = 15 + 16 };
+enum { WINDOW_GZIP = 15 + 16, SCRATCH_BYTES = 1 << 16, SMALLEST_STREAM = 18 };
 
 bool gzip_is(const uint8_t *data, size_t size)
 {
@@ -18,13 +18,71 @@ uint64_t gzip_most(uint64_t compressed_bytes)
     return compressed_bytes * 1032 + 1024;
 }
 
+bool gzip_is_padding(const uint8_t *data, size_t size)
+{
+    while (size > 0 && data[size - 1] == 0)
+        size--;
+    return size == 0;
+}
+
 static uInt at_most_int(size_t n)
 {
     return n > UINT_MAX ? UINT_MAX : (uInt)n;
 }
 
-/* The slow, streaming way: as many bytes as there are up to capacity, over several members. */
-static size_t inflate_some(const uint8_t *data, size_t size, uint8_t *out, size_t capacity)
+enum outcome { WHOLE, FULL, CUT, BROKEN, FOLLOWED, NO_MEMORY };
+
+/* How far a stream could be read: bytes of it, and bytes unpacked from it. reason: zlib's words when it is BROKEN. */
+struct reading {
+    enum outcome outcome;
+    size_t in;
+    uint64_t have;
+    const char *reason;
+};
+
+/* The slow way, piece by piece: the first capacity bytes into out, what follows them is checked and thrown away. FULL: there are more than
+ * most bytes inside. zlib checks the sums and the lengths of all members that end within most. */
+static struct reading inflate_slowly(const uint8_t *data, size_t size, uint8_t *out, size_t capacity, uint64_t most)
+{
+    uint8_t scratch[SCRATCH_BYTES];
+    struct reading reading = { NO_MEMORY, 0, 0, "" };
+    z_stream stream = { 0 };
+    if (inflateInit2(&stream, WINDOW_GZIP) != Z_OK)
+        return reading;
+    for (;;) {
+        bool is_kept = reading.have < capacity;
+        stream.next_in = (Bytef *)(uintptr_t)(data + reading.in);
+        stream.avail_in = at_most_int(size - reading.in);
+        stream.next_out = is_kept ? out + reading.have : scratch;
+        stream.avail_out = is_kept ? at_most_int(capacity - (size_t)reading.have) : SCRATCH_BYTES;
+        uInt in_before = stream.avail_in, out_before = stream.avail_out;
+        int status = inflate(&stream, Z_NO_FLUSH);
+        reading.in += in_before - stream.avail_in;
+        reading.have += out_before - stream.avail_out;
+        bool is_stuck = in_before == stream.avail_in && out_before == stream.avail_out;
+        if (reading.have > most) {
+            reading.outcome = FULL;
+        } else if (status == Z_STREAM_END && gzip_is(data + reading.in, size - reading.in)) {
+            reading.outcome = NO_MEMORY;
+            if (inflateReset(&stream) == Z_OK)
+                continue;
+        } else if (status == Z_STREAM_END) {
+            reading.outcome = gzip_is_padding(data + reading.in, size - reading.in) ? WHOLE : FOLLOWED;
+        } else if (status == Z_OK && !is_stuck) {
+            continue;
+        } else if (status == Z_OK || status == Z_BUF_ERROR) {
+            reading.outcome = CUT;
+        } else {
+            reading.outcome = status == Z_MEM_ERROR ? NO_MEMORY : BROKEN;
+            reading.reason = stream.msg ? stream.msg : "";
+        }
+        break;
+    }
+    inflateEnd(&stream);
+    return reading;
+}
+
+size_t gzip_head(const uint8_t *data, size_t size, uint8_t *out, size_t capacity)
 {
     z_stream stream = { 0 };
     if (inflateInit2(&stream, WINDOW_GZIP) != Z_OK)
@@ -50,14 +108,8 @@ static size_t inflate_some(const uint8_t *data, size_t size, uint8_t *out, size_
     return have;
 }
 
-size_t gzip_head(const uint8_t *data, size_t size, uint8_t *out, size_t capacity)
-{
-    return inflate_some(data, size, out, capacity);
-}
-
-enum outcome { WHOLE, FULL, BROKEN, NO_MEMORY };
-
-/* The fast way: all members, into capacity bytes. FULL: there is more than that. */
+/* The fast way: all members with their sums and lengths, into capacity bytes. FULL: there is more than that; BROKEN also where a stream is
+ * cut, or followed by something else. */
 static enum outcome inflate_members(const uint8_t *data, size_t size, uint8_t *out, size_t capacity, size_t *n)
 {
     struct libdeflate_decompressor *decompressor = libdeflate_alloc_decompressor();
@@ -65,44 +117,71 @@ static enum outcome inflate_members(const uint8_t *data, size_t size, uint8_t *o
         return NO_MEMORY;
     size_t in = 0, have = 0;
     enum outcome outcome = WHOLE;
-    while (in < size && (in == 0 || gzip_is(data + in, size - in))) {
+    while (outcome == WHOLE && (in == 0 || gzip_is(data + in, size - in))) {
         size_t used = 0, made = 0;
         enum libdeflate_result result =
             libdeflate_gzip_decompress_ex(decompressor, data + in, size - in, out + have, capacity - have, &used, &made);
-        if (result != LIBDEFLATE_SUCCESS) {
+        if (result != LIBDEFLATE_SUCCESS)
             outcome = result == LIBDEFLATE_INSUFFICIENT_SPACE ? FULL : BROKEN;
-            break;
-        }
         in += used;
         have += made;
     }
     libdeflate_free_decompressor(decompressor);
     *n = have;
-    return outcome;
+    return outcome == WHOLE && !gzip_is_padding(data + in, size - in) ? BROKEN : outcome;
 }
 
-bool gzip_exact(const uint8_t *data, size_t size, const char *name, uint8_t *out, size_t n, struct error *err)
+/* zlib's words, where they are not plain. */
+static const char *plain_reason(const char *reason)
+{
+    if (strcmp(reason, "incorrect data check") == 0)
+        return "the checksum (CRC-32) does not fit what was unpacked";
+    if (strcmp(reason, "incorrect length check") == 0)
+        return "the length at its end is not what was unpacked";
+    return reason[0] ? reason : "no gzip stream";
+}
+
+/* The sentence for a reading that did not come to its end. */
+static bool refuse(const struct reading *reading, size_t size, const char *name, uint64_t most, struct error *err)
+{
+    unsigned long long have = (unsigned long long)reading->have;
+    switch (reading->outcome) {
+    case NO_MEMORY: return error_set(err, ERROR_MEMORY, "%s: no memory to unpack", name);
+    case FULL: return error_set(err, ERROR_LIMIT, "%s: more than %llu bytes inside", name, (unsigned long long)most);
+    case CUT:
+        return error_set(err, ERROR_FORMAT, "%s: the gzip stream is cut short at byte %zu, after %llu unpacked bytes", name, size, have);
+    case FOLLOWED:
+        return error_set(err, ERROR_FORMAT, "%s: the gzip stream ends at byte %zu, and %zu more bytes follow that are neither another one nor "
+                         "padding with zeros", name, reading->in, size - reading->in);
+    case BROKEN:
+    case WHOLE: break;
+    }
+    return error_set(err, ERROR_FORMAT, "%s: the gzip stream is damaged near byte %zu of %zu, after %llu unpacked bytes: %s", name,
+                     reading->in, size, have, plain_reason(reading->reason));
+}
+
+bool gzip_exact(const uint8_t *data, size_t size, const char *name, uint8_t *out, size_t n, uint64_t *n_more, struct error *err)
 {
     size_t have = 0;
-    enum outcome outcome = inflate_members(data, size, out, n, &have);
-    if (outcome == NO_MEMORY)
-        return error_set(err, ERROR_MEMORY, "%s: no memory to unpack", name);
-    if (outcome == WHOLE && have == n)
+    *n_more = 0;
+    if (inflate_members(data, size, out, n, &have) == WHOLE && have == n)
         return true;
-    /* more inside than asked for, or damaged: the streaming reader tells how far the good bytes go */
-    have = inflate_some(data, size, out, n);
-    if (have == n && outcome != BROKEN)
-        return true;
-    if (have == n)
-        return error_set(err, ERROR_FORMAT, "%s: the gzip stream is damaged: its checksum or its end is wrong", name);
-    return error_set(err, ERROR_FORMAT, "%s: the gzip stream is cut short or damaged: %zu bytes unpacked, %zu expected", name, have,
-                     n);
+    /* more inside than asked for, or damaged: the slow way tells which */
+    uint64_t most = (uint64_t)n + GZIP_MOST_MORE;
+    struct reading reading = inflate_slowly(data, size, out, n, most);
+    if (reading.outcome != WHOLE)
+        return refuse(&reading, size, name, most, err);
+    if (reading.have < n)
+        return error_set(err, ERROR_FORMAT, "%s: cut short before it was packed: %llu bytes inside, %zu expected", name,
+                         (unsigned long long)reading.have, n);
+    *n_more = reading.have - n;
+    return true;
 }
 
 bool gzip_all(const uint8_t *data, size_t size, const char *name, uint64_t limit, struct bytes *out, struct error *err)
 {
     *out = (struct bytes){ 0 };
-    if (size < 18)
+    if (size < SMALLEST_STREAM)
         return error_set(err, ERROR_FORMAT, "%s: %zu bytes are too few for a gzip stream", name, size);
     uint64_t most = gzip_most(size) < limit ? gzip_most(size) : limit;
     uint64_t hint = (uint64_t)data[size - 4] | (uint64_t)data[size - 3] << 8 | (uint64_t)data[size - 2] << 16 |
@@ -121,12 +200,12 @@ bool gzip_all(const uint8_t *data, size_t size, const char *name, uint64_t limit
             return true;
         }
         free(buffer);
-        if (outcome == NO_MEMORY)
-            return error_set(err, ERROR_MEMORY, "%s: no memory to unpack", name);
-        if (outcome == BROKEN)
-            return error_set(err, ERROR_FORMAT, "%s: the gzip stream is cut short or damaged", name);
-        if (capacity >= most)
-            return error_set(err, ERROR_LIMIT, "%s: more than %llu bytes inside", name, (unsigned long long)most);
+        if (outcome != FULL || capacity >= most) {
+            struct reading reading = { NO_MEMORY, 0, 0, "" };
+            if (outcome != NO_MEMORY)
+                reading = inflate_slowly(data, size, NULL, 0, most);
+            return refuse(&reading, size, name, most, err);
+        }
         capacity *= 2;
     }
 }

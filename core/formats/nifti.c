@@ -12,7 +12,7 @@ struct volume *nifti_read(const struct bytes *file, const char *name, enum raw_u
         return NULL;
     struct raw_place place = { *file, gzip_is(file->data, file->size), header.is_swapped, header.data_at, header.data_bytes,
                                header.voxel_bytes };
-    if (!raw_unpack(&place, name, &unpacked, err))
+    if (!raw_unpack(&place, name, &unpacked, report, err))
         return NULL;
     struct raw_voxels voxels = { unpacked.data, grid_n_voxels(&header.grid), header.type, &header.grid, header.slope, header.offset,
                                  name, &unpacked.owned };

@@ -31,7 +31,7 @@ static bool find_start(const struct nrrd_header *header, const struct bytes *dat
 }
 
 static bool unpack(const struct nrrd_header *header, const struct bytes *data, const char *name, struct raw_unpacked *unpacked,
-                   struct error *err)
+                   struct report *report, struct error *err)
 {
     size_t start;
     if (!find_start(header, data, name, &start, err))
@@ -48,7 +48,7 @@ static bool unpack(const struct nrrd_header *header, const struct bytes *data, c
     if (header->is_packed && !gzip_is(place.file.data, place.file.size))
         return error_set(err, ERROR_FORMAT, "%s: byte %zu: expected a gzip stream, which begins with 1f 8b%s", name, start,
                          place.file.size < 2 ? "; the file ends there" : "");
-    return raw_unpack(&place, name, unpacked, err);
+    return raw_unpack(&place, name, unpacked, report, err);
 }
 
 struct volume *nrrd_read(const struct nrrd_header *header, const struct bytes *data, const char *data_name, enum raw_use use,
@@ -60,7 +60,7 @@ struct volume *nrrd_read(const struct nrrd_header *header, const struct bytes *d
                   "one volume is read", data_name, header->n_layers, header->list_kind);
         return NULL;
     }
-    if (!unpack(header, data, data_name, &unpacked, err))
+    if (!unpack(header, data, data_name, &unpacked, report, err))
         return NULL;
     struct raw_voxels voxels = { unpacked.data, grid_n_voxels(&header->grid), header->type, &header->grid, 1, 0, data_name,
                                  &unpacked.owned };
@@ -124,14 +124,14 @@ static struct volume *read_layer(const struct nrrd_header *header, const uint8_t
 }
 
 bool nrrd_read_layers(const struct nrrd_header *header, const struct bytes *data, const char *data_name, struct nrrd_layers *layers,
-                      struct error *err)
+                      struct report *report, struct error *err)
 {
     struct raw_unpacked unpacked;
     layers->n = 0;
     if (header->n_layers > REGION_MAX_LAYERS)
         return error_set(err, ERROR_LIMIT, "%s: %u layers of labels; at most %d are read", data_name, header->n_layers,
                          REGION_MAX_LAYERS);
-    if (!unpack(header, data, data_name, &unpacked, err))
+    if (!unpack(header, data, data_name, &unpacked, report, err))
         return false;
     uint8_t *picked = NULL;
     bool is_read = true;

@@ -63,7 +63,7 @@ struct nrrd_layers {
 };
 /* errors as nrrd_read; ERROR_LIMIT more than REGION_MAX_LAYERS. layers is whole or empty. */
 NODISCARD bool nrrd_read_layers(const struct nrrd_header *header, const struct bytes *data, const char *data_name,
-                                struct nrrd_layers *layers, struct error *err);
+                                struct nrrd_layers *layers, struct report *report, struct error *err);
 void nrrd_layers_finish(struct nrrd_layers *layers); /* a volume that was taken is NULL */
 
 /* Inside the reader: one "key:=value" of a segment; true when the key is one. */

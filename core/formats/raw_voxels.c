@@ -47,7 +47,15 @@ static void swap_bytes(uint8_t *data, size_t n, uint32_t width)
     }
 }
 
-bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpacked *unpacked, struct error *err)
+/* More voxels than the header speaks of: the header or the file is not what it was. */
+static void note_more(uint64_t n_more, const struct raw_place *place, const char *name, struct report *report)
+{
+    if (n_more > 0)
+        report_add(report, REPORT_WARNING, "image.bytes-behind", name, "%llu bytes follow the %llu bytes of voxels that the header speaks of; they "
+                   "were left.", (unsigned long long)n_more, (unsigned long long)place->data_bytes);
+}
+
+bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpacked *unpacked, struct report *report, struct error *err)
 {
     const struct bytes *file = &place->file;
     size_t end = (size_t)(place->data_at + place->data_bytes);
@@ -56,11 +64,14 @@ bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpa
         return error_set(err, ERROR_FORMAT, "%s: cut short: %zu bytes%s, but %llu voxels of %u bytes need %zu", name, file->size,
                          place->is_packed ? " of gzip" : "", (unsigned long long)(place->data_bytes / place->voxel_bytes),
                          place->voxel_bytes, end);
+    if (!place->is_packed)
+        note_more(file->size - end, place, name, report);
     if (!place->is_packed && !place->is_swapped && (uintptr_t)(file->data + place->data_at) % 8 == 0) {
         unpacked->data = file->data + place->data_at; /* borrowed: only read from here on */
         return true;
     }
     size_t from = place->is_packed ? 0 : (size_t)place->data_at;
+    uint64_t n_more = 0;
     uint8_t *buffer = mem_large_array(end - from, 1, UINT64_MAX, err);
     if (!buffer) {
         error_prefix(err, "%s", name);
@@ -69,7 +80,7 @@ bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpa
     unpacked->data = unpacked->owned = buffer;
     if (!place->is_packed) {
         memcpy(buffer, file->data + from, (size_t)place->data_bytes);
-    } else if (!gzip_exact(file->data, file->size, name, buffer, end, err)) {
+    } else if (!gzip_exact(file->data, file->size, name, buffer, end, &n_more, err)) {
         free(buffer);
         *unpacked = (struct raw_unpacked){ 0 };
         return false;
@@ -78,6 +89,7 @@ bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpa
     } else {
         unpacked->data = buffer + place->data_at;
     }
+    note_more(n_more, place, name, report);
     if (place->is_swapped)
         swap_bytes(unpacked->data, (size_t)(place->data_bytes / place->voxel_bytes), place->voxel_bytes);
     return true;

@@ -28,13 +28,15 @@ struct raw_place {
     uint32_t voxel_bytes;
 };
 
-/* The voxels themselves: data lies in the file's own bytes where these will do, else in owned, which the caller frees.
+/* The voxels themselves: data lies in the file's own bytes where these will do, else in owned, which the caller frees. Bytes behind the
+ * voxels are reported.
  * errors ERROR_FORMAT cut short or damaged, told before memory is taken where the sizes tell it; ERROR_MEMORY */
 struct raw_unpacked {
     uint8_t *data;
     uint8_t *owned;
 };
-NODISCARD bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpacked *unpacked, struct error *err);
+NODISCARD bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpacked *unpacked, struct report *report,
+                          struct error *err);
 
 enum raw_use {
     RAW_IMAGE,  /* values, in the smallest voxel type that holds them */

@@ -1,5 +1,6 @@
 #include "core/formats/zlib_stream.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <zlib.h>
 
@@ -22,8 +23,10 @@ static bool grow(struct bytes *out, uint64_t *capacity, uint64_t most)
     return true;
 }
 
-/* Where the stream ended: at its end, at the end of the room, or broken. */
-static int inflate_into(z_stream *stream, const uint8_t *data, size_t size, struct bytes *out, uint64_t *capacity, uint64_t most)
+/* Where the stream ended: at its end, at the end of the room, or broken. n_used: bytes of data that were read. zlib compares the Adler-32 at
+ * the end with the bytes it unpacked. */
+static int inflate_into(z_stream *stream, const uint8_t *data, size_t size, struct bytes *out, uint64_t *capacity, uint64_t most,
+                        size_t *n_used)
 {
     size_t used = 0;
     for (;;) {
@@ -40,6 +43,7 @@ static int inflate_into(z_stream *stream, const uint8_t *data, size_t size, stru
         stream->avail_out = (uInt)room;
         int result = inflate(stream, Z_NO_FLUSH);
         out->size += room - stream->avail_out;
+        *n_used = used - stream->avail_in;
         if (result == Z_STREAM_END || (result != Z_OK && result != Z_BUF_ERROR))
             return result;
         if (stream->avail_in == 0 && used == size && stream->avail_out > 0)
@@ -62,9 +66,13 @@ bool zlib_all(const uint8_t *data, size_t size, const char *name, uint64_t limit
         bytes_free(out);
         return error_set(err, ERROR_MEMORY, "%s: no memory to unpack", name);
     }
-    int result = inflate_into(&stream, data, size, out, &capacity, most);
+    size_t n_used = 0;
+    int result = inflate_into(&stream, data, size, out, &capacity, most, &n_used);
+    char reason[64];
+    snprintf(reason, sizeof reason, "%s", stream.msg ? stream.msg : "the stream does not end");
     inflateEnd(&stream);
-    if (result == Z_STREAM_END && out->size <= limit) {
+    bool is_alone = gzip_is_padding(data + n_used, size - n_used);
+    if (result == Z_STREAM_END && out->size <= limit && is_alone) {
         out->data[out->size] = 0;
         return true;
     }
@@ -74,15 +82,22 @@ bool zlib_all(const uint8_t *data, size_t size, const char *name, uint64_t limit
         return error_set(err, ERROR_LIMIT, "%s: more than the %llu bytes expected inside", name, (unsigned long long)limit);
     if (result == Z_BUF_ERROR || result == Z_MEM_ERROR)
         return error_set(err, ERROR_MEMORY, "%s: no memory to unpack", name);
-    return error_set(err, ERROR_FORMAT, "%s: the zlib stream is cut short or damaged after %zu unpacked bytes", name, n);
+    if (result == Z_STREAM_END)
+        return error_set(err, ERROR_FORMAT, "%s: the zlib stream ends at byte %zu, and %zu more bytes follow that are not padding with zeros", name,
+                         n_used, size - n_used);
+    return error_set(err, ERROR_FORMAT, "%s: the zlib stream is cut short or damaged near byte %zu of %zu, after %zu unpacked bytes: %s", name,
+                     n_used, size, n, reason);
 }
 
 bool sera_unpack(const struct bytes *file, const char *name, uint64_t limit, bool *is_packed, struct bytes *out, struct error *err)
 {
     *out = (struct bytes){ 0 };
-    bool is_gzip = gzip_is(file->data, file->size);
-    *is_packed = is_gzip || text_has_ending(name, ".sz");
+    bool is_gzip = gzip_is(file->data, file->size), is_named_gzip = text_has_ending(name, ".gz");
+    *is_packed = is_gzip || is_named_gzip || text_has_ending(name, ".sz");
     if (!*is_packed)
         return true;
+    if (is_named_gzip && !is_gzip)
+        return error_set(err, ERROR_FORMAT, "%s: begins with %02x %02x, expected a gzip stream, 1f 8b", name, file->size > 0 ? file->data[0] : 0,
+                         file->size > 1 ? file->data[1] : 0);
     return is_gzip ? gzip_all(file->data, file->size, name, limit, out, err) : zlib_all(file->data, file->size, name, limit, out, err);
 }

@@ -53,7 +53,7 @@ bool plan_nrrd_read_layers(const struct folder *folder, const char *name, struct
     struct bytes data;
     const char *data_name;
     bool is_read = read_parts(folder, name, &header, &data, &data_name, report, err) &&
-                   nrrd_read_layers(&header, &data, data_name, layers, err);
+                   nrrd_read_layers(&header, &data, data_name, layers, report, err);
     bytes_free(&data);
     nrrd_header_finish(&header);
     return is_read;

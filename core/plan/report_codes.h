@@ -32,6 +32,8 @@
     X("image.locations-uneven", "Slice positions are a little uneven; an even spacing was fitted.",                                \
       "Check distances along the slices.")                                                                                         \
     X("image.precision", "Whole numbers too large to be held exactly were rounded.", "Store the image with a smaller range.")     \
+    X("image.bytes-behind", "A file holds more bytes than its header speaks of.",                                                 \
+      "Check that the header belongs to these voxels.")                                                                           \
     X("image.not-finite", "Some values are not numbers.", "They are drawn as nothing and probed as nothing.")                     \
     X("image.hu-doubtful", "A CT has no value below zero, so its numbers may not be HU.", "Check the rescale slope and intercept.") \
     X("dicom.unreadable", "A DICOM file cannot be read.", "Check or copy the file again; the rest is shown without it.")          \

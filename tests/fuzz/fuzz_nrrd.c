@@ -15,7 +15,7 @@ static void check_layers(const struct nrrd_header *header, const struct bytes *f
     struct error err = { 0 };
     struct nrrd_layers *layers = calloc(1, sizeof *layers);
     REQUIRE(layers);
-    bool is_read = nrrd_read_layers(header, file, "fuzz.nrrd", layers, &err);
+    bool is_read = nrrd_read_layers(header, file, "fuzz.nrrd", layers, NULL, &err);
     REQUIRE(is_read ? layers->n == header->n_layers : layers->n == 0 && err.code != ERROR_NONE && err.text[0] != '\0');
     for (size_t i = 0; i < layers->n; i++) {
         check_volume(header, layers->volumes[i], RAW_LABELS);

@@ -299,7 +299,7 @@ static void overlapping_segments_come_as_layers_with_names_and_colours(void **st
         struct report report = { 0 };
         struct error err = { 0 };
         assert_true(nrrd_parse_header(file.data, file.size, "a.seg.nrrd", &header, &report, &err));
-        assert_true(nrrd_read_layers(&header, &file, "a.seg.nrrd", &layers, &err));
+        assert_true(nrrd_read_layers(&header, &file, "a.seg.nrrd", &layers, NULL, &err));
         assert_int_equal(layers.n, 2);
         static const uint16_t expected[2][4] = { { 1, 1, 0, 2 }, { 0, 1, 1, 0 } };
         for (uint32_t layer = 0; layer < 2; layer++)
