@@ -149,6 +149,8 @@ bool plan_dicom_add_regions(struct loading *loading, struct region_builder *buil
     bool is_added = contour_choose_grids(sets, structs->n_rois, grid, &options, choices, err);
     if (!is_added)
         error_prefix(err, "%s", job->path);
+    if (is_added && image >= 0)
+        rtstruct_report_reach(structs, choices, loading->file->regions[job->index].name, plan->images[image].id, job->path, &plan->report);
     is_added = is_added && fill_rois(loading, builder, job, choices, &options, err);
     free(sets);
     free(choices);

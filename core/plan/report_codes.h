@@ -77,7 +77,9 @@
       "Draw it with fewer points.") \
     X("region.contours-gap", "Contours are missing between others of a region.", \
       "Nothing was filled there; check that it is two parts.") \
-    X("region.contours-outside", "Contours reach beyond the image.", \
+    X("region.contours-beyond", "Contours reach beyond the image: it has fewer slices than they were drawn on, or is smaller.", \
+      "The regions are whole, on a grid that continues the image; look for the missing slices.") \
+    X("region.contours-outside", "Contours reach more than 2 m beyond the image.", \
       "What lies outside is not shown; check that they belong together.") \
     X("region.contours-not-planar", "Contours are not flat.", \
       "They were flattened into their mean plane.") \

@@ -15,6 +15,7 @@ enum {
 };
 #define CONTOUR_MAX_MEETINGS ((uint64_t)1 << 27) /* of an edge and a row of voxels, in one filling */
 #define CONTOUR_MAX_MM 1e5 /* a contour with a coordinate beyond is left out */
+#define CONTOUR_MAX_REACH_MM 2000.0 /* how far beyond the image a region is still shown whole: no patient is longer */
 
 struct contour {
     double *points_lps_mm; /* [n_points][3] */
@@ -72,17 +73,19 @@ double contour_usual_spacing_mm(const struct contour_set *sets, size_t n_sets, c
 
 struct contour_choice {
     struct grid grid;
-    uint32_t subdivision[3]; /* of the image's voxels, each 1..CONTOUR_MAX_SUBDIVISION; 1 1 1 with the image's own grid */
+    uint32_t subdivision[3]; /* of the image's voxels, or of those beyond it, each 1..CONTOUR_MAX_SUBDIVISION; 1 1 1 with the image's own grid */
     uint32_t group;          /* sets with equal numbers have equal grids and may share a layer; 0 is the image's own grid */
     double volume_error;     /* relative, on this grid; not-a-number for an empty set and one beyond the limits of contour_fill */
     bool is_short;           /* more than was asked for, and no finer grid was allowed */
+    bool is_beyond;          /* the contours leave the image, and the grid covers them; its voxels are then not the image's */
 };
 
 /* A label grid for each set: the image's own where it holds the volume, else the coarsest whole subdivision of it that does, cropped
- * to the regions that need the same.
+ * to the regions that need the same. Contours that leave the image get a grid that covers them, cropped to them: the image's voxels
+ * continued, with a slice for each plane where their planes reach beyond the image's slices and do not lie on those. It is as coarse as
+ * most_voxels asks; contours further than CONTOUR_MAX_REACH_MM beyond the image stay on the image's grid, which cuts them.
  *
- *   accuracy  1 % of the polygon volume from 1 cm3 on, 5 % below; and at least one voxel. Regions that reach beyond the image
- *             stay on the image's grid.
+ *   accuracy  1 % of the polygon volume from 1 cm3 on, 5 % below; and at least one voxel
  *   image     NULL: a grid from the planes: their orientation, their spacing, 1 mm in the plane or as coarse as most_voxels asks
  *   errors    ERROR_RANGE no set has a contour and there is no image; ERROR_LIMIT (without an image), ERROR_MEMORY */
 NODISCARD bool contour_choose_grids(const struct contour_set *sets, size_t n_sets, const struct grid *image,

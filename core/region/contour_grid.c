@@ -3,6 +3,7 @@
 
 #include "core/base/mem.h"
 #include "core/region/contour_raster.h"
+#include "core/region/contour_reach.h"
 
 #define LARGE_CM3 1.0
 #define LARGE_ACCURACY 0.01
@@ -13,7 +14,8 @@ enum { MOST_SEARCH_ROWS = 4000000, SHARED_VOXELS = 8 << 20 };
 /* What is known of one set while grids are chosen. */
 struct candidate {
     uint32_t low[3], high[3]; /* voxels of the base grid around it, one more on each side; low <= index < high */
-    size_t n_voxels;          /* of the finer grid, cropped to it */
+    size_t n_voxels;          /* of the grid cropped to it, where it does not lie on the image's own */
+    bool is_outside;          /* contours leave the base */
 };
 
 static double accuracy_of(double cm3)
@@ -150,8 +152,8 @@ static bool fine_grid(struct grid *grid, const struct grid *base, const uint32_t
     return grid_init(grid, size, &map, err);
 }
 
-/* Voxels of the base around all slabs. false when a contour leaves the base's outer faces. */
-static bool find_box(struct candidate *candidate, const struct contour_planes *planes, const struct grid *base)
+/* Voxels of the base around all slabs. */
+static void find_box(struct candidate *candidate, const struct contour_planes *planes, const struct grid *base)
 {
     struct box3 box = box3_empty();
     for (size_t c = 0; c < planes->n_contours; c++)
@@ -167,14 +169,11 @@ static bool find_box(struct candidate *candidate, const struct contour_planes *p
     }
     const double low[3] = { box.low.x, box.low.y, box.low.z }, high[3] = { box.high.x, box.high.y, box.high.z };
     const double more[3] = { half.x, half.y, half.z };
-    bool is_inside = true;
     for (int a = 0; a < 3; a++) {
-        is_inside = is_inside && low[a] >= -0.501 && high[a] <= base->size[a] - 0.499;
         double from = floor(low[a] - more[a]) - 1, to = ceil(high[a] + more[a]) + 2;
         candidate->low[a] = from <= 0 ? 0 : from >= base->size[a] ? base->size[a] - 1 : (uint32_t)from;
         candidate->high[a] = to >= base->size[a] ? base->size[a] : to <= candidate->low[a] + 1 ? candidate->low[a] + 1 : (uint32_t)to;
     }
-    return is_inside;
 }
 
 /* Volume of the slabs as far as the base's slices reach along the normal, so that what the scan cuts off is not missed. */
@@ -261,8 +260,9 @@ static bool subdivide(struct contour_choice *choice, struct candidate *candidate
     return true;
 }
 
+/* On a base that is the image, or continues it (is_beyond): there a set always has a grid of its own, cropped to it. */
 static bool choose_one(struct contour_choice *choice, struct candidate *candidate, const struct contour_set *set,
-                       const struct grid *base, const struct contour_options *options, struct error *err)
+                       const struct grid *base, bool is_beyond, const struct contour_options *options, struct error *err)
 {
     *choice = (struct contour_choice){ .grid = *base, .subdivision = { 1, 1, 1 }, .volume_error = NAN };
     struct contour_planes planes;
@@ -277,9 +277,14 @@ static bool choose_one(struct contour_choice *choice, struct candidate *candidat
     bool is_chosen = raster && areas_mm2 && contour_raster_areas(raster, areas_mm2, err);
     if (is_chosen) {
         double cm3 = volume_within_cm3(&planes, areas_mm2, base);
-        bool is_inside = find_box(candidate, &planes, base);
+        bool is_inside = contour_is_within(&planes, base);
+        find_box(candidate, &planes, base);
+        for (int a = 0; a < 3 && is_beyond; a++)
+            candidate->n_voxels = (a > 0 ? candidate->n_voxels : 1) * (candidate->high[a] - candidate->low[a]);
         is_chosen = error_on(raster, base, options, cm3, &choice->volume_error, err) &&
                     (!is_inside || subdivide(choice, candidate, raster, planes.normal_lps, base, options, cm3, err));
+        candidate->is_outside = !is_inside;
+        choice->is_beyond = is_beyond;
     }
     free(areas_mm2);
     contour_raster_destroy(raster);
@@ -320,15 +325,16 @@ static bool may_join(const struct group *group, const struct contour_choice *cho
     return n <= most_voxels && (n <= SHARED_VOXELS || n <= 2 * joined->own_voxels);
 }
 
+/* Grids for the sets that have none of the image's own, of one base (is_beyond); their groups follow the first n_groups. */
 static bool share_grids(struct contour_choice *choices, const struct candidate *candidates, size_t n, const struct grid *base,
-                        uint64_t most_voxels, struct error *err)
+                        bool is_beyond, uint64_t most_voxels, uint32_t *n_groups_before, struct error *err)
 {
     struct group *groups = mem_array(n, sizeof *groups, UINT64_MAX, err);
     if (!groups)
         return false;
     size_t n_groups = 0;
     for (size_t i = 0; i < n; i++) {
-        if (candidates[i].n_voxels == 0)
+        if (candidates[i].n_voxels == 0 || choices[i].is_beyond != is_beyond)
             continue;
         size_t at = 0;
         struct group joined;
@@ -342,17 +348,54 @@ static bool share_grids(struct contour_choice *choices, const struct candidate *
             n_groups++;
         }
         groups[at] = joined;
-        choices[i].group = (uint32_t)at + 1;
+        choices[i].group = *n_groups_before + (uint32_t)at + 1;
     }
     bool is_made = true;
     for (size_t i = 0; is_made && i < n; i++) {
-        if (choices[i].group == 0)
+        if (candidates[i].n_voxels == 0 || choices[i].is_beyond != is_beyond)
             continue;
-        const struct group *group = &groups[choices[i].group - 1];
+        const struct group *group = &groups[choices[i].group - *n_groups_before - 1];
         is_made = fine_grid(&choices[i].grid, base, group->subdivision, group->low, group->high, err);
     }
     free(groups);
+    *n_groups_before += (uint32_t)n_groups;
     return is_made;
+}
+
+/* choose_one for a set that may be beyond a limit of contour_fill, which will say so of this set alone. */
+static bool choose_or_leave(struct contour_choice *choice, struct candidate *candidate, const struct contour_set *set,
+                            const struct grid *base, bool is_beyond, const struct contour_options *options, struct error *err)
+{
+    struct error reason = { 0 };
+    bool is_chosen = choose_one(choice, candidate, set, base, is_beyond, options, &reason);
+    if (!is_chosen && reason.code == ERROR_LIMIT) {
+        *choice = (struct contour_choice){ .grid = *base, .subdivision = { 1, 1, 1 }, .volume_error = NAN, .is_short = true };
+        *candidate = (struct candidate){ 0 };
+        is_chosen = true;
+    }
+    if (!is_chosen && err)
+        *err = reason;
+    return is_chosen;
+}
+
+/* Sets that leave the image, on a grid that continues it; those too far away stay on the image's. */
+static bool choose_beyond(const struct contour_set *sets, size_t n_sets, const struct grid *image, const struct contour_options *options,
+                          struct contour_choice *choices, struct candidate *candidates, uint32_t *n_groups, struct error *err)
+{
+    bool *is_marked = mem_array(n_sets, sizeof *is_marked, UINT64_MAX, err), has_grid = false, is_any = false;
+    if (!is_marked)
+        return false;
+    for (size_t i = 0; i < n_sets; i++) {
+        is_marked[i] = candidates[i].is_outside;
+        is_any |= is_marked[i];
+    }
+    struct grid reach;
+    bool is_chosen = !is_any || contour_reach_grid(sets, is_marked, n_sets, image, options, &reach, &has_grid, err);
+    for (size_t i = 0; i < n_sets && is_chosen && has_grid; i++)
+        if (is_marked[i])
+            is_chosen = choose_or_leave(&choices[i], &candidates[i], &sets[i], &reach, true, options, err);
+    free(is_marked);
+    return is_chosen && (!has_grid || share_grids(choices, candidates, n_sets, &reach, true, options->most_voxels, n_groups, err));
 }
 
 bool contour_choose_grids(const struct contour_set *sets, size_t n_sets, const struct grid *image, const struct contour_options *options,
@@ -364,18 +407,11 @@ bool contour_choose_grids(const struct contour_set *sets, size_t n_sets, const s
     const struct grid *base = image ? image : &made;
     struct candidate *candidates = mem_array(n_sets, sizeof *candidates, UINT64_MAX, err);
     bool is_chosen = candidates != NULL;
-    for (size_t i = 0; is_chosen && i < n_sets; i++) {
-        struct error reason = { 0 };
-        is_chosen = choose_one(&choices[i], &candidates[i], &sets[i], base, options, &reason);
-        if (!is_chosen && reason.code == ERROR_LIMIT) { /* contour_fill will say so of this set alone */
-            choices[i] = (struct contour_choice){ .grid = *base, .subdivision = { 1, 1, 1 }, .volume_error = NAN, .is_short = true };
-            candidates[i].n_voxels = 0;
-            is_chosen = true;
-        }
-        if (!is_chosen && err)
-            *err = reason;
-    }
-    is_chosen = is_chosen && share_grids(choices, candidates, n_sets, base, options->most_voxels, err);
+    uint32_t n_groups = 0;
+    for (size_t i = 0; is_chosen && i < n_sets; i++)
+        is_chosen = choose_or_leave(&choices[i], &candidates[i], &sets[i], base, false, options, err);
+    is_chosen = is_chosen && share_grids(choices, candidates, n_sets, base, false, options->most_voxels, &n_groups, err) &&
+                (!image || choose_beyond(sets, n_sets, image, options, choices, candidates, &n_groups, err));
     free(candidates);
     return is_chosen;
 }

@@ -154,22 +154,84 @@ static void regions_that_need_the_same_share_a_grid(void **state)
         contour_set_finish(&sets[i]);
 }
 
-static void what_the_scan_cuts_off_asks_for_no_finer_grid(void **state)
+static void contours_that_leave_the_image_keep_their_volume(void **state)
 {
     (void)state;
     struct grid image = grid_make(64, 64, 10, 1, 1, 3, vec3(0, 0, 0)); /* slices reach from -1.5 to 28.5 */
-    struct contour_set sets[2] = { 0 };
+    struct contour_set sets[4] = { 0 };
     for (int k = -10; k < 20; k++) {
-        contours_add_box(&sets[0], 9.5, 9.5, 39.5, 39.5, 3 * k); /* beyond both ends */
-        contours_add_box(&sets[1], 30.5, 9.5, 90.5, 39.5, 3 * k); /* and to the side */
+        contours_add_box(&sets[0], 9.5, 9.5, 39.5, 39.5, 3 * k);   /* beyond both ends */
+        contours_add_box(&sets[1], 30.5, 9.5, 90.5, 39.5, 3 * k);  /* and to the side */
     }
+    for (int k = 0; k < 8; k++) {
+        contours_add_box(&sets[2], -20.5, 9.5, 9.5, 39.5, 3 * k);  /* to the side alone */
+        contours_add_box(&sets[3], 9.5, 9.5, 39.5, 39.5, 3 * k);   /* inside */
+    }
+    struct contour_choice choices[4];
+    choose(sets, 4, &image, choices);
+    assert_holds(&sets[0], &choices[0], 30 * 30 * 90 / 1000.0, 1e-9);
+    assert_holds(&sets[1], &choices[1], 60 * 30 * 90 / 1000.0, 1e-9);
+    assert_holds(&sets[2], &choices[2], 30 * 30 * 24 / 1000.0, 1e-9);
+    for (int i = 0; i < 3; i++) {
+        assert_true(choices[i].is_beyond);
+        assert_true(choices[i].group > 0);
+        /* voxels of the image and of the grid are the same ones where both are */
+        struct vec3 spacing = grid_spacing_mm(&choices[i].grid), origin = choices[i].grid.lps_mm_from_ijk.origin;
+        assert_close(spacing.x, 1, 1e-9);
+        assert_close(spacing.z, 3, 1e-9);
+        assert_close(origin.x - round(origin.x), 0, 1e-9);
+        assert_close(origin.z / 3 - round(origin.z / 3), 0, 1e-9);
+    }
+    assert_false(choices[3].is_beyond);
+    assert_same_grid(&choices[3].grid, &image);
+    for (int i = 0; i < 4; i++)
+        contour_set_finish(&sets[i]);
+}
+
+static void planes_beyond_a_lonely_slice_get_slices_of_their_own(void **state)
+{
+    (void)state;
+    static const double tilt[] = { 0, 0.3 }; /* radians */
+    for (int t = 0; t < 2; t++) {
+        struct affine turn = rotation_of(tilt[t], tilt[t] / 2, 0);
+        struct grid image;
+        struct affine map = { { turn.columns[0], vec3_scale(turn.columns[1], 2), turn.columns[2] }, vec3(0, 0, 0) }; /* 1 mm thick, as assumed */
+        assert_true(grid_init(&image, (uint32_t[3]){ 128, 64, 1 }, &map, NULL));
+        struct contour_set set = { 0 };
+        for (int k = 0; k < 40; k++)
+            contours_add_box(&set, 20.5, 21, 60.5, 61, 2.5 * k - 31.2); /* no plane lies on the slice */
+        contours_move(&set, &turn);
+        struct contour_choice choice;
+        choose(&set, 1, &image, &choice);
+        assert_true(choice.is_beyond);
+        assert_holds(&set, &choice, 40 * 40 * 100 / 1000.0, 0.01);
+        assert_close(vec3_length(vec3_sub(choice.grid.lps_mm_from_ijk.columns[2], vec3_scale(turn.columns[2], 2.5))), 0, 1e-6);
+        struct vec3 at = affine_point(&choice.grid.ijk_from_lps_mm, affine_point(&turn, vec3(20, 22, 2.5 * 7 - 31.2)));
+        assert_close(at.x - round(at.x), 0, 1e-6); /* on a voxel of the image's lattice and on a plane */
+        assert_close(at.y - round(at.y), 0, 1e-6);
+        assert_close(at.z - round(at.z), 0, 1e-6);
+        contour_set_finish(&set);
+    }
+}
+
+static void contours_beyond_the_reach_are_cut_and_large_ones_get_coarse_voxels(void **state)
+{
+    (void)state;
+    struct grid image = grid_make(64, 64, 10, 1, 1, 3, vec3(0, 0, 0));
+    struct contour_set sets[2] = { 0 };
+    contours_add_box(&sets[0], 9.5, 9.5, 39.5, 39.5, 0);
+    contours_add_box(&sets[0], 9.5, 9.5, 39.5, 39.5, 31 + CONTOUR_MAX_REACH_MM);
+    for (int k = 0; k < 600; k++)
+        contours_add_box(&sets[1], -300, -300, 300, 300, 3 * k); /* 216 Mi voxels of the image */
     struct contour_choice choices[2];
     choose(sets, 2, &image, choices);
-    for (int i = 0; i < 2; i++) {
-        assert_int_equal(choices[i].group, 0);
+    assert_false(choices[0].is_beyond);
+    assert_same_grid(&choices[0].grid, &image);
+    assert_true(choices[1].is_beyond);
+    assert_in_range(grid_n_voxels(&choices[1].grid), 1, contour_defaults.most_voxels);
+    assert_holds(&sets[1], &choices[1], 600 * 600 * 1800 / 1000.0, 0.01);
+    for (int i = 0; i < 2; i++)
         contour_set_finish(&sets[i]);
-    }
-    assert_close(choices[0].volume_error, 0, 1e-9);
 }
 
 static void without_an_image_the_grid_lies_in_the_planes(void **state)
@@ -307,7 +369,9 @@ int main(void)
         cmocka_unit_test(a_small_region_is_within_5_percent_and_never_vanishes),
         cmocka_unit_test(voxels_of_a_finer_grid_divide_those_of_the_image),
         cmocka_unit_test(regions_that_need_the_same_share_a_grid),
-        cmocka_unit_test(what_the_scan_cuts_off_asks_for_no_finer_grid),
+        cmocka_unit_test(contours_that_leave_the_image_keep_their_volume),
+        cmocka_unit_test(planes_beyond_a_lonely_slice_get_slices_of_their_own),
+        cmocka_unit_test(contours_beyond_the_reach_are_cut_and_large_ones_get_coarse_voxels),
         cmocka_unit_test(without_an_image_the_grid_lies_in_the_planes),
         cmocka_unit_test(a_made_grid_stays_within_its_limits),
         cmocka_unit_test(a_region_too_intricate_does_not_keep_the_others_out),

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/formats/text.h"
 
 #define RTSTRUCT_CLASS "1.2.840.10008.5.1.4.1.1.481.3"
 
@@ -373,6 +374,24 @@ void rtstruct_check_frame(const struct rtstruct *set, const char *image_frame_ui
                    other);
 }
 
+void rtstruct_report_reach(const struct rtstruct *set, const struct contour_choice *choices, const char *only, const char *image,
+                           const char *where, struct report *report)
+{
+    char names[200] = "";
+    size_t n_beyond = 0, n_all = 0;
+    for (size_t i = 0; i < set->n_rois; i++) {
+        if (only[0] && !text_equal(only, set->rois[i].name))
+            continue;
+        n_all++;
+        if (choices[i].is_beyond)
+            add_name(names, sizeof names, set->rois[i].name);
+        n_beyond += choices[i].is_beyond;
+    }
+    if (n_beyond > 0)
+        report_add(report, REPORT_WARNING, "region.contours-beyond", where, "Contours of %zu of %zu regions reach beyond the image \"%s\"; they "
+                   "were filled on a grid that continues it and covers them: %s.", n_beyond, n_all, image, names);
+}
+
 static void report_left_out(const char *name, const struct contour_facts *facts, const char *where, struct report *report)
 {
     const struct {
@@ -397,7 +416,10 @@ void rtstruct_report_fill(const struct rtstruct_roi *roi, const struct contour_c
     if (facts->n_planes == 0)
         return;
     char grid[80] = "the image's voxels";
-    if (s[0] * s[1] * s[2] > 1)
+    struct vec3 mm = grid_spacing_mm(&choice->grid);
+    if (choice->is_beyond)
+        snprintf(grid, sizeof grid, "voxels of %.4g x %.4g x %.4g mm", mm.x, mm.y, mm.z);
+    else if (s[0] * s[1] * s[2] > 1)
         snprintf(grid, sizeof grid, "voxels of the image divided %u x %u x %u", s[0], s[1], s[2]);
     double percent = facts->polygon_cm3 > 0 ? 100 * (facts->filled_cm3 / facts->polygon_cm3 - 1) : 0;
     report_add(report, choice->is_short ? REPORT_WARNING : REPORT_NOTE, choice->is_short ? "region.contours-coarse" : "region.contours-filled",
@@ -409,7 +431,8 @@ void rtstruct_report_fill(const struct rtstruct_roi *roi, const struct contour_c
                    facts->n_gaps, facts->spacing_mm, facts->widest_gap_mm);
     if (facts->n_outside > 0)
         report_add(report, REPORT_WARNING, "region.contours-outside", where,
-                   "\"%s\": %zu contours reach beyond the image; what lies outside is not shown.", name, facts->n_outside);
+                   "\"%s\": %zu contours lie outside the image, and some more than %g mm away; what lies outside is not shown.", name,
+                   facts->n_outside, CONTOUR_MAX_REACH_MM);
     if (facts->n_not_planar > 0)
         report_add(report, REPORT_NOTE, "region.contours-not-planar", where, "\"%s\": %zu contours are not flat; they were flattened.", name,
                    facts->n_not_planar);

@@ -38,6 +38,9 @@ void rtstruct_destroy(struct rtstruct *set);
 /* The regions are shown on the image whatever their frame of reference says; what it says against that is reported.
  * image_frame_uid "" or NULL: unknown. */
 void rtstruct_check_frame(const struct rtstruct *set, const char *image_frame_uid, const char *where, struct report *report);
+/* Which regions reach beyond the image they were filled on. only: the one region that is wanted, by its name; "" all of them. */
+void rtstruct_report_reach(const struct rtstruct *set, const struct contour_choice *choices, const char *only, const char *image,
+                           const char *where, struct report *report);
 /* How the region was filled: the method with its figures, and everything that was left out or is doubtful. */
 void rtstruct_report_fill(const struct rtstruct_roi *roi, const struct contour_choice *choice, const struct contour_facts *facts,
                           const char *where, struct report *report);

@@ -1,0 +1,103 @@
+/* Plans of made-up DICOM files: what a folder becomes as a whole. */
+#include "tests/check.h"
+#include "tests/unit/data_folder.h"
+#include "tests/unit/made_series.h"
+#include "tests/unit/plan_help.h"
+#include "tests/unit/rt_files.h"
+
+#define TAG DICOM_TAG
+
+static void put_slices(const char *folder, int n, double pitch_mm)
+{
+    for (int k = 0; k < n; k++) {
+        struct made_slice slice = made_slice_defaults;
+        char name[32];
+        slice.rows = slice.columns = 40;
+        slice.spacing[0] = slice.spacing[1] = 2;
+        slice.position[2] = pitch_mm * k;
+        slice.thickness = pitch_mm;
+        slice.number = k + 1;
+        slice.base = -1000;
+        snprintf(name, sizeof name, "ct%d.dcm", k);
+        made_slice_put(folder, name, &slice);
+    }
+}
+
+/* Boxes of 20 x 30 mm around (39, 40) on n planes each, every region above the one before; region 0 on the first slices. */
+static void put_boxes(const char *folder, int n_regions, int n_planes, double pitch_mm)
+{
+    struct made_dicom made;
+    made_rt_begin(&made, "1.2.840.10008.5.1.4.1.1.481.3", "RTSTRUCT", NULL);
+    made_sequence(&made, TAG(0x3006, 0x0020));
+    for (int r = 0; r < n_regions; r++) {
+        char name[16];
+        snprintf(name, sizeof name, "Box %d", r);
+        made_item(&made);
+        made_integer(&made, TAG(0x3006, 0x0022), r);
+        made_text(&made, TAG(0x3006, 0x0024), "UI", "1.2.9");
+        made_text(&made, TAG(0x3006, 0x0026), "LO", name);
+        made_item_end(&made);
+    }
+    made_sequence_end(&made);
+    made_sequence(&made, TAG(0x3006, 0x0039));
+    for (int r = 0; r < n_regions; r++) {
+        made_item(&made);
+        made_sequence(&made, TAG(0x3006, 0x0040));
+        for (int k = 0; k < n_planes; k++) {
+            double z = pitch_mm * (r * n_planes + k);
+            double box[] = { 29, 25, z, 49, 25, z, 49, 55, z, 29, 55, z };
+            made_item(&made);
+            made_text(&made, TAG(0x3006, 0x0042), "CS", "CLOSED_PLANAR");
+            made_integer(&made, TAG(0x3006, 0x0046), 4);
+            made_numbers(&made, TAG(0x3006, 0x0050), box, 12);
+            made_item_end(&made);
+        }
+        made_sequence_end(&made);
+        made_integer(&made, TAG(0x3006, 0x0084), r);
+        made_item_end(&made);
+    }
+    made_sequence_end(&made);
+    folder_put(folder, "rtstruct.dcm", made.data, made.size);
+    made_finish(&made);
+}
+
+static void regions_drawn_on_slices_that_are_not_there_are_whole(void **state)
+{
+    (void)state;
+    for (int n_slices = 1; n_slices <= 5; n_slices += 4) {
+        char folder[256];
+        struct error err;
+        folder_make(folder);
+        put_slices(folder, n_slices, 3);
+        put_boxes(folder, 9, 5, 3); /* 45 planes, of which the image has the first 1 or 5 */
+        struct plan *plan = plan_of_folder(folder, &err);
+        assert_string_equal(err.text, "");
+        const struct grid *image = &plan->images[0].volume->grid;
+        assert_int_equal(image->size[0], 40);
+        assert_int_equal(image->size[1], 40);
+        assert_int_equal(image->size[2], n_slices);
+        assert_int_equal(plan->regions.n_regions, 9);
+        for (int r = 0; r < 9; r++) {
+            const struct region *region = &plan->regions.regions[r];
+            assert_near(region->volume_cm3, 2.0 * 3.0 * 1.5, 1e-6);
+            assert_close(region->centre_lps_mm.x, 39, 1e-6);
+            assert_close(region->centre_lps_mm.y, 40, 1e-6);
+            assert_close(region->centre_lps_mm.z, 3 * (5 * r + 2), 1e-6);
+        }
+        assert_false(report_has(&plan->report, "region.empty"));
+        assert_false(report_has(&plan->report, "region.contours-outside"));
+        char beginning[80];
+        snprintf(beginning, sizeof beginning, "Contours of %d of 9 regions reach beyond the image", n_slices == 1 ? 9 : 8);
+        assert_memory_equal(report_said(&plan->report, "region.contours-beyond"), beginning, strlen(beginning));
+        plan_destroy(plan);
+        folder_remove(folder);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(regions_drawn_on_slices_that_are_not_there_are_whole),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
