@@ -8,8 +8,10 @@ static const struct affine maps[] = {
     { { { 1.5, 0, 0 }, { 0, -0.8, 0 }, { 0, 0, 5 } }, { 3, -2, 40 } },
     { { { 0.3, 0.4, 2 }, { 1.2, -0.9, 0 }, { 0.72, 0.96, -0.3 } }, { 11, -12, 13 } },   /* turned, square */
     { { { 1, 0, 0 }, { 0.2, 1.1, 0 }, { 0, 0.7, 2.4 } }, { -5, 1, 2 } },               /* sheared, as by a tilted gantry */
+    { { { 0.5, 0, 0 }, { 0, 0.5, 0 }, { 0, 0, 75 } }, { -100, -50, -150 } },           /* thick slices */
+    { { { 40, 0, 0 }, { 0, 0, 0.25 }, { 0, 8, 0.1 } }, { 1, 2, 3 } },                  /* thick along a row, and sheared */
 };
-enum { N_MAPS = 4 };
+enum { N_MAPS = 6 };
 
 static struct shape_distance measure(const struct mask *mask, const float *positions, size_t n, int n_threads)
 {
@@ -123,6 +125,36 @@ static void threads_do_not_matter_and_no_position_has_no_distance(void **state)
     mask_destroy(mask);
 }
 
+/* Three slices of a disc, 64 mm in radius and 75 mm apart: in the middle of an end slice the nearest face is 37.5 mm above, which is 75 voxels
+ * along the other axes; some pi x 75^2 = 18000 faces are as near in voxels, at each of which the former search looked. */
+static void thick_slices_cost_no_more_than_cubes(void **state)
+{
+    (void)state;
+    enum { SIDE = 260, RADIUS = 128 };
+    struct mask *mask = mask_make(SIDE, SIDE, 3, &maps[4]);
+    for (uint32_t k = 0; k < 3; k++)
+        for (int j = -RADIUS; j <= RADIUS; j++)
+            for (int i = -RADIUS; i <= RADIUS; i++)
+                if (i * i + j * j <= RADIUS * RADIUS)
+                    mask_put(mask, (uint32_t)(SIDE / 2 + i), (uint32_t)(SIDE / 2 + j), k);
+    struct mesh *mesh = made_surface(SURFACE_EIGHT_CELL, mask, 2, true);
+    struct shape_distance distance = measure(mask, mesh->positions_lps_mm, mesh->n_vertices, 0);
+    assert_true(mesh->n_vertices > 100000);
+    assert_close(distance.max_mm, 37.5, 1e-3); /* a voxel's centre in an end slice, at least 37.5 mm from the disc's rim */
+    assert_true(distance.n_asked < 300 * distance.n_positions);
+    mesh_unref(mesh);
+    mask_destroy(mask);
+}
+
+static void a_position_far_from_the_region_costs_little_too(void **state)
+{
+    (void)state;
+    struct mask *mask = random_mask(200, 150, 100, 2, 3, &maps[2]);
+    float far[3] = { 4000, -9000, 5000 };
+    assert_true(measure(mask, far, 1, 1).n_asked < 2000);
+    mask_destroy(mask);
+}
+
 static void an_empty_region_and_a_position_that_is_no_number_are_refused(void **state)
 {
     (void)state;
@@ -146,6 +178,8 @@ int main(void)
         cmocka_unit_test(on_the_border_it_is_0_and_within_a_voxel_to_its_nearest_face),
         cmocka_unit_test(what_the_scan_cuts_is_border),
         cmocka_unit_test(threads_do_not_matter_and_no_position_has_no_distance),
+        cmocka_unit_test(thick_slices_cost_no_more_than_cubes),
+        cmocka_unit_test(a_position_far_from_the_region_costs_little_too),
         cmocka_unit_test(an_empty_region_and_a_position_that_is_no_number_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
