@@ -63,7 +63,7 @@ bool folder_check_name(const char *name, struct error *err)
     return true;
 }
 
-/* For kernels without openat2: resolve, compare, open what was resolved. */
+/* Without openat2, for a name with a link in it: resolve, compare, open what was resolved. */
 static int open_resolved(const struct folder *folder, const char *name)
 {
     char joined[sizeof folder->path + FOLDER_NAME_SIZE + 1];
@@ -82,13 +82,40 @@ static int open_resolved(const struct folder *folder, const char *name)
     return fd;
 }
 
+/* Where openat2 is missing or refused: one folder after the other, none of them a link. A name with a link in it is resolved. */
+static int open_by_parts(const struct folder *folder, const char *name)
+{
+    char part[FOLDER_NAME_SIZE];
+    int at = folder->fd;
+    for (;;) {
+        size_t n = strcspn(name, "/");
+        bool is_last = name[n] == 0;
+        snprintf(part, sizeof part, "%.*s", (int)n, name);
+        int next = openat(at, part, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW | (is_last ? 0 : O_DIRECTORY));
+        int reason = errno;
+        if (at != folder->fd)
+            close(at);
+        errno = reason;
+        if (next < 0 || is_last)
+            return next;
+        at = next;
+        name += n + 1;
+        name += strspn(name, "/");
+        if (!*name)
+            return at;
+    }
+}
+
 /* O_NONBLOCK: opening a named pipe somebody left in the folder must not hang. */
 static int open_beneath(const struct folder *folder, const char *name)
 {
     struct open_how how = { .flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK, .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS };
     long fd = syscall(SYS_openat2, folder->fd, name, &how, sizeof how);
-    if (fd < 0 && (errno == ENOSYS || errno == EPERM || errno == EAGAIN))
-        return open_resolved(folder, name);
+    if (fd < 0 && (errno == ENOSYS || errno == EPERM || errno == EAGAIN)) {
+        fd = open_by_parts(folder, name);
+        if (fd < 0 && (errno == ELOOP || errno == ENOTDIR))
+            return open_resolved(folder, name);
+    }
     return (int)fd;
 }
 

@@ -81,7 +81,7 @@ struct fleet_plan {
     uint64_t memory_bytes;              /* of its process; 0 unknown */
     int64_t load_ms;
     int pid;                            /* 0: none */
-    const char *confined;               /* how its process is confined, "landlock 3, seccomp, no-new-privs"; "" unknown */
+    const char *confined;               /* how its process is confined, "landlock 3, seccomp, no-new-privs, no capabilities"; "" unknown */
 };
 size_t fleet_n_plans(const struct fleet *fleet);
 bool fleet_plan_at(const struct fleet *fleet, size_t index, struct fleet_plan *plan);

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/capability.h>
 #include <linux/landlock.h>
 #include <sched.h>
 #include <signal.h>
@@ -111,8 +112,7 @@ static long restrict_files(const struct confine_options *options)
     if (options->plan_folder)
         allow(rules, options->plan_folder, FS_READ);
     if (options->cache_folder)
-        allow(rules, options->cache_folder, known & ~(FS_IOCTL_DEV | LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_MAKE_CHAR |
-                                                      LANDLOCK_ACCESS_FS_MAKE_BLOCK | LANDLOCK_ACCESS_FS_MAKE_SOCK));
+        allow(rules, options->cache_folder, (FS_UNPACK | FS_TRUNCATE) & known);
     if (options->unpack_folder)
         allow(rules, options->unpack_folder, FS_UNPACK & known);
     long failed = syscall(SYS_landlock_restrict_self, rules, 0);
@@ -120,6 +120,19 @@ static long restrict_files(const struct confine_options *options)
     close(rules);
     errno = reason;
     return failed ? -1 : version;
+}
+
+/* Everything root may do beyond its own files: gone for this process and for whatever it would start. True when nothing is left. The
+ * bounding set can be lowered only by a process that has capabilities; for another one it bounds what it cannot get. */
+static bool drop_capabilities(void)
+{
+    struct __user_cap_header_struct header = { .version = _LINUX_CAPABILITY_VERSION_3, .pid = 0 };
+    struct __user_cap_data_struct sets[2] = { 0 };
+    for (unsigned long capability = 0; capability < 64; capability++)
+        (void)prctl(PR_CAPBSET_DROP, capability, 0, 0, 0);
+    (void)prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
+    return syscall(SYS_capset, &header, sets) == 0 ||
+           (syscall(SYS_capget, &header, sets) == 0 && (sets[0].permitted | sets[1].permitted | sets[0].inheritable | sets[1].inheritable) == 0);
 }
 
 static void limit(int resource, rlim_t most)
@@ -135,6 +148,7 @@ static void limit(int resource, rlim_t most)
 void confine(const struct confine_options *options, char got[128])
 {
     char files[40], calls[40];
+    bool is_bare = drop_capabilities();
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, 1024);
     if (options->cpu_seconds > 0)
@@ -152,7 +166,9 @@ void confine(const struct confine_options *options, char got[128])
         (void)snprintf(files, sizeof files, "landlock %ld", version);
     else
         (void)snprintf(files, sizeof files, "landlock not in this kernel");
-    bool is_filtered = is_fixed && seccomp_restrict();
+    const struct seccomp_options filter = { .has_gpu = options->needs_gpu, .has_truncate_right = version >= 3 };
+    bool is_filtered = is_fixed && seccomp_restrict(&filter);
     (void)snprintf(calls, sizeof calls, "%s", !is_filtered ? "no seccomp" : SECCOMP_IS_RELAXED ? "seccomp (relaxed)" : "seccomp");
-    (void)snprintf(got, 128, "%s, %s, %s", files, calls, is_fixed ? "no-new-privs" : "no-new-privs refused");
+    (void)snprintf(got, 128, "%s, %s, %s, %s", files, calls, is_fixed ? "no-new-privs" : "no-new-privs refused",
+                   is_bare ? "no capabilities" : "capabilities kept");
 }

@@ -1,6 +1,6 @@
 #pragma once
-/* Gives up what a renderer never needs, before the first byte of a plan is read: the network, other files, other programs. What the
- * kernel offers is taken; what it got is said. Linux only. */
+/* Gives up what a renderer never needs, before the first byte of a plan is read: the network, other files, other programs, and root's
+ * capabilities. What the kernel offers is taken; what it got is said. Linux only. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -14,6 +14,6 @@ struct confine_options {
     uint64_t cpu_seconds;     /* of processor time, then the kernel ends the process; 0: no limit */
 };
 
-/* Call before any other thread starts. got: what holds now, "landlock 3, seccomp, no-new-privs"; what is missing is named with the
+/* Call before any other thread starts. got: what holds now, "landlock 3, seccomp, no-new-privs, no capabilities"; what is missing is named with the
  * reason. Never fails: a kernel without these still runs renderers, and says so. */
 void confine(const struct confine_options *options, char got[128]);

@@ -1,5 +1,6 @@
 #pragma once
-/* The filter on system calls: no sockets, no other programs, no looking into other processes. */
+/* The filter on system calls, a list of what is allowed: the process's own files, memory and threads. No sockets, no other programs, no
+ * looking into other processes, none of the calls that change modes, owners, times or links of files. */
 #include <stdbool.h>
 
 #if defined(__has_feature)
@@ -14,5 +15,10 @@
 #define SECCOMP_IS_RELAXED 0 /* sanitizers start a symbolizer and trace themselves: those calls stay allowed in such builds */
 #endif
 
+struct seccomp_options {
+    bool has_gpu;            /* requests to device files of graphics drivers are allowed */
+    bool has_truncate_right; /* Landlock guards files against being cut short (its version 3) */
+};
+
 /* For this thread and those it will start; PR_SET_NO_NEW_PRIVS must be set. False where the kernel has no filters. */
-bool seccomp_restrict(void);
+bool seccomp_restrict(const struct seccomp_options *options);
