@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/wire/document.h"
 
 enum kind { KIND_FOLDERS, KIND_TEXT, KIND_COUNT, KIND_FLAG, KIND_LEVEL, KIND_NAMES };
 
@@ -30,7 +31,7 @@ static const struct setting settings[] = {
     { "max-renderer-mib", "N", "memory one renderer may take in MiB, 0 no limit; default 16384", KIND_COUNT, AT(max_renderer_mib), 0, 1 << 24 },
     { "plan-idle-close", "SECONDS", "close a plan nobody uses after this, 0 never; default 600", KIND_COUNT, AT(plan_idle_close_s), 0, 1 << 24 },
     { "room-idle-close", "SECONDS", "close a room nobody is in after this, 0 never; default 86400", KIND_COUNT, AT(room_idle_close_s), 0, 1 << 24 },
-    { "max-rooms", "N", "default 200", KIND_COUNT, AT(max_rooms), 1, 10000 },
+    { "max-rooms", "N", "rooms at once, of all plans; default 200, at most 10000", KIND_COUNT, AT(max_rooms), 1, SCENE_MAX_ROOMS },
     { "max-members", "N", "people in one room; default 32, at most 64", KIND_COUNT, AT(max_members), 1, 64 },
     { "max-upload-mib", "N", "largest archive that may be uploaded, in MiB; default 2048", KIND_COUNT, AT(max_upload_mib), 1, 1 << 24 },
     { "max-unpacked-mib", "N", "what may come out of one, in MiB; default 8192", KIND_COUNT, AT(max_unpacked_mib), 1, 1 << 24 },

@@ -97,14 +97,34 @@ static struct place *place_with(struct net *net, const struct room *room)
     return NULL;
 }
 
+/* Tells the renderer the scene of a room if it does not have it yet. False: it could not be told. */
+static bool tell_scene(struct place *place)
+{
+    uint32_t revision;
+    const cJSON *scene = room_scene(place->room, &revision);
+    if (place->is_scene_told)
+        return true;
+    cJSON *packet = cJSON_CreateObject();
+    cJSON_AddStringToObject(packet, "type", "scene");
+    cJSON_AddStringToObject(packet, "room", room_id(place->room));
+    cJSON_AddNumberToObject(packet, "revision", revision);
+    cJSON_AddItemReferenceToObject(packet, "scene", (cJSON *)(uintptr_t)scene);
+    place->is_scene_told = fleet_tell(place->net->fleet, room_plan_id(place->room), packet);
+    cJSON_Delete(packet);
+    return place->is_scene_told;
+}
+
 void bridge_render(void *context, struct room *room, const struct room_render *request)
 {
     struct net *net = context;
     struct place *place = place_with(net, room);
+    const cJSON *scene = request->scene;
+    if (!scene && !tell_scene(place))
+        scene = room_scene(room, NULL); /* goes along with the picture */
     cJSON *packet = cJSON_CreateObject();
     cJSON_AddStringToObject(packet, "type", "render");
-    if (request->scene)
-        cJSON_AddItemReferenceToObject(packet, "scene", (cJSON *)(uintptr_t)request->scene);
+    if (scene)
+        cJSON_AddItemReferenceToObject(packet, "scene", (cJSON *)(uintptr_t)scene);
     else
         cJSON_AddStringToObject(packet, "room", room_id(room));
     cJSON_AddItemReferenceToObject(packet, "view", (cJSON *)(uintptr_t)request->view);
@@ -123,7 +143,7 @@ void bridge_render(void *context, struct room *room, const struct room_render *r
                              .flags = (uint8_t)((request->is_still ? FRAME_STILL : 0) | (request->full_color ? FRAME_FULL_COLOR : 0)),
                              .quality = (uint8_t)request->quality,
                              .scale_percent = (uint8_t)request->scale_percent,
-                             .is_override = request->scene != NULL };
+                             .is_override = scene != NULL };
     place->asked = asked;
     asked->fleet_request = fleet_request(net->fleet, room_plan_id(room), packet, picture_came, asked);
     cJSON_Delete(packet);
@@ -148,16 +168,14 @@ void bridge_forget(void *context, struct room *room, uint64_t request)
     free(asked);
 }
 
+/* It is told with the next picture that needs it: rooms nobody looks into cost the renderer nothing, also after a restart. */
 void bridge_scene_changed(void *context, struct room *room, const cJSON *scene, uint32_t revision)
 {
-    struct net *net = context;
-    cJSON *packet = cJSON_CreateObject();
-    cJSON_AddStringToObject(packet, "type", "scene");
-    cJSON_AddStringToObject(packet, "room", room_id(room));
-    cJSON_AddNumberToObject(packet, "revision", revision);
-    cJSON_AddItemReferenceToObject(packet, "scene", (cJSON *)(uintptr_t)scene);
-    (void)fleet_tell(net->fleet, room_plan_id(room), packet); /* not ready: it is told when it is */
-    cJSON_Delete(packet);
+    struct place *place = place_with(context, room);
+    (void)scene;
+    (void)revision;
+    if (place)
+        place->is_scene_told = false;
 }
 
 /* ---- the fleet to rooms --------------------------------------------------------------------------------------------- */

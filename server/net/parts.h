@@ -29,7 +29,8 @@ struct place { /* a room and what belongs to it here */
     struct net *net;
     struct room *room;
     struct asked *asked;
-    uint32_t generation;     /* of the renderer that knows the scene; 0 none */
+    bool is_scene_told;      /* the renderer has the scene as it is */
+    uint32_t generation;     /* of the renderer, as last told to the room; 0 none */
     enum fleet_state state;  /* as last told to the room */
     char phase[128];
     double percent;

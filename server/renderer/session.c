@@ -38,8 +38,8 @@ struct session {
     struct loader *loader;
     struct pipeline *pipeline;
     struct plan *plan;
-    struct room_scene rooms[SESSION_MAX_ROOMS];
-    size_t n_rooms;
+    struct room_scene *rooms;
+    size_t n_rooms, room_capacity; /* at most SCENE_MAX_ROOMS */
     cJSON *default_scene;
     struct drawing drawings[MAX_DRAWINGS];
     struct prepared *prepared;
@@ -150,19 +150,37 @@ static struct room_scene *find_room(struct session *session, const char *id)
     return NULL;
 }
 
+/* NULL: there are SCENE_MAX_ROOMS already. */
+static struct room_scene *add_room(struct session *session, const char *id)
+{
+    if (session->n_rooms == SCENE_MAX_ROOMS)
+        return NULL;
+    if (session->n_rooms == session->room_capacity) {
+        size_t capacity = session->room_capacity ? 2 * session->room_capacity : 16;
+        struct room_scene *rooms = mem_new(capacity * sizeof rooms[0]);
+        if (session->n_rooms)
+            memcpy(rooms, session->rooms, session->n_rooms * sizeof rooms[0]);
+        free(session->rooms);
+        session->rooms = rooms;
+        session->room_capacity = capacity;
+    }
+    struct room_scene *room = &session->rooms[session->n_rooms++];
+    *room = (struct room_scene){ .revision = 0 };
+    (void)snprintf(room->id, sizeof room->id, "%s", id);
+    return room;
+}
+
 static void take_scene(struct session *session, cJSON *json)
 {
     const char *id = json_text(json, "room");
     double revision = json_number(json, "revision", -1);
     struct room_scene *room = find_room(session, id);
-    if (!id || !id_is_valid(id) || !(revision >= 0 && revision <= UINT32_MAX) || (!room && session->n_rooms == SESSION_MAX_ROOMS)) {
+    bool is_good = id && id_is_valid(id) && revision >= 0 && revision <= UINT32_MAX;
+    if (is_good && !room)
+        room = add_room(session, id);
+    if (!is_good || !room) {
         log_error("a scene of a room that cannot be kept");
         return;
-    }
-    if (!room) {
-        room = &session->rooms[session->n_rooms++];
-        *room = (struct room_scene){ .revision = 0 };
-        (void)snprintf(room->id, sizeof room->id, "%s", id);
     }
     cJSON_Delete(room->scene);
     room->scene = cJSON_DetachItemFromObjectCaseSensitive(json, "scene");
@@ -589,6 +607,7 @@ int session_run(const struct session_options *options)
     prepared_destroy(session.prepared);
     for (size_t i = 0; i < session.n_rooms; i++)
         cJSON_Delete(session.rooms[i].scene);
+    free(session.rooms);
     cJSON_Delete(session.default_scene);
     plan_destroy(session.plan);
     link_destroy(session.link);

@@ -15,7 +15,7 @@ struct session_options {
     uint64_t max_bytes;   /* of memory; 0: no limit */
 };
 
-enum { SESSION_DONE = 0, SESSION_BROKEN = 1, SESSION_UNREADABLE = 3, SESSION_MAX_ROOMS = 256 };
+enum { SESSION_DONE = 0, SESSION_BROKEN = 1, SESSION_UNREADABLE = 3 };
 
 /* Until the daemon's end closes (SESSION_DONE) or the plan cannot be read (SESSION_UNREADABLE). Gives the exit status. */
 int session_run(const struct session_options *options);

@@ -2,6 +2,9 @@
 /* Scene and view as JSON documents: merge patches, defaults, overrides. Pure functions on documents. */
 #include "wire_gen.h"
 
+/* Rooms of one daemon at most (--max-rooms), and so scenes that one renderer keeps: all rooms may be on one plan. */
+enum { SCENE_MAX_ROOMS = 10000 };
+
 /* current with patch applied, checked whole: fields by proto/scene.json, and every id by plan, the document of the plan
  * (plan_document.h). What patch sets to null gets its value from defaults, the scene the renderer gave for the plan. Returns the
  * complete new document; NULL with problem, current untouched. An id the plan does not have is a validation problem at its field. */

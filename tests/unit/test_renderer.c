@@ -6,6 +6,7 @@
 
 #include "core/base/clock.h"
 #include "core/phantom/phantom.h"
+#include "server/wire/document.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/fleet_world.h"
@@ -241,6 +242,50 @@ static void what_is_asked_wrongly_is_refused_with_its_place(void **state)
     world_end(&world);
 }
 
+static void tell_scene(struct world *world, int room)
+{
+    char text[160];
+    (void)snprintf(text, sizeof text, "{\"type\":\"scene\",\"room\":\"r%d\",\"revision\":%d,\"scene\":{\"surface\":{\"normals\":\"face\"}}}", room, room);
+    cJSON *packet = parse(text);
+    WORLD_UNTIL(world, fleet_tell(world->fleet, PLAN, packet)); /* waits while too much is on the way */
+    cJSON_Delete(packet);
+}
+
+static void draw_room(struct world *world, int room, struct reply *reply)
+{
+    char text[120];
+    (void)snprintf(text, sizeof text, "{\"type\":\"render\",\"room\":\"r%d\",\"view\":{\"size_px\":[64,48]}}", room);
+    ask(world, text, reply);
+}
+
+static void a_scene_is_kept_for_as_many_rooms_as_a_daemon_may_have_and_no_more(void **state)
+{
+    (void)state;
+    struct world world;
+    struct reply reply = { 0 };
+    begin_head(&world, true, small);
+    world_start(&world, 1);
+    world_open_plan(&world, PLAN);
+    for (int room = 1; room <= SCENE_MAX_ROOMS + 1; room++)
+        tell_scene(&world, room);
+    draw_room(&world, SCENE_MAX_ROOMS, &reply);
+    assert_frame(&reply, 64, 48);
+    assert_int_equal(json_number(reply.json, "scene_revision", 0), SCENE_MAX_ROOMS);
+    draw_room(&world, SCENE_MAX_ROOMS + 1, &reply);
+    assert_int_equal(reply.problem.type, PROBLEM_NOT_FOUND);
+    cJSON *packet = parse("{\"type\":\"forget\",\"room\":\"r1\"}"); /* a room that is gone makes place for another */
+    assert_true(fleet_tell(world.fleet, PLAN, packet));
+    cJSON_Delete(packet);
+    tell_scene(&world, SCENE_MAX_ROOMS + 1);
+    draw_room(&world, SCENE_MAX_ROOMS + 1, &reply);
+    assert_frame(&reply, 64, 48);
+    draw_room(&world, 1, &reply);
+    assert_int_equal(reply.problem.type, PROBLEM_NOT_FOUND);
+    assert_int_equal(world_plan_of(&world, PLAN).generation, 1);
+    reply_finish(&reply);
+    world_end(&world);
+}
+
 static void a_plan_that_cannot_be_read_fails_with_the_loaders_sentence(void **state)
 {
     (void)state;
@@ -425,6 +470,7 @@ int main(void)
         cmocka_unit_test(a_plan_is_read_and_drawn_and_drawn_again_after_a_kill),
         cmocka_unit_test(numbers_are_answered),
         cmocka_unit_test(what_is_asked_wrongly_is_refused_with_its_place),
+        cmocka_unit_test(a_scene_is_kept_for_as_many_rooms_as_a_daemon_may_have_and_no_more),
         cmocka_unit_test(a_plan_that_cannot_be_read_fails_with_the_loaders_sentence),
         cmocka_unit_test(a_file_name_that_is_no_utf8_comes_out_readable),
         cmocka_unit_test(a_plan_larger_than_the_memory_limit_fails_and_says_so),
