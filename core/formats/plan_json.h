@@ -109,9 +109,10 @@ struct label_name {
 struct label_names {
     struct label_name *labels;
     size_t n;
+    char file[FOLDER_NAME_SIZE]; /* the label map that the list belongs to, beside the list; "" not said */
 };
-/* {"labels": [{"value": 1, "name": "scalp", "color": "#e0c0a0", "parent": "...", "id": "scalp", "place": 1, "tissue": {"cbe_boron": 1.3}}]};
- * a colour may also be three numbers, of 0..1 or 0..255. errors ERROR_FORMAT, ERROR_RANGE, ERROR_LIMIT */
+/* {"file": "tumour.nii.gz", "labels": [{"value": 1, "name": "scalp", "color": "#e0c0a0", "parent": "...", "id": "scalp", "place": 1, "tissue": {"cbe_boron": 1.3}}]};
+ * "file" may be left out; a colour may also be three numbers, of 0..1 or 0..255. errors ERROR_FORMAT, ERROR_RANGE, ERROR_LIMIT */
 NODISCARD bool label_names_parse(const uint8_t *data, size_t size, const char *file, struct label_names *names, struct error *err);
 void label_names_finish(struct label_names *names);
 

@@ -4,6 +4,7 @@
 
 #include "core/base/mem.h"
 #include "core/formats/plan_json_inner.h"
+#include "core/formats/text.h"
 
 static bool get_weight(const struct place *place, const cJSON *object, const char *key, double *out)
 {
@@ -78,6 +79,9 @@ bool label_names_parse(const uint8_t *data, size_t size, const char *name, struc
         return false;
     struct place top = { .file = name, .err = err };
     const cJSON *list;
+    const cJSON *file = cJSON_GetObjectItemCaseSensitive(root, "file");
+    if (cJSON_IsString(file))
+        text_clean(file->valuestring, names->file, sizeof names->file);
     bool is_read = place_list(&top, root, "labels", PLAN_FILE_MAX_LABELS, &list);
     if (is_read && !list)
         is_read = place_fail(&top, ERROR_FORMAT, "labels", "is missing");

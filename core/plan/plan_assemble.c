@@ -40,6 +40,40 @@ void plan_make_id(char id[64], const char *given, const char *path, const char *
     }
 }
 
+static bool holds_only_0_and_1(const struct volume *volume)
+{
+    if (volume->low != 0 || volume->high != 1)
+        return false;
+    size_t n = grid_n_voxels(&volume->grid);
+#define COUNT(type)                                                   \
+    do {                                                              \
+        const type *in = volume->voxels;                              \
+        for (size_t i = 0; i < n; i++) {                              \
+            double value = (double)in[i] * volume->slope + volume->offset; \
+            if (value != 0 && value != 1)                             \
+                return false;                                         \
+        }                                                             \
+    } while (0)
+    switch (volume->type) {
+    case VOXEL_U8: COUNT(uint8_t); break;
+    case VOXEL_I16: COUNT(int16_t); break;
+    case VOXEL_U16: COUNT(uint16_t); break;
+    case VOXEL_F32: COUNT(float); break;
+    }
+#undef COUNT
+    return true;
+}
+
+/* A mask whose name did not say so: shown as the image it was taken for, and said, with the entry of a plan.json that makes it a region. */
+static void note_mask(struct loading *loading, const struct job *job, const struct plan_image *image)
+{
+    const char *base = part_base_name(job->path);
+    if (loading->parts.is_recognised && job->format != PART_DICOM && holds_only_0_and_1(image->volume))
+        report_add(&loading->plan->report, REPORT_WARNING, "image.may-be-region", job->path,
+                   "Every voxel is 0 or 1, so this may be a mask. To show it as a region write a plan.json with \"regions\": [{\"path\": \"%.120s\", "
+                   "\"name\": \"%.*s\"}].", job->path, (int)strcspn(base, "."), base);
+}
+
 static void add_image(struct loading *loading, struct job *job)
 {
     struct plan *plan = loading->plan;
@@ -54,6 +88,7 @@ static void add_image(struct loading *loading, struct job *job)
     memcpy(image->name, entry->name, sizeof image->name);
     snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : job->modality);
     image->volume = take_volume(job);
+    note_mask(loading, job, image);
     if (text_equal(image->modality, "CT")) {
         snprintf(image->unit, sizeof image->unit, "HU");
         if (image->volume->low >= 0 && image->volume->high > 0)

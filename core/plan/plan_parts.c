@@ -37,8 +37,7 @@ enum part_format part_format_of(const struct folder *folder, const char *name)
     for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
         if (text_has_ending(name, endings[i].ending))
             return endings[i].format;
-    const char *slash = strrchr(name, '/');
-    if (text_equal(slash ? slash + 1 : name, "body_data.txt"))
+    if (text_equal(part_base_name(name), "body_data.txt"))
         return PART_SERA_PREFERENCES;
     return is_dicom_file(folder, name) ? PART_DICOM : PART_UNKNOWN;
 }
@@ -65,6 +64,26 @@ const char *part_format_word(enum part_format format)
     case PART_UNKNOWN: break;
     }
     return "an unknown format";
+}
+
+const char *part_base_name(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    return slash ? slash + 1 : name;
+}
+
+bool part_is_spoken_of(const char *name, const char *const *words, size_t n_words)
+{
+    char low[FOLDER_NAME_SIZE];
+    size_t n = strlen(name);
+    n = n < sizeof low ? n : sizeof low - 1;
+    for (size_t i = 0; i < n; i++)
+        low[i] = name[i] >= 'A' && name[i] <= 'Z' ? (char)(name[i] - 'A' + 'a') : name[i];
+    low[n] = 0;
+    for (size_t i = 0; i < n_words; i++)
+        if (strstr(low, words[i]))
+            return true;
+    return false;
 }
 
 /* Length of name without the last ending. */

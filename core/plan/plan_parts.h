@@ -23,10 +23,15 @@ enum part_format part_format_of(const struct folder *folder, const char *name);
 bool part_is_sera_dose(enum part_format format); /* of several quantities */
 const char *part_format_word(enum part_format format); /* "NIfTI", "DICOM", ... */
 
+/* The name behind the last slash, and whether any of the words, in lower case, is in a name. */
+const char *part_base_name(const char *name);
+bool part_is_spoken_of(const char *name, const char *const *words, size_t n_words);
+
 /* What belongs to the plan. */
 struct plan_parts {
     struct plan_file *file;
     struct dicom_index *dicom; /* heads of the DICOM files among the parts; NULL without one */
+    bool is_recognised;        /* no plan.json: nobody said what the parts are */
     bool is_all_dicom;         /* no plan.json: all doses and treatment plans of the index are parts, too */
 };
 void plan_parts_finish(struct plan_parts *parts);

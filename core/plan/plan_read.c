@@ -1,4 +1,5 @@
 #include <stdio.h>
+#include <string.h>
 
 #include "core/base/mem.h"
 #include "core/formats/nifti.h"
@@ -34,6 +35,9 @@ static bool read_names(const struct folder *folder, const char *path, struct job
         return false;
     bool is_read = label_names_parse(bytes.data, bytes.size, path, &job->names, &job->err);
     bytes_free(&bytes);
+    if (is_read && job->names.file[0] && strcmp(part_base_name(job->names.file), part_base_name(job->path)) != 0)
+        report_add(&job->report, REPORT_WARNING, "region.names-elsewhere", job->path, "The list of names, %.120s, says that it belongs to %.120s; "
+                   "it was used as the plan says.", path, job->names.file);
     return is_read;
 }
 

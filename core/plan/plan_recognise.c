@@ -7,8 +7,9 @@
 #include "core/formats/nifti.h"
 #include "core/formats/sera_rst.h"
 #include "core/formats/text.h"
-#include "core/plan/plan_nrrd.h"
 #include "core/plan/plan_dicom.h"
+#include "core/plan/plan_names.h"
+#include "core/plan/plan_nrrd.h"
 
 /* A folder without a plan.json: its files, and those in the folders below, become parts by what they are called and what they hold. */
 struct recognition {
@@ -17,6 +18,7 @@ struct recognition {
     struct report *report;
     char **dicom; /* names of files that may be DICOM, of the tree */
     size_t n_dicom;
+    struct name_lists *lists;
     struct error reason; /* why the first file that looked like a part is none */
 };
 
@@ -40,24 +42,6 @@ static bool nrrd_is_whole(const struct folder *folder, const char *name, bool *h
     return is_read && header.type != RAW_F32 && header.type != RAW_F64;
 }
 
-static bool is_spoken_of(const char *name, const char *const *words, size_t n_words)
-{
-    char low[FOLDER_NAME_SIZE];
-    size_t n = strlen(name);
-    for (size_t i = 0; i <= n; i++)
-        low[i] = name[i] >= 'A' && name[i] <= 'Z' ? (char)(name[i] - 'A' + 'a') : name[i];
-    for (size_t i = 0; i < n_words; i++)
-        if (strstr(low, words[i]))
-            return true;
-    return false;
-}
-
-static const char *base_name(const char *name)
-{
-    const char *slash = strrchr(name, '/');
-    return slash ? slash + 1 : name;
-}
-
 /* A file whose voxels are whole numbers and whose name speaks of labels, or that names segments itself. */
 static bool is_label_map(const struct folder *folder, const char *name, enum part_format format)
 {
@@ -65,13 +49,13 @@ static bool is_label_map(const struct folder *folder, const char *name, enum par
     bool has_segments = false;
     if (!(format == PART_NIFTI ? nifti_is_whole(folder, name) : nrrd_is_whole(folder, name, &has_segments)))
         return false;
-    return has_segments || is_spoken_of(name, words, sizeof words / sizeof words[0]);
+    return has_segments || part_is_spoken_of(name, words, sizeof words / sizeof words[0]);
 }
 
 static bool is_dose_map(const char *name)
 {
     static const char *const words[] = { "dose" };
-    return is_spoken_of(base_name(name), words, 1);
+    return part_is_spoken_of(part_base_name(name), words, 1);
 }
 
 static bool is_rst(const struct folder *folder, const char *name)
@@ -110,19 +94,6 @@ static void add_image(struct recognition *all, const char *name, const char *hea
     struct plan_file_image *image = &file->images[file->n_images++];
     set_name(image->path, sizeof image->path, name);
     set_name(image->header, sizeof image->header, header);
-}
-
-/* The list of names beside a label map: its own name with .json, else labels.json. */
-static void find_names(struct recognition *all, struct plan_file_region *region)
-{
-    char names[FOLDER_NAME_SIZE];
-    int folder = (int)(base_name(region->path) - region->path), stem = folder + (int)strcspn(region->path + folder, ".");
-    int n = snprintf(names, sizeof names, "%.*s.json", stem, region->path);
-    if (n > 0 && n < (int)sizeof names && folder_look(all->folder, names, NULL) == FOLDER_FILE)
-        memcpy(region->names, names, sizeof names);
-    n = snprintf(names, sizeof names, "%.*slabels.json", folder, region->path);
-    if (!region->names[0] && n > 0 && n < (int)sizeof names && folder_look(all->folder, names, NULL) == FOLDER_FILE)
-        memcpy(region->names, names, sizeof names);
 }
 
 static struct plan_file_region *add_region(struct recognition *all, const char *name)
@@ -178,10 +149,8 @@ static void add_grid(struct recognition *all, const char *name, enum part_format
 {
     if (!has_good_header(all, name, format))
         return;
-    if (is_label_map(all->folder, name, format)) {
-        struct plan_file_region *region = add_region(all, name);
-        if (region)
-            find_names(all, region);
+    if (name_lists_name(all->lists, name) || is_label_map(all->folder, name, format)) {
+        (void)add_region(all, name);
     } else if (is_dose_map(name)) {
         add_dose(all, name);
     } else {
@@ -310,9 +279,12 @@ static bool is_plan(const struct folder *folder, const char *name)
 static bool recognise_tree(const struct folder *folder, const struct folder_tree *tree, const struct dicom_progress *progress,
                            struct plan_parts *parts, struct error *reason, struct report *report, struct error *err)
 {
-    struct recognition all = { folder, parts->file, report, mem_new((tree->n_files + 1) * sizeof(char *)), 0, { 0 } };
+    struct recognition all = { folder, parts->file, report, mem_new((tree->n_files + 1) * sizeof(char *)), 0,
+                               name_lists_find(folder, tree), { 0 } };
     for (size_t i = 0; i < tree->n_files && !(progress && progress->cancel && atomic_load(progress->cancel)); i++)
         recognise_file(&all, tree->files[i].name);
+    name_lists_assign(all.lists, folder, parts->file, report);
+    name_lists_destroy(all.lists);
     bool is_scanned = plan_dicom_recognise(folder, all.dicom, all.n_dicom, parts, progress, report, err);
     free(all.dicom);
     *reason = all.reason;
@@ -327,6 +299,7 @@ bool plan_recognise(const struct folder *folder, const struct dicom_progress *pr
     if (!folder_walk(folder, "", is_plan, &tree, err))
         return false;
     struct plan_file *file = parts->file = mem_new(sizeof *file);
+    parts->is_recognised = true;
     file->regions = mem_new(PLAN_FILE_MAX_PARTS * sizeof *file->regions);
     plan_folder_name(folder->path, file->name, sizeof file->name);
     size_t n_before = report ? report->n_lines : 0;

@@ -75,7 +75,7 @@ static void list_images(struct writing *writing)
 static bool write_names(const struct writing *writing, uint32_t layer, const char *name, bool *is_kept, struct error *err)
 {
     const struct region_set *set = &writing->plan->regions;
-    struct label_names names = { mem_new(set->n_regions * sizeof *names.labels), 0 };
+    struct label_names names = { .labels = mem_new(set->n_regions * sizeof *names.labels) };
     char path[PATH_MAX];
     for (size_t r = 0; r < set->n_regions; r++) {
         const struct region *region = &set->regions[r];

@@ -32,6 +32,8 @@
     X("image.locations-uneven", "Slice positions are a little uneven; an even spacing was fitted.",                                \
       "Check distances along the slices.")                                                                                         \
     X("image.precision", "Whole numbers too large to be held exactly were rounded.", "Store the image with a smaller range.")     \
+    X("image.may-be-region", "An image holds nothing but 0 and 1, so it may be the mask of a region.",                             \
+      "Write a plan.json that names it under \"regions\"; the line has the entry.")                                               \
     X("image.bytes-behind", "A file holds more bytes than its header speaks of.",                                                 \
       "Check that the header belongs to these voxels.")                                                                           \
     X("image.not-finite", "Some values are not numbers.", "They are drawn as nothing and probed as nothing.")                     \
@@ -61,6 +63,8 @@
       "They were corrected; check angles.")                                                                                       \
     X("region.empty", "A region has no voxel.", "Nothing to show for it; check the file.")                                        \
     X("region.unnamed", "A label has no name.", "It is listed under its number; add it to the list of names.")                    \
+    X("region.names-elsewhere", "A list of label names is of another map, or of a map that is not there.",                         \
+      "Check the names; say in plan.json which list belongs to which map.")                                                       \
     X("region.unused-names", "The list of names has labels that no voxel carries.", "Nothing; they are not listed.")              \
     X("region.surroundings", "The filling around the patient is not listed as a region.", "Nothing.")                             \
     X("region.absent", "A region is marked ABSENT by its file and not listed.", "Nothing.")                                       \

@@ -1,0 +1,16 @@
+#pragma once
+/* Inside core/plan: which map of a folder without a plan.json a list of label names belongs to. */
+#include "core/plan/plan_parts.h"
+
+/* The lists of a folder: each labels.json, and each .json called after a grid beside it. */
+struct name_lists;
+struct name_lists *name_lists_find(const struct folder *folder, const struct folder_tree *tree);
+void name_lists_destroy(struct name_lists *lists);
+
+/* Whether a list says by its "file" that it belongs to this map. */
+bool name_lists_name(const struct name_lists *lists, const char *map);
+
+/* Gives each label map among the plan file's regions the list that belongs to it: one that names the map; one called after it, like parts.json
+ * beside parts.nii.gz; labels.json beside it when no other map could be meant. Maps that are left without while there is a labels.json beside
+ * them, and lists whose map is not there, are reported. */
+void name_lists_assign(const struct name_lists *lists, const struct folder *folder, struct plan_file *file, struct report *report);
