@@ -159,6 +159,19 @@ bool plan_dicom_add_regions(struct loading *loading, struct region_builder *buil
 
 /* ---- beams ------------------------------------------------------------------------------------------------------------ */
 
+/* How far a point lies outside the nearest image; 0 inside one, and without any. */
+static double outside_images_mm(const struct plan *plan, struct vec3 point)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < plan->n_images; i++) {
+        struct box3 box = grid_bounds_lps_mm(&plan->images[i].volume->grid);
+        struct vec3 out = vec3(fmax(0, fmax(box.low.x - point.x, point.x - box.high.x)), fmax(0, fmax(box.low.y - point.y, point.y - box.high.y)),
+                               fmax(0, fmax(box.low.z - point.z, point.z - box.high.z)));
+        least = fmin(least, vec3_length(out));
+    }
+    return isfinite(least) ? least : 0;
+}
+
 void plan_dicom_add_beams(struct loading *loading)
 {
     struct plan *plan = loading->plan;
@@ -175,6 +188,11 @@ void plan_dicom_add_beams(struct loading *loading)
                 others[o] = plan->beams[o].id;
             struct beam *beam = &plan->beams[plan->n_beams];
             *beam = from->beams[b];
+            double outside_mm = outside_images_mm(plan, beam->target_lps_mm);
+            if (outside_mm > 0)
+                report_add(&plan->report, REPORT_WARNING, "beam.outside", loading->jobs[i].path, "Beam \"%s\": its isocentre (%.4g, %.4g, %.4g mm) "
+                           "lies %.4g mm outside every image.", beam->name, beam->target_lps_mm.x, beam->target_lps_mm.y, beam->target_lps_mm.z,
+                           outside_mm);
             plan_make_id(beam->id, from->beams[b].id[0] ? from->beams[b].id : from->beams[b].name, "beam", others, plan->n_beams++);
         }
     }

@@ -40,9 +40,13 @@
     X("image.hu-doubtful", "A CT has no value below zero, so its numbers may not be HU.", "Check the rescale slope and intercept.") \
     X("dicom.unreadable", "A DICOM file cannot be read.", "Check or copy the file again; the rest is shown without it.")          \
     X("dicom.not-used", "DICOM objects of a kind that has no place in a plan.", "Nothing; they are left out.")                    \
+    X("dicom.bad-number", "A value of a DICOM file is no number, or cannot be what it stands for.",                               \
+      "The file is damaged: copy or export it again.")                                                                            \
     X("dicom.duplicate", "A DICOM object is there more than once.", "Nothing; the first by name was used.")                       \
     X("dicom.too-many", "There are more DICOM objects than are kept.", "Open a folder that holds one patient's plan alone.")      \
     X("image.split", "A series holds pictures that do not make one volume.", "Each stack of slices became an image of its own.")  \
+    X("image.slices-stray", "A few pictures of a series have another size, spacing, orientation or frame of reference than the others.", \
+      "They are missing among the others; one of the files may be damaged.")                                                      \
     X("image.slices-missing", "Slices are missing between others.",                                                               \
       "They were interpolated between their neighbours; look for the missing files.")                                             \
     X("image.slices-resampled", "The distances between slices differ too much for one grid.",                                     \
@@ -55,6 +59,8 @@
     X("image.single-slice", "The image has one slice.", "Its thickness was taken from the file, or is 1 mm.")                     \
     X("image.inverted", "The image asks for low values to be white (MONOCHROME1).",                                                \
       "They are drawn so, and the values stay; the scene's image.low_values, a switch in the page, makes them black.")             \
+    X("image.slices-contradict", "Slices of one series say different things of their pixels: sign, bits, unit, scale.",           \
+      "Each slice was read as it says; one of the files may be damaged.")                                                         \
     X("image.slopes-differ", "Slices have a scale of their own.", "Nothing; all were brought to one unit.")                       \
     X("image.rescale", "The scale of values is not one that can be used.", "Check the values; they were taken as stored.")        \
     X("image.lossy", "The pixels were compressed with loss.", "Do not measure small differences in them.")                        \
@@ -128,6 +134,7 @@
     X("dose.no-reference", "A dose file's own reference is 0 or missing.", "Percentages need another reference.")                  \
     X("dose.mask-unread", "The pictures of regions beside SERA's contours are missing or do not fit.",                             \
       "Where the dose is valid was taken from its points.")                                                                        \
+    X("dose.doubtful", "A dose in Gy is higher than any treatment's.", "Check the unit and the scaling in its file.")             \
     X("dose.negative", "A dose holds negative values.", "They are kept; check the source.")                                       \
     X("dose.offsets-doubtful", "The offsets of a dose's frames begin neither at 0 nor at the first frame's position.", \
       "Check that the dose lies where it belongs.") \
@@ -156,6 +163,10 @@
     X("dose.mask-grid", "The mask of a dose lies on another grid than the dose.", "It is looked up by position.")                 \
     X("beam.left-out", "A beam of a treatment plan cannot be placed in the patient, or is for setting up only.", \
       "It is not shown; see the line.") \
+    X("beam.bad-value", "A treatment plan holds values that cannot be: out of range, out of order, or not as many as they should be.", \
+      "Do not rely on the beam; check or export the plan again.") \
+    X("beam.outside", "The isocentre of a beam lies outside every image.", \
+      "Check that plan and images belong together, and that no slices are missing.") \
     X("beam.none", "A treatment plan has no external beam.", \
       "Nothing.") \
     X("beam.position-assumed", "A treatment plan does not say how the patient lies.", \

@@ -369,8 +369,8 @@ static void pictures_that_cannot_be_used_say_why(void **state)
     } cases[] = { { "localizer", "it is a localizer" },
                   { "mosaic", "it is a mosaic of many slices" },
                   { "color", "it is a colour picture (PALETTE COLOR" },
-                  { "spacing", "how large its pixels are (0028,0030)" },
-                  { "nowhere", "where it lies in the patient (0020,0032)" },
+                  { "spacing", "pixel spacing (0028,0030): expected numbers above 0, found 0\\1" },
+                  { "nowhere", "position (0020,0032): expected 3 numbers up to 1e+06, found \"0\\nan\\0\"" },
                   { "length", "where the transfer syntax (JPEG 2000" },
                   { "jpeg2000", "its pixels are encoded as JPEG 2000" } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

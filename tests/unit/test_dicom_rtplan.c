@@ -179,7 +179,8 @@ static void what_a_plan_does_not_say_is_assumed_and_said(void **state)
     plan = read_made(&made, &report);
     assert_true(report_has(&report, "beam.position-assumed"));
     assert_true(report_has(&report, "beam.distance-assumed"));
-    assert_int_equal(report.n_lines, 2);
+    assert_true(report_has(&report, "beam.bad-value"));
+    assert_int_equal(report.n_lines, 3);
     rtplan_destroy(plan);
     report_finish(&report);
 }

@@ -94,9 +94,51 @@ static void regions_drawn_on_slices_that_are_not_there_are_whole(void **state)
     }
 }
 
+static void put_beam(const char *folder, const char *isocentre)
+{
+    struct made_dicom made;
+    made_rt_begin(&made, "1.2.840.10008.5.1.4.1.1.481.5", "RTPLAN", NULL);
+    made_sequence(&made, TAG(0x300a, 0x00b0));
+    made_item(&made);
+    made_text(&made, TAG(0x300a, 0x00b4), "DS", "1000");
+    made_text(&made, TAG(0x300a, 0x00c2), "LO", "Front");
+    made_sequence(&made, TAG(0x300a, 0x0111));
+    made_item(&made);
+    made_text(&made, TAG(0x300a, 0x011e), "DS", "0");
+    made_text(&made, TAG(0x300a, 0x012c), "DS", isocentre);
+    made_item_end(&made);
+    made_sequence_end(&made);
+    made_item_end(&made);
+    made_sequence_end(&made);
+    folder_put(folder, "rtplan.dcm", made.data, made.size);
+    made_finish(&made);
+}
+
+static void an_isocentre_outside_the_image_is_said(void **state)
+{
+    (void)state;
+    static const char *const isocentres[] = { "40\\40\\6", "40\\-40\\6" }; /* the image begins at -1 */
+    for (int i = 0; i < 2; i++) {
+        char folder[256];
+        struct error err;
+        folder_make(folder);
+        put_slices(folder, 5, 3);
+        put_beam(folder, isocentres[i]);
+        struct plan *plan = plan_of_folder(folder, &err);
+        assert_string_equal(err.text, "");
+        assert_int_equal(plan->n_beams, 1);
+        assert_int_equal(report_has(&plan->report, "beam.outside"), i == 1);
+        if (i == 1)
+            assert_non_null(strstr(report_said(&plan->report, "beam.outside"), "39 mm outside"));
+        plan_destroy(plan);
+        folder_remove(folder);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_isocentre_outside_the_image_is_said),
         cmocka_unit_test(regions_drawn_on_slices_that_are_not_there_are_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -187,6 +187,77 @@ size_t binary_numbers(DcmElement &element, double *out, size_t most)
     }
 }
 
+struct bad_numbers {
+    bool is_deep;
+    uint32_t but_not;
+    dicom_bad_number *bad;
+    size_t most, n;
+};
+
+std::string tag_text(DcmObject &object)
+{
+    char text[16];
+    snprintf(text, sizeof text, "(%04X,%04X)", object.getGTag(), object.getETag());
+    return text;
+}
+
+void add_bad(bad_numbers &all, DcmElement &element, const std::string &inside, const char *value, size_t size)
+{
+    if (all.n++ >= all.most)
+        return;
+    dicom_bad_number &bad = all.bad[all.n - 1];
+    std::string place = inside + tag_text(element);
+    if (place.size() >= sizeof bad.place)
+        place = "..." + place.substr(place.size() - sizeof bad.place + 4);
+    bad.tag = uint32_t(element.getGTag()) << 16 | element.getETag();
+    snprintf(bad.place, sizeof bad.place, "%s", place.c_str());
+    size_t n = std::min(size, sizeof bad.found - 1);
+    for (size_t i = 0; i < n; i++)
+        bad.found[i] = value[i] >= 32 && value[i] < 127 ? value[i] : '?';
+    bad.found[n] = 0;
+}
+
+// Value by value between backslashes. An element without a value is none that is bad.
+void check_numbers(bad_numbers &all, DcmElement &element, const std::string &inside)
+{
+    const char *text;
+    size_t size;
+    double value;
+    if (!raw_text(element, &text, &size))
+        return;
+    while (size > 0 && (text[size - 1] == ' ' || text[size - 1] == 0))
+        size--;
+    const char *end = text + size;
+    for (const char *from = text; size > 0;) {
+        auto *found = static_cast<const char *>(std::memchr(from, '\\', size_t(end - from)));
+        const char *stop = found ? found : end;
+        size_t n = size_t(stop - from);
+        if (dicom_text_numbers(from, n, &value, 1) != 1 || !std::isfinite(value) ||
+            (element.ident() == EVR_IS && value != std::floor(value)))
+            add_bad(all, element, inside, from, n);
+        if (!found)
+            return;
+        from = found + 1;
+    }
+}
+
+// Sequences are nested DICOM_MAX_DEPTH deep at most: the walk before saw to it.
+void find_bad_numbers(bad_numbers &all, DcmItem &item, const std::string &inside)
+{
+    for (DcmObject *object = nullptr; (object = item.nextInContainer(object));) {
+        if (object->getGTag() % 2 || (uint32_t(object->getGTag()) << 16 | object->getETag()) == all.but_not)
+            continue;
+        if (object->ident() == EVR_DS || object->ident() == EVR_IS)
+            check_numbers(all, *static_cast<DcmElement *>(object), inside);
+        if (object->ident() != EVR_SQ || !all.is_deep)
+            continue;
+        auto *sequence = static_cast<DcmSequenceOfItems *>(object);
+        size_t at = 0;
+        for (DcmObject *inner = nullptr; (inner = sequence->nextInContainer(inner));)
+            find_bad_numbers(all, *static_cast<DcmItem *>(inner), inside + tag_text(*object) + " item " + std::to_string(++at) + ", ");
+    }
+}
+
 // Runs what may throw; what it throws becomes the answer given.
 template <typename F, typename R> R guarded(R on_throw, F run) noexcept
 {
@@ -297,10 +368,12 @@ bool need_integer(const dicom_file *file, uint32_t tag, const char *what, int64_
     return true;
 }
 
-uint32_t optional_integer(const dicom_file *file, uint32_t tag, uint32_t otherwise)
+// What may be absent: then otherwise. What is there must be a whole number in its range.
+bool optional_integer(const dicom_file *file, uint32_t tag, const char *what, uint32_t high, uint32_t otherwise, uint32_t *out, error *err)
 {
-    int64_t value;
-    return dicom_integer(&file->root, tag, &value) && value >= 0 && value <= INT32_MAX ? static_cast<uint32_t>(value) : otherwise;
+    double ignored;
+    *out = otherwise;
+    return dicom_numbers(&file->root, tag, &ignored, 1) == 0 || need_integer(file, tag, what, 0, high, out, err);
 }
 
 bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
@@ -319,7 +392,13 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
     if (pixels->bits_allocated != 8 && pixels->bits_allocated != 16 && pixels->bits_allocated != 32)
         return error_set(err, ERROR_UNSUPPORTED, "%s: element (0028,0100), bits allocated: found %u, expected 8, 16 or 32", name,
                          pixels->bits_allocated);
-    pixels->n_samples = optional_integer(file, 0x00280002, 1);
+    uint32_t is_signed = 0;
+    if (!optional_integer(file, 0x00280002, "samples per pixel", 16, 1, &pixels->n_samples, err) ||
+        !optional_integer(file, 0x00280101, "bits stored", 64, pixels->bits_allocated, &pixels->bits_stored, err) ||
+        !optional_integer(file, 0x00280102, "high bit", 63, pixels->bits_stored - 1, &pixels->high_bit, err) ||
+        !optional_integer(file, 0x00280103, "pixel representation", 1, 0, &is_signed, err))
+        return false;
+    pixels->is_signed = is_signed == 1;
     char color[20];
     bool has_color = dicom_text(&file->root, 0x00280004, color, sizeof color);
     pixels->is_monochrome1 = std::strcmp(color, "MONOCHROME1") == 0;
@@ -327,9 +406,6 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
         return error_set(err, ERROR_UNSUPPORTED, "%s: it is a colour picture (%s, %u samples a pixel); only grey ones are read", name,
                          has_color ? color : "kind not said",
                          pixels->n_samples);
-    pixels->bits_stored = optional_integer(file, 0x00280101, pixels->bits_allocated);
-    pixels->high_bit = optional_integer(file, 0x00280102, pixels->bits_stored - 1);
-    pixels->is_signed = optional_integer(file, 0x00280103, 0) == 1;
     if (pixels->bits_stored < 1 || pixels->bits_stored > pixels->bits_allocated || pixels->high_bit >= pixels->bits_allocated ||
         pixels->high_bit + 1 < pixels->bits_stored)
         return error_set(err, ERROR_FORMAT, "%s: elements (0028,0100) to (0028,0102): %u bits up to bit %u do not fit into %u", name,
@@ -465,6 +541,15 @@ bool dicom_integer(const struct dicom_item *item, uint32_t tag, int64_t *value)
         return false;
     *value = static_cast<int64_t>(first);
     return true;
+}
+
+size_t dicom_bad_numbers(const struct dicom_item *item, bool is_deep, uint32_t but_not, struct dicom_bad_number *bad, size_t most)
+{
+    return guarded(size_t(0), [&] {
+        bad_numbers all{ is_deep, but_not, bad, most, 0 };
+        find_bad_numbers(all, *item->item, "");
+        return all.n;
+    });
 }
 
 static std::vector<dicom_item> *items_of(const struct dicom_item *item, uint32_t tag)

@@ -49,6 +49,15 @@ bool dicom_text_at(const struct dicom_item *item, uint32_t tag, size_t index, ch
 size_t dicom_numbers(const struct dicom_item *item, uint32_t tag, double *values, size_t most);
 bool dicom_number(const struct dicom_item *item, uint32_t tag, double *value);    /* the first, finite */
 bool dicom_integer(const struct dicom_item *item, uint32_t tag, int64_t *value);  /* the first, whole */
+/* A value of kind DS or IS (whole) that is no such number. */
+struct dicom_bad_number {
+    uint32_t tag;
+    char place[100]; /* "(300A,00B0) item 1, (300A,0111) item 2, (300A,011E)"; the end of it where it is longer */
+    char found[24];  /* beginning of the value, or of the one among several, printable */
+};
+/* Looks through an item, and with is_deep through what lies in its sequences. Private elements and those of the tag but_not are passed
+ * over. Fills at most most and returns how many there are. */
+size_t dicom_bad_numbers(const struct dicom_item *item, bool is_deep, uint32_t but_not, struct dicom_bad_number *bad, size_t most);
 size_t dicom_n_items(const struct dicom_item *item, uint32_t tag);                /* of a sequence; 0 when absent */
 const struct dicom_item *dicom_item_at(const struct dicom_item *item, uint32_t tag, size_t index);
 

@@ -24,6 +24,12 @@ static bool get_finite(const struct dicom_item *item, uint32_t tag, double *valu
     return true;
 }
 
+/* A number that may be absent: then value stays. false: it is there, and no number. */
+static bool get_optional(const struct dicom_item *item, uint32_t tag, double *value)
+{
+    return !item || dicom_numbers(item, tag, NULL, 0) == 0 || get_finite(item, tag, value, 1);
+}
+
 struct frame_place {
     double position_mm[3], cosines[6], spacing_mm[2], thickness_mm;
 };
@@ -37,11 +43,11 @@ static bool read_frame(const struct dicom_item *frame, const struct dicom_item *
         !get_finite(measures, TAG_SPACING, place->spacing_mm, 2) || !(place->spacing_mm[0] > 0 && place->spacing_mm[1] > 0))
         return false;
     place->thickness_mm = 0;
-    (void)get_finite(measures, TAG_THICKNESS, &place->thickness_mm, 1);
     slice->slope = 1;
     slice->offset = 0;
-    (void)get_finite(values, TAG_SLOPE, &slice->slope, 1);
-    (void)get_finite(values, TAG_OFFSET, &slice->offset, 1);
+    if (!get_optional(measures, TAG_THICKNESS, &place->thickness_mm) || !get_optional(values, TAG_SLOPE, &slice->slope) ||
+        !get_optional(values, TAG_OFFSET, &slice->offset))
+        return false;
     slice->position_lps_mm = vec3(place->position_mm[0], place->position_mm[1], place->position_mm[2]);
     return true;
 }
@@ -69,8 +75,8 @@ bool dicom_frames_find(const struct dicom_file *file, const char *path, size_t o
     for (uint32_t f = 0; f < n_frames; f++) {
         struct dicom_slice slice = { .object = object, .frame = f };
         if (!read_frame(dicom_item_at(root, TAG_FRAME_GROUPS, f), shared, &place, &slice))
-            return error_set(err, ERROR_FORMAT, "%s: frame %u of %u does not say where it lies in the patient, or how large its pixels are", path,
-                             f + 1, n_frames);
+            return error_set(err, ERROR_FORMAT, "%s: frame %u of %u does not say where it lies in the patient, or how large its pixels are, or a number of these "
+                             "or of its rescale is none", path, f + 1, n_frames);
         if (f == 0) {
             first = place;
             if (!dicom_axes(first.cosines, first.cosines + 3, axes, &off))

@@ -91,33 +91,69 @@ static int64_t integer_or_none(const struct dicom_item *item, uint32_t tag)
     return dicom_integer(item, tag, &value) ? value : INT64_MIN;
 }
 
-static bool three_finite(const double *values)
+/* n finite numbers, each at most high; false with the reason: not there ("it does not say ..."), or what is wrong with them. */
+static bool read_all(const struct dicom_item *root, uint32_t tag, const char *name, const char *not_said, double high, double *values, size_t n,
+                     char *reason, size_t size)
 {
-    return isfinite(values[0]) && isfinite(values[1]) && isfinite(values[2]);
+    char found[40];
+    if (!dicom_text(root, tag, found, sizeof found))
+        return snprintf(reason, size, "it does not say %s (%04X,%04X)", not_said, tag >> 16, tag & 0xFFFF) < 0;
+    bool is_good = dicom_numbers(root, tag, values, n) == n;
+    for (size_t i = 0; i < n; i++)
+        is_good = is_good && fabs(values[i]) <= high;
+    return is_good || snprintf(reason, size, "%s (%04X,%04X): expected %zu number%s up to %g, found \"%s\"", name, tag >> 16, tag & 0xFFFF, n,
+                               n == 1 ? "" : "s", high, found) < 0;
 }
 
-/* Position, orientation and spacing of a picture of its own; false with the reason when one is not there or no number. */
+/* Position, orientation and spacing of a picture of its own; false with the reason when one is not there or cannot be. */
 static bool read_place(const struct dicom_item *root, struct dicom_image *image, char *reason, size_t size)
 {
     double cosines[6];
-    if (dicom_numbers(root, TAG_POSITION, image->position_mm, 3) != 3 || !three_finite(image->position_mm))
-        return snprintf(reason, size, "it does not say where it lies in the patient (0020,0032)") < 0;
-    if (dicom_numbers(root, TAG_ORIENTATION, cosines, 6) != 6 || !three_finite(cosines) || !three_finite(cosines + 3))
-        return snprintf(reason, size, "it does not say how it lies in the patient (0020,0037)") < 0;
-    if (dicom_numbers(root, TAG_SPACING, image->spacing_mm, 2) != 2 || !(image->spacing_mm[0] > 0 && image->spacing_mm[0] < 1e4) ||
-        !(image->spacing_mm[1] > 0 && image->spacing_mm[1] < 1e4))
-        return snprintf(reason, size, "it does not say how large its pixels are (0028,0030)") < 0;
+    if (!read_all(root, TAG_POSITION, "position", "where it lies in the patient", 1e6, image->position_mm, 3, reason, size) ||
+        !read_all(root, TAG_ORIENTATION, "orientation", "how it lies in the patient", 2, cosines, 6, reason, size) ||
+        !read_all(root, TAG_SPACING, "pixel spacing", "how large its pixels are", 1e4, image->spacing_mm, 2, reason, size))
+        return false;
+    if (!(image->spacing_mm[0] > 0 && image->spacing_mm[1] > 0))
+        return snprintf(reason, size, "pixel spacing (0028,0030): expected numbers above 0, found %g\\%g", image->spacing_mm[0],
+                        image->spacing_mm[1]) < 0;
     memcpy(image->row, cosines, sizeof image->row);
     memcpy(image->column, cosines + 3, sizeof image->column);
     image->has_place = true;
     return true;
 }
 
+/* Slope and intercept: absent ones are 1 and 0, those that are no numbers make all values wrong. */
+static bool read_scale(const struct dicom_item *root, struct dicom_image *image, char *reason, size_t size)
+{
+    image->slope = 1;
+    image->offset = 0;
+    return (dicom_numbers(root, TAG_SLOPE, NULL, 0) == 0 ||
+            read_all(root, TAG_SLOPE, "rescale slope", "", HUGE_VAL, &image->slope, 1, reason, size)) &&
+           (dicom_numbers(root, TAG_OFFSET, NULL, 0) == 0 ||
+            read_all(root, TAG_OFFSET, "rescale intercept", "", HUGE_VAL, &image->offset, 1, reason, size));
+}
+
+/* Elements that are used where they are numbers, and do without where they are not. */
+static void note_bad_number(const struct dicom_item *root, struct dicom_image *image)
+{
+    static const uint32_t used[] = { TAG_THICKNESS, TAG_INSTANCE, TAG_ACQUISITION, TAG_ECHO_NUMBER, TAG_TEMPORAL, TAG_ECHO_TIME,
+                                     TAG_TRIGGER_TIME, TAG_WINDOW_CENTER, TAG_WINDOW_WIDTH };
+    enum { MOST = 16 };
+    struct dicom_bad_number bad[MOST];
+    size_t n = dicom_bad_numbers(root, false, 0, bad, MOST);
+    for (size_t i = 0; i < n && i < MOST; i++)
+        for (size_t u = 0; u < sizeof used / sizeof used[0] && image->bad_tag == 0; u++)
+            if (bad[i].tag == used[u]) {
+                image->bad_tag = bad[i].tag;
+                memcpy(image->bad_found, bad[i].found, sizeof image->bad_found);
+            }
+}
+
 static void read_image_facts(const struct dicom_item *root, struct dicom_image *image)
 {
     image->thickness_mm = fmax(0, number_or(root, TAG_THICKNESS, 0));
-    image->slope = number_or(root, TAG_SLOPE, 1);
-    image->offset = number_or(root, TAG_OFFSET, 0);
+    if (!dicom_text(root, TAG_RESCALE_TYPE, image->unit, sizeof image->unit))
+        (void)dicom_text(root, TAG_UNITS, image->unit, sizeof image->unit);
     image->instance = integer_or_none(root, TAG_INSTANCE);
     image->acquisition = integer_or_none(root, TAG_ACQUISITION);
     image->echo = integer_or_none(root, TAG_ECHO_NUMBER);
@@ -165,6 +201,9 @@ static void read_image(const struct dicom_file *file, uint64_t n_bytes, struct d
     }
     if (!has_frames && !read_place(root, &image, object->reason, sizeof object->reason))
         return;
+    if (!read_scale(root, &image, object->reason, sizeof object->reason))
+        return;
+    note_bad_number(root, &image);
     image.has_stored = dicom_pixels_stored(file, &image.stored);
     uint64_t needed = (uint64_t)image.pixels.rows * image.pixels.columns * (image.pixels.bits_allocated / 8) * image.pixels.n_frames;
     if (image.has_stored && (image.stored.at > n_bytes || needed > n_bytes - image.stored.at)) {

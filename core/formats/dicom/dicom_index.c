@@ -249,6 +249,34 @@ static void report_unused(const struct dicom_index *index, struct report *report
         report_add(report, REPORT_NOTE, "dicom.not-used", "", "%zu more objects are not used, for other reasons.", n_more);
 }
 
+/* One line for each element that is no number in pictures that are used all the same. */
+static void report_bad_numbers(const struct dicom_index *index, struct report *report)
+{
+    enum { MOST_TAGS = 16 };
+    const struct dicom_object *first[MOST_TAGS];
+    size_t count[MOST_TAGS], n_tags = 0;
+    for (size_t i = 0; i < index->n_objects; i++) {
+        const struct dicom_object *object = &index->objects[i];
+        if (!object->image || object->image->bad_tag == 0)
+            continue;
+        size_t t = 0;
+        while (t < n_tags && first[t]->image->bad_tag != object->image->bad_tag)
+            t++;
+        if (t == MOST_TAGS)
+            continue; /* there are not as many kinds */
+        if (t == n_tags) {
+            first[n_tags] = object;
+            count[n_tags++] = 0;
+        }
+        count[t]++;
+    }
+    for (size_t t = 0; t < n_tags; t++) {
+        uint32_t tag = first[t]->image->bad_tag;
+        report_add(report, REPORT_WARNING, "dicom.bad-number", first[t]->path, "Element (%04X,%04X): expected numbers, found \"%s\"; it is not "
+                   "used (in %zu pictures).", tag >> 16, tag & 0xFFFF, first[t]->image->bad_found, count[t]);
+    }
+}
+
 static void scan_finish(struct scan *scan)
 {
     for (size_t i = 0; i < scan->n_files; i++) {
@@ -279,6 +307,7 @@ struct dicom_index *dicom_index_scan(const struct folder *folder, char *const *n
     if (!collect(&scan, index, report, err) || !drop_copies(index, report, err))
         goto fail;
     report_unused(index, report);
+    report_bad_numbers(index, report);
     if (!dicom_stacks_find(index, report, err))
         goto fail;
     scan_finish(&scan);

@@ -33,6 +33,9 @@ struct dicom_image {
     int64_t instance, acquisition, echo, temporal; /* numbers; INT64_MIN: not said */
     double echo_ms, trigger_ms, b_value;           /* not-a-number: not said */
     char image_type[64];
+    char unit[17];                 /* Rescale Type, else Units: "HU", "BQML", ...; "" when not said */
+    uint32_t bad_tag;              /* an element that is no number and counts as not said, the first; 0: none */
+    char bad_found[24];            /* what stands there */
     bool is_lossy;
     bool has_stored;               /* native pixels: stored says where */
     struct dicom_stored stored;

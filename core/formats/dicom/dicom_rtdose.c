@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/formats/dicom/dicom_numbers.h"
 
 #define RTDOSE_CLASS "1.2.840.10008.5.1.4.1.1.481.2"
+#define MOST_GY 1000.0
 #define EVEN_SHARE 0.02 /* of the distance: planes this near to even ones are even */
 
 enum {
@@ -358,6 +360,7 @@ bool rtdose_read(const struct dicom_file *file, const char *where, struct rtdose
     dicom_text(root, MODALITY, modality, sizeof modality);
     if (strcmp(class, RTDOSE_CLASS) != 0 && strcmp(modality, "RTDOSE") != 0)
         return error_set(err, ERROR_UNSUPPORTED, "%s: a DICOM object of modality \"%s\", expected RTDOSE", where, modality);
+    dicom_numbers_report(file, 0, where, report);
     struct dicom_pixels pixels;
     struct planes planes = { 0 };
     struct rtdose read = { 0 };
@@ -373,6 +376,9 @@ bool rtdose_read(const struct dicom_file *file, const char *where, struct rtdose
     read_references(&read, root);
     volume_measure(read.values);
     read.is_all_zero = read.values->low == 0 && read.values->high == 0;
+    if (strcmp(read.units, "GY") == 0 && read.values->high > MOST_GY)
+        report_add(report, REPORT_WARNING, "dose.doubtful", where, "The dose reaches %g Gy, expected at most %g: Dose Grid Scaling (3004,000E) is %g.",
+                   read.values->high, MOST_GY, scaling);
     if (read.values->low < 0)
         report_add(report, REPORT_WARNING, "dose.negative", where, "The dose goes down to %g.", read.values->low);
     *dose = read;

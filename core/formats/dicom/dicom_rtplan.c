@@ -11,7 +11,12 @@
 #define RTIONPLAN_CLASS "1.2.840.10008.5.1.4.1.1.481.8"
 #define ASSUMED_SAD_MM 1000.0
 #define NEAREST_MM 1e-3  /* distances below are none */
-#define FURTHEST_MM 1e5 /* isocentres and sources beyond are no numbers of a patient */
+#define FURTHEST_MM 1e5 /* sources beyond are no numbers of a treatment room */
+#define FURTHEST_ISOCENTRE_MM 1e4 /* nor are isocentres: as GRID_FARTHEST_MM */
+#define MOST_ENERGY 2000.0 /* MeV, or MeV a nucleon; kilovolts of an X-ray tube are far below, too */
+#define MOST_DOSE_GY 1000.0
+#define MOST_METERSET 1e6
+#define MOST_FRACTIONS 1000
 
 enum {
     SOP_CLASS = DICOM_TAG(0x0008, 0x0016),
@@ -72,6 +77,7 @@ struct reading {
     struct opening *opening;
     const char *where;
     struct report *report;
+    struct dicom_doubts *doubts; /* of the beam being read */
 };
 
 /* ---- a beam ----------------------------------------------------------------------------------------------------------------------- */
@@ -118,13 +124,9 @@ static void fill_unknown(struct beam_delivery *d)
         d->jaws_x_mm[i] = d->jaws_y_mm[i] = d->opening_x_mm[i] = d->opening_y_mm[i] = NAN;
 }
 
-static bool read_distance(const struct dicom_item *item, uint32_t tag, double *mm)
+static bool read_distance(const struct reading *reading, const struct dicom_item *item, uint32_t tag, const char *name, double *mm)
 {
-    double value;
-    if (!dicom_number(item, tag, &value) || !(value >= NEAREST_MM && value <= FURTHEST_MM))
-        return false;
-    *mm = value;
-    return true;
+    return dicom_number_within(item, tag, name, NEAREST_MM, FURTHEST_MM, mm, reading->doubts);
 }
 
 static void read_words(const struct reading *reading, const struct dicom_item *item, size_t index, struct beam *beam)
@@ -138,7 +140,8 @@ static void read_words(const struct reading *reading, const struct dicom_item *i
     dicom_text(item, RADIATION_TYPE, d->radiation, sizeof d->radiation);
     dicom_text(item, MACHINE_NAME, d->machine, sizeof d->machine);
     dicom_text(item, METERSET_UNIT, d->meterset_unit, sizeof d->meterset_unit);
-    if (!read_distance(item, SOURCE_AXIS_DISTANCE, &d->sad_mm) && !read_distance(item, VIRTUAL_DISTANCES, &d->sad_mm)) {
+    if (!read_distance(reading, item, SOURCE_AXIS_DISTANCE, "source-axis distance", &d->sad_mm) &&
+        !read_distance(reading, item, VIRTUAL_DISTANCES, "virtual source-axis distance", &d->sad_mm)) {
         d->sad_mm = ASSUMED_SAD_MM;
         report_add(reading->report, REPORT_WARNING, "beam.distance-assumed", reading->where,
                    "Beam \"%s\": the plan does not say how far the source is from the isocentre; %g mm was taken.", beam->name,
@@ -156,11 +159,29 @@ struct course {
     char direction[8];
 };
 
-static void read_angle(const struct dicom_item *item, uint32_t tag, double *deg)
+static void read_angle(const struct reading *reading, const struct dicom_item *item, uint32_t tag, const char *name, double *deg)
 {
-    double value;
-    if (dicom_number(item, tag, &value) && fabs(value) <= 36000)
-        *deg = value;
+    (void)dicom_number_within(item, tag, name, -360, 360, deg, reading->doubts);
+}
+
+/* false: none, or one that cannot be, and said so. */
+static bool read_isocentre(const struct reading *reading, const struct dicom_item *item, struct vec3 *isocentre)
+{
+    double at[3];
+    size_t n = dicom_numbers(item, ISOCENTRE, at, 3);
+    if (n == 0)
+        return false;
+    if (n != 3) {
+        dicom_doubt(reading->doubts, "isocentre (300A,012C) has %zu values, expected 3", n);
+        return false;
+    }
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(at[i]) <= FURTHEST_ISOCENTRE_MM)) {
+            dicom_doubt(reading->doubts, "isocentre (300A,012C): value %d is %g mm, expected at most %g", i + 1, at[i], FURTHEST_ISOCENTRE_MM);
+            return false;
+        }
+    *isocentre = vec3(at[0], at[1], at[2]);
+    return true;
 }
 
 /* From one control point to the next, by the direction the first of them gives. */
@@ -175,32 +196,35 @@ static double travelled_deg(double from_deg, double to_deg, const char *directio
     return clockwise > 180 ? clockwise - 360 : clockwise; /* no direction: the shorter way */
 }
 
-static void read_control_point(struct course *course, const struct dicom_item *item, bool is_first, struct beam_delivery *d)
+static void read_control_point(const struct reading *reading, struct course *course, const struct dicom_item *item, bool is_first,
+                               struct beam_delivery *d)
 {
-    double gantry_before = course->angles.gantry_deg, couch_before = course->angles.couch_deg, at[3], pitch = 0;
+    double gantry_before = course->angles.gantry_deg, couch_before = course->angles.couch_deg, pitch = 0;
+    struct vec3 isocentre;
     course->has_gantry |= dicom_number(item, GANTRY_ANGLE, &pitch);
-    read_angle(item, GANTRY_ANGLE, &course->angles.gantry_deg);
-    read_angle(item, SUPPORT_ANGLE, &course->angles.couch_deg);
-    read_angle(item, ECCENTRIC_ANGLE, &course->angles.eccentric_deg);
-    read_angle(item, PITCH_ANGLE, &course->angles.pitch_deg);
-    read_angle(item, ROLL_ANGLE, &course->angles.roll_deg);
-    read_angle(item, COLLIMATOR_ANGLE, &course->collimator_deg);
+    read_angle(reading, item, GANTRY_ANGLE, "gantry angle", &course->angles.gantry_deg);
+    read_angle(reading, item, SUPPORT_ANGLE, "patient support angle", &course->angles.couch_deg);
+    read_angle(reading, item, ECCENTRIC_ANGLE, "table top eccentric angle", &course->angles.eccentric_deg);
+    read_angle(reading, item, PITCH_ANGLE, "table top pitch angle", &course->angles.pitch_deg);
+    read_angle(reading, item, ROLL_ANGLE, "table top roll angle", &course->angles.roll_deg);
+    read_angle(reading, item, COLLIMATOR_ANGLE, "beam limiting device angle", &course->collimator_deg);
     course->has_gantry_pitch |= dicom_number(item, GANTRY_PITCH_ANGLE, &pitch) && fabs(pitch) > 0.01;
-    if (dicom_numbers(item, ISOCENTRE, at, 3) == 3 && fabs(at[0]) <= FURTHEST_MM && fabs(at[1]) <= FURTHEST_MM && fabs(at[2]) <= FURTHEST_MM) {
-        struct vec3 isocentre = vec3(at[0], at[1], at[2]);
+    if (read_isocentre(reading, item, &isocentre)) {
         if (!course->has_isocentre)
             course->isocentre_lps_mm = isocentre;
         course->moves_isocentre |= vec3_length(vec3_sub(isocentre, course->isocentre_lps_mm)) > 0.1;
         course->has_isocentre = true;
     }
     if (is_first) {
-        dicom_number(item, BEAM_ENERGY, &d->energy_mev);
-        read_distance(item, SURFACE_DISTANCE, &d->ssd_mm);
+        (void)dicom_number_within(item, BEAM_ENERGY, "nominal beam energy", 0, MOST_ENERGY, &d->energy_mev, reading->doubts);
+        (void)read_distance(reading, item, SURFACE_DISTANCE, "source to surface distance", &d->ssd_mm);
     } else {
         d->gantry_travel_deg += travelled_deg(gantry_before, course->angles.gantry_deg, course->direction);
         course->moves_couch |= fabs(course->angles.couch_deg - couch_before) > 0.1;
     }
-    dicom_text(item, GANTRY_DIRECTION, course->direction, sizeof course->direction);
+    if (dicom_text(item, GANTRY_DIRECTION, course->direction, sizeof course->direction) && strcmp(course->direction, "CW") != 0 &&
+        strcmp(course->direction, "CC") != 0 && strcmp(course->direction, "NONE") != 0)
+        dicom_doubt(reading->doubts, "gantry rotation direction (300A,011F) is \"%s\", expected CW, CC or NONE", course->direction);
 }
 
 /* The collimator's axes in the patient, as the first control point has them. */
@@ -260,8 +284,8 @@ static bool read_beam(const struct reading *reading, const struct dicom_item *it
     d->patient_position = position_of(reading, item, beam);
     for (size_t i = 0; i < d->n_control_points; i++) {
         const struct dicom_item *point = dicom_item_at(item, sequence, i);
-        read_control_point(&course, point, i == 0, d);
-        opening_move(reading->opening, point);
+        read_control_point(reading, &course, point, i == 0, d);
+        opening_move(reading->opening, point, i + 1);
         opening_measure(reading->opening, i == 0, d);
         if (i == 0)
             place_collimator(d, &course);
@@ -301,7 +325,13 @@ static bool read_beams(const struct reading *reading, struct error *err)
             break;
         }
         struct error reason = { 0 };
-        if (read_beam(reading, dicom_item_at(reading->root, sequence, i), i, is_ion, &plan->beams[plan->n_beams], &reason)) {
+        struct beam *beam = &plan->beams[plan->n_beams];
+        *reading->doubts = (struct dicom_doubts){ 0 };
+        bool is_read = read_beam(reading, dicom_item_at(reading->root, sequence, i), i, is_ion, beam, &reason);
+        char who[80];
+        snprintf(who, sizeof who, "Beam \"%s\"", beam->name);
+        dicom_doubts_report(reading->doubts, "beam.bad-value", who, reading->where, reading->report);
+        if (is_read) {
             plan->n_beams++;
         } else if (reason.code != ERROR_NONE) {
             if (err)
@@ -314,6 +344,38 @@ static bool read_beams(const struct reading *reading, struct error *err)
     return true;
 }
 
+/* Dose and meterset of one beam of a fraction group. false: the plan has no beam of that number. */
+static bool read_reference(const struct reading *reading, const struct dicom_item *item, int64_t number, int64_t n_fractions)
+{
+    struct rtplan *plan = reading->plan;
+    bool is_known = false;
+    for (size_t b = 0; b < plan->n_beams; b++) {
+        struct beam_delivery *d = &plan->beams[b].delivery;
+        is_known |= d->number == number;
+        if (d->number != number || d->n_fractions != 0 || !isnan(d->meterset))
+            continue;
+        d->n_fractions = n_fractions;
+        (void)dicom_number_within(item, BEAM_DOSE, "beam dose", 0, MOST_DOSE_GY, &d->dose_gy, reading->doubts);
+        (void)dicom_number_within(item, BEAM_METERSET, "beam meterset", 0, MOST_METERSET, &d->meterset, reading->doubts);
+    }
+    return is_known;
+}
+
+/* Whether the plan names a beam of that number, shown or not. */
+static bool has_beam_number(const struct reading *reading, int64_t number)
+{
+    for (int kind = 0; kind < 2; kind++) {
+        uint32_t sequence = kind ? ION_BEAM_SEQUENCE : BEAM_SEQUENCE;
+        size_t n = dicom_n_items(reading->root, sequence);
+        for (size_t i = 0; i < n; i++) {
+            int64_t other;
+            if (dicom_integer(dicom_item_at(reading->root, sequence, i), BEAM_NUMBER, &other) ? other == number : (int64_t)i + 1 == number)
+                return true;
+        }
+    }
+    return false;
+}
+
 /* Meterset and dose of each beam, by fraction group; the first group that has the beam counts. */
 static void read_fractions(const struct reading *reading)
 {
@@ -321,26 +383,25 @@ static void read_fractions(const struct reading *reading)
     size_t n_groups = dicom_n_items(reading->root, FRACTION_SEQUENCE);
     for (size_t g = 0; g < n_groups; g++) {
         const struct dicom_item *group = dicom_item_at(reading->root, FRACTION_SEQUENCE, g);
-        int64_t n_fractions = 0;
-        if (!dicom_integer(group, N_FRACTIONS, &n_fractions) || n_fractions < 0)
-            n_fractions = 0;
+        double n_said = 0;
+        (void)dicom_number_within(group, N_FRACTIONS, "number of fractions planned", 0, MOST_FRACTIONS, &n_said, reading->doubts);
+        int64_t n_fractions = (int64_t)n_said;
         plan->n_fractions = plan->n_fractions ? plan->n_fractions : n_fractions;
         size_t n = dicom_n_items(group, REFERENCED_BEAM_SEQUENCE);
         for (size_t i = 0; i < n; i++) {
             const struct dicom_item *item = dicom_item_at(group, REFERENCED_BEAM_SEQUENCE, i);
             int64_t number;
-            if (!dicom_integer(item, REFERENCED_BEAM, &number))
-                continue;
-            for (size_t b = 0; b < plan->n_beams; b++) {
-                struct beam_delivery *d = &plan->beams[b].delivery;
-                if (d->number != number || d->n_fractions != 0 || !isnan(d->meterset))
-                    continue;
-                d->n_fractions = n_fractions;
-                dicom_number(item, BEAM_DOSE, &d->dose_gy);
-                dicom_number(item, BEAM_METERSET, &d->meterset);
-            }
+            if (dicom_integer(item, REFERENCED_BEAM, &number) && !read_reference(reading, item, number, n_fractions) &&
+                !has_beam_number(reading, number))
+                dicom_doubt(reading->doubts, "fraction group %zu refers to beam %lld (300C,0006), which the plan does not have", g + 1,
+                            (long long)number);
         }
     }
+    for (size_t a = 0; a < plan->n_beams; a++)
+        for (size_t b = 0; b < a; b++)
+            if (plan->beams[a].delivery.number == plan->beams[b].delivery.number)
+                dicom_doubt(reading->doubts, "beam number (300A,00C0) is %lld for both \"%.40s\" and \"%.40s\"",
+                            (long long)plan->beams[a].delivery.number, plan->beams[b].name, plan->beams[a].name);
 }
 
 static void read_prescription(const struct reading *reading)
@@ -353,7 +414,7 @@ static void read_prescription(const struct reading *reading)
         char type[17];
         double dose_gy;
         if (dicom_text(item, DOSE_REFERENCE_TYPE, type, sizeof type) && strcmp(type, "TARGET") == 0 &&
-            dicom_number(item, TARGET_DOSE, &dose_gy))
+            dicom_number_within(item, TARGET_DOSE, "target prescription dose", 0, MOST_DOSE_GY, &dose_gy, reading->doubts))
             plan->target_dose_gy = fmax(isnan(plan->target_dose_gy) ? dose_gy : plan->target_dose_gy, dose_gy);
     }
 }
@@ -380,15 +441,20 @@ struct rtplan *rtplan_read(const struct dicom_file *file, const char *where, str
     const struct dicom_item *structures = dicom_item_at(root, REFERENCED_STRUCT_SEQUENCE, 0);
     if (structures)
         dicom_text(structures, REFERENCED_INSTANCE, plan->struct_uid, sizeof plan->struct_uid);
-    struct reading reading = { root, plan, mem_new(sizeof(struct opening)), where, report };
+    struct dicom_doubts doubts = { 0 };
+    struct reading reading = { root, plan, mem_new(sizeof(struct opening)), where, report, &doubts };
+    reading.opening->doubts = &doubts;
+    dicom_numbers_report(file, 0, where, report);
     bool is_read = read_beams(&reading, err);
     free(reading.opening);
     if (!is_read) {
         rtplan_destroy(plan);
         return NULL;
     }
+    doubts = (struct dicom_doubts){ 0 };
     read_fractions(&reading);
     read_prescription(&reading);
+    dicom_doubts_report(&doubts, "beam.bad-value", "The plan", where, report);
     return plan;
 }
 

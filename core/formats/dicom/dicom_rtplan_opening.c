@@ -9,6 +9,7 @@ enum {
     LEAF_BOUNDARIES = DICOM_TAG(0x300a, 0x00be),
     BLOCK_SEQUENCE = DICOM_TAG(0x300a, 0x00f4),
     BLOCK_TYPE = DICOM_TAG(0x300a, 0x00f8),
+    BLOCK_N_POINTS = DICOM_TAG(0x300a, 0x0104),
     BLOCK_DATA = DICOM_TAG(0x300a, 0x0106),
     APPLICATOR_SEQUENCE = DICOM_TAG(0x300a, 0x0107),
     POSITION_SEQUENCE = DICOM_TAG(0x300a, 0x011a),
@@ -56,31 +57,72 @@ static bool moves_along_x(const struct opening_device *device)
     return n > 0 && device->type[n - 1] == 'X';
 }
 
-static bool are_finite(const double *values, size_t n)
+#define CLOSED_MM 1.0 /* closed leaves may be given a little across each other */
+
+static bool are_within(const double *values, size_t n, double most, size_t *which)
 {
     for (size_t i = 0; i < n; i++)
-        if (!(fabs(values[i]) <= WIDE_OPEN_MM))
+        if (!(fabs(values[i]) <= most)) {
+            *which = i;
             return false;
+        }
+    return true;
+}
+
+static bool is_known_type(const char *type)
+{
+    static const char *const known[] = { "X", "ASYMX", "Y", "ASYMY", "MLCX", "MLCY" };
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+        if (strcmp(type, known[i]) == 0)
+            return true;
+    return false;
+}
+
+/* Boundaries of leaves: one more than pairs, each further than the one before. */
+static bool read_boundaries(struct opening *opening, struct opening_device *device, const struct dicom_item *item, int64_t n_pairs)
+{
+    size_t n = dicom_numbers(item, LEAF_BOUNDARIES, device->boundaries_mm, OPENING_MAX_LEAVES + 1), which;
+    if (n < 2 || n > OPENING_MAX_LEAVES + 1 || (n_pairs > 0 && n != (size_t)n_pairs + 1)) {
+        dicom_doubt(opening->doubts, "%s: leaf position boundaries (300A,00BE) are %zu, expected %lld for %lld pairs of leaves", device->type, n,
+                    (long long)n_pairs + 1, (long long)n_pairs);
+        return false;
+    }
+    if (!are_within(device->boundaries_mm, n, OPENING_MOST_MM, &which)) {
+        dicom_doubt(opening->doubts, "%s: leaf position boundary %zu (300A,00BE) is %g mm, expected at most %g", device->type, which + 1,
+                    device->boundaries_mm[which], OPENING_MOST_MM);
+        return false;
+    }
+    for (size_t i = 1; i < n; i++)
+        if (!(device->boundaries_mm[i] > device->boundaries_mm[i - 1])) {
+            dicom_doubt(opening->doubts, "%s: leaf position boundary %zu (300A,00BE) is %g mm, expected more than the %g mm of the one before",
+                        device->type, i + 1, device->boundaries_mm[i], device->boundaries_mm[i - 1]);
+            return false;
+        }
+    device->n_pairs = n - 1;
     return true;
 }
 
 static bool add_device(struct opening *opening, const struct dicom_item *item, struct error *err)
 {
-    int64_t n_pairs = 1;
+    int64_t n_pairs = 0;
     if (opening->n_devices >= OPENING_MAX_DEVICES)
         return error_set(err, ERROR_LIMIT, "more than %d beam limiting devices", OPENING_MAX_DEVICES);
     struct opening_device *device = &opening->devices[opening->n_devices];
     *device = (struct opening_device){ .n_pairs = 1 };
-    if (!dicom_text(item, DEVICE_TYPE, device->type, sizeof device->type))
-        return true; /* of no use without */
-    if (is_leaves(device)) {
-        if (dicom_integer(item, DEVICE_N_PAIRS, &n_pairs) && n_pairs > OPENING_MAX_LEAVES)
-            return error_set(err, ERROR_LIMIT, "a collimator of %lld pairs of leaves; the limit is %d", (long long)n_pairs, OPENING_MAX_LEAVES);
-        size_t n = dicom_numbers(item, LEAF_BOUNDARIES, device->boundaries_mm, OPENING_MAX_LEAVES + 1);
-        if (n < 2 || n > OPENING_MAX_LEAVES + 1 || !are_finite(device->boundaries_mm, n))
-            return true;
-        device->n_pairs = n - 1;
+    (void)dicom_text(item, DEVICE_TYPE, device->type, sizeof device->type);
+    if (!is_known_type(device->type)) {
+        dicom_doubt(opening->doubts, "type of a beam limiting device (300A,00B8) is \"%s\", expected X, ASYMX, Y, ASYMY, MLCX or MLCY",
+                    device->type);
+        return true;
     }
+    bool has_pairs = dicom_integer(item, DEVICE_N_PAIRS, &n_pairs);
+    if (n_pairs > OPENING_MAX_LEAVES)
+        return error_set(err, ERROR_LIMIT, "a collimator of %lld pairs of leaves; the limit is %d", (long long)n_pairs, OPENING_MAX_LEAVES);
+    if (has_pairs && (n_pairs < 1 || (!is_leaves(device) && n_pairs != 1)))
+        dicom_doubt(opening->doubts, "%s: number of pairs (300A,00BC) is %lld, expected %s", device->type, (long long)n_pairs,
+                    is_leaves(device) ? "1 or more" : "1");
+    if (is_leaves(device) && !read_boundaries(opening, device, item, n_pairs))
+        return true;
     opening->n_devices++;
     return true;
 }
@@ -127,9 +169,20 @@ static void add_blocks(struct opening *opening, const struct dicom_item *beam, u
         double xy[2 * MOST_BLOCK_POINTS];
         if (!dicom_text(item, BLOCK_TYPE, type, sizeof type) || strcmp(type, "APERTURE") != 0)
             continue;
-        size_t n_values = dicom_numbers(item, BLOCK_DATA, xy, 2 * MOST_BLOCK_POINTS);
-        if (n_values >= 6 && n_values <= 2 * MOST_BLOCK_POINTS && are_finite(xy, n_values - n_values % 2))
-            add_block(opening, xy, n_values / 2);
+        size_t n_values = dicom_numbers(item, BLOCK_DATA, xy, 2 * MOST_BLOCK_POINTS), which;
+        int64_t n_said;
+        if (n_values < 6 || n_values > 2 * MOST_BLOCK_POINTS || n_values % 2) {
+            dicom_doubt(opening->doubts, "block data (300A,0106) has %zu values, expected 6 to %d, two a point", n_values, 2 * MOST_BLOCK_POINTS);
+            continue;
+        }
+        if (!are_within(xy, n_values, WIDE_OPEN_MM, &which)) {
+            dicom_doubt(opening->doubts, "block data (300A,0106): value %zu is %g mm, expected at most %g", which + 1, xy[which], WIDE_OPEN_MM);
+            continue;
+        }
+        if (dicom_integer(item, BLOCK_N_POINTS, &n_said) && n_said != (int64_t)(n_values / 2))
+            dicom_doubt(opening->doubts, "block data (300A,0106) has %zu points, expected the %lld of (300A,0104)", n_values / 2,
+                        (long long)n_said);
+        add_block(opening, xy, n_values / 2);
     }
 }
 
@@ -149,29 +202,54 @@ bool opening_init(struct opening *opening, const struct dicom_item *beam, struct
     char shape[17];
     double diameter_mm;
     if (geometry && dicom_text(geometry, APPLICATOR_SHAPE, shape, sizeof shape) && strcmp(shape, "SYM_CIRCULAR") == 0 &&
-        dicom_number(geometry, APPLICATOR_OPENING, &diameter_mm) && diameter_mm > 0 && diameter_mm < WIDE_OPEN_MM)
+        dicom_number_within(geometry, APPLICATOR_OPENING, "applicator opening", 1, 2 * OPENING_MOST_MM, &diameter_mm, opening->doubts))
         opening->round_mm = diameter_mm;
     return true;
 }
 
-void opening_move(struct opening *opening, const struct dicom_item *control_point)
+/* The positions of one device at one control point; false: they cannot be used. */
+static bool check_positions(struct opening *opening, const struct opening_device *device, const double *mm, size_t n, size_t number)
+{
+    size_t which;
+    if (n != 2 * device->n_pairs) {
+        dicom_doubt(opening->doubts, "control point %zu, %s: leaf/jaw positions (300A,011C) are %zu, expected %zu", number, device->type, n,
+                    2 * device->n_pairs);
+        return false;
+    }
+    if (!are_within(mm, n, OPENING_MOST_MM, &which)) {
+        dicom_doubt(opening->doubts, "control point %zu, %s: leaf/jaw position %zu (300A,011C) is %g mm, expected at most %g", number,
+                    device->type, which + 1, mm[which], OPENING_MOST_MM);
+        return false;
+    }
+    for (size_t i = 0; i < device->n_pairs; i++)
+        if (mm[i] > mm[device->n_pairs + i] + CLOSED_MM)
+            dicom_doubt(opening->doubts, "control point %zu, %s: positions of pair %zu (300A,011C) are %g and %g mm, the first beyond the second",
+                        number, device->type, i + 1, mm[i], mm[device->n_pairs + i]);
+    return true;
+}
+
+void opening_move(struct opening *opening, const struct dicom_item *control_point, size_t number)
 {
     size_t n = dicom_n_items(control_point, POSITION_SEQUENCE);
     for (size_t i = 0; i < n; i++) {
         const struct dicom_item *item = dicom_item_at(control_point, POSITION_SEQUENCE, i);
         char type[17];
         double positions[2 * OPENING_MAX_LEAVES];
+        bool is_known = false;
         dicom_text(item, DEVICE_TYPE, type, sizeof type);
         for (size_t d = 0; d < opening->n_devices; d++) {
             struct opening_device *device = &opening->devices[d];
             if (strcmp(type, device->type) != 0)
                 continue;
+            is_known = true;
             size_t n_values = dicom_numbers(item, LEAF_POSITIONS, positions, 2 * OPENING_MAX_LEAVES);
-            if (n_values != 2 * device->n_pairs || !are_finite(positions, n_values))
+            if (!check_positions(opening, device, positions, n_values, number))
                 continue;
             memcpy(device->positions_mm, positions, n_values * sizeof *positions);
             device->is_placed = true;
         }
+        if (!is_known)
+            dicom_doubt(opening->doubts, "control point %zu: positions of a device \"%s\" (300A,00B8) that the beam does not have", number, type);
     }
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/formats/dicom/dicom_numbers.h"
 #include "core/formats/text.h"
 
 #define RTSTRUCT_CLASS "1.2.840.10008.5.1.4.1.1.481.3"
@@ -190,14 +191,22 @@ static bool read_contours(struct reading *reading, struct reading_roi *roi, cons
     return true;
 }
 
-static void read_color(struct rtstruct_roi *roi, const struct dicom_item *item)
+static void read_color(const struct reading *reading, struct rtstruct_roi *roi, const struct dicom_item *item)
 {
-    double rgb[3];
-    if (dicom_numbers(item, ROI_COLOR, rgb, 3) != 3)
+    double rgb[3] = { 0, 0, 0 };
+    size_t n = dicom_numbers(item, ROI_COLOR, rgb, 3);
+    if (n == 0)
         return;
+    bool is_color = n == 3;
     for (int i = 0; i < 3; i++)
-        if (!(rgb[i] >= 0 && rgb[i] <= 255))
-            return;
+        is_color = is_color && rgb[i] >= 0 && rgb[i] <= 255;
+    if (!is_color) {
+        char found[40];
+        dicom_text(item, ROI_COLOR, found, sizeof found);
+        report_add(reading->report, REPORT_WARNING, "dicom.bad-number", reading->where, "\"%s\": its colour (3006,002A) is \"%s\", expected three "
+                   "numbers from 0 to 255; it has the palette's.", roi->name, found);
+        return;
+    }
     for (int i = 0; i < 3; i++)
         roi->rgb[i] = (uint8_t)rgb[i];
     roi->has_color = true;
@@ -225,7 +234,7 @@ static bool read_all_contours(struct reading *reading, struct error *err)
                        "There are contours for region %lld, which the file does not describe; it is called \"%s\".", (long long)number,
                        roi->roi.name);
         }
-        read_color(&roi->roi, item);
+        read_color(reading, &roi->roi, item);
         if (!read_contours(reading, roi, item, err))
             return false;
     }
@@ -319,6 +328,7 @@ struct rtstruct *rtstruct_read(const struct dicom_file *file, const char *where,
         error_set(err, ERROR_FORMAT, "%s: no Structure Set ROI Sequence (3006,0020)", where);
         return NULL;
     }
+    dicom_numbers_report(file, CONTOUR_DATA, where, report); /* of contours it is counted */
     struct reading reading = { .file = file, .where = where, .report = report };
     reading.rois = mem_new(RTSTRUCT_MAX_ROIS * sizeof *reading.rois);
     struct rtstruct *set = mem_new(sizeof *set), *made = NULL;
@@ -403,7 +413,7 @@ static void report_left_out(const char *name, const struct contour_facts *facts,
                     { facts->n_not_parallel, "are tilted against the others" } };
     for (size_t i = 0; i < sizeof reasons / sizeof reasons[0]; i++)
         if (reasons[i].n > 0)
-            report_add(report, i < 2 ? REPORT_NOTE : REPORT_WARNING, "region.contours-left-out", where,
+            report_add(report, i == 1 ? REPORT_NOTE : REPORT_WARNING, "region.contours-left-out", where,
                        "\"%s\": %zu contours %s and were left out.", name, reasons[i].n, reasons[i].why);
 }
 

@@ -435,6 +435,7 @@ struct volume *dicom_series_read(const struct folder *folder, const struct dicom
     if (find_slices(&series, facts, report, err) &&
         dicom_slices_lay_out(series.slices, series.n_slices, &series.plane, index->objects[series.stack->objects[0]].path, &layout, report, err)) {
         check_scales(&series, report);
+        dicom_slices_compare(index, series.stack, report);
         choose_type(&series, facts, report);
         volume = read_volume(&series, &layout, err);
     }

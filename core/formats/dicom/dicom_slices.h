@@ -43,6 +43,8 @@ NODISCARD bool dicom_slices_lay_out(const struct dicom_slice *slices, size_t n, 
 NODISCARD bool dicom_frames_find(const struct dicom_file *file, const char *path, size_t object, uint32_t n_frames,
                                  struct dicom_slice *slices, size_t *n, struct dicom_plane *plane, struct report *report,
                                  struct error *err);
+/* Says what the pictures of a stack contradict each other in: sign, bits, unit; of a CT also the scale. */
+void dicom_slices_compare(const struct dicom_index *index, const struct dicom_stack *stack, struct report *report);
 /* Sorts by along_mm and drops what lies where another slice does; returns how many are left. */
 size_t dicom_slices_sort(struct dicom_slice *slices, size_t n, size_t *n_repeated);
 

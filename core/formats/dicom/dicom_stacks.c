@@ -294,6 +294,45 @@ static struct group *group_for(struct grouping *all, const struct dicom_index *i
     return all->n < DICOM_MAX_STACKS ? &all->groups[all->n++] : NULL;
 }
 
+/* What sets pictures of one series apart, for the report. */
+static void name_difference(const struct dicom_object *a, const struct dicom_object *b, char out[240])
+{
+    const struct dicom_image *found = a->image, *expected = b->image;
+    if (found->has_place != expected->has_place)
+        snprintf(out, 240, "frames of its own");
+    else if (found->pixels.rows != expected->pixels.rows || found->pixels.columns != expected->pixels.columns)
+        snprintf(out, 240, "(0028,0011) and (0028,0010), size: found %u x %u, expected %u x %u", found->pixels.columns, found->pixels.rows,
+                 expected->pixels.columns, expected->pixels.rows);
+    else if (!are_close(found->spacing_mm, expected->spacing_mm, 2, 1e-3 * fmin(expected->spacing_mm[0], expected->spacing_mm[1])))
+        snprintf(out, 240, "(0028,0030), pixel spacing: found %g\\%g, expected %g\\%g", found->spacing_mm[0], found->spacing_mm[1],
+                 expected->spacing_mm[0], expected->spacing_mm[1]);
+    else if (!are_close(found->row, expected->row, 3, 1e-3) || !are_close(found->column, expected->column, 3, 1e-3))
+        snprintf(out, 240, "(0020,0037), orientation: found %.4g\\%.4g\\%.4g\\%.4g\\%.4g\\%.4g, expected %.4g\\%.4g\\%.4g\\%.4g\\%.4g\\%.4g",
+                 found->row[0], found->row[1], found->row[2], found->column[0], found->column[1], found->column[2], expected->row[0],
+                 expected->row[1], expected->row[2], expected->column[0], expected->column[1], expected->column[2]);
+    else if (strcmp(a->frame_of_reference, b->frame_of_reference) != 0)
+        snprintf(out, 240, "(0020,0052), frame of reference");
+    else
+        snprintf(out, 240, "(0008,0060), modality: found %s, expected %s", a->modality, b->modality);
+}
+
+/* A few pictures that do not fit to the many others of their series: one of them may be damaged, and it is missing there. */
+static void report_stray(const struct grouping *all, const struct dicom_index *index, size_t group, struct report *report)
+{
+    const struct group *few = &all->groups[group], *most = few;
+    const struct dicom_object *stray = &index->objects[few->members[0].object];
+    for (size_t g = 0; g < all->n; g++)
+        if (all->groups[g].n > most->n && strcmp(index->objects[all->groups[g].members[0].object].series, stray->series) == 0)
+            most = &all->groups[g];
+    if (4 * few->n > most->n)
+        return;
+    char difference[240];
+    name_difference(stray, &index->objects[most->members[0].object], difference);
+    report_add(report, REPORT_WARNING, "image.slices-stray", stray->path, "%zu of %zu pictures of the series \"%.60s\" cannot lie in one volume "
+               "with the others: %s. They became an image of their own and are missing among the others.", few->n, few->n + most->n,
+               stray->description, difference);
+}
+
 /* "2 of 3": which group of its series this is, so that their names differ; "" when it is alone. */
 static void name_group(const struct grouping *all, const struct dicom_index *index, size_t group, char out[80])
 {
@@ -345,6 +384,8 @@ bool dicom_stacks_find(struct dicom_index *index, struct report *report, struct 
             report_add(report, REPORT_NOTE, "image.split", index->objects[all->groups[g].members[0].object].path,
                        "The series \"%s\" holds pictures of different orientation, size or kind; it was split, this is %s.",
                        index->objects[all->groups[g].members[0].object].description, apart);
+        if (apart[0])
+            report_stray(all, index, g, report);
         close_group(index, &all->groups[g], apart, &n_left_out, report);
     }
     if (n_left_out > 0)

@@ -1,0 +1,48 @@
+#include "core/formats/dicom/dicom_numbers.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+void dicom_numbers_report(const struct dicom_file *file, uint32_t but_not, const char *where, struct report *report)
+{
+    enum { MOST = 10 };
+    struct dicom_bad_number bad[MOST];
+    size_t n = dicom_bad_numbers(dicom_root(file), true, but_not, bad, MOST);
+    for (size_t i = 0; i < n && i < MOST; i++)
+        report_add(report, REPORT_WARNING, "dicom.bad-number", where, "Element %s: expected a number, found \"%s\"; it is not used.",
+                   bad[i].place, bad[i].found);
+    if (n > MOST)
+        report_add(report, REPORT_WARNING, "dicom.bad-number", where, "%zu more values are no numbers.", n - MOST);
+}
+
+void dicom_doubt(struct dicom_doubts *doubts, const char *format, ...)
+{
+    if (doubts->n++ > 0)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(doubts->first, sizeof doubts->first, format, arguments);
+    va_end(arguments);
+}
+
+bool dicom_number_within(const struct dicom_item *item, uint32_t tag, const char *name, double low, double high, double *value,
+                         struct dicom_doubts *doubts)
+{
+    double found;
+    if (!dicom_number(item, tag, &found))
+        return false; /* absent, or no number, which dicom_numbers_report says */
+    if (!(found >= low && found <= high)) {
+        dicom_doubt(doubts, "%s (%04X,%04X) is %g, expected %g to %g", name, tag >> 16, tag & 0xFFFF, found, low, high);
+        return false;
+    }
+    *value = found;
+    return true;
+}
+
+void dicom_doubts_report(const struct dicom_doubts *doubts, const char *code, const char *who, const char *where, struct report *report)
+{
+    if (doubts->n == 1)
+        report_add(report, REPORT_WARNING, code, where, "%s: %s.", who, doubts->first);
+    else if (doubts->n > 1)
+        report_add(report, REPORT_WARNING, code, where, "%s: %s; and %zu more such values.", who, doubts->first, doubts->n - 1);
+}

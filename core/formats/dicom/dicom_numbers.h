@@ -1,0 +1,20 @@
+#pragma once
+/* Inside core/formats/dicom: values that are no numbers, or none that can be, as lines of the report. */
+#include "core/formats/dicom/dicom_file.h"
+#include "core/plan/report.h"
+
+/* A line for each DS or IS value of a file that is no number, up to some; the others are counted. Values of the tag but_not are the
+ * caller's to look at (0: none). A single one counts as absent for whoever reads it. */
+void dicom_numbers_report(const struct dicom_file *file, uint32_t but_not, const char *where, struct report *report);
+
+/* What was found wrong with one thing (a beam) while it was read: how much, and the first of it. */
+struct dicom_doubts {
+    size_t n;
+    char first[200];
+};
+void dicom_doubt(struct dicom_doubts *doubts, const char *format, ...) PRINTF_LIKE(2, 3);
+/* A warning, if there is anything to say: "Beam "Front": gantry angle (300A,011E) is 400, expected -360 to 360; and 2 more such values." */
+void dicom_doubts_report(const struct dicom_doubts *doubts, const char *code, const char *who, const char *where, struct report *report);
+/* The number of an element, if it is there: in a range, else a doubt that names tag, found and expected, and false. */
+bool dicom_number_within(const struct dicom_item *item, uint32_t tag, const char *name, double low, double high, double *value,
+                         struct dicom_doubts *doubts);
