@@ -130,24 +130,83 @@ void renderer_forget(struct renderer *renderer, const struct plan *plan)
         soft_renderer_forget(renderer->soft, plan);
 }
 
+/* ---- pictures --------------------------------------------------------------------------------------------------------------------- */
+
+struct render_picture {
+    struct renderer *renderer;
+    const struct snapshot *snapshot;
+    struct gl_picture *gl;
+    struct soft_frame *soft;
+    struct camera camera;
+    struct render_timing timing;
+    struct image *image; /* drawn; NULL: the back end is not done with it */
+    bool is_done;        /* with what is painted over it */
+};
+
+struct render_picture *render_begin(struct renderer *renderer, const struct snapshot *snapshot, const struct render_options *options)
+{
+    assert_thread(renderer);
+    struct render_picture *picture = mem_new(sizeof *picture);
+    picture->renderer = renderer;
+    picture->snapshot = snapshot;
+    camera_resolve(snapshot, &picture->camera);
+    if (renderer->gl)
+        picture->gl = gl_picture_begin(renderer->gl, snapshot, options, &picture->camera);
+    else
+        picture->soft = soft_picture_begin(renderer->soft, snapshot, options, &picture->camera);
+    return picture;
+}
+
+static struct image *end_back_end(struct render_picture *picture)
+{
+    struct image *image = picture->gl ? gl_picture_end(picture->gl) : picture->soft ? soft_picture_end(picture->soft) : NULL;
+    picture->gl = NULL;
+    picture->soft = NULL;
+    return image;
+}
+
+enum render_state render_go_on(struct render_picture *picture, const struct render_pause *pause, struct error *err)
+{
+    assert_thread(picture->renderer);
+    if (!picture->image) {
+        enum render_state state = picture->gl ? gl_picture_go_on(picture->gl, pause, &picture->timing, err)
+                                              : soft_picture_go_on(picture->soft, pause, &picture->timing, err);
+        if (state != RENDER_DONE)
+            return state;
+        picture->image = end_back_end(picture);
+        if (pause && pause->is_due(pause->context))
+            return RENDER_PAUSED;
+    }
+    int64_t start_us = clock_now_us();
+    struct overlay_check check;
+    if (!overlay_draw(picture->renderer->overlay, picture->snapshot, &picture->camera, picture->image, &check, err))
+        return RENDER_FAILED;
+    picture->timing.n_added_px = check.n_added;
+    picture->timing.n_left_out_px = check.n_left_out;
+    picture->timing.draw_us += clock_now_us() - start_us;
+    picture->is_done = true;
+    return RENDER_DONE;
+}
+
+struct image *render_end(struct render_picture *picture, struct camera *camera, struct render_timing *timing)
+{
+    assert_thread(picture->renderer);
+    struct image *unfinished = end_back_end(picture), *image = picture->image;
+    image_destroy(unfinished);
+    if (!picture->is_done) {
+        image_destroy(image);
+        image = NULL;
+    }
+    *camera = picture->camera;
+    *timing = picture->timing;
+    free(picture);
+    return image;
+}
+
 struct image *render_snapshot(struct renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
                               struct camera *camera, struct render_timing *timing, struct error *err)
 {
-    assert_thread(renderer);
-    *timing = (struct render_timing){ 0 };
-    camera_resolve(snapshot, camera);
-    struct image *image = renderer->gl ? gl_renderer_snapshot(renderer->gl, snapshot, options, camera, timing, err)
-                                       : soft_renderer_snapshot(renderer->soft, snapshot, options, camera, timing, err);
-    int64_t start_us = clock_now_us();
-    struct overlay_check check;
-    if (image && !overlay_draw(renderer->overlay, snapshot, camera, image, &check, err)) {
-        image_destroy(image);
-        return NULL;
-    }
-    if (image) {
-        timing->n_added_px = check.n_added;
-        timing->n_left_out_px = check.n_left_out;
-        timing->draw_us += clock_now_us() - start_us;
-    }
-    return image;
+    struct render_picture *picture = render_begin(renderer, snapshot, options);
+    (void)!render_go_on(picture, NULL, err); /* what is not done gives no image */
+    return render_end(picture, camera, timing);
 }

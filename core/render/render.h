@@ -42,5 +42,21 @@ struct render_timing {
 NODISCARD struct image *render_snapshot(struct renderer *renderer, const struct snapshot *snapshot,
                                         const struct render_options *options, struct camera *camera, struct render_timing *timing,
                                         struct error *err);
-/* Drops everything kept for a plan; before the plan is destroyed. */
+
+/* The same in pieces, so that a picture that takes long can wait while others are drawn: begin, go on until it is done or has failed, end.
+ * Several pictures may be begun. However often one is paused, its bytes are the same. */
+struct render_picture;
+struct render_pause {
+    bool (*is_due)(void *context); /* asked between parts of a picture, by several threads at once */
+    void *context;
+};
+enum render_state { RENDER_FAILED, RENDER_PAUSED, RENDER_DONE };
+NODISCARD struct render_picture *render_begin(struct renderer *renderer, const struct snapshot *snapshot, const struct render_options *options);
+/* Draws at least one part of it, and on until a pause is due (NULL: never). Not to be called again once it is done or has failed.
+ *   errors as render_snapshot */
+NODISCARD enum render_state render_go_on(struct render_picture *picture, const struct render_pause *pause, struct error *err);
+/* Frees picture, done or not. The image, or NULL when it is not done; camera and timing (times of its own parts only) are always filled. */
+NODISCARD struct image *render_end(struct render_picture *picture, struct camera *camera, struct render_timing *timing);
+
+/* Drops everything kept for a plan; before the plan is destroyed, and while no picture is begun. */
 void renderer_forget(struct renderer *renderer, const struct plan *plan);

@@ -45,6 +45,15 @@ struct shot {
     enum scene_representation representation;
 };
 
+/* On a rasteriser alone, which may be told its number of threads. */
+static struct image *draw_on(struct soft_renderer *soft, const struct snapshot *snapshot, const struct render_options *options,
+                             const struct camera *camera, struct render_timing *timing, struct error *err)
+{
+    struct soft_frame *frame = soft_picture_begin(soft, snapshot, options, camera);
+    assert_int_equal(soft_picture_go_on(frame, NULL, timing, err), RENDER_DONE);
+    return soft_picture_end(frame);
+}
+
 static struct image *take(struct soft_renderer *soft, struct renderer *other, struct plan *plan, const struct shot *shot, int width, int height)
 {
     struct scene scene;
@@ -76,7 +85,7 @@ static struct image *take(struct soft_renderer *soft, struct renderer *other, st
     assert_string_equal(err.text, "");
     camera_resolve(snapshot, &camera);
     struct image *image = other ? render_snapshot(other, snapshot, &options, &camera, &timing, &err)
-                                : soft_renderer_snapshot(soft, snapshot, &options, &camera, &timing, &err);
+                                : draw_on(soft, snapshot, &options, &camera, &timing, &err);
     assert_string_equal(err.text, "");
     assert_non_null(image);
     snapshot_unref(snapshot);

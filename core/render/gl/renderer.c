@@ -241,35 +241,70 @@ static bool draw_band(struct gl_renderer *renderer, struct gl_frame *frame, stru
     return is_good;
 }
 
-struct image *gl_renderer_snapshot(struct gl_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
-                                   const struct camera *camera, struct render_timing *timing, struct error *err)
+struct gl_picture {
+    struct gl_renderer *renderer;
+    struct gl_frame frame;
+    struct render_options options;
+    struct image *image;
+    int next_row, band; /* in pixels of the picture */
+    int samples;
+};
+
+struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
+                                    const struct camera *camera)
 {
-    if (options->width_px < 1 || options->height_px < 1 || options->width_px > MAX_SIDE_PX || options->height_px > MAX_SIDE_PX) {
-        error_set(err, ERROR_RANGE, "a picture of %d x %d pixels: each side must be 1 to %d", options->width_px, options->height_px,
-                  MAX_SIDE_PX);
-        return NULL;
-    }
-    struct image *image = image_create(options->width_px, options->height_px, err);
-    if (!image)
-        return NULL;
-    struct gl_frame frame = { .gl = &renderer->gl, .programs = &renderer->programs, .cache = renderer->cache,
-                              .target = &renderer->target, .layers = &renderer->layers, .no_vertices = renderer->no_vertices,
-                              .polygon_array = renderer->polygon_array, .polygon = renderer->polygon, .palette = renderer->palette,
-                              .colors = renderer->colors,
-                              .snapshot = snapshot, .camera = camera, .detail = options->detail, .timing = timing };
-    gl_cache_trim(&renderer->gl, renderer->cache);
-    int samples = visible_samples(snapshot, camera, options->width_px, options->is_still);
-    int row = image->width_px * samples * samples, band = MAX_BAND_SAMPLES / row;
-    int n_layers = (int)visible_n_translucent(snapshot);
+    struct gl_picture *picture = mem_new(sizeof *picture);
+    picture->renderer = renderer;
+    picture->options = *options;
+    picture->frame = (struct gl_frame){ .gl = &renderer->gl, .programs = &renderer->programs, .cache = renderer->cache,
+                                        .target = &renderer->target, .layers = &renderer->layers, .no_vertices = renderer->no_vertices,
+                                        .polygon_array = renderer->polygon_array, .polygon = renderer->polygon,
+                                        .palette = renderer->palette, .colors = renderer->colors, .snapshot = snapshot,
+                                        .camera = camera, .detail = options->detail };
+    return picture;
+}
+
+static bool prepare(struct gl_picture *picture, struct error *err)
+{
+    const struct render_options *options = &picture->options;
+    if (options->width_px < 1 || options->height_px < 1 || options->width_px > MAX_SIDE_PX || options->height_px > MAX_SIDE_PX)
+        return error_set(err, ERROR_RANGE, "a picture of %d x %d pixels: each side must be 1 to %d", options->width_px, options->height_px,
+                         MAX_SIDE_PX);
+    picture->image = image_create(options->width_px, options->height_px, err);
+    if (!picture->image)
+        return false;
+    gl_cache_trim(&picture->renderer->gl, picture->renderer->cache);
+    picture->samples = visible_samples(picture->frame.snapshot, picture->frame.camera, options->width_px, options->is_still);
+    int row = options->width_px * picture->samples * picture->samples, band = MAX_BAND_SAMPLES / row;
+    int n_layers = (int)visible_n_translucent(picture->frame.snapshot);
     n_layers = n_layers < GL_LAYERS_MAX ? n_layers : GL_LAYERS_MAX;
     if (n_layers > 0 && band > GL_LAYERS_MAX_SAMPLES / n_layers / row)
         band = GL_LAYERS_MAX_SAMPLES / n_layers / row; /* 8 rows at the very least */
-    for (int first = 0; first < image->height_px; first += band) {
-        int n = image->height_px - first < band ? image->height_px - first : band;
-        if (!draw_band(renderer, &frame, image, first, n, samples, err)) {
-            image_destroy(image);
-            return NULL;
-        }
+    picture->band = band;
+    return true;
+}
+
+enum render_state gl_picture_go_on(struct gl_picture *picture, const struct render_pause *pause, struct render_timing *timing, struct error *err)
+{
+    picture->frame.timing = timing;
+    if (!picture->image && !prepare(picture, err))
+        return RENDER_FAILED;
+    do {
+        int left = picture->image->height_px - picture->next_row, n = left < picture->band ? left : picture->band;
+        if (!draw_band(picture->renderer, &picture->frame, picture->image, picture->next_row, n, picture->samples, err))
+            return RENDER_FAILED;
+        picture->next_row += n;
+    } while (picture->next_row < picture->image->height_px && !(pause && pause->is_due(pause->context)));
+    return picture->next_row < picture->image->height_px ? RENDER_PAUSED : RENDER_DONE;
+}
+
+struct image *gl_picture_end(struct gl_picture *picture)
+{
+    struct image *image = picture->image;
+    if (image && picture->next_row < image->height_px) {
+        image_destroy(image);
+        image = NULL;
     }
+    free(picture);
     return image;
 }

@@ -9,8 +9,12 @@ struct gl_renderer;
 NODISCARD struct gl_renderer *gl_renderer_create(enum render_back_end back_end, bool is_hardware_wanted, struct error *err);
 void gl_renderer_destroy(struct gl_renderer *renderer);
 const struct render_facts *gl_renderer_facts(const struct gl_renderer *renderer);
-/* camera: the snapshot's, resolved; timing: zeroed. */
-NODISCARD struct image *gl_renderer_snapshot(struct gl_renderer *renderer, const struct snapshot *snapshot,
-                                             const struct render_options *options, const struct camera *camera,
-                                             struct render_timing *timing, struct error *err);
+/* The parts of render_begin, render_go_on and render_end. snapshot and camera, which is the snapshot's, resolved, outlive the picture; timing:
+ * zeroed before the first time. */
+struct gl_picture;
+struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
+                                    const struct camera *camera);
+NODISCARD enum render_state gl_picture_go_on(struct gl_picture *picture, const struct render_pause *pause, struct render_timing *timing,
+                                             struct error *err);
+NODISCARD struct image *gl_picture_end(struct gl_picture *picture); /* NULL: not done */
 void gl_renderer_forget(struct gl_renderer *renderer, const struct plan *plan);

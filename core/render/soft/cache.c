@@ -61,19 +61,21 @@ void soft_cache_destroy(struct soft_cache *cache)
     free(cache);
 }
 
-void soft_cache_trim(struct soft_cache *cache)
+uint64_t soft_cache_trim(struct soft_cache *cache, uint64_t oldest_begun)
 {
     while (cache->n_bytes > SOFT_CACHE_BYTES) {
-        struct entry **oldest = &cache->first;
+        struct entry **oldest = NULL;
         for (struct entry **at = &cache->first; *at; at = &(*at)->next)
-            if ((*at)->used < (*oldest)->used)
+            if ((*at)->used < oldest_begun && (!oldest || (*at)->used < (*oldest)->used))
                 oldest = at;
+        if (!oldest)
+            break;
         struct entry *entry = *oldest;
         *oldest = entry->next;
         cache->n_bytes -= entry->n_bytes;
         entry_destroy(entry);
     }
-    cache->n_pictures++;
+    return ++cache->n_pictures;
 }
 
 /* By component, so that one instruction works on several vertices; normals in 16 bits, fine enough to shade with. normals NULL:

@@ -25,10 +25,11 @@ struct soft_cache;
 struct soft_cache *soft_cache_create(void);
 void soft_cache_destroy(struct soft_cache *cache);
 void soft_cache_forget(struct soft_cache *cache, const struct plan *plan);
-/* Before a picture: drops what has not been drawn for longest while there is too much. */
-void soft_cache_trim(struct soft_cache *cache);
+/* Before a picture: drops what has not been drawn for longest while there is too much, but nothing that pictures from oldest_begun on use
+ * (UINT64_MAX: none is begun). Gives the number of the picture that is about to be drawn. */
+uint64_t soft_cache_trim(struct soft_cache *cache, uint64_t oldest_begun);
 
-/* Borrowed for this picture. A region that cannot be shown in this way is empty.
+/* Borrowed until the picture is done. A region that cannot be shown in this way is empty.
  * errors ERROR_MEMORY, ERROR_LIMIT, and those of plan_shape */
 NODISCARD const struct soft_shape *soft_cache_shape(struct soft_cache *cache, struct plan *plan, size_t region,
                                                     const struct shape_key *key, enum surface_detail detail, struct error *err);

@@ -1,5 +1,6 @@
 #include "core/render/soft/soft.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,8 @@
 
 /* More threads than this wait for memory and for each other. */
 enum { MAX_THREADS = 16, VERTEX_BLOCK = 8192 };
+/* Pictures whose projected and sorted triangles are kept while others are drawn; those of a further one are made again. */
+enum { MAX_SORTED = 2 };
 /* Of a thread's translucent layers together, unless one row of them takes more. */
 enum { LAYER_BYTES = 1 << 20 };
 _Static_assert((int)SOFT_MAX_LAYERS >= (int)REGION_MAX, "every region of a plan can be translucent");
@@ -24,16 +27,25 @@ struct scratch {
     size_t n_layers; /* samples of all of them */
 };
 
+/* A picture's triangles, projected and sorted into bands. */
+struct soft_sorted {
+    const struct soft_frame *owner; /* NULL: none */
+    uint64_t used;                  /* when last, counted in uses */
+    struct soft_vertex *vertices;
+    size_t n_vertices;
+    struct soft_chunk *chunks;
+    size_t n_chunks;
+};
+
 struct soft_renderer {
     struct render_facts facts;
     const struct soft_kernels *kernels;
     int n_threads;
     struct soft_cache *cache;
+    struct soft_frame *frames; /* pictures that are begun */
+    uint64_t n_uses;
     /* kept from picture to picture */
-    struct soft_vertex *vertices;
-    size_t n_vertices;
-    struct soft_chunk *chunks;
-    size_t n_chunks;
+    struct soft_sorted sorted[MAX_SORTED];
     struct scratch scratch[MAX_THREADS];
 };
 
@@ -66,13 +78,14 @@ void soft_renderer_tune(struct soft_renderer *renderer, int n_threads, bool is_p
 /* What grew with a plan goes with it. */
 static void drop_buffers(struct soft_renderer *renderer)
 {
-    for (size_t i = 0; i < renderer->n_chunks; i++)
-        soft_chunk_finish(&renderer->chunks[i]);
-    free(renderer->chunks);
-    free(renderer->vertices);
-    renderer->chunks = NULL;
-    renderer->vertices = NULL;
-    renderer->n_chunks = renderer->n_vertices = 0;
+    for (int i = 0; i < MAX_SORTED; i++) {
+        struct soft_sorted *sorted = &renderer->sorted[i];
+        for (size_t c = 0; c < sorted->n_chunks; c++)
+            soft_chunk_finish(&sorted->chunks[c]);
+        free(sorted->chunks);
+        free(sorted->vertices);
+        *sorted = (struct soft_sorted){ 0 };
+    }
     for (int i = 0; i < MAX_THREADS; i++) {
         free(renderer->scratch[i].band);
         free(renderer->scratch[i].layers);
@@ -84,6 +97,7 @@ void soft_renderer_destroy(struct soft_renderer *renderer)
 {
     if (!renderer)
         return;
+    assert(!renderer->frames);
     drop_buffers(renderer);
     soft_cache_destroy(renderer->cache);
     free(renderer);
@@ -96,6 +110,7 @@ const struct render_facts *soft_renderer_facts(const struct soft_renderer *rende
 
 void soft_renderer_forget(struct soft_renderer *renderer, const struct plan *plan)
 {
+    assert(!renderer->frames);
     soft_cache_forget(renderer->cache, plan);
     drop_buffers(renderer);
 }
@@ -132,10 +147,31 @@ static bool make_scratch(struct soft_frame *frame, struct scratch *scratch, stru
     return true;
 }
 
-static bool make_room(struct soft_frame *frame, struct error *err)
+/* The frame's own sorted triangles, or the place of those that were not used for longest, which are then lost. */
+static struct soft_sorted *take_sorted(struct soft_frame *frame, bool *is_lost)
 {
     struct soft_renderer *renderer = frame->renderer;
+    struct soft_sorted *best = &renderer->sorted[0];
+    for (int i = 0; i < MAX_SORTED; i++) {
+        struct soft_sorted *sorted = &renderer->sorted[i];
+        if (sorted->owner == frame) {
+            best = sorted;
+            break;
+        }
+        if (best->owner && (!sorted->owner || sorted->used < best->used))
+            best = sorted;
+    }
+    *is_lost = best->owner != frame;
+    best->owner = frame;
+    best->used = ++renderer->n_uses;
+    return best;
+}
+
+static bool make_room(struct soft_frame *frame, struct error *err)
+{
+    struct soft_sorted *sorted = frame->sorted;
     size_t n_vertices = 0;
+    frame->n_chunks = frame->n_blocks = 0;
     for (size_t i = 0; i < frame->n_items; i++) {
         struct soft_item *item = &frame->items[i];
         n_vertices += item->shape->n_vertices;
@@ -144,36 +180,41 @@ static bool make_room(struct soft_frame *frame, struct error *err)
         frame->n_chunks += item->n_chunks;
         frame->n_blocks += (item->shape->n_vertices + VERTEX_BLOCK - 1) / VERTEX_BLOCK;
     }
-    if (renderer->n_vertices < n_vertices) {
-        free(renderer->vertices);
-        renderer->vertices = mem_large_array(n_vertices, sizeof *renderer->vertices, UINT64_MAX, err);
-        renderer->n_vertices = renderer->vertices ? n_vertices : 0;
-        if (!renderer->vertices)
+    if (sorted->n_vertices < n_vertices) {
+        free(sorted->vertices);
+        sorted->vertices = mem_large_array(n_vertices, sizeof *sorted->vertices, UINT64_MAX, err);
+        sorted->n_vertices = sorted->vertices ? n_vertices : 0;
+        if (!sorted->vertices)
             return false;
     }
-    if (renderer->n_chunks < frame->n_chunks) {
-        struct soft_chunk *grown = realloc(renderer->chunks, frame->n_chunks * sizeof *grown);
+    if (sorted->n_chunks < frame->n_chunks) {
+        struct soft_chunk *grown = realloc(sorted->chunks, frame->n_chunks * sizeof *grown);
         if (!grown)
             return error_set(err, ERROR_MEMORY, "no memory for %zu pieces of surfaces", frame->n_chunks);
-        memset(grown + renderer->n_chunks, 0, (frame->n_chunks - renderer->n_chunks) * sizeof *grown);
-        renderer->chunks = grown;
-        renderer->n_chunks = frame->n_chunks;
+        memset(grown + sorted->n_chunks, 0, (frame->n_chunks - sorted->n_chunks) * sizeof *grown);
+        sorted->chunks = grown;
+        sorted->n_chunks = frame->n_chunks;
     }
-    struct soft_vertex *vertices = renderer->vertices;
+    struct soft_vertex *vertices = sorted->vertices;
     for (size_t i = 0; i < frame->n_items; i++) {
         struct soft_item *item = &frame->items[i];
         item->vertices = vertices;
         vertices += item->shape->n_vertices;
         for (size_t c = 0; c < item->n_chunks; c++) {
-            struct soft_chunk *chunk = &renderer->chunks[item->first_chunk + c];
+            struct soft_chunk *chunk = &sorted->chunks[item->first_chunk + c];
             chunk->item = item;
             chunk->first = c * SOFT_CHUNK_PRIMITIVES;
             chunk->n = item->shape->n_primitives - chunk->first;
             chunk->n = chunk->n < SOFT_CHUNK_PRIMITIVES ? chunk->n : SOFT_CHUNK_PRIMITIVES;
         }
     }
-    for (int i = 0; i < renderer->n_threads; i++)
-        if (!make_scratch(frame, &renderer->scratch[i], err))
+    return true;
+}
+
+static bool make_scratches(struct soft_frame *frame, struct error *err)
+{
+    for (int i = 0; i < frame->renderer->n_threads; i++)
+        if (!make_scratch(frame, &frame->renderer->scratch[i], err))
             return false;
     return true;
 }
@@ -202,7 +243,7 @@ static void sort_triangles(void *context, int part, int n_parts)
     struct soft_frame *frame = context;
     (void)part, (void)n_parts;
     for (size_t piece; (piece = atomic_fetch_add(&frame->next, 1)) < frame->n_chunks;)
-        if (!soft_chunk_sort(&frame->renderer->chunks[piece], frame->width, frame->height, frame->n_bands))
+        if (!soft_chunk_sort(&frame->sorted->chunks[piece], frame->width, frame->height, frame->n_bands))
             atomic_store(&frame->is_out_of_memory, true);
 }
 
@@ -211,7 +252,7 @@ static void draw_item(const struct soft_frame *frame, const struct soft_item *it
     range[0] = band->width;
     range[1] = 0;
     for (size_t i = 0; i < item->n_chunks; i++) {
-        const struct soft_chunk *chunk = &frame->renderer->chunks[item->first_chunk + i];
+        const struct soft_chunk *chunk = &frame->sorted->chunks[item->first_chunk + i];
         const struct soft_triangles triangles = { chunk->refs + chunk->starts[index], chunk->starts[index + 1] - chunk->starts[index],
                                                   item->shape->indices, item->vertices, chunk->extras };
         if (triangles.n_refs > 0)
@@ -265,12 +306,20 @@ static void write_rows(const struct soft_frame *frame, const struct soft_band *b
     }
 }
 
+static bool pause_is_due(const struct soft_frame *frame)
+{
+    return frame->pause && frame->pause->is_due(frame->pause->context);
+}
+
+/* At least one band each time, so that a picture gets done however often it is paused. */
 static void draw_bands(void *context, int part, int n_parts)
 {
     struct soft_frame *frame = context;
     struct soft_renderer *renderer = frame->renderer;
+    bool is_first = part == 0;
     (void)n_parts;
-    for (size_t piece; (piece = atomic_fetch_add(&frame->next, 1)) < (size_t)frame->n_bands;) {
+    for (size_t piece; (is_first || !pause_is_due(frame)) && (piece = atomic_fetch_add(&frame->next_band, 1)) < (size_t)frame->n_bands;) {
+        is_first = false;
         int first = (int)piece * SOFT_BAND_ROWS, n = frame->height - first;
         const struct scratch *scratch = &renderer->scratch[part];
         struct soft_band band = { first, n < SOFT_BAND_ROWS ? n : SOFT_BAND_ROWS, frame->width, frame->width + SOFT_PADDING,
@@ -299,10 +348,26 @@ static size_t n_primitives(const struct soft_frame *frame)
     return n;
 }
 
-static bool draw(struct soft_frame *frame, struct render_timing *timing, struct error *err)
+static bool collect(struct soft_frame *frame, struct render_timing *timing, struct error *err)
 {
     bool is_in_space = frame->snapshot->view.kind == SCENE_KIND_3D;
-    if ((is_in_space && !soft_collect_shapes(frame, timing, err)) || !soft_collect_planes(frame, err) || !make_room(frame, err))
+    frame->image = image_create(frame->options.width_px, frame->options.height_px, err);
+    if (!frame->image)
+        return false;
+    frame->samples = visible_samples(frame->snapshot, frame->camera, frame->options.width_px, frame->options.is_still);
+    frame->width = frame->options.width_px * frame->samples;
+    frame->height = frame->options.height_px * frame->samples;
+    frame->n_bands = (frame->height + SOFT_BAND_ROWS - 1) / SOFT_BAND_ROWS;
+    return (!is_in_space || soft_collect_shapes(frame, timing, err)) && soft_collect_planes(frame, err);
+}
+
+static bool sort(struct soft_frame *frame, struct error *err)
+{
+    bool is_lost;
+    frame->sorted = take_sorted(frame, &is_lost);
+    if (!is_lost)
+        return true;
+    if (!make_room(frame, err))
         return false;
     if (frame->n_items > 0) {
         run(frame, shade_vertices);
@@ -310,36 +375,65 @@ static bool draw(struct soft_frame *frame, struct render_timing *timing, struct 
         if (atomic_load(&frame->is_out_of_memory))
             return error_set(err, ERROR_MEMORY, "no memory to sort %zu triangles, lines and points", n_primitives(frame));
     }
-    run(frame, draw_bands);
     return true;
 }
 
-struct image *soft_renderer_snapshot(struct soft_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
-                                     const struct camera *camera, struct render_timing *timing, struct error *err)
+static bool draw(struct soft_frame *frame, struct render_timing *timing, struct error *err)
 {
-    int64_t start_us = clock_now_us();
+    if ((!frame->image && !collect(frame, timing, err)) || !sort(frame, err) || !make_scratches(frame, err))
+        return false;
+    parallel_run(frame->renderer->n_threads, draw_bands, frame);
+    return true;
+}
+
+/* ---- pictures ------------------------------------------------------------------------------------------------------------- */
+
+struct soft_frame *soft_picture_begin(struct soft_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
+                                      const struct camera *camera)
+{
     struct soft_frame *frame = mem_new(sizeof *frame);
-    soft_cache_trim(renderer->cache);
+    uint64_t oldest = UINT64_MAX;
+    for (const struct soft_frame *other = renderer->frames; other; other = other->next_frame)
+        oldest = other->number < oldest ? other->number : oldest;
+    frame->number = soft_cache_trim(renderer->cache, oldest);
     frame->renderer = renderer;
     frame->cache = renderer->cache;
     frame->snapshot = snapshot;
     frame->camera = camera;
-    frame->detail = options->detail;
-    frame->image = image_create(options->width_px, options->height_px, err);
-    frame->samples = visible_samples(snapshot, camera, options->width_px, options->is_still);
-    if (frame->image) {
-        frame->width = options->width_px * frame->samples;
-        frame->height = options->height_px * frame->samples;
-        frame->n_bands = (frame->height + SOFT_BAND_ROWS - 1) / SOFT_BAND_ROWS;
-        if (!draw(frame, timing, err)) {
-            image_destroy(frame->image);
-            frame->image = NULL;
-        }
-    }
+    frame->options = *options;
+    frame->next_frame = renderer->frames;
+    renderer->frames = frame;
+    return frame;
+}
+
+enum render_state soft_picture_go_on(struct soft_frame *frame, const struct render_pause *pause, struct render_timing *timing, struct error *err)
+{
+    int64_t start_us = clock_now_us();
+    frame->pause = pause;
+    bool is_good = draw(frame, timing, err);
+    timing->draw_us += clock_now_us() - start_us;
+    if (!is_good)
+        return RENDER_FAILED;
+    return atomic_load(&frame->next_band) < (size_t)frame->n_bands ? RENDER_PAUSED : RENDER_DONE;
+}
+
+struct image *soft_picture_end(struct soft_frame *frame)
+{
+    struct soft_renderer *renderer = frame->renderer;
     struct image *image = frame->image;
+    struct soft_frame **at = &renderer->frames;
+    while (*at != frame)
+        at = &(*at)->next_frame;
+    *at = frame->next_frame;
+    for (int i = 0; i < MAX_SORTED; i++)
+        if (renderer->sorted[i].owner == frame)
+            renderer->sorted[i].owner = NULL;
+    if (image && atomic_load(&frame->next_band) < (size_t)frame->n_bands) {
+        image_destroy(image);
+        image = NULL;
+    }
     free(frame->items);
     free(frame->palettes);
     free(frame);
-    timing->draw_us = clock_now_us() - start_us;
     return image;
 }

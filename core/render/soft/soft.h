@@ -3,15 +3,20 @@
 #include "core/render/render.h"
 
 struct soft_renderer;
+struct soft_frame;
 
 struct soft_renderer *soft_renderer_create(void);
 void soft_renderer_destroy(struct soft_renderer *renderer);
 const struct render_facts *soft_renderer_facts(const struct soft_renderer *renderer);
-/* camera: the snapshot's, resolved; timing: zeroed. Equal bytes for any number of threads.
+/* The parts of render_begin, render_go_on and render_end. snapshot and camera, which is the snapshot's, resolved, outlive the picture; timing:
+ * zeroed before the first time. Equal bytes for any number of threads and pauses. Several pictures may be begun.
  * errors ERROR_RANGE, ERROR_LIMIT, ERROR_MEMORY, ERROR_UNSUPPORTED */
-NODISCARD struct image *soft_renderer_snapshot(struct soft_renderer *renderer, const struct snapshot *snapshot,
-                                               const struct render_options *options, const struct camera *camera,
-                                               struct render_timing *timing, struct error *err);
+struct soft_frame *soft_picture_begin(struct soft_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
+                                      const struct camera *camera);
+NODISCARD enum render_state soft_picture_go_on(struct soft_frame *frame, const struct render_pause *pause, struct render_timing *timing,
+                                               struct error *err);
+NODISCARD struct image *soft_picture_end(struct soft_frame *frame); /* NULL: not done */
+/* No picture is begun. */
 void soft_renderer_forget(struct soft_renderer *renderer, const struct plan *plan);
 
 /* For tests and benches: how many threads draw (1..64), and whether what only newer processors have is used. */
