@@ -149,10 +149,13 @@ static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended
         return linger(slot);
     }
     epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, slot->socket, NULL);
-    if (kind == HEAD_WEBSOCKET)
-        net_adopt(acceptor->net, slot->socket);
-    else
+    if (kind == HEAD_WEBSOCKET) {
+        struct handshake handshake;
+        head_read_handshake(acceptor->bytes, (size_t)n, &handshake);
+        net_adopt(acceptor->net, slot->socket, &handshake);
+    } else {
         http_add_connection(acceptor->http, slot->socket, (const struct sockaddr *)&slot->address, slot->n_address);
+    }
     return true;
 }
 

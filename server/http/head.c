@@ -5,6 +5,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "server/wire/fields.h"
+
 struct text { /* a piece of the head */
     const char *at;
     size_t n;
@@ -12,8 +14,8 @@ struct text { /* a piece of the head */
 
 /* What matters of the headers. */
 struct fields {
-    struct text host, upgrade, connection, key, version, length, coding;
-    size_t n_hosts, n_lengths, n_codings, n_keys, n_versions;
+    struct text host, origin, upgrade, connection, key, version, length, coding;
+    size_t n_hosts, n_origins, n_lengths, n_codings, n_keys, n_versions;
 };
 
 struct head {
@@ -135,6 +137,7 @@ static void note_field(struct fields *fields, struct text name, struct text valu
         struct text *value;
         size_t *n;
     } known[] = { { "Host", &fields->host, &fields->n_hosts },
+                  { "Origin", &fields->origin, &fields->n_origins },
                   { "Content-Length", &fields->length, &fields->n_lengths },
                   { "Transfer-Encoding", &fields->coding, &fields->n_codings },
                   { "Sec-WebSocket-Key", &fields->key, &fields->n_keys },
@@ -210,14 +213,17 @@ bool head_host_is_ours(const struct hosts *hosts, const char *host, struct probl
     return !host || hosts_allow(hosts, host, text.n) || refuse_host(problem, text);
 }
 
-/* "/api/v1/rooms/<anything>/ws" */
-static bool is_room_address(struct text target)
+/* "/api/v1/rooms/<anything>/ws"; room: the anything. */
+static bool is_room_address(struct text target, struct text *room)
 {
     static const char before[] = "/api/v1/rooms/";
     const size_t n_before = sizeof before - 1;
     const char *question = target.n ? memchr(target.at, '?', target.n) : NULL;
     size_t n = question ? (size_t)(question - target.at) : target.n;
-    return n > n_before + 3 && memcmp(target.at, before, n_before) == 0 && memcmp(target.at + n - 3, "/ws", 3) == 0;
+    if (n <= n_before + 3 || memcmp(target.at, before, n_before) != 0 || memcmp(target.at + n - 3, "/ws", 3) != 0)
+        return false;
+    *room = (struct text){ target.at + n_before, n - n_before - 3 };
+    return true;
 }
 
 /* 16 bytes in base64 */
@@ -250,6 +256,12 @@ static bool check_handshake(const struct head *head, size_t n_bytes)
                            show(fields->key, shown));
     if (fields->n_codings || (fields->n_lengths && !is_word(fields->length, "0")))
         return problem_set(problem, PROBLEM_REQUEST, "", "", "the handshake announces a body; expected is none");
+    if (fields->n_origins > 1 || fields->origin.n > HANDSHAKE_MAX_ORIGIN)
+        return problem_set(problem, PROBLEM_REQUEST, "", "", "the handshake's Origin is there %zu times, with %zu bytes; expected is once at most, with %d",
+                           fields->n_origins, fields->origin.n, HANDSHAKE_MAX_ORIGIN);
+    if (fields->host.n > HANDSHAKE_MAX_HOST)
+        return problem_set(problem, PROBLEM_REQUEST, "", "", "the handshake's Host has %zu bytes; expected are %d at most", fields->host.n,
+                           HANDSHAKE_MAX_HOST);
     if (n_bytes > HEAD_MAX_WEBSOCKET)
         return problem_set(problem, PROBLEM_HEADERS_TOO_LARGE, "", "", "a handshake of %zu bytes; at most %d are read", n_bytes, HEAD_MAX_WEBSOCKET);
     return true;
@@ -271,7 +283,7 @@ enum head_kind head_look(const char *bytes, size_t n, const struct hosts *hosts,
 {
     struct head head = { .begin = bytes, .problem = problem };
     const char *at = bytes, *end = bytes + n;
-    struct text line;
+    struct text line, room;
     size_t n_fields = 0;
     for (int i = 0; i < HEAD_MAX_EMPTY && end - at >= 1 && (*at == '\n' || (*at == '\r' && end - at >= 2 && at[1] == '\n')); i++)
         head.begin = at += *at == '\r' ? 2 : 1;
@@ -299,9 +311,40 @@ enum head_kind head_look(const char *bytes, size_t n, const struct hosts *hosts,
     if (!check_length(&head) || !check_host(&head, hosts))
         return HEAD_REFUSED;
     bool is_get = head.method.n == 3 && memcmp(head.method.at, "GET", 3) == 0;
-    if (!is_get || !is_room_address(head.target) || !has_word(head.fields.upgrade, "websocket"))
+    if (!is_get || !is_room_address(head.target, &room) || !has_word(head.fields.upgrade, "websocket"))
         return HEAD_HTTP;
     return check_handshake(&head, (size_t)(at - bytes)) ? HEAD_WEBSOCKET : HEAD_REFUSED;
+}
+
+static void copy(char *out, size_t size, struct text text)
+{
+    size_t n = text.n < size ? text.n : 0; /* never a part: what does not fit is left out */
+    if (n)
+        memcpy(out, text.at, n);
+    out[n] = 0;
+}
+
+void head_read_handshake(const char *bytes, size_t n, struct handshake *handshake)
+{
+    struct problem problem; /* head_look has checked it: nothing is refused here */
+    struct head head = { .problem = &problem };
+    const char *at = bytes, *end = bytes + n;
+    struct text line, room = { 0 };
+    size_t n_fields = 0;
+    *handshake = (struct handshake){ 0 };
+    while (next_line(&at, end, &line) && line.n == 0)
+        ;
+    (void)read_request_line(&head, line);
+    while (next_line(&at, end, &line) && line.n)
+        (void)read_field(&head, ++n_fields, line);
+    (void)is_room_address(head.target, &room);
+    copy(handshake->room_id, sizeof handshake->room_id, room);
+    if (!id_is_valid(handshake->room_id)) /* no percent-encoding either: an id has no letter that needs one */
+        handshake->room_id[0] = 0;
+    copy(handshake->key, sizeof handshake->key, head.fields.key);
+    copy(handshake->host, sizeof handshake->host, head.fields.host);
+    copy(handshake->origin, sizeof handshake->origin, head.fields.origin);
+    handshake->n_head = (size_t)(at - bytes);
 }
 
 void head_refuse_incomplete(const char *bytes, size_t n, bool has_ended, int waited_ms, struct problem *problem)

@@ -2,6 +2,7 @@
 /* The head of a connection's first request, before anybody reads it: who is to have the connection, or why nobody. What the libraries
  * behind would refuse in words of their own is refused here, as a problem. Knows no sockets. */
 #include "server/http/hosts.h"
+#include "server/wire/handshake.h"
 #include "server/wire/problem.h"
 
 enum {
@@ -15,12 +16,14 @@ enum {
 enum head_kind {
     HEAD_INCOMPLETE, /* more has to come */
     HEAD_HTTP,
-    HEAD_WEBSOCKET,  /* a whole handshake for /api/v1/rooms/{id}/ws */
+    HEAD_WEBSOCKET,  /* a whole handshake for /api/v1/rooms/{id}/ws; head_read_handshake reads it */
     HEAD_REFUSED     /* problem says why */
 };
 
 /* bytes: all that has come by now. hosts: who we are; a request to somebody else is refused. */
 NODISCARD enum head_kind head_look(const char *bytes, size_t n, const struct hosts *hosts, struct problem *problem);
+/* What head_look called HEAD_WEBSOCKET, from the same bytes. */
+void head_read_handshake(const char *bytes, size_t n, struct handshake *handshake);
 /* The same for a peer that ended, or whose time is over: what is missing. */
 void head_refuse_incomplete(const char *bytes, size_t n, bool has_ended, int waited_ms, struct problem *problem);
 /* For requests after the first: problem when the Host header is not one of ours. NULL: there is none. */

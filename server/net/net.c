@@ -103,7 +103,7 @@ static void send_frame(void *context, void *connection, const struct frame_heade
 static void close_connection(void *context, void *connection)
 {
     (void)context;
-    ws_close(connection);
+    ws_close(connection, WS_CLOSE_NORMAL);
 }
 
 static bool has_room(void *context, const char *id)
@@ -119,11 +119,12 @@ static void opened(void *context, struct ws_connection *connection, const char *
     net->visitors = visitor;
     ws_set_owner(connection, visitor);
     if (!visitor->place)
-        ws_bye(connection, "the room is closed", -1);
+        ws_bye(connection, WS_CLOSE_NORMAL, "the room is closed", -1);
 }
 
-static void text_came(void *context, struct ws_connection *connection, const char *text, size_t n)
+static void message_came(void *context, struct ws_connection *connection, enum ws_opcode kind, const char *text, size_t n)
 {
+    (void)kind; /* a text: binary ones are not taken */
     struct place *place = ((struct visitor *)ws_owner(connection))->place;
     if (!place)
         return;
@@ -237,7 +238,7 @@ void net_room_delete(struct net *net, const char *id)
     for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
         if (visitor->place == place) {
             if (!room_has_member(place->room, visitor->connection)) /* members hear it from the room */
-                ws_bye(visitor->connection, "the room is closed", -1);
+                ws_bye(visitor->connection, WS_CLOSE_NORMAL, "the room is closed", -1);
             visitor->place = NULL;
         }
     room_count(place->room, &net->closed);
@@ -312,18 +313,26 @@ bool net_is_stopping(const struct net *net)
     return atomic_load(&net->is_stopping);
 }
 
+struct adoption {
+    int socket;
+    struct handshake handshake;
+};
+
 static void adopt(struct net *net, void *argument)
 {
-    int socket = (int)(intptr_t)argument;
+    struct adoption *adoption = argument;
     if (net_is_stopping(net))
-        (void)close(socket);
+        ws_refuse_as_stopping(net->ws, adoption->socket);
     else
-        ws_adopt(net->ws, socket);
+        ws_adopt(net->ws, adoption->socket, &adoption->handshake);
+    free(adoption);
 }
 
-void net_adopt(struct net *net, int socket)
+void net_adopt(struct net *net, int socket, const struct handshake *handshake)
 {
-    net_post(net, adopt, (void *)(intptr_t)socket);
+    struct adoption *adoption = mem_new(sizeof *adoption);
+    *adoption = (struct adoption){ socket, *handshake };
+    net_post(net, adopt, adoption);
 }
 
 static void wake(void *context)
@@ -365,8 +374,8 @@ struct net *net_create(const struct net_options *options, struct error *err)
     net->limits = options->room;
     net->places = mem_array((size_t)net->max_rooms, sizeof net->places[0], 1 << 20, err);
     net->tasks = queue_create(MAX_TASKS, free);
-    const struct ws_callbacks callbacks = { has_room, opened, text_came, is_greeted, connection_closed, woken, time_came, net };
-    net->ws = net->places ? ws_create(&callbacks, options->allowed_origin, err) : NULL;
+    const struct ws_callbacks callbacks = { has_room, opened, message_came, is_greeted, connection_closed, woken, time_came, net };
+    net->ws = net->places ? ws_create(&callbacks, &ws_limits_default, options->allowed_origin, err) : NULL;
     if (!net->ws)
         goto fail;
     struct fleet_options fleet = options->fleet;

@@ -5,6 +5,7 @@
 
 #include "server/fleet/fleet.h"
 #include "server/room/room.h"
+#include "server/wire/handshake.h"
 
 struct net;
 
@@ -25,8 +26,8 @@ void net_destroy(struct net *net); /* says bye to every connection, stops render
 void net_post(struct net *net, void (*task)(struct net *net, void *argument), void *argument);
 bool net_is_stopping(const struct net *net);
 
-/* A socket that begins with an upgrade request for /api/v1/rooms/{id}/ws, not yet read from: takes it over. Any thread. */
-void net_adopt(struct net *net, int socket);
+/* A socket that begins with this handshake of a WebSocket, not yet read from: takes it over. Any thread. */
+void net_adopt(struct net *net, int socket, const struct handshake *handshake);
 
 /* On the net thread only: */
 struct fleet *net_fleet(struct net *net);

@@ -131,6 +131,8 @@ export class Client {
     this.#socket.write(Buffer.concat([head, mask, masked]));
   }
 
+  writeRaw(bytes) { this.#socket.write(bytes); }
+
   send(message) { this.write(TEXT, Buffer.from(typeof message === 'string' ? message : JSON.stringify(message))); }
 
   /** One message in n fragments. */

@@ -1,5 +1,6 @@
 /* The head of a first request. What is refused has a sentence; a beginning is waited for, or refused as the whole is. */
 #include "server/http/head.h"
+#include "server/wire/fields.h"
 #include "tests/fuzz/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
@@ -13,6 +14,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     REQUIRE(kind != HEAD_REFUSED || strlen(whole.detail) > 20);
     for (const char *byte = whole.detail; *byte; byte++)
         REQUIRE(*byte >= 32 && *byte < 127);
+    if (kind == HEAD_WEBSOCKET) {
+        struct handshake handshake;
+        head_read_handshake((const char *)data, n, &handshake);
+        REQUIRE(handshake.n_head <= n && handshake.n_head >= 4 && data[handshake.n_head - 1] == '\n');
+        REQUIRE(strlen(handshake.key) == 24 && (!handshake.room_id[0] || id_is_valid(handshake.room_id)));
+    }
     if (n == 0 || n > HEAD_MAX_BYTES)
         return 0;
     size_t n_part = n > 64 ? n - data[n - 1] % 64 - 1 : n / 2;

@@ -163,6 +163,57 @@ static void the_limits_hold_to_the_byte(void **state)
     }
 }
 
+static void a_handshake_is_read_as_it_stands(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *target, *room_id;
+    } cases[] = { { "/api/v1/rooms/7q4k-m2wz/ws", "7q4k-m2wz" }, { "/api/v1/rooms/7q4k-m2wz/ws?a=b", "7q4k-m2wz" },
+                  { "/api/v1/rooms/x%2f..%2f7q4k-m2wz/ws", "" }, { "/api/v1/rooms/x/../7q4k-m2wz/ws", "" }, { "/api/v1/rooms/7q4k%2dm2wz/ws", "" },
+                  { "/api/v1/rooms/7q4k-m2wz%00/ws", "" }, { "/api/v1/rooms//ws", "" }, { "/api/v1/rooms/7Q4K/ws", "" } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char bytes[600];
+        struct problem problem;
+        struct handshake handshake;
+        int n = snprintf(bytes, sizeof bytes, "\r\nGET %s HTTP/1.1\r\n" HOST "Connection: Upgrade\r\nUpgrade: websocket\r\n" VERSION KEY "Origin:  http://a.b:1 \r\n\r\n",
+                         cases[i].target);
+        if (i == 6) { /* no room at all: the API says so */
+            assert_int_equal(look(bytes, (size_t)n, &problem), HEAD_HTTP);
+            continue;
+        }
+        memcpy(bytes + n, "\x81\x80", 2); /* the first frame is no part of it */
+        assert_int_equal(look(bytes, (size_t)n + 2, &problem), HEAD_WEBSOCKET);
+        head_read_handshake(bytes, (size_t)n + 2, &handshake);
+        assert_string_equal(handshake.room_id, cases[i].room_id);
+        assert_string_equal(handshake.host, "localhost:8080");
+        assert_string_equal(handshake.origin, "http://a.b:1");
+        assert_int_equal(strlen(handshake.key), 24);
+        assert_non_null(strstr(KEY, handshake.key));
+        assert_int_equal(handshake.n_head, n);
+    }
+}
+
+static void an_origin_is_there_once_and_is_not_cut(void **state)
+{
+    (void)state;
+    struct problem problem;
+    static const char twice[] = SHAKE VERSION KEY "Origin: http://localhost:8080\r\nOrigin: http://evil.example\r\n\r\n";
+    assert_int_equal(look(twice, sizeof twice - 1, &problem), HEAD_REFUSED);
+    assert_non_null(strstr(problem.detail, "Origin is there 2 times"));
+    for (int more = 0; more < 2; more++) {
+        char bytes[1000], origin[400];
+        struct handshake handshake;
+        memset(origin, 'a', sizeof origin);
+        origin[HANDSHAKE_MAX_ORIGIN + more] = 0;
+        size_t n = (size_t)snprintf(bytes, sizeof bytes, SHAKE VERSION KEY "Origin: %s\r\n\r\n", origin);
+        assert_int_equal(look(bytes, n, &problem), more ? HEAD_REFUSED : HEAD_WEBSOCKET);
+        if (more)
+            continue;
+        head_read_handshake(bytes, n, &handshake);
+        assert_string_equal(handshake.origin, origin);
+    }
+}
+
 static void a_beginning_is_waited_for_or_refused_as_the_whole_is(void **state)
 {
     (void)state;
@@ -249,6 +300,8 @@ int main(void)
         cmocka_unit_test(what_is_whole_and_plain_goes_on),
         cmocka_unit_test(what_is_not_is_told_which_line_and_what_was_expected),
         cmocka_unit_test(the_limits_hold_to_the_byte),
+        cmocka_unit_test(a_handshake_is_read_as_it_stands),
+        cmocka_unit_test(an_origin_is_there_once_and_is_not_cut),
         cmocka_unit_test(a_beginning_is_waited_for_or_refused_as_the_whole_is),
         cmocka_unit_test(only_our_own_names_are_answered_to),
         cmocka_unit_test(who_does_not_come_to_an_end_is_told_what_is_missing),

@@ -1,0 +1,13 @@
+#pragma once
+/* The handshake of a WebSocket as the acceptor has checked it: plain data from where requests are read to where they are answered. */
+#include <stddef.h>
+
+enum { HANDSHAKE_MAX_ORIGIN = 300, HANDSHAKE_MAX_HOST = 300 };
+
+struct handshake {
+    char room_id[64];                      /* "" when the address names none that could be */
+    char key[25];                          /* Sec-WebSocket-Key */
+    char host[HANDSHAKE_MAX_HOST + 1];     /* "" when there is none */
+    char origin[HANDSHAKE_MAX_ORIGIN + 1]; /* "" when there is none: programs send none */
+    size_t n_head;                         /* bytes of the whole head, which are still to be read from the socket */
+};

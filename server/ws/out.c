@@ -1,0 +1,266 @@
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+
+#include "core/base/clock.h"
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/wire/message.h"
+#include "server/ws/parts.h"
+
+enum { LOG_EVERY_US = 10000000 };
+
+/* ---- what waits to go out ------------------------------------------------------------------------------------------- */
+
+struct message_out *out_message(enum ws_opcode opcode, const void *bytes, size_t n)
+{
+    struct message_out *message = mem_new(sizeof *message + n);
+    message->opcode = opcode;
+    message->n = n;
+    if (n)
+        memcpy(message->bytes, bytes, n);
+    return message;
+}
+
+void out_queue_add(struct queue_out *queue, struct message_out *message)
+{
+    *queue->last = message;
+    queue->last = &message->next;
+    queue->n++;
+    queue->n_bytes += message->n;
+}
+
+static struct message_out *queue_take_first(struct queue_out *queue)
+{
+    struct message_out *message = queue->first;
+    if (!message)
+        return NULL;
+    queue->first = message->next;
+    if (!queue->first)
+        queue->last = &queue->first;
+    queue->n--;
+    queue->n_bytes -= message->n;
+    return message;
+}
+
+void out_queue_clear(struct queue_out *queue)
+{
+    for (struct message_out *message; (message = queue_take_first(queue));)
+        free(message);
+}
+
+void out_drop_frames(struct ws_connection *connection)
+{
+    for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
+        room_picture_drop(connection->boxes[i].picture);
+        connection->boxes[i].picture = NULL;
+    }
+}
+
+void out_log_cut(struct ws *ws, const char *reason)
+{
+    int64_t now_us = clock_now_us();
+    if (ws->logged_us && now_us - ws->logged_us < LOG_EVERY_US)
+        return;
+    ws->logged_us = now_us;
+    log_warn("a WebSocket was closed: %s (others are not logged for %d s)", reason, LOG_EVERY_US / 1000000);
+}
+
+/* No more than within_us from now on; 0: at once, but not before the caller has returned to the loop. */
+static void end_within(struct ws_connection *connection, int64_t within_us)
+{
+    connection->close_by_us = clock_now_us() + within_us;
+    lws_set_timer_usecs(connection->wsi, within_us > 0 ? within_us : 1);
+}
+
+void out_begin_close(struct ws_connection *connection, uint16_t code, const char *reason)
+{
+    uint8_t bytes[2 + WS_MAX_REASON] = { (uint8_t)(code >> 8), (uint8_t)code };
+    size_t n_reason = reason ? strlen(reason) : 0;
+    if (connection->state != STATE_OPEN)
+        return;
+    if (n_reason > WS_MAX_REASON)
+        n_reason = 0;
+    if (n_reason)
+        memcpy(bytes + 2, reason, n_reason);
+    connection->state = STATE_CLOSING;
+    connection->close = out_message(WS_CLOSE, bytes, code == WS_CLOSE_NO_CODE ? 0 : 2 + n_reason);
+    out_drop_frames(connection);
+    end_within(connection, WS_CLOSE_WITHIN_S * INT64_C(1000000));
+    lws_callback_on_writable(connection->wsi);
+}
+
+void out_add_pong(struct ws_connection *connection, const void *bytes, size_t n)
+{
+    if (connection->pongs.n >= WS_MAX_PONGS)
+        free(queue_take_first(&connection->pongs));
+    out_queue_add(&connection->pongs, out_message(WS_PONG, bytes, n));
+    lws_callback_on_writable(connection->wsi);
+}
+
+void ws_send_message(struct ws_connection *connection, enum ws_opcode kind, const void *bytes, size_t n)
+{
+    const struct ws_limits *limits = &connection->ws->limits;
+    if (connection->state != STATE_OPEN)
+        return;
+    if (connection->texts.n >= limits->max_waiting || connection->texts.n_bytes + n > limits->max_waiting_bytes) {
+        out_log_cut(connection->ws, "it takes its messages too slowly");
+        connection->state = STATE_CLOSING; /* it would not read a close either */
+        out_drop_frames(connection);
+        end_within(connection, 0);
+        return;
+    }
+    out_queue_add(&connection->texts, out_message(kind, bytes, n));
+    lws_callback_on_writable(connection->wsi);
+}
+
+void ws_send_text(struct ws_connection *connection, const char *text)
+{
+    ws_send_message(connection, WS_TEXT, text, strlen(text));
+}
+
+void ws_send_frame(struct ws_connection *connection, const struct frame_header *header, struct room_picture *picture)
+{
+    if (connection->state != STATE_OPEN || header->view < 1 || header->view > ROOM_MAX_VIEWS)
+        return;
+    struct box *box = &connection->boxes[header->view - 1];
+    room_picture_drop(box->picture);
+    box->picture = room_picture_hold(picture);
+    frame_header_write(header, box->header);
+    lws_callback_on_writable(connection->wsi);
+}
+
+void ws_close(struct ws_connection *connection, enum ws_close_code code)
+{
+    out_begin_close(connection, (uint16_t)code, NULL);
+}
+
+void ws_bye(struct ws_connection *connection, enum ws_close_code code, const char *reason, int retry_ms)
+{
+    struct message message = { .type = MESSAGE_BYE, .bye = { .has_retry_ms = retry_ms >= 0, .retry_ms = retry_ms } };
+    (void)snprintf(message.bye.reason, sizeof message.bye.reason, "%s", reason);
+    char *text = message_write(&message);
+    ws_send_text(connection, text);
+    free(text);
+    out_begin_close(connection, (uint16_t)code, reason);
+}
+
+/* ---- what goes out -------------------------------------------------------------------------------------------------- */
+
+static void begin_sending_message(struct ws_connection *connection, struct message_out *message)
+{
+    struct sending *sending = &connection->sending;
+    *sending = (struct sending){ .message = message, .body = message->bytes, .n_body = message->n };
+    sending->n_head = ws_write_head(sending->head, message->opcode, message->n);
+}
+
+static void begin_sending_frame(struct ws_connection *connection, struct box *box)
+{
+    struct sending *sending = &connection->sending;
+    struct room_picture *picture = box->picture;
+    *sending = (struct sending){ .picture = picture, .body = picture->bytes, .n_body = picture->n_bytes };
+    sending->n_head = ws_write_head(sending->head, WS_BINARY, FRAME_HEADER_BYTES + picture->n_bytes);
+    memcpy(sending->head + sending->n_head, box->header, FRAME_HEADER_BYTES);
+    sending->n_head += FRAME_HEADER_BYTES;
+    box->picture = NULL;
+}
+
+static bool is_sending(const struct ws_connection *connection)
+{
+    return connection->sending.message || connection->sending.picture;
+}
+
+/* Pongs before messages, messages before frames, views in turn; the close last. False: nothing waits. */
+static bool begin_next(struct ws_connection *connection)
+{
+    struct message_out *message = queue_take_first(&connection->pongs);
+    if (!message)
+        message = queue_take_first(&connection->texts);
+    if (!message) {
+        message = connection->close;
+        connection->close = NULL;
+    }
+    if (message) {
+        begin_sending_message(connection, message);
+        return true;
+    }
+    for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
+        int at = (connection->next_box + i) % ROOM_MAX_VIEWS;
+        if (!connection->boxes[at].picture)
+            continue;
+        connection->next_box = at + 1;
+        begin_sending_frame(connection, &connection->boxes[at]);
+        return true;
+    }
+    return false;
+}
+
+static bool has_more(const struct ws_connection *connection)
+{
+    bool has = is_sending(connection) || connection->pongs.first || connection->texts.first || connection->close;
+    for (int i = 0; i < ROOM_MAX_VIEWS; i++)
+        has = has || connection->boxes[i].picture;
+    return has;
+}
+
+static void finish_sending(struct ws_connection *connection)
+{
+    struct sending *sending = &connection->sending;
+    if (sending->message && sending->message->opcode == WS_CLOSE) { /* RFC 6455 7.1.1: nothing more goes out; the client ends its side */
+        connection->state = STATE_LINGERING;
+        (void)shutdown(lws_get_socket_fd(connection->wsi), SHUT_WR);
+        end_within(connection, WS_LINGER_MS * INT64_C(1000));
+    }
+    free(sending->message);
+    room_picture_drop(sending->picture);
+    sending->message = NULL;
+    sending->picture = NULL;
+}
+
+enum sent { SENT_ALL, SENT_PART, SENT_FAILED };
+
+static enum sent send_some(struct ws_connection *connection)
+{
+    struct sending *sending = &connection->sending;
+    size_t n_all = sending->n_head + sending->n_body, n_left_head = sending->n_done < sending->n_head ? sending->n_head - sending->n_done : 0;
+    size_t at_body = sending->n_done > sending->n_head ? sending->n_done - sending->n_head : 0;
+    struct iovec parts[2] = { { sending->head + sending->n_head - n_left_head, n_left_head },
+                              { (uint8_t *)(uintptr_t)sending->body + at_body, sending->n_body - at_body } };
+    struct msghdr header = { .msg_iov = parts, .msg_iovlen = 2 };
+    ssize_t n = sendmsg(lws_get_socket_fd(connection->wsi), &header, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (n < 0)
+        return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ENOBUFS ? SENT_PART : SENT_FAILED;
+    sending->n_done += (size_t)n;
+    if (sending->n_done < n_all)
+        return SENT_PART;
+    finish_sending(connection);
+    return SENT_ALL;
+}
+
+int out_write(struct ws_connection *connection)
+{
+    if (connection->state == STATE_NONE || connection->state == STATE_LINGERING || (!is_sending(connection) && !begin_next(connection)))
+        return 0;
+    if (send_some(connection) == SENT_FAILED)
+        return -1;
+    if (has_more(connection))
+        lws_callback_on_writable(connection->wsi);
+    return 0;
+}
+
+int out_answer_now(struct ws_connection *connection)
+{
+    while ((connection->state == STATE_OPEN && connection->pongs.first) || connection->state == STATE_CLOSING) {
+        if (!is_sending(connection) && !begin_next(connection))
+            return 0; /* too slow: its time is over soon */
+        enum sent sent = send_some(connection);
+        if (sent == SENT_FAILED)
+            return -1;
+        if (sent == SENT_PART)
+            break;
+    }
+    return 0;
+}
