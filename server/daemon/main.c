@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "core/base/log.h"
@@ -18,7 +19,7 @@
 #include "server/http/hosts.h"
 #include "server/http/http.h"
 
-enum { PATH_SIZE = 4096 };
+enum { PATH_SIZE = 4096, LISTED_EVERY_MS = 5, SLOW_LISTING_MS = 10000 };
 
 static bool make_folders(const char *folder, struct error *err)
 {
@@ -81,6 +82,21 @@ static bool gl_is_known(const char *gl, struct error *err)
     return error_set(err, ERROR_FORMAT, "--gl is \"%.40s\", expected auto, egl-device, egl-surfaceless, osmesa or soft", gl);
 }
 
+/* Until the plan folders have been listed: who is told that we are ready finds their plans. 0; or the signal that came before. */
+static int wait_for_plans(const struct net *net, const sigset_t *signals)
+{
+    const struct timespec pause = { .tv_nsec = LISTED_EVERY_MS * 1000000L };
+    int n = 0;
+    for (; !net_plans_are_listed(net); n++) {
+        int signal_number = sigtimedwait(signals, NULL, &pause);
+        if (signal_number > 0)
+            return signal_number;
+        if (n == SLOW_LISTING_MS / LISTED_EVERY_MS)
+            log_warn("the plan folders are still being listed: a disk answers slowly or not at all");
+    }
+    return 0;
+}
+
 /* Serves until a signal comes. */
 static bool serve(const struct options *options, const char *data_folder, const char *web_folder, struct error *err)
 {
@@ -113,14 +129,16 @@ static bool serve(const struct options *options, const char *data_folder, const 
     struct acceptor *acceptor = http ? acceptor_create(options->listen ? options->listen : "127.0.0.1:8080", net, http, hosts, err) : NULL;
     if (acceptor) {
         sigset_t signals;
-        int signal_number = 0;
-        printf("ready %s\n", acceptor_url(acceptor));
-        (void)fflush(stdout);
-        log_info("serving on %s", acceptor_url(acceptor));
         sigemptyset(&signals);
         sigaddset(&signals, SIGINT);
         sigaddset(&signals, SIGTERM);
-        sigwait(&signals, &signal_number);
+        int signal_number = wait_for_plans(net, &signals);
+        if (signal_number == 0) {
+            printf("ready %s\n", acceptor_url(acceptor));
+            (void)fflush(stdout);
+            log_info("serving on %s", acceptor_url(acceptor));
+            sigwait(&signals, &signal_number);
+        }
         log_info("stopping: %s", strsignal(signal_number));
     }
     acceptor_destroy(acceptor);

@@ -29,7 +29,7 @@ static const struct setting settings[] = {
     { "renderer", "FILE", "the renderer's program; default: beamroom-render beside this one", KIND_TEXT, AT(renderer_path), 0, 0 },
     { "max-renderers", "N", "plans open at once; default 8", KIND_COUNT, AT(max_renderers), 1, 1000 },
     { "max-renderer-mib", "N", "memory one renderer may take in MiB, 0 no limit; default 16384", KIND_COUNT, AT(max_renderer_mib), 0, 1 << 24 },
-    { "plan-idle-close", "SECONDS", "close a plan nobody uses after this, 0 never; default 600", KIND_COUNT, AT(plan_idle_close_s), 0, 1 << 24 },
+    { "plan-idle-close", "SECONDS", "close a plan nobody uses or is in a room with after this, 0 never; default 600", KIND_COUNT, AT(plan_idle_close_s), 0, 1 << 24 },
     { "room-idle-close", "SECONDS", "close a room nobody is in after this, 0 never; default 86400", KIND_COUNT, AT(room_idle_close_s), 0, 1 << 24 },
     { "max-rooms", "N", "rooms at once, of all plans; default 200, at most 10000", KIND_COUNT, AT(max_rooms), 1, SCENE_MAX_ROOMS },
     { "max-members", "N", "people in one room; default 32, at most 64", KIND_COUNT, AT(max_members), 1, 64 },

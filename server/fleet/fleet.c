@@ -12,10 +12,15 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/fleet/news.h"
+#include "server/fleet/restarts.h"
 
-enum { EVENTS_A_TURN = 256 };
+enum {
+    EVENTS_A_TURN = 256,
+    LONGEST_STEP_US = 1000000, /* between two ticks; what is more, the thread did not run */
+    PLACE_EVERY_US = 2000000   /* a plan that is held and closed for lack of a place tries again after this */
+};
 
-static const struct fleet_times default_times = { .ping = 2000, .silent = 8000, .stall = 120000, .request = 30000, .scan = 30000, .unpack = 120000 };
+static const struct fleet_times default_times = { .ping = 2000, .silent = 6000, .awaited_ping = 250, .awaited_silent = 750, .stall = 120000, .request = 30000, .scan = 30000, .unpack = 120000 };
 
 const char *fleet_state_word(enum fleet_state state)
 {
@@ -29,6 +34,18 @@ const char *fleet_state_word(enum fleet_state state)
     case FLEET_FAILED: return "failed";
     }
     return "unknown";
+}
+
+int64_t fleet_now_us(const struct fleet *fleet) { return run_clock_us(&fleet->clock); }
+
+bool fleet_no_plan(const struct fleet *fleet, const char *plan_id, struct problem *problem)
+{
+    if (fleet->is_listed)
+        return problem_set(problem, PROBLEM_NOT_FOUND, "", "", "there is no plan \"%.64s\"", plan_id);
+    problem_set(problem, PROBLEM_BUSY, "", "", "the plan folders are still being listed");
+    if (problem)
+        problem->retry_after_ms = 500;
+    return false;
 }
 
 uint64_t fleet_number(struct fleet *fleet) { return ++fleet->last_number; }
@@ -60,7 +77,7 @@ void plan_entry_kill(struct fleet *fleet, struct plan_entry *plan, const char *r
 
 /* ---- start and stop ---- */
 
-static void start_renderer(struct fleet *fleet, struct plan_entry *plan)
+void plan_entry_start(struct fleet *fleet, struct plan_entry *plan)
 {
     char cache[PATH_MAX], limit[32];
     (void)snprintf(cache, sizeof cache, "%s/cache/%s", fleet->data_folder, plan->id);
@@ -77,10 +94,14 @@ static void start_renderer(struct fleet *fleet, struct plan_entry *plan)
         words[n++] = "--stub";
     plan->process = fleet_number(fleet);
     plan->restart_at_us = 0;
+    plan->problem = (struct problem){ 0 };
     plan->is_dying = false;
     plan->generation++;
     plan->percent = 0;
-    plan->asked_us = plan->moved_us = clock_now_us();
+    plan->has_drawn = plan->is_awaited = false;
+    plan->ready_us = 0;
+    plan->asked_us = clock_now_us();
+    plan->moved_us = fleet_now_us(fleet);
     if (!watch_start_renderer(fleet->watch, plan->process, fleet_arguments(words))) {
         struct problem problem;
         plan->process = 0;
@@ -93,7 +114,8 @@ static bool has_renderer(const struct plan_entry *plan) { return plan->process !
 
 static bool is_unused(const struct fleet *fleet, const struct plan_entry *plan)
 {
-    return plan->state == FLEET_READY && plan->n_holds == 0 && !asks_has_any(fleet, plan);
+    bool is_at_rest = plan->state == FLEET_READY || (plan->restart_at_us && !plan->process);
+    return is_at_rest && plan->n_holds == 0 && !asks_has_any(fleet, plan);
 }
 
 static void forget_documents(struct plan_entry *plan)
@@ -116,6 +138,7 @@ void plan_entry_close(struct fleet *fleet, struct plan_entry *plan, const char *
         watch_stop(fleet->watch, plan->process, false, "is no longer wanted");
     plan_entry_lose(plan);
     plan->restart_at_us = 0;
+    plan->wants_place = false;
     plan->was_ready = false;
     plan->phase[0] = 0;
     plan->percent = 0;
@@ -147,13 +170,13 @@ bool fleet_open(struct fleet *fleet, const char *plan_id, struct problem *proble
 {
     struct plan_entry *plan = plan_entry_find(fleet, plan_id);
     if (!plan)
-        return problem_set(problem, PROBLEM_NOT_FOUND, "", "", "there is no plan \"%.64s\"", plan_id);
+        return fleet_no_plan(fleet, plan_id, problem);
     if (plan->state == FLEET_UNREADABLE) {
         if (problem)
             *problem = plan->problem;
         return false;
     }
-    plan->used_us = clock_now_us();
+    plan->used_us = fleet_now_us(fleet);
     if (plan->state != FLEET_CLOSED && plan->state != FLEET_FAILED)
         return true;
     if (!make_room(fleet)) {
@@ -165,10 +188,12 @@ bool fleet_open(struct fleet *fleet, const char *plan_id, struct problem *proble
     plan->problem = (struct problem){ 0 };
     plan->was_ready = false;
     forget_documents(plan);
-    memset(plan->ended_us, 0, sizeof plan->ended_us);
+    plan->n_barren = 0;
+    plan->is_for_good = plan->wants_place = false;
+    plan->opening++;
     (void)snprintf(plan->phase, sizeof plan->phase, "starting the renderer");
     plan_entry_change(fleet, plan, FLEET_STARTING);
-    start_renderer(fleet, plan);
+    plan_entry_start(fleet, plan);
     return true;
 }
 
@@ -179,11 +204,29 @@ void fleet_close(struct fleet *fleet, const char *plan_id)
         plan_entry_close(fleet, plan, "somebody asked for it");
 }
 
-void fleet_hold(struct fleet *fleet, const char *plan_id)
+/* Opens a plan that is held. Without a place it stays failed, says so, and tries again. */
+static void open_held(struct fleet *fleet, struct plan_entry *plan)
+{
+    struct problem problem;
+    if (fleet_open(fleet, plan->id, &problem) || problem.type != PROBLEM_BUSY)
+        return;
+    plan->place_at_us = fleet_now_us(fleet) + PLACE_EVERY_US;
+    if (plan->wants_place)
+        return;
+    plan->wants_place = true;
+    plan->problem = problem;
+    plan_entry_change(fleet, plan, FLEET_FAILED);
+}
+
+bool fleet_hold(struct fleet *fleet, const char *plan_id)
 {
     struct plan_entry *plan = plan_entry_find(fleet, plan_id);
-    if (plan)
-        plan->n_holds++;
+    if (!plan)
+        return false;
+    plan->n_holds++;
+    if (plan->state == FLEET_CLOSED || (plan->state == FLEET_FAILED && !plan->is_for_good && !plan->wants_place))
+        open_held(fleet, plan);
+    return true;
 }
 
 void fleet_release(struct fleet *fleet, const char *plan_id)
@@ -191,24 +234,30 @@ void fleet_release(struct fleet *fleet, const char *plan_id)
     struct plan_entry *plan = plan_entry_find(fleet, plan_id);
     if (plan && plan->n_holds > 0) {
         plan->n_holds--;
-        plan->used_us = clock_now_us();
+        plan->used_us = fleet_now_us(fleet);
     }
+    if (plan && plan->n_holds == 0 && plan->wants_place)
+        plan_entry_close(fleet, plan, "nobody is there any more");
 }
 
 /* ---- events and time ---- */
 
-static void list_folders(struct fleet *fleet)
-{
-    fleet->wants_listing = !watch_list_folders(fleet->watch, (const char *const *)fleet->plan_folders, fleet->options.n_plan_folders + 1);
-    fleet->is_listing = !fleet->wants_listing;
-}
-
 void fleet_rescan(struct fleet *fleet)
 {
-    if (fleet->is_listing)
-        fleet->wants_listing = true;
-    else
-        list_folders(fleet);
+    lister_ask(fleet->lister);
+    fleet->is_listing = true;
+}
+
+static void take_list(struct fleet *fleet)
+{
+    struct folder_list found;
+    if (!lister_take(fleet->lister, &found))
+        return;
+    fleet->is_listing = false;
+    fleet->list_has_changed |= !fleet->is_listed;
+    fleet->is_listed = true;
+    plans_take_folders(fleet, &found);
+    folder_list_finish(&found);
 }
 
 static void take_event(struct fleet *fleet, struct watch_event *event)
@@ -232,12 +281,6 @@ static void take_event(struct fleet *fleet, struct watch_event *event)
     case WATCH_ENDED:
         if (!uploads_take_event(fleet, event))
             news_ended(fleet, event);
-        break;
-    case WATCH_FOLDERS:
-        fleet->is_listing = false;
-        plans_take_folders(fleet, &event->found);
-        if (fleet->wants_listing)
-            list_folders(fleet);
         break;
     }
 }
@@ -272,6 +315,7 @@ void fleet_handle_events(struct fleet *fleet)
     }
     if (n == EVENTS_A_TURN) /* a process that talks without end shares the thread with everyone */
         fleet->options.wake(fleet->options.context);
+    take_list(fleet);
     plans_start_scans(fleet);
     uploads_go_on(fleet);
     tell_news(fleet);
@@ -279,8 +323,12 @@ void fleet_handle_events(struct fleet *fleet)
 
 static void tick_plan(struct fleet *fleet, struct plan_entry *plan, int64_t now_us)
 {
-    if (plan->restart_at_us && now_us >= plan->restart_at_us)
-        start_renderer(fleet, plan);
+    restart_tick(fleet, plan, now_us);
+    if (plan->wants_place && now_us >= plan->place_at_us)
+        open_held(fleet, plan);
+    bool is_awaited = plan->process && plan->state == FLEET_READY && asks_has_sent(fleet, plan);
+    if (is_awaited != plan->is_awaited && plan->process && watch_await(fleet->watch, plan->process, is_awaited))
+        plan->is_awaited = is_awaited;
     bool is_coming_up = plan->process && plan->state != FLEET_READY;
     if (is_coming_up && now_us - plan->moved_us > fleet->times.stall * 1000LL) {
         struct problem problem;
@@ -295,13 +343,12 @@ static void tick_plan(struct fleet *fleet, struct plan_entry *plan, int64_t now_
 
 void fleet_tick(struct fleet *fleet)
 {
-    int64_t now_us = clock_now_us();
+    run_clock_step(&fleet->clock, LONGEST_STEP_US);
+    int64_t now_us = fleet_now_us(fleet);
     plans_drop_removed(fleet);
     for (size_t i = 0; i < fleet->n_plans; i++)
         tick_plan(fleet, fleet->plans[i], now_us);
     asks_keep_time(fleet, now_us);
-    if (fleet->wants_listing && !fleet->is_listing)
-        list_folders(fleet);
     plans_start_scans(fleet);
     uploads_go_on(fleet);
     tell_news(fleet);
@@ -309,11 +356,13 @@ void fleet_tick(struct fleet *fleet)
 
 /* ---- looking at it ---- */
 
+bool fleet_is_listed(const struct fleet *fleet) { return fleet->is_listed; }
+
 size_t fleet_n_plans(const struct fleet *fleet) { return fleet->n_plans; }
 
 static void describe(const struct fleet *fleet, const struct plan_entry *plan, struct fleet_plan *out)
 {
-    bool is_failed = plan->state == FLEET_FAILED || plan->state == FLEET_UNREADABLE;
+    bool has_problem = plan->state == FLEET_FAILED || plan->state == FLEET_UNREADABLE || plan->state == FLEET_RESTARTING;
     *out = (struct fleet_plan){
         .id = plan->id,
         .folder = plan->folder,
@@ -324,13 +373,17 @@ static void describe(const struct fleet *fleet, const struct plan_entry *plan, s
         .state = plan->state,
         .phase = plan->phase,
         .percent = plan->percent,
-        .problem = is_failed && plan->problem.type != PROBLEM_NONE ? &plan->problem : NULL,
+        .problem = has_problem && plan->problem.type != PROBLEM_NONE ? &plan->problem : NULL,
         .parts = plan->parts,
         .n_bytes = plan->n_bytes,
         .document = plan->document,
         .default_scene = plan->default_scene,
         .image_ids = plan->document ? (const char *const *)plan->image_ids : NULL,
         .generation = plan->generation,
+        .opening = plan->opening,
+        .ready_opening = plan->ready_opening,
+        .failed_opening = plan->failed_opening,
+        .failure = &plan->failure,
         .memory_bytes = plan->memory_bytes,
         .load_ms = plan->load_ms,
         .pid = plan->pid,
@@ -399,6 +452,10 @@ static void set_times(struct fleet *fleet)
         fleet->times.ping = asked->ping;
     if (asked->silent > 0)
         fleet->times.silent = asked->silent;
+    if (asked->awaited_ping > 0)
+        fleet->times.awaited_ping = asked->awaited_ping;
+    if (asked->awaited_silent > 0)
+        fleet->times.awaited_silent = asked->awaited_silent;
     if (asked->stall > 0)
         fleet->times.stall = asked->stall;
     if (asked->request > 0)
@@ -411,6 +468,7 @@ static void set_times(struct fleet *fleet)
 
 static void fleet_free(struct fleet *fleet)
 {
+    lister_destroy(fleet->lister);
     watch_destroy(fleet->watch);
     uploads_end(fleet);
     for (size_t i = 0; i < fleet->n_plans; i++)
@@ -455,12 +513,17 @@ struct fleet *fleet_create(const struct fleet_options *options, struct error *er
     if (!make_cache_folder(fleet->data_folder, err) || !uploads_begin(fleet, err))
         goto fail;
     fleet->plan_folders[options->n_plan_folders] = mem_copy_text(fleet->plans_home); /* last: a plan that was here before keeps its id */
-    struct watch_options watching = { fleet->times.ping, fleet->times.silent, options->wake, options->context };
+    struct watch_options watching = { fleet->times.ping, fleet->times.silent, fleet->times.awaited_ping, fleet->times.awaited_silent,
+                                      options->wake, options->context };
     fleet->watch = watch_create(&watching, err);
     if (!fleet->watch)
         goto fail;
+    fleet->lister = lister_create((const char *const *)fleet->plan_folders, options->n_plan_folders + 1,
+                                  options->list_folders ? options->list_folders : folders_list, options->wake, options->context, err);
+    if (!fleet->lister)
+        goto fail;
     start_probe(fleet);
-    list_folders(fleet);
+    fleet_rescan(fleet);
     return fleet;
 fail:
     fleet_free(fleet);

@@ -4,11 +4,12 @@
  * waiting, hands whole events over by a queue and calls options.wake. No rooms, no HTTP, no WebSocket here. */
 #include <stdint.h>
 
+#include "server/fleet/folders.h"
 #include "server/wire/packet.h"
 
 enum {
     FLEET_MAX_PLANS = 2000,
-    FLEET_MAX_RESTARTS = 3,    /* within 60 s; then failed */
+    FLEET_MAX_RESTARTS = 3,    /* in a row without a picture, while nobody holds the plan; then failed */
     FLEET_MAX_REQUESTS = 4096, /* unanswered ones, of all plans; more are answered with PROBLEM_BUSY */
     FLEET_MAX_SCANS = 2,       /* plan folders looked at at once */
     FLEET_MAX_UPLOADS = 16,    /* archives that wait, are unpacked or looked at; more are refused with PROBLEM_LIMIT */
@@ -19,7 +20,9 @@ enum {
 /* How long things may take, in ms; 0: the default, in brackets. */
 struct fleet_times {
     int ping;    /* a renderer that says nothing is asked whether it lives [2000] */
-    int silent;  /* one that does not answer is ended and started again [8000]: its main thread only talks */
+    int silent;  /* one that does not answer is ended and started again [6000]: its main thread only talks */
+    int awaited_ping;   /* the same while a picture or an answer is due [250] ... */
+    int awaited_silent; /* ... and its main thread stands still [750]; one that waits for a processor or a disk has the time above */
     int stall;   /* reading a plan without getting further; then failed [120000] */
     int request; /* an answer; a picture that is not there by then also ends the renderer [30000] */
     int scan;    /* looking at a plan folder, looking for GL [30000]: 20,000 DICOM files take most of it */
@@ -34,7 +37,7 @@ enum fleet_state {
     FLEET_STARTING,   /* the process is being started */
     FLEET_LOADING,    /* it reads the plan */
     FLEET_READY,      /* it draws and answers */
-    FLEET_RESTARTING, /* it stopped after having been ready and is being started again */
+    FLEET_RESTARTING, /* it stopped and is being started again, at once or after a pause: phase says which and why */
     FLEET_FAILED      /* it could not load the plan, or stopped too often: problem says why; fleet_open tries again */
 };
 const char *fleet_state_word(enum fleet_state state); /* "unreadable", "not-loaded", "starting", "loading", "ready", "restarting", "failed" */
@@ -49,7 +52,9 @@ struct fleet_options {
     const char *gl;              /* "auto", ... handed on */
     bool stub_renderer;          /* --stub: no GL at all, for tests */
     uint64_t max_renderer_bytes; /* writable memory of one renderer, its threads' stacks included; 0: no limit */
-    int max_renderers;           /* running at once; opening one more closes the longest unused, or is refused with PROBLEM_BUSY */
+    int max_renderers;           /* running at once; opening one more closes the longest unused that nobody holds, or is refused with PROBLEM_BUSY */
+    /* how the plan folders are listed, on a thread of its own; NULL: folders_list. For tests */
+    void (*list_folders)(const char *const *given, size_t n_given, struct folder_list *list);
     int idle_close_s;            /* a ready plan nobody uses (fleet_hold) is closed after this */
     struct fleet_times times;    /* all 0: the defaults */
     void (*wake)(void *context); /* any thread: make the net thread call fleet_handle_events soon */
@@ -71,18 +76,25 @@ struct fleet_plan {
     enum fleet_state state;
     const char *phase; /* while starting, loading or restarting */
     double percent;
-    const struct problem *problem;      /* unreadable, failed; else NULL */
+    const struct problem *problem;      /* unreadable, failed, or waiting to be restarted; else NULL */
     const cJSON *parts;                 /* array of text */
     uint64_t n_bytes;
     const cJSON *document;              /* the plan as the API gives it; NULL before ready (kept while restarting) */
     const cJSON *default_scene;         /* likewise */
     const char *const *image_ids;       /* likewise; NULL-terminated */
     uint32_t generation;                /* counts the processes started for it: a new one has forgotten rooms' scenes */
+    uint32_t opening;                   /* counts the times it was opened from closed or failed, ... */
+    uint32_t ready_opening, failed_opening; /* ... the last of them that became ready, the last that failed */
+    const struct problem *failure;      /* why that one failed */
     uint64_t memory_bytes;              /* of its process; 0 unknown */
     int64_t load_ms;
     int pid;                            /* 0: none */
     const char *confined;               /* how its process is confined, "landlock 3, seccomp, no-new-privs, no capabilities"; "" unknown */
 };
+/* Whether the plan folders have been listed: before that a plan that is not found is refused with PROBLEM_BUSY. */
+bool fleet_is_listed(const struct fleet *fleet);
+/* The problem of a plan that is not found: it is not there, or not known yet. Returns false. */
+bool fleet_no_plan(const struct fleet *fleet, const char *plan_id, struct problem *problem);
 size_t fleet_n_plans(const struct fleet *fleet);
 bool fleet_plan_at(const struct fleet *fleet, size_t index, struct fleet_plan *plan);
 bool fleet_plan_find(const struct fleet *fleet, const char *id, struct fleet_plan *plan);
@@ -92,8 +104,10 @@ void fleet_rescan(struct fleet *fleet); /* looks at the folders again, in the ba
 NODISCARD bool fleet_open(struct fleet *fleet, const char *plan_id, struct problem *problem);
 /* Stop its process: cancels a load in progress (state back to closed) or closes a ready plan. */
 void fleet_close(struct fleet *fleet, const char *plan_id);
-/* Rooms using it: not closed for idleness while held. Counts. */
-void fleet_hold(struct fleet *fleet, const char *plan_id);
+/* Somebody is there who looks at the plan: while held it is not closed for idleness or for another, and a renderer that ends is started
+ * again however often. Opens it when it is closed; when too many others are open, as soon as there is a place. Not when it failed for a
+ * reason that lies in its files. Counts. false: there is no such plan, nothing is held */
+NODISCARD bool fleet_hold(struct fleet *fleet, const char *plan_id);
 void fleet_release(struct fleet *fleet, const char *plan_id);
 
 /* Takes a plan out of the server for good: only one in data/plans. Its renderer ends, its folder and cache are gone from the list at once

@@ -8,9 +8,8 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/fleet/news.h"
+#include "server/fleet/restarts.h"
 #include "server/wire/document.h"
-
-static const int back_off_ms[FLEET_MAX_RESTARTS] = { 0, 500, 2000 };
 
 static void copy_text(char *to, size_t n, const char *text) { (void)snprintf(to, n, "%s", text ? text : ""); }
 
@@ -27,7 +26,9 @@ void plan_entry_fail(struct fleet *fleet, struct plan_entry *plan, const struct 
         watch_stop(fleet->watch, plan->process, false, "is no longer wanted");
     plan_entry_lose(plan);
     plan->restart_at_us = 0;
-    plan->problem = *problem;
+    plan->failed_number = fleet->last_number;
+    plan->failed_opening = plan->opening;
+    plan->problem = plan->failure = *problem;
     asks_fail(fleet, plan, false, problem);
     plan_entry_change(fleet, plan, FLEET_FAILED);
     log_warn("plan %s: %s", plan->id, problem->detail);
@@ -77,7 +78,7 @@ static bool take_progress(struct fleet *fleet, struct plan_entry *plan, const cJ
     if (!phase || !(percent >= 0 && percent <= 100) || plan->state == FLEET_READY)
         return false;
     if (percent != plan->percent || strcmp(phase, plan->phase) != 0)
-        plan->moved_us = clock_now_us();
+        plan->moved_us = fleet_now_us(fleet);
     copy_text(plan->phase, sizeof plan->phase, phase);
     plan->percent = percent;
     plan_entry_change(fleet, plan, plan->state == FLEET_STARTING ? FLEET_LOADING : plan->state);
@@ -127,10 +128,11 @@ static bool take_ready(struct fleet *fleet, struct plan_entry *plan, cJSON *json
     plan->was_ready = true;
     plan->percent = 100;
     plan->phase[0] = 0;
-    plan->used_us = clock_now_us();
+    plan->used_us = plan->ready_us = fleet_now_us(fleet);
+    plan->ready_opening = plan->opening;
     plan_entry_change(fleet, plan, FLEET_READY);
     log_info("plan %s: ready after %lld ms (read in %lld ms); confined: %s", plan->id,
-             (long long)(plan->used_us - plan->asked_us) / 1000, (long long)plan->load_ms, plan->confined);
+             (long long)(clock_now_us() - plan->asked_us) / 1000, (long long)plan->load_ms, plan->confined);
     return true;
 }
 
@@ -139,8 +141,15 @@ static bool take_failed(struct fleet *fleet, struct plan_entry *plan, const cJSO
     struct problem said, problem;
     if (!problem_from_json(cJSON_GetObjectItemCaseSensitive(json, "problem"), &said))
         return false;
+    if (plan->was_ready && plan->n_holds > 0 && said.type == PROBLEM_INTERNAL) { /* no memory, no thread, no disk: it was read before */
+        char how[200];
+        (void)snprintf(how, sizeof how, "could not read the plan again (%.150s)", said.detail);
+        plan_entry_kill(fleet, plan, how);
+        return true;
+    }
     problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "%s", said.detail);
     plan_entry_fail(fleet, plan, &problem);
+    plan->is_for_good = said.type != PROBLEM_INTERNAL;
     return true;
 }
 
@@ -181,12 +190,11 @@ static void how_it_ended(const struct watch_event *event, char *text, size_t n)
 
 static void renderer_ended(struct fleet *fleet, struct plan_entry *plan, const struct watch_event *event)
 {
-    int64_t now_us = clock_now_us();
     char how[240];
     struct problem problem;
     how_it_ended(event, how, sizeof how);
     plan_entry_lose(plan);
-    if (!plan->was_ready) {
+    if (!plan->was_ready && plan->n_holds == 0) {
         if (event->signal && !event->reason[0])
             problem_set(&problem, PROBLEM_RENDERER, "", "", "the renderer stopped while reading the plan (signal %d)", event->signal);
         else
@@ -194,25 +202,7 @@ static void renderer_ended(struct fleet *fleet, struct plan_entry *plan, const s
         plan_entry_fail(fleet, plan, &problem);
         return;
     }
-    int n_before = 0;
-    while (n_before < FLEET_MAX_RESTARTS && plan->ended_us[n_before] && now_us - plan->ended_us[n_before] < RESTART_WINDOW_MS * 1000LL)
-        n_before++;
-    if (n_before == FLEET_MAX_RESTARTS) {
-        problem_set(&problem, PROBLEM_RENDERER, "", "", "the renderer stopped %d times within a minute; the last time it %.180s",
-                    FLEET_MAX_RESTARTS + 1, how);
-        plan_entry_fail(fleet, plan, &problem);
-        return;
-    }
-    memmove(plan->ended_us + 1, plan->ended_us, (FLEET_MAX_RESTARTS - 1) * sizeof *plan->ended_us);
-    plan->ended_us[0] = now_us;
-    plan->restart_at_us = now_us + back_off_ms[n_before] * 1000LL;
-    copy_text(plan->phase, sizeof plan->phase, "starting the renderer again");
-    plan->percent = 0;
-    problem_set(&problem, PROBLEM_RENDERER, "", "", "the renderer %.200s and is being started again", how);
-    problem.retry_after_ms = back_off_ms[n_before] + 500;
-    asks_fail(fleet, plan, true, &problem);
-    plan_entry_change(fleet, plan, FLEET_RESTARTING);
-    log_warn("plan %s: the renderer %s; starting it again in %d ms", plan->id, how, back_off_ms[n_before]);
+    restart_after_end(fleet, plan, how);
 }
 
 static void probe_ended(struct fleet *fleet, const struct watch_event *event)

@@ -1,11 +1,13 @@
 #pragma once
-/* What the fleet's files share: its plans, its requests, its state. Everything on the net thread; nothing of this is for others. */
+/* What the fleet's files share: its plans, its requests, its state. Everything on the net thread; nothing of this is for others.
+ * Times are fleet_now_us's, but for asked_us. */
 #include "server/fleet/fleet.h"
+#include "server/fleet/lister.h"
 #include "server/fleet/remover.h"
+#include "server/fleet/run_clock.h"
 #include "server/fleet/watch.h"
 
 enum {
-    RESTART_WINDOW_MS = 60000,
     MAX_IMAGES = 64, /* images of a plan whose ids we keep */
     PLAN_ID_SIZE = 64
 };
@@ -25,6 +27,7 @@ struct plan_entry {
 
     /* looking at the folder */
     uint64_t fingerprint, scan; /* scan: number of the process that looks; 0 none */
+    uint64_t failed_number;     /* as the numbers of processes: a look at the folder that began before does not undo the failure */
     bool wants_scan, is_gone;   /* gone: no longer in the plan folders */
     bool is_removed;            /* for good: nobody finds it any more, and it is freed when no event is about it */
 
@@ -34,6 +37,8 @@ struct plan_entry {
     uint32_t generation;
     uint64_t memory_bytes;
     bool was_ready;
+    bool has_drawn; /* its present process delivered a picture */
+    bool is_awaited; /* as last told to the watch */
     bool is_dying; /* ended by us, and not yet gone: what it still says counts for nothing */
     char confined[96];
     cJSON *document, *default_scene;
@@ -41,8 +46,16 @@ struct plan_entry {
     int64_t load_ms, asked_us; /* asked: when its present process was started */
     int64_t drew_us;           /* when a picture last came */
     int64_t moved_us;          /* when loading last got further */
+    int64_t ready_us;          /* when its present process became ready; 0: it did not */
     int64_t restart_at_us;     /* while it waits for its next start; 0: it does not */
-    int64_t ended_us[FLEET_MAX_RESTARTS]; /* when its processes last ended unasked, newest first; 0 never */
+    int64_t quick_booked_us;   /* restarts.c */
+    int n_barren;              /* ends in a row without a picture before them */
+    char ended_how[160];
+    uint32_t opening, ready_opening, failed_opening; /* counts the times it was opened; the last that became ready, that failed */
+    struct problem failure; /* why that one failed */
+    bool is_for_good;          /* failed: for a reason that lies in the plan's files */
+    bool wants_place;          /* failed: held, but too many others were open */
+    int64_t place_at_us;       /* when it tries again to get one */
     int n_holds;
     int64_t used_us;
 };
@@ -68,7 +81,9 @@ struct fleet {
     struct watch *watch;
     struct plan_entry **plans; /* FLEET_MAX_PLANS */
     size_t n_plans;
-    bool list_has_changed, is_listing, wants_listing;
+    bool list_has_changed, is_listing, is_listed;
+    struct lister *lister;
+    struct run_clock clock; /* runs with fleet_tick */
     struct remover *remover;
     struct upload *uploads; /* newest first */
     char *plans_home, *uploads_home; /* data/plans, data/uploads; absolute, links resolved */
@@ -114,10 +129,13 @@ void asks_fail(struct fleet *fleet, const struct plan_entry *plan, bool only_sen
 void asks_deliver_failed(struct fleet *fleet);
 void asks_keep_time(struct fleet *fleet, int64_t now_us);
 bool asks_has_any(const struct fleet *fleet, const struct plan_entry *plan);
+bool asks_has_sent(const struct fleet *fleet, const struct plan_entry *plan); /* the renderer owes a picture or an answer */
 /* A frame, answer or problem came. False: it breaks the rules. */
 bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packet *packet);
 
 /* fleet.c */
+int64_t fleet_now_us(const struct fleet *fleet); /* time while the net thread ran: nobody is late because we stood still */
+void plan_entry_start(struct fleet *fleet, struct plan_entry *plan); /* a process for it; state stays */
 void plan_entry_close(struct fleet *fleet, struct plan_entry *plan, const char *why); /* its renderer ends, waiting requests fail */
 void plan_entry_change(struct fleet *fleet, struct plan_entry *plan, enum fleet_state state);
 /* A renderer that is stuck or lies: ends it; it is started again as after a crash. */

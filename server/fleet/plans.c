@@ -195,7 +195,8 @@ bool plans_scan_ended(struct fleet *fleet, const struct watch_event *event)
     if (json)
         is_readable = take_summary(plan, json, reason);
     cJSON_Delete(json);
-    if (plan->state == FLEET_CLOSED || plan->state == FLEET_UNREADABLE || plan->state == FLEET_FAILED) {
+    bool is_newer = plan->state != FLEET_FAILED || event->number > plan->failed_number;
+    if ((plan->state == FLEET_CLOSED || plan->state == FLEET_UNREADABLE || plan->state == FLEET_FAILED) && is_newer) {
         plan_entry_change(fleet, plan, is_readable ? FLEET_CLOSED : FLEET_UNREADABLE);
         plan->problem = (struct problem){ 0 };
         if (!is_readable)

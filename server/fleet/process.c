@@ -10,7 +10,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/base/clock.h"
 #include "core/base/mem.h"
 
 enum {
@@ -46,8 +45,9 @@ struct process {
     char *output;
     size_t n_output;
     uint64_t n_since_packet;
-    int64_t heard_us, pinged_us, kill_at_us, limit_at_us, memory_at_us, drain_until_us;
-    bool has_ended, is_stopping;
+    int64_t heard_us, kill_at_us, limit_at_us, memory_at_us, drain_until_us;
+    int64_t pinged_us; /* when the ping was sent that is not answered yet; 0: none is on its way */
+    bool has_ended, is_stopping, is_awaited;
     int status;
     char reason[240];
 };
@@ -66,7 +66,6 @@ void watch_event_destroy(struct watch_event *event)
     if (event->lane)
         lane_drop(event->lane, event->memory_bytes);
     packet_finish(&event->packet);
-    folder_list_finish(&event->found);
     free(event->output);
     free(event);
 }
@@ -93,7 +92,7 @@ struct process *process_create(uint64_t number, char *const argv[], int limit_ms
     process->limit_ms = limit_ms;
     process->news = *news;
     process->last = &process->outgoing;
-    process->heard_us = process->pinged_us = now_us;
+    process->heard_us = now_us;
     process->memory_at_us = now_us;
     process->limit_at_us = limit_ms > 0 ? now_us + (int64_t)limit_ms * 1000 : INT64_MAX;
     process->kill_at_us = INT64_MAX;
@@ -170,7 +169,7 @@ void process_stop(struct process *process, bool at_once, const char *reason, int
     }
 }
 
-void process_send(struct process *process, uint8_t *bytes, size_t n_bytes)
+void process_send(struct process *process, uint8_t *bytes, size_t n_bytes, int64_t now_us)
 {
     if (process->child.channel < 0 || process->is_program) {
         free(bytes);
@@ -178,7 +177,7 @@ void process_send(struct process *process, uint8_t *bytes, size_t n_bytes)
     }
     if (n_bytes > WATCH_MAX_OUTGOING || process->n_outgoing > WATCH_MAX_OUTGOING - n_bytes) {
         free(bytes);
-        process_stop(process, true, "did not read what it was sent", clock_now_us());
+        process_stop(process, true, "did not read what it was sent", now_us);
         return;
     }
     struct chunk *chunk = mem_new(sizeof *chunk);
@@ -188,6 +187,10 @@ void process_send(struct process *process, uint8_t *bytes, size_t n_bytes)
     process->last = &chunk->next;
     process->n_outgoing += n_bytes;
 }
+
+void process_await(struct process *process, bool is_awaited) { process->is_awaited = is_awaited; }
+
+bool process_is_awaited(const struct process *process) { return process->is_awaited && !process->has_ended; }
 
 bool process_is_throttled(const struct process *process)
 {
@@ -228,21 +231,21 @@ static void write_out(struct process *process)
     }
 }
 
-static void is_broken(struct process *process, const char *how)
+static void is_broken(struct process *process, const char *how, int64_t now_us)
 {
     char reason[240];
     (void)snprintf(reason, sizeof reason, "was ended because it said something that is no packet: %.160s", how);
-    process_stop(process, true, reason, clock_now_us());
+    process_stop(process, true, reason, now_us);
 }
 
-static void take_packets(struct process *process)
+static void take_packets(struct process *process, int64_t now_us)
 {
     struct packet packet;
     struct error err = { 0 };
     int got;
     while (process->child.channel >= 0 && (got = packet_reader_take(process->reader, &packet, &err)) != 0) {
         if (got < 0) {
-            is_broken(process, err.text);
+            is_broken(process, err.text, now_us);
             return;
         }
         uint64_t text = process->n_since_packet > packet.n_blob ? process->n_since_packet - packet.n_blob : 0;
@@ -250,7 +253,7 @@ static void take_packets(struct process *process)
         const char *type = json_text(packet.json, "type");
         if (!type) {
             packet_finish(&packet);
-            is_broken(process, "a packet without a type");
+            is_broken(process, "a packet without a type", now_us);
             return;
         }
         if (strcmp(type, "pong") == 0) { /* its answer to our ping: that it speaks is all we wanted */
@@ -274,7 +277,7 @@ static bool read_packets(struct process *process, size_t *n_read, int64_t now_us
     struct error err = { 0 };
     uint8_t *space = packet_reader_space(process->reader, &room, &err);
     if (!space) {
-        is_broken(process, err.text);
+        is_broken(process, err.text, now_us);
         return false;
     }
     ssize_t n = recv(process->child.channel, space, room, 0);
@@ -289,10 +292,11 @@ static bool read_packets(struct process *process, size_t *n_read, int64_t now_us
         return false;
     }
     process->heard_us = now_us;
+    process->pinged_us = 0;
     process->n_since_packet += (uint64_t)n;
     *n_read += (size_t)n;
     packet_reader_added(process->reader, (size_t)n);
-    take_packets(process);
+    take_packets(process, now_us);
     return process->child.channel >= 0 && !process_is_throttled(process);
 }
 
@@ -381,6 +385,54 @@ static void tell_memory(struct process *process, int64_t now_us)
     fclose(file);
 }
 
+/* Whether its main thread is stopped, or asleep: then it is no lack of processor or disk that keeps it from reading. */
+static bool stands_still(const struct process *process)
+{
+    char path[64], text[256];
+    (void)snprintf(path, sizeof path, "/proc/%ld/stat", (long)process->child.pid);
+    FILE *file = fopen(path, "re");
+    if (!file)
+        return false;
+    size_t n = fread(text, 1, sizeof text - 1, file);
+    fclose(file);
+    text[n] = 0;
+    const char *state = strrchr(text, ')'); /* "PID (NAME) STATE ...", proc(5); the name may hold anything */
+    return state && state[1] == ' ' && state[2] && strchr("TtS", state[2]);
+}
+
+static void send_ping(struct process *process, int64_t now_us)
+{
+    process->pinged_us = now_us;
+    cJSON *ping = cJSON_CreateObject();
+    cJSON_AddStringToObject(ping, "type", "ping");
+    size_t n;
+    uint8_t *bytes = packet_write(ping, NULL, 0, &n);
+    cJSON_Delete(ping);
+    process_send(process, bytes, n, now_us);
+}
+
+static void keep_silence(struct process *process, const struct watch_options *options, int64_t now_us)
+{
+    if (process_is_throttled(process)) { /* it is we who do not listen */
+        process->heard_us = now_us;
+        process->pinged_us = 0;
+        return;
+    }
+    int64_t ping_ms = process->is_awaited ? options->awaited_ping_ms : options->ping_ms;
+    if (!process->pinged_us) {
+        if ((now_us - process->heard_us) / 1000 >= ping_ms)
+            send_ping(process, now_us);
+        return;
+    }
+    int64_t silent_ms = (now_us - process->pinged_us) / 1000;
+    bool is_due = process->is_awaited && silent_ms >= options->awaited_silent_ms && stands_still(process);
+    if (silent_ms >= options->silent_ms || is_due) {
+        char reason[80];
+        (void)snprintf(reason, sizeof reason, "did not answer for %.1f s", (double)(now_us - process->heard_us) / 1e6);
+        process_stop(process, true, reason, now_us);
+    }
+}
+
 static void keep_times(struct process *process, const struct watch_options *options, int64_t now_us)
 {
     if (process->has_ended)
@@ -395,24 +447,7 @@ static void keep_times(struct process *process, const struct watch_options *opti
     }
     if (process->is_program || process->is_stopping || process->child.channel < 0)
         return;
-    if (process_is_throttled(process)) {
-        process->heard_us = now_us; /* it is we who do not listen */
-        return;
-    }
-    int64_t silent_ms = (now_us - process->heard_us) / 1000;
-    if (silent_ms >= options->silent_ms) {
-        char reason[80];
-        (void)snprintf(reason, sizeof reason, "did not answer for %d s", options->silent_ms / 1000);
-        process_stop(process, true, reason, now_us);
-    } else if (silent_ms >= options->ping_ms && (now_us - process->pinged_us) / 1000 >= options->ping_ms) {
-        process->pinged_us = now_us;
-        cJSON *ping = cJSON_CreateObject();
-        cJSON_AddStringToObject(ping, "type", "ping");
-        size_t n;
-        uint8_t *bytes = packet_write(ping, NULL, 0, &n);
-        cJSON_Delete(ping);
-        process_send(process, bytes, n);
-    }
+    keep_silence(process, options, now_us);
 }
 
 static void tell_end(struct process *process)

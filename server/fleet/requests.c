@@ -2,7 +2,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "server/fleet/parts.h"
 
@@ -33,7 +32,7 @@ static struct fleet_ask *ask_new(struct fleet *fleet, fleet_reply reply, void *c
     ask->number = fleet_number(fleet);
     ask->reply = reply;
     ask->context = context;
-    ask->until_us = clock_now_us() + (int64_t)fleet->times.request * 1000;
+    ask->until_us = fleet_now_us(fleet) + (int64_t)fleet->times.request * 1000;
     struct fleet_ask **end = &fleet->asks;
     while (*end)
         end = &(*end)->next;
@@ -104,7 +103,7 @@ uint64_t fleet_request(struct fleet *fleet, const char *plan_id, const cJSON *pa
     struct problem problem = { 0 };
     uint64_t number = ask->number;
     if (!plan) {
-        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no plan \"%.64s\"", plan_id);
+        (void)fleet_no_plan(fleet, plan_id, &problem);
     } else if (is_full) {
         problem_set(&problem, PROBLEM_BUSY, "", "", "%d requests wait for an answer already", FLEET_MAX_REQUESTS);
         problem.retry_after_ms = 1000;
@@ -112,7 +111,7 @@ uint64_t fleet_request(struct fleet *fleet, const char *plan_id, const cJSON *pa
         ask->plan = plan;
         ask->is_render = is_render(packet);
         ask->bytes = write_with_id(packet, number, &ask->n_bytes);
-        plan->used_us = clock_now_us();
+        plan->used_us = fleet_now_us(fleet);
         if (plan->state == FLEET_READY)
             send_ask(fleet, ask);
     }
@@ -196,6 +195,20 @@ bool asks_has_any(const struct fleet *fleet, const struct plan_entry *plan)
     return false;
 }
 
+bool asks_has_sent(const struct fleet *fleet, const struct plan_entry *plan)
+{
+    for (const struct fleet_ask *ask = fleet->asks; ask; ask = ask->next)
+        if (ask->plan == plan && ask->is_sent)
+            return true;
+    return false;
+}
+
+static void plan_entry_drew(struct fleet *fleet, struct plan_entry *plan)
+{
+    plan->has_drawn = true;
+    plan->drew_us = fleet_now_us(fleet);
+}
+
 static bool is_number_in(const cJSON *json, const char *name, double low, double high)
 {
     double value = json_number(json, name, NAN);
@@ -224,7 +237,7 @@ bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packe
     const char *type = json_text(packet->json, "type");
     if (!ask) { /* asked once, and forgotten since */
         if (id >= 0 && type && strcmp(type, "frame") == 0)
-            plan->drew_us = clock_now_us();
+            plan_entry_drew(fleet, plan);
         return id >= 0;
     }
     struct problem problem = { 0 };
@@ -237,9 +250,11 @@ bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packe
         return false;
     }
     unlink_ask(fleet, ask);
-    plan->used_us = clock_now_us();
-    if (ask->is_render)
-        plan->drew_us = plan->used_us;
+    plan->used_us = fleet_now_us(fleet);
+    if (ask->is_render && !is_problem)
+        plan_entry_drew(fleet, plan);
+    else if (ask->is_render)
+        plan->drew_us = plan->used_us; /* it refused the picture: it is not stuck */
     ask->reply(ask->context, is_problem ? NULL : packet, is_problem ? &problem : NULL);
     free_ask(ask);
     return true;

@@ -278,7 +278,7 @@ static void take_home(struct fleet *fleet, struct upload *upload)
     struct problem problem;
     if (chmod(upload->root, 0700) == 0 && move_home(fleet, upload)) {
         upload->stage = STAGE_LISTING;
-        upload->list_until_us = clock_now_us() + LIST_WITHIN_US;
+        upload->list_until_us = fleet_now_us(fleet) + LIST_WITHIN_US;
         clean(fleet, upload);
         fleet_rescan(fleet);
         return;
@@ -312,11 +312,13 @@ static void look_for_it(struct fleet *fleet, struct upload *upload, int64_t now_
         upload->stage = STAGE_OVER;
         log_info("upload %llu: plan %s: %llu files, %llu bytes in %lld ms", (unsigned long long)upload->number, plan->id,
                  (unsigned long long)upload->n_files, (unsigned long long)upload->n_bytes, (long long)((now_us - upload->began_us) / 1000));
+    } else if (fleet->is_listing) {
+        return; /* however slow the disks of the other plans are */
     } else if (now_us > upload->list_until_us) {
         problem_set(&problem, PROBLEM_LIMIT, "", "", "the list of plans has no place for it: at most %d are listed", FLEET_MAX_PLANS);
         (void)throw_away(fleet, upload->root);
         fail(fleet, upload, &problem);
-    } else if (!fleet->is_listing) {
+    } else {
         fleet_rescan(fleet);
     }
 }
@@ -404,7 +406,7 @@ bool uploads_take_event(struct fleet *fleet, const struct watch_event *event)
 
 void uploads_go_on(struct fleet *fleet)
 {
-    int64_t now_us = clock_now_us();
+    int64_t now_us = fleet_now_us(fleet);
     for (;;) {
         struct upload *oldest = NULL; /* that waits */
         int n_unpacking = 0;
@@ -480,7 +482,7 @@ uint64_t fleet_upload(struct fleet *fleet, const char *archive, const char *name
     bool is_part = n > n_ending && strcmp(archive + n - n_ending, ".part") == 0;
     (void)snprintf(upload->folder, n + n_ending, "%.*s%s", (int)(is_part ? n - n_ending : n), archive, is_part ? "" : ".out");
     make_base_id(name, upload->base_id);
-    upload->began_us = clock_now_us();
+    upload->began_us = fleet_now_us(fleet);
     upload->next = fleet->uploads;
     fleet->uploads = upload;
     uploads_go_on(fleet);
@@ -526,7 +528,7 @@ bool fleet_remove_plan(struct fleet *fleet, const char *plan_id, struct problem 
 {
     struct plan_entry *plan = plan_entry_find(fleet, plan_id);
     if (!plan)
-        return problem_set(problem, PROBLEM_NOT_FOUND, "", "", "there is no plan \"%.64s\"", plan_id);
+        return fleet_no_plan(fleet, plan_id, problem);
     if (!uploads_owns(fleet, plan->folder))
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "", "the plan lies in a folder that the server does not own: only uploaded plans are deleted");
     if (!throw_away(fleet, plan->folder) && errno != ENOENT)

@@ -10,32 +10,34 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
 #include "server/fleet/process.h"
+#include "server/fleet/run_clock.h"
 
 enum {
     MAX_PROCESSES = 256,
     ORDER_CAPACITY = 8192,
     EVENT_CAPACITY = 8192,
     BUSY_POLL_MS = 20,     /* while something waits for the other side */
+    AWAITED_POLL_MS = 100, /* while an answer is awaited */
     CALM_POLL_MS = 250,    /* while there are processes: pings, memory, limits */
+    LONGEST_STEP_MS = 500, /* between two looks at the processes; what is more, the thread did not run */
     BLIND_POLL_MS = 50,    /* where the kernel tells no ends */
     STOP_ALL_US = 2000000
 };
 
-enum order_type { ORDER_START, ORDER_SEND, ORDER_STOP, ORDER_LIST, ORDER_QUIT };
+enum order_type { ORDER_START, ORDER_SEND, ORDER_STOP, ORDER_AWAIT, ORDER_QUIT };
 
 struct order {
     enum order_type type;
     uint64_t number;
-    char **argv; /* start: the program; list: the folders */
+    char **argv;
     int limit_ms;
     bool is_teller;
     uint8_t *bytes;
     size_t n_bytes;
-    bool is_hung;
+    bool is_hung, is_awaited;
     char reason[240];
 };
 
@@ -55,6 +57,7 @@ struct watch {
     struct held_event *held, **last_held;
     bool is_quitting;
     int64_t quit_at_us;
+    struct run_clock clock;
 };
 
 static void free_texts(char **texts)
@@ -141,12 +144,10 @@ void watch_stop(struct watch *watch, uint64_t number, bool is_hung, const char *
     }
 }
 
-bool watch_list_folders(struct watch *watch, const char *const *folders, size_t n_folders)
+bool watch_await(struct watch *watch, uint64_t number, bool is_awaited)
 {
-    struct order *order = order_new(ORDER_LIST, 0);
-    order->argv = mem_new((n_folders + 1) * sizeof *order->argv);
-    for (size_t i = 0; i < n_folders; i++)
-        order->argv[i] = mem_copy_text(folders[i]);
+    struct order *order = order_new(ORDER_AWAIT, number);
+    order->is_awaited = is_awaited;
     return give_order(watch, order);
 }
 
@@ -190,18 +191,7 @@ static struct process *find(struct watch *watch, uint64_t number)
     return NULL;
 }
 
-static void list_folders(struct watch *watch, char **folders)
-{
-    size_t n = 0;
-    while (folders[n])
-        n++;
-    struct watch_event *event = mem_new(sizeof *event);
-    event->type = WATCH_FOLDERS;
-    folders_list((const char *const *)folders, n, &event->found);
-    give_event(watch, event);
-}
-
-static void start(struct watch *watch, const struct order *order)
+static void start(struct watch *watch, const struct order *order, int64_t now_us)
 {
     struct process_news news = { give_event, watch };
     if (watch->n_processes == MAX_PROCESSES || watch->is_quitting) {
@@ -212,30 +202,33 @@ static void start(struct watch *watch, const struct order *order)
         give_event(watch, event);
         return;
     }
-    watch->processes[watch->n_processes++] = process_create(order->number, order->argv, order->limit_ms, order->is_teller, &news, clock_now_us());
+    watch->processes[watch->n_processes++] = process_create(order->number, order->argv, order->limit_ms, order->is_teller, &news, now_us);
 }
 
-static void obey(struct watch *watch, struct order *order)
+static void obey(struct watch *watch, struct order *order, int64_t now_us)
 {
     struct process *process = find(watch, order->number);
     switch (order->type) {
-    case ORDER_START: start(watch, order); break;
+    case ORDER_START: start(watch, order, now_us); break;
     case ORDER_SEND:
         if (process) {
-            process_send(process, order->bytes, order->n_bytes);
+            process_send(process, order->bytes, order->n_bytes, now_us);
             order->bytes = NULL;
         }
         break;
     case ORDER_STOP:
         if (process)
-            process_stop(process, order->is_hung, order->reason, clock_now_us());
+            process_stop(process, order->is_hung, order->reason, now_us);
         break;
-    case ORDER_LIST: list_folders(watch, order->argv); break;
+    case ORDER_AWAIT:
+        if (process)
+            process_await(process, order->is_awaited);
+        break;
     case ORDER_QUIT:
         watch->is_quitting = true;
-        watch->quit_at_us = clock_now_us() + STOP_ALL_US;
+        watch->quit_at_us = now_us + STOP_ALL_US;
         for (size_t i = 0; i < watch->n_processes; i++)
-            process_stop(watch->processes[i], false, "the server is stopping", clock_now_us());
+            process_stop(watch->processes[i], false, "the server is stopping", now_us);
         break;
     }
     order_destroy(order);
@@ -244,14 +237,17 @@ static void obey(struct watch *watch, struct order *order)
 static int poll_ms(const struct watch *watch)
 {
     bool is_busy = watch->held || watch->is_quitting;
-    bool is_blind = false;
+    bool is_blind = false, is_awaited = false;
     for (size_t i = 0; i < watch->n_processes; i++) {
         struct pollfd polled[2];
         size_t n = process_poll(watch->processes[i], polled);
         is_busy |= process_is_throttled(watch->processes[i]);
         is_blind |= n == 0;
+        is_awaited |= process_is_awaited(watch->processes[i]);
     }
-    return is_busy ? BUSY_POLL_MS : is_blind ? BLIND_POLL_MS : watch->n_processes > 0 ? CALM_POLL_MS : -1;
+    if (watch->n_processes == 0 && !is_busy)
+        return -1;
+    return is_busy ? BUSY_POLL_MS : is_blind ? BLIND_POLL_MS : is_awaited ? AWAITED_POLL_MS : CALM_POLL_MS;
 }
 
 static void wait_for_something(struct watch *watch)
@@ -287,10 +283,11 @@ static void *watch_main(void *argument)
     struct watch *watch = argument;
     while (!watch->is_quitting || watch->n_processes > 0) {
         wait_for_something(watch);
+        run_clock_step(&watch->clock, LONGEST_STEP_MS * 1000LL);
+        int64_t now_us = run_clock_us(&watch->clock);
         for (struct order *order; (order = queue_try_take(watch->orders));)
-            obey(watch, order);
+            obey(watch, order, now_us);
         flush_held(watch);
-        int64_t now_us = clock_now_us();
         for (size_t n = watch->n_processes; n > 0 && (!watch->held || watch->is_quitting); n--)
             step_next(watch, now_us);
     }

@@ -1,9 +1,8 @@
 #pragma once
-/* The fleet's own thread: it starts child processes, moves their packets, notices silence, memory and ends, and looks at the plan
- * folders. Orders come in and events go out by queues; nothing here knows what a plan's state is. */
+/* The fleet's own thread: it starts child processes, moves their packets, notices silence, memory and ends. Orders come in and events
+ * go out by queues; nothing here knows what a plan's state is. It touches no disk: what a disk holds up would hold up every renderer. */
 #include <stdint.h>
 
-#include "server/fleet/folders.h"
 #include "server/wire/packet.h"
 
 enum {
@@ -17,8 +16,7 @@ enum watch_event_type {
     WATCH_PACKET,  /* packet */
     WATCH_MEMORY,  /* memory_bytes */
     WATCH_LINE,    /* output: one line a teller printed, without its end */
-    WATCH_ENDED,   /* the last of its number: how, and for a program what it printed */
-    WATCH_FOLDERS  /* found */
+    WATCH_ENDED    /* the last of its number: how, and for a program what it printed */
 };
 
 struct watch_event {
@@ -27,7 +25,6 @@ struct watch_event {
     int pid;
     uint64_t memory_bytes;
     struct packet packet;
-    struct folder_list found;
     /* WATCH_ENDED */
     bool is_exit;    /* it ended by itself, with status; else by signal, or it never started */
     int status, signal;
@@ -39,8 +36,12 @@ struct watch_event {
 void watch_event_destroy(struct watch_event *event);
 
 struct watch_options {
-    int ping_ms;   /* a renderer that says nothing for this long is asked whether it lives */
-    int silent_ms; /* one that says nothing for this long is ended */
+    /* Silence counts from the first ping that is not answered, and only while the watch itself runs. */
+    int ping_ms;   /* a renderer that says nothing for this long is sent a ping */
+    int silent_ms; /* one that does not answer it for this long is ended */
+    /* The same for a renderer whose answer is awaited (watch_await). It is ended this early only when its main thread stands still
+     * (stopped, or asleep without reading): one that waits for a processor or a disk keeps silent_ms. */
+    int awaited_ping_ms, awaited_silent_ms;
     void (*wake)(void *context); /* any thread: an event is waiting */
     void *context;
 };
@@ -58,6 +59,7 @@ NODISCARD bool watch_start_teller(struct watch *watch, uint64_t number, char **a
 NODISCARD bool watch_send(struct watch *watch, uint64_t number, uint8_t *bytes, size_t n_bytes); /* takes bytes */
 /* Ends a process: is_hung kills at once, else its socket closes and it has 1 s. reason goes into its WATCH_ENDED. */
 void watch_stop(struct watch *watch, uint64_t number, bool is_hung, const char *reason);
-NODISCARD bool watch_list_folders(struct watch *watch, const char *const *folders, size_t n_folders);
+/* Whether a picture or an answer of this renderer is due: its silence is noticed sooner. Not awaited from the start. */
+NODISCARD bool watch_await(struct watch *watch, uint64_t number, bool is_awaited);
 
 struct watch_event *watch_take(struct watch *watch); /* NULL when there is none */

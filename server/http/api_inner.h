@@ -16,6 +16,7 @@ struct api_job {
     char id[40], plan_id[64]; /* plan: "" until an upload is done */
     const char *kind;         /* "open", "upload" */
     uint64_t upload;          /* the fleet's number of it; 0: opens a plan */
+    uint32_t opening;         /* the plan's, as struct fleet_plan has it */
     enum api_job_state state;
     char phase[200];
     double percent;

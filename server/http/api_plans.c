@@ -21,7 +21,7 @@ static cJSON *plan_head(const struct fleet_plan *plan)
         cJSON_AddStringToObject(json, "phase", plan->phase);
         cJSON_AddNumberToObject(json, "percent", plan->percent);
     }
-    if (plan->problem) {
+    if (plan->problem) { /* unreadable, failed, or why the renderer is restarted after a pause */
         cJSON_AddStringToObject(json, "reason", plan->problem->detail);
         cJSON_AddItemToObject(json, "problem", problem_to_json(plan->problem));
     } else {
@@ -57,7 +57,7 @@ static bool find_plan(struct api *api, struct call *call, struct fleet_plan *pla
     if (fleet_plan_find(net_fleet(api->net), call->ids[0], plan))
         return true;
     struct problem problem;
-    problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no plan \"%.63s\"", call->ids[0]);
+    fleet_no_plan(net_fleet(api->net), call->ids[0], &problem);
     call_answer_problem(call, &problem);
     return false;
 }
@@ -110,6 +110,21 @@ static void update_job(struct api *api, struct api_job *job)
         problem_set(&job->problem, PROBLEM_NOT_FOUND, "", "", "the plan is gone");
         return;
     }
+    if (plan.ready_opening == job->opening) { /* also when it has been closed since */
+        job->state = JOB_DONE;
+        job->phase[0] = 0;
+        job->percent = 100;
+        return;
+    }
+    if (plan.failed_opening == job->opening) { /* also when it has been opened again since */
+        job->state = job->is_cancel_asked ? JOB_CANCELLED : JOB_FAILED;
+        job->problem = *plan.failure;
+        return;
+    }
+    if (plan.opening != job->opening) { /* closed before it was ready, and opened again since */
+        job->state = JOB_CANCELLED;
+        return;
+    }
     switch (plan.state) {
     case FLEET_STARTING:
     case FLEET_LOADING:
@@ -117,11 +132,7 @@ static void update_job(struct api *api, struct api_job *job)
         (void)snprintf(job->phase, sizeof job->phase, "%s", plan.phase ? plan.phase : "");
         job->percent = plan.percent;
         break;
-    case FLEET_READY:
-        job->state = JOB_DONE;
-        job->phase[0] = 0;
-        job->percent = 100;
-        break;
+    case FLEET_READY: break; /* done, above */
     case FLEET_CLOSED: job->state = JOB_CANCELLED; break;
     case FLEET_UNREADABLE:
     case FLEET_FAILED:
@@ -171,6 +182,8 @@ void api_plan_open(struct api *api, struct call *call)
     }
     struct api_job *job = api_job_new(api, "open");
     (void)snprintf(job->plan_id, sizeof job->plan_id, "%s", call->ids[0]);
+    if (fleet_plan_find(net_fleet(api->net), call->ids[0], &plan))
+        job->opening = plan.opening;
     api_job_answer(api, call, job);
 }
 

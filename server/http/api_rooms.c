@@ -174,6 +174,16 @@ void api_room_scene_patch(struct api *api, struct call *call)
     call_answer_json(call, 200, cJSON_Duplicate(scene, true));
 }
 
+static void snapshot_when_ready(void *context, struct packet *answer, const struct problem *not_ready)
+{
+    struct call *call = context;
+    (void)answer;
+    if (not_ready)
+        call_answer_problem(call, not_ready);
+    else
+        api_room_snapshot(call->api, call);
+}
+
 void api_room_snapshot(struct api *api, struct call *call)
 {
     struct problem problem;
@@ -187,12 +197,23 @@ void api_room_snapshot(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
+    struct fleet_plan plan;
+    const char *plan_id = room_plan_id(room);
+    if (!fleet_plan_find(net_fleet(api->net), plan_id, &plan)) {
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "the plan of this room is gone");
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (!plan.default_scene) { /* closed while nobody was in the room: loaded for this picture */
+        api_ask(api, call, plan_id, api_new_query("ready"), snapshot_when_ready);
+        return;
+    }
     cJSON *view = api_view_parameter(call);
     if (!view)
         return;
     cJSON *shown = room_scene_for_view(room, view, &problem);
     if (shown) {
-        api_render(api, call, room_plan_id(room), shown, &revision, view, call_query(call, "format"), quality);
+        api_render(api, call, plan_id, shown, &revision, view, call_query(call, "format"), quality);
     } else {
         problem_below(&problem, "/view");
         call_answer_problem(call, &problem);

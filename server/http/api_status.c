@@ -22,6 +22,12 @@ void api_readyz(struct api *api, struct call *call)
     const struct problem *problem = NULL;
     const cJSON *gl = fleet_gl(net_fleet(api->net), &problem);
     struct problem waiting;
+    if (!fleet_is_listed(net_fleet(api->net))) {
+        problem_set(&waiting, PROBLEM_BUSY, "", "", "the plan folders are still being listed");
+        waiting.retry_after_ms = 500;
+        call_answer_problem(call, &waiting);
+        return;
+    }
     if (gl) {
         cJSON *answer = cJSON_CreateObject();
         cJSON_AddItemToObject(answer, "gl", cJSON_Duplicate(gl, true));

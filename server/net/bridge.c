@@ -199,14 +199,17 @@ static void tell_state(struct place *place, const struct fleet_plan *plan)
     case FLEET_STARTING: state = WIRE_RENDERER_STATE_STARTING; break;
     case FLEET_LOADING: state = WIRE_RENDERER_STATE_LOADING; break;
     case FLEET_READY: state = WIRE_RENDERER_STATE_READY; break;
-    case FLEET_RESTARTING: state = WIRE_RENDERER_STATE_RESTARTING; break;
+    case FLEET_RESTARTING:
+        state = WIRE_RENDERER_STATE_RESTARTING;
+        problem = plan->problem; /* while there is a pause */
+        break;
     case FLEET_UNREADABLE:
     case FLEET_FAILED:
         state = WIRE_RENDERER_STATE_FAILED;
         problem = plan->problem;
         break;
-    case FLEET_CLOSED: /* somebody closed it while we look: only opening it again helps */
-        state = WIRE_RENDERER_STATE_FAILED;
+    case FLEET_CLOSED: /* while nobody was there; or somebody closed it: then opening it or entering again helps */
+        state = WIRE_RENDERER_STATE_CLOSED;
         problem_set(&closed, PROBLEM_CANCELLED, "", "", "the plan was closed");
         problem = &closed;
         break;
@@ -217,8 +220,13 @@ static void tell_state(struct place *place, const struct fleet_plan *plan)
 void bridge_tell_plan(struct place *place)
 {
     struct fleet_plan plan;
-    if (!fleet_plan_find(place->net->fleet, room_plan_id(place->room), &plan))
+    if (!fleet_plan_find(place->net->fleet, room_plan_id(place->room), &plan)) { /* while nobody was there its folder was taken away */
+        struct problem gone;
+        problem_set(&gone, PROBLEM_NOT_FOUND, "", "", "the plan of this room is gone");
+        place->state = FLEET_UNREADABLE;
+        room_renderer_state(place->room, WIRE_RENDERER_STATE_FAILED, "", 0, &gone);
         return;
+    }
     const char *phase = plan.phase ? plan.phase : "";
     bool is_same = plan.state == place->state && strcmp(phase, place->phase) == 0 && plan.percent == place->percent;
     if (plan.state == FLEET_READY ? place->state == FLEET_READY && place->generation == plan.generation : is_same)
@@ -233,12 +241,28 @@ void bridge_tell_plan(struct place *place)
     net_touch(place);
 }
 
+void bridge_enter(struct visitor *visitor)
+{
+    struct place *place = visitor->place;
+    visitor->is_holding = fleet_hold(place->net->fleet, room_plan_id(place->room));
+    bridge_tell_plan(place); /* before it says hello, so that it is not welcomed with what was */
+}
+
+void bridge_leave(struct visitor *visitor)
+{
+    if (visitor->is_holding)
+        fleet_release(visitor->place->net->fleet, room_plan_id(visitor->place->room));
+    visitor->is_holding = false;
+}
+
 void bridge_fleet_changed(void *context, const char *plan_id)
 {
     struct net *net = context;
     char id[64];
-    if (!plan_id)
-        return; /* rooms live on plans, not on the list */
+    if (!plan_id) { /* rooms live on plans, not on the list */
+        atomic_store(&net->is_listed, fleet_is_listed(net->fleet));
+        return;
+    }
     (void)snprintf(id, sizeof id, "%s", plan_id); /* borrowed until the next call into the fleet */
     for (size_t i = 0; i < net->n_places; i++)
         if (strcmp(room_plan_id(net->places[i]->room), id) == 0)

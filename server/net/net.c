@@ -118,7 +118,9 @@ static void opened(void *context, struct ws_connection *connection, const char *
     *visitor = (struct visitor){ .next = net->visitors, .connection = connection, .place = place_of(net, id) };
     net->visitors = visitor;
     ws_set_owner(connection, visitor);
-    if (!visitor->place)
+    if (visitor->place)
+        bridge_enter(visitor);
+    else
         ws_bye(connection, WS_CLOSE_NORMAL, "the room is closed", -1);
 }
 
@@ -148,6 +150,7 @@ static void connection_closed(void *context, struct ws_connection *connection)
         at = &(*at)->next;
     *at = visitor->next;
     if (visitor->place) {
+        bridge_leave(visitor);
         room_connection_closed(visitor->place->room, connection, clock_now_us());
         net_touch(visitor->place);
         net_plan_next_call(net);
@@ -197,7 +200,6 @@ struct room *net_room_create(struct net *net, const char *plan_id, struct proble
     while (place_of(net, id));
     if (!fleet_open(net->fleet, plan_id, problem))
         return NULL;
-    fleet_hold(net->fleet, plan_id);
     const struct room_callbacks callbacks = { bridge_render, bridge_forget, bridge_scene_changed, send_text, send_frame, close_connection, net };
     struct place *place = mem_new(sizeof *place);
     *place = (struct place){ .net = net, .room = room_create(id, plan_id, &callbacks, &net->limits), .state = FLEET_CLOSED };
@@ -234,11 +236,11 @@ void net_room_delete(struct net *net, const char *id)
     cJSON_AddStringToObject(packet, "room", room_id(place->room));
     (void)fleet_tell(net->fleet, room_plan_id(place->room), packet);
     cJSON_Delete(packet);
-    fleet_release(net->fleet, room_plan_id(place->room));
     for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
         if (visitor->place == place) {
             if (!room_has_member(place->room, visitor->connection)) /* members hear it from the room */
                 ws_bye(visitor->connection, WS_CLOSE_NORMAL, "the room is closed", -1);
+            bridge_leave(visitor);
             visitor->place = NULL;
         }
     room_count(place->room, &net->closed);
@@ -306,6 +308,11 @@ void net_post(struct net *net, void (*run)(struct net *net, void *argument), voi
             sched_yield();
     }
     ws_wake(net->ws);
+}
+
+bool net_plans_are_listed(const struct net *net)
+{
+    return atomic_load(&net->is_listed);
 }
 
 bool net_is_stopping(const struct net *net)

@@ -25,6 +25,8 @@ void net_destroy(struct net *net); /* says bye to every connection, stops render
  * net_is_stopping true). */
 void net_post(struct net *net, void (*task)(struct net *net, void *argument), void *argument);
 bool net_is_stopping(const struct net *net);
+/* Whether the plan folders have been listed for the first time. Any thread. */
+bool net_plans_are_listed(const struct net *net);
 
 /* A socket that begins with this handshake of a WebSocket, not yet read from: takes it over. Any thread. */
 void net_adopt(struct net *net, int socket, const struct handshake *handshake);

@@ -14,6 +14,7 @@ struct visitor { /* a connection, from its opening on */
     struct visitor *next;
     struct ws_connection *connection;
     struct place *place; /* NULL: its room is gone */
+    bool is_holding;     /* the plan of the place */
 };
 
 struct asked { /* a picture asked for */
@@ -32,7 +33,7 @@ struct place { /* a room and what belongs to it here */
     bool is_scene_told;      /* the renderer has the scene as it is */
     uint32_t generation;     /* of the renderer, as last told to the room; 0 none */
     enum fleet_state state;  /* as last told to the room */
-    char phase[128];
+    char phase[200];
     double percent;
     int64_t wake_us;         /* when the room wants to be called */
     int64_t empty_since_us;  /* 0: somebody is here */
@@ -50,7 +51,7 @@ struct net {
     struct room_limits limits;
     int64_t fleet_tick_us;
     struct room_counters closed; /* of rooms that are gone */
-    atomic_bool is_stopping;
+    atomic_bool is_listed, is_stopping;
 };
 
 /* bridge.c: callbacks of rooms and of the fleet; context is the net */
@@ -60,6 +61,9 @@ void bridge_scene_changed(void *context, struct room *room, const cJSON *scene, 
 void bridge_fleet_changed(void *context, const char *plan_id);
 /* What the room has not been told yet of its plan's state. */
 void bridge_tell_plan(struct place *place);
+/* Somebody entered: the plan is opened if it is not, and stays open while somebody is there. */
+void bridge_enter(struct visitor *visitor);
+void bridge_leave(struct visitor *visitor);
 
 /* net.c: after anything that may have changed when the room, or any room, wants to be called */
 void net_touch(struct place *place);

@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "core/base/clock.h"
 #include "server/wire/packet.h"
 
 static char behaviour[64];
@@ -117,6 +118,8 @@ static void handle(const cJSON *packet, const char *folder)
         if (!behaves("never-draws") && !(behaves("forgets-first") && n_asked++ == 0))
             say_frame(packet);
     } else if (strcmp(type, "query") == 0) {
+        for (int64_t until_us = clock_now_us() + 2000000; behaves("computes") && clock_now_us() < until_us;)
+            continue;
         cJSON *json = word("answer");
         cJSON_AddNumberToObject(json, "id", json_number(packet, "id", 0));
         cJSON_AddItemToObject(json, "body", cJSON_Duplicate(packet, true));
@@ -140,9 +143,12 @@ static int renderer_main(const char *folder, const char *id)
         write_all("HTTP/1.1 200 OK\r\n\r\n", 19);
     if (behaves("no-type"))
         say(cJSON_CreateObject(), NULL, 0);
-    if (behaves("fails")) {
+    if (behaves("fails") || behaves("no-memory")) {
         struct problem problem;
-        problem_set(&problem, PROBLEM_VALIDATION, "", "format", "ct.nii: byte 40: 9 axes, expected 3");
+        if (behaves("fails"))
+            problem_set(&problem, PROBLEM_VALIDATION, "", "format", "ct.nii: byte 40: 9 axes, expected 3");
+        else
+            problem_set(&problem, PROBLEM_INTERNAL, "", "", "ct.nii: no memory for 1000 bytes");
         cJSON *json = word("failed");
         cJSON_AddItemToObject(json, "problem", problem_to_json(&problem));
         say(json, NULL, 0);
@@ -186,6 +192,8 @@ static int scan_main(const char *folder)
         die();
     while (behaves("scan-hangs"))
         pause();
+    if (behaves("no-memory"))
+        nanosleep(&(struct timespec){ .tv_sec = 2 }, NULL); /* it is being looked at while it fails to load */
     if (behaves("scan-babbles"))
         for (;;)
             puts("more and more");

@@ -177,8 +177,9 @@ export class Pane {
 
   #cover() {
     const { state, phase, percent, problem } = this.#room.renderer.value;
-    if (state === 'failed')
+    if (state === 'failed' || state === 'closed')
       return html`<div class="cover"><div class="refusal">${icon('error')}<div><b>The plan cannot be shown.</b><p>${problem?.detail ?? 'The renderer gave no reason.'}</p></div></div></div>`;
+    if (state === 'restarting' && problem) return html`<div class="cover"><div class="refusal waits" role="status">${icon('warning')}<div><b>No new picture yet.</b><p>${phase[0]?.toUpperCase()}${phase.slice(1)}.</p></div></div></div>`;
     if (this.#view.painted.value) return this.#emptyWords();
     if (state === 'ready') return this.#emptyWords();
     return html`<div class="cover"><div class="loading" role="progressbar" aria-valuenow=${Math.round(percent)} aria-valuemin="0" aria-valuemax="100">

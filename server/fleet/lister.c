@@ -1,0 +1,128 @@
+#include "server/fleet/lister.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/log.h"
+#include "core/base/mailbox.h"
+#include "core/base/mem.h"
+#include "core/base/queue.h"
+
+enum { IN_USE, WAKING, LEFT_BEHIND };
+
+struct lister {
+    pthread_t thread;
+    char **folders;
+    size_t n_folders;
+    lister_function function;
+    void (*wake)(void *context);
+    void *context;
+    struct queue *asked; /* at most one letter, this lister itself: list again */
+    struct queue *ended; /* the same: the thread ends */
+    struct mailbox *lists;
+    atomic_int state;      /* who may still call wake */
+    atomic_int references; /* the owner's and the thread's */
+};
+
+static void drop_list(void *letter)
+{
+    folder_list_finish(letter);
+    free(letter);
+}
+
+static void unref(struct lister *lister)
+{
+    if (!lister || atomic_fetch_sub(&lister->references, 1) > 1)
+        return;
+    for (size_t i = 0; i < lister->n_folders; i++)
+        free(lister->folders[i]);
+    free(lister->folders);
+    queue_destroy(lister->asked);
+    queue_destroy(lister->ended);
+    mailbox_destroy(lister->lists);
+    free(lister);
+}
+
+/* False: the owner has gone. */
+static bool tell(struct lister *lister)
+{
+    int state = IN_USE;
+    if (!atomic_compare_exchange_strong(&lister->state, &state, WAKING))
+        return false;
+    lister->wake(lister->context);
+    atomic_store(&lister->state, IN_USE);
+    return true;
+}
+
+static void *work(void *argument)
+{
+    struct lister *lister = argument;
+    while (queue_take(lister->asked, -1)) {
+        struct folder_list *list = mem_new(sizeof *list);
+        lister->function((const char *const *)lister->folders, lister->n_folders, list);
+        mailbox_put(lister->lists, list);
+        if (!tell(lister))
+            break;
+    }
+    (void)queue_try_put(lister->ended, lister);
+    unref(lister);
+    return NULL;
+}
+
+struct lister *lister_create(const char *const *folders, size_t n_folders, lister_function function, void (*wake)(void *context),
+                             void *context, struct error *err)
+{
+    struct lister *lister = mem_new(sizeof *lister);
+    lister->folders = mem_new((n_folders + 1) * sizeof *lister->folders);
+    for (; lister->n_folders < n_folders; lister->n_folders++)
+        lister->folders[lister->n_folders] = mem_copy_text(folders[lister->n_folders]);
+    lister->function = function;
+    lister->wake = wake;
+    lister->context = context;
+    lister->asked = queue_create(1, NULL);
+    lister->ended = queue_create(1, NULL);
+    lister->lists = mailbox_create(drop_list);
+    atomic_init(&lister->state, IN_USE);
+    atomic_init(&lister->references, 2);
+    int failed = pthread_create(&lister->thread, NULL, work, lister);
+    if (!failed)
+        return lister;
+    error_set(err, ERROR_IO, "the thread that lists plan folders cannot be started: %s", strerror(failed));
+    atomic_store(&lister->references, 1);
+    unref(lister);
+    return NULL;
+}
+
+void lister_destroy(struct lister *lister)
+{
+    if (!lister)
+        return;
+    (void)queue_try_take(lister->asked);
+    queue_close(lister->asked);
+    bool has_ended = queue_take(lister->ended, LISTER_LEAVE_MS) != NULL;
+    int state = IN_USE;
+    if (!has_ended && atomic_compare_exchange_strong(&lister->state, &state, LEFT_BEHIND)) {
+        log_warn("the plan folders are still being listed: their disk does not answer");
+        pthread_detach(lister->thread);
+    } else {
+        pthread_join(lister->thread, NULL);
+    }
+    unref(lister);
+}
+
+void lister_ask(struct lister *lister)
+{
+    (void)queue_try_put(lister->asked, lister); /* full: one more follows already */
+}
+
+bool lister_take(struct lister *lister, struct folder_list *list)
+{
+    struct folder_list *newest = mailbox_take(lister->lists);
+    if (!newest)
+        return false;
+    *list = *newest;
+    free(newest);
+    return true;
+}

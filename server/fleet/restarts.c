@@ -1,0 +1,91 @@
+#include "server/fleet/restarts.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/log.h"
+#include "server/fleet/news.h"
+
+int restart_pause_ms(int n_barren)
+{
+    int pause_ms = RESTART_FIRST_PAUSE_MS;
+    for (int i = 2; i < n_barren && pause_ms < RESTART_LONGEST_PAUSE_MS; i++)
+        pause_ms *= 2;
+    return n_barren < 2 ? 0 : pause_ms < RESTART_LONGEST_PAUSE_MS ? pause_ms : RESTART_LONGEST_PAUSE_MS;
+}
+
+/* Books a quick start. False: too many were needed; a renderer that ends after each picture must not use up the machine. */
+static bool book_quick(struct plan_entry *plan, int64_t now_us)
+{
+    int64_t from_us = plan->quick_booked_us > now_us ? plan->quick_booked_us : now_us;
+    if (from_us - now_us >= RESTART_QUICK_AHEAD_MS * 1000LL)
+        return false;
+    plan->quick_booked_us = from_us + RESTART_QUICK_EVERY_MS * 1000LL;
+    return true;
+}
+
+static void count_end(struct plan_entry *plan, int64_t now_us)
+{
+    bool has_worked = plan->has_drawn || (plan->ready_us && now_us - plan->ready_us >= RESTART_WORKED_MS * 1000LL);
+    if (has_worked && book_quick(plan, now_us))
+        plan->n_barren = 0;
+    else if (has_worked && plan->n_barren == 0)
+        plan->n_barren = 2; /* not at once */
+    else
+        plan->n_barren++;
+}
+
+/* The words change once a second. */
+static void say_pause(struct fleet *fleet, struct plan_entry *plan, int64_t now_us)
+{
+    char phase[sizeof plan->phase];
+    long long seconds = (plan->restart_at_us - now_us + 999999) / 1000000;
+    if (seconds > 0) {
+        problem_set(&plan->problem, PROBLEM_RENDERER, "", "", "the renderer %s", plan->ended_how);
+        plan->problem.retry_after_ms = (int)seconds * 1000;
+    }
+    if (seconds > 0)
+        (void)snprintf(phase, sizeof phase, "the renderer %.120s; it is started again in %lld s", plan->ended_how, seconds);
+    else
+        (void)snprintf(phase, sizeof phase, "starting the renderer again");
+    if (strcmp(phase, plan->phase) == 0 && plan->state == FLEET_RESTARTING)
+        return;
+    memcpy(plan->phase, phase, sizeof plan->phase);
+    plan_entry_change(fleet, plan, FLEET_RESTARTING);
+}
+
+void restart_after_end(struct fleet *fleet, struct plan_entry *plan, const char *how)
+{
+    int64_t now_us = fleet_now_us(fleet);
+    struct problem problem;
+    count_end(plan, now_us);
+    if (plan->n_holds == 0 && plan->n_barren > FLEET_MAX_RESTARTS) {
+        problem_set(&problem, PROBLEM_RENDERER, "", "", "the renderer stopped %d times without having drawn a picture; the last time it %.160s",
+                    plan->n_barren, how);
+        plan_entry_fail(fleet, plan, &problem);
+        return;
+    }
+    int pause_ms = restart_pause_ms(plan->n_barren);
+    (void)snprintf(plan->ended_how, sizeof plan->ended_how, "%s", how);
+    plan->restart_at_us = now_us + pause_ms * 1000LL;
+    plan->percent = 0;
+    problem_set(&problem, PROBLEM_RENDERER, "", "", "the renderer %.200s and is being started again", how);
+    problem.retry_after_ms = pause_ms + 500;
+    asks_fail(fleet, plan, true, &problem);
+    say_pause(fleet, plan, now_us);
+    log_warn("plan %s: the renderer %s; starting it again in %d ms", plan->id, how, pause_ms);
+    if (pause_ms == 0)
+        plan_entry_start(fleet, plan); /* the next tick would be late */
+}
+
+void restart_tick(struct fleet *fleet, struct plan_entry *plan, int64_t now_us)
+{
+    if (!plan->restart_at_us)
+        return;
+    bool is_due = now_us >= plan->restart_at_us;
+    say_pause(fleet, plan, now_us);
+    if (is_due && plan->n_holds == 0 && plan->n_barren > FLEET_MAX_RESTARTS)
+        plan_entry_close(fleet, plan, "its renderer does not work, and nobody is there to see it");
+    else if (is_due)
+        plan_entry_start(fleet, plan);
+}

@@ -1,0 +1,172 @@
+/* What happens after a renderer ended: at once, after a pause, or not at all. */
+#include <signal.h>
+
+#include "server/fleet/restarts.h"
+#include "tests/check.h"
+#include "tests/unit/fake_renderer.h"
+#include "tests/unit/fleet_world.h"
+
+static void begin(struct world *world, const char *behave)
+{
+    world_begin(world);
+    world_add_plan(world, "a", behave);
+    world_start(world, 1);
+}
+
+/* Waits until it is ready and has drawn a picture. */
+static void draw(struct world *world)
+{
+    struct reply reply = { 0 };
+    world_wait_for_state(world, "a", FLEET_READY);
+    world_ask(world, "a", "render", &reply);
+    world_wait_for_reply(world, &reply);
+    assert_true(reply.is_frame);
+    reply_finish(&reply);
+}
+
+static void end_it(struct world *world)
+{
+    assert_int_equal(kill(world_plan_of(world, "a").pid, SIGKILL), 0);
+    WORLD_UNTIL(world, world_plan_of(world, "a").state != FLEET_READY);
+}
+
+static void pauses_double_from_one_second_to_thirty(void **state)
+{
+    (void)state;
+    static const int expected[] = { 0, 0, 1000, 2000, 4000, 8000, 16000, 30000, 30000, 30000 };
+    for (int i = 0; i < 10; i++)
+        assert_int_equal(restart_pause_ms(i), expected[i]);
+    assert_int_equal(restart_pause_ms(2000000000), 30000);
+}
+
+static void one_that_had_drawn_is_started_at_once_however_often_it_ends(void **state)
+{
+    (void)state;
+    struct world world;
+    begin(&world, "");
+    assert_true(fleet_hold(world.fleet, "a"));
+    for (uint32_t i = 1; i <= 10; i++) {
+        draw(&world);
+        assert_int_equal(world_plan_of(&world, "a").generation, i);
+        end_it(&world);
+        assert_int_equal(world_plan_of(&world, "a").state, FLEET_RESTARTING);
+        assert_int_equal(world_plan_of(&world, "a").generation, i + 1); /* its process has been started already */
+    }
+    draw(&world);
+    fleet_release(world.fleet, "a");
+    world_end(&world);
+}
+
+static void one_that_ends_after_each_picture_does_not_use_up_the_machine(void **state)
+{
+    (void)state;
+    struct world world;
+    begin(&world, "");
+    assert_true(fleet_hold(world.fleet, "a"));
+    int64_t began_us = clock_now_us();
+    int n = 0;
+    for (; n < 100; n++) {
+        draw(&world);
+        uint32_t generation = world_plan_of(&world, "a").generation;
+        end_it(&world);
+        if (world_plan_of(&world, "a").generation == generation)
+            break; /* a pause */
+    }
+    int64_t elapsed_s = (clock_now_us() - began_us) / 1000000;
+    if (elapsed_s < 38) { /* a machine that is slower than that starts less than two a second in any case */
+        assert_true(n >= 60 && n < 62 + elapsed_s); /* a minute's worth at one a second, and one more each second that passed */
+    }
+    draw(&world); /* it comes back all the same */
+    world_end(&world);
+}
+
+static void one_that_never_drew_is_tried_again_after_growing_pauses_while_somebody_is_there(void **state)
+{
+    (void)state;
+    static const int expected_ms[] = { 0, 1000, 2000, 4000 };
+    struct world world;
+    begin(&world, "crash-on-render");
+    assert_true(fleet_hold(world.fleet, "a"));
+    for (size_t i = 0; i < 4; i++) {
+        struct reply reply = { 0 };
+        world_wait_for_state(&world, "a", FLEET_READY);
+        world_ask(&world, "a", "render", &reply);
+        world_wait_for_reply(&world, &reply);
+        assert_int_equal(reply.problem.type, PROBLEM_RENDERER);
+        assert_int_equal(reply.problem.retry_after_ms, expected_ms[i] + 500);
+    }
+    assert_int_equal(world_plan_of(&world, "a").state, FLEET_RESTARTING);
+    assert_string_equal(world_plan_of(&world, "a").phase, "the renderer stopped (signal 9); it is started again in 4 s");
+    WORLD_UNTIL(&world, strcmp(world_plan_of(&world, "a").phase, "the renderer stopped (signal 9); it is started again in 2 s") == 0);
+    assert_string_equal(world_plan_of(&world, "a").phase, "the renderer stopped (signal 9); it is started again in 2 s");
+    fleet_release(world.fleet, "a"); /* nobody is there any more: not tried again */
+    world_wait_for_state(&world, "a", FLEET_CLOSED);
+    assert_true(fleet_hold(world.fleet, "a")); /* somebody enters */
+    world_wait_for_state(&world, "a", FLEET_READY);
+    world_end(&world);
+}
+
+static void a_crash_while_loading_is_tried_again_while_somebody_is_there(void **state)
+{
+    (void)state;
+    struct world world;
+    begin(&world, "crash-loading");
+    assert_true(fleet_hold(world.fleet, "a"));
+    WORLD_UNTIL(&world, world_plan_of(&world, "a").generation >= 3);
+    assert_true(world_plan_of(&world, "a").generation >= 3);
+    assert_int_not_equal(world_plan_of(&world, "a").state, FLEET_FAILED);
+    world_end(&world);
+}
+
+static void a_plan_whose_file_is_bad_is_not_tried_again(void **state)
+{
+    (void)state;
+    struct world world;
+    begin(&world, "fails");
+    assert_true(fleet_hold(world.fleet, "a"));
+    world_wait_for_state(&world, "a", FLEET_FAILED);
+    assert_true(fleet_hold(world.fleet, "a")); /* one more enters */
+    for (int64_t end_us = clock_now_us() + 1500000; clock_now_us() < end_us;) /* longer than the first pause */
+        world_step(&world);
+    assert_int_equal(world_plan_of(&world, "a").state, FLEET_FAILED);
+    assert_int_equal(world_plan_of(&world, "a").generation, 1);
+    assert_string_equal(world_plan_of(&world, "a").problem->detail, "ct.nii: byte 40: 9 axes, expected 3");
+    world_end(&world);
+}
+
+static void who_enters_a_plan_without_a_place_gets_one_when_another_leaves(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "");
+    world_add_plan(&world, "b", "");
+    world.options.max_renderers = 1;
+    world_start(&world, 2);
+    assert_true(fleet_hold(world.fleet, "a"));
+    assert_true(fleet_hold(world.fleet, "b"));
+    world_wait_for_state(&world, "a", FLEET_READY);
+    world_wait_for_state(&world, "b", FLEET_FAILED);
+    assert_int_equal(world_plan_of(&world, "b").problem->type, PROBLEM_BUSY);
+    fleet_release(world.fleet, "a");
+    world_wait_for_state(&world, "b", FLEET_READY);
+    assert_int_equal(world_plan_of(&world, "a").state, FLEET_CLOSED);
+    assert_false(fleet_hold(world.fleet, "nobody"));
+    world_end(&world);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 1)
+        return fake_renderer_main(argc, argv);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pauses_double_from_one_second_to_thirty),
+        cmocka_unit_test(one_that_had_drawn_is_started_at_once_however_often_it_ends),
+        cmocka_unit_test(one_that_ends_after_each_picture_does_not_use_up_the_machine),
+        cmocka_unit_test(one_that_never_drew_is_tried_again_after_growing_pauses_while_somebody_is_there),
+        cmocka_unit_test(a_crash_while_loading_is_tried_again_while_somebody_is_there),
+        cmocka_unit_test(a_plan_whose_file_is_bad_is_not_tried_again),
+        cmocka_unit_test(who_enters_a_plan_without_a_place_gets_one_when_another_leaves),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,247 @@
+/* Renderers that do not answer, and stalls that are not theirs: of a disk, of this very process. */
+#include <semaphore.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "tests/check.h"
+#include "tests/unit/fake_renderer.h"
+#include "tests/unit/fleet_world.h"
+
+static void draw(struct world *world)
+{
+    struct reply reply = { 0 };
+    world_ask(world, "a", "render", &reply);
+    world_wait_for_reply(world, &reply);
+    assert_true(reply.is_frame);
+    reply_finish(&reply);
+}
+
+static void step_for_ms(struct world *world, int ms)
+{
+    for (int64_t end_us = clock_now_us() + ms * 1000LL; clock_now_us() < end_us;)
+        world_step(world);
+}
+
+/* 2 s are promised; 5 s are for machines that are busy with other things, and less than a renderer has while nothing is due. */
+static void one_that_was_stopped_is_replaced_soon_while_a_picture_is_due(void **state)
+{
+    (void)state;
+    struct world world;
+    struct reply lost = { 0 };
+    world_begin(&world);
+    world_add_plan(&world, "a", "");
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    draw(&world);
+    int64_t began_us = clock_now_us();
+    assert_int_equal(kill(world_plan_of(&world, "a").pid, SIGSTOP), 0);
+    world_ask(&world, "a", "render", &lost);
+    world_wait_for_reply(&world, &lost);
+    assert_int_equal(lost.problem.type, PROBLEM_RENDERER);
+    draw(&world);
+    assert_true(clock_now_us() - began_us < 5000000);
+    assert_int_equal(world_plan_of(&world, "a").generation, 2);
+    world_end(&world);
+}
+
+static void one_that_was_stopped_while_nothing_is_due_has_the_longer_time(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "");
+    world.options.times.awaited_ping = 50;
+    world.options.times.awaited_silent = 100;
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    draw(&world);
+    step_for_ms(&world, 600); /* until it is known that nothing is due */
+    assert_int_equal(kill(world_plan_of(&world, "a").pid, SIGSTOP), 0);
+    step_for_ms(&world, 1500);
+    assert_int_equal(world_plan_of(&world, "a").state, FLEET_READY);
+    assert_int_equal(kill(world_plan_of(&world, "a").pid, SIGCONT), 0);
+    draw(&world);
+    assert_int_equal(world_plan_of(&world, "a").generation, 1);
+    world_end(&world);
+}
+
+/* Its main thread computes for 2 s and answers no ping meanwhile: so would one that gets no processor. */
+static void one_whose_main_thread_runs_has_the_longer_time(void **state)
+{
+    (void)state;
+    struct world world;
+    struct reply reply = { 0 };
+    world_begin(&world);
+    world_add_plan(&world, "a", "computes");
+    world.options.times.awaited_ping = 50;
+    world.options.times.awaited_silent = 200;
+    world.options.times.silent = 30000;
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_ask(&world, "a", "query", &reply);
+    world_wait_for_reply(&world, &reply);
+    assert_string_equal(reply.what, "probe");
+    assert_int_equal(world_plan_of(&world, "a").generation, 1);
+    reply_finish(&reply);
+    world_end(&world);
+}
+
+/* Runs in a process of its own, which its parent stops and continues. 0: all is well. */
+static int be_stopped(int told)
+{
+    struct world world;
+    struct reply query = { 0 };
+    world_begin(&world);
+    world_add_plan(&world, "a", "never-draws");
+    world.options.times.ping = 100;
+    world.options.times.silent = 2000;
+    world.options.times.request = 4000;
+    world.options.times.stall = 2000;
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_wait_for_state(&world, "a", FLEET_READY);
+    struct reply picture = { 0 };
+    world_ask(&world, "a", "render", &picture); /* due for a moment only when we are stopped: it is not late after that */
+    step_for_ms(&world, 300);
+    if (write(told, "", 1) != 1)
+        return 2;
+    step_for_ms(&world, 700); /* somewhere in here we are stopped */
+    step_for_ms(&world, 700);
+    world_ask(&world, "a", "query", &query);
+    world_wait_for_reply(&world, &query);
+    int result = picture.n > 0 ? 3 : world_plan_of(&world, "a").generation != 1 ? 4 : world_plan_of(&world, "a").state != FLEET_READY ? 5 : 0;
+    reply_finish(&query);
+    world_end(&world);
+    return result;
+}
+
+static void renderers_and_requests_outlive_that_we_were_stopped_ourselves(void **state)
+{
+    (void)state;
+    int ends[2], status;
+    char letter;
+    assert_int_equal(pipe(ends), 0);
+    pid_t child = fork();
+    if (child == 0)
+        _exit(be_stopped(ends[1]));
+    assert_int_equal(read(ends[0], &letter, 1), 1);
+    assert_int_equal(kill(child, SIGSTOP), 0);
+    nanosleep(&(struct timespec){ .tv_sec = 6 }, NULL); /* longer than any of its times */
+    assert_int_equal(kill(child, SIGCONT), 0);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 0);
+    close(ends[0]);
+    close(ends[1]);
+}
+
+/* ---- a disk that does not answer ---- */
+
+static sem_t disk_answers;
+static atomic_bool is_slow;
+static atomic_int n_waiting;
+
+static void list_slowly(const char *const *given, size_t n_given, struct folder_list *list)
+{
+    atomic_fetch_add(&n_waiting, 1);
+    while (atomic_load(&is_slow) && sem_wait(&disk_answers) != 0)
+        continue;
+    atomic_fetch_sub(&n_waiting, 1);
+    folders_list(given, n_given, list);
+}
+
+static void a_listing_that_hangs_holds_up_neither_pictures_nor_pings(void **state)
+{
+    (void)state;
+    struct world world;
+    assert_int_equal(sem_init(&disk_answers, 0, 0), 0);
+    atomic_store(&is_slow, false);
+    world_begin(&world);
+    world_add_plan(&world, "a", "");
+    world.options.list_folders = list_slowly;
+    world.options.times.ping = 50;
+    world.options.times.silent = 1000;
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    draw(&world);
+    atomic_store(&is_slow, true);
+    world_add_plan(&world, "b", "");
+    fleet_rescan(world.fleet);
+    fleet_rescan(world.fleet);
+    WORLD_UNTIL(&world, atomic_load(&n_waiting) == 1);
+    step_for_ms(&world, 2500); /* longer than a renderer may be silent */
+    draw(&world);
+    struct fleet_plan plan;
+    assert_false(fleet_plan_find(world.fleet, "b", &plan));
+    assert_int_equal(world_plan_of(&world, "a").generation, 1);
+    atomic_store(&is_slow, false);
+    sem_post(&disk_answers);
+    world_wait_for_state(&world, "b", FLEET_CLOSED);
+    world_end(&world);
+    sem_destroy(&disk_answers);
+}
+
+static void before_the_first_listing_a_plan_is_not_known_rather_than_not_there(void **state)
+{
+    (void)state;
+    struct world world;
+    struct problem problem = { 0 };
+    assert_int_equal(sem_init(&disk_answers, 0, 0), 0);
+    atomic_store(&is_slow, true);
+    world_begin(&world);
+    world_add_plan(&world, "a", "");
+    world.options.list_folders = list_slowly;
+    world_start(&world, 0);
+    step_for_ms(&world, 100);
+    assert_false(fleet_is_listed(world.fleet));
+    assert_false(fleet_open(world.fleet, "a", &problem));
+    assert_int_equal(problem.type, PROBLEM_BUSY);
+    assert_true(problem.retry_after_ms > 0);
+    atomic_store(&is_slow, false);
+    sem_post(&disk_answers);
+    WORLD_UNTIL(&world, fleet_is_listed(world.fleet));
+    world_open_plan(&world, "a");
+    assert_false(fleet_open(world.fleet, "b", &problem));
+    assert_int_equal(problem.type, PROBLEM_NOT_FOUND);
+    world_end(&world);
+    sem_destroy(&disk_answers);
+}
+
+static void a_listing_that_never_ends_does_not_hold_up_the_end(void **state)
+{
+    (void)state;
+    struct world world;
+    assert_int_equal(sem_init(&disk_answers, 0, 0), 0);
+    atomic_store(&is_slow, true);
+    world_begin(&world);
+    world.options.list_folders = list_slowly;
+    world_start(&world, 0);
+    WORLD_UNTIL(&world, atomic_load(&n_waiting) == 1);
+    world_end(&world);
+    assert_int_equal(atomic_load(&n_waiting), 1); /* it still hangs */
+    atomic_store(&is_slow, false);
+    sem_post(&disk_answers);
+    for (int64_t end_us = clock_now_us() + 10000000; atomic_load(&n_waiting) > 0 && clock_now_us() < end_us;)
+        nanosleep(&(struct timespec){ .tv_nsec = 10000000 }, NULL);
+    assert_int_equal(atomic_load(&n_waiting), 0);
+    nanosleep(&(struct timespec){ .tv_nsec = 300000000 }, NULL); /* its thread ends, and frees what it had */
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 1)
+        return fake_renderer_main(argc, argv);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(renderers_and_requests_outlive_that_we_were_stopped_ourselves), /* first: it forks */
+        cmocka_unit_test(one_that_was_stopped_is_replaced_soon_while_a_picture_is_due),
+        cmocka_unit_test(one_that_was_stopped_while_nothing_is_due_has_the_longer_time),
+        cmocka_unit_test(one_whose_main_thread_runs_has_the_longer_time),
+        cmocka_unit_test(a_listing_that_hangs_holds_up_neither_pictures_nor_pings),
+        cmocka_unit_test(before_the_first_listing_a_plan_is_not_known_rather_than_not_there),
+        cmocka_unit_test(a_listing_that_never_ends_does_not_hold_up_the_end),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
