@@ -5,6 +5,7 @@
 
 #include "core/formats/gzip.h"
 #include "core/formats/nifti.h"
+#include "core/formats/text.h"
 
 enum { HEADER1_BYTES = 348, HEADER2_BYTES = 540 };
 
@@ -17,6 +18,7 @@ struct fields {
     int qform_code, sform_code, units;
     double quatern[3], qoffset[3], srow[3][4];
     char magic[8];
+    bool is_pair;
 };
 
 static uint64_t get_bytes(const uint8_t *at, size_t n, bool is_big)
@@ -108,21 +110,24 @@ static bool get_fields(const uint8_t *head, size_t size, const char *name, struc
         if (length == HEADER1_BYTES) {
             *version = 1;
             get_fields1(head, big, f);
-            if (memcmp(f->magic, "ni1", 4) == 0)
-                return error_set(err, ERROR_UNSUPPORTED,
-                                 "%s: a NIfTI header with its voxels in another file (.hdr and .img) is not read by this version",
-                                 name);
-            if (memcmp(f->magic, "n+1", 4) != 0)
-                return error_set(err, ERROR_FORMAT, "%s: byte 344: magic is %02x %02x %02x %02x, expected \"n+1\"", name,
-                                 head[344], head[345], head[346], head[347]);
-            return true;
+            if (memcmp(f->magic, "ni1", 4) == 0 || memcmp(f->magic, "n+1", 4) == 0) {
+                f->is_pair = f->magic[1] == 'i';
+                return true;
+            }
+            if (text_has_ending(name, ".nii") || text_has_ending(name, ".nii.gz"))
+                return error_set(err, ERROR_FORMAT, "%s: byte 344: magic is %02x %02x %02x %02x, expected \"n+1\"", name, head[344],
+                                 head[345], head[346], head[347]);
+            return error_set(err, ERROR_UNSUPPORTED, "%s: byte 344: found %02x %02x %02x %02x, expected \"ni1\": an Analyze 7.5 header, which does not "
+                             "say which side is left, and is not read; convert it to NIfTI with what made it", name, head[344], head[345],
+                             head[346], head[347]);
         }
         if (length == HEADER2_BYTES) {
             *version = 2;
             if (size < HEADER2_BYTES)
                 return error_set(err, ERROR_FORMAT, "%s: %zu bytes; a NIfTI-2 header has %d", name, size, HEADER2_BYTES);
             get_fields2(head, big, f);
-            if (memcmp(f->magic, "n+2\0\r\n\032\n", 8) != 0)
+            f->is_pair = memcmp(f->magic, "ni2\0\r\n\032\n", 8) == 0;
+            if (!f->is_pair && memcmp(f->magic, "n+2\0\r\n\032\n", 8) != 0)
                 return error_set(err, ERROR_FORMAT, "%s: byte 4: the magic of NIfTI-2 is wrong or was changed by a text transfer",
                                  name);
             return true;
@@ -289,7 +294,8 @@ bool nifti_parse_header(const uint8_t *head, size_t size, const char *name, stru
         return error_set(err, ERROR_FORMAT, "%s: scl_inter is not a finite number", name);
     header->slope = is_scaled ? f.slope : 1;
     header->offset = is_scaled ? f.offset : 0;
-    double least = version == 1 ? HEADER1_BYTES + 4 : HEADER2_BYTES + 4;
+    header->is_pair = f.is_pair;
+    double least = f.is_pair ? 0 : version == 1 ? HEADER1_BYTES + 4 : HEADER2_BYTES + 4;
     if (f.vox_offset == 0)
         f.vox_offset = least;
     if (!(f.vox_offset >= least && f.vox_offset <= 1 << 30))
@@ -301,6 +307,15 @@ bool nifti_parse_header(const uint8_t *head, size_t size, const char *name, stru
         return error_set(err, ERROR_LIMIT, "%s: %u x %u x %u voxels of %u bytes; at most %llu bytes are read", name, sides[0], sides[1],
                          sides[2], header->voxel_bytes, (unsigned long long)VOLUME_MAX_BYTES);
     return true;
+}
+
+bool nifti_check_place(const struct nifti_header *header, bool is_pair, const char *name, struct error *err)
+{
+    if (header->is_pair == is_pair)
+        return true;
+    return error_set(err, ERROR_FORMAT,
+                     is_pair ? "%s: the magic says that the voxels follow in the same file (\"n+1\"), but the name is that of a pair (\"ni1\")"
+                             : "%s: the magic says that the voxels lie in another file (\"ni1\"); such a pair is named .hdr and .img", name);
 }
 
 bool nifti_peek(const struct bytes *file, const char *name, struct nifti_header *header, struct report *report, struct error *err)

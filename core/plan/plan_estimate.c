@@ -4,9 +4,9 @@
 
 #include "core/base/parallel.h"
 #include "core/formats/gzip.h"
-#include "core/formats/nifti.h"
 #include "core/formats/sera_chd.h"
 #include "core/plan/plan_loading.h"
+#include "core/plan/plan_nifti.h"
 #include "core/plan/plan_nrrd.h"
 
 /* kept stays with the plan; work is given back when the part is read. */
@@ -45,15 +45,15 @@ static struct need need_of_nifti(const struct folder *folder, const struct job *
 {
     struct bytes head;
     struct nifti_header header;
+    char voxels[FOLDER_NAME_SIZE];
     struct need need = { job->bytes, 0 };
-    if (!folder_read(folder, job->path, UINT64_MAX, 1 << 16, &head, NULL))
+    plan_nifti_voxels(folder, job->path, voxels);
+    if (!plan_nifti_peek(folder, job->path, &header, NULL) || !folder_read(folder, voxels, UINT64_MAX, 2, &head, NULL))
         return need;
-    if (nifti_peek(&head, job->path, &header, NULL, NULL))
-        need = need_of_voxels(grid_n_voxels(&header.grid), header.type, use, job->bytes,
-                              gzip_is(head.data, head.size) || header.is_swapped || header.data_at % 8 != 0,
-                              gzip_is(head.data, head.size));
+    bool is_packed = gzip_is(head.data, head.size);
     bytes_free(&head);
-    return need;
+    return need_of_voxels(grid_n_voxels(&header.grid), header.type, use, job->bytes, is_packed || header.is_swapped || header.data_at % 8 != 0,
+                          is_packed);
 }
 
 static struct need need_of_nrrd(const struct folder *folder, const struct job *job, enum raw_use use)

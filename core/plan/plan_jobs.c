@@ -3,6 +3,7 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 #include "core/plan/plan_loading.h"
+#include "core/plan/plan_nifti.h"
 
 static bool refuse_format(const char *path, enum part_format format, struct error *err)
 {
@@ -23,7 +24,9 @@ static struct job *add_job(struct loading *loading, enum job_kind kind, size_t i
     job->path = path;
     job->loading = loading;
     job->format = format;
-    folder_look(&loading->folder, path, &job->bytes);
+    char voxels[FOLDER_NAME_SIZE];
+    plan_nifti_voxels(&loading->folder, path, voxels);
+    folder_look(&loading->folder, voxels[0] ? voxels : path, &job->bytes);
     return job;
 }
 

@@ -11,7 +11,6 @@
 #include "core/plan/plan_sera.h"
 
 enum { TEXT_FILE_MAX_BYTES = 16 << 20 };
-#define DATA_FILE_MAX_BYTES (VOLUME_MAX_BYTES + (1 << 20))
 
 /* One file to read, by any thread; what it gave waits here until all are read. */
 enum job_kind { JOB_IMAGE, JOB_REGION, JOB_DOSE, JOB_DOSE_MASK, JOB_BEAMS };

@@ -7,6 +7,7 @@
 #include "core/base/mem.h"
 #include "core/formats/text.h"
 #include "core/plan/plan_dicom.h"
+#include "core/plan/plan_nifti.h"
 
 static bool is_dicom_file(const struct folder *folder, const char *name)
 {
@@ -34,6 +35,8 @@ enum part_format part_format_of(const struct folder *folder, const char *name)
         return PART_ABSENT;
     if (kind == FOLDER_DIRECTORY)
         return PART_DICOM;
+    if (plan_nifti_is_pair(name)) /* slices are called .img, too */
+        return is_dicom_file(folder, name) ? PART_DICOM : PART_NIFTI;
     for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
         if (text_has_ending(name, endings[i].ending))
             return endings[i].format;

@@ -2,21 +2,14 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "core/formats/nifti.h"
 #include "core/plan/plan_loading.h"
+#include "core/plan/plan_nifti.h"
 #include "core/plan/plan_nrrd.h"
 
 static bool read_grid(const struct folder *folder, struct job *job, enum raw_use use)
 {
-    struct bytes bytes;
-    if (job->format == PART_NRRD) {
-        job->volume = plan_nrrd_read(folder, job->path, use, &job->report, &job->err);
-        return job->volume != NULL;
-    }
-    if (!folder_read(folder, job->path, DATA_FILE_MAX_BYTES, UINT64_MAX, &bytes, &job->err))
-        return false;
-    job->volume = nifti_read(&bytes, job->path, use, &job->report, &job->err);
-    bytes_free(&bytes);
+    job->volume = job->format == PART_NRRD ? plan_nrrd_read(folder, job->path, use, &job->report, &job->err)
+                                           : plan_nifti_read(folder, job->path, use, &job->report, &job->err);
     return job->volume != NULL;
 }
 

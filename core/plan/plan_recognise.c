@@ -4,11 +4,11 @@
 
 #include "core/base/mem.h"
 #include "core/formats/gzip.h"
-#include "core/formats/nifti.h"
 #include "core/formats/sera_rst.h"
 #include "core/formats/text.h"
 #include "core/plan/plan_dicom.h"
 #include "core/plan/plan_names.h"
+#include "core/plan/plan_nifti.h"
 #include "core/plan/plan_nrrd.h"
 
 /* A folder without a plan.json: its files, and those in the folders below, become parts by what they are called and what they hold. */
@@ -24,13 +24,8 @@ struct recognition {
 
 static bool nifti_is_whole(const struct folder *folder, const char *name)
 {
-    struct bytes head;
     struct nifti_header header;
-    if (!folder_read(folder, name, UINT64_MAX, 1 << 16, &head, NULL))
-        return false;
-    bool is_read = nifti_peek(&head, name, &header, NULL, NULL);
-    bytes_free(&head);
-    return is_read && header.type != RAW_F32 && header.type != RAW_F64;
+    return plan_nifti_peek(folder, name, &header, NULL) && header.type != RAW_F32 && header.type != RAW_F64;
 }
 
 static bool nrrd_is_whole(const struct folder *folder, const char *name, bool *has_segments)
@@ -126,16 +121,14 @@ static void add_dose(struct recognition *all, const char *name)
 static bool has_good_header(struct recognition *all, const char *name, enum part_format format)
 {
     struct error err = { 0 };
-    struct bytes head;
     struct nifti_header nifti;
     struct nrrd_header nrrd = { 0 };
     bool is_good = false;
     if (format == PART_NRRD) {
         is_good = plan_nrrd_peek(all->folder, name, &nrrd, &err);
         nrrd_header_finish(&nrrd);
-    } else if (folder_read(all->folder, name, UINT64_MAX, 1 << 16, &head, &err)) {
-        is_good = nifti_peek(&head, name, &nifti, NULL, &err);
-        bytes_free(&head);
+    } else {
+        is_good = plan_nifti_peek(all->folder, name, &nifti, &err);
     }
     if (is_good)
         return true;
@@ -145,9 +138,20 @@ static bool has_good_header(struct recognition *all, const char *name, enum part
     return false;
 }
 
+/* A pair is taken once, by its header; where that is there packed and not, by the one that is not. */
+static bool is_second_of_pair(const struct folder *folder, const char *name)
+{
+    struct nifti_pair pair, other;
+    if (!plan_nifti_is_pair(name) || !plan_nifti_find_pair(folder, name, &pair, NULL))
+        return false;
+    if (strcmp(pair.head, name) != 0)
+        return true;
+    return text_has_ending(name, ".gz") && plan_nifti_find_pair(folder, pair.voxels, &other, NULL) && strcmp(other.head, name) != 0;
+}
+
 static void add_grid(struct recognition *all, const char *name, enum part_format format)
 {
-    if (!has_good_header(all, name, format))
+    if (is_second_of_pair(all->folder, name) || !has_good_header(all, name, format))
         return;
     if (name_lists_name(all->lists, name) || is_label_map(all->folder, name, format)) {
         (void)add_region(all, name);

@@ -1,15 +1,15 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/formats/nifti.h"
 #include "core/formats/sera_chd.h"
 #include "core/formats/sera_rst.h"
 #include "core/formats/sera_uvh.h"
 #include "core/formats/text.h"
+#include "core/plan/plan_nifti.h"
 #include "core/plan/plan_nrrd.h"
 #include "core/plan/plan_dicom.h"
 
-enum { HEAD_BYTES = 1 << 16, NAMES_MAX_BYTES = 16 << 20 };
+enum { NAMES_MAX_BYTES = 16 << 20 };
 
 static void add_part(struct plan_summary *summary, size_t n, const char *one, const char *many)
 {
@@ -30,15 +30,14 @@ static void count_bytes(const struct folder *folder, const char *name, struct pl
 }
 
 /* Whether the file is there, of a kind we read here, and has a header that makes sense. */
-static bool check_nifti(const struct folder *folder, const char *name, struct error *err)
+static bool check_nifti(const struct folder *folder, const char *name, struct plan_summary *summary, struct error *err)
 {
-    struct bytes head;
     struct nifti_header header;
-    if (!folder_read(folder, name, UINT64_MAX, HEAD_BYTES, &head, err))
-        return false;
-    bool is_good = nifti_peek(&head, name, &header, NULL, err);
-    bytes_free(&head);
-    return is_good;
+    char voxels[FOLDER_NAME_SIZE];
+    plan_nifti_voxels(folder, name, voxels);
+    if (strcmp(voxels, name) != 0)
+        count_bytes(folder, voxels, summary);
+    return plan_nifti_peek(folder, name, &header, err);
 }
 
 static bool check_nrrd(const struct folder *folder, const char *name, struct plan_summary *summary, size_t *n_segments,
@@ -97,7 +96,7 @@ static bool check_image(const struct folder *folder, const struct plan_file_imag
 {
     enum part_format format = part_format_of(folder, image->path);
     if (format == PART_NIFTI)
-        return check_nifti(folder, image->path, err);
+        return check_nifti(folder, image->path, summary, err);
     if (format == PART_NRRD)
         return check_nrrd(folder, image->path, summary, NULL, err);
     return format == PART_QSH || refuse(image->path, format, err);
@@ -208,7 +207,7 @@ static bool check_regions(const struct folder *folder, const struct plan_parts *
         } else {
             size_t n = count_names(folder, region->names), n_segments = 0;
             if (format == PART_NIFTI)
-                is_good = is_good && check_nifti(folder, region->path, err);
+                is_good = is_good && check_nifti(folder, region->path, summary, err);
             else
                 is_good = is_good && check_nrrd(folder, region->path, summary, &n_segments, err);
             if (n == 0 && !region->name[0])

@@ -2,6 +2,7 @@
 """What nibabel reads from NIfTI files: an answer that none of our code has touched.
 
 usage: nifti_values.py make FOLDER     writes files of every data type, byte order, version and many orientations, and reads them
+       nifti_values.py pairs FOLDER    the same as pairs of .hdr and .img; the name of either stands in the line
        nifti_values.py FILE...
 
 Prints a line per file: name, size (3), index-to-patient matrix in LPS (12, column by column, origin last), smallest and
@@ -38,12 +39,12 @@ def rotation(random):
     return turn
 
 
-def make(folder):
+def make(folder, versions, endings):
     random = numpy.random.default_rng(3)
     names = []
     for number, kind in enumerate(["u1", "i1", "i2", "u2", "i4", "u4", "i8", "u8", "f4", "f8"]):
         for order in "<>":
-            for version in (nibabel.Nifti1Image, nibabel.Nifti2Image):
+            for version in versions:
                 affine = numpy.eye(4)
                 affine[:3, :3] = rotation(random) @ numpy.diag(random.uniform(0.4, 5, 3))
                 affine[:3, 3] = random.uniform(-200, 200, 3)
@@ -56,11 +57,17 @@ def make(folder):
                 image.set_qform(affine, 1)
                 if number % 3 == 0:
                     image.header.set_slope_inter(-0.25, 7)
-                name = f"{folder}/{kind}-{'little' if order == '<' else 'big'}-{version.__name__}.nii" + (".gz" if number % 2 else "")
+                name = f"{folder}/{kind}-{'little' if order == '<' else 'big'}-{version.__name__}{endings[len(names) % len(endings)]}" + (".gz" if number % 2 else "")
                 nibabel.save(image, name)
                 names.append(name)
     return names
 
 
-for name in make(sys.argv[2]) if sys.argv[1] == "make" else sys.argv[1:]:
+if sys.argv[1] == "make":
+    files = make(sys.argv[2], (nibabel.Nifti1Image, nibabel.Nifti2Image), [".nii"])
+elif sys.argv[1] == "pairs":
+    files = make(sys.argv[2], (nibabel.Nifti1Pair, nibabel.Nifti2Pair), [".img", ".hdr", ".hdr"])
+else:
+    files = sys.argv[1:]
+for name in files:
     tell(name)

@@ -320,7 +320,7 @@ static void what_is_broken_is_refused_with_a_sentence(void **state)
     file.data[345] = '*';
     expect_refusal(&file, ERROR_FORMAT, "byte 344");
     memcpy(file.data + 344, "ni1", 4);
-    expect_refusal(&file, ERROR_UNSUPPORTED, ".img");
+    expect_refusal(&file, ERROR_FORMAT, ".img");
     memcpy(file.data + 344, "n+1", 4);
     nifti_put_i32(&file, 0, 347);
     expect_refusal(&file, ERROR_FORMAT, "not a NIfTI file");
