@@ -39,3 +39,23 @@ int oracle_run(char *const *arguments, char *out, size_t out_size)
     out[length] = 0;
     return failed ? ORACLE_MISSING : WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
+
+/* Whether a program can be started and ends well when asked for its version. */
+static bool is_there(const char *program)
+{
+    char out[4096];
+    if (oracle_run((char *[]){ (char *)(uintptr_t)program, "--version", NULL }, out, sizeof out) == 0)
+        return true;
+    print_message("no %s here\n", program);
+    return false;
+}
+
+bool oracle_unpack(const char *archive, const char *folder)
+{
+    char out[4096];
+    if (!is_there("tar") || !is_there("xz"))
+        return false;
+    if (oracle_run((char *[]){ "tar", "-C", (char *)(uintptr_t)folder, "-xJf", (char *)(uintptr_t)archive, NULL }, out, sizeof out) != 0)
+        fail_msg("%s cannot be unpacked", archive);
+    return true;
+}

@@ -51,8 +51,7 @@ bool rt_unpack(const char *archive, char folder[256])
     if (!data_path(archive, path, sizeof path))
         return false;
     folder_make(folder);
-    char out[4096];
-    if (oracle_run((char *[]){ "tar", "xJf", path, "-C", folder, NULL }, out, sizeof out) == 0)
+    if (oracle_unpack(path, folder))
         return true;
     folder_remove(folder);
     return false;

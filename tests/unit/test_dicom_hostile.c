@@ -142,12 +142,15 @@ static int visit(const char *path, const struct stat *about, int kind, struct FT
 static void each_file_of_the_hostile_collections_is_read_or_refused_in_time(void **state)
 {
     (void)state;
-    char path[1024], made[256], answer[256], tar[] = "tar", to[] = "-C", unpack[] = "-xJf";
+    char path[1024], made[256];
     if (!data_path("hostile-dicom/corpus.tar.xz", path, sizeof path))
         skip();
     dicom_prepare(); /* once, for all children */
     folder_make(made);
-    assert_int_equal(oracle_run((char *[]){ tar, to, made, unpack, path, NULL }, answer, sizeof answer), 0);
+    if (!oracle_unpack(path, made)) {
+        folder_remove(made);
+        skip();
+    }
     assert_int_equal(nftw(made, visit, 16, FTW_PHYS), 0);
     folder_remove(made);
     assert_true(n_read >= 595);
