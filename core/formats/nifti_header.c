@@ -233,6 +233,24 @@ static double largest_corner_distance(const struct affine *a, const struct affin
     return largest;
 }
 
+/* A quaternion longer than 1 is no rotation; a little over is rounding. */
+static bool check_quaternion(const struct fields *f, const char *name, struct error *err)
+{
+    double square = f->quatern[0] * f->quatern[0] + f->quatern[1] * f->quatern[1] + f->quatern[2] * f->quatern[2];
+    return square <= 1.001 ||
+           error_set(err, ERROR_RANGE, "%s: quatern_b, c, d are %g, %g, %g: the sum of their squares is %g, expected 1 or less", name,
+                     f->quatern[0], f->quatern[1], f->quatern[2], square);
+}
+
+/* Method 1 and 2 take 1 where the size of a voxel is missing. */
+static void note_spacing(const struct fields *f, const char *name, const uint32_t size[3], struct report *report)
+{
+    for (int i = 0; i < 3; i++)
+        if (size[i] > 1 && !(f->pixdim[i + 1] > 0))
+            report_add(report, REPORT_WARNING, "geometry.assumed", name, "pixdim[%d], the size of a voxel, is %g; 1 was taken. Distances may be wrong.",
+                       i + 1, f->pixdim[i + 1]);
+}
+
 static bool get_geometry(const struct fields *f, const char *name, const uint32_t size[3], struct grid *grid, struct report *report,
                          struct error *err)
 {
@@ -245,9 +263,13 @@ static bool get_geometry(const struct fields *f, const char *name, const uint32_
             report_add(report, REPORT_WARNING, "geometry.forms-disagree", name,
                        "The two orientations in the file (sform, qform) put a corner %.1f units apart; the sform was used.", apart);
     } else if (f->qform_code > 0) {
+        if (!check_quaternion(f, name, err))
+            return false;
         ras = ras_from_quaternion(f);
+        note_spacing(f, name, size, report);
     } else {
         ras = ras_from_spacing(f);
+        note_spacing(f, name, size, report);
         report_add(report, REPORT_WARNING, "geometry.assumed", name,
                    "The file does not say how its voxels lie in the patient; x was taken to grow to the patient's right-to-left, "
                    "NIfTI's first method. Left and right may be wrong.");
@@ -292,6 +314,8 @@ bool nifti_parse_header(const uint8_t *head, size_t size, const char *name, stru
     bool is_scaled = isfinite(f.slope) && f.slope != 0;
     if (is_scaled && !isfinite(f.offset))
         return error_set(err, ERROR_FORMAT, "%s: scl_inter is not a finite number", name);
+    if (!isfinite(f.slope))
+        report_add(report, REPORT_WARNING, "image.rescale", name, "scl_slope is %g; the values were taken as stored.", f.slope);
     header->slope = is_scaled ? f.slope : 1;
     header->offset = is_scaled ? f.offset : 0;
     header->is_pair = f.is_pair;

@@ -267,6 +267,44 @@ static void a_packed_file_with_a_wrong_checksum_is_refused(void **state)
     nifti_bytes_free(&file);
 }
 
+static void numbers_of_a_header_that_are_none_are_refused_or_said(void **state)
+{
+    (void)state;
+    enum { PIXDIM = 76, SLOPE = 112, QFORM = 252, QUATERN = 256, SROW = 280 };
+    static const struct {
+        size_t at;
+        double value;
+        bool is_qform;
+        const char *code, *said; /* code NULL: refused with the words */
+    } cases[] = { { SLOPE, NAN, false, "image.rescale", "scl_slope is nan" },
+                  { SLOPE, INFINITY, false, "image.rescale", "scl_slope is inf" },
+                  { PIXDIM + 8, 0, true, "geometry.assumed", "pixdim[2], the size of a voxel, is 0; 1 was taken" },
+                  { PIXDIM + 12, NAN, true, "geometry.assumed", "pixdim[3]" },
+                  { PIXDIM + 4, -3, true, "geometry.assumed", "pixdim[1], the size of a voxel, is -3" },
+                  { PIXDIM + 4, INFINITY, true, NULL, "qform" },
+                  { QUATERN + 4, 2, true, NULL, "the sum of their squares is 4, expected 1 or less" },
+                  { QUATERN, NAN, true, NULL, "expected 1 or less" },
+                  { SROW + 4, NAN, false, NULL, "sform" },
+                  { SROW + 12, INFINITY, false, NULL, "sform" } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct nifti_bytes file = nifti_bytes_make(2, 2, 2, U8, 8, 8, false);
+        struct report report = { 0 };
+        struct error err = { 0 };
+        if (cases[i].is_qform)
+            nifti_put_i16(&file, QFORM, 1);
+        else
+            nifti_put_sform(&file, identity_ras);
+        nifti_put_f32(&file, cases[i].at, cases[i].value);
+        struct volume *volume = read_from(&file, RAW_IMAGE, &report, &err);
+        const char *said = cases[i].code ? report_said(&report, cases[i].code) : err.text;
+        if ((volume != NULL) != (cases[i].code != NULL) || !strstr(said, cases[i].said))
+            fail_msg("case %zu: \"%s\" and \"%s\" do not say \"%s\"", i, err.text, said, cases[i].said);
+        volume_unref(volume);
+        report_finish(&report);
+        nifti_bytes_free(&file);
+    }
+}
+
 static void nifti_2_is_read(void **state)
 {
     (void)state;
@@ -393,6 +431,7 @@ int main(void)
         cmocka_unit_test(a_mask_counts_half_and_more_as_inside),
         cmocka_unit_test(packed_files_are_read_also_in_several_members_and_with_more_behind),
         cmocka_unit_test(a_packed_file_with_a_wrong_checksum_is_refused),
+        cmocka_unit_test(numbers_of_a_header_that_are_none_are_refused_or_said),
         cmocka_unit_test(nifti_2_is_read),
         cmocka_unit_test(what_is_broken_is_refused_with_a_sentence),
         cmocka_unit_test(a_small_packed_file_that_claims_gigabytes_is_refused_before_memory_is_asked_for),
