@@ -110,7 +110,7 @@ void plan_summarize(const char *folder, struct plan_summary *summary);
  * plan by the same algorithm stay together under PLAN_LIGHT_TRIANGLES (or the reduction reaches 8): so many univels become one along
  * their shortest edge, along longer ones as many as make it no longer (mask_reduce). */
 enum surface_detail { SURFACE_FULL, SURFACE_LIGHT };
-enum { PLAN_LIGHT_TRIANGLES = 80000 };
+enum { PLAN_LIGHT_TRIANGLES = 80000, PLAN_MAX_REFUSALS = 1024 };
 
 /* What was built, for people to read. */
 struct surface_facts {
@@ -140,6 +140,11 @@ NODISCARD struct shape *plan_shape(struct plan *plan, size_t region, const struc
  * for apart. errors those of shape_distance */
 NODISCARD bool plan_shape_distance(const struct plan *plan, size_t region, const struct shape_key *key, const struct shape *shape,
                                    struct surface_facts *facts, struct error *err);
+/* Whether a shape that failed with this code fails each time: because of what the region is, or by a written limit. */
+bool plan_is_refusal(enum error_code code);
+/* Whether it was tried before and cannot be had (PLAN_MAX_REFUSALS are remembered); fills why. Builds nothing. */
+struct plan_want;
+bool plan_shape_refused(struct plan *plan, const struct plan_want *want, struct error *why);
 /* The same for surfaces, as their mesh. */
 NODISCARD struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,
                                     struct surface_facts *facts, struct error *err);

@@ -131,6 +131,14 @@ struct shape *plan_shape(struct plan *plan, size_t region, const struct shape_ke
     return plan_shapes_get(plan->shapes, &name, build, &wanted, facts ? facts : &unwanted, err);
 }
 
+bool plan_shape_refused(struct plan *plan, const struct plan_want *want, struct error *why)
+{
+    struct shape_name name;
+    uint32_t reduction;
+    return plan_shapes_refused_some(plan->shapes) && name_of(plan, want, &name, &reduction, why) &&
+           plan_shapes_refused(plan->shapes, &name, why);
+}
+
 struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,
                           struct surface_facts *facts, struct error *err)
 {

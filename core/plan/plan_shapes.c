@@ -13,10 +13,18 @@ struct entry {
     struct entry *next;
 };
 
+struct refusal { /* a shape that cannot be had */
+    struct shape_name name;
+    struct error why;
+    struct refusal *next;
+};
+
 struct plan_shapes {
     pthread_mutex_t lock; /* of all below; never held while something is built */
     pthread_cond_t built; /* an entry got its shape or went away */
     struct entry *entries;
+    struct refusal *refusals; /* the newest first */
+    size_t n_refusals;
     uint64_t n_bytes, budget_bytes, clock;
     struct {
         pthread_mutex_t lock; /* held while it is decided */
@@ -35,6 +43,16 @@ struct plan_shapes *plan_shapes_create(uint64_t budget_bytes)
     return shapes;
 }
 
+static void forget_refusals(struct plan_shapes *shapes)
+{
+    for (struct refusal *refusal = shapes->refusals, *next; refusal; refusal = next) {
+        next = refusal->next;
+        free(refusal);
+    }
+    shapes->refusals = NULL;
+    shapes->n_refusals = 0;
+}
+
 void plan_shapes_destroy(struct plan_shapes *shapes)
 {
     if (!shapes)
@@ -44,6 +62,7 @@ void plan_shapes_destroy(struct plan_shapes *shapes)
         shape_unref(entry->shape);
         free(entry);
     }
+    forget_refusals(shapes);
     for (int algorithm = 0; algorithm < SURFACE_N_ALGORITHMS; algorithm++)
         pthread_mutex_destroy(&shapes->light[algorithm].lock);
     pthread_cond_destroy(&shapes->built);
@@ -62,6 +81,25 @@ static struct entry *find(struct plan_shapes *shapes, const struct shape_name *n
         if (is_same(&entry->name, name))
             return entry;
     return NULL;
+}
+
+static const struct refusal *find_refusal(const struct plan_shapes *shapes, const struct shape_name *name)
+{
+    for (const struct refusal *refusal = shapes->refusals; refusal; refusal = refusal->next)
+        if (is_same(&refusal->name, name))
+            return refusal;
+    return NULL;
+}
+
+/* Begins anew when there are too many: each is found again when it is asked for. */
+static void add_refusal(struct plan_shapes *shapes, const struct shape_name *name, const struct error *why)
+{
+    if (shapes->n_refusals == PLAN_MAX_REFUSALS)
+        forget_refusals(shapes);
+    struct refusal *refusal = mem_new(sizeof *refusal);
+    *refusal = (struct refusal){ *name, *why, shapes->refusals };
+    shapes->refusals = refusal;
+    shapes->n_refusals++;
 }
 
 static struct entry *add(struct plan_shapes *shapes, const struct shape_name *name)
@@ -112,24 +150,35 @@ struct shape *plan_shapes_get(struct plan_shapes *shapes, const struct shape_nam
                               struct surface_facts *facts, struct error *err)
 {
     struct shape *shape = NULL;
+    struct error why = { 0 };
     pthread_mutex_lock(&shapes->lock);
     struct entry *entry = find(shapes, name);
     while (entry && !entry->shape) {
         pthread_cond_wait(&shapes->built, &shapes->lock);
         entry = find(shapes, name); /* it may be gone: the build failed */
     }
+    const struct refusal *refusal = entry ? NULL : find_refusal(shapes, name);
     if (entry) {
         entry->used = ++shapes->clock;
+    } else if (refusal) {
+        if (err)
+            *err = refusal->why;
+        pthread_mutex_unlock(&shapes->lock);
+        return NULL;
     } else {
         entry = add(shapes, name); /* without a shape: says to others that it is being built, and is dropped by nobody else */
         struct surface_facts built = { 0 };
         pthread_mutex_unlock(&shapes->lock);
-        shape = build(context, name, &built, err);
+        shape = build(context, name, &built, &why);
         pthread_mutex_lock(&shapes->lock);
         if (shape)
             fill(shapes, entry, shape, &built);
         else
             drop(shapes, entry);
+        if (!shape && plan_is_refusal(why.code))
+            add_refusal(shapes, name, &why);
+        if (!shape && err)
+            *err = why;
         pthread_cond_broadcast(&shapes->built);
         if (!shape) {
             pthread_mutex_unlock(&shapes->lock);
@@ -143,10 +192,33 @@ struct shape *plan_shapes_get(struct plan_shapes *shapes, const struct shape_nam
     return shape;
 }
 
+bool plan_is_refusal(enum error_code code)
+{
+    return code == ERROR_UNSUPPORTED || code == ERROR_LIMIT || code == ERROR_RANGE || code == ERROR_FORMAT;
+}
+
+bool plan_shapes_refused(struct plan_shapes *shapes, const struct shape_name *name, struct error *why)
+{
+    pthread_mutex_lock(&shapes->lock);
+    const struct refusal *refusal = find_refusal(shapes, name);
+    if (refusal)
+        *why = refusal->why;
+    pthread_mutex_unlock(&shapes->lock);
+    return refusal != NULL;
+}
+
+bool plan_shapes_refused_some(struct plan_shapes *shapes)
+{
+    pthread_mutex_lock(&shapes->lock);
+    bool has_some = shapes->n_refusals > 0;
+    pthread_mutex_unlock(&shapes->lock);
+    return has_some;
+}
+
 bool plan_shapes_has(struct plan_shapes *shapes, const struct shape_name *name)
 {
     pthread_mutex_lock(&shapes->lock);
-    bool has = find(shapes, name) != NULL;
+    bool has = find(shapes, name) || find_refusal(shapes, name);
     pthread_mutex_unlock(&shapes->lock);
     return has;
 }

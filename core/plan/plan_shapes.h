@@ -19,10 +19,15 @@ void plan_shapes_usage(struct plan_shapes *shapes, struct plan_shape_usage *usag
 typedef struct shape *plan_shape_build(void *context, const struct shape_name *name, struct surface_facts *facts, struct error *err);
 
 /* The kept shape of this name, else what build gives, which is then kept. The first who asks builds, without any lock held; others
- * wait for it. A failure is not kept, memory may come back: whoever waited tries in turn. One reference, the caller's. */
+ * wait for it. A failure is not kept, memory may come back: whoever waited tries in turn. But a refusal
+ * (plan_is_refusal) is: it is given again without building. One reference, the caller's. */
 NODISCARD struct shape *plan_shapes_get(struct plan_shapes *shapes, const struct shape_name *name, plan_shape_build *build, void *context,
                                         struct surface_facts *facts, struct error *err);
-/* Whether it is kept, or being built. It may be gone by the time it is asked for. */
+/* Whether a shape of this name was refused; fills why. */
+bool plan_shapes_refused(struct plan_shapes *shapes, const struct shape_name *name, struct error *why);
+/* Whether any was. */
+bool plan_shapes_refused_some(struct plan_shapes *shapes);
+/* Whether it is kept, being built, or refused. It may be gone by the time it is asked for. */
 bool plan_shapes_has(struct plan_shapes *shapes, const struct shape_name *name);
 /* Keeps a shape that was built on the way to something else, unless there is one of its name. Takes a reference of its own. */
 void plan_shapes_offer(struct plan_shapes *shapes, const struct shape_name *name, const struct shape *shape,

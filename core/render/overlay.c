@@ -90,7 +90,7 @@ static bool fill_shape(struct entry *entry, struct plan *plan, struct error *err
 {
     struct error why = { 0 };
     struct shape *shape = plan_shape(plan, entry->region, &entry->key, SURFACE_FULL, NULL, &why);
-    entry->is_absent = !shape && why.code == ERROR_UNSUPPORTED;
+    entry->is_absent = !shape && plan_is_refusal(why.code);
     entry->is_open = entry->key.representation == REPRESENTATION_FAN;
     bool is_good = shape ? cut_mesh(shape->mesh, &entry->plane, &entry->lines, &why) : entry->is_absent;
     shape_unref(shape);

@@ -204,17 +204,40 @@ bool visible_is_checked(const struct snapshot *snapshot, size_t region)
            (check->region[0] == 0 || strcmp(check->region, snapshot->plan->regions.regions[region].id) == 0);
 }
 
+/* What a region of a picture is made of. */
+static struct plan_want want_of(const struct snapshot *snapshot, size_t region, enum surface_detail detail)
+{
+    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
+    struct plan_want want = { region, is_in_space ? visible_shape_key(snapshot, region) : visible_checked_key(snapshot, region), SURFACE_FULL };
+    if (is_in_space && want.key.representation == REPRESENTATION_SURFACE)
+        want.detail = detail;
+    return want;
+}
+
 size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct plan_want *wants)
 {
     bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
     size_t n = 0;
+    for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++)
+        if (is_in_space ? is_drawn(snapshot, i) && may_be_seen(snapshot, i) : visible_is_checked(snapshot, i))
+            wants[n++] = want_of(snapshot, i, detail);
+    return n;
+}
+
+size_t visible_missing(const struct snapshot *snapshot, enum surface_detail detail, struct visible_missing missing[VISIBLE_MAX_MISSING])
+{
+    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
+    size_t n = 0;
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
-        if (is_in_space ? !is_drawn(snapshot, i) || !may_be_seen(snapshot, i) : !visible_is_checked(snapshot, i))
+        if (!(is_in_space ? is_drawn(snapshot, i) : visible_is_checked(snapshot, i)))
             continue;
-        struct plan_want *want = &wants[n++];
-        *want = (struct plan_want){ i, is_in_space ? visible_shape_key(snapshot, i) : visible_checked_key(snapshot, i), SURFACE_FULL };
-        if (is_in_space && want->key.representation == REPRESENTATION_SURFACE)
-            want->detail = detail;
+        struct plan_want want = want_of(snapshot, i, detail);
+        struct error why = { 0 };
+        if (!plan_shape_refused(snapshot->plan, &want, &why))
+            continue;
+        if (n < VISIBLE_MAX_MISSING)
+            missing[n] = (struct visible_missing){ i, why };
+        n++;
     }
     return n;
 }

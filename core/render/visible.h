@@ -12,6 +12,14 @@ struct shape_key visible_surface_key(const struct snapshot *snapshot);
 /* The shapes that a picture of the snapshot needs, as far as the scene tells; wants holds as many as the plan has regions. Returns how
  * many. For building them before the picture is drawn: what is missing here the renderer has built itself. */
 size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct plan_want *wants);
+/* Regions that a picture of the snapshot should show and does not, because their shape cannot be had (plan_shape_refused). After it was
+ * drawn. Fills the first VISIBLE_MAX_MISSING; returns how many there are. */
+enum { VISIBLE_MAX_MISSING = 32 };
+struct visible_missing {
+    size_t region;
+    struct error why;
+};
+size_t visible_missing(const struct snapshot *snapshot, enum surface_detail detail, struct visible_missing missing[VISIBLE_MAX_MISSING]);
 /* What a region's univels are compared with by the scene's check: what it is drawn as when that is made of triangles, else a surface by
  * the scene's algorithm. */
 struct shape_key visible_checked_key(const struct snapshot *snapshot, size_t region);

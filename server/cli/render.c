@@ -9,6 +9,7 @@
 #include "core/base/file_write.h"
 #include "core/encode/encode.h"
 #include "core/render/render.h"
+#include "core/render/visible.h"
 #include "server/cli/command.h"
 #include "server/cli/text.h"
 #include "server/wire/document.h"
@@ -169,6 +170,19 @@ static bool write_picture(const struct image *image, const struct render_job *jo
     return is_written;
 }
 
+static void print_missing(const struct snapshot *snapshot)
+{
+    struct visible_missing missing[VISIBLE_MAX_MISSING];
+    size_t n = visible_missing(snapshot, SURFACE_FULL, missing);
+    for (size_t i = 0; i < n && i < VISIBLE_MAX_MISSING; i++) {
+        fprintf(stderr, "beamroom render: not in the picture: ");
+        text_print(stderr, missing[i].why.text, 0);
+        fputc('\n', stderr);
+    }
+    if (n > VISIBLE_MAX_MISSING)
+        fprintf(stderr, "beamroom render: not in the picture: %zu more regions\n", n - VISIBLE_MAX_MISSING);
+}
+
 static bool draw(struct plan *plan, const struct render_job *job, struct error *err)
 {
     struct snapshot *snapshot = make_snapshot(plan, job, err);
@@ -189,6 +203,8 @@ static bool draw(struct plan *plan, const struct render_job *job, struct error *
             printf(": %d x %d, %zu triangles, %.0f ms, %s\n", image->width_px, image->height_px, timing.n_triangles,
                    (double)(clock_now_us() - start_us) / 1000, render_back_end_word(renderer_facts(renderer)->back_end));
         }
+        if (is_drawn)
+            print_missing(snapshot);
         renderer_forget(renderer, plan);
     }
     image_destroy(image);

@@ -7,6 +7,7 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "server/http/api_inner.h"
+#include "server/wire/missing.h"
 
 const struct api_route api_routes[] = {
     { "GET", "/healthz", api_healthz },
@@ -244,6 +245,12 @@ static void picture_came(void *context, struct packet *answer, const struct prob
     call_add_header(call, "Server-Timing", timing);
     if (has_revision)
         call_add_header(call, "Beamroom-Revision", revision);
+    cJSON *missing = missing_read(answer->json);
+    char words[MISSING_MAX_REGIONS * 66 + 32];
+    missing_words(missing, words, sizeof words);
+    if (missing)
+        call_add_header(call, "Beamroom-Missing", words);
+    cJSON_Delete(missing);
     uint8_t *bytes = answer->blob;
     answer->blob = NULL;
     call_answer_bytes(call, 200, bytes[0] == 0xff ? "image/jpeg" : "image/png", bytes, answer->n_blob);

@@ -8,6 +8,7 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "server/net/parts.h"
+#include "server/wire/missing.h"
 
 enum { MAX_SIDE_PX = 16384 };
 
@@ -78,7 +79,8 @@ static void picture_came(void *context, struct packet *answer, const struct prob
     }
     if (answer) {
         struct room_picture *picture = mem_new(sizeof *picture);
-        *picture = (struct room_picture){ .header = header, .bytes = answer->blob, .n_bytes = answer->n_blob, .references = 1 };
+        *picture = (struct room_picture){ .header = header, .bytes = answer->blob, .n_bytes = answer->n_blob, .references = 1,
+                                          .missing = missing_read(answer->json) };
         answer->blob = NULL; /* taken */
         room_picture_came(place->room, asked->room_request, picture, clock_now_us());
     } else {

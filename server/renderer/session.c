@@ -10,6 +10,7 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "core/render/visible.h"
 #include "server/renderer/answers.h"
 #include "server/renderer/link.h"
 #include "server/renderer/loader.h"
@@ -29,6 +30,8 @@ struct drawing { /* a picture asked for and not yet delivered */
     bool is_used;
     uint64_t id;
     uint32_t revision;
+    struct snapshot *snapshot; /* a reference */
+    enum surface_detail detail;
 };
 
 struct session {
@@ -275,6 +278,12 @@ static void say_busy(struct session *session, uint64_t id)
     say_problem(session, id, &problem);
 }
 
+static void drawing_end(struct drawing *drawing)
+{
+    snapshot_unref(drawing->snapshot);
+    *drawing = (struct drawing){ .is_used = false };
+}
+
 static struct drawing *find_drawing(struct session *session, uint64_t id)
 {
     for (size_t i = 0; i < MAX_DRAWINGS; i++)
@@ -294,7 +303,7 @@ static void submit(struct session *session, struct preparation *preparation)
     preparation_destroy(preparation);
     if (!drawing || pipeline_submit(session->pipeline, &request, &err)) /* none: dropped meanwhile */
         return;
-    drawing->is_used = false;
+    drawing_end(drawing);
     say_busy(session, request.id);
 }
 
@@ -328,7 +337,7 @@ static void draw(struct session *session, uint64_t id, const cJSON *json)
         say_busy(session, id);
         return;
     }
-    *drawing = (struct drawing){ true, id, revision };
+    *drawing = (struct drawing){ true, id, revision, snapshot_ref(snapshot), request.render.detail };
     struct preparation *preparation = preparation_create(&request);
     if (prepared_has_all(session->prepared, preparation) || !loader_prepare(session->loader, preparation))
         submit(session, preparation);
@@ -421,8 +430,8 @@ static void take_packet(struct session *session, cJSON *json)
     } else if (strcmp(type, "drop") == 0) {
         struct drawing *drawing = find_drawing(session, id >= 0 && id < 9e15 ? (uint64_t)id : 0);
         if (drawing) {
-            drawing->is_used = false;
-            pipeline_drop(session->pipeline, drawing->id);
+            drawing_end(drawing);
+            pipeline_drop(session->pipeline, (uint64_t)id);
         }
     } else if (is_request && !session->is_ready) {
         struct problem problem;
@@ -485,13 +494,32 @@ static void take_loaded(struct session *session, struct note *note)
     scene_finish(&scene);
 }
 
+/* {n, regions: [{region, reason}]}; NULL: nothing is missing. */
+static cJSON *missing_of(const struct drawing *drawing)
+{
+    struct visible_missing missing[VISIBLE_MAX_MISSING];
+    const struct region *regions = drawing->snapshot->plan->regions.regions;
+    size_t n = visible_missing(drawing->snapshot, drawing->detail, missing);
+    if (n == 0)
+        return NULL;
+    cJSON *json = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(json, "regions");
+    cJSON_AddNumberToObject(json, "n", (double)n);
+    for (size_t i = 0; i < n && i < VISIBLE_MAX_MISSING; i++) {
+        cJSON *region = cJSON_CreateObject();
+        cJSON_AddStringToObject(region, "region", regions[missing[i].region].id);
+        cJSON_AddStringToObject(region, "reason", missing[i].why.text);
+        cJSON_AddItemToArray(list, region);
+    }
+    return json;
+}
+
 static void take_frame(struct session *session, const struct pipeline_frame *frame)
 {
     struct drawing *drawing = find_drawing(session, frame->id);
     if (!drawing)
         return;
-    drawing->is_used = false;
     if (frame->error.code != ERROR_NONE) {
+        drawing_end(drawing);
         struct problem problem;
         problem_from_error(&problem, &frame->error);
         say_problem(session, frame->id, &problem);
@@ -508,6 +536,10 @@ static void take_frame(struct session *session, const struct pipeline_frame *fra
     cJSON_AddItemToObject(json, "clip_from_lps_mm", cJSON_CreateDoubleArray(frame->camera.clip_from_lps_mm.m, 16));
     cJSON_AddBoolToObject(json, "is_light", frame->timing.is_light);
     cJSON_AddNumberToObject(json, "n_triangles", (double)frame->timing.n_triangles);
+    cJSON *missing = missing_of(drawing);
+    if (missing)
+        cJSON_AddItemToObject(json, "missing", missing);
+    drawing_end(drawing);
     say(session, json, frame->picture.bytes, frame->picture.n_bytes);
 }
 
@@ -605,6 +637,8 @@ int session_run(const struct session_options *options)
         pipeline_destroy(session.pipeline);
     desk_destroy(session.desk);
     prepared_destroy(session.prepared);
+    for (size_t i = 0; i < MAX_DRAWINGS; i++)
+        snapshot_unref(session.drawings[i].snapshot);
     for (size_t i = 0; i < session.n_rooms; i++)
         cJSON_Delete(session.rooms[i].scene);
     free(session.rooms);

@@ -56,6 +56,8 @@ static void view_leave(struct room *room, struct member_view *view)
     view->has_news = false;
     view->n_waiting = 0;
     view->sent_number = 0;
+    cJSON_Delete(view->missing);
+    view->missing = NULL;
     view->lag_least_us = view->lag_excess_us = 0;
     if (stream && stream->is_shared) /* stays for those who come later */
         stream_left(room, stream);
@@ -295,6 +297,7 @@ bool member_view_open(struct room *room, struct member *member, const struct mes
     else if (followed != follows(member))
         say_members(room);
     stream_send(room, member, view); /* what is there is seen at once */
+    stream_say_refusal(room, member, view);
     return true;
 }
 
@@ -346,6 +349,7 @@ bool member_view_patch(struct room *room, struct member *member, const struct me
             view_join(room, view, shared_stream(room, member, document), true, (uint32_t)patch->input);
             say_view(room, member, (int)patch->view - 1, view->stream->mover);
             stream_send(room, member, view);
+            stream_say_refusal(room, member, view);
             return true;
         }
         if (only_resizes(patch->patch) && strcmp(stream->mover, member->id) != 0 && is_here(room, stream->mover)) {
@@ -384,6 +388,7 @@ bool member_view_follow(struct room *room, struct member *member, const struct m
     }
     tell_following(room, member, (int)follow->view - 1, followed);
     stream_send(room, member, view);
+    stream_say_refusal(room, member, view);
     return true;
 }
 

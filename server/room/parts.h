@@ -34,7 +34,8 @@ struct stream {
     char mover[64];     /* shared: member who moved it last */
     uint64_t version;   /* counts what changes its picture */
     uint64_t asked_version, still_asked_version; /* newest asked for; 0 none */
-    uint64_t refused_version;                    /* newest that cannot be drawn, as members were told; 0 none */
+    uint64_t refused_version;                    /* newest that cannot be drawn; 0 none */
+    struct problem refusal;                      /* why */
     int64_t changed_us; /* when version last went up */
     int64_t retry_us;   /* not before this */
     int n_failed;       /* in a row */
@@ -62,6 +63,7 @@ struct member_view { /* a member's; number = index + 1 */
     } waiting[MAX_WAITING_INPUTS];
     int n_waiting;
     uint32_t input;    /* newest that a sent picture shows */
+    cJSON *missing;    /* of the newest picture sent, as the member was told; NULL: nothing is missing */
     bool has_news;     /* somebody else moved the shared view; said with the next frame */
     char news_by[64];
 };
@@ -122,6 +124,8 @@ void streams_changed(struct room *room, bool scene_is_new);
 void streams_forget_requests(struct room *room); /* the renderer they were made to is gone */
 void streams_restart_pace(struct room *room);
 void stream_send(struct room *room, struct member *member, struct member_view *view); /* the latest picture, if it is new and there is credit */
+/* A view has come to a stream whose picture cannot be drawn: its member is told. */
+void stream_say_refusal(struct room *room, struct member *member, const struct member_view *view);
 void stream_acknowledged(struct room *room, struct member_view *view, uint32_t sequence);
 int64_t streams_pump(struct room *room); /* asks for what is due; when to come again */
 bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem);
@@ -140,4 +144,5 @@ void say_plan(struct room *room);
 void say_scene(struct room *room, const cJSON *patch, struct member *by, uint32_t input, bool to_all);
 void say_view(struct room *room, struct member *member, int index, const char *by);
 void say_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input, const struct problem *problem);
+void say_missing(struct room *room, struct member *member, int index, const cJSON *missing); /* NULL: nothing is */
 void say_bye(struct room *room, void *connection, int retry_ms, const char *reason); /* and closes; retry_ms < 0: do not come back */

@@ -262,6 +262,7 @@ void room_picture_drop(struct room_picture *picture)
     if (!picture || --picture->references > 0)
         return;
     free(picture->bytes);
+    cJSON_Delete(picture->missing);
     free(picture);
 }
 

@@ -26,6 +26,7 @@ struct room_picture {
     struct frame_header header; /* view, sequence, input_id, flags SHARED are filled per member by the room */
     uint8_t *bytes;
     size_t n_bytes;
+    cJSON *missing; /* {n, regions: [{region, reason}]}: what it leaves out because it cannot be drawn; NULL: nothing */
     int references;
 };
 

@@ -128,6 +128,18 @@ void say_problem(struct room *room, void *connection, const char *to, int64_t vi
     room->counters.messages_refused++;
 }
 
+void say_missing(struct room *room, struct member *member, int index, const cJSON *missing)
+{
+    struct message message = { .type = MESSAGE_MISSING };
+    cJSON *nothing = cJSON_CreateArray();
+    cJSON *regions = cJSON_GetObjectItemCaseSensitive(missing, "regions");
+    message.missing.view = index + 1;
+    message.missing.n = (int64_t)json_number(missing, "n", 0);
+    message.missing.regions = regions ? regions : nothing;
+    say(room, member, &message);
+    cJSON_Delete(nothing);
+}
+
 void say_bye(struct room *room, void *connection, int retry_ms, const char *reason)
 {
     struct message message = { .type = MESSAGE_BYE, .bye = { .has_retry_ms = retry_ms >= 0, .retry_ms = retry_ms } };

@@ -317,6 +317,11 @@ void stream_send(struct room *room, struct member *member, struct member_view *v
         view->has_news = false;
         say_view(room, member, index, view->news_by);
     }
+    if (!cJSON_Compare(view->missing, stream->latest->missing, true) && (view->missing || stream->latest->missing)) {
+        cJSON_Delete(view->missing);
+        view->missing = cJSON_Duplicate(stream->latest->missing, true);
+        say_missing(room, member, index, view->missing);
+    }
     take_inputs(view, stream->latest_version);
     view->sent_number = stream->latest_number;
     view->sent_sequence++;
@@ -434,18 +439,36 @@ void room_picture_came(struct room *room, uint64_t number, struct room_picture *
     (void)streams_pump(room);
 }
 
-/* A picture that the plan and the view cannot give: it will be no better the next time, so those who look are told, and it is not
- * asked for again until something changes. */
+static bool is_refused(const struct stream *stream)
+{
+    return stream->refused_version > 0 && stream->refused_version == stream->version;
+}
+
+void stream_say_refusal(struct room *room, struct member *member, const struct member_view *view)
+{
+    if (is_refused(view->stream) && member->connection)
+        say_problem(room, member->connection, "", view - member->views + 1, 0, &view->stream->refusal);
+}
+
+/* A failure that will be no better the next time: a field that does not fit, or a written limit; a limit of how much may wait says when
+ * to come again. */
+static bool is_final(const struct problem *problem)
+{
+    return problem && (problem->type == PROBLEM_VALIDATION || (problem->type == PROBLEM_LIMIT && problem->retry_after_ms == 0));
+}
+
+/* Those who look are told, and it is not asked for again until something changes. */
 static void give_up(struct room *room, struct stream *stream, uint64_t version, const struct problem *problem)
 {
-    if (stream->refused_version < version)
-        for (int m = 0; m < room->n_members; m++)
-            for (int v = 0; v < ROOM_MAX_VIEWS; v++)
-                if (room->members[m]->views[v].stream == stream && room->members[m]->connection)
-                    say_problem(room, room->members[m]->connection, "", v + 1, 0, problem);
+    bool is_told = stream->refused_version >= version;
     stream->refused_version = version;
+    stream->refusal = *problem;
     if (stream->still_asked_version < version)
         stream->still_asked_version = version;
+    for (int m = 0; !is_told && m < room->n_members; m++)
+        for (int v = 0; v < ROOM_MAX_VIEWS; v++)
+            if (room->members[m]->views[v].stream == stream && room->members[m]->connection)
+                say_problem(room, room->members[m]->connection, "", v + 1, 0, problem);
 }
 
 void room_picture_failed(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us)
@@ -456,7 +479,7 @@ void room_picture_failed(struct room *room, uint64_t number, const struct proble
     if (!stream)
         return;
     log_warn("room %s: a picture failed: %s", room->id, problem ? problem->detail : "no reason given");
-    if (problem && problem->type == PROBLEM_VALIDATION) {
+    if (is_final(problem)) {
         give_up(room, stream, request.version, problem);
         return;
     }

@@ -18,7 +18,7 @@
  *   ready    {type, plan, scene, confined, memory_bytes, load_ms} plan: as the API gives it; scene: the plan's default scene
  *   failed   {type, problem}                          the plan cannot be loaded; the process then ends with status 3
  *   frame    {type, id, width_px, height_px, scene_revision, render_us, encode_us, pixels_per_mm, clip_from_lps_mm[16], is_light,
- *             n_triangles} + blob
+ *             n_triangles, missing?: {n, regions: [{region, reason}]}} + blob: regions that cannot be drawn, the first of n
  *   answer   {type, id, body} + blob?
  *   problem  {type, id, problem}                      instead of frame or answer
  *   pong     {type}

@@ -216,6 +216,7 @@ void fake_draw_slow(struct fake_room *fake, struct fake_request *request, uint32
     picture->n_bytes = 100;
     picture->bytes = mem_new(100);
     picture->bytes[0] = (uint8_t)request->request;
+    picture->missing = fake->missing ? json_read(fake->missing, strlen(fake->missing), NULL) : NULL;
     picture->header = (struct frame_header){ .codec = 1,
                                              .flags = (uint8_t)((request->is_still ? FRAME_STILL : 0) | (request->light ? FRAME_LIGHT : 0)),
                                              .quality = (uint8_t)request->quality,

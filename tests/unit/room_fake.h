@@ -28,6 +28,7 @@ struct fake_room {
     size_t n_requests;
     size_t n_scenes;
     uint32_t told_revision;
+    const char *missing; /* of pictures drawn from now on, as JSON; NULL: nothing */
 };
 
 void fake_room_start(struct fake_room *fake, int max_members); /* the plan is not ready yet */

@@ -457,6 +457,68 @@ static void a_picture_that_cannot_be_is_told_once_and_not_asked_for_again(void *
     assert_int_equal(fake_n_heard(&ann, "problem"), 1);
 }
 
+static void fail_with(struct fake_request *request, enum problem_type type, int retry_after_ms)
+{
+    struct problem problem = { 0 };
+    problem_set(&problem, type, "", "", "made up: more than a limit");
+    problem.retry_after_ms = retry_after_ms;
+    request->is_answered = true;
+    room_picture_failed(fake.room, request->request, &problem, fake.now_us);
+    fake.again_us = room_tick(fake.room, fake.now_us);
+}
+
+static void a_picture_beyond_a_limit_is_told_once_and_asked_for_again_only_after_a_change(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    fail_with(fake_oldest(&fake), PROBLEM_LIMIT, 0);
+    fake_pass(&fake, 60000);
+    assert_int_equal(fake.n_requests, 1);
+    assert_int_equal(fake_n_heard(&ann, "problem"), 1);
+    fake_join(&fake, &ben, true); /* who comes later sees no picture either, and is told why */
+    assert_int_equal(fake_n_heard(&ben, "problem"), 1);
+    fake_pass(&fake, 60000);
+    assert_int_equal(fake.n_requests, 1);
+    assert_int_equal(fake_n_heard(&ann, "problem"), 1);
+    fake_say(&fake, &ben, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"visible\":false}}}}");
+    assert_int_equal(fake.n_requests, 2);
+    settle_two();
+    assert_int_equal(fake_n_heard(&ben, "problem"), 1);
+}
+
+static void a_limit_that_says_when_to_come_again_is_no_last_word(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fail_with(fake_oldest(&fake), PROBLEM_LIMIT, 500);
+    fake_pass(&fake, 10000);
+    assert_int_equal(fake_n_heard(&ann, "problem"), 0);
+    assert_true(fake.n_requests > 1);
+}
+
+static void what_a_picture_leaves_out_is_told_before_it_and_when_it_changes(void **state)
+{
+    static const char one[] = "{\"n\":1,\"regions\":[{\"region\":\"brain\",\"reason\":\"too fine\"}]}";
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake.missing = one;
+    settle_one(); /* moving picture and still */
+    assert_true(ann.n_frames >= 2);
+    assert_int_equal(fake_n_heard(&ann, "missing"), 1);
+    cJSON *said = fake_heard(&ann, "missing");
+    assert_int_equal(json_number(said, "view", 0), 1);
+    assert_string_equal(json_text(cJSON_GetArrayItem(cJSON_GetObjectItem(said, "regions"), 0), "reason"), "too fine");
+    cJSON_Delete(said);
+    fake.missing = NULL;
+    fake_turn(&fake, &ann, 4, 0);
+    settle_one();
+    assert_int_equal(fake_n_heard(&ann, "missing"), 2);
+    said = fake_heard(&ann, "missing");
+    assert_int_equal(json_number(said, "n", -1), 0);
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(said, "regions")), 0);
+    cJSON_Delete(said);
+}
+
 static void a_new_renderer_is_told_the_scene_and_draws_everything_anew(void **state)
 {
     (void)state;
@@ -519,6 +581,9 @@ int main(void)
         T(a_picture_that_failed_is_asked_for_again_but_not_at_once),
         T(a_still_that_failed_is_asked_for_again),
         T(a_picture_that_cannot_be_is_told_once_and_not_asked_for_again),
+        T(a_picture_beyond_a_limit_is_told_once_and_asked_for_again_only_after_a_change),
+        T(a_limit_that_says_when_to_come_again_is_no_last_word),
+        T(what_a_picture_leaves_out_is_told_before_it_and_when_it_changes),
         T(a_new_renderer_is_told_the_scene_and_draws_everything_anew),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -123,7 +123,7 @@ const struct gl_shape *gl_cache_shape(const struct gl *gl, struct gl_cache *cach
     made.shape.bounds_lps_mm = box3_empty();
     struct shape *shape = plan_shape(plan, region, key, detail, &facts, &why);
     bool is_good = shape ? gl_upload_shape(gl, shape, visible_shading_passes(key, facts.reduction), &made.shape, &made.n_bytes, &why)
-                         : why.code == ERROR_UNSUPPORTED;
+                         : plan_is_refusal(why.code);
     if (!shape && is_good)
         log_info("region %s is not drawn: %s", plan->regions.regions[region].id, why.text);
     shape_unref(shape);

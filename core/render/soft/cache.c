@@ -169,7 +169,7 @@ const struct soft_shape *soft_cache_shape(struct soft_cache *cache, struct plan 
     made->drawn.bounds_lps_mm = box3_empty();
     made->n_bytes = sizeof *made;
     made->shape = plan_shape(plan, region, key, detail, &facts, &why);
-    if (made->shape ? fill(made, facts.reduction, &why) : why.code == ERROR_UNSUPPORTED) {
+    if (made->shape ? fill(made, facts.reduction, &why) : plan_is_refusal(why.code)) {
         if (!made->shape)
             log_info("region %s is not drawn: %s", plan->regions.regions[region].id, why.text);
         made->next = cache->first;

@@ -1,0 +1,82 @@
+// A region that cannot be drawn is left out and named; the others are drawn.
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { promisify } from 'node:util';
+import { bin, call, openPlan, sleep, startDaemon } from './daemon.mjs';
+import { writeFoamPlan } from './foam_plan.mjs';
+import { centreOf, readPng } from './png.mjs';
+import { Client } from './ws_client.mjs';
+
+const green = { visible: true, opacity: 1, color: '#00ff00' };
+const asUnivels = { foam: { ...green, color: '#ff0000', representation: 'univels' }, block: { ...green, representation: 'univels' } };
+const isGreen = ([r, g, b]) => g > 60 && g > 1.5 * r && g > 1.5 * b;
+let folder, daemon, api;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'beamroom-missing-'));
+  writeFoamPlan(folder);
+  daemon = await startDaemon({ plans: [folder], args: ['--gl', 'soft'] });
+  api = `${daemon.url}/api/v1`;
+  assert.equal((await openPlan(daemon.url, 'foam')).state, 'done');
+});
+after(async () => {
+  await daemon?.stop();
+  rmSync(folder, { recursive: true });
+});
+
+describe('a region that would take more triangles than the limit', { timeout: 240000 }, () => {
+  test('is named with the picture of a script, which shows the others', async () => {
+    const answer = await fetch(`${api}/plans/foam/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
+      body: JSON.stringify({ scene: { regions: asUnivels }, view: { size_px: [200, 200] } }) });
+    assert.equal(answer.status, 200);
+    assert.equal(answer.headers.get('beamroom-missing'), 'foam');
+    assert.ok(centreOf(readPng(await answer.arrayBuffer()), isGreen).n > 50, 'the block is seen');
+    const whole = await fetch(`${api}/plans/foam/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
+      body: JSON.stringify({ scene: { regions: { ...asUnivels, foam: { visible: false } } }, view: { size_px: [200, 200] } }) });
+    assert.equal(whole.headers.get('beamroom-missing'), null);
+    await whole.arrayBuffer();
+  });
+
+  test('is named by the command that draws it', async () => {
+    const scene = join(folder, 'foam', 'scene.json');
+    writeFileSync(scene, JSON.stringify({ regions: asUnivels }));
+    const { stderr } = await promisify(execFile)(join(bin, 'beamroom'), ['render', join(folder, 'foam'), '--gl', 'soft', '--scene', scene, '--size', '64x64', '-o', join(folder, 'picture.png')]);
+    assert.match(stderr, /not in the picture: region "foam": .*40000000/);
+  });
+
+  test('is told in a room with its reason, once, and no picture is asked for again while nothing changes', async () => {
+    const room = (await call(`${api}/rooms`, 'POST', { plan: 'foam' })).json.id;
+    const join_ = async () => {
+      const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+      client.send({ type: 'hello', protocol: 1 });
+      await client.message('welcome');
+      client.send({ type: 'view.open', view: 1, document: { size_px: [160, 120] }, follow: true, input: 1 });
+      return client;
+    };
+    const ann = await join_();
+    await ann.frame((f) => f.isStill);
+    assert.ok(!ann.messages.some((m) => m.type === 'missing'));
+    ann.send({ type: 'scene.patch', patch: { regions: asUnivels }, input: 2 });
+    await ann.frame((f) => f.isStill && f.input === 2);
+    const said = ann.messages.filter((m) => m.type === 'missing');
+    assert.equal(said.length, 1);
+    assert.deepEqual([said[0].view, said[0].n, said[0].regions.length, said[0].regions[0].region], [1, 1, 1, 'foam']);
+    assert.match(said[0].regions[0].reason, /region "foam": .*40000000/);
+    assert.ok(!ann.messages.some((m) => m.type === 'problem'));
+    const asked = async () => Number(/^beamroom_renders_total (\d+)/m.exec((await call(`${daemon.url}/metrics`)).text)[1]);
+    const before = await asked();
+    await sleep(5000); // it used to be asked for again each 4 s
+    assert.equal(await asked(), before);
+    const ben = await join_(); // who comes later is told as well
+    assert.equal((await ben.message('missing')).n, 1);
+    ann.send({ type: 'scene.patch', patch: { regions: { foam: { visible: false } } }, input: 3 });
+    await ann.frame((f) => f.isStill && f.input === 3);
+    assert.deepEqual(ann.messages.filter((m) => m.type === 'missing').map((m) => m.n), [1, 0]);
+    ann.cut();
+    ben.cut();
+  });
+});
