@@ -56,8 +56,6 @@ static void view_leave(struct room *room, struct member_view *view)
     view->has_news = false;
     view->n_waiting = 0;
     view->sent_number = 0;
-    cJSON_Delete(view->missing);
-    view->missing = NULL;
     view->lag_least_us = view->lag_excess_us = 0;
     if (stream && stream->is_shared) /* stays for those who come later */
         stream_left(room, stream);
@@ -73,11 +71,18 @@ static bool follows(const struct member *member)
     return false;
 }
 
+static void view_close(struct room *room, struct member_view *view)
+{
+    view_leave(room, view);
+    cJSON_Delete(view->missing);
+    view->missing = NULL;
+}
+
 /* Views belong to a connection: a page that comes back opens its own again. */
 static void close_views(struct room *room, struct member *member)
 {
     for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
-        view_leave(room, &member->views[i]);
+        view_close(room, &member->views[i]);
         member->views[i] = (struct member_view){ 0 }; /* a new connection counts its frames anew */
     }
     member->connection = NULL;
@@ -398,7 +403,7 @@ bool member_view_close(struct room *room, struct member *member, const struct me
     if (!view)
         return false;
     bool followed = follows(member);
-    view_leave(room, view);
+    view_close(room, view);
     if (followed != follows(member))
         say_members(room);
     return true;

@@ -4,6 +4,9 @@ import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
+import { call } from '../api/daemon.mjs';
+import { writeFoamPlan } from '../api/foam_plan.mjs';
+import { Client } from '../api/ws_client.mjs';
 import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
 
 const side = 40; // univels of 1 mm
@@ -40,6 +43,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     writeFileSync(join(folder, 'balls/labels.nii'), labels());
     writeFileSync(join(folder, 'balls/names.json'), JSON.stringify({ labels: [{ value: 1, name: 'ball' }, { value: 2, name: 'pair' }] }));
     writeFileSync(join(folder, 'balls/plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Balls', regions: [{ path: 'labels.nii', names: 'names.json' }] }));
+    writeFoamPlan(folder);
     world = await startWorld({ plans: [folder] });
   });
   after(async () => {
@@ -77,6 +81,52 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     await page.locator('[data-region="pair"] .eye').click(); // hidden: nothing is missing
     await legend.waitFor({ state: 'detached' });
     await page.context().close();
+  });
+
+  const patch = (room, body) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', body, { 'If-Match': '*' });
+
+  it('a region beyond the limit of triangles is named in the picture and in the tree, with the reason, until it is shown in another way', async () => {
+    const room = await world.newRoom('foam');
+    await patch(room, { regions: { foam: { visible: false } } });
+    const page = await world.newPage(`#/rooms/${room}`);
+    await full(page);
+    assert.equal(await page.locator('.legend.missing').count(), 0);
+    await patch(room, { regions: { foam: { visible: true, representation: 'univels' }, block: { representation: 'univels' } } });
+    const legend = page.locator('[data-view="1"] .legend.missing');
+    await legend.waitFor();
+    assert.match(await legend.textContent(), /Not drawn: foam/);
+    assert.match(await legend.locator('button').getAttribute('title'), /foam.*40000000/);
+    assert.match(await page.locator('[data-region="foam"] .refused').getAttribute('aria-label'), /40000000/);
+    assert.equal(await page.locator('[data-region="block"] .refused').count(), 0);
+    await full(page); // the picture of the others is whole, and at rest
+    await shoot(page, 'regions-beyond-limit');
+    await patch(room, { regions: { foam: { visible: false } } });
+    await legend.waitFor({ state: 'detached' });
+    await page.context().close();
+  });
+
+  it('a view that cannot be drawn says so in its place, also to who comes later, until it can be', async () => {
+    const room = await world.newRoom('balls');
+    const page = await world.newPage(`#/rooms/${room}`);
+    await full(page);
+    const other = await Client.open(world.daemon.url, `/api/v1/rooms/${room}/ws`);
+    const look = (position_mm) => other.send({ type: 'view.patch', view: 1, patch: { camera: { position_mm, target_mm: [0, 0, 0], up: [0, 0, 1] } } });
+    other.send({ type: 'hello', protocol: 1 });
+    other.send({ type: 'view.open', view: 1, document: { size_px: [64, 64] }, follow: true });
+    look([0, 0, 0]);
+    const words = (of) => of.locator('[data-view="1"] .cover .refusal', { hasText: 'cannot be drawn' });
+    await words(page).waitFor();
+    await words(page).waitFor();
+    assert.match(await words(page).textContent(), /position and target are the same point/);
+    const late = await world.newPage(`#/rooms/${room}`);
+    await words(late).waitFor();
+    await shoot(page, 'view-cannot-be-drawn');
+    look([0, -500, 0]);
+    await words(page).waitFor({ state: 'detached' });
+    await words(late).waitFor({ state: 'detached' });
+    other.cut();
+    await page.context().close();
+    await late.context().close();
   });
 
   it('the tree shows every region\'s volume; the slider takes its place under the pointer and the focus', async () => {

@@ -180,6 +180,10 @@ export class Pane {
     if (state === 'failed' || state === 'closed')
       return html`<div class="cover"><div class="refusal">${icon('error')}<div><b>The plan cannot be shown.</b><p>${problem?.detail ?? 'The renderer gave no reason.'}</p></div></div></div>`;
     if (state === 'restarting' && problem) return html`<div class="cover"><div class="refusal waits" role="status">${icon('warning')}<div><b>No new picture yet.</b><p>${phase[0]?.toUpperCase()}${phase.slice(1)}.</p></div></div></div>`;
+    const { value: refusal } = this.#view.refusal;
+    if (refusal && state === 'ready')
+      return html`<div class="cover"><div class="refusal" role="status">${icon('error')}<div><b>This view cannot be drawn.</b><p>${refusal}</p>
+        <p class="place">${this.#view.painted.value ? 'The picture behind is the last that could be. ' : ''}It is drawn again after the next change.</p></div></div></div>`;
     if (this.#view.painted.value) return this.#emptyWords();
     if (state === 'ready') return this.#emptyWords();
     return html`<div class="cover"><div class="loading" role="progressbar" aria-valuenow=${Math.round(percent)} aria-valuemin="0" aria-valuemax="100">
@@ -198,18 +202,23 @@ export class Pane {
     const scene = this.#room.scene.value;
     const plan = this.#room.plan.value;
     if (!scene || !plan || !this.#view.painted.value) return nothing;
-    if (this.#view.kind !== '3d')
-      return scene.check.visible && plan.regions.length ? html`<ul class="legend" aria-label="Colours of the check">
+    const check = this.#view.kind !== '3d' && scene.check.visible && plan.regions.length ? html`<ul class="legend" aria-label="Colours of the check">
         <li><i class="beyond"></i>surface beyond univels</li><li><i class="within"></i>univels beyond surface</li></ul>` : nothing;
-    const missing = plan.regions.filter(({ id }) => this.#refused.value[id]);
-    if (!missing.length) return nothing;
+    const reasons = this.#view.kind === '3d' ? this.#refused.value : this.#view.missing.value.reasons;
+    const missing = plan.regions.filter(({ id }) => reasons[id]);
+    return missing.length ? this.#missing(scene, missing, reasons, check) : check;
+  }
+
+  #missing(scene, missing, reasons, check) {
+    const words = this.#view.kind !== '3d' ? 'Not checked' : missing.every(({ id }) => scene.regions[id]?.representation === 'nurbs') ? 'Not shown as NURBS' : 'Not drawn';
+    const nUnnamed = Math.max(0, this.#view.missing.value.n - missing.length);
     const show = () => {
       this.#ui.region.value = missing[0].id;
       this.#ui.tab.value = 'probe';
       this.#ui.isInspectorOpen.value = true;
     };
-    return html`<div class="legend missing" role="status"><span class="warn">${icon('warning', 12)}</span><p>Not shown as NURBS: ${nameSome(missing.map(({ name }) => name))}</p>
-      <button title=${this.#refused.value[missing[0].id]} aria-label=${`Why ${missing[0].name} is not shown`} @click=${show}>Why?</button></div>`;
+    return html`${check}<div class="legend missing" role="status"><span class="warn">${icon('warning', 12)}</span><p>${words}: ${nameSome([...missing.map(({ name }) => name), ...Array(nUnnamed).fill('others')])}</p>
+      <button title=${reasons[missing[0].id]} aria-label=${`Why ${missing[0].name} is not shown`} @click=${show}>Why?</button></div>`;
   }
 
   #slider() {

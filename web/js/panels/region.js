@@ -42,7 +42,7 @@ export function regionBlock(world, region) {
 /** What the server cannot build can be no file either. */
 function isRefused({ shaped, refused }, region, representation) {
   const { region: of, representation: as, error } = shaped.value;
-  return Boolean(of === region.id && as === representation && error) || (representation === 'nurbs' && Boolean(refused.value[region.id]));
+  return Boolean(of === region.id && as === representation && error) || Boolean(refused.value[region.id]);
 }
 
 function downloads({ api, room }, region, representation) {

@@ -44,14 +44,16 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const comparison = new Comparison(api, signal([]));
   const refusals = new Refusals(api, signal({}));
 
+  const refused = computed(() => ({ ...refusals.reasons.value, ...room.view(1).missing.value.reasons }));
+
   const onPainted = (header, isDrawn) => {
     const answered = room.frameShown(header, isDrawn);
     hooks.painted(header, answered);
   };
-  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused: refusals.reasons, decode, schedule, onPainted }, view));
+  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, decode, schedule, onPainted }, view));
   connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));
 
-  const world = { room, ui, api, probed, shaped, refused: refusals.reasons, comparison, panes: () => panes };
+  const world = { room, ui, api, probed, shaped, refused, comparison, panes: () => panes };
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), probe(room, api, probed, clock), ...adapt(ui));

@@ -187,10 +187,16 @@ export class RoomState {
       renderer: () => this.#rendererChanged(message),
       scene: () => {
         this.#scene.accept(message.patch, message.input);
+        for (const view of this.views) view.change();
         this.#setRevision(message.revision);
         this.#showScene();
       },
       view: () => this.#viewChanged(message),
+      missing: () => {
+        const view = this.view(message.view);
+        if (view && Array.isArray(message.regions))
+          view.missing.value = { n: message.n, reasons: Object.fromEntries(message.regions.map(({ region, reason }) => [region, reason])) };
+      },
       members: () => {
         if (Array.isArray(message.members)) this.members.value = message.members;
       },
@@ -221,6 +227,7 @@ export class RoomState {
     if (message.plan) this.plan.value = readPlan(message.plan);
     if (message.scene) {
       this.#scene.reset(message.scene);
+      for (const view of this.views) view.change();
       this.#showScene();
       this.renderer.value = { state: 'ready', phase: '', percent: 100, problem: null };
     }
@@ -249,6 +256,7 @@ export class RoomState {
     this.#scene.refuse(input);
     if (this.view(view)) this.view(view).refuse(input);
     if (this.scene.value) this.#showScene();
+    if (to === '' && this.view(view)) this.view(view).refuseToDraw(problem?.detail || 'The server gave no reason.');
     this.notify('err', problem?.detail || `The server refused ${to || 'a message'}.`);
   }
 

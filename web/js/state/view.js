@@ -7,6 +7,7 @@ const fpsWindowMs = 1000;
 export class ViewState {
   #replica = new Replica();
   #paintedAt = [];
+  #hasChanged = false; // since refusal was told; messages overtake frames
   #unanswered = []; // {input, at, sentAt}: at is when the person did it
 
   /** @param {number} number as on the wire @param {'3d'|'axial'|'coronal'|'sagittal'} kind */
@@ -19,12 +20,15 @@ export class ViewState {
     this.movedBy = signal(''); // the other member whose change is shown, '' for our own
     this.leftAt = signal(0); // when following ended
     this.leftFrom = signal('');
+    this.missing = signal({ n: 0, reasons: {} }); // regions the picture leaves out because they cannot be drawn: how many, why by id
+    this.refusal = signal(''); // why there is no picture of the view as it is now, '' when there is
     this.painted = signal(null); // FrameHeader of the picture on the screen
     this.staleSince = signal(0); // since when an answer is missing; 0: none is
     this.fps = signal(0);
   }
 
   queue(patch) {
+    this.change();
     this.#replica.queue(patch);
     batch(() => {
       if ('camera' in patch) this.movedBy.value = ''; // a new size alone is nobody's movement
@@ -49,6 +53,7 @@ export class ViewState {
   }
 
   replace(document) {
+    this.change();
     this.#replica.replace(document);
     this.document.value = this.#replica.value;
   }
@@ -60,7 +65,20 @@ export class ViewState {
     batch(() => {
       this.document.value = document;
       this.staleSince.value = 0;
+      this.missing.value = { n: 0, reasons: {} };
+      this.refusal.value = '';
     });
+  }
+
+  /** The view as it is now cannot be drawn. Frames that are still on their way show what it was. */
+  refuseToDraw(reason) {
+    this.#hasChanged = false;
+    this.refusal.value = reason;
+  }
+
+  /** The view or its scene is no longer as it was: it may be drawn again. */
+  change() {
+    this.#hasChanged = true;
   }
 
   /** A picture is on the screen. Returns the answered inputs. */
@@ -72,6 +90,7 @@ export class ViewState {
     batch(() => {
       this.document.value = this.#replica.value;
       this.painted.value = header;
+      if (this.#hasChanged) this.refusal.value = '';
       this.fps.value = this.#paintedAt.length;
     });
     return answered;
