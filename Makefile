@@ -51,7 +51,7 @@ LDFLAGS += --coverage
 endif
 
 DCMTK_LIBS := -ldcmjpeg -lijg8 -lijg12 -lijg16 -ldcmjpls -ldcmtkcharls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++
-CORE_LIBS := $(DCMTK_LIBS) -lturbojpeg -lspng -ldeflate -lz -lcjson -ldl -lm
+CORE_LIBS := $(DCMTK_LIBS) -lopenjp2 -lturbojpeg -lspng -ldeflate -lz -lcjson -ldl -lm
 UNPACK_LIBS := -larchive
 SERVER_LIBS := -lmicrohttpd -lwebsockets -lcjson -lm
 

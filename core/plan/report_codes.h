@@ -63,6 +63,8 @@
       "Each slice was read as it says; one of the files may be damaged.")                                                         \
     X("image.slopes-differ", "Slices have a scale of their own.", "Nothing; all were brought to one unit.")                       \
     X("image.rescale", "The scale of values is not one that can be used.", "Check the values; they were taken as stored.")        \
+    X("image.coded-otherwise", "A JPEG 2000 codestream says something else of its values than the file around it.",               \
+      "Check some values: bits come from the codestream, the sign from the file.")                                                \
     X("image.lossy", "The pixels were compressed with loss.", "Do not measure small differences in them.")                        \
     X("image.frames-left-out", "Frames of a file do not belong to one volume.", "Those of the first orientation and time were used.") \
     X("geometry.cosines", "The directions of rows and columns are not at right angles or not of length 1.",                       \

@@ -1,5 +1,8 @@
 #include "core/formats/dicom/dicom_decode.hh"
 
+extern "C" {
+#include "core/formats/dicom/dicom_j2k.h"
+}
 #include <cstring>
 #include <memory>
 #include <mutex>
@@ -26,7 +29,7 @@ void dicom_decoders_register()
 
 namespace {
 
-enum class stream { jpeg, jpeg_ls, rle };
+enum class stream { jpeg, jpeg_ls, jpeg_2000, rle };
 
 const struct encoding {
     const char *uid;
@@ -36,6 +39,7 @@ const struct encoding {
     { "1.2.840.10008.1.2.4.53", stream::jpeg },    { "1.2.840.10008.1.2.4.55", stream::jpeg },
     { "1.2.840.10008.1.2.4.57", stream::jpeg },    { "1.2.840.10008.1.2.4.70", stream::jpeg },
     { "1.2.840.10008.1.2.4.80", stream::jpeg_ls }, { "1.2.840.10008.1.2.4.81", stream::jpeg_ls },
+    { "1.2.840.10008.1.2.4.90", stream::jpeg_2000 }, { "1.2.840.10008.1.2.4.91", stream::jpeg_2000 },
     { "1.2.840.10008.1.2.5", stream::rle },
 };
 
@@ -123,16 +127,37 @@ bool dicom_can_decode(const char *transfer_syntax, const char **name)
     return find_encoding(transfer_syntax) != nullptr;
 }
 
+bool dicom_begins_picture(const char *transfer_syntax, const uint8_t *bytes, size_t size)
+{
+    const encoding *encoding = find_encoding(transfer_syntax);
+    static const uint8_t boxed[] = { 0, 0, 0, 12, 'j', 'P', ' ', ' ' };
+    if (!encoding || encoding->kind == stream::rle || size < 8)
+        return false;
+    if (encoding->kind == stream::jpeg_2000)
+        return (bytes[0] == 0xFF && bytes[1] == 0x4F && bytes[2] == 0xFF && bytes[3] == 0x51) || std::memcmp(bytes, boxed, sizeof boxed) == 0;
+    return bytes[0] == 0xFF && bytes[1] == 0xD8 && bytes[2] == 0xFF;
+}
+
+bool dicom_ends_picture(const uint8_t *bytes, size_t size)
+{
+    for (int filling = 0; filling < 2 && size > 0 && (bytes[size - 1] == 0); filling++)
+        size--;
+    return size >= 2 && bytes[size - 2] == 0xFF && bytes[size - 1] == 0xD9;
+}
+
 // The decoder sees a data set made here of what was checked, and one frame: nothing else of the file.
 bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, const char *name, const std::vector<dicom_fragment> &fragments,
-                        void *out, error *err)
+                        void *out, dicom_decoded *decoded, error *err)
 {
+    *decoded = dicom_decoded{};
     const encoding *encoding = find_encoding(layout.transfer_syntax);
     if (!encoding)
         return error_set(err, ERROR_UNSUPPORTED, "%s: transfer syntax %s cannot be decoded", name, layout.transfer_syntax);
     std::vector<uint8_t> bytes;
     for (const dicom_fragment &fragment : fragments)
         bytes.insert(bytes.end(), layout.data + fragment.at, layout.data + fragment.at + fragment.size);
+    if (encoding->kind == stream::jpeg_2000)
+        return dicom_j2k_decode(bytes.data(), bytes.size(), &pixels, name, out, decoded, err);
     if (!(encoding->kind == stream::rle ? rle_fits(bytes, pixels, name, err) : jpeg_fits(bytes, pixels, name, err)))
         return false;
     if (bytes.size() % 2)
@@ -171,5 +196,6 @@ bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, 
                          condition.text());
     if (!odd.empty())
         std::memcpy(out, odd.data(), size);
+    dicom_pixels_unpack(&pixels, false, out, size_t(pixels.rows) * pixels.columns);
     return true;
 }

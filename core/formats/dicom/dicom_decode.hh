@@ -1,5 +1,5 @@
 #pragma once
-// One compressed frame to stored values, by DCMTK's decoders.
+// One compressed frame to stored values, by DCMTK's decoders, or that for JPEG 2000.
 extern "C" {
 #include "core/formats/dicom/dicom_walk.h"
 }
@@ -9,6 +9,11 @@ extern "C" {
 void dicom_decoders_register();
 // Whether frames of this transfer syntax can be decoded; if not, its name is for the sentence.
 bool dicom_can_decode(const char *transfer_syntax, const char **name);
-// fragments of one frame, in order. out holds rows * columns * bits_allocated / 8 bytes. Throws what the standard library throws.
+// Where the marker that begins a picture of this transfer syntax stands at the beginning of bytes: a frame in several fragments begins so,
+// and the one before it ends with the end mark. Always false for encodings without such marks (RLE).
+bool dicom_begins_picture(const char *transfer_syntax, const uint8_t *bytes, size_t size);
+bool dicom_ends_picture(const uint8_t *bytes, size_t size);
+// fragments of one frame, in order. out holds rows * columns * bits_allocated / 8 bytes: stored values as of dicom_pixels_read. Throws what
+// the standard library throws.
 bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, const char *name, const std::vector<dicom_fragment> &fragments,
-                        void *out, error *err);
+                        void *out, dicom_decoded *decoded, error *err);

@@ -42,6 +42,7 @@ struct dicom_file {
     std::vector<dicom_fragment> fragments; // of compressed pixels, the table of offsets first
     std::vector<size_t> first_fragments;   // of each frame
     bool has_frames = false;
+    dicom_decoded decoded{}; // of the frame read last
     ~dicom_file() { free(layout.inflated); }
 };
 
@@ -334,6 +335,16 @@ bool find_frames(dicom_file &file, const dicom_pixels &pixels, error *err)
     if (pixels.n_frames == 1 || n - 1 == pixels.n_frames) {
         for (size_t i = 0; i < pixels.n_frames; i++)
             file.first_fragments.push_back(1 + i);
+    } else if (file.fragments[0].size == 0) { // no table of offsets: a fragment that begins a picture behind one that ends it
+        for (size_t i = 1; i < n; i++) {
+            const dicom_fragment &own = file.fragments[i], &before = file.fragments[i - 1];
+            if (dicom_begins_picture(file.layout.transfer_syntax, file.layout.data + own.at, own.size) &&
+                (i == 1 || dicom_ends_picture(file.layout.data + before.at, before.size)))
+                file.first_fragments.push_back(i);
+        }
+        if (file.first_fragments.size() != pixels.n_frames || file.first_fragments[0] != 1)
+            return error_set(err, ERROR_FORMAT, "%s: %zu fragments for %u frames, and no table of offsets says which are whose; %zu of them begin "
+                             "a picture", file.name.c_str(), n - 1, pixels.n_frames, file.first_fragments.size());
     } else { // by the table of offsets: positions from the first fragment's own tag
         const dicom_fragment table = file.fragments[0];
         size_t base = file.fragments[1].at - 8, fragment = 1;
@@ -346,8 +357,8 @@ bool find_frames(dicom_file &file, const dicom_pixels &pixels, error *err)
                 file.first_fragments.push_back(fragment);
         }
         if (file.first_fragments.size() != pixels.n_frames)
-            return error_set(err, ERROR_FORMAT, "%s: %zu fragments for %u frames, and no table says which are whose", file.name.c_str(), n - 1,
-                             pixels.n_frames);
+            return error_set(err, ERROR_FORMAT, "%s: %zu fragments for %u frames, and the table of offsets does not say which are whose",
+                             file.name.c_str(), n - 1, pixels.n_frames);
     }
     file.first_fragments.push_back(n);
     file.has_frames = true;
@@ -451,10 +462,7 @@ bool read_frame(dicom_file &file, uint32_t frame, void *out, error *err)
             return false;
         std::vector<dicom_fragment> own(file.fragments.begin() + static_cast<std::ptrdiff_t>(file.first_fragments[frame]),
                                         file.fragments.begin() + static_cast<std::ptrdiff_t>(file.first_fragments[frame + 1]));
-        if (!dicom_decode_frame(layout, pixels, name, own, out, err))
-            return false;
-        dicom_pixels_unpack(&pixels, false, out, n);
-        return true;
+        return dicom_decode_frame(layout, pixels, name, own, out, &file.decoded, err);
     }
     uint64_t at = layout.pixels_at + uint64_t(frame) * bytes;
     if (at > layout.size || bytes > layout.size - at)
@@ -595,6 +603,8 @@ bool dicom_pixels_read(const struct dicom_file *file, uint32_t frame, void *out,
     // the fragments found are kept for the next frame: a file is read by one thread at a time
     return guarded_call(file->name.c_str(), err, [&] { return read_frame(*const_cast<dicom_file *>(file), frame, out, err); });
 }
+
+struct dicom_decoded dicom_pixels_decoded(const struct dicom_file *file) { return file->decoded; }
 
 bool dicom_pixels_stored(const struct dicom_file *file, struct dicom_stored *stored)
 {

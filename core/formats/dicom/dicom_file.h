@@ -76,6 +76,14 @@ NODISCARD bool dicom_pixels_look(const struct dicom_file *file, struct dicom_pix
  * rows * columns * bits_allocated / 8 bytes. Decodes what is compressed. errors as above and ERROR_MEMORY */
 NODISCARD bool dicom_pixels_read(const struct dicom_file *file, uint32_t frame, void *out, struct error *err);
 
+/* What the codestream of the frame read last says of itself: JPEG 2000 alone, else n_bits is 0. */
+struct dicom_decoded {
+    bool is_lossy;   /* by its transform; one without loss may still have been cut */
+    bool is_signed;
+    uint32_t n_bits; /* of a value */
+};
+struct dicom_decoded dicom_pixels_decoded(const struct dicom_file *file);
+
 /* Where native pixels lie in the file, for a reader that takes them from there into its own memory: frame after frame, as in
  * dicom_pixels_read but in the file's byte order and with the unused bits as they are. false: none, compressed or deflated. */
 struct dicom_stored {

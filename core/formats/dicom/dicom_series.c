@@ -11,6 +11,12 @@
 #include "core/formats/dicom/dicom_slices.h"
 #include "core/formats/dicom/dicom_tags.h"
 
+/* Slices whose JPEG 2000 codestream says something, and something else than their elements. */
+struct coded {
+    size_t n_unsaid, n_other_sign, n_other_bits;
+    uint32_t n_bits; /* in the last codestream with other bits */
+};
+
 /* One stack being read. */
 struct series {
     const struct folder *folder;
@@ -27,9 +33,10 @@ struct series {
     struct bytes whole;   /* of the one file that holds all frames, when it must be decoded */
     int32_t range[2];     /* of integer cells */
     size_t n_done;
+    struct coded coded;
     atomic_size_t next;
     atomic_bool is_failed;
-    pthread_mutex_t lock; /* of n_done, range and the error */
+    pthread_mutex_t lock; /* of n_done, range, coded and the error */
     struct error error;
 };
 
@@ -44,6 +51,7 @@ struct reader {
     size_t object;           /* that file is of; SIZE_MAX: none */
     struct bytes bytes;      /* it was parsed from, unless the series holds them */
     uint8_t *scratch;        /* one plane as stored */
+    struct coded coded;
     int32_t range[2];
 };
 
@@ -75,6 +83,36 @@ static bool same_pixels(const struct dicom_pixels *a, const struct dicom_pixels 
            a->bits_stored == b->bits_stored && a->high_bit == b->high_bit && a->is_signed == b->is_signed;
 }
 
+static void count_coded(struct dicom_decoded decoded, const struct dicom_image *image, struct coded *coded)
+{
+    if (decoded.n_bits == 0)
+        return;
+    coded->n_unsaid += decoded.is_lossy && !image->is_lossy;
+    coded->n_other_sign += decoded.is_signed != image->pixels.is_signed;
+    if (decoded.n_bits != image->pixels.bits_stored) {
+        coded->n_other_bits++;
+        coded->n_bits = decoded.n_bits;
+    }
+}
+
+static void report_coded(const struct series *series, struct report *report)
+{
+    const struct coded *coded = &series->coded;
+    const struct dicom_object *first = object_of(series, &series->slices[0]);
+    const struct dicom_pixels *pixels = &first->image->pixels;
+    if (coded->n_unsaid > 0)
+        report_add(report, REPORT_WARNING, "image.lossy", first->path, "%zu of %zu slices were compressed with loss (JPEG 2000 with its irreversible "
+                   "transform), and their element (0028,2110) does not say so.", coded->n_unsaid, series->n_slices);
+    if (coded->n_other_sign > 0)
+        report_add(report, REPORT_WARNING, "image.coded-otherwise", first->path, "Element (0028,0103), pixel representation: found %d, but the JPEG "
+                   "2000 codestream of %zu of %zu slices holds %s values; their bits were taken as the element says.", pixels->is_signed,
+                   coded->n_other_sign, series->n_slices, pixels->is_signed ? "unsigned" : "signed");
+    if (coded->n_other_bits > 0)
+        report_add(report, REPORT_WARNING, "image.coded-otherwise", first->path, "Element (0028,0101), bits stored: found %u, but the JPEG 2000 "
+                   "codestream of %zu of %zu slices holds values of %u bits; those were taken.", pixels->bits_stored, coded->n_other_bits,
+                   series->n_slices, coded->n_bits);
+}
+
 /* The stored values of a slice: straight from their place in the file, or decoded. */
 static bool read_stored(struct series *series, struct reader *reader, const struct dicom_slice *slice, void *out, struct error *err)
 {
@@ -87,7 +125,10 @@ static bool read_stored(struct series *series, struct reader *reader, const stru
             return false;
         if (!same_pixels(&now, &image->pixels))
             return error_set(err, ERROR_IO, "%s: the file changed while it was read", object->path);
-        return dicom_pixels_read(reader->file, slice->frame, out, err);
+        if (!dicom_pixels_read(reader->file, slice->frame, out, err))
+            return false;
+        count_coded(dicom_pixels_decoded(reader->file), image, &reader->coded);
+        return true;
     }
     struct folder_part part;
     if (!folder_open_part(series->folder, object->path, &part, err))
@@ -182,6 +223,10 @@ static void read_part(void *context, int part, int n_parts)
     pthread_mutex_lock(&series->lock);
     series->range[0] = reader.range[0] < series->range[0] ? reader.range[0] : series->range[0];
     series->range[1] = reader.range[1] > series->range[1] ? reader.range[1] : series->range[1];
+    series->coded.n_unsaid += reader.coded.n_unsaid;
+    series->coded.n_other_sign += reader.coded.n_other_sign;
+    series->coded.n_other_bits += reader.coded.n_other_bits;
+    series->coded.n_bits = reader.coded.n_bits ? reader.coded.n_bits : series->coded.n_bits;
     pthread_mutex_unlock(&series->lock);
     dicom_file_destroy(reader.file);
     bytes_free(&reader.bytes);
@@ -438,6 +483,7 @@ struct volume *dicom_series_read(const struct folder *folder, const struct dicom
         dicom_slices_compare(index, series.stack, report);
         choose_type(&series, facts, report);
         volume = read_volume(&series, &layout, err);
+        report_coded(&series, report);
     }
     pthread_mutex_destroy(&series.lock);
     free(layout.planes);
