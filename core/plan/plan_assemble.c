@@ -131,6 +131,8 @@ static void borrow_grid(struct loading *loading, const struct job *job)
 static bool add_regions(struct loading *loading, struct region_builder *builder, struct job *job, struct error *err)
 {
     const struct plan_file_region *entry = &loading->file->regions[job->index];
+    if (job->layers && job->format == PART_DICOM)
+        plan_dicom_check_segmentation(loading, job);
     for (size_t i = 0; job->layers && i < job->layers->n; i++) {
         struct volume *layer = job->layers->volumes[i];
         job->layers->volumes[i] = NULL;

@@ -157,6 +157,33 @@ bool plan_dicom_add_regions(struct loading *loading, struct region_builder *buil
     return is_added;
 }
 
+/* ---- segmentations ------------------------------------------------------------------------------------------------------- */
+
+void plan_dicom_check_segmentation(struct loading *loading, struct job *job)
+{
+    const struct plan *plan = loading->plan;
+    const struct plan_file_region *entry = &loading->file->regions[job->index];
+    const struct dicom_object *object = plan_dicom_object(loading->parts.dicom, DICOM_KIND_SEGMENTATION, job->path, 0);
+    bool has_series = false, has_frame = false, has_image = false;
+    for (size_t i = 0; i < plan->n_images; i++) {
+        const struct dicom_stack *stack = plan_dicom_stack_of(loading, i);
+        has_image |= stack != NULL;
+        has_series |= stack && object && object->referenced_series[0] && strcmp(stack->series, object->referenced_series) == 0;
+        has_frame |= stack && object && object->frame_of_reference[0] && strcmp(stack->frame_of_reference, object->frame_of_reference) == 0;
+    }
+    if (has_image && object && object->frame_of_reference[0] && !has_frame)
+        report_add(&loading->plan->report, REPORT_WARNING, "region.frame-differs", job->path, "The segments were drawn in another frame of reference "
+                   "(0020,0052) than any image's and may be shifted against it.");
+    else if (has_image && object && !has_series)
+        report_add(&loading->plan->report, REPORT_NOTE, "region.image-chosen", job->path, "The series the segments were drawn on is not here.");
+    for (size_t i = 0; entry->has_color && i < job->layers->n; i++)
+        for (size_t n = 0; n < job->layers->names[i].n; n++) {
+            struct label_name *name = &job->layers->names[i].labels[n];
+            name->has_color = true;
+            memcpy(name->rgb, entry->rgb, sizeof name->rgb);
+        }
+}
+
 /* ---- beams ------------------------------------------------------------------------------------------------------------ */
 
 /* How far a point lies outside the nearest image; 0 inside one, and without any. */

@@ -137,7 +137,7 @@ static void recognise_structs(const struct dicom_index *index, struct plan_file 
 {
     for (size_t i = 0; i < index->n_objects; i++) {
         const struct dicom_object *object = &index->objects[i];
-        if (object->kind != DICOM_KIND_STRUCT)
+        if (object->kind != DICOM_KIND_STRUCT && object->kind != DICOM_KIND_SEGMENTATION)
             continue;
         if (file->n_regions < PLAN_FILE_MAX_PARTS)
             snprintf(file->regions[file->n_regions++].path, FOLDER_NAME_SIZE, "%s", object->path);

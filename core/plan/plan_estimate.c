@@ -150,6 +150,8 @@ static struct need need_of(const struct loading *loading, const struct job *job)
     }
     if (job->kind == JOB_IMAGE)
         return (struct need){ loading->parts.dicom->stacks[job->stack].n_bytes, 0 };
+    if (job->kind == JOB_REGION && plan_dicom_object(loading->parts.dicom, DICOM_KIND_SEGMENTATION, job->path, 0))
+        return (struct need){ 8 * job->bytes, 2 * job->bytes }; /* a byte for each bit of the frames */
     if (job->kind == JOB_REGION)
         return need_of_structs(loading, job);
     return (struct need){ job->bytes, job->bytes };

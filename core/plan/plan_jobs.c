@@ -71,8 +71,9 @@ static bool add_region_jobs(struct loading *loading, size_t i, struct error *err
     const char *path = loading->file->regions[i].path;
     enum part_format format = part_format_of(&loading->folder, path);
     if (format == PART_DICOM)
-        return add_dicom_jobs(loading, JOB_REGION, DICOM_KIND_STRUCT, i, 0, path, PLAN_FILE_MAX_PARTS) > 0 ||
-               refuse_dicom(loading, path, "structure set", err);
+        return add_dicom_jobs(loading, JOB_REGION, DICOM_KIND_STRUCT, i, 0, path, PLAN_FILE_MAX_PARTS) +
+                       add_dicom_jobs(loading, JOB_REGION, DICOM_KIND_SEGMENTATION, i, 0, path, PLAN_FILE_MAX_PARTS) > 0 ||
+               refuse_dicom(loading, path, "structure set or segmentation", err);
     if (format != PART_NIFTI && format != PART_NRRD && format != PART_UVH)
         return refuse_format(path, format, err);
     add_job(loading, JOB_REGION, i, 0, path, format);
@@ -125,7 +126,7 @@ bool plan_make_jobs(struct loading *loading, struct error *err)
     const struct plan_parts *parts = &loading->parts;
     size_t n_objects = parts->dicom ? parts->dicom->n_objects : 0;
     /* an entry of plan.json that names a folder may stand for many files, and two entries for the same */
-    size_t most = file->n_images + file->n_regions * (1 + n_objects) + file->n_doses * (DOSE_N_QUANTITIES + 1 + PLAN_DICOM_MAX_DOSES) +
+    size_t most = file->n_images + file->n_regions * (2 + n_objects) + file->n_doses * (DOSE_N_QUANTITIES + 1 + PLAN_DICOM_MAX_DOSES) +
                   PLAN_DICOM_MAX_DOSES + (file->n_beam_files + 1) * PLAN_DICOM_MAX_PLANS;
     bool is_made = true;
     loading->jobs = mem_array(most + 1, sizeof *loading->jobs, UINT32_MAX, err);

@@ -4,6 +4,7 @@
 #include "core/formats/dicom/dicom_rtdose.h"
 #include "core/formats/dicom/dicom_rtplan.h"
 #include "core/formats/dicom/dicom_rtstruct.h"
+#include "core/formats/dicom/dicom_seg.h"
 #include "core/formats/dicom/dicom_series.h"
 #include "core/formats/nrrd.h"
 #include "core/plan/plan_dicom.h"
@@ -22,7 +23,7 @@ struct job {
     uint64_t bytes; /* of the file, for order and progress */
     enum part_format format;
     struct volume *volume;
-    struct nrrd_layers *layers; /* of a NRRD label map, instead of volume */
+    struct nrrd_layers *layers; /* of a NRRD label map or a DICOM segmentation, instead of volume */
     struct sera_doses doses;    /* of a SERA dose, instead of volume */
     struct uvh uvh;
     int stack;                 /* of a DICOM image */
@@ -92,6 +93,7 @@ const struct dicom_stack *plan_dicom_stack_of(const struct loading *loading, siz
 /* What DICOM jobs gave, into the plan. regions: errors as contour_choose_grids and contour_fill, ERROR_CANCELLED. doses: the jobs of one
  * entry of the plan file, or of none; entry may be NULL. */
 NODISCARD bool plan_dicom_add_regions(struct loading *loading, struct region_builder *builder, struct job *job, struct error *err);
+void plan_dicom_check_segmentation(struct loading *loading, struct job *job); /* its frame of reference and series against the images' */
 void plan_dicom_add_doses(struct loading *loading, size_t index, const struct plan_file_dose *entry);
 void plan_dicom_add_component(struct loading *loading, struct dose *dose, struct job *job);
 void plan_dicom_add_beams(struct loading *loading);

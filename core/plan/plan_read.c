@@ -54,14 +54,18 @@ static bool read_series(struct loading *loading, struct job *job)
     return job->volume != NULL;
 }
 
-/* A structure set, a dose or a treatment plan. */
+/* A structure set, a segmentation, a dose or a treatment plan. */
 static bool read_rt_object(const struct loading *loading, struct job *job)
 {
     struct plan_dicom_file opened;
     if (!plan_dicom_open(&loading->folder, job->path, &opened, &job->err))
         return false;
     bool is_read = false;
-    if (job->kind == JOB_REGION)
+    const struct dicom_object *object = plan_dicom_object(loading->parts.dicom, DICOM_KIND_SEGMENTATION, job->path, 0);
+    if (job->kind == JOB_REGION && object) {
+        job->layers = mem_new(sizeof *job->layers);
+        is_read = dicom_seg_read(opened.file, job->path, loading->file->regions[job->index].name, job->layers, &job->report, &job->err);
+    } else if (job->kind == JOB_REGION)
         is_read = (job->structs = rtstruct_read(opened.file, job->path, &job->report, &job->err)) != NULL;
     else if (job->kind == JOB_DOSE)
         is_read = rtdose_read(opened.file, job->path, &job->rtdose, &job->report, &job->err);

@@ -177,6 +177,8 @@ static size_t count_objects(const struct folder *folder, const struct dicom_inde
     for (size_t i = 0; (object = plan_dicom_object(index, kind, path, i)); i++) {
         if (kind == DICOM_KIND_STRUCT)
             n += count_items(folder, object->path, DICOM_TAG(0x3006, 0x0039), DICOM_TAG(0x3006, 0x0040));
+        else if (kind == DICOM_KIND_SEGMENTATION)
+            n += count_items(folder, object->path, DICOM_TAG(0x0062, 0x0002), 0);
         else if (kind == DICOM_KIND_PLAN)
             n += count_items(folder, object->path, DICOM_TAG(0x300a, 0x00b0), 0) +
                  count_items(folder, object->path, DICOM_TAG(0x300a, 0x03a2), 0); /* ions */
@@ -200,7 +202,8 @@ static bool check_regions(const struct folder *folder, const struct plan_parts *
         if (format == PART_UVH) {
             is_good = is_good && check_univels(folder, region->path, summary, &n_regions, err);
         } else if (format == PART_DICOM) {
-            size_t n = count_objects(folder, parts->dicom, DICOM_KIND_STRUCT, region->path, summary);
+            size_t n = count_objects(folder, parts->dicom, DICOM_KIND_STRUCT, region->path, summary) +
+                       count_objects(folder, parts->dicom, DICOM_KIND_SEGMENTATION, region->path, summary);
             n_regions += region->name[0] && n > 1 ? 1 : n;
         } else if (format != PART_NIFTI && format != PART_NRRD) {
             is_good = is_good && refuse(region->path, format, err);

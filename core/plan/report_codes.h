@@ -79,6 +79,8 @@
     X("region.renamed", "Two regions have the same name.", "They are told apart by their ids; rename one.")                       \
     X("region.roi-number", "Regions and contours of a structure set do not belong together by their numbers.", \
       "Check the file; see the line.") \
+    X("region.segments", "How the frames of a segmentation became regions.", \
+      "Nothing.") \
     X("region.no-contours", "Regions of a structure set have nothing drawn.", \
       "Nothing; they are not listed.") \
     X("region.contours-filled", "How the contours of a region became voxels: the method, both volumes.", \

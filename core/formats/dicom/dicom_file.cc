@@ -606,6 +606,16 @@ bool dicom_pixels_read(const struct dicom_file *file, uint32_t frame, void *out,
 
 struct dicom_decoded dicom_pixels_decoded(const struct dicom_file *file) { return file->decoded; }
 
+const uint8_t *dicom_pixels_bytes(const struct dicom_file *file, uint64_t *size, bool *swapped)
+{
+    const dicom_layout &layout = file->layout;
+    if (!layout.has_pixels || layout.is_encapsulated || layout.pixels_at > layout.size)
+        return nullptr;
+    *size = std::min<uint64_t>(layout.pixels_size, layout.size - layout.pixels_at);
+    *swapped = is_swapped(layout);
+    return layout.data + layout.pixels_at;
+}
+
 bool dicom_pixels_stored(const struct dicom_file *file, struct dicom_stored *stored)
 {
     const dicom_layout &layout = file->layout;

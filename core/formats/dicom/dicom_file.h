@@ -91,5 +91,8 @@ struct dicom_stored {
     bool is_swapped; /* not this machine's byte order */
 };
 bool dicom_pixels_stored(const struct dicom_file *file, struct dicom_stored *stored);
+/* Native pixels where they lie in memory, also of a deflated file: for pixels of one bit, which the calls above do not read. NULL: none, or
+ * compressed. The file was parsed whole. */
+const uint8_t *dicom_pixels_bytes(const struct dicom_file *file, uint64_t *size, bool *is_swapped);
 /* Makes n stored values of this machine out of those of a file: byte order, place of the bits, sign. In place. */
 void dicom_pixels_unpack(const struct dicom_pixels *pixels, bool is_swapped, void *values, size_t n);

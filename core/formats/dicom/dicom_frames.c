@@ -30,11 +30,8 @@ static bool get_optional(const struct dicom_item *item, uint32_t tag, double *va
     return !item || dicom_numbers(item, tag, NULL, 0) == 0 || get_finite(item, tag, value, 1);
 }
 
-struct frame_place {
-    double position_mm[3], cosines[6], spacing_mm[2], thickness_mm;
-};
-
-static bool read_frame(const struct dicom_item *frame, const struct dicom_item *shared, struct frame_place *place, struct dicom_slice *slice)
+bool dicom_frame_read(const struct dicom_item *frame, const struct dicom_item *shared, struct dicom_frame_place *place,
+                      struct dicom_slice *slice)
 {
     const struct dicom_item *measures = group_of(frame, shared, TAG_PIXEL_MEASURES);
     const struct dicom_item *values = group_of(frame, shared, TAG_FRAME_VALUES);
@@ -42,17 +39,18 @@ static bool read_frame(const struct dicom_item *frame, const struct dicom_item *
         !get_finite(group_of(frame, shared, TAG_PLANE_ORIENTATIONS), TAG_ORIENTATION, place->cosines, 6) ||
         !get_finite(measures, TAG_SPACING, place->spacing_mm, 2) || !(place->spacing_mm[0] > 0 && place->spacing_mm[1] > 0))
         return false;
-    place->thickness_mm = 0;
+    place->thickness_mm = place->between_mm = 0;
     slice->slope = 1;
     slice->offset = 0;
-    if (!get_optional(measures, TAG_THICKNESS, &place->thickness_mm) || !get_optional(values, TAG_SLOPE, &slice->slope) ||
+    if (!get_optional(measures, TAG_THICKNESS, &place->thickness_mm) || !get_optional(measures, TAG_BETWEEN_SLICES, &place->between_mm) ||
+        !get_optional(values, TAG_SLOPE, &slice->slope) ||
         !get_optional(values, TAG_OFFSET, &slice->offset))
         return false;
     slice->position_lps_mm = vec3(place->position_mm[0], place->position_mm[1], place->position_mm[2]);
     return true;
 }
 
-static bool is_same_plane(const struct frame_place *a, const struct frame_place *b)
+bool dicom_frames_fit(const struct dicom_frame_place *a, const struct dicom_frame_place *b)
 {
     for (int i = 0; i < 6; i++)
         if (!(fabs(a->cosines[i] - b->cosines[i]) <= 1e-3))
@@ -67,14 +65,14 @@ bool dicom_frames_find(const struct dicom_file *file, const char *path, size_t o
     size_t n_groups = dicom_n_items(root, TAG_FRAME_GROUPS);
     if (n_groups != n_frames)
         return error_set(err, ERROR_FORMAT, "%s: sequence (5200,9230) has %zu items for %u frames", path, n_groups, n_frames);
-    struct frame_place first = { 0 }, place;
+    struct dicom_frame_place first = { 0 }, place;
     struct vec3 axes[3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 } };
     double off;
     size_t n_others = 0, n_repeated = 0;
     *n = 0;
     for (uint32_t f = 0; f < n_frames; f++) {
         struct dicom_slice slice = { .object = object, .frame = f };
-        if (!read_frame(dicom_item_at(root, TAG_FRAME_GROUPS, f), shared, &place, &slice))
+        if (!dicom_frame_read(dicom_item_at(root, TAG_FRAME_GROUPS, f), shared, &place, &slice))
             return error_set(err, ERROR_FORMAT, "%s: frame %u of %u does not say where it lies in the patient, or how large its pixels are, or a number of these "
                              "or of its rescale is none", path, f + 1, n_frames);
         if (f == 0) {
@@ -82,7 +80,7 @@ bool dicom_frames_find(const struct dicom_file *file, const char *path, size_t o
             if (!dicom_axes(first.cosines, first.cosines + 3, axes, &off))
                 return error_set(err, ERROR_FORMAT, "%s: the directions of its rows and columns (0020,0037) do not span a plane", path);
         }
-        if (!is_same_plane(&first, &place)) {
+        if (!dicom_frames_fit(&first, &place)) {
             n_others++;
             continue;
         }

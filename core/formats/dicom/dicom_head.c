@@ -46,7 +46,7 @@ static const struct {
     { "66", DICOM_KIND_OTHER, "set of raw data" },
     { "66.1", DICOM_KIND_OTHER, "registration" },
     { "66.3", DICOM_KIND_OTHER, "deformable registration" },
-    { "66.4", DICOM_KIND_OTHER, "segmentation" },
+    { "66.4", DICOM_KIND_SEGMENTATION, "segmentation" },
     { "88.11", DICOM_KIND_OTHER, "report" },
     { "88.22", DICOM_KIND_OTHER, "report" },
     { "88.33", DICOM_KIND_OTHER, "report" },
@@ -230,6 +230,9 @@ static void read_references(const struct dicom_item *root, struct dicom_object *
         (void)dicom_text(frame, TAG_FRAME_OF_REFERENCE, object->frame_of_reference, DICOM_UID_SIZE);
     if (series)
         (void)dicom_text(series, TAG_SERIES, object->referenced_series, DICOM_UID_SIZE);
+    const struct dicom_item *drawn_on = first_item(root, DICOM_TAG(0x0008, 0x1115));
+    if (object->kind == DICOM_KIND_SEGMENTATION && drawn_on)
+        (void)dicom_text(drawn_on, TAG_SERIES, object->referenced_series, DICOM_UID_SIZE);
     const struct dicom_item *plan = first_item(root, DICOM_TAG(0x300C, 0x0002));
     const struct dicom_item *structs = first_item(root, DICOM_TAG(0x300C, 0x0060));
     if (plan)

@@ -17,6 +17,7 @@ enum dicom_kind {
     DICOM_KIND_IMAGE,  /* a grey picture, or several, with a place in the patient */
     DICOM_KIND_STRUCT, /* RTSTRUCT */
     DICOM_KIND_DOSE,   /* RTDOSE */
+    DICOM_KIND_SEGMENTATION,
     DICOM_KIND_PLAN,   /* RTPLAN, photons, electrons or ions */
     DICOM_KIND_OTHER   /* not used; reason says why */
 };
@@ -51,7 +52,7 @@ struct dicom_object {
     char transfer_syntax[DICOM_UID_SIZE];
     char description[DICOM_TEXT_SIZE];       /* of the series */
     char label[DICOM_TEXT_SIZE];             /* of a structure set or plan */
-    char referenced_series[DICOM_UID_SIZE];  /* STRUCT: the first it was drawn on */
+    char referenced_series[DICOM_UID_SIZE];  /* STRUCT, SEGMENTATION: the first it was drawn on */
     char referenced_struct[DICOM_UID_SIZE];  /* PLAN, DOSE: SOP instance */
     char referenced_plan[DICOM_UID_SIZE];    /* DOSE: SOP instance, the first */
     char reason[160];                        /* OTHER */

@@ -36,6 +36,17 @@ struct dicom_layout_of_slices {
 NODISCARD bool dicom_slices_lay_out(const struct dicom_slice *slices, size_t n, const struct dicom_plane *plane, const char *where,
                                     struct dicom_layout_of_slices *layout, struct report *report, struct error *err);
 
+/* Where a frame of a file with many lies, by its own groups and those that all share. */
+struct dicom_frame_place {
+    double position_mm[3], cosines[6];
+    double spacing_mm[2];            /* between rows, between columns */
+    double thickness_mm, between_mm; /* 0: not said; between: of neighbouring slices */
+};
+/* Place and scale of a frame; false when it does not say where it lies or how large its pixels are, or a number there is none. */
+bool dicom_frame_read(const struct dicom_item *frame, const struct dicom_item *shared, struct dicom_frame_place *place,
+                      struct dicom_slice *slice);
+bool dicom_frames_fit(const struct dicom_frame_place *a, const struct dicom_frame_place *b); /* orientation and pixel size */
+
 /* The slices of a file with many frames: place and scale of each from its functional groups. Frames of another orientation, size or
  * time than the first are left out, and said so. Takes the head of the file.
  *   n       of slices found; at most n_frames

@@ -1,0 +1,308 @@
+/* DICOM Segmentations: made-up ones whose voxels follow a rule, contradicting ones, and real ones with the answer beside them. */
+#include "core/formats/dicom/dicom_seg.h"
+
+#include "tests/check.h"
+#include "tests/unit/data_folder.h"
+#include "tests/unit/made_seg.h"
+#include "tests/unit/made_series.h"
+#include "tests/unit/plan_help.h"
+#include "tests/unit/rt_files.h"
+
+#define TAG DICOM_TAG
+
+/* In no order; plane -2 of segment 1 is missing (empty), and planes 1 and 4 of segment 2; both overlap. */
+static const struct made_seg_frame frames[] = { { 2, -5 }, { 1, 4 }, { 1, -5 }, { 2, -2 }, { 1, 1 } };
+static const struct made_seg two_parts = { .frames = frames, .n_frames = 5, .n_segments = 3 };
+
+static bool read_seg(const struct made_dicom *made, const char *only, struct nrrd_layers *layers, struct report *report, struct error *err)
+{
+    struct rt_file file = rt_file_of(made);
+    *err = (struct error){ 0 };
+    bool is_read = dicom_seg_read(file.file, "made.dcm", only, layers, report, err);
+    rt_file_close(&file);
+    return is_read;
+}
+
+static const struct label_name *name_of(const struct nrrd_layers *layers, const char *name, size_t *layer)
+{
+    for (*layer = 0; *layer < layers->n; ++*layer)
+        for (size_t i = 0; i < layers->names[*layer].n; i++)
+            if (strcmp(layers->names[*layer].labels[i].name, name) == 0)
+                return &layers->names[*layer].labels[i];
+    fail_msg("no segment %s", name);
+    return NULL;
+}
+
+static bool has_frame(const struct made_seg *seg, int segment, double z_mm)
+{
+    for (int f = 0; f < seg->n_frames; f++)
+        if (seg->frames[f].segment == segment && seg->frames[f].z_mm == z_mm)
+            return true;
+    return false;
+}
+
+/* Every voxel by its place in the patient. */
+static void check_segment(const struct nrrd_layers *layers, const struct made_seg *seg, int segment)
+{
+    char name[16];
+    size_t layer;
+    snprintf(name, sizeof name, "Part %d", segment);
+    const struct label_name *label = name_of(layers, name, &layer);
+    const struct volume *volume = layers->volumes[layer];
+    for (double z = -5; z <= 4; z += 3)
+        for (int y = 0; y < MADE_SEG_ROWS; y++)
+            for (int x = 0; x < MADE_SEG_COLUMNS; x++) {
+                uint32_t ijk[3];
+                assert_true(volume_voxel_at(volume, vec3(10 + 0.5 * x, 20 + 2 * y, z), ijk));
+                bool is_set = volume_label(volume, ijk[0], ijk[1], ijk[2]) == label->value;
+                assert_int_equal(is_set, has_frame(seg, segment, z) && made_seg_is_set(segment, z, x, y));
+            }
+}
+
+static void segments_have_the_voxels_of_their_frames_whatever_their_order(void **state)
+{
+    (void)state;
+    for (int way = 0; way < 4; way++) { /* binary and fractional, with and without the distance of planes */
+        struct made_seg seg = two_parts;
+        struct made_dicom made;
+        struct nrrd_layers layers;
+        struct report report = { 0 };
+        struct error err;
+        seg.is_fractional = way & 1;
+        seg.between_mm = way & 2 ? 3 : 0;
+        made_seg_bytes(&made, &seg);
+        if (!read_seg(&made, "", &layers, &report, &err))
+            fail_msg("%s", err.text);
+        const struct grid *grid = &layers.volumes[0]->grid;
+        assert_int_equal(grid->size[0], MADE_SEG_COLUMNS);
+        assert_int_equal(grid->size[1], MADE_SEG_ROWS);
+        assert_int_equal(grid->size[2], 4);
+        assert_close(vec3_length(vec3_sub(grid->lps_mm_from_ijk.origin, vec3(10, 20, -5))), 0, 1e-9);
+        check_segment(&layers, &seg, 1);
+        check_segment(&layers, &seg, 2);
+        size_t first, second;
+        const struct label_name *one = name_of(&layers, "Part 1", &first), *two = name_of(&layers, "Part 2", &second);
+        assert_true(one->has_color && one->rgb[0] >= 254 && one->rgb[1] <= 1 && one->rgb[2] <= 1);
+        assert_false(two->has_color);
+        assert_int_equal(layers.n, 1); /* they share no voxel */
+        assert_int_equal(first, second);
+        assert_non_null(strstr(report_said(&report, "region.unused-names"), "1 of 3 segments have no voxel and are not listed: Part 3"));
+        assert_int_equal(report_has(&report, "mask.fractional"), seg.is_fractional);
+        if (seg.is_fractional)
+            assert_non_null(strstr(report_said(&report, "mask.fractional"), "(PROBABILITY): voxels of 100 of 200 and more"));
+        nrrd_layers_finish(&layers);
+        report_finish(&report);
+        made_finish(&made);
+    }
+}
+
+static void segments_that_overlap_lie_on_layers_of_their_own(void **state)
+{
+    (void)state;
+    static const struct made_seg_frame same[] = { { 1, 0 }, { 4, 0 }, { 2, 0 } }; /* 1 and 4: the same voxels; 2: others */
+    const struct made_seg seg = { .frames = same, .n_frames = 3, .n_segments = 4 };
+    struct made_dicom made;
+    struct nrrd_layers layers;
+    struct report report = { 0 };
+    struct error err;
+    made_seg_bytes(&made, &seg);
+    assert_true(read_seg(&made, "", &layers, &report, &err));
+    size_t one, two, four;
+    (void)name_of(&layers, "Part 1", &one);
+    (void)name_of(&layers, "Part 2", &two);
+    (void)name_of(&layers, "Part 4", &four);
+    assert_int_equal(layers.n, 2);
+    assert_int_equal(one, two);
+    assert_int_not_equal(one, four);
+    nrrd_layers_finish(&layers);
+    assert_true(read_seg(&made, "part 4", &layers, &report, &err)); /* one alone, by its name */
+    assert_int_equal(layers.n, 1);
+    assert_int_equal(layers.names[0].n, 1);
+    nrrd_layers_finish(&layers);
+    assert_false(read_seg(&made, "Liver", &layers, &report, &err));
+    assert_non_null(strstr(err.text, "no segment is called \"Liver\""));
+    made_finish(&made);
+    report_finish(&report);
+}
+
+static void colors_are_those_of_lindbloom_s_tables(void **state)
+{
+    (void)state;
+    static const struct {
+        double lab[3]; /* white D50 */
+        int rgb[3];
+    } colors[] = { { { 54.29, 80.81, 69.89 }, { 255, 0, 0 } }, { { 87.82, -79.29, 80.99 }, { 0, 255, 0 } }, { { 29.57, 68.30, -112.03 }, { 0, 0, 255 } },
+                   { { 100, 0, 0 }, { 255, 255, 255 } }, { { 0, 0, 0 }, { 0, 0, 0 } }, { { 53.585, 0, 0 }, { 128, 128, 128 } } };
+    for (size_t i = 0; i < sizeof colors / sizeof colors[0]; i++) {
+        const double *lab = colors[i].lab;
+        uint16_t stored[3] = { (uint16_t)lround(lab[0] * 655.35), (uint16_t)lround((lab[1] + 128) * 257), (uint16_t)lround((lab[2] + 128) * 257) };
+        uint8_t rgb[3];
+        dicom_seg_color(stored, rgb);
+        for (int c = 0; c < 3; c++)
+            assert_true(abs(rgb[c] - colors[i].rgb[c]) <= 1); /* two decimals of the tables */
+    }
+}
+
+static void what_contradicts_itself_is_refused_by_name(void **state)
+{
+    (void)state;
+    static const struct made_seg_frame uneven[] = { { 1, 0 }, { 1, 3 }, { 1, 7 } }, far[] = { { 1, 0 }, { 1, 0.01 }, { 1, 900 } };
+    static const struct made_seg_frame unknown[] = { { 1, 0 }, { 9, 3 } };
+    struct {
+        struct made_seg seg;
+        size_t cut;
+        const char *words;
+    } cases[] = {
+        { { .frames = uneven, .n_frames = 3, .n_segments = 1 }, 0, "planes that are not even: 3 places, the nearest 3 mm apart over 7 mm" },
+        { { .frames = far, .n_frames = 3, .n_segments = 1 }, 0, "0.01 mm apart: 90001 planes" },
+        { { .frames = unknown, .n_frames = 2, .n_segments = 0 }, 0, "no Segment Sequence (0062,0002)" },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct made_dicom made;
+        struct nrrd_layers layers;
+        struct report report = { 0 };
+        struct error err;
+        made_seg_bytes(&made, &cases[i].seg);
+        assert_false(read_seg(&made, "", &layers, &report, &err));
+        if (!strstr(err.text, cases[i].words))
+            fail_msg("\"%s\" does not say \"%s\"", err.text, cases[i].words);
+        made_finish(&made);
+        report_finish(&report);
+    }
+    struct made_seg seg = { .frames = unknown, .n_frames = 2, .n_segments = 1 }; /* a frame of a segment that is not described */
+    struct made_dicom made;
+    struct nrrd_layers layers;
+    struct report report = { 0 };
+    struct error err;
+    made_seg_bytes(&made, &seg);
+    assert_true(read_seg(&made, "", &layers, &report, &err));
+    assert_non_null(strstr(report_said(&report, "region.roi-number"), "1 frames belong to segments (0062,000B) that the file does not describe (the first: 9)"));
+    nrrd_layers_finish(&layers);
+    report_finish(&report);
+    made.size -= 4; /* too few bits: the length says so */
+    made.data[made.size - 10 - 2] = 4;
+    struct dicom_file *file = dicom_file_parse(made.data, made.size, "cut.dcm", DICOM_WHOLE, &err);
+    bool is_read = file && dicom_seg_read(file, "cut.dcm", "", &layers, &report, &err);
+    assert_false(is_read);
+    assert_true(err.text[0] != 0);
+    dicom_file_destroy(file);
+    made_finish(&made);
+    report_finish(&report);
+}
+
+static void a_folder_with_a_segmentation_has_its_regions(void **state)
+{
+    (void)state;
+    for (int way = 0; way < 3; way++) { /* of the series; of another one; in another frame of reference */
+        char folder[256];
+        struct error err;
+        struct made_dicom made;
+        struct made_seg seg = two_parts;
+        seg.series = way == 0 ? "1.2.3" : "1.2.77";
+        seg.frame_of_reference = way == 2 ? "1.2.99" : "1.2.9";
+        folder_make(folder);
+        for (int k = 0; k < 4; k++) {
+            struct made_slice slice = made_slice_defaults;
+            char name[16];
+            slice.position[2] = -5 + 3 * k;
+            slice.number = k + 1;
+            slice.base = -1000;
+            snprintf(name, sizeof name, "ct%d", k);
+            made_slice_put(folder, name, &slice);
+        }
+        made_seg_bytes(&made, &seg);
+        folder_put(folder, "seg.dcm", made.data, made.size);
+        made_finish(&made);
+        struct plan *plan = plan_of_folder(folder, &err);
+        assert_string_equal(err.text, "");
+        assert_int_equal(plan->regions.n_regions, 2);
+        const struct region *one = region_of(plan, "part-1");
+        assert_true(one->has_file_color);
+        assert_close(one->rgb[0], 255, 1);
+        assert_int_equal(one->n_voxels, 3 * MADE_SEG_ROWS * MADE_SEG_COLUMNS / 3);
+        assert_int_equal(report_has(&plan->report, "region.image-chosen"), way == 1);
+        assert_int_equal(report_has(&plan->report, "region.frame-differs"), way == 2);
+        assert_false(report_has(&plan->report, "dicom.not-used"));
+        plan_destroy(plan);
+        folder_remove(folder);
+    }
+}
+
+/* ---- real ones --------------------------------------------------------------------------------------------------------------------------- */
+
+static void a_real_liver_is_the_one_of_its_nrrd_voxel_for_voxel(void **state)
+{
+    (void)state;
+    char folder[256], from[300];
+    if (!rt_unpack("dicom-seg/seg.tar.xz", folder))
+        skip();
+    static const char *const names[] = { "seg/liver.dcm", "seg/liver_seg.nrrd" };
+    struct plan *plans[2];
+    for (int i = 0; i < 2; i++) {
+        char alone[256];
+        struct error err;
+        folder_make(alone);
+        snprintf(from, sizeof from, "%s/%s", folder, names[i]);
+        size_t size;
+        uint8_t *bytes = file_bytes(from, &size);
+        folder_put(alone, i ? "liver_seg.nrrd" : "liver.dcm", bytes, size);
+        if (i == 1)
+            folder_put_text(alone, "plan.json", "{\"format\": \"beamroom-plan\", \"version\": 1, \"regions\": [{\"path\": \"liver_seg.nrrd\"}]}");
+        free(bytes);
+        plans[i] = plan_of_folder(alone, &err);
+        assert_string_equal(err.text, "");
+        folder_remove(alone);
+    }
+    const struct region *region = region_of(plans[0], "liver");
+    const struct volume *seg = plans[0]->regions.layers[region->layer], *nrrd = plans[1]->regions.layers[0];
+    assert_int_equal(region->n_voxels, 107098);
+    assert_true(grid_is_same(&seg->grid, &nrrd->grid));
+    for (uint32_t k = 0; k < 3; k++)
+        for (uint32_t j = 0; j < 512; j++)
+            for (uint32_t i = 0; i < 512; i++)
+                if ((volume_label(seg, i, j, k) == region->label) != (volume_label(nrrd, i, j, k) == 1))
+                    fail_msg("voxel %u %u %u", i, j, k);
+    plan_destroy(plans[0]);
+    plan_destroy(plans[1]);
+    folder_remove(folder);
+}
+
+static void real_segments_that_overlap_have_the_voxels_that_pydicom_and_numpy_count(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *id;
+        uint64_t n;
+    } counts[] = { { "green", 9602 }, { "orange", 11888 }, { "purple", 10743 }, { "light-blue", 6693 }, { "dark-blue", 4713 } };
+    char folder[256], from[300], alone[256];
+    struct error err;
+    if (!rt_unpack("dicom-seg/seg.tar.xz", folder))
+        skip();
+    snprintf(from, sizeof from, "%s/seg/partial_overlaps.dcm", folder);
+    size_t size;
+    uint8_t *bytes = file_bytes(from, &size);
+    folder_make(alone);
+    folder_put(alone, "seg.dcm", bytes, size);
+    free(bytes);
+    struct plan *plan = plan_of_folder(alone, &err);
+    assert_string_equal(err.text, "");
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
+        assert_int_equal(region_of(plan, counts[i].id)->n_voxels, counts[i].n);
+    plan_destroy(plan);
+    folder_remove(alone);
+    folder_remove(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(segments_have_the_voxels_of_their_frames_whatever_their_order),
+        cmocka_unit_test(segments_that_overlap_lie_on_layers_of_their_own),
+        cmocka_unit_test(colors_are_those_of_lindbloom_s_tables),
+        cmocka_unit_test(what_contradicts_itself_is_refused_by_name),
+        cmocka_unit_test(a_folder_with_a_segmentation_has_its_regions),
+        cmocka_unit_test(a_real_liver_is_the_one_of_its_nrrd_voxel_for_voxel),
+        cmocka_unit_test(real_segments_that_overlap_have_the_voxels_that_pydicom_and_numpy_count),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
