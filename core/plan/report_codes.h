@@ -39,7 +39,7 @@
     X("image.not-finite", "Some values are not numbers.", "They are drawn as nothing and probed as nothing.")                     \
     X("image.hu-doubtful", "A CT has no value below zero, so its numbers may not be HU.", "Check the rescale slope and intercept.") \
     X("dicom.unreadable", "A DICOM file cannot be read.", "Check or copy the file again; the rest is shown without it.")          \
-    X("dicom.not-used", "DICOM objects of a kind that has no place in a plan.", "Nothing; they are left out.")                    \
+    X("dicom.not-used", "DICOM objects of a kind that has no place in a plan.", "Nothing; they are left out: the line says what they are.") \
     X("dicom.bad-number", "A value of a DICOM file is no number, or cannot be what it stands for.",                               \
       "The file is damaged: copy or export it again.")                                                                            \
     X("dicom.duplicate", "A DICOM object is there more than once.", "Nothing; the first by name was used.")                       \
@@ -169,6 +169,8 @@
       "It is not shown; see the line.") \
     X("beam.bad-value", "A treatment plan holds values that cannot be: out of range, out of order, or not as many as they should be.", \
       "Do not rely on the beam; check or export the plan again.") \
+    X("beam.ion", "A treatment plan with ions: only what it has in common with other plans is read.", \
+      "Nothing; do not look for more in the picture of its beams.") \
     X("beam.outside", "The isocentre of a beam lies outside every image.", \
       "Check that plan and images belong together, and that no slices are missing.") \
     X("beam.none", "A treatment plan has no external beam.", \

@@ -177,7 +177,7 @@ static void structures_doses_and_plans_are_told_with_what_they_refer_to(void **s
     assert_ptr_equal(dicom_index_find(s.index, dose->referenced_plan), plan);
     assert_null(dicom_index_find(s.index, ""));
     assert_int_equal(object_named(&s, "sr")->kind, DICOM_KIND_OTHER);
-    assert_string_equal(object_named(&s, "sr")->reason, "it is a report");
+    assert_string_equal(object_named(&s, "sr")->reason, "it is a report (BasicTextSRStorage)");
     assert_non_null(strstr(object_named(&s, "xx")->reason, "object of class 1.2.840.10008.5.1.4.1.1.9999"));
     assert_non_null(scanned_said(&s, "dicom.not-used"));
     assert_null(scanned_said(&s, "dicom.unreadable"));
@@ -389,6 +389,72 @@ static void pictures_that_cannot_be_used_say_why(void **state)
     scanned_finish(&s);
 }
 
+static void put_unread(const char *folder, const char *name, const char *sop_class, const char *modality, int number)
+{
+    struct made_dicom made;
+    char uid[32];
+    snprintf(uid, sizeof uid, "1.2.3.%d", number);
+    made_begin(&made, MADE_EXPLICIT);
+    made_text(&made, DICOM_TAG(0x0008, 0x0016), "UI", sop_class);
+    made_text(&made, DICOM_TAG(0x0008, 0x0018), "UI", uid);
+    made_text(&made, DICOM_TAG(0x0008, 0x0060), "CS", modality);
+    folder_put(folder, name, made.data, made.size);
+    made_finish(&made);
+}
+
+static void objects_that_are_not_read_are_warned_of_by_name_and_number(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    put_unread(s.path, "i1", "1.2.840.10008.5.1.4.1.1.481.1", "RTIMAGE", 1);
+    put_unread(s.path, "i2", "1.2.840.10008.5.1.4.1.1.481.1", "RTIMAGE", 2);
+    put_unread(s.path, "i3", "1.2.840.10008.5.1.4.1.1.481.1", "RTIMAGE", 3);
+    put_unread(s.path, "record", "1.2.840.10008.5.1.4.1.1.481.4", "RTRECORD", 4);
+    put_unread(s.path, "report", "1.2.840.10008.5.1.4.1.1.88.67", "SR", 5);
+    put_unread(s.path, "shown", "1.2.840.10008.5.1.4.1.1.11.1", "PR", 6);
+    put_unread(s.path, "capture", "1.2.840.10008.5.1.4.1.1.7", "OT", 7);
+    put_unread(s.path, "waves", "1.2.840.10008.5.1.4.1.1.9.1.1", "ECG", 8);
+    struct made_slice slice = made_slice_defaults; /* values by a table: not applied, so not shown */
+    struct made_dicom made;
+    slice.color = "MONOCHROME2";
+    made_slice_bytes(&made, &slice);
+    size_t pixels = made.size - 12 - 12;
+    uint8_t kept[24];
+    memcpy(kept, made.data + pixels, sizeof kept);
+    made.size = pixels;
+    made_sequence(&made, DICOM_TAG(0x0028, 0x3000));
+    made_item(&made);
+    made_text(&made, DICOM_TAG(0x0028, 0x3004), "LO", "HU");
+    made_item_end(&made);
+    made_sequence_end(&made);
+    made_raw(&made, kept, sizeof kept);
+    folder_put(s.path, "table", made.data, made.size);
+    made_finish(&made);
+    scanned_open(&s);
+    static const struct {
+        const char *path, *words[2];
+    } cases[] = { { "i1", { "3 objects are not used", "RTImageStorage" } }, { "record", { "treatment record", "RTBeamsTreatmentRecordStorage" } },
+                  { "report", { "radiation dose report", "XRayRadiationDoseSRStorage" } }, { "shown", { "presentation state", "GrayscaleSoftcopy" } },
+                  { "capture", { "screen capture", "SecondaryCaptureImageStorage" } }, { "waves", { "no picture", "TwelveLeadECGWaveformStorage" } },
+                  { "table", { "Modality LUT", "(0028,3000)" } } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const struct report_line *found = NULL;
+        for (size_t l = 0; l < s.report.n_lines; l++)
+            if (strcmp(s.report.lines[l].where, cases[i].path) == 0)
+                found = &s.report.lines[l];
+        if (!found)
+            fail_msg("nothing is said of %s", cases[i].path);
+        assert_int_equal(found->severity, REPORT_WARNING);
+        assert_string_equal(found->code, "dicom.not-used");
+        for (int w = 0; w < 2; w++)
+            if (!strstr(found->sentence, cases[i].words[w]))
+                fail_msg("\"%s\" does not say \"%s\"", found->sentence, cases[i].words[w]);
+    }
+    assert_int_equal(s.index->n_stacks, 0);
+    scanned_finish(&s);
+}
+
 static void a_folder_of_unreadable_files_does_not_flood_the_report(void **state)
 {
     (void)state;
@@ -450,6 +516,7 @@ int main(void)
         cmocka_unit_test(mixed_pictures_become_a_stack_for_each_series_size_and_orientation),
         cmocka_unit_test(echoes_and_passes_at_the_same_places_become_stacks_of_their_own),
         cmocka_unit_test(pictures_that_cannot_be_used_say_why),
+        cmocka_unit_test(objects_that_are_not_read_are_warned_of_by_name_and_number),
         cmocka_unit_test(a_folder_of_unreadable_files_does_not_flood_the_report),
         cmocka_unit_test(real_sets_hold_what_their_makers_say),
     };

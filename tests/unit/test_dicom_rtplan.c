@@ -355,6 +355,47 @@ static void only_a_round_opening_has_a_diameter(void **state)
     }
 }
 
+static void an_ion_plan_has_its_lines_and_says_what_is_not_read(void **state)
+{
+    (void)state;
+    struct made_dicom made;
+    struct report report = { 0 };
+    struct error err = { 0 };
+    made_rt_begin(&made, "1.2.840.10008.5.1.4.1.1.481.8", "RTPLAN", NULL);
+    made_sequence(&made, TAG(0x300a, 0x03a2));
+    made_item(&made);
+    made_text(&made, TAG(0x300a, 0x00c2), "LO", "Protons");
+    made_element(&made, TAG(0x300a, 0x030a), "FL", (float[]){ 2000, 2500 }, 8);
+    made_sequence(&made, TAG(0x300a, 0x03a4));
+    put_device(&made, "X", NULL);
+    put_device(&made, "Y", NULL);
+    made_sequence_end(&made);
+    made_sequence(&made, TAG(0x300a, 0x03a8));
+    made_item(&made);
+    made_sequence(&made, TAG(0x300a, 0x011a));
+    put_position(&made, "X", "-30\\40");
+    put_position(&made, "Y", "-20\\25");
+    made_sequence_end(&made);
+    made_text(&made, TAG(0x300a, 0x011e), "DS", "90");
+    made_text(&made, TAG(0x300a, 0x012c), "DS", "1\\2\\3");
+    made_item_end(&made);
+    made_sequence_end(&made);
+    made_item_end(&made);
+    made_sequence_end(&made);
+    struct rt_file file = rt_file_of(&made);
+    struct rtplan *plan = rtplan_read(file.file, "ion.dcm", &report, &err);
+    assert_string_equal(err.text, "");
+    assert_int_equal(plan->n_beams, 1);
+    assert_point(plan->beams[0].target_lps_mm, 1, 2, 3, 0);
+    assert_point(plan->beams[0].entry_lps_mm, 2001, 2, 3, 1e-9); /* the patient's left, for the position that is taken */
+    assert_close(plan->beams[0].delivery.opening_cm2, 7 * 4.5, 1e-9);
+    assert_non_null(strstr(report_said(&report, "beam.ion"), "An RT Ion Plan of 1 beams"));
+    rtplan_destroy(plan);
+    rt_file_close(&file);
+    made_finish(&made);
+    report_finish(&report);
+}
+
 static void another_object_is_refused(void **state)
 {
     (void)state;
@@ -446,6 +487,7 @@ int main(void)
         cmocka_unit_test(arcs_travel_in_their_direction),
         cmocka_unit_test(the_opening_is_what_jaws_and_leaves_leave),
         cmocka_unit_test(only_a_round_opening_has_a_diameter),
+        cmocka_unit_test(an_ion_plan_has_its_lines_and_says_what_is_not_read),
         cmocka_unit_test(another_object_is_refused),
         cmocka_unit_test(more_than_the_written_limits_is_refused_or_left_out),
     };

@@ -500,6 +500,12 @@ const struct dicom_item *dicom_root(const struct dicom_file *file) { return &fil
 
 const char *dicom_transfer_syntax(const struct dicom_file *file) { return file->layout.transfer_syntax; }
 
+const char *dicom_uid_word(const char *uid)
+{
+    const char *word = dcmFindNameOfUID(uid, "");
+    return word ? word : "";
+}
+
 bool dicom_is_cut(const struct dicom_file *file) { return file->layout.is_cut; }
 
 bool dicom_has(const struct dicom_item *item, uint32_t tag)

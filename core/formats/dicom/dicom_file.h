@@ -37,6 +37,7 @@ NODISCARD struct dicom_file *dicom_file_parse(const uint8_t *data, size_t size, 
 void dicom_file_destroy(struct dicom_file *file);
 const struct dicom_item *dicom_root(const struct dicom_file *file);
 const char *dicom_transfer_syntax(const struct dicom_file *file); /* UID; "" when the file does not say */
+const char *dicom_uid_word(const char *uid); /* "RTImageStorage"; "" for one the library does not know */
 bool dicom_is_cut(const struct dicom_file *file); /* DICOM_START: there are more elements before the pixels than data held */
 
 bool dicom_has(const struct dicom_item *item, uint32_t tag); /* present, with or without a value */

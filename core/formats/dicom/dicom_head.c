@@ -57,6 +57,8 @@ static const struct {
     { "481.6", DICOM_KIND_OTHER, "brachytherapy record" },
     { "481.7", DICOM_KIND_OTHER, "treatment summary" },
     { "481.9", DICOM_KIND_OTHER, "record of ion treatment" },
+    { "66.7", DICOM_KIND_OTHER, "label map segmentation" },
+    { "66.5", DICOM_KIND_OTHER, "surface segmentation" },
 };
 
 static const char *known_class(const char *sop_class, enum dicom_kind *kind)
@@ -175,8 +177,9 @@ static void read_image(const struct dicom_file *file, uint64_t n_bytes, struct d
     object->kind = DICOM_KIND_OTHER;
     if (!dicom_has(root, DICOM_TAG(0x7FE0, 0x0010)) && !dicom_has(root, DICOM_TAG(0x7FE0, 0x0008))) {
         char name[100];
+        const char *word = dicom_uid_word(object->sop_class);
         dicom_class_name(object->sop_class, name, sizeof name);
-        snprintf(object->reason, sizeof object->reason, "it has no picture (%s)", name);
+        snprintf(object->reason, sizeof object->reason, "it has no picture (%s)", word[0] ? word : name);
         return;
     }
     if (!dicom_pixels_look(file, &image.pixels, &err)) {
@@ -185,6 +188,10 @@ static void read_image(const struct dicom_file *file, uint64_t n_bytes, struct d
         return;
     }
     read_image_facts(root, &image);
+    if (dicom_n_items(root, TAG_MODALITY_LUT) > 0) {
+        snprintf(object->reason, sizeof object->reason, "it gives its values by a table (Modality LUT Sequence (0028,3000)), which is not applied");
+        return;
+    }
     if (strstr(image.image_type, "LOCALIZER")) {
         snprintf(object->reason, sizeof object->reason, "it is a localizer");
         return;
@@ -302,7 +309,7 @@ static enum dicom_head_result describe(const struct dicom_file *file, uint64_t n
     if (object->kind == DICOM_KIND_IMAGE)
         read_image(file, n_bytes, object);
     else if (object->kind == DICOM_KIND_OTHER)
-        snprintf(object->reason, sizeof object->reason, "it is a %s", name);
+        snprintf(object->reason, sizeof object->reason, "it is a %s (%.60s)", name, dicom_uid_word(object->sop_class));
     else
         read_references(dicom_root(file), object);
     return DICOM_HEAD_READ;

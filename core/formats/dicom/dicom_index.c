@@ -238,15 +238,16 @@ static void report_unused(const struct dicom_index *index, struct report *report
     for (size_t r = 0; r < n_reasons; r++) {
         const char *reason = first[r]->reason;
         bool is_damage = strncmp(reason, "it ", 3) != 0; /* what is wrong with a picture, not what it is */
+        bool is_usual = strcmp(reason, "it is a localizer") == 0;
         const char *code = is_damage ? "dicom.unreadable" : "dicom.not-used";
+        enum report_severity severity = is_damage ? REPORT_ERROR : is_usual ? REPORT_NOTE : REPORT_WARNING;
         if (count[r] == 1)
-            report_add(report, is_damage ? REPORT_ERROR : REPORT_NOTE, code, first[r]->path, "Not used: %s.", reason);
+            report_add(report, severity, code, first[r]->path, "Not used: %s.", reason);
         else
-            report_add(report, is_damage ? REPORT_ERROR : REPORT_NOTE, code, first[r]->path, "%zu objects are not used; this one: %s.",
-                       count[r], reason);
+            report_add(report, severity, code, first[r]->path, "%zu objects are not used; this one: %s.", count[r], reason);
     }
     if (n_more > 0)
-        report_add(report, REPORT_NOTE, "dicom.not-used", "", "%zu more objects are not used, for other reasons.", n_more);
+        report_add(report, REPORT_WARNING, "dicom.not-used", "", "%zu more objects are not used, for other reasons.", n_more);
 }
 
 /* One line for each element that is no number in pictures that are used all the same. */

@@ -339,6 +339,9 @@ static bool read_beams(const struct reading *reading, struct error *err)
             return false;
         }
     }
+    if (n > 0 && is_ion)
+        report_add(reading->report, REPORT_WARNING, "beam.ion", reading->where, "An RT Ion Plan of %zu beams: their lines, angles, jaws and blocks are "
+                   "shown; snouts, range shifters, modulators, scan spots and the energies behind the first are not.", n);
     if (n == 0)
         report_add(reading->report, REPORT_NOTE, "beam.none", reading->where, "The plan has no external beam.");
     return true;

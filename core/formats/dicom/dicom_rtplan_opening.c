@@ -17,6 +17,7 @@ enum {
     APPLICATOR_GEOMETRY = DICOM_TAG(0x300a, 0x0431),
     APPLICATOR_SHAPE = DICOM_TAG(0x300a, 0x0432),
     APPLICATOR_OPENING = DICOM_TAG(0x300a, 0x0433),
+    ION_DEVICE_SEQUENCE = DICOM_TAG(0x300a, 0x03a4),
     ION_BLOCK_SEQUENCE = DICOM_TAG(0x300a, 0x0436)
 };
 enum { MOST_BLOCK_POINTS = 5000, LEAST_ROUND_POINTS = 12 };
@@ -191,10 +192,13 @@ bool opening_init(struct opening *opening, const struct dicom_item *beam, struct
     opening->n_devices = 0;
     opening->block_x_mm[0] = opening->block_x_mm[1] = opening->block_y_mm[0] = opening->block_y_mm[1] = NAN;
     opening->block_cm2 = opening->round_mm = NAN;
-    size_t n = dicom_n_items(beam, DEVICE_SEQUENCE);
-    for (size_t i = 0; i < n; i++)
-        if (!add_device(opening, dicom_item_at(beam, DEVICE_SEQUENCE, i), err))
-            return false;
+    static const uint32_t sequences[] = { DEVICE_SEQUENCE, ION_DEVICE_SEQUENCE };
+    for (int s = 0; s < 2; s++) {
+        size_t n = dicom_n_items(beam, sequences[s]);
+        for (size_t i = 0; i < n; i++)
+            if (!add_device(opening, dicom_item_at(beam, sequences[s], i), err))
+                return false;
+    }
     add_blocks(opening, beam, BLOCK_SEQUENCE);
     add_blocks(opening, beam, ION_BLOCK_SEQUENCE);
     const struct dicom_item *applicator = dicom_item_at(beam, APPLICATOR_SEQUENCE, 0);
