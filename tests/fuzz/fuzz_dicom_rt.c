@@ -1,8 +1,9 @@
-/* RT objects, and contours: the first byte says which. A DICOM file is read as all three kinds and its regions are filled; else the
- * bytes are points, contours and a grid. */
+/* RT objects, segmentations, and contours: the first byte says which. A DICOM file is read as all four kinds and its regions are filled,
+ * on an image that may not hold them, too; else the bytes are points, contours and a grid. */
 #include "core/formats/dicom/dicom_rtdose.h"
 #include "core/formats/dicom/dicom_rtplan.h"
 #include "core/formats/dicom/dicom_rtstruct.h"
+#include "core/formats/dicom/dicom_seg.h"
 #include "tests/fuzz/fuzz.h"
 
 static void fill(const struct contour_set *sets, size_t n, const struct grid *grid)
@@ -75,9 +76,22 @@ static void read_objects(const struct dicom_file *file)
     }
     rtplan_destroy(plan);
     struct rtstruct *set = rtstruct_read(file, "fuzz.dcm", &report, &err);
-    if (set && set->n_rois > 0)
+    struct grid image;
+    struct affine map = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 3 } }, { 0, 0, 0 } };
+    if (set && set->n_rois > 0) {
         fill(&set->rois[0].contours, 1, NULL);
+        fill(&set->rois[0].contours, 1, grid_init(&image, (uint32_t[3]){ 20, 20, 2 }, &map, NULL) ? &image : NULL);
+    }
     rtstruct_destroy(set);
+    struct nrrd_layers layers;
+    err = (struct error){ 0 };
+    if (dicom_seg_read(file, "fuzz.dcm", "", &layers, &report, &err)) {
+        for (size_t i = 0; i < layers.n; i++)
+            REQUIRE(layers.volumes[i] && layers.names[i].n > 0);
+        nrrd_layers_finish(&layers);
+    } else {
+        REQUIRE(err.code != ERROR_NONE && err.text[0] != '\0');
+    }
     report_finish(&report);
 }
 

@@ -317,54 +317,6 @@ bool parse(dicom_file &file, const uint8_t *data, size_t size, dicom_extent exte
     return true;
 }
 
-// The fragments, and which of them begin a frame.
-bool find_frames(dicom_file &file, const dicom_pixels &pixels, error *err)
-{
-    if (file.has_frames)
-        return true;
-    size_t n = 0;
-    if (!dicom_walk_fragments(&file.layout, file.name.c_str(), nullptr, 0, &n, err))
-        return false;
-    file.fragments.resize(n);
-    if (!dicom_walk_fragments(&file.layout, file.name.c_str(), file.fragments.data(), n, &n, err))
-        return false;
-    if (n < 1 + size_t(pixels.n_frames))
-        return error_set(err, ERROR_FORMAT, "%s: %zu fragments of compressed pixels for %u frames", file.name.c_str(), n > 0 ? n - 1 : 0,
-                         pixels.n_frames);
-    file.first_fragments.clear();
-    if (pixels.n_frames == 1 || n - 1 == pixels.n_frames) {
-        for (size_t i = 0; i < pixels.n_frames; i++)
-            file.first_fragments.push_back(1 + i);
-    } else if (file.fragments[0].size == 0) { // no table of offsets: a fragment that begins a picture behind one that ends it
-        for (size_t i = 1; i < n; i++) {
-            const dicom_fragment &own = file.fragments[i], &before = file.fragments[i - 1];
-            if (dicom_begins_picture(file.layout.transfer_syntax, file.layout.data + own.at, own.size) &&
-                (i == 1 || dicom_ends_picture(file.layout.data + before.at, before.size)))
-                file.first_fragments.push_back(i);
-        }
-        if (file.first_fragments.size() != pixels.n_frames || file.first_fragments[0] != 1)
-            return error_set(err, ERROR_FORMAT, "%s: %zu fragments for %u frames, and no table of offsets says which are whose; %zu of them begin "
-                             "a picture", file.name.c_str(), n - 1, pixels.n_frames, file.first_fragments.size());
-    } else { // by the table of offsets: positions from the first fragment's own tag
-        const dicom_fragment table = file.fragments[0];
-        size_t base = file.fragments[1].at - 8, fragment = 1;
-        for (size_t i = 0; i < pixels.n_frames && 4 * i + 4 <= table.size; i++) {
-            const uint8_t *p = file.layout.data + table.at + 4 * i;
-            size_t at = base + (size_t(p[0]) | size_t(p[1]) << 8 | size_t(p[2]) << 16 | size_t(p[3]) << 24);
-            while (fragment < n && file.fragments[fragment].at - 8 < at)
-                fragment++;
-            if (fragment < n && file.fragments[fragment].at - 8 == at)
-                file.first_fragments.push_back(fragment);
-        }
-        if (file.first_fragments.size() != pixels.n_frames)
-            return error_set(err, ERROR_FORMAT, "%s: %zu fragments for %u frames, and the table of offsets does not say which are whose",
-                             file.name.c_str(), n - 1, pixels.n_frames);
-    }
-    file.first_fragments.push_back(n);
-    file.has_frames = true;
-    return true;
-}
-
 bool need_integer(const dicom_file *file, uint32_t tag, const char *what, int64_t low, int64_t high, uint32_t *out, error *err)
 {
     int64_t value = 0;
@@ -458,8 +410,9 @@ bool read_frame(dicom_file &file, uint32_t frame, void *out, error *err)
         return error_set(err, ERROR_RANGE, "%s: frame %u of %u", name, frame, pixels.n_frames);
     size_t n = size_t(pixels.rows) * pixels.columns, bytes = n * (pixels.bits_allocated / 8);
     if (layout.is_encapsulated) {
-        if (!find_frames(file, pixels, err))
+        if (!file.has_frames && !dicom_find_frames(layout, name, pixels.n_frames, file.fragments, file.first_fragments, err))
             return false;
+        file.has_frames = true;
         std::vector<dicom_fragment> own(file.fragments.begin() + static_cast<std::ptrdiff_t>(file.first_fragments[frame]),
                                         file.fragments.begin() + static_cast<std::ptrdiff_t>(file.first_fragments[frame + 1]));
         return dicom_decode_frame(layout, pixels, name, own, out, &file.decoded, err);
