@@ -7,6 +7,7 @@
 
 #define ALIGNED_COSINE (1 - 1e-9)  /* contour planes parallel to the grid's own; near ones were snapped (contour_planes_init) */
 #define SAME_STEP 1e-3             /* of a slice: spacing and place of planes that are the image's slices */
+#define LEAST_IN_PLANE 64.0        /* voxels of a slice: coarser is no picture any more, then slices are joined */
 #define OUTSIDE_VOXELS 1e-3        /* rounding */
 
 /* Where one set lies, in voxels of the image. */
@@ -109,7 +110,7 @@ static void coarsen(struct lattice *lattice, const struct extent *extents, const
 {
     for (bool is_changed = true; is_changed;) {
         double first[3], n[3];
-        bool is_large = false;
+        bool is_large = false, is_narrow = false;
         is_changed = false;
         whole_steps(lattice, all, first, n);
         for (int a = 0; a < 3; a++)
@@ -121,9 +122,10 @@ static void coarsen(struct lattice *lattice, const struct extent *extents, const
             if (is_marked[i]) {
                 whole_steps(lattice, &extents[i], first, n);
                 is_large = n[0] * n[1] * n[2] > most_voxels;
+                is_narrow = n[0] * n[1] * n[2] <= LEAST_IN_PLANE * n[lattice->along];
             }
         for (int a = 0; a < 3 && is_large; a++)
-            if (a != lattice->along) {
+            if ((a == lattice->along) == is_narrow) {
                 lattice->step[a] *= 2;
                 is_changed = true;
             }

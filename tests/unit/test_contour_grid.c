@@ -234,6 +234,23 @@ static void contours_beyond_the_reach_are_cut_and_large_ones_get_coarse_voxels(v
         contour_set_finish(&sets[i]);
 }
 
+static void few_voxels_for_many_planes_are_enough_to_end(void **state)
+{
+    (void)state;
+    struct grid image = grid_make(64, 64, 2, 1, 1, 1, vec3(0, 0, 0));
+    struct contour_set set = { 0 };
+    for (int k = 0; k < 1500; k++)
+        contours_add_box(&set, 9.5, 9.5, 39.5, 39.5, k);
+    struct contour_choice choice;
+    struct error err = { 0 };
+    options = contour_defaults;
+    options.most_voxels = 20000; /* 13 for each plane */
+    assert_true(contour_choose_grids(&set, 1, &image, &options, &choice, &err));
+    assert_true(choice.is_beyond);
+    assert_in_range(grid_n_voxels(&choice.grid), 1, 20000);
+    contour_set_finish(&set);
+}
+
 static void without_an_image_the_grid_lies_in_the_planes(void **state)
 {
     (void)state;
@@ -371,6 +388,7 @@ int main(void)
         cmocka_unit_test(regions_that_need_the_same_share_a_grid),
         cmocka_unit_test(contours_that_leave_the_image_keep_their_volume),
         cmocka_unit_test(planes_beyond_a_lonely_slice_get_slices_of_their_own),
+        cmocka_unit_test(few_voxels_for_many_planes_are_enough_to_end),
         cmocka_unit_test(contours_beyond_the_reach_are_cut_and_large_ones_get_coarse_voxels),
         cmocka_unit_test(without_an_image_the_grid_lies_in_the_planes),
         cmocka_unit_test(a_made_grid_stays_within_its_limits),
