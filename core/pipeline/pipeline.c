@@ -1,48 +1,67 @@
 #include "core/pipeline/pipeline.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
-#include "core/base/queue.h"
+#include "core/pipeline/turns.h"
 
-/* Drawn pictures that may wait for the encoder: one being compressed, one ready; more would only add delay. */
+/* Small pictures are compressed by one thread and large ones by another, so that a large one, which takes ten times as long, holds up none. PNG
+ * takes as long as a large JPEG. */
+enum { LANE_SMALL, LANE_LARGE, N_LANES, SMALL_MAX_PX = 2500000 };
+/* Drawn pictures of a lane that may wait for its thread: one being compressed, one ready; more would only add delay. */
 enum { MAX_DRAWN = 2 };
-
-/* Stills take ten times as long as moving pictures, and somebody drags the mouse while they wait: moving pictures go first, but a still
- * lets at most this many overtake it. */
-enum { MAX_OVERTAKING = 8 };
+/* A picture that is being drawn is left for another after so long: for a moving one, which somebody waits for with a hand on the mouse, or for a
+ * still, which can wait longer. */
+enum { SLICE_MOVING_US = 20000, SLICE_STILL_US = 100000 };
+/* Plans to forget that may wait beside the pictures. */
+enum { MAX_FORGET = 16, MAX_BEGUN = 32, MAX_JOBS = PIPELINE_MAX_WAITING + MAX_BEGUN + MAX_FORGET };
 
 /* What travels down the pipeline: a request to draw, or a plan to forget. */
 struct job {
     struct pipeline_request request;
     const struct plan *forget; /* not NULL: no request */
+    struct turns_item turn;
+    struct render_picture *picture; /* begun */
     struct image *image;
     struct pipeline_frame frame;
-    int n_overtaken; /* still: moving pictures drawn before it although they came later */
+    bool is_counted; /* among those begun, with its image's memory */
+    bool is_dropped;
+    bool needs_all; /* there was no memory for it beside others */
+};
+
+struct lane {
+    struct pipeline *pipeline;
+    pthread_t thread;
+    struct job *drawn[MAX_DRAWN];
+    size_t n_drawn;
 };
 
 struct pipeline {
     struct pipeline_callbacks callbacks;
     enum render_back_end back_end;
     bool is_stub;
-    struct queue *waiting, *drawn;
-    pthread_t render_thread, encode_thread;
+    struct turns *turns;
+    pthread_t render_thread;
     pthread_mutex_t mutex;
     pthread_cond_t changed;
-    size_t n_waiting;  /* requests not yet taken by the render thread; guarded by mutex */
-    size_t n_drawn;    /* pictures not yet taken by the encoder; guarded by mutex */
-    uint64_t n_asked_to_forget, n_forgotten; /* guarded by mutex */
-    uint64_t dropped[PIPELINE_MAX_WAITING]; /* newest ids that are not to be drawn, a ring; guarded by mutex */
-    size_t n_dropped;                       /* ever; guarded by mutex */
-    bool is_stopping;  /* guarded by mutex */
+    /* all of the rest is guarded by mutex, but for the atomic ones */
+    struct job *jobs[MAX_JOBS]; /* not drawn yet, oldest first */
+    size_t n_jobs, n_requests, n_begun;
+    struct job *current; /* of jobs: being drawn on, since */
+    int64_t current_us;
+    struct lane lanes[N_LANES];
+    uint64_t n_image_bytes; /* of pictures begun and not delivered */
+    uint64_t n_asked_to_forget, n_forgotten;
+    bool is_stopping, is_drained; /* is_drained: nothing more comes to the lanes */
+    atomic_llong leave_at_us;     /* the picture being drawn is left from then on */
 };
 
-static void job_destroy(void *item)
+static void job_destroy(struct job *job)
 {
-    struct job *job = item;
     if (!job)
         return;
     snapshot_unref(job->request.snapshot);
@@ -51,12 +70,87 @@ static void job_destroy(void *item)
     free(job);
 }
 
-static bool is_stopping(struct pipeline *pipeline)
+/* ---- which picture is next; under the mutex ------------------------------------------------------------------------------ */
+
+static struct lane *lane_of(struct pipeline *pipeline, const struct job *job)
 {
-    pthread_mutex_lock(&pipeline->mutex);
-    bool stopping = pipeline->is_stopping;
-    pthread_mutex_unlock(&pipeline->mutex);
-    return stopping;
+    const struct render_options *options = &job->request.render;
+    bool is_large = job->request.encode.codec == ENCODE_PNG || (int64_t)options->width_px * options->height_px > SMALL_MAX_PX;
+    return &pipeline->lanes[is_large ? LANE_LARGE : LANE_SMALL];
+}
+
+static uint64_t image_bytes(const struct job *job)
+{
+    const struct render_options *options = &job->request.render;
+    return options->width_px > 0 && options->height_px > 0 ? (uint64_t)options->width_px * (uint64_t)options->height_px * 4 : 0;
+}
+
+static void remove_job(struct pipeline *pipeline, size_t at)
+{
+    pipeline->n_requests -= !pipeline->jobs[at]->forget;
+    pipeline->n_jobs--;
+    memmove(pipeline->jobs + at, pipeline->jobs + at + 1, (pipeline->n_jobs - at) * sizeof pipeline->jobs[0]);
+}
+
+/* Pictures are held while their lane is full, while there is no memory for them, and while one that needs all of it waits for the others. */
+static bool is_held(struct pipeline *pipeline, const struct job *job, bool somebody_needs_all)
+{
+    if (lane_of(pipeline, job)->n_drawn >= MAX_DRAWN)
+        return true;
+    if (job->turn.is_begun)
+        return false;
+    if (pipeline->n_image_bytes > 0 && (somebody_needs_all || pipeline->n_image_bytes + image_bytes(job) > PIPELINE_MAX_IMAGE_BYTES))
+        return true;
+    return pipeline->n_begun >= MAX_BEGUN || (somebody_needs_all && !job->needs_all);
+}
+
+/* What stands behind a plan to forget stays behind it. SIZE_MAX: nothing can be done now. */
+static size_t choose(struct pipeline *pipeline)
+{
+    struct turns_item *items[MAX_JOBS];
+    size_t n = 0;
+    bool somebody_needs_all = false;
+    if (pipeline->n_jobs > 0 && pipeline->jobs[0]->forget)
+        return 0;
+    for (; n < pipeline->n_jobs && !pipeline->jobs[n]->forget; n++)
+        somebody_needs_all = somebody_needs_all || (pipeline->jobs[n]->needs_all && !pipeline->jobs[n]->turn.is_begun);
+    for (size_t i = 0; i < n; i++) {
+        items[i] = &pipeline->jobs[i]->turn;
+        items[i]->is_held = is_held(pipeline, pipeline->jobs[i], somebody_needs_all);
+    }
+    return turns_choose(pipeline->turns, items, n);
+}
+
+/* When the picture that is being drawn is to be left for another that waits. */
+static int64_t leave_for_us(const struct pipeline *pipeline, const struct job *other)
+{
+    if (other == pipeline->current || other->turn.is_held || !turns_may_interrupt(&pipeline->current->turn, &other->turn))
+        return INT64_MAX;
+    return pipeline->current_us + (other->turn.is_still ? SLICE_STILL_US : SLICE_MOVING_US);
+}
+
+static void start_slice(struct pipeline *pipeline, struct job *job)
+{
+    int64_t least_us = INT64_MAX;
+    if (!job->is_counted) {
+        job->is_counted = true;
+        pipeline->n_begun++;
+        pipeline->n_image_bytes += image_bytes(job);
+    }
+    pipeline->current = job;
+    pipeline->current_us = clock_now_us();
+    for (size_t i = 0; i < pipeline->n_jobs && !pipeline->jobs[i]->forget; i++) {
+        int64_t at_us = leave_for_us(pipeline, pipeline->jobs[i]);
+        least_us = at_us < least_us ? at_us : least_us;
+    }
+    atomic_store(&pipeline->leave_at_us, least_us);
+}
+
+static void forget_image(struct pipeline *pipeline, struct job *job)
+{
+    if (job->is_counted)
+        pipeline->n_image_bytes -= image_bytes(job);
+    job->is_counted = false;
 }
 
 /* ---- the render thread ------------------------------------------------------------------------------------------------ */
@@ -71,7 +165,15 @@ static struct image *draw_stub(const struct job *job, struct camera *camera, str
     return image;
 }
 
-static void draw(const struct pipeline *pipeline, struct renderer *renderer, const struct error *why_none, struct job *job)
+static bool pause_is_due(void *context)
+{
+    const struct pipeline *pipeline = context;
+    long long at_us = atomic_load(&pipeline->leave_at_us);
+    return at_us != INT64_MAX && clock_now_us() >= at_us;
+}
+
+/* Returns false when there is more to draw. */
+static bool draw(struct pipeline *pipeline, struct renderer *renderer, const struct error *why_none, struct job *job)
 {
     struct pipeline_frame *frame = &job->frame;
     const struct render_options *options = &job->request.render;
@@ -79,140 +181,186 @@ static void draw(const struct pipeline *pipeline, struct renderer *renderer, con
     frame->is_still = options->is_still;
     frame->width_px = options->width_px;
     frame->height_px = options->height_px;
-    if (pipeline->is_stub)
-        job->image = draw_stub(job, &frame->camera, &frame->error);
-    else if (renderer)
-        job->image = render_snapshot(renderer, job->request.snapshot, options, &frame->camera, &frame->timing, &frame->error);
-    else
-        frame->error = *why_none;
+    if (pipeline->is_stub || !renderer) {
+        if (pipeline->is_stub)
+            job->image = draw_stub(job, &frame->camera, &frame->error);
+        else
+            frame->error = *why_none;
+        return true;
+    }
+    const struct render_pause pause = { pause_is_due, pipeline };
+    if (!job->picture)
+        job->picture = render_begin(renderer, job->request.snapshot, options);
+    if (render_go_on(job->picture, &pause, &frame->error) == RENDER_PAUSED)
+        return false;
+    job->image = render_end(job->picture, &frame->camera, &frame->timing);
+    job->picture = NULL;
+    return true;
 }
 
-/* Hands a drawn picture to the encoder; waits while it is busy, so the renderer runs at most MAX_DRAWN pictures ahead. */
-static void pass_on(struct pipeline *pipeline, struct job *job)
+/* Ends a picture that is not wanted any more, or that is to be begun anew. */
+static void give_up(struct job *job)
 {
-    pthread_mutex_lock(&pipeline->mutex);
-    while (pipeline->n_drawn >= MAX_DRAWN && !pipeline->is_stopping)
-        pthread_cond_wait(&pipeline->changed, &pipeline->mutex);
-    pipeline->n_drawn++;
-    pthread_mutex_unlock(&pipeline->mutex);
-    if (!queue_try_put(pipeline->drawn, job))
-        job_destroy(job); /* stopping */
-}
-
-static void forget(struct pipeline *pipeline, struct renderer *renderer, const struct plan *plan)
-{
-    if (renderer)
-        renderer_forget(renderer, plan);
-    pthread_mutex_lock(&pipeline->mutex);
-    pipeline->n_forgotten++;
-    pthread_cond_broadcast(&pipeline->changed);
-    pthread_mutex_unlock(&pipeline->mutex);
-}
-
-/* The render thread's own list of what has come and is not drawn yet, oldest first. */
-struct agenda {
-    struct job *jobs[2 * PIPELINE_MAX_WAITING];
-    size_t n;
-};
-
-/* Which is next: the oldest moving picture unless a still before it has waited long enough. What stands behind a plan to forget stays
- * behind it. */
-static size_t choose(struct agenda *agenda)
-{
-    if (agenda->jobs[0]->forget || !agenda->jobs[0]->request.render.is_still || agenda->jobs[0]->n_overtaken >= MAX_OVERTAKING)
-        return 0;
-    for (size_t i = 1; i < agenda->n && !agenda->jobs[i]->forget; i++)
-        if (!agenda->jobs[i]->request.render.is_still) {
-            for (size_t earlier = 0; earlier < i; earlier++)
-                agenda->jobs[earlier]->n_overtaken++;
-            return i;
-        }
-    return 0;
-}
-
-/* Waits for something to do; NULL: the pipeline is closed and empty. */
-static struct job *next_job(struct pipeline *pipeline, struct agenda *agenda)
-{
-    const size_t room = sizeof agenda->jobs / sizeof agenda->jobs[0];
-    struct job *job = agenda->n ? queue_try_take(pipeline->waiting) : queue_take(pipeline->waiting, -1);
-    for (; job; job = agenda->n < room ? queue_try_take(pipeline->waiting) : NULL)
-        agenda->jobs[agenda->n++] = job;
-    if (agenda->n == 0)
-        return NULL;
-    size_t at = choose(agenda);
-    job = agenda->jobs[at];
-    agenda->n--;
-    memmove(agenda->jobs + at, agenda->jobs + at + 1, (agenda->n - at) * sizeof agenda->jobs[0]);
-    return job;
+    if (job->picture)
+        image_destroy(render_end(job->picture, &job->frame.camera, &job->frame.timing));
+    job->picture = NULL;
 }
 
 /* Under the mutex. */
-static bool is_dropped(const struct pipeline *pipeline, uint64_t id)
+static void remove_dropped(struct pipeline *pipeline)
 {
-    size_t n = pipeline->n_dropped < PIPELINE_MAX_WAITING ? pipeline->n_dropped : PIPELINE_MAX_WAITING;
-    for (size_t i = 0; i < n; i++)
-        if (pipeline->dropped[i] == id)
-            return true;
-    return false;
+    for (size_t i = 0; i < pipeline->n_jobs;) {
+        struct job *job = pipeline->jobs[i];
+        if (!job->is_dropped) {
+            i++;
+            continue;
+        }
+        give_up(job);
+        pipeline->n_begun -= job->is_counted;
+        forget_image(pipeline, job);
+        remove_job(pipeline, i);
+        job_destroy(job);
+    }
+}
+
+/* Under the mutex. Without memory for it beside others, a picture is tried once more when they are done. */
+static void pass_on(struct pipeline *pipeline, struct job *job)
+{
+    size_t at = 0;
+    bool has_others = pipeline->n_image_bytes > image_bytes(job);
+    pipeline->n_begun--;
+    if (job->frame.error.code == ERROR_MEMORY && has_others && !job->needs_all) {
+        forget_image(pipeline, job);
+        job->needs_all = true;
+        job->turn.is_begun = false;
+        job->frame.error = (struct error){ 0 };
+        return;
+    }
+    while (pipeline->jobs[at] != job)
+        at++;
+    remove_job(pipeline, at);
+    struct lane *lane = lane_of(pipeline, job);
+    lane->drawn[lane->n_drawn++] = job; /* it has room: else the picture was held */
+    pthread_cond_broadcast(&pipeline->changed);
+}
+
+/* Under the mutex, which it leaves. */
+static void draw_slice(struct pipeline *pipeline, struct renderer *renderer, const struct error *why_none, struct job *job)
+{
+    start_slice(pipeline, job);
+    pthread_mutex_unlock(&pipeline->mutex);
+    bool is_done = draw(pipeline, renderer, why_none, job);
+    pthread_mutex_lock(&pipeline->mutex);
+    turns_charge(pipeline->turns, job->turn.source, clock_now_us() - pipeline->current_us);
+    pipeline->current = NULL;
+    if (is_done)
+        pass_on(pipeline, job);
+}
+
+/* Under the mutex, which it leaves. No picture is begun then: what came before is drawn, what came later waits. */
+static void forget(struct pipeline *pipeline, struct renderer *renderer)
+{
+    struct job *job = pipeline->jobs[0];
+    remove_job(pipeline, 0);
+    pthread_mutex_unlock(&pipeline->mutex);
+    if (renderer)
+        renderer_forget(renderer, job->forget);
+    job_destroy(job);
+    pthread_mutex_lock(&pipeline->mutex);
+    pipeline->n_forgotten++;
+    pthread_cond_broadcast(&pipeline->changed);
+}
+
+static struct renderer *start_renderer(struct pipeline *pipeline, struct error *err)
+{
+    static const struct render_facts stub_facts = { .back_end = RENDER_AUTO, .vendor = "Beamroom", .renderer = "stub",
+                                                    .version = "none", .is_software = true };
+    struct renderer *renderer = pipeline->is_stub ? NULL : renderer_create(pipeline->back_end, err);
+    const struct render_facts *facts = pipeline->is_stub ? &stub_facts : renderer ? renderer_facts(renderer) : NULL;
+    pipeline->callbacks.started(pipeline->callbacks.context, facts, err);
+    return renderer;
 }
 
 static void *render_main(void *argument)
 {
     struct pipeline *pipeline = argument;
     struct error err = { 0 };
-    struct renderer *renderer = NULL;
-    if (pipeline->is_stub) {
-        static const struct render_facts stub_facts = { .back_end = RENDER_AUTO, .vendor = "Beamroom", .renderer = "stub",
-                                                        .version = "none", .is_software = true };
-        pipeline->callbacks.started(pipeline->callbacks.context, &stub_facts, &err);
-    } else {
-        renderer = renderer_create(pipeline->back_end, &err);
-        pipeline->callbacks.started(pipeline->callbacks.context, renderer ? renderer_facts(renderer) : NULL, &err);
+    struct renderer *renderer = start_renderer(pipeline, &err);
+    pthread_mutex_lock(&pipeline->mutex);
+    while (!pipeline->is_stopping) {
+        remove_dropped(pipeline);
+        size_t at = choose(pipeline);
+        if (at == SIZE_MAX)
+            pthread_cond_wait(&pipeline->changed, &pipeline->mutex);
+        else if (pipeline->jobs[at]->forget)
+            forget(pipeline, renderer);
+        else
+            draw_slice(pipeline, renderer, &err, pipeline->jobs[at]);
     }
-    struct agenda agenda = { .n = 0 };
-    for (struct job *job; (job = next_job(pipeline, &agenda));) {
-        if (job->forget) {
-            forget(pipeline, renderer, job->forget);
-            job_destroy(job);
-            continue;
-        }
-        pthread_mutex_lock(&pipeline->mutex);
-        pipeline->n_waiting--;
-        bool unwanted = pipeline->is_stopping || is_dropped(pipeline, job->request.id);
-        pthread_mutex_unlock(&pipeline->mutex);
-        if (unwanted) {
-            job_destroy(job);
-            continue;
-        }
-        draw(pipeline, renderer, &err, job);
-        pass_on(pipeline, job);
+    for (size_t i = 0; i < pipeline->n_jobs; i++) {
+        give_up(pipeline->jobs[i]);
+        job_destroy(pipeline->jobs[i]);
     }
+    pipeline->n_jobs = 0;
+    pipeline->is_drained = true;
+    pthread_cond_broadcast(&pipeline->changed);
+    pthread_mutex_unlock(&pipeline->mutex);
     renderer_destroy(renderer);
-    queue_close(pipeline->drawn);
     return NULL;
 }
 
-/* ---- the encode thread ------------------------------------------------------------------------------------------------ */
+/* ---- the encode threads ----------------------------------------------------------------------------------------------- */
+
+/* NULL: nothing more comes. */
+static struct job *take_drawn(struct lane *lane, bool *is_wanted)
+{
+    struct pipeline *pipeline = lane->pipeline;
+    struct job *job = NULL;
+    pthread_mutex_lock(&pipeline->mutex);
+    while (lane->n_drawn == 0 && !pipeline->is_drained)
+        pthread_cond_wait(&pipeline->changed, &pipeline->mutex);
+    if (lane->n_drawn > 0) {
+        job = lane->drawn[0];
+        lane->n_drawn--;
+        memmove(lane->drawn, lane->drawn + 1, lane->n_drawn * sizeof lane->drawn[0]);
+        pthread_cond_broadcast(&pipeline->changed);
+    }
+    *is_wanted = !pipeline->is_stopping;
+    pthread_mutex_unlock(&pipeline->mutex);
+    return job;
+}
+
+static void deliver(struct pipeline *pipeline, struct encoder *encoder, struct job *job)
+{
+    struct pipeline_frame *frame = &job->frame;
+    if (job->image) {
+        int64_t start_us = clock_now_us();
+        if (!encode_image(encoder, job->image, &job->request.encode, &frame->picture, &frame->error))
+            error_prefix(&frame->error, "compressing a picture");
+        frame->encode_us = clock_now_us() - start_us;
+    }
+    image_destroy(job->image);
+    job->image = NULL;
+    pthread_mutex_lock(&pipeline->mutex);
+    turns_charge(pipeline->turns, job->turn.source, frame->encode_us);
+    forget_image(pipeline, job);
+    pthread_cond_broadcast(&pipeline->changed);
+    bool is_wanted = !pipeline->is_stopping;
+    pthread_mutex_unlock(&pipeline->mutex);
+    if (!is_wanted)
+        return;
+    pipeline->callbacks.deliver(pipeline->callbacks.context, frame);
+    frame->picture = (struct encoded){ 0 }; /* the receiver's now */
+}
 
 static void *encode_main(void *argument)
 {
-    struct pipeline *pipeline = argument;
+    struct lane *lane = argument;
     struct encoder *encoder = encoder_create();
-    for (struct job *job; (job = queue_take(pipeline->drawn, -1));) {
-        pthread_mutex_lock(&pipeline->mutex);
-        pipeline->n_drawn--;
-        pthread_cond_broadcast(&pipeline->changed);
-        pthread_mutex_unlock(&pipeline->mutex);
-        struct pipeline_frame *frame = &job->frame;
-        if (job->image && !is_stopping(pipeline)) {
-            int64_t start_us = clock_now_us();
-            (void)!encode_image(encoder, job->image, &job->request.encode, &frame->picture, &frame->error);
-            frame->encode_us = clock_now_us() - start_us;
-        }
-        if (!is_stopping(pipeline)) {
-            pipeline->callbacks.deliver(pipeline->callbacks.context, frame);
-            frame->picture = (struct encoded){ 0 }; /* the receiver's now */
-        }
+    bool is_wanted;
+    for (struct job *job; (job = take_drawn(lane, &is_wanted));) {
+        if (is_wanted)
+            deliver(lane->pipeline, encoder, job);
         job_destroy(job);
     }
     encoder_destroy(encoder);
@@ -221,6 +369,24 @@ static void *encode_main(void *argument)
 
 /* ---- from outside ------------------------------------------------------------------------------------------------------- */
 
+static void stop(struct pipeline *pipeline, int n_lanes, bool has_render_thread)
+{
+    pthread_mutex_lock(&pipeline->mutex);
+    pipeline->is_stopping = true;
+    pipeline->is_drained = !has_render_thread;
+    atomic_store(&pipeline->leave_at_us, 0);
+    pthread_cond_broadcast(&pipeline->changed);
+    pthread_mutex_unlock(&pipeline->mutex);
+    if (has_render_thread)
+        pthread_join(pipeline->render_thread, NULL);
+    for (int i = 0; i < n_lanes; i++)
+        pthread_join(pipeline->lanes[i].thread, NULL);
+    turns_destroy(pipeline->turns);
+    pthread_cond_destroy(&pipeline->changed);
+    pthread_mutex_destroy(&pipeline->mutex);
+    free(pipeline);
+}
+
 struct pipeline *pipeline_create(enum render_back_end back_end, bool stub, const struct pipeline_callbacks *callbacks,
                                  struct error *err)
 {
@@ -228,26 +394,21 @@ struct pipeline *pipeline_create(enum render_back_end back_end, bool stub, const
     pipeline->callbacks = *callbacks;
     pipeline->back_end = back_end;
     pipeline->is_stub = stub;
-    pipeline->waiting = queue_create(2 * PIPELINE_MAX_WAITING, job_destroy); /* room for plans to forget beside the requests */
-    pipeline->drawn = queue_create(MAX_DRAWN + 1, job_destroy);
+    pipeline->turns = turns_create();
+    atomic_init(&pipeline->leave_at_us, INT64_MAX);
     pthread_mutex_init(&pipeline->mutex, NULL);
     pthread_cond_init(&pipeline->changed, NULL);
-
-    int failed = pthread_create(&pipeline->encode_thread, NULL, encode_main, pipeline);
-    if (failed)
-        goto fail;
-    failed = pthread_create(&pipeline->render_thread, NULL, render_main, pipeline);
+    int failed = 0, n_lanes = 0;
+    for (; n_lanes < N_LANES && !failed; n_lanes += !failed) {
+        pipeline->lanes[n_lanes].pipeline = pipeline;
+        failed = pthread_create(&pipeline->lanes[n_lanes].thread, NULL, encode_main, &pipeline->lanes[n_lanes]);
+    }
+    if (!failed)
+        failed = pthread_create(&pipeline->render_thread, NULL, render_main, pipeline);
     if (!failed)
         return pipeline;
-    queue_close(pipeline->drawn);
-    pthread_join(pipeline->encode_thread, NULL);
-fail:
     error_set(err, ERROR_MEMORY, "cannot start a thread for drawing: %s", strerror(failed));
-    queue_destroy(pipeline->waiting);
-    queue_destroy(pipeline->drawn);
-    pthread_cond_destroy(&pipeline->changed);
-    pthread_mutex_destroy(&pipeline->mutex);
-    free(pipeline);
+    stop(pipeline, n_lanes, false);
     return NULL;
 }
 
@@ -255,10 +416,18 @@ bool pipeline_submit(struct pipeline *pipeline, const struct pipeline_request *r
 {
     struct job *job = mem_new(sizeof *job);
     job->request = *request;
+    job->turn = (struct turns_item){ .source = request->source, .is_still = request->render.is_still };
     pthread_mutex_lock(&pipeline->mutex);
-    bool fits = !pipeline->is_stopping && pipeline->n_waiting < PIPELINE_MAX_WAITING;
-    fits = fits && queue_try_put(pipeline->waiting, job);
-    pipeline->n_waiting += fits;
+    bool fits = !pipeline->is_stopping && pipeline->n_requests - pipeline->n_begun < PIPELINE_MAX_WAITING;
+    if (fits) {
+        pipeline->jobs[pipeline->n_jobs++] = job;
+        pipeline->n_requests++;
+        job->turn.is_held = is_held(pipeline, job, false);
+        int64_t leave_us = pipeline->current ? leave_for_us(pipeline, job) : INT64_MAX;
+        if (leave_us < atomic_load(&pipeline->leave_at_us))
+            atomic_store(&pipeline->leave_at_us, leave_us);
+        pthread_cond_broadcast(&pipeline->changed);
+    }
     pthread_mutex_unlock(&pipeline->mutex);
     if (fits)
         return true;
@@ -269,7 +438,15 @@ bool pipeline_submit(struct pipeline *pipeline, const struct pipeline_request *r
 void pipeline_drop(struct pipeline *pipeline, uint64_t id)
 {
     pthread_mutex_lock(&pipeline->mutex);
-    pipeline->dropped[pipeline->n_dropped++ % PIPELINE_MAX_WAITING] = id; /* no more than that can wait */
+    for (size_t i = 0; i < pipeline->n_jobs; i++) {
+        struct job *job = pipeline->jobs[i];
+        if (job->forget || job->request.id != id)
+            continue;
+        job->is_dropped = true;
+        if (job == pipeline->current)
+            atomic_store(&pipeline->leave_at_us, 0);
+    }
+    pthread_cond_broadcast(&pipeline->changed);
     pthread_mutex_unlock(&pipeline->mutex);
 }
 
@@ -278,8 +455,10 @@ void pipeline_forget(struct pipeline *pipeline, const struct plan *plan)
     struct job *job = mem_new(sizeof *job);
     job->forget = plan;
     pthread_mutex_lock(&pipeline->mutex);
-    while (!queue_try_put(pipeline->waiting, job)) /* full of other callers' plans to forget: let the render thread go on */
+    while (pipeline->n_jobs - pipeline->n_requests >= MAX_FORGET) /* of other callers: let the render thread go on */
         pthread_cond_wait(&pipeline->changed, &pipeline->mutex);
+    pipeline->jobs[pipeline->n_jobs++] = job;
+    pthread_cond_broadcast(&pipeline->changed);
     uint64_t turn = ++pipeline->n_asked_to_forget;
     while (pipeline->n_forgotten < turn)
         pthread_cond_wait(&pipeline->changed, &pipeline->mutex);
@@ -288,18 +467,6 @@ void pipeline_forget(struct pipeline *pipeline, const struct plan *plan)
 
 void pipeline_destroy(struct pipeline *pipeline)
 {
-    if (!pipeline)
-        return;
-    pthread_mutex_lock(&pipeline->mutex);
-    pipeline->is_stopping = true;
-    pthread_cond_broadcast(&pipeline->changed);
-    pthread_mutex_unlock(&pipeline->mutex);
-    queue_close(pipeline->waiting);
-    pthread_join(pipeline->render_thread, NULL);
-    pthread_join(pipeline->encode_thread, NULL);
-    queue_destroy(pipeline->waiting);
-    queue_destroy(pipeline->drawn);
-    pthread_cond_destroy(&pipeline->changed);
-    pthread_mutex_destroy(&pipeline->mutex);
-    free(pipeline);
+    if (pipeline)
+        stop(pipeline, N_LANES, true);
 }

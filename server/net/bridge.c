@@ -130,6 +130,9 @@ void bridge_render(void *context, struct room *room, const struct room_render *r
     else
         cJSON_AddStringToObject(packet, "room", room_id(room));
     cJSON_AddItemReferenceToObject(packet, "view", (cJSON *)(uintptr_t)request->view);
+    char source[144]; /* whose pictures are counted together: a member's own, or those a room shares */
+    (void)snprintf(source, sizeof source, "%s/%s", room_id(room), request->member ? request->member : "");
+    cJSON_AddStringToObject(packet, "source", source);
     cJSON_AddNumberToObject(packet, "scale_percent", request->scale_percent);
     cJSON_AddNumberToObject(packet, "quality", request->quality);
     cJSON_AddStringToObject(packet, "codec", "jpeg");

@@ -19,6 +19,7 @@ struct room_render {
     uint32_t scene_revision;
     int scale_percent, quality;
     bool is_still, full_color, light;
+    const char *member; /* id of the member whose own view it is; NULL: a shared view */
 };
 
 /* A picture that came. Shared: one render, one encode, sent to all who follow. */

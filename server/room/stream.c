@@ -217,6 +217,16 @@ static void make_scene(struct room *room, struct stream *stream)
         log_error("room %s: a view's override does not apply: %s", room->id, problem.detail);
 }
 
+/* Id of the member whose own view it is; NULL: it is shared, or nobody looks any more. */
+static const char *owner_of(const struct room *room, const struct stream *stream)
+{
+    for (int m = 0; m < room->n_members && !stream->is_shared; m++)
+        for (int v = 0; v < ROOM_MAX_VIEWS; v++)
+            if (room->members[m]->views[v].stream == stream)
+                return room->members[m]->id;
+    return NULL;
+}
+
 static void ask(struct room *room, struct stream *stream, bool is_still)
 {
     make_scene(room, stream);
@@ -240,7 +250,8 @@ static void ask(struct room *room, struct stream *stream, bool is_still)
                                   .quality = choice.quality,
                                   .is_still = is_still,
                                   .full_color = is_still,
-                                  .light = choice.light };
+                                  .light = choice.light,
+                                  .member = owner_of(room, stream) };
     room->counters.renders_asked++;
     room->callbacks.render(room->callbacks.context, room, &render);
 }

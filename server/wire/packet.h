@@ -6,9 +6,11 @@
  * daemon to renderer
  *   scene    {type, room, revision, scene}            the room's scene document, complete; replaces the room's last
  *   forget   {type, room}                             a room is gone
- *   render   {type, id, room | scene, scene_revision?, view, scale_percent, quality, codec: "jpeg"|"png", full_color, detail: "full"|"light", still}
+ *   render   {type, id, room | scene, scene_revision?, view, scale_percent, quality, codec: "jpeg"|"png", full_color, detail: "full"|"light", still, source}
  *            scene: a complete document for this picture alone (HTTP render, overrides); else the room's. scene_revision comes back
  *            in frame; left out: the room's, or 0
+ *            source: a text of at most 143 bytes; pictures of the same source share its turn. "ROOM/MEMBER" for a member's own views, "ROOM/" for
+ *            the views a room shares; left out by all of HTTP, whose pictures count together
  *   query    {type, id, what: "surface"|"probe"|"pick"|"ready", ...arguments}   ready: answered with an empty body;
  *            surface with format "stl", "ply" or "glb": answered with the file as blob
  *   ping     {type}                                   answered with pong at once, by the main thread

@@ -89,24 +89,36 @@ static struct plan *small_plan(void)
     return made_plan(&grid, label, ball, 1);
 }
 
-static struct pipeline *start(struct receiver *receiver)
+static struct pipeline *start_back_end(struct receiver *receiver, enum render_back_end back_end, bool is_stub)
 {
     struct pipeline_callbacks callbacks = { on_started, on_frame, receiver };
     struct error err = { 0 };
-    struct pipeline *pipeline = pipeline_create(RENDER_AUTO, true, &callbacks, &err);
+    struct pipeline *pipeline = pipeline_create(back_end, is_stub, &callbacks, &err);
     assert_non_null(pipeline);
     return pipeline;
 }
 
-static bool submit_kind(struct pipeline *pipeline, struct plan *plan, uint64_t id, int width_px, bool is_still, struct error *err)
+static struct pipeline *start(struct receiver *receiver)
+{
+    return start_back_end(receiver, RENDER_AUTO, true);
+}
+
+static bool submit_picture(struct pipeline *pipeline, struct plan *plan, uint64_t id, uint64_t source, int width_px, int height_px, bool is_still,
+                           struct error *err)
 {
     struct scene scene;
     struct view view = view_default;
     char field[128];
     scene_for_plan(plan, &scene);
     struct snapshot *snapshot = snapshot_create(plan, &scene, &view, (uint32_t)id, field, err);
-    struct pipeline_request request = { id, snapshot, { width_px, 48, SURFACE_LIGHT, is_still }, { ENCODE_JPEG, 80, false } };
+    struct pipeline_request request = { .id = id, .source = source, .snapshot = snapshot,
+                                        .render = { width_px, height_px, SURFACE_LIGHT, is_still }, .encode = { ENCODE_JPEG, 80, false } };
     return pipeline_submit(pipeline, &request, err);
+}
+
+static bool submit_kind(struct pipeline *pipeline, struct plan *plan, uint64_t id, int width_px, bool is_still, struct error *err)
+{
+    return submit_picture(pipeline, plan, id, 1, width_px, 48, is_still, err);
 }
 
 static bool submit(struct pipeline *pipeline, struct plan *plan, uint64_t id, int width_px, struct error *err)
@@ -245,6 +257,75 @@ static void more_than_the_limit_is_refused_and_never_blocks(void **state)
     receiver_finish(&receiver);
 }
 
+/* Under the receiver's mutex. */
+static size_t n_delivered(const struct receiver *receiver, uint64_t first, uint64_t last)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < receiver->n_frames; i++)
+        n += receiver->ids[i] >= first && receiver->ids[i] <= last;
+    return n;
+}
+
+static void wait_for_id(struct receiver *receiver, uint64_t id)
+{
+    pthread_mutex_lock(&receiver->mutex);
+    while (n_delivered(receiver, id, id) == 0)
+        pthread_cond_wait(&receiver->changed, &receiver->mutex);
+    pthread_mutex_unlock(&receiver->mutex);
+}
+
+/* A large one takes a hundred times as long as a small one. Were pictures drawn one after the other, a small one that is asked for when the last
+ * came would have to wait for a large one each time. */
+static void large_pictures_of_one_source_do_not_hold_up_small_ones_of_another(void **state)
+{
+    (void)state;
+    enum { N_LARGE = 8, N_SMALL = 24 };
+    for (int is_still = 0; is_still < 2; is_still++) {
+        struct receiver receiver;
+        receiver_init(&receiver);
+        struct plan *plan = small_plan();
+        struct pipeline *pipeline = start_back_end(&receiver, RENDER_SOFT, false);
+        struct error err = { 0 };
+        for (uint64_t id = 1; id <= N_LARGE; id++)
+            assert_true(submit_picture(pipeline, plan, id, 7, 4096, 4096, is_still, &err));
+        for (uint64_t id = 101; id <= 100 + N_SMALL; id++) {
+            assert_true(submit_picture(pipeline, plan, id, 8, 160, 120, false, &err));
+            wait_for_id(&receiver, id);
+        }
+        pthread_mutex_lock(&receiver.mutex);
+        size_t n_large = n_delivered(&receiver, 1, N_LARGE);
+        pthread_mutex_unlock(&receiver.mutex);
+        assert_true(n_large < N_LARGE);
+        for (uint64_t id = 1; id <= N_LARGE; id++)
+            pipeline_drop(pipeline, id);
+        pipeline_destroy(pipeline);
+        for (size_t i = 0; i < receiver.n_frames; i++)
+            assert_int_equal(receiver.codes[i], ERROR_NONE);
+        plan_destroy(plan);
+        receiver_finish(&receiver);
+    }
+}
+
+static void a_picture_that_is_dropped_while_it_is_drawn_is_drawn_no_further(void **state)
+{
+    (void)state;
+    struct receiver receiver;
+    receiver_init(&receiver);
+    struct plan *plan = small_plan();
+    struct pipeline *pipeline = start_back_end(&receiver, RENDER_SOFT, false);
+    struct error err = { 0 };
+    for (uint64_t id = 1; id <= 20; id++) { /* some are dropped before they are begun, some in the middle */
+        assert_true(submit_picture(pipeline, plan, id, 7, 4096, 4096, true, &err));
+        usleep((useconds_t)(id % 4 * 10000));
+        pipeline_drop(pipeline, id);
+    }
+    assert_true(submit_picture(pipeline, plan, 21, 7, 64, 48, true, &err));
+    wait_for_id(&receiver, 21);
+    pipeline_destroy(pipeline);
+    plan_destroy(plan);
+    receiver_finish(&receiver);
+}
+
 static void it_can_be_destroyed_in_any_state(void **state)
 {
     (void)state;
@@ -294,6 +375,8 @@ int main(void)
         cmocka_unit_test(what_is_dropped_while_it_waits_is_not_drawn),
         cmocka_unit_test(a_picture_that_cannot_be_drawn_comes_back_as_an_error),
         cmocka_unit_test(more_than_the_limit_is_refused_and_never_blocks),
+        cmocka_unit_test(large_pictures_of_one_source_do_not_hold_up_small_ones_of_another),
+        cmocka_unit_test(a_picture_that_is_dropped_while_it_is_drawn_is_drawn_no_further),
         cmocka_unit_test(it_can_be_destroyed_in_any_state),
         cmocka_unit_test(a_forgotten_plan_may_be_destroyed_at_once),
     };

@@ -1,0 +1,127 @@
+#include "core/pipeline/turns.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "core/base/mem.h"
+
+/* Sources that are remembered. One that is forgotten counts as new: it saves nothing by that, as a newcomer is no better off than those who
+ * wait. */
+enum { MAX_SOURCES = 512 };
+
+struct source {
+    uint64_t id;
+    int64_t used_us;
+    bool is_active; /* something of it waits */
+    size_t item;    /* the one of it that is next; SIZE_MAX: all are held */
+};
+
+struct turns {
+    struct source sources[MAX_SOURCES];
+    size_t n;
+    int64_t floor_us; /* what the least served of those who wait has used; never falls */
+};
+
+struct turns *turns_create(void)
+{
+    return mem_new(sizeof(struct turns));
+}
+
+void turns_destroy(struct turns *turns)
+{
+    free(turns);
+}
+
+/* A place for a source that is not known: a free one, or that of the inactive source that has used least. */
+static struct source *add_source(struct turns *turns, uint64_t id)
+{
+    struct source *place = NULL;
+    if (turns->n < MAX_SOURCES)
+        place = &turns->sources[turns->n++];
+    else
+        for (struct source *other = turns->sources; other < turns->sources + turns->n; other++)
+            if (!other->is_active && (!place || other->used_us < place->used_us))
+                place = other;
+    assert(place); /* fewer pictures wait than sources are remembered */
+    *place = (struct source){ .id = id, .used_us = turns->floor_us - TURNS_CREDIT_US };
+    return place;
+}
+
+static struct source *find_source(struct turns *turns, uint64_t id)
+{
+    for (size_t i = 0; i < turns->n; i++)
+        if (turns->sources[i].id == id)
+            return &turns->sources[i];
+    return add_source(turns, id);
+}
+
+/* Within a source: see the header. */
+static bool goes_before(const struct turns_item *item, const struct turns_item *older)
+{
+    return older->is_still && !item->is_still && older->n_overtaken < TURNS_MAX_OVERTAKING;
+}
+
+bool turns_may_interrupt(const struct turns_item *drawn, const struct turns_item *newcomer)
+{
+    return newcomer->source != drawn->source || goes_before(newcomer, drawn);
+}
+
+static void activate(struct turns *turns, struct turns_item *const *items, size_t n)
+{
+    bool was_active[MAX_SOURCES];
+    for (size_t i = 0; i < turns->n; i++) {
+        was_active[i] = turns->sources[i].is_active;
+        turns->sources[i].is_active = false;
+        turns->sources[i].item = SIZE_MAX;
+    }
+    for (size_t i = 0; i < n; i++) {
+        size_t n_known = turns->n;
+        struct source *source = find_source(turns, items[i]->source);
+        size_t at = (size_t)(source - turns->sources);
+        bool is_new = at >= n_known || !was_active[at];
+        if (!source->is_active && is_new && source->used_us < turns->floor_us - TURNS_CREDIT_US)
+            source->used_us = turns->floor_us - TURNS_CREDIT_US;
+        if (!source->is_active)
+            source->item = SIZE_MAX;
+        source->is_active = true;
+        if (!items[i]->is_held && (source->item == SIZE_MAX || goes_before(items[i], items[source->item])))
+            source->item = i;
+    }
+}
+
+static int64_t key_of(const struct source *source, struct turns_item *const *items)
+{
+    return source->used_us - (items[source->item]->is_still ? 0 : TURNS_MOVING_AHEAD_US);
+}
+
+size_t turns_choose(struct turns *turns, struct turns_item *const *items, size_t n)
+{
+    const struct source *best = NULL;
+    int64_t least_us = INT64_MAX;
+    activate(turns, items, n);
+    for (size_t i = 0; i < turns->n; i++) {
+        const struct source *source = &turns->sources[i];
+        if (!source->is_active)
+            continue;
+        least_us = source->used_us < least_us ? source->used_us : least_us;
+        if (source->item == SIZE_MAX)
+            continue;
+        int64_t key = key_of(source, items), best_key = best ? key_of(best, items) : INT64_MAX;
+        if (!best || key < best_key || (key == best_key && source->item < best->item))
+            best = source;
+    }
+    if (least_us != INT64_MAX && least_us > turns->floor_us)
+        turns->floor_us = least_us;
+    if (!best)
+        return SIZE_MAX;
+    struct turns_item *chosen = items[best->item];
+    for (size_t i = 0; i < best->item && !chosen->is_begun && !chosen->is_still; i++)
+        items[i]->n_overtaken += items[i]->source == chosen->source && items[i]->is_still;
+    chosen->is_begun = true;
+    return best->item;
+}
+
+void turns_charge(struct turns *turns, uint64_t source, int64_t cost_us)
+{
+    find_source(turns, source)->used_us += cost_us > 0 ? cost_us : 0;
+}

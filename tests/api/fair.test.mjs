@@ -1,0 +1,94 @@
+// Who shares a renderer with whom: somebody who asks for a lot of large pictures does not take the renderer from somebody who turns a small one.
+import assert from 'node:assert/strict';
+import { after, afterEach, before, test } from 'node:test';
+import { call, openPlan, sleep, startDaemon, until } from './daemon.mjs';
+import { Client } from './ws_client.mjs';
+
+let daemon, api, home;
+const clients = [];
+
+before(async () => {
+  daemon = await startDaemon({ args: ['--gl', 'soft'] });
+  api = `${daemon.url}/api/v1`;
+  await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.some((p) => p.id === 'phantom' && p.parts.length));
+  await openPlan(daemon.url, 'phantom');
+  home = (await call(`${api}/plans/phantom`)).json.home['3d'];
+});
+afterEach(() => { for (const client of clients.splice(0)) client.cut(); });
+after(async () => {
+  if (daemon) assert.equal(await daemon.stop(), 0, daemon.log());
+});
+
+async function join(room) {
+  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  clients.push(client);
+  client.send({ type: 'hello', protocol: 1 });
+  await client.message('welcome');
+  await client.message('renderer', (m) => m.state === 'ready');
+  return client;
+}
+const newRoom = async () => (await call(`${api}/rooms`, 'POST', { plan: 'phantom' })).json.id;
+
+/** The eye on a circle around the plan. */
+function at(angle) {
+  const [x, y, z] = home.target_mm, r = Math.hypot(home.position_mm[0] - x, home.position_mm[1] - y);
+  return { camera: { ...home, position_mm: [x + r * Math.sin(angle), y - r * Math.cos(angle), z] } };
+}
+
+/** Turns a view of 640 x 480 until isOver; how many pictures came. */
+async function orbit(room, isOver) {
+  const client = await join(room);
+  client.send({ type: 'view.open', view: 1, document: { size_px: [640, 480] } });
+  await client.frame();
+  const from = client.frames.length, end = Date.now() + 60000;
+  for (let input = 1; !isOver() && Date.now() < end; input++) {
+    client.send({ type: 'view.patch', view: 1, input, patch: at(input / 40) });
+    await sleep(15);
+  }
+  assert.ok(Date.now() < end, 'not over within a minute');
+  return client.frames.length - from;
+}
+
+/* One large picture takes as long as some fifty small ones. In turns by time, dozens of small ones come in the time of a large one; in turns by
+   number, one. */
+const atLeast = 4;
+
+for (const where of ['the same room', 'another room']) {
+  test(`a member with eight views of 4096 x 4096 in ${where} leaves others their share`, async () => {
+    const room = await newRoom(), greedy = await join(where === 'the same room' ? room : await newRoom());
+    let isOn = true;
+    for (let view = 1; view <= 8; view++) greedy.send({ type: 'view.open', view, document: { size_px: [4096, 4096] } });
+    const moving = (async () => {
+      for (let input = 1; isOn; input++) {
+        for (let view = 1; view <= 8; view++) greedy.send({ type: 'view.patch', view, input, patch: at(input / 30 + view) });
+        await sleep(60);
+      }
+    })();
+    await greedy.frame();
+    let first = -1;
+    const n = await orbit(room, () => greedy.frames.length - (first = first < 0 ? greedy.frames.length : first) >= 6);
+    isOn = false;
+    await moving;
+    assert.ok(n >= atLeast * (greedy.frames.length - first), `${n} small pictures in the time of ${greedy.frames.length - first} large ones`);
+    assert.ok(greedy.frames.length - first >= 6); /* and it had its share too */
+  });
+}
+
+test('eight scripts that ask for pictures leave a member its share', async () => {
+  const room = await newRoom();
+  let isOn = true, n_drawn = 0, first = -1;
+  const scripts = Array.from({ length: 8 }, async (_, i) => {
+    for (let n = 0; isOn; n++) {
+      const body = JSON.stringify({ format: 'jpeg', view: { size_px: [2048, 2048], ...at(i + n / 10) } });
+      const answer = await fetch(`${api}/plans/phantom/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body });
+      await answer.arrayBuffer();
+      if (answer.status === 200) n_drawn++;
+      else await sleep(50); /* busy: as many are being drawn as may be at once */
+    }
+  });
+  const n = await orbit(room, () => n_drawn - (first = first < 0 ? n_drawn : first) >= 10);
+  isOn = false;
+  const n_scripts = n_drawn - first;
+  await Promise.all(scripts);
+  assert.ok(n >= atLeast * n_scripts, `${n} small pictures in the time of ${n_scripts} of scripts`);
+});
