@@ -1,13 +1,30 @@
 #include "core/base/mem.h"
 
 #include <inttypes.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 
+/* Given back when a small allocation fails: what failed before it was large, and whoever asked for that needs a little to say so. */
+static _Atomic(void *) reserve;
+
+void mem_keep_reserve(void)
+{
+    if (atomic_load(&reserve))
+        return;
+    void *none = NULL, *kept = malloc(MEM_RESERVE_BYTES);
+    if (!atomic_compare_exchange_strong(&reserve, &none, kept))
+        free(kept);
+}
+
 void *mem_new(size_t size)
 {
     void *p = calloc(1, size ? size : 1);
+    if (!p) {
+        free(atomic_exchange(&reserve, NULL));
+        p = calloc(1, size ? size : 1);
+    }
     if (!p)
         abort();
     return p;

@@ -9,6 +9,9 @@
 /* Up to here the fast transform is not visibly worse than the exact one; above, quality is what was asked for. */
 enum { FAST_TRANSFORM_MAX_QUALITY = 85, PNG_COMPRESSION_LEVEL = 1 };
 
+/* Memory for the largest JPEG there can be is taken at once up to here: 6 bytes a pixel. Above, it grows with the JPEG, which is a tenth of that. */
+enum { AT_ONCE_MAX_PX = 4000000 };
+
 struct encoder {
     tjhandle jpeg;
 };
@@ -39,13 +42,16 @@ static bool encode_jpeg(struct encoder *encoder, const struct image *image, cons
     unsigned long n_bytes = tjBufSize(image->width_px, image->height_px, sampling);
     if (n_bytes == (unsigned long)-1)
         return error_set(err, ERROR_RANGE, "a JPEG of %d x %d pixels is too large", image->width_px, image->height_px);
-    unsigned char *bytes = malloc(n_bytes);
-    if (!bytes)
-        return error_set(err, ERROR_MEMORY, "no memory for a JPEG of %d x %d pixels", image->width_px, image->height_px);
-    int flags = TJFLAG_NOREALLOC | (options->quality <= FAST_TRANSFORM_MAX_QUALITY ? TJFLAG_FASTDCT : TJFLAG_ACCURATEDCT);
+    bool grows = (int64_t)image->width_px * image->height_px > AT_ONCE_MAX_PX;
+    unsigned char *bytes = grows ? NULL : malloc(n_bytes);
+    if (!bytes && !grows)
+        return error_set(err, ERROR_MEMORY, "a JPEG of %d x %d pixels: no memory for %lu bytes", image->width_px, image->height_px, n_bytes);
+    if (grows)
+        n_bytes = 0;
+    int flags = (grows ? 0 : TJFLAG_NOREALLOC) | (options->quality <= FAST_TRANSFORM_MAX_QUALITY ? TJFLAG_FASTDCT : TJFLAG_ACCURATEDCT);
     if (tjCompress2(encoder->jpeg, image->rgba, image->width_px, 0, image->height_px, TJPF_RGBX, &bytes, &n_bytes, sampling,
                     options->quality, flags) != 0) {
-        error_set(err, ERROR_MEMORY, "JPEG of %d x %d pixels: %s", image->width_px, image->height_px, tjGetErrorStr2(encoder->jpeg));
+        error_set(err, ERROR_MEMORY, "a JPEG of %d x %d pixels: %s", image->width_px, image->height_px, tjGetErrorStr2(encoder->jpeg));
         free(bytes);
         return false;
     }
@@ -74,7 +80,7 @@ static bool encode_png(const struct image *image, struct encoded *out, struct er
     uint8_t *bytes = status ? NULL : spng_get_png_buffer(png, &n_bytes, &status);
     spng_ctx_free(png);
     if (!bytes)
-        return error_set(err, ERROR_MEMORY, "PNG of %d x %d pixels: %s", image->width_px, image->height_px, spng_strerror(status));
+        return error_set(err, ERROR_MEMORY, "a PNG of %d x %d pixels: %s", image->width_px, image->height_px, spng_strerror(status));
     *out = (struct encoded){ bytes, n_bytes };
     return true;
 }

@@ -17,6 +17,8 @@ enum { MAX_DRAWN = 2 };
 /* A picture that is being drawn is left for another after so long: for a moving one, which somebody waits for with a hand on the mouse, or for a
  * still, which can wait longer. */
 enum { SLICE_MOVING_US = 20000, SLICE_STILL_US = 100000 };
+/* Stacks count to a process's memory in full. */
+enum { ENCODE_STACK_BYTES = 512 << 10 };
 /* Plans to forget that may wait beside the pictures. */
 enum { MAX_FORGET = 16, MAX_BEGUN = 32, MAX_JOBS = PIPELINE_MAX_WAITING + MAX_BEGUN + MAX_FORGET };
 
@@ -193,6 +195,8 @@ static bool draw(struct pipeline *pipeline, struct renderer *renderer, const str
         job->picture = render_begin(renderer, job->request.snapshot, options);
     if (render_go_on(job->picture, &pause, &frame->error) == RENDER_PAUSED)
         return false;
+    if (frame->error.code == ERROR_MEMORY)
+        error_prefix(&frame->error, "a picture of %d x %d pixels", options->width_px, options->height_px);
     job->image = render_end(job->picture, &frame->camera, &frame->timing);
     job->picture = NULL;
     return true;
@@ -335,8 +339,7 @@ static void deliver(struct pipeline *pipeline, struct encoder *encoder, struct j
     struct pipeline_frame *frame = &job->frame;
     if (job->image) {
         int64_t start_us = clock_now_us();
-        if (!encode_image(encoder, job->image, &job->request.encode, &frame->picture, &frame->error))
-            error_prefix(&frame->error, "compressing a picture");
+        (void)!encode_image(encoder, job->image, &job->request.encode, &frame->picture, &frame->error);
         frame->encode_us = clock_now_us() - start_us;
     }
     image_destroy(job->image);
@@ -399,10 +402,14 @@ struct pipeline *pipeline_create(enum render_back_end back_end, bool stub, const
     pthread_mutex_init(&pipeline->mutex, NULL);
     pthread_cond_init(&pipeline->changed, NULL);
     int failed = 0, n_lanes = 0;
+    pthread_attr_t small;
+    pthread_attr_init(&small);
+    pthread_attr_setstacksize(&small, ENCODE_STACK_BYTES);
     for (; n_lanes < N_LANES && !failed; n_lanes += !failed) {
         pipeline->lanes[n_lanes].pipeline = pipeline;
-        failed = pthread_create(&pipeline->lanes[n_lanes].thread, NULL, encode_main, &pipeline->lanes[n_lanes]);
+        failed = pthread_create(&pipeline->lanes[n_lanes].thread, &small, encode_main, &pipeline->lanes[n_lanes]);
     }
+    pthread_attr_destroy(&small);
     if (!failed)
         failed = pthread_create(&pipeline->render_thread, NULL, render_main, pipeline);
     if (!failed)

@@ -523,6 +523,17 @@ static cJSON *missing_of(const struct drawing *drawing)
     return json;
 }
 
+/* What did not fit, and into what. */
+static void say_limit(const struct session *session, struct problem *problem)
+{
+    char detail[sizeof problem->detail];
+    if (problem->type != PROBLEM_MEMORY || session->options->max_bytes == 0)
+        return;
+    memcpy(detail, problem->detail, sizeof detail);
+    (void)snprintf(problem->detail, sizeof problem->detail, "%.*s; the renderer of a plan may take %llu MiB (max-renderer-mib)",
+                   (int)sizeof detail - 80, detail, (unsigned long long)(session->options->max_bytes >> 20));
+}
+
 static void take_frame(struct session *session, const struct pipeline_frame *frame)
 {
     struct drawing *drawing = find_drawing(session, frame->id);
@@ -532,6 +543,7 @@ static void take_frame(struct session *session, const struct pipeline_frame *fra
         drawing_end(drawing);
         struct problem problem;
         problem_from_error(&problem, &frame->error);
+        say_limit(session, &problem);
         say_problem(session, frame->id, &problem);
         return;
     }
@@ -582,6 +594,7 @@ static void take_note(struct session *session, struct note *note)
             note->body = NULL;
             say(session, json, note->blob, note->n_blob);
         } else {
+            say_limit(session, &note->problem);
             say_problem(session, note->id, &note->problem);
         }
         break;
@@ -601,6 +614,7 @@ static void loop(struct session *session)
             session->status = SESSION_BROKEN;
             return;
         }
+        mem_keep_reserve();
         link_write(session->link);
         if ((polled[0].revents & ~POLLOUT) && !link_read(session->link))
             session->status = SESSION_DONE;

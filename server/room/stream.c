@@ -465,7 +465,7 @@ void stream_say_refusal(struct room *room, struct member *member, const struct m
  * to come again. */
 static bool is_final(const struct problem *problem)
 {
-    return problem && (problem->type == PROBLEM_VALIDATION || (problem->type == PROBLEM_LIMIT && problem->retry_after_ms == 0));
+    return problem && (problem->type == PROBLEM_VALIDATION || problem->type == PROBLEM_MEMORY || (problem->type == PROBLEM_LIMIT && problem->retry_after_ms == 0));
 }
 
 /* Those who look are told, and it is not asked for again until something changes. */

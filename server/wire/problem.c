@@ -37,8 +37,8 @@ bool problem_from_error(struct problem *problem, const struct error *err)
     case ERROR_CANCELLED: type = PROBLEM_CANCELLED; break;
     case ERROR_GL: type = PROBLEM_GL_UNAVAILABLE; break;
     case ERROR_STATE: type = PROBLEM_BUSY; break;
+    case ERROR_MEMORY: type = PROBLEM_MEMORY; break;
     case ERROR_NONE:
-    case ERROR_MEMORY:
     case ERROR_IO: break;
     }
     return problem_set(problem, type, "", type == PROBLEM_VALIDATION ? error_word(err->code) : "", "%s", err->text);
