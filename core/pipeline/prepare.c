@@ -25,9 +25,26 @@ void preparation_destroy(struct preparation *preparation)
     free(preparation);
 }
 
-void preparation_build(const struct preparation *preparation)
+struct building {
+    const struct preparation *preparation;
+    const atomic_bool *cancel;
+    bool has_stopped;
+};
+
+static bool go_on(void *context)
 {
-    plan_build_shapes(preparation->request.snapshot->plan, preparation->wants, preparation->n_wants, NULL, NULL);
+    struct building *building = context;
+    const struct preparation *preparation = building->preparation;
+    bool is_wanted = !preparation->wanted || atomic_load(preparation->wanted) == preparation->request.id;
+    building->has_stopped = building->has_stopped || !is_wanted || atomic_load(building->cancel);
+    return !building->has_stopped;
+}
+
+void preparation_build(struct preparation *preparation, const atomic_bool *cancel)
+{
+    struct building building = { preparation, cancel, false };
+    plan_build_shapes(preparation->request.snapshot->plan, preparation->wants, preparation->n_wants, go_on, &building);
+    preparation->is_built = !building.has_stopped;
 }
 
 /* ---- what was built ----------------------------------------------------------------------------------------------------- */

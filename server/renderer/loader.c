@@ -179,7 +179,7 @@ static void *prepare_main(void *argument)
             preparation_destroy(preparation);
             continue;
         }
-        preparation_build(preparation);
+        preparation_build(preparation, &loader->cancel);
         desk_put(loader->desk, &(struct note){ .type = NOTE_PREPARED, .preparation = preparation });
     }
     return NULL;

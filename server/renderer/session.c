@@ -26,9 +26,9 @@ struct room_scene {
     cJSON *scene;
 };
 
+#define NO_DRAWING (UINT64_MAX - 1) /* never asked for either */
 struct drawing { /* a picture asked for and not yet delivered */
-    bool is_used;
-    uint64_t id;
+    _Atomic uint64_t id; /* NO_DRAWING: free. Written by the main thread alone; whoever builds its shapes looks whether it is still wanted */
     uint32_t revision;
     struct snapshot *snapshot; /* a reference */
     enum surface_detail detail;
@@ -280,14 +280,15 @@ static void say_busy(struct session *session, uint64_t id)
 
 static void drawing_end(struct drawing *drawing)
 {
+    atomic_store(&drawing->id, NO_DRAWING);
     snapshot_unref(drawing->snapshot);
-    *drawing = (struct drawing){ .is_used = false };
+    drawing->snapshot = NULL;
 }
 
 static struct drawing *find_drawing(struct session *session, uint64_t id)
 {
     for (size_t i = 0; i < MAX_DRAWINGS; i++)
-        if (session->drawings[i].is_used && session->drawings[i].id == id)
+        if (atomic_load(&session->drawings[i].id) == id)
             return &session->drawings[i];
     return NULL;
 }
@@ -340,15 +341,19 @@ static void draw(struct session *session, uint64_t id, const cJSON *json)
         .encode = { is_png ? ENCODE_PNG : ENCODE_JPEG, (int)quality, json_flag(json, "full_color", false) },
     };
     struct drawing *drawing = session->drawings;
-    while (drawing < session->drawings + MAX_DRAWINGS && drawing->is_used)
+    while (drawing < session->drawings + MAX_DRAWINGS && atomic_load(&drawing->id) != NO_DRAWING)
         drawing++;
     if (drawing == session->drawings + MAX_DRAWINGS) {
         snapshot_unref(snapshot);
         say_busy(session, id);
         return;
     }
-    *drawing = (struct drawing){ true, id, revision, snapshot_ref(snapshot), request.render.detail };
+    drawing->revision = revision;
+    drawing->snapshot = snapshot_ref(snapshot);
+    drawing->detail = request.render.detail;
+    atomic_store(&drawing->id, id);
     struct preparation *preparation = preparation_create(&request);
+    preparation->wanted = &drawing->id;
     if (prepared_has_all(session->prepared, preparation) || !loader_prepare(session->loader, preparation))
         submit(session, preparation);
 }
@@ -582,7 +587,8 @@ static void take_note(struct session *session, struct note *note)
     case NOTE_BUILT: session->is_built = true; break;
     case NOTE_FRAME: take_frame(session, &note->frame); break;
     case NOTE_PREPARED:
-        prepared_add(session->prepared, note->preparation);
+        if (note->preparation->is_built)
+            prepared_add(session->prepared, note->preparation);
         submit(session, note->preparation);
         note->preparation = NULL;
         break;
@@ -637,6 +643,8 @@ int session_run(const struct session_options *options)
 {
     struct session session = { .options = options, .status = -1, .began_us = clock_now_us() };
     struct error err = { 0 };
+    for (size_t i = 0; i < MAX_DRAWINGS; i++)
+        atomic_init(&session.drawings[i].id, NO_DRAWING);
     session.link = link_create(options->socket);
     session.desk = desk_create();
     session.prepared = prepared_create();

@@ -461,11 +461,12 @@ void stream_say_refusal(struct room *room, struct member *member, const struct m
         say_problem(room, member->connection, "", view - member->views + 1, 0, &view->stream->refusal);
 }
 
-/* A failure that will be no better the next time: a field that does not fit, or a written limit; a limit of how much may wait says when
- * to come again. */
+/* A failure that will be no better the next time: a field that does not fit, a picture too large for the memory, or a written limit; a limit
+ * of how much may wait says when to come again. */
 static bool is_final(const struct problem *problem)
 {
-    return problem && (problem->type == PROBLEM_VALIDATION || problem->type == PROBLEM_MEMORY || (problem->type == PROBLEM_LIMIT && problem->retry_after_ms == 0));
+    return problem && (problem->type == PROBLEM_VALIDATION || problem->type == PROBLEM_MEMORY ||
+                       (problem->type == PROBLEM_LIMIT && problem->retry_after_ms == 0));
 }
 
 /* Those who look are told, and it is not asked for again until something changes. */

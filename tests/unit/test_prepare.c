@@ -85,7 +85,9 @@ static void what_was_built_once_is_not_waited_for_again(void **state)
     struct preparation *first = prepare(plan, &solid), *again = prepare(plan, &solid), *other = prepare(plan, &points);
     struct plan_shape_usage usage;
     assert_false(prepared_has_all(prepared, first));
-    preparation_build(first);
+    atomic_bool cancel = false;
+    preparation_build(first, &cancel);
+    assert_true(first->is_built);
     plan_shape_usage(plan, &usage);
     assert_int_equal(usage.n_shapes, 3);
     prepared_add(prepared, first);
@@ -98,11 +100,33 @@ static void what_was_built_once_is_not_waited_for_again(void **state)
     plan_destroy(plan);
 }
 
+static void what_is_not_wanted_any_more_is_not_built(void **state)
+{
+    (void)state;
+    static const struct asked solid = { SCENE_KIND_3D, SCENE_REPRESENTATION_SOLID, 0.5, NULL, SURFACE_FULL };
+    struct plan *plan = make_plan();
+    struct plan_shape_usage usage;
+    for (int way = 0; way < 3; way++) {
+        _Atomic uint64_t wanted = way == 0 ? 77 : 5; /* its slot serves another picture now */
+        atomic_bool cancel = way == 1;
+        struct preparation *preparation = prepare(plan, &solid);
+        preparation->request.id = 5;
+        preparation->wanted = &wanted;
+        preparation_build(preparation, &cancel);
+        plan_shape_usage(plan, &usage);
+        assert_int_equal(usage.n_shapes, way == 2 ? 3 : 0);
+        assert_int_equal(preparation->is_built, way == 2);
+        preparation_destroy(preparation);
+    }
+    plan_destroy(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_picture_wants_the_shapes_that_can_be_seen),
         cmocka_unit_test(what_was_built_once_is_not_waited_for_again),
+        cmocka_unit_test(what_is_not_wanted_any_more_is_not_built),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
