@@ -20,7 +20,7 @@ enum {
     PLACE_EVERY_US = 2000000   /* a plan that is held and closed for lack of a place tries again after this */
 };
 
-static const struct fleet_times default_times = { .ping = 2000, .silent = 6000, .awaited_ping = 250, .awaited_silent = 750, .stall = 120000, .request = 30000, .scan = 30000, .unpack = 120000 };
+static const struct fleet_times default_times = { .ping = 2000, .silent = 6000, .awaited_ping = 250, .awaited_silent = 600, .stall = 120000, .request = 30000, .scan = 30000, .unpack = 120000 };
 
 const char *fleet_state_word(enum fleet_state state)
 {
@@ -204,8 +204,7 @@ void fleet_close(struct fleet *fleet, const char *plan_id)
         plan_entry_close(fleet, plan, "somebody asked for it");
 }
 
-/* Opens a plan that is held. Without a place it stays failed, says so, and tries again. */
-static void open_held(struct fleet *fleet, struct plan_entry *plan)
+void plan_entry_open_held(struct fleet *fleet, struct plan_entry *plan)
 {
     struct problem problem;
     if (fleet_open(fleet, plan->id, &problem) || problem.type != PROBLEM_BUSY)
@@ -214,7 +213,7 @@ static void open_held(struct fleet *fleet, struct plan_entry *plan)
     if (plan->wants_place)
         return;
     plan->wants_place = true;
-    plan->problem = problem;
+    problem_set(&plan->problem, PROBLEM_BUSY, "", "", "%.200s; this one is opened as soon as there is a place", problem.detail);
     plan_entry_change(fleet, plan, FLEET_FAILED);
 }
 
@@ -225,7 +224,7 @@ bool fleet_hold(struct fleet *fleet, const char *plan_id)
         return false;
     plan->n_holds++;
     if (plan->state == FLEET_CLOSED || (plan->state == FLEET_FAILED && !plan->is_for_good && !plan->wants_place))
-        open_held(fleet, plan);
+        plan_entry_open_held(fleet, plan);
     return true;
 }
 
@@ -325,7 +324,7 @@ static void tick_plan(struct fleet *fleet, struct plan_entry *plan, int64_t now_
 {
     restart_tick(fleet, plan, now_us);
     if (plan->wants_place && now_us >= plan->place_at_us)
-        open_held(fleet, plan);
+        plan_entry_open_held(fleet, plan);
     bool is_awaited = plan->process && plan->state == FLEET_READY && asks_has_sent(fleet, plan);
     if (is_awaited != plan->is_awaited && plan->process && watch_await(fleet->watch, plan->process, is_awaited))
         plan->is_awaited = is_awaited;

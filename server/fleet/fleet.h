@@ -22,7 +22,7 @@ struct fleet_times {
     int ping;    /* a renderer that says nothing is asked whether it lives [2000] */
     int silent;  /* one that does not answer is ended and started again [6000]: its main thread only talks */
     int awaited_ping;   /* the same while a picture or an answer is due [250] ... */
-    int awaited_silent; /* ... and its main thread stands still [750]; one that waits for a processor or a disk has the time above */
+    int awaited_silent; /* ... and its main thread stands still [600]; one that waits for a processor or a disk has the time above */
     int stall;   /* reading a plan without getting further; then failed [120000] */
     int request; /* an answer; a picture that is not there by then also ends the renderer [30000] */
     int scan;    /* looking at a plan folder, looking for GL [30000]: 20,000 DICOM files take most of it */

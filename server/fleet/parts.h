@@ -135,6 +135,7 @@ bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packe
 
 /* fleet.c */
 int64_t fleet_now_us(const struct fleet *fleet); /* time while the net thread ran: nobody is late because we stood still */
+void plan_entry_open_held(struct fleet *fleet, struct plan_entry *plan); /* without a place it fails, says so, and tries again */
 void plan_entry_start(struct fleet *fleet, struct plan_entry *plan); /* a process for it; state stays */
 void plan_entry_close(struct fleet *fleet, struct plan_entry *plan, const char *why); /* its renderer ends, waiting requests fail */
 void plan_entry_change(struct fleet *fleet, struct plan_entry *plan, enum fleet_state state);

@@ -195,12 +195,16 @@ bool plans_scan_ended(struct fleet *fleet, const struct watch_event *event)
     if (json)
         is_readable = take_summary(plan, json, reason);
     cJSON_Delete(json);
+    bool was_failed = plan->state == FLEET_FAILED || plan->state == FLEET_UNREADABLE;
     bool is_newer = plan->state != FLEET_FAILED || event->number > plan->failed_number;
     if ((plan->state == FLEET_CLOSED || plan->state == FLEET_UNREADABLE || plan->state == FLEET_FAILED) && is_newer) {
         plan_entry_change(fleet, plan, is_readable ? FLEET_CLOSED : FLEET_UNREADABLE);
         plan->problem = (struct problem){ 0 };
+        plan->wants_place = false;
         if (!is_readable)
             problem_set(&plan->problem, PROBLEM_PLAN_UNREADABLE, "", "", "%s", reason);
+        else if (plan->n_holds > 0 && was_failed)
+            plan_entry_open_held(fleet, plan); /* its files have changed, and somebody waits for it */
     }
     plan->has_changed = true;
     fleet->list_has_changed = true;

@@ -179,7 +179,7 @@ export class Pane {
     const { state, phase, percent, problem } = this.#room.renderer.value;
     if (state === 'failed' || state === 'closed')
       return html`<div class="cover"><div class="refusal">${icon('error')}<div><b>The plan cannot be shown.</b><p>${problem?.detail ?? 'The renderer gave no reason.'}</p></div></div></div>`;
-    if (state === 'restarting' && problem) return html`<div class="cover"><div class="refusal waits" role="status">${icon('warning')}<div><b>No new picture yet.</b><p>${phase[0]?.toUpperCase()}${phase.slice(1)}.</p></div></div></div>`;
+    if (state === 'restarting' && problem) return html`<div class="cover"><div class="refusal" role="status">${icon('warning')}<div><b>No new picture yet.</b><p>${phase[0]?.toUpperCase()}${phase.slice(1)}.</p></div></div></div>`;
     const { value: refusal } = this.#view.refusal;
     if (refusal && state === 'ready')
       return html`<div class="cover"><div class="refusal" role="status">${icon('error')}<div><b>This view cannot be drawn.</b><p>${refusal}</p>

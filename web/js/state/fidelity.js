@@ -31,6 +31,7 @@ export function fidelity({ link, renderer, header, staleSince, revision, revisio
   }
   if (link.state === 'ended') return badge('disconnected', 'Disconnected', link.reason);
   if (!header) return null;
+  if (renderer === 'failed' || renderer === 'closed') return badge('stale', 'Stale', 'The plan is not loaded; this is the last picture of it.');
   if (renderer !== 'ready') return badge('stale', 'Stale', 'The renderer is being started again; this is the last picture it made.');
   const behindSince = header.scene_revision < revision ? revisionAt : 0;
   const since = Math.min(staleSince || Infinity, behindSince || Infinity);
