@@ -32,6 +32,25 @@ bool dose_quantity_from_word(const char *word, enum dose_quantity *quantity)
     return false;
 }
 
+static const char *const frame_words[DOSE_N_FRAMES] = {
+    [DOSE_FRAME_SAME] = "same", [DOSE_FRAME_UNKNOWN] = "unknown", [DOSE_FRAME_DIFFERS] = "differs"
+};
+
+const char *dose_frame_word(enum dose_frame frame)
+{
+    return frame_words[frame];
+}
+
+bool dose_frame_from_word(const char *word, enum dose_frame *frame)
+{
+    for (int i = 0; i < DOSE_N_FRAMES; i++)
+        if (strcmp(word, frame_words[i]) == 0) {
+            *frame = (enum dose_frame)i;
+            return true;
+        }
+    return false;
+}
+
 bool dose_quantity_is_fluence(enum dose_quantity quantity)
 {
     return quantity == DOSE_FAST_FLUENCE || quantity == DOSE_EPITHERMAL_FLUENCE || quantity == DOSE_THERMAL_FLUENCE;

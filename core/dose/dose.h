@@ -26,13 +26,28 @@ struct dose_component {
     enum dose_quantity quantity;
     bool is_per_ppm;       /* boron, or blood boron, per 1 ppm of boron-10 */
     struct volume *values; /* in what dose_unit_of says */
+    bool has_boron_ppm;    /* total, weighted total: it is known which boron is in it */
+    double boron_ppm;      /* then: of so many ppm of boron-10 in blood, with each tissue's ratio to blood as the file's program had it */
 };
+
+/* Whether a dose and the image lie in one DICOM frame of reference: in another, the dose may be shifted against the image. The greater
+ * the worse. */
+enum dose_frame {
+    DOSE_FRAME_SAME,
+    DOSE_FRAME_UNKNOWN, /* the files do not say */
+    DOSE_FRAME_DIFFERS,
+    DOSE_N_FRAMES
+};
+const char *dose_frame_word(enum dose_frame frame); /* "same", "unknown", "differs" */
+bool dose_frame_from_word(const char *word, enum dose_frame *frame);
 
 struct dose {
     char id[64];
     char name[64]; /* for people; "" when the files give none */
     char unit[16]; /* "Gy", "cGy"; as the plan says it, never assumed */
     char per[64];  /* "fraction", "250 kW-min", "minute"; "" when the plan does not say, and the report then says so */
+    bool has_frame;        /* of a DICOM file beside a DICOM image, or said in plan.json */
+    enum dose_frame frame; /* then */
     struct dose_component components[DOSE_N_QUANTITIES];
     size_t n_components;
     struct volume *mask; /* where values are valid; NULL: everywhere on the grid */

@@ -91,12 +91,21 @@ static bool parse_component(const struct place *at, const cJSON *entry, struct p
             return place_fail(at, ERROR_RANGE, "reference", "expected a number above 0, the value that counts as 100 %");
         component->reference = reference->valuedouble;
     }
+    const cJSON *ppm = cJSON_GetObjectItemCaseSensitive(entry, "boron_ppm");
+    if (ppm && !cJSON_IsNull(ppm)) {
+        if (!cJSON_IsNumber(ppm) || !(ppm->valuedouble >= 0 && ppm->valuedouble <= PLAN_FILE_MAX_PPM))
+            return place_fail(at, ERROR_RANGE, "boron_ppm", "expected the ppm of boron-10 in blood that is in a total, 0 to 1e6");
+        component->has_boron_ppm = true;
+        component->boron_ppm = ppm->valuedouble;
+    }
     component->quantity = DOSE_TOTAL;
     if (word[0] && !dose_quantity_from_word(word, &component->quantity))
         return place_fail(at, ERROR_RANGE, "quantity", "expected total, boron, nitrogen, fast, gamma, other, fast-fluence, epithermal-fluence, "
                     "thermal-fluence, blood-boron or weighted-total");
     if (component->is_per_ppm && component->quantity != DOSE_BORON && component->quantity != DOSE_BLOOD_BORON)
         return place_fail(at, ERROR_RANGE, "per_ppm", "only boron is given per ppm");
+    if (component->has_boron_ppm && component->quantity != DOSE_TOTAL && component->quantity != DOSE_WEIGHTED_TOTAL)
+        return place_fail(at, ERROR_RANGE, "boron_ppm", "only a total holds boron at some ppm");
     for (size_t i = 0; i < dose->n_components; i++)
         if (dose->components[i].quantity == component->quantity)
             return place_fail(at, ERROR_RANGE, "quantity", "is there twice");
@@ -106,9 +115,9 @@ static bool parse_component(const struct place *at, const cJSON *entry, struct p
 
 static bool parse_doses(const struct place *top, const cJSON *root, struct plan_file *file)
 {
-    static const char *const known[] = { "id",   "name", "path", "quantity",   "per_ppm", "reference",
-                                         "unit", "per",  "mask", "components", NULL };
-    static const char *const known_inside[] = { "path", "quantity", "per_ppm", "reference", NULL };
+    static const char *const known[] = { "id",   "name", "path", "quantity",   "per_ppm",            "boron_ppm", "reference",
+                                         "unit", "per",  "mask", "components", "frame_of_reference", NULL };
+    static const char *const known_inside[] = { "path", "quantity", "per_ppm", "boron_ppm", "reference", NULL };
     const cJSON *list, *components;
     if (!place_list(top, root, "doses", PLAN_MAX_DOSES, &list))
         return false;
@@ -121,6 +130,12 @@ static bool parse_doses(const struct place *top, const cJSON *root, struct plan_
             !place_text(&at, entry, "per", dose->per, sizeof dose->per) || !place_path(&at, entry, "mask", false, dose->mask) ||
             !place_list(&at, entry, "components", DOSE_N_QUANTITIES, &components))
             return false;
+        char word[32];
+        if (!place_text(&at, entry, "frame_of_reference", word, sizeof word))
+            return false;
+        dose->has_frame = word[0] != 0;
+        if (dose->has_frame && !dose_frame_from_word(word, &dose->frame))
+            return place_fail(&at, ERROR_RANGE, "frame_of_reference", "expected same, unknown or differs");
         if (!components) {
             if (!parse_component(&at, entry, dose))
                 return false;

@@ -33,14 +33,18 @@ struct plan_file_region {
     uint8_t rgb[3];
     double mm; /* as of an image */
 };
+#define PLAN_FILE_MAX_PPM 1e6 /* all of it */
 struct plan_file_component {
     enum dose_quantity quantity;
-    bool is_per_ppm;
+    bool is_per_ppm, has_boron_ppm;
+    double boron_ppm; /* of a total, 0 to PLAN_FILE_MAX_PPM */
     double reference; /* what counts as 100 %; 0: not given */
     char path[FOLDER_NAME_SIZE];
 };
 struct plan_file_dose {
     char id[64], name[64], unit[16], per[64];
+    bool has_frame;
+    enum dose_frame frame;
     char mask[FOLDER_NAME_SIZE];
     struct plan_file_component components[DOSE_N_QUANTITIES];
     size_t n_components;

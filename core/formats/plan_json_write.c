@@ -136,12 +136,15 @@ static void add_doses(cJSON *root, const struct plan_file *file)
         add_text(entry, "unit", dose->unit);
         add_text(entry, "per", dose->per);
         add_text(entry, "mask", dose->mask);
+        add_text(entry, "frame_of_reference", dose->has_frame ? dose_frame_word(dose->frame) : "");
         cJSON *components = add_list(entry, "components");
         for (size_t c = 0; c < dose->n_components; c++) {
             cJSON *component = append(components, cJSON_CreateObject());
             add_text(component, "quantity", dose_quantity_word(dose->components[c].quantity));
             if (dose->components[c].is_per_ppm)
                 add(component, "per_ppm", cJSON_CreateTrue());
+            if (dose->components[c].has_boron_ppm)
+                add_number(component, "boron_ppm", dose->components[c].boron_ppm);
             if (dose->components[c].reference > 0)
                 add_number(component, "reference", dose->components[c].reference);
             add_text(component, "path", dose->components[c].path);

@@ -419,7 +419,13 @@ static bool add_columns(const struct table *table, const struct chd_files *files
         if (!values)
             return false;
         copy_planes(chd, spacing, table->values[c], factor, values);
-        volume_measure(doses->components[doses->n_components - 1].values);
+        struct dose_component *added = &doses->components[doses->n_components - 1];
+        volume_measure(added->values);
+        int boron = column_of(chd, DOSE_BORON);
+        if ((quantity == DOSE_TOTAL || quantity == DOSE_WEIGHTED_TOTAL) && boron >= 0) {
+            added->has_boron_ppm = true;
+            added->boron_ppm = chd->concentration[boron];
+        }
         doses->reference[quantity] = chd->reference[c] > 0 ? chd->reference[c] * factor : 0;
         n_references += chd->reference[c] > 0;
         n_kept++;

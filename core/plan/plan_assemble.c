@@ -175,6 +175,7 @@ static struct dose *start_dose(struct loading *loading, size_t index, bool is_se
     memcpy(dose->id, id, sizeof dose->id);
     memcpy(dose->name, entry->name, sizeof dose->name);
     plan_dose_units(dose, entry, is_sera, &plan->report);
+    plan_dose_frame(dose, entry, entry->components[0].path, &plan->report);
     return dose;
 }
 

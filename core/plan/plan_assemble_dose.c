@@ -15,14 +15,17 @@ static const struct rtplan *plan_of(const struct loading *loading, const char *u
     return NULL;
 }
 
-static void check_frame(const struct loading *loading, const struct job *job, struct report *report)
+static void check_frame(const struct loading *loading, struct job *job, struct report *report)
 {
     const struct dicom_stack *first = NULL;
     for (size_t i = 0; i < loading->plan->n_images; i++) {
         const struct dicom_stack *stack = plan_dicom_stack_of(loading, i);
         first = first ? first : stack;
-        if (stack && strcmp(stack->frame_of_reference, job->rtdose.frame_uid) == 0)
+        if (stack && job->rtdose.frame_uid[0] && strcmp(stack->frame_of_reference, job->rtdose.frame_uid) == 0) {
+            job->rtdose.has_frame = true;
+            job->rtdose.frame = DOSE_FRAME_SAME;
             return;
+        }
     }
     if (first)
         rtdose_check_frame(&job->rtdose, first->frame_of_reference, job->path, report);
@@ -50,6 +53,8 @@ static void add_group(struct loading *loading, struct rtdose *objects, size_t n,
         struct dose *dose = &plan->doses[plan->n_doses];
         *dose = doses[i];
         memcpy(dose->name, name, sizeof dose->name);
+        if (entry)
+            plan_dose_frame(dose, entry, where, &plan->report);
         plan_make_id(dose->id, entry && entry->id[0] && i == 0 ? entry->id : name, where, others, plan->n_doses++);
         if (entry && entry->unit[0])
             memcpy(dose->unit, entry->unit, sizeof dose->unit);
@@ -93,5 +98,9 @@ void plan_dicom_add_component(struct loading *loading, struct dose *dose, struct
     if (!dose->unit[0] && text_equal(job->rtdose.units, "GY"))
         snprintf(dose->unit, sizeof dose->unit, "Gy");
     check_frame(loading, job, &loading->plan->report);
+    if (job->rtdose.has_frame) {
+        dose->frame = dose->has_frame && dose->frame > job->rtdose.frame ? dose->frame : job->rtdose.frame;
+        dose->has_frame = true;
+    }
     plan_add_component(dose, &loading->file->doses[job->index], job->component, values, &loading->plan->report);
 }

@@ -227,12 +227,16 @@ static void fields_dose(struct fields *fields, struct dose *dose)
     fields_text(fields, dose->name, sizeof dose->name);
     fields_text(fields, dose->unit, sizeof dose->unit);
     fields_text(fields, dose->per, sizeof dose->per);
+    fields_bool(fields, &dose->has_frame);
+    FIELDS_ENUM(fields, dose->frame, enum dose_frame, DOSE_N_FRAMES);
     fields_size(fields, &dose->n_components, DOSE_N_QUANTITIES);
     require(fields, dose->n_components > 0);
     for (size_t c = 0; c < dose->n_components; c++) {
         struct dose_component *component = &dose->components[c];
         FIELDS_ENUM(fields, component->quantity, enum dose_quantity, DOSE_N_QUANTITIES);
         fields_bool(fields, &component->is_per_ppm);
+        fields_bool(fields, &component->has_boron_ppm);
+        fields_finite(fields, &component->boron_ppm);
         fields_volume(fields, &component->values, false);
         require(fields, component->values != NULL);
     }

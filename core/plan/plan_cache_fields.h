@@ -3,7 +3,7 @@
  * differ; whoever adds a field to a struct of the plan adds it there and raises PLAN_CACHE_FORMAT. */
 #include "core/plan/plan.h"
 
-enum { PLAN_CACHE_FORMAT = 2, FIELDS_MAX_VOLUMES = PLAN_MAX_IMAGES + REGION_MAX_LAYERS + PLAN_MAX_DOSES * (DOSE_N_QUANTITIES + 1) };
+enum { PLAN_CACHE_FORMAT = 3, FIELDS_MAX_VOLUMES = PLAN_MAX_IMAGES + REGION_MAX_LAYERS + PLAN_MAX_DOSES * (DOSE_N_QUANTITIES + 1) };
 
 struct fields {
     bool is_reading, is_bad; /* bad: cut short, or a value that no plan has */

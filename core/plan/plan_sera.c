@@ -140,6 +140,17 @@ void plan_dose_units(struct dose *dose, const struct plan_file_dose *entry, bool
                    dose->id);
 }
 
+void plan_dose_frame(struct dose *dose, const struct plan_file_dose *entry, const char *where, struct report *report)
+{
+    if (!entry->has_frame)
+        return;
+    dose->frame = dose->has_frame && dose->frame > entry->frame ? dose->frame : entry->frame;
+    dose->has_frame = true;
+    if (entry->frame == DOSE_FRAME_DIFFERS)
+        report_add(report, REPORT_WARNING, "dose.frame-differs", where,
+                   "The plan says that the dose \"%s\" is in another frame of reference than the image; it may be shifted against it.", dose->id);
+}
+
 static void add(struct dose *dose, struct dose_component component, const char *path, struct report *report)
 {
     assert(dose->n_components < DOSE_N_QUANTITIES); /* a dose has each quantity once */
@@ -153,7 +164,13 @@ void plan_add_component(struct dose *dose, const struct plan_file_dose *entry, s
 {
     const struct plan_file_component *from = &entry->components[component];
     dose->reference[from->quantity] = from->reference;
-    add(dose, (struct dose_component){ .quantity = from->quantity, .is_per_ppm = from->is_per_ppm, .values = values }, from->path, report);
+    add(dose,
+        (struct dose_component){ .quantity = from->quantity,
+                                 .is_per_ppm = from->is_per_ppm,
+                                 .has_boron_ppm = from->has_boron_ppm,
+                                 .boron_ppm = from->boron_ppm,
+                                 .values = values },
+        from->path, report);
 }
 
 static bool is_named(const struct plan_file_dose *entry, enum dose_quantity quantity)

@@ -140,10 +140,14 @@ static void list_doses(struct writing *writing)
         memcpy(entry->name, dose->name, sizeof entry->name);
         memcpy(entry->unit, dose->unit, sizeof entry->unit);
         memcpy(entry->per, dose->per, sizeof entry->per);
+        entry->has_frame = dose->has_frame;
+        entry->frame = dose->frame;
         for (size_t c = 0; c < dose->n_components; c++) {
             struct plan_file_component *component = &entry->components[entry->n_components++];
             component->quantity = dose->components[c].quantity;
             component->is_per_ppm = dose->components[c].is_per_ppm;
+            component->has_boron_ppm = dose->components[c].has_boron_ppm;
+            component->boron_ppm = dose->components[c].boron_ppm;
             component->reference = dose->reference[component->quantity];
             snprintf(component->path, sizeof component->path, "doses/%s_%s.nii.gz", dose->id, dose_quantity_word(component->quantity));
             add_output(writing, dose->components[c].values, component->path);

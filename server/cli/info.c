@@ -105,7 +105,10 @@ static void print_doses(const struct plan *plan)
         text_print(stdout, *dose->unit ? dose->unit : "no unit given", 0);
         printf(" per ");
         text_print(stdout, *dose->per ? dose->per : "(not said)", 0);
-        printf("%s\n", dose->mask ? ", with a mask of where it is valid" : "");
+        printf("%s", dose->mask ? ", with a mask of where it is valid" : "");
+        if (dose->has_frame && dose->frame != DOSE_FRAME_SAME)
+            printf(", frame of reference %s", dose->frame == DOSE_FRAME_DIFFERS ? "differs from the image's" : "unknown");
+        printf("\n");
         for (size_t c = 0; c < dose->n_components; c++) {
             const struct dose_component *component = &dose->components[c];
             char unit[DOSE_UNIT_SIZE];
@@ -115,6 +118,8 @@ static void print_doses(const struct plan *plan)
             printf("  %.4g to %.4g", component->values->low, component->values->high);
             if (strcmp(unit, dose->unit) != 0)
                 printf(" %s", unit);
+            if (component->has_boron_ppm)
+                printf(", with boron at %g ppm", component->boron_ppm);
             double body = dose->body_high[component->quantity], reference = dose->reference[component->quantity];
             if (body > 0 || reference > 0)
                 printf("\n     ");

@@ -111,10 +111,12 @@ cJSON *answer_probe(const struct plan *plan, struct vec3 point_lps_mm)
         cJSON_AddStringToObject(item, "id", dose->id);
         cJSON_AddStringToObject(item, "quantity", dose_quantity_word(component->quantity));
         cJSON_AddBoolToObject(item, "per_ppm", component->is_per_ppm);
+        add_number(item, "boron_ppm", component->has_boron_ppm ? component->boron_ppm : NAN);
         add_number(item, "value", probe.doses[i].value);
         dose_unit_of(dose, component->quantity, unit);
         cJSON_AddStringToObject(item, "unit", unit);
         cJSON_AddStringToObject(item, "per", dose->per);
+        cJSON_AddItemToObject(item, "frame_of_reference", dose->has_frame ? cJSON_CreateString(dose_frame_word(dose->frame)) : cJSON_CreateNull());
         cJSON_AddItemToArray(doses, item);
     }
     return json;

@@ -8,7 +8,8 @@
  * most PACKET_MAX_BLOB, to free(). NULL with problem */
 NODISCARD cJSON *answer_shape(struct plan *plan, size_t region, const struct shape_query *query, uint8_t **file, size_t *n_file,
                               struct problem *problem);
-/* {point_lps_mm, regions: [id], images: [{id, value, unit}], doses: [{id, quantity, per_ppm, value, unit, per}]}; innermost region first */
+/* {point_lps_mm, regions: [id], images: [{id, value, unit}], doses: [{id, quantity, per_ppm, boron_ppm, value,
+ * unit, per, frame_of_reference}]}; innermost region first; boron_ppm and frame_of_reference as in the plan document */
 NODISCARD cJSON *answer_probe(const struct plan *plan, struct vec3 point_lps_mm);
 /* {hits: [{point_lps_mm, region: id | null, distance_mm}]}, front to back */
 NODISCARD cJSON *answer_pick(const struct snapshot *snapshot, double px, double py);

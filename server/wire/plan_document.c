@@ -151,6 +151,7 @@ static cJSON *dose_object(const struct dose *dose)
     add(object, "name", cJSON_CreateString(dose->name));
     add(object, "unit", cJSON_CreateString(dose->unit));
     add(object, "per", cJSON_CreateString(dose->per));
+    add(object, "frame_of_reference", dose->has_frame ? cJSON_CreateString(dose_frame_word(dose->frame)) : cJSON_CreateNull());
     add(object, "masked", cJSON_CreateBool(dose->mask != NULL));
     for (size_t i = 0; i < dose->n_components; i++) {
         const struct dose_component *component = &dose->components[i];
@@ -160,6 +161,7 @@ static cJSON *dose_object(const struct dose *dose)
         add(entry, "quantity", cJSON_CreateString(dose_quantity_word(component->quantity)));
         add(entry, "unit", cJSON_CreateString(unit));
         add(entry, "per_ppm", cJSON_CreateBool(component->is_per_ppm));
+        add(entry, "boron_ppm", component->has_boron_ppm ? number(component->boron_ppm) : cJSON_CreateNull());
         add(entry, "grid", grid_object(&component->values->grid));
         add(entry, "low", number(component->values->low));
         add(entry, "high", number(component->values->high));

@@ -9,7 +9,9 @@
  *                 center_mm, bounds_mm, touches_edge,
  *                 tissue: {boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma} } ],    null: the plan does not say
  *     hierarchy: "none" | "file" | "derived",
- *     doses:   [ {id, unit, per, masked, components: [ {quantity, unit, per_ppm, grid, low, high, reference, body_high} ]} ],
+ *     doses:   [ {id, unit, per, frame_of_reference: "same" | "unknown" | "differs" | null, masked,     DICOM's, beside the image's; null: not DICOM
+ *                 components: [ {quantity, unit, per_ppm, boron_ppm, grid, low, high, reference, body_high} ]} ],
+ *                 boron_ppm: of a total, the boron in blood that is in it; null: not known
  *     beams:   [ {id, entry_mm, target_mm, aperture_mm | null} ],
  *     tracks:  {segments, classes: {"neutron-high": n, ...}},
  *     curves:  [ {id, name, unit, per, depth_mm: [low, high], radius_mm: [low, high],          reference curves along a beam

@@ -5,13 +5,13 @@
 
 /* Who adds a field to a plan is stopped here until it is compared below: a conversion or a cache that loses it would not be noticed. */
 #define IS_COMPARED_UP_TO(type, bytes) _Static_assert(sizeof(void *) != 8 || sizeof(type) == (bytes), "compare the new field of " #type)
-IS_COMPARED_UP_TO(struct plan, 54864);
+IS_COMPARED_UP_TO(struct plan, 57808);
 IS_COMPARED_UP_TO(struct plan_image, 248);
 IS_COMPARED_UP_TO(struct plan_preferences, 1296);
 IS_COMPARED_UP_TO(struct region, 328);
 IS_COMPARED_UP_TO(struct region_set, 2080);
-IS_COMPARED_UP_TO(struct dose, 576);
-IS_COMPARED_UP_TO(struct dose_component, 16);
+IS_COMPARED_UP_TO(struct dose, 760);
+IS_COMPARED_UP_TO(struct dose_component, 32);
 IS_COMPARED_UP_TO(struct dose_curve, 480);
 IS_COMPARED_UP_TO(struct beam, 464);
 IS_COMPARED_UP_TO(struct track_segment, 28);
@@ -110,6 +110,8 @@ static void same_doses(const struct plan *found, const struct plan *expected, do
         assert_string_equal(a->name, b->name);
         assert_string_equal(a->unit, b->unit);
         assert_string_equal(a->per, b->per);
+        assert_int_equal(a->has_frame, b->has_frame);
+        assert_int_equal(a->frame, b->frame);
         for (int q = 0; q < DOSE_N_QUANTITIES; q++) {
             same_number(a->reference[q], b->reference[q]);
             same_number(a->body_high[q], b->body_high[q]);
@@ -118,6 +120,8 @@ static void same_doses(const struct plan *found, const struct plan *expected, do
         for (size_t c = 0; c < a->n_components; c++) {
             assert_int_equal(a->components[c].quantity, b->components[c].quantity);
             assert_int_equal(a->components[c].is_per_ppm, b->components[c].is_per_ppm);
+            assert_int_equal(a->components[c].has_boron_ppm, b->components[c].has_boron_ppm);
+            same_number(a->components[c].boron_ppm, b->components[c].boron_ppm);
             same_volume(a->components[c].values, b->components[c].values, mm);
         }
         assert_int_equal(a->mask != NULL, b->mask != NULL);

@@ -10,6 +10,7 @@
 #include "tests/made_plan.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/oracle.h"
+#include "tests/unit/plan_help.h"
 #include "tests/unit/same_plan.h"
 
 #define EXACT_MM 1e-6
@@ -68,7 +69,10 @@ static void put_plan(const char *folder)
         "  {\"path\": \"m3.nii\", \"name\": \"inner\"}, {\"path\": \"m0.nii\", \"name\": \"Nothing\"}],\n"
         "\"hierarchy\": {\"Outer\": [\"inner-2\"]},\n"
         "\"doses\": [{\"id\": \"d\", \"unit\": \"Gy\", \"per\": \"fraction\", \"mask\": \"m1.nii\", \"components\": [\n"
-        "  {\"quantity\": \"boron\", \"per_ppm\": true, \"path\": \"a.nii.gz\"}, {\"quantity\": \"gamma\", \"path\": \"b.nii\"}]}],\n"
+        "  {\"quantity\": \"boron\", \"per_ppm\": true, \"path\": \"a.nii.gz\"}, {\"quantity\": \"gamma\", \"path\": \"b.nii\"}]},\n"
+        "  {\"id\": \"e\", \"unit\": \"cGy\", \"frame_of_reference\": \"differs\", \"path\": \"b.nii\", \"boron_ppm\": 12.7},\n"
+        "  {\"id\": \"f\", \"frame_of_reference\": \"same\", \"path\": \"b.nii\", \"quantity\": \"weighted-total\", \"boron_ppm\": 0},\n"
+        "  {\"id\": \"g\", \"frame_of_reference\": \"unknown\", \"path\": \"b.nii\"}],\n"
         "\"beams\": [{\"id\": \"AP\", \"entry_mm\": [0.1, -200.3, 7], \"target_mm\": [1e-3, 2, 3], \"aperture_mm\": 100.5},\n"
         "  {\"entry_mm\": [1, 2, 3], \"target_mm\": [4, 5, 6]}],\n"
         "\"tracks\": [{\"path\": \"t.pp\", \"unit\": \"mm\"}]}";
@@ -102,6 +106,14 @@ static void a_made_plan_comes_back_with_all_its_peculiarities(void **state)
     assert_string_equal(plan->regions.regions[2].id, "inner-2");
     assert_int_equal(plan->regions.regions[2].parent, 0);
     assert_int_equal(plan->regions.regions[3].n_voxels, 0);
+    assert_int_equal(plan->n_doses, 4);
+    assert_false(plan->doses[0].has_frame);
+    assert_true(plan->doses[1].has_frame && plan->doses[1].frame == DOSE_FRAME_DIFFERS);
+    assert_true(plan->doses[1].components[0].has_boron_ppm);
+    assert_close(plan->doses[1].components[0].boron_ppm, 12.7, 0);
+    assert_non_null(strstr(report_said(&plan->report, "dose.frame-differs"), "\"e\""));
+    assert_true(plan->doses[2].frame == DOSE_FRAME_SAME && plan->doses[2].components[0].has_boron_ppm); /* 0 ppm is said too */
+    assert_true(plan->doses[3].frame == DOSE_FRAME_UNKNOWN && !plan->doses[3].components[0].has_boron_ppm);
     plan_destroy(plan);
     assert_comes_back(folder);
     folder_remove(folder);

@@ -298,6 +298,10 @@ static void a_plan_that_is_wrong_is_refused_with_the_place(void **state)
     expect_refused(folder, PLAN("\"regions\":[{\"path\":\"a.nii\",\"names\":\"y.json\"}]"), ERROR_NOT_FOUND, "y.json");
     expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"alpha\"}]"), ERROR_RANGE, "doses[0].quantity");
     expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"fast\",\"per_ppm\":true}]"), ERROR_RANGE, "per_ppm");
+    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"boron\",\"boron_ppm\":1}]"), ERROR_RANGE, "boron_ppm");
+    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"boron_ppm\":-1}]"), ERROR_RANGE, "boron_ppm");
+    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"boron_ppm\":1000001}]"), ERROR_RANGE, "0 to 1e6");
+    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"frame_of_reference\":\"other\"}]"), ERROR_RANGE, "same, unknown or differs");
     expect_refused(folder, PLAN("\"doses\":[{\"components\":[{\"path\":\"a.nii\"},{\"path\":\"a.nii\"}]}]"), ERROR_RANGE,
                    "doses[0].components[1].quantity: is there twice");
     expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"}],\"beams\":[{\"entry_mm\":[1,2,3],\"target_mm\":[1,2,3]}]"),

@@ -15,7 +15,7 @@
 #include "tests/unit/data_folder.h"
 #include "tests/unit/same_plan.h"
 
-enum { SIZE_IMAGE = 248, SIZE_REGION = 328, SIZE_DOSE = 576, SIZE_BEAM = 464, SIZE_SEGMENT = 28, SIZE_VOLUME = 264, SIZE_PLAN = 54864 };
+enum { SIZE_IMAGE = 248, SIZE_REGION = 328, SIZE_DOSE = 760, SIZE_BEAM = 464, SIZE_SEGMENT = 28, SIZE_VOLUME = 264, SIZE_PLAN = 57808 };
 
 static struct plan *load(const char *folder, const char *cache)
 {

@@ -107,9 +107,13 @@ static void doses_tracks_and_the_report_keep_their_words(void **state)
     plan.bounds_lps_mm = (struct box3){ { -1, -2, -3 }, { 4, 5, 6 } };
     plan.n_doses = 1;
     plan.doses[0] = (struct dose){ .id = "d", .unit = "cGy", .per = "fraction", .n_components = 2 };
-    plan.doses[0].components[0] = (struct dose_component){ DOSE_BORON, true, make_volume(VOXEL_F32) };
-    plan.doses[0].components[1] = (struct dose_component){ DOSE_TOTAL, false, make_volume(VOXEL_F32) };
+    plan.doses[0].components[0] = (struct dose_component){ .quantity = DOSE_BORON, .is_per_ppm = true, .values = make_volume(VOXEL_F32) };
+    plan.doses[0].components[1] = (struct dose_component){ .quantity = DOSE_TOTAL, .values = make_volume(VOXEL_F32) };
     plan.doses[0].components[0].values->high = 0.25;
+    plan.doses[0].components[1].has_boron_ppm = true;
+    plan.doses[0].components[1].boron_ppm = 15;
+    plan.doses[0].has_frame = true;
+    plan.doses[0].frame = DOSE_FRAME_DIFFERS;
     plan.tracks.n_segments = 3;
     plan.tracks.n_of_class[TRACK_GAMMA_LOW] = 3;
     struct report_line line = { REPORT_WARNING, "dose.negative", "A sentence.", "dose.nii.gz" };
@@ -127,6 +131,9 @@ static void doses_tracks_and_the_report_keep_their_words(void **state)
     assert_string_equal(item(boron, "quantity")->valuestring, "boron");
     assert_true(cJSON_IsTrue(item(boron, "per_ppm")) && cJSON_IsFalse(item(total, "per_ppm")));
     assert_close(item(boron, "high")->valuedouble, 0.25, 0);
+    assert_true(cJSON_IsNull(item(boron, "boron_ppm")));
+    assert_close(item(total, "boron_ppm")->valuedouble, 15, 0);
+    assert_string_equal(item(dose, "frame_of_reference")->valuestring, "differs");
     assert_string_equal(item(total, "quantity")->valuestring, "total");
     assert_close(item(item(item(document, "tracks"), "classes"), "gamma-low")->valuedouble, 3, 0);
     const cJSON *told = cJSON_GetArrayItem(item(item(document, "report"), "lines"), 0);

@@ -133,6 +133,11 @@ static void weights_and_ppm_are_divided_away_and_a_weighted_total_keeps_its_name
     chd_check_quantity(&result.doses, DOSE_OTHER);
     chd_check_quantity(&result.doses, DOSE_THERMAL_FLUENCE);
     assert_non_null(strstr(report_said(&result.report, "dose.total-boron"), "weighted, with 15 ppm"));
+    for (size_t c = 0; c < result.doses.n_components; c++) { /* of no other quantity is it said */
+        const struct dose_component *component = &result.doses.components[c];
+        assert_int_equal(component->has_boron_ppm, component->quantity == DOSE_WEIGHTED_TOTAL);
+        assert_close(component->boron_ppm, component->quantity == DOSE_WEIGHTED_TOTAL ? 15 : 0, 0);
+    }
     chd_result_finish(&result);
     made.weight = 0;
     result = chd_read_made(&made);

@@ -391,12 +391,15 @@ void rtdose_finish(struct rtdose *dose)
     dose->values = NULL;
 }
 
-void rtdose_check_frame(const struct rtdose *dose, const char *image_frame_uid, const char *where, struct report *report)
+void rtdose_check_frame(struct rtdose *dose, const char *image_frame_uid, const char *where, struct report *report)
 {
-    if (!dose->frame_uid[0] || !image_frame_uid || !image_frame_uid[0])
+    bool is_known = dose->frame_uid[0] && image_frame_uid && image_frame_uid[0];
+    dose->has_frame = true;
+    dose->frame = !is_known ? DOSE_FRAME_UNKNOWN : strcmp(dose->frame_uid, image_frame_uid) == 0 ? DOSE_FRAME_SAME : DOSE_FRAME_DIFFERS;
+    if (!is_known)
         report_add(report, REPORT_NOTE, "dose.no-frame", where, "%s names no frame of reference, so nothing says that the dose fits the image.",
                    dose->frame_uid[0] ? "The image" : "The dose");
-    else if (strcmp(dose->frame_uid, image_frame_uid) != 0)
+    else if (dose->frame == DOSE_FRAME_DIFFERS)
         report_add(report, REPORT_WARNING, "dose.frame-differs", where,
                    "The dose is in another frame of reference than the image and may be shifted against it.");
 }

@@ -16,6 +16,8 @@ struct rtdose {
     char units[17];        /* "GY", "RELATIVE", ... */
     char description[65], comment[65];
     char uid[DICOM_UID_SIZE], frame_uid[DICOM_UID_SIZE], plan_uid[DICOM_UID_SIZE];
+    bool has_frame; /* by rtdose_check_frame */
+    enum dose_frame frame;
     bool is_component;           /* description or comment says which, or a word in them suggests it */
     bool is_stated;              /* by the grammar of rtdose_component_from_text, not by a word that happens to be there */
     enum dose_quantity quantity; /* DOSE_TOTAL unless is_component */
@@ -52,4 +54,4 @@ typedef const char *(*rtdose_beam_name)(void *context, int64_t number);
 size_t rtdose_group(struct rtdose *objects, size_t n_objects, rtdose_beam_name beam_name, void *context, const char *where,
                     struct dose *doses, size_t most, struct report *report);
 /* As rtstruct_check_frame. */
-void rtdose_check_frame(const struct rtdose *dose, const char *image_frame_uid, const char *where, struct report *report);
+void rtdose_check_frame(struct rtdose *dose, const char *image_frame_uid, const char *where, struct report *report);

@@ -271,6 +271,14 @@ static void add_component(struct dose *dose, struct rtdose *object, enum dose_qu
     struct dose_component *component = &dose->components[dose->n_components++];
     *component = (struct dose_component){ .quantity = quantity, .values = object->values };
     object->values = NULL;
+    if (object->has_frame) { /* the worst of its components' */
+        dose->frame = dose->has_frame && dose->frame > object->frame ? dose->frame : object->frame;
+        dose->has_frame = true;
+    }
+    if ((quantity == DOSE_TOTAL || quantity == DOSE_WEIGHTED_TOTAL) && object->ppm > 0) {
+        component->has_boron_ppm = true;
+        component->boron_ppm = object->ppm;
+    }
     if ((quantity == DOSE_BORON || quantity == DOSE_BLOOD_BORON) && object->ppm > 0) {
         component->is_per_ppm = true;
         component->values->slope /= object->ppm;

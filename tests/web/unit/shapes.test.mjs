@@ -65,9 +65,13 @@ test('a comparison fills row by row; a newer one drops what the older still wait
 });
 
 test('a dose says its unit, what it is per and what it holds; a beam says where it comes from', async () => {
-  const { beamWords, doseWords } = await load('state/plan.js');
+  const { beamWords, doseWords, frameWords } = await load('state/plan.js');
   assert.equal(doseWords({ unit: 'Gy', per: 'per fraction', components: [{ quantity: 'boron', per_ppm: true }, { quantity: 'gamma' }] }), 'Gy per fraction, boron per ppm, gamma');
   assert.equal(doseWords({ unit: '', per: '', components: [] }), 'no unit');
+  assert.equal(doseWords({ unit: 'cGy', per: '', components: [{ quantity: 'total', per_ppm: false, boron_ppm: 1 }, { quantity: 'total', per_ppm: false, boron_ppm: null }] }), 'cGy, total with boron at 1 ppm, total');
+  assert.match(frameWords({ frame_of_reference: 'differs' }), /another frame of reference/);
+  assert.match(frameWords({ frame_of_reference: 'unknown' }), /Nothing says/);
+  assert.deepEqual([frameWords({ frame_of_reference: 'same' }), frameWords({ frame_of_reference: null })], ['', '']);
   assert.equal(beamWords({ aperture_mm: 120, delivery: null }), 'aperture 120 mm');
   assert.equal(beamWords({ aperture_mm: null, delivery: { radiation: 'NEUTRON', gantry_deg: 90, gantry_stop_deg: 150 } }), 'neutron, gantry 90° to 150°');
 });

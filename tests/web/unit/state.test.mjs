@@ -176,6 +176,7 @@ for (const [what, change, state] of [
   ['an input unanswered for 0.9 s', { header: still, staleSince: 9100 }, 'full'],
   ['an input unanswered for 1.1 s', { header: still, staleSince: 8900 }, 'stale'],
   ['an older scene for 1.1 s', { header: { ...still, scene_revision: 2 }, revisionAt: 8900 }, 'stale'],
+  ['a view that cannot be drawn as it is', { header: still, refusal: 'the camera looks at itself' }, 'stale'],
   ['a restarting renderer', { header: still, renderer: 'restarting' }, 'stale'],
   ['a lost connection', { header: still, link: { state: 'lost', retryAt: 12000 } }, 'disconnected'],
 ])

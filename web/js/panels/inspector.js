@@ -2,7 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
-import { crosshair, imagePatch, isLowWhite, reportSummary, shownImage, windowPresets } from '../state/plan.js';
+import { crosshair, frameWords, imagePatch, isLowWhite, reportSummary, shownImage, windowPresets } from '../state/plan.js';
 import { algorithms } from '../state/shapes.js';
 import { drawingBlocks } from './drawing.js';
 import { numberField, segment } from './fields.js';
@@ -61,11 +61,18 @@ function doseTable(result, isOld) {
     const rows = result.doses.filter((dose) => dose.id === id);
     return html`<section class="block"><h3>Dose <span class="dim">${id}</span></h3><table class=${classMap({ old: isOld })}><thead><tr><th>Component</th><th>${unitText(rows[0].unit)}</th></tr></thead>
       <tbody>${rows.map((dose) => html`<tr><td>${componentName(dose)}</td><td>${dose.value === null ? 'not known here' : significant(dose.value)}${dose.unit === rows[0].unit ? '' : ` ${unitText(dose.unit)}`}</td></tr>`)}</tbody></table>
-      <p class="note">${rows[0].per ? `Per ${unitText(rows[0].per.replace(/^per /, ''))}. ` : ''}Physical, no weights${rows.some(({ quantity }) => hasWeights.has(quantity)) ? ', but for weighted total and blood boron: there the file has put them in' : ''}.</p></section>`;
+      <p class="note">${rows[0].per ? `Per ${unitText(rows[0].per.replace(/^per /, ''))}. ` : ''}Physical, no weights${rows.some(({ quantity }) => hasWeights.has(quantity)) ? ', but for weighted total and blood boron: there the file has put them in' : ''}.${boronNote(rows)}</p>
+      ${frameWords(rows[0]) ? html`<p class="note why">${icon('warning', 12)} ${frameWords(rows[0])}</p>` : nothing}</section>`;
   });
 }
 
-const componentName = ({ quantity, per_ppm }) => `${quantity[0].toUpperCase()}${quantity.slice(1).replaceAll('-', ' ')}${per_ppm ? ', per ppm' : ''}`;
+const componentName = ({ quantity, per_ppm, boron_ppm: ppm }) => `${quantity[0].toUpperCase()}${quantity.slice(1).replaceAll('-', ' ')}${per_ppm ? ', per ppm' : ''}${Number.isFinite(ppm) ? `, boron at ${ppm} ppm` : ''}`;
+
+/** What is in a total cannot be taken out, so it is said beside it. */
+function boronNote(rows) {
+  const total = rows.find(({ boron_ppm: ppm }) => Number.isFinite(ppm));
+  return total ? ` The ${total.quantity.replaceAll('-', ' ')} is with boron at ${total.boron_ppm} ppm in blood.` : '';
+}
 const hasWeights = new Set(['weighted-total', 'blood-boron']);
 
 // ---- view -------------------------------------------------------------------------------------------------------------

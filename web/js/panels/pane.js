@@ -46,6 +46,7 @@ export class Pane {
       revisionAt: room.revisionAt.value,
       fps: view.fps.value,
       now: ui.now.value,
+      refusal: view.refusal.value,
     }));
     this.#stops.push(mount(host, () => this.#draw()));
     const body = host.querySelector('.picture');

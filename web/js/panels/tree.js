@@ -3,7 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { repeat } from '../../lib/directives/repeat.js';
-import { beamWords, doseWords, imagePatch, shownImage, soloPatch } from '../state/plan.js';
+import { beamWords, doseWords, frameWords, imagePatch, shownImage, soloPatch } from '../state/plan.js';
 import { count, number, volume, windowText } from './format.js';
 import { icon } from './icons.js';
 import { variables } from './mount.js';
@@ -89,8 +89,9 @@ function doses(room, ui, plan) {
     const isShown = dose === shown;
     const toggle = (event) => room.patchScene({ dose: { id: dose.id, grid: !isShown } }, { view: ui.active.value, at: event.timeStamp });
     return html`<li class="row" data-dose=${dose.id} title=${doseWords(dose)}><button class="eye" aria-pressed=${isShown} aria-label=${`Show the grid of ${dose.name || dose.id}`} title="Show or hide the box of its grid"
-      ?disabled=${!room.canChange.value} @click=${toggle}>${icon(isShown ? 'eye' : 'eyeOff')}</button><span class="clipped">${dose.name || dose.id}</span><span class="tail">${dose.unit}</span></li>`;
+      ?disabled=${!room.canChange.value} @click=${toggle}>${icon(isShown ? 'eye' : 'eyeOff')}</button><span class="clipped">${dose.name || dose.id}</span>${frameMark(dose)}<span class="tail">${dose.unit}</span></li>`;
   };
+  const frameMark = (dose) => (dose.frame_of_reference === 'differs' ? html`<span class="refused warn" role="img" aria-label=${frameWords(dose)} title=${frameWords(dose)}>${icon('warning')}</span>` : nothing);
   return section('Doses', shown ? 'grid shown' : '', html`<ul class="rows">${plan.doses.map(row)}</ul>`);
 }
 

@@ -23,7 +23,7 @@ function why(header) {
  * @param {number} facts.fps @param {number} facts.now
  * @returns {{state: string, text: string, why: string} | null} null before the first picture
  */
-export function fidelity({ link, renderer, header, staleSince, revision, revisionAt, fps, now }) {
+export function fidelity({ link, renderer, header, staleSince, revision, revisionAt, fps, now, refusal = '' }) {
   const badge = (state, text, reason = '') => ({ state, text, why: reason });
   if (link.state === 'lost') {
     const seconds = Math.max(0, Math.ceil((link.retryAt - now) / 1000));
@@ -33,6 +33,7 @@ export function fidelity({ link, renderer, header, staleSince, revision, revisio
   if (!header) return null;
   if (renderer === 'failed' || renderer === 'closed') return badge('stale', 'Stale', 'The plan is not loaded; this is the last picture of it.');
   if (renderer !== 'ready') return badge('stale', 'Stale', 'The renderer is being started again; this is the last picture it made.');
+  if (refusal) return badge('stale', 'Stale', `The view cannot be drawn as it is now: ${refusal}`);
   const behindSince = header.scene_revision < revision ? revisionAt : 0;
   const since = Math.min(staleSince || Infinity, behindSince || Infinity);
   if (now - since > staleMs) return badge('stale', `Stale ${Math.floor((now - since) / 1000)} s`, 'The picture does not show the newest change yet.');

@@ -126,8 +126,14 @@ export function soloPatch(regions, scene, id) {
 /** "Gy per fraction, total" of a dose; what it cannot say it leaves out. */
 export function doseWords(dose) {
   const per = dose.per ? ` per ${dose.per.replace(/^per /, '')}` : '';
-  const quantities = dose.components.map(({ quantity, per_ppm: perPpm }) => (perPpm ? `${quantity} per ppm` : quantity));
+  const quantities = dose.components.map(({ quantity, per_ppm: perPpm, boron_ppm: ppm }) => (perPpm ? `${quantity} per ppm` : Number.isFinite(ppm) ? `${quantity} with boron at ${ppm} ppm` : quantity));
   return [`${dose.unit || 'no unit'}${per}`, ...quantities].join(', ');
+}
+
+/** A sentence where a dose may not lie where it is shown; '' where nothing says so. */
+export function frameWords({ frame_of_reference: frame }) {
+  if (frame === 'differs') return 'In another frame of reference than the image: the dose may be shifted against it.';
+  return frame === 'unknown' ? 'Nothing says that dose and image share a frame of reference.' : '';
 }
 
 /** "gantry 90°, 120 mm" of a beam */
