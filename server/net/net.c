@@ -15,6 +15,7 @@ enum {
     MAX_TASKS = 4096,          /* waiting; who posts more waits */
     FLEET_TICK_US = 250000,
     FAREWELL_US = 1000000,     /* at the end: for byes to get out */
+    RESTART_RETRY_MS = 2000,   /* when pages come back after the daemon was stopped: a restart takes about that */
 };
 
 struct task {
@@ -362,6 +363,8 @@ static void *work(void *context)
     while (!net_is_stopping(net))
         ws_serve(net->ws);
     run_tasks(net);
+    for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next) /* before the rooms say that they are closed */
+        ws_bye(visitor->connection, WS_CLOSE_GOING_AWAY, "the server is being stopped", RESTART_RETRY_MS);
     while (net->n_places)
         net_room_delete(net, room_id(net->places[0]->room));
     int64_t end_us = clock_now_us() + FAREWELL_US;
