@@ -33,7 +33,8 @@ function connect(room) {
   url.protocol = url.protocol.replace('http', 'ws');
   url.hash = '';
   const { member = '', secret = '' } = remembered(room);
-  const connection = new Connection(url.href, { makeSocket: (address) => new WebSocket(address), clock }, { member, secret });
+  const isGone = () => api.room(room).then(() => false, (problem) => problem.type === '/problems/not-found');
+  const connection = new Connection(url.href, { makeSocket: (address) => new WebSocket(address), clock, isGone }, { member, secret });
   connection.addEventListener('message', ({ detail }) => {
     if (detail.type === 'welcome') sessionStorage.setItem(`room ${room}`, JSON.stringify({ member: detail.member, secret: detail.secret }));
   });

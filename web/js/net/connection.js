@@ -23,7 +23,9 @@ export class Connection extends EventTarget {
   #identity = { name: '', member: '', secret: '' };
   #socket = null;
   #isWelcome = false;
+  #isGone;
   #failures = 0;
+  #askedWaitMs = 0; // by the last bye
   #retryTimer = 0;
   #pingTimer = 0;
   #heardAt = 0;
@@ -34,13 +36,15 @@ export class Connection extends EventTarget {
    * @param {object} world what is handed in, so that tests hand in fakes
    * @param {(url: string) => WebSocket} world.makeSocket
    * @param {{now: () => number, setTimeout: Function, clearTimeout: Function}} world.clock
+   * @param {() => Promise<boolean>} [world.isGone] whether the room is no longer there; asked when a socket could not be opened
    * @param {{name?: string, member?: string, secret?: string}} identity who to be (again)
    */
-  constructor(url, { makeSocket, clock }, identity = {}) {
+  constructor(url, { makeSocket, clock, isGone = async () => false }, identity = {}) {
     super();
     this.#url = url;
     this.#makeSocket = makeSocket;
     this.#clock = clock;
+    this.#isGone = isGone;
     Object.assign(this.#identity, identity);
   }
 
@@ -54,8 +58,10 @@ export class Connection extends EventTarget {
     const socket = this.#makeSocket(this.#url);
     socket.binaryType = 'arraybuffer';
     this.#socket = socket;
+    let wasOpen = false;
     socket.addEventListener('open', () => {
       if (socket !== this.#socket) return;
+      wasOpen = true;
       this.#heardAt = this.#clock.now();
       const { name, member, secret } = this.#identity;
       this.#write({ type: 'hello', protocol, name, ...(member && { member, secret }) });
@@ -63,7 +69,7 @@ export class Connection extends EventTarget {
     socket.addEventListener('message', (event) => {
       if (socket === this.#socket) this.#receive(event.data);
     });
-    socket.addEventListener('close', () => this.#lose(socket));
+    socket.addEventListener('close', () => this.#lose(socket, wasOpen));
   }
 
   /** Sends a message of proto/messages.json; false when there is no connection. */
@@ -75,6 +81,7 @@ export class Connection extends EventTarget {
   /** Tries at once instead of at the end of the wait. */
   retryNow() {
     this.#failures = 0;
+    this.#askedWaitMs = 0;
     this.open();
   }
 
@@ -117,7 +124,7 @@ export class Connection extends EventTarget {
     }
     if (message.type === 'bye') {
       if (message.retry_ms === null) this.#isEnded = true;
-      else this.#failures = Math.max(this.#failures, backoffMs.findIndex((ms) => ms >= message.retry_ms));
+      else this.#askedWaitMs = message.retry_ms;
     }
     this.#tell('message', message);
     if (this.#isEnded) this.#tell('ended', { reason: message.reason });
@@ -132,16 +139,25 @@ export class Connection extends EventTarget {
     this.#pingTimer = this.#clock.setTimeout(() => this.#ping(), pingMs);
   }
 
-  #lose(socket) {
+  #lose(socket, wasOpen) {
     if (socket !== this.#socket) return;
     this.#socket = null;
     this.#isWelcome = false;
     this.#clock.clearTimeout(this.#pingTimer);
     if (this.#isEnded) return;
-    const retryMs = backoffMs[Math.min(this.#failures, backoffMs.length - 1)];
+    const retryMs = Math.max(this.#askedWaitMs, backoffMs[Math.min(this.#failures, backoffMs.length - 1)]);
     this.#failures += 1;
+    this.#askedWaitMs = 0;
     this.#retryTimer = this.#clock.setTimeout(() => this.open(), retryMs);
     this.#tell('lost', { retryMs });
+    if (!wasOpen) void this.#endIfGone();
+  }
+
+  /** A browser does not tell a page why a WebSocket was refused. */
+  async #endIfGone() {
+    if (!(await this.#isGone()) || this.#isEnded) return;
+    this.close();
+    this.#tell('ended', { reason: 'the room is no longer there; it ends with a restart of the server, and when nobody has been in it for long' });
   }
 
   #tell(type, detail) {
