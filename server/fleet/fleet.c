@@ -300,6 +300,7 @@ static void tell_news(struct fleet *fleet)
         if (plan->state == FLEET_READY)
             asks_send_waiting(fleet, plan);
     }
+    owed_send(fleet);
     asks_deliver_failed(fleet);
 }
 
@@ -513,7 +514,7 @@ struct fleet *fleet_create(const struct fleet_options *options, struct error *er
         goto fail;
     fleet->plan_folders[options->n_plan_folders] = mem_copy_text(fleet->plans_home); /* last: a plan that was here before keeps its id */
     struct watch_options watching = { fleet->times.ping, fleet->times.silent, fleet->times.awaited_ping, fleet->times.awaited_silent,
-                                      options->wake, options->context };
+                                      options->max_orders, options->wake, options->context };
     fleet->watch = watch_create(&watching, err);
     if (!fleet->watch)
         goto fail;

@@ -11,6 +11,7 @@ enum {
     FLEET_MAX_PLANS = 2000,
     FLEET_MAX_RESTARTS = 3,    /* in a row without a picture, while nobody holds the plan; then failed */
     FLEET_MAX_REQUESTS = 4096, /* unanswered ones, of all plans; more are answered with PROBLEM_BUSY */
+    FLEET_MAX_WAITING_BYTES = 64 << 20, /* of requests that wait for a plan to be read; more are answered with PROBLEM_BUSY */
     FLEET_MAX_SCANS = 2,       /* plan folders looked at at once */
     FLEET_MAX_UPLOADS = 16,    /* archives that wait, are unpacked or looked at; more are refused with PROBLEM_LIMIT */
     FLEET_MAX_UNPACKING = 2,   /* of these, unpacked at once */
@@ -57,6 +58,7 @@ struct fleet_options {
     void (*list_folders)(const char *const *given, size_t n_given, struct folder_list *list);
     int idle_close_s;            /* a ready plan nobody uses (fleet_hold) is closed after this */
     struct fleet_times times;    /* all 0: the defaults */
+    int max_orders;              /* that may wait for the fleet's thread; 0: as many as ever come; for tests */
     void (*wake)(void *context); /* any thread: make the net thread call fleet_handle_events soon */
     /* what happened, on the net thread, from fleet_handle_events or fleet_tick; a new process is told before waiting requests go to it */
     void (*changed)(void *context, const char *plan_id); /* state, progress, or the list itself (plan_id NULL) */
@@ -130,7 +132,8 @@ bool fleet_upload_find(const struct fleet *fleet, uint64_t number, struct fleet_
 /* Ends it and removes what it made; nothing when it has ended. */
 void fleet_upload_cancel(struct fleet *fleet, uint64_t number);
 
-/* Tells the renderer something without an answer (scene, forget). packet is borrowed. false: not ready. */
+/* Tells the renderer something without an answer (scene, forget, drop). packet is borrowed. What is said of a room is never lost while
+ * the process lives: where the way to it is full it is told later, and requests that follow are refused until then. false: not ready. */
 bool fleet_tell(struct fleet *fleet, const char *plan_id, const cJSON *packet);
 
 /* Exactly one of answer and problem is given. answer->blob may be taken: set it to NULL. */

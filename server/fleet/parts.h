@@ -43,6 +43,7 @@ struct plan_entry {
     char confined[96];
     cJSON *document, *default_scene;
     char *image_ids[MAX_IMAGES + 1];
+    struct fleet_owed *owed; /* scenes its renderer is still to be told; requests.c's */
     int64_t load_ms, asked_us; /* asked: when its present process was started */
     int64_t drew_us;           /* when a picture last came */
     int64_t moved_us;          /* when loading last got further */
@@ -90,6 +91,7 @@ struct fleet {
     uint64_t n_trash;
     struct fleet_ask *asks;
     size_t n_asks;
+    uint64_t n_waiting_bytes; /* of requests that are not sent */
     uint64_t last_number; /* of processes and requests */
     int n_scans;
     uint64_t probe;
@@ -123,6 +125,8 @@ bool uploads_take_event(struct fleet *fleet, const struct watch_event *event);
 bool uploads_owns(const struct fleet *fleet, const char *folder);
 
 /* requests.c */
+void owed_send(struct fleet *fleet); /* what found no room in the orders to the watch, in its order */
+void owed_forget(struct plan_entry *plan);
 void asks_send_waiting(struct fleet *fleet, struct plan_entry *plan);
 /* plan NULL: those of every plan. only_sent: what still waits for READY goes on waiting. Delivered by asks_deliver_failed. */
 void asks_fail(struct fleet *fleet, const struct plan_entry *plan, bool only_sent, const struct problem *problem);

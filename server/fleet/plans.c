@@ -29,6 +29,7 @@ void plan_entry_destroy(struct plan_entry *plan)
 {
     for (size_t i = 0; plan->image_ids[i]; i++)
         free(plan->image_ids[i]);
+    owed_forget(plan);
     cJSON_Delete(plan->parts);
     cJSON_Delete(plan->document);
     cJSON_Delete(plan->default_scene);

@@ -99,7 +99,7 @@ struct process *process_create(uint64_t number, char *const argv[], int limit_ms
     process->lane = mem_new(sizeof *process->lane);
     atomic_init(&process->lane->references, 1);
     if (!process->is_program)
-        process->reader = packet_reader_create();
+        process->reader = packet_reader_create(PACKET_TO_DAEMON);
     struct error err = { 0 };
     if (!spawn_child(argv, process->is_program ? SPAWN_OUTPUT : SPAWN_SOCKET, &process->child, &err)) {
         (void)snprintf(process->reason, sizeof process->reason, "%s", err.text);
@@ -250,12 +250,7 @@ static void take_packets(struct process *process, int64_t now_us)
         }
         uint64_t text = process->n_since_packet > packet.n_blob ? process->n_since_packet - packet.n_blob : 0;
         process->n_since_packet = 0;
-        const char *type = json_text(packet.json, "type");
-        if (!type) {
-            packet_finish(&packet);
-            is_broken(process, "a packet without a type", now_us);
-            return;
-        }
+        const char *type = json_text(packet.json, "type"); /* one of the known ones: the reader has seen to that */
         if (strcmp(type, "pong") == 0) { /* its answer to our ping: that it speaks is all we wanted */
             packet_finish(&packet);
             continue;
@@ -406,9 +401,10 @@ static void send_ping(struct process *process, int64_t now_us)
     cJSON *ping = cJSON_CreateObject();
     cJSON_AddStringToObject(ping, "type", "ping");
     size_t n;
-    uint8_t *bytes = packet_write(ping, NULL, 0, &n);
+    uint8_t *bytes = packet_write(ping, NULL, 0, &n, NULL);
     cJSON_Delete(ping);
-    process_send(process, bytes, n, now_us);
+    if (bytes)
+        process_send(process, bytes, n, now_us);
 }
 
 static void keep_silence(struct process *process, const struct watch_options *options, int64_t now_us)

@@ -299,7 +299,7 @@ struct watch *watch_create(const struct watch_options *options, struct error *er
     struct watch *watch = mem_new(sizeof *watch);
     watch->options = *options;
     watch->last_held = &watch->held;
-    watch->orders = queue_create(ORDER_CAPACITY, order_destroy);
+    watch->orders = queue_create(options->max_orders > 0 ? (size_t)options->max_orders : ORDER_CAPACITY, order_destroy);
     watch->events = queue_create(EVENT_CAPACITY, event_drop);
     watch->bell = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     int failed = watch->bell < 0 ? errno : pthread_create(&watch->thread, NULL, watch_main, watch);

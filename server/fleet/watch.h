@@ -42,6 +42,7 @@ struct watch_options {
     /* The same for a renderer whose answer is awaited (watch_await). It is ended this early only when its main thread stands still
      * (stopped, or asleep without reading): one that waits for a processor or a disk keeps silent_ms. */
     int awaited_ping_ms, awaited_silent_ms;
+    int max_orders; /* that may wait; 0: the default */
     void (*wake)(void *context); /* any thread: an event is waiting */
     void *context;
 };

@@ -10,8 +10,6 @@
 #include "server/net/parts.h"
 #include "server/wire/missing.h"
 
-enum { MAX_SIDE_PX = 16384 };
-
 /* ---- rooms to the fleet --------------------------------------------------------------------------------------------- */
 
 static void unlink_asked(struct asked *asked)
@@ -23,44 +21,24 @@ static void unlink_asked(struct asked *asked)
 }
 
 /* The renderer may be in the hands of a hostile file: what it says is checked as if it came from outside. */
-static bool whole(const cJSON *json, const char *name, double least, double most, double *value)
-{
-    *value = json_number(json, name, NAN);
-    return *value >= least && *value <= most;
-}
-
 static bool read_frame(const struct asked *asked, const struct packet *answer, struct frame_header *header)
 {
-    double width, height, render_us, encode_us, pixels_per_mm, revision;
-    const cJSON *json = answer->json, *matrix = cJSON_GetObjectItemCaseSensitive(json, "clip_from_lps_mm");
-    const char *type = json_text(json, "type");
-    if (!type || strcmp(type, "frame") != 0 || answer->n_blob == 0 || answer->n_blob > UINT32_MAX)
-        return false;
-    if (!whole(json, "width_px", 1, MAX_SIDE_PX, &width) || !whole(json, "height_px", 1, MAX_SIDE_PX, &height) ||
-        !whole(json, "render_us", 0, UINT32_MAX, &render_us) || !whole(json, "encode_us", 0, UINT32_MAX, &encode_us) ||
-        !whole(json, "pixels_per_mm", 0, 4e6, &pixels_per_mm) || !whole(json, "scene_revision", 0, UINT32_MAX, &revision) ||
-        cJSON_GetArraySize(matrix) != 16)
+    struct packet_frame frame;
+    if (!packet_frame_read(answer, &frame))
         return false;
     *header = (struct frame_header){ .codec = 1,
                                      .flags = asked->flags,
                                      .quality = asked->quality,
                                      .scale_percent = asked->scale_percent,
-                                     .scene_revision = asked->is_override ? asked->scene_revision : (uint32_t)revision,
-                                     .width_px = (uint16_t)width,
-                                     .height_px = (uint16_t)height,
-                                     .render_us = (uint32_t)render_us,
-                                     .encode_us = (uint32_t)encode_us,
+                                     .scene_revision = asked->is_override ? asked->scene_revision : frame.scene_revision,
+                                     .width_px = frame.width_px,
+                                     .height_px = frame.height_px,
+                                     .render_us = frame.render_us,
+                                     .encode_us = frame.encode_us,
                                      .payload_bytes = (uint32_t)answer->n_blob,
-                                     .pixels_per_mm_1000 = (uint32_t)lround(pixels_per_mm * 1000) };
-    int i = 0;
-    const cJSON *number;
-    cJSON_ArrayForEach(number, matrix)
-    {
-        if (!cJSON_IsNumber(number) || !isfinite((float)number->valuedouble))
-            return false;
-        header->clip_from_lps_mm[i++] = (float)number->valuedouble;
-    }
-    if (json_flag(json, "is_light", false))
+                                     .pixels_per_mm_1000 = (uint32_t)llround(frame.pixels_per_mm * 1000) };
+    memcpy(header->clip_from_lps_mm, frame.clip_from_lps_mm, sizeof header->clip_from_lps_mm);
+    if (frame.is_light)
         header->flags |= FRAME_LIGHT; /* the renderer knows whether it really drew the lighter meshes */
     return true;
 }

@@ -28,7 +28,7 @@ struct link *link_create(int socket)
 {
     struct link *link = mem_new(sizeof *link);
     link->socket = socket;
-    link->reader = packet_reader_create();
+    link->reader = packet_reader_create(PACKET_TO_RENDERER);
     link->last = &link->first;
     int flags = fcntl(socket, F_GETFL);
     link->is_broken = flags < 0 || fcntl(socket, F_SETFL, flags | O_NONBLOCK) != 0;
@@ -75,13 +75,38 @@ void link_write(struct link *link)
     }
 }
 
-void link_say(struct link *link, const cJSON *json, const uint8_t *blob, size_t n_blob)
+static bool put(struct link *link, const cJSON *json, const uint8_t *blob, size_t n_blob, struct error *err)
 {
+    size_t n_bytes;
+    uint8_t *bytes = packet_write(json, blob, n_blob, &n_bytes, err);
+    if (!bytes)
+        return false;
     struct outgoing *out = mem_new(sizeof *out);
-    out->bytes = packet_write(json, blob, n_blob, &out->n_bytes);
+    *out = (struct outgoing){ .bytes = bytes, .n_bytes = n_bytes };
     *link->last = out;
     link->last = &out->next;
     link_write(link);
+    return true;
+}
+
+void link_say(struct link *link, const cJSON *json, const uint8_t *blob, size_t n_blob)
+{
+    struct error err = { 0 };
+    if (put(link, json, blob, n_blob, &err))
+        return;
+    log_error("%s", err.text);
+    /* the daemon waits for it: it hears why it does not come */
+    struct problem problem;
+    problem_from_error(&problem, &err);
+    const cJSON *id = cJSON_GetObjectItemCaseSensitive(json, "id");
+    cJSON *instead = cJSON_CreateObject();
+    cJSON_AddStringToObject(instead, "type", id ? "problem" : "failed");
+    if (id)
+        cJSON_AddItemToObject(instead, "id", cJSON_Duplicate(id, false));
+    cJSON_AddItemToObject(instead, "problem", problem_to_json(&problem));
+    if (!put(link, instead, NULL, 0, &err))
+        link->is_broken = true;
+    cJSON_Delete(instead);
 }
 
 bool link_read(struct link *link)

@@ -107,12 +107,19 @@ cJSON *json_read(const char *bytes, size_t n, struct problem *problem)
     return json;
 }
 
-char *json_write(const cJSON *json)
+char *json_print(const cJSON *json)
 {
     char *text = cJSON_PrintUnformatted(json);
+    if (text)
+        make_utf8((unsigned char *)text, strlen(text));
+    return text;
+}
+
+char *json_write(const cJSON *json)
+{
+    char *text = json_print(json);
     if (!text)
         abort(); /* no memory for a message */
-    make_utf8((unsigned char *)text, strlen(text));
     return text;
 }
 

@@ -12,6 +12,8 @@ enum { JSON_MAX_DEPTH = 32 };
 NODISCARD cJSON *json_read(const char *bytes, size_t n, struct problem *problem);
 /* Compact text, free() it. Never NULL, always UTF-8: bytes in strings that are none come out as '?'. */
 NODISCARD char *json_write(const cJSON *json);
+/* The same; NULL when there is no memory. For documents whose size others decide. */
+NODISCARD char *json_print(const cJSON *json);
 
 /* RFC 7396: target (may be NULL) with patch applied, as a new document. Neither argument changes. */
 NODISCARD cJSON *json_merge(const cJSON *target, const cJSON *patch);

@@ -6,6 +6,7 @@
  * daemon to renderer
  *   scene    {type, room, revision, scene}            the room's scene document, complete; replaces the room's last
  *   forget   {type, room}                             a room is gone
+ *   drop     {type, id}                               a picture is no longer wanted
  *   render   {type, id, room | scene, scene_revision?, view, scale_percent, quality, codec: "jpeg"|"png", full_color, detail: "full"|"light", still, source}
  *            scene: a complete document for this picture alone (HTTP render, overrides); else the room's. scene_revision comes back
  *            in frame; left out: the room's, or 0
@@ -24,10 +25,12 @@
  *   answer   {type, id, body} + blob?
  *   problem  {type, id, problem}                      instead of frame or answer
  *   pong     {type}
+ * How large each may be: packet_limits.h.
  */
 #include "server/wire/json.h"
+#include "server/wire/packet_limits.h"
 
-enum { PACKET_HEAD_BYTES = 12, PACKET_MAX_JSON = 8 << 20, PACKET_MAX_BLOB = 512 << 20 };
+enum { PACKET_HEAD_BYTES = 12 };
 
 struct packet {
     cJSON *json;
@@ -36,16 +39,32 @@ struct packet {
 };
 void packet_finish(struct packet *packet);
 
-/* Bytes to send for a packet; free(). blob is copied. */
-NODISCARD uint8_t *packet_write(const cJSON *json, const uint8_t *blob, size_t n_blob, size_t *n_bytes);
+/* Bytes to send for a packet; free(). blob is copied.
+ *   errors ERROR_FORMAT a type there is no packet of, ERROR_LIMIT larger than its type may be, ERROR_MEMORY */
+NODISCARD uint8_t *packet_write(const cJSON *json, const uint8_t *blob, size_t n_blob, size_t *n_bytes, struct error *err);
 
-/* Collects bytes from a stream and gives whole packets. */
+/* What a frame says of its picture. */
+struct packet_frame {
+    uint16_t width_px, height_px;
+    uint32_t scene_revision, render_us, encode_us;
+    double pixels_per_mm;
+    float clip_from_lps_mm[16];
+    bool is_light;
+};
+/* The daemon's check of a "frame": every number within its bounds, a blob there. False: it breaks the rules. */
+NODISCARD bool packet_frame_read(const struct packet *packet, struct packet_frame *frame);
+
+/* Collects bytes of one direction from a stream and gives whole packets. Memory for a blob is taken when its packet's type is known
+ * and allows it, and the bytes are read to where they stay. */
 struct packet_reader;
-struct packet_reader *packet_reader_create(void);
+struct packet_reader *packet_reader_create(enum packet_direction direction);
 void packet_reader_destroy(struct packet_reader *reader);
 /* Room for the next bytes from the socket: *n of them at most. NULL: ERROR_MEMORY. */
 NODISCARD uint8_t *packet_reader_space(struct packet_reader *reader, size_t *n, struct error *err);
 /* After n bytes were put there. */
 void packet_reader_added(struct packet_reader *reader, size_t n);
-/* 1 a packet (the caller's to finish), 0 more bytes needed, -1 broken (bad head, too large, no JSON): err says why, close the stream. */
+/* 1 a packet (the caller's to finish), 0 more bytes needed, -1 broken (bad head, no JSON, a type of the other direction or none, too
+ * large for its type, no memory): err says why, close the stream. */
 int packet_reader_take(struct packet_reader *reader, struct packet *packet, struct error *err);
+/* Bytes of memory it holds now. What a large packet needed is given back with the packet. */
+size_t packet_reader_held(const struct packet_reader *reader);

@@ -1,5 +1,5 @@
 /* The stream between daemon and renderer, which a hostile plan may have taken over: the first byte says in what pieces it
- * arrives. */
+ * arrives, its lowest bit which way. */
 #include "server/wire/packet.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -9,10 +9,17 @@ static void check(const struct packet *packet)
     REQUIRE(packet->json);
     REQUIRE((packet->blob == NULL) == (packet->n_blob == 0));
     size_t n_bytes = 0;
-    uint8_t *bytes = packet_write(packet->json, packet->blob, packet->n_blob, &n_bytes);
-    REQUIRE(bytes && n_bytes >= PACKET_HEAD_BYTES + packet->n_blob);
-    REQUIRE(packet->n_blob == 0 || memcmp(bytes + n_bytes - packet->n_blob, packet->blob, packet->n_blob) == 0);
+    struct error err = { 0 };
+    struct packet_frame frame;
+    uint8_t *bytes = packet_write(packet->json, packet->blob, packet->n_blob, &n_bytes, &err);
+    /* numbers may be longer than they came: then it is too large, and nothing else */
+    REQUIRE(bytes ? n_bytes >= PACKET_HEAD_BYTES + packet->n_blob : err.code == ERROR_LIMIT);
+    REQUIRE(!bytes || packet->n_blob == 0 || memcmp(bytes + n_bytes - packet->n_blob, packet->blob, packet->n_blob) == 0);
     free(bytes);
+    if (packet_frame_read(packet, &frame))
+        REQUIRE(packet->n_blob > 0 && frame.width_px >= 1 && frame.width_px <= PACKET_MAX_SIDE_PX && frame.pixels_per_mm >= 0);
+    const struct packet_limit *limit = packet_limit_find(json_text(packet->json, "type"));
+    REQUIRE(limit && packet->n_blob <= limit->max_blob);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
@@ -20,7 +27,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     if (n < 1)
         return 0;
     size_t piece = 1 + data[0];
-    struct packet_reader *reader = packet_reader_create();
+    struct packet_reader *reader = packet_reader_create(data[0] & 1 ? PACKET_TO_RENDERER : PACKET_TO_DAEMON);
     struct error err = { 0 };
     for (size_t at = 1; at < n;) {
         size_t room = 0;

@@ -48,7 +48,9 @@ static void write_all(const void *bytes, size_t n)
 static void say(cJSON *json, const void *blob, size_t n_blob)
 {
     size_t n;
-    uint8_t *bytes = packet_write(json, blob, n_blob, &n);
+    uint8_t *bytes = packet_write(json, blob, n_blob, &n, NULL);
+    if (!bytes)
+        _exit(9);
     write_all(bytes, n);
     free(bytes);
     cJSON_Delete(json);
@@ -104,6 +106,8 @@ static void die(void)
     pause();
 }
 
+static cJSON *revisions; /* of each room's scene, the last that was told */
+
 static void handle(const cJSON *packet, const char *folder)
 {
     const char *type = json_text(packet, "type");
@@ -122,8 +126,14 @@ static void handle(const cJSON *packet, const char *folder)
             continue;
         cJSON *json = word("answer");
         cJSON_AddNumberToObject(json, "id", json_number(packet, "id", 0));
-        cJSON_AddItemToObject(json, "body", cJSON_Duplicate(packet, true));
+        cJSON_AddItemToObject(json, "body", cJSON_Duplicate(behaves("remembers-scenes") ? revisions : packet, true));
         say(json, NULL, 0);
+    } else if (behaves("remembers-scenes") && (strcmp(type, "scene") == 0 || strcmp(type, "forget") == 0)) {
+        const char *room = json_text(packet, "room");
+        revisions = revisions ? revisions : cJSON_CreateObject();
+        cJSON_DeleteItemFromObjectCaseSensitive(revisions, room);
+        if (strcmp(type, "scene") == 0)
+            cJSON_AddNumberToObject(revisions, room, json_number(packet, "revision", -1));
     } else if (strcmp(type, "scene") == 0 && behaves("floods")) {
         for (;;)
             say_progress(1);
@@ -142,7 +152,12 @@ static int renderer_main(const char *folder, const char *id)
     if (behaves("garbage"))
         write_all("HTTP/1.1 200 OK\r\n\r\n", 19);
     if (behaves("no-type"))
-        say(cJSON_CreateObject(), NULL, 0);
+        write_all("BRPK\2\0\0\0\0\0\0\0{}", 14); /* a little-endian machine's */
+    if (behaves("large-frame")) { /* within what an answer may have */
+        uint32_t head[3] = { 0x4b505242u, 16, 400u << 20 };
+        write_all(head, sizeof head);
+        write_all("{\"type\":\"frame\"}", 16);
+    }
     if (behaves("fails") || behaves("no-memory")) {
         struct problem problem;
         if (behaves("fails"))
@@ -167,7 +182,7 @@ static int renderer_main(const char *folder, const char *id)
     say_ready(id);
     if (behaves("deaf"))
         raise(SIGSTOP);
-    struct packet_reader *reader = packet_reader_create();
+    struct packet_reader *reader = packet_reader_create(PACKET_TO_RENDERER);
     for (;;) {
         size_t room;
         struct packet packet;

@@ -212,7 +212,7 @@ static void one_that_never_draws_a_picture_is_given_up_after_three_restarts_when
 static void garbage_ends_that_plan_only(void **state)
 {
     (void)state;
-    static const char *const kinds[] = { "garbage", "huge-head", "no-type", "other-id", "wrong-scene" };
+    static const char *const kinds[] = { "garbage", "huge-head", "large-frame", "no-type", "other-id", "wrong-scene" };
     struct world world;
     world_begin(&world);
     world.options.max_renderers = 10;
@@ -475,6 +475,47 @@ static void one_that_reads_nothing_is_ended_before_memory_fills(void **state)
     world_end(&world);
 }
 
+/* Of 300 rooms each gets three scenes at once, while four orders may wait for the thread that sends: it is the last scene of each that
+ * counts, and it is there before a picture of the room is drawn. Every third room is closed meanwhile. */
+static void no_scene_is_lost_when_the_way_to_the_renderer_is_full(void **state)
+{
+    (void)state;
+    enum { N_ROOMS = 300 };
+    struct world world;
+    world_begin(&world);
+    world.options.max_orders = 4;
+    world_add_plan(&world, "a", "remembers-scenes");
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_wait_for_state(&world, "a", FLEET_READY);
+    for (int revision = 1; revision <= 3; revision++)
+        for (int i = 0; i < N_ROOMS; i++) {
+            char room[32];
+            snprintf(room, sizeof room, "room-%d", i);
+            cJSON *scene = cJSON_CreateObject();
+            cJSON_AddStringToObject(scene, "type", revision == 3 && i % 3 == 0 ? "forget" : "scene");
+            cJSON_AddStringToObject(scene, "room", room);
+            cJSON_AddNumberToObject(scene, "revision", revision);
+            (void)fleet_tell(world.fleet, "a", scene);
+            cJSON_Delete(scene);
+        }
+    /* a request is refused while scenes wait, and answered after them */
+    struct reply reply = { 0 };
+    WORLD_UNTIL(&world, (reply_finish(&reply), world_ask(&world, "a", "query", &reply), world_wait_for_reply(&world, &reply),
+                         reply.problem.type != PROBLEM_BUSY));
+    assert_int_equal(reply.problem.type, PROBLEM_NONE);
+    cJSON *body = cJSON_GetObjectItemCaseSensitive(reply.json, "body");
+    for (int i = 0; i < N_ROOMS; i++) {
+        char room[32];
+        snprintf(room, sizeof room, "room-%d", i);
+        double revision = json_number(body, room, -1);
+        if (revision != (i % 3 == 0 ? -1 : 3))
+            fail_msg("%s is at revision %g", room, revision);
+    }
+    reply_finish(&reply);
+    world_end(&world);
+}
+
 static void what_is_asked_of_no_plan_or_a_closed_one_is_refused(void **state)
 {
     (void)state;
@@ -556,6 +597,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_flood_of_packets_does_not_fill_the_memory),
         cmocka_unit_test(more_requests_than_the_limit_are_refused_at_once),
         cmocka_unit_test(one_that_reads_nothing_is_ended_before_memory_fills),
+        cmocka_unit_test(no_scene_is_lost_when_the_way_to_the_renderer_is_full),
         cmocka_unit_test(what_is_asked_of_no_plan_or_a_closed_one_is_refused),
         cmocka_unit_test(the_end_answers_everybody_and_leaves_no_process),
         cmocka_unit_test(a_renderer_that_is_not_there_is_said_at_once),
