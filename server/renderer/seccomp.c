@@ -59,7 +59,7 @@ static const int allowed[] = {
     SYS_getrlimit,
 #endif
 #if SECCOMP_IS_RELAXED
-    SYS_execve, SYS_execveat, SYS_ptrace, SYS_clone, SYS_clone3, SYS_wait4, SYS_waitid, SYS_prctl, SYS_personality, SYS_socketpair, SYS_prlimit64,
+    SYS_execve, SYS_execveat, SYS_ptrace, SYS_clone, SYS_clone3, SYS_wait4, SYS_waitid, SYS_prctl, SYS_personality, SYS_socketpair,
 #ifdef SYS_fork
     SYS_fork, SYS_vfork,
 #endif
