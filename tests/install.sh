@@ -33,7 +33,8 @@ check "keeps a configuration that was changed" grep -q '^# mine$' "$root/etc/bea
 
 # the sample configuration, with only its places moved here
 data=$(mktemp -d)
-sed -e "s|^plans = .*|plans = $PWD/build/demo/plans|; s|^data = .*|data = $data|; s|^listen = .*|listen = 127.0.0.1:0|" \
+chmod 755 "$data" # root's daemon becomes another user, who has to get there
+sed -e "s|^plans = .*|plans = $PWD/build/demo/plans|; s|^data = .*|data = $data/state|; s|^listen = .*|listen = 127.0.0.1:0|" \
     -e "s|^web = /usr|web = $root/usr|" "$root/etc/beamroom/beamroomd.conf" >"$data/beamroomd.conf"
 : >"$log"
 "$root/usr/bin/beamroomd" --config "$data/beamroomd.conf" >"$log" 2>&1 </dev/null &
@@ -45,6 +46,12 @@ for _ in $(seq 100); do
 done
 url=$(sed -n 's/^ready \(http:[^ ]*\).*/\1/p' "$log" | head -n 1)
 check "the installed daemon serves with the sample configuration" test -n "$url"
+whose() { # root's daemon is another user's by now, if that one can get here; another user's stays his
+    local uid
+    uid=$(sed -nE 's/^Uid:\s+([0-9]+).*/\1/p' "/proc/$daemon/status")
+    if [ "$(id -u)" = 0 ] && ! grep -q 'staying root: user .* cannot reach' "$log"; then [ "$uid" != 0 ]; else [ "$uid" = "$(id -u)" ]; fi
+}
+check "the daemon is an ordinary user's" whose
 smoke=0
 if [ -n "$url" ]; then deploy/smoke.sh "$url" phantom || smoke=1; else cat "$log"; fi
 kill -TERM $daemon 2>/dev/null

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "core/base/mem.h"
+#include "core/base/path.h"
 
 void bytes_free(struct bytes *bytes)
 {
@@ -22,7 +23,7 @@ void bytes_free(struct bytes *bytes)
 
 bool folder_open(struct folder *folder, const char *path, struct error *err)
 {
-    char *resolved = realpath(path, NULL);
+    char *resolved = path_resolve(path);
     if (!resolved || strlen(resolved) >= sizeof folder->path) {
         free(resolved);
         return error_set(err, ERROR_NOT_FOUND, "the plan's folder does not exist or cannot be entered: %s", strerror(errno));

@@ -16,6 +16,7 @@
 #include "server/daemon/acceptor.h"
 #include "server/net/net.h"
 #include "server/daemon/options.h"
+#include "server/daemon/privilege.h"
 #include "server/http/hosts.h"
 #include "server/http/http.h"
 
@@ -30,7 +31,7 @@ static bool make_folders(const char *folder, struct error *err)
         if (kept != '/' && kept != 0)
             continue;
         *slash = 0;
-        if (mkdir(path, 0700) != 0 && errno != EEXIST)
+        if (mkdir(path, kept ? 0755 : 0700) != 0 && errno != EEXIST) /* what is ours is in the last; those above only lead there */
             return error_set(err, ERROR_IO, "--data %.150s: %s", path, strerror(errno));
         *slash = kept;
         if (!kept)
@@ -73,6 +74,51 @@ static bool default_web_folder(char path[PATH_SIZE], struct error *err)
     return error_set(err, ERROR_NOT_FOUND, "the page's files are not beside the program; say --web DIR");
 }
 
+static bool default_renderer(char path[PATH_SIZE], struct error *err)
+{
+    ssize_t n = readlink("/proc/self/exe", path, PATH_SIZE - sizeof "beamroom-render");
+    path[n > 0 ? n : 0] = 0;
+    char *slash = strrchr(path, '/');
+    if (!slash)
+        return error_set(err, ERROR_IO, "where this program lies cannot be found out: %s", strerror(errno));
+    memcpy(slash + 1, "beamroom-render", sizeof "beamroom-render");
+    return true;
+}
+
+/* A text of the options, or the default; the options own it from then on. */
+static bool fill_path(char **option, bool (*find)(char path[PATH_SIZE], struct error *err), struct error *err)
+{
+    char path[PATH_SIZE];
+    if (*option)
+        return true;
+    if (!find(path, err))
+        return false;
+    *option = mem_copy_text(path);
+    return true;
+}
+
+/* Every path the options name, as the user we become reaches it. */
+static bool give_up_root(struct options *options, struct error *err)
+{
+    struct privilege_place places[OPTIONS_MAX_PLAN_FOLDERS + 3];
+    size_t n = 0;
+    for (size_t i = 0; i < options->n_plan_folders; i++)
+        places[n++] = (struct privilege_place){ "--plans", options->plan_folders[i], R_OK | X_OK };
+    places[n++] = (struct privilege_place){ "--data", options->data_folder, F_OK };
+    places[n++] = (struct privilege_place){ "--web", options->web_folder, R_OK | X_OK };
+    places[n++] = (struct privilege_place){ "--renderer", options->renderer_path, R_OK | X_OK };
+    const char *colon = options->listen ? strrchr(options->listen, ':') : NULL;
+    struct privilege_options wanted = { .user = options->user, .data_folder = options->data_folder, .port = colon ? atoi(colon + 1) : 8080,
+                                        .places = places, .n_places = n };
+    bool ok = privilege_give_up(&wanted, err);
+    for (size_t i = 0; i < options->n_plan_folders; i++)
+        options->plan_folders[i] = places[i].path;
+    options->data_folder = places[n - 3].path;
+    options->web_folder = places[n - 2].path;
+    options->renderer_path = places[n - 1].path;
+    return ok;
+}
+
 static bool gl_is_known(const char *gl, struct error *err)
 {
     static const char *const known[] = { "auto", "egl-device", "egl-surfaceless", "osmesa", "soft" };
@@ -98,8 +144,9 @@ static int wait_for_plans(const struct net *net, const sigset_t *signals)
 }
 
 /* Serves until a signal comes. */
-static bool serve(const struct options *options, const char *data_folder, const char *web_folder, struct error *err)
+static bool serve(const struct options *options, struct error *err)
 {
+    const char *data_folder = options->data_folder;
     const struct net_options net_options = {
         .fleet = { .plan_folders = (const char *const *)options->plan_folders,
                    .n_plan_folders = options->n_plan_folders,
@@ -119,7 +166,7 @@ static bool serve(const struct options *options, const char *data_folder, const 
     char upload_folder[PATH_SIZE + 16];
     (void)snprintf(upload_folder, sizeof upload_folder, "%s/uploads", data_folder);
     struct hosts *hosts = hosts_create((const char *const *)options->public_names, options->n_public_names);
-    const struct http_options http_options = { .web_folder = web_folder,
+    const struct http_options http_options = { .web_folder = options->web_folder,
                                                .upload_folder = upload_folder,
                                                .max_upload_bytes = (uint64_t)options->max_upload_mib << 20,
                                                .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
@@ -155,7 +202,6 @@ int main(int argc, char **argv)
     standard_files_fill();
     struct options options;
     struct error err = { 0 };
-    char data_folder[PATH_SIZE], web_folder[PATH_SIZE];
     if (!options_read(&options, argc, argv, &err)) {
         fprintf(stderr, "beamroomd: %s\n", err.text);
         options_finish(&options);
@@ -178,23 +224,17 @@ int main(int argc, char **argv)
     sigaddset(&signals, SIGTERM);
     sigprocmask(SIG_BLOCK, &signals, NULL);
     signal(SIGPIPE, SIG_IGN);
-    (void)umask(0077); /* what we and our children write is patients' data */
     struct rlimit no_core = { 0, 0 }; /* and so is what is in memory */
     (void)setrlimit(RLIMIT_CORE, &no_core);
 
     bool ok = !options.gl || gl_is_known(options.gl, &err);
-    if (ok && options.data_folder)
-        (void)snprintf(data_folder, sizeof data_folder, "%s", options.data_folder);
-    else if (ok)
-        ok = default_data_folder(data_folder, &err);
-    ok = ok && make_folders(data_folder, &err);
-    if (ok && options.web_folder)
-        (void)snprintf(web_folder, sizeof web_folder, "%s", options.web_folder);
-    else if (ok)
-        ok = default_web_folder(web_folder, &err);
+    ok = ok && fill_path(&options.data_folder, default_data_folder, &err) && fill_path(&options.web_folder, default_web_folder, &err) &&
+         fill_path(&options.renderer_path, default_renderer, &err) && make_folders(options.data_folder, &err);
+    (void)umask(0077); /* what we and our children write is patients' data */
+    ok = ok && give_up_root(&options, &err);
     if (ok && options.n_plan_folders == 0)
         log_warn("no --plans folder: only uploaded plans can be shown");
-    ok = ok && serve(&options, data_folder, web_folder, &err);
+    ok = ok && serve(&options, &err);
     if (!ok)
         log_error("%s", err.text);
     options_finish(&options);

@@ -38,6 +38,7 @@ static const struct setting settings[] = {
     { "disk-reserve-mib", "N", "what uploads leave free on the disk of --data, in MiB; default 64", KIND_COUNT, AT(disk_reserve_mib), 0, 1 << 24 },
     { "allow-origin", "ORIGIN", "a further origin whose pages may open WebSockets, as https://beamroom.example", KIND_TEXT, AT(allowed_origin), 0, 0 },
     { "public-name", "NAME", "a name people reach this server by, as beamroom.example; may be repeated; * for any", KIND_NAMES, AT(public_names), 0, 0 },
+    { "user", "NAME", "started by root: the user to run as; default beamroom where there is one, else nobody; root stays root", KIND_TEXT, AT(user), 0, 0 },
     { "log-level", "LEVEL", "debug, info (default), warning or error", KIND_LEVEL, AT(log_level), 0, 0 },
     { "stub", NULL, "draw grey pictures instead of using GL; for tests", KIND_FLAG, AT(stub_renderer), 0, 0 },
 };
@@ -203,6 +204,7 @@ void options_finish(struct options *options)
     free(options->gl);
     free(options->renderer_path);
     free(options->allowed_origin);
+    free(options->user);
 }
 
 void options_print_help(void)

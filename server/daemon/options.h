@@ -13,7 +13,7 @@ struct options {
     size_t n_plan_folders;
     char *public_names[OPTIONS_MAX_NAMES];
     size_t n_public_names;
-    char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin; /* NULL: not said */
+    char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin, *user; /* NULL: not said */
     int64_t max_renderers, max_renderer_mib, plan_idle_close_s, room_idle_close_s, max_rooms, max_members;
     int64_t max_upload_mib, max_unpacked_mib, disk_reserve_mib;
     bool stub_renderer;

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "core/base/mem.h"
+#include "core/base/path.h"
 
 /* FNV-1a, so that equal contents in any order of listing give equal sums when added up. */
 static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t n)
@@ -75,7 +76,7 @@ static void looked_at_finish(struct looked_at *seen)
 
 static void add(struct folder_list *list, const char *path, const char *name, uint64_t fingerprint)
 {
-    char *real = realpath(path, NULL);
+    char *real = path_resolve(path);
     if (!real)
         return;
     bool is_known = false;
@@ -119,7 +120,7 @@ static bool add_inner(struct folder_list *list, const char *path, const char *na
 
 static void list_one(const char *given, struct folder_list *list)
 {
-    char *real = realpath(given, NULL);
+    char *real = path_resolve(given);
     struct looked_at seen = { 0 };
     if (!real || !look_at(real, true, &seen)) {
         if (!list->problem[0])

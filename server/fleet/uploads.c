@@ -17,6 +17,7 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "core/base/path.h"
 #include "server/fleet/parts.h"
 
 enum {
@@ -79,7 +80,7 @@ static char *make_home(const struct fleet *fleet, const char *name, struct error
     char *path = path_in(fleet->data_folder, name), *real = NULL;
     if (mkdir(path, 0700) != 0 && errno != EEXIST)
         error_set(err, ERROR_IO, "%s cannot be made: %s", path, strerror(errno));
-    else if (!(real = realpath(path, NULL)))
+    else if (!(real = path_resolve(path)))
         error_set(err, ERROR_IO, "%s: %s", path, strerror(errno));
     else if (strlen(real) > PATH_MAX / 2) {
         error_set(err, ERROR_LIMIT, "the data folder's path is too long");
