@@ -8,7 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include "core/base/mem.h"
@@ -189,6 +191,15 @@ static bool move_pieces(struct pieces *pieces)
 
 /* ---- writing ---------------------------------------------------------------------------------------------------------- */
 
+/* Of the limit on files this process may write, and of the disk, of which some is left to others. */
+static bool has_room(int folder, uint64_t n_bytes)
+{
+    struct rlimit limit;
+    struct statvfs disk;
+    bool is_allowed = getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || n_bytes <= limit.rlim_cur;
+    return is_allowed && (fstatvfs(folder, &disk) != 0 || (uint64_t)disk.f_bavail * disk.f_frsize >= n_bytes + ((uint64_t)PLAN_CACHE_LEAVES_MIB << 20));
+}
+
 static bool write_file(int fd, const struct plan *plan, uint64_t *n_bytes)
 {
     union { /* fields_plan stores nothing when it writes */
@@ -206,7 +217,7 @@ static bool write_file(int fd, const struct plan *plan, uint64_t *n_bytes)
     uint64_t head_bytes = head.size + pieces.n_pieces * sizeof *pieces.checks;
     *n_bytes = place_voxels(&pieces, head_bytes);
     bool is_written = !fields.is_bad && *n_bytes <= MAX_BYTES && head_bytes <= (uint64_t)PLAN_CACHE_MAX_HEAD_MIB << 20 &&
-                      move_pieces(&pieces);
+                      has_room(fd, *n_bytes) && move_pieces(&pieces);
     if (is_written) {
         fields_bytes(&head, pieces.checks, pieces.n_pieces * sizeof *pieces.checks);
         struct start start = make_start(&head);
@@ -239,6 +250,9 @@ bool plan_cache_store(const struct plan *plan, const char *cache_folder, struct 
         (void)unlinkat(folder, partial, 0);
         if (n_bytes > MAX_BYTES)
             error_set(err, ERROR_LIMIT, "%llu bytes are more than are kept, %d MiB", (unsigned long long)n_bytes, PLAN_CACHE_MAX_MIB);
+        else if (!has_room(folder, n_bytes))
+            error_set(err, ERROR_LIMIT, "%llu bytes are more than a file may have here, or than leave %d MiB on the disk", (unsigned long long)n_bytes,
+                      PLAN_CACHE_LEAVES_MIB);
         else
             error_set(err, ERROR_IO, "the opened plan cannot be kept: %s", strerror(reason));
     }

@@ -8,7 +8,8 @@
 #define PLAN_CACHE_NAME "plan.cache" /* in the cache folder; plan.cache.part while it is written */
 enum {
     PLAN_CACHE_MAX_HEAD_MIB = 256,   /* everything but voxels */
-    PLAN_CACHE_MAX_MIB = 8192        /* of the file; a larger plan is not kept */
+    PLAN_CACHE_MAX_MIB = 8192,       /* of the file; a larger plan is not kept */
+    PLAN_CACHE_LEAVES_MIB = 256      /* on the disk; where there would be less, a plan is not kept */
 };
 
 /* The files of the plan's folder as they were before it was read. */

@@ -108,7 +108,7 @@ static bool give_up_root(struct options *options, struct error *err)
     places[n++] = (struct privilege_place){ "--web", options->web_folder, R_OK | X_OK };
     places[n++] = (struct privilege_place){ "--renderer", options->renderer_path, R_OK | X_OK };
     const char *colon = options->listen ? strrchr(options->listen, ':') : NULL;
-    struct privilege_options wanted = { .user = options->user, .data_folder = options->data_folder, .port = colon ? atoi(colon + 1) : 8080,
+    struct privilege_options wanted = { .user = options->user, .data_folder = options->data_folder, .port = colon ? (int)strtol(colon + 1, NULL, 10) : 8080,
                                         .places = places, .n_places = n };
     bool ok = privilege_give_up(&wanted, err);
     for (size_t i = 0; i < options->n_plan_folders; i++)
@@ -152,6 +152,8 @@ static bool serve(const struct options *options, struct error *err)
                    .n_plan_folders = options->n_plan_folders,
                    .data_folder = data_folder,
                    .max_unpacked_bytes = (uint64_t)options->max_unpacked_mib << 20,
+                   .max_cache_bytes = (uint64_t)options->max_cache_mib << 20,
+                   .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
                    .renderer_path = options->renderer_path,
                    .gl = options->gl ? options->gl : "auto",
                    .stub_renderer = options->stub_renderer,

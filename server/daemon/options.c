@@ -35,7 +35,8 @@ static const struct setting settings[] = {
     { "max-members", "N", "people in one room; default 32, at most 64", KIND_COUNT, AT(max_members), 1, 64 },
     { "max-upload-mib", "N", "largest archive that may be uploaded, in MiB; default 2048", KIND_COUNT, AT(max_upload_mib), 1, 1 << 24 },
     { "max-unpacked-mib", "N", "what may come out of one, in MiB; default 8192", KIND_COUNT, AT(max_unpacked_mib), 1, 1 << 24 },
-    { "disk-reserve-mib", "N", "what uploads leave free on the disk of --data, in MiB; default 64", KIND_COUNT, AT(disk_reserve_mib), 0, 1 << 24 },
+    { "max-cache-mib", "N", "what opened plans kept for the next time may take in --data, in MiB; default 16384", KIND_COUNT, AT(max_cache_mib), 128, 1 << 24 },
+    { "disk-reserve-mib", "N", "what uploads and kept plans leave free on the disk of --data, in MiB; default 64", KIND_COUNT, AT(disk_reserve_mib), 0, 1 << 24 },
     { "allow-origin", "ORIGIN", "a further origin whose pages may open WebSockets, as https://beamroom.example", KIND_TEXT, AT(allowed_origin), 0, 0 },
     { "public-name", "NAME", "a name people reach this server by, as beamroom.example; may be repeated; * for any", KIND_NAMES, AT(public_names), 0, 0 },
     { "user", "NAME", "started by root: the user to run as; default beamroom where there is one, else nobody; root stays root", KIND_TEXT, AT(user), 0, 0 },
@@ -155,7 +156,7 @@ bool options_read(struct options *options, int argc, char **argv, struct error *
     bool given[N_SETTINGS] = { false };
     const char *config = NULL;
     *options = (struct options){ .max_renderers = 8, .max_renderer_mib = 16384, .plan_idle_close_s = 600, .room_idle_close_s = 86400,
-                                 .max_rooms = 200, .max_members = 32, .max_upload_mib = 2048, .max_unpacked_mib = 8192, .disk_reserve_mib = 64,
+                                 .max_rooms = 200, .max_members = 32, .max_upload_mib = 2048, .max_unpacked_mib = 8192, .max_cache_mib = 16384, .disk_reserve_mib = 64,
                                  .log_level = LOG_INFO };
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "-h") == 0 || strcmp(argv[i], "--help") == 0) {

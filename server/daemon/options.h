@@ -15,7 +15,7 @@ struct options {
     size_t n_public_names;
     char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin, *user; /* NULL: not said */
     int64_t max_renderers, max_renderer_mib, plan_idle_close_s, room_idle_close_s, max_rooms, max_members;
-    int64_t max_upload_mib, max_unpacked_mib, disk_reserve_mib;
+    int64_t max_upload_mib, max_unpacked_mib, max_cache_mib, disk_reserve_mib;
     bool stub_renderer;
     enum log_level log_level;
     bool wants_help, wants_version;

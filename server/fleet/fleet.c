@@ -79,13 +79,14 @@ void plan_entry_kill(struct fleet *fleet, struct plan_entry *plan, const char *r
 
 void plan_entry_start(struct fleet *fleet, struct plan_entry *plan)
 {
-    char cache[PATH_MAX], limit[32];
+    char cache[PATH_MAX], limit[32], file_limit[32];
     (void)snprintf(cache, sizeof cache, "%s/cache/%s", fleet->data_folder, plan->id);
     (void)snprintf(limit, sizeof limit, "%llu", (unsigned long long)fleet->options.max_renderer_bytes);
     (void)mkdir(cache, 0700); /* without it the renderer does without a cache */
-    const char *words[16] = { fleet->renderer_path, "--socket-fd", "3", "--plan-folder", plan->folder, "--plan-id", plan->id,
-                              "--cache", cache, "--gl", fleet->gl_word };
-    size_t n = 11;
+    (void)snprintf(file_limit, sizeof file_limit, "%llu", (unsigned long long)cache_max_file(fleet->cache));
+    const char *words[20] = { fleet->renderer_path, "--socket-fd", "3", "--plan-folder", plan->folder, "--plan-id", plan->id,
+                              "--cache", cache, "--max-file-bytes", file_limit, "--gl", fleet->gl_word };
+    size_t n = 13;
     if (fleet->options.max_renderer_bytes > 0) {
         words[n++] = "--max-bytes";
         words[n++] = limit;
@@ -102,8 +103,10 @@ void plan_entry_start(struct fleet *fleet, struct plan_entry *plan)
     plan->ready_us = 0;
     plan->asked_us = clock_now_us();
     plan->moved_us = fleet_now_us(fleet);
+    cache_begin(fleet->cache, plan->id, plan->process);
     if (!watch_start_renderer(fleet->watch, plan->process, fleet_arguments(words))) {
         struct problem problem;
+        cache_end(fleet->cache, plan->process);
         plan->process = 0;
         problem_set(&problem, PROBLEM_BUSY, "", "", "too much is waiting to be told to renderers");
         plan_entry_fail(fleet, plan, &problem);
@@ -469,6 +472,7 @@ static void set_times(struct fleet *fleet)
 static void fleet_free(struct fleet *fleet)
 {
     lister_destroy(fleet->lister);
+    cache_destroy(fleet->cache); /* its thread gives orders to the watch */
     watch_destroy(fleet->watch);
     uploads_end(fleet);
     for (size_t i = 0; i < fleet->n_plans; i++)
@@ -482,6 +486,24 @@ static void fleet_free(struct fleet *fleet)
     free(fleet->gl_word);
     cJSON_Delete(fleet->gl);
     free(fleet);
+}
+
+static void end_for_its_cache(void *context, uint64_t process, const char *reason)
+{
+    struct fleet *fleet = context;
+    watch_stop(fleet->watch, process, true, reason);
+}
+
+static struct cache *make_cache(struct fleet *fleet, struct error *err)
+{
+    char path[PATH_MAX];
+    (void)snprintf(path, sizeof path, "%s/cache", fleet->data_folder); /* make_cache_folder saw to its length */
+    const struct cache_options options = { .folder = path,
+                                           .max_bytes = fleet->options.max_cache_bytes,
+                                           .reserve_bytes = fleet->options.disk_reserve_bytes,
+                                           .end = end_for_its_cache,
+                                           .context = fleet };
+    return cache_create(&options, err);
 }
 
 static void start_probe(struct fleet *fleet)
@@ -516,7 +538,8 @@ struct fleet *fleet_create(const struct fleet_options *options, struct error *er
     struct watch_options watching = { fleet->times.ping, fleet->times.silent, fleet->times.awaited_ping, fleet->times.awaited_silent,
                                       options->max_orders, options->wake, options->context };
     fleet->watch = watch_create(&watching, err);
-    if (!fleet->watch)
+    fleet->cache = fleet->watch ? make_cache(fleet, err) : NULL;
+    if (!fleet->cache)
         goto fail;
     fleet->lister = lister_create((const char *const *)fleet->plan_folders, options->n_plan_folders + 1,
                                   options->list_folders ? options->list_folders : folders_list, options->wake, options->context, err);

@@ -52,6 +52,8 @@ struct fleet_options {
     const char *renderer_path;   /* beamroom-render; NULL: beside our own executable */
     const char *gl;              /* "auto", ... handed on */
     bool stub_renderer;          /* --stub: no GL at all, for tests */
+    uint64_t max_cache_bytes;    /* of data/cache, all plans together; 0: 16 GiB */
+    uint64_t disk_reserve_bytes; /* what caches leave free on the disk; 0: they may fill it */
     uint64_t max_renderer_bytes; /* writable memory of one renderer, its threads' stacks included; 0: no limit */
     int max_renderers;           /* running at once; opening one more closes the longest unused that nobody holds, or is refused with PROBLEM_BUSY */
     /* how the plan folders are listed, on a thread of its own; NULL: folders_list. For tests */

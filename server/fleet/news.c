@@ -227,6 +227,7 @@ static void probe_ended(struct fleet *fleet, const struct watch_event *event)
 
 void news_ended(struct fleet *fleet, const struct watch_event *event)
 {
+    cache_end(fleet->cache, event->number);
     if (event->number == fleet->probe) {
         probe_ended(fleet, event);
         return;

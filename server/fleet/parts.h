@@ -1,6 +1,7 @@
 #pragma once
 /* What the fleet's files share: its plans, its requests, its state. Everything on the net thread; nothing of this is for others.
  * Times are fleet_now_us's, but for asked_us. */
+#include "server/fleet/cache.h"
 #include "server/fleet/fleet.h"
 #include "server/fleet/lister.h"
 #include "server/fleet/remover.h"
@@ -86,6 +87,7 @@ struct fleet {
     struct lister *lister;
     struct run_clock clock; /* runs with fleet_tick */
     struct remover *remover;
+    struct cache *cache;
     struct upload *uploads; /* newest first */
     char *plans_home, *uploads_home; /* data/plans, data/uploads; absolute, links resolved */
     uint64_t n_trash;

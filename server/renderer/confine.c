@@ -151,6 +151,10 @@ void confine(const struct confine_options *options, char got[128])
     bool is_bare = drop_capabilities();
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, 1024);
+    if (options->max_file_bytes > 0) {
+        (void)signal(SIGXFSZ, SIG_IGN); /* the write fails with EFBIG, and whoever writes can say so */
+        limit(RLIMIT_FSIZE, (rlim_t)options->max_file_bytes);
+    }
     if (options->cpu_seconds > 0)
         limit(RLIMIT_CPU, (rlim_t)options->cpu_seconds);
     if (!SECCOMP_IS_RELAXED) { /* a sanitizer maps terabytes, and looks at its own process from outside */

@@ -11,6 +11,7 @@ struct confine_options {
     uint64_t max_bytes;       /* writable memory of its own; 0: no limit */
     bool needs_gpu;           /* device files of graphics drivers stay open to it */
     const char *unpack_folder; /* files and folders may be made, moved and removed in it, and nothing else; NULL: nothing may */
+    uint64_t max_file_bytes;  /* of one file it writes, also of one in memory; more is an error of the write; 0: no limit */
     uint64_t cpu_seconds;     /* of processor time, then the kernel ends the process; 0: no limit */
 };
 

@@ -37,6 +37,7 @@ static void print_help(void)
           "  --plan-folder DIR  the plan to read; nothing else is readable from then on\n"
           "  --plan-id ID       what the daemon calls the plan: letters a-z, digits, '-'\n"
           "  --cache DIR        folder that may be written\n"
+          "  --max-file-bytes N  largest file it may write; 0 (default): no limit\n"
           "  --max-bytes N      most memory of its own the process may take; 0 (default): no limit\n"
           "  --help, --version  this text, the version\n\n"
           "It gives up the network, other programs and other files before it reads a plan, as far as the kernel offers that.\n"
@@ -49,7 +50,7 @@ struct arguments {
     struct session_options session;
     const char *scan, *cache, *archive, *into;
     bool is_probe;
-    uint64_t max_bytes, max_unpacked_bytes; /* the second 0: not said */
+    uint64_t max_bytes, max_file_bytes, max_unpacked_bytes; /* the last 0: not said */
 };
 
 static int refuse(const char *what, const char *value)
@@ -69,7 +70,7 @@ static bool read_number(const char *text, unsigned long long most, unsigned long
 /* -1: go on; else the exit status. */
 static int read_arguments(int argc, char **argv, struct arguments *arguments)
 {
-    enum { HELP = 256, VERSION, SOCKET, FOLDER, ID, CACHE, GL, STUB, MAX_BYTES, SCAN, PROBE, UNPACK, INTO, MAX_UNPACKED };
+    enum { HELP = 256, VERSION, SOCKET, FOLDER, ID, CACHE, GL, STUB, MAX_BYTES, SCAN, PROBE, UNPACK, INTO, MAX_UNPACKED, MAX_FILE };
     static const struct option options[] = {
         { "help", no_argument, NULL, HELP },           { "version", no_argument, NULL, VERSION },
         { "socket-fd", required_argument, NULL, SOCKET }, { "plan-folder", required_argument, NULL, FOLDER },
@@ -78,6 +79,7 @@ static int read_arguments(int argc, char **argv, struct arguments *arguments)
         { "max-bytes", required_argument, NULL, MAX_BYTES }, { "scan", required_argument, NULL, SCAN },
         { "probe-gl", no_argument, NULL, PROBE },      { "unpack", required_argument, NULL, UNPACK },
         { "into", required_argument, NULL, INTO },     { "max-unpacked-bytes", required_argument, NULL, MAX_UNPACKED },
+        { "max-file-bytes", required_argument, NULL, MAX_FILE },
         { NULL, 0, NULL, 0 },
     };
     *arguments = (struct arguments){ .session = { .socket = -1 } };
@@ -103,6 +105,11 @@ static int read_arguments(int argc, char **argv, struct arguments *arguments)
             if (!read_number(optarg, UINT64_MAX, &number))
                 return refuse("--max-bytes needs a number of bytes, not", optarg);
             arguments->max_bytes = number;
+            break;
+        case MAX_FILE:
+            if (!read_number(optarg, UINT64_MAX, &number))
+                return refuse("--max-file-bytes needs a number of bytes, not", optarg);
+            arguments->max_file_bytes = number;
             break;
         case SCAN: arguments->scan = optarg; break;
         case PROBE: arguments->is_probe = true; break;
@@ -194,6 +201,7 @@ int main(int argc, char **argv)
         .plan_folder = arguments.scan ? arguments.scan : session->plan_folder,
         .cache_folder = arguments.cache,
         .max_bytes = arguments.max_bytes,
+        .max_file_bytes = arguments.max_file_bytes,
         .needs_gpu = !arguments.scan && !session->is_stub,
     };
     confine(&limits, confined);

@@ -1,5 +1,6 @@
 #include "tests/unit/fake_renderer.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -140,9 +141,16 @@ static void handle(const cJSON *packet, const char *folder)
     }
 }
 
-static int renderer_main(const char *folder, const char *id)
+static int renderer_main(const char *folder, const char *id, const char *cache)
 {
     read_behaviour(folder);
+    if (behaves("fills-its-cache")) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/large", cache);
+        int file = open(path, O_RDWR | O_CREAT, 0600);
+        if (file < 0 || posix_fallocate(file, 0, 80 << 20) != 0)
+            return 8;
+    }
     if (behaves("crash-loading"))
         die();
     if (behaves("huge-head")) {
@@ -275,7 +283,7 @@ int fake_renderer_main(int argc, char **argv)
 {
     const char *folder = argument(argc, argv, "--plan-folder"), *id = argument(argc, argv, "--plan-id");
     if (folder && id)
-        return renderer_main(folder, id);
+        return renderer_main(folder, id, argument(argc, argv, "--cache"));
     if (argument(argc, argv, "--unpack"))
         return unpack_main(argument(argc, argv, "--unpack"), argument(argc, argv, "--into"));
     if (argument(argc, argv, "--scan"))

@@ -83,7 +83,7 @@ static int confined(const struct places *at, const char *needed, bool is_bare, i
         given_other_end = pair[1];
         if (is_bare) /* the attempt confines itself */
             _exit(prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 ? attempt(at) : 98);
-        confine(&(struct confine_options){ .plan_folder = at->plan, .cache_folder = at->cache, .needs_gpu = true }, got);
+        confine(&(struct confine_options){ .plan_folder = at->plan, .cache_folder = at->cache, .needs_gpu = true, .max_file_bytes = 1 << 20 }, got);
         bool is_missing = strstr(got, "landlock not") ? strcmp(needed, "landlock") == 0 : strstr(got, "no seccomp") != NULL;
         _exit(is_missing ? 77 : attempt(at));
     }
@@ -494,6 +494,27 @@ static int try_needed(const struct places *at)
     return 0;
 }
 
+/* More than it may write is an error of the write, and no signal. */
+static int try_large_file(const struct places *at)
+{
+    char *block = calloc(1, 1 << 20);
+    int file = open(at->cache_file, O_RDWR | O_CREAT, 0600), memory = memfd_create("buffer", MFD_CLOEXEC);
+    if (!block || file < 0 || memory < 0 || write(file, block, 1 << 20) != 1 << 20)
+        return 1;
+    if (write(file, block, 1) != -1 || errno != EFBIG || ftruncate(file, (1 << 20) + 1) == 0 || errno != EFBIG)
+        return 2;
+    if (posix_fallocate(file, 1 << 20, 1) != EFBIG || ftruncate(memory, (1 << 20) + 1) == 0 || errno != EFBIG)
+        return 3;
+    free(block);
+    return 0;
+}
+
+static void no_file_grows_beyond_the_limit(void **state)
+{
+    (void)state;
+    check("", try_large_file);
+}
+
 static void what_libraries_and_drivers_need_still_works(void **state)
 {
     (void)state;
@@ -514,6 +535,7 @@ int main(void)
         cmocka_unit_test(a_plan_is_read_where_landlock_cannot_keep_files_whole),
         cmocka_unit_test(calls_that_nobody_here_needs_are_refused),
         cmocka_unit_test(no_capability_is_left_to_root_either),
+        cmocka_unit_test(no_file_grows_beyond_the_limit),
         cmocka_unit_test(what_libraries_and_drivers_need_still_works),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -516,6 +516,27 @@ static void no_scene_is_lost_when_the_way_to_the_renderer_is_full(void **state)
     world_end(&world);
 }
 
+static void one_that_fills_its_cache_is_ended_and_the_cache_emptied(void **state)
+{
+    (void)state;
+    struct world world;
+    struct stat facts;
+    char path[512];
+    world_begin(&world);
+    world.options.max_cache_bytes = 4 << 20; /* and 64 MiB of slack; it writes 80 */
+    world_add_plan(&world, "a", "fills-its-cache");
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_wait_for_state(&world, "a", FLEET_FAILED); /* three more starts do the same */
+    struct fleet_plan plan = world_plan_of(&world, "a");
+    assert_non_null(plan.problem);
+    assert_non_null(strstr(plan.problem->detail, "wrote more to its cache"));
+    snprintf(path, sizeof path, "%s/cache/a/large", world.data);
+    WORLD_UNTIL(&world, stat(path, &facts) != 0);
+    assert_int_not_equal(stat(path, &facts), 0);
+    world_end(&world);
+}
+
 static void what_is_asked_of_no_plan_or_a_closed_one_is_refused(void **state)
 {
     (void)state;
@@ -598,6 +619,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(more_requests_than_the_limit_are_refused_at_once),
         cmocka_unit_test(one_that_reads_nothing_is_ended_before_memory_fills),
         cmocka_unit_test(no_scene_is_lost_when_the_way_to_the_renderer_is_full),
+        cmocka_unit_test(one_that_fills_its_cache_is_ended_and_the_cache_emptied),
         cmocka_unit_test(what_is_asked_of_no_plan_or_a_closed_one_is_refused),
         cmocka_unit_test(the_end_answers_everybody_and_leaves_no_process),
         cmocka_unit_test(a_renderer_that_is_not_there_is_said_at_once),

@@ -1,8 +1,11 @@
 /* A plan kept in the cache is the plan, and nothing but that plan's own cache is believed. */
 #define _GNU_SOURCE
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "core/base/clock.h"
@@ -270,6 +273,30 @@ static void a_cache_for_less_memory_than_it_needs_is_not_read(void **state)
     world_end(&world);
 }
 
+/* In a process that may write files of 4 KiB: nothing is begun, so that no quota ends it, and nothing is left. */
+static void a_plan_larger_than_a_file_may_be_is_not_kept(void **state)
+{
+    (void)state;
+    struct world world;
+    char partial[600];
+    world_start(&world);
+    snprintf(partial, sizeof partial, "%s/%s.part", world.cache, PLAN_CACHE_NAME);
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        struct error err = { 0 };
+        struct rlimit limit = { 4096, 4096 };
+        (void)signal(SIGXFSZ, SIG_DFL); /* a write would end the process */
+        bool is_refused = setrlimit(RLIMIT_FSIZE, &limit) == 0 && !plan_cache_store(world.first, world.cache, &err);
+        _exit(is_refused && err.code == ERROR_LIMIT && strstr(err.text, "more than a file may have") && access(partial, F_OK) != 0 ? 0 : 1);
+    }
+    int status;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 0);
+    world_end(&world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -280,6 +307,7 @@ int main(void)
         cmocka_unit_test(no_bits_of_the_fields_can_make_an_impossible_plan),
         cmocka_unit_test(regions_inside_themselves_and_ids_for_two_are_not_accepted),
         cmocka_unit_test(a_cache_for_less_memory_than_it_needs_is_not_read),
+        cmocka_unit_test(a_plan_larger_than_a_file_may_be_is_not_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

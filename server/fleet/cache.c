@@ -1,0 +1,379 @@
+#define _GNU_SOURCE
+#include "server/fleet/cache.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "core/base/queue.h"
+
+enum {
+    MAX_WAITING = 4096,
+    ID_SIZE = 64
+};
+
+static const uint64_t default_max_bytes = UINT64_C(16) << 30, slack_bytes = UINT64_C(64) << 20;
+
+struct word { /* what the net thread says */
+    char id[ID_SIZE];
+    uint64_t process;
+    bool is_begin;
+};
+
+struct entry { /* a plan's folder */
+    char id[ID_SIZE];
+    uint64_t process; /* that uses it; 0: none */
+    uint64_t n_bytes, n_files;
+    int64_t used_ns;  /* since 1970 */
+    bool is_ended;    /* its process was told to end; the folder is emptied when it has */
+    bool was_blamed;  /* ended once since the disk became short of space */
+};
+
+struct cache {
+    struct cache_options options;
+    pthread_t thread;
+    struct queue *words;
+    /* the thread's own */
+    int file; /* of the folder */
+    struct entry *entries;
+    size_t n_entries, room;
+};
+
+/* ---- one folder ---- */
+
+/* Adds what lies in the folder; consumes it. What cannot be seen counts as too much. */
+static void measure(int folder, int depth, struct entry *entry)
+{
+    DIR *names = fdopendir(folder);
+    if (!names) {
+        entry->n_files = CACHE_MAX_FILES + 1;
+        close(folder);
+        return;
+    }
+    for (const struct dirent *name; entry->n_files <= CACHE_MAX_FILES && (name = readdir(names));) {
+        struct stat facts;
+        if (strcmp(name->d_name, ".") == 0 || strcmp(name->d_name, "..") == 0 ||
+            fstatat(dirfd(names), name->d_name, &facts, AT_SYMLINK_NOFOLLOW) != 0)
+            continue;
+        entry->n_files++;
+        entry->n_bytes += (uint64_t)facts.st_blocks * 512;
+        if (!S_ISDIR(facts.st_mode))
+            continue;
+        int inner = depth < CACHE_MAX_DEPTH ? openat(dirfd(names), name->d_name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC) : -1;
+        if (inner >= 0)
+            measure(inner, depth + 1, entry);
+        else if (depth == CACHE_MAX_DEPTH || errno != ENOENT)
+            entry->n_files = CACHE_MAX_FILES + 1;
+    }
+    closedir(names);
+}
+
+static int open_inner(int folder, const char *name)
+{
+    return openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+}
+
+static void look_at(const struct cache *cache, struct entry *entry)
+{
+    int folder = open_inner(cache->file, entry->id);
+    entry->n_bytes = entry->n_files = 0;
+    if (folder >= 0)
+        measure(folder, 1, entry);
+}
+
+struct removing {
+    int top;
+    unsigned long n_seen, n_done; /* in one round: things that were there; removed or moved */
+    unsigned long n_moved;
+};
+
+/* Files go, folders inside move to the top: however deep it was, it becomes flat. */
+static void flatten(struct removing *removing, int folder)
+{
+    int copy = openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR *names = copy >= 0 ? fdopendir(copy) : NULL;
+    if (!names && copy >= 0)
+        close(copy);
+    for (const struct dirent *name; names && (name = readdir(names));) {
+        char moved[40];
+        if (strcmp(name->d_name, ".") == 0 || strcmp(name->d_name, "..") == 0)
+            continue;
+        removing->n_seen++;
+        if (unlinkat(folder, name->d_name, 0) == 0 || unlinkat(folder, name->d_name, AT_REMOVEDIR) == 0) {
+            removing->n_done++;
+        } else if (folder != removing->top) {
+            (void)snprintf(moved, sizeof moved, "gone-%lu", ++removing->n_moved);
+            removing->n_done += renameat(folder, name->d_name, removing->top, moved) == 0;
+        } else {
+            /* a folder that is not empty; it may have been made unreadable */
+            int inner = fchmodat(folder, name->d_name, 0700, 0) == 0 ? open_inner(folder, name->d_name) : -1;
+            if (inner < 0)
+                continue;
+            flatten(removing, inner);
+            close(inner);
+            (void)unlinkat(folder, name->d_name, AT_REMOVEDIR);
+        }
+    }
+    if (names)
+        closedir(names);
+}
+
+static void empty(const struct cache *cache, struct entry *entry)
+{
+    struct removing removing = { .top = open_inner(cache->file, entry->id) };
+    if (removing.top < 0)
+        return;
+    do { /* until a round sees nothing, or gets no further */
+        removing.n_seen = removing.n_done = 0;
+        flatten(&removing, removing.top);
+    } while (removing.n_done > 0);
+    close(removing.top);
+    if (!entry->process)
+        (void)unlinkat(cache->file, entry->id, AT_REMOVEDIR);
+    if (removing.n_seen > 0)
+        log_warn("the cache of plan %s could not be emptied", entry->id);
+    look_at(cache, entry);
+}
+
+/* ---- all of them ---- */
+
+static int64_t now_ns(void)
+{
+    struct timespec now;
+    (void)clock_gettime(CLOCK_REALTIME, &now); /* it is compared with times of files */
+    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
+static struct entry *entry_of(struct cache *cache, const char *id)
+{
+    for (size_t i = 0; i < cache->n_entries; i++)
+        if (strcmp(cache->entries[i].id, id) == 0)
+            return &cache->entries[i];
+    if (cache->n_entries == cache->room) {
+        size_t room = cache->room ? 2 * cache->room : 64;
+        struct entry *larger = realloc(cache->entries, room * sizeof *larger);
+        if (!larger)
+            return NULL;
+        cache->entries = larger;
+        cache->room = room;
+    }
+    struct entry *entry = &cache->entries[cache->n_entries++];
+    *entry = (struct entry){ .used_ns = now_ns() };
+    (void)snprintf(entry->id, sizeof entry->id, "%s", id);
+    return entry;
+}
+
+/* What earlier daemons left. */
+static void list(struct cache *cache)
+{
+    int copy = openat(cache->file, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR *names = copy >= 0 ? fdopendir(copy) : NULL;
+    for (const struct dirent *name; names && (name = readdir(names));) {
+        struct stat facts;
+        if (name->d_name[0] == '.' || strlen(name->d_name) >= ID_SIZE || fstatat(cache->file, name->d_name, &facts, AT_SYMLINK_NOFOLLOW) != 0 ||
+            !S_ISDIR(facts.st_mode))
+            continue;
+        struct entry *entry = entry_of(cache, name->d_name);
+        if (!entry)
+            break;
+        entry->used_ns = (int64_t)facts.st_mtim.tv_sec * 1000000000 + facts.st_mtim.tv_nsec;
+        look_at(cache, entry);
+    }
+    if (names)
+        closedir(names);
+}
+
+/* Those of running renderers come last: what is removed there is made again only by the next. */
+static struct entry *least_used(struct cache *cache, bool with_running)
+{
+    struct entry *least = NULL;
+    for (size_t i = 0; i < cache->n_entries; i++) {
+        struct entry *entry = &cache->entries[i];
+        if (entry->n_bytes == 0 || entry->is_ended || (entry->process && !with_running))
+            continue;
+        if (!least || (!entry->process && least->process) || (!entry->process == !least->process && entry->used_ns < least->used_ns))
+            least = entry;
+    }
+    return least;
+}
+
+static uint64_t total(const struct cache *cache)
+{
+    uint64_t sum = 0;
+    for (size_t i = 0; i < cache->n_entries; i++)
+        sum += cache->entries[i].n_bytes;
+    return sum;
+}
+
+static void remove_one(struct cache *cache, struct entry *entry, const char *why)
+{
+    log_info("the cache of plan %s is removed (%llu MiB): %s", entry->id, (unsigned long long)(entry->n_bytes >> 20), why);
+    uint64_t before = entry->n_bytes;
+    empty(cache, entry);
+    if (entry->n_bytes >= before)
+        entry->n_bytes = 0; /* it cannot be removed, and is not tried for ever */
+}
+
+static void end_process(struct cache *cache, struct entry *entry, const char *reason)
+{
+    entry->is_ended = true;
+    cache->options.end(cache->options.context, entry->process, reason);
+}
+
+static bool is_short_of_space(const struct cache *cache)
+{
+    struct statvfs disk;
+    return fstatvfs(cache->file, &disk) == 0 && (uint64_t)disk.f_bavail * disk.f_frsize < cache->options.reserve_bytes;
+}
+
+/* A file that was removed and is still open takes space nobody sees: then the renderers end, the newest first, each once, until there is
+ * space again. */
+static void free_space(struct cache *cache)
+{
+    struct entry *blamed = NULL;
+    bool is_short = is_short_of_space(cache);
+    for (struct entry *least; is_short && (least = least_used(cache, false)); is_short = is_short_of_space(cache))
+        remove_one(cache, least, "the disk is short of space");
+    for (size_t i = 0; i < cache->n_entries; i++) {
+        struct entry *entry = &cache->entries[i];
+        if (!is_short)
+            entry->was_blamed = false;
+        else if (entry->process && !entry->was_blamed && !entry->is_ended && (!blamed || entry->process > blamed->process))
+            blamed = entry;
+    }
+    if (!blamed)
+        return;
+    blamed->was_blamed = true;
+    end_process(cache, blamed, "was ended because the disk of the data folder is short of space");
+}
+
+static void look(struct cache *cache)
+{
+    char reason[160];
+    const uint64_t max_bytes = cache->options.max_bytes;
+    for (size_t i = 0; i < cache->n_entries; i++) {
+        struct entry *entry = &cache->entries[i];
+        if (!entry->process || entry->is_ended)
+            continue;
+        look_at(cache, entry);
+        if (entry->n_bytes <= max_bytes + slack_bytes && entry->n_files <= CACHE_MAX_FILES)
+            continue;
+        (void)snprintf(reason, sizeof reason, "was ended because it wrote more to its cache than the %llu MiB or %d files it may",
+                       (unsigned long long)(max_bytes >> 20), CACHE_MAX_FILES);
+        end_process(cache, entry, reason);
+    }
+    for (struct entry *least; total(cache) > max_bytes && (least = least_used(cache, true));)
+        remove_one(cache, least, "caches of all plans took more than they may");
+    free_space(cache);
+}
+
+static struct entry *entry_used_by(struct cache *cache, uint64_t process)
+{
+    for (size_t i = 0; i < cache->n_entries; i++)
+        if (cache->entries[i].process == process)
+            return &cache->entries[i];
+    return NULL;
+}
+
+static void take_word(struct cache *cache, const struct word *word)
+{
+    struct entry *entry = word->is_begin ? entry_of(cache, word->id) : entry_used_by(cache, word->process);
+    if (!entry)
+        return;
+    entry->process = word->is_begin ? word->process : 0;
+    entry->used_ns = now_ns();
+    (void)utimensat(cache->file, entry->id, NULL, AT_SYMLINK_NOFOLLOW); /* for the next daemon */
+    if (!word->is_begin && entry->is_ended)
+        empty(cache, entry);
+    else if (!word->is_begin)
+        look_at(cache, entry);
+    entry->is_ended = false;
+}
+
+static bool is_any_running(const struct cache *cache)
+{
+    for (size_t i = 0; i < cache->n_entries; i++)
+        if (cache->entries[i].process)
+            return true;
+    return false;
+}
+
+static void *work(void *argument)
+{
+    struct cache *cache = argument;
+    list(cache);
+    for (int wait_ms = 0;; wait_ms = is_any_running(cache) ? CACHE_LOOK_MS : -1) {
+        for (struct word *word = queue_take(cache->words, wait_ms); word; word = queue_try_take(cache->words)) {
+            bool is_last = word->process == 0;
+            if (!is_last)
+                take_word(cache, word);
+            free(word);
+            if (is_last)
+                return NULL;
+        }
+        look(cache);
+    }
+}
+
+struct cache *cache_create(const struct cache_options *options, struct error *err)
+{
+    struct cache *cache = mem_new(sizeof *cache);
+    cache->options = *options;
+    if (cache->options.max_bytes == 0)
+        cache->options.max_bytes = default_max_bytes;
+    cache->words = queue_create(MAX_WAITING, free);
+    cache->file = open(options->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    int failed = cache->file < 0 ? errno : pthread_create(&cache->thread, NULL, work, cache);
+    if (!failed)
+        return cache;
+    error_set(err, ERROR_IO, "the cache folder %.120s cannot be watched: %s", options->folder, strerror(failed));
+    if (cache->file >= 0)
+        close(cache->file);
+    queue_destroy(cache->words);
+    free(cache);
+    return NULL;
+}
+
+static void say(struct cache *cache, const char *id, uint64_t process, bool is_begin)
+{
+    struct word *word = mem_new(sizeof *word);
+    *word = (struct word){ .process = process, .is_begin = is_begin };
+    (void)snprintf(word->id, sizeof word->id, "%s", id);
+    if (queue_try_put(cache->words, word))
+        return;
+    free(word); /* thousands wait while it removes something large */
+    log_warn("%s%s", is_begin ? "a cache is not watched until its plan is opened again: " : "the end of a renderer was not seen by the watch on caches", id);
+}
+
+void cache_destroy(struct cache *cache)
+{
+    if (!cache)
+        return;
+    struct word *last = mem_new(sizeof *last);
+    while (!queue_try_put(cache->words, last))
+        (void)usleep(1000);
+    pthread_join(cache->thread, NULL);
+    queue_destroy(cache->words);
+    close(cache->file);
+    free(cache->entries);
+    free(cache);
+}
+
+uint64_t cache_max_file(const struct cache *cache)
+{
+    uint64_t half = cache->options.max_bytes / 2;
+    return half > CACHE_LEAST_FILE ? half : CACHE_LEAST_FILE;
+}
+
+void cache_begin(struct cache *cache, const char *plan_id, uint64_t process) { say(cache, plan_id, process, true); }
+void cache_end(struct cache *cache, uint64_t process) { say(cache, "", process, false); }

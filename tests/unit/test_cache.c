@@ -1,0 +1,246 @@
+/* The quota on what renderers keep on disk, with folders made here in the place of theirs. */
+#define _GNU_SOURCE
+#include "server/fleet/cache.h"
+
+#include <fcntl.h>
+#include <stdatomic.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "core/base/clock.h"
+#include "tests/check.h"
+#include "tests/unit/fleet_world.h"
+
+#define MIB (UINT64_C(1) << 20)
+
+struct fixture {
+    char folder[64];
+    struct cache *cache;
+    atomic_int n_ended;
+    _Atomic uint64_t ended[8]; /* processes, in the order they were ended */
+    char reason[160];          /* of the first */
+};
+
+static void end_one(void *context, uint64_t process, const char *reason)
+{
+    struct fixture *fixture = context;
+    int n = atomic_load(&fixture->n_ended);
+    if (n == 0)
+        snprintf(fixture->reason, sizeof fixture->reason, "%s", reason);
+    if (n < 8)
+        atomic_store(&fixture->ended[n], process);
+    atomic_fetch_add(&fixture->n_ended, 1);
+}
+
+static void begin(struct fixture *fixture)
+{
+    memset(fixture, 0, sizeof *fixture);
+    snprintf(fixture->folder, sizeof fixture->folder, "/tmp/beamroom-cache-XXXXXX");
+    assert_non_null(mkdtemp(fixture->folder));
+}
+
+static void finish(struct fixture *fixture)
+{
+    cache_destroy(fixture->cache);
+    world_remove_folder(fixture->folder);
+}
+
+static char *path_of(const struct fixture *fixture, const char *name)
+{
+    static char path[256];
+    snprintf(path, sizeof path, "%s/%s", fixture->folder, name);
+    return path;
+}
+
+/* A plan's folder with one file, last used so many hours ago. */
+static void add(const struct fixture *fixture, const char *id, uint64_t n_bytes, int hours)
+{
+    char name[80];
+    struct timespec now, times[2];
+    (void)mkdir(path_of(fixture, id), 0700);
+    snprintf(name, sizeof name, "%s/plan.cache", id);
+    int file = open(path_of(fixture, name), O_RDWR | O_CREAT, 0600);
+    assert_true(file >= 0);
+    assert_int_equal(posix_fallocate(file, 0, (off_t)n_bytes), 0);
+    close(file);
+    clock_gettime(CLOCK_REALTIME, &now);
+    times[0] = times[1] = (struct timespec){ .tv_sec = now.tv_sec - hours * 3600 };
+    assert_int_equal(utimensat(AT_FDCWD, path_of(fixture, id), times, 0), 0);
+}
+
+static bool is_there(const struct fixture *fixture, const char *name) { return access(path_of(fixture, name), F_OK) == 0; }
+
+#define UNTIL(condition)                                                                              \
+    do {                                                                                              \
+        for (int64_t until_us_ = clock_now_us() + 60000000; !(condition) && clock_now_us() < until_us_;) \
+            nanosleep(&(struct timespec){ .tv_nsec = 5000000 }, NULL);                                \
+        assert_true(condition);                                                                       \
+    } while (0)
+
+/* Returns when its thread has looked for the first time: what is added after that is seen as written by a renderer. */
+static void start(struct fixture *fixture, uint64_t max_bytes, uint64_t reserve_bytes)
+{
+    struct error err = { 0 };
+    struct cache_options options = { fixture->folder, max_bytes, reserve_bytes, end_one, fixture };
+    add(fixture, "oldest", max_bytes + MIB, 10000);
+    fixture->cache = cache_create(&options, &err);
+    assert_string_equal(err.text, "");
+    UNTIL(!is_there(fixture, "oldest"));
+}
+
+static void the_longest_unused_go_first(void **state)
+{
+    (void)state;
+    struct fixture at;
+    begin(&at);
+    add(&at, "second", 2 * MIB, 20);
+    add(&at, "first", 2 * MIB, 30);
+    add(&at, "last", 2 * MIB, 1);
+    add(&at, "third", 2 * MIB, 10);
+    start(&at, 5 * MIB, 0); /* two of four have place */
+    UNTIL(!is_there(&at, "first") && !is_there(&at, "second"));
+    assert_true(is_there(&at, "third/plan.cache") && is_there(&at, "last/plan.cache"));
+    assert_int_equal(at.n_ended, 0);
+    finish(&at);
+}
+
+static void what_is_in_use_goes_last(void **state)
+{
+    (void)state;
+    struct fixture at;
+    begin(&at);
+    add(&at, "used", 2 * MIB, 30);
+    add(&at, "unused", 2 * MIB, 1);
+    start(&at, 5 * MIB, 0);
+    cache_begin(at.cache, "used", 7);
+    add(&at, "used", 4 * MIB, 30); /* it writes: 6 MiB together */
+    UNTIL(!is_there(&at, "unused"));
+    assert_true(is_there(&at, "used/plan.cache"));
+    add(&at, "other", 2 * MIB, 30);
+    cache_begin(at.cache, "other", 8);
+    UNTIL(!is_there(&at, "used/plan.cache")); /* both are in use: the one that began earlier */
+    assert_true(is_there(&at, "other/plan.cache") && is_there(&at, "used"));
+    assert_int_equal(at.n_ended, 0);
+    finish(&at);
+}
+
+static void is_ended_and_emptied(struct fixture *at)
+{
+    UNTIL(at->n_ended > 0);
+    assert_true(at->ended[0] == 7);
+    assert_non_null(strstr(at->reason, "wrote more to its cache"));
+    cache_end(at->cache, 7);
+    UNTIL(!is_there(at, "a"));
+    assert_int_equal(at->n_ended, 1);
+}
+
+static void a_renderer_that_writes_too_much_is_ended_and_its_cache_emptied(void **state)
+{
+    (void)state;
+    struct fixture at;
+    begin(&at);
+    start(&at, 2 * MIB, 0);
+    add(&at, "a", MIB, 0);
+    cache_begin(at.cache, "a", 7);
+    add(&at, "a", 67 * MIB, 0); /* 2 and 64 of slack */
+    is_ended_and_emptied(&at);
+    finish(&at);
+}
+
+/* 300 folders in each other: no path reaches the last, and the files there count all the same. */
+static void a_cache_deeper_than_any_honest_one_ends_its_renderer(void **state)
+{
+    (void)state;
+    struct fixture at;
+    begin(&at);
+    start(&at, 100 * MIB, 0);
+    add(&at, "a", MIB, 0);
+    int folder = open(path_of(&at, "a"), O_RDONLY | O_DIRECTORY);
+    char name[] = "a-name-of-some-length-to-make-the-path-long";
+    for (int i = 0; i < 300; i++) {
+        assert_int_equal(mkdirat(folder, name, 0700), 0);
+        int inner = openat(folder, name, O_RDONLY | O_DIRECTORY);
+        close(folder);
+        folder = inner;
+    }
+    close(folder);
+    cache_begin(at.cache, "a", 7);
+    is_ended_and_emptied(&at);
+    finish(&at);
+}
+
+static void a_folder_that_cannot_be_seen_ends_its_renderer(void **state)
+{
+    (void)state;
+    struct fixture at;
+    if (geteuid() == 0)
+        skip(); /* root sees all */
+    begin(&at);
+    start(&at, 100 * MIB, 0);
+    add(&at, "a", MIB, 0);
+    assert_int_equal(mkdir(path_of(&at, "a/dark"), 0300), 0);
+    assert_int_equal(mkdir(path_of(&at, "a/dark/inner"), 0300), 0);
+    cache_begin(at.cache, "a", 7);
+    is_ended_and_emptied(&at);
+    finish(&at);
+}
+
+static void more_files_than_any_honest_cache_has_end_its_renderer(void **state)
+{
+    (void)state;
+    struct fixture at;
+    begin(&at);
+    start(&at, 100 * MIB, 0);
+    add(&at, "a", MIB, 0);
+    int folder = open(path_of(&at, "a"), O_RDONLY | O_DIRECTORY);
+    for (int i = 0; i < CACHE_MAX_FILES; i++) { /* one is there */
+        char name[32];
+        snprintf(name, sizeof name, "%d", i);
+        int file = openat(folder, name, O_RDWR | O_CREAT, 0600);
+        assert_true(file >= 0);
+        close(file);
+    }
+    close(folder);
+    cache_begin(at.cache, "a", 7);
+    is_ended_and_emptied(&at);
+    finish(&at);
+}
+
+/* A reserve no disk has: what is unused goes, then each renderer ends once, the newest first. */
+static void a_full_disk_costs_caches_first_and_then_each_renderer_once(void **state)
+{
+    (void)state;
+    struct fixture at;
+    begin(&at);
+    add(&at, "unused", MIB, 3);
+    add(&at, "old", MIB, 2);
+    add(&at, "new", MIB, 1);
+    start(&at, 100 * MIB, UINT64_MAX);
+    UNTIL(!is_there(&at, "unused") && !is_there(&at, "old") && !is_there(&at, "new"));
+    cache_begin(at.cache, "old", 7);
+    cache_begin(at.cache, "new", 8);
+    UNTIL(at.n_ended == 1);
+    UNTIL(at.n_ended == 2);
+    cache_end(at.cache, at.ended[0]);
+    cache_end(at.cache, at.ended[1]);
+    cache_begin(at.cache, "old", 9); /* started again */
+    nanosleep(&(struct timespec){ .tv_sec = 2, .tv_nsec = 500000000 }, NULL); /* two looks at least */
+    assert_int_equal(at.n_ended, 2);
+    assert_int_equal(at.ended[0] + at.ended[1], 15);
+    finish(&at);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_longest_unused_go_first),
+        cmocka_unit_test(what_is_in_use_goes_last),
+        cmocka_unit_test(a_renderer_that_writes_too_much_is_ended_and_its_cache_emptied),
+        cmocka_unit_test(a_cache_deeper_than_any_honest_one_ends_its_renderer),
+        cmocka_unit_test(a_folder_that_cannot_be_seen_ends_its_renderer),
+        cmocka_unit_test(more_files_than_any_honest_cache_has_end_its_renderer),
+        cmocka_unit_test(a_full_disk_costs_caches_first_and_then_each_renderer_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
