@@ -23,7 +23,7 @@ check "the pinned libraries" test -s "$root/usr/share/beamroom/web/lib/lit-html.
 check "the unit names the installed program" grep -q '^ExecStart=/usr/bin/beamroomd ' "$root/usr/lib/systemd/system/beamroomd.service"
 check "nothing is left to fill in" sh -c "! grep -rE '@[A-Z]+@' '$root/usr/lib' '$root/etc'"
 every_key() { # the sample configuration and --help name the same settings
-    diff <("$root/usr/bin/beamroomd" --help | sed -nE 's/^ +--([a-z-]+) .*/\1/p' | grep -vE '^(config|version|help|stub)$' | sort -u) \
+    diff <("$root/usr/bin/beamroomd" --help | sed -nE 's/^ +--([a-z-]+) .*/\1/p' | grep -vE '^(config|version|help|stub|hang)$' | sort -u) \
         <(sed -nE 's/^(# )?([a-z-]+) = .*/\2/p' "$root/etc/beamroom/beamroomd.conf" | sort -u)
 }
 check "the sample configuration has every key" every_key

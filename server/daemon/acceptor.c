@@ -16,73 +16,215 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "server/net/net.h"
 #include "server/http/head.h"
 #include "server/http/http.h"
+#include "server/net/net.h"
 #include "server/wire/refusal.h"
 
 struct pending {
     int socket; /* -1: free */
-    struct sockaddr_storage address;
-    socklen_t n_address;
+    struct address peer;
     int64_t until_us;
     bool is_refused;  /* has been told; what it still sends is dropped, or its system would take the answer back */
     size_t n_dropped;
 };
 
+struct websocket { /* a connection that the net thread has, from being handed over to its end */
+    atomic_bool is_used; /* set by the acceptor's thread, cleared by the net thread */
+    struct address counted;
+};
+
+enum {
+    N_SLOTS = ACCEPTOR_MAX_PENDING + ACCEPTOR_MAX_REFUSED,
+    BACKLOG = 4096 /* connections the system takes for us; what does not fit comes again a second later */
+};
+
 struct acceptor {
-    struct net *net;
-    struct http *http;
-    const struct hosts *hosts;
+    struct acceptor_options options;
     char bytes[HEAD_MAX_BYTES]; /* of the head that is looked at */
-    int listener, epoll, stop;
+    int listener, epoll, wake;
+    atomic_bool is_stopping, is_to_hang;
+    _Atomic(atomic_bool *) pinged;
     pthread_t thread;
     bool has_thread;
     char url[100];
-    struct pending pending[ACCEPTOR_MAX_PENDING];
-    size_t n_pending;
+    struct pending pending[N_SLOTS];
+    size_t n_pending, n_refused;
+    struct websocket websockets[ACCEPTOR_MAX_WEBSOCKETS];
 };
 
-static const uint64_t listener_tag = UINT64_MAX, stop_tag = UINT64_MAX - 1;
-
-static bool same_address(const struct sockaddr_storage *a, const struct sockaddr_storage *b)
-{
-    if (a->ss_family != b->ss_family)
-        return false;
-    if (a->ss_family == AF_INET)
-        return ((const struct sockaddr_in *)a)->sin_addr.s_addr == ((const struct sockaddr_in *)b)->sin_addr.s_addr;
-    return memcmp(&((const struct sockaddr_in6 *)a)->sin6_addr, &((const struct sockaddr_in6 *)b)->sin6_addr, sizeof(struct in6_addr)) == 0;
-}
+static const uint64_t listener_tag = UINT64_MAX, wake_tag = UINT64_MAX - 1;
 
 static void free_slot(struct acceptor *acceptor, struct pending *slot)
 {
+    if (slot->is_refused)
+        acceptor->n_refused--;
+    else
+        acceptor->n_pending--;
     slot->socket = -1;
-    acceptor->n_pending--;
 }
 
-static void accept_one(struct acceptor *acceptor, int socket, const struct sockaddr_storage *address, socklen_t n_address)
+static struct pending *find_slot(struct acceptor *acceptor)
 {
-    size_t n_same = 0;
-    struct pending *slot = NULL;
-    for (size_t i = 0; i < ACCEPTOR_MAX_PENDING; i++) {
+    for (size_t i = 0; i < N_SLOTS; i++)
         if (acceptor->pending[i].socket < 0)
-            slot = slot ? slot : &acceptor->pending[i];
-        else
-            n_same += same_address(&acceptor->pending[i].address, address);
+            return &acceptor->pending[i];
+    return NULL;
+}
+
+static bool may_wait(const struct acceptor *acceptor, const struct address *peer)
+{
+    struct address counted = address_counted(peer);
+    size_t n_same = 0;
+    if (acceptor->n_pending >= ACCEPTOR_MAX_PENDING)
+        return false;
+    if (address_is_in(peer, acceptor->options.trusted, acceptor->options.n_trusted))
+        return true;
+    for (size_t i = 0; i < N_SLOTS; i++) {
+        const struct pending *slot = &acceptor->pending[i];
+        if (slot->socket < 0 || slot->is_refused)
+            continue;
+        struct address other = address_counted(&slot->peer);
+        n_same += address_is_equal(&other, &counted);
     }
-    if (!slot || n_same >= ACCEPTOR_MAX_PENDING_PER_ADDRESS) {
+    return n_same < ACCEPTOR_MAX_PENDING_PER_ADDRESS;
+}
+
+static void refuse(struct acceptor *acceptor, struct pending *slot, const struct problem *problem)
+{
+    refusal_send(slot->socket, problem);
+    if (!slot->is_refused) {
+        acceptor->n_pending--;
+        acceptor->n_refused++;
+    }
+    slot->is_refused = true;
+    slot->until_us = clock_now_us() + ACCEPTOR_LINGER_MS * 1000LL;
+}
+
+/* For a refused connection. Returns true when the slot can be freed. */
+static bool linger(const struct acceptor *acceptor, struct pending *slot)
+{
+    enum { AT_ONCE = 64 << 10 };
+    slot->n_dropped += AT_ONCE; /* at most */
+    if (refusal_drain(slot->socket, AT_ONCE) && slot->n_dropped < ACCEPTOR_MAX_DROPPED && acceptor->n_refused <= ACCEPTOR_MAX_REFUSED)
+        return false;
+    close(slot->socket);
+    return true;
+}
+
+/* A WebSocket has ended; on the net thread. */
+static void websocket_ended(void *context)
+{
+    struct websocket *websocket = context;
+    atomic_store(&websocket->is_used, false);
+}
+
+/* Hands a WebSocket over, or says that there are too many. */
+static bool hand_to_net(struct acceptor *acceptor, int socket, const struct handshake *handshake, const struct address *client,
+                        struct problem *problem)
+{
+    struct address counted = address_counted(client);
+    struct websocket *unused = NULL;
+    size_t n_same = 0;
+    for (size_t i = 0; i < ACCEPTOR_MAX_WEBSOCKETS; i++) {
+        struct websocket *websocket = &acceptor->websockets[i];
+        if (!atomic_load(&websocket->is_used))
+            unused = websocket;
+        else
+            n_same += address_is_equal(&websocket->counted, &counted);
+    }
+    if (!unused || n_same >= ACCEPTOR_MAX_WEBSOCKETS_PER_ADDRESS) {
+        problem_set(problem, PROBLEM_LIMIT, "", "", "too many WebSockets are open: at most %d in all, %d from one address", ACCEPTOR_MAX_WEBSOCKETS,
+                    ACCEPTOR_MAX_WEBSOCKETS_PER_ADDRESS);
+        problem->retry_after_ms = ACCEPTOR_RETRY_MS;
+        return false;
+    }
+    unused->counted = counted;
+    atomic_store(&unused->is_used, true);
+    net_adopt(acceptor->options.net, socket, handshake, websocket_ended, unused);
+    return true;
+}
+
+/* Looks at what has come. has_ended: nothing more will. Returns true when the slot can be freed. */
+static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended)
+{
+    struct problem problem;
+    struct head_request request;
+    if (slot->is_refused)
+        return linger(acceptor, slot);
+    ssize_t n = recv(slot->socket, acceptor->bytes, sizeof acceptor->bytes, MSG_PEEK | MSG_DONTWAIT);
+    if (n < 0 && (errno == EAGAIN || errno == EINTR))
+        return false;
+    if (n <= 0) {
+        close(slot->socket);
+        return true;
+    }
+    enum head_kind kind = head_read(acceptor->bytes, (size_t)n, acceptor->options.hosts, &request, &problem);
+    if (kind == HEAD_INCOMPLETE && !has_ended)
+        return false;
+    if (kind == HEAD_INCOMPLETE)
+        head_refuse_incomplete(acceptor->bytes, (size_t)n, true, 0, &problem);
+    if (kind == HEAD_INCOMPLETE || kind == HEAD_REFUSED) {
+        refuse(acceptor, slot, &problem);
+        return linger(acceptor, slot);
+    }
+    epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, slot->socket, NULL); /* a socket that was looked at before it was added is not there */
+    struct address client = address_of_client(&slot->peer, acceptor->options.trusted, acceptor->options.n_trusted, request.forwarded, request.n_forwarded);
+    if (kind == HEAD_HTTP) {
+        http_add_connection(acceptor->options.http, slot->socket, &slot->peer, &client);
+        return true;
+    }
+    struct handshake handshake;
+    head_read_handshake(acceptor->bytes, (size_t)n, &handshake);
+    if (!hand_to_net(acceptor, slot->socket, &handshake, &client, &problem)) {
+        refuse(acceptor, slot, &problem);
+        (void)refusal_drain(slot->socket, HEAD_MAX_BYTES);
+        close(slot->socket);
+    }
+    return true;
+}
+
+/* Its time is over. Returns true when the slot can be freed. */
+static bool end_late(struct acceptor *acceptor, struct pending *slot)
+{
+    struct problem problem;
+    ssize_t n = slot->is_refused ? 0 : recv(slot->socket, acceptor->bytes, sizeof acceptor->bytes, MSG_PEEK | MSG_DONTWAIT);
+    if (n <= 0) { /* one that said nothing expects no answer: browsers open connections before they need them */
+        close(slot->socket);
+        return true;
+    }
+    head_refuse_incomplete(acceptor->bytes, (size_t)n, false, ACCEPTOR_HEAD_MS, &problem);
+    refuse(acceptor, slot, &problem);
+    return linger(acceptor, slot);
+}
+
+/* A connection whose head is there already never waits: in a burst, slots are for those that are slow. */
+static void accept_one(struct acceptor *acceptor, int socket, const struct address *peer)
+{
+    struct pending *slot = find_slot(acceptor);
+    if (!slot) {
+        close(socket);
+        return;
+    }
+    bool has_room = may_wait(acceptor, peer);
+    *slot = (struct pending){ .socket = socket, .peer = *peer, .until_us = clock_now_us() + ACCEPTOR_HEAD_MS * 1000LL };
+    acceptor->n_pending++;
+    if (look(acceptor, slot, false)) {
+        free_slot(acceptor, slot);
+        return;
+    }
+    if (!has_room && !slot->is_refused) {
         struct problem problem; /* the oldest ones run into their time limit soon */
         problem_set(&problem, PROBLEM_LIMIT, "", "", "too many connections that have not said what they want: at most %d in all, %d from one address",
                     ACCEPTOR_MAX_PENDING, ACCEPTOR_MAX_PENDING_PER_ADDRESS);
         problem.retry_after_ms = ACCEPTOR_HEAD_MS;
-        refusal_send(socket, &problem);
-        (void)refusal_drain(socket, HEAD_MAX_BYTES);
-        close(socket);
-        return;
+        refuse(acceptor, slot, &problem);
+        if (linger(acceptor, slot)) {
+            free_slot(acceptor, slot);
+            return;
+        }
     }
-    *slot = (struct pending){ .socket = socket, .address = *address, .n_address = n_address, .until_us = clock_now_us() + ACCEPTOR_HEAD_MS * 1000LL };
-    acceptor->n_pending++;
-    /* edge-triggered: a peek leaves the bytes there, and only new ones may wake us */
+    /* edge-triggered: a peek leaves the bytes there, and only new ones may wake us; what came since the first look wakes us at once */
     struct epoll_event event = { .events = EPOLLIN | EPOLLRDHUP | EPOLLET, .data.u64 = (uint64_t)(slot - acceptor->pending) };
     if (epoll_ctl(acceptor->epoll, EPOLL_CTL_ADD, socket, &event) != 0) {
         close(socket);
@@ -97,7 +239,8 @@ static void accept_all(struct acceptor *acceptor)
         socklen_t n_address = sizeof address;
         int socket = accept4(acceptor->listener, (struct sockaddr *)&address, &n_address, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket >= 0) {
-            accept_one(acceptor, socket, &address, n_address);
+            struct address peer = address_of_peer(&address);
+            accept_one(acceptor, socket, &peer);
         } else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
             log_warn("acceptor: %s", strerror(errno));
             usleep(50000); /* nothing helps but waiting for others to close */
@@ -108,75 +251,10 @@ static void accept_all(struct acceptor *acceptor)
     }
 }
 
-static void refuse(struct pending *slot, const struct problem *problem)
-{
-    refusal_send(slot->socket, problem);
-    slot->is_refused = true;
-    slot->until_us = clock_now_us() + ACCEPTOR_LINGER_MS * 1000LL;
-}
-
-/* Of one that was refused. true: the slot is done with. */
-static bool linger(struct pending *slot)
-{
-    enum { AT_ONCE = 64 << 10 };
-    slot->n_dropped += AT_ONCE; /* at most */
-    if (refusal_drain(slot->socket, AT_ONCE) && slot->n_dropped < ACCEPTOR_MAX_DROPPED)
-        return false;
-    close(slot->socket);
-    return true;
-}
-
-/* Looks at what has come. has_ended: nothing more will. true: the slot is done with. */
-static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended)
-{
-    struct problem problem;
-    if (slot->is_refused)
-        return linger(slot);
-    ssize_t n = recv(slot->socket, acceptor->bytes, sizeof acceptor->bytes, MSG_PEEK | MSG_DONTWAIT);
-    if (n < 0 && (errno == EAGAIN || errno == EINTR))
-        return false;
-    if (n <= 0) {
-        close(slot->socket);
-        return true;
-    }
-    enum head_kind kind = head_look(acceptor->bytes, (size_t)n, acceptor->hosts, &problem);
-    if (kind == HEAD_INCOMPLETE && !has_ended)
-        return false;
-    if (kind == HEAD_INCOMPLETE)
-        head_refuse_incomplete(acceptor->bytes, (size_t)n, true, 0, &problem);
-    if (kind == HEAD_INCOMPLETE || kind == HEAD_REFUSED) {
-        refuse(slot, &problem);
-        return linger(slot);
-    }
-    epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, slot->socket, NULL);
-    if (kind == HEAD_WEBSOCKET) {
-        struct handshake handshake;
-        head_read_handshake(acceptor->bytes, (size_t)n, &handshake);
-        net_adopt(acceptor->net, slot->socket, &handshake);
-    } else {
-        http_add_connection(acceptor->http, slot->socket, (const struct sockaddr *)&slot->address, slot->n_address);
-    }
-    return true;
-}
-
-/* Its time is over. true: the slot is done with. */
-static bool end_late(struct acceptor *acceptor, struct pending *slot)
-{
-    struct problem problem;
-    ssize_t n = slot->is_refused ? 0 : recv(slot->socket, acceptor->bytes, sizeof acceptor->bytes, MSG_PEEK | MSG_DONTWAIT);
-    if (n <= 0) { /* one that said nothing expects no answer: browsers open connections before they need them */
-        close(slot->socket);
-        return true;
-    }
-    head_refuse_incomplete(acceptor->bytes, (size_t)n, false, ACCEPTOR_HEAD_MS, &problem);
-    refuse(slot, &problem);
-    return linger(slot);
-}
-
 static int drop_late(struct acceptor *acceptor)
 {
     int64_t now_us = clock_now_us(), next_us = INT64_MAX;
-    for (size_t i = 0; i < ACCEPTOR_MAX_PENDING && acceptor->n_pending; i++) {
+    for (size_t i = 0; i < N_SLOTS && acceptor->n_pending + acceptor->n_refused > 0; i++) {
         struct pending *slot = &acceptor->pending[i];
         if (slot->socket < 0)
             continue;
@@ -196,8 +274,17 @@ static void *run(void *argument)
         int n = epoll_wait(acceptor->epoll, events, 64, drop_late(acceptor));
         for (int i = 0; i < n; i++) {
             uint64_t tag = events[i].data.u64;
-            if (tag == stop_tag)
-                return NULL;
+            if (tag == wake_tag) {
+                uint64_t n_wakes;
+                while (atomic_load(&acceptor->is_to_hang))
+                    (void)pause();
+                atomic_bool *pinged = atomic_exchange(&acceptor->pinged, NULL);
+                if (read(acceptor->wake, &n_wakes, sizeof n_wakes) == sizeof n_wakes && pinged)
+                    atomic_store(pinged, true);
+                if (atomic_load(&acceptor->is_stopping))
+                    return NULL;
+                continue;
+            }
             if (tag == listener_tag) {
                 accept_all(acceptor);
                 continue;
@@ -227,7 +314,7 @@ static bool start_listening(struct acceptor *acceptor, const char *listen_at, st
     int on = 1;
     acceptor->listener = socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     bool ok = acceptor->listener >= 0 && setsockopt(acceptor->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) == 0 &&
-              bind(acceptor->listener, found->ai_addr, found->ai_addrlen) == 0 && listen(acceptor->listener, 512) == 0;
+              bind(acceptor->listener, found->ai_addr, found->ai_addrlen) == 0 && listen(acceptor->listener, BACKLOG) == 0;
     freeaddrinfo(found);
     if (!ok)
         return error_set(err, ERROR_IO, "--listen %.80s: %s", listen_at, strerror(errno));
@@ -246,20 +333,23 @@ static bool watch(struct acceptor *acceptor, int fd, uint64_t tag)
     return fd >= 0 && epoll_ctl(acceptor->epoll, EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
-struct acceptor *acceptor_create(const char *listen_at, struct net *net, struct http *http, const struct hosts *hosts, struct error *err)
+struct acceptor *acceptor_create(const struct acceptor_options *options, struct error *err)
 {
     struct acceptor *acceptor = mem_new(sizeof *acceptor);
-    acceptor->hosts = hosts;
-    acceptor->net = net;
-    acceptor->http = http;
+    acceptor->options = *options;
     acceptor->listener = -1;
-    for (size_t i = 0; i < ACCEPTOR_MAX_PENDING; i++)
+    atomic_init(&acceptor->is_stopping, false);
+    atomic_init(&acceptor->is_to_hang, false);
+    atomic_init(&acceptor->pinged, NULL);
+    for (size_t i = 0; i < N_SLOTS; i++)
         acceptor->pending[i].socket = -1;
+    for (size_t i = 0; i < ACCEPTOR_MAX_WEBSOCKETS; i++)
+        atomic_init(&acceptor->websockets[i].is_used, false);
     acceptor->epoll = epoll_create1(EPOLL_CLOEXEC);
-    acceptor->stop = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    if (!start_listening(acceptor, listen_at, err))
+    acceptor->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (!start_listening(acceptor, options->listen, err))
         goto fail;
-    if (acceptor->epoll < 0 || !watch(acceptor, acceptor->stop, stop_tag) || !watch(acceptor, acceptor->listener, listener_tag) ||
+    if (acceptor->epoll < 0 || !watch(acceptor, acceptor->wake, wake_tag) || !watch(acceptor, acceptor->listener, listener_tag) ||
         pthread_create(&acceptor->thread, NULL, run, acceptor) != 0) {
         error_set(err, ERROR_IO, "the acceptor did not start: %s", strerror(errno));
         goto fail;
@@ -271,27 +361,55 @@ fail:
     return NULL;
 }
 
-void acceptor_destroy(struct acceptor *acceptor)
+static void wake(struct acceptor *acceptor)
+{
+    uint64_t one = 1;
+    if (write(acceptor->wake, &one, sizeof one) != sizeof one)
+        abort(); /* the thread could never be joined */
+}
+
+void acceptor_stop(struct acceptor *acceptor)
 {
     if (!acceptor)
         return;
     if (acceptor->has_thread) {
-        uint64_t one = 1;
-        if (write(acceptor->stop, &one, sizeof one) != sizeof one)
-            abort(); /* the thread could never be joined */
+        atomic_store(&acceptor->is_stopping, true);
+        wake(acceptor);
         pthread_join(acceptor->thread, NULL);
+        acceptor->has_thread = false;
     }
-    for (size_t i = 0; i < ACCEPTOR_MAX_PENDING; i++)
-        if (acceptor->pending[i].socket >= 0)
+    for (size_t i = 0; i < N_SLOTS; i++)
+        if (acceptor->pending[i].socket >= 0) {
             close(acceptor->pending[i].socket);
-    const int fds[] = { acceptor->listener, acceptor->epoll, acceptor->stop };
-    for (size_t i = 0; i < sizeof fds / sizeof fds[0]; i++)
-        if (fds[i] >= 0)
-            close(fds[i]);
+            acceptor->pending[i].socket = -1;
+        }
+    int *const fds[] = { &acceptor->listener, &acceptor->epoll, &acceptor->wake };
+    for (size_t i = 0; i < sizeof fds / sizeof fds[0]; i++) {
+        if (*fds[i] >= 0)
+            close(*fds[i]);
+        *fds[i] = -1;
+    }
+}
+
+void acceptor_destroy(struct acceptor *acceptor)
+{
+    acceptor_stop(acceptor);
     free(acceptor);
+}
+
+void acceptor_ping(struct acceptor *acceptor, atomic_bool *beat)
+{
+    atomic_store(&acceptor->pinged, beat);
+    wake(acceptor);
 }
 
 const char *acceptor_url(const struct acceptor *acceptor)
 {
     return acceptor->url;
+}
+
+void acceptor_hang(struct acceptor *acceptor)
+{
+    atomic_store(&acceptor->is_to_hang, true);
+    wake(acceptor);
 }

@@ -14,13 +14,21 @@
 #include "core/base/mem.h"
 #include "core/base/standard_files.h"
 #include "server/daemon/acceptor.h"
-#include "server/net/net.h"
+#include "server/daemon/heartbeat.h"
+#include "server/daemon/notify.h"
 #include "server/daemon/options.h"
 #include "server/daemon/privilege.h"
+#include "server/daemon/stop.h"
 #include "server/http/hosts.h"
 #include "server/http/http.h"
+#include "server/net/net.h"
 
-enum { PATH_SIZE = 4096, LISTED_EVERY_MS = 5, SLOW_LISTING_MS = 10000 };
+enum {
+    PATH_SIZE = 4096,
+    LISTED_EVERY_MS = 5,
+    SLOW_LISTING_S = 10,
+    N_DESCRIPTORS = 4096 /* for every connection that is allowed: three of HTTP, one of a WebSocket; and for the renderers */
+};
 
 static bool make_folders(const char *folder, struct error *err)
 {
@@ -128,19 +136,52 @@ static bool gl_is_known(const char *gl, struct error *err)
     return error_set(err, ERROR_FORMAT, "--gl is \"%.40s\", expected auto, egl-device, egl-surfaceless, osmesa or soft", gl);
 }
 
-/* Until the plan folders have been listed: who is told that we are ready finds their plans. 0; or the signal that came before. */
-static int wait_for_plans(const struct net *net, const sigset_t *signals)
+/* The limit that shells give is for programs that wait for descriptors with select; we do not. */
+static void raise_descriptors(void)
 {
-    const struct timespec pause = { .tv_nsec = LISTED_EVERY_MS * 1000000L };
-    int n = 0;
-    for (; !net_plans_are_listed(net); n++) {
-        int signal_number = sigtimedwait(signals, NULL, &pause);
-        if (signal_number > 0)
-            return signal_number;
-        if (n == SLOW_LISTING_MS / LISTED_EVERY_MS)
+    struct rlimit now;
+    if (getrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur >= N_DESCRIPTORS)
+        return;
+    now.rlim_cur = now.rlim_max < N_DESCRIPTORS ? now.rlim_max : N_DESCRIPTORS;
+    (void)setrlimit(RLIMIT_NOFILE, &now);
+    if (now.rlim_cur < N_DESCRIPTORS)
+        log_warn("%llu descriptors are allowed; %d are needed for every connection that may be open", (unsigned long long)now.rlim_cur, N_DESCRIPTORS);
+}
+
+static void hang_net(struct net *net, void *argument)
+{
+    (void)net;
+    (void)argument;
+    for (;;)
+        (void)pause();
+}
+
+/* For tests: a thread that hangs. */
+static void let_hang(const char *thread, struct net *net, struct http *http, struct acceptor *acceptor)
+{
+    if (strcmp(thread, "net") == 0)
+        net_post(net, hang_net, NULL);
+    else if (strcmp(thread, "http") == 0)
+        http_hang(http);
+    else if (strcmp(thread, "acceptor") == 0)
+        acceptor_hang(acceptor);
+    else
+        log_warn("hang is \"%.40s\", expected net, http or acceptor", thread);
+}
+
+/* Until the plan folders have been listed: whoever is told that the server is ready finds their plans. False: a signal came before. */
+static bool wait_for_plans(const struct net *net)
+{
+    for (int n = 1; !net_plans_are_listed(net); n++) {
+        if (stop_wait(LISTED_EVERY_MS * INT64_C(1000)))
+            return false;
+        if (n % (SLOW_LISTING_S * 1000 / LISTED_EVERY_MS) != 0)
+            continue;
+        notify_send("EXTEND_TIMEOUT_USEC=60000000"); /* the server answers meanwhile: the service manager must not give it up */
+        if (n == SLOW_LISTING_S * 1000 / LISTED_EVERY_MS)
             log_warn("the plan folders are still being listed: a disk answers slowly or not at all");
     }
-    return 0;
+    return true;
 }
 
 /* Serves until a signal comes. */
@@ -172,31 +213,43 @@ static bool serve(const struct options *options, struct error *err)
                                                .upload_folder = upload_folder,
                                                .max_upload_bytes = (uint64_t)options->max_upload_mib << 20,
                                                .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
-                                               .hosts = hosts };
+                                               .hosts = hosts,
+                                               .trusted = options->trusted_proxies,
+                                               .n_trusted = options->n_trusted_proxies };
     struct net *net = net_create(&net_options, err);
     struct http *http = net ? http_create(net, &http_options, err) : NULL;
-    struct acceptor *acceptor = http ? acceptor_create(options->listen ? options->listen : "127.0.0.1:8080", net, http, hosts, err) : NULL;
+    const struct acceptor_options acceptor_options = { .listen = options->listen ? options->listen : "127.0.0.1:8080",
+                                                       .net = net,
+                                                       .http = http,
+                                                       .hosts = hosts,
+                                                       .trusted = options->trusted_proxies,
+                                                       .n_trusted = options->n_trusted_proxies };
+    struct acceptor *acceptor = http ? acceptor_create(&acceptor_options, err) : NULL;
+    struct heartbeat *heartbeat = NULL;
+    bool ok = acceptor != NULL;
     if (acceptor) {
-        sigset_t signals;
-        sigemptyset(&signals);
-        sigaddset(&signals, SIGINT);
-        sigaddset(&signals, SIGTERM);
-        int signal_number = wait_for_plans(net, &signals);
-        if (signal_number == 0) {
+        if (wait_for_plans(net)) {
             printf("ready %s\n", acceptor_url(acceptor));
             (void)fflush(stdout);
             log_info("serving on %s", acceptor_url(acceptor));
-            sigwait(&signals, &signal_number);
+            notify_send("READY=1");
+            if (options->hang)
+                let_hang(options->hang, net, http, acceptor);
+            heartbeat = heartbeat_create(net, http, acceptor);
+            while (!stop_wait(heartbeat_wait_us(heartbeat)))
+                heartbeat_beat(heartbeat);
         }
-        log_info("stopping: %s", strsignal(signal_number));
+        notify_send("STOPPING=1");
     }
-    acceptor_destroy(acceptor);
+    acceptor_stop(acceptor);
     if (http)
         http_stop_asking(http);
     net_destroy(net);
     http_destroy(http);
+    acceptor_destroy(acceptor);
+    heartbeat_destroy(heartbeat);
     hosts_destroy(hosts);
-    return acceptor != NULL;
+    return ok;
 }
 
 int main(int argc, char **argv)
@@ -219,21 +272,19 @@ int main(int argc, char **argv)
     }
     log_start("beamroomd", options.log_level);
 
-    /* every thread inherits the mask, so that signals reach sigwait alone; a write to a closed socket is an error, not a signal */
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    sigprocmask(SIG_BLOCK, &signals, NULL);
-    signal(SIGPIPE, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN); /* a write to a closed socket is an error */
     struct rlimit no_core = { 0, 0 }; /* and so is what is in memory */
     (void)setrlimit(RLIMIT_CORE, &no_core);
+
+    notify_open();
+    raise_descriptors();
 
     bool ok = !options.gl || gl_is_known(options.gl, &err);
     ok = ok && fill_path(&options.data_folder, default_data_folder, &err) && fill_path(&options.web_folder, default_web_folder, &err) &&
          fill_path(&options.renderer_path, default_renderer, &err) && make_folders(options.data_folder, &err);
     (void)umask(0077); /* what we and our children write is patients' data */
     ok = ok && give_up_root(&options, &err);
+    ok = ok && stop_watch(&err); /* starts the first thread; before it a signal just ends the process */
     if (ok && options.n_plan_folders == 0)
         log_warn("no --plans folder: only uploaded plans can be shown");
     ok = ok && serve(&options, &err);

@@ -8,7 +8,7 @@
 #include "core/base/mem.h"
 #include "server/wire/document.h"
 
-enum kind { KIND_FOLDERS, KIND_TEXT, KIND_COUNT, KIND_FLAG, KIND_LEVEL, KIND_NAMES };
+enum kind { KIND_FOLDERS, KIND_TEXT, KIND_COUNT, KIND_FLAG, KIND_LEVEL, KIND_NAMES, KIND_RANGES };
 
 /* One row a setting: flag --name VALUE, key "name = value". */
 struct setting {
@@ -39,9 +39,11 @@ static const struct setting settings[] = {
     { "disk-reserve-mib", "N", "what uploads and kept plans leave free on the disk of --data, in MiB; default 64", KIND_COUNT, AT(disk_reserve_mib), 0, 1 << 24 },
     { "allow-origin", "ORIGIN", "a further origin whose pages may open WebSockets, as https://beamroom.example", KIND_TEXT, AT(allowed_origin), 0, 0 },
     { "public-name", "NAME", "a name people reach this server by, as beamroom.example; may be repeated; * for any", KIND_NAMES, AT(public_names), 0, 0 },
+    { "trusted-proxy", "ADDRESS[/BITS]", "a proxy whose X-Forwarded-For says who its clients are; may be repeated", KIND_RANGES, AT(trusted_proxies), 0, 0 },
     { "user", "NAME", "started by root: the user to run as; default beamroom where there is one, else nobody; root stays root", KIND_TEXT, AT(user), 0, 0 },
     { "log-level", "LEVEL", "debug, info (default), warning or error", KIND_LEVEL, AT(log_level), 0, 0 },
     { "stub", NULL, "draw grey pictures instead of using GL; for tests", KIND_FLAG, AT(stub_renderer), 0, 0 },
+    { "hang", "THREAD", "let the thread net, http or acceptor hang once it serves; for tests", KIND_TEXT, AT(hang), 0, 0 },
 };
 enum { N_SETTINGS = sizeof settings / sizeof settings[0] };
 
@@ -91,6 +93,15 @@ static bool set(struct options *options, const struct setting *setting, const ch
         if (!*value || strpbrk(value, ":/ \t[]"))
             return error_set(err, ERROR_FORMAT, "public-name is \"%.80s\", expected a name alone, as beamroom.example", value);
         options->public_names[options->n_public_names++] = mem_copy_text(value);
+        return true;
+    case KIND_RANGES:
+        if (options->n_trusted_proxies == ADDRESS_MAX_RANGES)
+            return error_set(err, ERROR_LIMIT, "more than %d trusted proxies", ADDRESS_MAX_RANGES);
+        if (!address_range_read(value, &options->trusted_proxies[options->n_trusted_proxies], err)) {
+            error_prefix(err, "trusted-proxy");
+            return false;
+        }
+        options->n_trusted_proxies++;
         return true;
     case KIND_TEXT: {
         char **text = (char **)(void *)at;
@@ -206,6 +217,7 @@ void options_finish(struct options *options)
     free(options->renderer_path);
     free(options->allowed_origin);
     free(options->user);
+    free(options->hang);
 }
 
 void options_print_help(void)

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "server/http/address.h"
 
 enum { OPTIONS_MAX_PLAN_FOLDERS = 64, OPTIONS_MAX_NAMES = 64, OPTIONS_MAX_LINE = 4096 };
 
@@ -13,6 +14,9 @@ struct options {
     size_t n_plan_folders;
     char *public_names[OPTIONS_MAX_NAMES];
     size_t n_public_names;
+    struct address_range trusted_proxies[ADDRESS_MAX_RANGES];
+    size_t n_trusted_proxies;
+    char *hang; /* NULL: nothing hangs */
     char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin, *user; /* NULL: not said */
     int64_t max_renderers, max_renderer_mib, plan_idle_close_s, room_idle_close_s, max_rooms, max_members;
     int64_t max_upload_mib, max_unpacked_mib, max_cache_mib, disk_reserve_mib;

@@ -4,6 +4,7 @@
 
 #include "core/base/clock.h"
 #include "server/http/api_inner.h"
+#include "server/http/etag.h"
 
 /* The call's first id as a room; NULL: answered with not-found. */
 static struct room *find_room(struct api *api, struct call *call)
@@ -85,24 +86,6 @@ void api_room_members(struct api *api, struct call *call)
 static void write_etag(char etag[24], uint32_t revision)
 {
     (void)snprintf(etag, 24, "\"%u\"", revision);
-}
-
-/* Whether a list of ETags (RFC 9110 13.1) names this one. Weak tags match only where weak comparison is allowed. */
-static bool etag_is_listed(const char *list, const char *etag, bool weak_allowed)
-{
-    size_t n = strlen(etag);
-    for (const char *at = list; *at;) {
-        at += strspn(at, " \t,");
-        if (*at == '*')
-            return true;
-        bool is_weak = strncmp(at, "W/", 2) == 0;
-        const char *tag = is_weak ? at + 2 : at;
-        size_t length = strcspn(tag, " \t,");
-        if (length == n && strncmp(tag, etag, n) == 0 && (weak_allowed || !is_weak))
-            return true;
-        at = tag + length;
-    }
-    return false;
 }
 
 /* The scene of the call's room; NULL: answered. */

@@ -10,6 +10,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
+#include "server/wire/origin.h"
 
 struct call *call_create(void)
 {
@@ -37,6 +38,7 @@ void call_destroy(struct call *call)
     free(call->content_type);
     free(call->origin);
     free(call->host);
+    free(call->fetch_site);
     free(call->body);
     if (call->upload_path)
         (void)unlink(call->upload_path); /* nobody kept it */
@@ -143,11 +145,14 @@ bool call_media_type_is(const struct call *call, const char *media_type)
 
 bool call_origin_is_own(const struct call *call, struct problem *problem)
 {
-    if (!call->origin || call->method == CALL_GET || call->method == CALL_HEAD)
+    if (call->method == CALL_GET || call->method == CALL_HEAD)
         return true;
-    const char *authority = strstr(call->origin, "://");
-    return (authority && call->host && strcmp(authority + 3, call->host) == 0) ||
-           problem_set(problem, PROBLEM_FORBIDDEN, "", "", "the origin %.100s may not change anything here", call->origin);
+    if (call->origin)
+        return origin_is_of_host(call->origin, call->host) ||
+               problem_set(problem, PROBLEM_FORBIDDEN, "", "", "the origin %.100s may not change anything here", call->origin);
+    /* browsers that leave Origin out say at least this much; programs say neither */
+    return !call->fetch_site || strcmp(call->fetch_site, "same-origin") == 0 || strcmp(call->fetch_site, "none") == 0 ||
+           problem_set(problem, PROBLEM_FORBIDDEN, "", "", "a page of another site (Sec-Fetch-Site: %.40s) may not change anything here", call->fetch_site);
 }
 
 bool call_read_object(struct call *call, const char *const *media_types, cJSON **object)

@@ -14,7 +14,7 @@ struct text { /* a piece of the head */
 
 /* What matters of the headers. */
 struct fields {
-    struct text host, origin, upgrade, connection, key, version, length, coding;
+    struct text host, origin, upgrade, connection, key, version, length, coding, forwarded;
     size_t n_hosts, n_origins, n_lengths, n_codings, n_keys, n_versions;
 };
 
@@ -142,6 +142,7 @@ static void note_field(struct fields *fields, struct text name, struct text valu
                   { "Transfer-Encoding", &fields->coding, &fields->n_codings },
                   { "Sec-WebSocket-Key", &fields->key, &fields->n_keys },
                   { "Sec-WebSocket-Version", &fields->version, &fields->n_versions },
+                  { "X-Forwarded-For", &fields->forwarded, NULL },
                   { "Upgrade", &fields->upgrade, NULL },
                   { "Connection", &fields->connection, NULL } };
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
@@ -205,12 +206,6 @@ static bool check_host(const struct head *head, const struct hosts *hosts)
     if (fields->n_hosts > 1 || (fields->n_hosts == 0 && head->minor > 0))
         return problem_set(head->problem, PROBLEM_REQUEST, "", "", "Host is there %zu times; HTTP/1.1 expects it once", fields->n_hosts);
     return fields->n_hosts == 0 || hosts_allow(hosts, fields->host.at, fields->host.n) || refuse_host(head->problem, fields->host);
-}
-
-bool head_host_is_ours(const struct hosts *hosts, const char *host, struct problem *problem)
-{
-    struct text text = { host, host ? strlen(host) : 0 };
-    return !host || hosts_allow(hosts, host, text.n) || refuse_host(problem, text);
 }
 
 /* "/api/v1/rooms/<anything>/ws"; room: the anything. */
@@ -279,7 +274,36 @@ static enum head_kind refuse_size(const struct head *head, const char *line, con
     return HEAD_REFUSED;
 }
 
+/* The library behind keeps each parameter in the memory of its connection and gives no answer at all when they do not fit. */
+static bool check_parameters(const struct head *head)
+{
+    size_t n_parameters = 0;
+    bool is_query = false;
+    for (size_t i = 0; i < head->target.n; i++) {
+        bool is_mark = head->target.at[i] == '?' && !is_query;
+        n_parameters += is_mark || (is_query && head->target.at[i] == '&');
+        is_query = is_query || is_mark;
+    }
+    return n_parameters <= HEAD_MAX_PARAMETERS ||
+           problem_set(head->problem, PROBLEM_TOO_LARGE, "", "", "the address has %zu parameters; at most %d are read", n_parameters, HEAD_MAX_PARAMETERS);
+}
+
+/* check_length has found it to be a number. */
+static uint64_t number_of(struct text digits)
+{
+    uint64_t number = 0;
+    for (size_t i = 0; i < digits.n; i++)
+        number = number * 10 + (uint64_t)(digits.at[i] - '0');
+    return number;
+}
+
 enum head_kind head_look(const char *bytes, size_t n, const struct hosts *hosts, struct problem *problem)
+{
+    struct head_request request;
+    return head_read(bytes, n, hosts, &request, problem);
+}
+
+enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts, struct head_request *request, struct problem *problem)
 {
     struct head head = { .begin = bytes, .problem = problem };
     const char *at = bytes, *end = bytes + n;
@@ -308,8 +332,13 @@ enum head_kind head_look(const char *bytes, size_t n, const struct hosts *hosts,
         if (!read_field(&head, n_fields, line))
             return HEAD_REFUSED;
     }
-    if (!check_length(&head) || !check_host(&head, hosts))
+    if (!check_length(&head) || !check_host(&head, hosts) || !check_parameters(&head))
         return HEAD_REFUSED;
+    *request = (struct head_request){ .n_bytes = (size_t)(at - bytes),
+                                      .is_chunked = head.fields.n_codings > 0,
+                                      .length = number_of(head.fields.length),
+                                      .forwarded = head.fields.forwarded.at,
+                                      .n_forwarded = head.fields.forwarded.n };
     bool is_get = head.method.n == 3 && memcmp(head.method.at, "GET", 3) == 0;
     if (!is_get || !is_room_address(head.target, &room) || !has_word(head.fields.upgrade, "websocket"))
         return HEAD_HTTP;

@@ -1,37 +1,41 @@
 #include "server/http/http.h"
 
 #include <ctype.h>
-#include <fcntl.h>
 #include <microhttpd.h>
 #include <pthread.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "core/base/queue.h"
 #include "server/http/api.h"
+#include "server/http/etag.h"
 #include "server/http/files.h"
-#include "server/http/head.h"
 #include "server/http/intake.h"
-#include "server/wire/refusal.h"
+#include "server/http/relay.h"
+
+/* Never met: what the relay has at most, and those that have died and the library has not noticed yet. */
+static const unsigned LIBRARY_LIMIT = 1000000;
+
+enum { MAX_ANSWERED = 1 << 16 }; /* requests that wait for an answer: at most one for each connection, and each of those that have died */
 
 struct http {
     struct net *net;
     struct api *api;
     struct files *files;
     struct intake *intake;
-    const struct hosts *hosts;
+    struct relay *relay;
     struct MHD_Daemon *daemon;
+    struct queue *answered; /* requests whose answer is there; their connections are resumed on the HTTP thread, as the library expects */
     pthread_mutex_t asking; /* held while a task is posted: after http_stop_asking none is */
     size_t max_archive_dropped; /* bytes of an archive beyond the limit that are read: a sender who streams hears why it was refused */
     bool is_stopping;
-    size_t n_refused; /* connections, since the log said so last */
-    int64_t logged_us;
 };
 
 /* A request: the call, and where it stands. */
@@ -39,10 +43,9 @@ struct request {
     struct call *call;
     struct http *http;
     struct MHD_Connection *connection;
-    atomic_bool is_answered; /* set on the net thread before the connection is resumed */
-    bool is_posted, is_archive;
+    struct relay_link *link;
+    bool is_posted, is_answered, is_archive;
     struct intake_file *archive; /* while it is received */
-    size_t n_dropped; /* bytes of the body beyond what is read */
 };
 
 /* The page runs its own scripts and styles only, and nobody may frame it. */
@@ -62,7 +65,7 @@ static enum MHD_Result send_response(struct MHD_Connection *connection, unsigned
 static enum MHD_Result send_file(struct MHD_Connection *connection, const struct file *file)
 {
     const char *known = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "If-None-Match");
-    bool is_fresh = known && strcmp(known, file->etag) == 0;
+    bool is_fresh = known && etag_is_listed(known, file->etag, true);
     struct MHD_Response *response =
         MHD_create_response_from_buffer(is_fresh ? 0 : file->n_bytes, file->bytes, MHD_RESPMEM_PERSISTENT); /* files outlive the daemon */
     MHD_add_response_header(response, "ETag", file->etag);
@@ -90,8 +93,10 @@ static enum MHD_Result send_answer(struct MHD_Connection *connection, struct req
 static void call_finished(struct call *call)
 {
     struct request *request = call->connection;
-    atomic_store(&request->is_answered, true);
-    MHD_resume_connection(request->connection); /* from here on the request is the HTTP thread's again */
+    struct relay *relay = request->http->relay;
+    if (!queue_try_put(request->http->answered, request)) /* it holds more than there are connections */
+        abort();
+    relay_wake(relay); /* the request is the HTTP thread's again */
 }
 
 static void run_call(struct net *net, void *argument)
@@ -157,40 +162,36 @@ static const char *path_of(const char *url)
     return path ? path : "/";
 }
 
-/* A body that would be read only to be dropped: refused before it comes, where the sender waits to hear that, or where it is huge. */
-static bool refuses_body(struct MHD_Connection *connection, struct call *call)
+/* Refuses what is being received: the sender is told at once, and its connection counts no longer. */
+static enum MHD_Result refuse_body(struct request *request)
 {
-    const char *length = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Content-Length");
-    const char *expect = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Expect");
-    unsigned long long n = length ? strtoull(length, NULL, 10) : 0;
-    if (n <= CALL_MAX_BODY || (!expect && n <= HTTP_MAX_DROPPED))
-        return false;
-    problem_set(&call->early, PROBLEM_TOO_LARGE, "", "", "a body of more than %d bytes", CALL_MAX_BODY);
-    return true;
+    struct http *http = request->http;
+    struct call *call = request->call;
+    intake_drop(request->archive);
+    request->archive = NULL;
+    api_count(http->api, problem_status(call->early.type), clock_now_us() - call->started_us);
+    relay_refuse(request->link, &call->early, request->is_archive ? http->max_archive_dropped : RELAY_MAX_DROPPED);
+    return MHD_NO;
 }
 
-/* The body will be an archive. False: it is refused, and the sender is to hear so before it comes. */
+/* The body will be an archive. */
 static bool begin_archive(struct request *request)
 {
     struct call *call = request->call;
     const char *length = MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, "Content-Length");
-    const char *expect = MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, "Expect");
     unsigned long long n = length ? strtoull(length, NULL, 10) : 0;
     request->is_archive = true;
     if (call->early.type == PROBLEM_NONE)
         request->archive = intake_begin(request->http->intake, call, !length ? -1 : n < INT64_MAX ? (int64_t)n : INT64_MAX, &call->early);
-    return request->archive || !(expect || n > HTTP_MAX_DROPPED);
+    return request->archive != NULL;
 }
 
-/* More of it. After a refusal the rest is read and dropped, as of other bodies. */
-static bool add_archive(struct request *request, const char *bytes, size_t n)
+/* Whether the body may be that large, as far as its sender says. */
+static bool check_length(struct request *request)
 {
-    if (request->archive && intake_add(request->archive, bytes, n, &request->call->early))
-        return true;
-    intake_drop(request->archive);
-    request->archive = NULL;
-    request->n_dropped += n;
-    return request->n_dropped <= request->http->max_archive_dropped;
+    const char *length = MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, "Content-Length");
+    unsigned long long n = length ? strtoull(length, NULL, 10) : 0;
+    return n <= CALL_MAX_BODY || problem_set(&request->call->early, PROBLEM_TOO_LARGE, "", "", "a body of %llu bytes; at most %d are read", n, CALL_MAX_BODY);
 }
 
 static void finish_archive(struct request *request)
@@ -207,7 +208,7 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     struct call *call = request->call = call_create();
     request->http = http;
     request->connection = connection;
-    atomic_init(&request->is_answered, false);
+    request->link = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT)->socket_context;
     call->connection = request;
     call->finished = call_finished;
     call->method = method_of(method);
@@ -218,25 +219,19 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     call->content_type = copy_header(connection, "Content-Type");
     call->origin = copy_header(connection, "Origin");
     call->host = copy_header(connection, "Host");
-    if (call->early.type == PROBLEM_NONE)
-        head_host_is_ours(http->hosts, MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host"), &call->early);
+    call->fetch_site = copy_header(connection, "Sec-Fetch-Site");
     return request;
 }
 
-/* More of the body. What is over the limit is read and dropped, so that the sender gets to see the answer; false: too much of that. */
+/* More of the body. */
 static bool add_body(struct request *request, const char *bytes, size_t n)
 {
     struct call *call = request->call;
-    if (call->n_body + n > CALL_MAX_BODY) {
-        problem_set(&call->early, PROBLEM_TOO_LARGE, "", "", "a body of more than %d bytes", CALL_MAX_BODY);
-        request->n_dropped += n;
-        return request->n_dropped <= HTTP_MAX_DROPPED;
-    }
+    if (call->n_body + n > CALL_MAX_BODY)
+        return problem_set(&call->early, PROBLEM_TOO_LARGE, "", "", "a body of more than %d bytes", CALL_MAX_BODY);
     char *larger = realloc(call->body, call->n_body + n);
-    if (!larger) {
-        problem_set(&call->early, PROBLEM_INTERNAL, "", "", "no memory for the body");
-        return true;
-    }
+    if (!larger)
+        return problem_set(&call->early, PROBLEM_INTERNAL, "", "", "no memory for the body");
     memcpy(larger + call->n_body, bytes, n);
     call->body = larger;
     call->n_body += n;
@@ -268,22 +263,19 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
     (void)version;
     if (!request) {
         *state = request = request_create(http, connection, url, method);
-        if (intake_is_for(request->call) ? !begin_archive(request) : refuses_body(connection, request->call)) {
-            request->is_posted = true;
-            ask(http, request);
-        }
-        return MHD_YES;
+        return (intake_is_for(request->call) ? begin_archive(request) : check_length(request)) ? MHD_YES : refuse_body(request);
     }
     if (*n_upload) {
-        bool goes_on = request->is_archive ? add_archive(request, upload, *n_upload) : add_body(request, upload, *n_upload);
+        bool goes_on = request->is_archive ? intake_add(request->archive, upload, *n_upload, &request->call->early) : add_body(request, upload, *n_upload);
         *n_upload = 0;
-        return goes_on ? MHD_YES : MHD_NO;
+        return goes_on ? MHD_YES : refuse_body(request);
     }
-    if (atomic_load(&request->is_answered))
+    if (request->is_answered)
         return send_answer(connection, request);
     if (!request->is_posted) {
         enum call_method verb = request->call->method;
-        const struct file *file = http->files && request->call->early.type == PROBLEM_NONE && (verb == CALL_GET || verb == CALL_HEAD) ? files_find(http->files, request->call->path) : NULL;
+        bool is_for_file = http->files && request->call->early.type == PROBLEM_NONE && (verb == CALL_GET || verb == CALL_HEAD);
+        const struct file *file = is_for_file ? files_find(http->files, request->call->path) : NULL;
         if (file)
             return send_file(connection, file);
         finish_archive(request);
@@ -298,47 +290,83 @@ static void completed(void *context, struct MHD_Connection *connection, void **s
     struct request *request = *state;
     (void)context;
     (void)connection;
-    (void)code;
     if (!request)
         return;
+    if (code == MHD_REQUEST_TERMINATED_COMPLETED_OK)
+        relay_request_ended(request->link);
     intake_drop(request->archive);
     call_destroy(request->call);
     free(request);
     *state = NULL;
 }
 
-static void log_library(void *context, const char *format, va_list args)
+static void connection_changed(void *context, struct MHD_Connection *connection, void **link, enum MHD_ConnectionNotificationCode code)
 {
-    char text[400];
-    (void)context;
-    (void)vsnprintf(text, sizeof text, format, args);
-    log_debug("http: %s", text);
+    struct http *http = context;
+    if (code == MHD_CONNECTION_NOTIFY_STARTED)
+        *link = relay_find(http->relay, MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd);
+    else if (*link)
+        relay_link_closed(*link);
+}
+
+/* What the relay calls. */
+static bool add_to_library(void *context, int socket)
+{
+    struct http *http = context;
+    const struct sockaddr_un pair = { .sun_family = AF_UNIX };
+    return MHD_add_connection(http->daemon, socket, (const struct sockaddr *)&pair, sizeof pair.sun_family) == MHD_YES;
+}
+
+static void resume_answered(struct http *http)
+{
+    for (struct request *request; (request = queue_try_take(http->answered));) {
+        request->is_answered = true;
+        MHD_resume_connection(request->connection);
+    }
+}
+
+static bool run_library(void *context)
+{
+    struct http *http = context;
+    unsigned MHD_LONG_LONG wait_ms;
+    resume_answered(http);
+    (void)MHD_run(http->daemon);
+    return MHD_get_timeout(http->daemon, &wait_ms) == MHD_YES && wait_ms == 0;
 }
 
 struct http *http_create(struct net *net, const struct http_options *options, struct error *err)
 {
     struct http *http = mem_new(sizeof *http);
     http->net = net;
-    http->hosts = options->hosts;
     http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0);
     http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes : HTTP_MIN_ARCHIVE_DROPPED;
     http->intake = intake_create(options->upload_folder, options->max_upload_bytes, options->disk_reserve_bytes);
     pthread_mutex_init(&http->asking, NULL);
+    http->answered = queue_create(MAX_ANSWERED, NULL);
     if (options->web_folder) {
         http->files = files_create(options->web_folder, err);
         if (!http->files)
             goto fail;
     }
-    http->daemon = MHD_start_daemon(MHD_USE_EPOLL_INTERNAL_THREAD | MHD_USE_NO_LISTEN_SOCKET | MHD_USE_ITC | MHD_ALLOW_SUSPEND_RESUME |
-                                        MHD_USE_ERROR_LOG,
-                                    0, NULL, NULL, handle, http, MHD_OPTION_EXTERNAL_LOGGER, log_library, NULL,
-                                    MHD_OPTION_NOTIFY_COMPLETED, completed, NULL, MHD_OPTION_CONNECTION_LIMIT, (unsigned)HTTP_MAX_CONNECTIONS,
-                                    MHD_OPTION_PER_IP_CONNECTION_LIMIT, (unsigned)HTTP_MAX_PER_ADDRESS, MHD_OPTION_CONNECTION_TIMEOUT,
-                                    (unsigned)HTTP_TIMEOUT_S, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)128 * 1024, MHD_OPTION_UNESCAPE_CALLBACK, unescape, NULL, MHD_OPTION_END);
-    if (!http->daemon) {
-        error_set(err, ERROR_IO, "the HTTP server did not start");
+    const struct relay_options relay_options = { .hosts = options->hosts, .trusted = options->trusted, .n_trusted = options->n_trusted };
+    http->relay = relay_create(&relay_options, err);
+    if (!http->relay)
+        goto fail;
+    /* Without its log, which tells with each answer that a pair of sockets has no options of TCP.
+     * No limit and no time limit of the library's own: the relay has both, and the library hangs for ever when its limit is met (0.9.75). */
+    http->daemon = MHD_start_daemon(MHD_USE_EPOLL | MHD_USE_NO_LISTEN_SOCKET | MHD_ALLOW_SUSPEND_RESUME, 0, NULL,
+                                    NULL, handle, http, MHD_OPTION_NOTIFY_COMPLETED, completed, NULL,
+                                    MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http, MHD_OPTION_CONNECTION_LIMIT, LIBRARY_LIMIT,
+                                    MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)128 * 1024, MHD_OPTION_UNESCAPE_CALLBACK, unescape, NULL,
+                                    MHD_OPTION_END);
+    const union MHD_DaemonInfo *polled = http->daemon ? MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_EPOLL_FD) : NULL;
+    if (!polled) {
+        error_set(err, ERROR_IO, "the HTTP library did not start");
         goto fail;
     }
+    const struct relay_server server = { .add = add_to_library, .run = run_library, .poll_fd = polled->epoll_fd, .context = http };
+    if (!relay_serve(http->relay, &server, err))
+        goto fail;
     return http;
 fail:
     http_destroy(http);
@@ -356,41 +384,30 @@ void http_destroy(struct http *http)
 {
     if (!http)
         return;
+    relay_stop(http->relay);
+    resume_answered(http);
     if (http->daemon)
         MHD_stop_daemon(http->daemon);
+    relay_destroy(http->relay);
     pthread_mutex_destroy(&http->asking);
     files_destroy(http->files);
     intake_destroy(http->intake);
+    queue_destroy(http->answered);
     api_destroy(http->api);
     free(http);
 }
 
-/* A flood of connections must not become one of lines. On the acceptor's thread only. */
-static void log_refusal(struct http *http)
+void http_add_connection(struct http *http, int socket, const struct address *peer, const struct address *client)
 {
-    int64_t now_us = clock_now_us();
-    http->n_refused++;
-    if (http->logged_us && now_us - http->logged_us < 10000000)
-        return;
-    log_warn("http: too many connections: %zu refused", http->n_refused);
-    http->logged_us = now_us;
-    http->n_refused = 0;
+    relay_add(http->relay, socket, peer, client);
 }
 
-void http_add_connection(struct http *http, int socket, const struct sockaddr *address, socklen_t n_address)
+void http_ping(struct http *http, atomic_bool *beat)
 {
-    int second = fcntl(socket, F_DUPFD_CLOEXEC, 3); /* the library closes what it does not take, without a word */
-    if (MHD_add_connection(http->daemon, socket, address, n_address) != MHD_YES) {
-        struct problem problem;
-        problem_set(&problem, PROBLEM_LIMIT, "", "", "too many connections: at most %d in all, %d from one address", HTTP_MAX_CONNECTIONS,
-                    HTTP_MAX_PER_ADDRESS);
-        problem.retry_after_ms = HTTP_RETRY_MS;
-        if (second >= 0) {
-            (void)refusal_drain(second, HEAD_MAX_BYTES); /* its head, which nobody has read */
-            refusal_send(second, &problem);
-        }
-        log_refusal(http);
-    }
-    if (second >= 0)
-        (void)close(second);
+    relay_ping(http->relay, beat);
+}
+
+void http_hang(struct http *http)
+{
+    relay_hang(http->relay);
 }

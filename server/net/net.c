@@ -324,22 +324,25 @@ bool net_is_stopping(const struct net *net)
 struct adoption {
     int socket;
     struct handshake handshake;
+    struct ws_count count;
 };
 
 static void adopt(struct net *net, void *argument)
 {
     struct adoption *adoption = argument;
-    if (net_is_stopping(net))
+    if (net_is_stopping(net)) {
         ws_refuse_as_stopping(net->ws, adoption->socket);
-    else
-        ws_adopt(net->ws, adoption->socket, &adoption->handshake);
+        adoption->count.ended(adoption->count.context);
+    } else {
+        ws_adopt(net->ws, adoption->socket, &adoption->handshake, &adoption->count);
+    }
     free(adoption);
 }
 
-void net_adopt(struct net *net, int socket, const struct handshake *handshake)
+void net_adopt(struct net *net, int socket, const struct handshake *handshake, void (*ended)(void *context), void *context)
 {
     struct adoption *adoption = mem_new(sizeof *adoption);
-    *adoption = (struct adoption){ socket, *handshake };
+    *adoption = (struct adoption){ socket, *handshake, { ended, context } };
     net_post(net, adopt, adoption);
 }
 

@@ -28,8 +28,9 @@ bool net_is_stopping(const struct net *net);
 /* Whether the plan folders have been listed for the first time. Any thread. */
 bool net_plans_are_listed(const struct net *net);
 
-/* A socket that begins with this handshake of a WebSocket, not yet read from: takes it over. Any thread. */
-void net_adopt(struct net *net, int socket, const struct handshake *handshake);
+/* A socket that begins with this handshake of a WebSocket, not yet read from: takes it over. Any thread. ended: called with context, once,
+ * when the connection is gone, also when it never became a WebSocket; on the net thread, at the latest in net_destroy. */
+void net_adopt(struct net *net, int socket, const struct handshake *handshake, void (*ended)(void *context), void *context);
 
 /* On the net thread only: */
 struct fleet *net_fleet(struct net *net);

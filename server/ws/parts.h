@@ -44,6 +44,7 @@ struct ws_connection { /* zeroed by the library, lives with its socket */
     struct ws *ws;
     struct lws *wsi;
     void *owner;
+    struct ws_count count;
     enum state state;
     int64_t opened_us, heard_us, close_by_us;
     struct ws_parser parser;

@@ -13,6 +13,7 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/wire/origin.h"
 #include "server/wire/refusal.h"
 
 enum {
@@ -39,8 +40,7 @@ static bool origin_is_allowed(const struct ws *ws, const struct handshake *hands
     const char *origin = handshake->origin;
     if (!origin[0] || (ws->allowed_origin && strcasecmp(origin, ws->allowed_origin) == 0))
         return true;
-    const char *authority = strncasecmp(origin, "http://", 7) == 0 ? origin + 7 : strncasecmp(origin, "https://", 8) == 0 ? origin + 8 : NULL;
-    return authority && handshake->host[0] && strcasecmp(authority, handshake->host) == 0;
+    return handshake->host[0] && origin_is_of_host(origin, handshake->host);
 }
 
 /* Takes the socket. */
@@ -95,10 +95,10 @@ static void set_option(int socket, int level, int name, int value)
     }
 }
 
-static void start(struct ws *ws, struct lws *wsi, const char *room_id)
+static void start(struct ws *ws, struct lws *wsi, const char *room_id, const struct ws_count *count)
 {
     struct ws_connection *connection = lws_wsi_user(wsi);
-    *connection = (struct ws_connection){ .ws = ws, .wsi = wsi, .state = STATE_OPEN };
+    *connection = (struct ws_connection){ .ws = ws, .wsi = wsi, .count = *count, .state = STATE_OPEN };
     connection->pongs.last = &connection->pongs.first;
     connection->texts.last = &connection->texts.first;
     connection->opened_us = connection->heard_us = clock_now_us();
@@ -110,7 +110,8 @@ static void start(struct ws *ws, struct lws *wsi, const char *room_id)
     ws->callbacks.opened(ws->callbacks.context, connection, room_id);
 }
 
-void ws_adopt(struct ws *ws, int socket, const struct handshake *handshake)
+/* NULL when the socket could not be taken over; it is closed then. */
+static struct lws *take_over(struct ws *ws, int socket, const struct handshake *handshake)
 {
     struct problem problem;
     int flags = fcntl(socket, F_GETFL);
@@ -118,21 +119,35 @@ void ws_adopt(struct ws *ws, int socket, const struct handshake *handshake)
         (void)fcntl(socket, F_SETFL, flags | O_NONBLOCK);
     if (!may_open(ws, handshake, &problem)) {
         refuse(ws, socket, &problem);
-        return;
+        return NULL;
     }
     set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
     set_option(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, UNSENT_AT_MOST);
     set_option(socket, SOL_SOCKET, SO_SNDBUF, SEND_BUFFER);
     if (!skip_head(socket, handshake->n_head) || !answer_handshake(socket, handshake->key)) {
         (void)close(socket); /* the client is gone */
-        return;
+        return NULL;
     }
     lws_sock_file_fd_type descriptor = { .sockfd = socket };
     struct lws *wsi = lws_adopt_descriptor_vhost(ws->vhost, LWS_ADOPT_SOCKET, descriptor, ws->protocols[0].name, NULL);
-    if (wsi)
-        start(ws, wsi, handshake->room_id);
-    else
+    if (!wsi)
         log_warn("a connection could not be taken over: no memory"); /* the library has closed the socket */
+    return wsi;
+}
+
+static void end_count(const struct ws_count *count)
+{
+    if (count->ended)
+        count->ended(count->context);
+}
+
+void ws_adopt(struct ws *ws, int socket, const struct handshake *handshake, const struct ws_count *count)
+{
+    struct lws *wsi = take_over(ws, socket, handshake);
+    if (wsi)
+        start(ws, wsi, handshake->room_id, count);
+    else
+        end_count(count);
 }
 
 void ws_refuse_as_stopping(struct ws *ws, int socket)
@@ -236,6 +251,7 @@ static void closed(struct ws_connection *connection)
     free(connection->sending.message);
     room_picture_drop(connection->sending.picture);
     ws_parser_finish(&connection->parser);
+    end_count(&connection->count);
 }
 
 static int handle(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t n)

@@ -49,6 +49,12 @@ struct ws_callbacks {
     void *context;
 };
 
+/* Of a connection that the caller counts: called once, when it is gone, also when it never became a WebSocket. ended NULL: nobody counts. */
+struct ws_count {
+    void (*ended)(void *context);
+    void *context;
+};
+
 struct ws_counters {
     uint64_t opened, refused; /* refused: no such room, foreign Origin, too many, stopping */
     size_t n_connections;
@@ -61,7 +67,7 @@ void ws_serve(struct ws *ws);   /* waits for something to happen and handles it 
 void ws_wake(struct ws *ws);    /* any thread: ends the wait */
 void ws_wake_at(struct ws *ws, int64_t time_us); /* on the clock of clock_now_us; replaces the last; INT64_MAX: never */
 /* Takes the socket, from which nobody has read; handshake: what it begins with. */
-void ws_adopt(struct ws *ws, int socket, const struct handshake *handshake);
+void ws_adopt(struct ws *ws, int socket, const struct handshake *handshake, const struct ws_count *count);
 void ws_refuse_as_stopping(struct ws *ws, int socket); /* takes it */
 void ws_count(const struct ws *ws, struct ws_counters *counters);
 

@@ -12,12 +12,13 @@ export const demo = process.env.BEAMROOM_DEMO ?? resolve('build/demo/plans');
 /** Real plans, when this machine has them; tests that need them skip otherwise. */
 export const realData = [process.env.BEAMROOM_DATA, '../shared/data'].filter(Boolean).map((p) => resolve(p)).find(existsSync);
 
-/** data: a state folder to use and to keep. cwd, folders: where it is started, and where its programs and its page then lie.
+/** data: a state folder to use and to keep. cwd, folders: where it is started, and where its programs and its page then lie. env: variables
+ *  beside our own.
  *  @returns {Promise<{url: string, data: string, child: import('node:child_process').ChildProcess, log: () => string, stop: () => Promise<number|null>}>} */
-export async function startDaemon({ plans = [demo], args = [], data: given, cwd, folders = { bin, web } } = {}) {
+export async function startDaemon({ plans = [demo], args = [], data: given, cwd, folders = { bin, web }, env = {} } = {}) {
   const data = given ?? mkdtempSync(join(tmpdir(), 'beamroom-test-'));
   const child = spawn(join(folders.bin, 'beamroomd'), ['--listen', '127.0.0.1:0', '--data', data, '--web', folders.web, ...plans.flatMap((p) => ['--plans', p]), ...args],
-    { cwd, stdio: ['ignore', 'pipe', 'pipe'] });
+    { cwd, stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, ...env } });
   let log = '';
   child.stderr.on('data', (text) => { log += text; });
   const ended = new Promise((done) => child.on('exit', (code) => done(code)));

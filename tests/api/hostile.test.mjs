@@ -157,8 +157,8 @@ describe('a stranger on the line', () => {
     assert.equal((await call(`${url}/healthz`)).status, 200);
   });
 
-  test('is refused with a status at least for what the library behind refuses by itself', async () => {
-    const first = 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n'; /* only the first request of a connection is seen before it */
+  test('is refused for a later request as for the first', async () => {
+    const first = 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n';
     const cases = [
       ['chunks without a size', post('Transfer-Encoding: chunked\r\n', 'zz\r\n{}\r\n'), [400]],
       ['a chunk of 2^72', post('Transfer-Encoding: chunked\r\n', 'ffffffffffffffffff\r\n{}\r\n'), [400, 413]],
@@ -167,7 +167,7 @@ describe('a stranger on the line', () => {
       ['a later request of another version', `${first}GET /healthz HTTP/9.9\r\nHost: localhost\r\n\r\n`, [505]],
     ];
     for (const [what, bytes, expected] of cases) {
-      const answer = await exchange(bytes), last = answer.slice(Math.max(answer.lastIndexOf('HTTP/1.'), 0));
+      const answer = await exchange(bytes), last = [...answer.matchAll(/HTTP\/1\.1 \d{3} [^]*?(?=HTTP\/1\.1 \d{3} |$)/g)].at(-1)?.[0] ?? '';
       assert.ok(expected.includes(statusOf(last)), `${what}: ${last.slice(0, 100)}`);
     }
     assert.equal((await call(`${url}/healthz`)).status, 200);
@@ -227,7 +227,7 @@ describe('a stranger on the line', () => {
       return socket;
     });
     await sleep(300);
-    assert.ok(openFiles() <= before_ + 64 + 200, `${openFiles()} descriptors`);
+    assert.ok(openFiles() <= before_ + 64 + 3 * 200, `${openFiles()} descriptors`);
     for (const socket of sockets) socket.destroy();
     assert.ok(await until(async () => openFiles(), (n) => n <= before_ + 4) <= before_ + 4, 'who hangs up frees its place');
     assert.equal((await call(`${url}/healthz`)).status, 200);

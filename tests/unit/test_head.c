@@ -253,9 +253,43 @@ static void only_our_own_names_are_answered_to(void **state)
     assert_true(hosts_allow(all, "evil.example", 12));
     hosts_destroy(all);
     struct problem problem = { 0 };
-    assert_false(head_host_is_ours(hosts, "evil.example", &problem));
+    static const char evil[] = "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n";
+    assert_int_equal(look(evil, sizeof evil - 1, &problem), HEAD_REFUSED);
     assert_int_equal(problem_status(problem.type), 421);
-    assert_true(head_host_is_ours(hosts, NULL, &problem));
+}
+
+static void a_whole_head_says_where_its_request_ends_and_for_whom_it_comes(void **state)
+{
+    (void)state;
+    static const char post[] = "\r\nPOST /x HTTP/1.1\r\n" HOST "X-Forwarded-For: 203.0.113.1\r\nContent-Length: 12\r\nx-forwarded-for: 198.51.100.7, 10.0.0.1 \r\n\r\nhello";
+    static const char chunked[] = "POST /x HTTP/1.1\r\n" HOST "Transfer-Encoding: chunked\r\n\r\n";
+    struct head_request request;
+    struct problem problem;
+    assert_int_equal(head_read(post, sizeof post - 1, hosts, &request, &problem), HEAD_HTTP);
+    assert_int_equal(request.n_bytes, sizeof post - 1 - 5);
+    assert_int_equal(request.length, 12);
+    assert_false(request.is_chunked);
+    assert_int_equal(request.n_forwarded, strlen("198.51.100.7, 10.0.0.1"));
+    assert_memory_equal(request.forwarded, "198.51.100.7, 10.0.0.1", request.n_forwarded);
+    assert_int_equal(head_read(chunked, sizeof chunked - 1, hosts, &request, &problem), HEAD_HTTP);
+    assert_true(request.is_chunked);
+    assert_int_equal(request.length, 0);
+    assert_null(request.forwarded);
+}
+
+static void more_parameters_than_the_library_has_memory_for_are_refused(void **state)
+{
+    (void)state;
+    for (int more = 0; more < 2; more++) {
+        char bytes[2000];
+        struct problem problem;
+        size_t n = (size_t)snprintf(bytes, sizeof bytes, "GET /a&b?c=d");
+        for (int i = 1; i < HEAD_MAX_PARAMETERS + more; i++)
+            n += (size_t)snprintf(bytes + n, sizeof bytes - n, "&c=?");
+        n += (size_t)snprintf(bytes + n, sizeof bytes - n, " HTTP/1.1\r\n" HOST "\r\n");
+        assert_int_equal(look(bytes, n, &problem), more ? HEAD_REFUSED : HEAD_HTTP);
+        assert_int_equal(problem.type, more ? PROBLEM_TOO_LARGE : PROBLEM_NONE);
+    }
 }
 
 static void who_does_not_come_to_an_end_is_told_what_is_missing(void **state)
@@ -304,6 +338,8 @@ int main(void)
         cmocka_unit_test(an_origin_is_there_once_and_is_not_cut),
         cmocka_unit_test(a_beginning_is_waited_for_or_refused_as_the_whole_is),
         cmocka_unit_test(only_our_own_names_are_answered_to),
+        cmocka_unit_test(a_whole_head_says_where_its_request_ends_and_for_whom_it_comes),
+        cmocka_unit_test(more_parameters_than_the_library_has_memory_for_are_refused),
         cmocka_unit_test(who_does_not_come_to_an_end_is_told_what_is_missing),
         cmocka_unit_test(a_refusal_is_a_whole_answer_of_http),
     };

@@ -23,7 +23,7 @@ void ws_client_open(struct ws_client *client, struct ws *ws)
     client->fd = ends[0];
     assert_int_equal(setsockopt(ends[1], SOL_SOCKET, SO_SNDBUF, &socket_bytes, sizeof socket_bytes), 0);
     assert_int_equal(write(client->fd, request, sizeof request - 1), (ssize_t)sizeof request - 1);
-    ws_adopt(ws, ends[1], &handshake);
+    ws_adopt(ws, ends[1], &handshake, &(struct ws_count){ NULL, NULL });
     char answer[300] = "";
     assert_true(read(client->fd, answer, sizeof answer - 1) > 0);
     assert_memory_equal(answer, "HTTP/1.1 101 ", 13);

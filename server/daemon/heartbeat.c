@@ -1,0 +1,75 @@
+#include "server/daemon/heartbeat.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/daemon/acceptor.h"
+#include "server/daemon/notify.h"
+#include "server/http/http.h"
+#include "server/net/net.h"
+
+enum { NET, HTTP, ACCEPTOR, N_THREADS };
+
+struct heartbeat {
+    struct net *net;
+    struct http *http;
+    struct acceptor *acceptor;
+    atomic_bool has_moved[N_THREADS]; /* since it was asked last */
+    bool is_late; /* has been logged */
+};
+
+static void mark(struct net *net, void *moved)
+{
+    (void)net;
+    atomic_store((atomic_bool *)moved, true);
+}
+
+static void ask(struct heartbeat *heartbeat)
+{
+    for (int i = 0; i < N_THREADS; i++)
+        atomic_store(&heartbeat->has_moved[i], false);
+    net_post(heartbeat->net, mark, &heartbeat->has_moved[NET]);
+    http_ping(heartbeat->http, &heartbeat->has_moved[HTTP]);
+    acceptor_ping(heartbeat->acceptor, &heartbeat->has_moved[ACCEPTOR]);
+}
+
+struct heartbeat *heartbeat_create(struct net *net, struct http *http, struct acceptor *acceptor)
+{
+    struct heartbeat *heartbeat = mem_new(sizeof *heartbeat);
+    heartbeat->net = net;
+    heartbeat->http = http;
+    heartbeat->acceptor = acceptor;
+    if (notify_watchdog_us() > 0)
+        ask(heartbeat);
+    return heartbeat;
+}
+
+void heartbeat_destroy(struct heartbeat *heartbeat)
+{
+    free(heartbeat);
+}
+
+int64_t heartbeat_wait_us(const struct heartbeat *heartbeat)
+{
+    (void)heartbeat;
+    return notify_watchdog_us() > 0 ? notify_watchdog_us() / HEARTBEAT_PARTS : -1;
+}
+
+void heartbeat_beat(struct heartbeat *heartbeat)
+{
+    static const char *const names[N_THREADS] = { "net", "http", "acceptor" };
+    bool have_all_moved = true;
+    for (int i = 0; i < N_THREADS; i++) {
+        bool has_moved = atomic_load(&heartbeat->has_moved[i]);
+        if (!has_moved && !heartbeat->is_late)
+            log_warn("the %s thread has not moved for %lld ms", names[i], (long long)(heartbeat_wait_us(heartbeat) / 1000));
+        have_all_moved = have_all_moved && has_moved;
+    }
+    heartbeat->is_late = !have_all_moved;
+    if (!have_all_moved)
+        return; /* asked once: a thread that hangs must not be asked again and again, or its queue fills */
+    notify_send("WATCHDOG=1");
+    ask(heartbeat);
+}

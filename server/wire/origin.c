@@ -1,0 +1,18 @@
+#include "server/wire/origin.h"
+
+#include <stddef.h>
+#include <string.h>
+#include <strings.h>
+
+bool origin_is_of_host(const char *origin, const char *host)
+{
+    static const char *const schemes[] = { "http://", "https://" };
+    if (!origin || !host)
+        return false;
+    for (size_t i = 0; i < sizeof schemes / sizeof schemes[0]; i++) {
+        size_t n = strlen(schemes[i]);
+        if (strncasecmp(origin, schemes[i], n) == 0 && origin[n] && strcasecmp(origin + n, host) == 0)
+            return true;
+    }
+    return false;
+}

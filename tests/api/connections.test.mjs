@@ -1,0 +1,332 @@
+// Connections to the daemon: how many, from whom, what each request of one may look like, and that the daemon ends when it is told to.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { connect } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { createInterface } from 'node:readline';
+import { after, before, describe, test } from 'node:test';
+import { call, openPlan, sleep, startDaemon, until } from './daemon.mjs';
+import { Client } from './ws_client.mjs';
+
+const HOST = 'Host: localhost\r\n', FIRST = `GET /healthz HTTP/1.1\r\n${HOST}\r\n`;
+const statuses = (text) => [...text.matchAll(/HTTP\/1\.1 (\d{3}) [A-Z]/g)].map((found) => Number(found[1]));
+
+/** A connection that sends bytes; ended resolves with how it ended: 'end' by the server, the error's code, or 'open' after ms. */
+function open(url, bytes, { from = '127.0.0.1', ms = 15000 } = {}) {
+  const { hostname, port } = new URL(url);
+  const socket = connect({ host: hostname, port: Number(port), localAddress: from });
+  const connection = { socket, text: '' };
+  socket.setEncoding('latin1');
+  connection.answered = new Promise((done) => {
+    socket.on('data', (text) => {
+      connection.text += text;
+      if (statuses(connection.text).length) done();
+    });
+    socket.on('close', done);
+  });
+  connection.ended = new Promise((done) => {
+    const timer = setTimeout(() => { socket.destroy(); done('open'); }, ms);
+    socket.on('error', (error) => { clearTimeout(timer); done(error.code); });
+    socket.on('close', () => { clearTimeout(timer); done('end'); });
+  });
+  socket.write(bytes);
+  return connection;
+}
+
+/** n connections that stay open, some at a time, fewer than may wait with their heads; the status of each. make gives one. */
+async function openEach(n, make) {
+  const all = [];
+  while (all.length < n) {
+    const some = Array.from({ length: Math.min(20, n - all.length) }, (_, i) => make(all.length + i));
+    all.push(...some);
+    await Promise.all(some.map((c) => c.answered));
+  }
+  const list = all.map((c) => statuses(c.text)[0]);
+  return { list, n: (status) => list.filter((one) => one === status).length, drop: () => { for (const c of all) c.socket.destroy(); } };
+}
+
+/** A daemon that has found its plan. */
+async function startWithPlan(args = []) {
+  const daemon = await startDaemon({ args: ['--stub', ...args] });
+  await until(() => call(`${daemon.url}/api/v1/plans/phantom`), (answer) => answer.status === 200);
+  return daemon;
+}
+
+/** All that comes back until the server closes; a server that does not is a failure. */
+async function exchange(url, bytes, options) {
+  const connection = open(url, bytes, options);
+  assert.equal(await connection.ended, 'end', `how ${JSON.stringify(bytes.slice(0, 80))} ended, after ${connection.text.slice(0, 200)}`);
+  return connection.text;
+}
+
+describe('a burst of connections', () => {
+  let daemon, room, client, input = 0, moving;
+  const camera = (x) => ({ camera: { position_mm: [x, -900, 0], target_mm: [0, 0, 0], up: [0, 0, 1] } });
+  before(async () => {
+    daemon = await startWithPlan();
+    await openPlan(daemon.url, 'phantom');
+    room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+    client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+    client.send({ type: 'hello', protocol: 1 });
+    await client.message('welcome');
+    client.send({ type: 'view.open', view: 1, document: { size_px: [64, 64] } });
+    await client.frame();
+    moving = setInterval(() => client.send({ type: 'view.patch', view: 1, input: ++input, patch: camera(input) }), 20);
+  });
+  after(async () => {
+    clearInterval(moving);
+    client?.cut();
+    await daemon?.stop();
+  });
+
+  test('of 2,000 from four addresses is served or refused, each of them; frames go on, and so do requests afterwards', { timeout: 180000 }, async () => {
+    const rounds = Number(process.env.BEAMROOM_BURSTS ?? 3);
+    for (let round = 0; round < rounds; round++) {
+      const n_frames = client.frames.length;
+      const all = Array.from({ length: 2000 }, (_, i) => open(daemon.url, `GET /healthz HTTP/1.1\r\n${HOST}\r\n`, { from: `127.0.1.${2 + i % 4}`, ms: 60000 }));
+      const answered = (c) => /^HTTP\/1\.1 (200|429) [^]*\r\n\r\n/.test(c.text);
+      await Promise.all(all.map((c) => Promise.race([c.ended, until(() => answered(c), Boolean, 60000)])));
+      const silent = all.filter((c) => !answered(c));
+      const n_ok = all.filter((c) => statuses(c.text)[0] === 200).length;
+      /* one that was closed before its head came has no answer: the system's own queue is as long as it is */
+      assert.ok(silent.every((c) => c.socket.destroyed), `round ${round}: ${silent.length} of 2,000 were neither answered nor closed`);
+      assert.ok(n_ok >= 200, `round ${round}: ${n_ok} were served`); /* 64 from each address may wait with their heads at once */
+      for (const c of all.filter((one) => statuses(one.text)[0] === 429)) assert.match(c.text, /application\/problem\+json[^]*Retry-After: \d/);
+      for (const c of all) c.socket.destroy();
+      await client.frame((f) => f.input > 0, n_frames + 1, 30000);
+      const healthy = await until(async () => (await call(`${daemon.url}/healthz`).catch(() => ({}))).status, (status) => status === 200, 30000);
+      assert.equal(healthy, 200, `after round ${round}`);
+    }
+    const after_ = client.frames.length;
+    await client.frame(() => true, after_ + 5, 30000);
+    assert.equal((await call(`${daemon.url}/api/v1/rooms/${room}`)).status, 200);
+  });
+});
+
+describe('WebSockets of one address', () => {
+  let daemon;
+  before(async () => { daemon = await startWithPlan(); });
+  after(() => daemon?.stop());
+
+  test('stop at 200; another address gets one, and those that end count no longer', async () => {
+    const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+    const handshake = `GET /api/v1/rooms/${room}/ws HTTP/1.1\r\n${HOST}Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAECAwQFBgcICQoLDA0ODw==\r\n\r\n`;
+    const began = performance.now();
+    const all = await openEach(230, () => open(daemon.url, handshake, { from: '127.0.2.1', ms: 60000 }));
+    const took_ms = performance.now() - began;
+    assert.equal(all.n(101) + all.n(429), 230);
+    if (took_ms < 4000) assert.equal(all.n(101), 200); /* who does not say hello within 5 s is closed, and counts no longer */
+    const other = await openEach(1, () => open(daemon.url, handshake, { from: '127.0.2.2', ms: 30000 }));
+    assert.deepEqual(other.list, [101]);
+    all.drop();
+    other.drop();
+    const again = async () => {
+      const c = open(daemon.url, handshake, { from: '127.0.2.1', ms: 10000 });
+      await c.answered;
+      c.socket.destroy();
+      return statuses(c.text)[0];
+    };
+    assert.equal(await until(again, (status) => status === 101, 20000), 101, 'those that ended count no longer');
+  });
+});
+
+describe('a later request of a connection', () => {
+  let daemon;
+  before(async () => { daemon = await startDaemon({ args: ['--stub'] }); });
+  after(() => daemon?.stop());
+  const hidden = `GET /api/v1/plans HTTP/1.1\r\n${HOST}\r\n`;
+  const post = (lines, body) => `POST /api/v1/rooms HTTP/1.1\r\n${HOST}Content-Type: application/json\r\n${lines}\r\n${body}`;
+
+  const cases = [
+    ['a length and chunks', post('Content-Length: 6\r\nTransfer-Encoding: chunked\r\n', `0\r\n\r\n${hidden}`), 400],
+    ['chunks and a length', post('Transfer-Encoding: chunked\r\nContent-Length: 6\r\n', `0\r\n\r\n${hidden}`), 400],
+    ['two lengths', post(`Content-Length: 2\r\nContent-Length: ${2 + hidden.length}\r\n`, `{}${hidden}`), 400],
+    ['a space before the colon of Content-Length', post(`Content-Length : ${hidden.length}\r\n`, hidden), 400],
+    ['a space before the colon of Transfer-Encoding', post('Transfer-Encoding : chunked\r\n', `0\r\n\r\n${hidden}`), 400],
+    ['a folded line', post('X: y\r\n Transfer-Encoding: chunked\r\nContent-Length: 2\r\n', '{}'), 400],
+    ['a CR in a value', `GET /healthz HTTP/1.1\r\n${HOST}X: a\rTransfer-Encoding: chunked\r\n\r\n`, 400],
+    ['two Hosts', `GET /healthz HTTP/1.1\r\n${HOST}${HOST}\r\n`, 400],
+    ['no Host', 'GET /healthz HTTP/1.1\r\n\r\n', 400],
+    ['a coding that is not known', post('Transfer-Encoding: xchunked\r\n', `0\r\n\r\n${hidden}`), 400],
+    ['chunks in HTTP/1.0', post('Transfer-Encoding: chunked\r\n', '0\r\n\r\n').replace('HTTP/1.1', 'HTTP/1.0'), 400],
+    ['2,000 parameters', `GET /api/v1/plans?${'a=b&'.repeat(2000)} HTTP/1.1\r\n${HOST}\r\n`, 413],
+    ['a chunk with a sign', post('Transfer-Encoding: chunked\r\n', `-2\r\n{}\r\n0\r\n\r\n${hidden}`), 400],
+    ['a chunk longer than it says', post('Transfer-Encoding: chunked\r\n', `1\r\n{}\r\n0\r\n\r\n${hidden}`), 400],
+  ];
+  for (const [what, bytes, status] of cases)
+    test(`with ${what} is refused as the first would be, and what it hides is not served`, async () => {
+      assert.deepEqual(statuses(await exchange(daemon.url, bytes)), [status]);
+      const text = await exchange(daemon.url, FIRST + bytes);
+      assert.deepEqual(statuses(text), [200, status], text);
+      assert.match(text, /application\/problem\+json/);
+    });
+
+  test('that is as it should be is answered, a hundred of them sent at once in order, also with bodies', async () => {
+    const requests = Array.from({ length: 100 }, (_, i) => (i % 3 === 0 ? FIRST : i % 3 === 1 ? post('Content-Length: 2\r\n', '{}') : post('Transfer-Encoding: chunked\r\n', '1\r\n{\r\n1\r\n}\r\n0\r\n\r\n')));
+    const text = await exchange(daemon.url, requests.join('') + `GET /nothing HTTP/1.1\r\n${HOST}Connection: close\r\n\r\n`, { ms: 60000 });
+    assert.deepEqual(statuses(text), [...requests.map((_, i) => (i % 3 === 0 ? 200 : 422)), 404]);
+  });
+
+  test('is read however its bytes are cut', async () => {
+    const whole = `${FIRST}${post('Transfer-Encoding: chunked\r\n', '1\r\n{\r\n1\r\n}\r\n0\r\n\r\n')}GET /nothing HTTP/1.1\r\n${HOST}Connection: close\r\n\r\n`;
+    const connection = open(daemon.url, '', { ms: 60000 });
+    connection.socket.setNoDelay(true);
+    for (let at = 0; at < whole.length; at += 7) {
+      connection.socket.write(whole.slice(at, at + 7));
+      await new Promise((next) => setImmediate(next));
+    }
+    assert.equal(await connection.ended, 'end');
+    assert.deepEqual(statuses(connection.text), [200, 422, 404]);
+  });
+
+  test('that stops in its head is told so within seconds', async () => {
+    const text = await exchange(daemon.url, `${FIRST}GET /heal`, { ms: 30000 });
+    assert.deepEqual(statuses(text), [200, 408]);
+  });
+});
+
+describe('behind a proxy', () => {
+  let daemon;
+  before(async () => { daemon = await startDaemon({ args: ['--stub', '--trusted-proxy', '127.0.3.0/24'] }); });
+  after(() => daemon?.stop());
+  const ask = (forwarded, from) => open(daemon.url, `GET /healthz HTTP/1.1\r\n${HOST}X-Forwarded-For: ${forwarded}\r\n\r\n`, { from, ms: 60000 });
+  /** Of 220 connections that are open together, those that were served. Connections of a test before may still be ending. */
+  const served = (forwarded, from) => until(async () => {
+    const all = await openEach(220, (i) => ask(forwarded(i), from));
+    all.drop();
+    return all.n(200);
+  }, (n) => n >= 200, 20000);
+
+  test('each client has the limit of one address, though all come from the proxy', async () => {
+    assert.equal(await served((i) => `198.51.100.${i % 2}`, '127.0.3.1'), 220);
+    assert.equal(await served(() => 'unknown, 198.51.100.7', '127.0.3.1'), 200);
+  });
+
+  test('what a client that is no proxy says of itself is not believed', async () => {
+    assert.equal(await served((i) => `198.51.100.${i}`, '127.0.4.1'), 200);
+  });
+
+  test('requests of many clients on one connection are counted for each', async () => {
+    const text = await exchange(daemon.url, Array.from({ length: 300 }, (_, i) => `GET /healthz HTTP/1.1\r\n${HOST}X-Forwarded-For: 203.0.113.${i % 250}\r\n${i === 299 ? 'Connection: close\r\n' : ''}\r\n`).join(''), { from: '127.0.3.1', ms: 60000 });
+    assert.deepEqual(statuses(text), Array(300).fill(200));
+  });
+});
+
+describe('a refused upload', () => {
+  test('gives its connection back at once, while its sender still sends', async () => {
+    const daemon = await startDaemon({ args: ['--stub'] });
+    try {
+      const upload = `POST /api/v1/plans?name=x HTTP/1.1\r\n${HOST}Origin: http://evil.example\r\nContent-Type: application/zip\r\nContent-Length: 1000000\r\n\r\nPK`;
+      const all = await openEach(210, () => open(daemon.url, upload, { from: '127.0.5.1', ms: 60000 }));
+      assert.equal(all.n(403), 210);
+      const more = await exchange(daemon.url, `GET /healthz HTTP/1.1\r\n${HOST}Connection: close\r\n\r\n`, { from: '127.0.5.1' });
+      assert.deepEqual(statuses(more), [200]);
+      all.drop();
+    } finally {
+      await daemon.stop();
+    }
+  });
+});
+
+describe('a page of another origin', () => {
+  let daemon, room;
+  before(async () => {
+    daemon = await startWithPlan();
+    room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+  });
+  after(() => daemon?.stop());
+
+  for (const [what, line, isOwn] of [
+    ['its own origin', (host) => `Origin: http://${host}`, true],
+    ['its own origin behind TLS', (host) => `Origin: https://${host}`, true],
+    ['another scheme with its own name', (host) => `Origin: evil://${host}`, false],
+    ['its own name as the end of a path', (host) => `Origin: http://evil.example/http://${host}`, false],
+    ['no origin', () => 'Origin: null', false],
+    ['no Origin, but a browser that says cross-site', () => 'Sec-Fetch-Site: cross-site', false],
+    ['no Origin, but a browser that says same-origin', () => 'Sec-Fetch-Site: same-origin', true],
+  ])
+    test(`with ${what} ${isOwn ? 'may' : 'may not'} change anything`, async () => {
+      const { host } = new URL(daemon.url);
+      const post = `POST /api/v1/rooms HTTP/1.1\r\nHost: ${host}\r\nConnection: close\r\n${line(host)}\r\nContent-Type: application/json\r\nContent-Length: 2\r\n\r\n{}`;
+      assert.deepEqual(statuses(await exchange(daemon.url, post)), [isOwn ? 422 : 403]);
+      if (!line(host).startsWith('Origin')) return;
+      const [name, value] = line(host).split(': ');
+      const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`, { [name]: value });
+      assert.equal(client.status, isOwn ? 101 : 403);
+      client.cut();
+    });
+
+  test('finds no room at an address that only becomes one when it is decoded', async () => {
+    assert.equal((await Client.open(daemon.url, `/api/v1/rooms/x%2f..%2f${room}/ws`)).status, 404);
+    assert.equal((await Client.open(daemon.url, `/api/v1/rooms/../rooms/${room}/ws`)).status, 404);
+  });
+});
+
+describe('a condition', () => {
+  let daemon, room;
+  before(async () => {
+    daemon = await startWithPlan();
+    await openPlan(daemon.url, 'phantom');
+    room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+  });
+  after(() => daemon?.stop());
+
+  for (const path of ['/index.html', '/api/v1/rooms/{room}/scene'])
+    test(`of RFC 9110 on ${path} is read as a list, with weak tags, or as *`, async () => {
+      const url = daemon.url + path.replace('{room}', room);
+      const { headers } = await until(() => call(url), (answer) => answer.status === 200);
+      const etag = headers.get('etag');
+      for (const [value, status] of [[etag, 304], ['*', 304], [`W/${etag}`, 304], [`"x", ${etag}`, 304], [`"x,y" ,W/${etag} , "z"`, 304], ['"x"', 200], [`"x ${etag}`, 200], [etag.replaceAll('"', ''), 200]])
+        assert.equal((await call(url, 'GET', undefined, { 'If-None-Match': value })).status, status, value);
+    });
+});
+
+describe('the process', () => {
+  /** A service manager's socket; the datagrams that came on it. */
+  async function startManager() {
+    const folder = mkdtempSync(join(tmpdir(), 'beamroom-notify-')), path = join(folder, 'notify');
+    const child = spawn('python3', ['-uc', 'import socket,sys\ns=socket.socket(socket.AF_UNIX,socket.SOCK_DGRAM)\ns.bind(sys.argv[1])\nprint("bound")\nwhile True: print(s.recv(4096).decode())', path]);
+    const lines = [];
+    createInterface({ input: child.stdout }).on('line', (line) => lines.push(line));
+    await until(() => lines.length, Boolean);
+    return { path, lines: () => lines.slice(1), stop: () => { child.kill(); rmSync(folder, { recursive: true, force: true }); } };
+  }
+
+  test('tells the service manager that it is ready, that it lives, and that it stops', async () => {
+    const manager = await startManager();
+    const daemon = await startDaemon({ args: ['--stub'], env: { NOTIFY_SOCKET: manager.path, WATCHDOG_USEC: '800000' } });
+    try {
+      await until(manager.lines, (lines) => lines.filter((line) => line === 'WATCHDOG=1').length >= 3);
+      assert.equal(manager.lines()[0], 'READY=1');
+      assert.ok(manager.lines().filter((line) => line === 'WATCHDOG=1').length >= 3);
+      assert.equal(await daemon.stop(), 0);
+      await until(manager.lines, (lines) => lines.at(-1) === 'STOPPING=1', 5000);
+      assert.equal(manager.lines().at(-1), 'STOPPING=1');
+    } finally {
+      await daemon.stop();
+      manager.stop();
+    }
+  });
+
+  for (const thread of ['net', 'http', 'acceptor'])
+    test(`whose ${thread} thread hangs no longer says that it lives, and ends within 10 s of SIGTERM all the same`, async () => {
+      const manager = await startManager();
+      const daemon = await startDaemon({ args: ['--stub', '--hang', thread], env: { NOTIFY_SOCKET: manager.path, WATCHDOG_USEC: '800000' } });
+      try {
+        await until(daemon.log, (log) => log.includes(`the ${thread} thread has not moved`));
+        assert.match(daemon.log(), new RegExp(`the ${thread} thread has not moved`));
+        const n = manager.lines().length;
+        await sleep(1600); /* twice what the manager waits */
+        assert.equal(manager.lines().length, n, 'nothing is told any more');
+        const began = performance.now();
+        assert.equal(await daemon.stop(), 1, 'ended by itself');
+        assert.ok(performance.now() - began < 10000, `after ${performance.now() - began} ms`);
+        assert.match(daemon.log(), /the process ends without it/);
+      } finally {
+        await daemon.stop();
+        manager.stop();
+      }
+    });
+});
