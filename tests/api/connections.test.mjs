@@ -317,6 +317,8 @@ describe('the process', () => {
       try {
         await until(daemon.log, (log) => log.includes(`the ${thread} thread has not moved`));
         assert.match(daemon.log(), new RegExp(`the ${thread} thread has not moved`));
+        await until(manager.lines, (lines) => lines.includes('READY=1'));
+        await sleep(800); /* what was told before may still be on its way */
         const n = manager.lines().length;
         await sleep(1600); /* twice what the manager waits */
         assert.equal(manager.lines().length, n, 'nothing is told any more');
