@@ -123,10 +123,6 @@ static bool is_unused(const struct fleet *fleet, const struct plan_entry *plan)
 
 static void forget_documents(struct plan_entry *plan)
 {
-    for (size_t i = 0; plan->image_ids[i]; i++) {
-        free(plan->image_ids[i]);
-        plan->image_ids[i] = NULL;
-    }
     cJSON_Delete(plan->document);
     cJSON_Delete(plan->default_scene);
     plan->document = plan->default_scene = NULL;
@@ -381,7 +377,6 @@ static void describe(const struct fleet *fleet, const struct plan_entry *plan, s
         .n_bytes = plan->n_bytes,
         .document = plan->document,
         .default_scene = plan->default_scene,
-        .image_ids = plan->document ? (const char *const *)plan->image_ids : NULL,
         .generation = plan->generation,
         .opening = plan->opening,
         .ready_opening = plan->ready_opening,

@@ -85,7 +85,6 @@ struct fleet_plan {
     uint64_t n_bytes;
     const cJSON *document;              /* the plan as the API gives it; NULL before ready (kept while restarting) */
     const cJSON *default_scene;         /* likewise */
-    const char *const *image_ids;       /* likewise; NULL-terminated */
     uint32_t generation;                /* counts the processes started for it: a new one has forgotten rooms' scenes */
     uint32_t opening;                   /* counts the times it was opened from closed or failed, ... */
     uint32_t ready_opening, failed_opening; /* ... the last of them that became ready, the last that failed */

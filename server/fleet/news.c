@@ -1,12 +1,10 @@
 /* What renderers say and how they end: the plans' states. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
-#include "core/base/mem.h"
 #include "server/fleet/news.h"
 #include "server/fleet/restarts.h"
 #include "server/wire/document.h"
@@ -85,16 +83,15 @@ static bool take_progress(struct fleet *fleet, struct plan_entry *plan, const cJ
     return true;
 }
 
-/* Ids of the images in the document; false when one is no id. */
-static bool take_image_ids(const cJSON *document, char *ids[MAX_IMAGES + 1])
+/* True if the document has at most MAX_IMAGES images and each has a valid id. */
+static bool images_are_valid(const cJSON *document)
 {
     const cJSON *images = cJSON_GetObjectItemCaseSensitive(document, "images");
     size_t n = 0;
     for (const cJSON *image = images ? images->child : NULL; image; image = image->next) {
         const char *id = json_text(image, "id");
-        if (!id || !id_is_valid(id) || n == MAX_IMAGES)
+        if (!id || !id_is_valid(id) || n++ == MAX_IMAGES)
             return false;
-        ids[n++] = mem_copy_text(id);
     }
     return true;
 }
@@ -109,14 +106,7 @@ static bool take_ready(struct fleet *fleet, struct plan_entry *plan, cJSON *json
     if (plan->state == FLEET_READY || !cJSON_IsObject(document) || !id || strcmp(id, plan->id) != 0 || !scene_read(defaults, &scene, &problem))
         return false;
     scene_finish(&scene);
-    char *ids[MAX_IMAGES + 1] = { NULL };
-    bool is_good = take_image_ids(document, ids);
-    for (size_t i = 0; i < MAX_IMAGES; i++) {
-        free(is_good ? plan->image_ids[i] : ids[i]);
-        if (is_good)
-            plan->image_ids[i] = ids[i];
-    }
-    if (!is_good)
+    if (!images_are_valid(document))
         return false;
     cJSON_Delete(plan->document);
     cJSON_Delete(plan->default_scene);

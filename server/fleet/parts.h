@@ -9,7 +9,7 @@
 #include "server/fleet/watch.h"
 
 enum {
-    MAX_IMAGES = 64, /* images of a plan whose ids we keep */
+    MAX_IMAGES = 64, /* in a plan document of a renderer */
     PLAN_ID_SIZE = 64
 };
 
@@ -43,7 +43,6 @@ struct plan_entry {
     bool is_dying; /* ended by us, and not yet gone: what it still says counts for nothing */
     char confined[96];
     cJSON *document, *default_scene;
-    char *image_ids[MAX_IMAGES + 1];
     struct fleet_owed *owed; /* scenes its renderer is still to be told; requests.c's */
     int64_t load_ms, asked_us; /* asked: when its present process was started */
     int64_t drew_us;           /* when a picture last came */

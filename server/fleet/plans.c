@@ -27,8 +27,6 @@ struct plan_entry *plan_entry_of_process(const struct fleet *fleet, uint64_t pro
 
 void plan_entry_destroy(struct plan_entry *plan)
 {
-    for (size_t i = 0; plan->image_ids[i]; i++)
-        free(plan->image_ids[i]);
     owed_forget(plan);
     cJSON_Delete(plan->parts);
     cJSON_Delete(plan->document);

@@ -76,9 +76,12 @@ static void say_ready(const char *id)
 {
     cJSON *json = word("ready"), *plan = cJSON_AddObjectToObject(json, "plan");
     cJSON_AddStringToObject(plan, "id", behaves("other-id") ? "another" : id);
-    cJSON *image = cJSON_CreateObject();
-    cJSON_AddStringToObject(image, "id", "ct");
-    cJSON_AddItemToArray(cJSON_AddArrayToObject(plan, "images"), image);
+    cJSON *images = cJSON_AddArrayToObject(plan, "images");
+    for (int i = 0, n = behaves("65-images") ? 65 : behaves("64-images") ? 64 : 1; i < n; i++) {
+        cJSON *image = cJSON_CreateObject();
+        cJSON_AddStringToObject(image, "id", behaves("image-id") ? "../ct" : "ct");
+        cJSON_AddItemToArray(images, image);
+    }
     cJSON *scene = cJSON_AddObjectToObject(json, "scene");
     if (behaves("wrong-scene"))
         cJSON_AddNumberToObject(scene, "regions", 7);

@@ -1,7 +1,5 @@
 /* The fleet against a made-up renderer: this program itself, started by the fleet. */
 #include <signal.h>
-#include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "core/base/clock.h"
@@ -34,8 +32,6 @@ static void a_plan_is_listed_opened_drawn_and_closed(void **state)
     assert_int_equal(plan.state, FLEET_READY);
     assert_int_equal(plan.generation, 1);
     assert_non_null(plan.document);
-    assert_string_equal(plan.image_ids[0], "ct");
-    assert_null(plan.image_ids[1]);
     assert_string_equal(plan.confined, "not at all");
     assert_true(plan.pid > 0);
     assert_non_null(fleet_gl(world.fleet, NULL));
@@ -209,141 +205,6 @@ static void one_that_never_draws_a_picture_is_given_up_after_three_restarts_when
     world_end(&world);
 }
 
-static void garbage_ends_that_plan_only(void **state)
-{
-    (void)state;
-    static const char *const kinds[] = { "garbage", "huge-head", "large-frame", "no-type", "other-id", "wrong-scene" };
-    struct world world;
-    world_begin(&world);
-    world.options.max_renderers = 10;
-    world_add_plan(&world, "good", "");
-    for (int i = 0; i < 5; i++)
-        world_add_plan(&world, kinds[i], kinds[i]);
-    world_start(&world, 6);
-    world_open_plan(&world, "good");
-    world_wait_for_state(&world, "good", FLEET_READY);
-    for (int i = 0; i < 5; i++) {
-        world_open_plan(&world, kinds[i]);
-        world_wait_for_state(&world, kinds[i], FLEET_FAILED);
-        if (!strstr(world_plan_of(&world, kinds[i]).problem->detail, "was ended because it s"))
-            fail_msg("%s: %s", kinds[i], world_plan_of(&world, kinds[i]).problem->detail);
-    }
-    struct fleet_plan good = world_plan_of(&world, "good");
-    assert_int_equal(good.state, FLEET_READY);
-    assert_int_equal(good.generation, 1);
-    world_end(&world);
-}
-
-static void a_frame_with_impossible_numbers_is_not_handed_on(void **state)
-{
-    (void)state;
-    struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "liar");
-    world_start(&world, 1);
-    struct reply reply = { 0 };
-    world_open_plan(&world, "a");
-    world_ask(&world, "a", "render", &reply);
-    world_wait_for_reply(&world, &reply);
-    assert_int_equal(reply.problem.type, PROBLEM_RENDERER);
-    world_end(&world);
-}
-
-static void one_that_hears_nothing_is_ended_and_started_again(void **state)
-{
-    (void)state;
-    struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "deaf");
-    world.options.times.ping = 100;
-    world.options.times.silent = 600;
-    world_start(&world, 1);
-    world_open_plan(&world, "a");
-    world_wait_for_state(&world, "a", FLEET_READY);
-    world_wait_for_state(&world, "a", FLEET_RESTARTING);
-    assert_true(world_plan_of(&world, "a").generation >= 1);
-    world_end(&world);
-}
-
-static void one_that_answers_pings_lives_on(void **state)
-{
-    (void)state;
-    struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "");
-    world.options.times.ping = 50;
-    world.options.times.silent = 3000; /* a busy machine may well keep it waiting for a second */
-    world_start(&world, 1);
-    world_open_plan(&world, "a");
-    world_wait_for_state(&world, "a", FLEET_READY);
-    for (int64_t until_us = clock_now_us() + 4000000; clock_now_us() < until_us;)
-        world_step(&world);
-    assert_int_equal(world_plan_of(&world, "a").state, FLEET_READY);
-    assert_int_equal(world_plan_of(&world, "a").generation, 1);
-    assert_true(world_plan_of(&world, "a").memory_bytes > 100000);
-    world_end(&world);
-}
-
-static void a_load_that_gets_no_further_fails(void **state)
-{
-    (void)state;
-    struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "stalls");
-    world.options.times.stall = 300;
-    world_start(&world, 1);
-    world_open_plan(&world, "a");
-    world_wait_for_state(&world, "a", FLEET_FAILED);
-    assert_non_null(strstr(world_plan_of(&world, "a").problem->detail, "got no further"));
-    world_end(&world);
-}
-
-static void a_picture_that_never_comes_is_a_timeout_and_a_restart(void **state)
-{
-    (void)state;
-    struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "never-draws");
-    world.options.times.request = 1000;
-    world_start(&world, 1);
-    world_open_plan(&world, "a");
-    world_wait_for_state(&world, "a", FLEET_READY);
-    struct reply reply = { 0 };
-    world_ask(&world, "a", "render", &reply);
-    world_wait_for_reply(&world, &reply);
-    assert_int_equal(reply.problem.type, PROBLEM_TIMEOUT);
-    world_wait_for_state(&world, "a", FLEET_RESTARTING);
-    world_end(&world);
-}
-
-static void one_that_is_late_with_a_picture_but_draws_others_is_left_alone(void **state)
-{
-    (void)state;
-    struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "forgets-first");
-    world.options.times.request = 3000; /* the others are to come within it on a busy machine too */
-    world_start(&world, 1);
-    world_open_plan(&world, "a");
-    world_wait_for_state(&world, "a", FLEET_READY);
-    uint32_t generation = world_plan_of(&world, "a").generation;
-    struct reply late = { 0 };
-    world_ask(&world, "a", "render", &late);
-    while (late.n == 0) {
-        struct reply reply = { 0 };
-        world_ask(&world, "a", "render", &reply);
-        world_wait_for_reply(&world, &reply);
-        assert_true(reply.is_frame);
-        reply_finish(&reply);
-    }
-    assert_int_equal(late.problem.type, PROBLEM_TIMEOUT);
-    for (int64_t end_us = clock_now_us() + 300000; clock_now_us() < end_us;)
-        world_step(&world);
-    assert_int_equal(world_plan_of(&world, "a").state, FLEET_READY);
-    assert_int_equal(world_plan_of(&world, "a").generation, generation);
-    world_end(&world);
-}
-
 static void closing_cancels_a_load(void **state)
 {
     (void)state;
@@ -412,25 +273,6 @@ static void an_idle_plan_is_closed_unless_held(void **state)
     world_end(&world);
 }
 
-static void a_flood_of_packets_does_not_fill_the_memory(void **state)
-{
-    (void)state;
-    struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "floods");
-    world_start(&world, 1);
-    world_open_plan(&world, "a");
-    world_wait_for_state(&world, "a", FLEET_READY);
-    cJSON *scene = cJSON_CreateObject();
-    cJSON_AddStringToObject(scene, "type", "scene");
-    assert_true(fleet_tell(world.fleet, "a", scene));
-    cJSON_Delete(scene);
-    nanosleep(&(struct timespec){ .tv_nsec = 700000000 }, NULL); /* nobody listens meanwhile */
-    /* progress after ready is against the rules */
-    world_wait_for_state(&world, "a", FLEET_RESTARTING);
-    world_end(&world);
-}
-
 static void more_requests_than_the_limit_are_refused_at_once(void **state)
 {
     (void)state;
@@ -449,91 +291,6 @@ static void more_requests_than_the_limit_are_refused_at_once(void **state)
     fleet_close(world.fleet, "a");
     fleet_handle_events(world.fleet);
     assert_int_equal(waiting.n, FLEET_MAX_REQUESTS);
-    world_end(&world);
-}
-
-static void one_that_reads_nothing_is_ended_before_memory_fills(void **state)
-{
-    (void)state;
-    struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "deaf");
-    world_start(&world, 1);
-    world_open_plan(&world, "a");
-    world_wait_for_state(&world, "a", FLEET_READY);
-    char *text = calloc(1, (1 << 20) + 1);
-    assert_non_null(text);
-    memset(text, 'x', 1 << 20);
-    cJSON *scene = cJSON_CreateObject();
-    cJSON_AddStringToObject(scene, "type", "scene");
-    cJSON_AddStringToObject(scene, "scene", text);
-    for (int i = 0; i < 70; i++) /* the limit is 64 MB */
-        assert_true(fleet_tell(world.fleet, "a", scene));
-    world_wait_for_state(&world, "a", FLEET_RESTARTING);
-    cJSON_Delete(scene);
-    free(text);
-    world_end(&world);
-}
-
-/* Of 300 rooms each gets three scenes at once, while four orders may wait for the thread that sends: it is the last scene of each that
- * counts, and it is there before a picture of the room is drawn. Every third room is closed meanwhile. */
-static void no_scene_is_lost_when_the_way_to_the_renderer_is_full(void **state)
-{
-    (void)state;
-    enum { N_ROOMS = 300 };
-    struct world world;
-    world_begin(&world);
-    world.options.max_orders = 4;
-    world_add_plan(&world, "a", "remembers-scenes");
-    world_start(&world, 1);
-    world_open_plan(&world, "a");
-    world_wait_for_state(&world, "a", FLEET_READY);
-    for (int revision = 1; revision <= 3; revision++)
-        for (int i = 0; i < N_ROOMS; i++) {
-            char room[32];
-            snprintf(room, sizeof room, "room-%d", i);
-            cJSON *scene = cJSON_CreateObject();
-            cJSON_AddStringToObject(scene, "type", revision == 3 && i % 3 == 0 ? "forget" : "scene");
-            cJSON_AddStringToObject(scene, "room", room);
-            cJSON_AddNumberToObject(scene, "revision", revision);
-            (void)fleet_tell(world.fleet, "a", scene);
-            cJSON_Delete(scene);
-        }
-    /* a request is refused while scenes wait, and answered after them */
-    struct reply reply = { 0 };
-    WORLD_UNTIL(&world, (reply_finish(&reply), world_ask(&world, "a", "query", &reply), world_wait_for_reply(&world, &reply),
-                         reply.problem.type != PROBLEM_BUSY));
-    assert_int_equal(reply.problem.type, PROBLEM_NONE);
-    cJSON *body = cJSON_GetObjectItemCaseSensitive(reply.json, "body");
-    for (int i = 0; i < N_ROOMS; i++) {
-        char room[32];
-        snprintf(room, sizeof room, "room-%d", i);
-        double revision = json_number(body, room, -1);
-        if (revision != (i % 3 == 0 ? -1 : 3))
-            fail_msg("%s is at revision %g", room, revision);
-    }
-    reply_finish(&reply);
-    world_end(&world);
-}
-
-static void one_that_fills_its_cache_is_ended_and_the_cache_emptied(void **state)
-{
-    (void)state;
-    struct world world;
-    struct stat facts;
-    char path[512];
-    world_begin(&world);
-    world.options.max_cache_bytes = 4 << 20; /* and 64 MiB of slack; it writes 80 */
-    world_add_plan(&world, "a", "fills-its-cache");
-    world_start(&world, 1);
-    world_open_plan(&world, "a");
-    world_wait_for_state(&world, "a", FLEET_FAILED); /* three more starts do the same */
-    struct fleet_plan plan = world_plan_of(&world, "a");
-    assert_non_null(plan.problem);
-    assert_non_null(strstr(plan.problem->detail, "wrote more to its cache"));
-    snprintf(path, sizeof path, "%s/cache/a/large", world.data);
-    WORLD_UNTIL(&world, stat(path, &facts) != 0);
-    assert_int_not_equal(stat(path, &facts), 0);
     world_end(&world);
 }
 
@@ -605,21 +362,10 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_load_that_fails_while_the_folder_is_first_looked_at_stays_failed),
         cmocka_unit_test(a_crash_answers_what_waits_and_the_next_process_draws),
         cmocka_unit_test(one_that_never_draws_a_picture_is_given_up_after_three_restarts_when_nobody_is_there),
-        cmocka_unit_test(garbage_ends_that_plan_only),
-        cmocka_unit_test(a_frame_with_impossible_numbers_is_not_handed_on),
-        cmocka_unit_test(one_that_hears_nothing_is_ended_and_started_again),
-        cmocka_unit_test(one_that_answers_pings_lives_on),
-        cmocka_unit_test(a_load_that_gets_no_further_fails),
-        cmocka_unit_test(a_picture_that_never_comes_is_a_timeout_and_a_restart),
-        cmocka_unit_test(one_that_is_late_with_a_picture_but_draws_others_is_left_alone),
         cmocka_unit_test(closing_cancels_a_load),
         cmocka_unit_test(the_longest_unused_plan_makes_room_but_never_a_held_one),
         cmocka_unit_test(an_idle_plan_is_closed_unless_held),
-        cmocka_unit_test(a_flood_of_packets_does_not_fill_the_memory),
         cmocka_unit_test(more_requests_than_the_limit_are_refused_at_once),
-        cmocka_unit_test(one_that_reads_nothing_is_ended_before_memory_fills),
-        cmocka_unit_test(no_scene_is_lost_when_the_way_to_the_renderer_is_full),
-        cmocka_unit_test(one_that_fills_its_cache_is_ended_and_the_cache_emptied),
         cmocka_unit_test(what_is_asked_of_no_plan_or_a_closed_one_is_refused),
         cmocka_unit_test(the_end_answers_everybody_and_leaves_no_process),
         cmocka_unit_test(a_renderer_that_is_not_there_is_said_at_once),

@@ -138,6 +138,101 @@ static void renderers_and_requests_outlive_that_we_were_stopped_ourselves(void *
     close(ends[1]);
 }
 
+static void one_that_hears_nothing_is_ended_and_started_again(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "deaf");
+    world.options.times.ping = 100;
+    world.options.times.silent = 600;
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_wait_for_state(&world, "a", FLEET_READY);
+    world_wait_for_state(&world, "a", FLEET_RESTARTING);
+    assert_true(world_plan_of(&world, "a").generation >= 1);
+    world_end(&world);
+}
+
+static void one_that_answers_pings_lives_on(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "");
+    world.options.times.ping = 50;
+    world.options.times.silent = 3000; /* a busy machine may well keep it waiting for a second */
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_wait_for_state(&world, "a", FLEET_READY);
+    for (int64_t until_us = clock_now_us() + 4000000; clock_now_us() < until_us;)
+        world_step(&world);
+    assert_int_equal(world_plan_of(&world, "a").state, FLEET_READY);
+    assert_int_equal(world_plan_of(&world, "a").generation, 1);
+    assert_true(world_plan_of(&world, "a").memory_bytes > 100000);
+    world_end(&world);
+}
+
+static void a_load_that_gets_no_further_fails(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "stalls");
+    world.options.times.stall = 300;
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_wait_for_state(&world, "a", FLEET_FAILED);
+    assert_non_null(strstr(world_plan_of(&world, "a").problem->detail, "got no further"));
+    world_end(&world);
+}
+
+static void a_picture_that_never_comes_is_a_timeout_and_a_restart(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "never-draws");
+    world.options.times.request = 1000;
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_wait_for_state(&world, "a", FLEET_READY);
+    struct reply reply = { 0 };
+    world_ask(&world, "a", "render", &reply);
+    world_wait_for_reply(&world, &reply);
+    assert_int_equal(reply.problem.type, PROBLEM_TIMEOUT);
+    world_wait_for_state(&world, "a", FLEET_RESTARTING);
+    world_end(&world);
+}
+
+static void one_that_is_late_with_a_picture_but_draws_others_is_left_alone(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "forgets-first");
+    world.options.times.request = 3000; /* the others are to come within it on a busy machine too */
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_wait_for_state(&world, "a", FLEET_READY);
+    uint32_t generation = world_plan_of(&world, "a").generation;
+    struct reply late = { 0 };
+    world_ask(&world, "a", "render", &late);
+    while (late.n == 0) {
+        struct reply reply = { 0 };
+        world_ask(&world, "a", "render", &reply);
+        world_wait_for_reply(&world, &reply);
+        assert_true(reply.is_frame);
+        reply_finish(&reply);
+    }
+    assert_int_equal(late.problem.type, PROBLEM_TIMEOUT);
+    for (int64_t end_us = clock_now_us() + 300000; clock_now_us() < end_us;)
+        world_step(&world);
+    assert_int_equal(world_plan_of(&world, "a").state, FLEET_READY);
+    assert_int_equal(world_plan_of(&world, "a").generation, generation);
+    world_end(&world);
+}
+
 /* ---- a disk that does not answer ---- */
 
 static sem_t disk_answers;
@@ -239,6 +334,11 @@ int main(int argc, char **argv)
         cmocka_unit_test(one_that_was_stopped_is_replaced_soon_while_a_picture_is_due),
         cmocka_unit_test(one_that_was_stopped_while_nothing_is_due_has_the_longer_time),
         cmocka_unit_test(one_whose_main_thread_runs_has_the_longer_time),
+        cmocka_unit_test(one_that_hears_nothing_is_ended_and_started_again),
+        cmocka_unit_test(one_that_answers_pings_lives_on),
+        cmocka_unit_test(a_load_that_gets_no_further_fails),
+        cmocka_unit_test(a_picture_that_never_comes_is_a_timeout_and_a_restart),
+        cmocka_unit_test(one_that_is_late_with_a_picture_but_draws_others_is_left_alone),
         cmocka_unit_test(a_listing_that_hangs_holds_up_neither_pictures_nor_pings),
         cmocka_unit_test(before_the_first_listing_a_plan_is_not_known_rather_than_not_there),
         cmocka_unit_test(a_listing_that_never_ends_does_not_hold_up_the_end),

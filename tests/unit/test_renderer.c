@@ -108,7 +108,7 @@ static void a_plan_is_read_and_drawn_and_drawn_again_after_a_kill(void **state)
     assert_string_equal(json_text(plan.document, "id"), PLAN);
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(plan.document, "regions")), 5);
     assert_non_null(cJSON_GetObjectItem(cJSON_GetObjectItem(plan.document, "home"), "coronal"));
-    assert_string_equal(plan.image_ids[0], "ct");
+    assert_string_equal(json_text(cJSON_GetArrayItem(cJSON_GetObjectItem(plan.document, "images"), 0), "id"), "ct");
     assert_non_null(strstr(plan.confined, "seccomp"));
     assert_string_equal(json_text(fleet_gl(world.fleet, NULL), "back_end"), "stub");
     assert_true(plan.is_phantom);
