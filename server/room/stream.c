@@ -472,12 +472,13 @@ static bool is_final(const struct problem *problem)
 /* Those who look are told, and it is not asked for again until something changes. */
 static void give_up(struct room *room, struct stream *stream, uint64_t version, const struct problem *problem)
 {
-    bool is_told = stream->refused_version >= version;
-    stream->refused_version = version;
-    stream->refusal = *problem;
     if (stream->still_asked_version < version)
         stream->still_asked_version = version;
-    for (int m = 0; !is_told && m < room->n_members; m++)
+    if (stream->refused_version >= version)
+        return; /* they were told, of this version or of a newer one */
+    stream->refused_version = version;
+    stream->refusal = *problem;
+    for (int m = 0; m < room->n_members; m++)
         for (int v = 0; v < ROOM_MAX_VIEWS; v++)
             if (room->members[m]->views[v].stream == stream && room->members[m]->connection)
                 say_problem(room, room->members[m]->connection, "", v + 1, 0, problem);

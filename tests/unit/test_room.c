@@ -486,6 +486,22 @@ static void a_picture_beyond_a_limit_is_told_once_and_asked_for_again_only_after
     assert_int_equal(fake_n_heard(&ben, "problem"), 1);
 }
 
+static void a_refusal_that_comes_late_does_not_hide_the_one_of_a_newer_view(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    struct fake_request *older = fake_oldest(&fake);
+    fake_turn(&fake, &ann, 8, 21);
+    fake_pass(&fake, 100);
+    assert_ptr_not_equal(fake_newest(&fake), older);
+    fake_refuse(&fake, fake_newest(&fake));
+    fake_refuse(&fake, fake_oldest(&fake));
+    fake_pass(&fake, 1000);
+    assert_int_equal(fake_outstanding(&fake), 0);
+    fake_join(&fake, &ben, true); /* the view as it is now cannot be drawn */
+    assert_int_equal(fake_n_heard(&ben, "problem"), 1);
+}
+
 static void a_limit_that_says_when_to_come_again_is_no_last_word(void **state)
 {
     (void)state;
@@ -582,6 +598,7 @@ int main(void)
         T(a_still_that_failed_is_asked_for_again),
         T(a_picture_that_cannot_be_is_told_once_and_not_asked_for_again),
         T(a_picture_beyond_a_limit_is_told_once_and_asked_for_again_only_after_a_change),
+        T(a_refusal_that_comes_late_does_not_hide_the_one_of_a_newer_view),
         T(a_limit_that_says_when_to_come_again_is_no_last_word),
         T(what_a_picture_leaves_out_is_told_before_it_and_when_it_changes),
         T(a_new_renderer_is_told_the_scene_and_draws_everything_anew),
