@@ -271,6 +271,12 @@ void asks_deliver_failed(struct fleet *fleet)
     }
 }
 
+/* When the present process last drew a picture; when it became ready, if it has drawn none. */
+static int64_t last_drew_us(const struct plan_entry *plan)
+{
+    return plan->drew_us > plan->ready_us ? plan->drew_us : plan->ready_us;
+}
+
 void asks_keep_time(struct fleet *fleet, int64_t now_us)
 {
     struct problem problem;
@@ -279,8 +285,8 @@ void asks_keep_time(struct fleet *fleet, int64_t now_us)
         if (ask->is_failed || now_us < ask->until_us)
             continue;
         /* Its main thread answers pings, so only this shows that drawing is stuck. One that finishes other pictures meanwhile is
-         * not stuck: too much was asked of it. */
-        if (ask->is_render && ask->is_sent && now_us - ask->plan->drew_us >= (int64_t)fleet->times.request * 1000)
+         * not stuck: too much was asked of it. Nor is one that has been ready for less than the time of a request. */
+        if (ask->is_render && ask->is_sent && now_us - last_drew_us(ask->plan) >= (int64_t)fleet->times.request * 1000)
             plan_entry_kill(fleet, ask->plan, "did not finish a picture in time");
         fail(fleet, ask, &problem);
     }

@@ -123,7 +123,7 @@ static void handle(const cJSON *packet, const char *folder)
         if (behaves("crash-on-render") || (behaves("crash-once") && access(mark, F_OK) != 0 && mkdir(mark, 0700) == 0))
             die();
         static int n_asked;
-        if (!behaves("never-draws") && !(behaves("forgets-first") && n_asked++ == 0))
+        if (!behaves("never-draws") && !behaves("late-and-never-draws") && !(behaves("forgets-first") && n_asked++ == 0))
             say_frame(packet);
     } else if (strcmp(type, "query") == 0) {
         for (int64_t until_us = clock_now_us() + 2000000; behaves("computes") && clock_now_us() < until_us;)
@@ -190,6 +190,8 @@ static int renderer_main(const char *folder, const char *id, const char *cache)
     }
     while (behaves("stalls"))
         pause();
+    if (behaves("late-and-never-draws"))
+        nanosleep(&(struct timespec){ .tv_sec = 1, .tv_nsec = 500000000 }, NULL);
     say_ready(id);
     if (behaves("deaf"))
         raise(SIGSTOP);

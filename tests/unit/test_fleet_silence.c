@@ -205,6 +205,26 @@ static void a_picture_that_never_comes_is_a_timeout_and_a_restart(void **state)
     world_end(&world);
 }
 
+/* The request waits for 1.5 s of its 2 until the plan is read: the renderer has had half a second for it. */
+static void one_that_got_a_request_late_has_the_whole_time_for_a_picture(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "late-and-never-draws");
+    world.options.times.request = 2000;
+    world_start(&world, 1);
+    struct reply reply = { 0 };
+    world_open_plan(&world, "a");
+    world_ask(&world, "a", "render", &reply);
+    world_wait_for_reply(&world, &reply);
+    assert_int_equal(reply.problem.type, PROBLEM_TIMEOUT);
+    step_for_ms(&world, 500);
+    world_wait_for_state(&world, "a", FLEET_READY);
+    assert_int_equal(world_plan_of(&world, "a").generation, 1);
+    world_end(&world);
+}
+
 static void one_that_is_late_with_a_picture_but_draws_others_is_left_alone(void **state)
 {
     (void)state;
@@ -338,6 +358,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(one_that_answers_pings_lives_on),
         cmocka_unit_test(a_load_that_gets_no_further_fails),
         cmocka_unit_test(a_picture_that_never_comes_is_a_timeout_and_a_restart),
+        cmocka_unit_test(one_that_got_a_request_late_has_the_whole_time_for_a_picture),
         cmocka_unit_test(one_that_is_late_with_a_picture_but_draws_others_is_left_alone),
         cmocka_unit_test(a_listing_that_hangs_holds_up_neither_pictures_nor_pings),
         cmocka_unit_test(before_the_first_listing_a_plan_is_not_known_rather_than_not_there),
