@@ -1,0 +1,395 @@
+#define _GNU_SOURCE
+/* One link: one client's connection. It reads and checks a request's head, passes head and body to the library, passes the answer back,
+ * and only then looks at the next request. A refused client may still be sending: its bytes are read for a while after the answer, so that
+ * the answer reaches it. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+
+#include "core/base/clock.h"
+#include "server/http/head.h"
+#include "server/http/relay_inner.h"
+#include "server/wire/refusal.h"
+
+enum {
+    IN_SIZE = 64 << 10, /* of a client's bytes at once: at least a head */
+    DROP_SIZE = 1 << 20, /* of a refused body at once */
+    N_CONTINUE = 25, /* bytes of "HTTP/1.1 100 Continue" with its empty line, the one answer that may come before the answer */
+};
+
+/* ---- ends ---------------------------------------------------------------------------------------------------------------- */
+
+static void drop_bytes(struct relay_link *link)
+{
+    free(link->in);
+    free(link->out);
+    link->in = link->out = NULL;
+    link->n_in = link->n_forward = link->n_out = link->out_at = 0;
+}
+
+/* The client's side is over. What the library still has of it meets a closed end. */
+void relay_link_die(struct relay_link *link)
+{
+    if (link->state == LINK_LINGER)
+        link->relay->n_lingering--;
+    link->state = LINK_DEAD;
+    link->moved_us = clock_now_us();
+    link->relay->has_dead = true;
+    relay_uncount(link);
+    drop_bytes(link);
+    relay_close_fd(&link->client);
+    relay_close_fd(&link->inner);
+}
+
+/* The answer is out: a socket that is closed with bytes unread takes the answer back, so what still comes is read for a while. */
+static void linger(struct relay_link *link, uint64_t max_dropped)
+{
+    relay_uncount(link);
+    drop_bytes(link);
+    relay_close_fd(&link->inner);
+    if (shutdown(link->client, SHUT_WR) != 0 || link->client_ended) {
+        relay_link_die(link);
+        return;
+    }
+    if (link->relay->n_lingering >= RELAY_MAX_LINGERING)
+        relay_end_oldest_lingering(link->relay);
+    link->relay->n_lingering++;
+    link->state = LINK_LINGER;
+    link->max_dropped = max_dropped;
+    link->n_dropped = 0;
+    link->moved_us = clock_now_us();
+    relay_touch(link);
+}
+
+void relay_link_refuse(struct relay_link *link, const struct problem *problem, uint64_t max_dropped)
+{
+    bool has_answer = link->n_out > 0 || (link->n_answered > 0 && link->n_answered != N_CONTINUE);
+    if (!has_answer)
+        refusal_send(link->client, problem);
+    linger(link, max_dropped);
+}
+
+/* ---- the answer ---------------------------------------------------------------------------------------------------------- */
+
+static bool is_for_later(void) { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
+
+void relay_link_pump(struct relay_link *link)
+{
+    struct relay *relay = link->relay;
+    for (;;) {
+        if (link->n_out > 0) {
+            ssize_t n = send(link->client, link->out + link->out_at, link->n_out, MSG_NOSIGNAL | MSG_DONTWAIT);
+            if (n < 0 && is_for_later())
+                return;
+            if (n < 0) {
+                relay_link_die(link);
+                return;
+            }
+            link->moved_us = clock_now_us();
+            link->out_at += (size_t)n;
+            link->n_out -= (size_t)n;
+            if (link->n_out > 0)
+                return;
+            free(link->out);
+            link->out = NULL;
+            link->out_at = 0;
+        }
+        if (!link->inner_readable || link->inner < 0)
+            return;
+        ssize_t n = recv(link->inner, relay->bytes, sizeof relay->bytes, MSG_DONTWAIT);
+        if (n < 0 && is_for_later()) {
+            link->inner_readable = false;
+            return;
+        }
+        if (n <= 0) {
+            link->inner_ended = true;
+            link->inner_readable = false;
+            return;
+        }
+        link->inner_readable = (size_t)n == sizeof relay->bytes || link->inner_hung_up;
+        link->n_answered += (uint64_t)n;
+        link->moved_us = clock_now_us();
+        ssize_t n_sent = send(link->client, relay->bytes, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (n_sent < 0 && !is_for_later()) {
+            relay_link_die(link);
+            return;
+        }
+        n_sent = n_sent < 0 ? 0 : n_sent;
+        if (n_sent < n) {
+            link->n_out = (size_t)(n - n_sent);
+            link->out = malloc(link->n_out);
+            if (!link->out) {
+                relay_link_die(link);
+                return;
+            }
+            memcpy(link->out, relay->bytes + n_sent, link->n_out);
+        }
+    }
+}
+
+/* ---- the request --------------------------------------------------------------------------------------------------------- */
+
+/* More of the client's bytes. False: there are none now. */
+static bool read_client(struct relay_link *link)
+{
+    if (!link->client_readable || link->n_in == IN_SIZE)
+        return false;
+    if (!link->in && !(link->in = malloc(IN_SIZE))) {
+        relay_link_die(link);
+        return false;
+    }
+    size_t n_free = IN_SIZE - link->n_in;
+    ssize_t n = recv(link->client, link->in + link->n_in, n_free, MSG_DONTWAIT);
+    if (n <= 0) {
+        link->client_readable = false;
+        if (link->n_in == 0) {
+            free(link->in);
+            link->in = NULL;
+        }
+        if (n < 0 && is_for_later())
+            return false;
+        if (n < 0)
+            relay_link_die(link);
+        else
+            link->client_ended = true;
+        return n == 0;
+    }
+    link->moved_us = clock_now_us();
+    if (link->n_in == 0)
+        link->head_us = link->moved_us;
+    link->n_in += (size_t)n;
+    return true;
+}
+
+static bool watch_inner(struct relay_link *link, int how)
+{
+    struct epoll_event event = { .events = EPOLLIN | EPOLLRDHUP | EPOLLET | (link->inner_wants_room ? (uint32_t)EPOLLOUT : 0),
+                                 .data.u64 = (uint64_t)(uintptr_t)link | 1 };
+    return epoll_ctl(link->relay->epoll, how, link->inner, &event) == 0;
+}
+
+/* Opens the way to the library, for the first request. */
+static bool open_server(struct relay_link *link)
+{
+    int ends[2];
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends) != 0)
+        return false;
+    link->inner = ends[0];
+    if (!watch_inner(link, EPOLL_CTL_ADD)) {
+        relay_close_fd(&link->inner);
+        (void)close(ends[1]);
+        return false;
+    }
+    link->server = ends[1];
+    if (link->relay->server.add(link->relay->server.context, ends[1]))
+        return true;
+    link->server = -1;
+    relay_close_fd(&link->inner);
+    return false;
+}
+
+/* True when the state has changed. */
+static bool step_head(struct relay_link *link)
+{
+    struct relay *relay = link->relay;
+    struct head_request request;
+    struct problem problem;
+    enum head_kind kind = HEAD_INCOMPLETE;
+    do {
+        if (link->n_in > 0)
+            kind = head_read(link->in, link->n_in < HEAD_MAX_BYTES ? link->n_in : HEAD_MAX_BYTES, relay->options.hosts, &request, &problem);
+    } while (kind == HEAD_INCOMPLETE && !link->client_ended && read_client(link));
+    if (link->state == LINK_DEAD)
+        return true;
+    if (kind == HEAD_INCOMPLETE && !link->client_ended)
+        return false;
+    if (kind == HEAD_INCOMPLETE && link->n_in == 0) {
+        relay_link_die(link); /* ended between two requests */
+        return true;
+    }
+    link->n_answered = 0;
+    link->is_request_ended = false;
+    if (kind == HEAD_INCOMPLETE)
+        head_refuse_incomplete(link->in, link->n_in, true, 0, &problem);
+    if (kind == HEAD_INCOMPLETE || kind == HEAD_REFUSED) {
+        relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
+        return true;
+    }
+    struct address client = address_of_client(&link->peer, relay->options.trusted, relay->options.n_trusted, request.forwarded, request.n_forwarded);
+    if (!relay_count(link, &client, &problem)) {
+        relay_log_refusal(relay);
+        relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
+        return true;
+    }
+    if (link->inner < 0 && !open_server(link)) {
+        problem_set(&problem, PROBLEM_BUSY, "", "", "the server has no descriptors left for this connection");
+        problem.retry_after_ms = RELAY_RETRY_MS;
+        relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
+        return true;
+    }
+    link->n_forward = request.n_bytes;
+    body_begin(&link->body, request.is_chunked, request.length);
+    link->state = LINK_BODY;
+    return true;
+}
+
+/* True when the state has changed. */
+static bool step_body(struct relay_link *link)
+{
+    struct problem problem;
+    for (;;) {
+        size_t n_taken = 0;
+        if (!body_take(&link->body, link->in ? link->in + link->n_forward : "", link->n_in - link->n_forward, &n_taken, &problem)) {
+            relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
+            return true;
+        }
+        link->n_forward += n_taken;
+        if (link->n_forward > 0) {
+            ssize_t n = send(link->inner, link->in, link->n_forward, MSG_NOSIGNAL | MSG_DONTWAIT);
+            if (n < 0 && is_for_later()) {
+                if (!link->inner_wants_room) {
+                    link->inner_wants_room = true;
+                    (void)watch_inner(link, EPOLL_CTL_MOD); /* tells at once when there is room by now */
+                }
+                return false;
+            }
+            if (n < 0) { /* the library has answered before the end, and wants no more */
+                link->state = LINK_ANSWER;
+                return true;
+            }
+            link->moved_us = clock_now_us();
+            link->n_forward -= (size_t)n;
+            link->n_in -= (size_t)n;
+            if (link->n_in > 0)
+                memmove(link->in, link->in + n, link->n_in);
+        }
+        if (link->n_forward == 0 && body_is_ended(&link->body)) {
+            if (link->n_in == 0) {
+                free(link->in);
+                link->in = NULL;
+            }
+            link->state = LINK_ANSWER;
+            return true;
+        }
+        if (link->n_forward > 0)
+            continue;
+        if (link->client_ended) { /* in the middle of a body: nobody is there for the answer */
+            relay_link_die(link);
+            return true;
+        }
+        if (!read_client(link))
+            return link->state == LINK_DEAD;
+    }
+}
+
+/* The library has closed its end: this answer was the last. */
+static void finish(struct relay_link *link)
+{
+    char byte;
+    bool has_more = link->n_in > 0 || !body_is_ended(&link->body) || recv(link->client, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
+    if (has_more)
+        linger(link, RELAY_MAX_DROPPED);
+    else
+        relay_link_die(link);
+}
+
+/* True when the state has changed. */
+static bool step_answer(struct relay_link *link)
+{
+    if (link->n_out > 0 || link->inner_readable)
+        return false;
+    if (link->inner_ended) {
+        finish(link);
+        return true;
+    }
+    if (!link->is_request_ended || !body_is_ended(&link->body))
+        return false;
+    link->is_request_ended = false;
+    link->state = LINK_HEAD;
+    link->head_us = link->moved_us = clock_now_us();
+    return true;
+}
+
+static void step_linger(struct relay_link *link)
+{
+    size_t n_now = 0;
+    while (link->client_readable) {
+        ssize_t n = recv(link->client, link->relay->bytes, sizeof link->relay->bytes, MSG_DONTWAIT);
+        if (n < 0 && is_for_later()) {
+            link->client_readable = false;
+            return;
+        }
+        if (n > 0) {
+            link->moved_us = clock_now_us();
+            link->n_dropped += (uint64_t)n;
+            n_now += (size_t)n;
+        }
+        if (n <= 0 || link->n_dropped > link->max_dropped) {
+            relay_link_die(link);
+            return;
+        }
+        if (n_now >= DROP_SIZE) { /* others wait */
+            relay_touch(link);
+            return;
+        }
+    }
+}
+
+void relay_link_advance(struct relay_link *link)
+{
+    bool has_changed = true;
+    while (has_changed && link->state != LINK_DEAD) {
+        has_changed = false;
+        if (link->is_refused && link->state != LINK_LINGER) {
+            relay_link_refuse(link, &link->problem, link->max_dropped);
+            continue;
+        }
+        if (link->state != LINK_LINGER)
+            relay_link_pump(link);
+        switch (link->state) {
+        case LINK_HEAD:
+            if (link->inner_ended) /* the library gave the connection up between two requests */
+                finish(link);
+            else
+                has_changed = step_head(link);
+            break;
+        case LINK_BODY:
+            if (link->inner_ended && link->n_out == 0)
+                finish(link);
+            else
+                has_changed = step_body(link);
+            break;
+        case LINK_ANSWER: has_changed = step_answer(link); break;
+        case LINK_LINGER: step_linger(link); break;
+        case LINK_DEAD: break;
+        }
+    }
+}
+
+/* ---- the library's side -------------------------------------------------------------------------------------------------- */
+
+void relay_link_closed(struct relay_link *link)
+{
+    link->server = -1;
+    link->relay->has_dead = true;
+}
+
+void relay_request_ended(struct relay_link *link)
+{
+    link->is_request_ended = true;
+    link->inner_readable = true;
+    relay_touch(link);
+}
+
+void relay_refuse(struct relay_link *link, const struct problem *problem, uint64_t max_dropped)
+{
+    if (link->state == LINK_DEAD || link->state == LINK_LINGER)
+        return;
+    link->is_refused = true;
+    link->problem = *problem;
+    link->max_dropped = max_dropped;
+    relay_uncount(link);
+    relay_touch(link);
+}
