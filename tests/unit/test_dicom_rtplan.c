@@ -1,5 +1,6 @@
 /* RT Plans: where beams come from, by hand geometry for every way a patient can lie. */
 #include "core/formats/dicom/dicom_rtplan.h"
+#include "core/formats/dicom/dicom_rtplan_opening.h"
 
 #include "tests/check.h"
 #include "tests/unit/plan_help.h"
@@ -78,6 +79,7 @@ struct made_plan {
     void (*positions)(struct made_dicom *made, int point);
     int n_points;
     const char *gantries[4], *directions[4];
+    const char *collimator, *table; /* of the first point */
 };
 
 static void put_plan(struct made_dicom *made, const struct made_plan *plan)
@@ -106,6 +108,10 @@ static void put_plan(struct made_dicom *made, const struct made_plan *plan)
             made_text(made, TAG(0x300a, 0x011e), "DS", plan->gantries[i]);
         if (plan->directions[i])
             made_text(made, TAG(0x300a, 0x011f), "CS", plan->directions[i]);
+        if (plan->collimator && i == 0)
+            made_text(made, TAG(0x300a, 0x0120), "DS", plan->collimator);
+        if (plan->table && i == 0)
+            made_text(made, TAG(0x300a, 0x0122), "DS", plan->table);
         if (plan->iso && i == 0)
             made_text(made, TAG(0x300a, 0x012c), "DS", plan->iso);
         made_item_end(made);
@@ -276,6 +282,106 @@ static void three_steps(struct made_dicom *made, int point)
         put_position(made, "MLCX", "1\\2\\3"); /* too few: not regarded */
     }
     made_sequence_end(made);
+}
+
+static void angles_beyond_a_turn_are_taken_without_whole_turns_and_said(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *gantry, *collimator, *table, *sentence;
+        struct vec3 entry, collimator_x;
+    } cases[] = { { "450", "0", "0", "gantry angle (300A,011E) is 450, expected -360 to 360; 90 was taken", { 1000, 0, 0 }, { 0, 1, 0 } },
+                  { "-450", "0", "0", "gantry angle (300A,011E) is -450, expected -360 to 360; -90 was taken", { -1000, 0, 0 }, { 0, -1, 0 } },
+                  { "0", "450", "0", "beam limiting device angle (300A,0120) is 450, expected -360 to 360; 90 was taken", { 0, -1000, 0 }, { 0, 0, 1 } },
+                  { "90", "0", "-630", "patient support angle (300A,0122) is -630, expected -360 to 360; -270 was taken", { 0, 0, -1000 }, { 0, 1, 0 } },
+                  { "90", "0", "-270", "", { 0, 0, -1000 }, { 0, 1, 0 } } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .gantries = { cases[i].gantry },
+                                  .collimator = cases[i].collimator, .table = cases[i].table };
+        struct report report = { 0 };
+        struct rtplan *plan = read_made(&made, &report);
+        const struct beam *beam = &plan->beams[0];
+        const struct vec3 *x = &cases[i].collimator_x;
+        assert_point(beam->entry_lps_mm, cases[i].entry.x, cases[i].entry.y, cases[i].entry.z, 1e-9);
+        assert_point(beam->delivery.collimator_x_lps, x->x, x->y, x->z, 1e-12);
+        assert_int_equal(report.n_lines, cases[i].sentence[0] != 0);
+        assert_non_null(strstr(report_said(&report, "beam.bad-value"), cases[i].sentence));
+        rtplan_destroy(plan);
+        report_finish(&report);
+    }
+}
+
+static void an_angle_that_is_no_number_is_said_to_be_assumed(void **state)
+{
+    (void)state;
+    static const char *const words[] = { "ninety", "inf", "nan", "1e999" };
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+        struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .gantries = { words[i] } };
+        struct report report = { 0 };
+        struct rtplan *plan = read_made(&made, &report);
+        assert_true(report_has(&report, "beam.angle-assumed"));
+        assert_point(plan->beams[0].entry_lps_mm, 0, -1000, 0, 1e-9);
+        rtplan_destroy(plan);
+        report_finish(&report);
+    }
+}
+
+static void strange_devices(struct made_dicom *made)
+{
+    made_sequence(made, TAG(0x300a, 0x00b6));
+    for (int i = 0; i < 9; i++)
+        put_device(made, "SHUTTER", NULL);
+    made_sequence_end(made);
+}
+
+/* How many lines have the code. */
+static size_t n_lines_of(const struct report *report, const char *code)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < report->n_lines; i++)
+        n += strcmp(report->lines[i].code, code) == 0;
+    return n;
+}
+
+static void doubts_about_where_a_beam_is_come_before_those_about_its_opening(void **state)
+{
+    (void)state;
+    struct report report = { 0 };
+    struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 3, .gantries = { "450", "460", "470" },
+                              .collimator = "361", .table = "362", .devices = strange_devices };
+    static const char *const first[] = { "(300A,011E) is 450", "(300A,0122) is 362", "(300A,0120) is 361", "\"SHUTTER\"", "\"SHUTTER\"", "\"SHUTTER\"" };
+    enum { N = sizeof first / sizeof first[0] };
+    struct rtplan *plan = read_made(&made, &report);
+    assert_int_equal(n_lines_of(&report, "beam.bad-value"), N + 1);
+    size_t at = 0;
+    for (size_t i = 0; i < report.n_lines; i++)
+        if (strcmp(report.lines[i].code, "beam.bad-value") == 0 && at < N)
+            assert_non_null(strstr(report.lines[i].sentence, first[at++]));
+    /* of nine devices six, and two more gantry angles */
+    assert_non_null(strstr(report.lines[report.n_lines - 1].sentence, "8 more such values"));
+    rtplan_destroy(plan);
+    report_finish(&report);
+}
+
+static void leaves_without_a_number_of_pairs(struct made_dicom *made)
+{
+    made_sequence(made, TAG(0x300a, 0x00b6));
+    put_device(made, "MLCX", "-20");
+    made_sequence_end(made);
+}
+
+static void a_single_boundary_is_too_few_for_any_number_of_leaves(void **state)
+{
+    (void)state;
+    struct report report = { 0 };
+    struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .gantries = { "0" },
+                              .devices = leaves_without_a_number_of_pairs };
+    struct rtplan *plan = read_made(&made, &report);
+    char expected[80];
+    snprintf(expected, sizeof expected, "MLCX: leaf position boundaries (300A,00BE) are 1, expected 2 to %d.", OPENING_MAX_LEAVES + 1);
+    assert_non_null(strstr(report_said(&report, "beam.bad-value"), expected));
+    rtplan_destroy(plan);
+    report_finish(&report);
 }
 
 static void the_opening_is_what_jaws_and_leaves_leave(void **state)
@@ -485,6 +591,10 @@ int main(void)
         cmocka_unit_test(what_a_plan_does_not_say_is_assumed_and_said),
         cmocka_unit_test(a_beam_that_cannot_be_placed_is_left_out),
         cmocka_unit_test(arcs_travel_in_their_direction),
+        cmocka_unit_test(angles_beyond_a_turn_are_taken_without_whole_turns_and_said),
+        cmocka_unit_test(an_angle_that_is_no_number_is_said_to_be_assumed),
+        cmocka_unit_test(doubts_about_where_a_beam_is_come_before_those_about_its_opening),
+        cmocka_unit_test(a_single_boundary_is_too_few_for_any_number_of_leaves),
         cmocka_unit_test(the_opening_is_what_jaws_and_leaves_leave),
         cmocka_unit_test(only_a_round_opening_has_a_diameter),
         cmocka_unit_test(an_ion_plan_has_its_lines_and_says_what_is_not_read),

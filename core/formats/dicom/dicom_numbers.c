@@ -17,11 +17,27 @@ void dicom_numbers_report(const struct dicom_file *file, uint32_t but_not, const
 
 void dicom_doubt(struct dicom_doubts *doubts, const char *format, ...)
 {
-    if (doubts->n++ > 0)
+    doubts->n++;
+    if (doubts->n_others >= DICOM_DOUBTS_OTHERS)
         return;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(doubts->first, sizeof doubts->first, format, arguments);
+    vsnprintf(doubts->others[doubts->n_others++], sizeof doubts->others[0], format, arguments);
+    va_end(arguments);
+}
+
+void dicom_doubt_place(struct dicom_doubts *doubts, uint32_t tag, const char *format, ...)
+{
+    doubts->n++;
+    for (size_t i = 0; i < doubts->n_places; i++)
+        if (doubts->places[i].tag == tag)
+            return;
+    if (doubts->n_places >= DICOM_DOUBTS_PLACES)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    doubts->places[doubts->n_places].tag = tag;
+    vsnprintf(doubts->places[doubts->n_places++].text, sizeof doubts->places[0].text, format, arguments);
     va_end(arguments);
 }
 
@@ -41,8 +57,11 @@ bool dicom_number_within(const struct dicom_item *item, uint32_t tag, const char
 
 void dicom_doubts_report(const struct dicom_doubts *doubts, const char *code, const char *who, const char *where, struct report *report)
 {
-    if (doubts->n == 1)
-        report_add(report, REPORT_WARNING, code, where, "%s: %s.", who, doubts->first);
-    else if (doubts->n > 1)
-        report_add(report, REPORT_WARNING, code, where, "%s: %s; and %zu more such values.", who, doubts->first, doubts->n - 1);
+    for (size_t i = 0; i < doubts->n_places; i++)
+        report_add(report, REPORT_WARNING, code, where, "%s: %s.", who, doubts->places[i].text);
+    for (size_t i = 0; i < doubts->n_others; i++)
+        report_add(report, REPORT_WARNING, code, where, "%s: %s.", who, doubts->others[i]);
+    size_t n_more = doubts->n - doubts->n_places - doubts->n_others;
+    if (n_more > 0)
+        report_add(report, REPORT_WARNING, code, where, "%s: %zu more such values.", who, n_more);
 }

@@ -159,9 +159,19 @@ struct course {
     char direction[8];
 };
 
-static void read_angle(const struct reading *reading, const struct dicom_item *item, uint32_t tag, const char *name, double *deg)
+/* One beyond a whole turn is taken without its whole turns, and said. false: there is none that is a number. */
+static bool read_angle(const struct reading *reading, const struct dicom_item *item, uint32_t tag, const char *name, double *deg)
 {
-    (void)dicom_number_within(item, tag, name, -360, 360, deg, reading->doubts);
+    double found;
+    if (!dicom_number(item, tag, &found))
+        return false;
+    *deg = found;
+    if (fabs(found) > 360) {
+        *deg = fmod(found, 360);
+        dicom_doubt_place(reading->doubts, tag, "%s (%04X,%04X) is %g, expected -360 to 360; %g was taken", name, tag >> 16, tag & 0xFFFF, found,
+                          *deg);
+    }
+    return true;
 }
 
 /* false: none, or one that cannot be, and said so. */
@@ -172,12 +182,13 @@ static bool read_isocentre(const struct reading *reading, const struct dicom_ite
     if (n == 0)
         return false;
     if (n != 3) {
-        dicom_doubt(reading->doubts, "isocentre (300A,012C) has %zu values, expected 3", n);
+        dicom_doubt_place(reading->doubts, ISOCENTRE, "isocentre (300A,012C) has %zu values, expected 3", n);
         return false;
     }
     for (int i = 0; i < 3; i++)
         if (!(fabs(at[i]) <= FURTHEST_ISOCENTRE_MM)) {
-            dicom_doubt(reading->doubts, "isocentre (300A,012C): value %d is %g mm, expected at most %g", i + 1, at[i], FURTHEST_ISOCENTRE_MM);
+            dicom_doubt_place(reading->doubts, ISOCENTRE, "isocentre (300A,012C): value %d is %g mm, expected at most %g", i + 1, at[i],
+                              FURTHEST_ISOCENTRE_MM);
             return false;
         }
     *isocentre = vec3(at[0], at[1], at[2]);
@@ -201,13 +212,12 @@ static void read_control_point(const struct reading *reading, struct course *cou
 {
     double gantry_before = course->angles.gantry_deg, couch_before = course->angles.couch_deg, pitch = 0;
     struct vec3 isocentre;
-    course->has_gantry |= dicom_number(item, GANTRY_ANGLE, &pitch);
-    read_angle(reading, item, GANTRY_ANGLE, "gantry angle", &course->angles.gantry_deg);
-    read_angle(reading, item, SUPPORT_ANGLE, "patient support angle", &course->angles.couch_deg);
-    read_angle(reading, item, ECCENTRIC_ANGLE, "table top eccentric angle", &course->angles.eccentric_deg);
-    read_angle(reading, item, PITCH_ANGLE, "table top pitch angle", &course->angles.pitch_deg);
-    read_angle(reading, item, ROLL_ANGLE, "table top roll angle", &course->angles.roll_deg);
-    read_angle(reading, item, COLLIMATOR_ANGLE, "beam limiting device angle", &course->collimator_deg);
+    course->has_gantry |= read_angle(reading, item, GANTRY_ANGLE, "gantry angle", &course->angles.gantry_deg);
+    (void)read_angle(reading, item, SUPPORT_ANGLE, "patient support angle", &course->angles.couch_deg);
+    (void)read_angle(reading, item, ECCENTRIC_ANGLE, "table top eccentric angle", &course->angles.eccentric_deg);
+    (void)read_angle(reading, item, PITCH_ANGLE, "table top pitch angle", &course->angles.pitch_deg);
+    (void)read_angle(reading, item, ROLL_ANGLE, "table top roll angle", &course->angles.roll_deg);
+    (void)read_angle(reading, item, COLLIMATOR_ANGLE, "beam limiting device angle", &course->collimator_deg);
     course->has_gantry_pitch |= dicom_number(item, GANTRY_PITCH_ANGLE, &pitch) && fabs(pitch) > 0.01;
     if (read_isocentre(reading, item, &isocentre)) {
         if (!course->has_isocentre)

@@ -1,5 +1,6 @@
 #include "core/formats/dicom/dicom_rtplan_opening.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum {
@@ -83,9 +84,13 @@ static bool is_known_type(const char *type)
 static bool read_boundaries(struct opening *opening, struct opening_device *device, const struct dicom_item *item, int64_t n_pairs)
 {
     size_t n = dicom_numbers(item, LEAF_BOUNDARIES, device->boundaries_mm, OPENING_MAX_LEAVES + 1), which;
-    if (n < 2 || n > OPENING_MAX_LEAVES + 1 || (n_pairs > 0 && n != (size_t)n_pairs + 1)) {
-        dicom_doubt(opening->doubts, "%s: leaf position boundaries (300A,00BE) are %zu, expected %lld for %lld pairs of leaves", device->type, n,
-                    (long long)n_pairs + 1, (long long)n_pairs);
+    if (n_pairs > 0 ? n != (size_t)n_pairs + 1 : n < 2 || n > OPENING_MAX_LEAVES + 1) {
+        char expected[60];
+        if (n_pairs > 0)
+            snprintf(expected, sizeof expected, "%lld for %lld pairs of leaves", (long long)n_pairs + 1, (long long)n_pairs);
+        else
+            snprintf(expected, sizeof expected, "2 to %d", OPENING_MAX_LEAVES + 1);
+        dicom_doubt(opening->doubts, "%s: leaf position boundaries (300A,00BE) are %zu, expected %s", device->type, n, expected);
         return false;
     }
     if (!are_within(device->boundaries_mm, n, OPENING_MOST_MM, &which)) {
