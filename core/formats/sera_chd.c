@@ -23,7 +23,7 @@ struct parser {
     uint32_t seen;        /* bit per key */
     double *z;            /* [CHD_MAX_SIDE] */
     bool *has_z;
-    bool has_weight[CHD_N_COLUMNS], has_concentration[CHD_N_COLUMNS];
+    bool has_weight[CHD_N_COLUMNS];
     size_t n_unknown;
     char unknown[64];
     struct report *report;
@@ -135,7 +135,7 @@ static bool set_indexed(struct parser *p, const char *key, const char *value, bo
             return true;
         }
         (s == 1 ? chd->concentration : s == 2 ? chd->weight : chd->reference)[index] = number;
-        p->has_concentration[index] |= s == 1;
+        p->chd->has_concentration[index] |= s == 1;
         p->has_weight[index] |= s == 2;
         return true;
     }
@@ -254,10 +254,10 @@ static bool check_columns(struct parser *p)
         if (!chd->has_column[i])
             continue;
         bool is_boron = chd->quantities[i] == DOSE_BORON;
-        n_missing += !p->has_weight[i] || (is_boron && !p->has_concentration[i]);
+        n_missing += !p->has_weight[i] || (is_boron && !chd->has_concentration[i]);
         if (!p->has_weight[i])
             chd->weight[i] = 1;
-        if (!p->has_concentration[i])
+        if (!chd->has_concentration[i])
             chd->concentration[i] = 1;
     }
     if (n == 0)

@@ -30,6 +30,7 @@ struct chd {
     double *planes; /* [n_planes] z (IS), rising */
     bool has_column[CHD_N_COLUMNS];
     enum dose_quantity quantities[CHD_N_COLUMNS]; /* by their names */
+    bool has_concentration[CHD_N_COLUMNS]; /* false: the header has none, and concentration is 1 */
     double concentration[CHD_N_COLUMNS], weight[CHD_N_COLUMNS], reference[CHD_N_COLUMNS];
 };
 void chd_finish(struct chd *chd);

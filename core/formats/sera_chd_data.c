@@ -217,9 +217,12 @@ static bool resolve(const struct table *table, int column, const char *name, enu
         int boron = column_of(chd, DOSE_BORON);
         bool is_weighted = has_other_weights(chd);
         *quantity = is_weighted ? DOSE_WEIGHTED_TOTAL : DOSE_TOTAL;
+        char ppm_said[40] = "an unknown amount";
+        if (boron < 0 || chd->has_concentration[boron])
+            snprintf(ppm_said, sizeof ppm_said, "%g ppm", boron >= 0 ? chd->concentration[boron] : 0);
         report_add(report, is_weighted ? REPORT_WARNING : REPORT_NOTE, "dose.total-boron", name,
-                   "The total is %s, with %g ppm of boron in blood times each tissue's ratio in it; neither can be taken out.",
-                   is_weighted ? "weighted" : "physical", boron >= 0 ? chd->concentration[boron] : 0);
+                   "The total is %s, with %s of boron in blood times each tissue's ratio in it; neither can be taken out.",
+                   is_weighted ? "weighted" : "physical", ppm_said);
         return true;
     }
     double divisor = *quantity == DOSE_BORON ? weight * ppm : weight;
@@ -422,7 +425,7 @@ static bool add_columns(const struct table *table, const struct chd_files *files
         struct dose_component *added = &doses->components[doses->n_components - 1];
         volume_measure(added->values);
         int boron = column_of(chd, DOSE_BORON);
-        if ((quantity == DOSE_TOTAL || quantity == DOSE_WEIGHTED_TOTAL) && boron >= 0) {
+        if ((quantity == DOSE_TOTAL || quantity == DOSE_WEIGHTED_TOTAL) && boron >= 0 && chd->has_concentration[boron]) {
             added->has_boron_ppm = true;
             added->boron_ppm = chd->concentration[boron];
         }

@@ -147,15 +147,14 @@ static void weights_and_ppm_are_divided_away_and_a_weighted_total_keeps_its_name
 }
 
 /* Needs some points a region: a set of 40 columns. */
-static struct chd_result read_wide(double ratio)
+static struct chd_result read_wide_with(double ratio, const char *concentrations)
 {
     struct chd_text header = { malloc(CHD_TEXT_SIZE), 0 }, table = { malloc(CHD_TEXT_SIZE), 0 };
     struct chd_result result;
     chd_put(&header, "Version_stamp: seraMC_1C0\nFOV: 10\nxmin: -1\nxmax: 1\nymin: -1\nymax: 1\nnum_cols: 41\nnum_rows: 2\nnum_planes: 1\n"
-                 "z_value_00: 0\nref_dose_7: 1E11\nconc_1: 10\n");
+                 "z_value_00: 0\nref_dose_7: 1E11\n%s", concentrations);
     for (int i = 0; i < 9; i++)
         chd_put(&header, "dose_comp_%d: %s\nrbe_val_%d: 1\n", i, chd_sera_mc[i], i);
-    chd_put(&header, "conc_0: 1\n");
     for (int r = 0; r < 2; r++)
         for (int c = 0; c < 41; c++)
             chd_put(&table, "%.4f %d 0 %d 1 %.5E 1 1 1 1 1 1E11 1\n", -1 + c * 0.05, 2 * r - 1, 6 + r, 10 * 0.73 * (r == 1 ? ratio : 1));
@@ -164,6 +163,30 @@ static struct chd_result read_wide(double ratio)
     free(header.at);
     free(table.at);
     return result;
+}
+
+static struct chd_result read_wide(double ratio)
+{
+    return read_wide_with(ratio, "conc_1: 10\nconc_0: 1\n");
+}
+
+static void a_total_tells_its_boron_only_where_the_header_does(void **state)
+{
+    (void)state;
+    static const char *const concentrations[] = { "conc_1: 10\n", "", "conc_0: 1\n" };
+    for (int i = 0; i < 3; i++) {
+        struct chd_result result = read_wide_with(1, concentrations[i]);
+        const struct dose_component *total = NULL;
+        for (size_t c = 0; c < result.doses.n_components; c++)
+            if (result.doses.components[c].quantity == DOSE_TOTAL)
+                total = &result.doses.components[c];
+        assert_non_null(total);
+        assert_int_equal(total->has_boron_ppm, i == 0);
+        assert_close(total->boron_ppm, i == 0 ? 10 : 0, 0);
+        assert_int_equal(report_said(&result.report, "dose.weights-missing")[0] != 0, i != 0);
+        assert_int_equal(strstr(report_said(&result.report, "dose.total-boron"), "ppm") != NULL, i == 0);
+        chd_result_finish(&result);
+    }
 }
 
 static void boron_is_physical_only_where_every_tissue_holds_as_much_as_blood(void **state)
@@ -424,6 +447,7 @@ int main(void)
         cmocka_unit_test(uneven_planes_are_resampled_and_said_so_or_refused),
         cmocka_unit_test(weights_and_ppm_are_divided_away_and_a_weighted_total_keeps_its_name),
         cmocka_unit_test(boron_is_physical_only_where_every_tissue_holds_as_much_as_blood),
+        cmocka_unit_test(a_total_tells_its_boron_only_where_the_header_does),
         cmocka_unit_test(any_version_is_read_when_its_keys_are_there),
         cmocka_unit_test(a_header_in_millimetres_is_told_by_its_width),
         cmocka_unit_test(points_that_hold_nothing_are_not_blended_with_their_neighbours),
