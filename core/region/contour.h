@@ -83,7 +83,8 @@ struct contour_choice {
 /* A label grid for each set: the image's own where it holds the volume, else the coarsest whole subdivision of it that does, cropped
  * to the regions that need the same. Contours that leave the image get a grid that covers them, cropped to them: the image's voxels
  * continued, with a slice for each plane where their planes reach beyond the image's slices and do not lie on those. It is as coarse as
- * most_voxels asks; contours further than CONTOUR_MAX_REACH_MM beyond the image stay on the image's grid, which cuts them.
+ * most_voxels asks; contours further than CONTOUR_MAX_REACH_MM beyond the image, or beyond
+ * a limit of contour_fill there, stay on the image's grid, which cuts them.
  *
  *   accuracy  1 % of the polygon volume from 1 cm3 on, 5 % below; and at least one voxel
  *   image     NULL: a grid from the planes: their orientation, their spacing, 1 mm in the plane or as coarse as most_voxels asks

@@ -325,7 +325,7 @@ static bool may_join(const struct group *group, const struct contour_choice *cho
     return n <= most_voxels && (n <= SHARED_VOXELS || n <= 2 * joined->own_voxels);
 }
 
-/* Grids for the sets that have none of the image's own, of one base (is_beyond); their groups follow the first n_groups. */
+/* Cropped grids on one base: the image, or with is_beyond its continuation; their groups follow the first n_groups. */
 static bool share_grids(struct contour_choice *choices, const struct candidate *candidates, size_t n, const struct grid *base,
                         bool is_beyond, uint64_t most_voxels, uint32_t *n_groups_before, struct error *err)
 {
@@ -362,13 +362,20 @@ static bool share_grids(struct contour_choice *choices, const struct candidate *
     return is_made;
 }
 
-/* choose_one for a set that may be beyond a limit of contour_fill, which will say so of this set alone. */
+/* choose_one for a set that may be beyond a limit of contour_fill. On the image contour_fill then says so of this set alone; beyond it the
+ * choice on the image stays. */
 static bool choose_or_leave(struct contour_choice *choice, struct candidate *candidate, const struct contour_set *set,
                             const struct grid *base, bool is_beyond, const struct contour_options *options, struct error *err)
 {
     struct error reason = { 0 };
+    const struct contour_choice choice_before = is_beyond ? *choice : (struct contour_choice){ 0 };
+    const struct candidate candidate_before = *candidate;
     bool is_chosen = choose_one(choice, candidate, set, base, is_beyond, options, &reason);
-    if (!is_chosen && reason.code == ERROR_LIMIT) {
+    if (!is_chosen && reason.code == ERROR_LIMIT && is_beyond) {
+        *choice = choice_before;
+        *candidate = candidate_before;
+        is_chosen = true;
+    } else if (!is_chosen && reason.code == ERROR_LIMIT) {
         *choice = (struct contour_choice){ .grid = *base, .subdivision = { 1, 1, 1 }, .volume_error = NAN, .is_short = true };
         *candidate = (struct candidate){ 0 };
         is_chosen = true;
@@ -378,7 +385,7 @@ static bool choose_or_leave(struct contour_choice *choice, struct candidate *can
     return is_chosen;
 }
 
-/* Sets that leave the image, on a grid that continues it; those too far away stay on the image's. */
+/* Sets that leave the image, on a grid that continues it; those too far away or too intricate for it stay on the image's. */
 static bool choose_beyond(const struct contour_set *sets, size_t n_sets, const struct grid *image, const struct contour_options *options,
                           struct contour_choice *choices, struct candidate *candidates, uint32_t *n_groups, struct error *err)
 {

@@ -321,6 +321,37 @@ static void a_region_too_intricate_does_not_keep_the_others_out(void **state)
     contour_set_finish(&sets[1]);
 }
 
+/* Ten slices lie in the slabs: on the image 640 rows meet the edges of a plane, on its continuation 19000. */
+static void a_region_too_intricate_beyond_the_image_is_cut_to_it(void **state)
+{
+    (void)state;
+    struct grid image = grid_make(64, 64, 20, 1, 1, 1, vec3(0, 0, 0));
+    struct contour_set sets[2] = { 0 };
+    enum { N = 10000 };
+    double *xy = malloc(2 * N * sizeof *xy);
+    assert_non_null(xy);
+    for (size_t i = 0; i < N; i++) {
+        xy[2 * i] = 60.0 * (double)i / N;
+        xy[2 * i + 1] = i % 2 ? 1900 : 1;
+    }
+    for (int z = 5; z <= 10; z += 5) {
+        contours_add(&sets[0], xy, N, z);
+        contours_add_box(&sets[1], 10.5, 10.5, 99.5, 99.5, z);
+    }
+    free(xy);
+    struct contour_choice choices[2];
+    choose(sets, 2, &image, choices);
+    assert_false(choices[0].is_beyond);
+    assert_int_equal(choices[0].group, 0);
+    assert_same_grid(&choices[0].grid, &image);
+    assert_true(fabs(choices[0].volume_error) < INFINITY); /* the choice on the image is kept */
+    mask_destroy(contours_fill(&sets[0], &choices[0].grid, NULL));
+    assert_true(choices[1].is_beyond);
+    assert_holds(&sets[1], &choices[1], 89 * 89 * 10 / 1000.0, 0.01);
+    contour_set_finish(&sets[0]);
+    contour_set_finish(&sets[1]);
+}
+
 static void the_usual_spacing_is_the_one_most_planes_have(void **state)
 {
     (void)state;
@@ -393,6 +424,7 @@ int main(void)
         cmocka_unit_test(without_an_image_the_grid_lies_in_the_planes),
         cmocka_unit_test(a_made_grid_stays_within_its_limits),
         cmocka_unit_test(a_region_too_intricate_does_not_keep_the_others_out),
+        cmocka_unit_test(a_region_too_intricate_beyond_the_image_is_cut_to_it),
         cmocka_unit_test(the_usual_spacing_is_the_one_most_planes_have),
         cmocka_unit_test(masks_share_a_layer_as_long_as_they_share_no_voxel),
     };

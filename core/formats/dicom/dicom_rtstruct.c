@@ -441,8 +441,8 @@ void rtstruct_report_fill(const struct rtstruct_roi *roi, const struct contour_c
                    facts->n_gaps, facts->spacing_mm, facts->widest_gap_mm);
     if (facts->n_outside > 0)
         report_add(report, REPORT_WARNING, "region.contours-outside", where,
-                   "\"%s\": %zu contours lie outside the image, and some more than %g mm away; what lies outside is not shown.", name,
-                   facts->n_outside, CONTOUR_MAX_REACH_MM);
+                   "\"%s\": %zu contours leave the image, further than %g mm or with too many points to be filled there; what lies outside is "
+                   "not shown.", name, facts->n_outside, CONTOUR_MAX_REACH_MM);
     if (facts->n_not_planar > 0)
         report_add(report, REPORT_NOTE, "region.contours-not-planar", where, "\"%s\": %zu contours are not flat; they were flattened.", name,
                    facts->n_not_planar);
