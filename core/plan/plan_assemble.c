@@ -64,14 +64,20 @@ static bool holds_only_0_and_1(const struct volume *volume)
     return true;
 }
 
-/* A mask whose name did not say so: shown as the image it was taken for, and said, with the entry of a plan.json that makes it a region. */
+/* A mask whose name did not say so: shown as the image it was taken for, and said, with what makes it a region: a name that says so, where
+ * that is enough (a file of whole numbers), or a plan.json, which has to name the other files, too. */
 static void note_mask(struct loading *loading, const struct job *job, const struct plan_image *image)
 {
     const char *base = part_base_name(job->path);
-    if (loading->parts.is_recognised && job->format != PART_DICOM && holds_only_0_and_1(image->volume))
-        report_add(&loading->plan->report, REPORT_WARNING, "image.may-be-region", job->path,
-                   "Every voxel is 0 or 1, so this may be a mask. To show it as a region write a plan.json with \"regions\": [{\"path\": \"%.120s\", "
-                   "\"name\": \"%.*s\"}].", job->path, (int)strcspn(base, "."), base);
+    int stem = (int)strcspn(base, ".");
+    if (!loading->parts.is_recognised || job->format == PART_DICOM || !holds_only_0_and_1(image->volume))
+        return;
+    char rename[160] = "";
+    if (image->volume->type != VOXEL_F32 && !text_has_ending(base, ".hdr") && !text_has_ending(base, ".hdr.gz"))
+        snprintf(rename, sizeof rename, "call the file %.*s_mask%.20s, or ", stem < 80 ? stem : 80, base, base + stem);
+    report_add(&loading->plan->report, REPORT_WARNING, "image.may-be-region", job->path,
+               "Every voxel is 0 or 1, so this may be a mask. To show it as a region %swrite a plan.json that names it in \"regions\" and the "
+               "folder's other files as well.", rename);
 }
 
 static void add_image(struct loading *loading, struct job *job)

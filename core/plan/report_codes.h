@@ -33,7 +33,7 @@
       "Check distances along the slices.")                                                                                         \
     X("image.precision", "Whole numbers too large to be held exactly were rounded.", "Store the image with a smaller range.")     \
     X("image.may-be-region", "An image holds nothing but 0 and 1, so it may be the mask of a region.",                             \
-      "Write a plan.json that names it under \"regions\"; the line has the entry.")                                               \
+      "Give it a name with _mask where the line says so, or name it and the other files in a plan.json.")                                               \
     X("image.bytes-behind", "A file holds more bytes than its header speaks of.",                                                 \
       "Check that the header belongs to these voxels.")                                                                           \
     X("image.not-finite", "Some values are not numbers.", "They are drawn as nothing and probed as nothing.")                     \

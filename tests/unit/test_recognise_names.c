@@ -176,7 +176,11 @@ static void an_image_of_zeros_and_ones_is_said_to_be_what_may_be_a_region(void *
         if (i == 0) {
             const struct report_line *line = line_about(plan, "image.may-be-region", "PTV70.nii.gz");
             assert_int_equal(line->severity, REPORT_WARNING);
-            assert_non_null(strstr(line->sentence, "\"regions\": [{\"path\": \"PTV70.nii.gz\", \"name\": \"PTV70\"}]"));
+            assert_non_null(strstr(line->sentence, "call the file PTV70_mask.nii.gz, or write a plan.json"));
+        } else if (i == 1) { /* floats are no labels, whatever the name */
+            const struct report_line *line = line_about(plan, "image.may-be-region", "ptv.nii.gz");
+            assert_null(strstr(line->sentence, "call the file"));
+            assert_non_null(strstr(line->sentence, "the folder's other files as well"));
         }
         plan_destroy(plan);
     }
@@ -187,6 +191,31 @@ static void an_image_of_zeros_and_ones_is_said_to_be_what_may_be_a_region(void *
     struct plan *plan = open_and_remove(folder);
     assert_false(report_has(&plan->report, "image.may-be-region"));
     plan_destroy(plan);
+}
+
+static void a_mask_with_the_name_that_was_advised_is_a_region_beside_the_images(void **state)
+{
+    (void)state;
+    static const char nrrd[] = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 6 6 6\nencoding: raw\nspace: left-posterior-superior\n"
+                               "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n\n";
+    char folder[256], bytes[sizeof nrrd - 1 + 216];
+    memcpy(bytes, nrrd, sizeof nrrd - 1);
+    for (size_t i = 0; i < 216; i++)
+        bytes[sizeof nrrd - 1 + i] = (char)(i % 2);
+    for (int is_renamed = 0; is_renamed < 2; is_renamed++) {
+        folder_make(folder);
+        put_map(folder, "ct.nii.gz", 100, false);
+        put_map(folder, is_renamed ? "PTV70_mask.nii.gz" : "PTV70.nii.gz", 1, false);
+        folder_put(folder, is_renamed ? "GTV_mask.nrrd" : "GTV.nrrd", bytes, sizeof bytes);
+        struct plan *plan = open_and_remove(folder);
+        assert_int_equal(plan->n_images, is_renamed ? 1 : 3);
+        assert_int_equal(plan->regions.n_regions, is_renamed ? 2 : 0);
+        if (!is_renamed) {
+            assert_non_null(strstr(line_about(plan, "image.may-be-region", "GTV.nrrd")->sentence, "call the file GTV_mask.nrrd, or"));
+            assert_non_null(strstr(line_about(plan, "image.may-be-region", "PTV70.nii.gz")->sentence, "call the file PTV70_mask.nii.gz, or"));
+        }
+        plan_destroy(plan);
+    }
 }
 
 /* ---- real folders, without the plan.json they were given here -------------------------------------------------------------------- */
@@ -245,6 +274,7 @@ int main(void)
         cmocka_unit_test(a_list_of_a_map_that_is_not_there_names_nothing_and_is_said),
         cmocka_unit_test(a_plan_that_gives_a_map_the_list_of_another_is_followed_with_a_warning),
         cmocka_unit_test(an_image_of_zeros_and_ones_is_said_to_be_what_may_be_a_region),
+        cmocka_unit_test(a_mask_with_the_name_that_was_advised_is_a_region_beside_the_images),
         cmocka_unit_test(the_brain_of_a_real_glioblastoma_is_no_necrosis),
         cmocka_unit_test(a_real_head_and_neck_plan_has_each_target_once_and_its_masks_are_offered),
     };
