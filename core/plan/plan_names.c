@@ -8,7 +8,7 @@
 #include "core/formats/text.h"
 #include "core/plan/plan_nrrd.h"
 
-enum { LIST_MAX_BYTES = 16 << 20, MOST_LISTS = PLAN_FILE_MAX_PARTS };
+enum { LIST_MAX_BYTES = 16 << 20, LISTS_MAX_MIB = 64 /* all of a folder */, MOST_LISTS = PLAN_FILE_MAX_PARTS };
 
 struct name_list {
     char path[FOLDER_NAME_SIZE];
@@ -67,15 +67,30 @@ static void add_list(struct name_lists *lists, const struct folder *folder, cons
     bytes_free(&bytes);
 }
 
-struct name_lists *name_lists_find(const struct folder *folder, const struct folder_tree *tree)
+struct name_lists *name_lists_find(const struct folder *folder, const struct folder_tree *tree, const atomic_bool *cancel,
+                                   struct report *report)
 {
     struct name_lists *lists = mem_new(sizeof *lists);
     lists->lists = mem_new(MOST_LISTS * sizeof *lists->lists);
-    for (size_t i = 0; i < tree->n_files && lists->n < MOST_LISTS; i++) {
+    uint64_t left = (uint64_t)LISTS_MAX_MIB << 20;
+    size_t n_unread = 0;
+    const char *first_unread = "";
+    for (size_t i = 0; i < tree->n_files && lists->n < MOST_LISTS && !(cancel && atomic_load(cancel)); i++) {
         const char *path = tree->files[i].name;
-        if (text_has_ending(path, ".json") && (strcmp(part_base_name(path), "labels.json") == 0 || has_grid_beside(folder, path)))
-            add_list(lists, folder, path);
+        uint64_t n_bytes = tree->files[i].bytes < LIST_MAX_BYTES ? tree->files[i].bytes : LIST_MAX_BYTES;
+        if (!text_has_ending(path, ".json") || (strcmp(part_base_name(path), "labels.json") != 0 && !has_grid_beside(folder, path)))
+            continue;
+        if (n_bytes > left) {
+            first_unread = n_unread++ == 0 ? path : first_unread;
+            continue;
+        }
+        left -= n_bytes;
+        add_list(lists, folder, path);
     }
+    if (n_unread > 0)
+        report_add(report, REPORT_WARNING, "region.names-limit", first_unread,
+                   "The folder's lists of label names have more than %d MiB together; this and %zu more were not read, and their names not used.",
+                   LISTS_MAX_MIB, n_unread - 1);
     return lists;
 }
 
@@ -169,7 +184,7 @@ static void note_elsewhere(struct report *report, const char *map, const char *l
                    "%.120s belongs to %.120s, so it names nothing here. For names give this map a list as \"names\" in a plan.json.", list, owner);
     else
         report_add(report, REPORT_WARNING, "region.names-elsewhere", map,
-                   "%.120s does not say which of the maps beside it it belongs to, so it names none. Say it in a plan.json, as \"names\" of the map.",
+                   "%.120s does not name its map, and several lie beside it; its names were not used. Say it in a plan.json, as \"names\" of the map.",
                    list);
 }
 

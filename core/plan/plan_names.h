@@ -1,10 +1,14 @@
 #pragma once
 /* Inside core/plan: which map of a folder without a plan.json a list of label names belongs to. */
+#include <stdatomic.h>
+
 #include "core/plan/plan_parts.h"
 
-/* The lists of a folder: each labels.json, and each .json called after a grid beside it. */
+/* The lists of a folder: each labels.json, and each .json called after a grid beside it. They are read up to a sum of bytes, which is
+ * reported when it is met. When cancel (may be NULL) turns true the rest is left out. */
 struct name_lists;
-struct name_lists *name_lists_find(const struct folder *folder, const struct folder_tree *tree);
+struct name_lists *name_lists_find(const struct folder *folder, const struct folder_tree *tree, const atomic_bool *cancel,
+                                   struct report *report);
 void name_lists_destroy(struct name_lists *lists);
 
 /* Whether a list says by its "file" that it belongs to this map. */

@@ -284,7 +284,7 @@ static bool recognise_tree(const struct folder *folder, const struct folder_tree
                            struct plan_parts *parts, struct error *reason, struct report *report, struct error *err)
 {
     struct recognition all = { folder, parts->file, report, mem_new((tree->n_files + 1) * sizeof(char *)), 0,
-                               name_lists_find(folder, tree), { 0 } };
+                               name_lists_find(folder, tree, progress ? progress->cancel : NULL, report), { 0 } };
     for (size_t i = 0; i < tree->n_files && !(progress && progress->cancel && atomic_load(progress->cancel)); i++)
         recognise_file(&all, tree->files[i].name);
     name_lists_assign(all.lists, folder, parts->file, report);

@@ -73,6 +73,8 @@
     X("region.unnamed", "A label has no name.", "It is listed under its number; add it to the list of names.")                    \
     X("region.names-elsewhere", "A list of label names is of another map, or of a map that is not there.",                         \
       "Check the names; say in plan.json which list belongs to which map.")                                                       \
+    X("region.names-limit", "The lists of label names of a folder are larger than the limit.",                                    \
+      "Remove lists that are not needed, or name each list in a plan.json.")                                                      \
     X("region.unused-names", "The list of names has labels that no voxel carries.", "Nothing; they are not listed.")              \
     X("region.surroundings", "The filling around the patient is not listed as a region.", "Nothing.")                             \
     X("region.absent", "A region is marked ABSENT by its file and not listed.", "Nothing.")                                       \

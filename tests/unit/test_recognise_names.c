@@ -158,6 +158,33 @@ static void a_plan_that_gives_a_map_the_list_of_another_is_followed_with_a_warni
     plan_destroy(plan);
 }
 
+/* Lists of 15 MiB each, of which the first four fit into 64 MiB. */
+static void lists_of_names_are_read_up_to_a_sum_of_bytes(void **state)
+{
+    (void)state;
+    enum { N = 6, SIZE = 15 << 20 };
+    static const char names[] = "{" NAMES "}";
+    char folder[256], *list = malloc(SIZE);
+    assert_non_null(list);
+    memset(list, ' ', SIZE);
+    memcpy(list, names, sizeof names - 1);
+    folder_make(folder);
+    for (int i = 0; i < N; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "%c_seg.nii.gz", 'a' + i);
+        put_map(folder, name, 2, false);
+        snprintf(name, sizeof name, "%c_seg.json", 'a' + i);
+        folder_put(folder, name, list, SIZE);
+    }
+    free(list);
+    struct plan *plan = open_and_remove(folder);
+    assert_int_equal(n_named(plan, "necrosis"), 4);
+    const struct report_line *line = line_about(plan, "region.names-limit", "e_seg.json");
+    assert_int_equal(line->severity, REPORT_WARNING);
+    assert_non_null(strstr(line->sentence, "more than 64 MiB together; this and 1 more were not read"));
+    plan_destroy(plan);
+}
+
 static void an_image_of_zeros_and_ones_is_said_to_be_what_may_be_a_region(void **state)
 {
     (void)state;
@@ -273,6 +300,7 @@ int main(void)
         cmocka_unit_test(a_list_without_a_map_goes_to_the_one_it_is_called_after_or_to_the_only_one),
         cmocka_unit_test(a_list_of_a_map_that_is_not_there_names_nothing_and_is_said),
         cmocka_unit_test(a_plan_that_gives_a_map_the_list_of_another_is_followed_with_a_warning),
+        cmocka_unit_test(lists_of_names_are_read_up_to_a_sum_of_bytes),
         cmocka_unit_test(an_image_of_zeros_and_ones_is_said_to_be_what_may_be_a_region),
         cmocka_unit_test(a_mask_with_the_name_that_was_advised_is_a_region_beside_the_images),
         cmocka_unit_test(the_brain_of_a_real_glioblastoma_is_no_necrosis),
