@@ -20,9 +20,9 @@ NODISCARD bool plan_read_rst(const struct folder *folder, const char *path, stru
 NODISCARD bool plan_read_chd(const struct folder *folder, const char *path, struct sera_doses *doses, struct report *report,
                              struct error *err);
 
-/* What a dose's numbers are in, and per what: as the plan says. is_sera: the format says cGy and a unit of the source. */
 /* What plan.json says of the dose's frame of reference; a file that says worse is believed. */
 void plan_dose_frame(struct dose *dose, const struct plan_file_dose *entry, const char *where, struct report *report);
+/* What a dose's numbers are in, and per what: as the plan says. is_sera: the format says cGy and a unit of the source. */
 void plan_dose_units(struct dose *dose, const struct plan_file_dose *entry, bool is_sera, struct report *report);
 /* Takes values. */
 void plan_add_component(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct volume *values,

@@ -82,10 +82,12 @@ void dicom_slices_compare(const struct dicom_index *index, const struct dicom_st
         if (n_others == 0)
             continue;
         char expected[32], found[32];
+        bool is_of_pet = trait == UNIT && strcmp(stack->modality, "PT") == 0; /* its unit comes from Units */
+        uint32_t tag = is_of_pet ? TAG_UNITS : traits[t].tag;
         put_value(usual, trait, expected);
         put_value(image_of(index, stack, first), trait, found);
         report_add(report, REPORT_WARNING, "image.slices-contradict", index->objects[stack->objects[first]].path,
                    "Element (%04X,%04X), %s: found %s, expected %s as in other slices of the series; %zu of %zu slices differ. Each was read as "
-                   "it says.", traits[t].tag >> 16, traits[t].tag & 0xFFFF, traits[t].name, found, expected, n_others, stack->n_objects);
+                   "it says.", tag >> 16, tag & 0xFFFF, traits[t].name, found, expected, n_others, stack->n_objects);
     }
 }

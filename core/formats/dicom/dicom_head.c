@@ -1,5 +1,6 @@
 #include "core/formats/dicom/dicom_head.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -130,12 +131,12 @@ static bool read_scale(const struct dicom_item *root, struct dicom_image *image,
     image->slope = 1;
     image->offset = 0;
     return (dicom_numbers(root, TAG_SLOPE, NULL, 0) == 0 ||
-            read_all(root, TAG_SLOPE, "rescale slope", "", HUGE_VAL, &image->slope, 1, reason, size)) &&
+            read_all(root, TAG_SLOPE, "rescale slope", "", DBL_MAX, &image->slope, 1, reason, size)) &&
            (dicom_numbers(root, TAG_OFFSET, NULL, 0) == 0 ||
-            read_all(root, TAG_OFFSET, "rescale intercept", "", HUGE_VAL, &image->offset, 1, reason, size));
+            read_all(root, TAG_OFFSET, "rescale intercept", "", DBL_MAX, &image->offset, 1, reason, size));
 }
 
-/* Elements that are used where they are numbers, and do without where they are not. */
+/* Optional elements: ignored when malformed. */
 static void note_bad_number(const struct dicom_item *root, struct dicom_image *image)
 {
     static const uint32_t used[] = { TAG_THICKNESS, TAG_INSTANCE, TAG_ACQUISITION, TAG_ECHO_NUMBER, TAG_TEMPORAL, TAG_ECHO_TIME,
