@@ -49,12 +49,18 @@ static bool is_token(struct text text)
     return text.n > 0;
 }
 
-static struct text trim(struct text text)
+static struct text trim_front(struct text text)
 {
     while (text.n && (*text.at == ' ' || *text.at == '\t')) {
         text.at++;
         text.n--;
     }
+    return text;
+}
+
+static struct text trim(struct text text)
+{
+    text = trim_front(text);
     while (text.n && (text.at[text.n - 1] == ' ' || text.at[text.n - 1] == '\t'))
         text.n--;
     return text;
@@ -130,8 +136,11 @@ static bool refuse_field(const struct head *head, size_t number, struct text lin
                        show(line, shown), found);
 }
 
-static void note_field(struct fields *fields, struct text name, struct text value)
+/* The two fields that say where the body ends keep the blanks after their value, and are refused with them: libmicrohttpd takes those
+ * blanks for a part of the value, and would look for another end of the body than we do. */
+static void note_field(struct fields *fields, struct text name, struct text after_colon)
 {
+    struct text whole = trim_front(after_colon), value = trim(after_colon);
     const struct {
         const char *name;
         struct text *value;
@@ -147,7 +156,7 @@ static void note_field(struct fields *fields, struct text name, struct text valu
                   { "Connection", &fields->connection, NULL } };
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
         if (is_word(name, known[i].name)) {
-            *known[i].value = value;
+            *known[i].value = known[i].value == &fields->length || known[i].value == &fields->coding ? whole : value;
             if (known[i].n)
                 ++*known[i].n;
         }
@@ -160,7 +169,7 @@ static bool read_field(struct head *head, size_t number, struct text line)
         return refuse_field(head, number, line, "it goes on from the line before");
     if (!colon)
         return refuse_field(head, number, line, "without a colon");
-    struct text name = { line.at, (size_t)(colon - line.at) }, value = trim((struct text){ colon + 1, line.n - name.n - 1 });
+    struct text name = { line.at, (size_t)(colon - line.at) }, value = { colon + 1, line.n - name.n - 1 };
     if (!is_token(name))
         return refuse_field(head, number, line, "a name that is none");
     for (size_t i = 0; i < value.n; i++)
