@@ -36,6 +36,7 @@ struct websocket { /* a connection that the net thread has, from being handed ov
 
 enum {
     N_SLOTS = ACCEPTOR_MAX_PENDING + ACCEPTOR_MAX_REFUSED,
+    MAX_AT_ONCE = 256, /* connections taken before other events, and the question whether the thread lives, have their turn */
     BACKLOG = 4096 /* connections the system takes for us; what does not fit comes again a second later */
 };
 
@@ -232,9 +233,10 @@ static void accept_one(struct acceptor *acceptor, int socket, const struct addre
     }
 }
 
-static void accept_all(struct acceptor *acceptor)
+/* What is left in the system's queue makes epoll tell again: the listener is level-triggered. */
+static void accept_some(struct acceptor *acceptor)
 {
-    for (;;) {
+    for (int i = 0; i < MAX_AT_ONCE; i++) {
         struct sockaddr_storage address = { 0 };
         socklen_t n_address = sizeof address;
         int socket = accept4(acceptor->listener, (struct sockaddr *)&address, &n_address, SOCK_NONBLOCK | SOCK_CLOEXEC);
@@ -286,7 +288,7 @@ static void *run(void *argument)
                 continue;
             }
             if (tag == listener_tag) {
-                accept_all(acceptor);
+                accept_some(acceptor);
                 continue;
             }
             struct pending *slot = &acceptor->pending[tag];
