@@ -44,6 +44,13 @@ void relay_uncount(struct relay_link *link)
     link->is_counted = false;
 }
 
+/* One whose request waits inside the library keeps its place there, and a descriptor: it counts, or one client could ask and go for ever. */
+void relay_uncount_ended(struct relay_link *link)
+{
+    if (link->server < 0)
+        relay_uncount(link);
+}
+
 bool relay_count(struct relay_link *link, const struct address *client, struct problem *problem)
 {
     struct relay *relay = link->relay;
@@ -182,6 +189,33 @@ static void handle_touched(struct relay *relay)
     }
 }
 
+/* True once in each window that is over with too few bytes; the next one has begun then. */
+static bool is_window_missed(struct relay_link *link, int64_t now_us)
+{
+    if (now_us - link->window_us < RELAY_WINDOW_MS * INT64_C(1000))
+        return false;
+    bool is_missed = link->window_bytes < RELAY_WINDOW_BYTES;
+    relay_link_begin_window(link);
+    return is_missed;
+}
+
+static void look_at_answer(struct relay_link *link, int64_t now_us)
+{
+    int64_t still_us = now_us - link->moved_us;
+    struct problem problem;
+    if (link->n_out == 0) { /* the client has taken all there is: it waits for the library */
+        relay_link_begin_window(link);
+        if (still_us > RELAY_ANSWER_MS * INT64_C(1000)) {
+            problem_set(&problem, PROBLEM_TIMEOUT, "", "", "no answer within %d s", RELAY_ANSWER_MS / 1000);
+            relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
+        }
+    } else if (still_us > RELAY_IDLE_MS * INT64_C(1000) || is_window_missed(link, now_us)) {
+        relay_link_die(link);
+    } else {
+        relay_touch(link); /* epoll tells of room only once much has been taken; a slow client's progress is looked for here */
+    }
+}
+
 static void look_at_times(struct relay *relay, int64_t now_us)
 {
     struct problem problem;
@@ -198,12 +232,19 @@ static void look_at_times(struct relay *relay, int64_t now_us)
                 is_late = still_ms > RELAY_IDLE_MS;
             }
             break;
-        case LINK_BODY: is_late = still_ms > RELAY_IDLE_MS; break;
-        case LINK_ANSWER: is_late = link->n_out > 0 && still_ms > RELAY_IDLE_MS; break;
+        case LINK_BODY:
+            if (still_ms > RELAY_IDLE_MS || is_window_missed(link, now_us)) {
+                problem_set(&problem, PROBLEM_TOO_SLOW, "", "", "too little of the request's body came; expected are %d bytes in every %d s",
+                            RELAY_WINDOW_BYTES, RELAY_WINDOW_MS / 1000);
+                relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
+            }
+            break;
+        case LINK_ANSWER: look_at_answer(link, now_us); break;
         case LINK_LINGER: is_late = still_ms > RELAY_LINGER_SILENT_MS; break;
         case LINK_DEAD:
             if (!link->is_started) { /* the library had no memory for it and closed its end without a word */
                 link->server = -1;
+                relay_uncount(link);
                 relay->has_dead = true;
             }
             break;

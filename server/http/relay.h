@@ -14,6 +14,9 @@ enum {
     RELAY_MAX_PER_ADDRESS = 200,  /* of them; see address_counted */
     RELAY_RETRY_MS = 5000,
     RELAY_IDLE_MS = 60000,        /* without a byte either way, but for a request that waits for its answer */
+    RELAY_ANSWER_MS = 120000,     /* for an answer to begin, from the request's last byte on: no question to a renderer waits longer than 30 s */
+    RELAY_WINDOW_MS = 60000,      /* in which ... */
+    RELAY_WINDOW_BYTES = 64 << 10, /* ... of a body have to come, and of an answer have to be taken: a kilobyte a second */
     RELAY_HEAD_MS = 5000,         /* for a whole head, from its first byte on */
     RELAY_MAX_QUEUED = 512,       /* connections handed over that the thread has not taken yet */
     RELAY_MAX_LINGERING = 64,     /* refused ones whose last bytes are read; they count no longer, and one more ends the oldest */

@@ -6,6 +6,7 @@
  * relay.c declared below. The functions declared here run on the relay's thread, or after that thread has ended. */
 #include <pthread.h>
 #include <stdatomic.h>
+#include <sys/epoll.h>
 #include <unistd.h>
 
 #include "server/http/body.h"
@@ -42,6 +43,8 @@ struct relay_link {
     size_t n_out, out_at;
     uint64_t n_answered;             /* bytes of the answer to this request */
     int64_t head_us, moved_us;       /* the head's first byte; the last byte either way */
+    int64_t window_us;               /* since then window_bytes have been passed on, of the body or of its answer */
+    uint64_t window_bytes;
 };
 
 struct relay {
@@ -65,6 +68,7 @@ struct relay {
 /* Counts the connection for a client from now on, and no longer for another. */
 bool relay_count(struct relay_link *link, const struct address *client, struct problem *problem);
 void relay_uncount(struct relay_link *link);
+void relay_uncount_ended(struct relay_link *link); /* unless the library still has its end: then once that is closed */
 void relay_log_refusal(struct relay *relay); /* a connection was refused because there are too many */
 void relay_touch(struct relay_link *link);   /* the thread advances it in its next round */
 void relay_end_oldest_lingering(struct relay *relay);
@@ -74,6 +78,18 @@ void relay_link_advance(struct relay_link *link); /* does all that can be done n
 void relay_link_pump(struct relay_link *link);    /* passes on what the library has written, as far as the client takes it */
 void relay_link_refuse(struct relay_link *link, const struct problem *problem, uint64_t max_dropped); /* with an answer, if none began */
 void relay_link_die(struct relay_link *link);     /* at once; the thread frees it once the library has ended, too */
+void relay_link_begin_window(struct relay_link *link);
+
+/* A process that is being started has copies of all descriptors for a moment: what is only closed would stay watched that long, and its
+ * events would name a link that is freed. */
+static inline void relay_unwatch_and_close(const struct relay *relay, int *fd)
+{
+    if (*fd >= 0) {
+        (void)epoll_ctl(relay->epoll, EPOLL_CTL_DEL, *fd, NULL); /* fails for one that was never watched */
+        (void)close(*fd);
+    }
+    *fd = -1;
+}
 
 static inline void relay_close_fd(int *fd)
 {

@@ -37,18 +37,18 @@ void relay_link_die(struct relay_link *link)
     link->state = LINK_DEAD;
     link->moved_us = clock_now_us();
     link->relay->has_dead = true;
-    relay_uncount(link);
+    relay_uncount_ended(link);
     drop_bytes(link);
-    relay_close_fd(&link->client);
-    relay_close_fd(&link->inner);
+    relay_unwatch_and_close(link->relay, &link->client);
+    relay_unwatch_and_close(link->relay, &link->inner);
 }
 
 /* The answer is out: a socket that is closed with bytes unread takes the answer back, so what still comes is read for a while. */
 static void linger(struct relay_link *link, uint64_t max_dropped)
 {
-    relay_uncount(link);
+    relay_uncount_ended(link);
     drop_bytes(link);
-    relay_close_fd(&link->inner);
+    relay_unwatch_and_close(link->relay, &link->inner);
     if (shutdown(link->client, SHUT_WR) != 0 || link->client_ended) {
         relay_link_die(link);
         return;
@@ -71,6 +71,12 @@ void relay_link_refuse(struct relay_link *link, const struct problem *problem, u
     linger(link, max_dropped);
 }
 
+void relay_link_begin_window(struct relay_link *link)
+{
+    link->window_us = clock_now_us();
+    link->window_bytes = 0;
+}
+
 /* ---- the answer ---------------------------------------------------------------------------------------------------------- */
 
 static bool is_for_later(void) { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
@@ -88,6 +94,7 @@ void relay_link_pump(struct relay_link *link)
                 return;
             }
             link->moved_us = clock_now_us();
+            link->window_bytes += (uint64_t)n;
             link->out_at += (size_t)n;
             link->n_out -= (size_t)n;
             if (link->n_out > 0)
@@ -117,6 +124,7 @@ void relay_link_pump(struct relay_link *link)
             return;
         }
         n_sent = n_sent < 0 ? 0 : n_sent;
+        link->window_bytes += (uint64_t)n_sent;
         if (n_sent < n) {
             link->n_out = (size_t)(n - n_sent);
             link->out = malloc(link->n_out);
@@ -186,7 +194,7 @@ static bool open_server(struct relay_link *link)
     if (link->relay->server.add(link->relay->server.context, ends[1]))
         return true;
     link->server = -1;
-    relay_close_fd(&link->inner);
+    relay_unwatch_and_close(link->relay, &link->inner);
     return false;
 }
 
@@ -232,6 +240,7 @@ static bool step_head(struct relay_link *link)
     link->n_forward = request.n_bytes;
     body_begin(&link->body, request.is_chunked, request.length);
     link->state = LINK_BODY;
+    relay_link_begin_window(link);
     return true;
 }
 
@@ -257,9 +266,11 @@ static bool step_body(struct relay_link *link)
             }
             if (n < 0) { /* the library has answered before the end, and wants no more */
                 link->state = LINK_ANSWER;
+                relay_link_begin_window(link);
                 return true;
             }
             link->moved_us = clock_now_us();
+            link->window_bytes += (uint64_t)n;
             link->n_forward -= (size_t)n;
             link->n_in -= (size_t)n;
             if (link->n_in > 0)
@@ -271,6 +282,7 @@ static bool step_body(struct relay_link *link)
                 link->in = NULL;
             }
             link->state = LINK_ANSWER;
+            relay_link_begin_window(link);
             return true;
         }
         if (link->n_forward > 0)
@@ -374,6 +386,8 @@ void relay_link_closed(struct relay_link *link)
 {
     link->server = -1;
     link->relay->has_dead = true;
+    if (link->state == LINK_DEAD || link->state == LINK_LINGER)
+        relay_uncount(link);
 }
 
 void relay_request_ended(struct relay_link *link)

@@ -233,6 +233,30 @@ describe('a refused upload', () => {
   });
 });
 
+describe('connections that are gone while their requests wait', () => {
+  test('count until the requests are over', async () => {
+    const daemon = await startDaemon({ args: ['--stub', '--hang', 'net'] }); /* no request to the API is ever answered */
+    const page = async (from) => {
+      const connection = open(daemon.url, `GET /index.html HTTP/1.1\r\n${HOST}Connection: close\r\n\r\n`, { from });
+      await connection.answered;
+      connection.socket.destroy();
+      return statuses(connection.text)[0];
+    };
+    try {
+      const askAndGo = async () => {
+        const some = Array.from({ length: 20 }, () => open(daemon.url, FIRST, { from: '127.0.6.1', ms: 60000 }));
+        await sleep(100); /* a request that did not arrive by then is not counted: others follow */
+        for (const c of some) c.socket.resetAndDestroy();
+        return page('127.0.6.1');
+      };
+      assert.equal(await until(askAndGo, (status) => status === 429, 20000), 429);
+      assert.equal(await page('127.0.6.2'), 200, 'another address is served');
+    } finally {
+      await daemon.stop();
+    }
+  });
+});
+
 describe('a page of another origin', () => {
   let daemon, room;
   before(async () => {
