@@ -65,6 +65,14 @@ static void free_slot(struct acceptor *acceptor, struct pending *slot)
     slot->socket = -1;
 }
 
+/* Takes it out of epoll first: a process that is being started has copies of all descriptors for a moment, and what is only closed would be
+ * watched that long; its events would name a slot that another connection has by then. */
+static void close_pending(const struct acceptor *acceptor, int socket)
+{
+    (void)epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, socket, NULL); /* fails for one that is not watched yet */
+    (void)close(socket);
+}
+
 static struct pending *find_slot(struct acceptor *acceptor)
 {
     for (size_t i = 0; i < N_SLOTS; i++)
@@ -109,7 +117,7 @@ static bool linger(const struct acceptor *acceptor, struct pending *slot)
     slot->n_dropped += AT_ONCE; /* at most */
     if (refusal_drain(slot->socket, AT_ONCE) && slot->n_dropped < ACCEPTOR_MAX_DROPPED && acceptor->n_refused <= ACCEPTOR_MAX_REFUSED)
         return false;
-    close(slot->socket);
+    close_pending(acceptor, slot->socket);
     return true;
 }
 
@@ -157,7 +165,7 @@ static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended
     if (n < 0 && (errno == EAGAIN || errno == EINTR))
         return false;
     if (n <= 0) {
-        close(slot->socket);
+        close_pending(acceptor, slot->socket);
         return true;
     }
     enum head_kind kind = head_read(acceptor->bytes, (size_t)n, acceptor->options.hosts, &request, &problem);
@@ -180,7 +188,7 @@ static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended
     if (!hand_to_net(acceptor, slot->socket, &handshake, &client, &problem)) {
         refuse(acceptor, slot, &problem);
         (void)refusal_drain(slot->socket, HEAD_MAX_BYTES);
-        close(slot->socket);
+        close_pending(acceptor, slot->socket);
     }
     return true;
 }
@@ -191,7 +199,7 @@ static bool end_late(struct acceptor *acceptor, struct pending *slot)
     struct problem problem;
     ssize_t n = slot->is_refused ? 0 : recv(slot->socket, acceptor->bytes, sizeof acceptor->bytes, MSG_PEEK | MSG_DONTWAIT);
     if (n <= 0) { /* one that said nothing expects no answer: browsers open connections before they need them */
-        close(slot->socket);
+        close_pending(acceptor, slot->socket);
         return true;
     }
     head_refuse_incomplete(acceptor->bytes, (size_t)n, false, ACCEPTOR_HEAD_MS, &problem);
