@@ -108,6 +108,10 @@ void plan_entry_start(struct fleet *fleet, struct plan_entry *plan)
         struct problem problem;
         cache_end(fleet->cache, plan->process);
         plan->process = 0;
+        if (plan->n_holds > 0) {
+            restart_not_begun(fleet, plan, "could not be started: too much is waiting to be told to renderers");
+            return;
+        }
         problem_set(&problem, PROBLEM_BUSY, "", "", "too much is waiting to be told to renderers");
         plan_entry_fail(fleet, plan, &problem);
     }
@@ -333,8 +337,14 @@ static void tick_plan(struct fleet *fleet, struct plan_entry *plan, int64_t now_
         struct problem problem;
         problem_set(&problem, PROBLEM_RENDERER, "", "", "reading the plan got no further for %d s (%.120s)", fleet->times.stall / 1000,
                     plan->phase);
-        plan_entry_kill(fleet, plan, "got no further");
-        plan_entry_fail(fleet, plan, &problem);
+        if (plan->n_holds > 0) { /* its end plans the next start */
+            char how[200];
+            (void)snprintf(how, sizeof how, "was ended because %.180s", problem.detail);
+            plan_entry_kill(fleet, plan, how);
+        } else {
+            plan_entry_kill(fleet, plan, "got no further");
+            plan_entry_fail(fleet, plan, &problem);
+        }
     }
     if (fleet->options.idle_close_s > 0 && is_unused(fleet, plan) && now_us - plan->used_us > fleet->options.idle_close_s * 1000000LL)
         plan_entry_close(fleet, plan, "nobody used it");

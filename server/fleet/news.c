@@ -126,12 +126,19 @@ static bool take_ready(struct fleet *fleet, struct plan_entry *plan, cJSON *json
     return true;
 }
 
+/* Not about the plan's files: memory, threads, disk or graphics were missing, and the next start may find them. */
+static bool is_of_the_moment(enum problem_type type)
+{
+    return type == PROBLEM_INTERNAL || type == PROBLEM_MEMORY || type == PROBLEM_BUSY || type == PROBLEM_GL_UNAVAILABLE ||
+           type == PROBLEM_RENDERER || type == PROBLEM_STORAGE || type == PROBLEM_TIMEOUT || type == PROBLEM_CANCELLED;
+}
+
 static bool take_failed(struct fleet *fleet, struct plan_entry *plan, const cJSON *json)
 {
     struct problem said, problem;
     if (!problem_from_json(cJSON_GetObjectItemCaseSensitive(json, "problem"), &said))
         return false;
-    if (plan->was_ready && plan->n_holds > 0 && said.type == PROBLEM_INTERNAL) { /* no memory, no thread, no disk: it was read before */
+    if (plan->was_ready && plan->n_holds > 0 && is_of_the_moment(said.type)) { /* it was read before */
         char how[200];
         (void)snprintf(how, sizeof how, "could not read the plan again (%.150s)", said.detail);
         plan_entry_kill(fleet, plan, how);
@@ -139,7 +146,7 @@ static bool take_failed(struct fleet *fleet, struct plan_entry *plan, const cJSO
     }
     problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "%s", said.detail);
     plan_entry_fail(fleet, plan, &problem);
-    plan->is_for_good = said.type != PROBLEM_INTERNAL;
+    plan->is_for_good = !is_of_the_moment(said.type);
     return true;
 }
 

@@ -78,6 +78,12 @@ void restart_after_end(struct fleet *fleet, struct plan_entry *plan, const char 
         plan_entry_start(fleet, plan); /* the next tick would be late */
 }
 
+void restart_not_begun(struct fleet *fleet, struct plan_entry *plan, const char *how)
+{
+    plan->n_barren = plan->n_barren < 1 ? 1 : plan->n_barren; /* the next is at least the second: the first would start at once, and again */
+    restart_after_end(fleet, plan, how);
+}
+
 void restart_tick(struct fleet *fleet, struct plan_entry *plan, int64_t now_us)
 {
     if (!plan->restart_at_us)

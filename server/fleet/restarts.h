@@ -16,5 +16,7 @@ int restart_pause_ms(int n_barren);
 /* The plan's renderer has ended without being told to: the next start is planned, or, when nobody holds the plan and it ended too often,
  * the plan fails. how: "stopped (signal 11)". */
 void restart_after_end(struct fleet *fleet, struct plan_entry *plan, const char *how);
+/* The plan is held, and no process could be made for it: one more start without a picture, never at once. */
+void restart_not_begun(struct fleet *fleet, struct plan_entry *plan, const char *how);
 /* Starts what is due, and says how long the pause still is. */
 void restart_tick(struct fleet *fleet, struct plan_entry *plan, int64_t now_us);

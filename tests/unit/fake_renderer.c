@@ -169,10 +169,16 @@ static int renderer_main(const char *folder, const char *id, const char *cache)
         write_all(head, sizeof head);
         write_all("{\"type\":\"frame\"}", 16);
     }
-    if (behaves("fails") || behaves("no-memory")) {
+    char read_mark[512], refused_mark[512];
+    (void)snprintf(read_mark, sizeof read_mark, "%s/was-read", folder);
+    (void)snprintf(refused_mark, sizeof refused_mark, "%s/was-refused", folder);
+    bool lacks_memory = behaves("memory-at-second-start") && mkdir(read_mark, 0700) != 0 && mkdir(refused_mark, 0700) == 0;
+    if (behaves("fails") || behaves("no-memory") || lacks_memory) {
         struct problem problem;
         if (behaves("fails"))
             problem_set(&problem, PROBLEM_VALIDATION, "", "format", "ct.nii: byte 40: 9 axes, expected 3");
+        else if (lacks_memory)
+            problem_set(&problem, PROBLEM_MEMORY, "", "", "ct.nii: no memory for 2000 bytes");
         else
             problem_set(&problem, PROBLEM_INTERNAL, "", "", "ct.nii: no memory for 1000 bytes");
         cJSON *json = word("failed");

@@ -141,6 +141,36 @@ static void a_plan_whose_file_is_bad_is_not_tried_again_until_the_file_has_chang
     world_end(&world);
 }
 
+static void a_plan_that_was_read_before_outlives_a_lack_of_memory_at_its_next_start(void **state)
+{
+    (void)state;
+    struct world world;
+    begin(&world, "memory-at-second-start");
+    assert_true(fleet_hold(world.fleet, "a"));
+    draw(&world);
+    end_it(&world);
+    WORLD_UNTIL(&world, world_plan_of(&world, "a").generation == 3 || world_plan_of(&world, "a").state == FLEET_FAILED);
+    assert_int_not_equal(world_plan_of(&world, "a").state, FLEET_FAILED);
+    draw(&world);
+    assert_int_equal(world_plan_of(&world, "a").generation, 3);
+    world_end(&world);
+}
+
+static void one_that_gets_no_further_is_tried_again_while_somebody_is_there(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "stalls");
+    world.options.times.stall = 300;
+    world_start(&world, 1);
+    assert_true(fleet_hold(world.fleet, "a"));
+    WORLD_UNTIL(&world, world_plan_of(&world, "a").generation >= 3 || world_plan_of(&world, "a").state == FLEET_FAILED);
+    assert_true(world_plan_of(&world, "a").generation >= 3);
+    assert_int_not_equal(world_plan_of(&world, "a").state, FLEET_FAILED);
+    world_end(&world);
+}
+
 static void who_enters_a_plan_without_a_place_gets_one_when_another_leaves(void **state)
 {
     (void)state;
@@ -173,6 +203,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(one_that_never_drew_is_tried_again_after_growing_pauses_while_somebody_is_there),
         cmocka_unit_test(a_crash_while_loading_is_tried_again_while_somebody_is_there),
         cmocka_unit_test(a_plan_whose_file_is_bad_is_not_tried_again_until_the_file_has_changed),
+        cmocka_unit_test(a_plan_that_was_read_before_outlives_a_lack_of_memory_at_its_next_start),
+        cmocka_unit_test(one_that_gets_no_further_is_tried_again_while_somebody_is_there),
         cmocka_unit_test(who_enters_a_plan_without_a_place_gets_one_when_another_leaves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
