@@ -170,7 +170,7 @@ void confine(const struct confine_options *options, char got[128])
         (void)snprintf(files, sizeof files, "landlock %ld", version);
     else
         (void)snprintf(files, sizeof files, "landlock not in this kernel");
-    const struct seccomp_options filter = { .has_gpu = options->needs_gpu, .has_truncate_right = version >= 3 };
+    const struct seccomp_options filter = { .has_gpu = options->needs_gpu };
     bool is_filtered = is_fixed && seccomp_restrict(&filter);
     (void)snprintf(calls, sizeof calls, "%s", !is_filtered ? "no seccomp" : SECCOMP_IS_RELAXED ? "seccomp (relaxed)" : "seccomp");
     (void)snprintf(got, 128, "%s, %s, %s, %s", files, calls, is_fixed ? "no-new-privs" : "no-new-privs refused",

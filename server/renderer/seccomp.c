@@ -213,10 +213,7 @@ static void add_rules(struct program *program, const struct seccomp_options *opt
 #ifdef SYS_open
     add_open_rule(program, SYS_open, 1);
 #endif
-    if (options->has_truncate_right) /* its flags are in memory, too; folder.c does without it */
-        allow_if(program, SYS_openat2);
-    else
-        refuse_if(program, SYS_openat2, ENOSYS);
+    refuse_if(program, SYS_openat2, ENOSYS); /* its flags are in memory, where no filter sees them; folder.c does without it */
     add_fcntl_rule(program);
     add_ioctl_rule(program, options->has_gpu);
     add_process_rules(program);

@@ -16,8 +16,7 @@
 #endif
 
 struct seccomp_options {
-    bool has_gpu;            /* requests to device files of graphics drivers are allowed */
-    bool has_truncate_right; /* Landlock guards files against being cut short (its version 3) */
+    bool has_gpu; /* requests to device files of graphics drivers are allowed */
 };
 
 /* For this thread and those it will start; PR_SET_NO_NEW_PRIVS must be set. False where the kernel has no filters. */
