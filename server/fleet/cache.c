@@ -19,7 +19,10 @@
 
 enum {
     MAX_WAITING = 4096,
-    ID_SIZE = 64
+    ID_SIZE = 64,
+    /* one emptying, which a renderer that makes files meanwhile must not make endless; what is left waits for the next look */
+    MAX_ROUNDS = 64,
+    MAX_REMOVED = 2 * CACHE_MAX_FILES
 };
 
 static const uint64_t default_max_bytes = UINT64_C(16) << 30, slack_bytes = UINT64_C(64) << 20;
@@ -37,6 +40,8 @@ struct entry { /* a plan's folder */
     int64_t used_ns;  /* since 1970 */
     bool is_ended;    /* its process was told to end; the folder is emptied when it has */
     bool was_blamed;  /* ended once since the disk became short of space */
+    bool was_tried;   /* emptied in this look already */
+    bool has_rest;    /* nobody uses it, and its emptying stopped at a limit: the next look goes on */
 };
 
 struct cache {
@@ -51,16 +56,26 @@ struct cache {
 
 /* ---- one folder ---- */
 
-/* Adds what lies in the folder; consumes it. What cannot be seen counts as too much. */
-static void measure(int folder, int depth, struct entry *entry)
+/* The daemon lacks something: that says nothing about the renderer. */
+static bool is_own_lack(int reason) { return reason == EMFILE || reason == ENFILE || reason == ENOMEM; }
+
+static int open_inner(int folder, const char *name)
 {
+    return openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+}
+
+/* Adds what lies in the folder; consumes it. What cannot be seen counts as too much. False: the daemon lacks what it takes to look. */
+static bool measure(int folder, int depth, struct entry *entry)
+{
+    bool is_measured = true;
     DIR *names = fdopendir(folder);
     if (!names) {
+        is_measured = !is_own_lack(errno);
         entry->n_files = CACHE_MAX_FILES + 1;
         close(folder);
-        return;
+        return is_measured;
     }
-    for (const struct dirent *name; entry->n_files <= CACHE_MAX_FILES && (name = readdir(names));) {
+    for (const struct dirent *name; is_measured && entry->n_files <= CACHE_MAX_FILES && (name = readdir(names));) {
         struct stat facts;
         if (strcmp(name->d_name, ".") == 0 || strcmp(name->d_name, "..") == 0 ||
             fstatat(dirfd(names), name->d_name, &facts, AT_SYMLINK_NOFOLLOW) != 0)
@@ -69,33 +84,48 @@ static void measure(int folder, int depth, struct entry *entry)
         entry->n_bytes += (uint64_t)facts.st_blocks * 512;
         if (!S_ISDIR(facts.st_mode))
             continue;
-        int inner = depth < CACHE_MAX_DEPTH ? openat(dirfd(names), name->d_name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC) : -1;
+        int inner = depth < CACHE_MAX_DEPTH ? open_inner(dirfd(names), name->d_name) : -1;
         if (inner >= 0)
-            measure(inner, depth + 1, entry);
+            is_measured = measure(inner, depth + 1, entry);
+        else if (depth < CACHE_MAX_DEPTH && is_own_lack(errno))
+            is_measured = false;
         else if (depth == CACHE_MAX_DEPTH || errno != ENOENT)
             entry->n_files = CACHE_MAX_FILES + 1;
     }
     closedir(names);
+    return is_measured;
 }
 
-static int open_inner(int folder, const char *name)
-{
-    return openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-}
-
+/* Keeps what was measured before when the daemon cannot look now. */
 static void look_at(const struct cache *cache, struct entry *entry)
 {
+    struct entry found = { .n_bytes = 0 };
     int folder = open_inner(cache->file, entry->id);
-    entry->n_bytes = entry->n_files = 0;
-    if (folder >= 0)
-        measure(folder, 1, entry);
+    if (folder >= 0 ? !measure(folder, 1, &found) : is_own_lack(errno))
+        return;
+    entry->n_bytes = found.n_bytes;
+    entry->n_files = found.n_files;
 }
 
 struct removing {
     int top;
     unsigned long n_seen, n_done; /* in one round: things that were there; removed or moved */
-    unsigned long n_moved;
+    unsigned long n_moved, n_tried; /* of all rounds */
 };
+
+/* A folder whose mode may have been changed. The name may become a link at any time: the mode is changed by what was opened. */
+static int open_for_removal(int folder, const char *name)
+{
+    char path[40];
+    int handle = openat(folder, name, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC), inner = -1;
+    if (handle < 0)
+        return -1;
+    (void)snprintf(path, sizeof path, "/proc/self/fd/%d", handle);
+    if (chmod(path, 0700) == 0)
+        inner = openat(handle, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    close(handle);
+    return inner;
+}
 
 /* Files go, folders inside move to the top: however deep it was, it becomes flat. */
 static void flatten(struct removing *removing, int folder)
@@ -104,19 +134,19 @@ static void flatten(struct removing *removing, int folder)
     DIR *names = copy >= 0 ? fdopendir(copy) : NULL;
     if (!names && copy >= 0)
         close(copy);
-    for (const struct dirent *name; names && (name = readdir(names));) {
+    for (const struct dirent *name; names && removing->n_tried < MAX_REMOVED && (name = readdir(names));) {
         char moved[40];
         if (strcmp(name->d_name, ".") == 0 || strcmp(name->d_name, "..") == 0)
             continue;
         removing->n_seen++;
+        removing->n_tried++;
         if (unlinkat(folder, name->d_name, 0) == 0 || unlinkat(folder, name->d_name, AT_REMOVEDIR) == 0) {
             removing->n_done++;
         } else if (folder != removing->top) {
             (void)snprintf(moved, sizeof moved, "gone-%lu", ++removing->n_moved);
             removing->n_done += renameat(folder, name->d_name, removing->top, moved) == 0;
         } else {
-            /* a folder that is not empty; it may have been made unreadable */
-            int inner = fchmodat(folder, name->d_name, 0700, 0) == 0 ? open_inner(folder, name->d_name) : -1;
+            int inner = open_for_removal(folder, name->d_name); /* not empty */
             if (inner < 0)
                 continue;
             flatten(removing, inner);
@@ -128,19 +158,22 @@ static void flatten(struct removing *removing, int folder)
         closedir(names);
 }
 
+/* The folder itself stays: a renderer that is about to start has found it there. */
 static void empty(const struct cache *cache, struct entry *entry)
 {
     struct removing removing = { .top = open_inner(cache->file, entry->id) };
+    entry->has_rest = false;
     if (removing.top < 0)
         return;
-    do { /* until a round sees nothing, or gets no further */
+    for (int round = 0; round < MAX_ROUNDS && removing.n_tried < MAX_REMOVED; round++) { /* until one sees nothing, or gets no further */
         removing.n_seen = removing.n_done = 0;
         flatten(&removing, removing.top);
-    } while (removing.n_done > 0);
+        if (removing.n_done == 0)
+            break;
+    }
     close(removing.top);
-    if (!entry->process)
-        (void)unlinkat(cache->file, entry->id, AT_REMOVEDIR);
-    if (removing.n_seen > 0)
+    entry->has_rest = removing.n_done > 0 && !entry->process;
+    if (removing.n_seen > 0 && removing.n_done == 0)
         log_warn("the cache of plan %s could not be emptied", entry->id);
     look_at(cache, entry);
 }
@@ -199,7 +232,7 @@ static struct entry *least_used(struct cache *cache, bool with_running)
     struct entry *least = NULL;
     for (size_t i = 0; i < cache->n_entries; i++) {
         struct entry *entry = &cache->entries[i];
-        if (entry->n_bytes == 0 || entry->is_ended || (entry->process && !with_running))
+        if (entry->n_bytes == 0 || entry->is_ended || entry->was_tried || (entry->process && !with_running))
             continue;
         if (!least || (!entry->process && least->process) || (!entry->process == !least->process && entry->used_ns < least->used_ns))
             least = entry;
@@ -215,19 +248,25 @@ static uint64_t total(const struct cache *cache)
     return sum;
 }
 
-static void remove_one(struct cache *cache, struct entry *entry, const char *why)
-{
-    log_info("the cache of plan %s is removed (%llu MiB): %s", entry->id, (unsigned long long)(entry->n_bytes >> 20), why);
-    uint64_t before = entry->n_bytes;
-    empty(cache, entry);
-    if (entry->n_bytes >= before)
-        entry->n_bytes = 0; /* it cannot be removed, and is not tried for ever */
-}
-
 static void end_process(struct cache *cache, struct entry *entry, const char *reason)
 {
     entry->is_ended = true;
     cache->options.end(cache->options.context, entry->process, reason);
+}
+
+/* Once in a look. A renderer that fills its cache as fast as it is emptied is ended. */
+static void remove_one(struct cache *cache, struct entry *entry, const char *why)
+{
+    log_info("the cache of plan %s is removed (%llu MiB): %s", entry->id, (unsigned long long)(entry->n_bytes >> 20), why);
+    uint64_t before = entry->n_bytes;
+    entry->was_tried = true;
+    empty(cache, entry);
+    if (entry->n_bytes < before)
+        return;
+    if (entry->process)
+        end_process(cache, entry, "was ended because its cache cannot be emptied while it runs");
+    else if (!entry->has_rest)
+        entry->n_bytes = 0; /* it cannot be removed, and is not tried for ever */
 }
 
 static bool is_short_of_space(const struct cache *cache)
@@ -263,6 +302,9 @@ static void look(struct cache *cache)
     const uint64_t max_bytes = cache->options.max_bytes;
     for (size_t i = 0; i < cache->n_entries; i++) {
         struct entry *entry = &cache->entries[i];
+        entry->was_tried = false;
+        if (entry->has_rest && !entry->process)
+            empty(cache, entry);
         if (!entry->process || entry->is_ended)
             continue;
         look_at(cache, entry);
@@ -290,6 +332,8 @@ static void take_word(struct cache *cache, const struct word *word)
     struct entry *entry = word->is_begin ? entry_of(cache, word->id) : entry_used_by(cache, word->process);
     if (!entry)
         return;
+    if (word->is_begin && entry->is_ended)
+        empty(cache, entry); /* the end of the process before was not heard of yet */
     entry->process = word->is_begin ? word->process : 0;
     entry->used_ns = now_ns();
     (void)utimensat(cache->file, entry->id, NULL, AT_SYMLINK_NOFOLLOW); /* for the next daemon */
@@ -300,10 +344,10 @@ static void take_word(struct cache *cache, const struct word *word)
     entry->is_ended = false;
 }
 
-static bool is_any_running(const struct cache *cache)
+static bool is_any_left(const struct cache *cache)
 {
     for (size_t i = 0; i < cache->n_entries; i++)
-        if (cache->entries[i].process)
+        if (cache->entries[i].process || cache->entries[i].has_rest)
             return true;
     return false;
 }
@@ -312,7 +356,7 @@ static void *work(void *argument)
 {
     struct cache *cache = argument;
     list(cache);
-    for (int wait_ms = 0;; wait_ms = is_any_running(cache) ? CACHE_LOOK_MS : -1) {
+    for (int wait_ms = 0;; wait_ms = is_any_left(cache) ? CACHE_LOOK_MS : -1) {
         for (struct word *word = queue_take(cache->words, wait_ms); word; word = queue_try_take(cache->words)) {
             bool is_last = word->process == 0;
             if (!is_last)

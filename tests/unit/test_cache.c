@@ -3,6 +3,7 @@
 #include "server/fleet/cache.h"
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdatomic.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -86,7 +87,7 @@ static void start(struct fixture *fixture, uint64_t max_bytes, uint64_t reserve_
     add(fixture, "oldest", max_bytes + MIB, 10000);
     fixture->cache = cache_create(&options, &err);
     assert_string_equal(err.text, "");
-    UNTIL(!is_there(fixture, "oldest"));
+    UNTIL(!is_there(fixture, "oldest/plan.cache"));
 }
 
 static void the_longest_unused_go_first(void **state)
@@ -99,7 +100,7 @@ static void the_longest_unused_go_first(void **state)
     add(&at, "last", 2 * MIB, 1);
     add(&at, "third", 2 * MIB, 10);
     start(&at, 5 * MIB, 0); /* two of four have place */
-    UNTIL(!is_there(&at, "first") && !is_there(&at, "second"));
+    UNTIL(!is_there(&at, "first/plan.cache") && !is_there(&at, "second/plan.cache"));
     assert_true(is_there(&at, "third/plan.cache") && is_there(&at, "last/plan.cache"));
     assert_int_equal(at.n_ended, 0);
     finish(&at);
@@ -115,7 +116,7 @@ static void what_is_in_use_goes_last(void **state)
     start(&at, 5 * MIB, 0);
     cache_begin(at.cache, "used", 7);
     add(&at, "used", 4 * MIB, 30); /* it writes: 6 MiB together */
-    UNTIL(!is_there(&at, "unused"));
+    UNTIL(!is_there(&at, "unused/plan.cache"));
     assert_true(is_there(&at, "used/plan.cache"));
     add(&at, "other", 2 * MIB, 30);
     cache_begin(at.cache, "other", 8);
@@ -131,7 +132,7 @@ static void is_ended_and_emptied(struct fixture *at)
     assert_true(at->ended[0] == 7);
     assert_non_null(strstr(at->reason, "wrote more to its cache"));
     cache_end(at->cache, 7);
-    UNTIL(!is_there(at, "a"));
+    UNTIL(rmdir(path_of(at, "a")) == 0 || !is_there(at, "a")); /* empty; the folder itself stays for the next renderer */
     assert_int_equal(at->n_ended, 1);
 }
 
@@ -217,7 +218,7 @@ static void a_full_disk_costs_caches_first_and_then_each_renderer_once(void **st
     add(&at, "old", MIB, 2);
     add(&at, "new", MIB, 1);
     start(&at, 100 * MIB, UINT64_MAX);
-    UNTIL(!is_there(&at, "unused") && !is_there(&at, "old") && !is_there(&at, "new"));
+    UNTIL(!is_there(&at, "unused/plan.cache") && !is_there(&at, "old/plan.cache") && !is_there(&at, "new/plan.cache"));
     cache_begin(at.cache, "old", 7);
     cache_begin(at.cache, "new", 8);
     UNTIL(at.n_ended == 1);
@@ -231,6 +232,56 @@ static void a_full_disk_costs_caches_first_and_then_each_renderer_once(void **st
     finish(&at);
 }
 
+/* A renderer that makes files as fast as they are removed must not keep the thread from the others. */
+static void *make_files(void *argument)
+{
+    const struct fixture *at = argument;
+    char path[256];
+    for (unsigned long n = 0; at->n_ended == 0; n++) {
+        snprintf(path, sizeof path, "%s/busy/%lu", at->folder, n % 5000);
+        int file = open(path, O_RDWR | O_CREAT, 0600);
+        if (file >= 0 && write(file, path, sizeof path) > 0)
+            close(file);
+    }
+    return NULL;
+}
+
+static void one_that_fills_its_cache_as_fast_as_it_is_emptied_keeps_nobody_waiting(void **state)
+{
+    (void)state;
+    struct fixture at;
+    pthread_t threads[2];
+    begin(&at);
+    start(&at, 2 * MIB, 0);
+    add(&at, "busy", 3 * MIB, 0);
+    cache_begin(at.cache, "busy", 8); /* is over the quota of all at once, and is emptied while it runs */
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, make_files, &at), 0);
+    UNTIL(!is_there(&at, "busy/plan.cache"));
+    add(&at, "a", 67 * MIB, 0);
+    cache_begin(at.cache, "a", 7);
+    UNTIL(at.n_ended > 0);
+    for (int i = 0; i < 2; i++)
+        pthread_join(threads[i], NULL);
+    finish(&at);
+}
+
+static void an_end_for_the_quota_empties_the_folder_and_leaves_it(void **state)
+{
+    (void)state;
+    struct fixture at;
+    begin(&at);
+    start(&at, 2 * MIB, 0);
+    add(&at, "a", 67 * MIB, 0);
+    cache_begin(at.cache, "a", 7);
+    UNTIL(at.n_ended > 0);
+    cache_begin(at.cache, "a", 8); /* before the end of the other is told */
+    UNTIL(!is_there(&at, "a/plan.cache"));
+    assert_true(is_there(&at, "a"));
+    assert_int_equal(at.n_ended, 1);
+    finish(&at);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -240,6 +291,8 @@ int main(void)
         cmocka_unit_test(a_cache_deeper_than_any_honest_one_ends_its_renderer),
         cmocka_unit_test(a_folder_that_cannot_be_seen_ends_its_renderer),
         cmocka_unit_test(more_files_than_any_honest_cache_has_end_its_renderer),
+        cmocka_unit_test(one_that_fills_its_cache_as_fast_as_it_is_emptied_keeps_nobody_waiting),
+        cmocka_unit_test(an_end_for_the_quota_empties_the_folder_and_leaves_it),
         cmocka_unit_test(a_full_disk_costs_caches_first_and_then_each_renderer_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
