@@ -3,7 +3,7 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <fts.h>
+#include <fcntl.h>
 #include <grp.h>
 #include <limits.h>
 #include <linux/capability.h>
@@ -20,7 +20,10 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 
-enum { MAX_GROUPS = 64 };
+enum {
+    MAX_GROUPS = 64,
+    MAX_DEPTH = 64 /* folders in folders of the data folder; what lies deeper stays as it is */
+};
 
 struct user {
     char name[64];
@@ -140,26 +143,48 @@ static bool may_give(const char *folder, const struct user *user, struct error *
                                   other, user->name);
 }
 
-/* What an earlier daemon wrote as root is his from now on; links are not followed, and a file with a second name stays as it is. */
-static bool give_folder(const char *folder, const struct user *user, struct error *err)
+/* By descriptors, as another process of that user may put a link in the place of any folder meanwhile. Consumes the folder. */
+static bool give_opened(int folder, int depth, const struct user *user)
 {
     struct stat facts;
-    if (stat(folder, &facts) == 0 && facts.st_uid == user->uid)
-        return true;
-    char *path = mem_copy_text(folder), *const roots[] = { path, NULL };
-    FTS *tree = fts_open(roots, FTS_PHYSICAL | FTS_NOCHDIR, NULL);
-    bool is_given = tree != NULL;
-    for (const FTSENT *entry; is_given && (entry = fts_read(tree));) {
-        bool is_linked = entry->fts_info == FTS_F && entry->fts_statp->st_nlink > 1;
-        if (entry->fts_info != FTS_D && !is_linked && entry->fts_info != FTS_ERR && lchown(entry->fts_accpath, user->uid, user->gid) != 0)
-            is_given = false;
+    DIR *names = fdopendir(folder);
+    bool is_given = names != NULL;
+    if (!names)
+        close(folder);
+    for (const struct dirent *name; is_given && (name = readdir(names));) {
+        if (strcmp(name->d_name, ".") == 0 || strcmp(name->d_name, "..") == 0 || (depth == 0 && !is_ours(name->d_name)))
+            continue;
+        int inner = openat(folder, name->d_name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+        if (inner >= 0 && depth < MAX_DEPTH) {
+            is_given = give_opened(inner, depth + 1, user);
+            continue;
+        }
+        if (inner >= 0)
+            close(inner);
+        /* what is opened is what is looked at and given; of a file with a second name the other may lie elsewhere: it stays as it is */
+        int thing = openat(folder, name->d_name, O_PATH | O_NOFOLLOW | O_CLOEXEC);
+        if (thing < 0 || fstat(thing, &facts) != 0)
+            is_given = errno == ENOENT;
+        else if (facts.st_uid == 0 && (S_ISDIR(facts.st_mode) || facts.st_nlink == 1))
+            is_given = fchownat(thing, "", user->uid, user->gid, AT_EMPTY_PATH) == 0;
+        if (thing >= 0)
+            close(thing);
     }
-    if (!is_given)
-        error_set(err, ERROR_IO, "--data %.120s cannot be given to user %s: %s", folder, user->name, strerror(errno));
-    if (tree)
-        fts_close(tree);
-    free(path);
+    if (is_given && fstat(folder, &facts) == 0 && facts.st_uid == 0)
+        is_given = fchown(folder, user->uid, user->gid) == 0;
+    int reason = errno;
+    if (names)
+        closedir(names);
+    errno = reason;
     return is_given;
+}
+
+/* What an earlier daemon wrote as root is his from now on, in a folder that is his already, too; links inside are not followed. */
+static bool give_folder(const char *folder, const struct user *user, struct error *err)
+{
+    int top = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC); /* the name itself may be a link: who started the daemon gave it */
+    return (top >= 0 && give_opened(top, 0, user)) ||
+           error_set(err, ERROR_IO, "--data %.120s cannot be given to user %s: %s", folder, user->name, strerror(errno));
 }
 
 /* ---- giving it up ---- */
@@ -217,7 +242,7 @@ bool privilege_give_up(const struct privilege_options *options, struct error *er
         return error_set(err, ERROR_NOT_FOUND, "there is no user %.40s to run as", options->user ? options->user : "beamroom or nobody");
     if (!getcwd(here, sizeof here))
         here[0] = 0;
-    if (!can_be(&user, options, here, reached, &reason)) {
+    if (!can_be(&user, options, here, reached, &reason) || !give_folder(options->data_folder, &user, &reason)) {
         if (options->user) {
             error_set(err, reason.code, "%s; let him, or say --user root", reason.text);
             return false;
@@ -225,7 +250,7 @@ bool privilege_give_up(const struct privilege_options *options, struct error *er
         log_warn("staying root: %s; let him, or name another by --user; renderers run as root without its capabilities", reason.text);
         return true;
     }
-    if (!give_folder(options->data_folder, &user, err) || !switch_to(&user, options->port, err))
+    if (!switch_to(&user, options->port, err))
         return false;
     for (size_t i = 0; i < options->n_places; i++)
         if (reached[i] == REACH_FROM_HERE) {

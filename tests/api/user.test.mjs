@@ -1,7 +1,7 @@
 // Whose the daemon and its renderers are: started by root they are an ordinary user's, and without capabilities whoever's they are.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { chmodSync, cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { chmodSync, cpSync, existsSync, lstatSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -128,6 +128,27 @@ test('what an earlier daemon wrote as root is given to the user, and nobody else
   assert.equal(statSync(other).uid, 0);
   assert.equal(await daemon.stop(), 0);
   await assert.rejects(startDaemon({ data: other, args: ['--user', 'nobody'] }), /holds other things/);
+});
+
+test('a data folder named by a link is given with what root wrote in it later, and links inside are not followed', needsOpen, async () => {
+  const data = join(home, 'linked-data'), link = join(home, 'link-to-data'), secret = join(home, 'secret');
+  mkdirSync(data);
+  writeFileSync(secret, 'of root', { mode: 0o600 });
+  symlinkSync(data, link);
+  let daemon = await startDaemon({ data: link });
+  isUser(status(daemon.child.pid), expected);
+  assert.equal(await daemon.stop(), 0);
+  assert.equal(statSync(data).uid, expected);
+  assert.equal(lstatSync(link).uid, 0);
+
+  mkdirSync(join(data, 'cache', 'phantom')); // as a daemon with --user root leaves it
+  writeFileSync(join(data, 'cache', 'phantom', 'plan.cache'), 'old', { mode: 0o600 });
+  symlinkSync(secret, join(data, 'cache', 'phantom', 'elsewhere'));
+  daemon = await startDaemon({ data: link });
+  assert.equal(await daemon.stop(), 0);
+  assert.equal(statSync(join(data, 'cache', 'phantom')).uid, expected);
+  assert.equal(statSync(join(data, 'cache', 'phantom', 'plan.cache')).uid, expected);
+  assert.equal(statSync(secret).uid, 0);
 });
 
 test('started by another user nothing changes but the renderer\'s capabilities', { skip: isRoot && 'started by root' }, async () => {
