@@ -17,6 +17,7 @@
 enum {
     EVENTS_A_TURN = 256,
     LONGEST_STEP_US = 1000000, /* between two ticks; what is more, the thread did not run */
+    LEAST_MEMORY_SLACK = 256 << 20,
     PLACE_EVERY_US = 2000000   /* a plan that is held and closed for lack of a place tries again after this */
 };
 
@@ -262,6 +263,20 @@ static void take_list(struct fleet *fleet)
     folder_list_finish(&found);
 }
 
+/* The kernel's limit does not count memory that is shared, with others or by nobody; so what it has is looked at from outside. The slack
+ * is for drivers of graphics cards, whose buffers are such memory. */
+static void take_memory(struct fleet *fleet, struct plan_entry *plan, const struct watch_event *event)
+{
+    const uint64_t most = fleet->options.max_renderer_bytes, slack = most / 4 > LEAST_MEMORY_SLACK ? most / 4 : LEAST_MEMORY_SLACK;
+    char how[160];
+    plan->memory_bytes = event->memory_bytes;
+    if (most == 0 || event->own_bytes <= most + slack)
+        return;
+    (void)snprintf(how, sizeof how, "was ended because it took %llu MiB of memory, more than the %llu MiB it may and %llu MiB beyond",
+                   (unsigned long long)(event->own_bytes >> 20), (unsigned long long)(most >> 20), (unsigned long long)(slack >> 20));
+    plan_entry_kill(fleet, plan, how);
+}
+
 static void take_event(struct fleet *fleet, struct watch_event *event)
 {
     struct plan_entry *plan = NULL;
@@ -276,7 +291,7 @@ static void take_event(struct fleet *fleet, struct watch_event *event)
     case WATCH_MEMORY:
         plan = plan_entry_of_process(fleet, event->number);
         if (plan)
-            plan->memory_bytes = event->memory_bytes;
+            take_memory(fleet, plan, event);
         break;
     case WATCH_PACKET: news_packet(fleet, event); break;
     case WATCH_LINE: (void)uploads_take_event(fleet, event); break;

@@ -367,14 +367,21 @@ static void tell_memory(struct process *process, int64_t now_us)
         return;
     process->memory_at_us = now_us + MEMORY_EVERY_US;
     char path[64], text[128];
-    (void)snprintf(path, sizeof path, "/proc/%ld/statm", (long)process->child.pid);
+    (void)snprintf(path, sizeof path, "/proc/%ld/status", (long)process->child.pid);
     FILE *file = fopen(path, "re");
     if (!file)
         return;
-    unsigned long long all = 0, resident = 0;
-    if (fgets(text, sizeof text, file) && sscanf(text, "%llu %llu", &all, &resident) == 2) {
+    unsigned long long resident = 0, own = 0, kib;
+    while (fgets(text, sizeof text, file)) {
+        if (sscanf(text, "VmRSS: %llu", &kib) == 1)
+            resident = kib * 1024;
+        else if (sscanf(text, "RssAnon: %llu", &kib) == 1 || sscanf(text, "RssShmem: %llu", &kib) == 1)
+            own += kib * 1024;
+    }
+    if (resident > 0) {
         struct watch_event *event = event_new(process, WATCH_MEMORY);
-        event->memory_bytes = resident * (uint64_t)sysconf(_SC_PAGESIZE);
+        event->memory_bytes = resident;
+        event->own_bytes = own;
         give(process, event);
     }
     fclose(file);

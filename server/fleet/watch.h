@@ -14,7 +14,7 @@ enum {
 enum watch_event_type {
     WATCH_STARTED, /* pid */
     WATCH_PACKET,  /* packet */
-    WATCH_MEMORY,  /* memory_bytes */
+    WATCH_MEMORY,  /* memory_bytes, own_bytes */
     WATCH_LINE,    /* output: one line a teller printed, without its end */
     WATCH_ENDED    /* the last of its number: how, and for a program what it printed */
 };
@@ -24,6 +24,7 @@ struct watch_event {
     uint64_t number;
     int pid;
     uint64_t memory_bytes;
+    uint64_t own_bytes; /* of these, what no file on disk stands behind: its own memory and shared memory */
     struct packet packet;
     /* WATCH_ENDED */
     bool is_exit;    /* it ended by itself, with status; else by signal, or it never started */

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -156,6 +157,15 @@ static int renderer_main(const char *folder, const char *id, const char *cache)
     }
     if (behaves("crash-loading"))
         die();
+    if (behaves("takes-shared-memory")) { /* which counts for no limit of the kernel's */
+        const size_t n = (size_t)300 << 20;
+        void *memory = mmap(NULL, n, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+        if (memory == MAP_FAILED)
+            return 8;
+        memset(memory, 1, n);
+        for (;;)
+            pause();
+    }
     if (behaves("huge-head")) {
         uint32_t head[3] = { 0x4b505242u, 0xffffffffu, 0xffffffffu };
         write_all(head, sizeof head);

@@ -171,6 +171,22 @@ static void one_that_gets_no_further_is_tried_again_while_somebody_is_there(void
     world_end(&world);
 }
 
+static void one_that_takes_more_memory_than_it_may_is_ended_with_both_figures(void **state)
+{
+    (void)state;
+    struct world world;
+    world_begin(&world);
+    world_add_plan(&world, "a", "takes-shared-memory");
+    world.options.max_renderer_bytes = 1 << 20; /* and 256 MiB beyond */
+    world.options.times.silent = 60000;         /* it does not answer either */
+    world_start(&world, 1);
+    world_open_plan(&world, "a");
+    world_wait_for_state(&world, "a", FLEET_FAILED);
+    const char *detail = world_plan_of(&world, "a").problem->detail;
+    assert_non_null(strstr(detail, "MiB of memory, more than the 1 MiB it may and 256 MiB beyond"));
+    world_end(&world);
+}
+
 static void who_enters_a_plan_without_a_place_gets_one_when_another_leaves(void **state)
 {
     (void)state;
@@ -205,6 +221,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_plan_whose_file_is_bad_is_not_tried_again_until_the_file_has_changed),
         cmocka_unit_test(a_plan_that_was_read_before_outlives_a_lack_of_memory_at_its_next_start),
         cmocka_unit_test(one_that_gets_no_further_is_tried_again_while_somebody_is_there),
+        cmocka_unit_test(one_that_takes_more_memory_than_it_may_is_ended_with_both_figures),
         cmocka_unit_test(who_enters_a_plan_without_a_place_gets_one_when_another_leaves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
