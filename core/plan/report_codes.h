@@ -9,7 +9,7 @@
       "Move what does not belong to the plan elsewhere, or name the parts in a plan.json.")                                        \
     X("plan.unknown-key", "plan.json has a key that is not known.", "Check its spelling.")                                         \
     X("geometry.assumed", "The file does not say where the grid lies in the patient.",                                             \
-      "Left and right may be wrong: export again with an orientation.")                                                            \
+      "Left and right, or the thickness of a single plane, may be wrong: export again with them.")                                                            \
     X("geometry.unit-assumed", "The file's unit cannot be right for a patient; another was taken.",                                \
       "Check a known distance; correct the unit in the header.")                                                                   \
     X("geometry.unit-given", "The plan gives another unit of length than a file's header.", "The plan's was used.")               \

@@ -5,7 +5,21 @@
 
 #define TAG DICOM_TAG
 
-bool made_seg_is_set(int segment, double z_mm, int x, int y) { return (x + y + segment + (int)lround(fabs(z_mm))) % 3 == 0; }
+bool made_seg_is_set(int segment, double z_mm, int x, int y) { return (2 * x + 3 * y + segment + 7 * (int)lround((z_mm + 5) / 3)) % 5 == 0; }
+
+static const double *cosines_of(const struct made_seg *seg)
+{
+    static const double straight[6] = { 1, 0, 0, 0, 1, 0 };
+    return seg->cosines ? seg->cosines : straight;
+}
+
+struct vec3 made_seg_lps_mm(const struct made_seg *seg, double z_mm, int x, int y)
+{
+    const double *c = cosines_of(seg);
+    struct vec3 row = vec3(c[0], c[1], c[2]), column = vec3(c[3], c[4], c[5]);
+    struct vec3 in_plane = vec3_add(vec3_scale(row, 0.5 * x), vec3_scale(column, 2.0 * y));
+    return vec3_add(vec3_add(vec3(10, 20, 0), in_plane), vec3_scale(vec3_cross(row, column), z_mm));
+}
 
 static void put_shared(struct made_dicom *made, const struct made_seg *seg)
 {
@@ -13,11 +27,13 @@ static void put_shared(struct made_dicom *made, const struct made_seg *seg)
     made_item(made);
     made_sequence(made, TAG(0x0020, 0x9116));
     made_item(made);
-    made_text(made, TAG(0x0020, 0x0037), "DS", "1\\0\\0\\0\\1\\0");
+    made_numbers(made, TAG(0x0020, 0x0037), cosines_of(seg), 6);
     made_item_end(made);
     made_sequence_end(made);
     made_sequence(made, TAG(0x0028, 0x9110));
     made_item(made);
+    if (seg->thickness_mm > 0)
+        made_numbers(made, TAG(0x0018, 0x0050), &seg->thickness_mm, 1);
     if (seg->between_mm > 0)
         made_numbers(made, TAG(0x0018, 0x0088), &seg->between_mm, 1);
     made_text(made, TAG(0x0028, 0x0030), "DS", "2\\0.5");
@@ -31,7 +47,8 @@ static void put_frames(struct made_dicom *made, const struct made_seg *seg)
 {
     made_sequence(made, TAG(0x5200, 0x9230));
     for (int f = 0; f < seg->n_frames; f++) {
-        double position[3] = { 10, 20, seg->frames[f].z_mm };
+        struct vec3 first = made_seg_lps_mm(seg, seg->frames[f].z_mm, 0, 0);
+        double position[3] = { first.x, first.y, first.z };
         made_item(made);
         made_sequence(made, TAG(0x0020, 0x9113));
         made_item(made);
@@ -51,7 +68,7 @@ static void put_frames(struct made_dicom *made, const struct made_seg *seg)
 static void put_pixels(struct made_dicom *made, const struct made_seg *seg)
 {
     size_t n = (size_t)seg->n_frames * MADE_SEG_ROWS * MADE_SEG_COLUMNS, at = 0;
-    uint8_t *cells = calloc(n + 1, 1), *bits = calloc(n / 8 + 2, 1);
+    uint8_t *cells = calloc(n + 1, 1), *bits = calloc(n / 8 + 3, 1);
     for (int f = 0; f < seg->n_frames; f++)
         for (int y = 0; y < MADE_SEG_ROWS; y++)
             for (int x = 0; x < MADE_SEG_COLUMNS; x++, at++) {
@@ -59,14 +76,19 @@ static void put_pixels(struct made_dicom *made, const struct made_seg *seg)
                 cells[at] = is_set ? 100 + (uint8_t)x : 99 - (uint8_t)x; /* of 200: half is 100 */
                 bits[at / 8] |= (uint8_t)(is_set << at % 8);
             }
-    made_element(made, TAG(0x7FE0, 0x0010), seg->is_fractional ? "OB" : "OW", seg->is_fractional ? cells : bits, seg->is_fractional ? n : (n + 7) / 8);
+    for (size_t i = 0; seg->is_big_endian && i < (n + 7) / 8; i += 2) {
+        uint8_t low = bits[i];
+        bits[i] = bits[i + 1];
+        bits[i + 1] = low;
+    }
+    made_element(made, TAG(0x7FE0, 0x0010), seg->is_fractional ? "OB" : "OW", seg->is_fractional ? cells : bits, seg->is_fractional ? n : (n + 15) / 16 * 2);
     free(cells);
     free(bits);
 }
 
 void made_seg_bytes(struct made_dicom *made, const struct made_seg *seg)
 {
-    made_begin(made, MADE_EXPLICIT);
+    made_begin(made, seg->is_big_endian ? MADE_BIG_ENDIAN : MADE_EXPLICIT);
     made_text(made, TAG(0x0008, 0x0016), "UI", "1.2.840.10008.5.1.4.1.1.66.4");
     made_text(made, TAG(0x0008, 0x0018), "UI", "1.2.3.66");
     made_text(made, TAG(0x0008, 0x0060), "CS", "SEG");

@@ -53,7 +53,7 @@ static void check_segment(const struct nrrd_layers *layers, const struct made_se
         for (int y = 0; y < MADE_SEG_ROWS; y++)
             for (int x = 0; x < MADE_SEG_COLUMNS; x++) {
                 uint32_t ijk[3];
-                assert_true(volume_voxel_at(volume, vec3(10 + 0.5 * x, 20 + 2 * y, z), ijk));
+                assert_true(volume_voxel_at(volume, made_seg_lps_mm(seg, z, x, y), ijk));
                 bool is_set = volume_label(volume, ijk[0], ijk[1], ijk[2]) == label->value;
                 assert_int_equal(is_set, has_frame(seg, segment, z) && made_seg_is_set(segment, z, x, y));
             }
@@ -76,8 +76,8 @@ static void segments_have_the_voxels_of_their_frames_whatever_their_order(void *
         const struct grid *grid = &layers.volumes[0]->grid;
         assert_int_equal(grid->size[0], MADE_SEG_COLUMNS);
         assert_int_equal(grid->size[1], MADE_SEG_ROWS);
-        assert_int_equal(grid->size[2], 4);
-        assert_close(vec3_length(vec3_sub(grid->lps_mm_from_ijk.origin, vec3(10, 20, -5))), 0, 1e-9);
+        assert_int_equal(grid->size[2], 1 + 4 + 1);
+        assert_close(vec3_length(vec3_sub(grid->lps_mm_from_ijk.origin, vec3(10, 20, -5 - 3))), 0, 1e-9);
         check_segment(&layers, &seg, 1);
         check_segment(&layers, &seg, 2);
         size_t first, second;
@@ -99,23 +99,23 @@ static void segments_have_the_voxels_of_their_frames_whatever_their_order(void *
 static void segments_that_overlap_lie_on_layers_of_their_own(void **state)
 {
     (void)state;
-    static const struct made_seg_frame same[] = { { 1, 0 }, { 4, 0 }, { 2, 0 } }; /* 1 and 4: the same voxels; 2: others */
-    const struct made_seg seg = { .frames = same, .n_frames = 3, .n_segments = 4 };
+    static const struct made_seg_frame same[] = { { 1, 0 }, { 6, 0 }, { 2, 0 } }; /* 1 and 6: the same voxels; 2: others */
+    const struct made_seg seg = { .frames = same, .n_frames = 3, .n_segments = 6 };
     struct made_dicom made;
     struct nrrd_layers layers;
     struct report report = { 0 };
     struct error err;
     made_seg_bytes(&made, &seg);
     assert_true(read_seg(&made, "", &layers, &report, &err));
-    size_t one, two, four;
+    size_t one, two, six;
     (void)name_of(&layers, "Part 1", &one);
     (void)name_of(&layers, "Part 2", &two);
-    (void)name_of(&layers, "Part 4", &four);
+    (void)name_of(&layers, "Part 6", &six);
     assert_int_equal(layers.n, 2);
     assert_int_equal(one, two);
-    assert_int_not_equal(one, four);
+    assert_int_not_equal(one, six);
     nrrd_layers_finish(&layers);
-    assert_true(read_seg(&made, "part 4", &layers, &report, &err)); /* one alone, by its name */
+    assert_true(read_seg(&made, "part 6", &layers, &report, &err)); /* one alone, by its name */
     assert_int_equal(layers.n, 1);
     assert_int_equal(layers.names[0].n, 1);
     nrrd_layers_finish(&layers);
@@ -123,6 +123,105 @@ static void segments_that_overlap_lie_on_layers_of_their_own(void **state)
     assert_non_null(strstr(err.text, "no segment is called \"Liver\""));
     made_finish(&made);
     report_finish(&report);
+}
+
+static void segments_lie_where_the_directions_of_their_frames_say(void **state)
+{
+    (void)state;
+    static const double directions[][6] = { { 1, 0, 0, 0, 0, -1 }, { -1, 0, 0, 0, 1, 0 } }; /* coronal; mirrored */
+    for (size_t i = 0; i < 2; i++) {
+        struct made_seg seg = two_parts;
+        struct made_dicom made;
+        struct nrrd_layers layers;
+        struct report report = { 0 };
+        struct error err;
+        seg.cosines = directions[i];
+        made_seg_bytes(&made, &seg);
+        assert_true(read_seg(&made, "", &layers, &report, &err));
+        check_segment(&layers, &seg, 1);
+        check_segment(&layers, &seg, 2);
+        nrrd_layers_finish(&layers);
+        report_finish(&report);
+        made_finish(&made);
+    }
+}
+
+/* 165 bits in 21 bytes: the last one lies in the upper half of the eleventh word. */
+static void bits_in_big_endian_words_are_read_and_half_a_word_is_refused(void **state)
+{
+    (void)state;
+    struct made_seg seg = two_parts;
+    struct made_dicom made;
+    struct nrrd_layers layers;
+    struct report report = { 0 };
+    struct error err;
+    seg.is_big_endian = true;
+    made_seg_bytes(&made, &seg);
+    assert_true(read_seg(&made, "", &layers, &report, &err));
+    check_segment(&layers, &seg, 1);
+    check_segment(&layers, &seg, 2);
+    nrrd_layers_finish(&layers);
+    made.data[made.size - 22 - 1] = 21;
+    made.size--;
+    assert_false(read_seg(&made, "", &layers, &report, &err));
+    assert_non_null(strstr(err.text, "pixel data of 21 bytes; 11 x 3 x 5 pixels of 1 bit need 22"));
+    report_finish(&report);
+    made_finish(&made);
+}
+
+/* Neighbours nearer than a thousandth of a millimetre share a place, and each of them lies on a plane of the grid. */
+static void frames_nearly_at_one_place_stay_inside_the_grid(void **state)
+{
+    (void)state;
+    enum { MANY = 400 };
+    static struct made_seg_frame chain[MANY];
+    static const struct made_seg_frame two[] = { { 1, 0 }, { 1, 0.0009 } };
+    for (int f = 0; f < MANY; f++)
+        chain[f] = (struct made_seg_frame){ 1, 0.0009 * f };
+    const struct made_seg near = { .frames = two, .n_frames = 2, .n_segments = 1, .between_mm = 0.0002 };
+    const struct made_seg chained = { .frames = chain, .n_frames = MANY, .n_segments = 1, .thickness_mm = 0.005 };
+    struct made_dicom made;
+    struct nrrd_layers layers;
+    struct report report = { 0 };
+    struct error err;
+    made_seg_bytes(&made, &near);
+    assert_true(read_seg(&made, "", &layers, &report, &err));
+    assert_int_equal(layers.volumes[0]->grid.size[2], 3);
+    nrrd_layers_finish(&layers);
+    made_finish(&made);
+    made_seg_bytes(&made, &chained);
+    assert_false(read_seg(&made, "", &layers, &report, &err));
+    assert_non_null(strstr(err.text, "planes that are not even: 200 places, the nearest 0.0018 mm apart"));
+    made_finish(&made);
+    report_finish(&report);
+}
+
+static void a_thickness_that_the_file_does_not_give_is_said(void **state)
+{
+    (void)state;
+    static const struct made_seg_frame frames_apart[] = { { 1, 1 }, { 1, 7 } };
+    static const struct {
+        int n_frames;
+        double thickness_mm, between_mm;
+        const char *code, *words;
+    } cases[] = { { 1, 0, 0, "geometry.assumed", "1 mm was taken as its thickness" }, { 1, 3, 0, "geometry.assumed", "" }, { 1, 0, 2, "geometry.assumed", "" },
+                  { 2, 3, 0, "image.thickness-differs", "Frames are 3 mm thick (0018,0050) and lie 6 mm apart" },
+                  { 2, 6, 0, "image.thickness-differs", "" }, { 2, 3, 6, "image.thickness-differs", "" }, { 2, 0, 0, "image.thickness-differs", "" } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct made_seg seg = { .frames = frames_apart, .n_frames = cases[i].n_frames, .n_segments = 1, .thickness_mm = cases[i].thickness_mm,
+                                .between_mm = cases[i].between_mm };
+        struct made_dicom made;
+        struct nrrd_layers layers;
+        struct report report = { 0 };
+        struct error err;
+        made_seg_bytes(&made, &seg);
+        assert_true(read_seg(&made, "", &layers, &report, &err));
+        assert_int_equal(report_has(&report, cases[i].code), cases[i].words[0] != 0);
+        assert_non_null(strstr(report_said(&report, cases[i].code), cases[i].words));
+        nrrd_layers_finish(&layers);
+        report_finish(&report);
+        made_finish(&made);
+    }
 }
 
 static void colors_are_those_of_lindbloom_s_tables(void **state)
@@ -179,12 +278,12 @@ static void what_contradicts_itself_is_refused_by_name(void **state)
     assert_non_null(strstr(report_said(&report, "region.roi-number"), "1 frames belong to segments (0062,000B) that the file does not describe (the first: 9)"));
     nrrd_layers_finish(&layers);
     report_finish(&report);
-    made.size -= 4; /* too few bits: the length says so */
-    made.data[made.size - 10 - 2] = 4;
+    made.data[made.size - 10 - 4] = 6; /* 66 pixels need 9 bytes, padded to 10: the length says 6 */
+    made.size -= 4;
     struct dicom_file *file = dicom_file_parse(made.data, made.size, "cut.dcm", DICOM_WHOLE, &err);
     bool is_read = file && dicom_seg_read(file, "cut.dcm", "", &layers, &report, &err);
     assert_false(is_read);
-    assert_true(err.text[0] != 0);
+    assert_non_null(strstr(err.text, "pixel data of 6 bytes; 11 x 3 x 2 pixels of 1 bit need 9"));
     dicom_file_destroy(file);
     made_finish(&made);
     report_finish(&report);
@@ -219,7 +318,10 @@ static void a_folder_with_a_segmentation_has_its_regions(void **state)
         const struct region *one = region_of(plan, "part-1");
         assert_true(one->has_file_color);
         assert_close(one->rgb[0], 255, 1);
-        assert_int_equal(one->n_voxels, 3 * MADE_SEG_ROWS * MADE_SEG_COLUMNS / 3);
+        uint64_t n_expected = 0;
+        for (int i = 0; i < 3 * MADE_SEG_ROWS * MADE_SEG_COLUMNS; i++)
+            n_expected += made_seg_is_set(1, (const double[]){ -5, 1, 4 }[i % 3], i / 3 % MADE_SEG_COLUMNS, i / 3 / MADE_SEG_COLUMNS);
+        assert_int_equal(one->n_voxels, n_expected);
         assert_int_equal(report_has(&plan->report, "region.image-chosen"), way == 1);
         assert_int_equal(report_has(&plan->report, "region.frame-differs"), way == 2);
         assert_false(report_has(&plan->report, "dicom.not-used"));
@@ -256,11 +358,16 @@ static void a_real_liver_is_the_one_of_its_nrrd_voxel_for_voxel(void **state)
     const struct region *region = region_of(plans[0], "liver");
     const struct volume *seg = plans[0]->regions.layers[region->layer], *nrrd = plans[1]->regions.layers[0];
     assert_int_equal(region->n_voxels, 107098);
-    assert_true(grid_is_same(&seg->grid, &nrrd->grid));
+    assert_false(region->touches_edge); /* the writer left out frames without a voxel; nothing cuts the liver */
+    struct affine first = seg->grid.lps_mm_from_ijk;
+    first.origin = affine_point(&first, vec3(0, 0, 1)); /* one empty plane lies before the first frame, and one behind the last */
+    struct grid inner;
+    assert_true(grid_init(&inner, (uint32_t[]){ seg->grid.size[0], seg->grid.size[1], seg->grid.size[2] - 2 }, &first, NULL));
+    assert_true(grid_is_same(&inner, &nrrd->grid));
     for (uint32_t k = 0; k < 3; k++)
         for (uint32_t j = 0; j < 512; j++)
             for (uint32_t i = 0; i < 512; i++)
-                if ((volume_label(seg, i, j, k) == region->label) != (volume_label(nrrd, i, j, k) == 1))
+                if ((volume_label(seg, i, j, k + 1) == region->label) != (volume_label(nrrd, i, j, k) == 1))
                     fail_msg("voxel %u %u %u", i, j, k);
     plan_destroy(plans[0]);
     plan_destroy(plans[1]);
@@ -298,6 +405,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(segments_have_the_voxels_of_their_frames_whatever_their_order),
         cmocka_unit_test(segments_that_overlap_lie_on_layers_of_their_own),
+        cmocka_unit_test(segments_lie_where_the_directions_of_their_frames_say),
+        cmocka_unit_test(bits_in_big_endian_words_are_read_and_half_a_word_is_refused),
+        cmocka_unit_test(frames_nearly_at_one_place_stay_inside_the_grid),
+        cmocka_unit_test(a_thickness_that_the_file_does_not_give_is_said),
         cmocka_unit_test(colors_are_those_of_lindbloom_s_tables),
         cmocka_unit_test(what_contradicts_itself_is_refused_by_name),
         cmocka_unit_test(a_folder_with_a_segmentation_has_its_regions),

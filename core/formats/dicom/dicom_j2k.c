@@ -103,7 +103,7 @@ static bool read_segment(struct scan *scan, uint32_t marker, const uint8_t *p, s
     }
 }
 
-/* Segments from at to a marker that ends them (SOT, SOD); at is moved behind that marker. 0: refused. */
+/* Reads marker segments up to SOT, SOD or EOC. Returns that marker and sets `at` behind it; 0 on error. */
 static uint32_t read_segments(struct scan *scan, size_t *at)
 {
     while (*at + 4 <= scan->size) {

@@ -156,6 +156,8 @@ static bool look_at_bits(struct reading *reading, struct error *err)
     const struct seg_grid *grid = &reading->grid;
     uint64_t needed = ((uint64_t)grid->rows * grid->columns * grid->n_frames + 7) / 8, size = 0;
     reading->bits = dicom_pixels_bytes(reading->file, &size, &reading->is_swapped);
+    if (reading->is_swapped)
+        needed += needed % 2; /* the last byte lies in the upper half of a word */
     if (!reading->bits)
         return error_set(err, ERROR_UNSUPPORTED, "%s: its bits are compressed (%s), or not there; only plain ones are read", reading->where,
                          dicom_transfer_syntax(reading->file));
@@ -363,8 +365,8 @@ bool dicom_seg_read(const struct dicom_file *file, const char *where, const char
     }
     if (is_read) {
         const uint32_t *size = reading.grid.grid.size;
-        report_add(report, REPORT_NOTE, "region.segments", where, "%zu segments in %u frames (%s), on %u x %u x %u voxels of the frames' own; %zu "
-                   "layers of labels.", reading.n_segments, reading.grid.n_frames, reading.is_fractional ? "FRACTIONAL" : "BINARY", size[0], size[1],
+        report_add(report, REPORT_NOTE, "region.segments", where, "%zu segments in %u frames (%s), on the frames' own grid of %u x %u x %u voxels; "
+                   "%zu layers of labels.", reading.n_segments, reading.grid.n_frames, reading.is_fractional ? "FRACTIONAL" : "BINARY", size[0], size[1],
                    size[2], layers->n);
     } else {
         nrrd_layers_finish(layers);

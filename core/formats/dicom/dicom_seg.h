@@ -7,10 +7,10 @@ enum {
     DICOM_SEG_MAX_SEGMENTS = REGION_MAX, /* more are refused */
     DICOM_SEG_MAX_FRAMES = 1 << 16       /* more are refused */
 };
-#define DICOM_SEG_MAX_VOXELS ((uint64_t)1 << 29) /* of the grid; more are refused. Times its layers VOLUME_MAX_BYTES */
+#define DICOM_SEG_MAX_VOXELS ((uint64_t)1 << 29) /* voxels of the grid; voxels x layers may be at most VOLUME_MAX_BYTES */
 
 /* Segments into layers of labels, as few as hold those that overlap. Frames may come in any order, and those without a voxel be missing:
- * planes between frames are empty. A fractional segment holds the voxels of half of its largest value and more, and the report says so.
+ * planes between frames, and one at either end, are empty. A fractional segment holds the voxels of half of its largest value and more, and the report says so.
  *   only     the one segment that is wanted, by its label; "" all of them
  *   layers   as of a NRRD; on success the caller calls nrrd_layers_finish
  *   errors   ERROR_UNSUPPORTED another kind of object, or encoding; ERROR_FORMAT; ERROR_RANGE; ERROR_LIMIT; ERROR_MEMORY

@@ -12,6 +12,7 @@
 
 #define TAG_SEGMENT_IDENTIFICATION DICOM_TAG(0x0062, 0x000A)
 #define TAG_REFERENCED_SEGMENT DICOM_TAG(0x0062, 0x000B)
+enum { MARGIN = 1 }; /* empty planes at either end: writers leave out empty frames, so the end of the frames cuts nothing */
 #define MOST_SHIFT 0.5 /* of a pixel, sideways against a straight line of planes */
 
 struct placing {
@@ -85,34 +86,49 @@ static double worst_place(const struct placing *placing, double pitch_mm)
     return worst;
 }
 
-/* Distance of planes and their number; false: uneven, or too many. */
-static bool find_pitch(const struct placing *placing, double *pitch_mm, double *n_planes, struct error *err)
+/* Says where the distance of planes is not the file's: with one plane nothing else tells how thick it is. */
+static void report_pitch(const struct placing *placing, size_t n_places, double pitch_mm, struct report *report)
+{
+    const struct dicom_frame_place *first = &placing->first;
+    if (n_places == 1 && !(first->between_mm > 0) && !(first->thickness_mm > 0))
+        report_add(report, REPORT_WARNING, "geometry.assumed", placing->where, "Its frames lie on one plane, and neither a distance of planes "
+                   "(0018,0088) nor a thickness (0018,0050) is given; %g mm was taken as its thickness.", pitch_mm);
+    else if (n_places > 1 && pitch_mm != first->between_mm && first->thickness_mm > 0 && pitch_mm > first->thickness_mm * (1 + DICOM_EVEN))
+        report_add(report, REPORT_WARNING, "image.thickness-differs", placing->where, "Frames are %g mm thick (0018,0050) and lie %g mm apart, and the "
+                   "distance of planes (0018,0088) does not say so; each was taken as %g mm thick.", first->thickness_mm, pitch_mm, pitch_mm);
+}
+
+/* Distance of planes and their number; false: uneven, or too many. Frames nearer than DICOM_SAME_PLACE_MM to the last place share it. */
+static bool find_pitch(const struct placing *placing, double *pitch_mm, double *n_planes, struct report *report, struct error *err)
 {
     double extent = placing->slices[placing->n_slices - 1].along_mm - placing->slices[0].along_mm, least = INFINITY;
+    double place_mm = placing->slices[0].along_mm;
     size_t n_places = 1;
     for (size_t i = 1; i < placing->n_slices; i++) {
-        double gap = placing->slices[i].along_mm - placing->slices[i - 1].along_mm;
-        if (gap < DICOM_SAME_PLACE_MM)
+        double gap = placing->slices[i].along_mm - place_mm;
+        if (!(gap >= DICOM_SAME_PLACE_MM))
             continue;
+        place_mm = placing->slices[i].along_mm;
         least = fmin(least, gap);
         n_places++;
     }
     const struct dicom_frame_place *first = &placing->first;
     *n_planes = 1;
     *pitch_mm = first->between_mm > 0 ? first->between_mm : first->thickness_mm > 0 ? first->thickness_mm : 1;
-    if (n_places == 1)
-        return true;
-    if (!(first->between_mm > 0 && worst_place(placing, first->between_mm) <= DICOM_EVEN && first->between_mm <= least * (1 + DICOM_EVEN))) {
-        double n = floor(extent / least + 0.5);
-        *pitch_mm = extent / n;
-        if (worst_place(placing, *pitch_mm) > DICOM_EVEN)
-            return error_set(err, ERROR_UNSUPPORTED, "%s: its frames lie on planes that are not even: %zu places, the nearest %g mm apart over %g mm",
-                             placing->where, n_places, least, extent);
+    if (n_places > 1) {
+        if (!(first->between_mm > 0 && worst_place(placing, first->between_mm) <= DICOM_EVEN && first->between_mm <= least * (1 + DICOM_EVEN))) {
+            double n = floor(extent / least + 0.5);
+            *pitch_mm = extent / n;
+            if (worst_place(placing, *pitch_mm) > DICOM_EVEN)
+                return error_set(err, ERROR_UNSUPPORTED, "%s: its frames lie on planes that are not even: %zu places, the nearest %g mm apart over %g mm",
+                                 placing->where, n_places, least, extent);
+        }
+        *n_planes = floor(extent / *pitch_mm + 0.5) + 1;
+        if (!(*n_planes + 2 * MARGIN <= VOLUME_MAX_SIDE && *n_planes <= 8.0 * (double)n_places + 64))
+            return error_set(err, ERROR_LIMIT, "%s: frames at %zu places, %g mm apart: %.0f planes, of which most would be empty", placing->where,
+                             n_places, *pitch_mm, *n_planes);
     }
-    *n_planes = floor(extent / *pitch_mm + 0.5) + 1;
-    if (*n_planes > VOLUME_MAX_SIDE || *n_planes > 8.0 * (double)n_places + 64)
-        return error_set(err, ERROR_LIMIT, "%s: frames at %zu places, %g mm apart: %.0f planes, of which most would be empty", placing->where, n_places,
-                         *pitch_mm, *n_planes);
+    report_pitch(placing, n_places, *pitch_mm, report);
     return true;
 }
 
@@ -135,23 +151,37 @@ static bool find_step(const struct placing *placing, double pitch_mm, struct vec
     return true;
 }
 
-static bool make_grid(struct placing *placing, struct error *err)
+/* Each frame's plane: the first place is plane MARGIN of a grid of n_planes between its margins. */
+static bool place_frames(struct placing *placing, double pitch_mm, double n_planes, struct error *err)
+{
+    for (size_t i = 0; i < placing->n_slices; i++) {
+        double along_mm = placing->slices[i].along_mm - placing->slices[0].along_mm;
+        double plane = n_planes > 1 ? floor(along_mm / pitch_mm + 0.5) : 0;
+        if (!(plane >= 0 && plane < n_planes))
+            return error_set(err, ERROR_FORMAT, "%s: frame %u of %u lies %g mm behind the first: plane %.0f, expected 0 to %.0f", placing->where,
+                             placing->slices[i].frame + 1, placing->grid->n_frames, along_mm, plane, n_planes - 1);
+        placing->grid->frames[placing->slices[i].frame].plane = (uint32_t)plane + MARGIN;
+    }
+    return true;
+}
+
+static bool make_grid(struct placing *placing, struct report *report, struct error *err)
 {
     struct seg_grid *grid = placing->grid;
     double pitch_mm, n_planes;
     struct vec3 step;
     qsort(placing->slices, placing->n_slices, sizeof *placing->slices, by_place);
-    if (!find_pitch(placing, &pitch_mm, &n_planes, err) || !find_step(placing, pitch_mm, &step, err))
+    if (!find_pitch(placing, &pitch_mm, &n_planes, report, err) || !find_step(placing, pitch_mm, &step, err))
         return false;
-    if ((double)grid->columns * grid->rows * n_planes > (double)DICOM_SEG_MAX_VOXELS)
-        return error_set(err, ERROR_LIMIT, "%s: %u x %u x %.0f voxels; at most %llu are read", placing->where, grid->columns, grid->rows, n_planes,
+    uint32_t size[3] = { grid->columns, grid->rows, (uint32_t)n_planes + 2 * MARGIN };
+    if ((uint64_t)size[0] * size[1] * size[2] > DICOM_SEG_MAX_VOXELS)
+        return error_set(err, ERROR_LIMIT, "%s: %u x %u x %u voxels; at most %llu are read", placing->where, size[0], size[1], size[2],
                          (unsigned long long)DICOM_SEG_MAX_VOXELS);
-    for (size_t i = 0; i < placing->n_slices; i++)
-        grid->frames[placing->slices[i].frame].plane = (uint32_t)floor((placing->slices[i].along_mm - placing->slices[0].along_mm) / pitch_mm + 0.5);
+    if (!place_frames(placing, pitch_mm, n_planes, err))
+        return false;
     const double *spacing_mm = placing->first.spacing_mm;
     struct affine map = { { vec3_scale(placing->axes[0], spacing_mm[1]), vec3_scale(placing->axes[1], spacing_mm[0]), step },
-                          placing->slices[0].position_lps_mm };
-    uint32_t size[3] = { grid->columns, grid->rows, (uint32_t)n_planes };
+                          vec3_sub(placing->slices[0].position_lps_mm, vec3_scale(step, MARGIN)) };
     if (grid_init(&grid->grid, size, &map, err))
         return true;
     error_prefix(err, "%s: ", placing->where);
@@ -163,7 +193,7 @@ bool seg_grid_find(struct seg_grid *grid, const struct dicom_item *root, const c
     struct placing placing = { .grid = grid, .where = where };
     grid->frames = mem_array(grid->n_frames, sizeof *grid->frames, UINT32_MAX, err);
     placing.slices = grid->frames ? mem_array(grid->n_frames, sizeof *placing.slices, UINT32_MAX, err) : NULL;
-    bool is_found = placing.slices && find_frames(&placing, root, report, err) && make_grid(&placing, err);
+    bool is_found = placing.slices && find_frames(&placing, root, report, err) && make_grid(&placing, report, err);
     free(placing.slices);
     return is_found;
 }
