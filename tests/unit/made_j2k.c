@@ -50,6 +50,8 @@ uint8_t *made_j2k_bytes(const struct made_j2k *like, int32_t (*value)(uint32_t x
     parameters.tcp_numlayers = 1;
     parameters.cp_disto_alloc = 1;
     parameters.numresolution = 3;
+    while (parameters.numresolution > 1 && 1u << (parameters.numresolution - 1) > (like->rows < like->columns ? like->rows : like->columns))
+        parameters.numresolution--;
     parameters.irreversible = like->is_lossy;
     parameters.tcp_rates[0] = like->is_lossy ? 4 : 0;
     if (like->tile > 0) {

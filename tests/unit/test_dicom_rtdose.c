@@ -4,6 +4,7 @@
 #include "core/formats/dicom/dicom_rtplan.h"
 #include "core/formats/dicom/dicom_rtstruct.h"
 #include "tests/check.h"
+#include "tests/unit/made_j2k.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/oracle.h"
 #include "tests/unit/plan_help.h"
@@ -19,6 +20,7 @@ struct made_dose {
     int bits;
     bool is_zero;
     int beam;
+    const char *syntax; /* explicit; NULL: implicit little endian */
 };
 static const struct made_dose plain = { .position = "10\\20\\30", .orientation = "1\\0\\0\\0\\1\\0", .spacing = "2\\5", .offsets = "0\\3\\6",
                                         .scaling = "0.5", .type = "PHYSICAL", .summation = "PLAN", .n_frames = 3, .bits = 16 };
@@ -26,7 +28,14 @@ static const struct made_dose plain = { .position = "10\\20\\30", .orientation =
 static void put_dose(struct made_dicom *made, const struct made_dose *dose)
 {
     char n_frames[16];
-    made_rt_begin(made, RTDOSE, "RTDOSE", "ISO_IR 192");
+    if (dose->syntax) {
+        made_begin(made, dose->syntax);
+        made_text(made, TAG(0x0008, 0x0016), "UI", RTDOSE);
+        made_text(made, TAG(0x0008, 0x0018), "UI", "1.2.3.4");
+        made_text(made, TAG(0x0008, 0x0060), "CS", "RTDOSE");
+    } else {
+        made_rt_begin(made, RTDOSE, "RTDOSE", "ISO_IR 192");
+    }
     if (dose->description)
         made_text(made, TAG(0x0008, 0x103e), "LO", dose->description);
     if (dose->position)
@@ -424,10 +433,68 @@ static void cut_and_flipped_copies_of_real_files_are_read_or_refused(void **stat
     }
 }
 
+static int32_t dose_value(uint32_t x, uint32_t y) { return (int32_t)(100 * y + 10 * x); }
+static int32_t next_dose_value(uint32_t x, uint32_t y) { return dose_value(x, y) + 1000; }
+
+static void put_fragment(struct made_dicom *made, const uint8_t *bytes, size_t n)
+{
+    made_head(made, TAG(0xFFFE, 0xE000), "", (uint32_t)n);
+    made_raw(made, bytes, n);
+}
+
+/* Two frames with different values, each in two fragments, without a table of offsets. */
+static void a_dose_in_jpeg_2000_keeps_its_frames_apart_and_says_loss_and_other_bits(void **state)
+{
+    (void)state;
+    for (int way = 0; way < 3; way++) { /* as it should be; with loss; of other bits */
+        const struct made_j2k like = { 4, 3, way == 2 ? 12 : 16, false, way == 1, false, 0 };
+        struct made_dose said = plain;
+        struct made_dicom made = { 0 };
+        said.n_frames = 2;
+        said.offsets = "0\\3";
+        said.syntax = "1.2.840.10008.1.2.4.91";
+        put_dose(&made, &said);
+        made.size -= 12 + 2 * 3 * 4 * 2; /* without its pixels */
+        made_head(&made, TAG(0x7FE0, 0x0010), "OB", UINT32_MAX);
+        made_head(&made, TAG(0xFFFE, 0xE000), "", 0);
+        for (int f = 0; f < 2; f++) {
+            size_t size;
+            uint8_t *bytes = made_j2k_bytes(&like, f ? next_dose_value : dose_value, &size);
+            put_fragment(&made, bytes, 64);
+            bytes = realloc(bytes, size + 1);
+            bytes[size] = 0;
+            put_fragment(&made, bytes + 64, size + size % 2 - 64);
+            free(bytes);
+        }
+        made_sequence_end(&made);
+        struct report report = { 0 };
+        struct error err = { 0 };
+        struct rtdose dose;
+        struct rt_file file = rt_file_of(&made);
+        if (!rtdose_read(file.file, "dose.dcm", &dose, &report, &err))
+            fail_msg("%s", err.text);
+        for (uint32_t k = 0; k < 2; k++)
+            for (uint32_t y = 0; y < 3; y++)
+                for (uint32_t x = 0; x < 4; x++)
+                    assert_close(volume_value(dose.values, x, y, k), 0.5 * (k ? next_dose_value(x, y) : dose_value(x, y)), way == 1 ? 2 : 1e-9);
+        assert_int_equal(report_has(&report, "image.lossy"), way == 1);
+        assert_int_equal(report_has(&report, "image.coded-otherwise"), way == 2);
+        if (way == 1)
+            assert_non_null(strstr(report_said(&report, "image.lossy"), "2 of 2 frames were compressed with loss"));
+        if (way == 2)
+            assert_non_null(strstr(report_said(&report, "image.coded-otherwise"), "2 of 2 frames holds values of 12 bits"));
+        rtdose_finish(&dose);
+        rt_file_close(&file);
+        report_finish(&report);
+        made_finish(&made);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values_lie_where_rows_columns_and_offsets_put_them),
+        cmocka_unit_test(a_dose_in_jpeg_2000_keeps_its_frames_apart_and_says_loss_and_other_bits),
         cmocka_unit_test(uneven_frames_are_interpolated_and_said),
         cmocka_unit_test(what_is_no_dose_is_refused_with_a_sentence),
         cmocka_unit_test(descriptions_name_components),

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/formats/dicom/dicom_coded.h"
 #include "core/formats/dicom/dicom_numbers.h"
 
 #define RTDOSE_CLASS "1.2.840.10008.5.1.4.1.1.481.2"
@@ -200,7 +201,7 @@ static void scale_32(float *out, const void *stored, size_t n, bool is_signed, d
 }
 
 static struct volume *read_even(const struct dicom_file *file, const struct dicom_pixels *pixels, const struct grid *grid, double scaling,
-                                struct error *err)
+                                struct dicom_coded *coded, struct error *err)
 {
     enum voxel_type type = type_for(pixels);
     struct volume *volume = volume_create(grid, type, err);
@@ -210,6 +211,7 @@ static struct volume *read_even(const struct dicom_file *file, const struct dico
     for (uint32_t k = 0; is_read && k < pixels->n_frames; k++) {
         uint8_t *out = (uint8_t *)volume->voxels + k * n * voxel_size(type);
         is_read = dicom_pixels_read(file, k, type == VOXEL_F32 ? frame : out, err);
+        dicom_coded_count(coded, file, pixels);
         if (is_read && type == VOXEL_F32)
             scale_32((float *)(void *)out, frame, n, pixels->is_signed, scaling);
     }
@@ -223,10 +225,11 @@ static struct volume *read_even(const struct dicom_file *file, const struct dico
 }
 
 static bool read_scaled_frame(const struct dicom_file *file, const struct dicom_pixels *pixels, uint32_t k, double scaling, void *stored,
-                              float *out, struct error *err)
+                              float *out, struct dicom_coded *coded, struct error *err)
 {
     if (!dicom_pixels_read(file, k, stored, err))
         return false;
+    dicom_coded_count(coded, file, pixels);
     size_t n = (size_t)pixels->rows * pixels->columns;
     if (pixels->bits_allocated == 32) {
         scale_32(out, stored, n, pixels->is_signed, scaling);
@@ -239,14 +242,14 @@ static bool read_scaled_frame(const struct dicom_file *file, const struct dicom_
 
 /* Linear between the two planes around each even one. */
 static struct volume *read_uneven(const struct dicom_file *file, const struct dicom_pixels *pixels, const struct planes *planes,
-                                  const struct grid *grid, double step_mm, double scaling, struct error *err)
+                                  const struct grid *grid, double step_mm, double scaling, struct dicom_coded *coded, struct error *err)
 {
     size_t n = (size_t)pixels->rows * pixels->columns;
     struct volume *volume = volume_create(grid, VOXEL_F32, err);
     void *stored = mem_array(n, sizeof(uint32_t), VOLUME_MAX_BYTES, err);
     float *low = mem_array(n, sizeof *low, VOLUME_MAX_BYTES, err), *high = mem_array(n, sizeof *high, VOLUME_MAX_BYTES, err);
-    bool is_read = volume && stored && low && high && read_scaled_frame(file, pixels, 0, scaling, stored, low, err) &&
-                   read_scaled_frame(file, pixels, 1, scaling, stored, high, err);
+    bool is_read = volume && stored && low && high && read_scaled_frame(file, pixels, 0, scaling, stored, low, coded, err) &&
+                   read_scaled_frame(file, pixels, 1, scaling, stored, high, coded, err);
     uint32_t frame = 0; /* low is this one, high the next */
     for (uint32_t k = 0; is_read && k < grid->size[2]; k++) {
         double along_mm = fabs(k * step_mm);
@@ -255,7 +258,7 @@ static struct volume *read_uneven(const struct dicom_file *file, const struct di
             low = high;
             high = next;
             frame++;
-            is_read = read_scaled_frame(file, pixels, frame + 1, scaling, stored, high, err);
+            is_read = read_scaled_frame(file, pixels, frame + 1, scaling, stored, high, coded, err);
         }
         double from_mm = fabs(planes->at_mm[frame]), to_mm = fabs(planes->at_mm[frame + 1]);
         float share = (float)fmin(fmax((along_mm - from_mm) / (to_mm - from_mm), 0), 1);
@@ -273,12 +276,13 @@ static struct volume *read_uneven(const struct dicom_file *file, const struct di
 }
 
 static struct volume *read_values(const struct reading *reading, const struct dicom_file *file, const struct dicom_pixels *pixels,
-                                  const struct planes *planes, double scaling, struct error *err)
+                                  const struct planes *planes, double scaling, struct dicom_coded *coded, struct error *err)
 {
     struct grid grid;
     double step_mm = planes->n == 1 ? lone_thickness_mm(reading, planes) : even_step_mm(planes);
     if (step_mm != 0)
-        return make_grid(reading, planes, pixels, planes->n, step_mm, &grid, err) ? read_even(file, pixels, &grid, scaling, err) : NULL;
+        return make_grid(reading, planes, pixels, planes->n, step_mm, &grid, err) ? read_even(file, pixels, &grid, scaling, coded, err)
+                                                                                     : NULL;
     double least_mm = smallest_step_mm(planes), length_mm = planes->at_mm[planes->n - 1];
     double n = round(fabs(length_mm) / least_mm) + 1;
     if (n > VOLUME_MAX_SIDE) {
@@ -292,7 +296,7 @@ static struct volume *read_values(const struct reading *reading, const struct di
     report_add(reading->report, REPORT_WARNING, "dose.offsets-uneven", reading->where,
                "The %zu frames are not evenly spaced (from %g mm on); the dose was interpolated linearly onto %g planes %.4g mm apart.",
                planes->n, least_mm, n, fabs(step_mm));
-    return read_uneven(file, pixels, planes, &grid, step_mm, scaling, err);
+    return read_uneven(file, pixels, planes, &grid, step_mm, scaling, coded, err);
 }
 
 /* ---- the object ------------------------------------------------------------------------------------------------------------------- */
@@ -364,14 +368,16 @@ bool rtdose_read(const struct dicom_file *file, const char *where, struct rtdose
     struct dicom_pixels pixels;
     struct planes planes = { 0 };
     struct rtdose read = { 0 };
+    struct dicom_coded coded = { 0 };
     double scaling;
     bool is_read = dicom_pixels_look(file, &pixels, err) && check_kind(&reading, &pixels, &scaling, err) &&
                    read_frame(&reading, &planes, err) && read_offsets(&reading, &planes, pixels.n_frames, err);
     if (is_read)
-        read.values = read_values(&reading, file, &pixels, &planes, scaling, err);
+        read.values = read_values(&reading, file, &pixels, &planes, scaling, &coded, err);
     free(planes.at_mm);
     if (!read.values)
         return false;
+    dicom_coded_report(&coded, file, &pixels, where, report);
     read_words(&read, root);
     read_references(&read, root);
     volume_measure(read.values);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/formats/dicom/dicom_coded.h"
 #include "core/formats/dicom/dicom_numbers.h"
 #include "core/formats/dicom/dicom_seg_grid.h"
 #include "core/formats/text.h"
@@ -47,6 +48,8 @@ struct reading {
     const uint8_t *bits;   /* binary: of all frames, one behind the other */
     bool is_swapped;
     uint8_t *cells;        /* fractional: one frame */
+    struct dicom_pixels pixels; /* fractional */
+    struct dicom_coded coded;
     size_t n_repeated;     /* frames of a segment where it has another one */
 };
 
@@ -178,6 +181,7 @@ static bool look_at_fractions(struct reading *reading, struct error *err)
     if (pixels.bits_allocated != 8 || pixels.is_signed)
         return error_set(err, ERROR_UNSUPPORTED, "%s: a fractional segmentation of %u bits a pixel, expected 8 without a sign", reading->where,
                          pixels.bits_allocated);
+    reading->pixels = pixels;
     reading->threshold = (most + 1) / 2;
     reading->cells = mem_array((size_t)pixels.rows * pixels.columns, 1, UINT32_MAX, err);
     dicom_text(reading->root, FRACTION_TYPE, type, sizeof type);
@@ -229,6 +233,8 @@ static bool add_frame(struct reading *reading, uint32_t frame, struct mask *mask
     const struct seg_grid *grid = &reading->grid;
     if (reading->is_fractional && !dicom_pixels_read(reading->file, frame, reading->cells, err))
         return false;
+    if (reading->is_fractional)
+        dicom_coded_count(&reading->coded, reading->file, &reading->pixels);
     for (uint32_t y = 0; y < grid->rows; y++) {
         uint64_t *row = mask->bits + ((size_t)grid->frames[frame].plane * grid->rows + y) * mask->words;
         if (reading->is_fractional)
@@ -245,12 +251,15 @@ static struct mask *read_mask(struct reading *reading, const struct segment *seg
 {
     const struct seg_grid *grid = &reading->grid;
     struct mask *mask = mask_create_empty(grid->grid.size, &grid->grid.lps_mm_from_ijk, err);
+    uint32_t low_k = grid->grid.size[2], end_k = 0; /* the reach of the segment: nothing else of the mask is looked at */
     bool *has_plane = mask ? mem_array(grid->grid.size[2], sizeof *has_plane, UINT32_MAX, err) : NULL, is_read = has_plane != NULL;
     for (uint32_t f = 0; is_read && f < grid->n_frames; f++) {
         if (!grid->frames[f].is_used || grid->frames[f].segment != segment->number)
             continue;
         reading->n_repeated += has_plane[grid->frames[f].plane];
         has_plane[grid->frames[f].plane] = true;
+        low_k = grid->frames[f].plane < low_k ? grid->frames[f].plane : low_k;
+        end_k = grid->frames[f].plane >= end_k ? grid->frames[f].plane + 1 : end_k;
         is_read = add_frame(reading, f, mask, err);
     }
     free(has_plane);
@@ -258,6 +267,8 @@ static struct mask *read_mask(struct reading *reading, const struct segment *seg
         mask_destroy(mask);
         return NULL;
     }
+    mask->low_k = low_k;
+    mask->end_k = end_k;
     return mask;
 }
 
@@ -363,6 +374,8 @@ bool dicom_seg_read(const struct dicom_file *file, const char *where, const char
         assign_frames(&reading);
         is_read = fill_layers(&reading, only, layers, err);
     }
+    if (is_read && reading.is_fractional)
+        dicom_coded_report(&reading.coded, file, &reading.pixels, where, report);
     if (is_read) {
         const uint32_t *size = reading.grid.grid.size;
         report_add(report, REPORT_NOTE, "region.segments", where, "%zu segments in %u frames (%s), on the frames' own grid of %u x %u x %u voxels; "
