@@ -133,6 +133,22 @@ static struct need need_of_structs(const struct loading *loading, const struct j
     return (struct need){ USUAL_LAYERS * voxels + 2 * job->bytes, job->bytes };
 }
 
+/* Segments that overlap lie on layers of their own; empty planes between frames take as much as others. */
+static struct need need_of_segments(const struct folder *folder, const struct job *job)
+{
+    enum { USUAL_LAYERS = 3 };
+    struct plan_dicom_file opened;
+    struct need need = { 8 * job->bytes, 2 * job->bytes }; /* a byte for each bit of the frames */
+    uint64_t n_voxels;
+    size_t n_segments;
+    if (!plan_dicom_open(folder, job->path, &opened, NULL))
+        return need;
+    if (dicom_seg_measure(opened.file, &n_voxels, &n_segments)) /* work: the file, its elements, and a mask of one segment */
+        need = (struct need){ n_voxels * (n_segments < USUAL_LAYERS ? n_segments : USUAL_LAYERS), 2 * job->bytes + n_voxels / 8 };
+    plan_dicom_close(&opened);
+    return need;
+}
+
 static struct need need_of(const struct loading *loading, const struct job *job)
 {
     const struct folder *folder = &loading->folder;
@@ -151,7 +167,7 @@ static struct need need_of(const struct loading *loading, const struct job *job)
     if (job->kind == JOB_IMAGE)
         return (struct need){ loading->parts.dicom->stacks[job->stack].n_bytes, 0 };
     if (job->kind == JOB_REGION && plan_dicom_object(loading->parts.dicom, DICOM_KIND_SEGMENTATION, job->path, 0))
-        return (struct need){ 8 * job->bytes, 2 * job->bytes }; /* a byte for each bit of the frames */
+        return need_of_segments(folder, job);
     if (job->kind == JOB_REGION)
         return need_of_structs(loading, job);
     return (struct need){ job->bytes, job->bytes };

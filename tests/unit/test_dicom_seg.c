@@ -224,6 +224,24 @@ static void a_thickness_that_the_file_does_not_give_is_said(void **state)
     }
 }
 
+/* Two frames of 33 pixels 84 mm apart, planes 3 mm apart: 29 planes and one empty one at either end. */
+static void the_size_of_a_segmentation_counts_its_empty_planes(void **state)
+{
+    (void)state;
+    static const struct made_seg_frame apart[] = { { 1, 0 }, { 1, 84 } };
+    const struct made_seg seg = { .frames = apart, .n_frames = 2, .n_segments = 2, .between_mm = 3 };
+    struct made_dicom made;
+    uint64_t n_voxels;
+    size_t n_segments;
+    made_seg_bytes(&made, &seg);
+    struct rt_file file = rt_file_of(&made);
+    assert_true(dicom_seg_measure(file.file, &n_voxels, &n_segments));
+    assert_int_equal(n_voxels, 33 * (1 + 29 + 1));
+    assert_int_equal(n_segments, 2);
+    rt_file_close(&file);
+    made_finish(&made);
+}
+
 static void colors_are_those_of_lindbloom_s_tables(void **state)
 {
     (void)state;
@@ -409,6 +427,7 @@ int main(void)
         cmocka_unit_test(bits_in_big_endian_words_are_read_and_half_a_word_is_refused),
         cmocka_unit_test(frames_nearly_at_one_place_stay_inside_the_grid),
         cmocka_unit_test(a_thickness_that_the_file_does_not_give_is_said),
+        cmocka_unit_test(the_size_of_a_segmentation_counts_its_empty_planes),
         cmocka_unit_test(colors_are_those_of_lindbloom_s_tables),
         cmocka_unit_test(what_contradicts_itself_is_refused_by_name),
         cmocka_unit_test(a_folder_with_a_segmentation_has_its_regions),

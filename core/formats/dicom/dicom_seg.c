@@ -389,3 +389,17 @@ bool dicom_seg_read(const struct dicom_file *file, const char *where, const char
     free(reading.cells);
     return is_read;
 }
+
+bool dicom_seg_measure(const struct dicom_file *file, uint64_t *n_voxels, size_t *n_segments)
+{
+    struct reading reading = { .file = file, .root = dicom_root(file), .where = "" };
+    struct seg_grid *grid = &reading.grid;
+    bool is_found = need_integer(&reading, ROWS, "rows", 1, DICOM_MAX_SIDE, &grid->rows, NULL) &&
+                    need_integer(&reading, COLUMNS, "columns", 1, DICOM_MAX_SIDE, &grid->columns, NULL) &&
+                    need_integer(&reading, N_FRAMES, "number of frames", 1, DICOM_SEG_MAX_FRAMES, &grid->n_frames, NULL) &&
+                    seg_grid_find(grid, reading.root, "", NULL, NULL);
+    *n_voxels = is_found ? grid_n_voxels(&grid->grid) : 0;
+    *n_segments = dicom_n_items(reading.root, SEGMENT_SEQUENCE);
+    free(grid->frames);
+    return is_found;
+}

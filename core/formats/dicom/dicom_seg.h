@@ -18,5 +18,8 @@ enum {
 NODISCARD bool dicom_seg_read(const struct dicom_file *file, const char *where, const char *only, struct nrrd_layers *layers,
                               struct report *report, struct error *err);
 
+/* What the grid and the labels will take, without reading pixels; false when the frames make no grid. */
+bool dicom_seg_measure(const struct dicom_file *file, uint64_t *n_voxels, size_t *n_segments);
+
 /* CIELab as DICOM stores it (three 16-bit numbers, white D50) to sRGB. IEC 61966-2-1; B. Lindbloom's Bradford matrix D50 to D65. */
 void dicom_seg_color(const uint16_t lab[3], uint8_t rgb[3]);
