@@ -47,12 +47,18 @@ static struct source *add_source(struct turns *turns, uint64_t id)
     return place;
 }
 
-static struct source *find_source(struct turns *turns, uint64_t id)
+static struct source *known_source(struct turns *turns, uint64_t id)
 {
     for (size_t i = 0; i < turns->n; i++)
         if (turns->sources[i].id == id)
             return &turns->sources[i];
-    return add_source(turns, id);
+    return NULL;
+}
+
+static struct source *find_source(struct turns *turns, uint64_t id)
+{
+    struct source *source = known_source(turns, id);
+    return source ? source : add_source(turns, id);
 }
 
 /* Within a source: see the header. */
@@ -68,21 +74,24 @@ bool turns_may_interrupt(const struct turns_item *drawn, const struct turns_item
 
 static void activate(struct turns *turns, struct turns_item *const *items, size_t n)
 {
-    bool was_active[MAX_SOURCES];
+    bool was_active[MAX_SOURCES] = { false };
     for (size_t i = 0; i < turns->n; i++) {
         was_active[i] = turns->sources[i].is_active;
         turns->sources[i].is_active = false;
         turns->sources[i].item = SIZE_MAX;
     }
-    for (size_t i = 0; i < n; i++) {
-        size_t n_known = turns->n;
-        struct source *source = find_source(turns, items[i]->source);
-        size_t at = (size_t)(source - turns->sources);
-        bool is_new = at >= n_known || !was_active[at];
-        if (!source->is_active && is_new && source->used_us < turns->floor_us - TURNS_CREDIT_US)
+    for (size_t i = 0; i < n; i++) { /* before one is added: a source with a picture here keeps its place */
+        struct source *source = known_source(turns, items[i]->source);
+        if (!source || source->is_active)
+            continue;
+        source->is_active = true;
+        if (!was_active[source - turns->sources] && source->used_us < turns->floor_us - TURNS_CREDIT_US)
             source->used_us = turns->floor_us - TURNS_CREDIT_US;
+    }
+    for (size_t i = 0; i < n; i++) {
+        struct source *source = find_source(turns, items[i]->source);
         if (!source->is_active)
-            source->item = SIZE_MAX;
+            source->item = SIZE_MAX; /* new, or forgotten and known again */
         source->is_active = true;
         if (!items[i]->is_held && (source->item == SIZE_MAX || goes_before(items[i], items[source->item])))
             source->item = i;
