@@ -58,7 +58,7 @@ SERVER_LIBS := -lmicrohttpd -lwebsockets -lcjson -lm
 c_files = $(if $(wildcard $(1)),$(sort $(shell find $(wildcard $(1)) -name '*.c')))
 
 # ---- generated from proto/ ------------------------------------------------------------------------------------------
-PROTO := $(wildcard proto/*.json proto/*.md proto/*.yaml proto/gen/*.mjs) core/plan/report_codes.h
+PROTO := $(wildcard proto/*.json proto/*.md proto/*.yaml proto/gen/*.mjs) core/report/report_codes.h
 GEN_STAMP := $(GEN)/.stamp
 $(GEN_STAMP): $(PROTO)
 	$(Q)mkdir -p $(GEN)

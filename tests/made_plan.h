@@ -6,7 +6,6 @@
 
 #include "core/base/mem.h"
 #include "core/plan/plan.h"
-#include "core/plan/plan_shapes.h"
 
 static inline struct grid made_grid(uint32_t ni, uint32_t nj, uint32_t nk, struct affine lps_mm_from_ijk)
 {
@@ -67,8 +66,7 @@ struct made_region {
 static inline struct plan *made_plan(const struct grid *grid, double (*label)(struct vec3 lps_mm), const struct made_region *regions,
                                      size_t n_regions)
 {
-    struct plan *plan = mem_new(sizeof *plan);
-    snprintf(plan->id, sizeof plan->id, "made");
+    struct plan *plan = plan_create("made");
     plan->bounds_lps_mm = grid_bounds_lps_mm(grid);
     plan->regions.layers[0] = made_volume(grid, VOXEL_U8, label);
     plan->regions.n_layers = 1;
@@ -85,7 +83,6 @@ static inline struct plan *made_plan(const struct grid *grid, double (*label)(st
         region->rgb[2] = (uint8_t)regions[i].rgb;
     }
     region_set_measure(&plan->regions);
-    plan->shapes = plan_shapes_create(PLAN_SHAPE_BUDGET_BYTES);
     return plan;
 }
 

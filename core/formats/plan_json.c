@@ -8,6 +8,7 @@
 #include "core/base/mem.h"
 #include "core/formats/plan_json_inner.h"
 #include "core/formats/text.h"
+#include "core/volume/window.h"
 
 /* Of lengths, where a file does not say it, or not rightly; 0 when the plan does not either. */
 static bool get_unit(const struct place *place, const cJSON *object, double *mm)
@@ -28,8 +29,8 @@ static bool get_window(const struct place *place, const cJSON *object, struct pl
     if (!window || cJSON_IsNull(window))
         return true;
     const cJSON *center = cJSON_GetObjectItemCaseSensitive(window, "center"), *width = cJSON_GetObjectItemCaseSensitive(window, "width");
-    if (!cJSON_IsNumber(center) || !cJSON_IsNumber(width) || !(fabs(center->valuedouble) <= PLAN_WINDOW_FARTHEST) ||
-        !(width->valuedouble >= PLAN_WINDOW_NARROWEST && width->valuedouble <= PLAN_WINDOW_WIDEST))
+    if (!cJSON_IsNumber(center) || !cJSON_IsNumber(width) || !(fabs(center->valuedouble) <= WINDOW_CENTER_FARTHEST) ||
+        !(width->valuedouble >= WINDOW_NARROWEST && width->valuedouble <= WINDOW_WIDEST))
         return place_fail(place, ERROR_RANGE, "window", "expected a center within 1e12 of 0, and a width from 1e-15 to 2e12");
     image->window_center = center->valuedouble;
     image->window_width = width->valuedouble;
@@ -40,7 +41,7 @@ static bool parse_images(const struct place *top, const cJSON *root, struct plan
 {
     static const char *const known[] = { "id", "path", "header", "modality", "name", "unit", "value_unit", "window", "inverted", NULL };
     const cJSON *list;
-    if (!place_list(top, root, "images", PLAN_MAX_IMAGES, &list))
+    if (!place_list(top, root, "images", PLAN_FILE_MAX_IMAGES, &list))
         return false;
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
         struct place at = place_at(top, "images", (int)file->n_images);
@@ -119,7 +120,7 @@ static bool parse_doses(const struct place *top, const cJSON *root, struct plan_
                                          "unit", "per",  "mask", "components", "frame_of_reference", NULL };
     static const char *const known_inside[] = { "path", "quantity", "per_ppm", "boron_ppm", "reference", NULL };
     const cJSON *list, *components;
-    if (!place_list(top, root, "doses", PLAN_MAX_DOSES, &list))
+    if (!place_list(top, root, "doses", PLAN_FILE_MAX_DOSES, &list))
         return false;
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
         struct place at = place_at(top, "doses", (int)file->n_doses);
@@ -173,7 +174,7 @@ static bool parse_curves(const struct place *top, const cJSON *root, struct plan
 {
     static const char *const known[] = { "id", "name", "path", "per", NULL };
     const cJSON *list;
-    if (!place_list(top, root, "curves", PLAN_MAX_CURVES, &list))
+    if (!place_list(top, root, "curves", PLAN_FILE_MAX_CURVES, &list))
         return false;
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
         struct place at = place_at(top, "curves", (int)file->n_curves);

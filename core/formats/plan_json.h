@@ -2,10 +2,18 @@
 /* plan.json and the lists of label names: what they say, checked and in plain structs. The only file of core that knows JSON.
  * Opens nothing: paths are checked for form alone. */
 #include "core/formats/folder.h"
-#include "core/plan/plan.h"
+#include "core/beam/beam.h"
+#include "core/dose/dose.h"
+#include "core/region/region.h"
+#include "core/report/report.h"
+#include "core/volume/window.h"
 
 enum {
     PLAN_FILE_MAX_BYTES = 4 << 20,
+    PLAN_FILE_MAX_IMAGES = 16,
+    PLAN_FILE_MAX_DOSES = 16,
+    PLAN_FILE_MAX_BEAMS = 64,
+    PLAN_FILE_MAX_CURVES = 16,
     PLAN_FILE_MAX_PARTS = REGION_MAX, /* entries of "regions" */
     PLAN_FILE_MAX_TRACKS = 16,
     PLAN_FILE_MAX_PREFERENCES = 16,
@@ -22,7 +30,7 @@ struct plan_file_image {
     char name[128]; /* for people; "" none */
     char value_unit[8]; /* of its values, "HU"; "" none */
     bool is_inverted;   /* low values are meant to be white */
-    double window_center, window_width; /* a first window, within PLAN_WINDOW_...; width 0: none */
+    double window_center, window_width; /* a first window, within WINDOW_...; width 0: none */
     double mm; /* of one unit of a SERA header, whatever that says; 0 when not given */
 };
 struct plan_file_region {
@@ -68,22 +76,22 @@ struct plan_file_pair {
 struct plan_file {
     char name[128], note[512];
     bool is_phantom;
-    struct plan_file_image images[PLAN_MAX_IMAGES];
+    struct plan_file_image images[PLAN_FILE_MAX_IMAGES];
     size_t n_images;
     struct plan_file_region *regions;
     size_t n_regions;
     char hierarchy[FOLDER_NAME_SIZE]; /* a file; "" when pairs say it, or nothing does */
     struct plan_file_pair *pairs;
     size_t n_pairs;
-    struct plan_file_dose doses[PLAN_MAX_DOSES];
+    struct plan_file_dose doses[PLAN_FILE_MAX_DOSES];
     size_t n_doses;
-    struct beam beams[PLAN_MAX_BEAMS];
+    struct beam beams[PLAN_FILE_MAX_BEAMS];
     size_t n_beams;
     struct plan_file_beams beam_files[PLAN_FILE_MAX_BEAM_FILES];
     size_t n_beam_files;
     struct plan_file_tracks tracks[PLAN_FILE_MAX_TRACKS];
     size_t n_tracks;
-    struct plan_file_curve curves[PLAN_MAX_CURVES];
+    struct plan_file_curve curves[PLAN_FILE_MAX_CURVES];
     size_t n_curves;
     char preferences[PLAN_FILE_MAX_PREFERENCES][FOLDER_NAME_SIZE];
     size_t n_preferences;

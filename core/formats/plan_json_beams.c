@@ -88,7 +88,7 @@ bool plan_json_beams(const struct place *top, const cJSON *root, struct plan_fil
 {
     static const char *const known[] = { "id", "name", "entry_mm", "target_mm", "aperture_mm", "delivery", NULL };
     const cJSON *list;
-    if (!place_list(top, root, "beams", PLAN_MAX_BEAMS, &list))
+    if (!place_list(top, root, "beams", PLAN_FILE_MAX_BEAMS, &list))
         return false;
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
         struct place at = place_at(top, "beams", (int)(file->n_beams + file->n_beam_files));

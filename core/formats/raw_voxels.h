@@ -2,7 +2,7 @@
 /* Voxels as a file holds them, in any scalar type, into a volume: an image, a label map or a mask. What the readers of grids
  * share; knows no file format. */
 #include "core/formats/folder.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 #include "core/volume/volume.h"
 
 enum raw_type { RAW_I8, RAW_U8, RAW_I16, RAW_U16, RAW_I32, RAW_U32, RAW_I64, RAW_U64, RAW_F32, RAW_F64 };

@@ -1,6 +1,6 @@
 #pragma once
 /* SERA's patient axes: RL grows to the left, PA to the anterior, IS to the superior side. Here alone they become patient LPS. */
-#include "core/plan/report.h"
+#include "core/report/report.h"
 #include "core/volume/volume.h"
 
 enum sera_axis { SERA_RL, SERA_PA, SERA_IS };

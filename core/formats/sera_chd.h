@@ -10,7 +10,7 @@
  *   source   output of seraMC 1C0; sera's boron dose per ppm and thermal fluence, 7.3e-12 cGy cm2 */
 #include "core/formats/folder.h"
 #include "core/formats/sera_doses.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 
 enum {
     CHD_MAX_BYTES = 1 << 20,

@@ -1,7 +1,7 @@
 #pragma once
 /* seraMC's particle tracks .pp: a line a segment, x0 y0 z0 x1 y1 z1 type energy, in (RL, PA, IS). Works on bytes in memory.
  * seraMC writes millimetres for a header in cm and centimetres for one in mm, and says neither: the patient's size decides. */
-#include "core/plan/report.h"
+#include "core/report/report.h"
 #include "core/track/track.h"
 
 enum { PP_MAX_BYTES = 256 << 20 };

@@ -1,7 +1,7 @@
 #pragma once
 /* SERA's medical images (QSH): a text header .qhd and raw pixels .qim, .qim.gz or .qim.sz. Works on bytes in memory. */
 #include "core/formats/folder.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 #include "core/volume/volume.h"
 
 enum { QHD_MAX_BYTES = 1 << 20, QHD_MAX_LOCATIONS = 4096 };

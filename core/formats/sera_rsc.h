@@ -2,7 +2,7 @@
 /* SERA's preferences: Sera3d.rsc (bodies' colours and opacities, contour levels), seradose_prefs.rsc (contour levels by the names of
  * colours), colour maps .cmap, and body_data.txt (tissue data by the bodies' names). Each fills its part of one struct; keys about windows
  * and mice are passed over. Works on bytes in memory. */
-#include "core/plan/report.h"
+#include "core/report/report.h"
 #include "core/region/region.h"
 
 enum { RSC_MAX_BYTES = 1 << 20, RSC_MAX_BODIES = 256, RSC_MAX_LEVELS = 32, RSC_MAX_COLORS = 256 };

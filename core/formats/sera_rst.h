@@ -4,7 +4,7 @@
  *   source   the layout and the absolute scale as seraMC 1C0 writes and seraPlan 1C0 applies them */
 #include "core/formats/folder.h"
 #include "core/formats/sera_doses.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 
 enum {
     RST_MAX_SETS = 99,

@@ -2,7 +2,7 @@
 /* SERA's table of doses over depth and radius along a beam, .dose (edit directive Bopt): a heading, then a line a point in fixed columns.
  * What follows the points are notes and passed over. Works on unpacked text in memory. */
 #include "core/dose/curve.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 
 #define SERA_TABLE_MAX_BYTES ((uint64_t)192 << 20)
 

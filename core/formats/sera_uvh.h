@@ -1,7 +1,7 @@
 #pragma once
 /* SERA univels: a text header .uvh (versions 2.0 and 1.0) and its bytes, .uv, .uv.gz or .uv.sz. Works on bytes in memory. */
 #include "core/formats/folder.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 #include "core/region/region.h"
 
 enum { UVH_MAX_BYTES = 1 << 20, UVH_MAX_BODIES = 256 };

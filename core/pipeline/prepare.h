@@ -4,7 +4,7 @@
 #include <stdatomic.h>
 
 #include "core/pipeline/pipeline.h"
-#include "core/render/visible.h"
+#include "core/render/visible/visible.h"
 
 /* A picture that waits for shapes. */
 struct preparation {

@@ -1,23 +1,18 @@
 #pragma once
 /* One opened plan: images, regions, doses, beams, tracks, and the report of what was noticed. Frozen after loading.
- * Derives meshes on demand and keeps them. Knows no sockets, no scene, no GL. */
+ * Builds shapes of its regions on demand and keeps them. Knows no files, no sockets, no scene, no GL. */
 #include <stdatomic.h>
 
 #include "core/beam/beam.h"
 #include "core/dose/curve.h"
 #include "core/dose/dose.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 #include "core/region/region.h"
 #include "core/surface/shape.h"
 #include "core/track/track.h"
 #include "core/volume/volume.h"
 
 enum { PLAN_MAX_IMAGES = 16, PLAN_MAX_DOSES = 16, PLAN_MAX_BEAMS = 64, PLAN_MAX_CURVES = 16, PLAN_MAX_LEVELS = 32, PLAN_MAX_COLORS = 256 };
-/* Windows a scene can have (proto/scene.json), from counts of neutrons per source particle to becquerels: center within plus or minus
- * FARTHEST, width; a wider one of a file's is cut to them. */
-#define PLAN_WINDOW_FARTHEST 1e12
-#define PLAN_WINDOW_NARROWEST 1e-15
-#define PLAN_WINDOW_WIDEST 2e12
 
 struct plan_image {
     char id[64];
@@ -59,52 +54,12 @@ struct plan {
     struct box3 bounds_lps_mm; /* of all regions, else of all images and doses, else around the beams' targets */
     int64_t load_us;
     bool is_from_cache;            /* the folder's files were not read this time */
-    struct plan_sources *sources;  /* the files it was made from, for plan_cache_store; NULL: not to be kept */
     struct plan_shapes *shapes; /* kept ones; see plan_shape */
 };
 
-/* Called from the loading thread as work goes on; phase is a short sentence fragment ("reading ct.nii.gz"), percent 0..100. */
-struct plan_progress {
-    void (*step)(void *context, const char *phase, double percent);
-    void *context;
-    atomic_bool *cancel; /* may be NULL; when it turns true loading fails with ERROR_CANCELLED */
-};
-
-/* How a plan is opened; all zero: quietly and without a limit. */
-struct plan_load_options {
-    struct plan_progress progress;
-    uint64_t max_bytes; /* refuse a plan that will take more, before a voxel is read; 0: no limit */
-    const char *cache_folder; /* where plan_cache_store may have kept it; NULL: nowhere */
-};
-#define PLAN_ESTIMATE_FACTOR 1.5 /* how far the estimate compared with max_bytes may be off, either way */
-
-/* Opens a plan folder: plan.json when there is one, else by what lies in it.
- *   options NULL: all zero
- *   errors  ERROR_NOT_FOUND, ERROR_FORMAT, ERROR_UNSUPPORTED, ERROR_LIMIT, ERROR_MEMORY, ERROR_IO, ERROR_CANCELLED;
- *           the text names file, position, what was found, what was expected. Never half a plan.
- *   thread  any, one call a plan */
-NODISCARD struct plan *plan_load(const char *folder, const char *id, const struct plan_load_options *options,
-                                 struct error *err);
+/* An empty plan of this id, for who fills it: the loader, or a test. */
+struct plan *plan_create(const char *id);
 void plan_destroy(struct plan *plan);
-
-/* Keeps an opened plan in a folder of its own, so that it opens fast as long as no file of its folder changes. At once or not at all;
- * an older one is replaced. Does nothing for a plan that came from there. Any thread.
- *   errors  ERROR_LIMIT too large (PLAN_CACHE_MAX_MIB), ERROR_IO, ERROR_MEMORY */
-NODISCARD bool plan_cache_store(const struct plan *plan, const char *cache_folder, struct error *err);
-
-/* What a folder holds, without reading voxels: for the list of plans. */
-struct plan_summary {
-    char name[128];
-    char note[512];
-    bool is_phantom;
-    bool is_readable;
-    char reason[240];   /* why not, when not readable */
-    char parts[16][64]; /* "CT", "3 regions", "4 dose components", "1 beam", ... */
-    size_t n_parts;
-    uint64_t n_bytes; /* of the files named */
-};
-/* Never fails: what cannot be read is said in reason. */
-void plan_summarize(const char *folder, struct plan_summary *summary);
 
 /* Detail of a surface: FULL is every univel; LIGHT is for moving pictures: the mask reduced until all surfaces of the
  * plan by the same algorithm stay together under PLAN_LIGHT_TRIANGLES (or the reduction reaches 8): so many univels become one along

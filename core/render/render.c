@@ -10,7 +10,7 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "core/render/gl/renderer.h"
-#include "core/render/overlay.h"
+#include "core/render/visible/overlay.h"
 #include "core/render/soft/soft.h"
 
 /* Either of the two implementations; the other is NULL. */

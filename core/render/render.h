@@ -1,18 +1,9 @@
 #pragma once
 /* A snapshot to an image. Leaks no GL: OpenGL and a software rasteriser of our own stand behind it, with the same tests. */
-#include "core/base/image.h"
-#include "core/scene/snapshot.h"
+#include "core/render/visible/back_end.h"
 
-enum render_back_end { RENDER_AUTO, RENDER_EGL_DEVICE, RENDER_EGL_SURFACELESS, RENDER_OSMESA, RENDER_SOFT, RENDER_N_BACK_ENDS };
 const char *render_back_end_word(enum render_back_end back_end); /* "auto", "egl-device", "egl-surfaceless", "osmesa", "soft" */
 bool render_back_end_from_word(const char *word, enum render_back_end *back_end);
-
-struct render_facts {
-    enum render_back_end back_end;
-    char vendor[96], renderer[160], version[96];
-    bool is_software; /* llvmpipe or the like: prefer light meshes and smaller moving pictures */
-    int max_samples;
-};
 
 struct renderer;
 
@@ -24,19 +15,6 @@ NODISCARD struct renderer *renderer_create(enum render_back_end back_end, struct
 void renderer_destroy(struct renderer *renderer);
 const struct render_facts *renderer_facts(const struct renderer *renderer);
 
-struct render_options {
-    int width_px, height_px; /* of the picture; may be smaller than the view's size: the same view, fewer pixels */
-    enum surface_detail detail;
-    bool is_still;           /* anti-aliased */
-};
-
-struct render_timing {
-    int64_t draw_us, read_us;
-    size_t n_triangles;
-    bool is_light; /* some surface drawn was a reduced one */
-    size_t n_added_px, n_left_out_px; /* the check of a segmentation: what a surface encloses beyond the univels, what it leaves out */
-};
-
 /* The picture, RGBA, opaque, row 0 at the top. Uploads meshes and images on first use and keeps them until renderer_forget.
  *   errors ERROR_GL, ERROR_MEMORY, ERROR_RANGE */
 NODISCARD struct image *render_snapshot(struct renderer *renderer, const struct snapshot *snapshot,
@@ -46,11 +24,6 @@ NODISCARD struct image *render_snapshot(struct renderer *renderer, const struct 
 /* The same in pieces, so that a picture that takes long can wait while others are drawn: begin, go on until it is done or has failed, end.
  * Several pictures may be begun. However often one is paused, its bytes are the same. */
 struct render_picture;
-struct render_pause {
-    bool (*is_due)(void *context); /* asked between parts of a picture, by several threads at once */
-    void *context;
-};
-enum render_state { RENDER_FAILED, RENDER_PAUSED, RENDER_DONE };
 NODISCARD struct render_picture *render_begin(struct renderer *renderer, const struct snapshot *snapshot, const struct render_options *options);
 /* Draws at least one part of it, and on until a pause is due (NULL: never). Not to be called again once it is done or has failed.
  *   errors as render_snapshot */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/volume/window.h"
 
 int scene_image_index(const struct plan *plan, const struct scene *scene)
 {
@@ -209,6 +210,6 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
         if (strcmp(plan->images[0].unit, "HU") == 0)
             scene->image.cull_below = -500;
         else if (!plan->images[0].is_inverted) /* else what is low is bright, and no air */
-            scene->image.cull_below = fmax(window->center - 0.45 * window->width, -PLAN_WINDOW_FARTHEST);
+            scene->image.cull_below = fmax(window->center - 0.45 * window->width, -WINDOW_CENTER_FARTHEST);
     }
 }

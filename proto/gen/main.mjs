@@ -33,6 +33,6 @@ write('wire_gen.c', wireSource(scene, messages));
 write('problem_gen.h', problemHeader(problems));
 write('problem_gen.c', problemSource(problems));
 write('wire.js', wireScript(scene, messages));
-write('reference.html', referencePage(scene, messages, problems, reportCodes(readFileSync(join(proto, '../core/plan/report_codes.h'), 'utf8'))));
+write('reference.html', referencePage(scene, messages, problems, reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8'))));
 write('openapi.json', JSON.stringify(api, null, 1));
 write('openapi.c', openapiSource(api));

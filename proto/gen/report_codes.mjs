@@ -1,4 +1,4 @@
-// The codes of load reports, from their one list: X("code", "meaning", "what to do") in core/plan/report_codes.h.
+// The codes of load reports, from their one list: X("code", "meaning", "what to do") in core/report/report_codes.h.
 const words = '((?:"(?:[^"\\\\]|\\\\.)*"\\s*)+)';
 const entry = new RegExp(`X\\(\\s*${words},\\s*${words},\\s*${words}\\)`, 'g');
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
-#include "core/plan/plan_write.h"
+#include "core/load/write_plan.h"
 #include "server/cli/command.h"
 #include "server/cli/text.h"
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/load/load.h"
 #include "server/cli/command.h"
 
 static uint64_t max_bytes; /* 0: no limit */

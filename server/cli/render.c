@@ -9,7 +9,7 @@
 #include "core/base/file_write.h"
 #include "core/encode/encode.h"
 #include "core/render/render.h"
-#include "core/render/visible.h"
+#include "core/render/visible/visible.h"
 #include "server/cli/command.h"
 #include "server/cli/text.h"
 #include "server/wire/document.h"

@@ -1,5 +1,6 @@
 #pragma once
 /* Numbers about a plan as JSON bodies of the web API. Pure functions; any thread. */
+#include "core/load/summary.h"
 #include "core/render/render.h"
 #include "server/wire/shape_query.h"
 

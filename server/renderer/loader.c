@@ -9,7 +9,8 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
-#include "core/render/visible.h"
+#include "core/load/load.h"
+#include "core/render/visible/visible.h"
 #include "server/renderer/answers.h"
 
 enum {
@@ -125,12 +126,12 @@ static void build_ahead(struct loader *loader)
 }
 
 /* A plan that took its time is kept for the next opening; without that it is read again. */
-static void keep(const struct loader *loader, const struct plan *plan)
+static void keep(const struct loader *loader, const struct plan *plan, const struct plan_sources *sources)
 {
     struct error err = { 0 };
     if (!loader->cache_folder || plan->load_us < WORTH_KEEPING_US || atomic_load(&loader->cancel))
         return;
-    if (!plan_cache_store(plan, loader->cache_folder, &err))
+    if (!plan_cache_store(plan, sources, loader->cache_folder, &err))
         log_warn("the opened plan is not kept: %s", err.text);
 }
 
@@ -138,18 +139,22 @@ static void *load_main(void *argument)
 {
     struct loader *loader = argument;
     struct note note = { .type = NOTE_LOADED };
+    struct plan_sources *sources = NULL;
     struct plan_load_options options = { .progress = { step, loader, &loader->cancel }, .max_bytes = loader->max_bytes,
-                                         .cache_folder = loader->cache_folder };
+                                         .cache_folder = loader->cache_folder, .sources = &sources };
     struct plan *plan = plan_load(loader->folder, loader->plan_id, &options, &note.error);
     note.plan = plan;
     if (!plan)
         note.type = NOTE_FAILED;
     loader->plan = plan;
     desk_put(loader->desk, &note);
+    if (plan) {
+        build_ahead(loader);
+        keep(loader, plan, sources);
+    }
+    plan_sources_destroy(sources);
     if (!plan)
         return NULL;
-    build_ahead(loader);
-    keep(loader, plan);
     for (struct question *question; (question = queue_take(loader->slow, -1));) {
         if (atomic_load(&loader->cancel))
             question_drop(question);

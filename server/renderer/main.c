@@ -10,6 +10,7 @@
 
 #include "core/base/log.h"
 #include "core/base/standard_files.h"
+#include "core/load/summary.h"
 #include "server/renderer/answers.h"
 #include "server/renderer/confine.h"
 #include "server/renderer/session.h"

@@ -7,7 +7,7 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "core/render/visible.h"
+#include "core/render/visible/visible.h"
 #include "server/wire/document.h"
 
 enum { WARM_UP_PX = 64 };

@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include "core/base/clock.h"
+#include "core/load/load.h"
 #include "core/plan/plan.h"
 #include "tests/bench/peer.h"
 

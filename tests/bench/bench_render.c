@@ -6,6 +6,7 @@
 
 #include "core/base/clock.h"
 #include "core/encode/encode.h"
+#include "core/load/load.h"
 #include "core/render/render.h"
 
 enum { REPEATS = 15, WIDTH = 1024, HEIGHT = 768 };

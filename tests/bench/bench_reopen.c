@@ -7,8 +7,9 @@
 #include <unistd.h>
 
 #include "core/base/clock.h"
+#include "core/load/load.h"
 #include "core/plan/plan.h"
-#include "core/plan/plan_cache.h"
+#include "core/load/cache.h"
 
 enum { REPEATS = 5 };
 
@@ -19,15 +20,16 @@ static int compare(const void *a, const void *b)
 }
 
 /* Median ms of opening, and the last plan; NULL after saying why. */
-static struct plan *open_often(const char *folder, const char *cache, double *ms)
+static struct plan *open_often(const char *folder, const char *cache, struct plan_sources **sources, double *ms)
 {
     double all[REPEATS];
     struct plan *plan = NULL;
     for (int i = 0; i < REPEATS; i++) {
         struct error err = { 0 };
         plan_destroy(plan);
+        plan_sources_destroy(*sources);
         int64_t began_us = clock_now_us();
-        plan = plan_load(folder, "p", &(struct plan_load_options){ .cache_folder = cache }, &err);
+        plan = plan_load(folder, "p", &(struct plan_load_options){ .cache_folder = cache, .sources = sources }, &err);
         all[i] = (double)(clock_now_us() - began_us) / 1e3;
         if (!plan) {
             fprintf(stderr, "bench_reopen: %s: %s\n", folder, err.text);
@@ -45,19 +47,21 @@ static int measure(const char *what, const char *folder)
     struct error err = { 0 };
     struct stat about;
     double first_ms, again_ms;
+    struct plan_sources *sources = NULL;
     if (access(folder, R_OK) != 0)
         return 0; /* not on this machine */
     if (!mkdtemp(cache))
         return 1;
     snprintf(file, sizeof file, "%s/%s", cache, PLAN_CACHE_NAME);
-    struct plan *plan = open_often(folder, cache, &first_ms);
+    struct plan *plan = open_often(folder, cache, &sources, &first_ms);
     int64_t began_us = clock_now_us();
-    bool is_kept = plan && plan_cache_store(plan, cache, &err);
+    bool is_kept = plan && plan_cache_store(plan, sources, cache, &err);
     double store_ms = (double)(clock_now_us() - began_us) / 1e3;
     plan_destroy(plan);
-    plan = is_kept && stat(file, &about) == 0 ? open_often(folder, cache, &again_ms) : NULL;
+    plan = is_kept && stat(file, &about) == 0 ? open_often(folder, cache, &sources, &again_ms) : NULL;
     bool is_good = plan && plan->is_from_cache;
     plan_destroy(plan);
+    plan_sources_destroy(sources);
     unlink(file);
     rmdir(cache);
     if (!is_good)

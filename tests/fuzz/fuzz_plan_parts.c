@@ -1,6 +1,8 @@
 /* A whole plan, read and put together: a folder with a small file of every kind, and a plan.json that names any of them in any place, any number
  * of times. First byte even: the rest is the plan.json; odd: pairs of bytes name entries, the list and its options, then the file. */
 #include "core/formats/plan_json.h"
+#include "core/load/load.h"
+#include "core/load/summary.h"
 #include "core/plan/plan.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/unit/data_folder.h"

@@ -1,5 +1,6 @@
 #include "tests/unit/plan_help.h"
 
+#include "core/load/load.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 

@@ -5,7 +5,7 @@
 #include <sys/resource.h>
 
 #include "core/formats/folder.h"
-#include "core/plan/plan_write.h"
+#include "core/load/write_plan.h"
 #include "tests/check.h"
 #include "tests/made_plan.h"
 #include "tests/unit/data_folder.h"

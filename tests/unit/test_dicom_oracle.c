@@ -1,4 +1,5 @@
 /* All real image series against what pydicom and numpy make of them: place and value of every voxel. */
+#include "core/load/load.h"
 #include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"

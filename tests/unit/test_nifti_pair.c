@@ -1,6 +1,7 @@
 /* NIfTI as a pair of header and voxels, .hdr and .img: as nibabel reads them, named either way, and found in a folder. */
+#include "core/load/summary.h"
 #include "core/plan/plan.h"
-#include "core/plan/plan_nifti.h"
+#include "core/load/nifti_parts.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/nifti_bytes.h"

@@ -1,5 +1,7 @@
 /* NRRD files written by hand after Teem's definition of the format, and real ones with numbers numpy and Eclipse gave. */
 #include "core/formats/nrrd.h"
+#include "core/load/load.h"
+#include "core/load/summary.h"
 #include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"

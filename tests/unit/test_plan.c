@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include "core/base/parallel.h"
+#include "core/load/load.h"
+#include "core/load/summary.h"
 #include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"

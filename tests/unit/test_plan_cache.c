@@ -10,22 +10,28 @@
 
 #include "core/base/clock.h"
 #include "core/formats/nifti_write.h"
+#include "core/load/load.h"
 #include "core/plan/plan.h"
-#include "core/plan/plan_cache.h"
-#include "core/plan/plan_cache_fields.h"
+#include "core/load/cache.h"
+#include "core/load/cache_fields.h"
 #include "tests/check.h"
 #include "tests/made_plan.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/same_plan.h"
 
-enum { SIZE_IMAGE = 248, SIZE_REGION = 328, SIZE_DOSE = 760, SIZE_BEAM = 464, SIZE_SEGMENT = 28, SIZE_VOLUME = 264, SIZE_PLAN = 57808 };
+enum { SIZE_IMAGE = 248, SIZE_REGION = 328, SIZE_DOSE = 760, SIZE_BEAM = 464, SIZE_SEGMENT = 28, SIZE_VOLUME = 264, SIZE_PLAN = 57800 };
+
+static struct plan *load_with_sources(const char *folder, const char *cache, struct plan_sources **sources)
+{
+    struct error err = { 0 };
+    struct plan *plan = plan_load(folder, "p", &(struct plan_load_options){ .cache_folder = cache, .sources = sources }, &err);
+    assert_string_equal(err.text, "");
+    return plan;
+}
 
 static struct plan *load(const char *folder, const char *cache)
 {
-    struct error err = { 0 };
-    struct plan *plan = plan_load(folder, "p", &(struct plan_load_options){ .cache_folder = cache }, &err);
-    assert_string_equal(err.text, "");
-    return plan;
+    return load_with_sources(folder, cache, NULL);
 }
 
 static void put_grid(const char *folder, const char *name, enum voxel_type type, uint32_t side)
@@ -63,6 +69,7 @@ static void put_plan(const char *folder)
 struct world {
     char folder[256], cache[256], file[300];
     struct plan *first;
+    struct plan_sources *sources; /* of first */
 };
 
 static void world_start(struct world *world)
@@ -72,14 +79,15 @@ static void world_start(struct world *world)
     folder_make(world->cache);
     snprintf(world->file, sizeof world->file, "%s/%s", world->cache, PLAN_CACHE_NAME);
     put_plan(world->folder);
-    world->first = load(world->folder, world->cache);
+    world->first = load_with_sources(world->folder, world->cache, &world->sources);
     assert_false(world->first->is_from_cache);
-    assert_true(plan_cache_store(world->first, world->cache, &err));
+    assert_true(plan_cache_store(world->first, world->sources, world->cache, &err));
 }
 
 static void world_end(struct world *world)
 {
     plan_destroy(world->first);
+    plan_sources_destroy(world->sources);
     folder_remove(world->folder);
     folder_remove(world->cache);
 }
@@ -108,7 +116,7 @@ static void a_kept_plan_opens_as_the_same_plan_with_its_report(void **state)
     world_end(&world);
 }
 
-/* Every field of these structs is written by plan_cache_fields.c. Whoever adds one adds it there, raises PLAN_CACHE_FORMAT and sets the
+/* Every field of these structs is written by core/load/cache_fields.c. Whoever adds one adds it there, raises PLAN_CACHE_FORMAT and sets the
  * size here. */
 static void the_cache_knows_every_field(void **state)
 {
@@ -185,7 +193,7 @@ static void a_damaged_cache_is_not_believed_and_is_written_anew(void **state)
     }
     folder_put(world.cache, PLAN_CACHE_NAME, "something else altogether", 25);
     assert_false(comes_from_cache(&world));
-    assert_true(plan_cache_store(world.first, world.cache, &err));
+    assert_true(plan_cache_store(world.first, world.sources, world.cache, &err));
     assert_true(comes_from_cache(&world));
     free(bytes);
     world_end(&world);
@@ -287,7 +295,7 @@ static void a_plan_larger_than_a_file_may_be_is_not_kept(void **state)
         struct error err = { 0 };
         struct rlimit limit = { 4096, 4096 };
         (void)signal(SIGXFSZ, SIG_DFL); /* a write would end the process */
-        bool is_refused = setrlimit(RLIMIT_FSIZE, &limit) == 0 && !plan_cache_store(world.first, world.cache, &err);
+        bool is_refused = setrlimit(RLIMIT_FSIZE, &limit) == 0 && !plan_cache_store(world.first, world.sources, world.cache, &err);
         _exit(is_refused && err.code == ERROR_LIMIT && strstr(err.text, "more than a file may have") && access(partial, F_OK) != 0 ? 0 : 1);
     }
     int status;

@@ -5,8 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/load/load.h"
 #include "core/plan/plan.h"
-#include "core/plan/plan_write.h"
+#include "core/load/write_plan.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/oracle.h"

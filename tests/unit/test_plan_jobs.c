@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "core/formats/nifti_write.h"
+#include "core/load/load.h"
 #include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/made_plan.h"

@@ -1,4 +1,5 @@
 /* Real plans, with numbers other programs gave. */
+#include "core/load/summary.h"
 #include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"

@@ -6,8 +6,9 @@
 
 #include "core/formats/folder.h"
 #include "core/formats/nifti_write.h"
+#include "core/load/load.h"
 #include "core/plan/plan.h"
-#include "core/plan/plan_parts.h"
+#include "core/load/parts.h"
 #include "tests/check.h"
 #include "tests/made_plan.h"
 #include "tests/unit/data_folder.h"

@@ -1,5 +1,5 @@
-#include "core/plan/report.h"
-#include "core/plan/report_codes.h"
+#include "core/report/report.h"
+#include "core/report/report_codes.h"
 #include "tests/check.h"
 
 static void lines_keep_their_order_and_further_ones_are_counted(void **state)

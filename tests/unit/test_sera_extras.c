@@ -2,6 +2,7 @@
  * package; their figures are quoted from it and from notes made when the original programs ran. */
 #include "core/formats/sera_rsc.h"
 #include "core/formats/sera_table.h"
+#include "core/load/load.h"
 #include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"

@@ -1,4 +1,4 @@
-#include "core/render/shading.h"
+#include "core/render/visible/shading.h"
 #include "tests/check.h"
 #include "tests/made_plan.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 /* Inside core/formats/dicom: whether what was decoded is what the file says, for objects of one file. */
 #include "core/formats/dicom/dicom_file.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 
 struct dicom_coded {
     size_t n_frames, n_lossy, n_other_sign, n_other_bits;

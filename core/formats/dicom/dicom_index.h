@@ -4,7 +4,7 @@
 #include <stdatomic.h>
 
 #include "core/formats/dicom/dicom_file.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 
 enum {
     DICOM_MAX_OBJECTS = 50000,  /* further ones are counted, not kept */

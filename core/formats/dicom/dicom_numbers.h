@@ -1,7 +1,7 @@
 #pragma once
 /* Inside core/formats/dicom: malformed or out-of-range values, as lines of the report. */
 #include "core/formats/dicom/dicom_file.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 
 /* A line for each DS or IS value of a file that is no number, up to some; the others are counted. Values of the tag but_not are the
  * caller's to look at (0: none). A single one counts as absent for whoever reads it. */

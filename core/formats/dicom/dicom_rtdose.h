@@ -2,7 +2,7 @@
 /* RT Dose: one object is one grid of values; several may be the components of one dose. Never adds doses. */
 #include "core/dose/dose.h"
 #include "core/formats/dicom/dicom_file.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 
 enum {
     RTDOSE_MAX_BEAMS = 64,   /* that one object may refer to; further ones are not kept */

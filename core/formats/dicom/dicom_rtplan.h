@@ -2,7 +2,7 @@
 /* RT Plan: beams as lines in the patient, and what the plan prescribes. */
 #include "core/beam/beam.h"
 #include "core/formats/dicom/dicom_file.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 
 enum {
     RTPLAN_MAX_BEAMS = 64,            /* further ones are reported and left out */

@@ -1,7 +1,7 @@
 #pragma once
 /* RT Structure Set: named regions as contours. Knows nothing of voxels but for what it says about their making. */
 #include "core/formats/dicom/dicom_file.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 #include "core/region/contour.h"
 
 enum {

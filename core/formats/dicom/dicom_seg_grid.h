@@ -1,7 +1,7 @@
 #pragma once
 /* Inside the reader of segmentations: where frames lie, and the grid they make. Reads no pixels. */
 #include "core/formats/dicom/dicom_file.h"
-#include "core/plan/report.h"
+#include "core/report/report.h"
 #include "core/volume/volume.h"
 
 struct seg_frame {

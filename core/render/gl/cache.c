@@ -5,7 +5,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/render/gl/upload.h"
-#include "core/render/visible.h"
+#include "core/render/visible/visible.h"
 
 enum entry_kind { ENTRY_SHAPE, ENTRY_IMAGE, ENTRY_LAYER };
 

@@ -1,7 +1,7 @@
 #pragma once
 /* An OpenGL 3.3 core context without a window, from EGL or OSMesa, current on the thread that opened it. */
 #include "core/render/gl/table.h"
-#include "core/render/render.h"
+#include "core/render/visible/back_end.h"
 
 struct gl_context {
     enum render_back_end back_end;

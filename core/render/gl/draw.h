@@ -3,8 +3,8 @@
 #include "core/render/gl/cache.h"
 #include "core/render/gl/program.h"
 #include "core/render/gl/target.h"
-#include "core/render/render.h"
-#include "core/render/visible.h"
+#include "core/render/visible/back_end.h"
+#include "core/render/visible/visible.h"
 
 struct gl_frame {
     const struct gl *gl;

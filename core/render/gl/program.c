@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "core/render/visible.h"
+#include "core/render/visible/visible.h"
 
 /* Every picture is drawn upside down (flip in the camera's matrix, see renderer.c), so that reading it back gives row 0 at the
  * top. */

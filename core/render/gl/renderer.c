@@ -7,7 +7,7 @@
 #include "core/render/gl/context.h"
 #include "core/render/gl/draw.h"
 #include "core/render/gl/renderer.h"
-#include "core/render/visible.h"
+#include "core/render/visible/visible.h"
 
 /* How many samples are drawn at a time: larger stills are drawn in bands. */
 enum { MAX_SIDE_PX = 4096, MAX_BAND_SAMPLES = 16 << 20 };

@@ -1,6 +1,6 @@
 #pragma once
 /* The OpenGL implementation of render.h, for render.c alone. */
-#include "core/render/render.h"
+#include "core/render/visible/back_end.h"
 
 struct gl_renderer;
 

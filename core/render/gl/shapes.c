@@ -2,7 +2,7 @@
 
 #include "core/base/mem.h"
 #include "core/render/gl/draw.h"
-#include "core/render/visible.h"
+#include "core/render/visible/visible.h"
 
 /* One shape to draw. */
 struct item {

@@ -1,5 +1,5 @@
 #include "core/render/gl/draw.h"
-#include "core/render/visible.h"
+#include "core/render/visible/visible.h"
 
 /* A plane square to a patient axis cuts a grid's box in at most six corners; each half-space adds at most one to the square we
  * start from. */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "core/render/shading.h"
+#include "core/render/visible/shading.h"
 
 /* Position in single precision, normal in 16 bits a component: fine enough for shading, and less to fetch. */
 struct vertex {

@@ -3,7 +3,7 @@
  * each by one thread; bands then go through the chunks in order, so that pictures do not depend on the number of threads. */
 #include "core/base/error.h"
 #include "core/render/soft/cache.h"
-#include "core/render/visible.h"
+#include "core/render/visible/visible.h"
 
 enum { SOFT_CHUNK_PRIMITIVES = 4096 };
 

@@ -5,8 +5,8 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "core/render/shading.h"
-#include "core/render/visible.h"
+#include "core/render/visible/shading.h"
+#include "core/render/visible/visible.h"
 
 struct entry {
     const struct plan *plan;

@@ -2,7 +2,7 @@
 /* Inside core/render/soft: one picture in the making, and what is to be drawn in it. */
 #include <stdatomic.h>
 
-#include "core/render/render.h"
+#include "core/render/visible/back_end.h"
 #include "core/render/soft/bins.h"
 #include "core/render/soft/planes.h"
 

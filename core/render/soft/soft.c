@@ -9,7 +9,7 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 #include "core/render/soft/frame.h"
-#include "core/render/visible.h"
+#include "core/render/visible/visible.h"
 
 /* More threads than this wait for memory and for each other. */
 enum { MAX_THREADS = 16, VERTEX_BLOCK = 8192 };

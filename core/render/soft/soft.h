@@ -1,6 +1,6 @@
 #pragma once
 /* The implementation of render.h in plain C, for render.c alone. Draws what core/render/gl draws, by the same rules; knows no GL. */
-#include "core/render/render.h"
+#include "core/render/visible/back_end.h"
 
 struct soft_renderer;
 struct soft_frame;

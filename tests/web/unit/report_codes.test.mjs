@@ -13,7 +13,7 @@ test('a code that cannot be read is an error, not a gap', () => {
 });
 
 test('the real list has a meaning and a remedy for each code, and no code twice', () => {
-  const codes = reportCodes(readFileSync(new URL('../../../core/plan/report_codes.h', import.meta.url), 'utf8'));
+  const codes = reportCodes(readFileSync(new URL('../../../core/report/report_codes.h', import.meta.url), 'utf8'));
   assert.ok(codes.length > 60);
   assert.equal(new Set(codes.map((c) => c.code)).size, codes.length);
   for (const c of codes) assert.ok(c.meaning.endsWith('.') && c.remedy.endsWith('.'), c.code);

@@ -1,0 +1,330 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/formats/hierarchy.h"
+#include "core/formats/text.h"
+#include "core/load/dose_in_body.h"
+#include "core/plan/plan_bounds.h"
+#include "core/load/curves_and_preferences.h"
+#include "core/load/loading.h"
+#include "core/load/region_builder.h"
+#include "core/load/tracks_part.h"
+#include "core/load/image_window.h"
+
+static struct volume *take_volume(struct job *job)
+{
+    struct volume *volume = job->volume;
+    job->volume = NULL;
+    return volume;
+}
+
+void plan_make_id(char id[64], const char *given, const char *path, const char *const *others, size_t n_others)
+{
+    const struct region_set none = { 0 };
+    const char *slash = strrchr(path, '/');
+    const char *base = slash ? slash + 1 : path;
+    char stem[128];
+    size_t length = strcspn(base, ".");
+    snprintf(stem, sizeof stem, "%.*s", (int)(length < 100 ? length : 100), base);
+    region_make_id(&none, given[0] ? given : stem, id);
+    size_t n = strlen(id);
+    bool is_taken = true;
+    for (int number = 1; is_taken; number++) {
+        if (number > 1)
+            snprintf(id + n, 64 - n, "-%d", number);
+        is_taken = false;
+        for (size_t i = 0; i < n_others; i++)
+            is_taken |= strcmp(others[i], id) == 0;
+    }
+}
+
+static bool holds_only_0_and_1(const struct volume *volume)
+{
+    if (volume->low != 0 || volume->high != 1)
+        return false;
+    size_t n = grid_n_voxels(&volume->grid);
+#define COUNT(type)                                                   \
+    do {                                                              \
+        const type *in = volume->voxels;                              \
+        for (size_t i = 0; i < n; i++) {                              \
+            double value = (double)in[i] * volume->slope + volume->offset; \
+            if (value != 0 && value != 1)                             \
+                return false;                                         \
+        }                                                             \
+    } while (0)
+    switch (volume->type) {
+    case VOXEL_U8: COUNT(uint8_t); break;
+    case VOXEL_I16: COUNT(int16_t); break;
+    case VOXEL_U16: COUNT(uint16_t); break;
+    case VOXEL_F32: COUNT(float); break;
+    }
+#undef COUNT
+    return true;
+}
+
+/* A mask whose name did not say so: shown as the image it was taken for, and said, with what makes it a region: a name that says so, where
+ * that is enough (a file of whole numbers), or a plan.json, which has to name the other files, too. */
+static void note_mask(struct loading *loading, const struct job *job, const struct plan_image *image)
+{
+    const char *base = part_base_name(job->path);
+    int stem = (int)strcspn(base, ".");
+    if (!loading->parts.is_recognised || job->format == PART_DICOM || !holds_only_0_and_1(image->volume))
+        return;
+    char rename[160] = "";
+    if (image->volume->type != VOXEL_F32 && !text_has_ending(base, ".hdr") && !text_has_ending(base, ".hdr.gz"))
+        snprintf(rename, sizeof rename, "call the file %.*s_mask%.20s, or ", stem < 80 ? stem : 80, base, base + stem);
+    report_add(&loading->plan->report, REPORT_WARNING, "image.may-be-region", job->path,
+               "Every voxel is 0 or 1, so this may be a mask. To show it as a region %swrite a plan.json that names it in \"regions\" and the "
+               "folder's other files as well.", rename);
+}
+
+static void add_image(struct loading *loading, struct job *job)
+{
+    struct plan *plan = loading->plan;
+    const struct plan_file_image *entry = &loading->file->images[job->index];
+    struct plan_image *image = &plan->images[plan->n_images];
+    const char *others[PLAN_MAX_IMAGES];
+    for (size_t i = 0; i < plan->n_images; i++)
+        others[i] = plan->images[i].id;
+    plan_make_id(image->id, entry->id, entry->path, others, plan->n_images);
+    job->image = plan->n_images;
+    loading->image_stacks[plan->n_images++] = job->format == PART_DICOM ? job->stack : -1;
+    memcpy(image->name, entry->name, sizeof image->name);
+    snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : job->modality);
+    image->volume = take_volume(job);
+    note_mask(loading, job, image);
+    if (text_equal(image->modality, "CT")) {
+        snprintf(image->unit, sizeof image->unit, "HU");
+        if (image->volume->low >= 0 && image->volume->high > 0)
+            report_add(&plan->report, REPORT_WARNING, "image.hu-doubtful", entry->path,
+                       "The CT's values run from %g to %g; HU of a patient begin below 0.", image->volume->low, image->volume->high);
+    }
+    image->is_inverted = entry->is_inverted || job->facts.is_inverted;
+    plan_image_window(image);
+    if (!image->unit[0])
+        snprintf(image->unit, sizeof image->unit, "%.7s", job->facts.unit);
+    if (entry->value_unit[0])
+        memcpy(image->unit, entry->value_unit, sizeof image->unit);
+    if (entry->window_width > 0) {
+        image->window_center = entry->window_center;
+        image->window_width = entry->window_width;
+    } else if (job->facts.n_windows > 0 && !text_equal(image->modality, "CT")) { /* a CT begins with one window whoever made it */
+        image->window_center = job->facts.windows[0].center;
+        image->window_width = job->facts.windows[0].width;
+    }
+    plan_image_window_limit(image);
+}
+
+/* An image whose header described another one: univels with exactly as many voxels along each axis are the same scan. */
+static void borrow_grid(struct loading *loading, const struct job *job)
+{
+    struct plan *plan = loading->plan;
+    struct volume *volume = plan->images[job->image].volume;
+    for (size_t i = 0; job->is_grid_doubtful && i < loading->n_jobs; i++) {
+        const struct job *other = &loading->jobs[i];
+        if (!other->uvh.bodies || memcmp(other->uvh.grid.size, volume->grid.size, sizeof volume->grid.size) != 0)
+            continue;
+        volume->grid = other->uvh.grid;
+        report_add(&plan->report, REPORT_WARNING, "geometry.borrowed", job->path,
+                   "The image's header describes another image; %s has as many univels as this has pixels, and its grid was taken.",
+                   other->path);
+        return;
+    }
+}
+
+static bool add_regions(struct loading *loading, struct region_builder *builder, struct job *job, struct error *err)
+{
+    const struct plan_file_region *entry = &loading->file->regions[job->index];
+    if (job->layers && job->format == PART_DICOM)
+        plan_dicom_check_segmentation(loading, job);
+    for (size_t i = 0; job->layers && i < job->layers->n; i++) {
+        struct volume *layer = job->layers->volumes[i];
+        job->layers->volumes[i] = NULL;
+        if (!region_builder_add_labels(builder, layer, job->names.n > 0 ? &job->names : &job->layers->names[i], job->path, err))
+            return false;
+    }
+    if (job->layers)
+        return true;
+    if (job->structs)
+        return plan_dicom_add_regions(loading, builder, job, err);
+    struct volume *volume = take_volume(job);
+    if (job->uvh.bodies)
+        return region_builder_add_univels(builder, volume, &job->uvh, job->path, err);
+    if (entry->name[0])
+        return region_builder_add_mask(builder, volume, entry, err);
+    return region_builder_add_labels(builder, volume, &job->names, job->path, err);
+}
+
+bool plan_has_room_for_dose(struct plan *plan, const char *id, const char *where)
+{
+    if (plan->n_doses < PLAN_MAX_DOSES)
+        return true;
+    report_add(&plan->report, REPORT_WARNING, "plan.ignored-file", where, "More than %d doses; \"%s\" was left out.", PLAN_MAX_DOSES, id);
+    return false;
+}
+
+/* The dose of an entry of the plan file, still without components; NULL when the plan is full. */
+static struct dose *start_dose(struct loading *loading, size_t index, bool is_sera)
+{
+    struct plan *plan = loading->plan;
+    const struct plan_file_dose *entry = &loading->file->doses[index];
+    const char *others[PLAN_MAX_DOSES], *path = entry->components[0].path;
+    char id[64];
+    if (!plan_has_room_for_dose(plan, entry->id[0] ? entry->id : path, path))
+        return NULL;
+    for (size_t i = 0; i < plan->n_doses; i++)
+        others[i] = plan->doses[i].id;
+    plan_make_id(id, entry->id, path, others, plan->n_doses);
+    struct dose *dose = &plan->doses[plan->n_doses++];
+    memcpy(dose->id, id, sizeof dose->id);
+    memcpy(dose->name, entry->name, sizeof dose->name);
+    plan_dose_units(dose, entry, is_sera, &plan->report);
+    plan_dose_frame(dose, entry, entry->components[0].path, &plan->report);
+    return dose;
+}
+
+static void add_component(struct loading *loading, struct dose *dose, struct job *job)
+{
+    const struct plan_file_dose *entry = &loading->file->doses[job->index];
+    if (part_is_sera_dose(job->format))
+        plan_add_sera(dose, entry, job->component, &job->doses, &loading->plan->report);
+    else if (job->format == PART_DICOM)
+        plan_dicom_add_component(loading, dose, job);
+    else
+        plan_add_component(dose, entry, job->component, take_volume(job), &loading->plan->report);
+}
+
+static void add_dose_mask(struct loading *loading, struct dose *dose, struct job *job)
+{
+    volume_unref(dose->mask); /* that of a SERA file; the plan's wins */
+    dose->mask = take_volume(job);
+    if (dose->n_components > 0 && memcmp(dose->mask->grid.size, dose->components[0].values->grid.size, sizeof dose->mask->grid.size) != 0)
+        report_add(&loading->plan->report, REPORT_NOTE, "dose.mask-grid", job->path,
+                   "The mask of the dose \"%s\" lies on another grid; it is looked up by position.", dose->id);
+}
+
+/* What an entry of the plan file names; a file or folder of DICOM doses may give several. */
+static void add_dose(struct loading *loading, size_t index)
+{
+    struct plan *plan = loading->plan;
+    const struct plan_file_dose *entry = &loading->file->doses[index];
+    struct dose *dose = NULL;
+    size_t before = plan->n_doses;
+    bool is_grouped = false;
+    for (size_t i = 0; i < loading->n_jobs; i++) {
+        struct job *job = &loading->jobs[i];
+        if (job->kind != JOB_DOSE || job->index != index || is_grouped)
+            continue;
+        if (job->format == PART_DICOM && entry->n_components == 1) {
+            plan_dicom_add_doses(loading, index, entry);
+            dose = plan->n_doses > before ? &plan->doses[before] : NULL;
+            is_grouped = true;
+            continue;
+        }
+        if (!dose)
+            dose = start_dose(loading, index, part_is_sera_dose(job->format));
+        if (!dose)
+            return;
+        add_component(loading, dose, job);
+    }
+    for (size_t i = 0; dose && i < loading->n_jobs; i++)
+        if (loading->jobs[i].kind == JOB_DOSE_MASK && loading->jobs[i].index == index)
+            add_dose_mask(loading, dose, &loading->jobs[i]);
+}
+
+static void add_doses(struct loading *loading)
+{
+    for (size_t i = 0; i < loading->file->n_doses; i++)
+        add_dose(loading, i);
+    if (loading->parts.is_all_dicom)
+        plan_dicom_add_doses(loading, JOB_OF_NO_ENTRY, NULL);
+}
+
+static bool apply_hierarchy(struct loading *loading, const struct region_builder *builder, struct error *err)
+{
+    struct plan *plan = loading->plan;
+    const struct plan_file *file = loading->file;
+    if (file->hierarchy[0]) {
+        struct bytes bytes;
+        if (!folder_read(&loading->folder, file->hierarchy, TEXT_FILE_MAX_BYTES, UINT64_MAX, &bytes, err))
+            return false;
+        struct plan_file_pair *pairs = mem_new(PLAN_FILE_MAX_PAIRS * sizeof *pairs);
+        size_t n = hierarchy_parse(bytes.data, bytes.size, file->hierarchy, pairs, PLAN_FILE_MAX_PAIRS, &plan->report);
+        bytes_free(&bytes);
+        region_set_apply_pairs(&plan->regions, pairs, n, false, file->hierarchy, &plan->report);
+        free(pairs);
+    } else if (file->n_pairs > 0) {
+        region_set_apply_pairs(&plan->regions, file->pairs, file->n_pairs, true, "plan.json", &plan->report);
+    } else if (builder->n_pairs > 0) {
+        region_set_apply_pairs(&plan->regions, builder->pairs, builder->n_pairs, true, "", &plan->report);
+    }
+    if (plan->regions.hierarchy == HIERARCHY_NONE) {
+        region_set_derive_hierarchy(&plan->regions);
+        if (plan->regions.hierarchy == HIERARCHY_DERIVED)
+            report_add(&plan->report, REPORT_NOTE, "hierarchy.derived", "",
+                       "No file says what lies inside what; the tree was derived from which region encloses which.");
+    }
+    return true;
+}
+
+static void note_empty_regions(struct plan *plan)
+{
+    for (size_t i = 0; i < plan->regions.n_regions; i++)
+        if (plan->regions.regions[i].n_voxels == 0)
+            report_add(&plan->report, REPORT_WARNING, "region.empty", "", "The region \"%s\" has no voxel.", plan->regions.regions[i].name);
+}
+
+static void add_beams(struct loading *loading)
+{
+    struct plan *plan = loading->plan;
+    for (size_t i = 0; i < loading->file->n_beams; i++) {
+        const char *others[PLAN_MAX_BEAMS];
+        for (size_t b = 0; b < plan->n_beams; b++)
+            others[b] = plan->beams[b].id;
+        plan->beams[i] = loading->file->beams[i];
+        plan_make_id(plan->beams[i].id, loading->file->beams[i].id, "beam", others, plan->n_beams);
+        plan->n_beams++;
+    }
+    plan_dicom_add_beams(loading);
+}
+
+bool plan_assemble(struct loading *loading, struct error *err)
+{
+    struct plan *plan = loading->plan;
+    struct region_builder builder;
+    bool is_whole = true;
+    uint64_t n_rois = 0;
+    for (size_t i = 0; i < loading->n_jobs; i++)
+        n_rois += loading->jobs[i].structs ? loading->jobs[i].structs->n_rois : 0;
+    loading_begin(loading, n_rois);
+    region_builder_init(&builder, &plan->regions, &plan->report);
+    for (size_t i = 0; is_whole && i < loading->n_jobs; i++) {
+        struct job *job = &loading->jobs[i];
+        if (job->kind == JOB_IMAGE && !job->is_failed)
+            add_image(loading, job);
+        else if (job->kind == JOB_REGION && !job->is_failed)
+            is_whole = add_regions(loading, &builder, job, err);
+    }
+    for (size_t i = 0; i < loading->n_jobs; i++)
+        if (is_whole && loading->jobs[i].kind == JOB_IMAGE)
+            borrow_grid(loading, &loading->jobs[i]);
+    if (is_whole) {
+        loading_phase(loading, "measuring regions", "", 95, 100);
+        region_builder_order(&builder);
+        region_set_measure(&plan->regions);
+        note_empty_regions(plan);
+        is_whole = apply_hierarchy(loading, &builder, err);
+    }
+    region_builder_finish(&builder);
+    if (!is_whole)
+        return false;
+    plan_add_preferences(plan, &loading->folder, loading->file);
+    add_doses(loading);
+    plan_add_curves(plan, &loading->folder, loading->file);
+    plan_measure_body(plan);
+    add_beams(loading);
+    plan_measure_bounds(plan);
+    return plan_add_tracks(plan, &loading->folder, loading->file, err);
+}

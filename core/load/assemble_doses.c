@@ -1,0 +1,106 @@
+/* DICOM doses into the plan: those of one treatment plan together. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/formats/text.h"
+#include "core/load/loading.h"
+
+static const struct rtplan *plan_of(const struct loading *loading, const char *uid)
+{
+    for (size_t i = 0; uid[0] && i < loading->n_jobs; i++)
+        if (loading->jobs[i].rtplan && strcmp(loading->jobs[i].rtplan->uid, uid) == 0)
+            return loading->jobs[i].rtplan;
+    return NULL;
+}
+
+static void check_frame(const struct loading *loading, struct job *job, struct report *report)
+{
+    const struct dicom_stack *first = NULL;
+    for (size_t i = 0; i < loading->plan->n_images; i++) {
+        const struct dicom_stack *stack = plan_dicom_stack_of(loading, i);
+        first = first ? first : stack;
+        if (stack && job->rtdose.frame_uid[0] && strcmp(stack->frame_of_reference, job->rtdose.frame_uid) == 0) {
+            job->rtdose.has_frame = true;
+            job->rtdose.frame = DOSE_FRAME_SAME;
+            return;
+        }
+    }
+    if (first)
+        rtdose_check_frame(&job->rtdose, first->frame_of_reference, job->path, report);
+}
+
+static void add_group(struct loading *loading, struct rtdose *objects, size_t n, const struct plan_file_dose *entry, const char *where)
+{
+    struct plan *plan = loading->plan;
+    struct dose *doses = mem_new(PLAN_MAX_DOSES * sizeof *doses);
+    union { /* the beams' names are only read */
+        const struct rtplan *plan;
+        void *context;
+    } of = { plan_of(loading, objects[0].plan_uid) };
+    size_t n_doses = rtdose_group(objects, n, of.plan ? rtplan_beam_name : NULL, of.context, where, doses, PLAN_MAX_DOSES, &plan->report);
+    for (size_t i = 0; i < n_doses; i++) {
+        const char *others[PLAN_MAX_DOSES];
+        char name[64];
+        if (!plan_has_room_for_dose(plan, doses[i].id, where)) {
+            dose_finish(&doses[i]);
+            continue;
+        }
+        for (size_t d = 0; d < plan->n_doses; d++)
+            others[d] = plan->doses[d].id;
+        memcpy(name, doses[i].id, sizeof name);
+        struct dose *dose = &plan->doses[plan->n_doses];
+        *dose = doses[i];
+        memcpy(dose->name, name, sizeof dose->name);
+        if (entry)
+            plan_dose_frame(dose, entry, where, &plan->report);
+        plan_make_id(dose->id, entry && entry->id[0] && i == 0 ? entry->id : name, where, others, plan->n_doses++);
+        if (entry && entry->unit[0])
+            memcpy(dose->unit, entry->unit, sizeof dose->unit);
+        if (entry && entry->per[0])
+            memcpy(dose->per, entry->per, sizeof dose->per);
+        if (!dose->unit[0])
+            report_add(&plan->report, REPORT_WARNING, "dose.no-unit", where, "The file does not say the unit of the dose \"%s\".", dose->name);
+    }
+    free(doses);
+}
+
+void plan_dicom_add_doses(struct loading *loading, size_t index, const struct plan_file_dose *entry)
+{
+    struct rtdose *objects = mem_new(PLAN_DICOM_MAX_DOSES * sizeof *objects);
+    bool *is_taken = mem_new(loading->n_jobs + 1);
+    for (size_t first = 0; first < loading->n_jobs; first++) { /* those of one treatment plan together */
+        const char *where = "";
+        size_t n = 0;
+        for (size_t i = first; i < loading->n_jobs && n < PLAN_DICOM_MAX_DOSES; i++) {
+            struct job *job = &loading->jobs[i];
+            if (job->kind != JOB_DOSE || job->index != index || !job->rtdose.values || is_taken[i] ||
+                (n > 0 && strcmp(job->rtdose.plan_uid, objects[0].plan_uid) != 0))
+                continue;
+            check_frame(loading, job, &loading->plan->report);
+            where = n == 0 ? job->path : where;
+            objects[n++] = job->rtdose;
+            job->rtdose.values = NULL;
+            is_taken[i] = true;
+        }
+        if (n > 0)
+            add_group(loading, objects, n, entry, where);
+    }
+    free(objects);
+    free(is_taken);
+}
+
+void plan_dicom_add_component(struct loading *loading, struct dose *dose, struct job *job)
+{
+    struct volume *values = job->rtdose.values;
+    job->rtdose.values = NULL;
+    if (!dose->unit[0] && text_equal(job->rtdose.units, "GY"))
+        snprintf(dose->unit, sizeof dose->unit, "Gy");
+    check_frame(loading, job, &loading->plan->report);
+    if (job->rtdose.has_frame) {
+        dose->frame = dose->has_frame && dose->frame > job->rtdose.frame ? dose->frame : job->rtdose.frame;
+        dose->has_frame = true;
+    }
+    plan_add_component(dose, &loading->file->doses[job->index], job->component, values, &loading->plan->report);
+}

@@ -1,0 +1,242 @@
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/mailbox.h"
+#include "core/base/mem.h"
+#include "core/base/queue.h"
+#include "core/load/cache.h"
+#include "core/load/loading.h"
+
+/* A plan is loaded on a thread of its own, and the caller waits. So the caller can turn its back within LOOK_EVERY_MS whatever the
+ * thread is in the middle of; that ends its file or slice, finds that nobody waits any more, and cleans up behind itself. */
+enum { LOOK_EVERY_MS = 20 };
+
+/* What is going on, and which part of the whole it is. */
+struct phase {
+    char words[96];
+    double low, high; /* percent */
+};
+
+bool loading_is_cancelled(const struct loading *loading)
+{
+    return atomic_load(&loading->is_given_up);
+}
+
+void loading_phase(struct loading *loading, const char *what, const char *name, double low, double high)
+{
+    struct phase *phase = mem_new(sizeof *phase);
+    *phase = (struct phase){ .low = low, .high = high };
+    snprintf(phase->words, sizeof phase->words, "%s%s%.80s", what, name[0] ? " " : "", name);
+    mailbox_put(loading->phases, phase);
+}
+
+void loading_begin(struct loading *loading, uint64_t work)
+{
+    atomic_store(&loading->work_done, 0);
+    atomic_store(&loading->work, work);
+}
+
+void loading_work(struct loading *loading, uint64_t work)
+{
+    atomic_fetch_add(&loading->work_done, work);
+}
+
+static void finish_job(struct job *job)
+{
+    volume_unref(job->volume);
+    sera_doses_finish(&job->doses);
+    if (job->layers)
+        nrrd_layers_finish(job->layers);
+    free(job->layers);
+    rtstruct_destroy(job->structs);
+    rtdose_finish(&job->rtdose);
+    rtplan_destroy(job->rtplan);
+    uvh_finish(&job->uvh);
+    label_names_finish(&job->names);
+    report_finish(&job->report);
+}
+
+static void loading_unref(struct loading *loading)
+{
+    if (atomic_fetch_sub(&loading->references, 1) > 1)
+        return;
+    for (size_t i = 0; i < loading->n_jobs; i++)
+        finish_job(&loading->jobs[i]);
+    free(loading->jobs);
+    free(loading->order);
+    plan_parts_finish(&loading->parts);
+    plan_destroy(loading->plan);
+    plan_sources_destroy(loading->sources);
+    folder_close(&loading->folder);
+    mailbox_destroy(loading->phases);
+    queue_destroy(loading->ended);
+    free(loading);
+}
+
+static void looked_at(void *context, size_t n_done, size_t n_all)
+{
+    struct loading *loading = context;
+    atomic_store(&loading->work, n_all);
+    atomic_store(&loading->work_done, n_done);
+}
+
+static void cache_begun(void *context, uint64_t n_bytes)
+{
+    struct loading *loading = context;
+    loading_phase(loading, "reading the opened plan", "", 5, 95);
+    loading_begin(loading, n_bytes);
+}
+
+static void cache_read(void *context, uint64_t n_bytes)
+{
+    loading_work(context, n_bytes);
+}
+
+/* The plan as it was when it was last opened, if no file has changed since. */
+static bool load_from_cache(struct loading *loading)
+{
+    struct folder_tree tree;
+    if (!loading->options.cache_folder)
+        return false;
+    if (!folder_walk(&loading->folder, "", NULL, &tree, NULL)) {
+        folder_tree_finish(&tree);
+        return false;
+    }
+    struct plan_sources *sources = plan_sources_create(&tree);
+    const struct plan_cache_reading reading = { loading->options.max_bytes, cache_begun, cache_read, loading, &loading->is_given_up };
+    bool is_read = sources && plan_cache_read(loading->options.cache_folder, sources, &reading, loading->plan);
+    loading->plan->is_from_cache = is_read;
+    loading->sources = sources;
+    return is_read;
+}
+
+/* Parts that were all left out, each for a reason in the report: the gravest line says why nothing is shown. */
+static bool has_anything(const struct plan *plan, struct error *err)
+{
+    const struct report_line *gravest = NULL;
+    if (plan->n_images + plan->regions.n_regions + plan->n_doses + plan->n_beams > 0)
+        return true;
+    for (size_t i = 0; i < plan->report.n_lines; i++)
+        if (!gravest || plan->report.lines[i].severity > gravest->severity)
+            gravest = &plan->report.lines[i];
+    return error_set(err, ERROR_UNSUPPORTED, "nothing is left to show%s%s%s%s", gravest ? "; " : "", gravest ? gravest->where : "",
+                     gravest && gravest->where[0] ? ": " : "", gravest ? gravest->sentence : "");
+}
+
+static bool load(struct loading *loading)
+{
+    struct error *err = &loading->err;
+    struct plan *plan = loading->plan;
+    if (load_from_cache(loading))
+        return true;
+    loading_phase(loading, "looking at the folder", "", 0, 5);
+    const struct dicom_progress looking = { looked_at, loading, &loading->is_given_up, 0 };
+    bool is_described = plan_describe(&loading->folder, &looking, &loading->parts, &plan->report, err);
+    loading->file = loading->parts.file;
+    if (!is_described || !plan_make_jobs(loading, err) || !plan_check_estimate(loading, err) || !plan_run_jobs(loading, err) ||
+        !plan_assemble(loading, err) || !has_anything(plan, err))
+        return false;
+    memcpy(plan->name, loading->file->name, sizeof plan->name);
+    memcpy(plan->note, loading->file->note, sizeof plan->note);
+    plan->is_phantom = loading->file->is_phantom;
+    return true;
+}
+
+static void *load_main(void *argument)
+{
+    struct loading *loading = argument;
+    loading->is_whole = load(loading);
+    (void)queue_try_put(loading->ended, loading); /* a letter to say so; it holds no reference */
+    loading_unref(loading);
+    return NULL;
+}
+
+/* Without a thread to be had the work is done here, and nobody hears how far it is. */
+static void start(struct loading *loading)
+{
+    pthread_t thread;
+    atomic_store(&loading->references, 2);
+    if (pthread_create(&thread, NULL, load_main, loading) == 0)
+        pthread_detach(thread);
+    else
+        load_main(loading);
+}
+
+static void tell(struct loading *loading, struct phase *now, double *percent)
+{
+    const struct plan_progress *progress = &loading->options.progress;
+    struct phase *newest = mailbox_take(loading->phases);
+    if (newest)
+        *now = *newest;
+    free(newest);
+    double work = (double)atomic_load(&loading->work), done = (double)atomic_load(&loading->work_done);
+    double reached = now->low + (now->high - now->low) * (work > 0 && done < work ? done / work : work > 0);
+    *percent = reached > *percent ? reached : *percent; /* it never falls, also while a phase begins */
+    if (progress->step)
+        progress->step(progress->context, now->words, *percent);
+}
+
+static bool wait(struct loading *loading, struct error *err)
+{
+    const atomic_bool *cancel = loading->options.progress.cancel;
+    struct phase phase = { .words = "starting" };
+    double percent = 0;
+    while (!queue_take(loading->ended, LOOK_EVERY_MS)) {
+        tell(loading, &phase, &percent);
+        if (cancel && atomic_load(cancel)) {
+            atomic_store(&loading->is_given_up, true);
+            return error_set(err, ERROR_CANCELLED, "loading was cancelled");
+        }
+    }
+    if (!loading->is_whole && err)
+        *err = loading->err;
+    if (loading->is_whole && loading->options.progress.step)
+        loading->options.progress.step(loading->options.progress.context, "loaded", 100);
+    return loading->is_whole;
+}
+
+static struct loading *loading_create(const char *folder, const char *id, const struct plan_load_options *options, struct error *err)
+{
+    struct loading *loading = mem_new(sizeof *loading);
+    if (!folder_open(&loading->folder, folder, err)) {
+        free(loading);
+        return NULL;
+    }
+    if (options)
+        loading->options = *options;
+    loading->phases = mailbox_create(free);
+    loading->ended = queue_create(1, NULL);
+    loading->plan = plan_create(id);
+    return loading;
+}
+
+struct plan *plan_load(const char *folder, const char *id, const struct plan_load_options *options, struct error *err)
+{
+    int64_t started_us = clock_now_us();
+    if (options && options->sources)
+        *options->sources = NULL;
+    const atomic_bool *cancel = options ? options->progress.cancel : NULL;
+    if (cancel && atomic_load(cancel)) {
+        error_set(err, ERROR_CANCELLED, "loading was cancelled");
+        return NULL;
+    }
+    struct loading *loading = loading_create(folder, id, options, err);
+    struct plan *plan = NULL;
+    if (!loading)
+        return NULL;
+    start(loading);
+    if (wait(loading, err)) {
+        plan = loading->plan;
+        loading->plan = NULL;
+        if (options && options->sources) {
+            *options->sources = loading->sources;
+            loading->sources = NULL;
+        }
+        plan->load_us = clock_now_us() - started_us;
+    }
+    loading_unref(loading);
+    return plan;
+}

@@ -1,0 +1,326 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/formats/gzip.h"
+#include "core/formats/sera_rst.h"
+#include "core/formats/text.h"
+#include "core/load/dicom_parts.h"
+#include "core/load/label_lists.h"
+#include "core/load/nifti_parts.h"
+#include "core/load/nrrd_parts.h"
+
+/* A folder without a plan.json: its files, and those in the folders below, become parts by what they are called and what they hold. */
+struct recognition {
+    const struct folder *folder;
+    struct plan_file *file;
+    struct report *report;
+    char **dicom; /* names of files that may be DICOM, of the tree */
+    size_t n_dicom;
+    struct name_lists *lists;
+    struct error reason; /* why the first file that looked like a part is none */
+};
+
+static bool nifti_is_whole(const struct folder *folder, const char *name)
+{
+    struct nifti_header header;
+    return plan_nifti_peek(folder, name, &header, NULL) && header.type != RAW_F32 && header.type != RAW_F64;
+}
+
+static bool nrrd_is_whole(const struct folder *folder, const char *name, bool *has_segments)
+{
+    struct nrrd_header header;
+    bool is_read = plan_nrrd_peek(folder, name, &header, NULL);
+    *has_segments = is_read && header.n_segments > 0;
+    nrrd_header_finish(&header);
+    return is_read && header.type != RAW_F32 && header.type != RAW_F64;
+}
+
+/* A file whose voxels are whole numbers and whose name speaks of labels, or that names segments itself. */
+static bool is_label_map(const struct folder *folder, const char *name, enum part_format format)
+{
+    static const char *const words[] = { "label", "seg", "univel", "mask" };
+    bool has_segments = false;
+    if (!(format == PART_NIFTI ? nifti_is_whole(folder, name) : nrrd_is_whole(folder, name, &has_segments)))
+        return false;
+    return has_segments || part_is_spoken_of(name, words, sizeof words / sizeof words[0]);
+}
+
+static bool is_dose_map(const char *name)
+{
+    static const char *const words[] = { "dose" };
+    return part_is_spoken_of(part_base_name(name), words, 1);
+}
+
+static bool is_rst(const struct folder *folder, const char *name)
+{
+    struct bytes head;
+    uint8_t text[RST_HEAD_BYTES];
+    struct rst_header header;
+    if (!folder_read(folder, name, UINT64_MAX, sizeof text, &head, NULL))
+        return false;
+    size_t n = head.size;
+    if (gzip_is(head.data, head.size))
+        n = gzip_head(head.data, head.size, text, sizeof text);
+    else
+        memcpy(text, head.data, n);
+    bytes_free(&head);
+    return rst_parse_header(text, n, name, &header, NULL);
+}
+
+static void set_name(char *out, size_t size, const char *name)
+{
+    text_clean(name, out, size);
+}
+
+static void ignore_one(struct recognition *all, const char *name, const char *why)
+{
+    report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "%s", why);
+}
+
+static void add_image(struct recognition *all, const char *name, const char *header)
+{
+    struct plan_file *file = all->file;
+    if (file->n_images >= PLAN_MAX_IMAGES) {
+        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "More than %d images; this one was not read.", PLAN_MAX_IMAGES);
+        return;
+    }
+    struct plan_file_image *image = &file->images[file->n_images++];
+    set_name(image->path, sizeof image->path, name);
+    set_name(image->header, sizeof image->header, header);
+}
+
+static struct plan_file_region *add_region(struct recognition *all, const char *name)
+{
+    struct plan_file *file = all->file;
+    if (file->n_regions >= PLAN_FILE_MAX_PARTS) {
+        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "More than %d files of regions; this one was not read.",
+                   PLAN_FILE_MAX_PARTS);
+        return NULL;
+    }
+    struct plan_file_region *region = &file->regions[file->n_regions++];
+    set_name(region->path, sizeof region->path, name);
+    return region;
+}
+
+static void add_dose(struct recognition *all, const char *name)
+{
+    struct plan_file *file = all->file;
+    if (file->n_doses >= PLAN_MAX_DOSES) {
+        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "More than %d doses; this one was not read.", PLAN_MAX_DOSES);
+        return;
+    }
+    struct plan_file_dose *dose = &file->doses[file->n_doses++];
+    set_name(dose->components[0].path, FOLDER_NAME_SIZE, name);
+    dose->components[0].quantity = DOSE_TOTAL;
+    dose->n_components = 1;
+}
+
+/* A grid whose header cannot be read is left out of a plan that nobody wrote down; why is kept for a folder with nothing else. */
+static bool has_good_header(struct recognition *all, const char *name, enum part_format format)
+{
+    struct error err = { 0 };
+    struct nifti_header nifti;
+    struct nrrd_header nrrd = { 0 };
+    bool is_good = false;
+    if (format == PART_NRRD) {
+        is_good = plan_nrrd_peek(all->folder, name, &nrrd, &err);
+        nrrd_header_finish(&nrrd);
+    } else {
+        is_good = plan_nifti_peek(all->folder, name, &nifti, &err);
+    }
+    if (is_good)
+        return true;
+    report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "Not used: %s", err.text);
+    if (!all->reason.text[0])
+        all->reason = err;
+    return false;
+}
+
+/* A pair is taken once, by its header; where that is there packed and not, by the one that is not. */
+static bool is_second_of_pair(const struct folder *folder, const char *name)
+{
+    struct nifti_pair pair, other;
+    if (!plan_nifti_is_pair(name) || !plan_nifti_find_pair(folder, name, &pair, NULL))
+        return false;
+    if (strcmp(pair.head, name) != 0)
+        return true;
+    return text_has_ending(name, ".gz") && plan_nifti_find_pair(folder, pair.voxels, &other, NULL) && strcmp(other.head, name) != 0;
+}
+
+static void add_grid(struct recognition *all, const char *name, enum part_format format)
+{
+    if (is_second_of_pair(all->folder, name) || !has_good_header(all, name, format))
+        return;
+    if (name_lists_name(all->lists, name) || is_label_map(all->folder, name, format)) {
+        (void)add_region(all, name);
+    } else if (is_dose_map(name)) {
+        add_dose(all, name);
+    } else {
+        add_image(all, name, "");
+    }
+}
+
+static void add_qsh(struct recognition *all, const char *name)
+{
+    char data[FOLDER_NAME_SIZE];
+    if (!text_has_ending(name, ".qhd"))
+        return;
+    if (part_find_data(all->folder, name, ".qim", data))
+        add_image(all, data, name);
+    else
+        ignore_one(all, name, "There is no file of pixels beside it.");
+}
+
+static void recognise_file(struct recognition *all, char *name)
+{
+    struct plan_file *file = all->file;
+    char data[FOLDER_NAME_SIZE];
+    enum part_format format = part_format_of(all->folder, name);
+    switch (format) {
+    case PART_NIFTI:
+    case PART_NRRD: add_grid(all, name, format); break;
+    case PART_UVH:
+        if (part_find_data(all->folder, name, ".uv", data))
+            (void)add_region(all, name);
+        else
+            ignore_one(all, name, "There is no file of univels beside it.");
+        break;
+    case PART_QSH: add_qsh(all, name); break;
+    case PART_PP:
+        if (file->n_tracks < PLAN_FILE_MAX_TRACKS)
+            set_name(file->tracks[file->n_tracks++].path, FOLDER_NAME_SIZE, name);
+        else
+            ignore_one(all, name, "More files of tracks than are read.");
+        break;
+    case PART_SERA_RST:
+        if (is_rst(all->folder, name))
+            add_dose(all, name);
+        else
+            ignore_one(all, name, "Named like a dose of SERA, but its header is another one's.");
+        break;
+    case PART_SERA_DOSE:
+        if (part_find_data(all->folder, name, ".cdf", data))
+            add_dose(all, name);
+        else
+            ignore_one(all, name, "There is no table of points, .cdf.sz or .cdf, beside it.");
+        break;
+    case PART_SERA_CURVE:
+        if (file->n_curves < PLAN_MAX_CURVES)
+            set_name(file->curves[file->n_curves++].path, FOLDER_NAME_SIZE, name);
+        else
+            ignore_one(all, name, "More curves than are read.");
+        break;
+    case PART_SERA_PREFERENCES:
+        if (file->n_preferences < PLAN_FILE_MAX_PREFERENCES)
+            set_name(file->preferences[file->n_preferences++], FOLDER_NAME_SIZE, name);
+        else
+            ignore_one(all, name, "More files of preferences than are read.");
+        break;
+    case PART_DICOM: all->dicom[all->n_dicom++] = name; break;
+    default:
+        if (text_has_ending(name, ".info") && !file->hierarchy[0])
+            set_name(file->hierarchy, sizeof file->hierarchy, name);
+    }
+}
+
+/* The first file that ought to be DICOM and could not be read. */
+static const struct report_line *find_unreadable(const struct report *report, size_t from)
+{
+    for (size_t i = from; report && i < report->n_lines; i++)
+        if (strcmp(report->lines[i].code, "dicom.unreadable") == 0 && report->lines[i].where[0])
+            return &report->lines[i];
+    return NULL;
+}
+
+/* Why nothing was recognised, as far as the names tell. unreadable: NULL when no DICOM file was. */
+static void explain_nothing(const struct folder *folder, const struct folder_tree *tree, const struct dicom_index *dicom,
+                            const struct report_line *unreadable, struct error *err)
+{
+    static const char *const archives[] = { ".tar", ".tar.gz", ".tgz", ".tar.xz", ".zip" };
+    char **names = NULL, inner[FOLDER_NAME_SIZE];
+    size_t n_names = 0;
+    for (size_t i = 0; dicom && i < dicom->n_objects; i++)
+        if (dicom->objects[i].reason[0]) {
+            error_set(err, ERROR_UNSUPPORTED, "%zu DICOM files, none of which can be shown; %s: %s", dicom->n_objects,
+                      dicom->objects[i].path, dicom->objects[i].reason);
+            return;
+        }
+    for (size_t i = 0; i < tree->n_files; i++)
+        for (size_t a = 0; a < sizeof archives / sizeof archives[0]; a++)
+            if (text_has_ending(tree->files[i].name, archives[a])) {
+                error_set(err, ERROR_UNSUPPORTED, "%s is an archive: unpack it first; nothing else in the folder is a plan",
+                          tree->files[i].name);
+                return;
+            }
+    if (unreadable) {
+        error_set(err, ERROR_NOT_FOUND, "no plan.json, and nothing to show in the folder; %s: %s", unreadable->where, unreadable->sentence);
+        return;
+    }
+    error_set(err, ERROR_NOT_FOUND, "no plan.json, and no file in the folder is an image, regions or a dose that this version reads");
+    if (!folder_list(folder, &names, &n_names, NULL))
+        return;
+    for (size_t i = 0; i < n_names; i++) {
+        int n = snprintf(inner, sizeof inner, "%s/plan.json", names[i]);
+        if (n > 0 && n < (int)sizeof inner && folder_look(folder, inner, NULL) == FOLDER_FILE) {
+            error_set(err, ERROR_NOT_FOUND, "no plan itself, but the folder %s in it is one", names[i]);
+            break;
+        }
+    }
+    folder_free_names(names, n_names);
+}
+
+/* A plan of its own. */
+static bool is_plan(const struct folder *folder, const char *name)
+{
+    char inner[FOLDER_NAME_SIZE];
+    int n = snprintf(inner, sizeof inner, "%s/plan.json", name);
+    return n > 0 && n < (int)sizeof inner && folder_look(folder, inner, NULL) == FOLDER_FILE;
+}
+
+/* Everything in the tree, by names first; what may be DICOM is then looked at together. */
+static bool recognise_tree(const struct folder *folder, const struct folder_tree *tree, const struct dicom_progress *progress,
+                           struct plan_parts *parts, struct error *reason, struct report *report, struct error *err)
+{
+    struct recognition all = { folder, parts->file, report, mem_new((tree->n_files + 1) * sizeof(char *)), 0,
+                               name_lists_find(folder, tree, progress ? progress->cancel : NULL, report), { 0 } };
+    for (size_t i = 0; i < tree->n_files && !(progress && progress->cancel && atomic_load(progress->cancel)); i++)
+        recognise_file(&all, tree->files[i].name);
+    name_lists_assign(all.lists, folder, parts->file, report);
+    name_lists_destroy(all.lists);
+    bool is_scanned = plan_dicom_recognise(folder, all.dicom, all.n_dicom, parts, progress, report, err);
+    free(all.dicom);
+    *reason = all.reason;
+    return is_scanned;
+}
+
+bool plan_recognise(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts, struct report *report,
+                    struct error *err)
+{
+    struct folder_tree tree;
+    struct error reason = { 0 };
+    if (!folder_walk(folder, "", is_plan, &tree, err))
+        return false;
+    struct plan_file *file = parts->file = mem_new(sizeof *file);
+    parts->is_recognised = true;
+    file->regions = mem_new(PLAN_FILE_MAX_PARTS * sizeof *file->regions);
+    plan_folder_name(folder->path, file->name, sizeof file->name);
+    size_t n_before = report ? report->n_lines : 0;
+    if (tree.is_cut)
+        report_add(report, REPORT_WARNING, "plan.too-many-files", "", "Of the folder the first %d files down to %d folders deep were looked "
+                   "at; there are more.", FOLDER_MAX_FILES, FOLDER_MAX_DEPTH);
+    bool is_known = recognise_tree(folder, &tree, progress, parts, &reason, report, err);
+    bool has_more = plan_dicom_object(parts->dicom, DICOM_KIND_DOSE, "", 0) || plan_dicom_object(parts->dicom, DICOM_KIND_PLAN, "", 0);
+    if (is_known && file->n_images + file->n_regions + file->n_doses == 0 && !has_more) {
+        explain_nothing(folder, &tree, parts->dicom, find_unreadable(report, n_before), err);
+        if (reason.text[0] && err)
+            *err = reason;
+        is_known = false;
+    } else if (is_known) {
+        report_add(report, REPORT_NOTE, "plan.recognised", "", "The folder has no plan.json; its parts were found by names and contents: "
+                   "%zu images, %zu files of regions, %zu files of doses.", file->n_images, file->n_regions, file->n_doses);
+    }
+    folder_tree_finish(&tree);
+    return is_known;
+}

@@ -1,0 +1,207 @@
+#include "core/load/sera_parts.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/formats/text.h"
+#include "core/formats/zlib_stream.h"
+
+#define DATA_FILE_MAX_BYTES (VOLUME_MAX_BYTES + (1 << 20))
+
+/* A file as it lies there or as SERA packs it, at most limit bytes either way. */
+static bool read_unpacked(const struct folder *folder, const char *name, uint64_t limit, struct bytes *bytes, struct error *err)
+{
+    struct bytes file;
+    bool is_packed;
+    *bytes = (struct bytes){ 0 };
+    if (!folder_read(folder, name, limit, UINT64_MAX, &file, err))
+        return false;
+    bool is_read = sera_unpack(&file, name, limit, &is_packed, bytes, err);
+    if (is_read && !is_packed) {
+        *bytes = file;
+        return true;
+    }
+    bytes_free(&file);
+    return is_read;
+}
+
+bool plan_read_univels(const struct folder *folder, const char *path, double given_mm, struct uvh *uvh, struct volume **univels,
+                       struct report *report, struct error *err)
+{
+    struct bytes header, data;
+    char data_name[FOLDER_NAME_SIZE];
+    if (!folder_read(folder, path, UVH_MAX_BYTES, UINT64_MAX, &header, err))
+        return false;
+    bool is_read = uvh_parse_in(header.data, header.size, path, given_mm, uvh, report, err);
+    bytes_free(&header);
+    if (!is_read)
+        return false;
+    if (!part_find_data(folder, path, ".uv", data_name))
+        return error_set(err, ERROR_NOT_FOUND, "%s: the univels, a .uv or .uv.gz file beside it, are missing", path);
+    if (!folder_read(folder, data_name, DATA_FILE_MAX_BYTES, UINT64_MAX, &data, err))
+        return false;
+    *univels = uvh_read_univels(uvh, &data, data_name, err);
+    bytes_free(&data);
+    return *univels != NULL;
+}
+
+bool plan_read_qsh(const struct folder *folder, const char *path, const char *header, double given_mm, struct volume **image,
+                   char modality[16], bool *is_grid_doubtful, struct report *report, struct error *err)
+{
+    struct bytes text, pixels;
+    struct qhd qhd;
+    char header_name[FOLDER_NAME_SIZE], pixel_name[FOLDER_NAME_SIZE];
+    snprintf(pixel_name, sizeof pixel_name, "%s", path);
+    snprintf(header_name, sizeof header_name, "%s", header);
+    if (text_has_ending(path, ".qhd")) {
+        snprintf(header_name, sizeof header_name, "%s", path);
+        if (!part_find_data(folder, path, ".qim", pixel_name))
+            return error_set(err, ERROR_NOT_FOUND, "%s: the pixels, a .qim or .qim.gz file beside it, are missing", path);
+    } else if (!header[0]) {
+        bool is_packed = text_has_ending(path, ".gz") || text_has_ending(path, ".sz");
+        size_t stem = strlen(path) - (is_packed ? strlen(".qim.gz") : strlen(".qim"));
+        snprintf(header_name, sizeof header_name, "%.*s.qhd", (int)stem, path);
+    }
+    if (!folder_read(folder, header_name, QHD_MAX_BYTES, UINT64_MAX, &text, err))
+        return false;
+    bool is_read = qhd_parse(text.data, text.size, header_name, &qhd, report, err);
+    bytes_free(&text);
+    if (!is_read)
+        return false;
+    qhd.given_mm = given_mm;
+    snprintf(modality, 16, "%s", qhd.modality);
+    if (folder_read(folder, pixel_name, DATA_FILE_MAX_BYTES, UINT64_MAX, &pixels, err)) {
+        *image = qhd_read_pixels(&qhd, &pixels, header_name, pixel_name, is_grid_doubtful, report, err);
+        bytes_free(&pixels);
+    }
+    qhd_finish(&qhd);
+    return *image != NULL;
+}
+
+bool plan_read_rst(const struct folder *folder, const char *path, struct sera_doses *doses, struct report *report,
+                   struct error *err)
+{
+    struct bytes text;
+    if (!read_unpacked(folder, path, RST_MAX_BYTES, &text, err))
+        return false;
+    bool is_read = rst_read(&text, path, doses, report, err);
+    bytes_free(&text);
+    return is_read;
+}
+
+static bool read_chd_header(const struct folder *folder, const char *path, struct chd *chd, struct report *report, struct error *err)
+{
+    struct bytes text;
+    if (!folder_read(folder, path, CHD_MAX_BYTES, UINT64_MAX, &text, err))
+        return false;
+    bool is_read = chd_parse(text.data, text.size, path, chd, report, err);
+    bytes_free(&text);
+    return is_read;
+}
+
+bool plan_read_chd(const struct folder *folder, const char *path, struct sera_doses *doses, struct report *report, struct error *err)
+{
+    char table_name[FOLDER_NAME_SIZE], mask_name[FOLDER_NAME_SIZE] = "";
+    struct chd chd;
+    if (!part_find_data(folder, path, ".cdf", table_name))
+        return error_set(err, ERROR_NOT_FOUND, "%s: the table of points, a .cdf.sz or .cdf file beside it, is missing", path);
+    if (!read_chd_header(folder, path, &chd, report, err))
+        return false;
+    struct chd_files files = { .name = path, .table_name = table_name, .mask_name = mask_name };
+    bool is_read = read_unpacked(folder, table_name, chd_table_bytes(&chd), &files.table, err);
+    if (is_read && !part_find_data(folder, path, ".cmf", mask_name))
+        report_add(report, REPORT_NOTE, "dose.mask-unread", path,
+                   "There are no pictures of regions, .cmf.sz, beside it; where the dose is valid was taken from its points alone.");
+    else if (is_read)
+        is_read = read_unpacked(folder, mask_name, chd_mask_bytes(&chd), &files.mask, err);
+    is_read = is_read && chd_read(&chd, &files, doses, report, err);
+    bytes_free(&files.table);
+    bytes_free(&files.mask);
+    chd_finish(&chd);
+    return is_read;
+}
+
+void plan_dose_units(struct dose *dose, const struct plan_file_dose *entry, bool is_sera, struct report *report)
+{
+    const char *path = entry->components[0].path;
+    snprintf(dose->unit, sizeof dose->unit, "%s", is_sera ? "cGy" : entry->unit);
+    snprintf(dose->per, sizeof dose->per, "%s", is_sera && !entry->per[0] ? "unit of the source" : entry->per);
+    if (!dose->unit[0])
+        report_add(report, REPORT_WARNING, "dose.no-unit", path, "The plan does not say the unit of the dose \"%s\".", dose->id);
+    if (is_sera && entry->unit[0] && strcmp(entry->unit, dose->unit) != 0)
+        report_add(report, REPORT_WARNING, "dose.unit-differs", path,
+                   "The plan says that the dose \"%s\" is in %s; a file of SERA is in cGy, and that was used.", dose->id, entry->unit);
+    if (!entry->per[0])
+        report_add(report, REPORT_NOTE, "dose.no-per", path,
+                   is_sera ? "The dose \"%s\" is for one unit of the source, as its source file normalises it; neither the plan nor the "
+                             "file says what that unit is, for instance 250 kW-min."
+                           : "The plan does not say what the dose \"%s\" is per: a fraction, a minute, the whole treatment.",
+                   dose->id);
+}
+
+void plan_dose_frame(struct dose *dose, const struct plan_file_dose *entry, const char *where, struct report *report)
+{
+    if (!entry->has_frame)
+        return;
+    dose->frame = dose->has_frame && dose->frame > entry->frame ? dose->frame : entry->frame;
+    dose->has_frame = true;
+    if (entry->frame == DOSE_FRAME_DIFFERS)
+        report_add(report, REPORT_WARNING, "dose.frame-differs", where,
+                   "The plan says that the dose \"%s\" is in another frame of reference than the image; it may be shifted against it.", dose->id);
+}
+
+static void add(struct dose *dose, struct dose_component component, const char *path, struct report *report)
+{
+    assert(dose->n_components < DOSE_N_QUANTITIES); /* a dose has each quantity once */
+    dose->components[dose->n_components++] = component;
+    if (component.values->low < 0)
+        report_add(report, REPORT_WARNING, "dose.negative", path, "The smallest value is %g.", component.values->low);
+}
+
+void plan_add_component(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct volume *values,
+                        struct report *report)
+{
+    const struct plan_file_component *from = &entry->components[component];
+    dose->reference[from->quantity] = from->reference;
+    add(dose,
+        (struct dose_component){ .quantity = from->quantity,
+                                 .is_per_ppm = from->is_per_ppm,
+                                 .has_boron_ppm = from->has_boron_ppm,
+                                 .boron_ppm = from->boron_ppm,
+                                 .values = values },
+        from->path, report);
+}
+
+static bool is_named(const struct plan_file_dose *entry, enum dose_quantity quantity)
+{
+    bool is_there = false;
+    for (size_t i = 0; i < entry->n_components; i++)
+        is_there |= entry->components[i].quantity == quantity;
+    return is_there;
+}
+
+void plan_add_sera(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct sera_doses *doses,
+                   struct report *report)
+{
+    const struct plan_file_component *from = &entry->components[component];
+    bool is_any = false;
+    for (size_t i = 0; i < doses->n_components; i++) {
+        struct dose_component *held = &doses->components[i];
+        bool is_asked = from->quantity == held->quantity || (from->quantity == DOSE_TOTAL && !is_named(entry, held->quantity));
+        if (!is_asked || dose->n_components >= DOSE_N_QUANTITIES)
+            continue;
+        bool is_given = from->reference > 0 && from->quantity == held->quantity;
+        dose->reference[held->quantity] = is_given ? from->reference : doses->reference[held->quantity];
+        add(dose, *held, from->path, report);
+        held->values = NULL;
+        is_any = true;
+    }
+    if (!is_any)
+        report_add(report, REPORT_WARNING, "dose.no-quantity", from->path, "The file holds no %s of the dose \"%s\".",
+                   dose_quantity_word(from->quantity), dose->id);
+    if (doses->mask && !dose->mask) {
+        dose->mask = doses->mask;
+        doses->mask = NULL;
+    }
+}

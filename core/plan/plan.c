@@ -1,0 +1,32 @@
+#include "core/plan/plan.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "core/base/mem.h"
+#include "core/plan/plan_shapes.h"
+
+struct plan *plan_create(const char *id)
+{
+    struct plan *plan = mem_new(sizeof *plan);
+    snprintf(plan->id, sizeof plan->id, "%s", id);
+    plan->shapes = plan_shapes_create(PLAN_SHAPE_BUDGET_BYTES);
+    return plan;
+}
+
+void plan_destroy(struct plan *plan)
+{
+    if (!plan)
+        return;
+    plan_shapes_destroy(plan->shapes);
+    for (size_t i = 0; i < plan->n_images; i++)
+        volume_unref(plan->images[i].volume);
+    region_set_finish(&plan->regions);
+    for (size_t i = 0; i < plan->n_doses; i++)
+        dose_finish(&plan->doses[i]);
+    for (size_t i = 0; i < plan->n_curves; i++)
+        dose_curve_finish(&plan->curves[i]);
+    track_set_finish(&plan->tracks);
+    report_finish(&plan->report);
+    free(plan);
+}

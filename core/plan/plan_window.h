@@ -1,8 +1,0 @@
-#pragma once
-/* Inside core/plan: a first window for an image. */
-#include "core/plan/plan.h"
-
-/* CT: soft tissue. Else from the values: percentiles 0.1 and 99.9. The volume is measured. */
-void plan_image_window(struct plan_image *image);
-/* Into what a scene can show: PLAN_WINDOW_... */
-void plan_image_window_limit(struct plan_image *image);

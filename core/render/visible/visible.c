@@ -1,0 +1,331 @@
+#include "core/render/visible/visible.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/render/visible/shading.h"
+
+const uint8_t visible_background[3] = { 0x08, 0x09, 0x0b };
+
+/* ---- shapes --------------------------------------------------------------------------------------------------------------- */
+
+struct shape_key visible_surface_key(const struct snapshot *snapshot)
+{
+    static const enum surface_algorithm algorithms[] = {
+        [SCENE_ALGORITHM_MARCHING_CUBES] = SURFACE_MARCHING_CUBES,
+        [SCENE_ALGORITHM_EIGHT_CELL] = SURFACE_EIGHT_CELL,
+        [SCENE_ALGORITHM_SMOOTH] = SURFACE_SMOOTH,
+    };
+    struct shape_key key = { .representation = REPRESENTATION_SURFACE, .algorithm = algorithms[snapshot->scene.surface.algorithm] };
+    shape_key_normalise(&key);
+    return key;
+}
+
+struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t region)
+{
+    static const enum region_representation representations[] = {
+        [SCENE_REPRESENTATION_SURFACE] = REPRESENTATION_SURFACE, [SCENE_REPRESENTATION_OUTLINE] = REPRESENTATION_OUTLINE,
+        [SCENE_REPRESENTATION_POINTS] = REPRESENTATION_POINTS,   [SCENE_REPRESENTATION_UNIVELS] = REPRESENTATION_UNIVELS,
+        [SCENE_REPRESENTATION_SOLID] = REPRESENTATION_SOLID,     [SCENE_REPRESENTATION_NURBS] = REPRESENTATION_NURBS,
+        [SCENE_REPRESENTATION_FAN] = REPRESENTATION_FAN,
+    };
+    const struct scene *scene = &snapshot->scene;
+    struct shape_key key = {
+        .representation = representations[snapshot->styles[region].representation],
+        .algorithm = visible_surface_key(snapshot).algorithm,
+        .outline = scene->outline.method == SCENE_OUTLINE_METHOD_TRACED ? OUTLINE_TRACED : OUTLINE_MARCHING_SQUARES,
+        .has_inner_boundary = scene->points.inner_boundary,
+        .nurbs_order = (int)scene->nurbs.order,
+        .nurbs_sampling = scene->nurbs.sampling == SCENE_NURBS_SAMPLING_TRACES ? NURBS_TRACES : NURBS_DEGREE_BINS,
+        .nurbs_bins = (int)scene->nurbs.bins,
+    };
+    shape_key_normalise(&key);
+    return key;
+}
+
+struct visible_look visible_look(const struct snapshot *snapshot, size_t region, const struct shape_key *key)
+{
+    const struct scene *scene = &snapshot->scene;
+    enum region_representation kind = key->representation;
+    bool is_line = kind == REPRESENTATION_OUTLINE, is_point = kind == REPRESENTATION_POINTS || kind == REPRESENTATION_SOLID;
+    return (struct visible_look){
+        .is_flat = scene->surface.normals == SCENE_NORMALS_FACE,
+        .rounding = kind == REPRESENTATION_UNIVELS && scene->surface.normals == SCENE_NORMALS_VERTEX ? VISIBLE_ROUNDING : 0,
+        .is_two_sided = kind == REPRESENTATION_FAN || kind == REPRESENTATION_NURBS,
+        .is_rim = !is_line && !is_point && snapshot->styles[region].opacity < 1 && scene->surface.translucency == SCENE_TRANSLUCENCY_RIM,
+        .is_baked = kind == REPRESENTATION_SOLID && scene->points.solid == SCENE_SOLID_LIGHTING_BAKED,
+        .is_covering = kind == REPRESENTATION_SOLID,
+        .size_px = is_line ? scene->outline.width_px : scene->points.size_px,
+    };
+}
+
+/* Only what is made of voxels' terraces needs its light smoothed. */
+int visible_shading_passes(const struct shape_key *key, uint32_t reduction)
+{
+    bool has_terraces = key->representation == REPRESENTATION_UNIVELS || (key->representation == REPRESENTATION_SURFACE && key->algorithm != SURFACE_SMOOTH);
+    return has_terraces ? shading_passes(reduction) : 0;
+}
+
+struct visible_cue visible_depth_cue(const struct camera *camera, const struct box3 *box)
+{
+    struct vec3 f = camera->forward, size = vec3_sub(box->high, box->low);
+    double length = fabs(f.x) * size.x + fabs(f.y) * size.y + fabs(f.z) * size.z; /* along the line of sight */
+    double slope = -(1 - VISIBLE_DARKEST) / fmax(length, 1e-6);
+    struct vec3 nearest = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y, f.z > 0 ? box->low.z : box->high.z);
+    return (struct visible_cue){ slope * f.x, slope * f.y, slope * f.z, 1 - slope * vec3_dot(f, nearest) };
+}
+
+static double nearest_mm(const struct camera *camera, const struct box3 *box)
+{
+    if (camera->is_parallel) {
+        struct vec3 f = camera->forward;
+        struct vec3 corner = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y, f.z > 0 ? box->low.z : box->high.z);
+        return vec3_dot(vec3_sub(corner, camera->eye_lps_mm), f);
+    }
+    struct vec3 e = camera->eye_lps_mm;
+    struct vec3 p = vec3(fmin(fmax(e.x, box->low.x), box->high.x), fmin(fmax(e.y, box->low.y), box->high.y),
+                         fmin(fmax(e.z, box->low.z), box->high.z));
+    return vec3_length(vec3_sub(p, e));
+}
+
+/* Nearest depth of a box along the line of sight: beyond near, nothing of it is cut away. */
+static bool is_wholly_ahead(const struct camera *camera, const struct box3 *box)
+{
+    struct vec3 f = camera->forward;
+    struct vec3 corner = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y, f.z > 0 ? box->low.z : box->high.z);
+    return vec3_dot(vec3_sub(corner, camera->eye_lps_mm), f) > camera->near_mm;
+}
+
+/* Whether a box lies beyond one side of what is drawn. */
+static bool is_out_of_sight(const struct mat4 *clip_from_lps_mm, const struct box3 *box)
+{
+    const double *m = clip_from_lps_mm->m;
+    int n_beyond[6] = { 0 };
+    for (int corner = 0; corner < 8; corner++) {
+        double x = corner & 1 ? box->high.x : box->low.x, y = corner & 2 ? box->high.y : box->low.y, z = corner & 4 ? box->high.z : box->low.z;
+        double clip[4];
+        for (int row = 0; row < 4; row++)
+            clip[row] = m[row] * x + m[4 + row] * y + m[8 + row] * z + m[12 + row];
+        for (int axis = 0; axis < 3; axis++) {
+            n_beyond[2 * axis] += clip[axis] < -clip[3];
+            n_beyond[2 * axis + 1] += clip[axis] > clip[3];
+        }
+    }
+    for (int side = 0; side < 6; side++)
+        if (n_beyond[side] == 8)
+            return true;
+    return false;
+}
+
+static bool is_shown(const struct snapshot *snapshot, size_t region)
+{
+    return snapshot->styles[region].visible && snapshot->styles[region].opacity > 0;
+}
+
+static bool is_drawn(const struct snapshot *snapshot, size_t region)
+{
+    return is_shown(snapshot, region) && snapshot->plan->regions.regions[region].n_voxels > 0;
+}
+
+size_t visible_n_translucent(const struct snapshot *snapshot)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++)
+        n += is_drawn(snapshot, i) && snapshot->styles[i].opacity < 1;
+    return n;
+}
+
+/* Whether a closed surface of the outer one's kind has the inner one's within it, if its voxels are. */
+static bool can_enclose(const struct snapshot *snapshot, size_t outer, size_t inner)
+{
+    enum scene_representation a = snapshot->styles[outer].representation, b = snapshot->styles[inner].representation;
+    return (a == SCENE_REPRESENTATION_SURFACE || a == SCENE_REPRESENTATION_UNIVELS) &&
+           (a == b || (a == SCENE_REPRESENTATION_UNIVELS && b == SCENE_REPRESENTATION_SURFACE));
+}
+
+/* A region inside an opaque one, in the same label layer, cannot be seen: the outer surface is closed and encloses it. Unless the
+ * eye is within the outer one's box, or the near plane cuts it open. False on failure. */
+static bool find_hidden(const struct snapshot *snapshot, const struct camera *camera, size_t region, visible_bounds *bounds, void *context,
+                        bool *is_hidden, struct error *err)
+{
+    const struct region *regions = snapshot->plan->regions.regions;
+    *is_hidden = false;
+    for (int outer = regions[region].parent; outer >= 0 && !*is_hidden; outer = regions[outer].parent) {
+        if (!is_drawn(snapshot, (size_t)outer) || snapshot->styles[outer].opacity < 1 || regions[outer].layer != regions[region].layer ||
+            !can_enclose(snapshot, (size_t)outer, region))
+            continue;
+        const struct box3 *box = bounds(context, (size_t)outer, err);
+        if (!box)
+            return false;
+        *is_hidden = !box3_is_empty(box) && is_wholly_ahead(camera, box);
+    }
+    return true;
+}
+
+/* As visible_shapes says. What encloses another is never farther away, so at equal distances the inner one comes first. */
+static int compare_back_to_front(const void *left, const void *right)
+{
+    const struct visible_shape *a = left, *b = right;
+    if (a->order != b->order)
+        return a->order < b->order ? -1 : 1;
+    if (a->distance_mm != b->distance_mm)
+        return a->distance_mm > b->distance_mm ? -1 : 1;
+    if (a->depth != b->depth)
+        return a->depth > b->depth ? -1 : 1;
+    if (a->n_voxels != b->n_voxels)
+        return a->n_voxels < b->n_voxels ? -1 : 1;
+    return a->style < b->style ? -1 : a->style > b->style;
+}
+
+/* As find_hidden, as far as it can be told without shapes. */
+static bool may_be_seen(const struct snapshot *snapshot, size_t region)
+{
+    const struct region *regions = snapshot->plan->regions.regions;
+    for (int outer = regions[region].parent; outer >= 0; outer = regions[outer].parent)
+        if (is_drawn(snapshot, (size_t)outer) && snapshot->styles[outer].opacity >= 1 && regions[outer].layer == regions[region].layer &&
+            can_enclose(snapshot, (size_t)outer, region))
+            return false;
+    return true;
+}
+
+struct shape_key visible_checked_key(const struct snapshot *snapshot, size_t region)
+{
+    struct shape_key key = visible_shape_key(snapshot, region);
+    bool has_triangles = key.representation != REPRESENTATION_OUTLINE && key.representation != REPRESENTATION_POINTS &&
+                         key.representation != REPRESENTATION_SOLID;
+    return has_triangles ? key : visible_surface_key(snapshot);
+}
+
+bool visible_is_checked(const struct snapshot *snapshot, size_t region)
+{
+    const struct scene_check_style *check = &snapshot->scene.check;
+    return check->visible && is_drawn(snapshot, region) &&
+           (check->region[0] == 0 || strcmp(check->region, snapshot->plan->regions.regions[region].id) == 0);
+}
+
+/* What a region of a picture is made of. */
+static struct plan_want want_of(const struct snapshot *snapshot, size_t region, enum surface_detail detail)
+{
+    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
+    struct plan_want want = { region, is_in_space ? visible_shape_key(snapshot, region) : visible_checked_key(snapshot, region), SURFACE_FULL };
+    if (is_in_space && want.key.representation == REPRESENTATION_SURFACE)
+        want.detail = detail;
+    return want;
+}
+
+size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct plan_want *wants)
+{
+    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
+    size_t n = 0;
+    for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++)
+        if (is_in_space ? is_drawn(snapshot, i) && may_be_seen(snapshot, i) : visible_is_checked(snapshot, i))
+            wants[n++] = want_of(snapshot, i, detail);
+    return n;
+}
+
+size_t visible_missing(const struct snapshot *snapshot, enum surface_detail detail, struct visible_missing missing[VISIBLE_MAX_MISSING])
+{
+    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
+    size_t n = 0;
+    for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
+        if (!(is_in_space ? is_drawn(snapshot, i) : visible_is_checked(snapshot, i)))
+            continue;
+        struct plan_want want = want_of(snapshot, i, detail);
+        struct error why = { 0 };
+        if (!plan_shape_refused(snapshot->plan, &want, &why))
+            continue;
+        if (n < VISIBLE_MAX_MISSING)
+            missing[n] = (struct visible_missing){ i, why };
+        n++;
+    }
+    return n;
+}
+
+struct visible_shape *visible_shapes(const struct snapshot *snapshot, const struct camera *camera, const struct mat4 *clip_from_lps_mm,
+                                         bool is_opaque, visible_bounds *bounds, void *context, size_t *n, struct error *err)
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    struct visible_shape *shapes = mem_array(set->n_regions, sizeof *shapes, UINT64_MAX, err);
+    *n = 0;
+    for (size_t i = 0; shapes && i < set->n_regions; i++) {
+        bool is_hidden = false;
+        if (!is_drawn(snapshot, i) || (snapshot->styles[i].opacity >= 1) != is_opaque)
+            continue;
+        bool is_good = find_hidden(snapshot, camera, i, bounds, context, &is_hidden, err);
+        if (is_good && is_hidden)
+            continue;
+        const struct box3 *box = is_good ? bounds(context, i, err) : NULL;
+        if (!box) {
+            free(shapes);
+            return NULL;
+        }
+        if (!box3_is_empty(box) && !is_out_of_sight(clip_from_lps_mm, box))
+            shapes[(*n)++] = (struct visible_shape){ i, &snapshot->styles[i], nearest_mm(camera, box),
+                                                         (int)snapshot->styles[i].order, region_depth(set, i),
+                                                         set->regions[i].n_voxels };
+    }
+    if (shapes)
+        qsort(shapes, *n, sizeof *shapes, compare_back_to_front);
+    return shapes;
+}
+
+/* ---- cross-sections ------------------------------------------------------------------------------------------------------- */
+
+size_t visible_palette(const struct snapshot *snapshot, size_t layer, uint8_t (*colors)[4])
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    size_t n = 0;
+    memset(colors, 0, VISIBLE_N_LABELS * sizeof *colors);
+    for (size_t i = 0; i < set->n_regions; i++) {
+        int shown = (int)i;
+        while (shown >= 0 && !is_shown(snapshot, (size_t)shown))
+            shown = set->regions[shown].parent;
+        if (set->regions[i].layer != layer || shown < 0)
+            continue;
+        uint32_t rgb = snapshot->styles[shown].color_rgb;
+        uint8_t *color = colors[set->regions[i].label];
+        color[0] = (uint8_t)(rgb >> 16);
+        color[1] = (uint8_t)(rgb >> 8);
+        color[2] = (uint8_t)rgb;
+        color[3] = 255;
+        n++;
+    }
+    return n;
+}
+
+static int outermost_depth(const struct region_set *set, size_t layer)
+{
+    int depth = INT32_MAX;
+    for (size_t i = 0; i < set->n_regions; i++)
+        if (set->regions[i].layer == layer && region_depth(set, i) < depth)
+            depth = region_depth(set, i);
+    return depth;
+}
+
+void visible_layers(const struct region_set *set, size_t layers[REGION_MAX_LAYERS])
+{
+    int depths[REGION_MAX_LAYERS];
+    for (size_t layer = 0; layer < set->n_layers; layer++) { /* insertion sort, stable */
+        int depth = outermost_depth(set, layer);
+        size_t at = layer;
+        for (; at > 0 && depths[at - 1] > depth; at--) {
+            depths[at] = depths[at - 1];
+            layers[at] = layers[at - 1];
+        }
+        depths[at] = depth;
+        layers[at] = layer;
+    }
+}
+
+int visible_samples(const struct snapshot *snapshot, const struct camera *camera, int width_px, bool is_still)
+{
+    enum { STILL_SAMPLES = 2 };
+    if (!is_still)
+        return 1;
+    if (snapshot->view.kind == SCENE_KIND_3D || snapshot->image < 0)
+        return STILL_SAMPLES;
+    struct vec3 spacing_mm = grid_spacing_mm(&snapshot->plan->images[snapshot->image].volume->grid);
+    double pixels_per_mm = camera->pixels_per_mm * width_px / snapshot->view.size_px[0];
+    return fmin(fmin(spacing_mm.x, spacing_mm.y), spacing_mm.z) * pixels_per_mm < 1 ? STILL_SAMPLES : 1;
+}
