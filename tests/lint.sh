@@ -55,6 +55,7 @@ scripts_parse() {
     return $status
 }
 json_parses() { "${NODE:-node}" tests/api/strict_json.mjs $(sources '*.json' | grep -v '/fixtures/bad/') build/gen/openapi.json; }
+laid_out() { sources '*.c' '*.h' '*.cc' '*.inc' | xargs clang-format --dry-run -Werror; }
 no_addresses_in_the_lock() { ! grep -nE '"resolved"|https?://[^"]*\.tgz' package-lock.json; }
 
 check "includes follow tests/layers.txt" tests/layers.sh
@@ -63,6 +64,7 @@ check "an edge against the direction is found" planted core/math/planted.c '"cor
 check "a library outside its home is found" planted core/plan/planted.c '<GL/gl.h>' 'only core/render/gl'
 check "an include that is not from the root is found" planted core/volume/planted.c '"../base/error.h"' 'not a path from the root'
 check "no banned calls" no_calls
+check "C is laid out as .clang-format says (clang-format -i FILE)" laid_out
 check "no value-changing float flags" no_flags
 check "each header compiles alone, once" headers_stand_alone
 check "scripts parse and can be run" scripts_parse

@@ -19,7 +19,8 @@ static inline struct grid made_grid(uint32_t ni, uint32_t nj, uint32_t nk, struc
 }
 
 /* Grid axes along the given directions with the given spacings, its middle at centre. */
-static inline struct affine made_affine(struct vec3 i_mm, struct vec3 j_mm, struct vec3 k_mm, const uint32_t size[3], struct vec3 centre)
+static inline struct affine made_affine(struct vec3 i_mm, struct vec3 j_mm, struct vec3 k_mm, const uint32_t size[3],
+                                        struct vec3 centre)
 {
     struct affine map = { { i_mm, j_mm, k_mm }, { 0, 0, 0 } };
     struct vec3 middle = affine_vector(&map, vec3((size[0] - 1) / 2.0, (size[1] - 1) / 2.0, (size[2] - 1) / 2.0));
@@ -34,7 +35,8 @@ static inline struct grid made_cube_grid(uint32_t side)
     return made_grid(side, side, side, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
 }
 
-static inline struct volume *made_volume(const struct grid *grid, enum voxel_type type, double (*value)(struct vec3 lps_mm))
+static inline struct volume *made_volume(const struct grid *grid, enum voxel_type type,
+                                         double (*value)(struct vec3 lps_mm))
 {
     struct error err = { 0 };
     struct volume *volume = volume_create(grid, type, &err);
@@ -63,8 +65,8 @@ struct made_region {
 };
 
 /* Regions with labels 1, 2, ... on one layer; label gives a point's. */
-static inline struct plan *made_plan(const struct grid *grid, double (*label)(struct vec3 lps_mm), const struct made_region *regions,
-                                     size_t n_regions)
+static inline struct plan *made_plan(const struct grid *grid, double (*label)(struct vec3 lps_mm),
+                                     const struct made_region *regions, size_t n_regions)
 {
     struct plan *plan = plan_create("made");
     plan->bounds_lps_mm = grid_bounds_lps_mm(grid);
@@ -86,7 +88,8 @@ static inline struct plan *made_plan(const struct grid *grid, double (*label)(st
     return plan;
 }
 
-static inline void made_plan_add_image(struct plan *plan, const struct grid *grid, enum voxel_type type, double (*value)(struct vec3 lps_mm))
+static inline void made_plan_add_image(struct plan *plan, const struct grid *grid, enum voxel_type type,
+                                       double (*value)(struct vec3 lps_mm))
 {
     struct plan_image *image = &plan->images[plan->n_images++];
     snprintf(image->id, sizeof image->id, "image-%zu", plan->n_images);

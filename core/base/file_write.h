@@ -11,6 +11,7 @@ NODISCARD bool file_write(const char *path, const void *bytes, size_t n_bytes, s
 
 enum { FILE_FOLDER_SIZE = PATH_MAX - 64 }; /* longest path of a folder, with its end; names beside it are longer */
 
-/* A folder's path without slashes at its end, and the path beside it where it is built before it is renamed to its place.
- * errors ERROR_RANGE an empty path, or one too long */
-NODISCARD bool file_folder_paths(const char *folder, char place[FILE_FOLDER_SIZE], char partial[PATH_MAX], struct error *err);
+/* A folder's path without slashes at its end, and the path beside it where it is built before it is renamed to its
+ * place. errors ERROR_RANGE an empty path, or one too long */
+NODISCARD bool file_folder_paths(const char *folder, char place[FILE_FOLDER_SIZE], char partial[PATH_MAX],
+                                 struct error *err);

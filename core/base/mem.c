@@ -6,7 +6,8 @@
 #include <string.h>
 #include <sys/mman.h>
 
-/* Given back when a small allocation fails: what failed before it was large, and whoever asked for that needs a little to say so. */
+/* Given back when a small allocation fails: what failed before it was large, and whoever asked for that needs a little
+ * to say so. */
 static _Atomic(void *) reserve;
 
 void mem_keep_reserve(void)
@@ -34,7 +35,8 @@ static bool array_bytes(size_t n, size_t size, uint64_t limit_bytes, uint64_t *b
 {
     if (!__builtin_mul_overflow((uint64_t)n, (uint64_t)size, bytes) && *bytes <= limit_bytes)
         return true;
-    return error_set(err, ERROR_LIMIT, "%zu items of %zu bytes are more than the limit of %" PRIu64 " bytes", n, size, limit_bytes);
+    return error_set(err, ERROR_LIMIT, "%zu items of %zu bytes are more than the limit of %" PRIu64 " bytes", n, size,
+                     limit_bytes);
 }
 
 void *mem_array(size_t n, size_t size, uint64_t limit_bytes, struct error *err)

@@ -8,8 +8,9 @@
 /* Zeroed; aborts when there is none. For small structs of fixed size only. */
 NODISCARD void *mem_new(size_t size);
 
-/* Keeps MEM_RESERVE_BYTES for mem_new, which takes them when there is nothing else: under a limit of memory, what was too large can then be
- * answered. To be called again from time to time; does nothing while they are there. Any thread. */
+/* Keeps MEM_RESERVE_BYTES for mem_new, which takes them when there is nothing else: under a limit of memory, what was
+ * too large can then be answered. To be called again from time to time; does nothing while they are there. Any thread.
+ */
 enum { MEM_RESERVE_BYTES = 1 << 20 };
 void mem_keep_reserve(void);
 
@@ -17,8 +18,8 @@ void mem_keep_reserve(void);
  * errors ERROR_LIMIT, ERROR_MEMORY. n == 0 gives a unique pointer. Free with free(). */
 NODISCARD void *mem_array(size_t n, size_t size, uint64_t limit_bytes, struct error *err);
 
-/* The same for arrays of megabytes, NOT zeroed: on huge pages where the system has them, as the page faults of a fresh array
- * can take longer than filling it. */
+/* The same for arrays of megabytes, NOT zeroed: on huge pages where the system has them, as the page faults of a fresh
+ * array can take longer than filling it. */
 NODISCARD void *mem_large_array(size_t n, size_t size, uint64_t limit_bytes, struct error *err);
 
 /* Copy of a string; aborts when there is no memory. */

@@ -10,7 +10,8 @@ struct queue;
 struct queue *queue_create(size_t capacity, void (*drop)(void *item));
 void queue_destroy(struct queue *queue);
 
-/* Takes item when it returns true; false when full or closed, and the item stays the caller's. Any thread; never blocks. */
+/* Takes item when it returns true; false when full or closed, and the item stays the caller's. Any thread; never
+ * blocks. */
 bool queue_try_put(struct queue *queue, void *item);
 
 /* The oldest item, or NULL when empty. Never blocks. */

@@ -46,11 +46,12 @@ static struct vec3 about_z(struct vec3 p, double deg)
     return vec3(p.x * cosine(deg) - p.y * sine(deg), p.x * sine(deg) + p.y * cosine(deg), p.z);
 }
 
-/* Where the patient's left, back and head point on the table: +x to the right of who stands at its foot and looks to the gantry, +y to
- * the gantry, +z up. The left is always head x front. */
+/* Where the patient's left, back and head point on the table: +x to the right of who stands at its foot and looks to
+ * the gantry, +y to the gantry, +z up. The left is always head x front. */
 static void patient_axes(enum patient_position position, struct vec3 *left, struct vec3 *back, struct vec3 *head)
 {
-    bool is_feet_first = position == PATIENT_FFS || position == PATIENT_FFP || position == PATIENT_FFDR || position == PATIENT_FFDL;
+    bool is_feet_first =
+        position == PATIENT_FFS || position == PATIENT_FFP || position == PATIENT_FFDR || position == PATIENT_FFDL;
     *head = vec3(0, is_feet_first ? -1 : 1, 0);
     switch (position) {
     case PATIENT_HFP:
@@ -64,7 +65,8 @@ static void patient_axes(enum patient_position position, struct vec3 *left, stru
     *left = vec3_cross(*back, *head);
 }
 
-struct vec3 beam_patient_from_gantry(struct vec3 point_gantry_mm, const struct beam_angles *angles, enum patient_position position)
+struct vec3 beam_patient_from_gantry(struct vec3 point_gantry_mm, const struct beam_angles *angles,
+                                     enum patient_position position)
 {
     struct vec3 room = about_y(point_gantry_mm, angles->gantry_deg);
     struct vec3 table = about_z(room, -(angles->couch_deg + angles->eccentric_deg));

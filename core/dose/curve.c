@@ -34,7 +34,8 @@ bool dose_curve_value(const struct dose_curve *curve, size_t column, double dept
 {
     size_t d, r;
     double s, t, sum = 0;
-    if (!find(curve->depths_mm, curve->n_depths, depth_mm, &d, &s) || !find(curve->radii_mm, curve->n_radii, radius_mm, &r, &t))
+    if (!find(curve->depths_mm, curve->n_depths, depth_mm, &d, &s) ||
+        !find(curve->radii_mm, curve->n_radii, radius_mm, &r, &t))
         return false;
     const float *at = &curve->values[column][d * curve->n_radii + r];
     for (size_t corner = 0; corner < 4; corner++) {

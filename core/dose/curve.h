@@ -1,6 +1,6 @@
 #pragma once
-/* A reference curve: doses and fluences over depth along a beam and distance from its axis, computed in some phantom. It lies nowhere
- * in the patient; pictures and sums of dose must never take it for one. */
+/* A reference curve: doses and fluences over depth along a beam and distance from its axis, computed in some phantom.
+ * It lies nowhere in the patient; pictures and sums of dose must never take it for one. */
 #include "core/dose/dose.h"
 
 enum { CURVE_MAX_POINTS = 1000 }; /* depths, and radii */

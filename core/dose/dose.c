@@ -61,7 +61,8 @@ void dose_quantity_unit(const char *dose_unit, enum dose_quantity quantity, char
     if (dose_quantity_is_fluence(quantity))
         snprintf(unit, DOSE_UNIT_SIZE, "1/cm2");
     else
-        snprintf(unit, DOSE_UNIT_SIZE, "%.16s%s", dose_unit, quantity == DOSE_WEIGHTED_TOTAL && dose_unit[0] ? "(w)" : "");
+        snprintf(unit, DOSE_UNIT_SIZE, "%.16s%s", dose_unit,
+                 quantity == DOSE_WEIGHTED_TOTAL && dose_unit[0] ? "(w)" : "");
 }
 
 void dose_unit_of(const struct dose *dose, enum dose_quantity quantity, char unit[DOSE_UNIT_SIZE])

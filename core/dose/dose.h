@@ -1,9 +1,10 @@
 #pragma once
-/* A dose as the plan gives it: components on their own grids, their unit and what they are per. No weights, no pictures. */
+/* A dose as the plan gives it: components on their own grids, their unit and what they are per. No weights, no
+ * pictures. */
 #include "core/volume/volume.h"
 
-/* Physical doses, fluences, and two that a file may hold with weights already in them and no way to take them out. The last two
- * have words of their own, and no sum may mix them with the others. */
+/* Physical doses, fluences, and two that a file may hold with weights already in them and no way to take them out. The
+ * last two have words of their own, and no sum may mix them with the others. */
 enum dose_quantity {
     DOSE_TOTAL, /* physical, of all components */
     DOSE_BORON,
@@ -27,11 +28,12 @@ struct dose_component {
     bool is_per_ppm;       /* boron, or blood boron, per 1 ppm of boron-10 */
     struct volume *values; /* in what dose_unit_of says */
     bool has_boron_ppm;    /* total, weighted total: it is known which boron is in it */
-    double boron_ppm;      /* then: of so many ppm of boron-10 in blood, with each tissue's ratio to blood as the file's program had it */
+    double boron_ppm;      /* then: of so many ppm of boron-10 in blood, with each tissue's ratio to blood as the file's
+                              program had it */
 };
 
-/* Whether a dose and the image lie in one DICOM frame of reference: in another, the dose may be shifted against the image. The greater
- * the worse. */
+/* Whether a dose and the image lie in one DICOM frame of reference: in another, the dose may be shifted against the
+ * image. The greater the worse. */
 enum dose_frame {
     DOSE_FRAME_SAME,
     DOSE_FRAME_UNKNOWN, /* the files do not say */
@@ -43,10 +45,10 @@ bool dose_frame_from_word(const char *word, enum dose_frame *frame);
 
 struct dose {
     char id[64];
-    char name[64]; /* for people; "" when the files give none */
-    char unit[16]; /* "Gy", "cGy"; as the plan says it, never assumed */
-    char per[64];  /* "fraction", "250 kW-min", "minute"; "" when the plan does not say, and the report then says so */
-    bool has_frame;        /* of a DICOM file beside a DICOM image, or said in plan.json */
+    char name[64];  /* for people; "" when the files give none */
+    char unit[16];  /* "Gy", "cGy"; as the plan says it, never assumed */
+    char per[64];   /* "fraction", "250 kW-min", "minute"; "" when the plan does not say, and the report then says so */
+    bool has_frame; /* of a DICOM file beside a DICOM image, or said in plan.json */
     enum dose_frame frame; /* then */
     struct dose_component components[DOSE_N_QUANTITIES];
     size_t n_components;

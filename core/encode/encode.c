@@ -9,7 +9,8 @@
 /* Up to here the fast transform is not visibly worse than the exact one; above, quality is what was asked for. */
 enum { FAST_TRANSFORM_MAX_QUALITY = 85, PNG_COMPRESSION_LEVEL = 1 };
 
-/* Memory for the largest JPEG there can be is taken at once up to here: 6 bytes a pixel. Above, it grows with the JPEG, which is a tenth of that. */
+/* Memory for the largest JPEG there can be is taken at once up to here: 6 bytes a pixel. Above, it grows with the JPEG,
+ * which is a tenth of that. */
 enum { AT_ONCE_MAX_PX = 4000000 };
 
 struct encoder {
@@ -45,13 +46,16 @@ static bool encode_jpeg(struct encoder *encoder, const struct image *image, cons
     bool grows = (int64_t)image->width_px * image->height_px > AT_ONCE_MAX_PX;
     unsigned char *bytes = grows ? NULL : malloc(n_bytes);
     if (!bytes && !grows)
-        return error_set(err, ERROR_MEMORY, "a JPEG of %d x %d pixels: no memory for %lu bytes", image->width_px, image->height_px, n_bytes);
+        return error_set(err, ERROR_MEMORY, "a JPEG of %d x %d pixels: no memory for %lu bytes", image->width_px,
+                         image->height_px, n_bytes);
     if (grows)
         n_bytes = 0;
-    int flags = (grows ? 0 : TJFLAG_NOREALLOC) | (options->quality <= FAST_TRANSFORM_MAX_QUALITY ? TJFLAG_FASTDCT : TJFLAG_ACCURATEDCT);
-    if (tjCompress2(encoder->jpeg, image->rgba, image->width_px, 0, image->height_px, TJPF_RGBX, &bytes, &n_bytes, sampling,
-                    options->quality, flags) != 0) {
-        error_set(err, ERROR_MEMORY, "a JPEG of %d x %d pixels: %s", image->width_px, image->height_px, tjGetErrorStr2(encoder->jpeg));
+    int flags = (grows ? 0 : TJFLAG_NOREALLOC) |
+                (options->quality <= FAST_TRANSFORM_MAX_QUALITY ? TJFLAG_FASTDCT : TJFLAG_ACCURATEDCT);
+    if (tjCompress2(encoder->jpeg, image->rgba, image->width_px, 0, image->height_px, TJPF_RGBX, &bytes, &n_bytes,
+                    sampling, options->quality, flags) != 0) {
+        error_set(err, ERROR_MEMORY, "a JPEG of %d x %d pixels: %s", image->width_px, image->height_px,
+                  tjGetErrorStr2(encoder->jpeg));
         free(bytes);
         return false;
     }
@@ -65,8 +69,10 @@ static bool encode_png(const struct image *image, struct encoded *out, struct er
     spng_ctx *png = spng_ctx_new(SPNG_CTX_ENCODER);
     if (!png)
         return error_set(err, ERROR_MEMORY, "no memory for a PNG of %d x %d pixels", image->width_px, image->height_px);
-    struct spng_ihdr header = { .width = (uint32_t)image->width_px, .height = (uint32_t)image->height_px,
-                                .bit_depth = 8, .color_type = SPNG_COLOR_TYPE_TRUECOLOR_ALPHA };
+    struct spng_ihdr header = { .width = (uint32_t)image->width_px,
+                                .height = (uint32_t)image->height_px,
+                                .bit_depth = 8,
+                                .color_type = SPNG_COLOR_TYPE_TRUECOLOR_ALPHA };
     size_t n_raw = (size_t)image->width_px * (size_t)image->height_px * 4, n_bytes = 0;
     int status = spng_set_option(png, SPNG_ENCODE_TO_BUFFER, 1);
     if (!status)
@@ -80,7 +86,8 @@ static bool encode_png(const struct image *image, struct encoded *out, struct er
     uint8_t *bytes = status ? NULL : spng_get_png_buffer(png, &n_bytes, &status);
     spng_ctx_free(png);
     if (!bytes)
-        return error_set(err, ERROR_MEMORY, "a PNG of %d x %d pixels: %s", image->width_px, image->height_px, spng_strerror(status));
+        return error_set(err, ERROR_MEMORY, "a PNG of %d x %d pixels: %s", image->width_px, image->height_px,
+                         spng_strerror(status));
     *out = (struct encoded){ bytes, n_bytes };
     return true;
 }
@@ -89,7 +96,8 @@ bool encode_image(struct encoder *encoder, const struct image *image, const stru
                   struct encoded *out, struct error *err)
 {
     *out = (struct encoded){ 0 };
-    if (image->width_px < 1 || image->height_px < 1 || image->width_px > IMAGE_MAX_SIDE_PX || image->height_px > IMAGE_MAX_SIDE_PX)
+    if (image->width_px < 1 || image->height_px < 1 || image->width_px > IMAGE_MAX_SIDE_PX ||
+        image->height_px > IMAGE_MAX_SIDE_PX)
         return error_set(err, ERROR_RANGE, "a picture of %d x %d pixels: each side must be 1 to %d", image->width_px,
                          image->height_px, IMAGE_MAX_SIDE_PX);
     switch (options->codec) {

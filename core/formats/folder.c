@@ -26,7 +26,8 @@ bool folder_open(struct folder *folder, const char *path, struct error *err)
     char *resolved = path_resolve(path);
     if (!resolved || strlen(resolved) >= sizeof folder->path) {
         free(resolved);
-        return error_set(err, ERROR_NOT_FOUND, "the plan's folder does not exist or cannot be entered: %s", strerror(errno));
+        return error_set(err, ERROR_NOT_FOUND, "the plan's folder does not exist or cannot be entered: %s",
+                         strerror(errno));
     }
     memcpy(folder->path, resolved, strlen(resolved) + 1);
     free(resolved);
@@ -50,12 +51,14 @@ bool folder_check_name(const char *name, struct error *err)
     if (length == 0)
         return error_set(err, ERROR_RANGE, "an empty file name");
     if (length >= FOLDER_NAME_SIZE)
-        return error_set(err, ERROR_RANGE, "a file name of %zu bytes; at most %d are allowed", length, FOLDER_NAME_SIZE - 1);
+        return error_set(err, ERROR_RANGE, "a file name of %zu bytes; at most %d are allowed", length,
+                         FOLDER_NAME_SIZE - 1);
     for (const char *c = name; *c; c++)
         if ((unsigned char)*c < 32 || *c == 127)
             return error_set(err, ERROR_RANGE, "a file name with a control character");
     if (name[0] == '/')
-        return error_set(err, ERROR_RANGE, "%s: names in a plan are relative to its folder, this one is absolute", name);
+        return error_set(err, ERROR_RANGE, "%s: names in a plan are relative to its folder, this one is absolute",
+                         name);
     for (const char *part = name; part; part = strchr(part, '/')) {
         part += *part == '/';
         if (strncmp(part, "..", 2) == 0 && (part[2] == '/' || part[2] == 0))
@@ -73,7 +76,8 @@ static int open_resolved(const struct folder *folder, const char *name)
     if (!resolved)
         return -1;
     size_t length = strlen(folder->path);
-    bool is_inside = strncmp(resolved, folder->path, length) == 0 && (resolved[length] == '/' || resolved[length] == 0 || length == 1);
+    bool is_inside = strncmp(resolved, folder->path, length) == 0 &&
+                     (resolved[length] == '/' || resolved[length] == 0 || length == 1);
     int fd = -1;
     if (is_inside)
         fd = open(resolved, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
@@ -83,7 +87,8 @@ static int open_resolved(const struct folder *folder, const char *name)
     return fd;
 }
 
-/* Where openat2 is missing or refused: one folder after the other, none of them a link. A name with a link in it is resolved. */
+/* Where openat2 is missing or refused: one folder after the other, none of them a link. A name with a link in it is
+ * resolved. */
 static int open_by_parts(const struct folder *folder, const char *name)
 {
     char part[FOLDER_NAME_SIZE];
@@ -110,7 +115,8 @@ static int open_by_parts(const struct folder *folder, const char *name)
 /* O_NONBLOCK: opening a named pipe somebody left in the folder must not hang. */
 static int open_beneath(const struct folder *folder, const char *name)
 {
-    struct open_how how = { .flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK, .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS };
+    struct open_how how = { .flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK,
+                            .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS };
     long fd = syscall(SYS_openat2, folder->fd, name, &how, sizeof how);
     if (fd < 0 && (errno == ENOSYS || errno == EPERM || errno == EAGAIN)) {
         fd = open_by_parts(folder, name);
@@ -140,7 +146,8 @@ enum folder_kind folder_look(const struct folder *folder, const char *name, uint
     return kind;
 }
 
-bool folder_read_part(const struct folder_part *part, const char *name, uint64_t at, void *out, size_t n, struct error *err)
+bool folder_read_part(const struct folder_part *part, const char *name, uint64_t at, void *out, size_t n,
+                      struct error *err)
 {
     size_t have = 0;
     while (have < n) {

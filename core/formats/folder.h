@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 
 enum {
-    FOLDER_NAME_SIZE = 512,   /* longest relative name, with its end */
+    FOLDER_NAME_SIZE = 512,    /* longest relative name, with its end */
     FOLDER_MAX_ENTRIES = 4096, /* a listing ends here */
     FOLDER_MAX_FILES = 65536,  /* folder_walk ends here */
     FOLDER_MAX_DEPTH = 8       /* folders in folders that folder_walk enters */
@@ -39,8 +39,8 @@ enum folder_kind folder_look(const struct folder *folder, const char *name, uint
 /* The whole file, or its first most bytes when most is less (then no error).
  *   limit   refuse a file that is larger
  *   errors  ERROR_RANGE a name that leaves the folder, ERROR_NOT_FOUND, ERROR_LIMIT, ERROR_MEMORY, ERROR_IO */
-NODISCARD bool folder_read(const struct folder *folder, const char *name, uint64_t limit, uint64_t most, struct bytes *bytes,
-                           struct error *err);
+NODISCARD bool folder_read(const struct folder *folder, const char *name, uint64_t limit, uint64_t most,
+                           struct bytes *bytes, struct error *err);
 
 /* One file kept open, to read parts of it. */
 struct folder_part {
@@ -48,9 +48,11 @@ struct folder_part {
     uint64_t n_bytes; /* of the file */
 };
 /* errors as folder_read, without ERROR_LIMIT and ERROR_MEMORY */
-NODISCARD bool folder_open_part(const struct folder *folder, const char *name, struct folder_part *part, struct error *err);
+NODISCARD bool folder_open_part(const struct folder *folder, const char *name, struct folder_part *part,
+                                struct error *err);
 /* n bytes from at on. errors ERROR_IO, also when the file ends before */
-NODISCARD bool folder_read_part(const struct folder_part *part, const char *name, uint64_t at, void *out, size_t n, struct error *err);
+NODISCARD bool folder_read_part(const struct folder_part *part, const char *name, uint64_t at, void *out, size_t n,
+                                struct error *err);
 void folder_close_part(struct folder_part *part);
 
 /* Names of files and folders right inside, without those that begin with a dot, sorted by byte value.
@@ -69,9 +71,10 @@ struct folder_tree {
     size_t n_files;
     bool is_cut; /* there was more than FOLDER_MAX_FILES or deeper than FOLDER_MAX_DEPTH */
 };
-/* All plain files below a part of the folder ("" for all of it), without names that begin with a dot; links to folders are not
- * followed, links to files are when they stay inside. Folders that is_skipped says yes to are left out (NULL: none).
- * errors as folder_list; the caller calls folder_tree_finish, after a failure too */
-NODISCARD bool folder_walk(const struct folder *folder, const char *under, bool (*is_skipped)(const struct folder *folder, const char *name),
-                           struct folder_tree *tree, struct error *err);
+/* All plain files below a part of the folder ("" for all of it), without names that begin with a dot; links to folders
+ * are not followed, links to files are when they stay inside. Folders that is_skipped says yes to are left out (NULL:
+ * none). errors as folder_list; the caller calls folder_tree_finish, after a failure too */
+NODISCARD bool folder_walk(const struct folder *folder, const char *under,
+                           bool (*is_skipped)(const struct folder *folder, const char *name), struct folder_tree *tree,
+                           struct error *err);
 void folder_tree_finish(struct folder_tree *tree);

@@ -68,8 +68,10 @@ static bool walk_into(struct walk *walk, int fd, const char *under, int depth)
             bool is_deep = depth >= FOLDER_MAX_DEPTH;
             walk->tree->is_cut |= is_deep;
             if (!is_deep && !(walk->is_skipped && walk->is_skipped(walk->folder, name)))
-                goes_on = walk_into(walk, openat(dirfd(directory), entry->d_name, O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW), name,
-                                    depth + 1);
+                goes_on =
+                    walk_into(walk,
+                              openat(dirfd(directory), entry->d_name, O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW),
+                              name, depth + 1);
         } else if (S_ISREG(about.st_mode) || (S_ISLNK(about.st_mode) && look_behind_link(walk->folder, name, &about))) {
             goes_on = add_file(walk, name, &about);
         }
@@ -83,8 +85,9 @@ static int compare_files(const void *a, const void *b)
     return strcmp(((const struct folder_file *)a)->name, ((const struct folder_file *)b)->name);
 }
 
-bool folder_walk(const struct folder *folder, const char *under, bool (*is_skipped)(const struct folder *folder, const char *name),
-                 struct folder_tree *tree, struct error *err)
+bool folder_walk(const struct folder *folder, const char *under,
+                 bool (*is_skipped)(const struct folder *folder, const char *name), struct folder_tree *tree,
+                 struct error *err)
 {
     *tree = (struct folder_tree){ 0 };
     /* a folder below is opened as a file is: never through a link that leads out */

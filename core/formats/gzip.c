@@ -40,8 +40,8 @@ struct reading {
     const char *reason;
 };
 
-/* The slow way, piece by piece: the first capacity bytes into out, what follows them is checked and thrown away. FULL: there are more than
- * most bytes inside. zlib checks the sums and the lengths of all members that end within most. */
+/* The slow way, piece by piece: the first capacity bytes into out, what follows them is checked and thrown away. FULL:
+ * there are more than most bytes inside. zlib checks the sums and the lengths of all members that end within most. */
 static struct reading inflate_slowly(const uint8_t *data, size_t size, uint8_t *out, size_t capacity, uint64_t most)
 {
     uint8_t scratch[SCRATCH_BYTES];
@@ -108,8 +108,8 @@ size_t gzip_head(const uint8_t *data, size_t size, uint8_t *out, size_t capacity
     return have;
 }
 
-/* The fast way: all members with their sums and lengths, into capacity bytes. FULL: there is more than that; BROKEN also where a stream is
- * cut, or followed by something else. */
+/* The fast way: all members with their sums and lengths, into capacity bytes. FULL: there is more than that; BROKEN
+ * also where a stream is cut, or followed by something else. */
 static enum outcome inflate_members(const uint8_t *data, size_t size, uint8_t *out, size_t capacity, size_t *n)
 {
     struct libdeflate_decompressor *decompressor = libdeflate_alloc_decompressor();
@@ -119,8 +119,8 @@ static enum outcome inflate_members(const uint8_t *data, size_t size, uint8_t *o
     enum outcome outcome = WHOLE;
     while (outcome == WHOLE && (in == 0 || gzip_is(data + in, size - in))) {
         size_t used = 0, made = 0;
-        enum libdeflate_result result =
-            libdeflate_gzip_decompress_ex(decompressor, data + in, size - in, out + have, capacity - have, &used, &made);
+        enum libdeflate_result result = libdeflate_gzip_decompress_ex(decompressor, data + in, size - in, out + have,
+                                                                      capacity - have, &used, &made);
         if (result != LIBDEFLATE_SUCCESS)
             outcome = result == LIBDEFLATE_INSUFFICIENT_SPACE ? FULL : BROKEN;
         in += used;
@@ -149,18 +149,24 @@ static bool refuse(const struct reading *reading, size_t size, const char *name,
     case NO_MEMORY: return error_set(err, ERROR_MEMORY, "%s: no memory to unpack", name);
     case FULL: return error_set(err, ERROR_LIMIT, "%s: more than %llu bytes inside", name, (unsigned long long)most);
     case CUT:
-        return error_set(err, ERROR_FORMAT, "%s: the gzip stream is cut short at byte %zu, after %llu unpacked bytes", name, size, have);
+        return error_set(err, ERROR_FORMAT, "%s: the gzip stream is cut short at byte %zu, after %llu unpacked bytes",
+                         name, size, have);
     case FOLLOWED:
-        return error_set(err, ERROR_FORMAT, "%s: the gzip stream ends at byte %zu, and %zu more bytes follow that are neither another one nor "
-                         "padding with zeros", name, reading->in, size - reading->in);
+        return error_set(
+            err, ERROR_FORMAT,
+            "%s: the gzip stream ends at byte %zu, and %zu more bytes follow that are neither another one nor "
+            "padding with zeros",
+            name, reading->in, size - reading->in);
     case BROKEN:
     case WHOLE: break;
     }
-    return error_set(err, ERROR_FORMAT, "%s: the gzip stream is damaged near byte %zu of %zu, after %llu unpacked bytes: %s", name,
+    return error_set(err, ERROR_FORMAT,
+                     "%s: the gzip stream is damaged near byte %zu of %zu, after %llu unpacked bytes: %s", name,
                      reading->in, size, have, plain_reason(reading->reason));
 }
 
-bool gzip_exact(const uint8_t *data, size_t size, const char *name, uint8_t *out, size_t n, uint64_t *n_more, struct error *err)
+bool gzip_exact(const uint8_t *data, size_t size, const char *name, uint8_t *out, size_t n, uint64_t *n_more,
+                struct error *err)
 {
     size_t have = 0;
     *n_more = 0;

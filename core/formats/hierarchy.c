@@ -17,8 +17,8 @@ size_t hierarchy_parse(const uint8_t *data, size_t size, const char *name, struc
             continue;
         }
         if (n >= most) {
-            report_add(report, REPORT_WARNING, "hierarchy.line", name, "More than %zu lines; those from line %zu on were left out.",
-                       most, text.line);
+            report_add(report, REPORT_WARNING, "hierarchy.line", name,
+                       "More than %zu lines; those from line %zu on were left out.", most, text.line);
             break;
         }
         text_clean(outer, pairs[n].outer, sizeof pairs[n].outer);

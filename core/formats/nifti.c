@@ -5,21 +5,25 @@
 #include "core/formats/gzip.h"
 #include "core/formats/text.h"
 
-static struct volume *read_voxels(const struct nifti_header *header, const struct bytes *file, bool is_packed, const char *name,
-                                  enum raw_use use, struct report *report, struct error *err)
+static struct volume *read_voxels(const struct nifti_header *header, const struct bytes *file, bool is_packed,
+                                  const char *name, enum raw_use use, struct report *report, struct error *err)
 {
     struct raw_unpacked unpacked;
-    struct raw_place place = { *file, is_packed, header->is_swapped, header->data_at, header->data_bytes, header->voxel_bytes };
+    struct raw_place place = { *file,           is_packed,          header->is_swapped,
+                               header->data_at, header->data_bytes, header->voxel_bytes };
     if (!raw_unpack(&place, name, &unpacked, report, err))
         return NULL;
-    struct raw_voxels voxels = { unpacked.data, grid_n_voxels(&header->grid), header->type, &header->grid, header->slope, header->offset,
-                                 name, &unpacked.owned };
+    struct raw_voxels voxels = { unpacked.data, grid_n_voxels(&header->grid),
+                                 header->type,  &header->grid,
+                                 header->slope, header->offset,
+                                 name,          &unpacked.owned };
     struct volume *volume = raw_read(&voxels, use, report, err);
     free(unpacked.owned);
     return volume;
 }
 
-struct volume *nifti_read(const struct bytes *file, const char *name, enum raw_use use, struct report *report, struct error *err)
+struct volume *nifti_read(const struct bytes *file, const char *name, enum raw_use use, struct report *report,
+                          struct error *err)
 {
     struct nifti_header header;
     if (!nifti_peek(file, name, &header, report, err))
@@ -29,8 +33,8 @@ struct volume *nifti_read(const struct bytes *file, const char *name, enum raw_u
     return read_voxels(&header, file, gzip_is(file->data, file->size), name, use, report, err);
 }
 
-struct volume *nifti_read_pair(const struct bytes *head, const char *head_name, const struct bytes *voxels, const char *voxels_name,
-                               enum raw_use use, struct report *report, struct error *err)
+struct volume *nifti_read_pair(const struct bytes *head, const char *head_name, const struct bytes *voxels,
+                               const char *voxels_name, enum raw_use use, struct report *report, struct error *err)
 {
     struct nifti_header header;
     bool is_packed = text_has_ending(voxels_name, ".gz");

@@ -115,26 +115,30 @@ static bool get_fields(const uint8_t *head, size_t size, const char *name, struc
                 return true;
             }
             if (text_has_ending(name, ".nii") || text_has_ending(name, ".nii.gz"))
-                return error_set(err, ERROR_FORMAT, "%s: byte 344: magic is %02x %02x %02x %02x, expected \"n+1\"", name, head[344],
-                                 head[345], head[346], head[347]);
-            return error_set(err, ERROR_UNSUPPORTED, "%s: byte 344: found %02x %02x %02x %02x, expected \"ni1\": an Analyze 7.5 header, which does not "
-                             "say which side is left, and is not read; convert it to NIfTI with what made it", name, head[344], head[345],
-                             head[346], head[347]);
+                return error_set(err, ERROR_FORMAT, "%s: byte 344: magic is %02x %02x %02x %02x, expected \"n+1\"",
+                                 name, head[344], head[345], head[346], head[347]);
+            return error_set(
+                err, ERROR_UNSUPPORTED,
+                "%s: byte 344: found %02x %02x %02x %02x, expected \"ni1\": an Analyze 7.5 header, which does not "
+                "say which side is left, and is not read; convert it to NIfTI with what made it",
+                name, head[344], head[345], head[346], head[347]);
         }
         if (length == HEADER2_BYTES) {
             *version = 2;
             if (size < HEADER2_BYTES)
-                return error_set(err, ERROR_FORMAT, "%s: %zu bytes; a NIfTI-2 header has %d", name, size, HEADER2_BYTES);
+                return error_set(err, ERROR_FORMAT, "%s: %zu bytes; a NIfTI-2 header has %d", name, size,
+                                 HEADER2_BYTES);
             get_fields2(head, big, f);
             f->is_pair = memcmp(f->magic, "ni2\0\r\n\032\n", 8) == 0;
             if (!f->is_pair && memcmp(f->magic, "n+2\0\r\n\032\n", 8) != 0)
-                return error_set(err, ERROR_FORMAT, "%s: byte 4: the magic of NIfTI-2 is wrong or was changed by a text transfer",
-                                 name);
+                return error_set(err, ERROR_FORMAT,
+                                 "%s: byte 4: the magic of NIfTI-2 is wrong or was changed by a text transfer", name);
             return true;
         }
     }
-    return error_set(err, ERROR_FORMAT, "%s: byte 0: header length is %d, expected 348 (NIfTI-1) or 540 (NIfTI-2): not a NIfTI file",
-                     name, get_i32(head, false));
+    return error_set(err, ERROR_FORMAT,
+                     "%s: byte 0: header length is %d, expected 348 (NIfTI-1) or 540 (NIfTI-2): not a NIfTI file", name,
+                     get_i32(head, false));
 }
 
 static const char *type_name(int code)
@@ -156,8 +160,9 @@ static bool get_type(int code, enum raw_type *type)
     static const struct {
         int code;
         enum raw_type type;
-    } types[] = { { DT_UINT8, RAW_U8 },   { DT_INT8, RAW_I8 },   { DT_INT16, RAW_I16 },  { DT_UINT16, RAW_U16 },  { DT_INT32, RAW_I32 },
-                  { DT_UINT32, RAW_U32 }, { DT_INT64, RAW_I64 }, { DT_UINT64, RAW_U64 }, { DT_FLOAT32, RAW_F32 }, { DT_FLOAT64, RAW_F64 } };
+    } types[] = { { DT_UINT8, RAW_U8 },    { DT_INT8, RAW_I8 },    { DT_INT16, RAW_I16 }, { DT_UINT16, RAW_U16 },
+                  { DT_INT32, RAW_I32 },   { DT_UINT32, RAW_U32 }, { DT_INT64, RAW_I64 }, { DT_UINT64, RAW_U64 },
+                  { DT_FLOAT32, RAW_F32 }, { DT_FLOAT64, RAW_F64 } };
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
         if (types[i].code == code) {
             *type = types[i].type;
@@ -173,10 +178,12 @@ static bool get_size(const struct fields *f, const char *name, uint32_t size[3],
     size[0] = size[1] = size[2] = 1;
     for (int i = 1; i <= f->dim[0]; i++) {
         if (i > 3 && f->dim[i] > 1)
-            return error_set(err, ERROR_UNSUPPORTED, "%s: dim[%d] is %lld: a series of volumes is not read, only one volume", name,
-                             i, (long long)f->dim[i]);
+            return error_set(err, ERROR_UNSUPPORTED,
+                             "%s: dim[%d] is %lld: a series of volumes is not read, only one volume", name, i,
+                             (long long)f->dim[i]);
         if (i > 3 ? f->dim[i] < 0 : f->dim[i] < 1)
-            return error_set(err, ERROR_FORMAT, "%s: dim[%d] is %lld, expected 1 or more", name, i, (long long)f->dim[i]);
+            return error_set(err, ERROR_FORMAT, "%s: dim[%d] is %lld, expected 1 or more", name, i,
+                             (long long)f->dim[i]);
         if (f->dim[i] > VOLUME_MAX_SIDE)
             return error_set(err, ERROR_LIMIT, "%s: dim[%d] is %lld; at most %d voxels a side are read", name, i,
                              (long long)f->dim[i], VOLUME_MAX_SIDE);
@@ -211,7 +218,8 @@ static struct affine ras_from_quaternion(const struct fields *f)
 static struct affine ras_from_rows(const struct fields *f)
 {
     const double(*r)[4] = f->srow;
-    return (struct affine){ { vec3(r[0][0], r[1][0], r[2][0]), vec3(r[0][1], r[1][1], r[2][1]), vec3(r[0][2], r[1][2], r[2][2]) },
+    return (struct affine){ { vec3(r[0][0], r[1][0], r[2][0]), vec3(r[0][1], r[1][1], r[2][1]),
+                              vec3(r[0][2], r[1][2], r[2][2]) },
                             vec3(r[0][3], r[1][3], r[2][3]) };
 }
 
@@ -227,7 +235,8 @@ static double largest_corner_distance(const struct affine *a, const struct affin
 {
     double largest = 0;
     for (int corner = 0; corner < 8; corner++) {
-        struct vec3 at = vec3(corner & 1 ? size[0] - 1.0 : 0, corner & 2 ? size[1] - 1.0 : 0, corner & 4 ? size[2] - 1.0 : 0);
+        struct vec3 at =
+            vec3(corner & 1 ? size[0] - 1.0 : 0, corner & 2 ? size[1] - 1.0 : 0, corner & 4 ? size[2] - 1.0 : 0);
         largest = fmax(largest, vec3_length(vec3_sub(affine_point(a, at), affine_point(b, at))));
     }
     return largest;
@@ -238,7 +247,8 @@ static bool check_quaternion(const struct fields *f, const char *name, struct er
 {
     double square = f->quatern[0] * f->quatern[0] + f->quatern[1] * f->quatern[1] + f->quatern[2] * f->quatern[2];
     return square <= 1.001 ||
-           error_set(err, ERROR_RANGE, "%s: quatern_b, c, d are %g, %g, %g: the sum of their squares is %g, expected 1 or less", name,
+           error_set(err, ERROR_RANGE,
+                     "%s: quatern_b, c, d are %g, %g, %g: the sum of their squares is %g, expected 1 or less", name,
                      f->quatern[0], f->quatern[1], f->quatern[2], square);
 }
 
@@ -247,12 +257,13 @@ static void note_spacing(const struct fields *f, const char *name, const uint32_
 {
     for (int i = 0; i < 3; i++)
         if (size[i] > 1 && !(f->pixdim[i + 1] > 0))
-            report_add(report, REPORT_WARNING, "geometry.assumed", name, "pixdim[%d], the size of a voxel, is %g; 1 was taken. Distances may be wrong.",
-                       i + 1, f->pixdim[i + 1]);
+            report_add(report, REPORT_WARNING, "geometry.assumed", name,
+                       "pixdim[%d], the size of a voxel, is %g; 1 was taken. Distances may be wrong.", i + 1,
+                       f->pixdim[i + 1]);
 }
 
-static bool get_geometry(const struct fields *f, const char *name, const uint32_t size[3], struct grid *grid, struct report *report,
-                         struct error *err)
+static bool get_geometry(const struct fields *f, const char *name, const uint32_t size[3], struct grid *grid,
+                         struct report *report, struct error *err)
 {
     struct affine ras;
     if (f->sform_code > 0) {
@@ -260,8 +271,10 @@ static bool get_geometry(const struct fields *f, const char *name, const uint32_
         struct affine other = ras_from_quaternion(f);
         double apart = f->qform_code == f->sform_code ? largest_corner_distance(&ras, &other, size) : 0;
         if (apart > 1)
-            report_add(report, REPORT_WARNING, "geometry.forms-disagree", name,
-                       "The two orientations in the file (sform, qform) put a corner %.1f units apart; the sform was used.", apart);
+            report_add(
+                report, REPORT_WARNING, "geometry.forms-disagree", name,
+                "The two orientations in the file (sform, qform) put a corner %.1f units apart; the sform was used.",
+                apart);
     } else if (f->qform_code > 0) {
         if (!check_quaternion(f, name, err))
             return false;
@@ -270,9 +283,10 @@ static bool get_geometry(const struct fields *f, const char *name, const uint32_
     } else {
         ras = ras_from_spacing(f);
         note_spacing(f, name, size, report);
-        report_add(report, REPORT_WARNING, "geometry.assumed", name,
-                   "The file does not say how its voxels lie in the patient; x was taken to grow to the patient's right-to-left, "
-                   "NIfTI's first method. Left and right may be wrong.");
+        report_add(
+            report, REPORT_WARNING, "geometry.assumed", name,
+            "The file does not say how its voxels lie in the patient; x was taken to grow to the patient's right-to-left, "
+            "NIfTI's first method. Left and right may be wrong.");
     }
     double mm = 1;
     switch (f->units & 7) {
@@ -291,8 +305,8 @@ static bool get_geometry(const struct fields *f, const char *name, const uint32_
     return true;
 }
 
-bool nifti_parse_header(const uint8_t *head, size_t size, const char *name, struct nifti_header *header, struct report *report,
-                        struct error *err)
+bool nifti_parse_header(const uint8_t *head, size_t size, const char *name, struct nifti_header *header,
+                        struct report *report, struct error *err)
 {
     struct fields f = { 0 };
     bool is_big = false;
@@ -301,13 +315,14 @@ bool nifti_parse_header(const uint8_t *head, size_t size, const char *name, stru
     if (!get_fields(head, size, name, &f, &is_big, &version, err) || !get_size(&f, name, sides, err))
         return false;
     if (!get_type(f.datatype, &header->type))
-        return error_set(err, ERROR_UNSUPPORTED,
-                         "%s: data type %d (%s) is not read; expected whole numbers of 8 to 64 bits or floats of 32 or 64", name,
-                         f.datatype, type_name(f.datatype));
+        return error_set(
+            err, ERROR_UNSUPPORTED,
+            "%s: data type %d (%s) is not read; expected whole numbers of 8 to 64 bits or floats of 32 or 64", name,
+            f.datatype, type_name(f.datatype));
     header->voxel_bytes = raw_type_bytes(header->type);
     if (f.bitpix != 0 && f.bitpix != (int)(8 * header->voxel_bytes))
-        return error_set(err, ERROR_FORMAT, "%s: bitpix is %d, but data type %d has %u bits", name, f.bitpix, f.datatype,
-                         8 * header->voxel_bytes);
+        return error_set(err, ERROR_FORMAT, "%s: bitpix is %d, but data type %d has %u bits", name, f.bitpix,
+                         f.datatype, 8 * header->voxel_bytes);
     if (!get_geometry(&f, name, sides, &header->grid, report, err))
         return false;
     header->is_swapped = is_big != (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__);
@@ -315,7 +330,8 @@ bool nifti_parse_header(const uint8_t *head, size_t size, const char *name, stru
     if (is_scaled && !isfinite(f.offset))
         return error_set(err, ERROR_FORMAT, "%s: scl_inter is not a finite number", name);
     if (!isfinite(f.slope))
-        report_add(report, REPORT_WARNING, "image.rescale", name, "scl_slope is %g; the values were taken as stored.", f.slope);
+        report_add(report, REPORT_WARNING, "image.rescale", name, "scl_slope is %g; the values were taken as stored.",
+                   f.slope);
     header->slope = is_scaled ? f.slope : 1;
     header->offset = is_scaled ? f.offset : 0;
     header->is_pair = f.is_pair;
@@ -328,8 +344,8 @@ bool nifti_parse_header(const uint8_t *head, size_t size, const char *name, stru
     uint64_t n_voxels = grid_n_voxels(&header->grid);
     header->data_bytes = n_voxels * header->voxel_bytes;
     if (header->data_bytes > VOLUME_MAX_BYTES)
-        return error_set(err, ERROR_LIMIT, "%s: %u x %u x %u voxels of %u bytes; at most %llu bytes are read", name, sides[0], sides[1],
-                         sides[2], header->voxel_bytes, (unsigned long long)VOLUME_MAX_BYTES);
+        return error_set(err, ERROR_LIMIT, "%s: %u x %u x %u voxels of %u bytes; at most %llu bytes are read", name,
+                         sides[0], sides[1], sides[2], header->voxel_bytes, (unsigned long long)VOLUME_MAX_BYTES);
     return true;
 }
 
@@ -337,12 +353,16 @@ bool nifti_check_place(const struct nifti_header *header, bool is_pair, const ch
 {
     if (header->is_pair == is_pair)
         return true;
-    return error_set(err, ERROR_FORMAT,
-                     is_pair ? "%s: the magic says that the voxels follow in the same file (\"n+1\"), but the name is that of a pair (\"ni1\")"
-                             : "%s: the magic says that the voxels lie in another file (\"ni1\"); such a pair is named .hdr and .img", name);
+    return error_set(
+        err, ERROR_FORMAT,
+        is_pair
+            ? "%s: the magic says that the voxels follow in the same file (\"n+1\"), but the name is that of a pair (\"ni1\")"
+            : "%s: the magic says that the voxels lie in another file (\"ni1\"); such a pair is named .hdr and .img",
+        name);
 }
 
-bool nifti_peek(const struct bytes *file, const char *name, struct nifti_header *header, struct report *report, struct error *err)
+bool nifti_peek(const struct bytes *file, const char *name, struct nifti_header *header, struct report *report,
+                struct error *err)
 {
     if (!gzip_is(file->data, file->size))
         return nifti_parse_header(file->data, file->size, name, header, report, err);

@@ -18,10 +18,14 @@ struct layout {
     uint32_t header_bytes, voxels_at, real_bytes;
     const char *magic;
     size_t magic_bytes;
-    int magic_at, dim, dim_bytes, datatype, bitpix, pixdim, vox_offset, slope, units, description, qform_code, code_bytes, quaternion, srow;
+    int magic_at, dim, dim_bytes, datatype, bitpix, pixdim, vox_offset, slope, units, description, qform_code,
+        code_bytes, quaternion, srow;
 };
-static const struct layout nifti1 = { 348, 352, 4, "n+1", 4, 344, 40, 2, 70, 72, 76, 108, 112, 123, 148, 252, 2, 256, 280 };
-static const struct layout nifti2 = { 540, 544, 8, "n+2\0\r\n\032\n", 8, 4, 16, 8, 12, 14, 104, 168, 176, 500, 240, 344, 4, 352, 400 };
+static const struct layout nifti1 = { 348, 352, 4,   "n+1", 4,   344, 40, 2,   70, 72,
+                                      76,  108, 112, 123,   148, 252, 2,  256, 280 };
+static const struct layout nifti2 = {
+    540, 544, 8, "n+2\0\r\n\032\n", 8, 4, 16, 8, 12, 14, 104, 168, 176, 500, 240, 344, 4, 352, 400
+};
 
 static void put_whole(uint8_t *header, int at, int bytes, int64_t value)
 {
@@ -50,7 +54,8 @@ static int datatype_code(enum voxel_type type)
  * of the four squares, so no division is by a small number. */
 static void quaternion_from_axes(struct vec3 x, struct vec3 y, struct vec3 z, double q[4])
 {
-    double squares[4] = { 1 + x.x + y.y + z.z, 1 + x.x - y.y - z.z, 1 - x.x + y.y - z.z, 1 - x.x - y.y + z.z }; /* four times */
+    double squares[4] = { 1 + x.x + y.y + z.z, 1 + x.x - y.y - z.z, 1 - x.x + y.y - z.z,
+                          1 - x.x - y.y + z.z }; /* four times */
     int largest = 0;
     for (int i = 1; i < 4; i++)
         if (squares[i] > squares[largest])
@@ -106,12 +111,14 @@ static void put_geometry(uint8_t *header, const struct layout *layout, const str
     put_whole(header, layout->qform_code, layout->code_bytes, CODE_SCANNER);
 }
 
-static void put_header(uint8_t *header, const struct layout *layout, const struct volume *volume, const char *description)
+static void put_header(uint8_t *header, const struct layout *layout, const struct volume *volume,
+                       const char *description)
 {
     put_whole(header, 0, 4, layout->header_bytes);
     put_whole(header, layout->dim, layout->dim_bytes, 3);
     for (int i = 0; i < 7; i++)
-        put_whole(header, layout->dim + layout->dim_bytes * (i + 1), layout->dim_bytes, i < 3 ? volume->grid.size[i] : 1);
+        put_whole(header, layout->dim + layout->dim_bytes * (i + 1), layout->dim_bytes,
+                  i < 3 ? volume->grid.size[i] : 1);
     put_whole(header, layout->datatype, 2, datatype_code(volume->type));
     put_whole(header, layout->bitpix, 2, (int64_t)(8 * voxel_size(volume->type)));
     if (layout == &nifti1)
@@ -136,7 +143,8 @@ static double narrowed(double value)
 static bool is_narrow_enough(const struct volume *volume)
 {
     const struct affine *map = &volume->grid.lps_mm_from_ijk;
-    struct affine narrow = { .origin = vec3(narrowed(map->origin.x), narrowed(map->origin.y), narrowed(map->origin.z)) };
+    struct affine narrow = { .origin =
+                                 vec3(narrowed(map->origin.x), narrowed(map->origin.y), narrowed(map->origin.z)) };
     for (int i = 0; i < 3; i++)
         narrow.columns[i] = vec3(narrowed(map->columns[i].x), narrowed(map->columns[i].y), narrowed(map->columns[i].z));
     double furthest = 0;
@@ -145,7 +153,8 @@ static bool is_narrow_enough(const struct volume *volume)
         struct vec3 at = vec3(corner & 1 ? size[0] - 1 : 0, corner & 2 ? size[1] - 1 : 0, corner & 4 ? size[2] - 1 : 0);
         furthest = fmax(furthest, vec3_length(vec3_sub(affine_point(map, at), affine_point(&narrow, at))));
     }
-    return furthest <= EXACT_MM && volume->slope == narrowed(volume->slope) && volume->offset == narrowed(volume->offset);
+    return furthest <= EXACT_MM && volume->slope == narrowed(volume->slope) &&
+           volume->offset == narrowed(volume->offset);
 }
 
 static bool ends_with_gz(const char *path)
@@ -177,13 +186,13 @@ done:
     return is_written;
 }
 
-static bool write_as(const struct layout *layout, const char *path, const struct volume *volume, const char *description,
-                     struct error *err)
+static bool write_as(const struct layout *layout, const char *path, const struct volume *volume,
+                     const char *description, struct error *err)
 {
     for (int i = 0; i < 3; i++)
         if (layout == &nifti1 && volume->grid.size[i] > INT16_MAX)
-            return error_set(err, ERROR_LIMIT, "%s: %u voxels along axis %d are more than NIfTI-1 holds (%d)", path, volume->grid.size[i],
-                             i, INT16_MAX);
+            return error_set(err, ERROR_LIMIT, "%s: %u voxels along axis %d are more than NIfTI-1 holds (%d)", path,
+                             volume->grid.size[i], i, INT16_MAX);
     size_t n_voxel_bytes = grid_n_voxels(&volume->grid) * voxel_size(volume->type);
     size_t n_bytes = layout->voxels_at + n_voxel_bytes;
     uint8_t *bytes = mem_array(n_bytes, 1, VOLUME_MAX_BYTES + HEADER_MOST, err);
@@ -193,7 +202,8 @@ static bool write_as(const struct layout *layout, const char *path, const struct
     }
     put_header(bytes, layout, volume, description);
     memcpy(bytes + layout->voxels_at, volume->voxels, n_voxel_bytes);
-    bool is_written = ends_with_gz(path) ? write_gzip(path, bytes, n_bytes, err) : file_write(path, bytes, n_bytes, err);
+    bool is_written =
+        ends_with_gz(path) ? write_gzip(path, bytes, n_bytes, err) : file_write(path, bytes, n_bytes, err);
     free(bytes);
     return is_written;
 }

@@ -15,7 +15,8 @@ void nrrd_header_finish(struct nrrd_header *header)
 }
 
 /* Where the bytes of the voxels, or of their gzip stream, begin in the file. */
-static bool find_start(const struct nrrd_header *header, const struct bytes *data, const char *name, size_t *start, struct error *err)
+static bool find_start(const struct nrrd_header *header, const struct bytes *data, const char *name, size_t *start,
+                       struct error *err)
 {
     *start = header->data_file[0] ? 0 : header->head_bytes;
     if (*start > data->size)
@@ -23,15 +24,15 @@ static bool find_start(const struct nrrd_header *header, const struct bytes *dat
     for (uint64_t i = 0; i < header->line_skip; i++) {
         const uint8_t *end = *start < data->size ? memchr(data->data + *start, '\n', data->size - *start) : NULL;
         if (!end)
-            return error_set(err, ERROR_FORMAT, "%s: %llu lines before the end of the file, but \"line skip\" is %llu", name,
-                             (unsigned long long)i, (unsigned long long)header->line_skip);
+            return error_set(err, ERROR_FORMAT, "%s: %llu lines before the end of the file, but \"line skip\" is %llu",
+                             name, (unsigned long long)i, (unsigned long long)header->line_skip);
         *start = (size_t)(end - data->data) + 1;
     }
     return true;
 }
 
-static bool unpack(const struct nrrd_header *header, const struct bytes *data, const char *name, struct raw_unpacked *unpacked,
-                   struct report *report, struct error *err)
+static bool unpack(const struct nrrd_header *header, const struct bytes *data, const char *name,
+                   struct raw_unpacked *unpacked, struct report *report, struct error *err)
 {
     size_t start;
     if (!find_start(header, data, name, &start, err))
@@ -46,24 +47,27 @@ static bool unpack(const struct nrrd_header *header, const struct bytes *data, c
     else if (place.file.size >= header->data_bytes)
         place.data_at = place.file.size - header->data_bytes;
     if (header->is_packed && !gzip_is(place.file.data, place.file.size))
-        return error_set(err, ERROR_FORMAT, "%s: byte %zu: expected a gzip stream, which begins with 1f 8b%s", name, start,
-                         place.file.size < 2 ? "; the file ends there" : "");
+        return error_set(err, ERROR_FORMAT, "%s: byte %zu: expected a gzip stream, which begins with 1f 8b%s", name,
+                         start, place.file.size < 2 ? "; the file ends there" : "");
     return raw_unpack(&place, name, unpacked, report, err);
 }
 
-struct volume *nrrd_read(const struct nrrd_header *header, const struct bytes *data, const char *data_name, enum raw_use use,
-                         struct report *report, struct error *err)
+struct volume *nrrd_read(const struct nrrd_header *header, const struct bytes *data, const char *data_name,
+                         enum raw_use use, struct report *report, struct error *err)
 {
     struct raw_unpacked unpacked;
     if (header->n_layers != 1) {
-        error_set(err, ERROR_UNSUPPORTED, "%s: %u values a voxel (an axis of kind \"%s\"), which only label maps may have here; "
-                  "one volume is read", data_name, header->n_layers, header->list_kind);
+        error_set(err, ERROR_UNSUPPORTED,
+                  "%s: %u values a voxel (an axis of kind \"%s\"), which only label maps may have here; "
+                  "one volume is read",
+                  data_name, header->n_layers, header->list_kind);
         return NULL;
     }
     if (!unpack(header, data, data_name, &unpacked, report, err))
         return NULL;
-    struct raw_voxels voxels = { unpacked.data, grid_n_voxels(&header->grid), header->type, &header->grid, 1, 0, data_name,
-                                 &unpacked.owned };
+    struct raw_voxels voxels = {
+        unpacked.data, grid_n_voxels(&header->grid), header->type, &header->grid, 1, 0, data_name, &unpacked.owned
+    };
     struct volume *volume = raw_read(&voxels, use, report, err);
     free(unpacked.owned);
     return volume;
@@ -73,12 +77,12 @@ struct volume *nrrd_read(const struct nrrd_header *header, const struct bytes *d
 static void pick_layer(const struct nrrd_header *header, const uint8_t *from, uint8_t *to, size_t n)
 {
     size_t step = header->n_layers;
-#define PICK(type)                                  \
-    do {                                            \
-        const type *in = (const void *)from;        \
-        type *out = (void *)to;                     \
-        for (size_t i = 0; i < n; i++)              \
-            out[i] = in[i * step];                  \
+#define PICK(type) \
+    do { \
+        const type *in = (const void *)from; \
+        type *out = (void *)to; \
+        for (size_t i = 0; i < n; i++) \
+            out[i] = in[i * step]; \
     } while (0)
     switch (header->voxel_bytes) {
     case 1: PICK(uint8_t); break;
@@ -109,8 +113,8 @@ static void name_layer(const struct nrrd_header *header, uint32_t layer, struct 
     }
 }
 
-static struct volume *read_layer(const struct nrrd_header *header, const uint8_t *voxels, uint32_t layer, uint8_t *picked,
-                                 const char *name, struct error *err)
+static struct volume *read_layer(const struct nrrd_header *header, const uint8_t *voxels, uint32_t layer,
+                                 uint8_t *picked, const char *name, struct error *err)
 {
     size_t n = grid_n_voxels(&header->grid);
     const uint8_t *from = voxels + (header->is_layer_fastest ? 1 : n) * layer * header->voxel_bytes;
@@ -123,8 +127,8 @@ static struct volume *read_layer(const struct nrrd_header *header, const uint8_t
     return volume;
 }
 
-bool nrrd_read_layers(const struct nrrd_header *header, const struct bytes *data, const char *data_name, struct nrrd_layers *layers,
-                      struct report *report, struct error *err)
+bool nrrd_read_layers(const struct nrrd_header *header, const struct bytes *data, const char *data_name,
+                      struct nrrd_layers *layers, struct report *report, struct error *err)
 {
     struct raw_unpacked unpacked;
     layers->n = 0;

@@ -1,16 +1,16 @@
 #pragma once
-/* NRRD: one grid of voxels with its voxels behind the header (.nrrd) or in a file beside it (.nhdr), and Slicer's .seg.nrrd:
- * layers of labels with the segments' names and colours. Works on bytes in memory; opens nothing.
- *   source   G. Kindlmann, "Definition of NRRD File Format" (Teem); 3D Slicer's segmentation keys (Segment0_Name ...).
- *            Differs: whatever would be guessed about left and right is reported; series of volumes are refused. */
+/* NRRD: one grid of voxels with its voxels behind the header (.nrrd) or in a file beside it (.nhdr), and Slicer's
+ * .seg.nrrd: layers of labels with the segments' names and colours. Works on bytes in memory; opens nothing. source G.
+ * Kindlmann, "Definition of NRRD File Format" (Teem); 3D Slicer's segmentation keys (Segment0_Name ...). Differs:
+ * whatever would be guessed about left and right is reported; series of volumes are refused. */
 #include "core/formats/plan_json.h"
 #include "core/formats/raw_voxels.h"
 
 enum {
-    NRRD_HEAD_BYTES = 1 << 20,       /* longest header */
-    NRRD_MAX_VALUE = 4096,           /* longest value of a field that is read */
+    NRRD_HEAD_BYTES = 1 << 20, /* longest header */
+    NRRD_MAX_VALUE = 4096,     /* longest value of a field that is read */
     NRRD_MAX_SEGMENTS = REGION_MAX,
-    NRRD_MAX_SKIP = 1 << 30          /* of "byte skip" and "line skip" */
+    NRRD_MAX_SKIP = 1 << 30 /* of "byte skip" and "line skip" */
 };
 
 struct nrrd_segment {
@@ -26,15 +26,15 @@ struct nrrd_header {
     struct grid grid;
     enum raw_type type;
     uint32_t voxel_bytes;
-    bool is_swapped;         /* the file's byte order is not this machine's */
-    bool is_packed;          /* gzip */
-    uint32_t n_layers;       /* 1 for an image */
-    bool is_layer_fastest;   /* values of all layers lie together, voxel after voxel; else layer after layer */
-    char list_kind[16];      /* kind of the axis of layers, as the file says it */
-    uint64_t data_bytes;     /* of all layers */
-    int64_t byte_skip;       /* -1: the voxels are the last bytes of the file */
+    bool is_swapped;       /* the file's byte order is not this machine's */
+    bool is_packed;        /* gzip */
+    uint32_t n_layers;     /* 1 for an image */
+    bool is_layer_fastest; /* values of all layers lie together, voxel after voxel; else layer after layer */
+    char list_kind[16];    /* kind of the axis of layers, as the file says it */
+    uint64_t data_bytes;   /* of all layers */
+    int64_t byte_skip;     /* -1: the voxels are the last bytes of the file */
     uint64_t line_skip;
-    size_t head_bytes;       /* the voxels' file begins there when attached */
+    size_t head_bytes;                /* the voxels' file begins there when attached */
     char data_file[FOLDER_NAME_SIZE]; /* relative to the plan's folder; "" attached */
     struct nrrd_segment *segments;    /* NULL when the file names none */
     size_t n_segments;
@@ -42,9 +42,8 @@ struct nrrd_header {
 
 /* Reads and checks a header; head holds the first bytes of the file, NRRD_HEAD_BYTES are enough.
  *   name     of the file in the plan's folder: for the sentences, and the place of its data file; report may be NULL
- *   errors   ERROR_FORMAT, ERROR_UNSUPPORTED (an encoding, a series of volumes), ERROR_RANGE (geometry, a data file outside the
- *            folder), ERROR_LIMIT; with the line
- * The caller calls nrrd_header_finish, after a failure too. */
+ *   errors   ERROR_FORMAT, ERROR_UNSUPPORTED (an encoding, a series of volumes), ERROR_RANGE (geometry, a data file
+ * outside the folder), ERROR_LIMIT; with the line The caller calls nrrd_header_finish, after a failure too. */
 NODISCARD bool nrrd_parse_header(const uint8_t *head, size_t size, const char *name, struct nrrd_header *header,
                                  struct report *report, struct error *err);
 void nrrd_header_finish(struct nrrd_header *header);
@@ -52,8 +51,8 @@ void nrrd_header_finish(struct nrrd_header *header);
 /*   data     the whole file that holds the voxels; data_name for the sentences
  *   returns  the volume, measured. One reference, the caller's; NULL on failure.
  *   errors   ERROR_UNSUPPORTED more than one layer; as raw_unpack and raw_read */
-NODISCARD struct volume *nrrd_read(const struct nrrd_header *header, const struct bytes *data, const char *data_name, enum raw_use use,
-                                   struct report *report, struct error *err);
+NODISCARD struct volume *nrrd_read(const struct nrrd_header *header, const struct bytes *data, const char *data_name,
+                                   enum raw_use use, struct report *report, struct error *err);
 
 /* Every layer as labels. names[i] says what the segments of volumes[i] are called; empty when the file does not. */
 struct nrrd_layers {

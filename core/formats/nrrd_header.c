@@ -8,20 +8,38 @@
 enum { MOST_AXES = 16, WORD_SIZE = 64 };
 
 enum field {
-    TYPE, DIMENSION, SIZES, ENCODING, ENDIAN, SPACE, SPACE_DIMENSION, SPACE_DIRECTIONS, SPACE_ORIGIN, SPACE_UNITS, SPACINGS, KINDS,
-    DATA_FILE, LINE_SKIP, BYTE_SKIP, N_FIELDS
+    TYPE,
+    DIMENSION,
+    SIZES,
+    ENCODING,
+    ENDIAN,
+    SPACE,
+    SPACE_DIMENSION,
+    SPACE_DIRECTIONS,
+    SPACE_ORIGIN,
+    SPACE_UNITS,
+    SPACINGS,
+    KINDS,
+    DATA_FILE,
+    LINE_SKIP,
+    BYTE_SKIP,
+    N_FIELDS
 };
-static const char *const field_names[N_FIELDS] = { "type", "dimension", "sizes", "encoding", "endian", "space", "space dimension",
-                                                   "space directions", "space origin", "space units", "spacings", "kinds", "data file",
-                                                   "line skip", "byte skip" };
+static const char *const field_names[N_FIELDS] = { "type",         "dimension",   "sizes",           "encoding",
+                                                   "endian",       "space",       "space dimension", "space directions",
+                                                   "space origin", "space units", "spacings",        "kinds",
+                                                   "data file",    "line skip",   "byte skip" };
 static const struct {
     const char *name;
     enum field field;
 } other_names[] = { { "datafile", DATA_FILE }, { "lineskip", LINE_SKIP }, { "byteskip", BYTE_SKIP } };
 /* Well formed and of no meaning to us. */
-static const char *const passed_over[] = { "content", "number", "min", "max", "old min", "oldmin", "old max", "oldmax", "thicknesses",
-                                           "axis mins", "axismins", "axis maxs", "axismaxs", "centers", "centerings", "labels", "units",
-                                           "sample units", "sampleunits", "measurement frame", "block size", "blocksize" };
+static const char *const passed_over[] = { "content",     "number",       "min",         "max",
+                                           "old min",     "oldmin",       "old max",     "oldmax",
+                                           "thicknesses", "axis mins",    "axismins",    "axis maxs",
+                                           "axismaxs",    "centers",      "centerings",  "labels",
+                                           "units",       "sample units", "sampleunits", "measurement frame",
+                                           "block size",  "blocksize" };
 
 /* The value of a field, where it stands in the header; line 0, at "" when the field is not there. */
 struct value {
@@ -38,7 +56,8 @@ struct head {
     struct error *err;
 };
 
-static bool refuse(const struct head *head, size_t line, enum error_code code, const char *format, ...) PRINTF_LIKE(4, 5);
+static bool refuse(const struct head *head, size_t line, enum error_code code, const char *format, ...)
+    PRINTF_LIKE(4, 5);
 static bool refuse(const struct head *head, size_t line, enum error_code code, const char *format, ...)
 {
     char what[200];
@@ -55,13 +74,15 @@ static bool refuse_value(const struct head *head, enum field field, enum error_c
     const struct value *value = &head->values[field];
     char found[44], clean[44];
     if (value->line == 0)
-        return error_set(head->err, code, "%s: the header has no \"%s\", expected %s", head->name, field_names[field], expected);
+        return error_set(head->err, code, "%s: the header has no \"%s\", expected %s", head->name, field_names[field],
+                         expected);
     snprintf(found, sizeof found, "%.*s", (int)(value->n < 40 ? value->n : 40), value->at);
     text_clean(found, clean, sizeof clean);
-    return refuse(head, value->line, code, "%s is \"%s%s\", expected %s", field_names[field], clean, value->n > 40 ? "..." : "", expected);
+    return refuse(head, value->line, code, "%s is \"%s%s\", expected %s", field_names[field], clean,
+                  value->n > 40 ? "..." : "", expected);
 }
 
-/* ---- lines -------------------------------------------------------------------------------------------------------------- */
+/* ---- lines ------------------------------------------------------------------------------------------------------ */
 
 /* The next line without its end; false at the end of the bytes. */
 static bool next_line(struct head *head, struct value *line)
@@ -104,16 +125,18 @@ static bool keep_field(struct head *head, const char *key, const struct value *v
                 return true;
         char clean[WORD_SIZE];
         text_clean(key, clean, sizeof clean);
-        report_add(head->report, REPORT_NOTE, "header.unknown-key", head->name, "Line %zu: \"%s\" is not a field that is known; it was "
-                   "ignored.", value->line, clean);
+        report_add(head->report, REPORT_NOTE, "header.unknown-key", head->name,
+                   "Line %zu: \"%s\" is not a field that is known; it was "
+                   "ignored.",
+                   value->line, clean);
         return true;
     }
     if (head->values[field].line != 0)
         return refuse(head, value->line, ERROR_FORMAT, "\"%s\" is there twice, first in line %zu", field_names[field],
                       head->values[field].line);
     if (value->n >= NRRD_MAX_VALUE)
-        return refuse(head, value->line, ERROR_LIMIT, "the value of \"%s\" has %zu characters; at most %d are read", field_names[field],
-                      value->n, NRRD_MAX_VALUE - 1);
+        return refuse(head, value->line, ERROR_LIMIT, "the value of \"%s\" has %zu characters; at most %d are read",
+                      field_names[field], value->n, NRRD_MAX_VALUE - 1);
     head->values[field] = *value;
     return true;
 }
@@ -144,8 +167,10 @@ static bool take_line(struct head *head, const struct value *line, struct nrrd_h
 static bool get_lines(struct head *head, struct nrrd_header *header, bool is_cut)
 {
     struct value line;
-    if (!next_line(head, &line) || line.n != 8 || memcmp(line.at, "NRRD000", 7) != 0 || line.at[7] < '1' || line.at[7] > '5')
-        return error_set(head->err, ERROR_FORMAT, "%s: line 1: expected NRRD0001 to NRRD0005: not a NRRD file", head->name);
+    if (!next_line(head, &line) || line.n != 8 || memcmp(line.at, "NRRD000", 7) != 0 || line.at[7] < '1' ||
+        line.at[7] > '5')
+        return error_set(head->err, ERROR_FORMAT, "%s: line 1: expected NRRD0001 to NRRD0005: not a NRRD file",
+                         head->name);
     bool has_end = false;
     while (!has_end && next_line(head, &line)) {
         has_end = line.n == 0;
@@ -154,15 +179,18 @@ static bool get_lines(struct head *head, struct nrrd_header *header, bool is_cut
     }
     header->head_bytes = (size_t)(head->at - head->start);
     if (!has_end && is_cut)
-        return error_set(head->err, ERROR_LIMIT, "%s: the header does not end within %d bytes", head->name, NRRD_HEAD_BYTES);
+        return error_set(head->err, ERROR_LIMIT, "%s: the header does not end within %d bytes", head->name,
+                         NRRD_HEAD_BYTES);
     if (!has_end && head->values[DATA_FILE].line == 0)
-        return refuse(head, head->line, ERROR_FORMAT, "the header has no end: expected an empty line and then the voxels, or a \"data file\"");
+        return refuse(head, head->line, ERROR_FORMAT,
+                      "the header has no end: expected an empty line and then the voxels, or a \"data file\"");
     return true;
 }
 
-/* ---- words and numbers of a value --------------------------------------------------------------------------------------- */
+/* ---- words and numbers of a value ------------------------------------------------------------------------------- */
 
-/* The next word, parted by blanks or, within brackets, commas; "" at the end. A word too long is cut, and no number then. */
+/* The next word, parted by blanks or, within brackets, commas; "" at the end. A word too long is cut, and no number
+ * then. */
 static void next_word(struct value *rest, const char *separators, char word[WORD_SIZE])
 {
     while (rest->n > 0 && strchr(separators, *rest->at)) {
@@ -225,24 +253,53 @@ static bool value_is(const struct head *head, enum field field, const char *word
     return value->line != 0 && text_equal(text, word);
 }
 
-/* ---- what the fields mean ------------------------------------------------------------------------------------------------ */
+/* ---- what the fields mean --------------------------------------------------------------------------------------- */
 
 static bool get_type(const struct head *head, struct nrrd_header *header)
 {
     static const struct {
         const char *word;
         enum raw_type type;
-    } types[] = {
-        { "signed char", RAW_I8 }, { "int8", RAW_I8 }, { "int8_t", RAW_I8 }, { "uchar", RAW_U8 }, { "unsigned char", RAW_U8 },
-        { "uint8", RAW_U8 }, { "uint8_t", RAW_U8 }, { "short", RAW_I16 }, { "short int", RAW_I16 }, { "signed short", RAW_I16 },
-        { "signed short int", RAW_I16 }, { "int16", RAW_I16 }, { "int16_t", RAW_I16 }, { "ushort", RAW_U16 },
-        { "unsigned short", RAW_U16 }, { "unsigned short int", RAW_U16 }, { "uint16", RAW_U16 }, { "uint16_t", RAW_U16 },
-        { "int", RAW_I32 }, { "signed int", RAW_I32 }, { "int32", RAW_I32 }, { "int32_t", RAW_I32 }, { "uint", RAW_U32 },
-        { "unsigned int", RAW_U32 }, { "uint32", RAW_U32 }, { "uint32_t", RAW_U32 }, { "longlong", RAW_I64 }, { "long long", RAW_I64 },
-        { "long long int", RAW_I64 }, { "signed long long", RAW_I64 }, { "signed long long int", RAW_I64 }, { "int64", RAW_I64 },
-        { "int64_t", RAW_I64 }, { "ulonglong", RAW_U64 }, { "unsigned long long", RAW_U64 }, { "unsigned long long int", RAW_U64 },
-        { "uint64", RAW_U64 }, { "uint64_t", RAW_U64 }, { "float", RAW_F32 }, { "double", RAW_F64 }
-    };
+    } types[] = { { "signed char", RAW_I8 },
+                  { "int8", RAW_I8 },
+                  { "int8_t", RAW_I8 },
+                  { "uchar", RAW_U8 },
+                  { "unsigned char", RAW_U8 },
+                  { "uint8", RAW_U8 },
+                  { "uint8_t", RAW_U8 },
+                  { "short", RAW_I16 },
+                  { "short int", RAW_I16 },
+                  { "signed short", RAW_I16 },
+                  { "signed short int", RAW_I16 },
+                  { "int16", RAW_I16 },
+                  { "int16_t", RAW_I16 },
+                  { "ushort", RAW_U16 },
+                  { "unsigned short", RAW_U16 },
+                  { "unsigned short int", RAW_U16 },
+                  { "uint16", RAW_U16 },
+                  { "uint16_t", RAW_U16 },
+                  { "int", RAW_I32 },
+                  { "signed int", RAW_I32 },
+                  { "int32", RAW_I32 },
+                  { "int32_t", RAW_I32 },
+                  { "uint", RAW_U32 },
+                  { "unsigned int", RAW_U32 },
+                  { "uint32", RAW_U32 },
+                  { "uint32_t", RAW_U32 },
+                  { "longlong", RAW_I64 },
+                  { "long long", RAW_I64 },
+                  { "long long int", RAW_I64 },
+                  { "signed long long", RAW_I64 },
+                  { "signed long long int", RAW_I64 },
+                  { "int64", RAW_I64 },
+                  { "int64_t", RAW_I64 },
+                  { "ulonglong", RAW_U64 },
+                  { "unsigned long long", RAW_U64 },
+                  { "unsigned long long int", RAW_U64 },
+                  { "uint64", RAW_U64 },
+                  { "uint64_t", RAW_U64 },
+                  { "float", RAW_F32 },
+                  { "double", RAW_F64 } };
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
         if (value_is(head, TYPE, types[i].word)) {
             header->type = types[i].type;
@@ -257,7 +314,8 @@ static bool get_encoding(const struct head *head, struct nrrd_header *header)
 {
     header->is_packed = value_is(head, ENCODING, "gzip") || value_is(head, ENCODING, "gz");
     if (!header->is_packed && !value_is(head, ENCODING, "raw"))
-        return refuse_value(head, ENCODING, head->values[ENCODING].line ? ERROR_UNSUPPORTED : ERROR_FORMAT, "raw or gzip");
+        return refuse_value(head, ENCODING, head->values[ENCODING].line ? ERROR_UNSUPPORTED : ERROR_FORMAT,
+                            "raw or gzip");
     bool is_big = value_is(head, ENDIAN, "big");
     if (!is_big && !value_is(head, ENDIAN, "little") && (header->voxel_bytes > 1 || head->values[ENDIAN].line != 0))
         return refuse_value(head, ENDIAN, ERROR_FORMAT, "little or big");
@@ -289,10 +347,11 @@ static bool get_sizes(const struct head *head, struct axes *axes)
         double size;
         next_word(&rest, " \t", word);
         if (!text_number(word, &size) || size < 1 || size > UINT32_MAX || size != (double)(uint32_t)size)
-            return refuse_value(head, SIZES, ERROR_FORMAT, axes->n == 3 ? "three whole numbers above 0" : "four whole numbers above 0");
+            return refuse_value(head, SIZES, ERROR_FORMAT,
+                                axes->n == 3 ? "three whole numbers above 0" : "four whole numbers above 0");
         if (size > VOLUME_MAX_SIDE)
-            return refuse(head, head->values[SIZES].line, ERROR_LIMIT, "sizes: %.0f; at most %d voxels a side are read", size,
-                          VOLUME_MAX_SIDE);
+            return refuse(head, head->values[SIZES].line, ERROR_LIMIT, "sizes: %.0f; at most %d voxels a side are read",
+                          size, VOLUME_MAX_SIDE);
         axes->sizes[i] = (uint32_t)size;
     }
     next_word(&rest, " \t", word);
@@ -328,7 +387,8 @@ static bool get_axes(const struct head *head, struct axes *axes)
             if (is_none)
                 directions = ahead;
             else if (!next_vector(&directions, &axes->directions[i]))
-                return refuse_value(head, SPACE_DIRECTIONS, ERROR_RANGE, "(x,y,z) of finite numbers for each axis, or none");
+                return refuse_value(head, SPACE_DIRECTIONS, ERROR_RANGE,
+                                    "(x,y,z) of finite numbers for each axis, or none");
             axes->is_space[i] = axes->is_space[i] && !is_none;
         }
         if (!axes->is_space[i]) {
@@ -340,16 +400,18 @@ static bool get_axes(const struct head *head, struct axes *axes)
         if (axes->list < 0)
             return refuse(head, head->values[DIMENSION].line, ERROR_UNSUPPORTED,
                           "four axes, and neither kinds nor space directions say which one is no axis of space");
-        return refuse(head, head->values[KINDS].line ? head->values[KINDS].line : head->values[SPACE_DIRECTIONS].line, ERROR_UNSUPPORTED,
-                      "axis %d (%s) is no axis of space; expected three axes of space in %d", axes->list, axes->kinds[axes->list], axes->n);
+        return refuse(head, head->values[KINDS].line ? head->values[KINDS].line : head->values[SPACE_DIRECTIONS].line,
+                      ERROR_UNSUPPORTED, "axis %d (%s) is no axis of space; expected three axes of space in %d",
+                      axes->list, axes->kinds[axes->list], axes->n);
     }
     if (axes->list > 0 && axes->list < 3)
-        return refuse(head, head->values[SIZES].line, ERROR_UNSUPPORTED, "the axis of layers is number %d, expected the first or the last",
-                      axes->list);
+        return refuse(head, head->values[SIZES].line, ERROR_UNSUPPORTED,
+                      "the axis of layers is number %d, expected the first or the last", axes->list);
     return true;
 }
 
-/* The patient's direction (LPS) of one axis of a space: "left", "L", ... false when it is none. which: 0 L-R, 1 P-A, 2 S-I. */
+/* The patient's direction (LPS) of one axis of a space: "left", "L", ... false when it is none. which: 0 L-R, 1 P-A, 2
+ * S-I. */
 static bool get_direction(const char *word, size_t n, int *which, struct vec3 *direction)
 {
     static const char *const words[] = { "left", "right", "posterior", "anterior", "superior", "inferior" };
@@ -367,7 +429,8 @@ static bool get_direction(const char *word, size_t n, int *which, struct vec3 *d
     return false;
 }
 
-/* "left-posterior-superior" or "LPS", and the other orders: how the patient lies along the three axes of the file's space. */
+/* "left-posterior-superior" or "LPS", and the other orders: how the patient lies along the three axes of the file's
+ * space. */
 static bool get_space(const struct head *head, struct vec3 lps_from_space[3], bool *is_known)
 {
     static const char *const elsewhere[] = { "scanner-xyz", "3D-right-handed", "3D-left-handed" };
@@ -389,13 +452,15 @@ static bool get_space(const struct head *head, struct vec3 lps_from_space[3], bo
         const char *dash = memchr(at, '-', (size_t)(end - at));
         size_t n = value->n == 3 && at < end ? 1 : (size_t)((dash ? dash : end) - at);
         if (!get_direction(at, n, &which, &lps_from_space[i]))
-            return refuse_value(head, SPACE, ERROR_UNSUPPORTED, "left-posterior-superior, right-anterior-superior or alike");
+            return refuse_value(head, SPACE, ERROR_UNSUPPORTED,
+                                "left-posterior-superior, right-anterior-superior or alike");
         seen |= 1 << which;
         at += n;
         at += at < end && *at == '-';
     }
     *is_known = true;
-    return (seen == 7 && at == end) || refuse_value(head, SPACE, ERROR_UNSUPPORTED, "three axes, one along each of L-R, P-A, S-I");
+    return (seen == 7 && at == end) ||
+           refuse_value(head, SPACE, ERROR_UNSUPPORTED, "three axes, one along each of L-R, P-A, S-I");
 }
 
 static double get_unit_mm(const struct head *head)
@@ -443,13 +508,17 @@ static void note_assumed(const struct head *head, const struct axes *axes, bool 
 {
     const char *apart = axes->has_directions || head->values[SPACINGS].line != 0 ? "" : ", 1 mm apart";
     if (!is_known)
-        report_add(head->report, REPORT_WARNING, "geometry.assumed", head->name,
-                   "The file does not say how the axes of its space lie in the patient; they were taken to grow to the left, the "
-                   "posterior and the superior side%s. Left and right may be wrong.", apart);
+        report_add(
+            head->report, REPORT_WARNING, "geometry.assumed", head->name,
+            "The file does not say how the axes of its space lie in the patient; they were taken to grow to the left, the "
+            "posterior and the superior side%s. Left and right may be wrong.",
+            apart);
     else if (!axes->has_directions)
-        report_add(head->report, REPORT_WARNING, "geometry.assumed", head->name,
-                   "The file gives no directions; its voxels were taken to lie along the axes of its space%s. Left and right may be "
-                   "wrong.", apart);
+        report_add(
+            head->report, REPORT_WARNING, "geometry.assumed", head->name,
+            "The file gives no directions; its voxels were taken to lie along the axes of its space%s. Left and right may be "
+            "wrong.",
+            apart);
     else if (!has_origin)
         report_add(head->report, REPORT_WARNING, "geometry.assumed", head->name,
                    "The file does not say where its first voxel lies; it was put at the origin.");
@@ -494,7 +563,8 @@ static bool get_place(const struct head *head, struct nrrd_header *header)
     if (head->values[LINE_SKIP].line != 0 && !get_whole(head, LINE_SKIP, 0, NRRD_MAX_SKIP, &skip))
         return false;
     header->line_skip = (uint64_t)skip;
-    if (head->values[BYTE_SKIP].line != 0 && !get_whole(head, BYTE_SKIP, header->is_packed ? 0 : -1, NRRD_MAX_SKIP, &header->byte_skip))
+    if (head->values[BYTE_SKIP].line != 0 &&
+        !get_whole(head, BYTE_SKIP, header->is_packed ? 0 : -1, NRRD_MAX_SKIP, &header->byte_skip))
         return false;
     if (value->line == 0)
         return true;
@@ -504,11 +574,13 @@ static bool get_place(const struct head *head, struct nrrd_header *header)
     bool is_local = n > 2 && file[0] == '.' && file[1] == '/';
     file += is_local ? 2 : 0;
     n -= is_local ? 2 : 0;
-    if (n == 0 || memchr(file, 0, n) || memchr(file, '%', n) || (n >= 4 && memcmp(file, "LIST", 4) == 0 && (n == 4 || is_blank(file[4]))))
+    if (n == 0 || memchr(file, 0, n) || memchr(file, '%', n) ||
+        (n >= 4 && memcmp(file, "LIST", 4) == 0 && (n == 4 || is_blank(file[4]))))
         return refuse_value(head, DATA_FILE, ERROR_UNSUPPORTED, "the name of one file");
     if (file[0] == '/')
         return refuse_value(head, DATA_FILE, ERROR_RANGE, "a name relative to the header");
-    int length = snprintf(header->data_file, sizeof header->data_file, "%.*s%.*s", (int)folder, head->name, (int)n, file);
+    int length =
+        snprintf(header->data_file, sizeof header->data_file, "%.*s%.*s", (int)folder, head->name, (int)n, file);
     if (length < 0 || (size_t)length >= sizeof header->data_file)
         return refuse_value(head, DATA_FILE, ERROR_LIMIT, "a shorter name");
     if (!folder_check_name(header->data_file, head->err)) {
@@ -519,8 +591,8 @@ static bool get_place(const struct head *head, struct nrrd_header *header)
     return true;
 }
 
-bool nrrd_parse_header(const uint8_t *bytes, size_t size, const char *name, struct nrrd_header *header, struct report *report,
-                       struct error *err)
+bool nrrd_parse_header(const uint8_t *bytes, size_t size, const char *name, struct nrrd_header *header,
+                       struct report *report, struct error *err)
 {
     bool is_cut = size >= NRRD_HEAD_BYTES;
     struct head head = { .at = (const char *)bytes, .name = name, .report = report, .err = err };
@@ -530,8 +602,9 @@ bool nrrd_parse_header(const uint8_t *bytes, size_t size, const char *name, stru
     head.start = head.at;
     head.end = head.at + (is_cut ? NRRD_HEAD_BYTES : size);
     *header = (struct nrrd_header){ 0 };
-    if (!get_lines(&head, header, is_cut) || !get_type(&head, header) || !get_encoding(&head, header) || !get_sizes(&head, &axes) ||
-        !get_axes(&head, &axes) || !get_geometry(&head, &axes, &header->grid) || !get_place(&head, header))
+    if (!get_lines(&head, header, is_cut) || !get_type(&head, header) || !get_encoding(&head, header) ||
+        !get_sizes(&head, &axes) || !get_axes(&head, &axes) || !get_geometry(&head, &axes, &header->grid) ||
+        !get_place(&head, header))
         return false;
     header->n_layers = axes.list >= 0 ? axes.sizes[axes.list] : 1;
     header->is_layer_fastest = axes.list == 0;
@@ -540,8 +613,10 @@ bool nrrd_parse_header(const uint8_t *bytes, size_t size, const char *name, stru
     uint64_t n_voxels = grid_n_voxels(&header->grid); /* at most 2^36, so the product stays below 2^51 */
     header->data_bytes = n_voxels * header->n_layers * header->voxel_bytes;
     if (header->data_bytes > VOLUME_MAX_BYTES)
-        return refuse(&head, head.values[SIZES].line, ERROR_LIMIT, "sizes: %llu voxels of %u bytes; at most %llu bytes are read",
-                      (unsigned long long)(n_voxels * header->n_layers), header->voxel_bytes, (unsigned long long)VOLUME_MAX_BYTES);
+        return refuse(&head, head.values[SIZES].line, ERROR_LIMIT,
+                      "sizes: %llu voxels of %u bytes; at most %llu bytes are read",
+                      (unsigned long long)(n_voxels * header->n_layers), header->voxel_bytes,
+                      (unsigned long long)VOLUME_MAX_BYTES);
     nrrd_segments_check(header, name, report);
     return true;
 }

@@ -53,13 +53,14 @@ static bool get_color(const char *value, uint8_t rgb[3])
     return *value == 0;
 }
 
-static void note_bad(struct report *report, const char *name, size_t line, const char *key, const char *value, const char *expected)
+static void note_bad(struct report *report, const char *name, size_t line, const char *key, const char *value,
+                     const char *expected)
 {
     char clean[64], clean_key[64];
     text_clean(value, clean, sizeof clean);
     text_clean(key, clean_key, sizeof clean_key);
-    report_add(report, REPORT_NOTE, "header.bad-number", name, "Line %zu: %s is \"%s\", expected %s; it was ignored.", line, clean_key,
-               clean, expected);
+    report_add(report, REPORT_NOTE, "header.bad-number", name, "Line %zu: %s is \"%s\", expected %s; it was ignored.",
+               line, clean_key, clean, expected);
 }
 
 bool nrrd_segment_key(struct nrrd_header *header, const char *name, size_t line, const char *key, const char *value,
@@ -120,8 +121,8 @@ void nrrd_segments_check(struct nrrd_header *header, const char *name, struct re
             snprintf(segment->name, sizeof segment->name, "segment %zu", i);
         if (segment->layer >= header->n_layers) {
             report_add(report, REPORT_WARNING, "header.bad-number", name,
-                       "Segment%zu (\"%s\") lies on layer %u, but there are only layers 0 to %u; it was left out.", i, segment->name,
-                       segment->layer, header->n_layers - 1);
+                       "Segment%zu (\"%s\") lies on layer %u, but there are only layers 0 to %u; it was left out.", i,
+                       segment->name, segment->layer, header->n_layers - 1);
             segment->is_present = false;
         }
     }

@@ -28,10 +28,12 @@ static bool get_window(const struct place *place, const cJSON *object, struct pl
     const cJSON *window = cJSON_GetObjectItemCaseSensitive(object, "window");
     if (!window || cJSON_IsNull(window))
         return true;
-    const cJSON *center = cJSON_GetObjectItemCaseSensitive(window, "center"), *width = cJSON_GetObjectItemCaseSensitive(window, "width");
+    const cJSON *center = cJSON_GetObjectItemCaseSensitive(window, "center"),
+                *width = cJSON_GetObjectItemCaseSensitive(window, "width");
     if (!cJSON_IsNumber(center) || !cJSON_IsNumber(width) || !(fabs(center->valuedouble) <= WINDOW_CENTER_FARTHEST) ||
         !(width->valuedouble >= WINDOW_NARROWEST && width->valuedouble <= WINDOW_WIDEST))
-        return place_fail(place, ERROR_RANGE, "window", "expected a center within 1e12 of 0, and a width from 1e-15 to 2e12");
+        return place_fail(place, ERROR_RANGE, "window",
+                          "expected a center within 1e12 of 0, and a width from 1e-15 to 2e12");
     image->window_center = center->valuedouble;
     image->window_width = width->valuedouble;
     return true;
@@ -39,7 +41,8 @@ static bool get_window(const struct place *place, const cJSON *object, struct pl
 
 static bool parse_images(const struct place *top, const cJSON *root, struct plan_file *file)
 {
-    static const char *const known[] = { "id", "path", "header", "modality", "name", "unit", "value_unit", "window", "inverted", NULL };
+    static const char *const known[] = { "id",   "path",       "header", "modality", "name",
+                                         "unit", "value_unit", "window", "inverted", NULL };
     const cJSON *list;
     if (!place_list(top, root, "images", PLAN_FILE_MAX_IMAGES, &list))
         return false;
@@ -47,7 +50,8 @@ static bool parse_images(const struct place *top, const cJSON *root, struct plan
         struct place at = place_at(top, "images", (int)file->n_images);
         struct plan_file_image *image = &file->images[file->n_images++];
         place_note_keys(&at, entry, known);
-        if (!place_text(&at, entry, "id", image->id, sizeof image->id) || !place_path(&at, entry, "path", true, image->path) ||
+        if (!place_text(&at, entry, "id", image->id, sizeof image->id) ||
+            !place_path(&at, entry, "path", true, image->path) ||
             !place_path(&at, entry, "header", false, image->header) ||
             !place_text(&at, entry, "modality", image->modality, sizeof image->modality) ||
             !place_text(&at, entry, "name", image->name, sizeof image->name) || !get_unit(&at, entry, &image->mm) ||
@@ -69,12 +73,14 @@ static bool parse_regions(const struct place *top, const cJSON *root, struct pla
         struct place at = place_at(top, "regions", (int)file->n_regions);
         struct plan_file_region *region = &file->regions[file->n_regions++];
         place_note_keys(&at, entry, known);
-        if (!place_path(&at, entry, "path", true, region->path) || !place_path(&at, entry, "names", false, region->names) ||
+        if (!place_path(&at, entry, "path", true, region->path) ||
+            !place_path(&at, entry, "names", false, region->names) ||
             !place_text(&at, entry, "name", region->name, sizeof region->name) ||
             !place_color(&at, entry, &region->has_color, region->rgb) || !get_unit(&at, entry, &region->mm))
             return false;
         if (region->name[0] && region->names[0])
-            return place_fail(&at, ERROR_FORMAT, "name", "either \"name\" (a mask) or \"names\" (a label map), not both");
+            return place_fail(&at, ERROR_FORMAT, "name",
+                              "either \"name\" (a mask) or \"names\" (a label map), not both");
     }
     return true;
 }
@@ -83,26 +89,30 @@ static bool parse_component(const struct place *at, const cJSON *entry, struct p
 {
     struct plan_file_component *component = &dose->components[dose->n_components];
     char word[32];
-    if (!place_path(at, entry, "path", true, component->path) || !place_text(at, entry, "quantity", word, sizeof word) ||
+    if (!place_path(at, entry, "path", true, component->path) ||
+        !place_text(at, entry, "quantity", word, sizeof word) ||
         !place_bool(at, entry, "per_ppm", &component->is_per_ppm))
         return false;
     const cJSON *reference = cJSON_GetObjectItemCaseSensitive(entry, "reference");
     if (reference && !cJSON_IsNull(reference)) {
         if (!cJSON_IsNumber(reference) || !(reference->valuedouble > 0 && reference->valuedouble <= 1e30))
-            return place_fail(at, ERROR_RANGE, "reference", "expected a number above 0, the value that counts as 100 %");
+            return place_fail(at, ERROR_RANGE, "reference",
+                              "expected a number above 0, the value that counts as 100 %");
         component->reference = reference->valuedouble;
     }
     const cJSON *ppm = cJSON_GetObjectItemCaseSensitive(entry, "boron_ppm");
     if (ppm && !cJSON_IsNull(ppm)) {
         if (!cJSON_IsNumber(ppm) || !(ppm->valuedouble >= 0 && ppm->valuedouble <= PLAN_FILE_MAX_PPM))
-            return place_fail(at, ERROR_RANGE, "boron_ppm", "expected the ppm of boron-10 in blood that is in a total, 0 to 1e6");
+            return place_fail(at, ERROR_RANGE, "boron_ppm",
+                              "expected the ppm of boron-10 in blood that is in a total, 0 to 1e6");
         component->has_boron_ppm = true;
         component->boron_ppm = ppm->valuedouble;
     }
     component->quantity = DOSE_TOTAL;
     if (word[0] && !dose_quantity_from_word(word, &component->quantity))
-        return place_fail(at, ERROR_RANGE, "quantity", "expected total, boron, nitrogen, fast, gamma, other, fast-fluence, epithermal-fluence, "
-                    "thermal-fluence, blood-boron or weighted-total");
+        return place_fail(at, ERROR_RANGE, "quantity",
+                          "expected total, boron, nitrogen, fast, gamma, other, fast-fluence, epithermal-fluence, "
+                          "thermal-fluence, blood-boron or weighted-total");
     if (component->is_per_ppm && component->quantity != DOSE_BORON && component->quantity != DOSE_BLOOD_BORON)
         return place_fail(at, ERROR_RANGE, "per_ppm", "only boron is given per ppm");
     if (component->has_boron_ppm && component->quantity != DOSE_TOTAL && component->quantity != DOSE_WEIGHTED_TOTAL)
@@ -116,8 +126,9 @@ static bool parse_component(const struct place *at, const cJSON *entry, struct p
 
 static bool parse_doses(const struct place *top, const cJSON *root, struct plan_file *file)
 {
-    static const char *const known[] = { "id",   "name", "path", "quantity",   "per_ppm",            "boron_ppm", "reference",
-                                         "unit", "per",  "mask", "components", "frame_of_reference", NULL };
+    static const char *const known[] = { "id",        "name", "path", "quantity", "per_ppm",    "boron_ppm",
+                                         "reference", "unit", "per",  "mask",     "components", "frame_of_reference",
+                                         NULL };
     static const char *const known_inside[] = { "path", "quantity", "per_ppm", "boron_ppm", "reference", NULL };
     const cJSON *list, *components;
     if (!place_list(top, root, "doses", PLAN_FILE_MAX_DOSES, &list))
@@ -126,9 +137,11 @@ static bool parse_doses(const struct place *top, const cJSON *root, struct plan_
         struct place at = place_at(top, "doses", (int)file->n_doses);
         struct plan_file_dose *dose = &file->doses[file->n_doses++];
         place_note_keys(&at, entry, known);
-        if (!place_text(&at, entry, "id", dose->id, sizeof dose->id) || !place_text(&at, entry, "name", dose->name, sizeof dose->name) ||
+        if (!place_text(&at, entry, "id", dose->id, sizeof dose->id) ||
+            !place_text(&at, entry, "name", dose->name, sizeof dose->name) ||
             !place_text(&at, entry, "unit", dose->unit, sizeof dose->unit) ||
-            !place_text(&at, entry, "per", dose->per, sizeof dose->per) || !place_path(&at, entry, "mask", false, dose->mask) ||
+            !place_text(&at, entry, "per", dose->per, sizeof dose->per) ||
+            !place_path(&at, entry, "mask", false, dose->mask) ||
             !place_list(&at, entry, "components", DOSE_N_QUANTITIES, &components))
             return false;
         char word[32];
@@ -180,8 +193,10 @@ static bool parse_curves(const struct place *top, const cJSON *root, struct plan
         struct place at = place_at(top, "curves", (int)file->n_curves);
         struct plan_file_curve *curve = &file->curves[file->n_curves++];
         place_note_keys(&at, entry, known);
-        if (!place_text(&at, entry, "id", curve->id, sizeof curve->id) || !place_text(&at, entry, "name", curve->name, sizeof curve->name) ||
-            !place_path(&at, entry, "path", true, curve->path) || !place_text(&at, entry, "per", curve->per, sizeof curve->per))
+        if (!place_text(&at, entry, "id", curve->id, sizeof curve->id) ||
+            !place_text(&at, entry, "name", curve->name, sizeof curve->name) ||
+            !place_path(&at, entry, "path", true, curve->path) ||
+            !place_text(&at, entry, "per", curve->per, sizeof curve->per))
             return false;
     }
     return true;
@@ -233,8 +248,8 @@ static bool parse_hierarchy(const struct place *top, const cJSON *root, struct p
 
 static bool parse_plan(const struct place *top, const cJSON *root, struct plan_file *file)
 {
-    static const char *const known[] = { "format", "version", "name",      "note",  "phantom", "images",
-                                         "regions", "hierarchy", "doses", "beams", "tracks", "curves", "preferences", NULL };
+    static const char *const known[] = { "format",    "version", "name",  "note",   "phantom", "images",      "regions",
+                                         "hierarchy", "doses",   "beams", "tracks", "curves",  "preferences", NULL };
     char format[32];
     if (!place_text(top, root, "format", format, sizeof format))
         return false;
@@ -246,13 +261,16 @@ static bool parse_plan(const struct place *top, const cJSON *root, struct plan_f
     if (version->valuedouble != 1)
         return place_fail(top, ERROR_UNSUPPORTED, "version", "this version of the program reads version 1");
     place_note_keys(top, root, known);
-    if (!place_text(top, root, "name", file->name, sizeof file->name) || !place_text(top, root, "note", file->note, sizeof file->note) ||
-        !place_bool(top, root, "phantom", &file->is_phantom) || !parse_images(top, root, file) || !parse_regions(top, root, file) ||
-        !parse_hierarchy(top, root, file) || !parse_doses(top, root, file) || !plan_json_beams(top, root, file) ||
-        !parse_tracks(top, root, file) || !parse_curves(top, root, file) || !parse_preferences(top, root, file))
+    if (!place_text(top, root, "name", file->name, sizeof file->name) ||
+        !place_text(top, root, "note", file->note, sizeof file->note) ||
+        !place_bool(top, root, "phantom", &file->is_phantom) || !parse_images(top, root, file) ||
+        !parse_regions(top, root, file) || !parse_hierarchy(top, root, file) || !parse_doses(top, root, file) ||
+        !plan_json_beams(top, root, file) || !parse_tracks(top, root, file) || !parse_curves(top, root, file) ||
+        !parse_preferences(top, root, file))
         return false;
     if (file->n_images + file->n_regions + file->n_doses + file->n_beams + file->n_beam_files == 0)
-        return place_fail(top, ERROR_FORMAT, "", "names no image, no region, no dose and no beam; one part is required");
+        return place_fail(top, ERROR_FORMAT, "",
+                          "names no image, no region, no dose and no beam; one part is required");
     return true;
 }
 

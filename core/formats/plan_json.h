@@ -1,9 +1,9 @@
 #pragma once
-/* plan.json and the lists of label names: what they say, checked and in plain structs. The only file of core that knows JSON.
- * Opens nothing: paths are checked for form alone. */
-#include "core/formats/folder.h"
+/* plan.json and the lists of label names: what they say, checked and in plain structs. The only file of core that knows
+ * JSON. Opens nothing: paths are checked for form alone. */
 #include "core/beam/beam.h"
 #include "core/dose/dose.h"
+#include "core/formats/folder.h"
 #include "core/region/region.h"
 #include "core/report/report.h"
 #include "core/volume/window.h"
@@ -27,11 +27,11 @@ struct plan_file_image {
     char path[FOLDER_NAME_SIZE];
     char header[FOLDER_NAME_SIZE]; /* "" none */
     char modality[16];
-    char name[128]; /* for people; "" none */
-    char value_unit[8]; /* of its values, "HU"; "" none */
-    bool is_inverted;   /* low values are meant to be white */
+    char name[128];                     /* for people; "" none */
+    char value_unit[8];                 /* of its values, "HU"; "" none */
+    bool is_inverted;                   /* low values are meant to be white */
     double window_center, window_width; /* a first window, within WINDOW_...; width 0: none */
-    double mm; /* of one unit of a SERA header, whatever that says; 0 when not given */
+    double mm;                          /* of one unit of a SERA header, whatever that says; 0 when not given */
 };
 struct plan_file_region {
     char path[FOLDER_NAME_SIZE];
@@ -98,8 +98,9 @@ struct plan_file {
 };
 
 /* Unknown keys are reported, not refused.
- *   errors  ERROR_FORMAT not JSON (with the line), not a plan, a value of the wrong type; ERROR_RANGE a path that leaves the folder,
- *           a value out of range; ERROR_LIMIT too many entries; the text names the place, "doses[1].components[0].path" */
+ *   errors  ERROR_FORMAT not JSON (with the line), not a plan, a value of the wrong type; ERROR_RANGE a path that
+ * leaves the folder, a value out of range; ERROR_LIMIT too many entries; the text names the place,
+ * "doses[1].components[0].path" */
 NODISCARD struct plan_file *plan_file_parse(const uint8_t *data, size_t size, struct report *report, struct error *err);
 void plan_file_destroy(struct plan_file *file);
 
@@ -110,9 +111,9 @@ struct label_name {
     char name[REGION_NAME_SIZE];
     char parent[REGION_NAME_SIZE]; /* "" none */
     /* what beamroom convert writes, so that a plan comes back as it was */
-    char id[REGION_ID_SIZE];       /* "" none; an entry with an id is a region even without a voxel */
-    int place;                     /* among all regions of the plan, from 1; 0 none */
-    double opacity; /* above 0 to 1; 0 none */
+    char id[REGION_ID_SIZE]; /* "" none; an entry with an id is a region even without a voxel */
+    int place;               /* among all regions of the plan, from 1; 0 none */
+    double opacity;          /* above 0 to 1; 0 none */
     bool has_tissue;
     struct label_tissue {
         double boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma; /* not-a-number: not given */
@@ -123,11 +124,14 @@ struct label_names {
     size_t n;
     char file[FOLDER_NAME_SIZE]; /* the label map that the list belongs to, beside the list; "" not said */
 };
-/* {"file": "tumour.nii.gz", "labels": [{"value": 1, "name": "scalp", "color": "#e0c0a0", "parent": "...", "id": "scalp", "place": 1, "tissue": {"cbe_boron": 1.3}}]};
- * "file" may be left out; a colour may also be three numbers, of 0..1 or 0..255. errors ERROR_FORMAT, ERROR_RANGE, ERROR_LIMIT */
-NODISCARD bool label_names_parse(const uint8_t *data, size_t size, const char *file, struct label_names *names, struct error *err);
+/* {"file": "tumour.nii.gz", "labels": [{"value": 1, "name": "scalp", "color": "#e0c0a0", "parent": "...", "id":
+ * "scalp", "place": 1, "tissue": {"cbe_boron": 1.3}}]}; "file" may be left out; a colour may also be three numbers, of
+ * 0..1 or 0..255. errors ERROR_FORMAT, ERROR_RANGE, ERROR_LIMIT */
+NODISCARD bool label_names_parse(const uint8_t *data, size_t size, const char *file, struct label_names *names,
+                                 struct error *err);
 void label_names_finish(struct label_names *names);
 
-/* The documents that the two readers above read back to the same; "" and not-a-number are left out. The text is the caller's: free. */
+/* The documents that the two readers above read back to the same; "" and not-a-number are left out. The text is the
+ * caller's: free. */
 NODISCARD char *plan_file_text(const struct plan_file *file);
 NODISCARD char *label_names_text(const struct label_names *names);

@@ -55,20 +55,22 @@ static bool parse_delivery(const struct place *at, const cJSON *entry, struct be
         return place_fail(at, ERROR_FORMAT, "delivery", "expected an object, {...}");
     beam->has_delivery = true;
     for (int i = 0; i < N_DELIVERY_NUMBERS; i++)
-        if (!parse_numbers(at, cJSON_GetObjectItemCaseSensitive(item, delivery_numbers[i].key), delivery_numbers[i].key, 1,
-                           (double *)((char *)delivery + delivery_numbers[i].at)))
+        if (!parse_numbers(at, cJSON_GetObjectItemCaseSensitive(item, delivery_numbers[i].key), delivery_numbers[i].key,
+                           1, (double *)((char *)delivery + delivery_numbers[i].at)))
             return false;
     for (int i = 0; i < N_DELIVERY_LISTS; i++)
-        if (!parse_numbers(at, cJSON_GetObjectItemCaseSensitive(item, delivery_lists[i].key), delivery_lists[i].key, delivery_lists[i].n,
-                           (double *)((char *)delivery + delivery_lists[i].at)))
+        if (!parse_numbers(at, cJSON_GetObjectItemCaseSensitive(item, delivery_lists[i].key), delivery_lists[i].key,
+                           delivery_lists[i].n, (double *)((char *)delivery + delivery_lists[i].at)))
             return false;
     if (!place_text(at, item, "radiation", delivery->radiation, sizeof delivery->radiation) ||
         !place_text(at, item, "machine", delivery->machine, sizeof delivery->machine) ||
         !place_text(at, item, "meterset_unit", delivery->meterset_unit, sizeof delivery->meterset_unit) ||
         !place_text(at, item, "patient_position", position, sizeof position) ||
         !parse_count(at, cJSON_GetObjectItemCaseSensitive(item, "number"), "number", &delivery->number) ||
-        !parse_count(at, cJSON_GetObjectItemCaseSensitive(item, "n_fractions"), "n_fractions", &delivery->n_fractions) ||
-        !parse_count(at, cJSON_GetObjectItemCaseSensitive(item, "n_control_points"), "n_control_points", &n_control_points))
+        !parse_count(at, cJSON_GetObjectItemCaseSensitive(item, "n_fractions"), "n_fractions",
+                     &delivery->n_fractions) ||
+        !parse_count(at, cJSON_GetObjectItemCaseSensitive(item, "n_control_points"), "n_control_points",
+                     &n_control_points))
         return false;
     delivery->n_control_points = n_control_points > 0 ? (size_t)n_control_points : 0;
     return !position[0] || patient_position_from_word(position, &delivery->patient_position) ||
@@ -99,8 +101,9 @@ bool plan_json_beams(const struct place *top, const cJSON *root, struct plan_fil
         }
         struct beam *beam = &file->beams[file->n_beams++];
         place_note_keys(&at, entry, known);
-        if (!place_text(&at, entry, "id", beam->id, sizeof beam->id) || !place_text(&at, entry, "name", beam->name, sizeof beam->name) ||
-            !parse_delivery(&at, entry, beam) || !place_point(&at, entry, "entry_mm", &beam->entry_lps_mm) ||
+        if (!place_text(&at, entry, "id", beam->id, sizeof beam->id) ||
+            !place_text(&at, entry, "name", beam->name, sizeof beam->name) || !parse_delivery(&at, entry, beam) ||
+            !place_point(&at, entry, "entry_mm", &beam->entry_lps_mm) ||
             !place_point(&at, entry, "target_mm", &beam->target_lps_mm))
             return false;
         if (vec3_length(vec3_sub(beam->entry_lps_mm, beam->target_lps_mm)) < BEAM_MIN_LENGTH_MM)
@@ -108,7 +111,8 @@ bool plan_json_beams(const struct place *top, const cJSON *root, struct plan_fil
         const cJSON *aperture = cJSON_GetObjectItemCaseSensitive(entry, "aperture_mm");
         beam->aperture_mm = NAN;
         if (aperture && !cJSON_IsNull(aperture)) {
-            if (!cJSON_IsNumber(aperture) || !(aperture->valuedouble > 0 && aperture->valuedouble <= BEAM_MAX_APERTURE_MM))
+            if (!cJSON_IsNumber(aperture) ||
+                !(aperture->valuedouble > 0 && aperture->valuedouble <= BEAM_MAX_APERTURE_MM))
                 return place_fail(&at, ERROR_RANGE, "aperture_mm", "expected a diameter above 0 and at most 2000 mm");
             beam->aperture_mm = aperture->valuedouble;
         }

@@ -25,9 +25,10 @@ static bool get_tissue(const struct place *at, const cJSON *entry, struct label_
     if (item && !cJSON_IsNull(item) && !cJSON_IsObject(item))
         return place_fail(at, ERROR_FORMAT, "tissue", "expected an object, {...}");
     label->has_tissue = cJSON_IsObject(item);
-    return get_weight(at, item, "boron_ratio", &tissue->boron_ratio) && get_weight(at, item, "cbe_boron", &tissue->cbe_boron) &&
-           get_weight(at, item, "rbe_nitrogen", &tissue->rbe_nitrogen) && get_weight(at, item, "rbe_fast", &tissue->rbe_fast) &&
-           get_weight(at, item, "rbe_gamma", &tissue->rbe_gamma);
+    return get_weight(at, item, "boron_ratio", &tissue->boron_ratio) &&
+           get_weight(at, item, "cbe_boron", &tissue->cbe_boron) &&
+           get_weight(at, item, "rbe_nitrogen", &tissue->rbe_nitrogen) &&
+           get_weight(at, item, "rbe_fast", &tissue->rbe_fast) && get_weight(at, item, "rbe_gamma", &tissue->rbe_gamma);
 }
 
 /* A whole number from 1 to most; 0 when the key is absent. */
@@ -37,7 +38,8 @@ static bool get_whole(const struct place *at, const cJSON *entry, const char *ke
     *out = 0;
     if (!item || cJSON_IsNull(item))
         return true;
-    if (!cJSON_IsNumber(item) || item->valuedouble != floor(item->valuedouble) || !(item->valuedouble >= 1 && item->valuedouble <= most)) {
+    if (!cJSON_IsNumber(item) || item->valuedouble != floor(item->valuedouble) ||
+        !(item->valuedouble >= 1 && item->valuedouble <= most)) {
         char what[64];
         snprintf(what, sizeof what, "expected a whole number from 1 to %d", most);
         return place_fail(at, ERROR_RANGE, key, what);
@@ -67,8 +69,10 @@ static bool parse_label(const struct place *at, const cJSON *entry, struct label
     label->value = (uint16_t)value->valuedouble;
     return place_text(at, entry, "name", label->name, sizeof label->name) &&
            place_text(at, entry, "parent", label->parent, sizeof label->parent) &&
-           place_text(at, entry, "id", label->id, sizeof label->id) && get_whole(at, entry, "place", REGION_MAX, &label->place) &&
-           place_color(at, entry, &label->has_color, label->rgb) && get_opacity(at, entry, &label->opacity) && get_tissue(at, entry, label);
+           place_text(at, entry, "id", label->id, sizeof label->id) &&
+           get_whole(at, entry, "place", REGION_MAX, &label->place) &&
+           place_color(at, entry, &label->has_color, label->rgb) && get_opacity(at, entry, &label->opacity) &&
+           get_tissue(at, entry, label);
 }
 
 bool label_names_parse(const uint8_t *data, size_t size, const char *name, struct label_names *names, struct error *err)

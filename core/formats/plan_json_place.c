@@ -15,7 +15,8 @@ struct place place_at(const struct place *up, const char *list, int index)
 
 bool place_fail(const struct place *place, enum error_code code, const char *key, const char *what)
 {
-    return error_set(place->err, code, "%s: %s%s%s: %s", place->file, place->path, place->path[0] && key[0] ? "." : "", key, what);
+    return error_set(place->err, code, "%s: %s%s%s: %s", place->file, place->path, place->path[0] && key[0] ? "." : "",
+                     key, what);
 }
 
 cJSON *place_document(const uint8_t *data, size_t size, const char *file, struct error *err)
@@ -55,7 +56,8 @@ bool place_text(const struct place *place, const cJSON *object, const char *key,
 }
 
 /* Cutting a path short would name another file, so a long one is refused. */
-bool place_path(const struct place *place, const cJSON *object, const char *key, bool is_required, char out[FOLDER_NAME_SIZE])
+bool place_path(const struct place *place, const cJSON *object, const char *key, bool is_required,
+                char out[FOLDER_NAME_SIZE])
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
     out[0] = 0;
@@ -131,8 +133,9 @@ void place_note_keys(const struct place *place, const cJSON *object, const char 
         char key[64];
         text_clean(item->string, key, sizeof key);
         if (!is_known)
-            report_add(place->report, REPORT_NOTE, "plan.unknown-key", place->file, "%s%s%s is not a key that is known; it was ignored.",
-                       place->path, place->path[0] ? "." : "", key);
+            report_add(place->report, REPORT_NOTE, "plan.unknown-key", place->file,
+                       "%s%s%s is not a key that is known; it was ignored.", place->path, place->path[0] ? "." : "",
+                       key);
     }
 }
 
@@ -152,9 +155,11 @@ bool place_color(const struct place *place, const cJSON *object, bool *has_color
     } else {
         double v[3], most = 0;
         for (int i = 0; i < 3; i++) {
-            const cJSON *number = cJSON_IsArray(item) && cJSON_GetArraySize(item) == 3 ? cJSON_GetArrayItem(item, i) : NULL;
+            const cJSON *number =
+                cJSON_IsArray(item) && cJSON_GetArraySize(item) == 3 ? cJSON_GetArrayItem(item, i) : NULL;
             if (!cJSON_IsNumber(number) || !(number->valuedouble >= 0 && number->valuedouble <= 255))
-                return place_fail(place, ERROR_FORMAT, "color", "expected \"#rrggbb\" or three numbers of 0 to 1 or 0 to 255");
+                return place_fail(place, ERROR_FORMAT, "color",
+                                  "expected \"#rrggbb\" or three numbers of 0 to 1 or 0 to 255");
             v[i] = number->valuedouble;
             most = fmax(most, v[i]);
         }

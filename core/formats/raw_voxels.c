@@ -51,19 +51,22 @@ static void swap_bytes(uint8_t *data, size_t n, uint32_t width)
 static void note_more(uint64_t n_more, const struct raw_place *place, const char *name, struct report *report)
 {
     if (n_more > 0)
-        report_add(report, REPORT_WARNING, "image.bytes-behind", name, "%llu bytes follow the %llu bytes of voxels that the header speaks of; they "
-                   "were left.", (unsigned long long)n_more, (unsigned long long)place->data_bytes);
+        report_add(report, REPORT_WARNING, "image.bytes-behind", name,
+                   "%llu bytes follow the %llu bytes of voxels that the header speaks of; they "
+                   "were left.",
+                   (unsigned long long)n_more, (unsigned long long)place->data_bytes);
 }
 
-bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpacked *unpacked, struct report *report, struct error *err)
+bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpacked *unpacked, struct report *report,
+                struct error *err)
 {
     const struct bytes *file = &place->file;
     size_t end = (size_t)(place->data_at + place->data_bytes);
     *unpacked = (struct raw_unpacked){ 0 };
     if (place->is_packed ? gzip_most(file->size) < end : file->size < end)
-        return error_set(err, ERROR_FORMAT, "%s: cut short: %zu bytes%s, but %llu voxels of %u bytes need %zu", name, file->size,
-                         place->is_packed ? " of gzip" : "", (unsigned long long)(place->data_bytes / place->voxel_bytes),
-                         place->voxel_bytes, end);
+        return error_set(err, ERROR_FORMAT, "%s: cut short: %zu bytes%s, but %llu voxels of %u bytes need %zu", name,
+                         file->size, place->is_packed ? " of gzip" : "",
+                         (unsigned long long)(place->data_bytes / place->voxel_bytes), place->voxel_bytes, end);
     if (!place->is_packed)
         note_more(file->size - end, place, name, report);
     if (!place->is_packed && !place->is_swapped && (uintptr_t)(file->data + place->data_at) % 8 == 0) {
@@ -96,18 +99,18 @@ bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpa
 }
 
 /* RUN(type) for the C type of a type. */
-#define WITH_TYPE(code, RUN)                   \
-    switch (code) {                            \
-    case RAW_U8: RUN(uint8_t); break;        \
-    case RAW_I8: RUN(int8_t); break;          \
-    case RAW_I16: RUN(int16_t); break;        \
-    case RAW_U16: RUN(uint16_t); break;      \
-    case RAW_I32: RUN(int32_t); break;        \
-    case RAW_U32: RUN(uint32_t); break;      \
-    case RAW_I64: RUN(int64_t); break;        \
-    case RAW_U64: RUN(uint64_t); break;      \
-    case RAW_F32: RUN(float); break;        \
-    case RAW_F64: RUN(double); break;       \
+#define WITH_TYPE(code, RUN) \
+    switch (code) { \
+    case RAW_U8: RUN(uint8_t); break; \
+    case RAW_I8: RUN(int8_t); break; \
+    case RAW_I16: RUN(int16_t); break; \
+    case RAW_U16: RUN(uint16_t); break; \
+    case RAW_I32: RUN(int32_t); break; \
+    case RAW_U32: RUN(uint32_t); break; \
+    case RAW_I64: RUN(int64_t); break; \
+    case RAW_U64: RUN(uint64_t); break; \
+    case RAW_F32: RUN(float); break; \
+    case RAW_F64: RUN(double); break; \
     }
 
 /* Smallest and largest stored value, and how many are not finite. */
@@ -120,31 +123,31 @@ static struct span measure(const struct raw_voxels *voxels)
 {
     struct span span = { 0 };
     size_t n = voxels->n;
-#define MEASURE(type)                              \
-    do {                                           \
-        const type *in = voxels->data;             \
-        type low = in[0], high = in[0];            \
-        for (size_t i = 1; i < n; i++) {           \
-            low = in[i] < low ? in[i] : low;       \
-            high = in[i] > high ? in[i] : high;    \
-        }                                          \
-        span.low = (double)low;                    \
-        span.high = (double)high;                  \
+#define MEASURE(type) \
+    do { \
+        const type *in = voxels->data; \
+        type low = in[0], high = in[0]; \
+        for (size_t i = 1; i < n; i++) { \
+            low = in[i] < low ? in[i] : low; \
+            high = in[i] > high ? in[i] : high; \
+        } \
+        span.low = (double)low; \
+        span.high = (double)high; \
     } while (0)
-#define MEASURE_FLOAT(type)                                                   \
-    do {                                                                      \
-        const type *in = voxels->data;                                        \
-        type low = (type)INFINITY, high = -(type)INFINITY;                    \
-        size_t bad = 0;                                                       \
-        for (size_t i = 0; i < n; i++) {                                      \
-            type v = in[i];                                                   \
-            bad += !(v - v == 0);                                             \
-            low = v < low && v >= -(type)FLT_MAX ? v : low;                \
-            high = v > high && v <= (type)FLT_MAX ? v : high;              \
-        }                                                                     \
-        span.low = (double)low;                                               \
-        span.high = (double)high;                                             \
-        span.n_not_finite = bad;                                              \
+#define MEASURE_FLOAT(type) \
+    do { \
+        const type *in = voxels->data; \
+        type low = (type)INFINITY, high = -(type)INFINITY; \
+        size_t bad = 0; \
+        for (size_t i = 0; i < n; i++) { \
+            type v = in[i]; \
+            bad += !(v - v == 0); \
+            low = v < low && v >= -(type)FLT_MAX ? v : low; \
+            high = v > high && v <= (type)FLT_MAX ? v : high; \
+        } \
+        span.low = (double)low; \
+        span.high = (double)high; \
+        span.n_not_finite = bad; \
     } while (0)
     switch (voxels->type) {
     case RAW_F32: MEASURE_FLOAT(float); break;
@@ -175,19 +178,19 @@ static enum voxel_type image_type(enum raw_type type, const struct span *span)
 static void convert(const struct raw_voxels *voxels, struct volume *volume)
 {
     size_t n = voxels->n;
-#define CONVERT_TO(in_type, out_type)              \
-    do {                                           \
-        const in_type *in = voxels->data;          \
-        out_type *out = volume->voxels;            \
-        for (size_t i = 0; i < n; i++)             \
-            out[i] = (out_type)in[i];              \
+#define CONVERT_TO(in_type, out_type) \
+    do { \
+        const in_type *in = voxels->data; \
+        out_type *out = volume->voxels; \
+        for (size_t i = 0; i < n; i++) \
+            out[i] = (out_type)in[i]; \
     } while (0)
-#define CONVERT(in_type)                                               \
-    switch (volume->type) {                                            \
-    case VOXEL_U8: CONVERT_TO(in_type, uint8_t); break;                \
-    case VOXEL_I16: CONVERT_TO(in_type, int16_t); break;               \
-    case VOXEL_U16: CONVERT_TO(in_type, uint16_t); break;              \
-    case VOXEL_F32: CONVERT_TO(in_type, float); break;                 \
+#define CONVERT(in_type) \
+    switch (volume->type) { \
+    case VOXEL_U8: CONVERT_TO(in_type, uint8_t); break; \
+    case VOXEL_I16: CONVERT_TO(in_type, int16_t); break; \
+    case VOXEL_U16: CONVERT_TO(in_type, uint16_t); break; \
+    case VOXEL_F32: CONVERT_TO(in_type, float); break; \
     }
     if (is_float(voxels->type)) { /* never to whole numbers */
         if (voxels->type == RAW_F32)
@@ -206,7 +209,9 @@ static void convert(const struct raw_voxels *voxels, struct volume *volume)
 /* Voxels that are in the file as the volume wants them, in memory of their own: not copied. */
 static bool can_take(const struct raw_voxels *voxels, enum voxel_type type)
 {
-    static const enum raw_type same[] = { [VOXEL_U8] = RAW_U8, [VOXEL_I16] = RAW_I16, [VOXEL_U16] = RAW_U16, [VOXEL_F32] = RAW_F32 };
+    static const enum raw_type same[] = {
+        [VOXEL_U8] = RAW_U8, [VOXEL_I16] = RAW_I16, [VOXEL_U16] = RAW_U16, [VOXEL_F32] = RAW_F32
+    };
     return voxels->owned && *voxels->owned && voxels->type == same[type];
 }
 
@@ -235,18 +240,20 @@ static struct volume *make_image(const struct raw_voxels *voxels, struct report 
     volume->low = fmin(a, b);
     volume->high = fmax(a, b);
     if (span.n_not_finite > 0)
-        report_add(report, REPORT_NOTE, "image.not-finite", voxels->name, "%zu of %zu values are not numbers.", span.n_not_finite,
-                   voxels->n);
+        report_add(report, REPORT_NOTE, "image.not-finite", voxels->name, "%zu of %zu values are not numbers.",
+                   span.n_not_finite, voxels->n);
     if (volume->type == VOXEL_F32 && !is_float(voxels->type) && fmax(fabs(span.low), fabs(span.high)) > 16777216)
         report_add(report, REPORT_NOTE, "image.precision", voxels->name,
-                   "Whole numbers up to %.0f were rounded to 24 bits of precision.", fmax(fabs(span.low), fabs(span.high)));
+                   "Whole numbers up to %.0f were rounded to 24 bits of precision.",
+                   fmax(fabs(span.low), fabs(span.high)));
     return volume;
 }
 
 static bool refuse_label(const struct raw_voxels *voxels, size_t at, double value, struct error *err)
 {
     const uint32_t *size = voxels->grid->size;
-    return error_set(err, ERROR_RANGE, "%s: voxel (%zu, %zu, %zu) is %g; a label must be a whole number from 0 to 65535", voxels->name,
+    return error_set(err, ERROR_RANGE,
+                     "%s: voxel (%zu, %zu, %zu) is %g; a label must be a whole number from 0 to 65535", voxels->name,
                      at % size[0], at / size[0] % size[1], at / size[0] / size[1], value);
 }
 
@@ -256,17 +263,17 @@ static bool labels_to_u16(const struct raw_voxels *voxels, uint16_t *out, uint16
     size_t n = voxels->n;
     double slope = voxels->slope, offset = voxels->offset;
     uint16_t most = 0;
-#define TO_U16(type)                                                         \
-    do {                                                                     \
-        const type *in = voxels->data;                                       \
-        for (size_t i = 0; i < n; i++) {                                     \
-            double value = (double)in[i] * slope + offset;                   \
-            double label = floor(value + 0.5);                               \
+#define TO_U16(type) \
+    do { \
+        const type *in = voxels->data; \
+        for (size_t i = 0; i < n; i++) { \
+            double value = (double)in[i] * slope + offset; \
+            double label = floor(value + 0.5); \
             if (!(fabs(value - label) <= 1e-3 && label >= 0 && label <= UINT16_MAX)) \
-                return refuse_label(voxels, i, value, err);                  \
-            out[i] = (uint16_t)label;                                        \
-            most = out[i] > most ? out[i] : most;                            \
-        }                                                                    \
+                return refuse_label(voxels, i, value, err); \
+            out[i] = (uint16_t)label; \
+            most = out[i] > most ? out[i] : most; \
+        } \
     } while (0)
     WITH_TYPE(voxels->type, TO_U16)
     *highest = most;
@@ -313,14 +320,14 @@ static struct volume *make_mask(const struct raw_voxels *voxels, struct report *
     uint8_t *out = mask->voxels;
     size_t n = voxels->n, n_between = 0;
     double slope = voxels->slope, offset = voxels->offset;
-#define TO_MASK(type)                                                \
-    do {                                                             \
-        const type *in = voxels->data;                               \
-        for (size_t i = 0; i < n; i++) {                             \
-            double value = (double)in[i] * slope + offset;           \
-            out[i] = value >= 0.5;                                   \
-            n_between += value > 0.001 && value < 0.999;             \
-        }                                                            \
+#define TO_MASK(type) \
+    do { \
+        const type *in = voxels->data; \
+        for (size_t i = 0; i < n; i++) { \
+            double value = (double)in[i] * slope + offset; \
+            out[i] = value >= 0.5; \
+            n_between += value > 0.001 && value < 0.999; \
+        } \
     } while (0)
     WITH_TYPE(voxels->type, TO_MASK)
     if (n_between > 0)

@@ -31,8 +31,8 @@ static double checked_unit(const struct sera_grid *sera, const char *name, struc
     if (sera->given_mm > 0) {
         if (sera->given_mm != sera->mm)
             report_add(report, REPORT_NOTE, "geometry.unit-given", name,
-                       "The header's unit is %g mm, but the plan says that its numbers count %g mm, and that was used.", sera->mm,
-                       sera->given_mm);
+                       "The header's unit is %g mm, but the plan says that its numbers count %g mm, and that was used.",
+                       sera->mm, sera->given_mm);
         return sera->given_mm;
     }
     for (int a = 0; a < 3; a++) {
@@ -53,14 +53,15 @@ static double checked_unit(const struct sera_grid *sera, const char *name, struc
     return sera->mm;
 }
 
-bool sera_grid_resolve(const struct sera_grid *sera, const char *name, struct grid *grid, struct report *report, struct error *err)
+bool sera_grid_resolve(const struct sera_grid *sera, const char *name, struct grid *grid, struct report *report,
+                       struct error *err)
 {
     static const char *const words[] = { "RL", "PA", "IS" };
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < a; b++)
             if (sera->along[a].axis == sera->along[b].axis)
-                return error_set(err, ERROR_FORMAT, "%s: the axis %s is named for two of columns, rows and slices", name,
-                                 words[sera->along[a].axis]);
+                return error_set(err, ERROR_FORMAT, "%s: the axis %s is named for two of columns, rows and slices",
+                                 name, words[sera->along[a].axis]);
     double mm = checked_unit(sera, name, report);
     struct affine lps;
     double origin[3] = { 0 };
@@ -70,9 +71,10 @@ bool sera_grid_resolve(const struct sera_grid *sera, const char *name, struct gr
         double low = sera->low[axis] * mm, high = sera->high[axis] * mm;
         double extent = sera->size[a] * step;
         if (fabs(extent - (high - low)) > 0.5 * step)
-            report_add(report, REPORT_WARNING, "geometry.extent-differs", name,
-                       "%u univels of %.4g mm along %s are %.2f mm, but the faces are %.2f mm apart; the univel size was used.",
-                       sera->size[a], step, words[axis], extent, high - low);
+            report_add(
+                report, REPORT_WARNING, "geometry.extent-differs", name,
+                "%u univels of %.4g mm along %s are %.2f mm, but the faces are %.2f mm apart; the univel size was used.",
+                sera->size[a], step, words[axis], extent, high - low);
         origin[axis] = sign > 0 ? low + step / 2 : high - step / 2;
         lps.columns[a] = sera_lps_from_rpi(axis == SERA_RL ? sign * step : 0, axis == SERA_PA ? sign * step : 0,
                                            axis == SERA_IS ? sign * step : 0);

@@ -1,5 +1,6 @@
 #pragma once
-/* SERA's patient axes: RL grows to the left, PA to the anterior, IS to the superior side. Here alone they become patient LPS. */
+/* SERA's patient axes: RL grows to the left, PA to the anterior, IS to the superior side. Here alone they become
+ * patient LPS. */
 #include "core/report/report.h"
 #include "core/volume/volume.h"
 
@@ -25,7 +26,7 @@ struct sera_grid {
 };
 
 /* Index 0 lies half a step inside the low face of its axis, or the high face where the index runs against it.
- * A head of metres means that the unit is wrong: millimetres are then taken, and reported. A given unit is taken as it is.
- *   errors  ERROR_FORMAT an axis twice; as grid_init */
-NODISCARD bool sera_grid_resolve(const struct sera_grid *sera, const char *name, struct grid *grid, struct report *report,
-                                 struct error *err);
+ * A head of metres means that the unit is wrong: millimetres are then taken, and reported. A given unit is taken as it
+ * is. errors  ERROR_FORMAT an axis twice; as grid_init */
+NODISCARD bool sera_grid_resolve(const struct sera_grid *sera, const char *name, struct grid *grid,
+                                 struct report *report, struct error *err);

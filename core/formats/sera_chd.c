@@ -13,15 +13,16 @@ static const double widest_half_cm = 60;
 static const double narrowest_half_mm = 20;
 
 enum key { KEY_FOV, KEY_XMIN, KEY_XMAX, KEY_YMIN, KEY_YMAX, KEY_COLS, KEY_ROWS, KEY_PLANES, N_KEYS };
-static const char *const key_words[N_KEYS] = { "FOV", "xmin", "xmax", "ymin", "ymax", "num_cols", "num_rows", "num_planes" };
+static const char *const key_words[N_KEYS] = { "FOV",  "xmin",     "xmax",     "ymin",
+                                               "ymax", "num_cols", "num_rows", "num_planes" };
 
 struct parser {
     struct text text;
     const char *name;
     struct chd *chd;
     double values[N_KEYS];
-    uint32_t seen;        /* bit per key */
-    double *z;            /* [CHD_MAX_SIDE] */
+    uint32_t seen; /* bit per key */
+    double *z;     /* [CHD_MAX_SIDE] */
     bool *has_z;
     bool has_weight[CHD_N_COLUMNS];
     size_t n_unknown;
@@ -41,7 +42,8 @@ static bool fail(const struct parser *p, const char *key, const char *found, con
 {
     char clean[48];
     text_clean(found, clean, sizeof clean);
-    return error_set(p->err, ERROR_FORMAT, "%s: line %zu: %s is \"%.40s\", expected %s", p->name, p->text.line, key, clean, expected);
+    return error_set(p->err, ERROR_FORMAT, "%s: line %zu: %s is \"%.40s\", expected %s", p->name, p->text.line, key,
+                     clean, expected);
 }
 
 static bool get_number(const struct parser *p, const char *key, const char *value, double *out)
@@ -92,14 +94,15 @@ static void set_column(struct parser *p, long column, const char *value)
     if (!quantity_of(value, &quantity)) {
         char clean[64];
         text_clean(value, clean, sizeof clean);
-        report_add(p->report, REPORT_WARNING, "dose.unknown-column", p->name, "Column %ld of the doses is called \"%.40s\"; it was left out.",
-                   column, clean);
+        report_add(p->report, REPORT_WARNING, "dose.unknown-column", p->name,
+                   "Column %ld of the doses is called \"%.40s\"; it was left out.", column, clean);
         return;
     }
     for (long i = 0; i < CHD_N_COLUMNS; i++)
         if (i != column && chd->has_column[i] && chd->quantities[i] == quantity) {
             report_add(p->report, REPORT_WARNING, "dose.unknown-column", p->name,
-                       "Columns %ld and %ld of the doses are both called \"%s\"; the latter was left out.", i, column, value);
+                       "Columns %ld and %ld of the doses are both called \"%s\"; the latter was left out.", i, column,
+                       value);
             return;
         }
     chd->has_column[column] = true;
@@ -113,7 +116,8 @@ static bool set_indexed(struct parser *p, const char *key, const char *value, bo
     *is_known = true;
     if (index >= 0) {
         if (index >= CHD_MAX_SIDE)
-            return error_set(p->err, ERROR_LIMIT, "%s: line %zu: more than %d planes", p->name, p->text.line, CHD_MAX_SIDE);
+            return error_set(p->err, ERROR_LIMIT, "%s: line %zu: more than %d planes", p->name, p->text.line,
+                             CHD_MAX_SIDE);
         p->has_z[index] = true;
         return get_number(p, key, value, &p->z[index]);
     }
@@ -130,8 +134,8 @@ static bool set_indexed(struct parser *p, const char *key, const char *value, bo
         }
         double number = 0;
         if (!text_number(value, &number) || fabs(number) > 1e30) { /* a reference may be "***" */
-            report_add(p->report, REPORT_WARNING, "header.bad-number", p->name, "Line %zu: %.20s is not a number; it is not known then.",
-                       p->text.line, key);
+            report_add(p->report, REPORT_WARNING, "header.bad-number", p->name,
+                       "Line %zu: %.20s is not a number; it is not known then.", p->text.line, key);
             return true;
         }
         (s == 1 ? chd->concentration : s == 2 ? chd->weight : chd->reference)[index] = number;
@@ -145,7 +149,8 @@ static bool set_indexed(struct parser *p, const char *key, const char *value, bo
 
 static bool set_value(struct parser *p, const char *key, const char *value)
 {
-    static const char *const fields[] = { "x_in_field", "y_in_field", "z_in_field" }, *const numbers[] = { "1", "2", "3" };
+    static const char *const fields[] = { "x_in_field", "y_in_field", "z_in_field" }, *const numbers[] = { "1", "2",
+                                                                                                           "3" };
     static const char *const quiet[] = { "run_title", "number_beams" };
     bool is_known;
     if (!set_indexed(p, key, value, &is_known))
@@ -176,8 +181,8 @@ static bool check_side(const struct parser *p, enum key key, uint32_t low, uint3
 {
     double value = p->values[key];
     if (!(value == floor(value) && value >= low && value <= CHD_MAX_SIDE))
-        return error_set(p->err, ERROR_FORMAT, "%s: %s is %g, expected a whole number from %u to %d", p->name, key_words[key], value, low,
-                         CHD_MAX_SIDE);
+        return error_set(p->err, ERROR_FORMAT, "%s: %s is %g, expected a whole number from %u to %d", p->name,
+                         key_words[key], value, low, CHD_MAX_SIDE);
     *out = (uint32_t)value;
     return true;
 }
@@ -193,7 +198,8 @@ static bool take_planes(struct parser *p)
     struct chd *chd = p->chd;
     for (uint32_t i = 0; i < chd->n_planes; i++)
         if (!p->has_z[i])
-            return error_set(p->err, ERROR_FORMAT, "%s: num_planes is %u, but z_value_%02u is missing", p->name, chd->n_planes, i);
+            return error_set(p->err, ERROR_FORMAT, "%s: num_planes is %u, but z_value_%02u is missing", p->name,
+                             chd->n_planes, i);
     chd->planes = mem_new(chd->n_planes * sizeof *chd->planes);
     memcpy(chd->planes, p->z, chd->n_planes * sizeof *chd->planes);
     qsort(chd->planes, chd->n_planes, sizeof *chd->planes, compare);
@@ -201,7 +207,8 @@ static bool take_planes(struct parser *p)
         if (!(chd->planes[i] - chd->planes[i - 1] > 1e-4 * chd->half_width))
             return error_set(p->err, ERROR_FORMAT, "%s: two planes lie at z %g", p->name, chd->planes[i]);
     double reach = fmax(fabs(chd->planes[0]), fabs(chd->planes[chd->n_planes - 1]));
-    return reach <= 1e4 || error_set(p->err, ERROR_FORMAT, "%s: a plane lies at z %g, farther than any patient", p->name, reach);
+    return reach <= 1e4 ||
+           error_set(p->err, ERROR_FORMAT, "%s: a plane lies at z %g, farther than any patient", p->name, reach);
 }
 
 static void check_unit(const struct parser *p)
@@ -210,9 +217,11 @@ static void check_unit(const struct parser *p)
     chd->mm = 10;
     if (chd->half_width > widest_half_cm) {
         chd->mm = 1;
-        report_add(p->report, REPORT_WARNING, "geometry.unit-assumed", p->name,
-                   "The contours would be %.2f m wide in centimetres, as SERA counts; the numbers were taken as millimetres (seraPlan writes "
-                   "these for a header in mm).", chd->half_width * 2 / 100);
+        report_add(
+            p->report, REPORT_WARNING, "geometry.unit-assumed", p->name,
+            "The contours would be %.2f m wide in centimetres, as SERA counts; the numbers were taken as millimetres (seraPlan writes "
+            "these for a header in mm).",
+            chd->half_width * 2 / 100);
     } else if (chd->half_width * chd->mm < narrowest_half_mm) {
         report_add(p->report, REPORT_WARNING, "geometry.unit-doubtful", p->name, "The contours are only %.3g mm wide.",
                    chd->half_width * chd->mm * 2);
@@ -227,20 +236,22 @@ static bool check_geometry(struct parser *p)
             return error_set(p->err, ERROR_FORMAT, "%s: the key %s is missing", p->name, key_words[k]);
     chd->half_width = p->values[KEY_FOV];
     if (!(chd->half_width > 1e-3 && chd->half_width <= 1e4))
-        return error_set(p->err, ERROR_FORMAT, "%s: FOV is %g, expected half the width of the contours, above 0", p->name, chd->half_width);
+        return error_set(p->err, ERROR_FORMAT, "%s: FOV is %g, expected half the width of the contours, above 0",
+                         p->name, chd->half_width);
     for (int a = 0; a < 2; a++) {
         chd->low[a] = p->values[KEY_XMIN + 2 * a];
         chd->high[a] = p->values[KEY_XMAX + 2 * a];
         if (!(chd->high[a] - chd->low[a] > 1e-3 && fabs(chd->low[a]) <= 10 && fabs(chd->high[a]) <= 10))
-            return error_set(p->err, ERROR_FORMAT, "%s: %s to %s is %g to %g, expected parts of FOV, as -1 to 1", p->name,
-                             key_words[KEY_XMIN + 2 * a], key_words[KEY_XMAX + 2 * a], chd->low[a], chd->high[a]);
+            return error_set(p->err, ERROR_FORMAT, "%s: %s to %s is %g to %g, expected parts of FOV, as -1 to 1",
+                             p->name, key_words[KEY_XMIN + 2 * a], key_words[KEY_XMAX + 2 * a], chd->low[a],
+                             chd->high[a]);
     }
     if (!check_side(p, KEY_COLS, 2, &chd->n_columns) || !check_side(p, KEY_ROWS, 2, &chd->n_rows) ||
         !check_side(p, KEY_PLANES, 1, &chd->n_planes))
         return false;
     if ((uint64_t)chd->n_columns * chd->n_rows * chd->n_planes > CHD_MAX_POINTS)
-        return error_set(p->err, ERROR_LIMIT, "%s: %u x %u x %u points, at most %d are read", p->name, chd->n_columns, chd->n_rows,
-                         chd->n_planes, CHD_MAX_POINTS);
+        return error_set(p->err, ERROR_LIMIT, "%s: %u x %u x %u points, at most %d are read", p->name, chd->n_columns,
+                         chd->n_rows, chd->n_planes, CHD_MAX_POINTS);
     check_unit(p);
     return take_planes(p);
 }
@@ -261,7 +272,8 @@ static bool check_columns(struct parser *p)
             chd->concentration[i] = 1;
     }
     if (n == 0)
-        return error_set(p->err, ERROR_FORMAT, "%s: no column has a name that is known (dose_comp_0: total and its like)", p->name);
+        return error_set(p->err, ERROR_FORMAT,
+                         "%s: no column has a name that is known (dose_comp_0: total and its like)", p->name);
     if (n_missing > 0)
         report_add(p->report, REPORT_WARNING, "dose.weights-missing", p->name,
                    "%zu columns have no rbe_val or no conc; 1 was taken for it.", n_missing);
@@ -271,13 +283,21 @@ static bool check_columns(struct parser *p)
 /* Programs that go by seraMC's order show such a file wrongly. */
 static void note_order(const struct parser *p)
 {
-    static const enum dose_quantity usual[CHD_N_COLUMNS] = { DOSE_TOTAL, DOSE_BORON,        DOSE_GAMMA,              DOSE_NITROGEN,       DOSE_FAST,
-                                                             DOSE_FAST_FLUENCE, DOSE_EPITHERMAL_FLUENCE, DOSE_THERMAL_FLUENCE, DOSE_OTHER };
+    static const enum dose_quantity usual[CHD_N_COLUMNS] = { DOSE_TOTAL,
+                                                             DOSE_BORON,
+                                                             DOSE_GAMMA,
+                                                             DOSE_NITROGEN,
+                                                             DOSE_FAST,
+                                                             DOSE_FAST_FLUENCE,
+                                                             DOSE_EPITHERMAL_FLUENCE,
+                                                             DOSE_THERMAL_FLUENCE,
+                                                             DOSE_OTHER };
     for (int i = 0; i < CHD_N_COLUMNS; i++)
         if (p->chd->has_column[i] && p->chd->quantities[i] != usual[i]) {
-            report_add(p->report, REPORT_NOTE, "dose.column-order", p->name,
-                       "Column %d holds %s, as seraPlan writes it and seraMC does not; all columns were taken by their names.", i,
-                       dose_quantity_word(p->chd->quantities[i]));
+            report_add(
+                p->report, REPORT_NOTE, "dose.column-order", p->name,
+                "Column %d holds %s, as seraPlan writes it and seraMC does not; all columns were taken by their names.",
+                i, dose_quantity_word(p->chd->quantities[i]));
             return;
         }
 }
@@ -290,11 +310,12 @@ static void note_header(const struct parser *p)
         report_add(p->report, REPORT_NOTE, "dose.unknown-version", p->name,
                    "The version is \"%s\"; the file has all keys that are needed and was read.", version);
     if (p->n_unknown > 0)
-        report_add(p->report, REPORT_NOTE, "header.unknown-key", p->name, "%zu unknown keys were ignored, the first is \"%s\".",
-                   p->n_unknown, p->unknown);
+        report_add(p->report, REPORT_NOTE, "header.unknown-key", p->name,
+                   "%zu unknown keys were ignored, the first is \"%s\".", p->n_unknown, p->unknown);
 }
 
-bool chd_parse(const uint8_t *data, size_t size, const char *name, struct chd *chd, struct report *report, struct error *err)
+bool chd_parse(const uint8_t *data, size_t size, const char *name, struct chd *chd, struct report *report,
+               struct error *err)
 {
     *chd = (struct chd){ 0 };
     struct parser p = { .name = name, .chd = chd, .report = report, .err = err };

@@ -1,13 +1,13 @@
 #pragma once
-/* SERA's dose contours: a header .chd, a table of points .cdf and images of regions .cmf, as seraMC and seraPlan write them. Points lie
- * on a lattice of columns (RL), rows (PA) and planes (IS); their coordinates, not their order, say where, and the names in the header,
- * not the order of the columns, say what. Works on unpacked bytes in memory.
+/* SERA's dose contours: a header .chd, a table of points .cdf and images of regions .cmf, as seraMC and seraPlan write
+ * them. Points lie on a lattice of columns (RL), rows (PA) and planes (IS); their coordinates, not their order, say
+ * where, and the names in the header, not the order of the columns, say what. Works on unpacked bytes in memory.
  *
- * Values are as SERA draws them: boron times ppm in blood, the tissue's ratio to blood and a weight, the others times a weight. What can
- * be taken out is: weights and ppm are divided away. The ratio is not in the files. Where boron is, in every region, to the thermal
- * fluence as 1 ppm makes it, the ratio was 1 and boron is physical; else it stays DOSE_BLOOD_BORON. A total with weights other than 1 in
- * it stays DOSE_WEIGHTED_TOTAL.
- *   source   output of seraMC 1C0; sera's boron dose per ppm and thermal fluence, 7.3e-12 cGy cm2 */
+ * Values are as SERA draws them: boron times ppm in blood, the tissue's ratio to blood and a weight, the others times a
+ * weight. What can be taken out is: weights and ppm are divided away. The ratio is not in the files. Where boron is, in
+ * every region, to the thermal fluence as 1 ppm makes it, the ratio was 1 and boron is physical; else it stays
+ * DOSE_BLOOD_BORON. A total with weights other than 1 in it stays DOSE_WEIGHTED_TOTAL. source   output of seraMC 1C0;
+ * sera's boron dose per ppm and thermal fluence, 7.3e-12 cGy cm2 */
 #include "core/formats/folder.h"
 #include "core/formats/sera_doses.h"
 #include "core/report/report.h"
@@ -15,7 +15,7 @@
 enum {
     CHD_MAX_BYTES = 1 << 20,
     CHD_N_COLUMNS = 9,
-    CHD_MAX_SIDE = 1024,     /* columns, rows or planes of the lattice */
+    CHD_MAX_SIDE = 1024, /* columns, rows or planes of the lattice */
     CHD_MAX_POINTS = 4 << 20,
     CHD_LINE_MAX_BYTES = 160, /* of one point, on average */
     CHD_MASK_MAX_SIDE = 512
@@ -23,20 +23,21 @@ enum {
 
 struct chd {
     char version[32];
-    double mm;         /* of one unit of what follows: 10, or 1 where only that can be */
-    double half_width; /* FOV: coordinates are parts of it */
+    double mm;              /* of one unit of what follows: 10, or 1 where only that can be */
+    double half_width;      /* FOV: coordinates are parts of it */
     double low[2], high[2]; /* x (RL) and y (PA) of the first and last points, parts of half_width */
     uint32_t n_columns, n_rows, n_planes;
     double *planes; /* [n_planes] z (IS), rising */
     bool has_column[CHD_N_COLUMNS];
     enum dose_quantity quantities[CHD_N_COLUMNS]; /* by their names */
-    bool has_concentration[CHD_N_COLUMNS]; /* false: the header has none, and concentration is 1 */
+    bool has_concentration[CHD_N_COLUMNS];        /* false: the header has none, and concentration is 1 */
     double concentration[CHD_N_COLUMNS], weight[CHD_N_COLUMNS], reference[CHD_N_COLUMNS];
 };
 void chd_finish(struct chd *chd);
 
 /* errors ERROR_FORMAT (with the line and the key), ERROR_LIMIT */
-NODISCARD bool chd_parse(const uint8_t *data, size_t size, const char *name, struct chd *chd, struct report *report, struct error *err);
+NODISCARD bool chd_parse(const uint8_t *data, size_t size, const char *name, struct chd *chd, struct report *report,
+                         struct error *err);
 
 /* Most bytes its table and its images can have. */
 uint64_t chd_table_bytes(const struct chd *chd);
@@ -46,8 +47,8 @@ struct chd_files {
     struct bytes table, mask; /* mask: data NULL when there is none */
     const char *name, *table_name, *mask_name;
 };
-/* Points that hold nothing (region 0, or no value above 0) become not-a-number, so that nothing is blended with them; planes that are
- * not evenly spaced are resampled at their smallest gap, and reported.
- *   errors  ERROR_FORMAT (with the line), ERROR_UNSUPPORTED planes too uneven for an even grid, ERROR_RANGE, ERROR_MEMORY */
-NODISCARD bool chd_read(const struct chd *chd, const struct chd_files *files, struct sera_doses *doses, struct report *report,
-                        struct error *err);
+/* Points that hold nothing (region 0, or no value above 0) become not-a-number, so that nothing is blended with them;
+ * planes that are not evenly spaced are resampled at their smallest gap, and reported. errors  ERROR_FORMAT (with the
+ * line), ERROR_UNSUPPORTED planes too uneven for an even grid, ERROR_RANGE, ERROR_MEMORY */
+NODISCARD bool chd_read(const struct chd *chd, const struct chd_files *files, struct sera_doses *doses,
+                        struct report *report, struct error *err);

@@ -8,8 +8,8 @@
 #include "core/formats/sera_chd.h"
 #include "core/formats/sera_row.h"
 
-static const double lattice_share = 0.1;  /* of a step: coordinates have four digits */
-static const double uneven_share = 0.01;  /* of the spacing: less is rounding */
+static const double lattice_share = 0.1;                 /* of a step: coordinates have four digits */
+static const double uneven_share = 0.01;                 /* of the spacing: less is rounding */
 static const double boron_per_thermal_cgy_cm2 = 7.3e-12; /* of 1 ppm */
 static const double boron_share = 0.12;
 enum { N_REGIONS = 10000, ENOUGH_POINTS = 20, MOST_PLANES = 4096 };
@@ -78,7 +78,8 @@ static bool find_point(const struct chd *chd, const double at[3], size_t *index)
     uint32_t ij[2];
     for (int a = 0; a < 2; a++) {
         double along = (at[a] - chd->low[a]) / step_of(chd, a), nearest = round(along);
-        if (!(fabs(along - nearest) <= lattice_share && nearest >= 0 && nearest < (a == 0 ? chd->n_columns : chd->n_rows)))
+        if (!(fabs(along - nearest) <= lattice_share && nearest >= 0 &&
+              nearest < (a == 0 ? chd->n_columns : chd->n_rows)))
             return false;
         ij[a] = (uint32_t)nearest;
     }
@@ -97,11 +98,13 @@ static bool put_row(struct table *table, const struct sera_row *row, size_t line
     if (isnan(row->at[0]) || isnan(row->at[1]) || isnan(row->at[2]))
         return true; /* it could be anywhere; its place stays empty */
     if (!find_point(table->chd, row->at, &index))
-        return error_set(table->err, ERROR_FORMAT, "%s: line %zu: the point (%.4g, %.4g, %.4g) is not one of the header's columns, rows and "
-                         "planes", table->name, line, row->at[0], row->at[1], row->at[2]);
+        return error_set(table->err, ERROR_FORMAT,
+                         "%s: line %zu: the point (%.4g, %.4g, %.4g) is not one of the header's columns, rows and "
+                         "planes",
+                         table->name, line, row->at[0], row->at[1], row->at[2]);
     if (table->regions[index] != UINT16_MAX)
-        return error_set(table->err, ERROR_FORMAT, "%s: line %zu: the point (%.4g, %.4g, %.4g) is there twice", table->name, line,
-                         row->at[0], row->at[1], row->at[2]);
+        return error_set(table->err, ERROR_FORMAT, "%s: line %zu: the point (%.4g, %.4g, %.4g) is there twice",
+                         table->name, line, row->at[0], row->at[1], row->at[2]);
     bool is_nothing = true;
     for (int c = 0; c < CHD_N_COLUMNS; c++)
         is_nothing = is_nothing && !(row->values[c] > 0) && !isnan(row->values[c]);
@@ -130,19 +133,22 @@ static bool read_table(struct table *table, const struct bytes *text)
             if (n_rows == 0)
                 is_fixed = sera_row_is_fixed(at, n, CHD_N_COLUMNS);
             if (!sera_row_parse(at, n, is_fixed, CHD_N_COLUMNS, &row))
-                return error_set(table->err, ERROR_FORMAT, "%s: line %zu: %zu characters, expected 13 numbers %s", table->name, line, n,
+                return error_set(table->err, ERROR_FORMAT, "%s: line %zu: %zu characters, expected 13 numbers %s",
+                                 table->name, line, n,
                                  is_fixed ? "in columns of 10 characters and one of 4" : "parted by blanks");
             if (++n_rows > table->n_points)
-                return error_set(table->err, ERROR_FORMAT, "%s: line %zu: more points than the %u x %u x %u of the header", table->name,
-                                 line, table->chd->n_columns, table->chd->n_rows, table->chd->n_planes);
+                return error_set(table->err, ERROR_FORMAT,
+                                 "%s: line %zu: more points than the %u x %u x %u of the header", table->name, line,
+                                 table->chd->n_columns, table->chd->n_rows, table->chd->n_planes);
             if (!put_row(table, &row, line))
                 return false;
         }
         at += (size_t)((stop ? stop + 1 : end) - at);
     }
     if (n_rows < table->n_points)
-        return error_set(table->err, ERROR_FORMAT, "%s: %zu points, but the header says %u x %u x %u = %zu", table->name, n_rows,
-                         table->chd->n_columns, table->chd->n_rows, table->chd->n_planes, table->n_points);
+        return error_set(table->err, ERROR_FORMAT, "%s: %zu points, but the header says %u x %u x %u = %zu",
+                         table->name, n_rows, table->chd->n_columns, table->chd->n_rows, table->chd->n_planes,
+                         table->n_points);
     for (size_t i = 0; i < table->n_points; i++)
         for (int c = 0; c < CHD_N_COLUMNS && table->regions[i] == UINT16_MAX; c++)
             if (table->values[c])
@@ -150,7 +156,7 @@ static bool read_table(struct table *table, const struct bytes *text)
     return true;
 }
 
-/* ---- what the columns mean -------------------------------------------------------------------------------------------------- */
+/* ---- what the columns mean -------------------------------------------------------------------------------------- */
 
 static int column_of(const struct chd *chd, enum dose_quantity quantity)
 {
@@ -187,13 +193,16 @@ static bool boron_is_physical(const struct table *table, double factor, const ch
     double low = boron_per_thermal_cgy_cm2 * (1 - boron_share), high = boron_per_thermal_cgy_cm2 * (1 + boron_share);
     bool is_physical = lowest >= low && highest <= high && highest > 0;
     if (is_physical)
-        report_add(report, REPORT_NOTE, "dose.boron-ratio", name,
-                   "Boron is %.3g to %.3g cGy cm2 per ppm and thermal fluence in every region, as 1 ppm makes it: tissue holds as much boron "
-                   "as blood in this file, and it was taken as boron per ppm.", lowest, highest);
+        report_add(
+            report, REPORT_NOTE, "dose.boron-ratio", name,
+            "Boron is %.3g to %.3g cGy cm2 per ppm and thermal fluence in every region, as 1 ppm makes it: tissue holds as much boron "
+            "as blood in this file, and it was taken as boron per ppm.",
+            lowest, highest);
     else
-        report_add(report, REPORT_WARNING, "dose.boron-ratio", name,
-                   "Boron holds each tissue's ratio to blood, which the file does not store; it is kept as blood boron, per ppm in blood, and "
-                   "not mixed with boron per ppm.");
+        report_add(
+            report, REPORT_WARNING, "dose.boron-ratio", name,
+            "Boron holds each tissue's ratio to blood, which the file does not store; it is kept as blood boron, per ppm in blood, and "
+            "not mixed with boron per ppm.");
     return is_physical;
 }
 
@@ -201,13 +210,14 @@ static bool has_other_weights(const struct chd *chd)
 {
     bool is_other = false;
     for (int c = 0; c < CHD_N_COLUMNS; c++)
-        is_other |= chd->has_column[c] && !dose_quantity_is_fluence(chd->quantities[c]) && fabs(chd->weight[c] - 1) > 1e-6;
+        is_other |=
+            chd->has_column[c] && !dose_quantity_is_fluence(chd->quantities[c]) && fabs(chd->weight[c] - 1) > 1e-6;
     return is_other;
 }
 
 /* What a column becomes and what makes it so; false: nothing that could be said. */
-static bool resolve(const struct table *table, int column, const char *name, enum dose_quantity *quantity, double *factor,
-                    struct report *report)
+static bool resolve(const struct table *table, int column, const char *name, enum dose_quantity *quantity,
+                    double *factor, struct report *report)
 {
     const struct chd *chd = table->chd;
     double weight = chd->weight[column], ppm = chd->concentration[column];
@@ -220,16 +230,18 @@ static bool resolve(const struct table *table, int column, const char *name, enu
         char ppm_said[40] = "an unknown amount";
         if (boron < 0 || chd->has_concentration[boron])
             snprintf(ppm_said, sizeof ppm_said, "%g ppm", boron >= 0 ? chd->concentration[boron] : 0);
-        report_add(report, is_weighted ? REPORT_WARNING : REPORT_NOTE, "dose.total-boron", name,
-                   "The total is %s, with %s of boron in blood times each tissue's ratio in it; neither can be taken out.",
-                   is_weighted ? "weighted" : "physical", ppm_said);
+        report_add(
+            report, is_weighted ? REPORT_WARNING : REPORT_NOTE, "dose.total-boron", name,
+            "The total is %s, with %s of boron in blood times each tissue's ratio in it; neither can be taken out.",
+            is_weighted ? "weighted" : "physical", ppm_said);
         return true;
     }
     double divisor = *quantity == DOSE_BORON ? weight * ppm : weight;
     if (!(divisor > 1e-12 && divisor <= 1e12)) {
-        report_add(report, REPORT_WARNING, "dose.weight-zero", name,
-                   "The weight of %s (with its ppm) is %g in this file, so that nothing is left of it; it was left out.",
-                   dose_quantity_word(*quantity), divisor);
+        report_add(
+            report, REPORT_WARNING, "dose.weight-zero", name,
+            "The weight of %s (with its ppm) is %g in this file, so that nothing is left of it; it was left out.",
+            dose_quantity_word(*quantity), divisor);
         return false;
     }
     *factor = 1 / divisor;
@@ -238,7 +250,7 @@ static bool resolve(const struct table *table, int column, const char *name, enu
     return true;
 }
 
-/* ---- planes -------------------------------------------------------------------------------------------------------------------- */
+/* ---- planes ----------------------------------------------------------------------------------------------------- */
 
 /* Where the even planes of our grid lie between those of the file. */
 struct spacing {
@@ -247,13 +259,15 @@ struct spacing {
     bool is_resampled;
 };
 
-static bool find_spacing(const struct chd *chd, const char *name, struct spacing *spacing, struct report *report, struct error *err)
+static bool find_spacing(const struct chd *chd, const char *name, struct spacing *spacing, struct report *report,
+                         struct error *err)
 {
     uint32_t n = chd->n_planes;
     const double *z = chd->planes;
     *spacing = (struct spacing){ .first = z[0], .step = step_of(chd, 0) * chd->half_width, .n = n };
     if (n == 1) {
-        report_add(report, REPORT_NOTE, "geometry.assumed", name, "There is one plane; it was made as thick as its columns are apart.");
+        report_add(report, REPORT_NOTE, "geometry.assumed", name,
+                   "There is one plane; it was made as thick as its columns are apart.");
         return true;
     }
     double worst = 0, smallest = INFINITY, largest = 0;
@@ -267,17 +281,20 @@ static bool find_spacing(const struct chd *chd, const char *name, struct spacing
         return true;
     double n_even = floor((z[n - 1] - z[0]) / smallest + 1e-6) + 1;
     if (n_even > MOST_PLANES || n_even * chd->n_columns * chd->n_rows > CHD_MAX_POINTS)
-        return error_set(err, ERROR_UNSUPPORTED, "%s: the planes lie between %g and %g apart: an even grid would need %.0f planes of %u x %u",
+        return error_set(err, ERROR_UNSUPPORTED,
+                         "%s: the planes lie between %g and %g apart: an even grid would need %.0f planes of %u x %u",
                          name, smallest, largest, n_even, chd->n_columns, chd->n_rows);
     *spacing = (struct spacing){ z[0], (z[n - 1] - z[0]) / (n_even - 1), (uint32_t)n_even, true };
-    report_add(report, REPORT_WARNING, "dose.planes-uneven", name,
-               "The %u planes lie between %.4g and %.4g mm apart; they were resampled to %u planes every %.4g mm, linearly in between.", n,
-               smallest * chd->mm, largest * chd->mm, spacing->n, spacing->step * chd->mm);
+    report_add(
+        report, REPORT_WARNING, "dose.planes-uneven", name,
+        "The %u planes lie between %.4g and %.4g mm apart; they were resampled to %u planes every %.4g mm, linearly in between.",
+        n, smallest * chd->mm, largest * chd->mm, spacing->n, spacing->step * chd->mm);
     return true;
 }
 
 /* Even plane k lies at share t between the planes below and above. */
-static void place(const struct chd *chd, const struct spacing *spacing, uint32_t k, uint32_t *below, uint32_t *above, double *t)
+static void place(const struct chd *chd, const struct spacing *spacing, uint32_t k, uint32_t *below, uint32_t *above,
+                  double *t)
 {
     double z = spacing->first + spacing->step * k;
     uint32_t i = 0;
@@ -296,7 +313,8 @@ static void place(const struct chd *chd, const struct spacing *spacing, uint32_t
         *below = *above;
 }
 
-static void copy_planes(const struct chd *chd, const struct spacing *spacing, const float *in, double factor, float *out)
+static void copy_planes(const struct chd *chd, const struct spacing *spacing, const float *in, double factor,
+                        float *out)
 {
     size_t n = (size_t)chd->n_columns * chd->n_rows;
     for (uint32_t k = 0; k < spacing->n; k++) {
@@ -312,8 +330,9 @@ static void copy_planes(const struct chd *chd, const struct spacing *spacing, co
 }
 
 /* A lattice whose index 0 lies at (first_x, first_y) parts of FOV; rows run up (toward anterior) or down. */
-static bool make_grid(const struct chd *chd, const struct spacing *spacing, const uint32_t size[2], const double first[2],
-                      const double step[2], const char *name, struct grid *grid, struct error *err)
+static bool make_grid(const struct chd *chd, const struct spacing *spacing, const uint32_t size[2],
+                      const double first[2], const double step[2], const char *name, struct grid *grid,
+                      struct error *err)
 {
     const double mm = chd->mm, f = chd->half_width * mm;
     const uint32_t sizes[3] = { size[0], size[1], spacing->n };
@@ -326,7 +345,7 @@ static bool make_grid(const struct chd *chd, const struct spacing *spacing, cons
     return false;
 }
 
-/* ---- images of regions ------------------------------------------------------------------------------------------------------------ */
+/* ---- images of regions ------------------------------------------------------------------------------------------ */
 
 /* Square pictures over the whole field, row 0 anterior; bytes are a region's number times 255 / number of regions. */
 static bool mask_side(const struct chd *chd, size_t n_bytes, uint32_t *side)
@@ -347,7 +366,8 @@ static double mask_disagreement(const struct table *table, const uint8_t *pixels
             most = table->regions[i];
     unsigned scale = most < 255 ? 255 / most : 1;
     for (size_t i = 0; i < table->n_points; i++) {
-        size_t column = i % chd->n_columns, row = i / chd->n_columns % chd->n_rows, plane = i / chd->n_columns / chd->n_rows;
+        size_t column = i % chd->n_columns, row = i / chd->n_columns % chd->n_rows,
+               plane = i / chd->n_columns / chd->n_rows;
         double x = chd->low[0] + step_of(chd, 0) * (double)column, y = chd->low[1] + step_of(chd, 1) * (double)row;
         double u = (x + 1) / 2 * side, v = (1 - y) / 2 * side;
         if (table->regions[i] >= UINT16_MAX - 1 || !(u >= 1 && u < side - 1 && v >= 1 && v < side - 1))
@@ -358,8 +378,8 @@ static double mask_disagreement(const struct table *table, const uint8_t *pixels
     return n > 0 ? (double)n_other / (double)n : 0;
 }
 
-static bool read_mask(const struct table *table, const struct chd_files *files, const struct spacing *spacing, struct volume **mask,
-                      struct report *report, struct error *err)
+static bool read_mask(const struct table *table, const struct chd_files *files, const struct spacing *spacing,
+                      struct volume **mask, struct report *report, struct error *err)
 {
     const struct chd *chd = table->chd;
     uint32_t side;
@@ -367,15 +387,17 @@ static bool read_mask(const struct table *table, const struct chd_files *files, 
     if (!files->mask.data)
         return true;
     if (!mask_side(chd, files->mask.size, &side)) {
-        report_add(report, REPORT_WARNING, "dose.mask-unread", files->mask_name,
-                   "%zu bytes are not %u square pictures, one a plane; where the dose is valid was taken from its points alone.",
-                   files->mask.size, chd->n_planes);
+        report_add(
+            report, REPORT_WARNING, "dose.mask-unread", files->mask_name,
+            "%zu bytes are not %u square pictures, one a plane; where the dose is valid was taken from its points alone.",
+            files->mask.size, chd->n_planes);
         return true;
     }
     double share = mask_disagreement(table, files->mask.data, side);
     if (share > 0.25) {
         report_add(report, REPORT_WARNING, "dose.mask-unread", files->mask_name,
-                   "The pictures show other regions than the table at %.0f %% of its points; they were not used.", share * 100);
+                   "The pictures show other regions than the table at %.0f %% of its points; they were not used.",
+                   share * 100);
         return true;
     }
     if (!memchr(files->mask.data, 0, files->mask.size))
@@ -401,10 +423,10 @@ static bool read_mask(const struct table *table, const struct chd_files *files, 
     return true;
 }
 
-/* ---- all of it ----------------------------------------------------------------------------------------------------------------- */
+/* ---- all of it -------------------------------------------------------------------------------------------------- */
 
-static bool add_columns(const struct table *table, const struct chd_files *files, const struct spacing *spacing, struct sera_doses *doses,
-                        struct report *report, struct error *err)
+static bool add_columns(const struct table *table, const struct chd_files *files, const struct spacing *spacing,
+                        struct sera_doses *doses, struct report *report, struct error *err)
 {
     const struct chd *chd = table->chd;
     const double first[2] = { chd->low[0], chd->low[1] }, step[2] = { step_of(chd, 0), step_of(chd, 1) };
@@ -425,7 +447,8 @@ static bool add_columns(const struct table *table, const struct chd_files *files
         struct dose_component *added = &doses->components[doses->n_components - 1];
         volume_measure(added->values);
         int boron = column_of(chd, DOSE_BORON);
-        if ((quantity == DOSE_TOTAL || quantity == DOSE_WEIGHTED_TOTAL) && boron >= 0 && chd->has_concentration[boron]) {
+        if ((quantity == DOSE_TOTAL || quantity == DOSE_WEIGHTED_TOTAL) && boron >= 0 &&
+            chd->has_concentration[boron]) {
             added->has_boron_ppm = true;
             added->boron_ppm = chd->concentration[boron];
         }
@@ -434,31 +457,35 @@ static bool add_columns(const struct table *table, const struct chd_files *files
         n_kept++;
     }
     if (n_references < n_kept)
-        report_add(report, REPORT_NOTE, "dose.no-reference", files->name, "%zu of %zu quantities have a reference of 0 or none.",
-                   n_kept - n_references, n_kept);
+        report_add(report, REPORT_NOTE, "dose.no-reference", files->name,
+                   "%zu of %zu quantities have a reference of 0 or none.", n_kept - n_references, n_kept);
     return n_kept > 0 || error_set(err, ERROR_FORMAT, "%s: no column holds anything that can be shown", files->name);
 }
 
 static void note_table(const struct table *table, struct report *report)
 {
     if (table->n_unprinted + table->n_unread > 0)
-        report_add(report, REPORT_WARNING, "dose.bad-values", table->name,
-                   "%zu values too large or small for their columns (***) and %zu that are no numbers, first in line %zu; they are shown "
-                   "as nothing.", table->n_unprinted, table->n_unread, table->first_bad_line);
+        report_add(
+            report, REPORT_WARNING, "dose.bad-values", table->name,
+            "%zu values too large or small for their columns (***) and %zu that are no numbers, first in line %zu; they are shown "
+            "as nothing.",
+            table->n_unprinted, table->n_unread, table->first_bad_line);
     if (table->n_nothing > 0)
-        report_add(report, REPORT_NOTE, "dose.outside-mesh", table->name,
-                   "%zu of %zu points lie in no region or hold zeros alone; they are not valid and nothing is blended with them.",
-                   table->n_nothing, table->n_points);
+        report_add(
+            report, REPORT_NOTE, "dose.outside-mesh", table->name,
+            "%zu of %zu points lie in no region or hold zeros alone; they are not valid and nothing is blended with them.",
+            table->n_nothing, table->n_points);
 }
 
-bool chd_read(const struct chd *chd, const struct chd_files *files, struct sera_doses *doses, struct report *report, struct error *err)
+bool chd_read(const struct chd *chd, const struct chd_files *files, struct sera_doses *doses, struct report *report,
+              struct error *err)
 {
     struct spacing spacing;
     struct table table = { .chd = chd, .name = files->table_name, .err = err };
     table.n_points = (size_t)chd->n_columns * chd->n_rows * chd->n_planes;
     *doses = (struct sera_doses){ 0 };
-    bool is_read = find_spacing(chd, files->name, &spacing, report, err) && table_create(&table) && read_table(&table, &files->table) &&
-                   add_columns(&table, files, &spacing, doses, report, err) &&
+    bool is_read = find_spacing(chd, files->name, &spacing, report, err) && table_create(&table) &&
+                   read_table(&table, &files->table) && add_columns(&table, files, &spacing, doses, report, err) &&
                    read_mask(&table, files, &spacing, &doses->mask, report, err);
     if (is_read)
         note_table(&table, report);

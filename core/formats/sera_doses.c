@@ -10,7 +10,8 @@ void sera_doses_finish(struct sera_doses *doses)
     *doses = (struct sera_doses){ 0 };
 }
 
-float *sera_doses_add(struct sera_doses *doses, enum dose_quantity quantity, bool is_per_ppm, const struct grid *grid, struct error *err)
+float *sera_doses_add(struct sera_doses *doses, enum dose_quantity quantity, bool is_per_ppm, const struct grid *grid,
+                      struct error *err)
 {
     assert(doses->n_components < DOSE_N_QUANTITIES);
     struct volume *values = volume_create(grid, VOXEL_F32, err);

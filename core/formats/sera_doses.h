@@ -11,5 +11,5 @@ struct sera_doses {
 void sera_doses_finish(struct sera_doses *doses); /* and empties it */
 
 /* A component of zeros on the grid, added; its voxels (F32), or NULL: ERROR_MEMORY. */
-NODISCARD float *sera_doses_add(struct sera_doses *doses, enum dose_quantity quantity, bool is_per_ppm, const struct grid *grid,
-                                struct error *err);
+NODISCARD float *sera_doses_add(struct sera_doses *doses, enum dose_quantity quantity, bool is_per_ppm,
+                                const struct grid *grid, struct error *err);

@@ -76,16 +76,19 @@ static bool has_no_length(const struct track_segment *segment)
 static void tell(const struct counts *counts, const char *name, struct report *report)
 {
     if (counts->n_bad > 0)
-        report_add(report, REPORT_WARNING, "tracks.bad-lines", name, "%zu lines are not segments, the first is line %zu.", counts->n_bad,
-                   counts->first_bad_line);
+        report_add(report, REPORT_WARNING, "tracks.bad-lines", name,
+                   "%zu lines are not segments, the first is line %zu.", counts->n_bad, counts->first_bad_line);
     if (counts->n_zero_length > 0)
-        report_add(report, REPORT_NOTE, "tracks.zero-length", name, "%zu segments of no length were left out.", counts->n_zero_length);
+        report_add(report, REPORT_NOTE, "tracks.zero-length", name, "%zu segments of no length were left out.",
+                   counts->n_zero_length);
     if (counts->n_no_energy > 0)
         report_add(report, REPORT_NOTE, "tracks.no-energy", name,
-                   "%zu segments have no energy class (SERA gives gammas none) and are listed as high.", counts->n_no_energy);
+                   "%zu segments have no energy class (SERA gives gammas none) and are listed as high.",
+                   counts->n_no_energy);
 }
 
-bool pp_parse(const uint8_t *data, size_t size, const char *name, struct track_set *set, struct report *report, struct error *err)
+bool pp_parse(const uint8_t *data, size_t size, const char *name, struct track_set *set, struct report *report,
+              struct error *err)
 {
     struct text text;
     struct counts counts = { 0 };
@@ -117,7 +120,8 @@ bool pp_parse(const uint8_t *data, size_t size, const char *name, struct track_s
         set->n_of_class[class]++;
     }
     if (counts.n_segments == 0)
-        return error_set(err, ERROR_FORMAT, "%s: not one of %zu lines is a segment: six coordinates, a type, an energy", name, text.line);
+        return error_set(err, ERROR_FORMAT, "%s: not one of %zu lines is a segment: six coordinates, a type, an energy",
+                         name, text.line);
     tell(&counts, name, report);
     return true;
 }
@@ -128,7 +132,8 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Distance between the 5th and the 95th percentile of all end points along an axis: single far histories do not count. */
+/* Distance between the 5th and the 95th percentile of all end points along an axis: single far histories do not count.
+ */
 static double spread(const struct track_set *set, size_t first, int axis, float *room)
 {
     size_t n = 0;
@@ -140,8 +145,8 @@ static double spread(const struct track_set *set, size_t first, int axis, float 
     return (double)room[(n - 1) - (n - 1) / 20] - (double)room[(n - 1) / 20];
 }
 
-double pp_unit_mm(const struct track_set *set, size_t first, double given_mm, const struct box3 *patient_lps_mm, const char *name,
-                  struct report *report)
+double pp_unit_mm(const struct track_set *set, size_t first, double given_mm, const struct box3 *patient_lps_mm,
+                  const char *name, struct report *report)
 {
     if (box3_is_empty(patient_lps_mm) || set->n_segments <= first)
         return given_mm > 0 ? given_mm : 1;
@@ -164,8 +169,8 @@ double pp_unit_mm(const struct track_set *set, size_t first, double given_mm, co
                        given_mm > 1 ? "cm" : "mm", patient_mm, likely_mm > 1 ? "cm" : "mm");
         return given_mm;
     }
-    report_add(report, REPORT_NOTE, "tracks.unit-assumed", name, "The file does not say its unit; beside the patient it is taken as %s.",
-               likely_mm > 1 ? "cm" : "mm");
+    report_add(report, REPORT_NOTE, "tracks.unit-assumed", name,
+               "The file does not say its unit; beside the patient it is taken as %s.", likely_mm > 1 ? "cm" : "mm");
     return likely_mm;
 }
 
@@ -193,6 +198,7 @@ void pp_scale(struct track_set *set, size_t first, double mm, const char *name, 
     }
     set->n_segments = n_kept;
     if (n_kept - first < n_read)
-        report_add(report, REPORT_WARNING, "tracks.far", name, "%zu of %zu segments end more than %g m away and were left out.",
-                   n_read - (n_kept - first), n_read, PP_MAX_PLACE_MM / 1000);
+        report_add(report, REPORT_WARNING, "tracks.far", name,
+                   "%zu of %zu segments end more than %g m away and were left out.", n_read - (n_kept - first), n_read,
+                   PP_MAX_PLACE_MM / 1000);
 }

@@ -33,7 +33,8 @@ struct parser {
 
 static bool fail(const struct parser *p, const char *key, const char *found, const char *expected)
 {
-    return error_set(p->err, ERROR_FORMAT, "%s: line %zu: %s is \"%.40s\", expected %s", p->name, p->text.line, key, found, expected);
+    return error_set(p->err, ERROR_FORMAT, "%s: line %zu: %s is \"%.40s\", expected %s", p->name, p->text.line, key,
+                     found, expected);
 }
 
 static bool get_number(const struct parser *p, const char *key, const char *value, double *out)
@@ -72,7 +73,8 @@ static long bracket_index(const char *key, const char *stem)
 static bool set_location(struct parser *p, const char *key, const char *value, long index)
 {
     if (index >= QHD_MAX_LOCATIONS)
-        return error_set(p->err, ERROR_LIMIT, "%s: line %zu: more than %d slice positions", p->name, p->text.line, QHD_MAX_LOCATIONS);
+        return error_set(p->err, ERROR_LIMIT, "%s: line %zu: more than %d slice positions", p->name, p->text.line,
+                         QHD_MAX_LOCATIONS);
     if (!get_number(p, key, value, &p->qhd->locations[index]))
         return false;
     p->has_location[index] = 1;
@@ -98,7 +100,8 @@ static bool set_word(struct parser *p, const char *key, const char *value, bool 
         if (text_equal(value, "Sagittal"))
             qhd->orientation = 'S';
         if (text_equal(value, "Oblique"))
-            return error_set(p->err, ERROR_UNSUPPORTED, "%s: line %zu: oblique slices are not read", p->name, p->text.line);
+            return error_set(p->err, ERROR_UNSUPPORTED, "%s: line %zu: oblique slices are not read", p->name,
+                             p->text.line);
         return qhd->orientation || fail(p, key, value, "Axial, Coronal or Sagittal");
     } else if (text_equal(key, "Byte Order")) {
         qhd->is_big = text_equal(value, "big endian");
@@ -151,21 +154,27 @@ static bool check_whole(struct parser *p)
     const struct {
         bool is_there;
         const char *key;
-    } needed[] = { { p->has_slices, "Size of Dimension[0]" }, { p->has_rows, "Size of Dimension[1]" },
-                   { p->has_columns, "Size of Dimension[2]" }, { p->qhd->pixel_bytes > 0, "Bytes Per Pixel" },
-                   { p->has_x, "X Pixel Size" },              { p->has_y, "Y Pixel Size" },
-                   { p->qhd->mm > 0, "Dimensionality" },      { p->qhd->orientation != 0, "Slice Orientation" } };
+    } needed[] = { { p->has_slices, "Size of Dimension[0]" },
+                   { p->has_rows, "Size of Dimension[1]" },
+                   { p->has_columns, "Size of Dimension[2]" },
+                   { p->qhd->pixel_bytes > 0, "Bytes Per Pixel" },
+                   { p->has_x, "X Pixel Size" },
+                   { p->has_y, "Y Pixel Size" },
+                   { p->qhd->mm > 0, "Dimensionality" },
+                   { p->qhd->orientation != 0, "Slice Orientation" } };
     for (size_t i = 0; i < sizeof needed / sizeof needed[0]; i++)
         if (!needed[i].is_there)
             return error_set(p->err, ERROR_FORMAT, "%s: the key %s is missing", p->name, needed[i].key);
     while (p->qhd->n_locations < QHD_MAX_LOCATIONS && p->has_location[p->qhd->n_locations])
         p->qhd->n_locations++;
     if (p->qhd->n_locations < 2 && !(p->qhd->has_reference && p->qhd->has_spacing))
-        return error_set(p->err, ERROR_FORMAT, "%s: neither slice positions nor a reference location with a spacing", p->name);
+        return error_set(p->err, ERROR_FORMAT, "%s: neither slice positions nor a reference location with a spacing",
+                         p->name);
     return true;
 }
 
-bool qhd_parse(const uint8_t *data, size_t size, const char *name, struct qhd *qhd, struct report *report, struct error *err)
+bool qhd_parse(const uint8_t *data, size_t size, const char *name, struct qhd *qhd, struct report *report,
+               struct error *err)
 {
     *qhd = (struct qhd){ .locations = mem_new(QHD_MAX_LOCATIONS * sizeof *qhd->locations) };
     struct parser p = { .name = name, .qhd = qhd, .err = err, .has_location = mem_new(QHD_MAX_LOCATIONS) };
@@ -182,8 +191,8 @@ bool qhd_parse(const uint8_t *data, size_t size, const char *name, struct qhd *q
         return false;
     }
     if (p.n_unknown > 0)
-        report_add(report, REPORT_NOTE, "header.unknown-key", name, "%zu unknown keys were ignored, the first is \"%s\".", p.n_unknown,
-                   p.unknown);
+        report_add(report, REPORT_NOTE, "header.unknown-key", name,
+                   "%zu unknown keys were ignored, the first is \"%s\".", p.n_unknown, p.unknown);
     return true;
 }
 
@@ -203,24 +212,26 @@ static bool place_slices(const struct qhd *qhd, uint32_t n_slices, const char *n
     for (size_t i = 0; i < n; i++)
         worst = fmax(worst, fabs(qhd->locations[i] - (*first + *step * (double)i)));
     if (!(fabs(*step) > 0) || worst > refused_share * fabs(*step))
-        return error_set(err, ERROR_UNSUPPORTED, "%s: the slice positions are not evenly spaced: one is %.3g off a mean spacing of %.3g",
-                         name, worst, *step);
+        return error_set(err, ERROR_UNSUPPORTED,
+                         "%s: the slice positions are not evenly spaced: one is %.3g off a mean spacing of %.3g", name,
+                         worst, *step);
     if (worst > uneven_share * fabs(*step))
         report_add(report, REPORT_WARNING, "image.locations-uneven", name,
                    "One slice position is %.3g off an even spacing of %.3g; the even spacing was used.", worst, *step);
     bool is_other_start = qhd->has_reference && fabs(qhd->reference - *first) > uneven_share * fabs(*step);
     bool is_other_step = qhd->has_spacing && fabs(qhd->spacing - fabs(*step)) > uneven_share * fabs(*step);
     if (is_other_start || is_other_step)
-        report_add(report, REPORT_WARNING, "image.locations-differ", name,
-                   "The slice positions (from %.4g, every %.4g) disagree with reference location %.4g and spacing %.4g; the positions "
-                   "were used.",
-                   *first, *step, qhd->reference, qhd->spacing);
+        report_add(
+            report, REPORT_WARNING, "image.locations-differ", name,
+            "The slice positions (from %.4g, every %.4g) disagree with reference location %.4g and spacing %.4g; the positions "
+            "were used.",
+            *first, *step, qhd->reference, qhd->spacing);
     return true;
 }
 
 /* The header has no word on where the picture lies across its plane: SERA centres it on the axes. */
-static bool make_grid(const struct qhd *qhd, uint32_t n_slices, const char *name, struct grid *grid, struct report *report,
-                      struct error *err)
+static bool make_grid(const struct qhd *qhd, uint32_t n_slices, const char *name, struct grid *grid,
+                      struct report *report, struct error *err)
 {
     struct sera_grid sera = { .size = { qhd->columns, qhd->rows, n_slices }, .mm = qhd->mm, .given_mm = qhd->given_mm };
     double first, step;
@@ -229,7 +240,11 @@ static bool make_grid(const struct qhd *qhd, uint32_t n_slices, const char *name
     const struct sera_direction axial[3] = { { SERA_RL, 1 }, { SERA_PA, -1 }, { SERA_IS, 1 } };
     const struct sera_direction coronal[3] = { { SERA_RL, 1 }, { SERA_IS, -1 }, { SERA_PA, 1 } };
     const struct sera_direction sagittal[3] = { { SERA_PA, -1 }, { SERA_IS, -1 }, { SERA_RL, 1 } };
-    memcpy(sera.along, qhd->orientation == 'C' ? coronal : qhd->orientation == 'S' ? sagittal : axial, sizeof sera.along);
+    memcpy(sera.along,
+           qhd->orientation == 'C'   ? coronal
+           : qhd->orientation == 'S' ? sagittal
+                                     : axial,
+           sizeof sera.along);
     sera.step[0] = qhd->step_columns;
     sera.step[1] = qhd->step_rows;
     sera.step[2] = fabs(step);
@@ -243,8 +258,9 @@ static bool make_grid(const struct qhd *qhd, uint32_t n_slices, const char *name
     double last = first + step * (n_slices - 1.0);
     sera.low[sera.along[2].axis] = fmin(first, last) - fabs(step) / 2;
     sera.high[sera.along[2].axis] = fmax(first, last) + fabs(step) / 2;
-    report_add(report, REPORT_NOTE, "geometry.centred", name,
-               "The header does not say where the picture lies across its plane; it was centred on the axes, as SERA does.");
+    report_add(
+        report, REPORT_NOTE, "geometry.centred", name,
+        "The header does not say where the picture lies across its plane; it was centred on the axes, as SERA does.");
     return sera_grid_resolve(&sera, name, grid, report, err);
 }
 
@@ -261,8 +277,8 @@ static void copy_pixels(const struct qhd *qhd, const uint8_t *in, struct volume 
         out[i] = (uint16_t)(in[2 * i + (size_t)high] << 8 | in[2 * i + 1 - (size_t)high]);
 }
 
-struct volume *qhd_read_pixels(const struct qhd *qhd, const struct bytes *pixels, const char *header_name, const char *name,
-                               bool *is_doubtful, struct report *report, struct error *err)
+struct volume *qhd_read_pixels(const struct qhd *qhd, const struct bytes *pixels, const char *header_name,
+                               const char *name, bool *is_doubtful, struct report *report, struct error *err)
 {
     struct bytes all = { 0 };
     uint64_t slice_bytes = (uint64_t)qhd->columns * qhd->rows * qhd->pixel_bytes;
@@ -276,7 +292,8 @@ struct volume *qhd_read_pixels(const struct qhd *qhd, const struct bytes *pixels
     uint64_t n_slices = from->size / slice_bytes;
     *is_doubtful = n_slices != qhd->slices;
     if (n_slices == 0 || from->size % slice_bytes != 0 || n_slices > VOLUME_MAX_SIDE) {
-        error_set(err, ERROR_FORMAT, "%s: %zu bytes are not whole slices of %u x %u pixels of %u bytes; the header says %u slices", name,
+        error_set(err, ERROR_FORMAT,
+                  "%s: %zu bytes are not whole slices of %u x %u pixels of %u bytes; the header says %u slices", name,
                   from->size, qhd->columns, qhd->rows, qhd->pixel_bytes, qhd->slices);
         goto done;
     }

@@ -1,6 +1,6 @@
 #pragma once
-/* One line of SERA's tables of points: three coordinates, a region's number, then values. seraMC writes fixed columns (10 characters
- * a number, 4 the region), in which negative numbers touch; seraPlan leaves blanks between them. */
+/* One line of SERA's tables of points: three coordinates, a region's number, then values. seraMC writes fixed columns
+ * (10 characters a number, 4 the region), in which negative numbers touch; seraPlan leaves blanks between them. */
 #include <stdbool.h>
 #include <stddef.h>
 

@@ -52,11 +52,14 @@ static bool add_body(struct parser *p, const char *name, size_t length, struct r
     struct rsc *rsc = p->rsc;
     char word[REGION_NAME_SIZE];
     if (rsc->n_bodies >= RSC_MAX_BODIES)
-        return error_set(p->err, ERROR_LIMIT, "%s: line %zu: more than %d bodies", p->name, p->text.line, RSC_MAX_BODIES);
+        return error_set(p->err, ERROR_LIMIT, "%s: line %zu: more than %d bodies", p->name, p->text.line,
+                         RSC_MAX_BODIES);
     *body = &rsc->bodies[rsc->n_bodies++];
-    **body = (struct rsc_body){ .opacity = 1, .boron_ratio = NAN, .cbe_boron = NAN, .rbe_nitrogen = NAN, .rbe_fast = NAN, .rbe_gamma = NAN };
+    **body = (struct rsc_body){
+        .opacity = 1, .boron_ratio = NAN, .cbe_boron = NAN, .rbe_nitrogen = NAN, .rbe_fast = NAN, .rbe_gamma = NAN
+    };
     snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), name);
-    text_clean(word, (*body)->name, sizeof (*body)->name);
+    text_clean(word, (*body)->name, sizeof(*body)->name);
     return true;
 }
 
@@ -85,7 +88,8 @@ static bool add_level(struct parser *p, double percent, const uint8_t rgb[3])
         return true;
     }
     if (rsc->n_levels >= RSC_MAX_LEVELS)
-        return error_set(p->err, ERROR_LIMIT, "%s: line %zu: more than %d contour levels", p->name, p->text.line, RSC_MAX_LEVELS);
+        return error_set(p->err, ERROR_LIMIT, "%s: line %zu: more than %d contour levels", p->name, p->text.line,
+                         RSC_MAX_LEVELS);
     struct rsc_level *level = &rsc->levels[rsc->n_levels++];
     level->percent = percent;
     memcpy(level->rgb, rgb, 3);
@@ -130,7 +134,8 @@ static bool parse_preferences(struct parser *p)
         if (line[0] && text_split(line, ":", &key, &value) && key[0] && !set_preference(p, key, value))
             return false;
     return p->rsc->n_bodies + p->rsc->n_levels > 0 ||
-           error_set(p->err, ERROR_FORMAT, "%s: not one of %zu lines is a body's colour or a contour level", p->name, p->text.line);
+           error_set(p->err, ERROR_FORMAT, "%s: not one of %zu lines is a body's colour or a contour level", p->name,
+                     p->text.line);
 }
 
 static bool parse_colors(struct parser *p)
@@ -142,12 +147,15 @@ static bool parse_colors(struct parser *p)
         if (!line[0])
             continue;
         if (rsc->n_colors >= RSC_MAX_COLORS)
-            return error_set(p->err, ERROR_LIMIT, "%s: line %zu: more than %d colours", p->name, p->text.line, RSC_MAX_COLORS);
+            return error_set(p->err, ERROR_LIMIT, "%s: line %zu: more than %d colours", p->name, p->text.line,
+                             RSC_MAX_COLORS);
         if (numbers_of(line, v, 4) != 3 || !get_color(v, 255, rsc->colors[rsc->n_colors]))
-            return error_set(p->err, ERROR_FORMAT, "%s: line %zu: expected three numbers from 0 to 255", p->name, p->text.line);
+            return error_set(p->err, ERROR_FORMAT, "%s: line %zu: expected three numbers from 0 to 255", p->name,
+                             p->text.line);
         rsc->n_colors++;
     }
-    return rsc->n_colors >= 2 || error_set(p->err, ERROR_FORMAT, "%s: %zu colours, a map needs two", p->name, rsc->n_colors);
+    return rsc->n_colors >= 2 ||
+           error_set(p->err, ERROR_FORMAT, "%s: %zu colours, a map needs two", p->name, rsc->n_colors);
 }
 
 static void set_tissue(struct parser *p, struct rsc_body *body, const char *key, const char *value)
@@ -155,8 +163,11 @@ static void set_tissue(struct parser *p, struct rsc_body *body, const char *key,
     const struct {
         const char *word;
         double *value;
-    } tissue[] = { { "tissue_to_blood", &body->boron_ratio }, { "boron_CF", &body->cbe_boron }, { "nitrogen_RBE", &body->rbe_nitrogen },
-                   { "hydrogen_RBE", &body->rbe_fast },       { "gamma_RBE", &body->rbe_gamma } };
+    } tissue[] = { { "tissue_to_blood", &body->boron_ratio },
+                   { "boron_CF", &body->cbe_boron },
+                   { "nitrogen_RBE", &body->rbe_nitrogen },
+                   { "hydrogen_RBE", &body->rbe_fast },
+                   { "gamma_RBE", &body->rbe_gamma } };
     double number;
     for (size_t i = 0; i < sizeof tissue / sizeof tissue[0]; i++) {
         if (!text_equal(key, tissue[i].word))
@@ -184,10 +195,12 @@ static bool parse_tissues(struct parser *p)
             set_tissue(p, body, key, value);
         }
     }
-    return p->rsc->n_bodies > 0 || error_set(p->err, ERROR_FORMAT, "%s: no tissue begins in %zu lines", p->name, p->text.line);
+    return p->rsc->n_bodies > 0 ||
+           error_set(p->err, ERROR_FORMAT, "%s: no tissue begins in %zu lines", p->name, p->text.line);
 }
 
-bool rsc_parse(const uint8_t *data, size_t size, const char *name, struct rsc *rsc, struct report *report, struct error *err)
+bool rsc_parse(const uint8_t *data, size_t size, const char *name, struct rsc *rsc, struct report *report,
+               struct error *err)
 {
     struct parser p = { .name = name, .rsc = rsc, .err = err };
     *rsc = (struct rsc){ 0 };
@@ -200,8 +213,8 @@ bool rsc_parse(const uint8_t *data, size_t size, const char *name, struct rsc *r
         return false;
     }
     if (p.n_bad > 0)
-        report_add(report, REPORT_WARNING, "header.bad-number", name, "%zu values are not numbers in range, the first in line %zu; ignored.",
-                   p.n_bad, p.first_bad_line);
+        report_add(report, REPORT_WARNING, "header.bad-number", name,
+                   "%zu values are not numbers in range, the first in line %zu; ignored.", p.n_bad, p.first_bad_line);
     return true;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
-/* SERA's preferences: Sera3d.rsc (bodies' colours and opacities, contour levels), seradose_prefs.rsc (contour levels by the names of
- * colours), colour maps .cmap, and body_data.txt (tissue data by the bodies' names). Each fills its part of one struct; keys about windows
- * and mice are passed over. Works on bytes in memory. */
-#include "core/report/report.h"
+/* SERA's preferences: Sera3d.rsc (bodies' colours and opacities, contour levels), seradose_prefs.rsc (contour levels by
+ * the names of colours), colour maps .cmap, and body_data.txt (tissue data by the bodies' names). Each fills its part
+ * of one struct; keys about windows and mice are passed over. Works on bytes in memory. */
 #include "core/region/region.h"
+#include "core/report/report.h"
 
 enum { RSC_MAX_BYTES = 1 << 20, RSC_MAX_BODIES = 256, RSC_MAX_LEVELS = 32, RSC_MAX_COLORS = 256 };
 
@@ -31,7 +31,8 @@ struct rsc {
 
 /* By the name's ending: .cmap, .txt (tissues), else preferences. Values that are none are counted and reported.
  *   errors  ERROR_FORMAT nothing in the file is what its name says, ERROR_LIMIT too many; line named */
-NODISCARD bool rsc_parse(const uint8_t *data, size_t size, const char *name, struct rsc *rsc, struct report *report, struct error *err);
+NODISCARD bool rsc_parse(const uint8_t *data, size_t size, const char *name, struct rsc *rsc, struct report *report,
+                         struct error *err);
 
 /* Letters of either case; '-', '_' and blanks are the same. NULL when there is none. */
 const struct rsc_body *rsc_find(const struct rsc *rsc, const char *name);

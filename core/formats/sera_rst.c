@@ -14,8 +14,14 @@ enum { GAMMA_PRODUCTION = 4, COLUMNS_NOW = 14, COLUMNS_BEFORE = 12 };
 static const struct {
     enum dose_quantity quantity;
     size_t column;
-} kept[RST_N_DOSES] = { { DOSE_BORON, 3 }, { DOSE_NITROGEN, 5 },     { DOSE_FAST, 1 },               { DOSE_GAMMA, 0 },
-             { DOSE_OTHER, 11 }, { DOSE_FAST_FLUENCE, 6 }, { DOSE_EPITHERMAL_FLUENCE, 7 }, { DOSE_THERMAL_FLUENCE, 8 } };
+} kept[RST_N_DOSES] = { { DOSE_BORON, 3 },
+                        { DOSE_NITROGEN, 5 },
+                        { DOSE_FAST, 1 },
+                        { DOSE_GAMMA, 0 },
+                        { DOSE_OTHER, 11 },
+                        { DOSE_FAST_FLUENCE, 6 },
+                        { DOSE_EPITHERMAL_FLUENCE, 7 },
+                        { DOSE_THERMAL_FLUENCE, 8 } };
 
 struct lines {
     const char *at, *start, *end;
@@ -46,7 +52,8 @@ static bool next_line(struct lines *lines, struct line *line)
 static bool need_line(struct lines *lines, struct line *line, const char *what)
 {
     return next_line(lines, line) ||
-           error_set(lines->err, ERROR_FORMAT, "%s: the file ends after line %zu, expected %s", lines->name, lines->line, what);
+           error_set(lines->err, ERROR_FORMAT, "%s: the file ends after line %zu, expected %s", lines->name,
+                     lines->line, what);
 }
 
 /* One fixed field without its blanks; "" where the line is shorter. */
@@ -66,12 +73,12 @@ static bool refuse(const struct lines *lines, size_t column, const char *found, 
 {
     char clean[40];
     text_clean(found, clean, sizeof clean);
-    return error_set(lines->err, ERROR_FORMAT, "%s: line %zu, column %zu: found \"%s\", expected %s", lines->name, lines->line, column + 1,
-                     clean, expected);
+    return error_set(lines->err, ERROR_FORMAT, "%s: line %zu, column %zu: found \"%s\", expected %s", lines->name,
+                     lines->line, column + 1, clean, expected);
 }
 
-static bool get_number(const struct lines *lines, const struct line *line, size_t from, size_t width, double low, double high,
-                       const char *expected, double *out)
+static bool get_number(const struct lines *lines, const struct line *line, size_t from, size_t width, double low,
+                       double high, const char *expected, double *out)
 {
     char word[NUMBER_WIDTH + 1];
     field(line, from, width, word);
@@ -80,8 +87,8 @@ static bool get_number(const struct lines *lines, const struct line *line, size_
     return true;
 }
 
-static bool get_whole(const struct lines *lines, const struct line *line, size_t from, size_t width, uint32_t low, uint32_t high,
-                      const char *expected, uint32_t *out)
+static bool get_whole(const struct lines *lines, const struct line *line, size_t from, size_t width, uint32_t low,
+                      uint32_t high, const char *expected, uint32_t *out)
 {
     double number;
     if (!get_number(lines, line, from, width, low, high, expected, &number))
@@ -90,8 +97,8 @@ static bool get_whole(const struct lines *lines, const struct line *line, size_t
     return number == (double)*out || refuse(lines, from, "a fraction", expected);
 }
 
-/* Where the four numbers of a line of histories stand: 3I8,E15.6, in which full counts touch; where somebody parted them by
- * hand the columns are off, and the blanks tell. */
+/* Where the four numbers of a line of histories stand: 3I8,E15.6, in which full counts touch; where somebody parted
+ * them by hand the columns are off, and the blanks tell. */
 static void place_histories(const struct line *line, size_t from[4], size_t width[4])
 {
     size_t n = 0, at = 0;
@@ -130,7 +137,8 @@ static bool get_set(struct lines *lines, struct rst_set *set)
     for (size_t i = 0; i < 3; i++)
         if (!get_whole(lines, &line, from[i], width[i], 0, 999999999, "a number of histories", &set->n_histories[i]))
             return false;
-    if (!get_number(lines, &line, from[3], width[3], 0, 1, "the source's fraction of gammas, 0 to 1", &set->gamma_fraction))
+    if (!get_number(lines, &line, from[3], width[3], 0, 1, "the source's fraction of gammas, 0 to 1",
+                    &set->gamma_fraction))
         return false;
     for (int i = LINES_A_SET_READ; i < LINES_A_SET; i++)
         if (!need_line(lines, &line, "the rest of a set"))
@@ -145,7 +153,8 @@ static bool get_grid(struct lines *lines, struct rst_header *header, uint32_t *n
     if (!need_line(lines, &line, "the origin of the mesh"))
         return false;
     for (size_t i = 0; i < 3; i++)
-        if (!get_number(lines, &line, i * NUMBER_WIDTH, NUMBER_WIDTH, -1e4, 1e4, "the origin of the mesh, cm", &origin[i]))
+        if (!get_number(lines, &line, i * NUMBER_WIDTH, NUMBER_WIDTH, -1e4, 1e4, "the origin of the mesh, cm",
+                        &origin[i]))
             return false;
     if (!get_number(lines, &line, 45, NUMBER_WIDTH, 1e-3, 100, "the width of a cell, cm", &header->cell_cm) ||
         !get_whole(lines, &line, 60, 8, 1, RST_MAX_CELLS, "cells along an edge, 1 to 128", &header->n_cells) ||
@@ -153,8 +162,10 @@ static bool get_grid(struct lines *lines, struct rst_header *header, uint32_t *n
         return false;
     const double mm = 10, cell = header->cell_cm * mm, half = cell / 2;
     const uint32_t size[3] = { header->n_cells, header->n_cells, header->n_cells };
-    const struct affine map = { { sera_lps_from_rpi(cell, 0, 0), sera_lps_from_rpi(0, cell, 0), sera_lps_from_rpi(0, 0, cell) },
-                                sera_lps_from_rpi(origin[1] * mm + half, origin[0] * mm + half, origin[2] * mm + half) };
+    const struct affine map = {
+        { sera_lps_from_rpi(cell, 0, 0), sera_lps_from_rpi(0, cell, 0), sera_lps_from_rpi(0, 0, cell) },
+        sera_lps_from_rpi(origin[1] * mm + half, origin[0] * mm + half, origin[2] * mm + half)
+    };
     if (!grid_init(&header->grid, size, &map, lines->err)) {
         error_prefix(lines->err, "%s: line %zu", lines->name, lines->line);
         return false;
@@ -164,7 +175,11 @@ static bool get_grid(struct lines *lines, struct rst_header *header, uint32_t *n
 
 bool rst_parse_header(const uint8_t *text, size_t size, const char *name, struct rst_header *header, struct error *err)
 {
-    struct lines lines = { .at = (const char *)text, .start = (const char *)text, .end = (const char *)text + size, .name = name, .err = err };
+    struct lines lines = { .at = (const char *)text,
+                           .start = (const char *)text,
+                           .end = (const char *)text + size,
+                           .name = name,
+                           .err = err };
     struct line line;
     uint32_t n_sets, n_groups;
     *header = (struct rst_header){ 0 };
@@ -197,9 +212,10 @@ bool rst_parse_header(const uint8_t *text, size_t size, const char *name, struct
     return true;
 }
 
-/* ---- the array ------------------------------------------------------------------------------------------------------------ */
+/* ---- the array -------------------------------------------------------------------------------------------------- */
 
-static struct lines array_lines(const struct bytes *text, const struct rst_header *header, const char *name, struct error *err)
+static struct lines array_lines(const struct bytes *text, const struct rst_header *header, const char *name,
+                                struct error *err)
 {
     const char *start = (const char *)text->data;
     return (struct lines){ start + header->data_at, start, start + text->size, header->data_line, name, err };
@@ -211,7 +227,8 @@ static size_t fields_of(const struct line *line)
 }
 
 /* Values a cell: the count says, nothing else does. */
-static bool count_columns(const struct bytes *text, const struct rst_header *header, const char *name, size_t *n_columns, struct error *err)
+static bool count_columns(const struct bytes *text, const struct rst_header *header, const char *name,
+                          size_t *n_columns, struct error *err)
 {
     struct lines lines = array_lines(text, header, name, err);
     struct line line;
@@ -219,13 +236,14 @@ static bool count_columns(const struct bytes *text, const struct rst_header *hea
     while (next_line(&lines, &line)) {
         size_t n = fields_of(&line);
         if (n > NUMBERS_A_LINE)
-            return error_set(err, ERROR_FORMAT, "%s: line %zu: %zu characters, expected at most %d numbers of %d", name, lines.line, line.n,
-                             NUMBERS_A_LINE, NUMBER_WIDTH);
+            return error_set(err, ERROR_FORMAT, "%s: line %zu: %zu characters, expected at most %d numbers of %d", name,
+                             lines.line, line.n, NUMBERS_A_LINE, NUMBER_WIDTH);
         n_values += n;
     }
     *n_columns = n_values == n_cells * COLUMNS_NOW ? COLUMNS_NOW : COLUMNS_BEFORE;
     return n_values == n_cells * *n_columns ||
-           error_set(err, ERROR_FORMAT, "%s: %zu values after line %zu; %u^3 cells need %zu, or %zu of an older version", name, n_values,
+           error_set(err, ERROR_FORMAT,
+                     "%s: %zu values after line %zu; %u^3 cells need %zu, or %zu of an older version", name, n_values,
                      header->data_line, header->n_cells, n_cells * COLUMNS_NOW, n_cells * COLUMNS_BEFORE);
 }
 
@@ -278,7 +296,8 @@ static void read_array(const struct bytes *text, const char *name, size_t n_colu
         }
 }
 
-/* To cGy: neutron columns are per source particle and cell; photons follow from what gammas the neutrons make and the source has. */
+/* To cGy: neutron columns are per source particle and cell; photons follow from what gammas the neutrons make and the
+ * source has. */
 static void scale(const struct array *array, struct sera_doses *doses)
 {
     const struct rst_header *header = array->header;
@@ -304,25 +323,31 @@ static void note_array(const struct array *array, const char *name, struct repor
 {
     const struct rst_header *header = array->header;
     if (array->n_unprinted + array->n_unread > 0)
-        report_add(report, REPORT_WARNING, "dose.bad-values", name,
-                   "%zu values too large or small for their columns (***) and %zu that are no numbers, first in line %zu; they are shown "
-                   "as nothing.", array->n_unprinted, array->n_unread, array->first_line);
+        report_add(
+            report, REPORT_WARNING, "dose.bad-values", name,
+            "%zu values too large or small for their columns (***) and %zu that are no numbers, first in line %zu; they are shown "
+            "as nothing.",
+            array->n_unprinted, array->n_unread, array->first_line);
     for (size_t i = 1; i < header->n_sets; i++)
-        if (header->sets[i].strength != header->sets[0].strength || header->sets[i].gamma_fraction != header->sets[0].gamma_fraction) {
-            report_add(report, REPORT_WARNING, "dose.sets-differ", name,
-                       "Set %zu has a source of %g with %g of gammas, set 1 one of %g with %g; the first was used for all.", i + 1,
-                       header->sets[i].strength, header->sets[i].gamma_fraction, header->sets[0].strength,
-                       header->sets[0].gamma_fraction);
+        if (header->sets[i].strength != header->sets[0].strength ||
+            header->sets[i].gamma_fraction != header->sets[0].gamma_fraction) {
+            report_add(
+                report, REPORT_WARNING, "dose.sets-differ", name,
+                "Set %zu has a source of %g with %g of gammas, set 1 one of %g with %g; the first was used for all.",
+                i + 1, header->sets[i].strength, header->sets[i].gamma_fraction, header->sets[0].strength,
+                header->sets[0].gamma_fraction);
             return;
         }
 }
 
-bool rst_read(const struct bytes *text, const char *name, struct sera_doses *doses, struct report *report, struct error *err)
+bool rst_read(const struct bytes *text, const char *name, struct sera_doses *doses, struct report *report,
+              struct error *err)
 {
     struct rst_header header;
     size_t n_columns = 0;
     *doses = (struct sera_doses){ 0 };
-    if (!rst_parse_header(text->data, text->size, name, &header, err) || !count_columns(text, &header, name, &n_columns, err))
+    if (!rst_parse_header(text->data, text->size, name, &header, err) ||
+        !count_columns(text, &header, name, &n_columns, err))
         return false;
     struct array array = { .header = &header };
     for (size_t d = 0; d < RST_N_DOSES; d++) {

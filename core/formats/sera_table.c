@@ -11,8 +11,10 @@
 #include "core/formats/text.h"
 
 enum { N_VALUES = 8 };
-static const enum dose_quantity columns[N_VALUES] = { DOSE_TOTAL, DOSE_BORON,        DOSE_GAMMA,              DOSE_NITROGEN,
-                                                      DOSE_FAST,  DOSE_FAST_FLUENCE, DOSE_EPITHERMAL_FLUENCE, DOSE_THERMAL_FLUENCE };
+static const enum dose_quantity columns[N_VALUES] = {
+    DOSE_TOTAL,          DOSE_BORON, DOSE_GAMMA, DOSE_NITROGEN, DOSE_FAST, DOSE_FAST_FLUENCE, DOSE_EPITHERMAL_FLUENCE,
+    DOSE_THERMAL_FLUENCE
+};
 
 struct parser {
     struct text text;
@@ -26,7 +28,8 @@ static bool fail(const struct parser *p, const char *found, const char *expected
 {
     char clean[40];
     text_clean(found, clean, sizeof clean);
-    return error_set(p->err, ERROR_FORMAT, "%s: line %zu: found \"%s\", expected %s", p->name, p->text.line, clean, expected);
+    return error_set(p->err, ERROR_FORMAT, "%s: line %zu: found \"%s\", expected %s", p->name, p->text.line, clean,
+                     expected);
 }
 
 /* The numbers in a line, behind the words that begin it. */
@@ -53,8 +56,8 @@ static bool read_heading(struct parser *p)
     if (!text_line(&p->text, line) || numbers_behind(line, "no. d,r points used", &n_points, 1) != 1)
         return fail(p, line, "\"no. d,r points used\" and a number");
     if (!(n_points == floor(n_points) && n_points >= 2 && n_points <= CURVE_MAX_POINTS))
-        return error_set(p->err, ERROR_FORMAT, "%s: line 2: %g points, expected a whole number from 2 to %d", p->name, n_points,
-                         CURVE_MAX_POINTS);
+        return error_set(p->err, ERROR_FORMAT, "%s: line 2: %g points, expected a whole number from 2 to %d", p->name,
+                         n_points, CURVE_MAX_POINTS);
     for (int i = 0; i < 3; i++)
         if (!(fabs(center[i]) <= 1e4))
             return error_set(p->err, ERROR_FORMAT, "%s: line 1: a centre %g cm away", p->name, center[i]);
@@ -94,11 +97,11 @@ static bool put(struct parser *p, size_t point, const struct sera_row *row)
     if (d == 0)
         curve->radii_mm[r] = radius;
     if (fabs(curve->depths_mm[d] - depth) > 1e-3 || fabs(curve->radii_mm[r] - radius) > 1e-3)
-        return error_set(p->err, ERROR_FORMAT, "%s: line %zu: depth %g and radius %g cm, expected %g and %g", p->name, p->text.line,
-                         depth / 10, radius / 10, curve->depths_mm[d] / 10, curve->radii_mm[r] / 10);
+        return error_set(p->err, ERROR_FORMAT, "%s: line %zu: depth %g and radius %g cm, expected %g and %g", p->name,
+                         p->text.line, depth / 10, radius / 10, curve->depths_mm[d] / 10, curve->radii_mm[r] / 10);
     if ((r == 0 && d > 0 && depth <= curve->depths_mm[d - 1]) || (d == 0 && r > 0 && radius <= curve->radii_mm[r - 1]))
-        return error_set(p->err, ERROR_FORMAT, "%s: line %zu: depths and radii do not rise: %g and %g cm", p->name, p->text.line, depth / 10,
-                         radius / 10);
+        return error_set(p->err, ERROR_FORMAT, "%s: line %zu: depths and radii do not rise: %g and %g cm", p->name,
+                         p->text.line, depth / 10, radius / 10);
     bool is_nothing = true;
     for (size_t c = 0; c < N_VALUES; c++)
         is_nothing = is_nothing && !(row->values[c] > 0) && !isnan(row->values[c]);
@@ -130,7 +133,8 @@ static bool read_points(struct parser *p)
         const char *from = p->text.at;
         struct sera_row row;
         if (!text_line(&p->text, line))
-            return error_set(p->err, ERROR_FORMAT, "%s: the file ends after %zu of %zu x %zu points", p->name, n, p->n_side, p->n_side);
+            return error_set(p->err, ERROR_FORMAT, "%s: the file ends after %zu of %zu x %zu points", p->name, n,
+                             p->n_side, p->n_side);
         if (line[0] == 0 || (n == 0 && ((line[0] >= 'a' && line[0] <= 'z') || line[0] == '(')))
             continue; /* the columns' headings */
         size_t length = raw_line(&p->text, from);
@@ -144,8 +148,8 @@ static bool read_points(struct parser *p)
     return true;
 }
 
-bool sera_table_parse(const uint8_t *data, size_t size, const char *name, struct dose_curve *curve, struct report *report,
-                      struct error *err)
+bool sera_table_parse(const uint8_t *data, size_t size, const char *name, struct dose_curve *curve,
+                      struct report *report, struct error *err)
 {
     *curve = (struct dose_curve){ 0 };
     struct parser p = { .name = name, .curve = curve, .err = err };
@@ -153,7 +157,8 @@ bool sera_table_parse(const uint8_t *data, size_t size, const char *name, struct
     p.text.most_lines = (size_t)CURVE_MAX_POINTS * CURVE_MAX_POINTS + 1000;
     if (!read_heading(&p) || (uint64_t)p.n_side * p.n_side * 20 > size) {
         if (p.n_side > 0)
-            error_set(err, ERROR_FORMAT, "%s: %zu bytes are too few for %zu x %zu points", name, size, p.n_side, p.n_side);
+            error_set(err, ERROR_FORMAT, "%s: %zu bytes are too few for %zu x %zu points", name, size, p.n_side,
+                      p.n_side);
         return false;
     }
     if (!create(&p) || !read_points(&p)) {
@@ -161,12 +166,14 @@ bool sera_table_parse(const uint8_t *data, size_t size, const char *name, struct
         return false;
     }
     if (p.n_unprinted + p.n_unread > 0)
-        report_add(report, REPORT_WARNING, "dose.bad-values", name,
-                   "%zu values too large or small for their columns (***) and %zu that are no numbers, first in line %zu; they are shown "
-                   "as nothing.", p.n_unprinted, p.n_unread, p.first_bad_line);
+        report_add(
+            report, REPORT_WARNING, "dose.bad-values", name,
+            "%zu values too large or small for their columns (***) and %zu that are no numbers, first in line %zu; they are shown "
+            "as nothing.",
+            p.n_unprinted, p.n_unread, p.first_bad_line);
     if (p.n_nothing > 0)
         report_add(report, REPORT_NOTE, "dose.outside-mesh", name,
-                   "%zu of %zu points hold zeros alone: they lie outside the mesh of the run and are not valid.", p.n_nothing,
-                   p.n_side * p.n_side);
+                   "%zu of %zu points hold zeros alone: they lie outside the mesh of the run and are not valid.",
+                   p.n_nothing, p.n_side * p.n_side);
     return true;
 }

@@ -19,14 +19,31 @@ void uvh_finish(struct uvh *uvh)
 
 /* Keys of the header proper, as bits of what was seen. */
 enum header_key {
-    KEY_DIMENSIONALITY, KEY_ORIENTATION, KEY_COLUMNS, KEY_ROWS, KEY_SLICES, KEY_STEP_COLUMNS, KEY_STEP_ROWS, KEY_STEP_SLICES,
-    KEY_RL_MIN, KEY_RL_MAX, KEY_PA_MIN, KEY_PA_MAX, KEY_IS_MIN, KEY_IS_MAX, KEY_COLUMN_AXIS, KEY_ROW_AXIS, KEY_SLICE_AXIS,
-    KEY_TITLE, N_HEADER_KEYS, KEY_UNKNOWN = N_HEADER_KEYS
+    KEY_DIMENSIONALITY,
+    KEY_ORIENTATION,
+    KEY_COLUMNS,
+    KEY_ROWS,
+    KEY_SLICES,
+    KEY_STEP_COLUMNS,
+    KEY_STEP_ROWS,
+    KEY_STEP_SLICES,
+    KEY_RL_MIN,
+    KEY_RL_MAX,
+    KEY_PA_MIN,
+    KEY_PA_MAX,
+    KEY_IS_MIN,
+    KEY_IS_MAX,
+    KEY_COLUMN_AXIS,
+    KEY_ROW_AXIS,
+    KEY_SLICE_AXIS,
+    KEY_TITLE,
+    N_HEADER_KEYS,
+    KEY_UNKNOWN = N_HEADER_KEYS
 };
 static const char *const header_words[N_HEADER_KEYS] = {
-    "Dimensionality", "SliceOrientation", "ImageColumns", "ImageRows", "ImageSlices", "PixelSizeColumns", "PixelSizeRows",
-    "PixelSizeSlices", "RLaxisMin", "RLaxisMax", "PAaxisMin", "PAaxisMax", "ISaxisMin", "ISaxisMax", "ImageColumnAxis",
-    "ImageRowAxis", "ImageSliceAxis", "BodyDataTitle"
+    "Dimensionality", "SliceOrientation", "ImageColumns",    "ImageRows",    "ImageSlices",    "PixelSizeColumns",
+    "PixelSizeRows",  "PixelSizeSlices",  "RLaxisMin",       "RLaxisMax",    "PAaxisMin",      "PAaxisMax",
+    "ISaxisMin",      "ISaxisMax",        "ImageColumnAxis", "ImageRowAxis", "ImageSliceAxis", "BodyDataTitle"
 };
 
 struct parser {
@@ -44,7 +61,8 @@ struct parser {
 
 static bool fail(const struct parser *p, const char *what, const char *found, const char *expected)
 {
-    return error_set(p->err, ERROR_FORMAT, "%s: line %zu: %s is \"%.40s\", expected %s", p->name, p->text.line, what, found, expected);
+    return error_set(p->err, ERROR_FORMAT, "%s: line %zu: %s is \"%.40s\", expected %s", p->name, p->text.line, what,
+                     found, expected);
 }
 
 static bool set_side(struct parser *p, int along, const char *word, const char *value)
@@ -71,7 +89,8 @@ static bool set_header_value(struct parser *p, enum header_key key, const char *
         return true;
     case KEY_ORIENTATION:
         if (text_equal(value, "Oblique"))
-            return error_set(p->err, ERROR_UNSUPPORTED, "%s: line %zu: oblique slices are not read", p->name, p->text.line);
+            return error_set(p->err, ERROR_UNSUPPORTED, "%s: line %zu: oblique slices are not read", p->name,
+                             p->text.line);
         snprintf(p->orientation, sizeof p->orientation, "%s", value);
         return true;
     case KEY_COLUMNS: return set_side(p, 0, word, value);
@@ -122,7 +141,9 @@ static struct uvh_body *add_body(struct parser *p, const char *name)
         return NULL;
     }
     struct uvh_body *body = &p->uvh->bodies[p->uvh->n_bodies++];
-    *body = (struct uvh_body){ .uvval = -1, .boron_ratio = NAN, .cbe_boron = NAN, .rbe_nitrogen = NAN, .rbe_fast = NAN, .rbe_gamma = NAN };
+    *body = (struct uvh_body){
+        .uvval = -1, .boron_ratio = NAN, .cbe_boron = NAN, .rbe_nitrogen = NAN, .rbe_fast = NAN, .rbe_gamma = NAN
+    };
     text_clean(name, body->name, sizeof body->name);
     return body;
 }
@@ -139,10 +160,12 @@ static bool set_uvval(const struct parser *p, struct uvh_body *body, const char 
 /* Keys of a body that mean nothing here are known all the same: a misspelt one should be noticed. */
 static bool is_quiet_key(const char *key)
 {
-    static const char *const quiet[] = { "regionnum", "matname", "mean_intensity", "nitrogen_DENS", "recoil_RBE", "hydrogen_DENS",
-                                         "other_RBE", "ultrafast_RBE", "carbon_DENS", "oxygen_DENS", "maximum_dose",
-                                         "constraint_dose", "editable", "parent_body", "volume", "BBoxRLaxisMin", "BBoxRLaxisMax",
-                                         "BBoxPAaxisMin", "BBoxPAaxisMax", "BBoxISaxisMin", "BBoxISaxisMax" };
+    static const char *const quiet[] = { "regionnum",     "matname",       "mean_intensity", "nitrogen_DENS",
+                                         "recoil_RBE",    "hydrogen_DENS", "other_RBE",      "ultrafast_RBE",
+                                         "carbon_DENS",   "oxygen_DENS",   "maximum_dose",   "constraint_dose",
+                                         "editable",      "parent_body",   "volume",         "BBoxRLaxisMin",
+                                         "BBoxRLaxisMax", "BBoxPAaxisMin", "BBoxPAaxisMax",  "BBoxISaxisMin",
+                                         "BBoxISaxisMax" };
     for (size_t i = 0; i < sizeof quiet / sizeof quiet[0]; i++)
         if (text_equal(key, quiet[i]))
             return true;
@@ -168,8 +191,11 @@ static bool set_body_value(struct parser *p, struct uvh_body *body, const char *
     const struct {
         const char *word;
         double *value;
-    } tissue[] = { { "tissue_to_blood", &body->boron_ratio }, { "boron_CF", &body->cbe_boron }, { "nitrogen_RBE", &body->rbe_nitrogen },
-                   { "hydrogen_RBE", &body->rbe_fast },       { "gamma_RBE", &body->rbe_gamma } };
+    } tissue[] = { { "tissue_to_blood", &body->boron_ratio },
+                   { "boron_CF", &body->cbe_boron },
+                   { "nitrogen_RBE", &body->rbe_nitrogen },
+                   { "hydrogen_RBE", &body->rbe_fast },
+                   { "gamma_RBE", &body->rbe_gamma } };
     for (size_t i = 0; i < sizeof tissue / sizeof tissue[0]; i++)
         if (text_equal(key, tissue[i].word)) {
             double number;
@@ -196,8 +222,8 @@ static bool parse_block(struct parser *p, struct uvh_body *body)
         if (text_equal(key, "end"))
             return true;
         if (text_equal(key, "begin"))
-            return error_set(p->err, ERROR_FORMAT, "%s: line %zu: a body begins before the one above has its \"end\"", p->name,
-                             p->text.line);
+            return error_set(p->err, ERROR_FORMAT, "%s: line %zu: a body begins before the one above has its \"end\"",
+                             p->name, p->text.line);
         if (body && !set_body_value(p, body, key, value))
             return false;
     }
@@ -215,8 +241,8 @@ static bool parse_v2(struct parser *p)
             if (!body || !parse_block(p, body))
                 return false;
             if (body->uvval < 0)
-                return error_set(p->err, ERROR_FORMAT, "%s: line %zu: the body \"%.60s\" has no uvval", p->name, p->text.line,
-                                 body->name);
+                return error_set(p->err, ERROR_FORMAT, "%s: line %zu: the body \"%.60s\" has no uvval", p->name,
+                                 p->text.line, body->name);
         } else if (text_equal(key, "fiducial") || text_equal(key, "constraint")) {
             if (!parse_block(p, NULL))
                 return false;
@@ -240,8 +266,10 @@ static bool parse_v2(struct parser *p)
 /* Version 1.0 is ten numbers in a fixed order, centimetres, always axial; then triples of words. */
 static bool parse_v1(struct parser *p)
 {
-    static const char *const what[] = { "the number of slices", "the number of columns", "the number of rows", "the x size",
-                                        "the y size", "the z size", "the x minimum", "the y minimum", "the z minimum" };
+    static const char *const what[] = {
+        "the number of slices", "the number of columns", "the number of rows", "the x size",   "the y size",
+        "the z size",           "the x minimum",         "the y minimum",      "the z minimum"
+    };
     double numbers[9];
     char line[TEXT_LINE_SIZE];
     size_t n = 0;
@@ -293,16 +321,18 @@ static void check_orientation(const struct parser *p)
                                                                       : SERA_IS;
     if (p->orientation[0] && p->grid.along[2].axis != expected)
         report_add(p->report, REPORT_WARNING, "geometry.orientation-differs", p->name,
-                   "The header calls the slices %.20s, but its slice axis is another; the axis codes were used.", p->orientation);
+                   "The header calls the slices %.20s, but its slice axis is another; the axis codes were used.",
+                   p->orientation);
 }
 
-bool uvh_parse(const uint8_t *data, size_t size, const char *name, struct uvh *uvh, struct report *report, struct error *err)
+bool uvh_parse(const uint8_t *data, size_t size, const char *name, struct uvh *uvh, struct report *report,
+               struct error *err)
 {
     return uvh_parse_in(data, size, name, 0, uvh, report, err);
 }
 
-bool uvh_parse_in(const uint8_t *data, size_t size, const char *name, double given_mm, struct uvh *uvh, struct report *report,
-                  struct error *err)
+bool uvh_parse_in(const uint8_t *data, size_t size, const char *name, double given_mm, struct uvh *uvh,
+                  struct report *report, struct error *err)
 {
     *uvh = (struct uvh){ .bodies = mem_new(UVH_MAX_BODIES * sizeof *uvh->bodies) };
     struct parser p = { .name = name, .uvh = uvh, .grid = { .given_mm = given_mm }, .report = report, .err = err };
@@ -326,10 +356,11 @@ bool uvh_parse_in(const uint8_t *data, size_t size, const char *name, double giv
         return false;
     }
     if (p.n_unknown > 0)
-        report_add(report, REPORT_NOTE, "header.unknown-key", name, "%zu unknown keys were ignored, the first is \"%s\".", p.n_unknown,
-                   p.unknown);
+        report_add(report, REPORT_NOTE, "header.unknown-key", name,
+                   "%zu unknown keys were ignored, the first is \"%s\".", p.n_unknown, p.unknown);
     if (p.n_bad > 0)
-        report_add(report, REPORT_WARNING, "header.bad-number", name, "%zu values of bodies are not numbers in range; ignored.", p.n_bad);
+        report_add(report, REPORT_WARNING, "header.bad-number", name,
+                   "%zu values of bodies are not numbers in range; ignored.", p.n_bad);
     return true;
 }
 
@@ -339,8 +370,8 @@ struct volume *uvh_read_univels(const struct uvh *uvh, const struct bytes *data,
     const uint32_t *size = uvh->grid.size;
     bool is_packed = gzip_is(data->data, data->size) || text_has_ending(name, ".sz");
     if (is_packed ? gzip_most(data->size) < n : data->size < n) {
-        error_set(err, ERROR_FORMAT, "%s: cut short: %zu bytes%s, but the header says %u x %u x %u univels", name, data->size,
-                  is_packed ? ", packed" : "", size[0], size[1], size[2]);
+        error_set(err, ERROR_FORMAT, "%s: cut short: %zu bytes%s, but the header says %u x %u x %u univels", name,
+                  data->size, is_packed ? ", packed" : "", size[0], size[1], size[2]);
         return NULL;
     }
     struct volume *volume = volume_create(&uvh->grid, VOXEL_U8, err);
@@ -350,8 +381,8 @@ struct volume *uvh_read_univels(const struct uvh *uvh, const struct bytes *data,
     bool is_read = sera_unpack(data, name, (uint64_t)n + 1, &is_packed, &all, err);
     const struct bytes *from = is_packed ? &all : data;
     if (is_read && from->size != n)
-        is_read = error_set(err, ERROR_FORMAT, "%s: %zu bytes of univels, but the header says %u x %u x %u = %zu", name, from->size,
-                            size[0], size[1], size[2], n);
+        is_read = error_set(err, ERROR_FORMAT, "%s: %zu bytes of univels, but the header says %u x %u x %u = %zu", name,
+                            from->size, size[0], size[1], size[2], n);
     if (is_read)
         memcpy(volume->voxels, from->data, n);
     bytes_free(&all);

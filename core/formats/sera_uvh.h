@@ -1,8 +1,9 @@
 #pragma once
-/* SERA univels: a text header .uvh (versions 2.0 and 1.0) and its bytes, .uv, .uv.gz or .uv.sz. Works on bytes in memory. */
+/* SERA univels: a text header .uvh (versions 2.0 and 1.0) and its bytes, .uv, .uv.gz or .uv.sz. Works on bytes in
+ * memory. */
 #include "core/formats/folder.h"
-#include "core/report/report.h"
 #include "core/region/region.h"
+#include "core/report/report.h"
 
 enum { UVH_MAX_BYTES = 1 << 20, UVH_MAX_BODIES = 256 };
 
@@ -26,8 +27,10 @@ NODISCARD bool uvh_parse(const uint8_t *data, size_t size, const char *name, str
                          struct error *err);
 
 /* With the millimetres of one unit as the plan gives them, whatever the header says; 0 is uvh_parse. */
-NODISCARD bool uvh_parse_in(const uint8_t *data, size_t size, const char *name, double given_mm, struct uvh *uvh, struct report *report,
-                            struct error *err);
+NODISCARD bool uvh_parse_in(const uint8_t *data, size_t size, const char *name, double given_mm, struct uvh *uvh,
+                            struct report *report, struct error *err);
 
-/* The univels as a U8 volume. data may be gzip, or zlib when name ends with .sz. errors ERROR_FORMAT not as many bytes as the header's univels; ERROR_MEMORY */
-NODISCARD struct volume *uvh_read_univels(const struct uvh *uvh, const struct bytes *data, const char *name, struct error *err);
+/* The univels as a U8 volume. data may be gzip, or zlib when name ends with .sz. errors ERROR_FORMAT not as many bytes
+ * as the header's univels; ERROR_MEMORY */
+NODISCARD struct volume *uvh_read_univels(const struct uvh *uvh, const struct bytes *data, const char *name,
+                                          struct error *err);

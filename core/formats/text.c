@@ -7,9 +7,7 @@
 
 void text_start(struct text *text, const uint8_t *data, size_t size)
 {
-    *text = (struct text){ .at = (const char *)data,
-                           .end = (const char *)data + size,
-                           .most_lines = TEXT_MAX_LINES };
+    *text = (struct text){ .at = (const char *)data, .end = (const char *)data + size, .most_lines = TEXT_MAX_LINES };
 }
 
 static bool is_blank(char c)

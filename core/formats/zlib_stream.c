@@ -23,10 +23,10 @@ static bool grow(struct bytes *out, uint64_t *capacity, uint64_t most)
     return true;
 }
 
-/* Where the stream ended: at its end, at the end of the room, or broken. n_used: bytes of data that were read. zlib compares the Adler-32 at
- * the end with the bytes it unpacked. */
-static int inflate_into(z_stream *stream, const uint8_t *data, size_t size, struct bytes *out, uint64_t *capacity, uint64_t most,
-                        size_t *n_used)
+/* Where the stream ended: at its end, at the end of the room, or broken. n_used: bytes of data that were read. zlib
+ * compares the Adler-32 at the end with the bytes it unpacked. */
+static int inflate_into(z_stream *stream, const uint8_t *data, size_t size, struct bytes *out, uint64_t *capacity,
+                        uint64_t most, size_t *n_used)
 {
     size_t used = 0;
     for (;;) {
@@ -57,9 +57,11 @@ bool zlib_all(const uint8_t *data, size_t size, const char *name, uint64_t limit
     if (size < SMALLEST_STREAM)
         return error_set(err, ERROR_FORMAT, "%s: %zu bytes are too few for a zlib stream", name, size);
     if ((data[0] & 15) != 8 || ((unsigned)data[0] << 8 | data[1]) % 31 != 0)
-        return error_set(err, ERROR_FORMAT, "%s: begins with %02x %02x, expected a zlib stream (78 01 or its like)", name, data[0], data[1]);
+        return error_set(err, ERROR_FORMAT, "%s: begins with %02x %02x, expected a zlib stream (78 01 or its like)",
+                         name, data[0], data[1]);
     /* one byte over the limit tells that there is more */
-    uint64_t most = (gzip_most(size) < limit ? gzip_most(size) : limit) + 1, capacity = FIRST_CAPACITY < most ? FIRST_CAPACITY : most;
+    uint64_t most = (gzip_most(size) < limit ? gzip_most(size) : limit) + 1,
+             capacity = FIRST_CAPACITY < most ? FIRST_CAPACITY : most;
     z_stream stream = { 0 };
     out->data = malloc((size_t)capacity + 1);
     if (!out->data || inflateInit(&stream) != Z_OK) {
@@ -79,17 +81,22 @@ bool zlib_all(const uint8_t *data, size_t size, const char *name, uint64_t limit
     size_t n = out->size;
     bytes_free(out);
     if (n > limit)
-        return error_set(err, ERROR_LIMIT, "%s: more than the %llu bytes expected inside", name, (unsigned long long)limit);
+        return error_set(err, ERROR_LIMIT, "%s: more than the %llu bytes expected inside", name,
+                         (unsigned long long)limit);
     if (result == Z_BUF_ERROR || result == Z_MEM_ERROR)
         return error_set(err, ERROR_MEMORY, "%s: no memory to unpack", name);
     if (result == Z_STREAM_END)
-        return error_set(err, ERROR_FORMAT, "%s: the zlib stream ends at byte %zu, and %zu more bytes follow that are not padding with zeros", name,
-                         n_used, size - n_used);
-    return error_set(err, ERROR_FORMAT, "%s: the zlib stream is cut short or damaged near byte %zu of %zu, after %zu unpacked bytes: %s", name,
-                     n_used, size, n, reason);
+        return error_set(
+            err, ERROR_FORMAT,
+            "%s: the zlib stream ends at byte %zu, and %zu more bytes follow that are not padding with zeros", name,
+            n_used, size - n_used);
+    return error_set(err, ERROR_FORMAT,
+                     "%s: the zlib stream is cut short or damaged near byte %zu of %zu, after %zu unpacked bytes: %s",
+                     name, n_used, size, n, reason);
 }
 
-bool sera_unpack(const struct bytes *file, const char *name, uint64_t limit, bool *is_packed, struct bytes *out, struct error *err)
+bool sera_unpack(const struct bytes *file, const char *name, uint64_t limit, bool *is_packed, struct bytes *out,
+                 struct error *err)
 {
     *out = (struct bytes){ 0 };
     bool is_gzip = gzip_is(file->data, file->size), is_named_gzip = text_has_ending(name, ".gz");
@@ -97,7 +104,8 @@ bool sera_unpack(const struct bytes *file, const char *name, uint64_t limit, boo
     if (!*is_packed)
         return true;
     if (is_named_gzip && !is_gzip)
-        return error_set(err, ERROR_FORMAT, "%s: begins with %02x %02x, expected a gzip stream, 1f 8b", name, file->size > 0 ? file->data[0] : 0,
-                         file->size > 1 ? file->data[1] : 0);
-    return is_gzip ? gzip_all(file->data, file->size, name, limit, out, err) : zlib_all(file->data, file->size, name, limit, out, err);
+        return error_set(err, ERROR_FORMAT, "%s: begins with %02x %02x, expected a gzip stream, 1f 8b", name,
+                         file->size > 0 ? file->data[0] : 0, file->size > 1 ? file->data[1] : 0);
+    return is_gzip ? gzip_all(file->data, file->size, name, limit, out, err)
+                   : zlib_all(file->data, file->size, name, limit, out, err);
 }

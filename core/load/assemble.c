@@ -5,13 +5,13 @@
 #include "core/base/mem.h"
 #include "core/formats/hierarchy.h"
 #include "core/formats/text.h"
-#include "core/load/dose_in_body.h"
-#include "core/plan/plan_bounds.h"
 #include "core/load/curves_and_preferences.h"
+#include "core/load/dose_in_body.h"
+#include "core/load/image_window.h"
 #include "core/load/loading.h"
 #include "core/load/region_builder.h"
 #include "core/load/tracks_part.h"
-#include "core/load/image_window.h"
+#include "core/plan/plan_bounds.h"
 
 static struct volume *take_volume(struct job *job)
 {
@@ -45,14 +45,14 @@ static bool holds_only_0_and_1(const struct volume *volume)
     if (volume->low != 0 || volume->high != 1)
         return false;
     size_t n = grid_n_voxels(&volume->grid);
-#define COUNT(type)                                                   \
-    do {                                                              \
-        const type *in = volume->voxels;                              \
-        for (size_t i = 0; i < n; i++) {                              \
+#define COUNT(type) \
+    do { \
+        const type *in = volume->voxels; \
+        for (size_t i = 0; i < n; i++) { \
             double value = (double)in[i] * volume->slope + volume->offset; \
-            if (value != 0 && value != 1)                             \
-                return false;                                         \
-        }                                                             \
+            if (value != 0 && value != 1) \
+                return false; \
+        } \
     } while (0)
     switch (volume->type) {
     case VOXEL_U8: COUNT(uint8_t); break;
@@ -64,8 +64,9 @@ static bool holds_only_0_and_1(const struct volume *volume)
     return true;
 }
 
-/* A mask whose name did not say so: shown as the image it was taken for, and said, with what makes it a region: a name that says so, where
- * that is enough (a file of whole numbers), or a plan.json, which has to name the other files, too. */
+/* A mask whose name did not say so: shown as the image it was taken for, and said, with what makes it a region: a name
+ * that says so, where that is enough (a file of whole numbers), or a plan.json, which has to name the other files, too.
+ */
 static void note_mask(struct loading *loading, const struct job *job, const struct plan_image *image)
 {
     const char *base = part_base_name(job->path);
@@ -75,9 +76,11 @@ static void note_mask(struct loading *loading, const struct job *job, const stru
     char rename[160] = "";
     if (image->volume->type != VOXEL_F32 && !text_has_ending(base, ".hdr") && !text_has_ending(base, ".hdr.gz"))
         snprintf(rename, sizeof rename, "call the file %.*s_mask%.20s, or ", stem < 80 ? stem : 80, base, base + stem);
-    report_add(&loading->plan->report, REPORT_WARNING, "image.may-be-region", job->path,
-               "Every voxel is 0 or 1, so this may be a mask. To show it as a region %swrite a plan.json that names it in \"regions\" and the "
-               "folder's other files as well.", rename);
+    report_add(
+        &loading->plan->report, REPORT_WARNING, "image.may-be-region", job->path,
+        "Every voxel is 0 or 1, so this may be a mask. To show it as a region %swrite a plan.json that names it in \"regions\" and the "
+        "folder's other files as well.",
+        rename);
 }
 
 static void add_image(struct loading *loading, struct job *job)
@@ -99,7 +102,8 @@ static void add_image(struct loading *loading, struct job *job)
         snprintf(image->unit, sizeof image->unit, "HU");
         if (image->volume->low >= 0 && image->volume->high > 0)
             report_add(&plan->report, REPORT_WARNING, "image.hu-doubtful", entry->path,
-                       "The CT's values run from %g to %g; HU of a patient begin below 0.", image->volume->low, image->volume->high);
+                       "The CT's values run from %g to %g; HU of a patient begin below 0.", image->volume->low,
+                       image->volume->high);
     }
     image->is_inverted = entry->is_inverted || job->facts.is_inverted;
     plan_image_window(image);
@@ -110,14 +114,16 @@ static void add_image(struct loading *loading, struct job *job)
     if (entry->window_width > 0) {
         image->window_center = entry->window_center;
         image->window_width = entry->window_width;
-    } else if (job->facts.n_windows > 0 && !text_equal(image->modality, "CT")) { /* a CT begins with one window whoever made it */
+    } else if (job->facts.n_windows > 0 &&
+               !text_equal(image->modality, "CT")) { /* a CT begins with one window whoever made it */
         image->window_center = job->facts.windows[0].center;
         image->window_width = job->facts.windows[0].width;
     }
     plan_image_window_limit(image);
 }
 
-/* An image whose header described another one: univels with exactly as many voxels along each axis are the same scan. */
+/* An image whose header described another one: univels with exactly as many voxels along each axis are the same scan.
+ */
 static void borrow_grid(struct loading *loading, const struct job *job)
 {
     struct plan *plan = loading->plan;
@@ -127,9 +133,10 @@ static void borrow_grid(struct loading *loading, const struct job *job)
         if (!other->uvh.bodies || memcmp(other->uvh.grid.size, volume->grid.size, sizeof volume->grid.size) != 0)
             continue;
         volume->grid = other->uvh.grid;
-        report_add(&plan->report, REPORT_WARNING, "geometry.borrowed", job->path,
-                   "The image's header describes another image; %s has as many univels as this has pixels, and its grid was taken.",
-                   other->path);
+        report_add(
+            &plan->report, REPORT_WARNING, "geometry.borrowed", job->path,
+            "The image's header describes another image; %s has as many univels as this has pixels, and its grid was taken.",
+            other->path);
         return;
     }
 }
@@ -142,7 +149,8 @@ static bool add_regions(struct loading *loading, struct region_builder *builder,
     for (size_t i = 0; job->layers && i < job->layers->n; i++) {
         struct volume *layer = job->layers->volumes[i];
         job->layers->volumes[i] = NULL;
-        if (!region_builder_add_labels(builder, layer, job->names.n > 0 ? &job->names : &job->layers->names[i], job->path, err))
+        if (!region_builder_add_labels(builder, layer, job->names.n > 0 ? &job->names : &job->layers->names[i],
+                                       job->path, err))
             return false;
     }
     if (job->layers)
@@ -161,7 +169,8 @@ bool plan_has_room_for_dose(struct plan *plan, const char *id, const char *where
 {
     if (plan->n_doses < PLAN_MAX_DOSES)
         return true;
-    report_add(&plan->report, REPORT_WARNING, "plan.ignored-file", where, "More than %d doses; \"%s\" was left out.", PLAN_MAX_DOSES, id);
+    report_add(&plan->report, REPORT_WARNING, "plan.ignored-file", where, "More than %d doses; \"%s\" was left out.",
+               PLAN_MAX_DOSES, id);
     return false;
 }
 
@@ -200,7 +209,8 @@ static void add_dose_mask(struct loading *loading, struct dose *dose, struct job
 {
     volume_unref(dose->mask); /* that of a SERA file; the plan's wins */
     dose->mask = take_volume(job);
-    if (dose->n_components > 0 && memcmp(dose->mask->grid.size, dose->components[0].values->grid.size, sizeof dose->mask->grid.size) != 0)
+    if (dose->n_components > 0 &&
+        memcmp(dose->mask->grid.size, dose->components[0].values->grid.size, sizeof dose->mask->grid.size) != 0)
         report_add(&loading->plan->report, REPORT_NOTE, "dose.mask-grid", job->path,
                    "The mask of the dose \"%s\" lies on another grid; it is looked up by position.", dose->id);
 }
@@ -273,7 +283,8 @@ static void note_empty_regions(struct plan *plan)
 {
     for (size_t i = 0; i < plan->regions.n_regions; i++)
         if (plan->regions.regions[i].n_voxels == 0)
-            report_add(&plan->report, REPORT_WARNING, "region.empty", "", "The region \"%s\" has no voxel.", plan->regions.regions[i].name);
+            report_add(&plan->report, REPORT_WARNING, "region.empty", "", "The region \"%s\" has no voxel.",
+                       plan->regions.regions[i].name);
 }
 
 static void add_beams(struct loading *loading)

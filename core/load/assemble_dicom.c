@@ -9,7 +9,7 @@
 #include "core/formats/text.h"
 #include "core/load/loading.h"
 
-/* ---- structure sets --------------------------------------------------------------------------------------------------- */
+/* ---- structure sets --------------------------------------------------------------------------------------------- */
 
 static struct box3 bounds_of_contours(const struct rtstruct *structs)
 {
@@ -18,7 +18,8 @@ static struct box3 bounds_of_contours(const struct rtstruct *structs)
         for (size_t c = 0; c < structs->rois[r].contours.n_contours; c++) {
             const struct contour *contour = &structs->rois[r].contours.contours[c];
             for (size_t p = 0; p < contour->n_points; p++) {
-                struct vec3 point = vec3(contour->points_lps_mm[3 * p], contour->points_lps_mm[3 * p + 1], contour->points_lps_mm[3 * p + 2]);
+                struct vec3 point = vec3(contour->points_lps_mm[3 * p], contour->points_lps_mm[3 * p + 1],
+                                         contour->points_lps_mm[3 * p + 2]);
                 if (vec3_is_finite(point))
                     box3_add(&bounds, point);
             }
@@ -51,23 +52,28 @@ static size_t folders_shared(const struct loading *loading, size_t image, const 
     return n;
 }
 
-/* The image of the series the set was drawn on, else the one of its frame of reference that lies nearest in the folders, else the one it
- * overlaps most; -1: none at all. */
-static int choose_image(const struct loading *loading, const struct rtstruct *structs, const char *where, struct report *report)
+/* The image of the series the set was drawn on, else the one of its frame of reference that lies nearest in the
+ * folders, else the one it overlaps most; -1: none at all. */
+static int choose_image(const struct loading *loading, const struct rtstruct *structs, const char *where,
+                        struct report *report)
 {
     const struct plan *plan = loading->plan;
     const char *frame = structs->n_rois > 0 ? structs->rois[0].frame_uid : "";
     for (size_t i = 0; i < plan->n_images; i++)
-        if (plan_dicom_stack_of(loading, i) && structs->series_uid[0] && strcmp(plan_dicom_stack_of(loading, i)->series, structs->series_uid) == 0)
+        if (plan_dicom_stack_of(loading, i) && structs->series_uid[0] &&
+            strcmp(plan_dicom_stack_of(loading, i)->series, structs->series_uid) == 0)
             return (int)i;
     int best = -1;
     for (size_t i = 0; i < plan->n_images; i++)
-        if (plan_dicom_stack_of(loading, i) && frame[0] && strcmp(plan_dicom_stack_of(loading, i)->frame_of_reference, frame) == 0 &&
+        if (plan_dicom_stack_of(loading, i) && frame[0] &&
+            strcmp(plan_dicom_stack_of(loading, i)->frame_of_reference, frame) == 0 &&
             (best < 0 || folders_shared(loading, i, where) > folders_shared(loading, (size_t)best, where)))
             best = (int)i;
     if (best >= 0) {
-        report_add(report, REPORT_NOTE, "region.image-chosen", where, "The series the contours were drawn on is not here; they were filled on "
-                   "the image \"%s\", which has the same frame of reference.", plan->images[best].id);
+        report_add(report, REPORT_NOTE, "region.image-chosen", where,
+                   "The series the contours were drawn on is not here; they were filled on "
+                   "the image \"%s\", which has the same frame of reference.",
+                   plan->images[best].id);
         return best;
     }
     struct box3 bounds = bounds_of_contours(structs);
@@ -81,10 +87,13 @@ static int choose_image(const struct loading *loading, const struct rtstruct *st
         }
     }
     if (best >= 0)
-        report_add(report, REPORT_WARNING, "region.image-chosen", where, "Nothing says which image the contours were drawn on; they were "
-                   "filled on \"%s\", where most of them lies.", plan->images[best].id);
+        report_add(report, REPORT_WARNING, "region.image-chosen", where,
+                   "Nothing says which image the contours were drawn on; they were "
+                   "filled on \"%s\", where most of them lies.",
+                   plan->images[best].id);
     else
-        report_add(report, REPORT_WARNING, "region.image-chosen", where, "No image lies where the contours are; they were filled on a "
+        report_add(report, REPORT_WARNING, "region.image-chosen", where,
+                   "No image lies where the contours are; they were filled on a "
                    "grid of their own.");
     return best;
 }
@@ -94,8 +103,9 @@ static bool is_wanted(const struct plan_file_region *entry, const struct rtstruc
     return !entry->name[0] || text_equal(entry->name, roi->name);
 }
 
-static bool fill_roi(struct loading *loading, struct region_builder *builder, const struct job *job, const struct rtstruct_roi *roi,
-                     const struct contour_choice *choice, const struct contour_options *options, struct error *err)
+static bool fill_roi(struct loading *loading, struct region_builder *builder, const struct job *job,
+                     const struct rtstruct_roi *roi, const struct contour_choice *choice,
+                     const struct contour_options *options, struct error *err)
 {
     const struct plan_file_region *entry = &loading->file->regions[job->index];
     struct contour_facts facts;
@@ -111,8 +121,8 @@ static bool fill_roi(struct loading *loading, struct region_builder *builder, co
     return is_added;
 }
 
-static bool fill_rois(struct loading *loading, struct region_builder *builder, const struct job *job, const struct contour_choice *choices,
-                      const struct contour_options *options, struct error *err)
+static bool fill_rois(struct loading *loading, struct region_builder *builder, const struct job *job,
+                      const struct contour_choice *choices, const struct contour_options *options, struct error *err)
 {
     const struct rtstruct *structs = job->structs;
     const struct plan_file_region *entry = &loading->file->regions[job->index];
@@ -150,14 +160,15 @@ bool plan_dicom_add_regions(struct loading *loading, struct region_builder *buil
     if (!is_added)
         error_prefix(err, "%s", job->path);
     if (is_added && image >= 0)
-        rtstruct_report_reach(structs, choices, loading->file->regions[job->index].name, plan->images[image].id, job->path, &plan->report);
+        rtstruct_report_reach(structs, choices, loading->file->regions[job->index].name, plan->images[image].id,
+                              job->path, &plan->report);
     is_added = is_added && fill_rois(loading, builder, job, choices, &options, err);
     free(sets);
     free(choices);
     return is_added;
 }
 
-/* ---- segmentations ------------------------------------------------------------------------------------------------------- */
+/* ---- segmentations ---------------------------------------------------------------------------------------------- */
 
 void plan_dicom_check_segmentation(struct loading *loading, struct job *job)
 {
@@ -168,14 +179,18 @@ void plan_dicom_check_segmentation(struct loading *loading, struct job *job)
     for (size_t i = 0; i < plan->n_images; i++) {
         const struct dicom_stack *stack = plan_dicom_stack_of(loading, i);
         has_image |= stack != NULL;
-        has_series |= stack && object && object->referenced_series[0] && strcmp(stack->series, object->referenced_series) == 0;
-        has_frame |= stack && object && object->frame_of_reference[0] && strcmp(stack->frame_of_reference, object->frame_of_reference) == 0;
+        has_series |=
+            stack && object && object->referenced_series[0] && strcmp(stack->series, object->referenced_series) == 0;
+        has_frame |= stack && object && object->frame_of_reference[0] &&
+                     strcmp(stack->frame_of_reference, object->frame_of_reference) == 0;
     }
     if (has_image && object && object->frame_of_reference[0] && !has_frame)
-        report_add(&loading->plan->report, REPORT_WARNING, "region.frame-differs", job->path, "The segments were drawn in another frame of reference "
+        report_add(&loading->plan->report, REPORT_WARNING, "region.frame-differs", job->path,
+                   "The segments were drawn in another frame of reference "
                    "(0020,0052) than any image's and may be shifted against it.");
     else if (has_image && object && !has_series)
-        report_add(&loading->plan->report, REPORT_NOTE, "region.image-chosen", job->path, "The series the segments were drawn on is not here.");
+        report_add(&loading->plan->report, REPORT_NOTE, "region.image-chosen", job->path,
+                   "The series the segments were drawn on is not here.");
     for (size_t i = 0; entry->has_color && i < job->layers->n; i++)
         for (size_t n = 0; n < job->layers->names[i].n; n++) {
             struct label_name *name = &job->layers->names[i].labels[n];
@@ -184,7 +199,7 @@ void plan_dicom_check_segmentation(struct loading *loading, struct job *job)
         }
 }
 
-/* ---- beams ------------------------------------------------------------------------------------------------------------ */
+/* ---- beams ------------------------------------------------------------------------------------------------------ */
 
 /* How far a point lies outside the nearest image; 0 inside one, and without any. */
 static double outside_images_mm(const struct plan *plan, struct vec3 point)
@@ -192,7 +207,8 @@ static double outside_images_mm(const struct plan *plan, struct vec3 point)
     double least = INFINITY;
     for (size_t i = 0; i < plan->n_images; i++) {
         struct box3 box = grid_bounds_lps_mm(&plan->images[i].volume->grid);
-        struct vec3 out = vec3(fmax(0, fmax(box.low.x - point.x, point.x - box.high.x)), fmax(0, fmax(box.low.y - point.y, point.y - box.high.y)),
+        struct vec3 out = vec3(fmax(0, fmax(box.low.x - point.x, point.x - box.high.x)),
+                               fmax(0, fmax(box.low.y - point.y, point.y - box.high.y)),
                                fmax(0, fmax(box.low.z - point.z, point.z - box.high.z)));
         least = fmin(least, vec3_length(out));
     }
@@ -217,12 +233,15 @@ void plan_dicom_add_beams(struct loading *loading)
             *beam = from->beams[b];
             double outside_mm = outside_images_mm(plan, beam->target_lps_mm);
             if (outside_mm > 0)
-                report_add(&plan->report, REPORT_WARNING, "beam.outside", loading->jobs[i].path, "Beam \"%s\": its isocentre (%.4g, %.4g, %.4g mm) "
-                           "lies %.4g mm outside every image.", beam->name, beam->target_lps_mm.x, beam->target_lps_mm.y, beam->target_lps_mm.z,
-                           outside_mm);
-            plan_make_id(beam->id, from->beams[b].id[0] ? from->beams[b].id : from->beams[b].name, "beam", others, plan->n_beams++);
+                report_add(&plan->report, REPORT_WARNING, "beam.outside", loading->jobs[i].path,
+                           "Beam \"%s\": its isocentre (%.4g, %.4g, %.4g mm) "
+                           "lies %.4g mm outside every image.",
+                           beam->name, beam->target_lps_mm.x, beam->target_lps_mm.y, beam->target_lps_mm.z, outside_mm);
+            plan_make_id(beam->id, from->beams[b].id[0] ? from->beams[b].id : from->beams[b].name, "beam", others,
+                         plan->n_beams++);
         }
     }
     if (n_left > 0)
-        report_add(&plan->report, REPORT_WARNING, "plan.ignored-file", "", "More than %d beams; %zu were left out.", PLAN_MAX_BEAMS, n_left);
+        report_add(&plan->report, REPORT_WARNING, "plan.ignored-file", "", "More than %d beams; %zu were left out.",
+                   PLAN_MAX_BEAMS, n_left);
 }

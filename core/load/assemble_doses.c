@@ -31,7 +31,8 @@ static void check_frame(const struct loading *loading, struct job *job, struct r
         rtdose_check_frame(&job->rtdose, first->frame_of_reference, job->path, report);
 }
 
-static void add_group(struct loading *loading, struct rtdose *objects, size_t n, const struct plan_file_dose *entry, const char *where)
+static void add_group(struct loading *loading, struct rtdose *objects, size_t n, const struct plan_file_dose *entry,
+                      const char *where)
 {
     struct plan *plan = loading->plan;
     struct dose *doses = mem_new(PLAN_MAX_DOSES * sizeof *doses);
@@ -39,7 +40,8 @@ static void add_group(struct loading *loading, struct rtdose *objects, size_t n,
         const struct rtplan *plan;
         void *context;
     } of = { plan_of(loading, objects[0].plan_uid) };
-    size_t n_doses = rtdose_group(objects, n, of.plan ? rtplan_beam_name : NULL, of.context, where, doses, PLAN_MAX_DOSES, &plan->report);
+    size_t n_doses = rtdose_group(objects, n, of.plan ? rtplan_beam_name : NULL, of.context, where, doses,
+                                  PLAN_MAX_DOSES, &plan->report);
     for (size_t i = 0; i < n_doses; i++) {
         const char *others[PLAN_MAX_DOSES];
         char name[64];
@@ -61,7 +63,8 @@ static void add_group(struct loading *loading, struct rtdose *objects, size_t n,
         if (entry && entry->per[0])
             memcpy(dose->per, entry->per, sizeof dose->per);
         if (!dose->unit[0])
-            report_add(&plan->report, REPORT_WARNING, "dose.no-unit", where, "The file does not say the unit of the dose \"%s\".", dose->name);
+            report_add(&plan->report, REPORT_WARNING, "dose.no-unit", where,
+                       "The file does not say the unit of the dose \"%s\".", dose->name);
     }
     free(doses);
 }

@@ -17,8 +17,8 @@
 #include "core/base/parallel.h"
 #include "core/load/cache_fields.h"
 
-/* The file: a start, the head (sources, fields of the plan, where each volume's voxels lie and a checksum for each piece of them), then
- * the voxels. Numbers are the machine's own; another machine's file is another version's. */
+/* The file: a start, the head (sources, fields of the plan, where each volume's voxels lie and a checksum for each
+ * piece of them), then the voxels. Numbers are the machine's own; another machine's file is another version's. */
 enum { PIECE_BYTES = 8 << 20, ALIGNED = 4096 };
 #define MAX_BYTES ((uint64_t)PLAN_CACHE_MAX_MIB << 20)
 
@@ -56,7 +56,9 @@ void plan_sources_destroy(struct plan_sources *sources)
 
 static struct start make_start(const struct fields *head)
 {
-    struct start start = { .magic = "BEAMPLAN", .order = 0x01020304, .format = PLAN_CACHE_FORMAT, .head_bytes = head->size };
+    struct start start = {
+        .magic = "BEAMPLAN", .order = 0x01020304, .format = PLAN_CACHE_FORMAT, .head_bytes = head->size
+    };
     snprintf(start.version, sizeof start.version, "%s", BEAMROOM_VERSION);
     start.head_check = libdeflate_crc32(0, head->data, head->size);
     return start;
@@ -92,7 +94,7 @@ static void fields_sources(struct fields *fields, const struct plan_sources *sou
     }
 }
 
-/* ---- pieces of voxels, by several threads ------------------------------------------------------------------------------- */
+/* ---- pieces of voxels, by several threads ----------------------------------------------------------------------- */
 
 struct pieces {
     int fd;
@@ -189,15 +191,17 @@ static bool move_pieces(struct pieces *pieces)
     return !atomic_load(&pieces->has_failed);
 }
 
-/* ---- writing ---------------------------------------------------------------------------------------------------------- */
+/* ---- writing ---------------------------------------------------------------------------------------------------- */
 
 /* Of the limit on files this process may write, and of the disk, of which some is left to others. */
 static bool has_room(int folder, uint64_t n_bytes)
 {
     struct rlimit limit;
     struct statvfs disk;
-    bool is_allowed = getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || n_bytes <= limit.rlim_cur;
-    return is_allowed && (fstatvfs(folder, &disk) != 0 || (uint64_t)disk.f_bavail * disk.f_frsize >= n_bytes + ((uint64_t)PLAN_CACHE_LEAVES_MIB << 20));
+    bool is_allowed =
+        getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || n_bytes <= limit.rlim_cur;
+    return is_allowed && (fstatvfs(folder, &disk) != 0 ||
+                          (uint64_t)disk.f_bavail * disk.f_frsize >= n_bytes + ((uint64_t)PLAN_CACHE_LEAVES_MIB << 20));
 }
 
 static bool write_file(int fd, const struct plan *plan, const struct plan_sources *sources, uint64_t *n_bytes)
@@ -216,13 +220,14 @@ static bool write_file(int fd, const struct plan *plan, const struct plan_source
     fields_bytes(&head, fields.data, fields.size);
     uint64_t head_bytes = head.size + pieces.n_pieces * sizeof *pieces.checks;
     *n_bytes = place_voxels(&pieces, head_bytes);
-    bool is_written = !fields.is_bad && *n_bytes <= MAX_BYTES && head_bytes <= (uint64_t)PLAN_CACHE_MAX_HEAD_MIB << 20 &&
-                      has_room(fd, *n_bytes) && move_pieces(&pieces);
+    bool is_written = !fields.is_bad && *n_bytes <= MAX_BYTES &&
+                      head_bytes <= (uint64_t)PLAN_CACHE_MAX_HEAD_MIB << 20 && has_room(fd, *n_bytes) &&
+                      move_pieces(&pieces);
     if (is_written) {
         fields_bytes(&head, pieces.checks, pieces.n_pieces * sizeof *pieces.checks);
         struct start start = make_start(&head);
-        is_written = transfer(fd, false, head.data, head.size, sizeof start) && transfer(fd, false, (uint8_t *)&start, sizeof start, 0) &&
-                     ftruncate(fd, (off_t)*n_bytes) == 0;
+        is_written = transfer(fd, false, head.data, head.size, sizeof start) &&
+                     transfer(fd, false, (uint8_t *)&start, sizeof start, 0) && ftruncate(fd, (off_t)*n_bytes) == 0;
     }
     finish_pieces(&pieces);
     free(fields.data);
@@ -230,7 +235,8 @@ static bool write_file(int fd, const struct plan *plan, const struct plan_source
     return is_written;
 }
 
-bool plan_cache_store(const struct plan *plan, const struct plan_sources *sources, const char *cache_folder, struct error *err)
+bool plan_cache_store(const struct plan *plan, const struct plan_sources *sources, const char *cache_folder,
+                      struct error *err)
 {
     static const char partial[] = PLAN_CACHE_NAME ".part";
     if (!sources || plan->is_from_cache)
@@ -249,10 +255,12 @@ bool plan_cache_store(const struct plan *plan, const struct plan_sources *source
     if (!is_written) {
         (void)unlinkat(folder, partial, 0);
         if (n_bytes > MAX_BYTES)
-            error_set(err, ERROR_LIMIT, "%llu bytes are more than are kept, %d MiB", (unsigned long long)n_bytes, PLAN_CACHE_MAX_MIB);
+            error_set(err, ERROR_LIMIT, "%llu bytes are more than are kept, %d MiB", (unsigned long long)n_bytes,
+                      PLAN_CACHE_MAX_MIB);
         else if (!has_room(folder, n_bytes))
-            error_set(err, ERROR_LIMIT, "%llu bytes are more than a file may have here, or than leave %d MiB on the disk", (unsigned long long)n_bytes,
-                      PLAN_CACHE_LEAVES_MIB);
+            error_set(err, ERROR_LIMIT,
+                      "%llu bytes are more than a file may have here, or than leave %d MiB on the disk",
+                      (unsigned long long)n_bytes, PLAN_CACHE_LEAVES_MIB);
         else
             error_set(err, ERROR_IO, "the opened plan cannot be kept: %s", strerror(reason));
     }
@@ -260,14 +268,15 @@ bool plan_cache_store(const struct plan *plan, const struct plan_sources *source
     return is_written;
 }
 
-/* ---- reading ---------------------------------------------------------------------------------------------------------- */
+/* ---- reading ---------------------------------------------------------------------------------------------------- */
 
 /* The head, checked; the caller frees its data. */
 static bool read_head(int fd, uint64_t file_bytes, struct fields *head)
 {
     struct start start, expected;
-    if (file_bytes < sizeof start || file_bytes > MAX_BYTES || !transfer(fd, true, (uint8_t *)&start, sizeof start, 0) ||
-        start.head_bytes > file_bytes - sizeof start || start.head_bytes > (uint64_t)PLAN_CACHE_MAX_HEAD_MIB << 20)
+    if (file_bytes < sizeof start || file_bytes > MAX_BYTES ||
+        !transfer(fd, true, (uint8_t *)&start, sizeof start, 0) || start.head_bytes > file_bytes - sizeof start ||
+        start.head_bytes > (uint64_t)PLAN_CACHE_MAX_HEAD_MIB << 20)
         return false;
     uint8_t *data = mem_array((size_t)start.head_bytes + 1, 1, UINT64_MAX, NULL);
     if (!data)
@@ -282,7 +291,10 @@ static bool read_head(int fd, uint64_t file_bytes, struct fields *head)
 static bool read_voxels(int fd, uint64_t file_bytes, struct fields *head, const struct fields *plan_fields,
                         const struct plan_cache_reading *reading)
 {
-    struct pieces pieces = { .fd = fd, .is_reading = true, .volumes = plan_fields->volumes, .n_volumes = plan_fields->n_volumes,
+    struct pieces pieces = { .fd = fd,
+                             .is_reading = true,
+                             .volumes = plan_fields->volumes,
+                             .n_volumes = plan_fields->n_volumes,
                              .reading = reading };
     uint64_t n_bytes = 0;
     for (size_t v = 0; v < pieces.n_volumes; v++) {
@@ -291,14 +303,16 @@ static bool read_voxels(int fd, uint64_t file_bytes, struct fields *head, const 
             return false; /* before anything of that size is allocated */
     }
     count_pieces(&pieces);
-    bool is_read = head->size - head->at == pieces.n_pieces * sizeof *pieces.checks && place_voxels(&pieces, head->size) == file_bytes;
+    bool is_read = head->size - head->at == pieces.n_pieces * sizeof *pieces.checks &&
+                   place_voxels(&pieces, head->size) == file_bytes;
     if (is_read)
         fields_bytes(head, pieces.checks, pieces.n_pieces * sizeof *pieces.checks);
     if (is_read && reading->begin)
         reading->begin(reading->context, n_bytes);
     for (size_t v = 0; is_read && v < pieces.n_volumes; v++) {
         struct volume *volume = pieces.volumes[v];
-        volume->voxels = mem_large_array(grid_n_voxels(&volume->grid), voxel_size(volume->type), VOLUME_MAX_BYTES, NULL);
+        volume->voxels =
+            mem_large_array(grid_n_voxels(&volume->grid), voxel_size(volume->type), VOLUME_MAX_BYTES, NULL);
         is_read = volume->voxels != NULL;
     }
     is_read = is_read && move_pieces(&pieces);
@@ -322,7 +336,8 @@ static void empty(struct plan *plan)
     report_finish(&plan->report);
 }
 
-static bool read_file(int fd, const struct plan_sources *sources, const struct plan_cache_reading *reading, struct plan *plan)
+static bool read_file(int fd, const struct plan_sources *sources, const struct plan_cache_reading *reading,
+                      struct plan *plan)
 {
     struct stat about;
     struct fields head = { 0 };
@@ -345,8 +360,8 @@ static bool read_file(int fd, const struct plan_sources *sources, const struct p
     return is_read;
 }
 
-bool plan_cache_read(const char *cache_folder, const struct plan_sources *sources, const struct plan_cache_reading *reading,
-                     struct plan *plan)
+bool plan_cache_read(const char *cache_folder, const struct plan_sources *sources,
+                     const struct plan_cache_reading *reading, struct plan *plan)
 {
     char path[PATH_MAX];
     int n = snprintf(path, sizeof path, "%s/%s", cache_folder, PLAN_CACHE_NAME);

@@ -74,14 +74,15 @@ static void fields_size(struct fields *fields, size_t *value, size_t most)
         *value = fields->is_bad ? 0 : (size_t)wide;
 }
 
-/* A member of an enum of n values. A plan that is written is shared and frozen: nothing is stored into it, not even what it was. */
-#define FIELDS_ENUM(fields, place, type, n)                           \
-    do {                                                              \
-        uint8_t byte_ = (uint8_t)(place);                             \
-        fields_bytes(fields, &byte_, 1);                              \
-        require(fields, byte_ < (n));                                 \
-        if ((fields)->is_reading)                                     \
-            (place) = (type)((fields)->is_bad ? 0 : byte_);           \
+/* A member of an enum of n values. A plan that is written is shared and frozen: nothing is stored into it, not even
+ * what it was. */
+#define FIELDS_ENUM(fields, place, type, n) \
+    do { \
+        uint8_t byte_ = (uint8_t)(place); \
+        fields_bytes(fields, &byte_, 1); \
+        require(fields, byte_ < (n)); \
+        if ((fields)->is_reading) \
+            (place) = (type)((fields)->is_bad ? 0 : byte_); \
     } while (0)
 
 static void fields_number(struct fields *fields, double *value) /* or not-a-number */
@@ -152,7 +153,8 @@ static void fields_images(struct fields *fields, struct plan *plan)
         require(fields, image->volume != NULL);
         fields_finite(fields, &image->window_center);
         fields_finite(fields, &image->window_width);
-        require(fields, fabs(image->window_center) <= WINDOW_CENTER_FARTHEST && image->window_width >= WINDOW_NARROWEST && image->window_width <= WINDOW_WIDEST);
+        require(fields, fabs(image->window_center) <= WINDOW_CENTER_FARTHEST &&
+                            image->window_width >= WINDOW_NARROWEST && image->window_width <= WINDOW_WIDEST);
         fields_bool(fields, &image->is_inverted);
     }
 }
@@ -171,7 +173,8 @@ static void fields_region(struct fields *fields, struct region *region, const st
     fields_bytes(fields, &parent, sizeof parent);
     fields_u64(fields, &layer);
     fields_u64(fields, &label);
-    require(fields, parent >= -1 && parent < (int64_t)set->n_regions && layer < set->n_layers && label >= 1 && label <= UINT16_MAX);
+    require(fields, parent >= -1 && parent < (int64_t)set->n_regions && layer < set->n_layers && label >= 1 &&
+                        label <= UINT16_MAX);
     if (fields->is_reading) {
         region->parent = fields->is_bad ? -1 : (int)parent;
         region->layer = fields->is_bad ? 0 : (uint32_t)layer;
@@ -199,7 +202,8 @@ static bool ids_are_good(const struct region_set *set)
 {
     for (size_t r = 0; r < set->n_regions; r++) {
         const char *id = set->regions[r].id;
-        if (!id[0] || strspn(id, "abcdefghijklmnopqrstuvwxyz0123456789-") != strlen(id) || region_find(set, id) != &set->regions[r])
+        if (!id[0] || strspn(id, "abcdefghijklmnopqrstuvwxyz0123456789-") != strlen(id) ||
+            region_find(set, id) != &set->regions[r])
             return false;
     }
     return true;
@@ -250,11 +254,31 @@ static void fields_dose(struct fields *fields, struct dose *dose)
 
 static void fields_delivery(struct fields *fields, struct beam_delivery *d)
 {
-    double *const numbers[] = { &d->gantry_deg, &d->collimator_deg, &d->couch_deg, &d->energy_mev, &d->gantry_stop_deg,
-                                &d->gantry_travel_deg, &d->sad_mm, &d->ssd_mm, &d->jaws_x_mm[0], &d->jaws_x_mm[1], &d->jaws_y_mm[0],
-                                &d->jaws_y_mm[1], &d->opening_x_mm[0], &d->opening_x_mm[1], &d->opening_y_mm[0], &d->opening_y_mm[1],
-                                &d->opening_cm2, &d->collimator_x_lps.x, &d->collimator_x_lps.y, &d->collimator_x_lps.z,
-                                &d->collimator_y_lps.x, &d->collimator_y_lps.y, &d->collimator_y_lps.z, &d->dose_gy, &d->meterset };
+    double *const numbers[] = { &d->gantry_deg,
+                                &d->collimator_deg,
+                                &d->couch_deg,
+                                &d->energy_mev,
+                                &d->gantry_stop_deg,
+                                &d->gantry_travel_deg,
+                                &d->sad_mm,
+                                &d->ssd_mm,
+                                &d->jaws_x_mm[0],
+                                &d->jaws_x_mm[1],
+                                &d->jaws_y_mm[0],
+                                &d->jaws_y_mm[1],
+                                &d->opening_x_mm[0],
+                                &d->opening_x_mm[1],
+                                &d->opening_y_mm[0],
+                                &d->opening_y_mm[1],
+                                &d->opening_cm2,
+                                &d->collimator_x_lps.x,
+                                &d->collimator_x_lps.y,
+                                &d->collimator_x_lps.z,
+                                &d->collimator_y_lps.x,
+                                &d->collimator_y_lps.y,
+                                &d->collimator_y_lps.z,
+                                &d->dose_gy,
+                                &d->meterset };
     fields_bytes(fields, &d->number, sizeof d->number);
     fields_bytes(fields, &d->n_fractions, sizeof d->n_fractions);
     fields_text(fields, d->radiation, sizeof d->radiation);

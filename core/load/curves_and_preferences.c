@@ -11,7 +11,8 @@
 #include "core/formats/text.h"
 #include "core/formats/zlib_stream.h"
 
-static bool read_curve(const struct folder *folder, const char *path, struct dose_curve *curve, struct report *report, struct error *err)
+static bool read_curve(const struct folder *folder, const char *path, struct dose_curve *curve, struct report *report,
+                       struct error *err)
 {
     struct bytes file, text;
     bool is_packed;
@@ -29,7 +30,8 @@ static bool read_curve(const struct folder *folder, const char *path, struct dos
 
 static void make_id(const struct plan *plan, const char *given, const char *stem, char id[64])
 {
-    struct region_set taken = { .regions = mem_new((plan->n_curves + 1) * sizeof *taken.regions), .n_regions = plan->n_curves };
+    struct region_set taken = { .regions = mem_new((plan->n_curves + 1) * sizeof *taken.regions),
+                                .n_regions = plan->n_curves };
     for (size_t i = 0; i < plan->n_curves; i++)
         memcpy(taken.regions[i].id, plan->curves[i].id, sizeof plan->curves[i].id);
     region_make_id(&taken, given[0] ? given : stem, id);
@@ -44,7 +46,8 @@ void plan_add_curves(struct plan *plan, const struct folder *folder, const struc
         struct error err = { 0 };
         char stem[128], id[64];
         if (!read_curve(folder, entry->path, &curve, &plan->report, &err)) {
-            report_add(&plan->report, REPORT_WARNING, "curve.unread", entry->path, "%s. The plan is shown without this curve.", err.text);
+            report_add(&plan->report, REPORT_WARNING, "curve.unread", entry->path,
+                       "%s. The plan is shown without this curve.", err.text);
             continue;
         }
         const char *slash = strrchr(entry->path, '/'), *base = slash ? slash + 1 : entry->path;
@@ -54,9 +57,11 @@ void plan_add_curves(struct plan *plan, const struct folder *folder, const struc
         text_clean(entry->name[0] ? entry->name : stem[0] ? stem : id, curve.name, sizeof curve.name);
         snprintf(curve.per, sizeof curve.per, "%s", entry->per[0] ? entry->per : "unit of the source");
         if (!entry->per[0])
-            report_add(&plan->report, REPORT_NOTE, "dose.no-per", entry->path,
-                       "The curve \"%s\" is for one unit of the source; neither the plan nor the file says what that unit is, for instance "
-                       "250 kW-min.", curve.id);
+            report_add(
+                &plan->report, REPORT_NOTE, "dose.no-per", entry->path,
+                "The curve \"%s\" is for one unit of the source; neither the plan nor the file says what that unit is, for instance "
+                "250 kW-min.",
+                curve.id);
         plan->curves[plan->n_curves++] = curve;
     }
 }
@@ -103,21 +108,26 @@ static void apply(struct plan *plan, const struct rsc *rsc, const char *path)
     struct plan_preferences *kept = &plan->preferences;
     if (n_colors > 0)
         report_add(&plan->report, REPORT_NOTE, "preferences.colors", path,
-                   "%zu regions without a colour of their own took colour and opacity from these preferences.", n_colors);
+                   "%zu regions without a colour of their own took colour and opacity from these preferences.",
+                   n_colors);
     if (n_tissues > 0)
-        report_add(&plan->report, REPORT_NOTE, "preferences.tissues", path,
-                   "%zu regions took tissue data (boron ratio, weights) that their own file does not give from this table, by their names.",
-                   n_tissues);
+        report_add(
+            &plan->report, REPORT_NOTE, "preferences.tissues", path,
+            "%zu regions took tissue data (boron ratio, weights) that their own file does not give from this table, by their names.",
+            n_tissues);
     if (rsc->n_levels > 0 && kept->n_levels > 0)
-        report_add(&plan->report, REPORT_NOTE, "preferences.levels", path, "Contour levels are there already, from a file before it; its own "
+        report_add(&plan->report, REPORT_NOTE, "preferences.levels", path,
+                   "Contour levels are there already, from a file before it; its own "
                    "were not taken.");
     else if (rsc->n_levels > 0)
         for (; kept->n_levels < rsc->n_levels; kept->n_levels++) {
             const struct rsc_level *level = &rsc->levels[kept->n_levels];
-            kept->levels[kept->n_levels] = (struct plan_level){ level->percent, { level->rgb[0], level->rgb[1], level->rgb[2] } };
+            kept->levels[kept->n_levels] =
+                (struct plan_level){ level->percent, { level->rgb[0], level->rgb[1], level->rgb[2] } };
         }
     if (rsc->n_colors > 0 && kept->n_colors > 0) {
-        report_add(&plan->report, REPORT_NOTE, "preferences.map", path, "A colour map is there already, from a file before it; this one was "
+        report_add(&plan->report, REPORT_NOTE, "preferences.map", path,
+                   "A colour map is there already, from a file before it; this one was "
                    "not taken.");
     } else if (rsc->n_colors > 0) {
         kept->n_colors = rsc->n_colors;
@@ -127,7 +137,8 @@ static void apply(struct plan *plan, const struct rsc *rsc, const char *path)
 
 void plan_add_preferences(struct plan *plan, const struct folder *folder, const struct plan_file *file)
 {
-    _Static_assert((int)RSC_MAX_LEVELS <= (int)PLAN_MAX_LEVELS && (int)RSC_MAX_COLORS == (int)PLAN_MAX_COLORS, "all of it has room");
+    _Static_assert((int)RSC_MAX_LEVELS <= (int)PLAN_MAX_LEVELS && (int)RSC_MAX_COLORS == (int)PLAN_MAX_COLORS,
+                   "all of it has room");
     struct rsc *rsc = mem_new(sizeof *rsc);
     for (size_t i = 0; i < file->n_preferences; i++) {
         const char *path = file->preferences[i];
@@ -141,7 +152,8 @@ void plan_add_preferences(struct plan *plan, const struct folder *folder, const 
         if (is_read)
             apply(plan, rsc, path);
         else
-            report_add(&plan->report, REPORT_WARNING, "preferences.unread", path, "%s. The plan is shown without these preferences.", err.text);
+            report_add(&plan->report, REPORT_WARNING, "preferences.unread", path,
+                       "%s. The plan is shown without these preferences.", err.text);
     }
     free(rsc);
 }

@@ -7,7 +7,7 @@
 #include "core/base/mem.h"
 #include "core/formats/text.h"
 
-/* ---- finding ---------------------------------------------------------------------------------------------------------- */
+/* ---- finding ---------------------------------------------------------------------------------------------------- */
 
 bool plan_dicom_is_under(const struct dicom_object *object, const char *path)
 {
@@ -17,7 +17,8 @@ bool plan_dicom_is_under(const struct dicom_object *object, const char *path)
     return strncmp(object->path, path, n) == 0 && (n == 0 || object->path[n] == 0 || object->path[n] == '/');
 }
 
-const struct dicom_object *plan_dicom_object(const struct dicom_index *index, enum dicom_kind kind, const char *path, size_t nth)
+const struct dicom_object *plan_dicom_object(const struct dicom_index *index, enum dicom_kind kind, const char *path,
+                                             size_t nth)
 {
     for (size_t i = 0; index && i < index->n_objects; i++)
         if (index->objects[i].kind == kind && plan_dicom_is_under(&index->objects[i], path) && nth-- == 0)
@@ -52,7 +53,7 @@ void plan_dicom_close(struct plan_dicom_file *opened)
     opened->file = NULL;
 }
 
-/* ---- what is told of the folder as a whole ------------------------------------------------------------------------------ */
+/* ---- what is told of the folder as a whole ---------------------------------------------------------------------- */
 
 static int compare_texts(const void *a, const void *b)
 {
@@ -84,21 +85,25 @@ static void tell_of_studies(const struct dicom_index *index, struct report *repo
         n_frames += is_new;
     }
     if (n_studies > 1)
-        report_add(report, REPORT_NOTE, "dicom.several-studies", "", "The DICOM files are of %zu studies; all of them are shown together.",
-                   n_studies);
+        report_add(report, REPORT_NOTE, "dicom.several-studies", "",
+                   "The DICOM files are of %zu studies; all of them are shown together.", n_studies);
     if (n_frames > 1)
-        report_add(report, REPORT_WARNING, "geometry.frames-differ", "", "The image series have %zu frames of reference; nothing says how "
-                   "they lie to each other, and their coordinates were taken as they are.", n_frames);
+        report_add(report, REPORT_WARNING, "geometry.frames-differ", "",
+                   "The image series have %zu frames of reference; nothing says how "
+                   "they lie to each other, and their coordinates were taken as they are.",
+                   n_frames);
 }
 
-/* ---- a folder without plan.json --------------------------------------------------------------------------------------- */
+/* ---- a folder without plan.json --------------------------------------------------------------------------------- */
 
 static void name_image(const struct dicom_stack *stack, struct plan_file_image *image)
 {
     const char *modality = text_equal(stack->modality, "PT") ? "PET" : stack->modality;
     snprintf(image->modality, sizeof image->modality, "%.15s", modality);
-    snprintf(image->name, sizeof image->name, "%.15s%s%.100s", modality, stack->description[0] ? " " : "", stack->description);
-    snprintf(image->id, sizeof image->id, "%.15s%s%.40s", modality, stack->description[0] ? "-" : "", stack->description);
+    snprintf(image->name, sizeof image->name, "%.15s%s%.100s", modality, stack->description[0] ? " " : "",
+             stack->description);
+    snprintf(image->id, sizeof image->id, "%.15s%s%.40s", modality, stack->description[0] ? "-" : "",
+             stack->description);
 }
 
 /* A CT goes before everything else: regions and doses are mostly made on it. */
@@ -129,8 +134,8 @@ static void recognise_images(const struct dicom_index *index, struct plan_file *
     }
     free(named);
     if (n_left > 0)
-        report_add(report, REPORT_WARNING, "plan.ignored-file", "", "More than %d images; %zu of the smaller ones were not read.",
-                   PLAN_MAX_IMAGES, n_left);
+        report_add(report, REPORT_WARNING, "plan.ignored-file", "",
+                   "More than %d images; %zu of the smaller ones were not read.", PLAN_MAX_IMAGES, n_left);
 }
 
 static void recognise_structs(const struct dicom_index *index, struct plan_file *file, struct report *report)
@@ -142,8 +147,8 @@ static void recognise_structs(const struct dicom_index *index, struct plan_file 
         if (file->n_regions < PLAN_FILE_MAX_PARTS)
             snprintf(file->regions[file->n_regions++].path, FOLDER_NAME_SIZE, "%s", object->path);
         else
-            report_add(report, REPORT_WARNING, "plan.ignored-file", object->path, "More than %d files of regions; this one was not read.",
-                       PLAN_FILE_MAX_PARTS);
+            report_add(report, REPORT_WARNING, "plan.ignored-file", object->path,
+                       "More than %d files of regions; this one was not read.", PLAN_FILE_MAX_PARTS);
     }
 }
 
@@ -162,7 +167,7 @@ bool plan_dicom_recognise(const struct folder *folder, char *const *names, size_
     return true;
 }
 
-/* ---- DICOM that plan.json names ----------------------------------------------------------------------------------------- */
+/* ---- DICOM that plan.json names --------------------------------------------------------------------------------- */
 
 struct named {
     const struct folder *folder;

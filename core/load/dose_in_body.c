@@ -9,7 +9,8 @@ static bool is_in_region(const struct region_set *set, struct vec3 point_lps_mm)
         if (!volume_voxel_at(set->layers[layer], point_lps_mm, at))
             continue;
         uint16_t label = volume_label(set->layers[layer], at[0], at[1], at[2]);
-        for (size_t r = 0; label != 0 && r < set->n_regions; r++) /* a label without a region is the filling around the patient */
+        for (size_t r = 0; label != 0 && r < set->n_regions;
+             r++) /* a label without a region is the filling around the patient */
             if (set->regions[r].layer == layer && set->regions[r].label == label)
                 return true;
     }
@@ -57,11 +58,12 @@ static void note_absurd(struct plan *plan, const struct dose *dose)
         }
     }
     if (n > 0)
-        report_add(&plan->report, REPORT_WARNING, "dose.absurd-outside", dose->id,
-                   "%zu of %zu quantities reach over %d times their largest value inside the regions somewhere outside them; %s goes up to "
-                   "%.3g, inside to %.3g. Only values inside should set a scale.",
-                   n, dose->n_components, PLAN_ABSURD_TIMES, dose_quantity_word(worst->quantity), worst->values->high,
-                   dose->body_high[worst->quantity]);
+        report_add(
+            &plan->report, REPORT_WARNING, "dose.absurd-outside", dose->id,
+            "%zu of %zu quantities reach over %d times their largest value inside the regions somewhere outside them; %s goes up to "
+            "%.3g, inside to %.3g. Only values inside should set a scale.",
+            n, dose->n_components, PLAN_ABSURD_TIMES, dose_quantity_word(worst->quantity), worst->values->high,
+            dose->body_high[worst->quantity]);
 }
 
 void plan_measure_body(struct plan *plan)

@@ -31,12 +31,12 @@ static uint64_t bytes_kept(enum raw_type type, enum raw_use use)
     }
 }
 
-static struct need need_of_voxels(uint64_t n_voxels, enum raw_type type, enum raw_use use, uint64_t file_bytes, bool is_copied,
-                                  bool is_taken)
+static struct need need_of_voxels(uint64_t n_voxels, enum raw_type type, enum raw_use use, uint64_t file_bytes,
+                                  bool is_copied, bool is_taken)
 {
     uint64_t raw = n_voxels * raw_type_bytes(type);
     if (use == RAW_IMAGE && is_taken && bytes_kept(type, use) == raw_type_bytes(type))
-        is_copied = false; /* the unpacked voxels become the volume's */
+        is_copied = false;                                              /* the unpacked voxels become the volume's */
     uint64_t wide = use == RAW_LABELS && type != RAW_U8 ? n_voxels : 0; /* labels are read as 16 bits, then made 8 */
     return (struct need){ n_voxels * bytes_kept(type, use), file_bytes + (is_copied ? raw : 0) + wide };
 }
@@ -52,8 +52,8 @@ static struct need need_of_nifti(const struct folder *folder, const struct job *
         return need;
     bool is_packed = gzip_is(head.data, head.size);
     bytes_free(&head);
-    return need_of_voxels(grid_n_voxels(&header.grid), header.type, use, job->bytes, is_packed || header.is_swapped || header.data_at % 8 != 0,
-                          is_packed);
+    return need_of_voxels(grid_n_voxels(&header.grid), header.type, use, job->bytes,
+                          is_packed || header.is_swapped || header.data_at % 8 != 0, is_packed);
 }
 
 static struct need need_of_nrrd(const struct folder *folder, const struct job *job, enum raw_use use)
@@ -98,7 +98,8 @@ static struct need need_of_rst(const struct folder *folder, const struct job *jo
         size_t n = is_packed ? gzip_head(head.data, head.size, text, RST_HEAD_BYTES) : head.size;
         if (rst_parse_header(is_packed ? text : head.data, n, job->path, &header, NULL)) {
             uint64_t cells = (uint64_t)header.n_cells * header.n_cells * header.n_cells;
-            need = (struct need){ cells * RST_N_DOSES * sizeof(float), job->bytes + (is_packed ? cells * COLUMNS * COLUMN_BYTES : 0) };
+            need = (struct need){ cells * RST_N_DOSES * sizeof(float),
+                                  job->bytes + (is_packed ? cells * COLUMNS * COLUMN_BYTES : 0) };
         }
         bytes_free(&head);
     }
@@ -143,8 +144,10 @@ static struct need need_of_segments(const struct folder *folder, const struct jo
     size_t n_segments;
     if (!plan_dicom_open(folder, job->path, &opened, NULL))
         return need;
-    if (dicom_seg_measure(opened.file, &n_voxels, &n_segments)) /* work: the file, its elements, and a mask of one segment */
-        need = (struct need){ n_voxels * (n_segments < USUAL_LAYERS ? n_segments : USUAL_LAYERS), 2 * job->bytes + n_voxels / 8 };
+    if (dicom_seg_measure(opened.file, &n_voxels,
+                          &n_segments)) /* work: the file, its elements, and a mask of one segment */
+        need = (struct need){ n_voxels * (n_segments < USUAL_LAYERS ? n_segments : USUAL_LAYERS),
+                              2 * job->bytes + n_voxels / 8 };
     plan_dicom_close(&opened);
     return need;
 }
@@ -205,7 +208,10 @@ bool plan_check_estimate(const struct loading *loading, struct error *err)
     if (bytes <= loading->options.max_bytes || !largest)
         return true;
     struct need need = need_of(loading, largest);
-    return error_set(err, ERROR_LIMIT, "reading the plan would take about %.0f MiB of memory, and %.0f MiB are allowed; the largest part is %s with %.0f "
-                     "MiB", (double)bytes / 1048576, (double)loading->options.max_bytes / 1048576, largest->path,
-                     (double)(need.kept + need.work) / 1048576);
+    return error_set(
+        err, ERROR_LIMIT,
+        "reading the plan would take about %.0f MiB of memory, and %.0f MiB are allowed; the largest part is %s with %.0f "
+        "MiB",
+        (double)bytes / 1048576, (double)loading->options.max_bytes / 1048576, largest->path,
+        (double)(need.kept + need.work) / 1048576);
 }

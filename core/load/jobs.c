@@ -14,8 +14,8 @@ static bool refuse_format(const char *path, enum part_format format, struct erro
     return error_set(err, ERROR_UNSUPPORTED, "%s: %s is not read here by this version", path, part_format_word(format));
 }
 
-static struct job *add_job(struct loading *loading, enum job_kind kind, size_t index, size_t component, const char *path,
-                           enum part_format format)
+static struct job *add_job(struct loading *loading, enum job_kind kind, size_t index, size_t component,
+                           const char *path, enum part_format format)
 {
     struct job *job = &loading->jobs[loading->n_jobs++];
     job->kind = kind;
@@ -31,8 +31,8 @@ static struct job *add_job(struct loading *loading, enum job_kind kind, size_t i
 }
 
 /* A job for each object of the kind at or below the path; returns how many. */
-static size_t add_dicom_jobs(struct loading *loading, enum job_kind kind, enum dicom_kind of, size_t index, size_t component,
-                             const char *path, size_t most)
+static size_t add_dicom_jobs(struct loading *loading, enum job_kind kind, enum dicom_kind of, size_t index,
+                             size_t component, const char *path, size_t most)
 {
     const struct dicom_object *object;
     size_t n = 0;
@@ -44,7 +44,8 @@ static size_t add_dicom_jobs(struct loading *loading, enum job_kind kind, enum d
 static bool refuse_dicom(const struct loading *loading, const char *path, const char *what, struct error *err)
 {
     const struct dicom_object *other = plan_dicom_object(loading->parts.dicom, DICOM_KIND_OTHER, path, 0);
-    return error_set(err, ERROR_UNSUPPORTED, "%s: no DICOM %s that can be used%s%s", path, what, other ? ": " : "", other ? other->reason : "");
+    return error_set(err, ERROR_UNSUPPORTED, "%s: no DICOM %s that can be used%s%s", path, what, other ? ": " : "",
+                     other ? other->reason : "");
 }
 
 static bool add_image_job(struct loading *loading, size_t i, struct error *err)
@@ -72,7 +73,8 @@ static bool add_region_jobs(struct loading *loading, size_t i, struct error *err
     enum part_format format = part_format_of(&loading->folder, path);
     if (format == PART_DICOM)
         return add_dicom_jobs(loading, JOB_REGION, DICOM_KIND_STRUCT, i, 0, path, PLAN_FILE_MAX_PARTS) +
-                       add_dicom_jobs(loading, JOB_REGION, DICOM_KIND_SEGMENTATION, i, 0, path, PLAN_FILE_MAX_PARTS) > 0 ||
+                       add_dicom_jobs(loading, JOB_REGION, DICOM_KIND_SEGMENTATION, i, 0, path, PLAN_FILE_MAX_PARTS) >
+                   0 ||
                refuse_dicom(loading, path, "structure set or segmentation", err);
     if (format != PART_NIFTI && format != PART_NRRD && format != PART_UVH)
         return refuse_format(path, format, err);
@@ -81,7 +83,8 @@ static bool add_region_jobs(struct loading *loading, size_t i, struct error *err
 }
 
 /* A dose this version cannot read is left out, and said; images and regions are not. */
-static bool dose_is_readable(struct loading *loading, const struct plan_file_dose *dose, bool *is_readable, struct error *err)
+static bool dose_is_readable(struct loading *loading, const struct plan_file_dose *dose, bool *is_readable,
+                             struct error *err)
 {
     *is_readable = true;
     for (size_t c = 0; c < dose->n_components; c++) {
@@ -92,8 +95,8 @@ static bool dose_is_readable(struct loading *loading, const struct plan_file_dos
         if (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format) || format == PART_DICOM)
             continue;
         report_add(&loading->plan->report, REPORT_WARNING, "dose.unsupported", path,
-                   "The dose \"%s\" is in a format (%s) that this version does not read; the plan is shown without it.", dose->id,
-                   part_format_word(format));
+                   "The dose \"%s\" is in a format (%s) that this version does not read; the plan is shown without it.",
+                   dose->id, part_format_word(format));
         *is_readable = false;
         return true;
     }
@@ -126,8 +129,9 @@ bool plan_make_jobs(struct loading *loading, struct error *err)
     const struct plan_parts *parts = &loading->parts;
     size_t n_objects = parts->dicom ? parts->dicom->n_objects : 0;
     /* an entry of plan.json that names a folder may stand for many files, and two entries for the same */
-    size_t most = file->n_images + file->n_regions * (2 + n_objects) + file->n_doses * (DOSE_N_QUANTITIES + 1 + PLAN_DICOM_MAX_DOSES) +
-                  PLAN_DICOM_MAX_DOSES + (file->n_beam_files + 1) * PLAN_DICOM_MAX_PLANS;
+    size_t most = file->n_images + file->n_regions * (2 + n_objects) +
+                  file->n_doses * (DOSE_N_QUANTITIES + 1 + PLAN_DICOM_MAX_DOSES) + PLAN_DICOM_MAX_DOSES +
+                  (file->n_beam_files + 1) * PLAN_DICOM_MAX_PLANS;
     bool is_made = true;
     loading->jobs = mem_array(most + 1, sizeof *loading->jobs, UINT32_MAX, err);
     if (!loading->jobs)
@@ -139,7 +143,8 @@ bool plan_make_jobs(struct loading *loading, struct error *err)
     for (size_t i = 0; is_made && i < file->n_doses; i++)
         is_made = add_dose_jobs(loading, i, err);
     for (size_t i = 0; is_made && i < file->n_beam_files; i++)
-        is_made = add_dicom_jobs(loading, JOB_BEAMS, DICOM_KIND_PLAN, i, 0, file->beam_files[i].path, PLAN_DICOM_MAX_PLANS) > 0 ||
+        is_made = add_dicom_jobs(loading, JOB_BEAMS, DICOM_KIND_PLAN, i, 0, file->beam_files[i].path,
+                                 PLAN_DICOM_MAX_PLANS) > 0 ||
                   refuse_dicom(loading, file->beam_files[i].path, "treatment plan", err);
     if (is_made && parts->is_all_dicom) {
         add_dicom_jobs(loading, JOB_DOSE, DICOM_KIND_DOSE, JOB_OF_NO_ENTRY, 0, "", PLAN_DICOM_MAX_DOSES);
@@ -161,7 +166,8 @@ static void order_jobs(struct loading *loading)
     }
 }
 
-/* Nobody said that this file belongs to the plan, so what is wrong with it need not keep the rest from being seen; it is said. */
+/* Nobody said that this file belongs to the plan, so what is wrong with it need not keep the rest from being seen; it
+ * is said. */
 static bool may_be_left_out(const struct loading *loading, const struct job *job)
 {
     return loading->parts.is_all_dicom && job->format == PART_DICOM &&

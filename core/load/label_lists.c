@@ -67,8 +67,8 @@ static void add_list(struct name_lists *lists, const struct folder *folder, cons
     bytes_free(&bytes);
 }
 
-struct name_lists *name_lists_find(const struct folder *folder, const struct folder_tree *tree, const atomic_bool *cancel,
-                                   struct report *report)
+struct name_lists *name_lists_find(const struct folder *folder, const struct folder_tree *tree,
+                                   const atomic_bool *cancel, struct report *report)
 {
     struct name_lists *lists = mem_new(sizeof *lists);
     lists->lists = mem_new(MOST_LISTS * sizeof *lists->lists);
@@ -78,7 +78,8 @@ struct name_lists *name_lists_find(const struct folder *folder, const struct fol
     for (size_t i = 0; i < tree->n_files && lists->n < MOST_LISTS && !(cancel && atomic_load(cancel)); i++) {
         const char *path = tree->files[i].name;
         uint64_t n_bytes = tree->files[i].bytes < LIST_MAX_BYTES ? tree->files[i].bytes : LIST_MAX_BYTES;
-        if (!text_has_ending(path, ".json") || (strcmp(part_base_name(path), "labels.json") != 0 && !has_grid_beside(folder, path)))
+        if (!text_has_ending(path, ".json") ||
+            (strcmp(part_base_name(path), "labels.json") != 0 && !has_grid_beside(folder, path)))
             continue;
         if (n_bytes > left) {
             first_unread = n_unread++ == 0 ? path : first_unread;
@@ -88,9 +89,10 @@ struct name_lists *name_lists_find(const struct folder *folder, const struct fol
         add_list(lists, folder, path);
     }
     if (n_unread > 0)
-        report_add(report, REPORT_WARNING, "region.names-limit", first_unread,
-                   "The folder's lists of label names have more than %d MiB together; this and %zu more were not read, and their names not used.",
-                   LISTS_MAX_MIB, n_unread - 1);
+        report_add(
+            report, REPORT_WARNING, "region.names-limit", first_unread,
+            "The folder's lists of label names have more than %d MiB together; this and %zu more were not read, and their names not used.",
+            LISTS_MAX_MIB, n_unread - 1);
     return lists;
 }
 
@@ -152,15 +154,17 @@ static struct map look_at(const struct name_lists *lists, const struct folder *f
     return map;
 }
 
-/* The one map of the folder that a labels.json naming none can mean: the one it is called after; else the only one without names of its own;
- * else the only one of those that is not called a mask, which has no list of labels. SIZE_MAX: there is none, or several. */
+/* The one map of the folder that a labels.json naming none can mean: the one it is called after; else the only one
+ * without names of its own; else the only one of those that is not called a mask, which has no list of labels.
+ * SIZE_MAX: there is none, or several. */
 static size_t only_candidate(const struct plan_file *file, const struct map *maps, const struct name_list *list)
 {
     static const char *const words[] = { "mask" };
     size_t n = 0, n_maps = 0, any = SIZE_MAX, map = SIZE_MAX, length = (size_t)folder_length(list->path);
     for (size_t i = 0; i < file->n_regions; i++) {
         const char *path = file->regions[i].path;
-        if (!maps[i].is_grid || maps[i].names_itself || (size_t)folder_length(path) != length || strncmp(path, list->path, length) != 0)
+        if (!maps[i].is_grid || maps[i].names_itself || (size_t)folder_length(path) != length ||
+            strncmp(path, list->path, length) != 0)
             continue;
         if (maps[i].own == list)
             return i;
@@ -180,15 +184,19 @@ static size_t only_candidate(const struct plan_file *file, const struct map *map
 static void note_elsewhere(struct report *report, const char *map, const char *list, const char *owner)
 {
     if (owner[0])
-        report_add(report, REPORT_WARNING, "region.names-elsewhere", map,
-                   "%.120s belongs to %.120s, so it names nothing here. For names give this map a list as \"names\" in a plan.json.", list, owner);
+        report_add(
+            report, REPORT_WARNING, "region.names-elsewhere", map,
+            "%.120s belongs to %.120s, so it names nothing here. For names give this map a list as \"names\" in a plan.json.",
+            list, owner);
     else
-        report_add(report, REPORT_WARNING, "region.names-elsewhere", map,
-                   "%.120s does not name its map, and several lie beside it; its names were not used. Say it in a plan.json, as \"names\" of the map.",
-                   list);
+        report_add(
+            report, REPORT_WARNING, "region.names-elsewhere", map,
+            "%.120s does not name its map, and several lie beside it; its names were not used. Say it in a plan.json, as \"names\" of the map.",
+            list);
 }
 
-static void assign(const struct name_lists *lists, struct plan_file *file, const struct map *maps, size_t at, struct report *report)
+static void assign(const struct name_lists *lists, struct plan_file *file, const struct map *maps, size_t at,
+                   struct report *report)
 {
     struct plan_file_region *region = &file->regions[at];
     char path[FOLDER_NAME_SIZE];
@@ -199,7 +207,8 @@ static void assign(const struct name_lists *lists, struct plan_file *file, const
             return;
         size_t owner = beside->map[0] ? SIZE_MAX : only_candidate(file, maps, beside);
         if (owner != at) {
-            note_elsewhere(report, region->path, beside->path, owner < file->n_regions ? file->regions[owner].path : beside->map);
+            note_elsewhere(report, region->path, beside->path,
+                           owner < file->n_regions ? file->regions[owner].path : beside->map);
             return;
         }
         list = beside;
@@ -207,7 +216,8 @@ static void assign(const struct name_lists *lists, struct plan_file *file, const
     memcpy(region->names, list->path, sizeof region->names);
 }
 
-void name_lists_assign(const struct name_lists *lists, const struct folder *folder, struct plan_file *file, struct report *report)
+void name_lists_assign(const struct name_lists *lists, const struct folder *folder, struct plan_file *file,
+                       struct report *report)
 {
     if (lists->n == 0)
         return;
@@ -221,5 +231,6 @@ void name_lists_assign(const struct name_lists *lists, const struct folder *fold
     for (size_t i = 0; i < lists->n; i++)
         if (lists->lists[i].map[0] && folder_look(folder, lists->lists[i].map, NULL) != FOLDER_FILE)
             report_add(report, REPORT_WARNING, "region.names-elsewhere", lists->lists[i].path,
-                       "The list says that it belongs to %.200s, which is not there; its names were not used.", lists->lists[i].map);
+                       "The list says that it belongs to %.200s, which is not there; its names were not used.",
+                       lists->lists[i].map);
 }

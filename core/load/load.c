@@ -10,8 +10,9 @@
 #include "core/load/cache.h"
 #include "core/load/loading.h"
 
-/* A plan is loaded on a thread of its own, and the caller waits. So the caller can turn its back within LOOK_EVERY_MS whatever the
- * thread is in the middle of; that ends its file or slice, finds that nobody waits any more, and cleans up behind itself. */
+/* A plan is loaded on a thread of its own, and the caller waits. So the caller can turn its back within LOOK_EVERY_MS
+ * whatever the thread is in the middle of; that ends its file or slice, finds that nobody waits any more, and cleans up
+ * behind itself. */
 enum { LOOK_EVERY_MS = 20 };
 
 /* What is going on, and which part of the whole it is. */
@@ -106,7 +107,8 @@ static bool load_from_cache(struct loading *loading)
         return false;
     }
     struct plan_sources *sources = plan_sources_create(&tree);
-    const struct plan_cache_reading reading = { loading->options.max_bytes, cache_begun, cache_read, loading, &loading->is_given_up };
+    const struct plan_cache_reading reading = { loading->options.max_bytes, cache_begun, cache_read, loading,
+                                                &loading->is_given_up };
     bool is_read = sources && plan_cache_read(loading->options.cache_folder, sources, &reading, loading->plan);
     loading->plan->is_from_cache = is_read;
     loading->sources = sources;
@@ -122,8 +124,9 @@ static bool has_anything(const struct plan *plan, struct error *err)
     for (size_t i = 0; i < plan->report.n_lines; i++)
         if (!gravest || plan->report.lines[i].severity > gravest->severity)
             gravest = &plan->report.lines[i];
-    return error_set(err, ERROR_UNSUPPORTED, "nothing is left to show%s%s%s%s", gravest ? "; " : "", gravest ? gravest->where : "",
-                     gravest && gravest->where[0] ? ": " : "", gravest ? gravest->sentence : "");
+    return error_set(err, ERROR_UNSUPPORTED, "nothing is left to show%s%s%s%s", gravest ? "; " : "",
+                     gravest ? gravest->where : "", gravest && gravest->where[0] ? ": " : "",
+                     gravest ? gravest->sentence : "");
 }
 
 static bool load(struct loading *loading)
@@ -136,8 +139,8 @@ static bool load(struct loading *loading)
     const struct dicom_progress looking = { looked_at, loading, &loading->is_given_up, 0 };
     bool is_described = plan_describe(&loading->folder, &looking, &loading->parts, &plan->report, err);
     loading->file = loading->parts.file;
-    if (!is_described || !plan_make_jobs(loading, err) || !plan_check_estimate(loading, err) || !plan_run_jobs(loading, err) ||
-        !plan_assemble(loading, err) || !has_anything(plan, err))
+    if (!is_described || !plan_make_jobs(loading, err) || !plan_check_estimate(loading, err) ||
+        !plan_run_jobs(loading, err) || !plan_assemble(loading, err) || !has_anything(plan, err))
         return false;
     memcpy(plan->name, loading->file->name, sizeof plan->name);
     memcpy(plan->note, loading->file->note, sizeof plan->note);
@@ -198,7 +201,8 @@ static bool wait(struct loading *loading, struct error *err)
     return loading->is_whole;
 }
 
-static struct loading *loading_create(const char *folder, const char *id, const struct plan_load_options *options, struct error *err)
+static struct loading *loading_create(const char *folder, const char *id, const struct plan_load_options *options,
+                                      struct error *err)
 {
     struct loading *loading = mem_new(sizeof *loading);
     if (!folder_open(&loading->folder, folder, err)) {

@@ -5,7 +5,8 @@
 #include "core/load/cache.h"
 #include "core/plan/plan.h"
 
-/* Called from the loading thread as work goes on; phase is a short sentence fragment ("reading ct.nii.gz"), percent 0..100. */
+/* Called from the loading thread as work goes on; phase is a short sentence fragment ("reading ct.nii.gz"), percent
+ * 0..100. */
 struct plan_progress {
     void (*step)(void *context, const char *phase, double percent);
     void *context;
@@ -15,10 +16,11 @@ struct plan_progress {
 /* How a plan is opened; all zero: quietly and without a limit. */
 struct plan_load_options {
     struct plan_progress progress;
-    uint64_t max_bytes; /* refuse a plan that will take more, before a voxel is read; 0: no limit */
+    uint64_t max_bytes;       /* refuse a plan that will take more, before a voxel is read; 0: no limit */
     const char *cache_folder; /* where plan_cache_store may have kept it; NULL: nowhere */
-    struct plan_sources **sources; /* with a cache folder: becomes the files the plan was made from, for plan_cache_store, or NULL when
-                                    * there are too many to watch; the caller's: plan_sources_destroy. NULL: not wanted */
+    struct plan_sources *
+        *sources; /* with a cache folder: becomes the files the plan was made from, for plan_cache_store, or NULL when
+                   * there are too many to watch; the caller's: plan_sources_destroy. NULL: not wanted */
 };
 #define PLAN_ESTIMATE_FACTOR 1.5 /* how far the estimate compared with max_bytes may be off, either way */
 

@@ -22,12 +22,13 @@ bool plan_nifti_is_pair(const char *name)
 }
 
 /* The file with the same stem and one of the endings; first the one packed like the named file. */
-static bool find_other(const struct folder *folder, const char *name, size_t stem, const char *const endings[2], int packing,
-                       char other[FOLDER_NAME_SIZE])
+static bool find_other(const struct folder *folder, const char *name, size_t stem, const char *const endings[2],
+                       int packing, char other[FOLDER_NAME_SIZE])
 {
     bool is_upper = name[stem + 1] >= 'A' && name[stem + 1] <= 'Z';
     for (int turn = 0; turn < 2; turn++) {
-        int n = snprintf(other, FOLDER_NAME_SIZE, "%.*s%s", (int)stem, name, endings[turn == 0 ? packing : 1 - packing]);
+        int n =
+            snprintf(other, FOLDER_NAME_SIZE, "%.*s%s", (int)stem, name, endings[turn == 0 ? packing : 1 - packing]);
         if (n < 0 || n >= FOLDER_NAME_SIZE)
             continue;
         for (char *c = other + stem; is_upper && *c; c++)
@@ -53,7 +54,8 @@ bool plan_nifti_find_pair(const struct folder *folder, const char *name, struct 
     snprintf(named, FOLDER_NAME_SIZE, "%s", name);
     return find_other(folder, name, stem, is_head ? voxel_endings : head_endings, packing, other) ||
            error_set(err, ERROR_NOT_FOUND, "%s: %s, is not there", name,
-                     is_head ? "the voxels, the file of the same name with .img or .img.gz" : "the header, the file of the same name with .hdr or .hdr.gz");
+                     is_head ? "the voxels, the file of the same name with .img or .img.gz"
+                             : "the header, the file of the same name with .hdr or .hdr.gz");
 }
 
 void plan_nifti_voxels(const struct folder *folder, const char *name, char voxels[FOLDER_NAME_SIZE])
@@ -77,17 +79,20 @@ bool plan_nifti_peek(const struct folder *folder, const char *name, struct nifti
     const char *head_name = is_pair ? pair.head : name;
     if (!folder_read(folder, head_name, UINT64_MAX, HEAD_BYTES, &head, err))
         return false;
-    bool is_read = nifti_peek(&head, head_name, header, NULL, err) && nifti_check_place(header, is_pair, head_name, err);
+    bool is_read =
+        nifti_peek(&head, head_name, header, NULL, err) && nifti_check_place(header, is_pair, head_name, err);
     bytes_free(&head);
     return is_read;
 }
 
-static struct volume *read_pair(const struct folder *folder, const char *name, enum raw_use use, struct report *report, struct error *err)
+static struct volume *read_pair(const struct folder *folder, const char *name, enum raw_use use, struct report *report,
+                                struct error *err)
 {
     struct nifti_pair pair;
     struct bytes head, voxels;
     struct volume *volume = NULL;
-    if (!plan_nifti_find_pair(folder, name, &pair, err) || !folder_read(folder, pair.head, UINT64_MAX, HEAD_BYTES, &head, err))
+    if (!plan_nifti_find_pair(folder, name, &pair, err) ||
+        !folder_read(folder, pair.head, UINT64_MAX, HEAD_BYTES, &head, err))
         return NULL;
     if (folder_read(folder, pair.voxels, DATA_FILE_MAX_BYTES, UINT64_MAX, &voxels, err)) {
         volume = nifti_read_pair(&head, pair.head, &voxels, pair.voxels, use, report, err);
@@ -97,7 +102,8 @@ static struct volume *read_pair(const struct folder *folder, const char *name, e
     return volume;
 }
 
-struct volume *plan_nifti_read(const struct folder *folder, const char *name, enum raw_use use, struct report *report, struct error *err)
+struct volume *plan_nifti_read(const struct folder *folder, const char *name, enum raw_use use, struct report *report,
+                               struct error *err)
 {
     struct bytes bytes;
     if (plan_nifti_is_pair(name))

@@ -33,7 +33,8 @@ static bool read_parts(const struct folder *folder, const char *name, struct nrr
     return is_read;
 }
 
-struct volume *plan_nrrd_read(const struct folder *folder, const char *name, enum raw_use use, struct report *report, struct error *err)
+struct volume *plan_nrrd_read(const struct folder *folder, const char *name, enum raw_use use, struct report *report,
+                              struct error *err)
 {
     struct nrrd_header header;
     struct bytes data;
@@ -46,8 +47,8 @@ struct volume *plan_nrrd_read(const struct folder *folder, const char *name, enu
     return volume;
 }
 
-bool plan_nrrd_read_layers(const struct folder *folder, const char *name, struct nrrd_layers *layers, struct report *report,
-                           struct error *err)
+bool plan_nrrd_read_layers(const struct folder *folder, const char *name, struct nrrd_layers *layers,
+                           struct report *report, struct error *err)
 {
     struct nrrd_header header;
     struct bytes data;

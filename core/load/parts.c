@@ -24,11 +24,25 @@ enum part_format part_format_of(const struct folder *folder, const char *name)
     static const struct {
         const char *ending;
         enum part_format format;
-    } endings[] = { { ".nii", PART_NIFTI },     { ".nii.gz", PART_NIFTI },    { ".uvh", PART_UVH },        { ".qim", PART_QSH },
-                    { ".qim.gz", PART_QSH },    { ".qim.sz", PART_QSH },      { ".qhd", PART_QSH },         { ".pp", PART_PP },          { ".dcm", PART_DICOM },
-                    { ".nrrd", PART_NRRD },     { ".nhdr", PART_NRRD },       { ".rst", PART_SERA_RST },  { ".rst.gz", PART_SERA_RST },
-                    { ".rstb", PART_SERA_RST }, { ".rstb.gz", PART_SERA_RST }, { ".chd", PART_SERA_DOSE },
-                    { ".dose", PART_SERA_CURVE }, { ".dose.gz", PART_SERA_CURVE }, { ".rsc", PART_SERA_PREFERENCES },
+    } endings[] = { { ".nii", PART_NIFTI },
+                    { ".nii.gz", PART_NIFTI },
+                    { ".uvh", PART_UVH },
+                    { ".qim", PART_QSH },
+                    { ".qim.gz", PART_QSH },
+                    { ".qim.sz", PART_QSH },
+                    { ".qhd", PART_QSH },
+                    { ".pp", PART_PP },
+                    { ".dcm", PART_DICOM },
+                    { ".nrrd", PART_NRRD },
+                    { ".nhdr", PART_NRRD },
+                    { ".rst", PART_SERA_RST },
+                    { ".rst.gz", PART_SERA_RST },
+                    { ".rstb", PART_SERA_RST },
+                    { ".rstb.gz", PART_SERA_RST },
+                    { ".chd", PART_SERA_DOSE },
+                    { ".dose", PART_SERA_CURVE },
+                    { ".dose.gz", PART_SERA_CURVE },
+                    { ".rsc", PART_SERA_PREFERENCES },
                     { ".cmap", PART_SERA_PREFERENCES } };
     enum folder_kind kind = folder_look(folder, name, NULL);
     if (kind == FOLDER_ABSENT)
@@ -119,8 +133,8 @@ void plan_folder_name(const char *path, char *out, size_t size)
     text_clean(name, out, size);
 }
 
-bool plan_describe(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts, struct report *report,
-                   struct error *err)
+bool plan_describe(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts,
+                   struct report *report, struct error *err)
 {
     *parts = (struct plan_parts){ 0 };
     if (folder_look(folder, "plan.json", NULL) == FOLDER_ABSENT)

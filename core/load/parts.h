@@ -12,15 +12,15 @@ enum part_format {
     PART_PP,
     PART_DICOM,
     PART_NRRD,
-    PART_SERA_RST,  /* dose on a mesh */
-    PART_SERA_DOSE, /* .chd: dose on planes */
-    PART_SERA_CURVE, /* .dose: depth and radius along a beam */
+    PART_SERA_RST,         /* dose on a mesh */
+    PART_SERA_DOSE,        /* .chd: dose on planes */
+    PART_SERA_CURVE,       /* .dose: depth and radius along a beam */
     PART_SERA_PREFERENCES, /* .rsc, .cmap, body_data.txt */
     PART_UNKNOWN
 };
 /* By the name's ending; a folder and a file without a known ending are looked into for DICOM. */
 enum part_format part_format_of(const struct folder *folder, const char *name);
-bool part_is_sera_dose(enum part_format format); /* of several quantities */
+bool part_is_sera_dose(enum part_format format);       /* of several quantities */
 const char *part_format_word(enum part_format format); /* "NIfTI", "DICOM", ... */
 
 /* The name behind the last slash, and whether any of the words, in lower case, is in a name. */
@@ -36,15 +36,15 @@ struct plan_parts {
 };
 void plan_parts_finish(struct plan_parts *parts);
 
-/* plan.json when it is there, else the files that can be told by names and contents. The caller finishes parts, after a failure too.
- * errors as plan_load */
-NODISCARD bool plan_describe(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts,
-                             struct report *report, struct error *err);
+/* plan.json when it is there, else the files that can be told by names and contents. The caller finishes parts, after a
+ * failure too. errors as plan_load */
+NODISCARD bool plan_describe(const struct folder *folder, const struct dicom_progress *progress,
+                             struct plan_parts *parts, struct report *report, struct error *err);
 
-/* What the files of a folder without a plan.json are, those in folders below included (but folders that are plans of their own).
- * errors as plan_load */
-NODISCARD bool plan_recognise(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts,
-                              struct report *report, struct error *err);
+/* What the files of a folder without a plan.json are, those in folders below included (but folders that are plans of
+ * their own). errors as plan_load */
+NODISCARD bool plan_recognise(const struct folder *folder, const struct dicom_progress *progress,
+                              struct plan_parts *parts, struct report *report, struct error *err);
 
 /* The file of univels beside a .uvh, or of pixels beside a .qhd: stem + ".uv.gz", ".uv.sz", ".uv"; a packed one wins.
  * false when there is none. */

@@ -29,8 +29,10 @@ static bool read_names(const struct folder *folder, const char *path, struct job
     bool is_read = label_names_parse(bytes.data, bytes.size, path, &job->names, &job->err);
     bytes_free(&bytes);
     if (is_read && job->names.file[0] && strcmp(part_base_name(job->names.file), part_base_name(job->path)) != 0)
-        report_add(&job->report, REPORT_WARNING, "region.names-elsewhere", job->path, "The list of names, %.120s, says that it belongs to %.120s; "
-                   "it was used as the plan says.", path, job->names.file);
+        report_add(&job->report, REPORT_WARNING, "region.names-elsewhere", job->path,
+                   "The list of names, %.120s, says that it belongs to %.120s; "
+                   "it was used as the plan says.",
+                   path, job->names.file);
     return is_read;
 }
 
@@ -49,7 +51,8 @@ static bool read_series(struct loading *loading, struct job *job)
 {
     const struct dicom_progress progress = { slices_done, job, &loading->is_given_up, 0 };
     const struct dicom_index *index = loading->parts.dicom;
-    job->volume = dicom_series_read(&loading->folder, index, (size_t)job->stack, &progress, &job->facts, &job->report, &job->err);
+    job->volume =
+        dicom_series_read(&loading->folder, index, (size_t)job->stack, &progress, &job->facts, &job->report, &job->err);
     snprintf(job->modality, sizeof job->modality, "%.15s", index->stacks[job->stack].modality);
     return job->volume != NULL;
 }
@@ -64,7 +67,8 @@ static bool read_rt_object(const struct loading *loading, struct job *job)
     const struct dicom_object *object = plan_dicom_object(loading->parts.dicom, DICOM_KIND_SEGMENTATION, job->path, 0);
     if (job->kind == JOB_REGION && object) {
         job->layers = mem_new(sizeof *job->layers);
-        is_read = dicom_seg_read(opened.file, job->path, loading->file->regions[job->index].name, job->layers, &job->report, &job->err);
+        is_read = dicom_seg_read(opened.file, job->path, loading->file->regions[job->index].name, job->layers,
+                                 &job->report, &job->err);
     } else if (job->kind == JOB_REGION)
         is_read = (job->structs = rtstruct_read(opened.file, job->path, &job->report, &job->err)) != NULL;
     else if (job->kind == JOB_DOSE)
@@ -79,7 +83,8 @@ static bool read_region(const struct loading *loading, struct job *job)
 {
     const struct plan_file_region *region = &loading->file->regions[job->index];
     if (job->format == PART_UVH)
-        return plan_read_univels(&loading->folder, job->path, region->mm, &job->uvh, &job->volume, &job->report, &job->err);
+        return plan_read_univels(&loading->folder, job->path, region->mm, &job->uvh, &job->volume, &job->report,
+                                 &job->err);
     if (!read_names(&loading->folder, region->names, job))
         return false;
     if (job->format == PART_NRRD && !region->name[0])

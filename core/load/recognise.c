@@ -11,7 +11,8 @@
 #include "core/load/nifti_parts.h"
 #include "core/load/nrrd_parts.h"
 
-/* A folder without a plan.json: its files, and those in the folders below, become parts by what they are called and what they hold. */
+/* A folder without a plan.json: its files, and those in the folders below, become parts by what they are called and
+ * what they hold. */
 struct recognition {
     const struct folder *folder;
     struct plan_file *file;
@@ -83,7 +84,8 @@ static void add_image(struct recognition *all, const char *name, const char *hea
 {
     struct plan_file *file = all->file;
     if (file->n_images >= PLAN_MAX_IMAGES) {
-        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "More than %d images; this one was not read.", PLAN_MAX_IMAGES);
+        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name,
+                   "More than %d images; this one was not read.", PLAN_MAX_IMAGES);
         return;
     }
     struct plan_file_image *image = &file->images[file->n_images++];
@@ -95,8 +97,8 @@ static struct plan_file_region *add_region(struct recognition *all, const char *
 {
     struct plan_file *file = all->file;
     if (file->n_regions >= PLAN_FILE_MAX_PARTS) {
-        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "More than %d files of regions; this one was not read.",
-                   PLAN_FILE_MAX_PARTS);
+        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name,
+                   "More than %d files of regions; this one was not read.", PLAN_FILE_MAX_PARTS);
         return NULL;
     }
     struct plan_file_region *region = &file->regions[file->n_regions++];
@@ -108,7 +110,8 @@ static void add_dose(struct recognition *all, const char *name)
 {
     struct plan_file *file = all->file;
     if (file->n_doses >= PLAN_MAX_DOSES) {
-        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "More than %d doses; this one was not read.", PLAN_MAX_DOSES);
+        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "More than %d doses; this one was not read.",
+                   PLAN_MAX_DOSES);
         return;
     }
     struct plan_file_dose *dose = &file->doses[file->n_doses++];
@@ -117,7 +120,8 @@ static void add_dose(struct recognition *all, const char *name)
     dose->n_components = 1;
 }
 
-/* A grid whose header cannot be read is left out of a plan that nobody wrote down; why is kept for a folder with nothing else. */
+/* A grid whose header cannot be read is left out of a plan that nobody wrote down; why is kept for a folder with
+ * nothing else. */
 static bool has_good_header(struct recognition *all, const char *name, enum part_format format)
 {
     struct error err = { 0 };
@@ -146,7 +150,8 @@ static bool is_second_of_pair(const struct folder *folder, const char *name)
         return false;
     if (strcmp(pair.head, name) != 0)
         return true;
-    return text_has_ending(name, ".gz") && plan_nifti_find_pair(folder, pair.voxels, &other, NULL) && strcmp(other.head, name) != 0;
+    return text_has_ending(name, ".gz") && plan_nifti_find_pair(folder, pair.voxels, &other, NULL) &&
+           strcmp(other.head, name) != 0;
 }
 
 static void add_grid(struct recognition *all, const char *name, enum part_format format)
@@ -235,8 +240,8 @@ static const struct report_line *find_unreadable(const struct report *report, si
 }
 
 /* Why nothing was recognised, as far as the names tell. unreadable: NULL when no DICOM file was. */
-static void explain_nothing(const struct folder *folder, const struct folder_tree *tree, const struct dicom_index *dicom,
-                            const struct report_line *unreadable, struct error *err)
+static void explain_nothing(const struct folder *folder, const struct folder_tree *tree,
+                            const struct dicom_index *dicom, const struct report_line *unreadable, struct error *err)
 {
     static const char *const archives[] = { ".tar", ".tar.gz", ".tgz", ".tar.xz", ".zip" };
     char **names = NULL, inner[FOLDER_NAME_SIZE];
@@ -250,15 +255,18 @@ static void explain_nothing(const struct folder *folder, const struct folder_tre
     for (size_t i = 0; i < tree->n_files; i++)
         for (size_t a = 0; a < sizeof archives / sizeof archives[0]; a++)
             if (text_has_ending(tree->files[i].name, archives[a])) {
-                error_set(err, ERROR_UNSUPPORTED, "%s is an archive: unpack it first; nothing else in the folder is a plan",
+                error_set(err, ERROR_UNSUPPORTED,
+                          "%s is an archive: unpack it first; nothing else in the folder is a plan",
                           tree->files[i].name);
                 return;
             }
     if (unreadable) {
-        error_set(err, ERROR_NOT_FOUND, "no plan.json, and nothing to show in the folder; %s: %s", unreadable->where, unreadable->sentence);
+        error_set(err, ERROR_NOT_FOUND, "no plan.json, and nothing to show in the folder; %s: %s", unreadable->where,
+                  unreadable->sentence);
         return;
     }
-    error_set(err, ERROR_NOT_FOUND, "no plan.json, and no file in the folder is an image, regions or a dose that this version reads");
+    error_set(err, ERROR_NOT_FOUND,
+              "no plan.json, and no file in the folder is an image, regions or a dose that this version reads");
     if (!folder_list(folder, &names, &n_names, NULL))
         return;
     for (size_t i = 0; i < n_names; i++) {
@@ -280,11 +288,14 @@ static bool is_plan(const struct folder *folder, const char *name)
 }
 
 /* Everything in the tree, by names first; what may be DICOM is then looked at together. */
-static bool recognise_tree(const struct folder *folder, const struct folder_tree *tree, const struct dicom_progress *progress,
-                           struct plan_parts *parts, struct error *reason, struct report *report, struct error *err)
+static bool recognise_tree(const struct folder *folder, const struct folder_tree *tree,
+                           const struct dicom_progress *progress, struct plan_parts *parts, struct error *reason,
+                           struct report *report, struct error *err)
 {
-    struct recognition all = { folder, parts->file, report, mem_new((tree->n_files + 1) * sizeof(char *)), 0,
-                               name_lists_find(folder, tree, progress ? progress->cancel : NULL, report), { 0 } };
+    struct recognition all = { folder, parts->file,
+                               report, mem_new((tree->n_files + 1) * sizeof(char *)),
+                               0,      name_lists_find(folder, tree, progress ? progress->cancel : NULL, report),
+                               { 0 } };
     for (size_t i = 0; i < tree->n_files && !(progress && progress->cancel && atomic_load(progress->cancel)); i++)
         recognise_file(&all, tree->files[i].name);
     name_lists_assign(all.lists, folder, parts->file, report);
@@ -295,8 +306,8 @@ static bool recognise_tree(const struct folder *folder, const struct folder_tree
     return is_scanned;
 }
 
-bool plan_recognise(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts, struct report *report,
-                    struct error *err)
+bool plan_recognise(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts,
+                    struct report *report, struct error *err)
 {
     struct folder_tree tree;
     struct error reason = { 0 };
@@ -308,18 +319,23 @@ bool plan_recognise(const struct folder *folder, const struct dicom_progress *pr
     plan_folder_name(folder->path, file->name, sizeof file->name);
     size_t n_before = report ? report->n_lines : 0;
     if (tree.is_cut)
-        report_add(report, REPORT_WARNING, "plan.too-many-files", "", "Of the folder the first %d files down to %d folders deep were looked "
-                   "at; there are more.", FOLDER_MAX_FILES, FOLDER_MAX_DEPTH);
+        report_add(report, REPORT_WARNING, "plan.too-many-files", "",
+                   "Of the folder the first %d files down to %d folders deep were looked "
+                   "at; there are more.",
+                   FOLDER_MAX_FILES, FOLDER_MAX_DEPTH);
     bool is_known = recognise_tree(folder, &tree, progress, parts, &reason, report, err);
-    bool has_more = plan_dicom_object(parts->dicom, DICOM_KIND_DOSE, "", 0) || plan_dicom_object(parts->dicom, DICOM_KIND_PLAN, "", 0);
+    bool has_more = plan_dicom_object(parts->dicom, DICOM_KIND_DOSE, "", 0) ||
+                    plan_dicom_object(parts->dicom, DICOM_KIND_PLAN, "", 0);
     if (is_known && file->n_images + file->n_regions + file->n_doses == 0 && !has_more) {
         explain_nothing(folder, &tree, parts->dicom, find_unreadable(report, n_before), err);
         if (reason.text[0] && err)
             *err = reason;
         is_known = false;
     } else if (is_known) {
-        report_add(report, REPORT_NOTE, "plan.recognised", "", "The folder has no plan.json; its parts were found by names and contents: "
-                   "%zu images, %zu files of regions, %zu files of doses.", file->n_images, file->n_regions, file->n_doses);
+        report_add(report, REPORT_NOTE, "plan.recognised", "",
+                   "The folder has no plan.json; its parts were found by names and contents: "
+                   "%zu images, %zu files of regions, %zu files of doses.",
+                   file->n_images, file->n_regions, file->n_doses);
     }
     folder_tree_finish(&tree);
     return is_known;

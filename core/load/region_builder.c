@@ -23,8 +23,8 @@ void region_builder_finish(struct region_builder *builder)
     builder->pairs = NULL;
 }
 
-static struct region *add_region(struct region_builder *builder, const char *name, uint32_t layer, uint16_t label, const char *where,
-                                 struct error *err)
+static struct region *add_region(struct region_builder *builder, const char *name, uint32_t layer, uint16_t label,
+                                 const char *where, struct error *err)
 {
     struct region_set *set = builder->set;
     if (set->n_regions >= REGION_MAX) {
@@ -42,7 +42,8 @@ static struct region *add_region(struct region_builder *builder, const char *nam
                                .rbe_gamma = NAN };
     for (size_t i = 0; i < set->n_regions; i++)
         if (text_equal(set->regions[i].name, name)) {
-            report_add(builder->report, REPORT_NOTE, "region.renamed", where, "The name \"%s\" is there more than once.", name);
+            report_add(builder->report, REPORT_NOTE, "region.renamed", where,
+                       "The name \"%s\" is there more than once.", name);
             break;
         }
     region_make_id(set, name, region->id);
@@ -88,7 +89,8 @@ void region_builder_order(struct region_builder *builder)
         struct region region = set->regions[i];
         int place = builder->places[i];
         size_t at = i;
-        for (; at > 0 && (unsigned)(builder->places[at - 1] - 1) > (unsigned)(place - 1); at--) { /* no place is the last */
+        for (; at > 0 && (unsigned)(builder->places[at - 1] - 1) > (unsigned)(place - 1);
+             at--) { /* no place is the last */
             set->regions[at] = set->regions[at - 1];
             builder->places[at] = builder->places[at - 1];
         }
@@ -100,7 +102,8 @@ void region_builder_order(struct region_builder *builder)
             region_palette(i, set->regions[i].rgb);
 }
 
-static bool add_layer(struct region_builder *builder, struct volume *volume, const char *where, uint32_t *layer, struct error *err)
+static bool add_layer(struct region_builder *builder, struct volume *volume, const char *where, uint32_t *layer,
+                      struct error *err)
 {
     struct region_set *set = builder->set;
     if (set->n_layers >= REGION_MAX_LAYERS) {
@@ -136,7 +139,8 @@ static bool is_surroundings(const struct volume *volume, const char *name, uint1
     const uint32_t *size = volume->grid.size;
     int corners = 0;
     for (int corner = 0; corner < 8; corner++)
-        corners += volume_label(volume, corner & 1 ? size[0] - 1 : 0, corner & 2 ? size[1] - 1 : 0, corner & 4 ? size[2] - 1 : 0) == label;
+        corners += volume_label(volume, corner & 1 ? size[0] - 1 : 0, corner & 2 ? size[1] - 1 : 0,
+                                corner & 4 ? size[2] - 1 : 0) == label;
     return corners >= 4;
 }
 
@@ -159,8 +163,8 @@ static void make_name(char name[REGION_NAME_SIZE], uint32_t label, bool is_only,
         snprintf(name, REGION_NAME_SIZE, "label %u", label);
 }
 
-static bool add_unnamed(struct region_builder *builder, const uint64_t *counts, const bool *is_named, uint32_t layer, const char *where,
-                        struct error *err)
+static bool add_unnamed(struct region_builder *builder, const uint64_t *counts, const bool *is_named, uint32_t layer,
+                        const char *where, struct error *err)
 {
     size_t n_labels = 0;
     for (uint32_t label = 1; label < 65536; label++)
@@ -170,8 +174,8 @@ static bool add_unnamed(struct region_builder *builder, const uint64_t *counts, 
             continue;
         char name[REGION_NAME_SIZE];
         make_name(name, label, n_labels == 1, where);
-        report_add(builder->report, REPORT_NOTE, "region.unnamed", where, "%llu voxels carry the label %u, which has no name.",
-                   (unsigned long long)counts[label], label);
+        report_add(builder->report, REPORT_NOTE, "region.unnamed", where,
+                   "%llu voxels carry the label %u, which has no name.", (unsigned long long)counts[label], label);
         if (!add_region(builder, name, layer, (uint16_t)label, where, err))
             return false;
     }
@@ -218,15 +222,16 @@ bool region_builder_add_labels(struct region_builder *builder, struct volume *la
             add_pair(builder, label->parent, label->name);
     }
     if (n_unused > 0)
-        report_add(builder->report, REPORT_NOTE, "region.unused-names", where, "%zu named labels have no voxel.", n_unused);
+        report_add(builder->report, REPORT_NOTE, "region.unused-names", where, "%zu named labels have no voxel.",
+                   n_unused);
     is_added = is_added && add_unnamed(builder, counts, is_named, layer, where, err);
     free(counts);
     free(is_named);
     return is_added;
 }
 
-bool region_builder_add_univels(struct region_builder *builder, struct volume *univels, const struct uvh *uvh, const char *where,
-                                struct error *err)
+bool region_builder_add_univels(struct region_builder *builder, struct volume *univels, const struct uvh *uvh,
+                                const char *where, struct error *err)
 {
     uint32_t layer = 0;
     if (!add_layer(builder, univels, where, &layer, err))
@@ -278,7 +283,8 @@ static bool grids_are_equal(const struct grid *a, const struct grid *b)
     double most_mm = 0.01 * fmin(spacing.x, fmin(spacing.y, spacing.z));
     for (int corner = 0; corner < 8; corner++) {
         struct vec3 at = vec3(corner & 1 ? a->size[0] : 0, corner & 2 ? a->size[1] : 0, corner & 4 ? a->size[2] : 0);
-        if (!(vec3_length(vec3_sub(affine_point(&a->lps_mm_from_ijk, at), affine_point(&b->lps_mm_from_ijk, at))) <= most_mm))
+        if (!(vec3_length(vec3_sub(affine_point(&a->lps_mm_from_ijk, at), affine_point(&b->lps_mm_from_ijk, at))) <=
+              most_mm))
             return false;
     }
     return true;
@@ -318,7 +324,8 @@ bool region_builder_add_mask(struct region_builder *builder, struct volume *mask
     struct region_set *set = builder->set;
     uint32_t layer = REGION_MAX_LAYERS;
     for (uint32_t i = 0; i < set->n_layers && layer == REGION_MAX_LAYERS; i++) {
-        if (!builder->is_packed[i] || builder->n_labels[i] >= UINT8_MAX || !grids_are_equal(&mask->grid, &set->layers[i]->grid))
+        if (!builder->is_packed[i] || builder->n_labels[i] >= UINT8_MAX ||
+            !grids_are_equal(&mask->grid, &set->layers[i]->grid))
             continue;
         struct laying laying = { set->layers[i], (uint8_t)(builder->n_labels[i] + 1), true };
         label_rows_runs(mask, check_run, &laying);
@@ -343,13 +350,14 @@ bool region_builder_add_mask(struct region_builder *builder, struct volume *mask
     return region != NULL;
 }
 
-bool region_builder_add_bits(struct region_builder *builder, const struct mask *mask, const struct grid *grid, const char *name,
-                             const uint8_t *rgb, const char *where, struct error *err)
+bool region_builder_add_bits(struct region_builder *builder, const struct mask *mask, const struct grid *grid,
+                             const char *name, const uint8_t *rgb, const char *where, struct error *err)
 {
     struct region_set *set = builder->set;
     uint32_t layer = 0;
-    while (layer < set->n_layers && !(builder->is_packed[layer] && builder->n_labels[layer] < UINT8_MAX &&
-                                      grids_are_equal(grid, &set->layers[layer]->grid) && mask_layer_is_free(mask, set->layers[layer])))
+    while (layer < set->n_layers &&
+           !(builder->is_packed[layer] && builder->n_labels[layer] < UINT8_MAX &&
+             grids_are_equal(grid, &set->layers[layer]->grid) && mask_layer_is_free(mask, set->layers[layer])))
         layer++;
     if (layer < set->n_layers) {
         mask_layer_put(mask, set->layers[layer], (uint16_t)(builder->n_labels[layer] + 1));

@@ -17,7 +17,8 @@ struct names {
     size_t n_edges;
 };
 
-/* An id comes before a name: our own plan.json speaks of ids, and another region may be named like one. Files of others know names. */
+/* An id comes before a name: our own plan.json speaks of ids, and another region may be named like one. Files of others
+ * know names. */
 static int find_region(const struct region_set *set, const char *name, bool is_by_id)
 {
     const struct region *known = is_by_id ? region_find(set, name) : NULL;
@@ -101,11 +102,12 @@ void region_set_apply_pairs(struct region_set *set, const struct plan_file_pair 
                            .edges = mem_new(most * sizeof(size_t[2])) };
     uint8_t *marks = mem_new(most);
     for (size_t i = 0; i < n_pairs; i++) {
-        size_t outer = find_name(&names, set, pairs[i].outer, is_strict), inner = find_name(&names, set, pairs[i].inner, is_strict);
+        size_t outer = find_name(&names, set, pairs[i].outer, is_strict),
+               inner = find_name(&names, set, pairs[i].inner, is_strict);
         memset(marks, 0, most);
         if (leads_to(&names, outer, inner, marks)) {
-            report_add(report, REPORT_WARNING, "hierarchy.cycle", where, "\"%s > %s\" would put a region inside itself; left out.",
-                       pairs[i].outer, pairs[i].inner);
+            report_add(report, REPORT_WARNING, "hierarchy.cycle", where,
+                       "\"%s > %s\" would put a region inside itself; left out.", pairs[i].outer, pairs[i].inner);
             continue;
         }
         names.edges[names.n_edges][0] = inner;
@@ -114,7 +116,8 @@ void region_set_apply_pairs(struct region_set *set, const struct plan_file_pair 
     for (size_t at = 0; at < names.n; at++) {
         if (names.region[at] < 0) {
             if (is_strict)
-                report_add(report, REPORT_WARNING, "hierarchy.unknown-name", where, "There is no region \"%s\".", names.name[at]);
+                report_add(report, REPORT_WARNING, "hierarchy.unknown-name", where, "There is no region \"%s\".",
+                           names.name[at]);
             continue;
         }
         int parent = -1, depth = -1;
@@ -123,7 +126,8 @@ void region_set_apply_pairs(struct region_set *set, const struct plan_file_pair 
         if (parent < 0)
             continue;
         if (is_above(set, names.region[at], parent)) { /* a region under two names, its name and its id */
-            report_add(report, REPORT_WARNING, "hierarchy.cycle", where, "\"%s\" would lie inside itself; left out.", names.name[at]);
+            report_add(report, REPORT_WARNING, "hierarchy.cycle", where, "\"%s\" would lie inside itself; left out.",
+                       names.name[at]);
             continue;
         }
         set->regions[names.region[at]].parent = parent;

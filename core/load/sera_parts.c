@@ -10,7 +10,8 @@
 #define DATA_FILE_MAX_BYTES (VOLUME_MAX_BYTES + (1 << 20))
 
 /* A file as it lies there or as SERA packs it, at most limit bytes either way. */
-static bool read_unpacked(const struct folder *folder, const char *name, uint64_t limit, struct bytes *bytes, struct error *err)
+static bool read_unpacked(const struct folder *folder, const char *name, uint64_t limit, struct bytes *bytes,
+                          struct error *err)
 {
     struct bytes file;
     bool is_packed;
@@ -26,8 +27,8 @@ static bool read_unpacked(const struct folder *folder, const char *name, uint64_
     return is_read;
 }
 
-bool plan_read_univels(const struct folder *folder, const char *path, double given_mm, struct uvh *uvh, struct volume **univels,
-                       struct report *report, struct error *err)
+bool plan_read_univels(const struct folder *folder, const char *path, double given_mm, struct uvh *uvh,
+                       struct volume **univels, struct report *report, struct error *err)
 {
     struct bytes header, data;
     char data_name[FOLDER_NAME_SIZE];
@@ -46,8 +47,9 @@ bool plan_read_univels(const struct folder *folder, const char *path, double giv
     return *univels != NULL;
 }
 
-bool plan_read_qsh(const struct folder *folder, const char *path, const char *header, double given_mm, struct volume **image,
-                   char modality[16], bool *is_grid_doubtful, struct report *report, struct error *err)
+bool plan_read_qsh(const struct folder *folder, const char *path, const char *header, double given_mm,
+                   struct volume **image, char modality[16], bool *is_grid_doubtful, struct report *report,
+                   struct error *err)
 {
     struct bytes text, pixels;
     struct qhd qhd;
@@ -57,7 +59,8 @@ bool plan_read_qsh(const struct folder *folder, const char *path, const char *he
     if (text_has_ending(path, ".qhd")) {
         snprintf(header_name, sizeof header_name, "%s", path);
         if (!part_find_data(folder, path, ".qim", pixel_name))
-            return error_set(err, ERROR_NOT_FOUND, "%s: the pixels, a .qim or .qim.gz file beside it, are missing", path);
+            return error_set(err, ERROR_NOT_FOUND, "%s: the pixels, a .qim or .qim.gz file beside it, are missing",
+                             path);
     } else if (!header[0]) {
         bool is_packed = text_has_ending(path, ".gz") || text_has_ending(path, ".sz");
         size_t stem = strlen(path) - (is_packed ? strlen(".qim.gz") : strlen(".qim"));
@@ -90,7 +93,8 @@ bool plan_read_rst(const struct folder *folder, const char *path, struct sera_do
     return is_read;
 }
 
-static bool read_chd_header(const struct folder *folder, const char *path, struct chd *chd, struct report *report, struct error *err)
+static bool read_chd_header(const struct folder *folder, const char *path, struct chd *chd, struct report *report,
+                            struct error *err)
 {
     struct bytes text;
     if (!folder_read(folder, path, CHD_MAX_BYTES, UINT64_MAX, &text, err))
@@ -100,19 +104,22 @@ static bool read_chd_header(const struct folder *folder, const char *path, struc
     return is_read;
 }
 
-bool plan_read_chd(const struct folder *folder, const char *path, struct sera_doses *doses, struct report *report, struct error *err)
+bool plan_read_chd(const struct folder *folder, const char *path, struct sera_doses *doses, struct report *report,
+                   struct error *err)
 {
     char table_name[FOLDER_NAME_SIZE], mask_name[FOLDER_NAME_SIZE] = "";
     struct chd chd;
     if (!part_find_data(folder, path, ".cdf", table_name))
-        return error_set(err, ERROR_NOT_FOUND, "%s: the table of points, a .cdf.sz or .cdf file beside it, is missing", path);
+        return error_set(err, ERROR_NOT_FOUND, "%s: the table of points, a .cdf.sz or .cdf file beside it, is missing",
+                         path);
     if (!read_chd_header(folder, path, &chd, report, err))
         return false;
     struct chd_files files = { .name = path, .table_name = table_name, .mask_name = mask_name };
     bool is_read = read_unpacked(folder, table_name, chd_table_bytes(&chd), &files.table, err);
     if (is_read && !part_find_data(folder, path, ".cmf", mask_name))
-        report_add(report, REPORT_NOTE, "dose.mask-unread", path,
-                   "There are no pictures of regions, .cmf.sz, beside it; where the dose is valid was taken from its points alone.");
+        report_add(
+            report, REPORT_NOTE, "dose.mask-unread", path,
+            "There are no pictures of regions, .cmf.sz, beside it; where the dose is valid was taken from its points alone.");
     else if (is_read)
         is_read = read_unpacked(folder, mask_name, chd_mask_bytes(&chd), &files.mask, err);
     is_read = is_read && chd_read(&chd, &files, doses, report, err);
@@ -128,16 +135,20 @@ void plan_dose_units(struct dose *dose, const struct plan_file_dose *entry, bool
     snprintf(dose->unit, sizeof dose->unit, "%s", is_sera ? "cGy" : entry->unit);
     snprintf(dose->per, sizeof dose->per, "%s", is_sera && !entry->per[0] ? "unit of the source" : entry->per);
     if (!dose->unit[0])
-        report_add(report, REPORT_WARNING, "dose.no-unit", path, "The plan does not say the unit of the dose \"%s\".", dose->id);
+        report_add(report, REPORT_WARNING, "dose.no-unit", path, "The plan does not say the unit of the dose \"%s\".",
+                   dose->id);
     if (is_sera && entry->unit[0] && strcmp(entry->unit, dose->unit) != 0)
         report_add(report, REPORT_WARNING, "dose.unit-differs", path,
-                   "The plan says that the dose \"%s\" is in %s; a file of SERA is in cGy, and that was used.", dose->id, entry->unit);
+                   "The plan says that the dose \"%s\" is in %s; a file of SERA is in cGy, and that was used.",
+                   dose->id, entry->unit);
     if (!entry->per[0])
-        report_add(report, REPORT_NOTE, "dose.no-per", path,
-                   is_sera ? "The dose \"%s\" is for one unit of the source, as its source file normalises it; neither the plan nor the "
-                             "file says what that unit is, for instance 250 kW-min."
-                           : "The plan does not say what the dose \"%s\" is per: a fraction, a minute, the whole treatment.",
-                   dose->id);
+        report_add(
+            report, REPORT_NOTE, "dose.no-per", path,
+            is_sera
+                ? "The dose \"%s\" is for one unit of the source, as its source file normalises it; neither the plan nor the "
+                  "file says what that unit is, for instance 250 kW-min."
+                : "The plan does not say what the dose \"%s\" is per: a fraction, a minute, the whole treatment.",
+            dose->id);
 }
 
 void plan_dose_frame(struct dose *dose, const struct plan_file_dose *entry, const char *where, struct report *report)
@@ -147,8 +158,10 @@ void plan_dose_frame(struct dose *dose, const struct plan_file_dose *entry, cons
     dose->frame = dose->has_frame && dose->frame > entry->frame ? dose->frame : entry->frame;
     dose->has_frame = true;
     if (entry->frame == DOSE_FRAME_DIFFERS)
-        report_add(report, REPORT_WARNING, "dose.frame-differs", where,
-                   "The plan says that the dose \"%s\" is in another frame of reference than the image; it may be shifted against it.", dose->id);
+        report_add(
+            report, REPORT_WARNING, "dose.frame-differs", where,
+            "The plan says that the dose \"%s\" is in another frame of reference than the image; it may be shifted against it.",
+            dose->id);
 }
 
 static void add(struct dose *dose, struct dose_component component, const char *path, struct report *report)
@@ -188,7 +201,8 @@ void plan_add_sera(struct dose *dose, const struct plan_file_dose *entry, size_t
     bool is_any = false;
     for (size_t i = 0; i < doses->n_components; i++) {
         struct dose_component *held = &doses->components[i];
-        bool is_asked = from->quantity == held->quantity || (from->quantity == DOSE_TOTAL && !is_named(entry, held->quantity));
+        bool is_asked =
+            from->quantity == held->quantity || (from->quantity == DOSE_TOTAL && !is_named(entry, held->quantity));
         if (!is_asked || dose->n_components >= DOSE_N_QUANTITIES)
             continue;
         bool is_given = from->reference > 0 && from->quantity == held->quantity;

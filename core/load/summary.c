@@ -7,9 +7,9 @@
 #include "core/formats/sera_rst.h"
 #include "core/formats/sera_uvh.h"
 #include "core/formats/text.h"
+#include "core/load/dicom_parts.h"
 #include "core/load/nifti_parts.h"
 #include "core/load/nrrd_parts.h"
-#include "core/load/dicom_parts.h"
 
 enum { NAMES_MAX_BYTES = 16 << 20 };
 
@@ -66,8 +66,8 @@ static size_t count_bodies(const struct uvh *uvh)
     return n;
 }
 
-static bool check_univels(const struct folder *folder, const char *name, struct plan_summary *summary, size_t *n_regions,
-                          struct error *err)
+static bool check_univels(const struct folder *folder, const char *name, struct plan_summary *summary,
+                          size_t *n_regions, struct error *err)
 {
     struct bytes header;
     struct uvh uvh;
@@ -124,15 +124,16 @@ static void add_image_part(struct plan_summary *summary, const struct plan_parts
     char part[64];
     if (stack >= 0) {
         const struct dicom_stack *of = &parts->dicom->stacks[stack];
-        snprintf(part, sizeof part, "%.16s, %u slice%s", image->modality[0] ? image->modality : of->modality, of->n_slices,
-                 of->n_slices == 1 ? "" : "s");
+        snprintf(part, sizeof part, "%.16s, %u slice%s", image->modality[0] ? image->modality : of->modality,
+                 of->n_slices, of->n_slices == 1 ? "" : "s");
         add_part(summary, 1, part, NULL);
         return;
     }
     size_t n = 0;
     bool is_first = true;
     for (size_t other = 0; other < file->n_images; other++) {
-        bool is_same = strcmp(file->images[other].modality, image->modality) == 0 && plan_dicom_stack(parts->dicom, file->images[other].path) < 0;
+        bool is_same = strcmp(file->images[other].modality, image->modality) == 0 &&
+                       plan_dicom_stack(parts->dicom, file->images[other].path) < 0;
         n += is_same;
         is_first = is_first && !(is_same && other < index);
     }
@@ -142,7 +143,8 @@ static void add_image_part(struct plan_summary *summary, const struct plan_parts
         add_part(summary, n, "image", "images");
 }
 
-static bool check_images(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary, struct error *err)
+static bool check_images(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary,
+                         struct error *err)
 {
     bool is_good = true;
     for (size_t i = 0; i < parts->file->n_images; i++) {
@@ -171,8 +173,8 @@ static size_t count_items(const struct folder *folder, const char *path, uint32_
 }
 
 /* Items of all objects of a kind at or below a path. */
-static size_t count_objects(const struct folder *folder, const struct dicom_index *index, enum dicom_kind kind, const char *path,
-                            struct plan_summary *summary)
+static size_t count_objects(const struct folder *folder, const struct dicom_index *index, enum dicom_kind kind,
+                            const char *path, struct plan_summary *summary)
 {
     const struct dicom_object *object;
     size_t n = 0;
@@ -192,7 +194,8 @@ static size_t count_objects(const struct folder *folder, const struct dicom_inde
     return n;
 }
 
-static bool check_regions(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary, struct error *err)
+static bool check_regions(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary,
+                          struct error *err)
 {
     const struct plan_file *file = parts->file;
     size_t n_regions = 0, n_names = 0, n_maps = 0;
@@ -244,7 +247,8 @@ static void count_doses(const struct folder *folder, const struct plan_parts *pa
         for (size_t c = 0; c < dose->n_components; c++) {
             count_bytes(folder, dose->components[c].path, summary);
             enum part_format format = part_format_of(folder, dose->components[c].path);
-            is_read = is_read && (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format) || format == PART_DICOM);
+            is_read = is_read && (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format) ||
+                                  format == PART_DICOM);
             if (part_is_sera_dose(format) && dose->components[c].quantity == DOSE_TOTAL)
                 n_more += (format == PART_SERA_RST ? RST_N_DOSES : CHD_N_COLUMNS) - dose->n_components;
         }

@@ -1,8 +1,8 @@
 #pragma once
 /* What a plan folder holds, from names and headers alone: for the list of plans. */
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdbool.h>
 
 struct plan_summary {
     char name[128];

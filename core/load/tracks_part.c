@@ -5,7 +5,8 @@
 
 #include "core/formats/sera_pp.h"
 
-static bool add_file(struct plan *plan, const struct folder *folder, const struct plan_file_tracks *entry, struct error *err)
+static bool add_file(struct plan *plan, const struct folder *folder, const struct plan_file_tracks *entry,
+                     struct error *err)
 {
     struct bytes bytes;
     size_t first = plan->tracks.n_segments;
@@ -14,7 +15,8 @@ static bool add_file(struct plan *plan, const struct folder *folder, const struc
     bool is_read = pp_parse(bytes.data, bytes.size, entry->path, &plan->tracks, &plan->report, err);
     bytes_free(&bytes);
     if (is_read)
-        pp_scale(&plan->tracks, first, pp_unit_mm(&plan->tracks, first, entry->mm, &plan->bounds_lps_mm, entry->path, &plan->report),
+        pp_scale(&plan->tracks, first,
+                 pp_unit_mm(&plan->tracks, first, entry->mm, &plan->bounds_lps_mm, entry->path, &plan->report),
                  entry->path, &plan->report);
     return is_read;
 }
@@ -33,11 +35,9 @@ static void beam_from_tracks(struct plan *plan)
         if (segment->class != TRACK_BEAM_LINE || vec3_length(vec3_sub(from, to)) < BEAM_MIN_LENGTH_MM)
             continue;
         struct beam *beam = &plan->beams[plan->n_beams++];
-        *beam = (struct beam){ .id = "beam-1",
-                               .entry_lps_mm = from,
-                               .target_lps_mm = to,
-                               .aperture_mm = NAN };
-        report_add(&plan->report, REPORT_NOTE, "beam.from-tracks", "", "The plan gives no beam; the beam line of the tracks was taken, "
+        *beam = (struct beam){ .id = "beam-1", .entry_lps_mm = from, .target_lps_mm = to, .aperture_mm = NAN };
+        report_add(&plan->report, REPORT_NOTE, "beam.from-tracks", "",
+                   "The plan gives no beam; the beam line of the tracks was taken, "
                    "from the source plane to the target. Its aperture is unknown.");
     }
 }

@@ -16,7 +16,10 @@
 #include "core/load/write_sera_texts.h"
 
 static const char *const folders[] = { "images", "regions", "doses", "curves" };
-enum { N_FOLDERS = sizeof folders / sizeof folders[0], MAX_FILES = PLAN_MAX_IMAGES + REGION_MAX_LAYERS + PLAN_MAX_DOSES * (DOSE_N_QUANTITIES + 1) };
+enum {
+    N_FOLDERS = sizeof folders / sizeof folders[0],
+    MAX_FILES = PLAN_MAX_IMAGES + REGION_MAX_LAYERS + PLAN_MAX_DOSES * (DOSE_N_QUANTITIES + 1)
+};
 
 /* One file of voxels, written by any thread. */
 struct output {
@@ -53,7 +56,7 @@ static struct output *add_output(struct writing *writing, const struct volume *v
     return output;
 }
 
-/* ---- what is to be written ------------------------------------------------------------------------------------------ */
+/* ---- what is to be written -------------------------------------------------------------------------------------- */
 
 static void list_images(struct writing *writing)
 {
@@ -72,7 +75,8 @@ static void list_images(struct writing *writing)
     }
 }
 
-static bool write_names(const struct writing *writing, uint32_t layer, const char *name, bool *is_kept, struct error *err)
+static bool write_names(const struct writing *writing, uint32_t layer, const char *name, bool *is_kept,
+                        struct error *err)
 {
     const struct region_set *set = &writing->plan->regions;
     struct label_names names = { .labels = mem_new(set->n_regions * sizeof *names.labels) };
@@ -90,7 +94,8 @@ static bool write_names(const struct writing *writing, uint32_t layer, const cha
         memcpy(label->id, region->id, sizeof label->id);
         label->place = (int)r + 1;
         label->has_tissue = true;
-        label->tissue = (struct label_tissue){ region->boron_ratio, region->cbe_boron, region->rbe_nitrogen, region->rbe_fast, region->rbe_gamma };
+        label->tissue = (struct label_tissue){ region->boron_ratio, region->cbe_boron, region->rbe_nitrogen,
+                                               region->rbe_fast, region->rbe_gamma };
         is_kept[region->label] = true;
     }
     char *text = label_names_text(&names);
@@ -149,7 +154,8 @@ static void list_doses(struct writing *writing)
             component->has_boron_ppm = dose->components[c].has_boron_ppm;
             component->boron_ppm = dose->components[c].boron_ppm;
             component->reference = dose->reference[component->quantity];
-            snprintf(component->path, sizeof component->path, "doses/%s_%s.nii.gz", dose->id, dose_quantity_word(component->quantity));
+            snprintf(component->path, sizeof component->path, "doses/%s_%s.nii.gz", dose->id,
+                     dose_quantity_word(component->quantity));
             add_output(writing, dose->components[c].values, component->path);
         }
         if (dose->mask) {
@@ -159,7 +165,7 @@ static void list_doses(struct writing *writing)
     }
 }
 
-/* ---- writing it ------------------------------------------------------------------------------------------------------- */
+/* ---- writing it ------------------------------------------------------------------------------------------------- */
 
 /* A copy of a label layer with the labels of no region cleared. */
 static struct volume *copy_kept(const struct volume *layer, const bool *is_kept, uint64_t *n_cleared, struct error *err)
@@ -198,7 +204,8 @@ static void write_some(void *context, int part, int n_parts)
     (void)part;
     (void)n_parts;
     struct writing *writing = context;
-    for (size_t at; !atomic_load(&writing->is_failed) && (at = atomic_fetch_add(&writing->next, 1)) < writing->n_outputs;) {
+    for (size_t at;
+         !atomic_load(&writing->is_failed) && (at = atomic_fetch_add(&writing->next, 1)) < writing->n_outputs;) {
         writing->outputs[at].is_failed = !write_output(writing, &writing->outputs[at]);
         if (writing->outputs[at].is_failed)
             atomic_store(&writing->is_failed, true);
@@ -224,7 +231,8 @@ static bool write_plan_json(const struct writing *writing, struct error *err)
     char path[PATH_MAX];
     char *text = plan_file_text(writing->file);
     size_t n = strlen(text);
-    struct plan_file *again = plan_file_parse((const uint8_t *)text, n, NULL, err); /* nobody is left with a plan that does not open */
+    struct plan_file *again =
+        plan_file_parse((const uint8_t *)text, n, NULL, err); /* nobody is left with a plan that does not open */
     join(path, writing->folder, "plan.json");
     bool is_written = again && file_write(path, text, n, err);
     plan_file_destroy(again);
@@ -245,12 +253,13 @@ static bool write_contents(struct writing *writing, struct error *err)
     list_doses(writing);
     memcpy(file->beams, plan->beams, sizeof file->beams);
     file->n_beams = plan->n_beams;
-    is_written = is_written && write_volumes(writing, err) && plan_write_texts(plan, writing->folder, file, err) && write_plan_json(writing, err);
+    is_written = is_written && write_volumes(writing, err) && plan_write_texts(plan, writing->folder, file, err) &&
+                 write_plan_json(writing, err);
     free(is_kept);
     return is_written;
 }
 
-/* ---- the folder ------------------------------------------------------------------------------------------------------- */
+/* ---- the folder ------------------------------------------------------------------------------------------------- */
 
 static bool is_empty(const char *folder)
 {
@@ -275,7 +284,8 @@ static bool check_target(const char *folder, struct error *err)
 
 static bool make_folder(const char *folder, const char *asked_for, struct error *err)
 {
-    return mkdir(folder, 0777) == 0 || error_set(err, ERROR_IO, "%.180s: cannot be created: %s", asked_for, strerror(errno));
+    return mkdir(folder, 0777) == 0 ||
+           error_set(err, ERROR_IO, "%.180s: cannot be created: %s", asked_for, strerror(errno));
 }
 
 static bool make_inner_folders(const char *folder, const char *asked_for, struct error *err)
@@ -338,16 +348,18 @@ static void tell_lost(const struct writing *writing, struct report *lost)
 {
     for (size_t i = 0; i < writing->n_outputs; i++)
         if (writing->outputs[i].n_cleared > 0)
-            report_add(lost, REPORT_NOTE, "write.labels-cleared", writing->outputs[i].name,
-                       "%llu voxels that carry a label of no region, such as the filling around the patient, are written as 0.",
-                       (unsigned long long)writing->outputs[i].n_cleared);
+            report_add(
+                lost, REPORT_NOTE, "write.labels-cleared", writing->outputs[i].name,
+                "%llu voxels that carry a label of no region, such as the filling around the patient, are written as 0.",
+                (unsigned long long)writing->outputs[i].n_cleared);
 }
 
 bool plan_write(const struct plan *plan, const char *folder, struct report *lost, struct error *err)
 {
     struct writing writing = { .plan = plan };
     char place[FILE_FOLDER_SIZE];
-    if (!file_folder_paths(folder, place, writing.folder, err) || !check_target(place, err) || !make_folder(writing.folder, place, err))
+    if (!file_folder_paths(folder, place, writing.folder, err) || !check_target(place, err) ||
+        !make_folder(writing.folder, place, err))
         return false;
     writing.outputs = mem_new(MAX_FILES * sizeof *writing.outputs);
     writing.file = mem_new(sizeof *writing.file);

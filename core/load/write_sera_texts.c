@@ -21,8 +21,9 @@ static bool sheet_close(struct sheet *sheet, const char *folder, const char *nam
     bool is_whole = sheet->out && !ferror(sheet->out);
     is_whole = sheet->out && fclose(sheet->out) == 0 && is_whole;
     int n = snprintf(path, sizeof path, "%s/%s", folder, name);
-    bool is_written = is_whole && n > 0 && n < (int)sizeof path ? file_write(path, sheet->text, sheet->n_bytes, err)
-                                                                : error_set(err, ERROR_MEMORY, "%s: no memory for its text", name);
+    bool is_written = is_whole && n > 0 && n < (int)sizeof path
+                          ? file_write(path, sheet->text, sheet->n_bytes, err)
+                          : error_set(err, ERROR_MEMORY, "%s: no memory for its text", name);
     free(sheet->text);
     return is_written;
 }
@@ -46,8 +47,8 @@ static bool write_tracks(const struct track_set *tracks, const char *folder, str
     for (size_t i = 0; sheet.out && i < tracks->n_segments; i++) {
         const struct track_segment *segment = &tracks->segments[i];
         const float *a = segment->from_lps_mm, *b = segment->to_lps_mm;
-        fprintf(sheet.out, "%.9g %.9g %.9g %.9g %.9g %.9g %d %d\n", (double)a[0], -(double)a[1], (double)a[2], (double)b[0], -(double)b[1],
-                (double)b[2], codes[segment->class][0], codes[segment->class][1]);
+        fprintf(sheet.out, "%.9g %.9g %.9g %.9g %.9g %.9g %d %d\n", (double)a[0], -(double)a[1], (double)a[2],
+                (double)b[0], -(double)b[1], (double)b[2], codes[segment->class][0], codes[segment->class][1]);
     }
     return sheet_close(&sheet, folder, entry->path, err);
 }
@@ -66,14 +67,15 @@ static double cm_of(double mm)
     return cm;
 }
 
-/* A value that is none is printed as SERA's Fortran prints what does not fit; a point without any is all zeros, outside the mesh.
- * All values are as wide, so that no line is as long as one of SERA's own columns, which readers go by. */
+/* A value that is none is printed as SERA's Fortran prints what does not fit; a point without any is all zeros, outside
+ * the mesh. All values are as wide, so that no line is as long as one of SERA's own columns, which readers go by. */
 static void print_point(FILE *out, const struct dose_curve *curve, size_t point)
 {
     bool is_nothing = true;
     for (size_t c = 0; c < curve->n_columns; c++)
         is_nothing = is_nothing && isnan(curve->values[c][point]);
-    fprintf(out, "%.17g %.17g 0 0", cm_of(curve->depths_mm[point / curve->n_radii]), cm_of(curve->radii_mm[point % curve->n_radii]));
+    fprintf(out, "%.17g %.17g 0 0", cm_of(curve->depths_mm[point / curve->n_radii]),
+            cm_of(curve->radii_mm[point % curve->n_radii]));
     for (size_t c = 0; c < curve->n_columns; c++)
         if (is_nothing)
             fprintf(out, " 0.00000000E+00");
@@ -84,7 +86,8 @@ static void print_point(FILE *out, const struct dose_curve *curve, size_t point)
     fputc('\n', out);
 }
 
-static bool write_curve(const struct dose_curve *curve, const char *folder, struct plan_file_curve *entry, struct error *err)
+static bool write_curve(const struct dose_curve *curve, const char *folder, struct plan_file_curve *entry,
+                        struct error *err)
 {
     memcpy(entry->id, curve->id, sizeof entry->id);
     memcpy(entry->name, curve->name, sizeof entry->name);
@@ -94,14 +97,15 @@ static bool write_curve(const struct dose_curve *curve, const char *folder, stru
     sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
     struct vec3 center = curve->center_lps_mm; /* the file's order is (PA, RL, IS), in cm */
     if (sheet.out)
-        fprintf(sheet.out, "Center Point %.17g %.17g %.17g\nno. d,r points used %zu\n", -cm_of(center.y), cm_of(center.x), cm_of(center.z),
-                curve->n_depths);
+        fprintf(sheet.out, "Center Point %.17g %.17g %.17g\nno. d,r points used %zu\n", -cm_of(center.y),
+                cm_of(center.x), cm_of(center.z), curve->n_depths);
     for (size_t point = 0; sheet.out && point < curve->n_depths * curve->n_radii; point++)
         print_point(sheet.out, curve, point);
     return sheet_close(&sheet, folder, entry->path, err);
 }
 
-static bool write_preferences(const struct plan_preferences *preferences, const char *folder, struct plan_file *file, struct error *err)
+static bool write_preferences(const struct plan_preferences *preferences, const char *folder, struct plan_file *file,
+                              struct error *err)
 {
     enum { TO_16_BITS = 257 };
     bool is_written = true;
@@ -110,8 +114,8 @@ static bool write_preferences(const struct plan_preferences *preferences, const 
         sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
         for (size_t i = 0; sheet.out && i < preferences->n_levels; i++) {
             const struct plan_level *level = &preferences->levels[i];
-            fprintf(sheet.out, "contour_level: %.17g %d %d %d\n", level->percent, level->rgb[0] * TO_16_BITS, level->rgb[1] * TO_16_BITS,
-                    level->rgb[2] * TO_16_BITS);
+            fprintf(sheet.out, "contour_level: %.17g %d %d %d\n", level->percent, level->rgb[0] * TO_16_BITS,
+                    level->rgb[1] * TO_16_BITS, level->rgb[2] * TO_16_BITS);
         }
         char *name = file->preferences[file->n_preferences++];
         snprintf(name, FOLDER_NAME_SIZE, "preferences.rsc");
@@ -121,7 +125,8 @@ static bool write_preferences(const struct plan_preferences *preferences, const 
         struct sheet sheet = { 0 };
         sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
         for (size_t i = 0; sheet.out && i < preferences->n_colors; i++)
-            fprintf(sheet.out, "%d %d %d\n", preferences->colors[i][0], preferences->colors[i][1], preferences->colors[i][2]);
+            fprintf(sheet.out, "%d %d %d\n", preferences->colors[i][0], preferences->colors[i][1],
+                    preferences->colors[i][2]);
         char *name = file->preferences[file->n_preferences++];
         snprintf(name, FOLDER_NAME_SIZE, "colors.cmap");
         is_written = sheet_close(&sheet, folder, name, err);

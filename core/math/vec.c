@@ -27,7 +27,8 @@ bool affine_invert(const struct affine *map, struct affine *inverse)
 
 struct affine affine_compose(const struct affine *a, const struct affine *b)
 {
-    return (struct affine){ { affine_vector(a, b->columns[0]), affine_vector(a, b->columns[1]), affine_vector(a, b->columns[2]) },
+    return (struct affine){ { affine_vector(a, b->columns[0]), affine_vector(a, b->columns[1]),
+                              affine_vector(a, b->columns[2]) },
                             affine_point(a, b->origin) };
 }
 

@@ -10,17 +10,38 @@ struct vec3 {
     double x, y, z;
 };
 
-static inline struct vec3 vec3(double x, double y, double z) { return (struct vec3){ x, y, z }; }
-static inline struct vec3 vec3_add(struct vec3 a, struct vec3 b) { return vec3(a.x + b.x, a.y + b.y, a.z + b.z); }
-static inline struct vec3 vec3_sub(struct vec3 a, struct vec3 b) { return vec3(a.x - b.x, a.y - b.y, a.z - b.z); }
-static inline struct vec3 vec3_scale(struct vec3 a, double s) { return vec3(a.x * s, a.y * s, a.z * s); }
-static inline double vec3_dot(struct vec3 a, struct vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline struct vec3 vec3(double x, double y, double z)
+{
+    return (struct vec3){ x, y, z };
+}
+static inline struct vec3 vec3_add(struct vec3 a, struct vec3 b)
+{
+    return vec3(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+static inline struct vec3 vec3_sub(struct vec3 a, struct vec3 b)
+{
+    return vec3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+static inline struct vec3 vec3_scale(struct vec3 a, double s)
+{
+    return vec3(a.x * s, a.y * s, a.z * s);
+}
+static inline double vec3_dot(struct vec3 a, struct vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 static inline struct vec3 vec3_cross(struct vec3 a, struct vec3 b)
 {
     return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
-static inline double vec3_length(struct vec3 a) { return sqrt(vec3_dot(a, a)); }
-static inline bool vec3_is_finite(struct vec3 a) { return isfinite(a.x) && isfinite(a.y) && isfinite(a.z); }
+static inline double vec3_length(struct vec3 a)
+{
+    return sqrt(vec3_dot(a, a));
+}
+static inline bool vec3_is_finite(struct vec3 a)
+{
+    return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
+}
 /* The zero vector stays zero. */
 static inline struct vec3 vec3_normalize(struct vec3 a)
 {
@@ -65,4 +86,7 @@ struct box3 {
 };
 struct box3 box3_empty(void);
 void box3_add(struct box3 *box, struct vec3 p);
-static inline bool box3_is_empty(const struct box3 *box) { return box->low.x > box->high.x; }
+static inline bool box3_is_empty(const struct box3 *box)
+{
+    return box->low.x > box->high.x;
+}

@@ -7,16 +7,25 @@ const double phantom_source_z_lps_mm = 150;
 
 const double phantom_depths_mm[PHANTOM_N_DEPTHS] = { 2, 10, 18, 22, 26, 30, 38, 50, 70, 90, 110, 130 };
 
-/* Goorley, Kiger and Zamenhof 2002, modified Snyder head. Their "thermal" column is mostly nitrogen's and stands for it. */
+/* Goorley, Kiger and Zamenhof 2002, modified Snyder head. Their "thermal" column is mostly nitrogen's and stands for
+ * it. */
 const struct phantom_component phantom_components[PHANTOM_N_COMPONENTS] = {
-    { DOSE_BORON, true,
-      { .0477, .0793, .0981, .1016, .1015, .0986, .0869, .0639, .0316, .0135, .00539, .00198 }, 8, 0.14 },
-    { DOSE_NITROGEN, false,
-      { .0913, .1565, .1974, .2056, .2063, .2011, .1781, .1315, .0654, .0279, .0112, .00411 }, 8, 0.14 },
-    { DOSE_FAST, false,
-      { .1404, .1130, .0812, .0687, .0585, .0500, .0372, .0246, .0131, .00708, .00392, .00217 }, 5, 0.20 },
-    { DOSE_GAMMA, false,
-      { .506, .726, .895, .941, .970, .971, .937, .800, .533, .322, .192, .115 }, 14, 0.25 },
+    { DOSE_BORON,
+      true,
+      { .0477, .0793, .0981, .1016, .1015, .0986, .0869, .0639, .0316, .0135, .00539, .00198 },
+      8,
+      0.14 },
+    { DOSE_NITROGEN,
+      false,
+      { .0913, .1565, .1974, .2056, .2063, .2011, .1781, .1315, .0654, .0279, .0112, .00411 },
+      8,
+      0.14 },
+    { DOSE_FAST,
+      false,
+      { .1404, .1130, .0812, .0687, .0585, .0500, .0372, .0246, .0131, .00708, .00392, .00217 },
+      5,
+      0.20 },
+    { DOSE_GAMMA, false, { .506, .726, .895, .941, .970, .971, .937, .800, .533, .322, .192, .115 }, 14, 0.25 },
 };
 
 enum { CELL_MM = 4 };
@@ -26,8 +35,9 @@ struct curve {
     double log_dose[PHANTOM_N_DEPTHS], slope[PHANTOM_N_DEPTHS];
 };
 
-/* Slopes that keep the cubic monotone wherever the table is: at a turn 0, else the harmonic mean of the two sides weighted by the
- * intervals (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300); at the ends the secant. */
+/* Slopes that keep the cubic monotone wherever the table is: at a turn 0, else the harmonic mean of the two sides
+ * weighted by the intervals (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300); at the ends the
+ * secant. */
 static void curve_init(struct curve *curve, const double table[PHANTOM_N_DEPTHS])
 {
     const double *x = phantom_depths_mm;
@@ -42,7 +52,8 @@ static void curve_init(struct curve *curve, const double table[PHANTOM_N_DEPTHS]
         double before = x[i] - x[i - 1], after = x[i + 1] - x[i];
         double weight_before = 2 * after + before, weight_after = after + 2 * before;
         bool is_turn = secant[i - 1] * secant[i] <= 0;
-        curve->slope[i] = is_turn ? 0 : (weight_before + weight_after) / (weight_before / secant[i - 1] + weight_after / secant[i]);
+        curve->slope[i] =
+            is_turn ? 0 : (weight_before + weight_after) / (weight_before / secant[i - 1] + weight_after / secant[i]);
     }
 }
 
@@ -93,7 +104,8 @@ double phantom_dose_at(const struct phantom_component *component, struct vec3 po
 
 bool phantom_dose_grid(struct grid *grid, struct error *err)
 {
-    /* odd numbers of cells across, so that one column lies on the axis; the topmost cell is the second above the scalp */
+    /* odd numbers of cells across, so that one column lies on the axis; the topmost cell is the second above the scalp
+     */
     const uint32_t size[3] = { 41, 57, 49 };
     double top_mm = phantom_tissues[PHANTOM_SCALP].shape.semi_axes_mm.z;
     struct affine map = { { { CELL_MM, 0, 0 }, { 0, CELL_MM, 0 }, { 0, 0, CELL_MM } },
@@ -101,7 +113,8 @@ bool phantom_dose_grid(struct grid *grid, struct error *err)
     return grid_init(grid, size, &map, err);
 }
 
-struct volume *phantom_dose_volume(const struct phantom_component *component, const struct grid *grid, struct error *err)
+struct volume *phantom_dose_volume(const struct phantom_component *component, const struct grid *grid,
+                                   struct error *err)
 {
     struct volume *volume = volume_create(grid, VOXEL_F32, err);
     if (!volume)

@@ -61,7 +61,8 @@ bool phantom_image_grid(const uint32_t size[3], struct grid *grid, struct error 
 
 uint64_t phantom_mix(uint64_t value)
 {
-    /* finaliser of splitmix64: G. L. Steele, D. Lea, C. H. Flood, Fast splittable pseudorandom number generators, 2014 */
+    /* finaliser of splitmix64: G. L. Steele, D. Lea, C. H. Flood, Fast splittable pseudorandom number generators, 2014
+     */
     value += 0x9e3779b97f4a7c15u;
     value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9u;
     value = (value ^ (value >> 27)) * 0x94d049bb133111ebu;
@@ -72,7 +73,8 @@ uint64_t phantom_mix(uint64_t value)
 static double noise(uint64_t seed, uint64_t voxel)
 {
     uint64_t bits = phantom_mix(seed ^ (voxel * 0xd1342543de82ef95u));
-    double sum = (double)(bits & 0xffff) + (double)(bits >> 16 & 0xffff) + (double)(bits >> 32 & 0xffff) + (double)(bits >> 48);
+    double sum =
+        (double)(bits & 0xffff) + (double)(bits >> 16 & 0xffff) + (double)(bits >> 32 & 0xffff) + (double)(bits >> 48);
     return (sum / 65535 - 2) * sqrt(3.0);
 }
 
@@ -105,7 +107,8 @@ static void fill_part(void *context, int part, int n_parts)
         }
 }
 
-bool phantom_fill_head(const struct grid *grid, uint64_t seed, struct volume **ct, struct volume **labels, struct error *err)
+bool phantom_fill_head(const struct grid *grid, uint64_t seed, struct volume **ct, struct volume **labels,
+                       struct error *err)
 {
     *ct = volume_create(grid, VOXEL_I16, err);
     *labels = *ct ? volume_create(grid, VOXEL_U8, err) : NULL;

@@ -3,7 +3,13 @@
 #include "core/volume/volume.h"
 
 enum phantom_label {
-    PHANTOM_AIR, PHANTOM_SCALP, PHANTOM_CRANIUM, PHANTOM_BRAIN, PHANTOM_TARGET, PHANTOM_TUMOUR, PHANTOM_N_LABELS
+    PHANTOM_AIR,
+    PHANTOM_SCALP,
+    PHANTOM_CRANIUM,
+    PHANTOM_BRAIN,
+    PHANTOM_TARGET,
+    PHANTOM_TUMOUR,
+    PHANTOM_N_LABELS
 };
 
 struct ellipsoid {
@@ -32,9 +38,10 @@ double phantom_scalp_top_mm(double x_lps_mm, double y_lps_mm);
  * errors as grid_init */
 NODISCARD bool phantom_image_grid(const uint32_t size[3], struct grid *grid, struct error *err);
 
-/* Image and labels on one grid; int16 Hounsfield units, bytes. The noise is a hash of seed and voxel, so it does not depend
- * on the number of threads. One reference each, the caller's. errors ERROR_MEMORY, ERROR_LIMIT */
-NODISCARD bool phantom_fill_head(const struct grid *grid, uint64_t seed, struct volume **ct, struct volume **labels, struct error *err);
+/* Image and labels on one grid; int16 Hounsfield units, bytes. The noise is a hash of seed and voxel, so it does not
+ * depend on the number of threads. One reference each, the caller's. errors ERROR_MEMORY, ERROR_LIMIT */
+NODISCARD bool phantom_fill_head(const struct grid *grid, uint64_t seed, struct volume **ct, struct volume **labels,
+                                 struct error *err);
 
 /* A well-mixed 64-bit number from another; the phantom's only source of chance. */
 uint64_t phantom_mix(uint64_t value);

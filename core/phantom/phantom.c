@@ -21,9 +21,10 @@
 const struct phantom_options phantom_defaults = { { 256, 256, 128 }, 1 };
 
 /* Everything a phantom's folder holds; a folder with anything else in it is not ours to replace. */
-static const char *const files[] = { "plan.json",           "README.txt",         "labels.json",      "ct.nii.gz",
-                                     "labels.nii.gz",       "tracks.pp",          "dose/boron.nii.gz", "dose/nitrogen.nii.gz",
-                                     "dose/fast.nii.gz",    "dose/gamma.nii.gz",  "dose/valid.nii.gz" };
+static const char *const files[] = { "plan.json",         "README.txt",           "labels.json",
+                                     "ct.nii.gz",         "labels.nii.gz",        "tracks.pp",
+                                     "dose/boron.nii.gz", "dose/nitrogen.nii.gz", "dose/fast.nii.gz",
+                                     "dose/gamma.nii.gz", "dose/valid.nii.gz" };
 enum { N_FILES = sizeof files / sizeof *files };
 
 static bool join(char path[PATH_MAX], const char *folder, const char *name)
@@ -32,7 +33,7 @@ static bool join(char path[PATH_MAX], const char *folder, const char *name)
     return n > 0 && n < PATH_MAX;
 }
 
-/* ---- what goes into the folder -------------------------------------------------------------------------------------- */
+/* ---- what goes into the folder ---------------------------------------------------------------------------------- */
 
 /* The volumes are compressed side by side; each part has its own error, the first one is told. */
 enum { N_VOLUMES = 3 + PHANTOM_N_COMPONENTS };
@@ -70,7 +71,8 @@ static bool make_volumes(struct volume_job jobs[N_VOLUMES], const char *folder, 
         char name[64];
         snprintf(name, sizeof name, "dose/%s.nii.gz", dose_quantity_word(component->quantity));
         is_named = is_named && join(job->path, folder, name);
-        job->description = component->is_per_ppm ? "Beamroom phantom: Gy per minute per ppm" : "Beamroom phantom: Gy per minute";
+        job->description =
+            component->is_per_ppm ? "Beamroom phantom: Gy per minute per ppm" : "Beamroom phantom: Gy per minute";
         job->volume = jobs[2].volume ? phantom_dose_volume(component, &dose_grid, err) : NULL;
         if (!job->volume)
             return false;
@@ -101,7 +103,8 @@ static bool write_grids(const char *folder, const struct phantom_options *option
 static bool write_text(const char *folder, const char *name, char *text, struct error *err) /* takes text */
 {
     char path[PATH_MAX];
-    bool is_written = text && (join(path, folder, name) || error_set(err, ERROR_LIMIT, "%s: the path is too long", folder)) &&
+    bool is_written = text &&
+                      (join(path, folder, name) || error_set(err, ERROR_LIMIT, "%s: the path is too long", folder)) &&
                       file_write(path, text, strlen(text), err);
     free(text);
     return is_written;
@@ -125,7 +128,7 @@ static bool write_contents(const char *folder, const struct phantom_options *opt
            write_text(folder, "plan.json", phantom_plan_json(options, err), err);
 }
 
-/* ---- the folder itself ---------------------------------------------------------------------------------------------- */
+/* ---- the folder itself ------------------------------------------------------------------------------------------ */
 
 static void remove_phantom(const char *folder)
 {
@@ -154,7 +157,8 @@ static bool look_through(const char *folder, const char *below, size_t *n_entrie
         return error_set(err, ERROR_LIMIT, "%s: the path is too long", folder);
     DIR *dir = opendir(path);
     if (!dir)
-        return errno == ENOENT && *below ? true : error_set(err, ERROR_IO, "%s: cannot be read: %s", path, strerror(errno));
+        return errno == ENOENT && *below ? true
+                                         : error_set(err, ERROR_IO, "%s: cannot be read: %s", path, strerror(errno));
     bool is_clean = true;
     for (struct dirent *entry; is_clean && (entry = readdir(dir));) {
         if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
@@ -163,7 +167,8 @@ static bool look_through(const char *folder, const char *below, size_t *n_entrie
         snprintf(name, sizeof name, "%s%s%s", below, *below ? "/" : "", entry->d_name);
         ++*n_entries;
         if (!is_ours(name))
-            is_clean = error_set(err, ERROR_STATE, "%s holds %s, which is no part of a phantom: it is left as it is", folder, name);
+            is_clean = error_set(err, ERROR_STATE, "%s holds %s, which is no part of a phantom: it is left as it is",
+                                 folder, name);
     }
     closedir(dir);
     return is_clean;
@@ -201,7 +206,8 @@ static bool move_into_place(const char *partial, const char *folder, bool is_fil
     if (rename(partial, folder) != 0) {
         int reason = errno;
         if (is_filled && rename(old, folder) != 0)
-            return error_set(err, ERROR_IO, "%s: %s; the phantom that was there is now %s", folder, strerror(reason), old);
+            return error_set(err, ERROR_IO, "%s: %s; the phantom that was there is now %s", folder, strerror(reason),
+                             old);
         return error_set(err, ERROR_IO, "%s: cannot be created: %s", folder, strerror(reason));
     }
     if (is_filled)
@@ -215,13 +221,13 @@ static bool check_options(const struct phantom_options *options, struct error *e
     uint64_t n_voxels = 1;
     for (int axis = 0; axis < 3; axis++) {
         if (size[axis] < PHANTOM_MIN_SIDE || size[axis] > PHANTOM_MAX_SIDE)
-            return error_set(err, ERROR_RANGE, "a phantom of %u x %u x %u voxels: each side must be %d to %d", size[0], size[1],
-                             size[2], PHANTOM_MIN_SIDE, PHANTOM_MAX_SIDE);
+            return error_set(err, ERROR_RANGE, "a phantom of %u x %u x %u voxels: each side must be %d to %d", size[0],
+                             size[1], size[2], PHANTOM_MIN_SIDE, PHANTOM_MAX_SIDE);
         n_voxels *= size[axis];
     }
     if (n_voxels > PHANTOM_MAX_VOXELS)
-        return error_set(err, ERROR_LIMIT, "a phantom of %u x %u x %u is %" PRIu64 " voxels: more than %" PRIu64, size[0], size[1],
-                         size[2], n_voxels, PHANTOM_MAX_VOXELS);
+        return error_set(err, ERROR_LIMIT, "a phantom of %u x %u x %u is %" PRIu64 " voxels: more than %" PRIu64,
+                         size[0], size[1], size[2], n_voxels, PHANTOM_MAX_VOXELS);
     return true;
 }
 
@@ -229,7 +235,8 @@ bool phantom_write(const char *folder, const struct phantom_options *options, bo
 {
     char place[FILE_FOLDER_SIZE], partial[PATH_MAX];
     bool is_filled;
-    if (!file_folder_paths(folder, place, partial, err) || !check_options(options, err) || !check_folder(place, replace, &is_filled, err))
+    if (!file_folder_paths(folder, place, partial, err) || !check_options(options, err) ||
+        !check_folder(place, replace, &is_filled, err))
         return false;
     if (mkdir(partial, 0777) != 0)
         return error_set(err, ERROR_IO, "%s: cannot be created: %s", place, strerror(errno));

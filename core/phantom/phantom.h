@@ -1,10 +1,10 @@
 #pragma once
-/* The demo plan: a made-up head whose shape, dose on the beam's axis and beam come from a paper, written as a plan folder.
- * Nothing in it is a patient's. Knows files only through core/formats' writers; never reads one.
+/* The demo plan: a made-up head whose shape, dose on the beam's axis and beam come from a paper, written as a plan
+ * folder. Nothing in it is a patient's. Knows files only through core/formats' writers; never reads one.
  *
- *   source  J. T. Goorley, W. S. Kiger III, R. G. Zamenhof, Reference dosimetry calculations for neutron capture therapy with
- *           comparison of analytical and voxel models, Med. Phys. 29 (2002) 145: the modified Snyder head, its beam and the
- *           dose on the axis. Differs: target, tumour and marker are added, the dose off the axis is a stated formula
+ *   source  J. T. Goorley, W. S. Kiger III, R. G. Zamenhof, Reference dosimetry calculations for neutron capture
+ * therapy with comparison of analytical and voxel models, Med. Phys. 29 (2002) 145: the modified Snyder head, its beam
+ * and the dose on the axis. Differs: target, tumour and marker are added, the dose off the axis is a stated formula
  *           (phantom_dose_at), and the tracks are a random walk that only looks like transport. */
 #include <stdint.h>
 
@@ -19,8 +19,8 @@ struct phantom_options {
 };
 extern const struct phantom_options phantom_defaults; /* 256 x 256 x 128, seed 1 */
 
-/* Writes the plan folder: plan.json, README.txt, ct.nii.gz, labels.nii.gz, labels.json, dose/, tracks.pp. All of it appears at
- * once or not at all: it is built in a folder beside and renamed. Equal options give equal bytes.
+/* Writes the plan folder: plan.json, README.txt, ct.nii.gz, labels.nii.gz, labels.json, dose/, tracks.pp. All of it
+ * appears at once or not at all: it is built in a folder beside and renamed. Equal options give equal bytes.
  *
  *   folder   a new name in a folder that is there, or an empty folder
  *   replace  whether a phantom that is already there may be replaced; a folder with any file that no phantom has is
@@ -28,4 +28,5 @@ extern const struct phantom_options phantom_defaults; /* 256 x 256 x 128, seed 1
  *   errors   ERROR_RANGE a side outside PHANTOM_MIN_SIDE..PHANTOM_MAX_SIDE; ERROR_LIMIT more than PHANTOM_MAX_VOXELS;
  *            ERROR_STATE the folder is there and may not be replaced; ERROR_MEMORY; ERROR_IO
  *   thread   any; uses all cores */
-NODISCARD bool phantom_write(const char *folder, const struct phantom_options *options, bool replace, struct error *err);
+NODISCARD bool phantom_write(const char *folder, const struct phantom_options *options, bool replace,
+                             struct error *err);

@@ -1,6 +1,6 @@
 #pragma once
-/* The words of the phantom's folder: plan.json, labels.json and a README for people. Each is NUL-terminated and the caller's to
- * free(); NULL and ERROR_MEMORY on failure. */
+/* The words of the phantom's folder: plan.json, labels.json and a README for people. Each is NUL-terminated and the
+ * caller's to free(); NULL and ERROR_MEMORY on failure. */
 #include "core/phantom/phantom.h"
 
 NODISCARD char *phantom_plan_json(const struct phantom_options *options, struct error *err);

@@ -7,13 +7,13 @@
 #include "core/phantom/depth_dose.h"
 #include "core/phantom/head.h"
 
-/* Made up, but in proportion: mean free paths in soft tissue by energy class (high, medium, low); the gammas' follow from
- * attenuation in water at about 2.2, 1 and 0.5 MeV. */
+/* Made up, but in proportion: mean free paths in soft tissue by energy class (high, medium, low); the gammas' follow
+ * from attenuation in water at about 2.2, 1 and 0.5 MeV. */
 static const double neutron_path_mm[3] = { 35, 18, 10 };
 static const double gamma_path_mm[3] = { 210, 140, 100 };
-static const double capture_chance = 0.20;      /* of a low neutron, per collision */
+static const double capture_chance = 0.20;                /* of a low neutron, per collision */
 static const double slow_down_chance[2] = { 0.55, 0.35 }; /* high to medium, medium to low, per collision */
-static const double beyond_head_mm = 40;        /* how far what leaves is drawn */
+static const double beyond_head_mm = 40;                  /* how far what leaves is drawn */
 static const double lost_mm = 10;
 enum { MAX_COLLISIONS = 40, HIGH = 0, MEDIUM = 1, LOW = 2 };
 
@@ -46,7 +46,7 @@ static bool add_segment(struct walk *walk, struct vec3 from, struct vec3 to, enu
         return false;
     walk->segments[walk->n_segments++] = (struct track_segment){ { (float)from.x, (float)from.y, (float)from.z },
                                                                  { (float)to.x, (float)to.y, (float)to.z },
-                                                                 (uint8_t)class };
+                                                                 (uint8_t) class };
     return true;
 }
 
@@ -68,7 +68,7 @@ static bool fly(struct walk *walk, struct vec3 *at, struct vec3 direction, doubl
         }
         to = vec3_add(*at, vec3_scale(direction, outside_mm + beyond_head_mm));
     }
-    bool has_room = add_segment(walk, *at, to, (enum track_class)class);
+    bool has_room = add_segment(walk, *at, to, (enum track_class) class);
     *at = to;
     return stays && has_room;
 }
@@ -121,8 +121,10 @@ static void add_lost(struct walk *walk)
 size_t phantom_make_tracks(uint64_t seed, struct track_segment segments[PHANTOM_MAX_TRACKS])
 {
     struct walk walk = { phantom_mix(seed ^ 0x747261636b73u), 0, segments, 0, PHANTOM_MAX_TRACKS - PHANTOM_N_LOST };
-    add_segment(&walk, vec3(0, 0, phantom_source_z_lps_mm), phantom_tissues[PHANTOM_BRAIN].shape.centre_lps_mm, TRACK_BEAM_LINE);
-    /* the paper's beam is 1 % fast, 89 % epithermal, 10 % thermal; fast ones are shown more often so that they are seen */
+    add_segment(&walk, vec3(0, 0, phantom_source_z_lps_mm), phantom_tissues[PHANTOM_BRAIN].shape.centre_lps_mm,
+                TRACK_BEAM_LINE);
+    /* the paper's beam is 1 % fast, 89 % epithermal, 10 % thermal; fast ones are shown more often so that they are seen
+     */
     for (int history = 0; walk.n_segments < walk.n_limit; history++)
         walk_neutron(&walk, history % 10 == 0 ? LOW : history % 5 == 2 ? HIGH : MEDIUM);
     walk.n_limit = PHANTOM_MAX_TRACKS;
@@ -152,8 +154,9 @@ char *phantom_tracks_text(const struct track_segment *segments, size_t n_segment
     for (size_t i = 0; i < n_segments; i++) {
         const float *a = segments[i].from_lps_mm, *b = segments[i].to_lps_mm;
         uint8_t class = segments[i].class;
-        int n = snprintf(text + at, n_room - at, "%9.4f %9.4f %9.4f %9.4f %9.4f %9.4f%3d%3d\n", (double)a[0], 0 - (double)a[1],
-                         (double)a[2], (double)b[0], 0 - (double)b[1], (double)b[2], codes[class].type, codes[class].energy);
+        int n = snprintf(text + at, n_room - at, "%9.4f %9.4f %9.4f %9.4f %9.4f %9.4f%3d%3d\n", (double)a[0],
+                         0 - (double)a[1], (double)a[2], (double)b[0], 0 - (double)b[1], (double)b[2],
+                         codes[class].type, codes[class].energy);
         at += (size_t)n;
     }
     *n_bytes = at;

@@ -9,13 +9,13 @@
 #include "core/base/mem.h"
 #include "core/pipeline/turns.h"
 
-/* Small pictures are compressed by one thread and large ones by another, so that a large one, which takes ten times as long, holds up none. PNG
- * takes as long as a large JPEG. */
+/* Small pictures are compressed by one thread and large ones by another, so that a large one, which takes ten times as
+ * long, holds up none. PNG takes as long as a large JPEG. */
 enum { LANE_SMALL, LANE_LARGE, N_LANES, SMALL_MAX_PX = 2500000 };
 /* Drawn pictures of a lane that may wait for its thread: one being compressed, one ready; more would only add delay. */
 enum { MAX_DRAWN = 2 };
-/* A picture that is being drawn is left for another after so long: for a moving one, which somebody waits for with a hand on the mouse, or for a
- * still, which can wait longer. */
+/* A picture that is being drawn is left for another after so long: for a moving one, which somebody waits for with a
+ * hand on the mouse, or for a still, which can wait longer. */
 enum { SLICE_MOVING_US = 20000, SLICE_STILL_US = 100000 };
 /* Stacks count to a process's memory in full. */
 enum { ENCODE_STACK_BYTES = 512 << 10 };
@@ -72,19 +72,22 @@ static void job_destroy(struct job *job)
     free(job);
 }
 
-/* ---- which picture is next; under the mutex ------------------------------------------------------------------------------ */
+/* ---- which picture is next; under the mutex --------------------------------------------------------------------- */
 
 static struct lane *lane_of(struct pipeline *pipeline, const struct job *job)
 {
     const struct render_options *options = &job->request.render;
-    bool is_large = job->request.encode.codec == ENCODE_PNG || (int64_t)options->width_px * options->height_px > SMALL_MAX_PX;
+    bool is_large =
+        job->request.encode.codec == ENCODE_PNG || (int64_t)options->width_px * options->height_px > SMALL_MAX_PX;
     return &pipeline->lanes[is_large ? LANE_LARGE : LANE_SMALL];
 }
 
 static uint64_t image_bytes(const struct job *job)
 {
     const struct render_options *options = &job->request.render;
-    return options->width_px > 0 && options->height_px > 0 ? (uint64_t)options->width_px * (uint64_t)options->height_px * 4 : 0;
+    return options->width_px > 0 && options->height_px > 0
+               ? (uint64_t)options->width_px * (uint64_t)options->height_px * 4
+               : 0;
 }
 
 static void remove_job(struct pipeline *pipeline, size_t at)
@@ -94,14 +97,16 @@ static void remove_job(struct pipeline *pipeline, size_t at)
     memmove(pipeline->jobs + at, pipeline->jobs + at + 1, (pipeline->n_jobs - at) * sizeof pipeline->jobs[0]);
 }
 
-/* Pictures are held while their lane is full, while there is no memory for them, and while one that needs all of it waits for the others. */
+/* Pictures are held while their lane is full, while there is no memory for them, and while one that needs all of it
+ * waits for the others. */
 static bool is_held(struct pipeline *pipeline, const struct job *job, bool somebody_needs_all)
 {
     if (lane_of(pipeline, job)->n_drawn >= MAX_DRAWN)
         return true;
     if (job->turn.is_begun)
         return false;
-    if (pipeline->n_image_bytes > 0 && (somebody_needs_all || pipeline->n_image_bytes + image_bytes(job) > PIPELINE_MAX_IMAGE_BYTES))
+    if (pipeline->n_image_bytes > 0 &&
+        (somebody_needs_all || pipeline->n_image_bytes + image_bytes(job) > PIPELINE_MAX_IMAGE_BYTES))
         return true;
     return pipeline->n_begun >= MAX_BEGUN || (somebody_needs_all && !job->needs_all);
 }
@@ -126,7 +131,8 @@ static size_t choose(struct pipeline *pipeline)
 /* When the picture that is being drawn is to be left for another that waits. */
 static int64_t leave_for_us(const struct pipeline *pipeline, const struct job *other)
 {
-    if (other == pipeline->current || other->turn.is_held || !turns_may_interrupt(&pipeline->current->turn, &other->turn))
+    if (other == pipeline->current || other->turn.is_held ||
+        !turns_may_interrupt(&pipeline->current->turn, &other->turn))
         return INT64_MAX;
     return pipeline->current_us + (other->turn.is_still ? SLICE_STILL_US : SLICE_MOVING_US);
 }
@@ -155,7 +161,7 @@ static void forget_image(struct pipeline *pipeline, struct job *job)
     job->is_counted = false;
 }
 
-/* ---- the render thread ------------------------------------------------------------------------------------------------ */
+/* ---- the render thread ------------------------------------------------------------------------------------------ */
 
 static struct image *draw_stub(const struct job *job, struct camera *camera, struct error *err)
 {
@@ -249,7 +255,8 @@ static void pass_on(struct pipeline *pipeline, struct job *job)
 }
 
 /* Under the mutex, which it leaves. */
-static void draw_slice(struct pipeline *pipeline, struct renderer *renderer, const struct error *why_none, struct job *job)
+static void draw_slice(struct pipeline *pipeline, struct renderer *renderer, const struct error *why_none,
+                       struct job *job)
 {
     start_slice(pipeline, job);
     pthread_mutex_unlock(&pipeline->mutex);
@@ -277,8 +284,9 @@ static void forget(struct pipeline *pipeline, struct renderer *renderer)
 
 static struct renderer *start_renderer(struct pipeline *pipeline, struct error *err)
 {
-    static const struct render_facts stub_facts = { .back_end = RENDER_AUTO, .vendor = "Beamroom", .renderer = "stub",
-                                                    .version = "none", .is_software = true };
+    static const struct render_facts stub_facts = {
+        .back_end = RENDER_AUTO, .vendor = "Beamroom", .renderer = "stub", .version = "none", .is_software = true
+    };
     struct renderer *renderer = pipeline->is_stub ? NULL : renderer_create(pipeline->back_end, err);
     const struct render_facts *facts = pipeline->is_stub ? &stub_facts : renderer ? renderer_facts(renderer) : NULL;
     pipeline->callbacks.started(pipeline->callbacks.context, facts, err);
@@ -313,7 +321,7 @@ static void *render_main(void *argument)
     return NULL;
 }
 
-/* ---- the encode threads ----------------------------------------------------------------------------------------------- */
+/* ---- the encode threads ----------------------------------------------------------------------------------------- */
 
 /* NULL: nothing more comes. */
 static struct job *take_drawn(struct lane *lane, bool *is_wanted)
@@ -370,7 +378,7 @@ static void *encode_main(void *argument)
     return NULL;
 }
 
-/* ---- from outside ------------------------------------------------------------------------------------------------------- */
+/* ---- from outside ----------------------------------------------------------------------------------------------- */
 
 static void stop(struct pipeline *pipeline, int n_lanes, bool has_render_thread)
 {

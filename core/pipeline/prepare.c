@@ -47,7 +47,7 @@ void preparation_build(struct preparation *preparation, const atomic_bool *cance
     preparation->is_built = !building.has_stopped;
 }
 
-/* ---- what was built ----------------------------------------------------------------------------------------------------- */
+/* ---- what was built --------------------------------------------------------------------------------------------- */
 
 struct prepared {
     struct plan_want wants[MAX_PREPARED];

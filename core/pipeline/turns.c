@@ -5,8 +5,8 @@
 
 #include "core/base/mem.h"
 
-/* Sources that are remembered. One that is forgotten counts as new: it saves nothing by that, as a newcomer is no better off than those who
- * wait. */
+/* Sources that are remembered. One that is forgotten counts as new: it saves nothing by that, as a newcomer is no
+ * better off than those who wait. */
 enum { MAX_SOURCES = 512 };
 
 struct source {

@@ -1,11 +1,12 @@
 #pragma once
-/* Which picture is drawn next: fair turns between those who ask, by the time their pictures took and not by their number. Knows no threads,
- * no clock and no pictures: costs are handed in.
+/* Which picture is drawn next: fair turns between those who ask, by the time their pictures took and not by their
+ * number. Knows no threads, no clock and no pictures: costs are handed in.
  *
- * A source is anybody whose pictures are counted together: a member's own views, a room's shared views, all scripts. The source that has used
- * the least time is next; one whose next picture is a moving one may be TURNS_MOVING_AHEAD_US ahead of one whose next is a still. A source that
- * asks for nothing saves at most TURNS_CREDIT_US for later. Of one source, moving pictures go before stills, which let at most
- * TURNS_MAX_OVERTAKING of them pass; else the oldest is next. */
+ * A source is anybody whose pictures are counted together: a member's own views, a room's shared views, all scripts.
+ * The source that has used the least time is next; one whose next picture is a moving one may be TURNS_MOVING_AHEAD_US
+ * ahead of one whose next is a still. A source that asks for nothing saves at most TURNS_CREDIT_US for later. Of one
+ * source, moving pictures go before stills, which let at most TURNS_MAX_OVERTAKING of them pass; else the oldest is
+ * next. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -23,7 +24,8 @@ struct turns_item {
 struct turns;
 struct turns *turns_create(void);
 void turns_destroy(struct turns *turns);
-/* items: all that wait or are paused, oldest first. The number of the one to draw on, which is then begun; SIZE_MAX: all are held. */
+/* items: all that wait or are paused, oldest first. The number of the one to draw on, which is then begun; SIZE_MAX:
+ * all are held. */
 size_t turns_choose(struct turns *turns, struct turns_item *const *items, size_t n);
 /* What a picture of a source took, or a part of it. */
 void turns_charge(struct turns *turns, uint64_t source, int64_t cost_us);

@@ -15,9 +15,10 @@ static struct box3 box_of_regions(const struct plan *plan)
         const struct region *region = &plan->regions.regions[i];
         const struct affine *map = &plan->regions.layers[region->layer]->grid.lps_mm_from_ijk;
         for (int corner = 0; region->n_voxels > 0 && corner < 8; corner++)
-            box3_add(&bounds, affine_point(map, vec3(corner & 1 ? region->high_ijk[0] + 0.5 : region->low_ijk[0] - 0.5,
-                                                     corner & 2 ? region->high_ijk[1] + 0.5 : region->low_ijk[1] - 0.5,
-                                                     corner & 4 ? region->high_ijk[2] + 0.5 : region->low_ijk[2] - 0.5)));
+            box3_add(&bounds,
+                     affine_point(map, vec3(corner & 1 ? region->high_ijk[0] + 0.5 : region->low_ijk[0] - 0.5,
+                                            corner & 2 ? region->high_ijk[1] + 0.5 : region->low_ijk[1] - 0.5,
+                                            corner & 4 ? region->high_ijk[2] + 0.5 : region->low_ijk[2] - 0.5)));
     }
     return bounds;
 }
@@ -28,10 +29,12 @@ static bool boxes_overlap(const struct box3 *a, const struct box3 *b)
            a->low.z <= b->high.z && b->low.z <= a->high.z;
 }
 
-static void check_part(struct plan *plan, const struct box3 *regions, const struct box3 *part, const char *what, const char *id)
+static void check_part(struct plan *plan, const struct box3 *regions, const struct box3 *part, const char *what,
+                       const char *id)
 {
     if (!box3_is_empty(regions) && !boxes_overlap(regions, part))
-        report_add(&plan->report, REPORT_WARNING, "geometry.apart", "", "The %s \"%s\" and the regions do not overlap anywhere.", what, id);
+        report_add(&plan->report, REPORT_WARNING, "geometry.apart", "",
+                   "The %s \"%s\" and the regions do not overlap anywhere.", what, id);
 }
 
 /* A treatment plan alone: room for a patient around what its beams aim at. */

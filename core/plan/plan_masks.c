@@ -16,7 +16,8 @@ struct plan_masks {
     bool *is_taken;           /* [n] */
 };
 
-struct plan_masks *plan_masks_create(const struct plan *plan, const struct mask_wish *wishes, size_t n, uint64_t most_bytes)
+struct plan_masks *plan_masks_create(const struct plan *plan, const struct mask_wish *wishes, size_t n,
+                                     uint64_t most_bytes)
 {
     struct plan_masks *masks = mem_new(sizeof *masks);
     masks->plan = plan;

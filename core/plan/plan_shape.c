@@ -16,8 +16,8 @@
 
 struct wanted {
     struct plan *plan;
-    uint32_t reduction; /* of a light surface */
-    int n_threads;      /* to build it */
+    uint32_t reduction;       /* of a light surface */
+    int n_threads;            /* to build it */
     struct plan_masks *masks; /* NULL: the mask is made for this one alone; else it is this wish of these */
     size_t wish;
 };
@@ -49,8 +49,8 @@ static struct mask *mask_of(const struct plan *plan, size_t region, const struct
     return mask_from_region(&plan->regions, region, parallel_cores(), err);
 }
 
-static struct shape *build_other(const struct shape_key *key, const struct mask *mask, int n_threads, struct surface_facts *facts,
-                                 struct error *err)
+static struct shape *build_other(const struct shape_key *key, const struct mask *mask, int n_threads,
+                                 struct surface_facts *facts, struct error *err)
 {
     int64_t began_us = clock_now_us();
     struct shape *shape = shape_make_from_mask(key, mask, n_threads, err);
@@ -90,8 +90,12 @@ static struct shape *build(void *context, const struct shape_name *name, struct 
 bool plan_shape_distance(const struct plan *plan, size_t region, const struct shape_key *key, const struct shape *shape,
                          struct surface_facts *facts, struct error *err)
 {
-    const float *positions = shape->mesh ? shape->mesh->positions_lps_mm : shape->lines ? shape->lines->positions_lps_mm : shape->points->positions_lps_mm;
-    size_t n = shape->mesh ? shape->mesh->n_vertices : shape->lines ? shape->lines->n_vertices : shape->points->n_points;
+    const float *positions = shape->mesh    ? shape->mesh->positions_lps_mm
+                             : shape->lines ? shape->lines->positions_lps_mm
+                                            : shape->points->positions_lps_mm;
+    size_t n = shape->mesh    ? shape->mesh->n_vertices
+               : shape->lines ? shape->lines->n_vertices
+                              : shape->points->n_points;
     struct shape_distance distance;
     struct mask *mask = mask_of(plan, region, key, err);
     bool is_measured = mask && shape_distance(mask, positions, n, 0, &distance, err);
@@ -104,7 +108,8 @@ bool plan_shape_distance(const struct plan *plan, size_t region, const struct sh
 }
 
 /* What a shape is kept as, with the reduction it has; false: there is none. */
-static bool name_of(struct plan *plan, const struct plan_want *want, struct shape_name *name, uint32_t *reduction, struct error *err)
+static bool name_of(struct plan *plan, const struct plan_want *want, struct shape_name *name, uint32_t *reduction,
+                    struct error *err)
 {
     *name = (struct shape_name){ want->region, want->key, SURFACE_FULL };
     *reduction = 1;
@@ -139,8 +144,8 @@ bool plan_shape_refused(struct plan *plan, const struct plan_want *want, struct 
            plan_shapes_refused(plan->shapes, &name, why);
 }
 
-struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm, enum surface_detail detail,
-                          struct surface_facts *facts, struct error *err)
+struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorithm algorithm,
+                          enum surface_detail detail, struct surface_facts *facts, struct error *err)
 {
     struct shape_key key = { .representation = REPRESENTATION_SURFACE, .algorithm = algorithm };
     struct shape *shape = plan_shape(plan, region, &key, detail, facts, err);
@@ -149,7 +154,7 @@ struct mesh *plan_surface(struct plan *plan, size_t region, enum surface_algorit
     return mesh;
 }
 
-/* ---- several at once ------------------------------------------------------------------------------------------------------ */
+/* ---- several at once -------------------------------------------------------------------------------------------- */
 
 struct crowd {
     struct plan *plan;
@@ -175,7 +180,8 @@ static void take_shapes(void *context, int part, int n_parts)
         }
         struct error err = { 0 };
         struct surface_facts facts;
-        struct wanted wanted = { crowd->plan, crowd->reductions[at], n_parts > 1 ? 1 : parallel_cores(), crowd->masks, at };
+        struct wanted wanted = { crowd->plan, crowd->reductions[at], n_parts > 1 ? 1 : parallel_cores(), crowd->masks,
+                                 at };
         struct shape *shape = plan_shapes_get(crowd->plan->shapes, &crowd->names[at], build, &wanted, &facts, &err);
         if (!shape)
             log_warn("shape of region %s: %s", crowd->plan->regions.regions[crowd->names[at].region].id, err.text);
@@ -199,7 +205,8 @@ static void find_missing(struct crowd *crowd)
     free(wishes);
 }
 
-void plan_build_shapes(struct plan *plan, const struct plan_want *wants, size_t n, bool (*go_on)(void *context), void *context)
+void plan_build_shapes(struct plan *plan, const struct plan_want *wants, size_t n, bool (*go_on)(void *context),
+                       void *context)
 {
     struct crowd crowd = { .plan = plan, .wants = wants, .n = n, .go_on = go_on, .context = context };
     size_t n_threads = (size_t)parallel_cores();
@@ -226,21 +233,23 @@ static double box_of(const struct plan *plan, size_t region)
     return size;
 }
 
-void plan_build_surfaces(struct plan *plan, const size_t *regions, size_t n, enum surface_algorithm algorithm, enum surface_detail detail,
-                         bool (*go_on)(void *context), void *context)
+void plan_build_surfaces(struct plan *plan, const size_t *regions, size_t n, enum surface_algorithm algorithm,
+                         enum surface_detail detail, bool (*go_on)(void *context), void *context)
 {
     struct plan_want *wants = mem_new((n + 1) * sizeof *wants);
     for (size_t i = 0; i < n; i++) { /* a plan has few */
         size_t at = i;
         for (; at > 0 && box_of(plan, wants[at - 1].region) < box_of(plan, regions[i]); at--)
             wants[at] = wants[at - 1];
-        wants[at] = (struct plan_want){ regions[i], { .representation = REPRESENTATION_SURFACE, .algorithm = algorithm }, detail };
+        wants[at] = (struct plan_want){ regions[i],
+                                        { .representation = REPRESENTATION_SURFACE, .algorithm = algorithm },
+                                        detail };
     }
     plan_build_shapes(plan, wants, n, go_on, context);
     free(wants);
 }
 
-/* ---- memory ---------------------------------------------------------------------------------------------------------------- */
+/* ---- memory ----------------------------------------------------------------------------------------------------- */
 
 void plan_set_shape_budget(struct plan *plan, uint64_t n_bytes)
 {

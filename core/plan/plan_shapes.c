@@ -123,8 +123,8 @@ static void drop(struct plan_shapes *shapes, struct entry *entry)
     free(entry);
 }
 
-/* Drops what was not used for longest until the rest fits; never the one that was just used, or whoever asks for it in turn with
- * another would build without end. */
+/* Drops what was not used for longest until the rest fits; never the one that was just used, or whoever asks for it in
+ * turn with another would build without end. */
 static void keep_within_budget(struct plan_shapes *shapes)
 {
     while (shapes->n_bytes > shapes->budget_bytes) {
@@ -138,7 +138,8 @@ static void keep_within_budget(struct plan_shapes *shapes)
     }
 }
 
-static void fill(struct plan_shapes *shapes, struct entry *entry, struct shape *shape, const struct surface_facts *facts)
+static void fill(struct plan_shapes *shapes, struct entry *entry, struct shape *shape,
+                 const struct surface_facts *facts)
 {
     entry->shape = shape;
     entry->facts = *facts;
@@ -146,8 +147,8 @@ static void fill(struct plan_shapes *shapes, struct entry *entry, struct shape *
     shapes->n_bytes += shape->n_bytes;
 }
 
-struct shape *plan_shapes_get(struct plan_shapes *shapes, const struct shape_name *name, plan_shape_build *build, void *context,
-                              struct surface_facts *facts, struct error *err)
+struct shape *plan_shapes_get(struct plan_shapes *shapes, const struct shape_name *name, plan_shape_build *build,
+                              void *context, struct surface_facts *facts, struct error *err)
 {
     struct shape *shape = NULL;
     struct error why = { 0 };
@@ -166,7 +167,8 @@ struct shape *plan_shapes_get(struct plan_shapes *shapes, const struct shape_nam
         pthread_mutex_unlock(&shapes->lock);
         return NULL;
     } else {
-        entry = add(shapes, name); /* without a shape: says to others that it is being built, and is dropped by nobody else */
+        entry = add(shapes,
+                    name); /* without a shape: says to others that it is being built, and is dropped by nobody else */
         struct surface_facts built = { 0 };
         pthread_mutex_unlock(&shapes->lock);
         shape = build(context, name, &built, &why);

@@ -35,7 +35,8 @@ static struct shape *shape_of(struct mesh *mesh, const struct mask *full, uint32
     shape->kind = SHAPE_TRIANGLES;
     shape->mesh = mesh;
     shape->bounds_lps_mm = mesh->bounds_lps_mm;
-    shape->n_bytes = sizeof *shape + sizeof *mesh + mesh->n_vertices * 6 * sizeof(float) + mesh->n_triangles * 3 * sizeof(uint32_t);
+    shape->n_bytes =
+        sizeof *shape + sizeof *mesh + mesh->n_vertices * 6 * sizeof(float) + mesh->n_triangles * 3 * sizeof(uint32_t);
     *facts = (struct surface_facts){ .n_univels = mask_count(full), .reduction = reduction };
     facts->univel_volume_mm3 = (double)facts->n_univels * fabs(affine_determinant(&full->lps_mm_from_ijk));
     plan_count_shape(shape, facts);
@@ -43,16 +44,16 @@ static struct shape *shape_of(struct mesh *mesh, const struct mask *full, uint32
     return shape;
 }
 
-struct shape *plan_build_surface(const struct mask *mask, enum surface_algorithm algorithm, int n_threads, struct surface_facts *facts,
-                                 struct error *err)
+struct shape *plan_build_surface(const struct mask *mask, enum surface_algorithm algorithm, int n_threads,
+                                 struct surface_facts *facts, struct error *err)
 {
     int64_t started_us = clock_now_us();
     struct mesh *mesh = extract(algorithm, mask, n_threads, err);
     return mesh ? shape_of(mesh, mask, 1, started_us, facts) : NULL;
 }
 
-/* How many voxels become one along each axis: as many along the shortest as the reduction says, along others only as many as make
- * them no longer than that. So thick slices are not thinned before the pixels within them are as large. */
+/* How many voxels become one along each axis: as many along the shortest as the reduction says, along others only as
+ * many as make them no longer than that. So thick slices are not thinned before the pixels within them are as large. */
 static void factors_of(const struct mask *mask, uint32_t reduction, uint32_t factors[3])
 {
     double edge_mm[3], shortest = INFINITY;
@@ -66,7 +67,8 @@ static void factors_of(const struct mask *mask, uint32_t reduction, uint32_t fac
     }
 }
 
-/* A small region that the 8-cell algorithm does not draw when reduced so far is reduced less: it must not vanish in motion. */
+/* A small region that the 8-cell algorithm does not draw when reduced so far is reduced less: it must not vanish in
+ * motion. */
 struct shape *plan_build_light_surface(const struct mask *full, enum surface_algorithm algorithm, uint32_t reduction,
                                        struct surface_facts *facts, struct error *err)
 {
@@ -88,7 +90,7 @@ struct shape *plan_build_light_surface(const struct mask *full, enum surface_alg
     return shape;
 }
 
-/* ---- one reduction for the whole plan, so all of it is decided at once --------------------------------------------------- */
+/* ---- one reduction for the whole plan, so all of it is decided at once ------------------------------------------ */
 
 /* What the reductions tried so far give, for one region. */
 struct ladder {
@@ -101,7 +103,7 @@ struct lighting {
     enum surface_algorithm algorithm;
     struct ladder *ladders; /* [n_regions] */
     bool is_tried[MAX_REDUCTION + 1];
-    uint32_t factor; /* being tried */
+    uint32_t factor;          /* being tried */
     struct plan_masks *masks; /* of all regions, in their order */
     atomic_size_t next;
     atomic_bool is_failed;
@@ -149,8 +151,8 @@ static size_t triangles_at(struct lighting *lighting, uint32_t factor)
     return n;
 }
 
-/* The smallest reduction from 2 on that is light enough, or the largest. Triangles fall with the square of it, so the search
- * starts where that law says. */
+/* The smallest reduction from 2 on that is light enough, or the largest. Triangles fall with the square of it, so the
+ * search starts where that law says. */
 static uint32_t find_reduction(struct lighting *lighting, size_t n_at_two)
 {
     if (n_at_two <= PLAN_LIGHT_TRIANGLES)
@@ -165,8 +167,8 @@ static uint32_t find_reduction(struct lighting *lighting, size_t n_at_two)
     return factor;
 }
 
-/* Whether the full surfaces are already light enough. Halving the grid quarters the triangles, so they are only built when
- * the first step of the ladder promises that. */
+/* Whether the full surfaces are already light enough. Halving the grid quarters the triangles, so they are only built
+ * when the first step of the ladder promises that. */
 static bool full_is_light(struct plan *plan, enum surface_algorithm algorithm, size_t n_at_two)
 {
     size_t n = 0, n_regions = plan->regions.n_regions, n_drawn = 0;
@@ -212,7 +214,9 @@ static uint32_t decide(void *context, struct error *err)
     bool is_built = !atomic_load(&lighting.is_failed);
     for (size_t r = 0; r < n_regions; r++) {
         struct ladder *ladder = &lighting.ladders[r];
-        struct shape_name name = { r, { .representation = REPRESENTATION_SURFACE, .algorithm = decision->algorithm }, SURFACE_LIGHT };
+        struct shape_name name = { r,
+                                   { .representation = REPRESENTATION_SURFACE, .algorithm = decision->algorithm },
+                                   SURFACE_LIGHT };
         shape_key_normalise(&name.key);
         if (is_built && factor > 1 && ladder->shape[factor])
             plan_shapes_offer(plan->shapes, &name, ladder->shape[factor], &ladder->facts[factor]);

@@ -27,8 +27,8 @@ static bool is_outside(const struct contour *contour, const struct grid *grid)
     return false;
 }
 
-static bool measure(const struct contour_raster *raster, const struct contour_planes *planes, struct contour_facts *facts,
-                    struct error *err)
+static bool measure(const struct contour_raster *raster, const struct contour_planes *planes,
+                    struct contour_facts *facts, struct error *err)
 {
     double *areas_mm2 = mem_array(planes->n_planes, sizeof *areas_mm2, UINT64_MAX, err);
     if (!areas_mm2)
@@ -50,8 +50,9 @@ struct mask *contour_fill(const struct contour_set *set, const struct grid *grid
     uint64_t n_voxels = 0;
     struct contour_raster *raster = contour_raster_create(&planes, grid, err);
     struct mask *mask = raster ? mask_create_empty(grid->size, &grid->lps_mm_from_ijk, err) : NULL;
-    if (mask && (!contour_raster_fill(raster, grid, mask->bits, options->n_threads, CONTOUR_MAX_MEETINGS, &n_voxels, err) ||
-                 (facts && !measure(raster, &planes, &found, err)))) {
+    if (mask &&
+        (!contour_raster_fill(raster, grid, mask->bits, options->n_threads, CONTOUR_MAX_MEETINGS, &n_voxels, err) ||
+         (facts && !measure(raster, &planes, &found, err)))) {
         mask_destroy(mask);
         mask = NULL;
     }

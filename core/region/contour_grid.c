@@ -58,11 +58,11 @@ double contour_usual_spacing_mm(const struct contour_set *sets, size_t n_sets, c
     return best.n_planes > 0 ? best.mm : along_mm > 0 ? along_mm : 1;
 }
 
-/* ---- a grid from the planes ------------------------------------------------------------------------------------------------------ */
+/* ---- a grid from the planes ------------------------------------------------------------------------------------- */
 
 /* The set whose planes the grid lies in: the one with most of them. */
-static bool leading_planes(const struct contour_set *sets, size_t n_sets, double spacing_mm, struct vec3 *normal, double *at_mm,
-                           struct error *err)
+static bool leading_planes(const struct contour_set *sets, size_t n_sets, double spacing_mm, struct vec3 *normal,
+                           double *at_mm, struct error *err)
 {
     size_t most = 0;
     for (size_t i = 0; i < n_sets; i++) {
@@ -76,7 +76,8 @@ static bool leading_planes(const struct contour_set *sets, size_t n_sets, double
         }
         contour_planes_finish(&planes);
     }
-    return most > 0 || error_set(err, ERROR_RANGE, "no region has a closed contour, and there is no image to take a grid from");
+    return most > 0 ||
+           error_set(err, ERROR_RANGE, "no region has a closed contour, and there is no image to take a grid from");
 }
 
 static void add_points(struct box3 *box, const struct contour_set *set, const struct vec3 axes[3])
@@ -91,8 +92,8 @@ static void add_points(struct box3 *box, const struct contour_set *set, const st
         }
 }
 
-static bool grid_from_planes(struct grid *grid, const struct contour_set *sets, size_t n_sets, const struct contour_options *options,
-                             struct error *err)
+static bool grid_from_planes(struct grid *grid, const struct contour_set *sets, size_t n_sets,
+                             const struct contour_options *options, struct error *err)
 {
     double spacing_mm = options->spacing_mm > 0 ? options->spacing_mm : contour_usual_spacing_mm(sets, n_sets, NULL);
     struct vec3 axes[3];
@@ -134,7 +135,7 @@ static bool grid_from_planes(struct grid *grid, const struct contour_set *sets, 
     return grid_init(grid, size, &map, err);
 }
 
-/* ---- subdivision ----------------------------------------------------------------------------------------------------------------- */
+/* ---- subdivision ------------------------------------------------------------------------------------------------ */
 
 /* Whole voxels of the base grid become subdivision of them along each axis; low and high in voxels of the base. */
 static bool fine_grid(struct grid *grid, const struct grid *base, const uint32_t subdivision[3], const uint32_t low[3],
@@ -163,8 +164,9 @@ static void find_box(struct candidate *candidate, const struct contour_planes *p
         }
     struct vec3 half = vec3(0, 0, 0);
     for (size_t i = 0; i < planes->n_planes; i++) {
-        struct vec3 thick = affine_vector(&base->ijk_from_lps_mm,
-                                          vec3_scale(planes->normal_lps, planes->planes[i].high_mm - planes->planes[i].low_mm));
+        struct vec3 thick =
+            affine_vector(&base->ijk_from_lps_mm,
+                          vec3_scale(planes->normal_lps, planes->planes[i].high_mm - planes->planes[i].low_mm));
         half = vec3(fmax(half.x, fabs(thick.x)), fmax(half.y, fabs(thick.y)), fmax(half.z, fabs(thick.z)));
     }
     const double low[3] = { box.low.x, box.low.y, box.low.z }, high[3] = { box.high.x, box.high.y, box.high.z };
@@ -172,11 +174,14 @@ static void find_box(struct candidate *candidate, const struct contour_planes *p
     for (int a = 0; a < 3; a++) {
         double from = floor(low[a] - more[a]) - 1, to = ceil(high[a] + more[a]) + 2;
         candidate->low[a] = from <= 0 ? 0 : from >= base->size[a] ? base->size[a] - 1 : (uint32_t)from;
-        candidate->high[a] = to >= base->size[a] ? base->size[a] : to <= candidate->low[a] + 1 ? candidate->low[a] + 1 : (uint32_t)to;
+        candidate->high[a] = to >= base->size[a]           ? base->size[a]
+                             : to <= candidate->low[a] + 1 ? candidate->low[a] + 1
+                                                           : (uint32_t)to;
     }
 }
 
-/* Volume of the slabs as far as the base's slices reach along the normal, so that what the scan cuts off is not missed. */
+/* Volume of the slabs as far as the base's slices reach along the normal, so that what the scan cuts off is not missed.
+ */
 static double volume_within_cm3(const struct contour_planes *planes, const double *areas_mm2, const struct grid *base)
 {
     double low_mm = INFINITY, high_mm = -INFINITY;
@@ -189,13 +194,14 @@ static double volume_within_cm3(const struct contour_planes *planes, const doubl
     }
     double mm3 = 0;
     for (size_t i = 0; i < planes->n_planes; i++)
-        mm3 += areas_mm2[i] * fmax(0, fmin(high_mm, planes->planes[i].high_mm) - fmax(low_mm, planes->planes[i].low_mm));
+        mm3 +=
+            areas_mm2[i] * fmax(0, fmin(high_mm, planes->planes[i].high_mm) - fmax(low_mm, planes->planes[i].low_mm));
     return mm3 / 1000;
 }
 
 /* Volume on a grid against the polygons'. */
-static bool error_on(const struct contour_raster *raster, const struct grid *grid, const struct contour_options *options, double cm3,
-                     double *volume_error, struct error *err)
+static bool error_on(const struct contour_raster *raster, const struct grid *grid,
+                     const struct contour_options *options, double cm3, double *volume_error, struct error *err)
 {
     uint64_t n_voxels;
     if (!contour_raster_fill(raster, grid, NULL, options->n_threads, CONTOUR_MAX_MEETINGS, &n_voxels, err))
@@ -211,7 +217,8 @@ struct step {
 static int by_cost(const void *a, const void *b)
 {
     const struct step *one = a, *other = b;
-    uint32_t cost = one->in_plane * one->in_plane * one->along, other_cost = other->in_plane * other->in_plane * other->along;
+    uint32_t cost = one->in_plane * one->in_plane * one->along,
+             other_cost = other->in_plane * other->in_plane * other->along;
     if (cost != other_cost)
         return cost < other_cost ? -1 : 1;
     return one->in_plane < other->in_plane ? -1 : one->in_plane > other->in_plane;
@@ -219,7 +226,8 @@ static int by_cost(const void *a, const void *b)
 
 /* Finer and finer until the volume is right; the best there was otherwise. */
 static bool subdivide(struct contour_choice *choice, struct candidate *candidate, const struct contour_raster *raster,
-                      struct vec3 normal, const struct grid *base, const struct contour_options *options, double cm3, struct error *err)
+                      struct vec3 normal, const struct grid *base, const struct contour_options *options, double cm3,
+                      struct error *err)
 {
     static const uint32_t in_plane[] = { 1, 2, 3, 4, 6, 8 };
     static const uint32_t along_normal[] = { 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, CONTOUR_MAX_SUBDIVISION };
@@ -262,7 +270,8 @@ static bool subdivide(struct contour_choice *choice, struct candidate *candidate
 
 /* On a base that is the image, or continues it (is_beyond): there a set always has a grid of its own, cropped to it. */
 static bool choose_one(struct contour_choice *choice, struct candidate *candidate, const struct contour_set *set,
-                       const struct grid *base, bool is_beyond, const struct contour_options *options, struct error *err)
+                       const struct grid *base, bool is_beyond, const struct contour_options *options,
+                       struct error *err)
 {
     *choice = (struct contour_choice){ .grid = *base, .subdivision = { 1, 1, 1 }, .volume_error = NAN };
     struct contour_planes planes;
@@ -292,7 +301,7 @@ static bool choose_one(struct contour_choice *choice, struct candidate *candidat
     return is_chosen;
 }
 
-/* ---- sharing --------------------------------------------------------------------------------------------------------------------- */
+/* ---- sharing ---------------------------------------------------------------------------------------------------- */
 
 struct group {
     uint32_t subdivision[3], low[3], high[3];
@@ -326,8 +335,9 @@ static bool may_join(const struct group *group, const struct contour_choice *cho
 }
 
 /* Cropped grids on one base: the image, or with is_beyond its continuation; their groups follow the first n_groups. */
-static bool share_grids(struct contour_choice *choices, const struct candidate *candidates, size_t n, const struct grid *base,
-                        bool is_beyond, uint64_t most_voxels, uint32_t *n_groups_before, struct error *err)
+static bool share_grids(struct contour_choice *choices, const struct candidate *candidates, size_t n,
+                        const struct grid *base, bool is_beyond, uint64_t most_voxels, uint32_t *n_groups_before,
+                        struct error *err)
 {
     struct group *groups = mem_array(n, sizeof *groups, UINT64_MAX, err);
     if (!groups)
@@ -362,10 +372,11 @@ static bool share_grids(struct contour_choice *choices, const struct candidate *
     return is_made;
 }
 
-/* choose_one for a set that may be beyond a limit of contour_fill. On the image contour_fill then says so of this set alone; beyond it the
- * choice on the image stays. */
+/* choose_one for a set that may be beyond a limit of contour_fill. On the image contour_fill then says so of this set
+ * alone; beyond it the choice on the image stays. */
 static bool choose_or_leave(struct contour_choice *choice, struct candidate *candidate, const struct contour_set *set,
-                            const struct grid *base, bool is_beyond, const struct contour_options *options, struct error *err)
+                            const struct grid *base, bool is_beyond, const struct contour_options *options,
+                            struct error *err)
 {
     struct error reason = { 0 };
     const struct contour_choice choice_before = is_beyond ? *choice : (struct contour_choice){ 0 };
@@ -376,7 +387,8 @@ static bool choose_or_leave(struct contour_choice *choice, struct candidate *can
         *candidate = candidate_before;
         is_chosen = true;
     } else if (!is_chosen && reason.code == ERROR_LIMIT) {
-        *choice = (struct contour_choice){ .grid = *base, .subdivision = { 1, 1, 1 }, .volume_error = NAN, .is_short = true };
+        *choice =
+            (struct contour_choice){ .grid = *base, .subdivision = { 1, 1, 1 }, .volume_error = NAN, .is_short = true };
         *candidate = (struct candidate){ 0 };
         is_chosen = true;
     }
@@ -385,9 +397,11 @@ static bool choose_or_leave(struct contour_choice *choice, struct candidate *can
     return is_chosen;
 }
 
-/* Sets that leave the image, on a grid that continues it; those too far away or too intricate for it stay on the image's. */
-static bool choose_beyond(const struct contour_set *sets, size_t n_sets, const struct grid *image, const struct contour_options *options,
-                          struct contour_choice *choices, struct candidate *candidates, uint32_t *n_groups, struct error *err)
+/* Sets that leave the image, on a grid that continues it; those too far away or too intricate for it stay on the
+ * image's. */
+static bool choose_beyond(const struct contour_set *sets, size_t n_sets, const struct grid *image,
+                          const struct contour_options *options, struct contour_choice *choices,
+                          struct candidate *candidates, uint32_t *n_groups, struct error *err)
 {
     bool *is_marked = mem_array(n_sets, sizeof *is_marked, UINT64_MAX, err), has_grid = false, is_any = false;
     if (!is_marked)
@@ -402,11 +416,12 @@ static bool choose_beyond(const struct contour_set *sets, size_t n_sets, const s
         if (is_marked[i])
             is_chosen = choose_or_leave(&choices[i], &candidates[i], &sets[i], &reach, true, options, err);
     free(is_marked);
-    return is_chosen && (!has_grid || share_grids(choices, candidates, n_sets, &reach, true, options->most_voxels, n_groups, err));
+    return is_chosen &&
+           (!has_grid || share_grids(choices, candidates, n_sets, &reach, true, options->most_voxels, n_groups, err));
 }
 
-bool contour_choose_grids(const struct contour_set *sets, size_t n_sets, const struct grid *image, const struct contour_options *options,
-                          struct contour_choice *choices, struct error *err)
+bool contour_choose_grids(const struct contour_set *sets, size_t n_sets, const struct grid *image,
+                          const struct contour_options *options, struct contour_choice *choices, struct error *err)
 {
     struct grid made;
     if (!image && !grid_from_planes(&made, sets, n_sets, options, err))
@@ -417,7 +432,8 @@ bool contour_choose_grids(const struct contour_set *sets, size_t n_sets, const s
     uint32_t n_groups = 0;
     for (size_t i = 0; is_chosen && i < n_sets; i++)
         is_chosen = choose_or_leave(&choices[i], &candidates[i], &sets[i], base, false, options, err);
-    is_chosen = is_chosen && share_grids(choices, candidates, n_sets, base, false, options->most_voxels, &n_groups, err) &&
+    is_chosen = is_chosen &&
+                share_grids(choices, candidates, n_sets, base, false, options->most_voxels, &n_groups, err) &&
                 (!image || choose_beyond(sets, n_sets, image, options, choices, candidates, &n_groups, err));
     free(candidates);
     return is_chosen;

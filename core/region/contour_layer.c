@@ -69,7 +69,8 @@ static bool lay(void *context, size_t at, uint32_t length)
 
 static bool suits(const struct mask *mask, const struct volume *layer)
 {
-    return memcmp(mask->size, layer->grid.size, sizeof mask->size) == 0 && (layer->type == VOXEL_U8 || layer->type == VOXEL_U16);
+    return memcmp(mask->size, layer->grid.size, sizeof mask->size) == 0 &&
+           (layer->type == VOXEL_U8 || layer->type == VOXEL_U16);
 }
 
 bool mask_layer_is_free(const struct mask *mask, const struct volume *layer)

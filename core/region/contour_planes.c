@@ -5,9 +5,9 @@
 
 #include "core/base/mem.h"
 
-#define SAME_PLANE_MM 0.05    /* rounding of the files' decimals; closer planes are one */
+#define SAME_PLANE_MM 0.05 /* rounding of the files' decimals; closer planes are one */
 #define FLAT_MM 0.01
-#define THIN_MM 1e-4          /* a contour that stays this near to a line has no area */
+#define THIN_MM 1e-4                         /* a contour that stays this near to a line has no area */
 #define MOST_TILT_COSINE 0.99619469809174555 /* 5 degrees */
 #define SNAP_COSINE 0.9999984769132877       /* a tenth of a degree */
 #define GAP_FACTOR 1.5
@@ -49,8 +49,9 @@ static uint64_t hash_of(const struct contour *contour)
     return hash;
 }
 
-/* The normal of the triangle of the first point, the one furthest from it, and the one furthest from their line: what a contour has
- * whose two halves turn opposite ways and whose vector area is therefore nothing. The zero vector for one that is thin. */
+/* The normal of the triangle of the first point, the one furthest from it, and the one furthest from their line: what a
+ * contour has whose two halves turn opposite ways and whose vector area is therefore nothing. The zero vector for one
+ * that is thin. */
 static struct vec3 normal_of_spread(const struct contour *contour)
 {
     struct vec3 first = point_at(contour, 0), along = vec3(0, 0, 0), normal = vec3(0, 0, 0);
@@ -191,10 +192,12 @@ static size_t place(struct contour_planes *planes, struct entry *entries, const 
 
 static bool is_repeated(const struct contour *a, const struct contour *b)
 {
-    return a->n_points == b->n_points && memcmp(a->points_lps_mm, b->points_lps_mm, a->n_points * 3 * sizeof(double)) == 0;
+    return a->n_points == b->n_points &&
+           memcmp(a->points_lps_mm, b->points_lps_mm, a->n_points * 3 * sizeof(double)) == 0;
 }
 
-static bool make_planes(struct contour_planes *planes, struct entry *entries, size_t n, const struct contour_set *set, struct error *err)
+static bool make_planes(struct contour_planes *planes, struct entry *entries, size_t n, const struct contour_set *set,
+                        struct error *err)
 {
     size_t most = 0;
     for (size_t i = 0; i < n; i++)
@@ -207,7 +210,8 @@ static bool make_planes(struct contour_planes *planes, struct entry *entries, si
         return false;
     for (size_t first = 0, end; first < n; first = end) {
         double sum = 0;
-        for (end = first; end < n && (end == first || entries[end].at_mm - entries[end - 1].at_mm <= SAME_PLANE_MM); end++)
+        for (end = first; end < n && (end == first || entries[end].at_mm - entries[end - 1].at_mm <= SAME_PLANE_MM);
+             end++)
             sum += entries[end].at_mm;
         struct contour_plane *plane = &planes->planes[planes->n_planes++];
         plane->at_mm = sum / (double)(end - first);
@@ -215,7 +219,8 @@ static bool make_planes(struct contour_planes *planes, struct entry *entries, si
         qsort(entries + first, end - first, sizeof *entries, by_hash);
         for (size_t i = first; i < end; i++) {
             const struct contour *contour = &set->contours[entries[i].index];
-            if (i > first && entries[i].hash == entries[i - 1].hash && is_repeated(contour, &set->contours[entries[i - 1].index]))
+            if (i > first && entries[i].hash == entries[i - 1].hash &&
+                is_repeated(contour, &set->contours[entries[i - 1].index]))
                 planes->facts.n_repeated++;
             else
                 planes->contours[planes->n_contours++] = contour;
@@ -225,11 +230,14 @@ static bool make_planes(struct contour_planes *planes, struct entry *entries, si
     return true;
 }
 
-/* The usual distance of neighbouring planes: the lower median, so that one gap among three planes does not become the rule. */
+/* The usual distance of neighbouring planes: the lower median, so that one gap among three planes does not become the
+ * rule. */
 static bool find_spacing(struct contour_planes *planes, double spacing_mm, const struct grid *likely, struct error *err)
 {
     size_t n = planes->n_planes;
-    planes->facts.spacing_mm = spacing_mm > 0 ? spacing_mm : likely ? contour_grid_spacing_mm(likely, planes->normal_lps) : 1;
+    planes->facts.spacing_mm = spacing_mm > 0 ? spacing_mm
+                               : likely       ? contour_grid_spacing_mm(likely, planes->normal_lps)
+                                              : 1;
     if (n < 2)
         return true;
     double *gaps_mm = mem_array(n - 1, sizeof *gaps_mm, UINT64_MAX, err);
@@ -268,15 +276,16 @@ static void make_slabs(struct contour_planes *planes)
     }
 }
 
-bool contour_planes_init(struct contour_planes *planes, const struct contour_set *set, double spacing_mm, const struct grid *likely,
-                         struct error *err)
+bool contour_planes_init(struct contour_planes *planes, const struct contour_set *set, double spacing_mm,
+                         const struct grid *likely, struct error *err)
 {
     *planes = (struct contour_planes){ .normal_lps = { 0, 0, 1 } };
     uint64_t n_points = 0;
     for (size_t i = 0; i < set->n_contours; i++)
         n_points += set->contours[i].n_points;
     if (n_points > CONTOUR_MAX_POINTS)
-        return error_set(err, ERROR_LIMIT, "contours of %llu points; the limit is %d", (unsigned long long)n_points, CONTOUR_MAX_POINTS);
+        return error_set(err, ERROR_LIMIT, "contours of %llu points; the limit is %d", (unsigned long long)n_points,
+                         CONTOUR_MAX_POINTS);
     struct entry *entries = mem_array(set->n_contours, sizeof *entries, UINT64_MAX, err);
     if (!entries)
         return false;

@@ -6,13 +6,14 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 
-/* Centres are tested this far off, so that the noise of the last digits does not decide on which side of an edge they are. */
+/* Centres are tested this far off, so that the noise of the last digits does not decide on which side of an edge they
+ * are. */
 #define NUDGE_MM 1e-6
 enum { AREA_LINES = 256, MOST_EXACT_EDGES = 4096, MOST_BUCKETS = 8192, MOST_THREADS = 64 };
 
 /* u runs along the rows of voxels as they look within a plane, v across them, d from plane to plane. */
 struct edge {
-    double v_low, v_high; /* low < high: edges along a row are never met */
+    double v_low, v_high;  /* low < high: edges along a row are never met */
     double u_low, u_width; /* from the lower end, so that the same u comes out whichever way the edge was drawn */
 };
 
@@ -27,7 +28,7 @@ struct layer {
     size_t n_edges;
     double v_low, v_high, buckets_per_mm;
     uint32_t n_buckets;
-    size_t *starts;   /* [n_buckets + 1] into which */
+    size_t *starts; /* [n_buckets + 1] into which */
     uint32_t *which;
 };
 
@@ -49,8 +50,7 @@ static void layer_edges(struct layer *layer, const struct contour_raster *raster
         if (v != to_v) {
             bool is_up = v < to_v;
             double u_low = is_up ? u : to_u, v_low = is_up ? v : to_v, v_high = is_up ? to_v : v;
-            layer->edges[layer->n_edges++] =
-                (struct edge){ v_low, v_high, u_low, (is_up ? to_u : u) - u_low };
+            layer->edges[layer->n_edges++] = (struct edge){ v_low, v_high, u_low, (is_up ? to_u : u) - u_low };
             layer->v_low = fmin(layer->v_low, v_low);
             layer->v_high = fmax(layer->v_high, v_high);
         }
@@ -98,8 +98,8 @@ static bool layer_sort(struct layer *layer, double row_mm, struct error *err)
     return true;
 }
 
-static bool layer_init(struct layer *layer, const struct contour_raster *raster, const struct contour_plane *plane, double row_mm,
-                       struct error *err)
+static bool layer_init(struct layer *layer, const struct contour_raster *raster, const struct contour_plane *plane,
+                       double row_mm, struct error *err)
 {
     size_t n_points = 0;
     for (size_t i = plane->first; i < plane->end; i++)
@@ -113,7 +113,8 @@ static bool layer_init(struct layer *layer, const struct contour_raster *raster,
     return layer_sort(layer, row_mm, err);
 }
 
-struct contour_raster *contour_raster_create(const struct contour_planes *planes, const struct grid *grid, struct error *err)
+struct contour_raster *contour_raster_create(const struct contour_planes *planes, const struct grid *grid,
+                                             struct error *err)
 {
     const struct vec3 *columns = grid->lps_mm_from_ijk.columns;
     struct contour_raster *raster = mem_new(sizeof *raster);
@@ -150,7 +151,7 @@ void contour_raster_destroy(struct contour_raster *raster)
     free(raster);
 }
 
-/* ---- areas -------------------------------------------------------------------------------------------------------------------- */
+/* ---- areas ------------------------------------------------------------------------------------------------------ */
 
 static int by_value(const void *a, const void *b)
 {
@@ -191,8 +192,8 @@ static double inside_mm(const struct layer *layer, double v, double *crossings, 
     return sum;
 }
 
-/* Heights between which the length inside changes evenly: those of all points, and evenly spread ones for where edges cross.
- * Ascending; returns how many. */
+/* Heights between which the length inside changes evenly: those of all points, and evenly spread ones for where edges
+ * cross. Ascending; returns how many. */
 static size_t area_heights(const struct layer *layer, double *heights)
 {
     size_t n = 0;
@@ -235,7 +236,7 @@ bool contour_raster_areas(const struct contour_raster *raster, double *areas_mm2
     return true;
 }
 
-/* ---- voxels ------------------------------------------------------------------------------------------------------------------- */
+/* ---- voxels ----------------------------------------------------------------------------------------------------- */
 
 /* Where the voxels of a grid are in the raster's directions: at (i, j, k) u is at.u + i step[0].u + ... */
 struct place {
@@ -255,7 +256,8 @@ struct filling {
 
 static struct place place_of(const struct contour_raster *raster, struct vec3 v)
 {
-    return (struct place){ vec3_dot(raster->u_lps, v), vec3_dot(raster->v_lps, v), vec3_dot(raster->planes->normal_lps, v) };
+    return (struct place){ vec3_dot(raster->u_lps, v), vec3_dot(raster->v_lps, v),
+                           vec3_dot(raster->planes->normal_lps, v) };
 }
 
 /* A step that over the whole grid leads nowhere is none: what is meant to be aligned is. */
@@ -278,7 +280,8 @@ static void filling_init(struct filling *filling, const struct contour_raster *r
         step->v = axis == 0 ? 0 : without_noise(step->v, grid->size[axis]);
         step->d = without_noise(step->d, grid->size[axis]);
     }
-    filling->is_aligned = filling->step[0].d == 0 && filling->step[1].d == 0 && filling->step[2].u == 0 && filling->step[2].v == 0;
+    filling->is_aligned =
+        filling->step[0].d == 0 && filling->step[1].d == 0 && filling->step[2].u == 0 && filling->step[2].v == 0;
 }
 
 /* The first plane whose slab ends after d. */
@@ -303,7 +306,8 @@ static uint32_t first_index(double from, double step, double to, uint32_t n)
 }
 
 /* The run of a row inside a slab: from <= index < end. */
-static void run_in_slab(const struct contour_plane *plane, double d, double step, uint32_t n, uint32_t *from, uint32_t *end)
+static void run_in_slab(const struct contour_plane *plane, double d, double step, uint32_t n, uint32_t *from,
+                        uint32_t *end)
 {
     if (step > 0) {
         *from = first_index(d, step, plane->low_mm, n);
@@ -319,9 +323,10 @@ static void run_in_slab(const struct contour_plane *plane, double d, double step
     }
 }
 
-/* Flips what lies behind each crossing: a bit at its first index, then the running parity of the bits. Adds the run to the row. */
-static uint64_t fill_run(const struct layer *layer, const struct place *start, double u_step, uint32_t from, uint32_t end,
-                         uint64_t *row, uint64_t *n_met)
+/* Flips what lies behind each crossing: a bit at its first index, then the running parity of the bits. Adds the run to
+ * the row. */
+static uint64_t fill_run(const struct layer *layer, const struct place *start, double u_step, uint32_t from,
+                         uint32_t end, uint64_t *row, uint64_t *n_met)
 {
     if (layer->n_edges == 0 || from >= end || start->v < layer->v_low || start->v >= layer->v_high)
         return 0;
@@ -399,7 +404,8 @@ static void fill_slices(void *context, int part, int n_parts)
             n_slice_voxels = n_slice_met = 0;
             for (uint32_t j = 0; j < size[1] && n_met + n_slice_met <= filling->most; j++) {
                 struct place start = row_start(filling, j, k);
-                n_slice_voxels += fill_row(filling, &start, slice ? slice + (size_t)j * filling->words : NULL, &n_slice_met);
+                n_slice_voxels +=
+                    fill_row(filling, &start, slice ? slice + (size_t)j * filling->words : NULL, &n_slice_met);
             }
             /* what was filled before the slab begins is not what its slices look like */
             bool is_in_slab = plane < planes->n_planes && row_start(filling, 0, k).d >= planes->planes[plane].low_mm;
@@ -412,8 +418,8 @@ static void fill_slices(void *context, int part, int n_parts)
     filling->n_met[part] = n_met;
 }
 
-bool contour_raster_fill(const struct contour_raster *raster, const struct grid *grid, uint64_t *bits, int n_threads, uint64_t most,
-                         uint64_t *n_voxels, struct error *err)
+bool contour_raster_fill(const struct contour_raster *raster, const struct grid *grid, uint64_t *bits, int n_threads,
+                         uint64_t most, uint64_t *n_voxels, struct error *err)
 {
     struct filling *filling = mem_new(sizeof *filling);
     filling_init(filling, raster, grid);
@@ -427,6 +433,7 @@ bool contour_raster_fill(const struct contour_raster *raster, const struct grid 
         n_met += filling->n_met[part];
     }
     free(filling);
-    return n_met <= most || error_set(err, ERROR_LIMIT, "contours too intricate: the rows of voxels meet more than %llu edges",
-                                      (unsigned long long)most);
+    return n_met <= most ||
+           error_set(err, ERROR_LIMIT, "contours too intricate: the rows of voxels meet more than %llu edges",
+                     (unsigned long long)most);
 }

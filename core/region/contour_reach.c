@@ -5,10 +5,11 @@
 
 #include "core/base/mem.h"
 
-#define ALIGNED_COSINE (1 - 1e-9)  /* contour planes parallel to the grid's own; near ones were snapped (contour_planes_init) */
-#define SAME_STEP 1e-3             /* of a slice: spacing and place of planes that are the image's slices */
-#define LEAST_IN_PLANE 64.0        /* voxels of a slice: coarser is no picture any more, then slices are joined */
-#define OUTSIDE_VOXELS 1e-3        /* rounding */
+#define ALIGNED_COSINE \
+    (1 - 1e-9)         /* contour planes parallel to the grid's own; near ones were snapped (contour_planes_init) */
+#define SAME_STEP 1e-3 /* of a slice: spacing and place of planes that are the image's slices */
+#define LEAST_IN_PLANE 64.0 /* voxels of a slice: coarser is no picture any more, then slices are joined */
+#define OUTSIDE_VOXELS 1e-3 /* rounding */
 
 /* Where one set lies, in voxels of the image. */
 struct extent {
@@ -24,7 +25,9 @@ struct lattice {
 
 static struct extent extent_of(const struct contour_planes *planes, const struct grid *image)
 {
-    struct extent extent = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY }, planes->n_contours > 0 };
+    struct extent extent = { { INFINITY, INFINITY, INFINITY },
+                             { -INFINITY, -INFINITY, -INFINITY },
+                             planes->n_contours > 0 };
     for (size_t c = 0; c < planes->n_contours; c++)
         for (size_t i = 0; i < planes->contours[c]->n_points; i++) {
             const double *p = planes->contours[c]->points_lps_mm + 3 * i;
@@ -43,7 +46,8 @@ bool contour_is_within(const struct contour_planes *planes, const struct grid *g
     struct extent extent = extent_of(planes, grid);
     bool is_within = true;
     for (int a = 0; a < 3 && extent.is_known; a++)
-        is_within = is_within && extent.low[a] >= -0.5 - OUTSIDE_VOXELS && extent.high[a] <= grid->size[a] - 0.5 + OUTSIDE_VOXELS;
+        is_within = is_within && extent.low[a] >= -0.5 - OUTSIDE_VOXELS &&
+                    extent.high[a] <= grid->size[a] - 0.5 + OUTSIDE_VOXELS;
     return is_within;
 }
 
@@ -52,7 +56,8 @@ static bool is_in_reach(const struct extent *extent, const struct grid *image)
     struct vec3 spacing = grid_spacing_mm(image);
     const double mm[3] = { spacing.x, spacing.y, spacing.z };
     for (int a = 0; a < 3; a++)
-        if (!(-extent->low[a] * mm[a] <= CONTOUR_MAX_REACH_MM && (extent->high[a] - image->size[a]) * mm[a] <= CONTOUR_MAX_REACH_MM))
+        if (!(-extent->low[a] * mm[a] <= CONTOUR_MAX_REACH_MM &&
+              (extent->high[a] - image->size[a]) * mm[a] <= CONTOUR_MAX_REACH_MM))
             return false;
     return true;
 }
@@ -71,7 +76,8 @@ static void add_slabs(struct extent *extent, const struct contour_planes *planes
     }
 }
 
-/* Slices on the planes of this set, unless those lie on the image's slices or are not parallel to any of its axes' planes. */
+/* Slices on the planes of this set, unless those lie on the image's slices or are not parallel to any of its axes'
+ * planes. */
 static void fit_planes(struct lattice *lattice, const struct contour_planes *planes, const struct grid *image)
 {
     const struct vec3 *columns = image->lps_mm_from_ijk.columns;
@@ -105,8 +111,8 @@ static void whole_steps(const struct lattice *lattice, const struct extent *exte
 }
 
 /* Doubles steps until the whole fits into a grid and the part around each set into most_voxels. */
-static void coarsen(struct lattice *lattice, const struct extent *extents, const bool *is_marked, size_t n_sets, const struct extent *all,
-                    double most_voxels)
+static void coarsen(struct lattice *lattice, const struct extent *extents, const bool *is_marked, size_t n_sets,
+                    const struct extent *all, double most_voxels)
 {
     for (bool is_changed = true; is_changed;) {
         double first[3], n[3];
@@ -132,7 +138,8 @@ static void coarsen(struct lattice *lattice, const struct extent *extents, const
     }
 }
 
-static bool make_grid(struct grid *grid, const struct lattice *lattice, const struct extent *all, const struct grid *image)
+static bool make_grid(struct grid *grid, const struct lattice *lattice, const struct extent *all,
+                      const struct grid *image)
 {
     struct affine map;
     uint32_t size[3];

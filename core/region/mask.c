@@ -11,7 +11,8 @@ enum { MAX_THREADS = 64 };
 
 typedef void *allocate(size_t n, size_t size, uint64_t limit_bytes, struct error *err);
 
-static struct mask *create(const uint32_t size[3], const struct affine *lps_mm_from_ijk, allocate *bits, struct error *err)
+static struct mask *create(const uint32_t size[3], const struct affine *lps_mm_from_ijk, allocate *bits,
+                           struct error *err)
 {
     struct mask *mask = mem_new(sizeof *mask);
     for (int axis = 0; axis < 3; axis++)
@@ -74,7 +75,7 @@ static void range_of(size_t n, int part, int n_parts, size_t *from, size_t *end)
     *end = n * (size_t)(part + 1) / (size_t)n_parts;
 }
 
-/* ---- labels to bits ----------------------------------------------------------------------------------------------------- */
+/* ---- labels to bits --------------------------------------------------------------------------------------------- */
 
 struct pack_job {
     const struct volume *layer;
@@ -105,8 +106,8 @@ struct mask *mask_from_labels(const struct volume *layer, const uint16_t *labels
         return NULL;
     }
     if (layer->type != VOXEL_U8 && layer->type != VOXEL_U16) {
-        error_set(err, ERROR_UNSUPPORTED, "a label layer holds unsigned whole numbers of 8 or 16 bits, not voxel type %d",
-                  (int)layer->type);
+        error_set(err, ERROR_UNSUPPORTED,
+                  "a label layer holds unsigned whole numbers of 8 or 16 bits, not voxel type %d", (int)layer->type);
         return NULL;
     }
     struct pack_job job = { .layer = layer, .packer = mask_packer_best() };
@@ -121,7 +122,7 @@ struct mask *mask_from_labels(const struct volume *layer, const uint16_t *labels
     return job.mask;
 }
 
-/* ---- a region and what is inside it ------------------------------------------------------------------------------------- */
+/* ---- a region and what is inside it ----------------------------------------------------------------------------- */
 
 struct mask *mask_from_region(const struct region_set *set, size_t region, int n_threads, struct error *err)
 {

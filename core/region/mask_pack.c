@@ -33,15 +33,15 @@ void label_test_init(struct label_test *test, const uint16_t *labels, size_t n_l
     test->n_runs = n <= LABEL_MAX_RUNS ? n : 0;
 }
 
-#define PACK(labels, n, bits)                                                         \
-    do {                                                                              \
-        for (uint32_t at = 0; at < (n); at += 64) {                                   \
-            uint32_t n_here = (n) - at < 64 ? (n) - at : 64;                          \
-            uint64_t word = 0;                                                        \
-            for (uint32_t bit = 0; bit < n_here; bit++)                               \
-                word |= (uint64_t)test->has[(labels)[at + bit]] << bit;               \
-            (bits)[at / 64] = word;                                                   \
-        }                                                                             \
+#define PACK(labels, n, bits) \
+    do { \
+        for (uint32_t at = 0; at < (n); at += 64) { \
+            uint32_t n_here = (n)-at < 64 ? (n)-at : 64; \
+            uint64_t word = 0; \
+            for (uint32_t bit = 0; bit < n_here; bit++) \
+                word |= (uint64_t)test->has[(labels)[at + bit]] << bit; \
+            (bits)[at / 64] = word; \
+        } \
     } while (0)
 
 static void pack_u8_portable(const struct label_test *test, const uint8_t *labels, uint32_t n, uint64_t *bits)
@@ -59,22 +59,23 @@ const struct mask_packer mask_packer_portable = { pack_u8_portable, pack_u16_por
 #if defined(__x86_64__)
 #define AVX2 __attribute__((target("avx2")))
 
-/* Rows lie one behind the other, so what is far ahead is wanted soon. The address may lie beyond the labels: a prefetch reads
- * nothing. */
+/* Rows lie one behind the other, so what is far ahead is wanted soon. The address may lie beyond the labels: a prefetch
+ * reads nothing. */
 enum { AHEAD = 4096 };
 AVX2 static inline void prefetch(const void *at)
 {
     _mm_prefetch((const char *)((uintptr_t)at + AHEAD), _MM_HINT_T0);
 }
 
-/* Any set of bytes in one go: the low half of a byte looks up, in the table its highest bit selects, which high halves are in
- * the set (PSHUFB gives 0 where the index has bit 7, so the other table drops out by itself). */
+/* Any set of bytes in one go: the low half of a byte looks up, in the table its highest bit selects, which high halves
+ * are in the set (PSHUFB gives 0 where the index has bit 7, so the other table drops out by itself). */
 AVX2 static inline uint32_t test_32_u8(__m256i low_table, __m256i high_table, __m256i labels)
 {
     const __m256i bit_of_half = _mm256_set1_epi64x((long long)0x8040201008040201u);
     __m256i low = _mm256_and_si256(labels, _mm256_set1_epi8((char)0x8f));
-    __m256i halves = _mm256_or_si256(_mm256_shuffle_epi8(low_table, low),
-                                     _mm256_shuffle_epi8(high_table, _mm256_xor_si256(low, _mm256_set1_epi8((char)0x80))));
+    __m256i halves =
+        _mm256_or_si256(_mm256_shuffle_epi8(low_table, low),
+                        _mm256_shuffle_epi8(high_table, _mm256_xor_si256(low, _mm256_set1_epi8((char)0x80))));
     __m256i high = _mm256_and_si256(_mm256_srli_epi16(labels, 4), _mm256_set1_epi8(0x0f));
     __m256i wanted = _mm256_shuffle_epi8(bit_of_half, high);
     return (uint32_t)_mm256_movemask_epi8(_mm256_cmpeq_epi8(_mm256_and_si256(halves, wanted), wanted));
@@ -106,9 +107,12 @@ AVX2 static inline uint32_t test_32_u16(const struct label_test *test, const uin
     __m256i in_a = _mm256_setzero_si256(), in_b = in_a;
     for (size_t run = 0; run < test->n_runs; run++) {
         /* unsigned (label - first) <= length - 1, as a saturated difference of 0 */
-        __m256i first = _mm256_set1_epi16((short)test->first[run]), length = _mm256_set1_epi16((short)test->length_less_1[run]);
-        in_a = _mm256_or_si256(in_a, _mm256_cmpeq_epi16(_mm256_subs_epu16(_mm256_sub_epi16(a, first), length), _mm256_setzero_si256()));
-        in_b = _mm256_or_si256(in_b, _mm256_cmpeq_epi16(_mm256_subs_epu16(_mm256_sub_epi16(b, first), length), _mm256_setzero_si256()));
+        __m256i first = _mm256_set1_epi16((short)test->first[run]),
+                length = _mm256_set1_epi16((short)test->length_less_1[run]);
+        in_a = _mm256_or_si256(in_a, _mm256_cmpeq_epi16(_mm256_subs_epu16(_mm256_sub_epi16(a, first), length),
+                                                        _mm256_setzero_si256()));
+        in_b = _mm256_or_si256(in_b, _mm256_cmpeq_epi16(_mm256_subs_epu16(_mm256_sub_epi16(b, first), length),
+                                                        _mm256_setzero_si256()));
     }
     /* packs within halves of 128 bits: put the quarters back in order */
     return (uint32_t)_mm256_movemask_epi8(_mm256_permute4x64_epi64(_mm256_packs_epi16(in_a, in_b), 0xd8));
@@ -141,5 +145,8 @@ const struct mask_packer *mask_packer_best(void)
     return __builtin_cpu_supports("avx2") ? &avx2 : &mask_packer_portable;
 }
 #else
-const struct mask_packer *mask_packer_best(void) { return &mask_packer_portable; }
+const struct mask_packer *mask_packer_best(void)
+{
+    return &mask_packer_portable;
+}
 #endif

@@ -1,5 +1,6 @@
 #pragma once
-/* Inside of mask_from_labels: rows of labels to rows of bits. Knows nothing of grids. For any processor, and for one with AVX2. */
+/* Inside of mask_from_labels: rows of labels to rows of bits. Knows nothing of grids. For any processor, and for one
+ * with AVX2. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -8,9 +9,9 @@ enum { LABEL_MAX_RUNS = 8 };
 
 /* Which labels count as inside. */
 struct label_test {
-    uint8_t has[65536];       /* 0 or 1 by label */
-    uint8_t nibbles[2][16];   /* labels below 256: bit (l / 16 % 8) of nibbles[l / 128][l % 16] */
-    size_t n_runs;            /* runs of neighbouring labels in ascending order; 0 when there are more than LABEL_MAX_RUNS */
+    uint8_t has[65536];     /* 0 or 1 by label */
+    uint8_t nibbles[2][16]; /* labels below 256: bit (l / 16 % 8) of nibbles[l / 128][l % 16] */
+    size_t n_runs; /* runs of neighbouring labels in ascending order; 0 when there are more than LABEL_MAX_RUNS */
     uint16_t first[LABEL_MAX_RUNS], length_less_1[LABEL_MAX_RUNS];
 };
 

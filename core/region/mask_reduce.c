@@ -2,13 +2,14 @@
  *
  *   1. count the voxels of every block
  *   2. start from all blocks that hold any: what was closed or hung together does so still
- *   3. go through the blocks that are less than half full, the emptiest first, and take away each that lies at the old outside with a
- *      neighbour at least as full on its other side, unless that would open a hole, cut something in two or join two cavities
+ *   3. go through the blocks that are less than half full, the emptiest first, and take away each that lies at the old
+ * outside with a neighbour at least as full on its other side, unless that would open a hole, cut something in two or
+ * join two cavities
  *
- * Inside voxels hang together by faces and outside ones also by edges and corners, as in the surfaces (cube_cases.h). A voxel can be
- * taken away without consequences when, among its 26 neighbours, the inside ones that it touches by a face hang together by faces
- * within the 18 that share a face or an edge with it, and the outside ones hang together (G. Bertrand, Simple points, topological
- * numbers and geodesic neighborhoods in cubic grids, 1994). */
+ * Inside voxels hang together by faces and outside ones also by edges and corners, as in the surfaces (cube_cases.h). A
+ * voxel can be taken away without consequences when, among its 26 neighbours, the inside ones that it touches by a face
+ * hang together by faces within the 18 that share a face or an edge with it, and the outside ones hang together (G.
+ * Bertrand, Simple points, topological numbers and geodesic neighborhoods in cubic grids, 1994). */
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,7 +17,11 @@
 #include "core/base/parallel.h"
 #include "core/region/mask.h"
 
-enum { MAX_THREADS = 64, MAX_WORDS = VOLUME_MAX_SIDE / 64, MAX_COUNT = MASK_MAX_FACTOR * MASK_MAX_FACTOR * MASK_MAX_FACTOR };
+enum {
+    MAX_THREADS = 64,
+    MAX_WORDS = VOLUME_MAX_SIDE / 64,
+    MAX_COUNT = MASK_MAX_FACTOR * MASK_MAX_FACTOR * MASK_MAX_FACTOR
+};
 
 struct reduce_job {
     const struct mask *from;
@@ -31,7 +36,7 @@ static uint32_t part_of_block(uint32_t size, uint32_t block, uint32_t factor)
     return left < factor ? left : factor;
 }
 
-/* ---- counting ------------------------------------------------------------------------------------------------------------- */
+/* ---- counting --------------------------------------------------------------------------------------------------- */
 
 /* Which of the n voxels of a row from `first` on are inside; 1 <= n <= 64, so they lie in at most two words. */
 static uint64_t bits_at(const uint64_t *row, uint32_t first, uint32_t n)
@@ -51,7 +56,8 @@ struct block_row {
     uint64_t any[MAX_WORDS], all[MAX_WORDS]; /* of these rows: inside in one of them, in each of them */
 };
 
-static void block_row_init(struct block_row *rows, const struct mask *from, const uint32_t factors[3], uint32_t j, uint32_t k)
+static void block_row_init(struct block_row *rows, const struct mask *from, const uint32_t factors[3], uint32_t j,
+                           uint32_t k)
 {
     rows->next_j = from->words;
     rows->next_k = (size_t)from->words * from->size[1];
@@ -81,7 +87,8 @@ static uint32_t count_block(const struct block_row *rows, uint32_t first, uint32
     uint32_t n = 0;
     for (uint32_t dk = 0; dk < rows->n_k; dk++)
         for (uint32_t dj = 0; dj < rows->n_j; dj++)
-            n += (uint32_t)__builtin_popcountll(bits_at(rows->first + dk * rows->next_k + dj * rows->next_j, first, n_i));
+            n += (uint32_t)__builtin_popcountll(
+                bits_at(rows->first + dk * rows->next_k + dj * rows->next_j, first, n_i));
     return n;
 }
 
@@ -97,8 +104,9 @@ static void count_row(const struct reduce_job *job, const struct block_row *rows
             continue;
         bool is_full = n_here == n * factor && bits_at(rows->all, first, n_here) == ~(uint64_t)0 >> (64 - n_here);
         for (uint32_t block = i; block < i + n; block++) {
-            counts[block] = (uint16_t)(is_full ? factor * rows->n_j * rows->n_k
-                                               : count_block(rows, block * factor, part_of_block(n_voxels, block, factor)));
+            counts[block] =
+                (uint16_t)(is_full ? factor * rows->n_j * rows->n_k
+                                   : count_block(rows, block * factor, part_of_block(n_voxels, block, factor)));
             bits[block / 64] |= (uint64_t)(counts[block] > 0) << block % 64;
         }
     }
@@ -109,7 +117,8 @@ static void count_part(void *context, int part, int n_parts)
     struct reduce_job *job = context;
     const struct mask *to = job->to;
     struct block_row rows;
-    size_t n_j = to->end_j - to->low_j, n_rows = n_j * (to->end_k - to->low_k), end = n_rows * (size_t)(part + 1) / (size_t)n_parts;
+    size_t n_j = to->end_j - to->low_j, n_rows = n_j * (to->end_k - to->low_k),
+           end = n_rows * (size_t)(part + 1) / (size_t)n_parts;
     for (size_t at = n_rows * (size_t)part / (size_t)n_parts; at < end; at++) {
         uint32_t j = to->low_j + (uint32_t)(at % n_j), k = to->low_k + (uint32_t)(at / n_j);
         size_t row = (size_t)k * to->size[1] + j;
@@ -118,7 +127,7 @@ static void count_part(void *context, int part, int n_parts)
     }
 }
 
-/* ---- what can be taken away ------------------------------------------------------------------------------------------------ */
+/* ---- what can be taken away ------------------------------------------------------------------------------------- */
 
 /* The 27 voxels of a neighbourhood, bit (dx + 1) + 3 (dy + 1) + 9 (dz + 1); the middle is bit 13. */
 enum { MIDDLE = 1 << 13, ALL_27 = (1 << 27) - 1 };
@@ -141,16 +150,22 @@ static uint32_t neighbourhood(const struct mask *mask, uint32_t i, uint32_t j, u
 }
 
 /* Columns of the neighbourhood, so that a step along x does not go over its edge. */
-#define LEFT 0x1249249u  /* dx = -1 */
+#define LEFT 0x1249249u /* dx = -1 */
 #define RIGHT (LEFT << 2)
 
-static uint32_t grow_x(uint32_t set) { return set | (set & ~RIGHT) << 1 | (set & ~LEFT) >> 1; }
+static uint32_t grow_x(uint32_t set)
+{
+    return set | (set & ~RIGHT) << 1 | (set & ~LEFT) >> 1;
+}
 static uint32_t y_steps(uint32_t set)
 {
     const uint32_t low = 0x1c0e07u, high = low << 6; /* dy = -1, dy = 1 */
     return (set & ~high) << 3 | (set & ~low) >> 3;
 }
-static uint32_t z_steps(uint32_t set) { return set << 9 | set >> 9; }
+static uint32_t z_steps(uint32_t set)
+{
+    return set << 9 | set >> 9;
+}
 
 static uint32_t grow_by_faces(uint32_t set)
 {
@@ -181,7 +196,8 @@ static bool can_go(uint32_t neighbours)
            spread(outside & (0 - outside), outside, grow_by_all) == outside;
 }
 
-/* Whether it lies at the outside there was at first, with a neighbour behind it that is at least as full and still there. */
+/* Whether it lies at the outside there was at first, with a neighbour behind it that is at least as full and still
+ * there. */
 static bool is_skin(const struct reduce_job *job, uint32_t neighbours, const uint32_t at[3])
 {
     static const uint32_t bit_of[3] = { 1, 3, 9 };
@@ -189,7 +205,8 @@ static bool is_skin(const struct reduce_job *job, uint32_t neighbours, const uin
     const size_t step[3] = { 1, size[0], (size_t)size[0] * size[1] };
     const uint16_t *here = job->counts + at[0] + at[1] * step[1] + at[2] * step[2];
     for (int axis = 0; axis < 3; axis++) {
-        uint32_t below = at[axis] > 0 ? *(here - step[axis]) : 0, above = at[axis] + 1 < size[axis] ? *(here + step[axis]) : 0;
+        uint32_t below = at[axis] > 0 ? *(here - step[axis]) : 0,
+                 above = at[axis] + 1 < size[axis] ? *(here + step[axis]) : 0;
         if (above == 0 && below >= *here && neighbours >> (13 - bit_of[axis]) & 1)
             return true;
         if (below == 0 && above >= *here && neighbours >> (13 + bit_of[axis]) & 1)
@@ -213,7 +230,8 @@ struct thinning {
 };
 
 /* Calls found for each block that is not empty and less than half full, in the order of memory. */
-static void each_thin(struct thinning *thinning, void (*found)(struct thinning *thinning, uint16_t count, const uint32_t at[3]))
+static void each_thin(struct thinning *thinning,
+                      void (*found)(struct thinning *thinning, uint16_t count, const uint32_t at[3]))
 {
     const struct reduce_job *job = thinning->job;
     const struct mask *to = job->to;
@@ -265,7 +283,7 @@ static bool thin_out(struct reduce_job *job, struct error *err)
     return true;
 }
 
-/* ---- the whole ------------------------------------------------------------------------------------------------------------- */
+/* ---- the whole -------------------------------------------------------------------------------------------------- */
 
 struct mask *mask_reduce(const struct mask *mask, const uint32_t factors[3], int n_threads, struct error *err)
 {

@@ -25,14 +25,14 @@ struct sweep {
     const struct mask_wish *wishes;
     size_t n;
     struct mask **masks;
-    uint64_t **bits;         /* [n], of the masks */
+    uint64_t **bits; /* [n], of the masks */
     const struct volume *layer;
     struct holders *holders; /* [N_LABELS], of the layer */
     uint32_t *members;
-    struct reach *reaches;   /* [n_threads][n] */
+    struct reach *reaches; /* [n_threads][n] */
 };
 
-/* ---- who holds which label of a layer ----------------------------------------------------------------------------------- */
+/* ---- who holds which label of a layer --------------------------------------------------------------------------- */
 
 static const struct volume *layer_of(const struct sweep *sweep, size_t wish)
 {
@@ -40,7 +40,8 @@ static const struct volume *layer_of(const struct sweep *sweep, size_t wish)
 }
 
 /* Calls note for every label of the layer that a mask holds. */
-static void each_label(const struct sweep *sweep, size_t layer, size_t *inside, void (*note)(const struct sweep *sweep, uint16_t label, uint32_t mask))
+static void each_label(const struct sweep *sweep, size_t layer, size_t *inside,
+                       void (*note)(const struct sweep *sweep, uint16_t label, uint32_t mask))
 {
     for (size_t w = 0; w < sweep->n; w++) {
         const struct mask_wish *wish = &sweep->wishes[w];
@@ -86,14 +87,15 @@ static bool find_holders(struct sweep *sweep, size_t layer, size_t *inside, stru
     return sweep->members != NULL;
 }
 
-/* ---- the sweep ---------------------------------------------------------------------------------------------------------- */
+/* ---- the sweep -------------------------------------------------------------------------------------------------- */
 
 struct place {
     size_t word; /* of the masks */
     uint32_t j, k;
 };
 
-static inline void set_bits(const struct sweep *sweep, uint16_t label, struct reach *reaches, struct place place, uint64_t bits)
+static inline void set_bits(const struct sweep *sweep, uint16_t label, struct reach *reaches, struct place place,
+                            uint64_t bits)
 {
     const struct holders *holders = &sweep->holders[label];
     uint64_t row = ((uint64_t)place.k << 32 | place.j) + FIRST_ROW;
@@ -113,29 +115,29 @@ static inline void set_bits(const struct sweep *sweep, uint16_t label, struct re
 }
 
 /* Of up to 64 labels: most words are all of one, others a few runs. */
-#define DEFINE_WORD(type)                                                                                                          \
-    static inline void sweep_word_##type(const struct sweep *sweep, const type *labels, uint32_t n, struct reach *reaches,         \
-                                         struct place place)                                                                       \
-    {                                                                                                                              \
-        type first = labels[0], other = 0;                                                                                         \
-        if (n == 64) {                                                                                                             \
-            for (uint32_t i = 0; i < 64; i++)                                                                                      \
-                other = (type)(other | (labels[i] ^ first));                                                                       \
-            if (!other) {                                                                                                          \
-                set_bits(sweep, first, reaches, place, ~(uint64_t)0);                                                              \
-                return;                                                                                                            \
-            }                                                                                                                      \
-        }                                                                                                                          \
-        uint64_t changes = 0; /* the bit of a label unlike the one before it */                                                    \
-        for (uint32_t i = 1; i < n; i++)                                                                                           \
-            changes |= (uint64_t)(labels[i] != labels[i - 1]) << i;                                                                \
-        uint64_t all = n == 64 ? ~(uint64_t)0 : ((uint64_t)1 << n) - 1;                                                            \
-        for (uint64_t from = 1; from;) {                                                                                           \
-            uint64_t next = changes & (~changes + 1);                                                                              \
-            changes &= changes - 1;                                                                                                \
-            set_bits(sweep, labels[__builtin_ctzll(from)], reaches, place, (next ? next - from : ~(from - 1)) & all);              \
-            from = next;                                                                                                           \
-        }                                                                                                                          \
+#define DEFINE_WORD(type) \
+    static inline void sweep_word_##type(const struct sweep *sweep, const type *labels, uint32_t n, \
+                                         struct reach *reaches, struct place place) \
+    { \
+        type first = labels[0], other = 0; \
+        if (n == 64) { \
+            for (uint32_t i = 0; i < 64; i++) \
+                other = (type)(other | (labels[i] ^ first)); \
+            if (!other) { \
+                set_bits(sweep, first, reaches, place, ~(uint64_t)0); \
+                return; \
+            } \
+        } \
+        uint64_t changes = 0; /* the bit of a label unlike the one before it */ \
+        for (uint32_t i = 1; i < n; i++) \
+            changes |= (uint64_t)(labels[i] != labels[i - 1]) << i; \
+        uint64_t all = n == 64 ? ~(uint64_t)0 : ((uint64_t)1 << n) - 1; \
+        for (uint64_t from = 1; from;) { \
+            uint64_t next = changes & (~changes + 1); \
+            changes &= changes - 1; \
+            set_bits(sweep, labels[__builtin_ctzll(from)], reaches, place, (next ? next - from : ~(from - 1)) & all); \
+            from = next; \
+        } \
     }
 
 DEFINE_WORD(uint8_t)
@@ -155,12 +157,13 @@ static void sweep_part(void *context, int part, int n_parts)
             if (sweep->layer->type == VOXEL_U8)
                 sweep_word_uint8_t(sweep, (const uint8_t *)sweep->layer->voxels + row * size[0] + i, n, reaches, place);
             else
-                sweep_word_uint16_t(sweep, (const uint16_t *)sweep->layer->voxels + row * size[0] + i, n, reaches, place);
+                sweep_word_uint16_t(sweep, (const uint16_t *)sweep->layer->voxels + row * size[0] + i, n, reaches,
+                                    place);
         }
     }
 }
 
-/* ---- the whole ---------------------------------------------------------------------------------------------------------- */
+/* ---- the whole -------------------------------------------------------------------------------------------------- */
 
 static bool check(const struct region_set *set, const struct mask_wish *wishes, size_t n, struct error *err)
 {
@@ -169,7 +172,8 @@ static bool check(const struct region_set *set, const struct mask_wish *wishes, 
             return error_set(err, ERROR_RANGE, "region %zu: the plan has %zu", wishes[w].region, set->n_regions);
     for (size_t layer = 0; layer < set->n_layers; layer++)
         if (set->layers[layer]->type != VOXEL_U8 && set->layers[layer]->type != VOXEL_U16)
-            return error_set(err, ERROR_UNSUPPORTED, "a label layer holds unsigned whole numbers of 8 or 16 bits, not voxel type %d",
+            return error_set(err, ERROR_UNSUPPORTED,
+                             "a label layer holds unsigned whole numbers of 8 or 16 bits, not voxel type %d",
                              (int)set->layers[layer]->type);
     return true;
 }
@@ -221,8 +225,8 @@ static bool sweep_layers(struct sweep *sweep, int n_threads, struct error *err)
     return is_good;
 }
 
-bool mask_sweep(const struct region_set *set, const struct mask_wish *wishes, size_t n, int n_threads, struct mask **masks,
-                struct error *err)
+bool mask_sweep(const struct region_set *set, const struct mask_wish *wishes, size_t n, int n_threads,
+                struct mask **masks, struct error *err)
 {
     if (!check(set, wishes, n, err))
         return false;

@@ -1,5 +1,6 @@
-/* A side is a border pixel and the direction, 0..3 counter-clockwise from right, in which it has an outside neighbour. Walking with
- * the pixel to the left and that neighbour to the right means walking a quarter turn counter-clockwise from that direction. */
+/* A side is a border pixel and the direction, 0..3 counter-clockwise from right, in which it has an outside neighbour.
+ * Walking with the pixel to the left and that neighbour to the right means walking a quarter turn counter-clockwise
+ * from that direction. */
 #include "core/region/outline.h"
 
 #include <stdatomic.h>
@@ -34,9 +35,10 @@ struct lines {
 
 /* What a thread keeps from slice to slice. */
 struct sheet {
-    uint8_t *pixels;    /* [size[1] + 2][size[0] + 2], a margin of outside around: INSIDE, and bit d for side d walked */
-    uint32_t *numbers;  /* [size[1]][size[0]] 1 + number of the pixel's point, or 0; NULL when points are between pixels */
-    ptrdiff_t step[4];  /* to the neighbour in each direction */
+    uint8_t *pixels; /* [size[1] + 2][size[0] + 2], a margin of outside around: INSIDE, and bit d for side d walked */
+    uint32_t
+        *numbers; /* [size[1]][size[0]] 1 + number of the pixel's point, or 0; NULL when points are between pixels */
+    ptrdiff_t step[4]; /* to the neighbour in each direction */
     ptrdiff_t width;
 };
 
@@ -51,8 +53,8 @@ struct job {
 
 static bool within_limit(uint64_t n_walk, struct error *err)
 {
-    return n_walk <= OUTLINE_MAX_POINTS || error_set(err, ERROR_LIMIT, "outlines of more than %llu points",
-                                                     (unsigned long long)OUTLINE_MAX_POINTS);
+    return n_walk <= OUTLINE_MAX_POINTS ||
+           error_set(err, ERROR_LIMIT, "outlines of more than %llu points", (unsigned long long)OUTLINE_MAX_POINTS);
 }
 
 static bool numbers_add(struct numbers *numbers, uint32_t value, struct error *err)
@@ -76,13 +78,14 @@ static void lines_finish(struct lines *lines)
     free(lines->line.at);
 }
 
-/* ---- the pixels of a slice ------------------------------------------------------------------------------------------------ */
+/* ---- the pixels of a slice -------------------------------------------------------------------------------------- */
 
 static bool view_init(struct view *view, const struct mask *mask, int axis, struct outline_rule rule, struct error *err)
 {
     if (axis < 0 || axis > 2)
         return error_set(err, ERROR_RANGE, "outlines across axis %d: expected 0, 1 or 2", axis);
-    *view = (struct view){ .mask = mask, .axes = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 }, .across = axis, .rule = rule };
+    *view =
+        (struct view){ .mask = mask, .axes = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 }, .across = axis, .rule = rule };
     for (int side = 0; side < 2; side++)
         view->size[side] = mask->size[view->axes[side]];
     return true;
@@ -127,7 +130,7 @@ static bool sheet_fill(struct sheet *sheet, const struct view *view, uint32_t in
     return has_any;
 }
 
-/* ---- walking -------------------------------------------------------------------------------------------------------------- */
+/* ---- walking ---------------------------------------------------------------------------------------------------- */
 
 struct side {
     size_t pixel; /* in sheet->pixels */
@@ -148,11 +151,12 @@ static struct side side_after(const struct sheet *sheet, struct side side, bool 
 }
 
 /* The number of the side's point, which is made on first sight. */
-static bool point_of(struct sheet *sheet, const struct view *view, struct side side, struct lines *lines, uint32_t *number,
-                     struct error *err)
+static bool point_of(struct sheet *sheet, const struct view *view, struct side side, struct lines *lines,
+                     uint32_t *number, struct error *err)
 {
     static const int right[4] = { 1, 0, -1, 0 }, up[4] = { 0, 1, 0, -1 };
-    uint32_t x = (uint32_t)(side.pixel % (size_t)sheet->width) - 1, y = (uint32_t)(side.pixel / (size_t)sheet->width) - 1;
+    uint32_t x = (uint32_t)(side.pixel % (size_t)sheet->width) - 1,
+             y = (uint32_t)(side.pixel / (size_t)sheet->width) - 1;
     uint32_t *known = sheet->numbers ? &sheet->numbers[(size_t)y * view->size[0] + x] : NULL;
     *number = known && *known ? *known - 1 : (uint32_t)(lines->halves.n / 2);
     if (known && *known)
@@ -164,7 +168,8 @@ static bool point_of(struct sheet *sheet, const struct view *view, struct side s
            numbers_add(&lines->halves, (uint32_t)((int)(2 * y) + off_y + 1), err);
 }
 
-static bool walk_line(struct sheet *sheet, const struct view *view, struct side start, struct lines *lines, struct error *err)
+static bool walk_line(struct sheet *sheet, const struct view *view, struct side start, struct lines *lines,
+                      struct error *err)
 {
     size_t first = lines->walk.n;
     if (!numbers_add(&lines->line, (uint32_t)first, err))
@@ -175,7 +180,8 @@ static bool walk_line(struct sheet *sheet, const struct view *view, struct side 
         sheet->pixels[side.pixel] |= (uint8_t)(1 << side.direction);
         if (!point_of(sheet, view, side, lines, &number, err))
             return false;
-        if ((lines->walk.n == first || lines->walk.at[lines->walk.n - 1] != number) && !numbers_add(&lines->walk, number, err))
+        if ((lines->walk.n == first || lines->walk.at[lines->walk.n - 1] != number) &&
+            !numbers_add(&lines->walk, number, err))
             return false;
         side = side_after(sheet, side, view->rule.is_joined);
     } while (side.pixel != start.pixel || side.direction != start.direction);
@@ -192,7 +198,8 @@ static bool walk_slice(struct job *job, struct sheet *sheet, struct lines *lines
         size_t row = (y + 1) * (size_t)sheet->width + 1;
         for (uint32_t x = 0; x < view->size[0]; x++) {
             size_t at = row + x;
-            if ((sheet->pixels[at] & (INSIDE | 1 << DOWN)) != INSIDE || (sheet->pixels[at - (size_t)sheet->width] & INSIDE))
+            if ((sheet->pixels[at] & (INSIDE | 1 << DOWN)) != INSIDE ||
+                (sheet->pixels[at - (size_t)sheet->width] & INSIDE))
                 continue;
             size_t before = lines->walk.n;
             if (!walk_line(sheet, view, (struct side){ at, DOWN }, lines, err))
@@ -219,7 +226,7 @@ static void walk_part(void *context, int part, int n_parts)
     sheet_finish(&sheet);
 }
 
-/* ---- the slices together -------------------------------------------------------------------------------------------------- */
+/* ---- the slices together ---------------------------------------------------------------------------------------- */
 
 static struct outline_set *set_create(const struct job *job, struct error *err)
 {
@@ -230,7 +237,8 @@ static struct outline_set *set_create(const struct job *job, struct error *err)
         n_lines += job->lines[at].line.n;
     }
     struct outline_set *set = mem_new(sizeof *set);
-    *set = (struct outline_set){ .n_points = n_points, .n_walk = n_walk, .n_lines = n_lines, .n_slices = job->n_slices };
+    *set =
+        (struct outline_set){ .n_points = n_points, .n_walk = n_walk, .n_lines = n_lines, .n_slices = job->n_slices };
     set->points_ijk = mem_array(set->n_points, 3 * sizeof *set->points_ijk, UINT64_MAX, err);
     set->walk = set->points_ijk ? mem_array(set->n_walk, sizeof *set->walk, UINT64_MAX, err) : NULL;
     set->line = set->walk ? mem_array(set->n_lines + 1, sizeof *set->line, UINT64_MAX, err) : NULL;
@@ -267,8 +275,8 @@ static struct outline_set *set_join(const struct job *job, struct error *err)
     return set;
 }
 
-static struct outline_set *outline_slices(const struct mask *mask, int axis, struct outline_rule rule, uint32_t first, uint32_t n,
-                                          int n_threads, struct error *err)
+static struct outline_set *outline_slices(const struct mask *mask, int axis, struct outline_rule rule, uint32_t first,
+                                          uint32_t n, int n_threads, struct error *err)
 {
     struct job job = { .first_slice = first, .n_slices = n };
     struct outline_set *set = NULL;
@@ -296,22 +304,26 @@ static struct outline_set *outline_slices(const struct mask *mask, int axis, str
     return set;
 }
 
-struct outline_set *outline_walk(const struct mask *mask, int axis, struct outline_rule rule, int n_threads, struct error *err)
+struct outline_set *outline_walk(const struct mask *mask, int axis, struct outline_rule rule, int n_threads,
+                                 struct error *err)
 {
     return outline_slices(mask, axis, rule, 0, axis >= 0 && axis <= 2 ? mask->size[axis] : 0, n_threads, err);
 }
 
 static struct outline_rule rule_of(enum outline_method method)
 {
-    return (struct outline_rule){ .is_joined = method == OUTLINE_TRACED, .is_between = method == OUTLINE_MARCHING_SQUARES };
+    return (struct outline_rule){ .is_joined = method == OUTLINE_TRACED,
+                                  .is_between = method == OUTLINE_MARCHING_SQUARES };
 }
 
-struct outline_set *outline_stack(const struct mask *mask, int axis, enum outline_method method, int n_threads, struct error *err)
+struct outline_set *outline_stack(const struct mask *mask, int axis, enum outline_method method, int n_threads,
+                                  struct error *err)
 {
     return outline_walk(mask, axis, rule_of(method), n_threads, err);
 }
 
-struct outline_set *outline_slice(const struct mask *mask, int axis, uint32_t index, enum outline_method method, struct error *err)
+struct outline_set *outline_slice(const struct mask *mask, int axis, uint32_t index, enum outline_method method,
+                                  struct error *err)
 {
     if (axis >= 0 && axis <= 2 && index >= mask->size[axis]) {
         error_set(err, ERROR_RANGE, "an outline on slice %u: axis %d has %u", index, axis, mask->size[axis]);
@@ -331,14 +343,16 @@ void outline_set_destroy(struct outline_set *set)
     free(set);
 }
 
-/* ---- any plane ------------------------------------------------------------------------------------------------------------ */
+/* ---- any plane -------------------------------------------------------------------------------------------------- */
 
-struct mask *mask_cut(const struct mask *mask, const struct affine *lps_mm_from_pixel, const uint32_t size[2], struct error *err)
+struct mask *mask_cut(const struct mask *mask, const struct affine *lps_mm_from_pixel, const uint32_t size[2],
+                      struct error *err)
 {
     struct affine ijk_from_lps_mm, check;
     for (int side = 0; side < 2; side++)
         if (size[side] < 1 || size[side] > VOLUME_MAX_SIDE) {
-            error_set(err, ERROR_RANGE, "a cut of %u x %u pixels: expected 1 to %d each way", size[0], size[1], VOLUME_MAX_SIDE);
+            error_set(err, ERROR_RANGE, "a cut of %u x %u pixels: expected 1 to %d each way", size[0], size[1],
+                      VOLUME_MAX_SIDE);
             return NULL;
         }
     if (!affine_invert(&mask->lps_mm_from_ijk, &ijk_from_lps_mm) || !affine_invert(lps_mm_from_pixel, &check)) {

@@ -8,4 +8,5 @@ struct outline_rule {
 };
 
 /* As outline_stack. */
-NODISCARD struct outline_set *outline_walk(const struct mask *mask, int axis, struct outline_rule rule, int n_threads, struct error *err);
+NODISCARD struct outline_set *outline_walk(const struct mask *mask, int axis, struct outline_rule rule, int n_threads,
+                                           struct error *err);

@@ -81,8 +81,9 @@ static void take_tally(struct region *region, const struct tally *tally, const s
         return;
     }
     double n = (double)tally->n;
-    region->centre_lps_mm = affine_point(
-        &grid->lps_mm_from_ijk, vec3((double)tally->sum[0] / n, (double)tally->sum[1] / n, (double)tally->sum[2] / n));
+    region->centre_lps_mm =
+        affine_point(&grid->lps_mm_from_ijk,
+                     vec3((double)tally->sum[0] / n, (double)tally->sum[1] / n, (double)tally->sum[2] / n));
     for (int axis = 0; axis < 3; axis++)
         region->touches_edge |= tally->low[axis] == 0 || tally->high[axis] + 1 == grid->size[axis];
 }
@@ -135,10 +136,10 @@ void region_palette(size_t index, uint8_t rgb[3])
 {
     /* Hues far apart first; lightness alternates, so neighbours in the list also differ in grey. */
     static const uint8_t palette[][3] = {
-        { 226, 190, 164 }, { 120, 160, 214 }, { 222, 110, 96 },  { 134, 196, 140 }, { 176, 140, 210 }, { 236, 204, 96 },
-        { 84, 150, 160 },  { 240, 166, 176 }, { 150, 118, 84 },  { 168, 214, 232 }, { 196, 96, 150 },  { 190, 206, 92 },
-        { 96, 104, 180 },  { 244, 176, 108 }, { 96, 158, 96 },   { 214, 186, 236 }, { 176, 84, 76 },   { 150, 224, 206 },
-        { 140, 132, 60 },  { 236, 148, 216 }, { 72, 120, 120 },  { 248, 228, 176 }, { 128, 92, 136 },  { 176, 186, 196 },
+        { 226, 190, 164 }, { 120, 160, 214 }, { 222, 110, 96 }, { 134, 196, 140 }, { 176, 140, 210 }, { 236, 204, 96 },
+        { 84, 150, 160 },  { 240, 166, 176 }, { 150, 118, 84 }, { 168, 214, 232 }, { 196, 96, 150 },  { 190, 206, 92 },
+        { 96, 104, 180 },  { 244, 176, 108 }, { 96, 158, 96 },  { 214, 186, 236 }, { 176, 84, 76 },   { 150, 224, 206 },
+        { 140, 132, 60 },  { 236, 148, 216 }, { 72, 120, 120 }, { 248, 228, 176 }, { 128, 92, 136 },  { 176, 186, 196 },
     };
     memcpy(rgb, palette[index % (sizeof palette / sizeof palette[0])], 3);
 }

@@ -6,9 +6,9 @@
 #include "core/region/label_rows.h"
 #include "core/region/region.h"
 
-enum { SAMPLES = 4096 };              /* voxels of a region looked up in the other layers */
-static const double touch_share = 0.95; /* of A's outward faces that must touch B or what lies inside B */
-static const double carry_share = 0.99; /* of A's voxels that must carry B, across layers */
+enum { SAMPLES = 4096 };                 /* voxels of a region looked up in the other layers */
+static const double touch_share = 0.95;  /* of A's outward faces that must touch B or what lies inside B */
+static const double carry_share = 0.99;  /* of A's voxels that must carry B, across layers */
 static const double border_share = 0.25; /* most of A's faces that may lie on the outside of the grid */
 
 struct box_facts {
@@ -62,13 +62,13 @@ static bool box_holds(const struct region *outer, const struct region *inner)
     return true;
 }
 
-/* One layer: faces are counted once; then regions find parents from the inside outward, until nothing changes: only when
- * what lies inside A is known can A's outward faces be told from its inward ones. */
+/* One layer: faces are counted once; then regions find parents from the inside outward, until nothing changes: only
+ * when what lies inside A is known can A's outward faces be told from its inward ones. */
 struct layer_faces {
-    size_t n;           /* regions of this layer; slot n is everything else */
-    size_t *regions;    /* [n] their indices in the set */
-    uint64_t *faces;    /* [n + 1][n + 1] */
-    uint64_t *border;   /* [n + 1] */
+    size_t n;         /* regions of this layer; slot n is everything else */
+    size_t *regions;  /* [n] their indices in the set */
+    uint64_t *faces;  /* [n + 1][n + 1] */
+    uint64_t *border; /* [n + 1] */
 };
 
 static bool encloses(const struct region_set *set, const struct layer_faces *layer, size_t a, size_t b)
@@ -124,9 +124,9 @@ struct samples {
     const struct region_set *set;
     uint32_t layer;
     const uint16_t *region_of_label;
-    uint64_t *seen;             /* [n_regions] */
+    uint64_t *seen;              /* [n_regions] */
     uint32_t (*ijk)[SAMPLES][3]; /* [n_regions] */
-    uint32_t *n;                /* [n_regions] */
+    uint32_t *n;                 /* [n_regions] */
 };
 
 static void sample_run(void *context, uint16_t label, uint32_t i, uint32_t j, uint32_t k, uint32_t length)
@@ -142,8 +142,8 @@ static void sample_run(void *context, uint16_t label, uint32_t i, uint32_t j, ui
     samples->seen[r] += length;
 }
 
-static void derive_across(struct region_set *set, const struct box_facts *facts, size_t a, uint32_t (*ijk)[3], uint32_t n,
-                          const uint16_t *const *region_of_label)
+static void derive_across(struct region_set *set, const struct box_facts *facts, size_t a, uint32_t (*ijk)[3],
+                          uint32_t n, const uint16_t *const *region_of_label)
 {
     const struct grid *own = &set->layers[set->regions[a].layer]->grid;
     uint32_t *hits = mem_new(set->n_regions * sizeof *hits);

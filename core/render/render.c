@@ -10,8 +10,8 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "core/render/gl/renderer.h"
-#include "core/render/visible/overlay.h"
 #include "core/render/soft/soft.h"
+#include "core/render/visible/overlay.h"
 
 /* Either of the two implementations; the other is NULL. */
 struct renderer {
@@ -49,8 +49,8 @@ static void assert_thread(const struct renderer *renderer)
     assert(pthread_equal(renderer->thread, pthread_self()));
 }
 
-/* Whether the system shows a graphics device at all. Starting a driver only to learn that it is a software one takes longer than
- * many pictures. Looks at names alone, which a confined process may. */
+/* Whether the system shows a graphics device at all. Starting a driver only to learn that it is a software one takes
+ * longer than many pictures. Looks at names alone, which a confined process may. */
 static bool has_graphics_device(void)
 {
     static const char *const names[] = { "/dev/nvidiactl", "/dev/nvidia0", "/dev/dxg" };
@@ -130,7 +130,7 @@ void renderer_forget(struct renderer *renderer, const struct plan *plan)
         soft_renderer_forget(renderer->soft, plan);
 }
 
-/* ---- pictures --------------------------------------------------------------------------------------------------------------------- */
+/* ---- pictures --------------------------------------------------------------------------------------------------- */
 
 struct render_picture {
     struct renderer *renderer;
@@ -143,7 +143,8 @@ struct render_picture {
     bool is_done;        /* with what is painted over it */
 };
 
-struct render_picture *render_begin(struct renderer *renderer, const struct snapshot *snapshot, const struct render_options *options)
+struct render_picture *render_begin(struct renderer *renderer, const struct snapshot *snapshot,
+                                    const struct render_options *options)
 {
     assert_thread(renderer);
     struct render_picture *picture = mem_new(sizeof *picture);
@@ -159,7 +160,9 @@ struct render_picture *render_begin(struct renderer *renderer, const struct snap
 
 static struct image *end_back_end(struct render_picture *picture)
 {
-    struct image *image = picture->gl ? gl_picture_end(picture->gl) : picture->soft ? soft_picture_end(picture->soft) : NULL;
+    struct image *image = picture->gl     ? gl_picture_end(picture->gl)
+                          : picture->soft ? soft_picture_end(picture->soft)
+                                          : NULL;
     picture->gl = NULL;
     picture->soft = NULL;
     return image;
@@ -203,8 +206,9 @@ struct image *render_end(struct render_picture *picture, struct camera *camera, 
     return image;
 }
 
-struct image *render_snapshot(struct renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
-                              struct camera *camera, struct render_timing *timing, struct error *err)
+struct image *render_snapshot(struct renderer *renderer, const struct snapshot *snapshot,
+                              const struct render_options *options, struct camera *camera, struct render_timing *timing,
+                              struct error *err)
 {
     struct render_picture *picture = render_begin(renderer, snapshot, options);
     (void)!render_go_on(picture, NULL, err); /* what is not done gives no image */

@@ -11,14 +11,15 @@
 bool report_code_is_known(const char *code)
 {
 #define KNOWN(known, meaning, remedy) \
-    if (strcmp(code, known) == 0)     \
+    if (strcmp(code, known) == 0) \
         return true;
     REPORT_CODES(KNOWN)
 #undef KNOWN
     return false;
 }
 
-void report_add(struct report *report, enum report_severity severity, const char *code, const char *where, const char *format, ...)
+void report_add(struct report *report, enum report_severity severity, const char *code, const char *where,
+                const char *format, ...)
 {
     assert(report_code_is_known(code));
     if (!report)

@@ -6,7 +6,8 @@ static const double home_margin = 1.08;
 static void box_corners(const struct box3 *box, struct vec3 corners[8])
 {
     for (int i = 0; i < 8; i++)
-        corners[i] = vec3(i & 1 ? box->high.x : box->low.x, i & 2 ? box->high.y : box->low.y, i & 4 ? box->high.z : box->low.z);
+        corners[i] =
+            vec3(i & 1 ? box->high.x : box->low.x, i & 2 ? box->high.y : box->low.y, i & 4 ? box->high.z : box->low.z);
 }
 
 static struct box3 plan_box(const struct plan *plan)
@@ -60,8 +61,8 @@ static double box_diagonal(const struct box3 *box)
     return vec3_length(vec3_sub(box->high, box->low));
 }
 
-/* What the first 3-D picture frames: the regions; where they are only a small part of what was scanned (a lesion, and no head around
- * it) the image, so that it is seen where in the body one looks. */
+/* What the first 3-D picture frames: the regions; where they are only a small part of what was scanned (a lesion, and
+ * no head around it) the image, so that it is seen where in the body one looks. */
 static struct box3 home_box(const struct plan *plan)
 {
     struct box3 regions = plan_box(plan), image = pane_box(plan);
@@ -114,12 +115,13 @@ static double *axis_of(struct vec3 *p, enum scene_kind kind)
 double scene_slice_position_mm(const struct scene *scene, enum scene_kind kind)
 {
     const struct scene_slices *slices = &scene->image.slices;
-    return kind == SCENE_KIND_AXIAL ? slices->axial.position_mm
-                                    : kind == SCENE_KIND_CORONAL ? slices->coronal.position_mm : slices->sagittal.position_mm;
+    return kind == SCENE_KIND_AXIAL     ? slices->axial.position_mm
+           : kind == SCENE_KIND_CORONAL ? slices->coronal.position_mm
+                                        : slices->sagittal.position_mm;
 }
 
-/* Slice panes: parallel, square to the patient, the slice's own plane through the target. Returns millimetres across the
- * smaller side. */
+/* Slice panes: parallel, square to the patient, the slice's own plane through the target. Returns millimetres across
+ * the smaller side. */
 static double resolve_pane(const struct snapshot *snapshot, struct camera *camera)
 {
     const struct scene_camera *asked = &snapshot->view.camera;
@@ -143,13 +145,15 @@ static double resolve_space(const struct snapshot *snapshot, struct camera *came
     struct box3 box = plan_box(snapshot->plan);
 
     camera->target_lps_mm = asked->has_target_mm ? asked->target_mm : box_centre(&box);
-    camera->eye_lps_mm = asked->has_position_mm ? asked->position_mm
-                                                : vec3_sub(camera->target_lps_mm, vec3(0, home_distance_mm(&box, asked->fov_deg), 0));
+    camera->eye_lps_mm = asked->has_position_mm
+                             ? asked->position_mm
+                             : vec3_sub(camera->target_lps_mm, vec3(0, home_distance_mm(&box, asked->fov_deg), 0));
     camera->is_parallel = asked->projection == SCENE_PROJECTION_PARALLEL;
     struct vec3 sight = vec3_sub(camera->target_lps_mm, camera->eye_lps_mm);
     camera->forward = vec3_normalize(sight);
     struct vec3 up = asked->has_up ? asked->up : vec3(0, 0, 1);
-    if (vec3_length(vec3_cross(camera->forward, vec3_normalize(up))) < 1e-6) /* no up was asked and the view is along it */
+    if (vec3_length(vec3_cross(camera->forward, vec3_normalize(up))) <
+        1e-6) /* no up was asked and the view is along it */
         up = fabs(camera->forward.z) < 0.9 ? vec3(0, 0, 1) : vec3(0, -1, 0);
     camera->right = vec3_normalize(vec3_cross(camera->forward, up));
     camera->up = vec3_cross(camera->right, camera->forward);
@@ -178,7 +182,9 @@ static void resolve_depth(const struct snapshot *snapshot, struct camera *camera
     far_mm += slack;
     if (!camera->is_parallel) {
         far_mm = fmax(far_mm, 10);
-        near_mm = fmax(near_mm, far_mm / 2000); /* the eye stands in or before the plan: 2000 : 1 keeps 0.1 mm apart in the distance */
+        near_mm =
+            fmax(near_mm,
+                 far_mm / 2000); /* the eye stands in or before the plan: 2000 : 1 keeps 0.1 mm apart in the distance */
     }
     camera->near_mm = near_mm;
     camera->far_mm = far_mm;
@@ -187,8 +193,8 @@ static void resolve_depth(const struct snapshot *snapshot, struct camera *camera
 static struct mat4 eye_matrix(const struct camera *camera)
 {
     const struct vec3 *r = &camera->right, *u = &camera->up, *f = &camera->forward, e = camera->eye_lps_mm;
-    return (struct mat4){ { r->x, u->x, -f->x, 0, r->y, u->y, -f->y, 0, r->z, u->z, -f->z, 0,
-                            -vec3_dot(*r, e), -vec3_dot(*u, e), vec3_dot(*f, e), 1 } };
+    return (struct mat4){ { r->x, u->x, -f->x, 0, r->y, u->y, -f->y, 0, r->z, u->z, -f->z, 0, -vec3_dot(*r, e),
+                            -vec3_dot(*u, e), vec3_dot(*f, e), 1 } };
 }
 
 static struct mat4 projection_matrix(const struct camera *camera, double half_width, double half_height)
@@ -219,7 +225,8 @@ void camera_resolve(const struct snapshot *snapshot, struct camera *camera)
 
     double half = camera->is_parallel ? across_mm / 2 : tan(view->camera.fov_deg / 2 * MATH_PI / 180);
     camera->pixels_per_mm = camera->is_parallel ? smaller / across_mm : 0;
-    struct mat4 eye = eye_matrix(camera), projection = projection_matrix(camera, half * width / smaller, half * height / smaller);
+    struct mat4 eye = eye_matrix(camera),
+                projection = projection_matrix(camera, half * width / smaller, half * height / smaller);
     camera->clip_from_lps_mm = mat4_multiply(&projection, &eye);
     if (!mat4_invert(&camera->clip_from_lps_mm, &camera->lps_mm_from_clip)) /* snapshot_create refused such cameras */
         camera->lps_mm_from_clip = (struct mat4){ { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 } };

@@ -58,7 +58,8 @@ static int region_of_label(const struct layer_walk *walk, uint16_t label)
     return -1;
 }
 
-/* The surface of a region encloses what lies inside it, so a voxel belongs to its region and all ancestors on the layer. */
+/* The surface of a region encloses what lies inside it, so a voxel belongs to its region and all ancestors on the
+ * layer. */
 static void enter_voxel(const struct layer_walk *walk, uint16_t label, double t)
 {
     const struct region *regions = walk->snapshot->plan->regions.regions;
@@ -91,9 +92,11 @@ static void start_inside(const struct layer_walk *walk, uint16_t label)
 }
 
 /* Part of the ray inside the grid's outer faces, t in mm; false when none. */
-static bool clip_to_grid(const struct vec3 *origin_ijk, const struct vec3 *step_ijk, const uint32_t size[3], double *t0, double *t1)
+static bool clip_to_grid(const struct vec3 *origin_ijk, const struct vec3 *step_ijk, const uint32_t size[3], double *t0,
+                         double *t1)
 {
-    const double o[3] = { origin_ijk->x, origin_ijk->y, origin_ijk->z }, d[3] = { step_ijk->x, step_ijk->y, step_ijk->z };
+    const double o[3] = { origin_ijk->x, origin_ijk->y, origin_ijk->z },
+                 d[3] = { step_ijk->x, step_ijk->y, step_ijk->z };
     *t0 = 0;
     *t1 = INFINITY;
     for (int a = 0; a < 3; a++) {
@@ -203,7 +206,8 @@ static bool slice_is_drawn_at(const struct snapshot *snapshot, const struct volu
 }
 
 /* Slices of the image that are shown in space. */
-static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray, struct pick_hit hits[PICK_MAX_HITS], size_t n)
+static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray, struct pick_hit hits[PICK_MAX_HITS],
+                          size_t n)
 {
     if (snapshot->image < 0)
         return n;
@@ -212,7 +216,9 @@ static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray
     const struct {
         const struct scene_slice *slice;
         struct vec3 normal;
-    } planes[3] = { { &slices->axial, { 0, 0, 1 } }, { &slices->coronal, { 0, 1, 0 } }, { &slices->sagittal, { 1, 0, 0 } } };
+    } planes[3] = { { &slices->axial, { 0, 0, 1 } },
+                    { &slices->coronal, { 0, 1, 0 } },
+                    { &slices->sagittal, { 1, 0, 0 } } };
     for (int i = 0; i < 3; i++) {
         double across = vec3_dot(ray->direction, planes[i].normal);
         if (!planes[i].slice->visible || fabs(across) < 1e-12)
@@ -244,8 +250,10 @@ static size_t pick_pane(const struct snapshot *snapshot, const struct camera *ca
 {
     const struct region_set *set = &snapshot->plan->regions;
     const struct view *view = &snapshot->view;
-    double right = (px - view->size_px[0] / 2.0) / camera->pixels_per_mm, up = (view->size_px[1] / 2.0 - py) / camera->pixels_per_mm;
-    struct vec3 point = vec3_add(camera->target_lps_mm, vec3_add(vec3_scale(camera->right, right), vec3_scale(camera->up, up)));
+    double right = (px - view->size_px[0] / 2.0) / camera->pixels_per_mm,
+           up = (view->size_px[1] / 2.0 - py) / camera->pixels_per_mm;
+    struct vec3 point =
+        vec3_add(camera->target_lps_mm, vec3_add(vec3_scale(camera->right, right), vec3_scale(camera->up, up)));
     bool holds[REGION_MAX] = { false };
     mark_regions_at(snapshot, point, holds);
 
@@ -259,7 +267,8 @@ static size_t pick_pane(const struct snapshot *snapshot, const struct camera *ca
             if (holds[i] && is_shown(snapshot, i) && region_depth(set, i) == depth)
                 hits[n++] = (struct pick_hit){ point, (int)i, 0 };
     uint32_t ijk[3];
-    if (n < PICK_MAX_HITS && snapshot->image >= 0 && volume_voxel_at(snapshot->plan->images[snapshot->image].volume, point, ijk))
+    if (n < PICK_MAX_HITS && snapshot->image >= 0 &&
+        volume_voxel_at(snapshot->plan->images[snapshot->image].volume, point, ijk))
         hits[n++] = (struct pick_hit){ point, -1, 0 };
     return n;
 }

@@ -21,7 +21,8 @@ int scene_image_index(const struct plan *plan, const struct scene *scene)
 bool snapshot_is_low_white(const struct snapshot *snapshot)
 {
     enum scene_low_values wanted = snapshot->scene.image.low_values;
-    return wanted == SCENE_LOW_VALUES_OWN ? snapshot->plan->images[snapshot->image].is_inverted : wanted == SCENE_LOW_VALUES_WHITE;
+    return wanted == SCENE_LOW_VALUES_OWN ? snapshot->plan->images[snapshot->image].is_inverted
+                                          : wanted == SCENE_LOW_VALUES_WHITE;
 }
 
 /* Index of the dose a scene shows, or -1 when the plan has none or none of that id. */
@@ -105,7 +106,9 @@ struct snapshot *snapshot_create(struct plan *plan, struct scene *scene, struct 
                                  char field[128], struct error *err)
 {
     struct snapshot *snapshot = mem_new(sizeof *snapshot);
-    *snapshot = (struct snapshot){ .plan = plan, .scene = *scene, .view = *view, .scene_revision = scene_revision, .references = 1 };
+    *snapshot = (struct snapshot){
+        .plan = plan, .scene = *scene, .view = *view, .scene_revision = scene_revision, .references = 1
+    };
     *scene = scene_default;
     *view = view_default;
     field[0] = 0;
@@ -190,7 +193,8 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
         entry->value.color_rgb = (uint32_t)region->rgb[0] << 16 | (uint32_t)region->rgb[1] << 8 | region->rgb[2];
         if (region_has_children(set, i))
             entry->value.opacity = region->parent < 0 ? 0.35 : 0.45;
-        if (region->file_opacity > 0 && region->file_opacity < 1) /* SERA's preferences say 100 % of all that nobody set */
+        if (region->file_opacity > 0 &&
+            region->file_opacity < 1) /* SERA's preferences say 100 % of all that nobody set */
             entry->value.opacity = region->file_opacity;
     }
     const struct region *centre = innermost_region(set);

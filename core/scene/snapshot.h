@@ -5,9 +5,9 @@
 #include "scene.h" /* generated from proto/scene.json */
 
 struct snapshot {
-    struct plan *plan;    /* borrowed; outlives every snapshot (its surfaces are built on demand, hence not const) */
-    struct scene scene;   /* owned */
-    struct view view;     /* owned */
+    struct plan *plan;  /* borrowed; outlives every snapshot (its surfaces are built on demand, hence not const) */
+    struct scene scene; /* owned */
+    struct view view;   /* owned */
     uint32_t scene_revision;
     struct scene_region_style *styles; /* owned; by region index of the plan */
     int image;                         /* index of the image shown, or -1 when the plan has none */
@@ -15,17 +15,17 @@ struct snapshot {
     _Atomic int references;
 };
 
-/* Takes scene and view, on failure too (their structs are emptied). Checks them against the plan: every region id known, the
- * image's and the dose's known (or empty), a camera that can be used (position != target, up not along the line of sight).
- *   errors ERROR_NOT_FOUND, ERROR_RANGE; field names the place as a JSON pointer, "/regions/foo" */
-NODISCARD struct snapshot *snapshot_create(struct plan *plan, struct scene *scene, struct view *view, uint32_t scene_revision,
-                                           char field[128], struct error *err);
+/* Takes scene and view, on failure too (their structs are emptied). Checks them against the plan: every region id
+ * known, the image's and the dose's known (or empty), a camera that can be used (position != target, up not along the
+ * line of sight). errors ERROR_NOT_FOUND, ERROR_RANGE; field names the place as a JSON pointer, "/regions/foo" */
+NODISCARD struct snapshot *snapshot_create(struct plan *plan, struct scene *scene, struct view *view,
+                                           uint32_t scene_revision, char field[128], struct error *err);
 struct snapshot *snapshot_ref(const struct snapshot *snapshot);
 void snapshot_unref(const struct snapshot *snapshot);
 
-/* The scene a new room starts with: every region visible in its own colour, those that contain others translucent (outermost 0.35,
- * inner ones 0.45), innermost opaque; the first image's window; slices through the centre of the innermost region (else of the
- * plan), axial visible when there is an image. Fills scene, which scene_finish frees. */
+/* The scene a new room starts with: every region visible in its own colour, those that contain others translucent
+ * (outermost 0.35, inner ones 0.45), innermost opaque; the first image's window; slices through the centre of the
+ * innermost region (else of the plan), axial visible when there is an image. Fills scene, which scene_finish frees. */
 void scene_for_plan(const struct plan *plan, struct scene *scene);
 
 /* The image a scene shows: its index, or -1 when the plan has none or none of that id. */
@@ -35,7 +35,8 @@ bool snapshot_is_low_white(const struct snapshot *snapshot);
 /* Where the slice of a pane lies along its patient axis; kind is not 3-D. */
 double scene_slice_position_mm(const struct scene *scene, enum scene_kind kind);
 
-/* The home camera of a kind: all regions (the image where they are less than half as long), from the front, superior up; slice panes the whole image or regions. */
+/* The home camera of a kind: all regions (the image where they are less than half as long), from the front, superior
+ * up; slice panes the whole image or regions. */
 void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera);
 
 /* A view's camera worked out: unit axes in patient space and the projection. */
@@ -43,15 +44,17 @@ struct camera {
     struct vec3 eye_lps_mm, target_lps_mm;
     struct vec3 right, up, forward; /* of the picture, orthonormal, right = forward x up */
     bool is_parallel;
-    double pixels_per_mm;    /* parallel: of the full-size view; 0 in perspective */
-    double near_mm, far_mm;  /* along forward from the eye, around the plan's bounds */
+    double pixels_per_mm;   /* parallel: of the full-size view; 0 in perspective */
+    double near_mm, far_mm; /* along forward from the eye, around the plan's bounds */
     struct mat4 clip_from_lps_mm, lps_mm_from_clip;
 };
-/* Slice panes: axial looks from the feet (right of the picture = patient left, up = anterior); coronal from the front (right =
- * patient left, up = superior); sagittal from the patient's left (right = posterior, up = superior: anterior on screen left). */
+/* Slice panes: axial looks from the feet (right of the picture = patient left, up = anterior); coronal from the front
+ * (right = patient left, up = superior); sagittal from the patient's left (right = posterior, up = superior: anterior
+ * on screen left). */
 void camera_resolve(const struct snapshot *snapshot, struct camera *camera);
 
-/* What lies under a pixel of the full-size view, front to back, worked out on univels and slices, not on the picture. */
+/* What lies under a pixel of the full-size view, front to back, worked out on univels and slices, not on the picture.
+ */
 struct pick_hit {
     struct vec3 point_lps_mm;
     int region; /* index, or -1 for an image slice */

@@ -12,7 +12,8 @@ uint64_t rows_number(uint32_t *counts, size_t n)
     return total;
 }
 
-void row_write_vertices(const uint64_t *row, uint32_t n_words, const struct affine *lps_mm_from_ijk, struct vec3 start, float *to)
+void row_write_vertices(const uint64_t *row, uint32_t n_words, const struct affine *lps_mm_from_ijk, struct vec3 start,
+                        float *to)
 {
     for (uint32_t w = 0; w < n_words; w++)
         for (uint64_t left = row[w]; left; left &= left - 1) {

@@ -1,19 +1,23 @@
-/* The part of the region within a cell is the convex hull of the cell's inside corners; what is drawn is the boundary of all
- * hulls together. A side of a hull that lies in a face of its cell is no boundary: the cell behind that face has the same inside
- * corners on it, so its hull goes on there. Unless that hull is flat and ends in the face; then it is the flat one's cell that
- * draws the side, towards its own inner space. A hull that is flat within the cell is drawn on both sides. So every edge is run
- * through as often one way as the other: the whole is closed, and where it is two sheets back to back, they are the same triangles.
- * Fewer than three corners have no area and give nothing. */
+/* The part of the region within a cell is the convex hull of the cell's inside corners; what is drawn is the boundary
+ * of all hulls together. A side of a hull that lies in a face of its cell is no boundary: the cell behind that face has
+ * the same inside corners on it, so its hull goes on there. Unless that hull is flat and ends in the face; then it is
+ * the flat one's cell that draws the side, towards its own inner space. A hull that is flat within the cell is drawn on
+ * both sides. So every edge is run through as often one way as the other: the whole is closed, and where it is two
+ * sheets back to back, they are the same triangles. Fewer than three corners have no area and give nothing. */
 #include "core/surface/corner_cases.h"
 
 #include <assert.h>
 #include <string.h>
 
-static int coordinate(int corner, int axis) { return corner >> axis & 1; }
+static int coordinate(int corner, int axis)
+{
+    return corner >> axis & 1;
+}
 
 static int along(const int direction[3], int corner)
 {
-    return direction[0] * coordinate(corner, 0) + direction[1] * coordinate(corner, 1) + direction[2] * coordinate(corner, 2);
+    return direction[0] * coordinate(corner, 0) + direction[1] * coordinate(corner, 1) +
+           direction[2] * coordinate(corner, 2);
 }
 
 /* Positive when a, b, c are counter-clockwise seen against the direction. */

@@ -1,6 +1,6 @@
 #pragma once
-/* The 256 ways the eight corners of a cell can be inside or outside, and the triangles between inside corners of each: generated,
- * not typed. Corners are numbered as in cube_cases.h. */
+/* The 256 ways the eight corners of a cell can be inside or outside, and the triangles between inside corners of each:
+ * generated, not typed. Corners are numbered as in cube_cases.h. */
 #include <stdbool.h>
 #include <stdint.h>
 

@@ -4,7 +4,8 @@
 #include <string.h>
 
 /* Corners of each face, counter-clockwise seen from outside the cell. */
-static const uint8_t faces[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
+static const uint8_t faces[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 },
+                                     { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
 
 static int edge_between(int a, int b)
 {
@@ -28,9 +29,10 @@ static void find_faces(uint8_t faces_of[CUBE_EDGES])
         }
 }
 
-/* On every face, walking round it counter-clockwise, the line goes from where the walk enters the inside to where it next leaves
- * it. So at an ambiguous face, two inside corners across a diagonal, each is cut off alone; the cell on the other side of the
- * face walks the other way round the same runs of corners and so draws the same lines: no crack can open between the two. */
+/* On every face, walking round it counter-clockwise, the line goes from where the walk enters the inside to where it
+ * next leaves it. So at an ambiguous face, two inside corners across a diagonal, each is cut off alone; the cell on the
+ * other side of the face walks the other way round the same runs of corners and so draws the same lines: no crack can
+ * open between the two. */
 void cube_case_links(int inside, int8_t next[CUBE_EDGES])
 {
     memset(next, -1, CUBE_EDGES);
@@ -47,10 +49,11 @@ void cube_case_links(int inside, int8_t next[CUBE_EDGES])
         }
 }
 
-/* Cuts loop[first..last] (a polygon closed by the side last-first) into triangles none of whose inner sides lies on a face of the
- * cell: there it could coincide with one of the neighbour's, and an edge would have four triangles. Depth first over the third
- * corner of the triangle on the closing side; false when there is no such cut. */
-static bool cut_loop(const uint8_t *loop, int first, int last, const uint8_t faces_of[CUBE_EDGES], struct cube_case *out)
+/* Cuts loop[first..last] (a polygon closed by the side last-first) into triangles none of whose inner sides lies on a
+ * face of the cell: there it could coincide with one of the neighbour's, and an edge would have four triangles. Depth
+ * first over the third corner of the triangle on the closing side; false when there is no such cut. */
+static bool cut_loop(const uint8_t *loop, int first, int last, const uint8_t faces_of[CUBE_EDGES],
+                     struct cube_case *out)
 {
     if (last - first < 2)
         return true;

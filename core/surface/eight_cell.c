@@ -1,8 +1,8 @@
 /* The 8-cell algorithm on bit rows: triangles between the centres of inside voxels.
  *
- * A cell is named by its lowest corner and runs from -1, where a region that touches the border is closed, to the last voxel. Its
- * case says which triangles it has and which of its corners they use; a voxel that any cell uses is a vertex, numbered in the
- * order of the voxels.
+ * A cell is named by its lowest corner and runs from -1, where a region that touches the border is closed, to the last
+ * voxel. Its case says which triangles it has and which of its corners they use; a voxel that any cell uses is a
+ * vertex, numbered in the order of the voxels.
  *
  *   1. mark the used voxels, slice by slice of voxels, and count the triangles of every row of cells
  *   2. running totals: where each row's vertices and triangles begin
@@ -32,7 +32,8 @@ struct job {
     atomic_uint next; /* slice nobody has taken */
 };
 
-/* The four rows of voxels around a row of cells, at (y, z) (y + 1, z) (y, z + 1) (y + 1, z + 1); NULL beyond the grid. */
+/* The four rows of voxels around a row of cells, at (y, z) (y + 1, z) (y, z + 1) (y + 1, z + 1); NULL beyond the grid.
+ */
 struct rows {
     const uint64_t *bits[4];
 };
@@ -61,8 +62,8 @@ static inline uint64_t word_of(const uint64_t *row, int64_t w, uint32_t words)
     return row && w >= 0 && w < words ? row[w] : 0;
 }
 
-/* 64 cells of a row from x = 64 w on: the voxels at x and those at x + 1 of each of its four rows, and which cells may have
- * triangles. Word -1 holds one cell, in its last bit. */
+/* 64 cells of a row from x = 64 w on: the voxels at x and those at x + 1 of each of its four rows, and which cells may
+ * have triangles. Word -1 holds one cell, in its last bit. */
 struct cells {
     uint64_t low[4], high[4];
     uint64_t active;
@@ -82,7 +83,8 @@ static inline struct cells cells_at(const struct job *job, const struct rows *ro
     }
     cells.active = any & ~all;
     if (!job->close_at_border && w == (job->mask->size[0] - 1) / 64)
-        cells.active &= ((uint64_t)1 << (job->mask->size[0] - 1) % 64) - 1; /* not the cells at or beyond the last voxel */
+        cells.active &=
+            ((uint64_t)1 << (job->mask->size[0] - 1) % 64) - 1; /* not the cells at or beyond the last voxel */
     return cells;
 }
 
@@ -105,7 +107,7 @@ static int64_t first_word(const struct job *job)
     return job->close_at_border ? -1 : 0;
 }
 
-/* ---- marking and counting ------------------------------------------------------------------------------------------------ */
+/* ---- marking and counting --------------------------------------------------------------------------------------- */
 
 /* Marks voxels x and x + 1 of a row where the two bits of pair say so. */
 static inline void mark(uint64_t *row, int64_t x, unsigned pair)
@@ -146,7 +148,8 @@ static size_t cell_row(const struct mask *mask, int64_t y, int64_t z)
     return (size_t)(z + 1) * (mask->size[1] + 1) + (size_t)(y + 1);
 }
 
-/* A thread marks within one slice of voxels only, from the cells below and above it; the cells above are counted too. */
+/* A thread marks within one slice of voxels only, from the cells below and above it; the cells above are counted too.
+ */
 static void count_part(void *context, int part, int n_parts)
 {
     (void)part;
@@ -169,14 +172,14 @@ static void count_part(void *context, int part, int n_parts)
     }
 }
 
-/* ---- writing ------------------------------------------------------------------------------------------------------------- */
+/* ---- writing ---------------------------------------------------------------------------------------------------- */
 
 static void write_vertices(const struct job *job, int64_t j, int64_t k)
 {
     const struct mask *mask = job->mask;
     size_t row = row_number(mask, j, k);
-    row_write_vertices(job->used + row * mask->words, mask->words, &mask->lps_mm_from_ijk, vec3(0, (double)j, (double)k),
-                       job->mesh->positions_lps_mm + 3 * (size_t)job->first_vertex[row]);
+    row_write_vertices(job->used + row * mask->words, mask->words, &mask->lps_mm_from_ijk,
+                       vec3(0, (double)j, (double)k), job->mesh->positions_lps_mm + 3 * (size_t)job->first_vertex[row]);
 }
 
 static void write_triangles(const struct job *job, int64_t y, int64_t z)
@@ -229,7 +232,7 @@ static void write_part(void *context, int part, int n_parts)
         }
 }
 
-/* ---- the whole ----------------------------------------------------------------------------------------------------------- */
+/* ---- the whole -------------------------------------------------------------------------------------------------- */
 
 static struct corner_case cases[2][256]; /* [is_mirrored] */
 static pthread_once_t cases_once = PTHREAD_ONCE_INIT;
@@ -246,14 +249,17 @@ static bool extract(struct job *job, const struct surface_options *options, int 
     size_t n_rows = (size_t)size[1] * size[2], n_cell_rows = ((size_t)size[1] + 1) * ((size_t)size[2] + 1);
     job->used = mem_array(n_rows, job->mask->words * sizeof *job->used, UINT64_MAX, err);
     job->first_vertex = job->used ? mem_array(n_rows + 1, sizeof *job->first_vertex, UINT64_MAX, err) : NULL;
-    job->first_triangle = job->first_vertex ? mem_array(n_cell_rows + 1, sizeof *job->first_triangle, UINT64_MAX, err) : NULL;
+    job->first_triangle =
+        job->first_vertex ? mem_array(n_cell_rows + 1, sizeof *job->first_triangle, UINT64_MAX, err) : NULL;
     if (!job->first_triangle)
         return false;
     atomic_store(&job->next, 0);
     parallel_run(n_threads, count_part, job);
-    uint64_t vertices = rows_number(job->first_vertex, n_rows), triangles = rows_number(job->first_triangle, n_cell_rows);
+    uint64_t vertices = rows_number(job->first_vertex, n_rows),
+             triangles = rows_number(job->first_triangle, n_cell_rows);
     if (triangles > options->max_triangles || triangles > UINT32_MAX || vertices > UINT32_MAX)
-        return error_set(err, ERROR_LIMIT, "a surface of %llu triangles: at most %zu are allowed", (unsigned long long)triangles,
+        return error_set(err, ERROR_LIMIT, "a surface of %llu triangles: at most %zu are allowed",
+                         (unsigned long long)triangles,
                          options->max_triangles < UINT32_MAX ? options->max_triangles : (size_t)UINT32_MAX);
     job->mesh = mesh_create((size_t)vertices, (size_t)triangles, err);
     if (!job->mesh)
@@ -268,8 +274,8 @@ struct mesh *surface_eight_cell(const struct mask *mask, const struct surface_op
 {
     pthread_once(&cases_once, make_cases);
     if (mask_count(mask) == 0) {
-        error_set(err, ERROR_RANGE, "a surface of a mask of %u x %u x %u voxels: none of them is inside", mask->size[0], mask->size[1],
-                  mask->size[2]);
+        error_set(err, ERROR_RANGE, "a surface of a mask of %u x %u x %u voxels: none of them is inside", mask->size[0],
+                  mask->size[1], mask->size[2]);
         return NULL;
     }
     int n_threads = options->n_threads > 0 ? options->n_threads : parallel_cores();

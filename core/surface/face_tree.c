@@ -1,5 +1,5 @@
-/* Faces that look the same way are kept apart: of a block of voxels, the faces that look along z lie in a few planes, and so they have a
- * near bound even where the voxels are a hundred times as high as wide. */
+/* Faces that look the same way are kept apart: of a block of voxels, the faces that look along z lie in a few planes,
+ * and so they have a near bound even where the voxels are a hundred times as high as wide. */
 #include "core/surface/face_tree.h"
 
 #include <stdlib.h>
@@ -30,7 +30,7 @@ static double square(double x)
     return x * x;
 }
 
-/* ---- one face ---------------------------------------------------------------------------------------------------------------- */
+/* ---- one face --------------------------------------------------------------------------------------------------- */
 
 static const uint64_t *row_at(const struct mask *mask, int64_t j, int64_t k)
 {
@@ -59,7 +59,8 @@ static double edge_distance_2(struct vec3 offset, struct vec3 u)
 /* To the points m + s u + t v, |s|, |t| <= 1/2. */
 static double parallelogram_distance_2(struct vec3 offset, struct vec3 u, struct vec3 v)
 {
-    double uu = vec3_dot(u, u), vv = vec3_dot(v, v), uv = vec3_dot(u, v), ou = vec3_dot(offset, u), ov = vec3_dot(offset, v);
+    double uu = vec3_dot(u, u), vv = vec3_dot(v, v), uv = vec3_dot(u, v), ou = vec3_dot(offset, u),
+           ov = vec3_dot(offset, v);
     double det = uu * vv - uv * uv, s = (ou * vv - ov * uv) / det, t = (ov * uu - ou * uv) / det;
     if (fabs(s) <= 0.5 && fabs(t) <= 0.5) {
         struct vec3 left = vec3_sub(offset, vec3_add(vec3_scale(u, s), vec3_scale(v, t)));
@@ -86,12 +87,14 @@ double face_tree_face_distance_2(const struct face_tree *tree, const double from
                (past_c > 0 ? square(past_c * tree->spacing_mm[c]) : 0);
     }
     const struct vec3 *columns = tree->mask->lps_mm_from_ijk.columns;
-    return parallelogram_distance_2(affine_vector(&tree->mask->lps_mm_from_ijk, vec3(off[0], off[1], off[2])), columns[b], columns[c]);
+    return parallelogram_distance_2(affine_vector(&tree->mask->lps_mm_from_ijk, vec3(off[0], off[1], off[2])),
+                                    columns[b], columns[c]);
 }
 
-/* ---- making the tree --------------------------------------------------------------------------------------------------------- */
+/* ---- making the tree -------------------------------------------------------------------------------------------- */
 
-/* Of 64 voxels of a row, those with a face on that side; rows: of the neighbours along y and z, NULL beyond the grid. */
+/* Of 64 voxels of a row, those with a face on that side; rows: of the neighbours along y and z, NULL beyond the grid.
+ */
 static uint64_t faces_of_word(const struct mask *mask, int64_t w, int64_t j, int64_t k, int way)
 {
     const uint64_t *row = row_at(mask, j, k);
@@ -101,7 +104,8 @@ static uint64_t faces_of_word(const struct mask *mask, int64_t w, int64_t j, int
     else if (way == 1)
         beside = bits >> 1 | (w + 1 < mask->words ? row[w + 1] << 63 : 0);
     else {
-        const uint64_t *other = way < 4 ? row_at(mask, j + (way == 2 ? -1 : 1), k) : row_at(mask, j, k + (way == 4 ? -1 : 1));
+        const uint64_t *other =
+            way < 4 ? row_at(mask, j + (way == 2 ? -1 : 1), k) : row_at(mask, j, k + (way == 4 ? -1 : 1));
         beside = other ? other[w] : 0;
     }
     return bits & ~beside;
@@ -140,7 +144,8 @@ static void join_blocks(const struct level *from, const struct level *to)
 static bool make_level(const struct mask *mask, struct level *level, struct error *err)
 {
     for (int axis = 0; axis < 3; axis++)
-        level->size[axis] = (uint32_t)(((uint64_t)mask->size[axis] + ((uint64_t)1 << level->shift[axis]) - 1) >> level->shift[axis]);
+        level->size[axis] =
+            (uint32_t)(((uint64_t)mask->size[axis] + ((uint64_t)1 << level->shift[axis]) - 1) >> level->shift[axis]);
     level->ways = mem_array((size_t)level->size[0] * level->size[1], level->size[2], UINT64_MAX, err);
     return level->ways != NULL;
 }
@@ -151,11 +156,13 @@ static void shape_leaves(struct face_tree *tree)
     uint32_t *shift = tree->levels[0].shift;
     shift[0] = LEAF_SHIFT;
     for (int axis = 1; axis < 3; axis++)
-        while (shift[axis] < LEAF_SHIFT && tree->spacing_mm[axis] * (2u << shift[axis]) <= tree->spacing_mm[0] * (1 << LEAF_SHIFT))
+        while (shift[axis] < LEAF_SHIFT &&
+               tree->spacing_mm[axis] * (2u << shift[axis]) <= tree->spacing_mm[0] * (1 << LEAF_SHIFT))
             shift[axis]++;
 }
 
-/* Doubles blocks along the axes where they are shortest, so that they become as long as wide. False: there is one block alone. */
+/* Doubles blocks along the axes where they are shortest, so that they become as long as wide. False: there is one block
+ * alone. */
 static bool shape_next(const struct face_tree *tree, const struct level *level, struct level *next)
 {
     double shortest = INFINITY;
@@ -218,7 +225,7 @@ void face_tree_destroy(struct face_tree *tree)
     free(tree);
 }
 
-/* ---- searching ---------------------------------------------------------------------------------------------------------------- */
+/* ---- searching -------------------------------------------------------------------------------------------------- */
 
 struct search {
     const struct face_tree *tree;
@@ -234,8 +241,11 @@ static double bound_2(const struct search *search, const int64_t first[3], const
     const struct face_tree *tree = search->tree;
     double sum = 0, most = 0;
     for (int axis = 0; axis < 3; axis++) {
-        double down = axis == search->axis ? 0.5 * search->side : -0.5, up = axis == search->axis ? 0.5 * search->side : 0.5;
-        double gap = fmax((double)first[axis] + down - search->at_ijk[axis], search->at_ijk[axis] - ((double)last[axis] + up)) - slack;
+        double down = axis == search->axis ? 0.5 * search->side : -0.5,
+               up = axis == search->axis ? 0.5 * search->side : 0.5;
+        double gap =
+            fmax((double)first[axis] + down - search->at_ijk[axis], search->at_ijk[axis] - ((double)last[axis] + up)) -
+            slack;
         if (gap <= 0)
             continue;
         sum += square(gap * tree->spacing_mm[axis]);
@@ -244,7 +254,8 @@ static double bound_2(const struct search *search, const int64_t first[3], const
     return tree->is_square ? sum : most;
 }
 
-static void block_voxels(const struct face_tree *tree, const struct level *level, const uint32_t block[3], int64_t first[3], int64_t last[3])
+static void block_voxels(const struct face_tree *tree, const struct level *level, const uint32_t block[3],
+                         int64_t first[3], int64_t last[3])
 {
     for (int axis = 0; axis < 3; axis++) {
         first[axis] = (int64_t)block[axis] << level->shift[axis];
@@ -261,11 +272,12 @@ static void search_leaf(struct search *search, const uint32_t block[3])
     for (int64_t k = first[2]; k <= last[2]; k++)
         for (int64_t j = first[1]; j <= last[1]; j++) {
             uint64_t faces = faces_of_word(tree->mask, first[0] / 64, j, k, search->way) >> first[0] % 64 & 0xff;
-            if (!faces || !(bound_2(search, (int64_t[3]){ first[0], j, k }, (int64_t[3]){ last[0], j, k }) < search->best_2))
+            if (!faces ||
+                !(bound_2(search, (int64_t[3]){ first[0], j, k }, (int64_t[3]){ last[0], j, k }) < search->best_2))
                 continue;
             for (; faces; faces &= faces - 1) {
-                const double from_voxel[3] = { search->at_ijk[0] - (double)(first[0] + __builtin_ctzll(faces)), search->at_ijk[1] - (double)j,
-                                               search->at_ijk[2] - (double)k };
+                const double from_voxel[3] = { search->at_ijk[0] - (double)(first[0] + __builtin_ctzll(faces)),
+                                               search->at_ijk[1] - (double)j, search->at_ijk[2] - (double)k };
                 double here = face_tree_face_distance_2(tree, from_voxel, search->axis, search->side);
                 search->best_2 = here < search->best_2 ? here : search->best_2;
                 search->n_asked++;

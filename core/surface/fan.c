@@ -1,5 +1,6 @@
-/* The neighbour fan (see shape_parts.h). First each voxel's fan is found; then each voxel collects the triangles whose lowest corner it
- * is, from its own fan and its neighbours', as a set of bits, so that one which several fans have is there once. */
+/* The neighbour fan (see shape_parts.h). First each voxel's fan is found; then each voxel collects the triangles whose
+ * lowest corner it is, from its own fan and its neighbours', as a set of bits, so that one which several fans have is
+ * there once. */
 #include <stdlib.h>
 
 #include "core/base/mem.h"
@@ -20,9 +21,9 @@ struct job {
     struct fan *fans;           /* [border->n] */
     struct vec3 offset[AROUND]; /* to each neighbour, mm */
     uint32_t near[AROUND];      /* bit b: neighbours a and b are neighbours of each other */
-    uint32_t *first;            /* [border->n] triangle of those that each voxel is the lowest corner of; first their count */
-    /* [border->n], triangles whose lowest corner each voxel is: bit b - 14 of with[a - 14] for its neighbours a < b. Neighbours are
-     * numbered as voxels are ordered, so those that come after a voxel are 14 to 26. */
+    uint32_t *first; /* [border->n] triangle of those that each voxel is the lowest corner of; first their count */
+    /* [border->n], triangles whose lowest corner each voxel is: bit b - 14 of with[a - 14] for its neighbours a < b.
+     * Neighbours are numbered as voxels are ordered, so those that come after a voxel are 14 to 26. */
     uint16_t (*with)[AFTER];
     struct mesh *mesh;
 };
@@ -41,9 +42,10 @@ static bool are_neighbours(int a, int b)
     return true;
 }
 
-/* ---- one voxel's fan ------------------------------------------------------------------------------------------------------ */
+/* ---- one voxel's fan -------------------------------------------------------------------------------------------- */
 
-/* What the fan turns around when no side is more outward than another: the grid's axis along which it has the fewest neighbours. */
+/* What the fan turns around when no side is more outward than another: the grid's axis along which it has the fewest
+ * neighbours. */
 static struct vec3 thin_axis(const struct job *job, uint32_t around)
 {
     int best = 0, fewest = AROUND;
@@ -60,8 +62,9 @@ static struct vec3 thin_axis(const struct job *job, uint32_t around)
     return vec3_normalize(vec3_cross(columns[(best + 1) % 3], columns[(best + 2) % 3]));
 }
 
-/* Grows with the angle from right, counter-clockwise, by half a turn to the direction opposite: what an angle is needed for here,
- * without its cost. What differs by no more than ROUNDING is the same angle: neighbours that stand one above the other. */
+/* Grows with the angle from right, counter-clockwise, by half a turn to the direction opposite: what an angle is needed
+ * for here, without its cost. What differs by no more than ROUNDING is the same angle: neighbours that stand one above
+ * the other. */
 enum { FULL_TURN = 1 << 16, ROUNDING = 2 };
 
 static int32_t turn_of(struct vec3 offset, struct vec3 right_way, struct vec3 up_way)
@@ -86,7 +89,8 @@ static struct vec3 first_way(const struct job *job, uint32_t around, struct vec3
 }
 
 /* Neighbours that are border voxels, by their angle around the normal; equal angles by their number. */
-static int order_around(const struct job *job, uint32_t around, struct vec3 normal, uint8_t order[MAX_FAN], int32_t turns[MAX_FAN])
+static int order_around(const struct job *job, uint32_t around, struct vec3 normal, uint8_t order[MAX_FAN],
+                        int32_t turns[MAX_FAN])
 {
     struct vec3 right = first_way(job, around, normal), up = vec3_cross(normal, right);
     int n = 0;
@@ -134,7 +138,7 @@ static void fan_part(void *context, int part, int n_parts)
         make_fan(job, at, &job->fans[at]);
 }
 
-/* ---- all of them ---------------------------------------------------------------------------------------------------------- */
+/* ---- all of them ------------------------------------------------------------------------------------------------ */
 
 /* Adds the triangle of neighbours a and b. */
 static void add_triangle(uint16_t with[AFTER], int a, int b)
@@ -145,7 +149,8 @@ static void add_triangle(uint16_t with[AFTER], int a, int b)
 
 static size_t number_of(const struct shape_border *border, const uint16_t *ijk, int neighbour)
 {
-    return shape_border_number(border, ijk[0] + step_of(neighbour, 0), ijk[1] + step_of(neighbour, 1), ijk[2] + step_of(neighbour, 2));
+    return shape_border_number(border, ijk[0] + step_of(neighbour, 0), ijk[1] + step_of(neighbour, 1),
+                               ijk[2] + step_of(neighbour, 2));
 }
 
 /* From the voxel's own fan, and from those of its neighbours that come after it. */
@@ -245,7 +250,8 @@ static bool make_mesh(struct job *job, int n_threads, struct error *err)
         total += count;
     }
     if (total > SHAPE_MAX_TRIANGLES)
-        return error_set(err, ERROR_LIMIT, "fans of %llu triangles: at most %d are allowed", (unsigned long long)total, SHAPE_MAX_TRIANGLES);
+        return error_set(err, ERROR_LIMIT, "fans of %llu triangles: at most %d are allowed", (unsigned long long)total,
+                         SHAPE_MAX_TRIANGLES);
     job->mesh = mesh_create(n, (size_t)total, err);
     if (!job->mesh)
         return false;
@@ -261,7 +267,8 @@ struct mesh *shape_fan(const struct mask *mask, int n_threads, struct error *err
     job.fans = border ? mem_large_array(border->n, sizeof *job.fans, UINT64_MAX, err) : NULL;
     if (job.fans) {
         for (int at = 0; at < AROUND; at++) {
-            job.offset[at] = affine_vector(&mask->lps_mm_from_ijk, vec3(step_of(at, 0), step_of(at, 1), step_of(at, 2)));
+            job.offset[at] =
+                affine_vector(&mask->lps_mm_from_ijk, vec3(step_of(at, 0), step_of(at, 1), step_of(at, 2)));
             for (int other = 0; other < AROUND; other++)
                 job.near[at] |= (uint32_t)are_neighbours(at, other) << other;
         }

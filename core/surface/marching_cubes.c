@@ -1,15 +1,17 @@
 /* Marching cubes on bit rows.
  *
- * The part of the mask that holds anything is first copied into a grid of its own with one empty layer around it, so nothing
- * below has to think of borders. Its rows are cut so that a 64-bit word holds 63 cells: the 64th bit repeats the first voxel of
- * the next word, and a word needs no neighbour. A row "owns" the crossed grid edges that start at its voxels: along x within it,
- * along y to the next row, along z to the same row of the next slice; each crossed edge is one vertex.
+ * The part of the mask that holds anything is first copied into a grid of its own with one empty layer around it, so
+ * nothing below has to think of borders. Its rows are cut so that a 64-bit word holds 63 cells: the 64th bit repeats
+ * the first voxel of the next word, and a word needs no neighbour. A row "owns" the crossed grid edges that start at
+ * its voxels: along x within it, along y to the next row, along z to the same row of the next slice; each crossed edge
+ * is one vertex.
  *
  *   1. count, row by row, vertices along x, y, z and triangles     2. running totals: where each row's part begins
  *   3. every row writes its vertices and the triangles of its cells where they belong
  *
- * Walking a row of cells from left to right meets the crossed edges around it in the order in which their rows numbered them (a
- * crossed edge makes every cell around it active), so eight running numbers give the vertex of any edge: no table of vertices. */
+ * Walking a row of cells from left to right meets the crossed edges around it in the order in which their rows numbered
+ * them (a crossed edge makes every cell around it active), so eight running numbers give the vertex of any edge: no
+ * table of vertices. */
 #include "core/surface/marching_cubes.h"
 
 #include <assert.h>
@@ -47,7 +49,7 @@ static void range_of(uint32_t n, int part, int n_parts, uint32_t *from, uint32_t
     *end = (uint32_t)((uint64_t)n * (uint64_t)(part + 1) / (uint64_t)n_parts);
 }
 
-/* ---- the part of the mask that holds anything --------------------------------------------------------------------------- */
+/* ---- the part of the mask that holds anything ------------------------------------------------------------------- */
 
 static void measure_extent(void *context, int part, int n_parts)
 {
@@ -104,7 +106,8 @@ static void place_working_grid(struct job *job, const struct extent *extent, boo
 {
     for (int axis = 0; axis < 3; axis++) {
         uint32_t last = job->mask->size[axis] - 1;
-        bool has_before = close_at_border || extent->low[axis] > 0, has_after = close_at_border || extent->high[axis] < last;
+        bool has_before = close_at_border || extent->low[axis] > 0,
+             has_after = close_at_border || extent->high[axis] < last;
         job->grid.start[axis] = (int32_t)extent->low[axis] - has_before;
         job->grid.size[axis] = extent->high[axis] - extent->low[axis] + 1 + has_before + has_after;
     }
@@ -141,7 +144,7 @@ static void copy_rows(void *context, int part, int n_parts)
         }
 }
 
-/* ---- counting and writing ------------------------------------------------------------------------------------------------ */
+/* ---- counting and writing --------------------------------------------------------------------------------------- */
 
 INLINED void count_slices(struct marching_rows *grid, uint32_t from, uint32_t end)
 {
@@ -171,7 +174,8 @@ INLINED float *put(float *at, struct vec3 p)
     return at + 3;
 }
 
-INLINED void write_vertices(const struct marching_rows *grid, const struct row *row, const struct around *rows, uint32_t y, uint32_t z)
+INLINED void write_vertices(const struct marching_rows *grid, const struct row *row, const struct around *rows,
+                            uint32_t y, uint32_t z)
 {
     const struct affine *map = &grid->lps_mm_from_ijk;
     struct vec3 step = map->columns[0];
@@ -217,9 +221,10 @@ static void write_triangles(const struct marching_rows *grid, const struct row *
 }
 
 #if defined(__x86_64__)
-/* The same with the running numbers in one register; all five triangles that a cell could have are written, the next cell's over
- * what is too much. `end` is where this thread's triangles end: the last few must not reach beyond. */
-FAST static void write_triangles_avx2(const struct marching_rows *grid, const struct row *row, const struct around *rows, const uint32_t *end)
+/* The same with the running numbers in one register; all five triangles that a cell could have are written, the next
+ * cell's over what is too much. `end` is where this thread's triangles end: the last few must not reach beyond. */
+FAST static void write_triangles_avx2(const struct marching_rows *grid, const struct row *row,
+                                      const struct around *rows, const uint32_t *end)
 {
     const uint32_t first[8] = FIRST_VERTICES(grid, row);
     __m256i vertex = _mm256_loadu_si256((const __m256i *)first);
@@ -278,7 +283,10 @@ INLINED void write_rows(const struct marching_rows *grid, size_t from, size_t en
 }
 
 #if defined(__x86_64__)
-FAST static void count_slices_fast(struct marching_rows *grid, uint32_t from, uint32_t end) { count_slices(grid, from, end); }
+FAST static void count_slices_fast(struct marching_rows *grid, uint32_t from, uint32_t end)
+{
+    count_slices(grid, from, end);
+}
 FAST static void write_rows_fast(const struct marching_rows *grid, size_t from, size_t end, bool has_positions)
 {
     write_rows(grid, from, end, has_positions, true);
@@ -289,15 +297,21 @@ static bool has_fast(void)
            __builtin_cpu_supports("bmi2");
 }
 #else
-static void count_slices_fast(struct marching_rows *grid, uint32_t from, uint32_t end) { count_slices(grid, from, end); }
+static void count_slices_fast(struct marching_rows *grid, uint32_t from, uint32_t end)
+{
+    count_slices(grid, from, end);
+}
 static void write_rows_fast(const struct marching_rows *grid, size_t from, size_t end, bool has_positions)
 {
     write_rows(grid, from, end, has_positions, false);
 }
-static bool has_fast(void) { return false; }
+static bool has_fast(void)
+{
+    return false;
+}
 #endif
 
-/* ---- the whole ---------------------------------------------------------------------------------------------------------- */
+/* ---- the whole -------------------------------------------------------------------------------------------------- */
 
 static void count_part(void *context, int part, int n_parts)
 {
@@ -347,13 +361,14 @@ static bool number_rows(struct job *job, const struct surface_options *options, 
     uint64_t vertices = 0, triangles = 0;
     for (size_t at = 0; at <= n_rows; at++) {
         struct row n = job->grid.rows[at];
-        job->grid.rows[at] = (struct row){ (uint32_t)vertices, (uint32_t)(vertices + n.x), (uint32_t)(vertices + n.x + n.y),
-                                      (uint32_t)triangles };
+        job->grid.rows[at] = (struct row){ (uint32_t)vertices, (uint32_t)(vertices + n.x),
+                                           (uint32_t)(vertices + n.x + n.y), (uint32_t)triangles };
         vertices += (uint64_t)n.x + n.y + n.z;
         triangles += n.triangles;
     }
     if (triangles > options->max_triangles || triangles > UINT32_MAX || vertices > UINT32_MAX)
-        return error_set(err, ERROR_LIMIT, "a surface of %llu triangles: at most %zu are allowed", (unsigned long long)triangles,
+        return error_set(err, ERROR_LIMIT, "a surface of %llu triangles: at most %zu are allowed",
+                         (unsigned long long)triangles,
                          options->max_triangles < UINT32_MAX ? options->max_triangles : (size_t)UINT32_MAX);
     job->grid.mesh = mesh_create((size_t)vertices, (size_t)triangles, err);
     return job->grid.mesh != NULL;
@@ -376,8 +391,8 @@ static bool make_graph(const struct job *job, bool is_closed, struct marching_gr
         graph->links = mem_large_array(n, sizeof *graph->links, UINT64_MAX, err);
     memcpy(graph->start, job->grid.start, sizeof graph->start);
     graph->lps_mm_from_at = job->mask->lps_mm_from_ijk;
-    graph->lps_mm_from_at.origin = affine_point(&job->mask->lps_mm_from_ijk,
-                                                vec3(job->grid.start[0], job->grid.start[1], job->grid.start[2]));
+    graph->lps_mm_from_at.origin =
+        affine_point(&job->mask->lps_mm_from_ijk, vec3(job->grid.start[0], job->grid.start[1], job->grid.start[2]));
     for (size_t v = 0; graph->links && !is_closed && v < n; v++)
         for (int slot = 0; slot < 4; slot++)
             graph->links[v][slot] = (uint32_t)v;
@@ -391,8 +406,8 @@ void marching_graph_finish(struct marching_graph *graph)
     *graph = (struct marching_graph){ 0 };
 }
 
-struct mesh *marching_cubes_run(enum marching_cubes_code code, const struct mask *mask, const struct surface_options *options,
-                                struct marching_graph *graph, struct error *err)
+struct mesh *marching_cubes_run(enum marching_cubes_code code, const struct mask *mask,
+                                const struct surface_options *options, struct marching_graph *graph, struct error *err)
 {
     assert(mask->words <= MAX_MASK_WORDS);
     pthread_once(&cases_once, make_cases);
@@ -400,7 +415,8 @@ struct mesh *marching_cubes_run(enum marching_cubes_code code, const struct mask
     n_parts = n_parts < MAX_THREADS ? n_parts : MAX_THREADS;
     struct job job = {
         .mask = mask,
-        .grid = { .cases = cases[affine_determinant(&mask->lps_mm_from_ijk) < 0], .lps_mm_from_ijk = mask->lps_mm_from_ijk },
+        .grid = { .cases = cases[affine_determinant(&mask->lps_mm_from_ijk) < 0],
+                  .lps_mm_from_ijk = mask->lps_mm_from_ijk },
         .code = has_fast() ? code : MARCHING_CUBES_PORTABLE,
         .graph = graph,
     };
@@ -437,8 +453,8 @@ struct mesh *marching_cubes_run(enum marching_cubes_code code, const struct mask
     return grid->mesh;
 }
 
-struct mesh *marching_cubes_with(enum marching_cubes_code code, const struct mask *mask, const struct surface_options *options,
-                                 struct error *err)
+struct mesh *marching_cubes_with(enum marching_cubes_code code, const struct mask *mask,
+                                 const struct surface_options *options, struct error *err)
 {
     return marching_cubes_run(code, mask, options, NULL, err);
 }

@@ -1,5 +1,5 @@
-/* Marching cubes of a field: the field's inside is a mask, and what marching cubes makes of that has the right triangles; then every
- * vertex is moved along its edge. */
+/* Marching cubes of a field: the field's inside is a mask, and what marching cubes makes of that has the right
+ * triangles; then every vertex is moved along its edge. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -75,7 +75,8 @@ static void move_part(void *context, int part, int n_parts)
     }
 }
 
-struct mesh *surface_marching_cubes_field(const struct volume *field, double iso, const struct surface_options *options, struct error *err)
+struct mesh *surface_marching_cubes_field(const struct volume *field, double iso, const struct surface_options *options,
+                                          struct error *err)
 {
     struct marching_graph graph = { .has_no_links = true };
     struct job job = { .field = field, .iso = iso, .graph = &graph };

@@ -1,6 +1,7 @@
-/* The graph of a marching-cubes surface. Walking round the loops of a cell's case goes from crossed edge to crossed edge over the
- * faces of the cell. The cell on the other side of a face goes the other way over it, so when each of the four cells around a
- * crossed edge notes where its loop goes next, all four links of the vertex are there, each written once. */
+/* The graph of a marching-cubes surface. Walking round the loops of a cell's case goes from crossed edge to crossed
+ * edge over the faces of the cell. The cell on the other side of a face goes the other way over it, so when each of the
+ * four cells around a crossed edge notes where its loop goes next, all four links of the vertex are there, each written
+ * once. */
 #include <pthread.h>
 #include <stdbool.h>
 #include <string.h>
@@ -8,7 +9,8 @@
 #include "core/surface/marching_cubes.h"
 #include "core/surface/marching_rows.h"
 
-/* Of a case: its crossed edges, and for each the next in its loop and which of the four cells around it this cell is. */
+/* Of a case: its crossed edges, and for each the next in its loop and which of the four cells around it this cell is.
+ */
 struct steps {
     uint8_t n;
     struct {
@@ -32,8 +34,9 @@ static void make_steps(void)
         cube_case_links(inside, next);
         for (uint8_t edge = 0; edge < CUBE_EDGES; edge++)
             if (next[edge] >= 0) {
-                /* where in the cell the edge lies along the two other axes, first the one that follows its own: for an edge along x
-                 * its number says so, for others its last bit (z for y, y for z) and whether it is on the far face of x */
+                /* where in the cell the edge lies along the two other axes, first the one that follows its own: for an
+                 * edge along x its number says so, for others its last bit (z for y, y for z) and whether it is on the
+                 * far face of x */
                 unsigned last = edge & 1, far = edge >= 8;
                 bool is_z = edge >= 4 && (edge & 2);
                 unsigned slot = edge < 4 ? edge : is_z ? far | last << 1 : last | far << 1;
@@ -46,7 +49,8 @@ static void make_steps(void)
 
 typedef uint32_t eight __attribute__((vector_size(32)));
 
-INLINED void write_links(const struct marching_rows *grid, const struct row *row, const struct around *rows, uint32_t (*links)[4])
+INLINED void write_links(const struct marching_rows *grid, const struct row *row, const struct around *rows,
+                         uint32_t (*links)[4])
 {
     typedef uint8_t eight_bytes __attribute__((vector_size(8)));
     const uint32_t first[8] = FIRST_VERTICES(grid, row);
@@ -72,20 +76,21 @@ INLINED void write_links(const struct marching_rows *grid, const struct row *row
     }
 }
 
-INLINED struct marching_point *put_points(struct marching_point *to, uint64_t crossed, uint64_t here, uint32_t first, uint32_t y,
-                                         uint32_t z, uint8_t axis)
+INLINED struct marching_point *put_points(struct marching_point *to, uint64_t crossed, uint64_t here, uint32_t first,
+                                          uint32_t y, uint32_t z, uint8_t axis)
 {
     for (uint64_t bits = crossed; bits; bits &= bits - 1) {
         int bit = __builtin_ctzll(bits);
-        *to = (struct marching_point){ { (int16_t)(2 * (first + (uint32_t)bit)), (int16_t)(2 * y), (int16_t)(2 * z) }, axis,
+        *to = (struct marching_point){ { (int16_t)(2 * (first + (uint32_t)bit)), (int16_t)(2 * y), (int16_t)(2 * z) },
+                                       axis,
                                        here >> bit & 1 ? 1 : -1 };
         to++->at2[axis]++;
     }
     return to;
 }
 
-INLINED void write_points(const struct marching_rows *grid, const struct row *row, const struct around *rows, uint32_t y, uint32_t z,
-                         struct marching_point *points)
+INLINED void write_points(const struct marching_rows *grid, const struct row *row, const struct around *rows,
+                          uint32_t y, uint32_t z, struct marching_point *points)
 {
     struct marching_point *x_at = points + row->x, *y_at = points + row->y, *z_at = points + row->z;
     for (uint32_t w = 0; w < grid->words; w++) {
@@ -112,19 +117,21 @@ INLINED void write_graph(const struct marching_rows *grid, const struct marching
 }
 
 #if defined(__x86_64__)
-FAST static void write_graph_fast(const struct marching_rows *grid, const struct marching_graph *graph, size_t from, size_t end)
+FAST static void write_graph_fast(const struct marching_rows *grid, const struct marching_graph *graph, size_t from,
+                                  size_t end)
 {
     write_graph(grid, graph, from, end);
 }
 #else
-static void write_graph_fast(const struct marching_rows *grid, const struct marching_graph *graph, size_t from, size_t end)
+static void write_graph_fast(const struct marching_rows *grid, const struct marching_graph *graph, size_t from,
+                             size_t end)
 {
     write_graph(grid, graph, from, end);
 }
 #endif
 
-void marching_graph_write(enum marching_cubes_code code, const struct marching_rows *grid, struct marching_graph *graph, size_t from,
-                          size_t end)
+void marching_graph_write(enum marching_cubes_code code, const struct marching_rows *grid, struct marching_graph *graph,
+                          size_t from, size_t end)
 {
     pthread_once(&once, make_steps);
     if (code == MARCHING_CUBES_PORTABLE)

@@ -16,11 +16,11 @@ struct row {
 struct marching_rows {
     const struct cube_case *cases;
     struct affine lps_mm_from_ijk; /* of the mask */
-    int32_t start[3];   /* mask index of its voxel 0; -1 when an empty layer was put in front */
-    uint32_t size[3];   /* voxels */
-    uint32_t words;     /* in a row */
-    uint64_t *bits;     /* [z][y][words]; owns the rows' memory too */
-    struct row *rows;   /* [z][y], and one more at the end */
+    int32_t start[3];              /* mask index of its voxel 0; -1 when an empty layer was put in front */
+    uint32_t size[3];              /* voxels */
+    uint32_t words;                /* in a row */
+    uint64_t *bits;                /* [z][y][words]; owns the rows' memory too */
+    struct row *rows;              /* [z][y], and one more at the end */
     struct mesh *mesh;
 };
 
@@ -30,7 +30,8 @@ struct marching_rows {
 #define FAST __attribute__((target("avx2,popcnt,bmi,bmi2")))
 #endif
 
-/* A row with its neighbours; at the end of an axis the row stands in for the missing neighbour, so nothing is crossed there. */
+/* A row with its neighbours; at the end of an axis the row stands in for the missing neighbour, so nothing is crossed
+ * there. */
 struct around {
     const uint64_t *here, *next_y, *next_z, *next_yz;
     bool has_cells;
@@ -75,11 +76,13 @@ INLINED bool is_uniform(const struct around *rows, uint32_t w)
 
 INLINED uint32_t case_at(const struct around *rows, uint32_t w, int bit)
 {
-    return (uint32_t)((rows->here[w] >> bit & 3) | (rows->next_y[w] >> bit & 3) << 2 | (rows->next_z[w] >> bit & 3) << 4 |
-                      (rows->next_yz[w] >> bit & 3) << 6);
+    return (uint32_t)((rows->here[w] >> bit & 3) | (rows->next_y[w] >> bit & 3) << 2 |
+                      (rows->next_z[w] >> bit & 3) << 4 | (rows->next_yz[w] >> bit & 3) << 6);
 }
 
 /* The vertex that each edge of a row's first cell has, if it is crossed: edges 0..7 as in cube_cases.h. */
-#define FIRST_VERTICES(grid, row)                                                                                                 \
-    { (row)->x, (row)[1].x, (row)[(grid)->size[1]].x, (row)[(grid)->size[1] + 1].x, (row)->y, (row)[(grid)->size[1]].y, (row)->z,  \
-      (row)[1].z }
+#define FIRST_VERTICES(grid, row) \
+    { \
+        (row)->x, (row)[1].x, (row)[(grid)->size[1]].x, (row)[(grid)->size[1] + 1].x, (row)->y, \
+            (row)[(grid)->size[1]].y, (row)->z, (row)[1].z \
+    }

@@ -25,7 +25,8 @@ struct mesh *mesh_create(size_t n_vertices, size_t n_triangles, struct error *er
     mesh->bounds_lps_mm = box3_empty();
     /* one float more: vector code may load four of the last vertex */
     mesh->positions_lps_mm = mem_large_array(3 * n_vertices + 1, sizeof(float), MESH_MAX_BYTES, err);
-    mesh->indices = mesh->positions_lps_mm ? mem_large_array(n_triangles, 3 * sizeof(uint32_t), MESH_MAX_BYTES, err) : NULL;
+    mesh->indices =
+        mesh->positions_lps_mm ? mem_large_array(n_triangles, 3 * sizeof(uint32_t), MESH_MAX_BYTES, err) : NULL;
     if (!mesh->indices) {
         mesh_unref(mesh);
         return NULL;
@@ -111,7 +112,7 @@ double mesh_volume_mm3(const struct mesh *mesh)
     return six_times / 6;
 }
 
-/* ---- edges ---------------------------------------------------------------------------------------------------------- */
+/* ---- edges ------------------------------------------------------------------------------------------------------ */
 
 struct edge_counts {
     size_t edges; /* distinct, without direction */

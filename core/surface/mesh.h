@@ -25,7 +25,8 @@ NODISCARD bool mesh_make_normals(struct mesh *mesh, int n_threads, struct error 
 void mesh_measure_bounds(struct mesh *mesh);
 double mesh_area_mm2(const struct mesh *mesh);
 double mesh_volume_mm3(const struct mesh *mesh); /* enclosed, signed: positive when triangles wind outward */
-/* Directed edges without exactly one opposite, so 0 says closed and consistently wound; SIZE_MAX when there is no memory to tell. */
+/* Directed edges without exactly one opposite, so 0 says closed and consistently wound; SIZE_MAX when there is no
+ * memory to tell. */
 size_t mesh_open_edges(const struct mesh *mesh);
 /* Vertices that are used - edges + faces; LONG_MIN when there is no memory to tell. */
 long mesh_euler(const struct mesh *mesh);

@@ -8,7 +8,16 @@
 
 #include "core/base/mem.h"
 
-enum { STL_TITLE = 80, STL_HEAD = 84, STL_TRIANGLE = 50, PLY_FACE = 13, POINT = 12, GLB_HEAD = 12, GLB_CHUNK_HEAD = 8, FIELD_BYTES = 63 };
+enum {
+    STL_TITLE = 80,
+    STL_HEAD = 84,
+    STL_TRIANGLE = 50,
+    PLY_FACE = 13,
+    POINT = 12,
+    GLB_HEAD = 12,
+    GLB_CHUNK_HEAD = 8,
+    FIELD_BYTES = 63
+};
 
 static const char *const words[] = { [MESH_STL] = "stl", [MESH_PLY] = "ply", [MESH_GLB] = "glb" };
 
@@ -27,7 +36,7 @@ const char *mesh_format_word(enum mesh_format format)
     return words[format];
 }
 
-/* ---- bytes, little-endian on any machine ---------------------------------------------------------------------------- */
+/* ---- bytes, little-endian on any machine ------------------------------------------------------------------------ */
 
 static uint8_t *put_u32(uint8_t *at, uint32_t value)
 {
@@ -58,12 +67,12 @@ static uint8_t *make_room(enum mesh_format format, uint64_t n, uint64_t max_byte
 {
     if (n <= max_bytes && n <= SIZE_MAX)
         return mem_large_array((size_t)n, 1, max_bytes, err);
-    error_set(err, ERROR_LIMIT, "the surface as %s has %llu bytes, at most %llu are possible", words[format], (unsigned long long)n,
-              (unsigned long long)max_bytes);
+    error_set(err, ERROR_LIMIT, "the surface as %s has %llu bytes, at most %llu are possible", words[format],
+              (unsigned long long)n, (unsigned long long)max_bytes);
     return NULL;
 }
 
-/* ---- heads that are text ---------------------------------------------------------------------------------------------- */
+/* ---- heads that are text ---------------------------------------------------------------------------------------- */
 
 struct text {
     char bytes[4096]; /* all fields together, each byte escaped, leave room */
@@ -104,7 +113,7 @@ static void add_json_field(struct text *text, const char *name, const char *fiel
     add(text, "\"");
 }
 
-/* ---- STL ---------------------------------------------------------------------------------------------------------------- */
+/* ---- STL -------------------------------------------------------------------------------------------------------- */
 
 static void triangle_normal(const float corners[9], float normal[3])
 {
@@ -119,8 +128,8 @@ static void triangle_normal(const float corners[9], float normal[3])
         normal[axis] = length > 0 ? (float)(n[axis] / length) : 0;
 }
 
-static uint8_t *export_stl(const struct mesh *mesh, const struct mesh_export_about *about, uint64_t max_bytes, size_t *n_bytes,
-                           struct error *err)
+static uint8_t *export_stl(const struct mesh *mesh, const struct mesh_export_about *about, uint64_t max_bytes,
+                           size_t *n_bytes, struct error *err)
 {
     if (mesh->n_triangles > UINT32_MAX) {
         error_set(err, ERROR_LIMIT, "a surface of %zu triangles: STL counts to %u", mesh->n_triangles, UINT32_MAX);
@@ -149,7 +158,7 @@ static uint8_t *export_stl(const struct mesh *mesh, const struct mesh_export_abo
     return bytes;
 }
 
-/* ---- PLY ---------------------------------------------------------------------------------------------------------------- */
+/* ---- PLY -------------------------------------------------------------------------------------------------------- */
 
 static void write_ply_head(const struct mesh *mesh, const struct mesh_export_about *about, struct text *head)
 {
@@ -157,7 +166,8 @@ static void write_ply_head(const struct mesh *mesh, const struct mesh_export_abo
               "comment Beamroom surface, for research and plan review, not for treatment\n");
     if (about->is_phantom)
         add(head, "comment a phantom, not a patient\n");
-    add(head, "comment unit mm\ncomment space DICOM LPS: x to the patient's left, y to posterior, z to superior\ncomment plan ");
+    add(head,
+        "comment unit mm\ncomment space DICOM LPS: x to the patient's left, y to posterior, z to superior\ncomment plan ");
     add_line_field(head, about->plan_id);
     add(head, "\ncomment region ");
     add_line_field(head, about->region_id);
@@ -169,17 +179,18 @@ static void write_ply_head(const struct mesh *mesh, const struct mesh_export_abo
     add(head, "element face %zu\nproperty list uchar int vertex_indices\nend_header\n", mesh->n_triangles);
 }
 
-static uint8_t *export_ply(const struct mesh *mesh, const struct mesh_export_about *about, uint64_t max_bytes, size_t *n_bytes,
-                           struct error *err)
+static uint8_t *export_ply(const struct mesh *mesh, const struct mesh_export_about *about, uint64_t max_bytes,
+                           size_t *n_bytes, struct error *err)
 {
     if (mesh->n_vertices > INT32_MAX || mesh->n_triangles > INT32_MAX) {
-        error_set(err, ERROR_LIMIT, "a surface of %zu vertices and %zu triangles: PLY readers count to %d", mesh->n_vertices,
-                  mesh->n_triangles, INT32_MAX);
+        error_set(err, ERROR_LIMIT, "a surface of %zu vertices and %zu triangles: PLY readers count to %d",
+                  mesh->n_vertices, mesh->n_triangles, INT32_MAX);
         return NULL;
     }
     struct text head = { .n = 0 };
     write_ply_head(mesh, about, &head);
-    uint64_t n = head.n + (about->is_faceted ? 1 : 2) * (uint64_t)POINT * mesh->n_vertices + (uint64_t)PLY_FACE * mesh->n_triangles;
+    uint64_t n = head.n + (about->is_faceted ? 1 : 2) * (uint64_t)POINT * mesh->n_vertices +
+                 (uint64_t)PLY_FACE * mesh->n_triangles;
     uint8_t *bytes = make_room(MESH_PLY, n, max_bytes, err);
     if (!bytes)
         return NULL;
@@ -198,9 +209,10 @@ static uint8_t *export_ply(const struct mesh *mesh, const struct mesh_export_abo
     return bytes;
 }
 
-/* ---- GLB ---------------------------------------------------------------------------------------------------------------- */
+/* ---- GLB -------------------------------------------------------------------------------------------------------- */
 
-/* The smallest and largest coordinates; a reader may refuse bounds that are not met to the last bit, and nine digits keep them. */
+/* The smallest and largest coordinates; a reader may refuse bounds that are not met to the last bit, and nine digits
+ * keep them. */
 static void add_bounds(struct text *json, const struct mesh *mesh)
 {
     float low[3], high[3];
@@ -212,8 +224,8 @@ static void add_bounds(struct text *json, const struct mesh *mesh)
             low[axis] = p < low[axis] ? p : low[axis];
             high[axis] = p > high[axis] ? p : high[axis];
         }
-    add(json, "\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]", (double)low[0], (double)low[1], (double)low[2], (double)high[0],
-        (double)high[1], (double)high[2]);
+    add(json, "\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]", (double)low[0], (double)low[1], (double)low[2],
+        (double)high[0], (double)high[1], (double)high[2]);
 }
 
 static double linear_from_srgb(uint8_t value)
@@ -226,39 +238,46 @@ static void write_glb_json(const struct mesh *mesh, const struct mesh_export_abo
 {
     bool has_normals = !about->is_faceted;
     uint64_t n_points = (uint64_t)POINT * mesh->n_vertices, n_indices = (uint64_t)POINT * mesh->n_triangles;
-    add(json, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"Beamroom\",\"extras\":{\"unit\":\"mm\",\"space\":\"DICOM LPS: x to the patient's "
-              "left, y to posterior, z to superior\",\"node\":\"its matrix takes mm LPS to metres, x left, y superior, z anterior\",");
+    add(json,
+        "{\"asset\":{\"version\":\"2.0\",\"generator\":\"Beamroom\",\"extras\":{\"unit\":\"mm\",\"space\":\"DICOM LPS: x to the patient's "
+        "left, y to posterior, z to superior\",\"node\":\"its matrix takes mm LPS to metres, x left, y superior, z anterior\",");
     add_json_field(json, "plan", about->plan_id);
     add(json, ",");
     add_json_field(json, "region", about->region_id);
     add(json, ",");
     add_json_field(json, "algorithm", about->algorithm);
-    add(json, ",\"phantom\":%s,\"use\":\"for research and plan review, not for treatment\"}},", about->is_phantom ? "true" : "false");
+    add(json, ",\"phantom\":%s,\"use\":\"for research and plan review, not for treatment\"}},",
+        about->is_phantom ? "true" : "false");
     add(json, "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,");
     add_json_field(json, "name", about->region_id);
     add(json, ",\"matrix\":[0.001,0,0,0,0,0,-0.001,0,0,0.001,0,0,0,0,0,1]}],");
-    add(json, "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0%s},\"indices\":1,\"material\":0,\"mode\":4}]}],",
+    add(json,
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0%s},\"indices\":1,\"material\":0,\"mode\":4}]}],",
         has_normals ? ",\"NORMAL\":2" : "");
-    add(json, "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[%.4f,%.4f,%.4f,1],\"metallicFactor\":0,\"roughnessFactor\":0.8}}],",
+    add(json,
+        "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[%.4f,%.4f,%.4f,1],\"metallicFactor\":0,\"roughnessFactor\":0.8}}],",
         linear_from_srgb(about->rgb[0]), linear_from_srgb(about->rgb[1]), linear_from_srgb(about->rgb[2]));
-    add(json, "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":%zu,\"type\":\"VEC3\",", mesh->n_vertices);
+    add(json, "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":%zu,\"type\":\"VEC3\",",
+        mesh->n_vertices);
     add_bounds(json, mesh);
     add(json, "},{\"bufferView\":1,\"componentType\":5125,\"count\":%zu,\"type\":\"SCALAR\"}", 3 * mesh->n_triangles);
     if (has_normals)
         add(json, ",{\"bufferView\":2,\"componentType\":5126,\"count\":%zu,\"type\":\"VEC3\"}", mesh->n_vertices);
-    add(json, "],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":%llu,\"target\":34962},"
-              "{\"buffer\":0,\"byteOffset\":%llu,\"byteLength\":%llu,\"target\":34963}",
+    add(json,
+        "],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":%llu,\"target\":34962},"
+        "{\"buffer\":0,\"byteOffset\":%llu,\"byteLength\":%llu,\"target\":34963}",
         (unsigned long long)n_points, (unsigned long long)n_points, (unsigned long long)n_indices);
     if (has_normals)
-        add(json, ",{\"buffer\":0,\"byteOffset\":%llu,\"byteLength\":%llu,\"target\":34962}", (unsigned long long)(n_points + n_indices),
-            (unsigned long long)n_points);
-    add(json, "],\"buffers\":[{\"byteLength\":%llu}]}", (unsigned long long)(n_indices + (has_normals ? 2 : 1) * n_points));
+        add(json, ",{\"buffer\":0,\"byteOffset\":%llu,\"byteLength\":%llu,\"target\":34962}",
+            (unsigned long long)(n_points + n_indices), (unsigned long long)n_points);
+    add(json, "],\"buffers\":[{\"byteLength\":%llu}]}",
+        (unsigned long long)(n_indices + (has_normals ? 2 : 1) * n_points));
     while (json->n % 4)
         add(json, " "); /* chunks end at a multiple of four */
 }
 
-static uint8_t *export_glb(const struct mesh *mesh, const struct mesh_export_about *about, uint64_t max_bytes, size_t *n_bytes,
-                           struct error *err)
+static uint8_t *export_glb(const struct mesh *mesh, const struct mesh_export_about *about, uint64_t max_bytes,
+                           size_t *n_bytes, struct error *err)
 {
     bool has_normals = !about->is_faceted;
     struct text json = { .n = 0 };
@@ -269,7 +288,7 @@ static uint8_t *export_glb(const struct mesh *mesh, const struct mesh_export_abo
     if (!bytes)
         return NULL;
     uint8_t *at = put_u32(put_u32(put_u32(bytes, 0x46546c67), 2), (uint32_t)n); /* "glTF" */
-    at = put_u32(put_u32(at, (uint32_t)json.n), 0x4e4f534a);                     /* "JSON" */
+    at = put_u32(put_u32(at, (uint32_t)json.n), 0x4e4f534a);                    /* "JSON" */
     memcpy(at, json.bytes, json.n);
     at = put_u32(put_u32(at + json.n, (uint32_t)n_data), 0x004e4942); /* "BIN" */
     at = put_floats(at, mesh->positions_lps_mm, 3 * mesh->n_vertices);
@@ -280,8 +299,8 @@ static uint8_t *export_glb(const struct mesh *mesh, const struct mesh_export_abo
     return bytes;
 }
 
-uint8_t *mesh_export(const struct mesh *mesh, enum mesh_format format, const struct mesh_export_about *about, uint64_t max_bytes,
-                     size_t *n_bytes, struct error *err)
+uint8_t *mesh_export(const struct mesh *mesh, enum mesh_format format, const struct mesh_export_about *about,
+                     uint64_t max_bytes, size_t *n_bytes, struct error *err)
 {
     assert(mesh->normals || about->is_faceted || format == MESH_STL);
     if (mesh->n_triangles == 0) {

@@ -1,8 +1,8 @@
 /* Vertex normals of any mesh, on several threads and always the same to the last bit.
  *
- * Each thread owns a range of vertices and adds up, in the order of the triangles, what reaches that range. So every sum has
- * one owner and one order, whatever the number of threads. A triangle near a border between ranges is looked at twice; blocks
- * of triangles that stay clear of a range (most, as meshes from grids are ordered) are skipped whole. */
+ * Each thread owns a range of vertices and adds up, in the order of the triangles, what reaches that range. So every
+ * sum has one owner and one order, whatever the number of threads. A triangle near a border between ranges is looked at
+ * twice; blocks of triangles that stay clear of a range (most, as meshes from grids are ordered) are skipped whole. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +17,8 @@ struct block {
     uint32_t low, high; /* vertices its triangles use, inclusive */
 };
 
-/* Four floats at once on any processor that has such registers; x, y, z and one that is carried along and never read. */
+/* Four floats at once on any processor that has such registers; x, y, z and one that is carried along and never read.
+ */
 typedef float float4 __attribute__((vector_size(16)));
 
 struct job {
@@ -43,7 +44,9 @@ static void measure_blocks(void *context, int part, int n_parts)
     size_t end = share(job->n_blocks, part + 1, n_parts);
     for (size_t b = share(job->n_blocks, part, n_parts); b < end; b++) {
         size_t last = (b + 1) * BLOCK < job->mesh->n_triangles ? (b + 1) * BLOCK : job->mesh->n_triangles;
-        struct block corner[3] = { { UINT32_MAX, 0 }, { UINT32_MAX, 0 }, { UINT32_MAX, 0 } }; /* three chains that do not wait */
+        struct block corner[3] = { { UINT32_MAX, 0 },
+                                   { UINT32_MAX, 0 },
+                                   { UINT32_MAX, 0 } }; /* three chains that do not wait */
         for (size_t at = 3 * b * BLOCK; at < 3 * last; at += 3)
             for (size_t c = 0; c < 3; c++) {
                 uint32_t vertex = job->mesh->indices[at + c];
@@ -70,7 +73,8 @@ static inline float4 turn(float4 v) /* y, z, x */
     return __builtin_shufflevector(v, v, 1, 2, 0, 3);
 }
 
-/* The cross product of two sides: along the normal, twice the area long. mesh_create leaves room behind the last vertex. */
+/* The cross product of two sides: along the normal, twice the area long. mesh_create leaves room behind the last
+ * vertex. */
 static inline float4 triangle_normal(const float *positions, const uint32_t v[3])
 {
     float4 a = load4(positions + 3 * (size_t)v[0]);

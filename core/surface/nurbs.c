@@ -4,7 +4,8 @@
 
 void nurbs_basis(const double *knots, size_t span, int order, double t, double values[NURBS_MAX_ORDER])
 {
-    /* From order 1, where the span's own function is 1, upwards: each function of an order is a blend of two of the order below. */
+    /* From order 1, where the span's own function is 1, upwards: each function of an order is a blend of two of the
+     * order below. */
     double before[NURBS_MAX_ORDER], after[NURBS_MAX_ORDER]; /* t - knot, knot - t */
     values[0] = 1;
     for (int k = 1; k < order; k++) {
@@ -65,7 +66,8 @@ static struct place place_along(const struct nurbs_tube *tube, double v)
 struct vec3 nurbs_tube_point(const struct nurbs_tube *tube, double u, double v)
 {
     assert(tube->order >= NURBS_MIN_ORDER && tube->order <= NURBS_MAX_ORDER && tube->n_around >= (size_t)tube->order);
-    assert(tube->order_along >= NURBS_MIN_ORDER && tube->order_along <= NURBS_MAX_ORDER && tube->n_rows >= (size_t)tube->order_along);
+    assert(tube->order_along >= NURBS_MIN_ORDER && tube->order_along <= NURBS_MAX_ORDER &&
+           tube->n_rows >= (size_t)tube->order_along);
     struct place around = place_around(tube, u), along = place_along(tube, v);
     struct vec3 sum = vec3(0, 0, 0);
     double weight = 0;

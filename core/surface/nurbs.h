@@ -1,17 +1,18 @@
 #pragma once
-/* Non-uniform rational B-splines: tubes, which are closed around and run from their first row of control points to their last.
- * Knows nothing of regions or triangles. Keeps nothing, so any thread may call it.
+/* Non-uniform rational B-splines: tubes, which are closed around and run from their first row of control points to
+ * their last. Knows nothing of regions or triangles. Keeps nothing, so any thread may call it.
  *
- * source  M. G. Cox, The numerical evaluation of B-splines, J. Inst. Maths Applics 10, 1972; C. de Boor, On calculating with
- *         B-splines, J. Approx. Theory 6, 1972: their recurrence. */
+ * source  M. G. Cox, The numerical evaluation of B-splines, J. Inst. Maths Applics 10, 1972; C. de Boor, On calculating
+ * with B-splines, J. Approx. Theory 6, 1972: their recurrence. */
 #include <stddef.h>
 
 #include "core/math/vec.h"
 
 enum { NURBS_MIN_ORDER = 2, NURBS_MAX_ORDER = 4 };
 
-/* The `order` basis functions that are not 0 at t, of control points span - order + 1 .. span. They are not negative and their sum is 1.
- *   knots  ascending; knots[span] <= t <= knots[span + 1], knots[span] < knots[span + 1]; span - order + 2 .. span + order - 1 are read */
+/* The `order` basis functions that are not 0 at t, of control points span - order + 1 .. span. They are not negative
+ * and their sum is 1. knots  ascending; knots[span] <= t <= knots[span + 1], knots[span] < knots[span + 1]; span -
+ * order + 2 .. span + order - 1 are read */
 void nurbs_basis(const double *knots, size_t span, int order, double t, double values[NURBS_MAX_ORDER]);
 
 /* Control points: rows of n_around, closed; [n_rows][n_around]. */
@@ -22,7 +23,8 @@ struct nurbs_tube {
     size_t n_rows;         /* at least order_along */
     int order, order_along;
 };
-/* Around, knots are the whole numbers, u runs from 0 to n_around and comes home. Along, they are 0 (order_along times), 1, 2, ..., and
- * v_end (order_along times), so that v = 0 is the curve of the first row alone and v = v_end that of the last. */
+/* Around, knots are the whole numbers, u runs from 0 to n_around and comes home. Along, they are 0 (order_along times),
+ * 1, 2, ..., and v_end (order_along times), so that v = 0 is the curve of the first row alone and v = v_end that of the
+ * last. */
 double nurbs_tube_v_end(const struct nurbs_tube *tube); /* n_rows - order_along + 1 */
 struct vec3 nurbs_tube_point(const struct nurbs_tube *tube, double u, double v);

@@ -17,8 +17,8 @@ struct work {
     int axis;
     struct vec3 across; /* half a slice, mm */
     size_t bins;
-    struct vec3 *line;  /* [longest] scratch: points of one outline, mm */
-    double *along;      /* [longest + 1] and the length of the outline up to each */
+    struct vec3 *line; /* [longest] scratch: points of one outline, mm */
+    double *along;     /* [longest + 1] and the length of the outline up to each */
 };
 
 static size_t line_length(const struct work *work, uint32_t line)
@@ -37,7 +37,7 @@ static size_t load_line(const struct work *work, uint32_t line)
     return n;
 }
 
-/* ---- traces ----------------------------------------------------------------------------------------------------------------- */
+/* ---- traces ----------------------------------------------------------------------------------------------------- */
 
 /* n points evenly spaced along a line. */
 static void sample_line(const struct work *work, uint32_t line, size_t n, struct vec3 *out)
@@ -56,7 +56,8 @@ static void sample_line(const struct work *work, uint32_t line, size_t n, struct
     }
 }
 
-/* Begins the row where it lies closest to the row below: of all n ways the one with the least sum of squared distances. */
+/* Begins the row where it lies closest to the row below: of all n ways the one with the least sum of squared distances.
+ */
 static void align(const struct vec3 *below, struct vec3 *row, size_t n, struct vec3 *scratch)
 {
     size_t best = 0;
@@ -114,8 +115,8 @@ static struct nurbs_net net_size(const struct work *work, uint32_t line, const u
 static bool allot(struct nurbs_nets *nets, size_t n_nets, uint64_t n_points, struct error *err)
 {
     if (n_points > MAX_CONTROL_POINTS)
-        return error_set(err, ERROR_LIMIT, "splines with %llu control points: at most %llu are allowed", (unsigned long long)n_points,
-                         (unsigned long long)MAX_CONTROL_POINTS);
+        return error_set(err, ERROR_LIMIT, "splines with %llu control points: at most %llu are allowed",
+                         (unsigned long long)n_points, (unsigned long long)MAX_CONTROL_POINTS);
     nets->nets = mem_array(n_nets, sizeof *nets->nets, UINT64_MAX, err);
     nets->store = nets->nets ? mem_array((size_t)n_points, sizeof *nets->store, UINT64_MAX, err) : NULL;
     return nets->store != NULL;
@@ -153,12 +154,13 @@ static bool make_by_traces(const struct work *work, struct nurbs_nets *nets, str
     return good;
 }
 
-/* ---- degree bins -------------------------------------------------------------------------------------------------------------- */
+/* ---- degree bins ------------------------------------------------------------------------------------------------ */
 
 /* A slice's name in a sentence. */
 static double slice_s_mm(const struct work *work, uint32_t slice)
 {
-    struct vec3 middle = vec3((work->mask->size[0] - 1) / 2.0, (work->mask->size[1] - 1) / 2.0, (work->mask->size[2] - 1) / 2.0);
+    struct vec3 middle =
+        vec3((work->mask->size[0] - 1) / 2.0, (work->mask->size[1] - 1) / 2.0, (work->mask->size[2] - 1) / 2.0);
     double *axis[3] = { &middle.x, &middle.y, &middle.z };
     *axis[work->axis] = slice;
     return affine_point(&work->mask->lps_mm_from_ijk, middle).z;
@@ -166,8 +168,9 @@ static double slice_s_mm(const struct work *work, uint32_t slice)
 
 static bool refuse(const struct work *work, uint32_t slice, struct error *err, const char *why)
 {
-    return error_set(err, ERROR_UNSUPPORTED, "degree bins cannot show this region: slice %u (S %.1f mm) %s; sample the traces instead",
-                     slice, slice_s_mm(work, slice), why);
+    return error_set(err, ERROR_UNSUPPORTED,
+                     "degree bins cannot show this region: slice %u (S %.1f mm) %s; sample the traces instead", slice,
+                     slice_s_mm(work, slice), why);
 }
 
 /* The slice's one outline. */
@@ -201,7 +204,8 @@ static struct plane plane_of(const struct work *work, size_t n_line)
     struct vec3 sum = vec3(0, 0, 0);
     double twice = 0;
     for (size_t at = 0; at < n_line; at++) { /* triangles from the first point */
-        struct vec3 a = vec3_sub(work->line[at], work->line[0]), b = vec3_sub(work->line[(at + 1) % n_line], work->line[0]);
+        struct vec3 a = vec3_sub(work->line[at], work->line[0]),
+                    b = vec3_sub(work->line[(at + 1) % n_line], work->line[0]);
         double area = vec3_dot(vec3_cross(a, b), vec3_normalize(normal));
         sum = vec3_add(sum, vec3_scale(vec3_add(a, b), area / 3));
         twice += area;
@@ -214,11 +218,13 @@ static struct plane plane_of(const struct work *work, size_t n_line)
 static double turn(const struct plane *plane, struct vec3 from, struct vec3 to)
 {
     struct vec3 a = vec3_sub(from, plane->middle), b = vec3_sub(to, plane->middle);
-    double ax = vec3_dot(a, plane->right), ay = vec3_dot(a, plane->up), bx = vec3_dot(b, plane->right), by = vec3_dot(b, plane->up);
+    double ax = vec3_dot(a, plane->right), ay = vec3_dot(a, plane->up), bx = vec3_dot(b, plane->right),
+           by = vec3_dot(b, plane->up);
     return atan2(ax * by - ay * bx, ax * bx + ay * by);
 }
 
-static bool is_star(const struct work *work, size_t n_line, const struct plane *plane, uint32_t slice, struct error *err)
+static bool is_star(const struct work *work, size_t n_line, const struct plane *plane, uint32_t slice,
+                    struct error *err)
 {
     double allowed = NURBS_MAX_BACK_DEG * MATH_PI / 180, angle = 0, farthest = 0, back = 0;
     allowed = allowed > 2 * MATH_PI / (double)work->bins ? allowed : 2 * MATH_PI / (double)work->bins;
@@ -230,7 +236,8 @@ static bool is_star(const struct work *work, size_t n_line, const struct plane *
     char why[96];
     if (!(fabs(angle - 4 * MATH_PI) < 0.1))
         return refuse(work, slice, err, "is so hollow that its middle lies outside it");
-    snprintf(why, sizeof why, "is hollow: around the middle its outline goes back by %.0f degrees", back * 180 / MATH_PI);
+    snprintf(why, sizeof why, "is hollow: around the middle its outline goes back by %.0f degrees",
+             back * 180 / MATH_PI);
     return back <= allowed || refuse(work, slice, err, why);
 }
 
@@ -239,15 +246,18 @@ static struct vec3 crossing_at(const struct work *work, size_t n_line, const str
 {
     double c = cos(angle), s = sin(angle), farthest = 0;
     for (size_t at = 0; at < n_line; at++) {
-        struct vec3 a = vec3_sub(work->line[at], plane->middle), b = vec3_sub(work->line[(at + 1) % n_line], plane->middle);
-        double ax = vec3_dot(a, plane->right), ay = vec3_dot(a, plane->up), bx = vec3_dot(b, plane->right), by = vec3_dot(b, plane->up);
+        struct vec3 a = vec3_sub(work->line[at], plane->middle),
+                    b = vec3_sub(work->line[(at + 1) % n_line], plane->middle);
+        double ax = vec3_dot(a, plane->right), ay = vec3_dot(a, plane->up), bx = vec3_dot(b, plane->right),
+               by = vec3_dot(b, plane->up);
         double off_a = c * ay - s * ax, off_b = c * by - s * bx; /* to the left of the ray */
         if ((off_a <= 0) == (off_b <= 0))
             continue;
         double part = off_a / (off_a - off_b), out = (1 - part) * (c * ax + s * ay) + part * (c * bx + s * by);
         farthest = out > farthest ? out : farthest;
     }
-    return vec3_add(plane->middle, vec3_add(vec3_scale(plane->right, farthest * c), vec3_scale(plane->up, farthest * s)));
+    return vec3_add(plane->middle,
+                    vec3_add(vec3_scale(plane->right, farthest * c), vec3_scale(plane->up, farthest * s)));
 }
 
 static void fill_row_by_bins(const struct work *work, size_t n_line, const struct plane *plane, struct vec3 *row)
@@ -296,18 +306,20 @@ static bool make_by_bins(const struct work *work, struct nurbs_nets *nets, struc
     return true;
 }
 
-/* ---- either ------------------------------------------------------------------------------------------------------------------- */
+/* ---- either ----------------------------------------------------------------------------------------------------- */
 
 static bool work_init(struct work *work, const struct mask *mask, int bins, int n_threads, struct error *err)
 {
     struct grid grid;
     if (bins < NURBS_MIN_BINS || bins > NURBS_MAX_BINS)
-        return error_set(err, ERROR_RANGE, "a spline with %d points around: expected %d to %d", bins, NURBS_MIN_BINS, NURBS_MAX_BINS);
+        return error_set(err, ERROR_RANGE, "a spline with %d points around: expected %d to %d", bins, NURBS_MIN_BINS,
+                         NURBS_MAX_BINS);
     if (!grid_init(&grid, mask->size, &mask->lps_mm_from_ijk, err))
         return false;
     *work = (struct work){ .mask = mask, .axis = grid_index_axis(&grid, 2, NULL), .bins = (size_t)bins };
     work->across = vec3_scale(mask->lps_mm_from_ijk.columns[work->axis], 0.5);
-    work->set = outline_walk(mask, work->axis, (struct outline_rule){ .is_joined = true, .is_between = true }, n_threads, err);
+    work->set =
+        outline_walk(mask, work->axis, (struct outline_rule){ .is_joined = true, .is_between = true }, n_threads, err);
     if (!work->set)
         return false;
     size_t longest = 0;
@@ -318,8 +330,8 @@ static bool work_init(struct work *work, const struct mask *mask, int bins, int 
     return work->along != NULL;
 }
 
-bool nurbs_nets_make(const struct mask *mask, enum nurbs_sampling sampling, int bins, int n_threads, struct nurbs_nets *nets,
-                     struct error *err)
+bool nurbs_nets_make(const struct mask *mask, enum nurbs_sampling sampling, int bins, int n_threads,
+                     struct nurbs_nets *nets, struct error *err)
 {
     struct work work = { .set = NULL };
     *nets = (struct nurbs_nets){ NULL, 0, NULL };

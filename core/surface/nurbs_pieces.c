@@ -33,13 +33,14 @@ double nurbs_pieces_twice_area(const struct outline_set *set, uint32_t line, int
     double twice = 0;
     for (uint32_t at = set->line[line]; at < set->line[line + 1]; at++) {
         uint32_t next = at + 1 < set->line[line + 1] ? at + 1 : set->line[line];
-        const float *a = set->points_ijk + 3 * (size_t)set->walk[at], *b = set->points_ijk + 3 * (size_t)set->walk[next];
+        const float *a = set->points_ijk + 3 * (size_t)set->walk[at],
+                    *b = set->points_ijk + 3 * (size_t)set->walk[next];
         twice += (double)a[u] * (double)b[v] - (double)a[v] * (double)b[u];
     }
     return twice;
 }
 
-/* ---- which pixels are whose ------------------------------------------------------------------------------------------------- */
+/* ---- which pixels are whose ------------------------------------------------------------------------------------- */
 
 static int compare_crossings(const void *a, const void *b)
 {
@@ -86,7 +87,7 @@ static bool runs_make(const struct outline_set *set, uint32_t slice, int axis, s
     return runs->at != NULL;
 }
 
-/* ---- what two slices share ---------------------------------------------------------------------------------------------------- */
+/* ---- what two slices share -------------------------------------------------------------------------------------- */
 
 static int compare_shared(const void *a, const void *b)
 {
@@ -95,9 +96,11 @@ static int compare_shared(const void *a, const void *b)
 }
 
 /* Every pair of runs of the same kind that have pixels in common, pairs of lines together; free(). */
-static struct shared *find_shared(const struct runs *low, const struct runs *high, const bool *is_hole, size_t *n, struct error *err)
+static struct shared *find_shared(const struct runs *low, const struct runs *high, const bool *is_hole, size_t *n,
+                                  struct error *err)
 {
-    struct shared *shared = mem_array(low->n + high->n, sizeof *shared, UINT64_MAX, err); /* two sorted lists of runs: no more overlaps */
+    struct shared *shared =
+        mem_array(low->n + high->n, sizeof *shared, UINT64_MAX, err); /* two sorted lists of runs: no more overlaps */
     if (!shared)
         return NULL;
     *n = 0;
@@ -138,7 +141,8 @@ uint32_t *nurbs_pieces_link(const struct outline_set *set, int axis, struct erro
     struct runs low = { NULL, 0 }, high = { NULL, 0 };
     uint32_t *next = mem_array(set->n_lines, sizeof *next, UINT64_MAX, err);
     bool *is_hole = next ? mem_array(set->n_lines, sizeof *is_hole, UINT64_MAX, err) : NULL;
-    struct best *up = is_hole ? mem_array(set->n_lines, sizeof *up, UINT64_MAX, err) : NULL; /* of each line in the next slice */
+    struct best *up =
+        is_hole ? mem_array(set->n_lines, sizeof *up, UINT64_MAX, err) : NULL; /* of each line in the next slice */
     struct best *down = up ? mem_array(set->n_lines, sizeof *down, UINT64_MAX, err) : NULL;
     bool good = down != NULL;
     for (uint32_t line = 0; good && line < set->n_lines; line++)

@@ -48,7 +48,7 @@ static uint64_t size_patches(struct job *job, size_t steps)
     return n_triangles;
 }
 
-/* ---- one patch -------------------------------------------------------------------------------------------------------------- */
+/* ---- one patch -------------------------------------------------------------------------------------------------- */
 
 static void put(float *at, struct vec3 p)
 {
@@ -115,7 +115,7 @@ static void write_part(void *context, int part, int n_parts)
             }
 }
 
-/* ---- the whole -------------------------------------------------------------------------------------------------------------- */
+/* ---- the whole -------------------------------------------------------------------------------------------------- */
 
 static bool make_mesh(struct job *job, int order, int n_threads, struct error *err)
 {
@@ -124,8 +124,8 @@ static bool make_mesh(struct job *job, int order, int n_threads, struct error *e
     while ((n_triangles = size_patches(job, steps)) > NURBS_FINE_TRIANGLES && steps > 1)
         steps--;
     if (n_triangles > SHAPE_MAX_TRIANGLES)
-        return error_set(err, ERROR_LIMIT, "spline surfaces of %llu triangles: at most %d are allowed", (unsigned long long)n_triangles,
-                         SHAPE_MAX_TRIANGLES);
+        return error_set(err, ERROR_LIMIT, "spline surfaces of %llu triangles: at most %d are allowed",
+                         (unsigned long long)n_triangles, SHAPE_MAX_TRIANGLES);
     const struct patch *last = &job->patches[job->n_patches - 1];
     job->mesh = mesh_create(last->first_vertex + patch_vertices(last), (size_t)n_triangles, err);
     if (!job->mesh)
@@ -135,8 +135,8 @@ static bool make_mesh(struct job *job, int order, int n_threads, struct error *e
     return true;
 }
 
-/* Outlines turn counter-clockwise in the axes across the stack, in ascending order; whether they also do so in space, seen against the
- * direction of the stack, is a question of both. */
+/* Outlines turn counter-clockwise in the axes across the stack, in ascending order; whether they also do so in space,
+ * seen against the direction of the stack, is a question of both. */
 static bool is_mirrored(const struct mask *mask)
 {
     struct grid grid;
@@ -149,7 +149,8 @@ static bool is_mirrored(const struct mask *mask)
 struct mesh *shape_nurbs(const struct mask *mask, const struct shape_key *key, int n_threads, struct error *err)
 {
     if (key->nurbs_order < NURBS_MIN_ORDER || key->nurbs_order > NURBS_MAX_ORDER) {
-        error_set(err, ERROR_RANGE, "a spline of order %d: expected %d to %d", key->nurbs_order, NURBS_MIN_ORDER, NURBS_MAX_ORDER);
+        error_set(err, ERROR_RANGE, "a spline of order %d: expected %d to %d", key->nurbs_order, NURBS_MIN_ORDER,
+                  NURBS_MAX_ORDER);
         return NULL;
     }
     struct nurbs_nets nets;

@@ -8,7 +8,8 @@
 
 static uint8_t shade_of(struct vec3 normal, struct vec3 light)
 {
-    double facing = (1 + vec3_dot(normal, light)) / 2; /* 0 away from the light .. 1 towards it; a point that faces no way lies between */
+    double facing = (1 + vec3_dot(normal, light)) /
+                    2; /* 0 away from the light .. 1 towards it; a point that faces no way lies between */
     return (uint8_t)(255 * (SHAPE_LIGHT_AMBIENT + (1 - SHAPE_LIGHT_AMBIENT) * facing) + 0.5);
 }
 

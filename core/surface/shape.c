@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const representation_words[REPRESENTATION_N] = { "surface", "outline", "points", "univels", "solid", "nurbs", "fan" };
+static const char *const representation_words[REPRESENTATION_N] = { "surface", "outline", "points", "univels",
+                                                                    "solid",   "nurbs",   "fan" };
 
 const char *region_representation_word(enum region_representation representation)
 {
@@ -42,8 +43,8 @@ void shape_key_normalise(struct shape_key *key)
 bool shape_key_equal(const struct shape_key *a, const struct shape_key *b)
 {
     return a->representation == b->representation && a->algorithm == b->algorithm && a->outline == b->outline &&
-           a->has_inner_boundary == b->has_inner_boundary && a->nurbs_order == b->nurbs_order && a->nurbs_sampling == b->nurbs_sampling &&
-           a->nurbs_bins == b->nurbs_bins;
+           a->has_inner_boundary == b->has_inner_boundary && a->nurbs_order == b->nurbs_order &&
+           a->nurbs_sampling == b->nurbs_sampling && a->nurbs_bins == b->nurbs_bins;
 }
 
 struct shape *shape_ref(const struct shape *shape)

@@ -1,5 +1,6 @@
 #pragma once
-/* What a region is drawn as: triangles, lines or points, in patient space. Frozen once published. Knows no plan, scene or GL. */
+/* What a region is drawn as: triangles, lines or points, in patient space. Frozen once published. Knows no plan, scene
+ * or GL. */
 #include "core/region/outline.h"
 #include "core/surface/mesh.h"
 #include "core/surface/surface.h"
@@ -29,7 +30,7 @@ struct shape_key {
     bool has_inner_boundary;          /* points, solid: also where the region touches only its own descendants */
     int nurbs_order;                  /* nurbs: 2, 3, 4 */
     enum nurbs_sampling nurbs_sampling;
-    int nurbs_bins;                   /* nurbs by degree bins: bins around, 8..360; by traces: samples around */
+    int nurbs_bins; /* nurbs by degree bins: bins around, 8..360; by traces: samples around */
 };
 void shape_key_normalise(struct shape_key *key);
 bool shape_key_equal(const struct shape_key *a, const struct shape_key *b); /* of normalised keys */
@@ -38,14 +39,15 @@ struct line_set {
     float *positions_lps_mm; /* [n_vertices][3] */
     uint32_t *indices;       /* [n_segments][2] */
     size_t n_vertices, n_segments;
-    size_t n_lines;          /* closed outlines they form */
+    size_t n_lines; /* closed outlines they form */
 };
 
 /* One point a border voxel, at its centre. */
 struct point_set {
     float *positions_lps_mm; /* [n_points][3] */
-    float *normals;          /* [n_points][3] unit, which way the border faces; 0 0 0 where no way is more outward than another */
-    uint8_t *shade;          /* [n_points] 0..255: light from a fixed direction, worked out once (solid) */
+    float
+        *normals; /* [n_points][3] unit, which way the border faces; 0 0 0 where no way is more outward than another */
+    uint8_t *shade;             /* [n_points] 0..255: light from a fixed direction, worked out once (solid) */
     struct vec3 edge_lps_mm[3]; /* a voxel's three edges: what a point must cover to leave no gap */
     size_t n_points;
 };
@@ -54,12 +56,12 @@ enum shape_kind { SHAPE_TRIANGLES, SHAPE_LINES, SHAPE_POINTS };
 
 struct shape {
     enum shape_kind kind;
-    bool is_faceted;  /* triangles: always shaded with one normal a triangle (univels, fan) */
-    struct mesh *mesh;       /* the one that kind says; the others are NULL */
+    bool is_faceted;   /* triangles: always shaded with one normal a triangle (univels, fan) */
+    struct mesh *mesh; /* the one that kind says; the others are NULL */
     struct line_set *lines;
     struct point_set *points;
     struct box3 bounds_lps_mm;
-    size_t n_bytes;   /* of memory */
+    size_t n_bytes; /* of memory */
     _Atomic int references;
 };
 struct shape *shape_ref(const struct shape *shape);

@@ -8,7 +8,8 @@
 
 struct job {
     struct shape_border *border;
-    struct vec3 of_row[9][8]; /* by row of three neighbours and which are inside: sum of directions to the others, in index steps */
+    struct vec3 of_row[9][8]; /* by row of three neighbours and which are inside: sum of directions to the others, in
+                                 index steps */
     struct vec3 covector[3];  /* a gradient per index step as one per mm */
 };
 
@@ -43,9 +44,9 @@ uint32_t shape_border_around(const struct mask *mask, uint32_t i, uint32_t j, ui
     return around;
 }
 
-/* Steps of equal length in each of the 26 directions (S. W. Zucker, R. A. Hummel, A three-dimensional edge operator, IEEE Trans. PAMI
- * 3, 1981). A gradient per step becomes one per mm with the inverse transpose of the map, so that a slope counts as what it is
- * in space where slices are far apart. */
+/* Steps of equal length in each of the 26 directions (S. W. Zucker, R. A. Hummel, A three-dimensional edge operator,
+ * IEEE Trans. PAMI 3, 1981). A gradient per step becomes one per mm with the inverse transpose of the map, so that a
+ * slope counts as what it is in space where slices are far apart. */
 static void prepare(struct job *job)
 {
     for (int row = 0; row < 9; row++)
@@ -104,7 +105,8 @@ static bool number_voxels(struct shape_border *border, size_t max_voxels, struct
     size_t n_words = (size_t)mask->size[1] * mask->size[2] * mask->words;
     uint64_t n = mask_count(mask);
     if (n > max_voxels)
-        return error_set(err, ERROR_LIMIT, "a border of %llu voxels: at most %zu are allowed", (unsigned long long)n, max_voxels);
+        return error_set(err, ERROR_LIMIT, "a border of %llu voxels: at most %zu are allowed", (unsigned long long)n,
+                         max_voxels);
     border->n = (size_t)n;
     border->first = mem_array(n_words, sizeof *border->first, UINT64_MAX, err);
     border->ijk = border->first ? mem_array(border->n, 3 * sizeof *border->ijk, UINT64_MAX, err) : NULL;

@@ -3,16 +3,17 @@
 #include "core/region/mask.h"
 
 struct shape_border {
-    const struct mask *mask;   /* borrowed */
-    struct mask *border;       /* the voxels that have a 6-neighbour outside */
-    uint32_t *first;           /* [k][j][words] number of the first in each word */
-    uint16_t *ijk;             /* [n][3] */
-    float *normals;            /* [n][3] LPS, unit: away from the inside; 0 0 0 where all sides are alike */
+    const struct mask *mask; /* borrowed */
+    struct mask *border;     /* the voxels that have a 6-neighbour outside */
+    uint32_t *first;         /* [k][j][words] number of the first in each word */
+    uint16_t *ijk;           /* [n][3] */
+    float *normals;          /* [n][3] LPS, unit: away from the inside; 0 0 0 where all sides are alike */
     size_t n;
 };
 
 /* errors ERROR_LIMIT more than max_voxels, ERROR_MEMORY */
-NODISCARD struct shape_border *shape_border_create(const struct mask *mask, size_t max_voxels, int n_threads, struct error *err);
+NODISCARD struct shape_border *shape_border_create(const struct mask *mask, size_t max_voxels, int n_threads,
+                                                   struct error *err);
 void shape_border_destroy(struct shape_border *border);
 /* Number of the border voxel at an index, SIZE_MAX when there is none or it is beyond the grid. */
 size_t shape_border_number(const struct shape_border *border, int64_t i, int64_t j, int64_t k);

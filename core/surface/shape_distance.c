@@ -1,5 +1,6 @@
-/* Around each position, inside voxels within a radius are asked for their faces; the radius grows until it holds the nearest one. Where that is
- * many voxels away, as it is along slices that are thick, the tree of faces is asked instead. */
+/* Around each position, inside voxels within a radius are asked for their faces; the radius grows until it holds the
+ * nearest one. Where that is many voxels away, as it is along slices that are thick, the tree of faces is asked
+ * instead. */
 #include "core/surface/shape_distance.h"
 
 #include <stdatomic.h>
@@ -38,7 +39,8 @@ static double square(double x)
 }
 
 /* The least square of the distance to the faces of one voxel; d is the position less the voxel, in index steps. */
-static double voxel_distance_2(const struct job *job, const int64_t ijk[3], const double d[3], double least, uint64_t *n_asked)
+static double voxel_distance_2(const struct job *job, const int64_t ijk[3], const double d[3], double least,
+                               uint64_t *n_asked)
 {
     for (int axis = 0; axis < 3; axis++)
         for (int side = -1; side <= 1; side += 2) {
@@ -81,7 +83,8 @@ static double search_2(const struct job *job, const double x[3], double radius_m
             return INFINITY;
     for (int64_t k = first[2]; k <= last[2]; k++)
         for (int64_t j = first[1]; j <= last[1]; j++) {
-            const uint64_t *row = job->border->bits + ((size_t)k * job->border->size[1] + (size_t)j) * job->border->words;
+            const uint64_t *row =
+                job->border->bits + ((size_t)k * job->border->size[1] + (size_t)j) * job->border->words;
             for (int64_t w = first[0] / 64; w <= last[0] / 64; w++) {
                 uint64_t bits = row[w];
                 if (w == first[0] / 64)
@@ -98,7 +101,8 @@ static double search_2(const struct job *job, const double x[3], double radius_m
     return least;
 }
 
-/* Small boxes of voxels are looked through, in ever larger ones until one holds the nearest face; then the tree is quicker. */
+/* Small boxes of voxels are looked through, in ever larger ones until one holds the nearest face; then the tree is
+ * quicker. */
 static double distance_mm(const struct job *job, struct vec3 position, uint64_t *n_asked)
 {
     struct vec3 at = affine_point(&job->ijk_from_lps_mm, position);
@@ -108,7 +112,8 @@ static double distance_mm(const struct job *job, struct vec3 position, uint64_t 
         if (least <= radius)
             return least;
     }
-    if (isfinite(least) && n_rows_within(job, least) <= MAX_ROWS) /* there is one this near: nothing beyond it matters */
+    if (isfinite(least) &&
+        n_rows_within(job, least) <= MAX_ROWS) /* there is one this near: nothing beyond it matters */
         return sqrt(search_2(job, x, least * (1 + 1e-9), n_asked));
     return sqrt(face_tree_nearest_2(job->faces, x, least * least * (1 + 1e-9), n_asked));
 }
@@ -155,7 +160,8 @@ static bool join(const struct job *job, struct shape_distance *distance, struct 
         n_asked += job->blocks[b].n_asked;
         max = job->blocks[b].max > max ? job->blocks[b].max : max;
     }
-    *distance = (struct shape_distance){ job->n_positions > 0 ? sum / (double)job->n_positions : 0, max, job->n_positions, n_asked };
+    *distance = (struct shape_distance){ job->n_positions > 0 ? sum / (double)job->n_positions : 0, max,
+                                         job->n_positions, n_asked };
     return true;
 }
 

@@ -42,7 +42,8 @@ static void grow_by_voxel(struct box3 *box, const struct vec3 edges[3])
     box->high = vec3_add(box->high, half);
 }
 
-static bool fill(struct shape *shape, const struct shape_key *key, const struct mask *mask, int n_threads, struct error *err)
+static bool fill(struct shape *shape, const struct shape_key *key, const struct mask *mask, int n_threads,
+                 struct error *err)
 {
     switch (key->representation) {
     case REPRESENTATION_OUTLINE:
@@ -51,7 +52,8 @@ static bool fill(struct shape *shape, const struct shape_key *key, const struct 
         if (!shape->lines)
             return false;
         add_positions(&shape->bounds_lps_mm, shape->lines->positions_lps_mm, shape->lines->n_vertices);
-        shape->n_bytes += shape->lines->n_vertices * 3 * sizeof(float) + shape->lines->n_segments * 2 * sizeof(uint32_t);
+        shape->n_bytes +=
+            shape->lines->n_vertices * 3 * sizeof(float) + shape->lines->n_segments * 2 * sizeof(uint32_t);
         return true;
     case REPRESENTATION_POINTS:
     case REPRESENTATION_SOLID:
@@ -76,20 +78,23 @@ static bool fill(struct shape *shape, const struct shape_key *key, const struct 
     }
 }
 
-struct shape *shape_make_from_mask(const struct shape_key *key, const struct mask *mask, int n_threads, struct error *err)
+struct shape *shape_make_from_mask(const struct shape_key *key, const struct mask *mask, int n_threads,
+                                   struct error *err)
 {
     int n = n_threads > 0 ? n_threads : parallel_cores();
     struct shape *shape = mem_new(sizeof *shape);
     *shape = (struct shape){ .bounds_lps_mm = box3_empty(), .n_bytes = sizeof *shape };
     atomic_init(&shape->references, 1);
-    bool good = mask_count(mask) > 0 || error_set(err, ERROR_RANGE, "no voxel%s", key->has_inner_boundary ? " of its own" : "");
+    bool good =
+        mask_count(mask) > 0 || error_set(err, ERROR_RANGE, "no voxel%s", key->has_inner_boundary ? " of its own" : "");
     if (good && fill(shape, key, mask, n < SHAPE_MAX_THREADS ? n : SHAPE_MAX_THREADS, err))
         return shape;
     shape_unref(shape);
     return NULL;
 }
 
-struct shape *shape_make(const struct shape_key *key, const struct region_set *set, size_t region, int n_threads, struct error *err)
+struct shape *shape_make(const struct shape_key *key, const struct region_set *set, size_t region, int n_threads,
+                         struct error *err)
 {
     struct mask *mask = key->has_inner_boundary ? mask_from_region_own(set, region, n_threads, err)
                                                 : mask_from_region(set, region, n_threads, err);
@@ -99,7 +104,8 @@ struct shape *shape_make(const struct shape_key *key, const struct region_set *s
     if (mask_count(mask) > 0)
         shape = shape_make_from_mask(key, mask, n_threads, err);
     else
-        error_set(err, ERROR_RANGE, "region %s has no voxel%s", set->regions[region].id, key->has_inner_boundary ? " of its own" : "");
+        error_set(err, ERROR_RANGE, "region %s has no voxel%s", set->regions[region].id,
+                  key->has_inner_boundary ? " of its own" : "");
     mask_destroy(mask);
     return shape;
 }

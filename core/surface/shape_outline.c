@@ -31,7 +31,8 @@ static struct line_set *lines_create(size_t n_vertices, size_t n_segments, size_
     struct line_set *lines = mem_new(sizeof *lines);
     *lines = (struct line_set){ .n_vertices = n_vertices, .n_segments = n_segments, .n_lines = n_lines };
     lines->positions_lps_mm = mem_array(n_vertices, 3 * sizeof *lines->positions_lps_mm, UINT64_MAX, err);
-    lines->indices = lines->positions_lps_mm ? mem_array(n_segments, 2 * sizeof *lines->indices, UINT64_MAX, err) : NULL;
+    lines->indices =
+        lines->positions_lps_mm ? mem_array(n_segments, 2 * sizeof *lines->indices, UINT64_MAX, err) : NULL;
     if (!lines->indices) {
         free(lines->positions_lps_mm);
         free(lines);

@@ -1,20 +1,20 @@
 /* Constrained smoothing of a marching-cubes surface. See surface_smooth in surface.h for what it promises.
  *
  *   1. marching cubes with the graph of its vertices: four links each (marching_cubes.h)
- *   2. two low-pass filters on the graph take the stairs away: where each vertex would go if nothing held it. The strong one also
- *      takes long, flat stairs, but would pull small things together
- *   3. each vertex goes along its own grid edge to where that edge meets the filtered surface: the strongly filtered one, the more
- *      gently filtered one the less the strong one stays on the edges thereabouts
+ *   2. two low-pass filters on the graph take the stairs away: where each vertex would go if nothing held it. The
+ * strong one also takes long, flat stairs, but would pull small things together
+ *   3. each vertex goes along its own grid edge to where that edge meets the filtered surface: the strongly filtered
+ * one, the more gently filtered one the less the strong one stays on the edges thereabouts
  *   4. each closed piece is moved along its normals until it encloses the volume of its univels (smooth_volume.c)
  *   5. no vertex leaves the part of its edge that max_shift allows
  *
- * A filter is a polynomial in A, the mean over a vertex' four links, put together from Chebyshev polynomials T_n(A) (G. Taubin,
- * T. Zhang, G. Golub, Optimal Surface Smoothing as Filter Design, ECCV 1996). A is symmetric with eigenvalues within [-1, 1], so
- * nothing grows. What is kept are displacements e_n from the start p, T_n(A) p = p + e_n, as small numbers keep their digits:
- * e_0 = 0, e_1 = A p - p, e_(n+1) = 2 (A e_n + e_1) - e_(n-1).
+ * A filter is a polynomial in A, the mean over a vertex' four links, put together from Chebyshev polynomials T_n(A) (G.
+ * Taubin, T. Zhang, G. Golub, Optimal Surface Smoothing as Filter Design, ECCV 1996). A is symmetric with eigenvalues
+ * within [-1, 1], so nothing grows. What is kept are displacements e_n from the start p, T_n(A) p = p + e_n, as small
+ * numbers keep their digits: e_0 = 0, e_1 = A p - p, e_(n+1) = 2 (A e_n + e_1) - e_(n-1).
  *
- * Every pass reads what the pass before wrote and writes each vertex once, so threads cannot change a byte. The filters work in the
- * coordinates of the grid: they only take means, which do not ask how long an axis is. */
+ * Every pass reads what the pass before wrote and writes each vertex once, so threads cannot change a byte. The filters
+ * work in the coordinates of the grid: they only take means, which do not ask how long an axis is. */
 #include "core/surface/smooth.h"
 
 #include <assert.h>
@@ -25,8 +25,13 @@
 #include "core/base/parallel.h"
 #include "core/surface/smooth_job.h"
 
-enum { MAX_THREADS = 64, VERTICES_A_THREAD = 8192, CAUTIOUS_ROUNDS = 1, EVEN_ROUNDS = 2,
-       MAX_PASSES_TO_EDGES = 4 + CAUTIOUS_ROUNDS + EVEN_ROUNDS };
+enum {
+    MAX_THREADS = 64,
+    VERTICES_A_THREAD = 8192,
+    CAUTIOUS_ROUNDS = 1,
+    EVEN_ROUNDS = 2,
+    MAX_PASSES_TO_EDGES = 4 + CAUTIOUS_ROUNDS + EVEN_ROUNDS
+};
 
 /* Found on tilted ellipsoids with slices of 1 to 5.5 times the pixel, against the exact normals. */
 const struct smooth_options smooth_defaults = { 24, 0.035, 0.15, 0.5 - SURFACE_SMOOTH_MARGIN, 8 };
@@ -37,9 +42,10 @@ static const float trusted_shift = 0.5f, distrusted_shift = 0.8f;
 /* Cosines of the angle, 26 and 60 degrees, between normals of the two filtered surfaces. */
 static const float agreeing = 0.9f, disagreeing = 0.5f;
 
-/* ---- passes over the vertices --------------------------------------------------------------------------------------------- */
+/* ---- passes over the vertices ----------------------------------------------------------------------------------- */
 
-/* Of the recurrence that are added up at once, as they are all there: the less often goes what they are added to to memory and back. */
+/* Of the recurrence that are added up at once, as they are all there: the less often goes what they are added to to
+ * memory and back. */
 enum { MAX_TERMS = 3 };
 
 /* What is done to every vertex from what the pass before left of it and of those it is linked to. */
@@ -56,9 +62,9 @@ struct pass {
     float *next_trust;
 };
 
-/* Vertices are in the order of slices and linked within three neighbouring ones. So a pass can follow the one before it slice by slice,
- * and what both touch is still in the cache: BLOCK passes are taken in one go through the slices. What a pass writes over in a slice,
- * those before it have read for the slices around it. */
+/* Vertices are in the order of slices and linked within three neighbouring ones. So a pass can follow the one before it
+ * slice by slice, and what both touch is still in the cache: BLOCK passes are taken in one go through the slices. What
+ * a pass writes over in a slice, those before it have read for the slices around it. */
 enum { BLOCK = 6 };
 
 struct passes {
@@ -105,7 +111,8 @@ static void take_share(void *context, int part, int n_parts)
     passes->pass->take(passes->job, passes->pass, from, end);
 }
 
-/* Slices for each thread, with about as many vertices; false when they are too few for what take_own leaves to take_between. */
+/* Slices for each thread, with about as many vertices; false when they are too few for what take_own leaves to
+ * take_between. */
 static bool share_slices(struct passes *passes)
 {
     passes->n_tiles = passes->job->n_threads;
@@ -156,9 +163,10 @@ static bool take_passes(const struct smooth_job *job, const struct pass *all, si
     return true;
 }
 
-/* ---- the filters --------------------------------------------------------------------------------------------------------- */
+/* ---- the filters ------------------------------------------------------------------------------------------------ */
 
-typedef uint16_t short4 __attribute__((vector_size(8))); /* the numbers of a marching_point: at2 and one of no meaning */
+typedef uint16_t short4
+    __attribute__((vector_size(8))); /* the numbers of a marching_point: at2 and one of no meaning */
 
 static inline short4 load_point(const struct marching_point *point)
 {
@@ -173,7 +181,8 @@ static void first_step(const struct smooth_job *job, const struct pass *pass, si
     const struct marching_point *points = job->graph->points;
     for (size_t v = from; v < end; v++) {
         const uint32_t *link = job->graph->links[v];
-        short4 sum = load_point(&points[link[0]]) + load_point(&points[link[1]]) + load_point(&points[link[2]]) + load_point(&points[link[3]]);
+        short4 sum = load_point(&points[link[0]]) + load_point(&points[link[1]]) + load_point(&points[link[2]]) +
+                     load_point(&points[link[3]]);
         signed4 eighths = (signed4)(sum - load_point(&points[v]) * 4); /* links are near: a few */
         float4 away = __builtin_convertvector(eighths, float4) * 0.125f;
         job->before[v] = (float4){ 0, 0, 0, 0 };
@@ -183,7 +192,8 @@ static void first_step(const struct smooth_job *job, const struct pass *pass, si
     }
 }
 
-static inline float4 add_terms(float4 sum, const float weights[MAX_TERMS], float4 next, float4 now, float4 before, int n_terms)
+static inline float4 add_terms(float4 sum, const float weights[MAX_TERMS], float4 next, float4 now, float4 before,
+                               int n_terms)
 {
     if (n_terms > 2)
         sum += weights[2] * before;
@@ -192,8 +202,8 @@ static inline float4 add_terms(float4 sum, const float weights[MAX_TERMS], float
     return sum + weights[0] * next;
 }
 
-static inline __attribute__((always_inline)) void next_steps(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end,
-                                                             int n_terms, bool has_gentle)
+static inline __attribute__((always_inline)) void next_steps(const struct smooth_job *job, const struct pass *pass,
+                                                             size_t from, size_t end, int n_terms, bool has_gentle)
 {
     const float4 *now = pass->now, *first = job->first;
     float4 *to = pass->next, *strong = job->strong, *gentle = job->gentle;
@@ -223,8 +233,8 @@ static void next_step(const struct smooth_job *job, const struct pass *pass, siz
         next_steps(job, pass, from, end, 3, false);
 }
 
-/* Of the Chebyshev polynomials for a step from 1 to 0 at the frequency `band` of 1 - A, times a Hamming window. They add up to 1, so
- * that what is flat stays where it is. */
+/* Of the Chebyshev polynomials for a step from 1 to 0 at the frequency `band` of 1 - A, times a Hamming window. They
+ * add up to 1, so that what is flat stays where it is. */
 static void make_weights(double band, int n_steps, double weights[SMOOTH_MAX_STEPS + 1])
 {
     double edge = acos(1 - band), total = 0;
@@ -248,7 +258,9 @@ static size_t plan_filters(const struct smooth_job *job, struct pass *passes)
     passes[0] = (struct pass){ .take = first_step, .strong = { (float)strong[1] }, .gentle = { (float)gentle[1] } };
     for (int n = 2, added = 1; n <= options->n_steps; n++) {
         struct pass *pass = &passes[n - 1];
-        *pass = (struct pass){ .take = next_step, .now = n % 2 ? job->before : job->now, .next = n % 2 ? job->now : job->before };
+        *pass = (struct pass){ .take = next_step,
+                               .now = n % 2 ? job->before : job->now,
+                               .next = n % 2 ? job->now : job->before };
         if (n - added < MAX_TERMS && n < options->n_steps)
             continue;
         pass->n_terms = n - added;
@@ -262,7 +274,7 @@ static size_t plan_filters(const struct smooth_job *job, struct pass *passes)
     return (size_t)options->n_steps;
 }
 
-/* ---- back to the edges --------------------------------------------------------------------------------------------------- */
+/* ---- back to the edges ------------------------------------------------------------------------------------------ */
 
 static float dot(float4 a, float4 b)
 {
@@ -270,15 +282,16 @@ static float dot(float4 a, float4 b)
     return product[0] + product[1] + product[2];
 }
 
-/* Across the two lines through a vertex, from where their ends are; of no length in particular, outward times the vertex' outward. */
+/* Across the two lines through a vertex, from where their ends are; of no length in particular, outward times the
+ * vertex' outward. */
 static float4 normal_of(const float4 ends[4])
 {
     float4 u = ends[3] - ends[0], w = ends[2] - ends[1];
     return smooth_turn(u * smooth_turn(w) - smooth_turn(u) * w);
 }
 
-/* Where the edge meets the plane through the displaced vertex. An edge nearly within that plane meets it anywhere: there the vertex'
- * own way along the edge counts. */
+/* Where the edge meets the plane through the displaced vertex. An edge nearly within that plane meets it anywhere:
+ * there the vertex' own way along the edge counts. */
 static float shift_along_edge(float4 normal, float4 displacement, int axis)
 {
     float along = normal[axis], flat = 0.01f * dot(normal, normal);
@@ -326,7 +339,8 @@ static void even_out(const struct smooth_job *job, const struct pass *pass, size
     const float *trust = pass->trust;
     for (size_t v = from; v < end; v++) {
         const uint32_t *link = job->graph->links[v];
-        pass->next_trust[v] = (2 * trust[v] + trust[link[0]] + trust[link[1]] + trust[link[2]] + trust[link[3]]) * (1 / 6.0f);
+        pass->next_trust[v] =
+            (2 * trust[v] + trust[link[0]] + trust[link[1]] + trust[link[2]] + trust[link[3]]) * (1 / 6.0f);
     }
 }
 
@@ -347,13 +361,14 @@ static void go(const struct smooth_job *job, const struct pass *pass, size_t fro
 /* A normal of unit length in patient space; 0 when it has no direction. */
 static float4 in_lps(const struct smooth_job *job, float4 normal)
 {
-    float4 lps = normal[0] * job->lps_of_normal[0] + normal[1] * job->lps_of_normal[1] + normal[2] * job->lps_of_normal[2];
+    float4 lps =
+        normal[0] * job->lps_of_normal[0] + normal[1] * job->lps_of_normal[1] + normal[2] * job->lps_of_normal[2];
     float square = dot(lps, lps);
     return square > 0 ? lps / sqrtf(square) : lps;
 }
 
-/* What light falls on: the strongly filtered surface, as if nothing held it back, but the less the more it turns away from the one that
- * is there. */
+/* What light falls on: the strongly filtered surface, as if nothing held it back, but the less the more it turns away
+ * from the one that is there. */
 static void write_normal(const struct smooth_job *job, size_t v, float4 own, float4 strong)
 {
     float agreement = dot(own, strong), share = (agreement - disagreeing) / (agreeing - disagreeing);
@@ -375,11 +390,13 @@ static void settle(const struct smooth_job *job, const struct pass *pass, size_t
         const struct marching_point *point = &job->graph->points[v];
         const uint32_t *link = job->graph->links[v];
         const float4 *at = job->now;
-        float4 normal = normal_of((float4[4]){ at[link[0]], at[link[1]], at[link[2]], at[link[3]] }) * (float)point->outward;
+        float4 normal =
+            normal_of((float4[4]){ at[link[0]], at[link[1]], at[link[2]], at[link[3]] }) * (float)point->outward;
         job->shift[v] = shift_along_edge(normal, job->gentle[v], point->axis);
         if (job->has_normals) {
             at = job->first;
-            float4 strong = normal_of((float4[4]){ at[link[0]], at[link[1]], at[link[2]], at[link[3]] }) * (float)point->outward;
+            float4 strong =
+                normal_of((float4[4]){ at[link[0]], at[link[1]], at[link[2]], at[link[3]] }) * (float)point->outward;
             write_normal(job, v, in_lps(job, normal), in_lps(job, strong));
         }
         normal /= job->edge_mm; /* of the grid's coordinates to of mm */
@@ -396,7 +413,9 @@ static size_t plan_way_to_edges(const struct smooth_job *job, struct pass *passe
     passes[n++] = (struct pass){ .take = go_gently };
     passes[n++] = (struct pass){ .take = judge, .next_trust = trust };
     for (int round = 0; round < CAUTIOUS_ROUNDS + EVEN_ROUNDS; round++) {
-        passes[n++] = (struct pass){ .take = round < CAUTIOUS_ROUNDS ? be_cautious : even_out, .trust = trust, .next_trust = next_trust };
+        passes[n++] = (struct pass){ .take = round < CAUTIOUS_ROUNDS ? be_cautious : even_out,
+                                     .trust = trust,
+                                     .next_trust = next_trust };
         float *written = next_trust;
         next_trust = trust;
         trust = written;
@@ -406,7 +425,7 @@ static size_t plan_way_to_edges(const struct smooth_job *job, struct pass *passe
     return n;
 }
 
-/* ---- the whole ----------------------------------------------------------------------------------------------------------- */
+/* ---- the whole -------------------------------------------------------------------------------------------------- */
 
 static void write_positions(void *context, int part, int n_parts)
 {
@@ -455,7 +474,8 @@ static bool smooth(struct smooth_job *job, struct error *err)
     return is_good;
 }
 
-/* A normal is square to what lies in the surface, so it is mapped by the grid's reciprocal axes: each square to the two others. */
+/* A normal is square to what lies in the surface, so it is mapped by the grid's reciprocal axes: each square to the two
+ * others. */
 static void reciprocals_of(const struct affine *map, float4 axes[3])
 {
     double determinant = affine_determinant(map);
@@ -474,8 +494,8 @@ static int threads_for(size_t n_vertices, int n_threads)
     return n < MAX_THREADS ? (int)n : MAX_THREADS;
 }
 
-struct mesh *smooth_with(const struct smooth_options *smoothing, const struct mask *mask, const struct surface_options *options,
-                         struct error *err)
+struct mesh *smooth_with(const struct smooth_options *smoothing, const struct mask *mask,
+                         const struct surface_options *options, struct error *err)
 {
     assert(smoothing->n_steps >= 1 && smoothing->n_steps <= SMOOTH_MAX_STEPS && smoothing->max_shift < 0.5);
     struct marching_graph graph = { .has_no_positions = true };
@@ -489,7 +509,8 @@ struct mesh *smooth_with(const struct smooth_options *smoothing, const struct ma
         .mesh = mesh,
         .n = mesh->n_vertices,
         .n_threads = threads_for(mesh->n_vertices, options->n_threads),
-        .edge_mm = { (float)vec3_length(map->columns[0]), (float)vec3_length(map->columns[1]), (float)vec3_length(map->columns[2]), 1 },
+        .edge_mm = { (float)vec3_length(map->columns[0]), (float)vec3_length(map->columns[1]),
+                     (float)vec3_length(map->columns[2]), 1 },
         .is_mirrored = affine_determinant(map) < 0,
         .has_normals = !options->without_normals,
         .univel_mm3 = fabs(affine_determinant(map)),

@@ -16,7 +16,7 @@ struct smooth_job {
     struct mesh *mesh;
     size_t n; /* vertices */
     int n_threads;
-    float4 edge_mm; /* of a univel; the fourth is 1 */
+    float4 edge_mm;          /* of a univel; the fourth is 1 */
     float4 lps_of_normal[3]; /* what a normal along each axis of the grid is in patient space */
     bool is_mirrored;
     bool has_normals;
@@ -25,7 +25,8 @@ struct smooth_job {
     float4 *first, *now, *before; /* e_1, e_n, e_(n-1), see smooth.c; free for others afterwards */
     float4 *strong, *gentle;      /* what the two filters add up to: displacements */
 
-    float *shift; /* of each vertex along its own edge, from its middle; what goes beyond max_shift is cut off when it is used */
+    float *shift; /* of each vertex along its own edge, from its middle; what goes beyond max_shift is cut off when it
+                     is used */
     float *lean;  /* how squarely the edge meets the surface: cosine of edge and normal, in mm */
 };
 
@@ -61,6 +62,6 @@ static inline float smooth_cut(float value, float most)
     return value > most ? most : value < -most ? -most : value;
 }
 
-/* Moves each closed piece of the surface along its normals until it encloses the volume of its univels (smooth_volume.c).
- * errors ERROR_MEMORY */
+/* Moves each closed piece of the surface along its normals until it encloses the volume of its univels
+ * (smooth_volume.c). errors ERROR_MEMORY */
 NODISCARD bool smooth_keep_volume(struct smooth_job *job, struct error *err);

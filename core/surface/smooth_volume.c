@@ -20,9 +20,9 @@ struct volume_job {
     struct smooth_job *smooth;
     struct piece *pieces;
     uint32_t n_pieces;
-    uint32_t *piece_of; /* [n_vertices] */
-    float4 *at;         /* [n_vertices] */
-    double *sums;       /* [n_chunks][n_pieces] */
+    uint32_t *piece_of;          /* [n_vertices] */
+    float4 *at;                  /* [n_vertices] */
+    double *sums;                /* [n_chunks][n_pieces] */
     size_t n_chunks, chunk_size; /* of triangles */
 };
 
@@ -59,14 +59,15 @@ static void find_pieces(struct volume_job *job)
         up[v] = up[v] == v ? job->n_pieces++ : up[up[v]];
 }
 
-/* The univels within each piece: along a row of the grid, what lies between where it is entered and where it is left. And its area: a
- * crossed edge stands for one face of a univel, seen aslant. */
+/* The univels within each piece: along a row of the grid, what lies between where it is entered and where it is left.
+ * And its area: a crossed edge stands for one face of a univel, seen aslant. */
 static void measure_wanted(struct volume_job *job)
 {
     const struct smooth_job *smooth = job->smooth;
     float4 edge = smooth->edge_mm;
     const float faces_mm2[3] = { edge[1] * edge[2], edge[2] * edge[0], edge[0] * edge[1] };
-    for (size_t v = 0, end; v < smooth->n; v = end) { /* a run of vertices of one piece at a time: its sums stay at hand */
+    for (size_t v = 0, end; v < smooth->n;
+         v = end) { /* a run of vertices of one piece at a time: its sums stay at hand */
         uint32_t number = job->piece_of[v];
         struct piece *piece = &job->pieces[number];
         double wanted = piece->wanted, area_mm2 = piece->area_mm2;
@@ -144,7 +145,8 @@ static void measure_volumes(struct volume_job *job)
             job->pieces[p].volume += sign * job->sums[chunk * job->n_pieces + p];
 }
 
-/* How far each piece is to swell: at first what its area says, then what the volume's answer to the last step says. False: none. */
+/* How far each piece is to swell: at first what its area says, then what the volume's answer to the last step says.
+ * False: none. */
 static bool plan_swelling(struct volume_job *job, int step)
 {
     bool is_needed = false;
@@ -179,7 +181,8 @@ static void swell(void *context, int part, int n_parts)
             continue;
         const struct marching_point *point = &smooth->graph->points[v];
         float lean = smooth->lean[v], mm = (float)job->pieces[job->piece_of[v]].swelling_mm;
-        /* as far along the edge as moves the surface by mm, but not without end where edge and surface are nearly parallel */
+        /* as far along the edge as moves the surface by mm, but not without end where edge and surface are nearly
+         * parallel */
         smooth->shift[v] += (float)point->outward * mm * lean / ((lean * lean + 0.1f) * smooth->edge_mm[point->axis]);
         place(job, v);
     }
@@ -194,7 +197,9 @@ bool smooth_keep_volume(struct smooth_job *smooth, struct error *err)
     };
     find_pieces(&job);
     job.pieces = mem_array(job.n_pieces, sizeof *job.pieces, UINT64_MAX, err);
-    job.chunk_size = job.n_pieces <= MAX_PIECES_SPLIT ? CHUNK : smooth->mesh->n_triangles + 1; /* many pieces: all of it by one thread */
+    job.chunk_size = job.n_pieces <= MAX_PIECES_SPLIT
+                         ? CHUNK
+                         : smooth->mesh->n_triangles + 1; /* many pieces: all of it by one thread */
     job.n_chunks = (smooth->mesh->n_triangles + job.chunk_size - 1) / job.chunk_size;
     if (job.pieces)
         job.sums = mem_array(job.n_chunks * job.n_pieces, sizeof *job.sums, UINT64_MAX, err);

@@ -20,8 +20,8 @@ bool surface_algorithm_from_word(const char *word, enum surface_algorithm *algor
     return false;
 }
 
-struct mesh *surface_make(enum surface_algorithm algorithm, const struct mask *mask, const struct surface_options *options,
-                          struct error *err)
+struct mesh *surface_make(enum surface_algorithm algorithm, const struct mask *mask,
+                          const struct surface_options *options, struct error *err)
 {
     switch (algorithm) {
     case SURFACE_EIGHT_CELL: return surface_eight_cell(mask, options, err);

@@ -1,7 +1,7 @@
 /* The faces between inside and outside voxels, on bit rows: what a Monte Carlo code tracks through.
  *
- * Corner (i, j, k) is the one at index i - 0.5, j - 0.5, k - 0.5; it is a vertex when the eight voxels around it are not all alike, and
- * then it is on a face. Corners are numbered in order, so are the faces of a voxel's row.
+ * Corner (i, j, k) is the one at index i - 0.5, j - 0.5, k - 0.5; it is a vertex when the eight voxels around it are
+ * not all alike, and then it is on a face. Corners are numbered in order, so are the faces of a voxel's row.
  *
  *   1. mark the corners that are vertices, row by row of corners, and count the faces of every row of voxels
  *   2. running totals
@@ -17,8 +17,8 @@
 
 enum { FACES = 6 };
 
-/* Corners of each face, counter-clockwise seen from outside: bit 0 of a corner's number is x, bit 1 y, bit 2 z. Faces in the order
- * -x +x -y +y -z +z. */
+/* Corners of each face, counter-clockwise seen from outside: bit 0 of a corner's number is x, bit 1 y, bit 2 z. Faces
+ * in the order -x +x -y +y -z +z. */
 static const uint8_t face_corners[FACES][4] = {
     { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 },
 };
@@ -46,7 +46,7 @@ static size_t corner_row(const struct job *job, size_t j, size_t k)
     return k * (job->mask->size[1] + 1) + j;
 }
 
-/* ---- marking and counting ------------------------------------------------------------------------------------------------ */
+/* ---- marking and counting --------------------------------------------------------------------------------------- */
 
 static uint32_t mark_corners(const struct job *job, uint32_t j, uint32_t k)
 {
@@ -72,7 +72,8 @@ static uint32_t mark_corners(const struct job *job, uint32_t j, uint32_t k)
 }
 
 /* The voxels of word w of a row that have a face each way. */
-static void faces_of_word(const struct job *job, const uint64_t *row, const uint64_t *beside[4], uint32_t w, uint64_t faces[FACES])
+static void faces_of_word(const struct job *job, const uint64_t *row, const uint64_t *beside[4], uint32_t w,
+                          uint64_t faces[FACES])
 {
     uint64_t here = row[w];
     faces[0] = here & ~(here << 1 | (w > 0 ? row[w - 1] >> 63 : 0));
@@ -117,13 +118,13 @@ static void count_part(void *context, int part, int n_parts)
         }
 }
 
-/* ---- writing ------------------------------------------------------------------------------------------------------------- */
+/* ---- writing ---------------------------------------------------------------------------------------------------- */
 
 static void write_corners(const struct job *job, uint32_t j, uint32_t k)
 {
     size_t row = corner_row(job, j, k);
-    row_write_vertices(job->used + row * job->corner_words, job->corner_words, &job->mask->lps_mm_from_ijk, vec3(-0.5, j - 0.5, k - 0.5),
-                       job->mesh->positions_lps_mm + 3 * (size_t)job->first_vertex[row]);
+    row_write_vertices(job->used + row * job->corner_words, job->corner_words, &job->mask->lps_mm_from_ijk,
+                       vec3(-0.5, j - 0.5, k - 0.5), job->mesh->positions_lps_mm + 3 * (size_t)job->first_vertex[row]);
 }
 
 static uint32_t *write_face(uint32_t *out, const uint32_t vertices[8], int face, bool is_mirrored)
@@ -156,7 +157,8 @@ static void write_faces(const struct job *job, uint32_t j, uint32_t k)
         for (uint64_t left = faces[0] | faces[1] | faces[2] | faces[3] | faces[4] | faces[5]; left; left &= left - 1) {
             int bit = __builtin_ctzll(left);
             uint32_t vertices[8];
-            for (int r = 0; r < 4; r++) { /* the next corner's number follows when this one is a vertex; unused ones are never read */
+            for (int r = 0; r < 4;
+                 r++) { /* the next corner's number follows when this one is a vertex; unused ones are never read */
                 vertices[2 * r] = number[r] + (uint32_t)__builtin_popcountll(used[r][w] & (((uint64_t)1 << bit) - 1));
                 vertices[2 * r + 1] = vertices[2 * r] + (uint32_t)(used[r][w] >> bit & 1);
             }
@@ -183,7 +185,7 @@ static void write_part(void *context, int part, int n_parts)
         }
 }
 
-/* ---- the whole ----------------------------------------------------------------------------------------------------------- */
+/* ---- the whole -------------------------------------------------------------------------------------------------- */
 
 static bool extract(struct job *job, int n_threads, struct error *err)
 {
@@ -198,8 +200,8 @@ static bool extract(struct job *job, int n_threads, struct error *err)
     parallel_run(n_threads, count_part, job);
     uint64_t vertices = rows_number(job->first_vertex, n_corner_rows), faces = rows_number(job->first_face, n_rows);
     if (2 * faces > SHAPE_MAX_TRIANGLES) /* so their corners fit 32 bits as well */
-        return error_set(err, ERROR_LIMIT, "univels with %llu triangles: at most %d are allowed", (unsigned long long)(2 * faces),
-                         SHAPE_MAX_TRIANGLES);
+        return error_set(err, ERROR_LIMIT, "univels with %llu triangles: at most %d are allowed",
+                         (unsigned long long)(2 * faces), SHAPE_MAX_TRIANGLES);
     job->mesh = mesh_create((size_t)vertices, (size_t)(2 * faces), err);
     if (!job->mesh)
         return false;

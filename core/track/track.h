@@ -7,9 +7,15 @@
 
 /* Seven particle classes and the beam's own line. */
 enum track_class {
-    TRACK_NEUTRON_HIGH, TRACK_NEUTRON_MEDIUM, TRACK_NEUTRON_LOW,
-    TRACK_GAMMA_HIGH, TRACK_GAMMA_MEDIUM, TRACK_GAMMA_LOW,
-    TRACK_LOST, TRACK_BEAM_LINE, TRACK_N_CLASSES
+    TRACK_NEUTRON_HIGH,
+    TRACK_NEUTRON_MEDIUM,
+    TRACK_NEUTRON_LOW,
+    TRACK_GAMMA_HIGH,
+    TRACK_GAMMA_MEDIUM,
+    TRACK_GAMMA_LOW,
+    TRACK_LOST,
+    TRACK_BEAM_LINE,
+    TRACK_N_CLASSES
 };
 const char *track_class_word(enum track_class class); /* "neutron-high", ..., "lost", "beam-line" */
 
@@ -17,7 +23,8 @@ enum { TRACK_MAX_SEGMENTS = 2000000 };
 
 struct track_segment {
     float from_lps_mm[3], to_lps_mm[3];
-    uint8_t class; /* enum track_class; SERA's gammas have no energy code and are read as gamma-high, said so in the report */
+    uint8_t class; /* enum track_class; SERA's gammas have no energy code and are read as gamma-high, said so in the
+                      report */
 };
 
 struct track_set {

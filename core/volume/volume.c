@@ -10,21 +10,24 @@ bool grid_init(struct grid *grid, const uint32_t size[3], const struct affine *l
 {
     for (int axis = 0; axis < 3; axis++) {
         if (size[axis] < 1 || size[axis] > VOLUME_MAX_SIDE)
-            return error_set(err, ERROR_RANGE, "grid of %u x %u x %u voxels: each side must be 1 to %d", size[0], size[1],
-                             size[2], VOLUME_MAX_SIDE);
+            return error_set(err, ERROR_RANGE, "grid of %u x %u x %u voxels: each side must be 1 to %d", size[0],
+                             size[1], size[2], VOLUME_MAX_SIDE);
         double spacing_mm = vec3_length(lps_mm_from_ijk->columns[axis]);
         if (!(spacing_mm >= 1e-4 && spacing_mm <= 1e4))
-            return error_set(err, ERROR_RANGE, "voxel spacing %g mm along index axis %d is outside 0.0001 to 10000 mm", spacing_mm,
-                             axis);
+            return error_set(err, ERROR_RANGE, "voxel spacing %g mm along index axis %d is outside 0.0001 to 10000 mm",
+                             spacing_mm, axis);
     }
     struct affine inverse;
     if (!affine_invert(lps_mm_from_ijk, &inverse))
         return error_set(err, ERROR_RANGE, "the index-to-patient matrix is singular or not finite");
     for (int corner = 0; corner < 8; corner++) {
-        struct vec3 at = affine_point(lps_mm_from_ijk, vec3(corner & 1 ? size[0] - 1 : 0, corner & 2 ? size[1] - 1 : 0, corner & 4 ? size[2] - 1 : 0));
+        struct vec3 at = affine_point(lps_mm_from_ijk, vec3(corner & 1 ? size[0] - 1 : 0, corner & 2 ? size[1] - 1 : 0,
+                                                            corner & 4 ? size[2] - 1 : 0));
         if (!(fmax(fmax(fabs(at.x), fabs(at.y)), fabs(at.z)) <= GRID_FARTHEST_MM))
-            return error_set(err, ERROR_RANGE, "a grid's corner lies at L %g P %g S %g mm; expected within %g mm of the origin: are origin and spacing in mm?",
-                             at.x, at.y, at.z, GRID_FARTHEST_MM);
+            return error_set(
+                err, ERROR_RANGE,
+                "a grid's corner lies at L %g P %g S %g mm; expected within %g mm of the origin: are origin and spacing in mm?",
+                at.x, at.y, at.z, GRID_FARTHEST_MM);
     }
     for (int axis = 0; axis < 3; axis++)
         grid->size[axis] = size[axis];
@@ -39,7 +42,8 @@ bool grid_is_same(const struct grid *a, const struct grid *b)
         if (a->size[axis] != b->size[axis])
             return false;
     for (int corner = 0; corner < 8; corner++) {
-        struct vec3 at = vec3(corner & 1 ? a->size[0] - 1 : 0, corner & 2 ? a->size[1] - 1 : 0, corner & 4 ? a->size[2] - 1 : 0);
+        struct vec3 at =
+            vec3(corner & 1 ? a->size[0] - 1 : 0, corner & 2 ? a->size[1] - 1 : 0, corner & 4 ? a->size[2] - 1 : 0);
         struct vec3 off = vec3_sub(affine_point(&b->ijk_from_lps_mm, affine_point(&a->lps_mm_from_ijk, at)), at);
         if (!(vec3_length(off) < 0.01))
             return false;
@@ -124,7 +128,8 @@ size_t voxel_size(enum voxel_type type)
 }
 
 static struct volume *create(const struct grid *grid, enum voxel_type type,
-                             void *(*allocate)(size_t n, size_t size, uint64_t limit_bytes, struct error *err), struct error *err)
+                             void *(*allocate)(size_t n, size_t size, uint64_t limit_bytes, struct error *err),
+                             struct error *err)
 {
     struct volume *volume = mem_new(sizeof *volume);
     volume->grid = *grid;
@@ -196,16 +201,16 @@ void volume_measure(struct volume *volume)
 {
     double low = INFINITY, high = -INFINITY;
     size_t n = grid_n_voxels(&volume->grid);
-#define SCAN(type)                                        \
-    do {                                                  \
-        const type *v = volume->voxels;                   \
-        type least = v[0], most = v[0];                   \
-        for (size_t at = 1; at < n; at++) {               \
-            least = v[at] < least ? v[at] : least;        \
-            most = v[at] > most ? v[at] : most;           \
-        }                                                 \
-        low = (double)least;                              \
-        high = (double)most;                              \
+#define SCAN(type) \
+    do { \
+        const type *v = volume->voxels; \
+        type least = v[0], most = v[0]; \
+        for (size_t at = 1; at < n; at++) { \
+            least = v[at] < least ? v[at] : least; \
+            most = v[at] > most ? v[at] : most; \
+        } \
+        low = (double)least; \
+        high = (double)most; \
     } while (0)
     switch (volume->type) {
     case VOXEL_U8: SCAN(uint8_t); break;
@@ -276,8 +281,9 @@ bool volume_sample(const struct volume *volume, struct vec3 point_lps_mm, double
         double share = (corner & 1 ? weight[0] : 1 - weight[0]) * (corner & 2 ? weight[1] : 1 - weight[1]) *
                        (corner & 4 ? weight[2] : 1 - weight[2]);
         if (share > 0)
-            sum += share * raw_value(volume, voxel_offset(&volume->grid, corner & 1 ? high[0] : low[0],
-                                                          corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]));
+            sum +=
+                share * raw_value(volume, voxel_offset(&volume->grid, corner & 1 ? high[0] : low[0],
+                                                       corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]));
     }
     if (!isfinite(sum))
         return false;

@@ -20,22 +20,25 @@ struct bench_job {
 
 static void print_help(void)
 {
-    printf("usage: beamroom bench --thesis DIR... [OPTION]...\n"
-           "Shows every region of the plans in the folders DIR in every way there is, one after the other, and writes a page of figures\n"
-           "(Markdown) beside those of the thesis on Sera3d: polygons, vertices, time to make and to draw, area, volume, distances.\n\n"
-           "  -o, --output OUT  the page; standard output when left out\n"
-           "  --repeat N        medians of N, 1 to %d (default %d)\n"
-           "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
-           "  --help            this text\n",
-           MAX_REPEATS, DEFAULT_REPEATS);
+    printf(
+        "usage: beamroom bench --thesis DIR... [OPTION]...\n"
+        "Shows every region of the plans in the folders DIR in every way there is, one after the other, and writes a page of figures\n"
+        "(Markdown) beside those of the thesis on Sera3d: polygons, vertices, time to make and to draw, area, volume, distances.\n\n"
+        "  -o, --output OUT  the page; standard output when left out\n"
+        "  --repeat N        medians of N, 1 to %d (default %d)\n"
+        "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
+        "  --help            this text\n",
+        MAX_REPEATS, DEFAULT_REPEATS);
 }
 
 /* false with *code when there is nothing to measure */
 static bool parse_arguments(int argc, char **argv, struct bench_job *job, int *code)
 {
-    static const struct option long_options[] = { { "thesis", no_argument, NULL, 't' },       { "output", required_argument, NULL, 'o' },
-                                                  { "repeat", required_argument, NULL, 'r' }, { "gl", required_argument, NULL, 'g' },
-                                                  { "help", no_argument, NULL, 'h' },         { NULL, 0, NULL, 0 } };
+    static const struct option long_options[] = {
+        { "thesis", no_argument, NULL, 't' },       { "output", required_argument, NULL, 'o' },
+        { "repeat", required_argument, NULL, 'r' }, { "gl", required_argument, NULL, 'g' },
+        { "help", no_argument, NULL, 'h' },         { NULL, 0, NULL, 0 }
+    };
     bool is_thesis = false;
     char *end;
     *code = EXIT_USAGE;
@@ -48,34 +51,43 @@ static bool parse_arguments(int argc, char **argv, struct bench_job *job, int *c
         case 'r':
             job->n_repeats = (int)strtol(optarg, &end, 10);
             if (*end || job->n_repeats < 1 || job->n_repeats > MAX_REPEATS)
-                return command_usage_error("bench", "--repeat '%s' is not a number from 1 to %d", optarg, MAX_REPEATS), false;
+                return command_usage_error("bench", "--repeat '%s' is not a number from 1 to %d", optarg, MAX_REPEATS),
+                       false;
             break;
         case 'g':
             if (!render_back_end_from_word(optarg, &job->back_end))
-                return command_usage_error("bench", "--gl '%s' is not auto, egl-device, egl-surfaceless, osmesa or soft", optarg), false;
+                return command_usage_error("bench",
+                                           "--gl '%s' is not auto, egl-device, egl-surfaceless, osmesa or soft",
+                                           optarg),
+                       false;
             break;
         case 'h':
             print_help();
             *code = EXIT_DONE;
             return false;
-        default: return command_usage_error("bench", "'%s' is not an option or lacks its value", argv[optind - 1]), false;
+        default:
+            return command_usage_error("bench", "'%s' is not an option or lacks its value", argv[optind - 1]), false;
         }
     }
     if (!is_thesis)
         return command_usage_error("bench", "what to measure is needed: --thesis"), false;
     if (optind == argc || argc - optind > MAX_PLANS)
-        return command_usage_error("bench", "1 to %d folders of plans are needed, %d are given", MAX_PLANS, argc - optind), false;
+        return command_usage_error("bench", "1 to %d folders of plans are needed, %d are given", MAX_PLANS,
+                                   argc - optind),
+               false;
     job->folders = argv + optind;
     job->n_folders = argc - optind;
     return true;
 }
 
-static bool write_page(const struct bench_job *job, const struct bench_machine *machine, const struct bench_plan *plans, struct error *err)
+static bool write_page(const struct bench_job *job, const struct bench_machine *machine, const struct bench_plan *plans,
+                       struct error *err)
 {
     char *page = bench_page(machine, plans, (size_t)job->n_folders);
     if (!page)
         return error_set(err, ERROR_MEMORY, "no memory for the page");
-    bool is_written = job->out ? file_write(job->out, (const uint8_t *)page, strlen(page), err) : fputs(page, stdout) >= 0;
+    bool is_written =
+        job->out ? file_write(job->out, (const uint8_t *)page, strlen(page), err) : fputs(page, stdout) >= 0;
     free(page);
     return is_written;
 }

@@ -5,8 +5,9 @@
 
 #include "server/cli/bench_thesis.h"
 
-/* Table 1 of the thesis: "4mm data set with a single region, the scalp", Sun Ultra 10, 300 MHz, Creator3D. Beside it what Sera3d's own
- * functions give on the sample head that SERA comes with, on one core of a present-day processor without graphics card. */
+/* Table 1 of the thesis: "4mm data set with a single region, the scalp", Sun Ultra 10, 300 MHz, Creator3D. Beside it
+ * what Sera3d's own functions give on the sample head that SERA comes with, on one core of a present-day processor
+ * without graphics card. */
 static const struct {
     const char *method, *polygons, *seconds, *fps, *sample_polygons, *sample_seconds, *sample_fps;
 } thesis[3] = {
@@ -93,7 +94,8 @@ static void put_row(FILE *out, const struct bench_row *row)
     fputs(" | ", out);
     put_number(out, facts->univel_volume_mm3 / 1000);
     fputs(" | ", out);
-    put_number(out, has_mesh && facts->univel_volume_mm3 > 0 ? 100 * (facts->volume_mm3 / facts->univel_volume_mm3 - 1) : NAN);
+    put_number(out, has_mesh && facts->univel_volume_mm3 > 0 ? 100 * (facts->volume_mm3 / facts->univel_volume_mm3 - 1)
+                                                             : NAN);
     fputs(" | ", out);
     put_number(out, facts->distance_max_mm);
     fputs(" |\n", out);
@@ -106,22 +108,25 @@ char *bench_page(const struct bench_machine *machine, const struct bench_plan *p
     FILE *out = open_memstream(&text, &n_text);
     if (!out)
         return NULL;
-    fputs("# The thesis's tables beside ours\n\n"
-          "Made by `beamroom bench --thesis`; nothing in it is written by hand. Figures of other machines than the one named are the thesis's\n"
-          "and Sera3d's own.\n\n",
-          out);
-    fprintf(out, "Machine: %s, %d cores; %s; drawn by %s; window %d x %d, one region alone, full detail.\n", machine->processor, machine->n_cores,
-            machine->system, machine->back_end, BENCH_SIZE_PX, BENCH_SIZE_PX);
-    fputs("\n## Table 1: polygonal surfaces\n\n"
-          "| Algorithm | Thesis: polygons | s | fps | Sera3d on its sample head: polygons | s | fps |\n|---|---:|---:|---:|---:|---:|---:|\n",
-          out);
+    fputs(
+        "# The thesis's tables beside ours\n\n"
+        "Made by `beamroom bench --thesis`; nothing in it is written by hand. Figures of other machines than the one named are the thesis's\n"
+        "and Sera3d's own.\n\n",
+        out);
+    fprintf(out, "Machine: %s, %d cores; %s; drawn by %s; window %d x %d, one region alone, full detail.\n",
+            machine->processor, machine->n_cores, machine->system, machine->back_end, BENCH_SIZE_PX, BENCH_SIZE_PX);
+    fputs(
+        "\n## Table 1: polygonal surfaces\n\n"
+        "| Algorithm | Thesis: polygons | s | fps | Sera3d on its sample head: polygons | s | fps |\n|---|---:|---:|---:|---:|---:|---:|\n",
+        out);
     for (int i = 0; i < 3; i++)
-        fprintf(out, "| %s | %s | %s | %s | %s | %s | %s |\n", thesis[i].method, thesis[i].polygons, thesis[i].seconds, thesis[i].fps,
-                thesis[i].sample_polygons, thesis[i].sample_seconds, thesis[i].sample_fps);
-    fputs("\nThe thesis: another head with 4 mm slices, a Sun Ultra 10 (300 MHz) with Creator3D graphics. Sera3d on its sample head: its own\n"
-          "functions on a present-day processor, one llvmpipe thread. Sera3d leaves surfaces open where the scan ends; ours are closed there, and have\n"
-          "the more polygons for it. Ours:\n",
-          out);
+        fprintf(out, "| %s | %s | %s | %s | %s | %s | %s |\n", thesis[i].method, thesis[i].polygons, thesis[i].seconds,
+                thesis[i].fps, thesis[i].sample_polygons, thesis[i].sample_seconds, thesis[i].sample_fps);
+    fputs(
+        "\nThe thesis: another head with 4 mm slices, a Sun Ultra 10 (300 MHz) with Creator3D graphics. Sera3d on its sample head: its own\n"
+        "functions on a present-day processor, one llvmpipe thread. Sera3d leaves surfaces open where the scan ends; ours are closed there, and have\n"
+        "the more polygons for it. Ours:\n",
+        out);
     for (size_t i = 0; i < n_plans; i++)
         put_table1(out, &plans[i]);
     fputs("\n## Table 2: medical images\n\n| Method | Thesis (fps) |", out);
@@ -139,22 +144,25 @@ char *bench_page(const struct bench_machine *machine, const struct bench_plan *p
         put_number(out, plans[i].slice_fps);
         fputs(" |", out);
     }
-    static const char *const volumes[2] = { "| Volume, 256 slices, nearest | 0.18 |", "| Volume, 256 slices, linear | 0.09 |" };
+    static const char *const volumes[2] = { "| Volume, 256 slices, nearest | 0.18 |",
+                                            "| Volume, 256 slices, linear | 0.09 |" };
     for (int row = 0; row < 2; row++) {
         fprintf(out, "\n%s", volumes[row]);
         for (size_t i = 0; i < n_plans; i++)
             fputs(" not drawn by this version |", out);
     }
-    fputs("\n\n## Every region, every method\n\n"
-          "Made: region to shape, every thread, median. Drawn: pictures a second while it turns, median. To univels: enclosed volume against the\n"
-          "univels'. Off: largest distance of a vertex from the border of the univels.\n",
-          out);
+    fputs(
+        "\n\n## Every region, every method\n\n"
+        "Made: region to shape, every thread, median. Drawn: pictures a second while it turns, median. To univels: enclosed volume against the\n"
+        "univels'. Off: largest distance of a vertex from the border of the univels.\n",
+        out);
     for (size_t i = 0; i < n_plans; i++) {
         fputs("\n### ", out);
         put_name(out, plans[i].name);
-        fputs("\n\n| Region | Method | Polygons | Vertices | Made (ms) | Drawn (fps) | Area (cm2) | Encloses (cm3) | Univels (cm3) | To univels (%) | Off (mm) |\n"
-              "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
-              out);
+        fputs(
+            "\n\n| Region | Method | Polygons | Vertices | Made (ms) | Drawn (fps) | Area (cm2) | Encloses (cm3) | Univels (cm3) | To univels (%) | Off (mm) |\n"
+            "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+            out);
         for (size_t r = 0; r < plans[i].n_rows; r++)
             put_row(out, &plans[i].rows[r]);
     }

@@ -20,10 +20,17 @@ static const struct method {
     { "surface, 8-cell", { .representation = REPRESENTATION_SURFACE, .algorithm = SURFACE_EIGHT_CELL } },
     { "univels", { .representation = REPRESENTATION_UNIVELS } },
     { "fan", { .representation = REPRESENTATION_FAN } },
-    { "NURBS, linear, traces", { .representation = REPRESENTATION_NURBS, .nurbs_order = 2, .nurbs_sampling = NURBS_TRACES, .nurbs_bins = 36 } },
-    { "NURBS, quadratic, traces", { .representation = REPRESENTATION_NURBS, .nurbs_order = 3, .nurbs_sampling = NURBS_TRACES, .nurbs_bins = 36 } },
-    { "NURBS, cubic, traces", { .representation = REPRESENTATION_NURBS, .nurbs_order = 4, .nurbs_sampling = NURBS_TRACES, .nurbs_bins = 36 } },
-    { "NURBS, cubic, degree bins", { .representation = REPRESENTATION_NURBS, .nurbs_order = 4, .nurbs_sampling = NURBS_DEGREE_BINS, .nurbs_bins = 36 } },
+    { "NURBS, linear, traces",
+      { .representation = REPRESENTATION_NURBS, .nurbs_order = 2, .nurbs_sampling = NURBS_TRACES, .nurbs_bins = 36 } },
+    { "NURBS, quadratic, traces",
+      { .representation = REPRESENTATION_NURBS, .nurbs_order = 3, .nurbs_sampling = NURBS_TRACES, .nurbs_bins = 36 } },
+    { "NURBS, cubic, traces",
+      { .representation = REPRESENTATION_NURBS, .nurbs_order = 4, .nurbs_sampling = NURBS_TRACES, .nurbs_bins = 36 } },
+    { "NURBS, cubic, degree bins",
+      { .representation = REPRESENTATION_NURBS,
+        .nurbs_order = 4,
+        .nurbs_sampling = NURBS_DEGREE_BINS,
+        .nurbs_bins = 36 } },
     { "outlines, traced", { .representation = REPRESENTATION_OUTLINE, .outline = OUTLINE_TRACED } },
     { "outlines, marching squares", { .representation = REPRESENTATION_OUTLINE, .outline = OUTLINE_MARCHING_SQUARES } },
     { "points", { .representation = REPRESENTATION_POINTS } },
@@ -47,7 +54,9 @@ static double median(double *samples, size_t n)
 void bench_machine_look(struct bench_machine *machine, const struct render_facts *facts)
 {
     struct utsname name;
-    *machine = (struct bench_machine){ .processor = "unknown processor", .system = "unknown system", .n_cores = parallel_cores() };
+    *machine = (struct bench_machine){ .processor = "unknown processor",
+                                       .system = "unknown system",
+                                       .n_cores = parallel_cores() };
     FILE *in = fopen("/proc/cpuinfo", "re");
     char line[256];
     while (in && fgets(line, sizeof line, in))
@@ -59,11 +68,13 @@ void bench_machine_look(struct bench_machine *machine, const struct render_facts
     if (in)
         fclose(in);
     if (uname(&name) == 0)
-        (void)snprintf(machine->system, sizeof machine->system, "%.40s %.40s %.20s", name.sysname, name.release, name.machine);
-    (void)snprintf(machine->back_end, sizeof machine->back_end, "%s", facts->back_end == RENDER_SOFT ? "our own rasteriser (soft)" : facts->renderer);
+        (void)snprintf(machine->system, sizeof machine->system, "%.40s %.40s %.20s", name.sysname, name.release,
+                       name.machine);
+    (void)snprintf(machine->back_end, sizeof machine->back_end, "%s",
+                   facts->back_end == RENDER_SOFT ? "our own rasteriser (soft)" : facts->renderer);
 }
 
-/* ---- pictures ----------------------------------------------------------------------------------------------------------------------- */
+/* ---- pictures --------------------------------------------------------------------------------------------------- */
 
 static const enum scene_representation scene_representations[REPRESENTATION_N] = {
     [REPRESENTATION_SURFACE] = SCENE_REPRESENTATION_SURFACE, [REPRESENTATION_OUTLINE] = SCENE_REPRESENTATION_OUTLINE,
@@ -75,9 +86,11 @@ static const enum scene_representation scene_representations[REPRESENTATION_N] =
 /* A region alone (-1: none) as the key says, slices off. */
 static void set_scene(const struct plan *plan, int region, const struct shape_key *key, struct scene *scene)
 {
-    static const enum scene_algorithm algorithms[SURFACE_N_ALGORITHMS] = { [SURFACE_MARCHING_CUBES] = SCENE_ALGORITHM_MARCHING_CUBES,
-                                                                          [SURFACE_EIGHT_CELL] = SCENE_ALGORITHM_EIGHT_CELL,
-                                                                          [SURFACE_SMOOTH] = SCENE_ALGORITHM_SMOOTH };
+    static const enum scene_algorithm algorithms[SURFACE_N_ALGORITHMS] = { [SURFACE_MARCHING_CUBES] =
+                                                                               SCENE_ALGORITHM_MARCHING_CUBES,
+                                                                           [SURFACE_EIGHT_CELL] =
+                                                                               SCENE_ALGORITHM_EIGHT_CELL,
+                                                                           [SURFACE_SMOOTH] = SCENE_ALGORITHM_SMOOTH };
     scene_for_plan(plan, scene);
     for (size_t i = 0; i < scene->n_regions; i++) {
         bool is_it = region >= 0 && strcmp(scene->regions[i].id, plan->regions.regions[region].id) == 0;
@@ -88,15 +101,18 @@ static void set_scene(const struct plan *plan, int region, const struct shape_ke
     }
     if (key) {
         scene->surface.algorithm = algorithms[key->algorithm];
-        scene->outline.method = key->outline == OUTLINE_TRACED ? SCENE_OUTLINE_METHOD_TRACED : SCENE_OUTLINE_METHOD_MARCHING_SQUARES;
+        scene->outline.method =
+            key->outline == OUTLINE_TRACED ? SCENE_OUTLINE_METHOD_TRACED : SCENE_OUTLINE_METHOD_MARCHING_SQUARES;
         scene->points.inner_boundary = key->has_inner_boundary;
     }
     if (key && key->representation == REPRESENTATION_NURBS) {
         scene->nurbs.order = key->nurbs_order;
-        scene->nurbs.sampling = key->nurbs_sampling == NURBS_TRACES ? SCENE_NURBS_SAMPLING_TRACES : SCENE_NURBS_SAMPLING_DEGREE_BINS;
+        scene->nurbs.sampling =
+            key->nurbs_sampling == NURBS_TRACES ? SCENE_NURBS_SAMPLING_TRACES : SCENE_NURBS_SAMPLING_DEGREE_BINS;
         scene->nurbs.bins = key->nurbs_bins;
     }
-    scene->image.slices.axial.visible = scene->image.slices.coronal.visible = scene->image.slices.sagittal.visible = false;
+    scene->image.slices.axial.visible = scene->image.slices.coronal.visible = scene->image.slices.sagittal.visible =
+        false;
 }
 
 /* Takes the scene. The picture from a camera turned by so many degrees around the patient's long axis. */
@@ -115,8 +131,8 @@ static struct snapshot *turned(struct plan *plan, struct scene *scene, double tu
 }
 
 /* Median of n pictures, each 7 degrees further; the first, which uploads, is not counted. */
-static bool time_pictures(struct plan *plan, struct renderer *renderer, int region, const struct shape_key *key, bool is_faceted, bool has_slice, int n,
-                          double *median_ms, struct error *err)
+static bool time_pictures(struct plan *plan, struct renderer *renderer, int region, const struct shape_key *key,
+                          bool is_faceted, bool has_slice, int n, double *median_ms, struct error *err)
 {
     double samples[MAX_SAMPLES];
     const struct render_options options = { BENCH_SIZE_PX, BENCH_SIZE_PX, SURFACE_FULL, false };
@@ -140,11 +156,11 @@ static bool time_pictures(struct plan *plan, struct renderer *renderer, int regi
     return true;
 }
 
-/* ---- shapes --------------------------------------------------------------------------------------------------------------------------- */
+/* ---- shapes ----------------------------------------------------------------------------------------------------- */
 
 /* From the region's univels to the shape, each time anew. A shape that cannot be made is a row with the reason. */
-static bool measure(struct plan *plan, struct renderer *renderer, size_t region, const struct method *method, int n_repeats, struct bench_row *row,
-                    struct error *err)
+static bool measure(struct plan *plan, struct renderer *renderer, size_t region, const struct method *method,
+                    int n_repeats, struct bench_row *row, struct error *err)
 {
     double samples[MAX_SAMPLES];
     *row = (struct bench_row){ .method = method->name, .draw_ms = NAN, .made_ms = NAN };
@@ -159,24 +175,28 @@ static bool measure(struct plan *plan, struct renderer *renderer, size_t region,
             return true;
         }
         samples[i] = row->facts.build_ms;
-        bool is_measured = i + 1 < n_repeats || plan_shape_distance(plan, region, &method->key, shape, &row->facts, err);
+        bool is_measured =
+            i + 1 < n_repeats || plan_shape_distance(plan, region, &method->key, shape, &row->facts, err);
         shape_unref(shape);
         if (!is_measured)
             return false;
     }
     plan_set_shape_budget(plan, PLAN_SHAPE_BUDGET_BYTES);
     row->made_ms = median(samples, (size_t)n_repeats);
-    bool is_drawn = time_pictures(plan, renderer, (int)region, &method->key, false, false, 5 * n_repeats, &row->draw_ms, err);
+    bool is_drawn =
+        time_pictures(plan, renderer, (int)region, &method->key, false, false, 5 * n_repeats, &row->draw_ms, err);
     renderer_forget(renderer, plan);
     return is_drawn;
 }
 
 /* Region to triangles with the normals that the row of the table needs. */
-static bool measure_table1(struct plan *plan, struct renderer *renderer, size_t region, int n_repeats, struct bench_row rows[3], struct error *err)
+static bool measure_table1(struct plan *plan, struct renderer *renderer, size_t region, int n_repeats,
+                           struct bench_row rows[3], struct error *err)
 {
     for (int i = 0; i < 3; i++) {
         struct bench_row *row = &rows[i];
-        const struct shape_key key = { .representation = REPRESENTATION_SURFACE, .algorithm = i < 2 ? SURFACE_EIGHT_CELL : SURFACE_MARCHING_CUBES };
+        const struct shape_key key = { .representation = REPRESENTATION_SURFACE,
+                                       .algorithm = i < 2 ? SURFACE_EIGHT_CELL : SURFACE_MARCHING_CUBES };
         double samples[MAX_SAMPLES];
         *row = (struct bench_row){ .method = "", .draw_ms = NAN };
         for (int n = 0; n < n_repeats; n++) {
@@ -199,7 +219,8 @@ static bool measure_table1(struct plan *plan, struct renderer *renderer, size_t 
     return true;
 }
 
-bool bench_measure(struct plan *plan, struct renderer *renderer, int n_repeats, struct bench_plan *result, struct error *err)
+bool bench_measure(struct plan *plan, struct renderer *renderer, int n_repeats, struct bench_plan *result,
+                   struct error *err)
 {
     size_t largest = SIZE_MAX, n_regions = plan->regions.n_regions;
     *result = (struct bench_plan){ .is_phantom = plan->is_phantom, .slice_fps = NAN };
@@ -208,8 +229,10 @@ bool bench_measure(struct plan *plan, struct renderer *renderer, int n_repeats, 
     for (size_t r = 0; r < n_regions; r++) {
         if (plan->regions.regions[r].n_voxels == 0)
             continue;
-        bool is_scalp = strcmp(plan->regions.regions[r].id, "scalp") == 0, has_scalp = largest != SIZE_MAX && strcmp(plan->regions.regions[largest].id, "scalp") == 0;
-        if (largest == SIZE_MAX || is_scalp || (!has_scalp && plan->regions.regions[r].n_voxels > plan->regions.regions[largest].n_voxels))
+        bool is_scalp = strcmp(plan->regions.regions[r].id, "scalp") == 0,
+             has_scalp = largest != SIZE_MAX && strcmp(plan->regions.regions[largest].id, "scalp") == 0;
+        if (largest == SIZE_MAX || is_scalp ||
+            (!has_scalp && plan->regions.regions[r].n_voxels > plan->regions.regions[largest].n_voxels))
             largest = r; /* the thesis's region, where the plan has it */
         for (size_t m = 0; m < N_METHODS; m++)
             if (!measure(plan, renderer, r, &methods[m], n_repeats, &result->rows[result->n_rows++], err))

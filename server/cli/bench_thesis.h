@@ -10,8 +10,8 @@ struct bench_row {
     char region[REGION_NAME_SIZE];
     const char *method; /* borrowed: a constant */
     struct surface_facts facts;
-    double made_ms; /* median */
-    double draw_ms; /* median, the region alone, full detail, turning; not-a-number when it was not drawn */
+    double made_ms;    /* median */
+    double draw_ms;    /* median, the region alone, full detail, turning; not-a-number when it was not drawn */
     char refusal[240]; /* not "": why there is no such shape */
 };
 
@@ -33,7 +33,8 @@ struct bench_machine {
 void bench_machine_look(struct bench_machine *machine, const struct render_facts *facts);
 
 /* Measures one plan. n_repeats builds and 5 n_repeats pictures of each. errors those of rendering */
-NODISCARD bool bench_measure(struct plan *plan, struct renderer *renderer, int n_repeats, struct bench_plan *result, struct error *err);
+NODISCARD bool bench_measure(struct plan *plan, struct renderer *renderer, int n_repeats, struct bench_plan *result,
+                             struct error *err);
 void bench_plan_finish(struct bench_plan *result);
 
 /* The page as Markdown, to free(). */

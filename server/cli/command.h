@@ -17,7 +17,8 @@ int command_usage_error(const char *name, const char *format, ...) PRINTF_LIKE(2
 /* "beamroom NAME: ..." on standard error, without control characters. Returns EXIT_REFUSED. */
 int command_refused(const char *name, const struct error *err);
 
-/* Takes "--max-mib N" or "--max-mib=N" out of the words of any command: what opening a plan may take. false: said what is wrong. */
+/* Takes "--max-mib N" or "--max-mib=N" out of the words of any command: what opening a plan may take. false: said what
+ * is wrong. */
 NODISCARD bool command_take_limit(int *argc, char **argv);
 
 /* The plan in a folder, its id made from the folder's name. NULL after saying why on standard error. */

@@ -9,29 +9,54 @@
 
 static void print_help(void)
 {
-    fputs("usage: beamroom convert DIR OUT\n"
-          "Opens the plan in the folder DIR, whatever its files are, and writes it as a plan folder of Beamroom's own into the new\n"
-          "folder OUT: images, regions and doses as NIfTI, the names and colours of regions, beams, tracks, depth curves and\n"
-          "preferences, and a plan.json that names it all. Opened again it is the same plan.\n\n"
-          "  --help   this text\n\n"
-          "Voxel values stay as they are; NIfTI-2 is written where the 32-bit numbers of NIfTI-1 would move a voxel by more than\n"
-          "1e-7 mm. Regions that overlap go into several label maps. What of DIR is not in OUT is said, by name, on standard error.\n"
-          "Not part of any plan, and so never in OUT: contours as they were drawn (regions are their voxels), a beam's control points,\n"
-          "who the patient is, and what was noticed while reading.\n",
-          stdout);
+    fputs(
+        "usage: beamroom convert DIR OUT\n"
+        "Opens the plan in the folder DIR, whatever its files are, and writes it as a plan folder of Beamroom's own into the new\n"
+        "folder OUT: images, regions and doses as NIfTI, the names and colours of regions, beams, tracks, depth curves and\n"
+        "preferences, and a plan.json that names it all. Opened again it is the same plan.\n\n"
+        "  --help   this text\n\n"
+        "Voxel values stay as they are; NIfTI-2 is written where the 32-bit numbers of NIfTI-1 would move a voxel by more than\n"
+        "1e-7 mm. Regions that overlap go into several label maps. What of DIR is not in OUT is said, by name, on standard error.\n"
+        "Not part of any plan, and so never in OUT: contours as they were drawn (regions are their voxels), a beam's control points,\n"
+        "who the patient is, and what was noticed while reading.\n",
+        stdout);
 }
 
 /* Of what is said on opening: what the folder holds and the plan does not. */
 static bool is_about_loss(const struct report_line *line)
 {
-    static const char *const codes[] = { "plan.ignored-file",   "plan.too-many-files", "dicom.unreadable",          "dicom.not-used",
-                                         "dicom.duplicate",     "dicom.too-many",      "image.frames-left-out",     "region.surroundings",
-                                         "region.absent",       "region.unused-names", "region.contours-left-out",  "hierarchy.cycle",
-                                         "hierarchy.line",      "dose.left-out",       "dose.weight-zero",          "beam.left-out",
-                                         "curve.unread",        "preferences.unread",  "preferences.levels",        "tracks.unsupported",
-                                         "tracks.zero-length",  "tracks.bad-lines",    "tracks.far",                "plan.unknown-key",
-                                         "beam.moves",          "beam.arc",            "region.contours-refused",   "dose.unsupported",
-                                         "dose.unknown-column", "dose.mask-unread",    "image.slices-repeated",    "preferences.map",
+    static const char *const codes[] = { "plan.ignored-file",
+                                         "plan.too-many-files",
+                                         "dicom.unreadable",
+                                         "dicom.not-used",
+                                         "dicom.duplicate",
+                                         "dicom.too-many",
+                                         "image.frames-left-out",
+                                         "region.surroundings",
+                                         "region.absent",
+                                         "region.unused-names",
+                                         "region.contours-left-out",
+                                         "hierarchy.cycle",
+                                         "hierarchy.line",
+                                         "dose.left-out",
+                                         "dose.weight-zero",
+                                         "beam.left-out",
+                                         "curve.unread",
+                                         "preferences.unread",
+                                         "preferences.levels",
+                                         "tracks.unsupported",
+                                         "tracks.zero-length",
+                                         "tracks.bad-lines",
+                                         "tracks.far",
+                                         "plan.unknown-key",
+                                         "beam.moves",
+                                         "beam.arc",
+                                         "region.contours-refused",
+                                         "dose.unsupported",
+                                         "dose.unknown-column",
+                                         "dose.mask-unread",
+                                         "image.slices-repeated",
+                                         "preferences.map",
                                          "write.labels-cleared" };
     bool is_one = line->severity == REPORT_ERROR;
     for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++)
@@ -52,7 +77,8 @@ static void print_lost(const struct report *report)
         fputc('\n', stderr);
     }
     if (report->n_dropped > 0)
-        fprintf(stderr, "not carried over: maybe more; the report was full, and %zu of its lines are not kept\n", report->n_dropped);
+        fprintf(stderr, "not carried over: maybe more; the report was full, and %zu of its lines are not kept\n",
+                report->n_dropped);
 }
 
 static void print_noticed(const struct report *report)
@@ -61,8 +87,8 @@ static void print_noticed(const struct report *report)
     for (size_t i = 0; i < report->n_lines; i++)
         n_of[report->lines[i].severity]++;
     if (report->n_lines > 0)
-        printf("  noticed: %zu errors, %zu warnings, %zu notes; beamroom info lists them\n", n_of[REPORT_ERROR], n_of[REPORT_WARNING],
-               n_of[REPORT_NOTE]);
+        printf("  noticed: %zu errors, %zu warnings, %zu notes; beamroom info lists them\n", n_of[REPORT_ERROR],
+               n_of[REPORT_WARNING], n_of[REPORT_NOTE]);
 }
 
 static void print_done(const struct plan *plan, const char *out, double seconds)
@@ -71,9 +97,11 @@ static void print_done(const struct plan *plan, const char *out, double seconds)
     for (size_t i = 0; i < plan->n_doses; i++)
         n_components += plan->doses[i].n_components;
     text_print(stdout, out, 0);
-    printf(": %zu images, %zu regions, %zu dose components, %zu beams, %zu track segments, %zu depth curves, %zu isodose levels, %zu "
-           "colours, written in %.2f s\n", plan->n_images, plan->regions.n_regions, n_components, plan->n_beams, plan->tracks.n_segments,
-           plan->n_curves, plan->preferences.n_levels, plan->preferences.n_colors, seconds);
+    printf(
+        ": %zu images, %zu regions, %zu dose components, %zu beams, %zu track segments, %zu depth curves, %zu isodose levels, %zu "
+        "colours, written in %.2f s\n",
+        plan->n_images, plan->regions.n_regions, n_components, plan->n_beams, plan->tracks.n_segments, plan->n_curves,
+        plan->preferences.n_levels, plan->preferences.n_colors, seconds);
     print_noticed(&plan->report);
 }
 
@@ -88,7 +116,8 @@ int command_convert(int argc, char **argv)
         return EXIT_DONE;
     }
     if (argc - optind != 2)
-        return command_usage_error("convert", "the plan's folder and a new folder are needed, %d words are given", argc - optind);
+        return command_usage_error("convert", "the plan's folder and a new folder are needed, %d words are given",
+                                   argc - optind);
     struct plan *plan = command_open_plan("convert", argv[optind]);
     if (!plan)
         return EXIT_REFUSED;

@@ -18,18 +18,19 @@ struct export_job {
 
 static void print_help(void)
 {
-    printf("usage: beamroom export DIR REGION -o OUT.stl|OUT.ply|OUT.glb [OPTION]...\n"
-           "Writes the surface of a region of the plan in the folder DIR, with everything inside it, for other programs.\n\n"
-           "  -o, --output OUT  the file; its ending says whether binary STL, binary PLY or GLB (glTF 2.0)\n"
-           "  --as WHAT         surface (default), univels, nurbs or fan: what the region is shown as\n"
-           "  --algorithm NAME  of a surface: smooth (default), marching-cubes or eight-cell, Sera3d's: through the centres of univels\n"
-           "  --order N         of NURBS: 2 linear, 3 quadratic, 4 cubic (default)\n"
-           "  --sampling HOW    of NURBS: traces (default) or degree-bins\n"
-           "  --bins N          of NURBS: control points around a slice, 8 to 360\n"
-           "  --normals WHICH   vertex (default) or face: PLY and GLB without vertex normals, for flat shading\n"
-           "  --help            this text\n\n"
-           "REGION is an id, as beamroom info --json gives it. Points are mm toward the patient's left, back and top (DICOM LPS);\n"
-           "a GLB's node turns them to metres, top up, as glTF wants. The file names plan and region by id, and nobody else.\n");
+    printf(
+        "usage: beamroom export DIR REGION -o OUT.stl|OUT.ply|OUT.glb [OPTION]...\n"
+        "Writes the surface of a region of the plan in the folder DIR, with everything inside it, for other programs.\n\n"
+        "  -o, --output OUT  the file; its ending says whether binary STL, binary PLY or GLB (glTF 2.0)\n"
+        "  --as WHAT         surface (default), univels, nurbs or fan: what the region is shown as\n"
+        "  --algorithm NAME  of a surface: smooth (default), marching-cubes or eight-cell, Sera3d's: through the centres of univels\n"
+        "  --order N         of NURBS: 2 linear, 3 quadratic, 4 cubic (default)\n"
+        "  --sampling HOW    of NURBS: traces (default) or degree-bins\n"
+        "  --bins N          of NURBS: control points around a slice, 8 to 360\n"
+        "  --normals WHICH   vertex (default) or face: PLY and GLB without vertex normals, for flat shading\n"
+        "  --help            this text\n\n"
+        "REGION is an id, as beamroom info --json gives it. Points are mm toward the patient's left, back and top (DICOM LPS);\n"
+        "a GLB's node turns them to metres, top up, as glTF wants. The file names plan and region by id, and nobody else.\n");
 }
 
 /* NULL with err, which lists the regions there are. */
@@ -58,10 +59,16 @@ static bool export_region(struct plan *plan, const struct export_job *job, struc
         return false;
     struct surface_facts facts;
     const struct shape_query *query = &job->shape;
-    struct shape *shape = plan_shape(plan, (size_t)(region - plan->regions.regions), &query->key, SURFACE_FULL, &facts, err);
-    const char *method = query->key.representation == REPRESENTATION_SURFACE ? surface_algorithm_word(query->key.algorithm)
-                                                                             : region_representation_word(query->key.representation);
-    const struct mesh_export_about about = { plan->id, region->id, method, plan->is_phantom, query->is_faceted || (shape && shape->is_faceted),
+    struct shape *shape =
+        plan_shape(plan, (size_t)(region - plan->regions.regions), &query->key, SURFACE_FULL, &facts, err);
+    const char *method = query->key.representation == REPRESENTATION_SURFACE
+                             ? surface_algorithm_word(query->key.algorithm)
+                             : region_representation_word(query->key.representation);
+    const struct mesh_export_about about = { plan->id,
+                                             region->id,
+                                             method,
+                                             plan->is_phantom,
+                                             query->is_faceted || (shape && shape->is_faceted),
                                              { region->rgb[0], region->rgb[1], region->rgb[2] } };
     size_t n_bytes = 0;
     uint8_t *bytes = shape ? mesh_export(shape->mesh, query->format, &about, FILE_MAX_BYTES, &n_bytes, err) : NULL;
@@ -70,8 +77,8 @@ static bool export_region(struct plan *plan, const struct export_job *job, struc
     free(bytes);
     if (is_written) {
         text_print(stdout, job->out, 0);
-        printf(": %zu triangles, %zu vertices, %.2f cm2, %.3f cm3, %zu bytes\n", facts.n_triangles, facts.n_vertices, facts.area_mm2 / 100,
-               facts.volume_mm3 / 1000, n_bytes);
+        printf(": %zu triangles, %zu vertices, %.2f cm2, %.3f cm3, %zu bytes\n", facts.n_triangles, facts.n_vertices,
+               facts.area_mm2 / 100, facts.volume_mm3 / 1000, n_bytes);
     }
     return is_written;
 }
@@ -90,18 +97,20 @@ static const char *format_of_path(const char *path)
 /* false with *code when there is nothing to write. What decides the shape is read as the API reads it. */
 static bool parse_arguments(int argc, char **argv, struct export_job *job, cJSON *words, int *code)
 {
-    static const struct option long_options[] = {
-        { "output", required_argument, NULL, 'o' },    { "as", required_argument, NULL, 'r' },   { "algorithm", required_argument, NULL, 'a' },
-        { "normals", required_argument, NULL, 'n' },   { "order", required_argument, NULL, 'd' }, { "sampling", required_argument, NULL, 's' },
-        { "bins", required_argument, NULL, 'b' },      { "help", no_argument, NULL, 'h' },       { NULL, 0, NULL, 0 }
-    };
+    static const struct option long_options[] = { { "output", required_argument, NULL, 'o' },
+                                                  { "as", required_argument, NULL, 'r' },
+                                                  { "algorithm", required_argument, NULL, 'a' },
+                                                  { "normals", required_argument, NULL, 'n' },
+                                                  { "order", required_argument, NULL, 'd' },
+                                                  { "sampling", required_argument, NULL, 's' },
+                                                  { "bins", required_argument, NULL, 'b' },
+                                                  { "help", no_argument, NULL, 'h' },
+                                                  { NULL, 0, NULL, 0 } };
     *code = EXIT_USAGE;
     opterr = 0;
     for (int option, at = -1; (option = getopt_long(argc, argv, "ho:", long_options, &at)) != -1;) {
         switch (option) {
-        case 'o':
-            job->out = optarg;
-            break;
+        case 'o': job->out = optarg; break;
         case 'h':
             print_help();
             *code = EXIT_DONE;
@@ -114,7 +123,8 @@ static bool parse_arguments(int argc, char **argv, struct export_job *job, cJSON
         }
     }
     if (argc - optind != 2)
-        return command_usage_error("export", "one folder and one region are needed, %d words are given", argc - optind), false;
+        return command_usage_error("export", "one folder and one region are needed, %d words are given", argc - optind),
+               false;
     if (!job->out)
         return command_usage_error("export", "where to write is needed: -o OUT.stl, OUT.ply or OUT.glb"), false;
     if (!format_of_path(job->out))

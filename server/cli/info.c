@@ -11,13 +11,14 @@ enum { LINE_LETTERS = 96, NAME_LETTERS = 34, ID_LETTERS = 12 };
 
 static void print_help(void)
 {
-    fputs("usage: beamroom info DIR [--json]\n"
-          "Opens the plan in the folder DIR and prints what it holds: images, regions and what lies inside what, doses,\n"
-          "beams, particle tracks, and everything noticed while reading.\n\n"
-          "  --json   the same as one JSON object, as the daemon's API gives it\n"
-          "  --help   this text\n\n"
-          "Points and lengths are millimetres toward the patient's left, back and top (LPS).\n",
-          stdout);
+    fputs(
+        "usage: beamroom info DIR [--json]\n"
+        "Opens the plan in the folder DIR and prints what it holds: images, regions and what lies inside what, doses,\n"
+        "beams, particle tracks, and everything noticed while reading.\n\n"
+        "  --json   the same as one JSON object, as the daemon's API gives it\n"
+        "  --help   this text\n\n"
+        "Points and lengths are millimetres toward the patient's left, back and top (LPS).\n",
+        stdout);
 }
 
 static void print_grid(const struct grid *grid)
@@ -75,13 +76,13 @@ static void print_regions_in(const struct region_set *set, int parent)
 
 static void print_regions(const struct region_set *set)
 {
-    static const char *const source[] = {
-        [HIERARCHY_NONE] = "", [HIERARCHY_FILE] = ", inside each other as the plan says", [HIERARCHY_DERIVED] = ", inside each other as derived"
-    };
+    static const char *const source[] = { [HIERARCHY_NONE] = "",
+                                          [HIERARCHY_FILE] = ", inside each other as the plan says",
+                                          [HIERARCHY_DERIVED] = ", inside each other as derived" };
     if (set->n_regions == 0)
         return;
-    printf("\n%zu region%s%s\n%*s  %10s%14s  %s\n", set->n_regions, set->n_regions == 1 ? "" : "s", source[set->hierarchy], NAME_LETTERS,
-           "", "cm3", "univels", "centre, mm");
+    printf("\n%zu region%s%s\n%*s  %10s%14s  %s\n", set->n_regions, set->n_regions == 1 ? "" : "s",
+           source[set->hierarchy], NAME_LETTERS, "", "cm3", "univels", "centre, mm");
     print_regions_in(set, -1);
     for (size_t i = 0; i < set->n_regions; i++)
         if (set->regions[i].touches_edge) {
@@ -107,7 +108,8 @@ static void print_doses(const struct plan *plan)
         text_print(stdout, *dose->per ? dose->per : "(not said)", 0);
         printf("%s", dose->mask ? ", with a mask of where it is valid" : "");
         if (dose->has_frame && dose->frame != DOSE_FRAME_SAME)
-            printf(", frame of reference %s", dose->frame == DOSE_FRAME_DIFFERS ? "differs from the image's" : "unknown");
+            printf(", frame of reference %s",
+                   dose->frame == DOSE_FRAME_DIFFERS ? "differs from the image's" : "unknown");
         printf("\n");
         for (size_t c = 0; c < dose->n_components; c++) {
             const struct dose_component *component = &dose->components[c];
@@ -160,7 +162,8 @@ static void print_delivery(const struct beam *beam)
     printf("  position %s\n    %zu control points", patient_position_word(d->patient_position), d->n_control_points);
     print_if_given("source to axis", d->sad_mm, "mm");
     if (isfinite(d->opening_x_mm[0]) && isfinite(d->opening_y_mm[0]))
-        printf("  opening %.4g x %.4g mm", d->opening_x_mm[1] - d->opening_x_mm[0], d->opening_y_mm[1] - d->opening_y_mm[0]);
+        printf("  opening %.4g x %.4g mm", d->opening_x_mm[1] - d->opening_x_mm[0],
+               d->opening_y_mm[1] - d->opening_y_mm[0]);
     if (isfinite(d->dose_gy) || isfinite(d->meterset))
         printf("\n  ");
     print_if_given("dose", d->dose_gy, "Gy a fraction");
@@ -177,7 +180,8 @@ static void print_beams(const struct plan *plan)
         struct vec3 entry = beam->entry_lps_mm, target = beam->target_lps_mm;
         printf("  ");
         text_print(stdout, beam->id, 12);
-        printf("  from (%.1f, %.1f, %.1f) to (%.1f, %.1f, %.1f)", entry.x, entry.y, entry.z, target.x, target.y, target.z);
+        printf("  from (%.1f, %.1f, %.1f) to (%.1f, %.1f, %.1f)", entry.x, entry.y, entry.z, target.x, target.y,
+               target.z);
         if (isfinite(beam->aperture_mm))
             printf(", aperture %.4g mm\n", beam->aperture_mm);
         else
@@ -196,7 +200,7 @@ static void print_tracks(const struct track_set *tracks)
     printf(" segments\n");
     for (int class = 0; class < TRACK_N_CLASSES; class ++)
         if (tracks->n_of_class[class] > 0) {
-            printf("  %-15s", track_class_word((enum track_class)class));
+            printf("  %-15s", track_class_word((enum track_class) class));
             text_print_count(stdout, tracks->n_of_class[class], 9);
             printf("\n");
         }
@@ -210,8 +214,8 @@ static void print_curves(const struct plan *plan)
         text_print(stdout, curve->id, 0);
         printf(", %s per ", curve->unit);
         text_print(stdout, curve->per, 0);
-        printf(", depth %.4g to %.4g mm, radius %.4g to %.4g mm\n", curve->depths_mm[0], curve->depths_mm[curve->n_depths - 1],
-               curve->radii_mm[0], curve->radii_mm[curve->n_radii - 1]);
+        printf(", depth %.4g to %.4g mm, radius %.4g to %.4g mm\n", curve->depths_mm[0],
+               curve->depths_mm[curve->n_depths - 1], curve->radii_mm[0], curve->radii_mm[curve->n_radii - 1]);
         for (size_t c = 0; c < curve->n_columns; c++) {
             char unit[DOSE_UNIT_SIZE];
             double depth, value;
@@ -229,8 +233,11 @@ static void print_preferences(const struct plan_preferences *preferences)
     if (preferences->n_levels > 0)
         printf("\nContour levels\n ");
     for (size_t i = 0; i < preferences->n_levels; i++)
-        printf(" %.4g %% #%02x%02x%02x%s", preferences->levels[i].percent, preferences->levels[i].rgb[0], preferences->levels[i].rgb[1],
-               preferences->levels[i].rgb[2], i + 1 == preferences->n_levels ? "\n" : i % 6 == 5 ? ",\n " : ",");
+        printf(" %.4g %% #%02x%02x%02x%s", preferences->levels[i].percent, preferences->levels[i].rgb[0],
+               preferences->levels[i].rgb[1], preferences->levels[i].rgb[2],
+               i + 1 == preferences->n_levels ? "\n"
+               : i % 6 == 5                   ? ",\n "
+                                              : ",");
 }
 
 static void print_report(const struct report *report)
@@ -283,14 +290,9 @@ int command_info(int argc, char **argv)
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "h", long_options, NULL)) != -1;) {
         switch (option) {
-        case 'j':
-            is_json = true;
-            break;
-        case 'h':
-            print_help();
-            return EXIT_DONE;
-        default:
-            return command_usage_error("info", "'%s' is not an option", argv[optind - 1]);
+        case 'j': is_json = true; break;
+        case 'h': print_help(); return EXIT_DONE;
+        default: return command_usage_error("info", "'%s' is not an option", argv[optind - 1]);
         }
     }
     if (argc - optind != 1)

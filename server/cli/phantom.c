@@ -10,16 +10,17 @@
 
 static void print_help(void)
 {
-    printf("usage: beamroom phantom DIR [--size IxJxK] [--seed N] [--force]\n"
-           "Writes the demo plan into the new folder DIR: a head of ellipsoids after a published phantom, with an image,\n"
-           "five regions, four dose components, a beam and particle tracks. DIR/README.txt says where each number is from.\n\n"
-           "  --size IxJxK  voxels of image and regions toward left, back and top; each %d to %d (default %ux%ux%u)\n"
-           "  --seed N      of the image's noise and the tracks, 0 or more (default %" PRIu64 ")\n"
-           "  --force       replace a phantom that is there; a folder that holds anything else is never touched\n"
-           "  --help        this text\n\n"
-           "Equal sizes and seeds give equal files, byte for byte.\n",
-           PHANTOM_MIN_SIDE, PHANTOM_MAX_SIDE, phantom_defaults.size[0], phantom_defaults.size[1], phantom_defaults.size[2],
-           phantom_defaults.seed);
+    printf(
+        "usage: beamroom phantom DIR [--size IxJxK] [--seed N] [--force]\n"
+        "Writes the demo plan into the new folder DIR: a head of ellipsoids after a published phantom, with an image,\n"
+        "five regions, four dose components, a beam and particle tracks. DIR/README.txt says where each number is from.\n\n"
+        "  --size IxJxK  voxels of image and regions toward left, back and top; each %d to %d (default %ux%ux%u)\n"
+        "  --seed N      of the image's noise and the tracks, 0 or more (default %" PRIu64 ")\n"
+        "  --force       replace a phantom that is there; a folder that holds anything else is never touched\n"
+        "  --help        this text\n\n"
+        "Equal sizes and seeds give equal files, byte for byte.\n",
+        PHANTOM_MIN_SIDE, PHANTOM_MAX_SIDE, phantom_defaults.size[0], phantom_defaults.size[1],
+        phantom_defaults.size[2], phantom_defaults.seed);
 }
 
 /* Digits only, and no more than fits: strtoull alone would take "-1" and blanks. */
@@ -68,16 +69,12 @@ int command_phantom(int argc, char **argv)
             break;
         case 'n':
             if (!parse_seed(optarg, &options.seed))
-                return command_usage_error("phantom", "--seed '%s' is not a whole number from 0 to %" PRIu64, optarg, UINT64_MAX);
+                return command_usage_error("phantom", "--seed '%s' is not a whole number from 0 to %" PRIu64, optarg,
+                                           UINT64_MAX);
             break;
-        case 'f':
-            replace = true;
-            break;
-        case 'h':
-            print_help();
-            return EXIT_DONE;
-        default:
-            return command_usage_error("phantom", "'%s' is not an option or lacks its value", argv[optind - 1]);
+        case 'f': replace = true; break;
+        case 'h': print_help(); return EXIT_DONE;
+        default: return command_usage_error("phantom", "'%s' is not an option or lacks its value", argv[optind - 1]);
         }
     }
     if (argc - optind != 1)
@@ -86,10 +83,11 @@ int command_phantom(int argc, char **argv)
     struct error err = { 0 };
     int64_t start_us = clock_now_us();
     if (!phantom_write(argv[optind], &options, replace, &err)) {
-        fprintf(stderr, "beamroom phantom: %s%s\n", err.text, err.code == ERROR_STATE && !replace ? "; --force replaces a phantom" : "");
+        fprintf(stderr, "beamroom phantom: %s%s\n", err.text,
+                err.code == ERROR_STATE && !replace ? "; --force replaces a phantom" : "");
         return err.code == ERROR_RANGE || err.code == ERROR_LIMIT ? EXIT_USAGE : EXIT_REFUSED;
     }
-    printf("%s: phantom of %u x %u x %u voxels, seed %" PRIu64 ", written in %.2f s\n", argv[optind], options.size[0], options.size[1],
-           options.size[2], options.seed, (double)(clock_now_us() - start_us) / 1e6);
+    printf("%s: phantom of %u x %u x %u voxels, seed %" PRIu64 ", written in %.2f s\n", argv[optind], options.size[0],
+           options.size[1], options.size[2], options.seed, (double)(clock_now_us() - start_us) / 1e6);
     return EXIT_DONE;
 }

@@ -27,21 +27,22 @@ struct render_job {
 
 static void print_help(void)
 {
-    printf("usage: beamroom render DIR -o OUT.png|OUT.jpg [OPTION]...\n"
-           "Draws one picture of the plan in the folder DIR, the same that the daemon shows for the same scene and view.\n\n"
-           "  -o, --output OUT  the picture; its ending says whether PNG or JPEG\n"
-           "  --scene FILE      JSON: what differs from the scene a new room starts with (a merge patch, RFC 7396)\n"
-           "  --view FILE       JSON: what differs from the view from the front, 1024x768; camera, kind, size, override\n"
-           "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
-           "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
-           "  --quality N       of a JPEG, 1 to 100 (default %d)\n"
-           "  --help            this text\n\n"
-           "The fields of scene and view are those of the daemon's API. Equal plans, scenes and views give equal pictures on the\n"
-           "same back end.\n",
-           DEFAULT_QUALITY);
+    printf(
+        "usage: beamroom render DIR -o OUT.png|OUT.jpg [OPTION]...\n"
+        "Draws one picture of the plan in the folder DIR, the same that the daemon shows for the same scene and view.\n\n"
+        "  -o, --output OUT  the picture; its ending says whether PNG or JPEG\n"
+        "  --scene FILE      JSON: what differs from the scene a new room starts with (a merge patch, RFC 7396)\n"
+        "  --view FILE       JSON: what differs from the view from the front, 1024x768; camera, kind, size, override\n"
+        "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
+        "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
+        "  --quality N       of a JPEG, 1 to 100 (default %d)\n"
+        "  --help            this text\n\n"
+        "The fields of scene and view are those of the daemon's API. Equal plans, scenes and views give equal pictures on the\n"
+        "same back end.\n",
+        DEFAULT_QUALITY);
 }
 
-/* ---- what to draw --------------------------------------------------------------------------------------------------- */
+/* ---- what to draw ----------------------------------------------------------------------------------------------- */
 
 /* "FILE: /the/field is 3, expected 0 to 1": a detail that starts with the field's place needs it only once. */
 static bool refuse_problem(const char *path, const struct problem *problem, struct error *err)
@@ -157,14 +158,15 @@ done:
     return snapshot;
 }
 
-/* ---- the picture ---------------------------------------------------------------------------------------------------- */
+/* ---- the picture ------------------------------------------------------------------------------------------------ */
 
 static bool write_picture(const struct image *image, const struct render_job *job, struct error *err)
 {
     const struct encode_options options = { job->codec, job->quality, true };
     struct encoded encoded = { 0 };
     struct encoder *encoder = encoder_create();
-    bool is_written = encode_image(encoder, image, &options, &encoded, err) && file_write(job->out, encoded.bytes, encoded.n_bytes, err);
+    bool is_written = encode_image(encoder, image, &options, &encoded, err) &&
+                      file_write(job->out, encoded.bytes, encoded.n_bytes, err);
     free(encoded.bytes);
     encoder_destroy(encoder);
     return is_written;
@@ -192,7 +194,8 @@ static bool draw(struct plan *plan, const struct render_job *job, struct error *
     struct image *image = NULL;
     struct renderer *renderer = renderer_create(job->back_end, err);
     if (renderer) {
-        const struct render_options options = { snapshot->view.size_px[0], snapshot->view.size_px[1], SURFACE_FULL, true };
+        const struct render_options options = { snapshot->view.size_px[0], snapshot->view.size_px[1], SURFACE_FULL,
+                                                true };
         struct camera camera;
         struct render_timing timing = { 0 };
         int64_t start_us = clock_now_us();
@@ -201,7 +204,8 @@ static bool draw(struct plan *plan, const struct render_job *job, struct error *
         if (is_drawn) {
             text_print(stdout, job->out, 0);
             printf(": %d x %d, %zu triangles, %.0f ms, %s\n", image->width_px, image->height_px, timing.n_triangles,
-                   (double)(clock_now_us() - start_us) / 1000, render_back_end_word(renderer_facts(renderer)->back_end));
+                   (double)(clock_now_us() - start_us) / 1000,
+                   render_back_end_word(renderer_facts(renderer)->back_end));
         }
         if (is_drawn)
             print_missing(snapshot);
@@ -213,7 +217,7 @@ static bool draw(struct plan *plan, const struct render_job *job, struct error *
     return is_drawn;
 }
 
-/* ---- the command line ----------------------------------------------------------------------------------------------- */
+/* ---- the command line ------------------------------------------------------------------------------------------- */
 
 static bool parse_between(const char **at, int low, int high, int *number)
 {
@@ -229,7 +233,8 @@ static bool parse_between(const char **at, int low, int high, int *number)
 
 static bool parse_size(const char *text, int size_px[2])
 {
-    return parse_between(&text, 16, 4096, &size_px[0]) && *text++ == 'x' && parse_between(&text, 16, 4096, &size_px[1]) && *text == 0;
+    return parse_between(&text, 16, 4096, &size_px[0]) && *text++ == 'x' &&
+           parse_between(&text, 16, 4096, &size_px[1]) && *text == 0;
 }
 
 static bool parse_quality(const char *text, int *quality)
@@ -249,30 +254,31 @@ static bool codec_from_path(const char *path, enum encode_codec *codec)
 /* false with *code when there is nothing to draw */
 static bool parse_arguments(int argc, char **argv, struct render_job *job, int *code)
 {
-    static const struct option long_options[] = { { "output", required_argument, NULL, 'o' }, { "scene", required_argument, NULL, 's' },
-                                                  { "view", required_argument, NULL, 'v' },   { "size", required_argument, NULL, 'z' },
-                                                  { "gl", required_argument, NULL, 'g' },     { "quality", required_argument, NULL, 'q' },
-                                                  { "help", no_argument, NULL, 'h' },         { NULL, 0, NULL, 0 } };
+    static const struct option long_options[] = {
+        { "output", required_argument, NULL, 'o' }, { "scene", required_argument, NULL, 's' },
+        { "view", required_argument, NULL, 'v' },   { "size", required_argument, NULL, 'z' },
+        { "gl", required_argument, NULL, 'g' },     { "quality", required_argument, NULL, 'q' },
+        { "help", no_argument, NULL, 'h' },         { NULL, 0, NULL, 0 }
+    };
     *code = EXIT_USAGE;
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
         switch (option) {
-        case 'o':
-            job->out = optarg;
-            break;
-        case 's':
-            job->scene_path = optarg;
-            break;
-        case 'v':
-            job->view_path = optarg;
-            break;
+        case 'o': job->out = optarg; break;
+        case 's': job->scene_path = optarg; break;
+        case 'v': job->view_path = optarg; break;
         case 'z':
             if (!parse_size(optarg, job->size_px))
-                return command_usage_error("render", "--size '%s' is not of the form 1024x768, each 16 to 4096", optarg), false;
+                return command_usage_error("render", "--size '%s' is not of the form 1024x768, each 16 to 4096",
+                                           optarg),
+                       false;
             break;
         case 'g':
             if (!render_back_end_from_word(optarg, &job->back_end))
-                return command_usage_error("render", "--gl '%s' is not auto, egl-device, egl-surfaceless, osmesa or soft", optarg), false;
+                return command_usage_error("render",
+                                           "--gl '%s' is not auto, egl-device, egl-surfaceless, osmesa or soft",
+                                           optarg),
+                       false;
             break;
         case 'q':
             if (!parse_quality(optarg, &job->quality))

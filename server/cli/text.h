@@ -1,5 +1,6 @@
 #pragma once
-/* Words on a terminal: names come from files, so nothing that steers a terminal gets through, and columns count letters. */
+/* Words on a terminal: names come from files, so nothing that steers a terminal gets through, and columns count
+ * letters. */
 #include <stdio.h>
 
 /* text, its control characters and broken UTF-8 as '?', padded with blanks to at least width letters */

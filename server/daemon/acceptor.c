@@ -25,18 +25,19 @@ struct pending {
     int socket; /* -1: free */
     struct address peer;
     int64_t until_us;
-    bool is_refused;  /* has been told; what it still sends is dropped, or its system would take the answer back */
+    bool is_refused; /* has been told; what it still sends is dropped, or its system would take the answer back */
     size_t n_dropped;
 };
 
-struct websocket { /* a connection that the net thread has, from being handed over to its end */
+struct websocket {       /* a connection that the net thread has, from being handed over to its end */
     atomic_bool is_used; /* set by the acceptor's thread, cleared by the net thread */
     struct address counted;
 };
 
 enum {
     N_SLOTS = ACCEPTOR_MAX_PENDING + ACCEPTOR_MAX_REFUSED,
-    MAX_AT_ONCE = 256, /* connections taken before other events, and the question whether the thread lives, have their turn */
+    MAX_AT_ONCE =
+        256, /* connections taken before other events, and the question whether the thread lives, have their turn */
     BACKLOG = 4096 /* connections the system takes for us; what does not fit comes again a second later */
 };
 
@@ -65,8 +66,8 @@ static void free_slot(struct acceptor *acceptor, struct pending *slot)
     slot->socket = -1;
 }
 
-/* Takes it out of epoll first: a process that is being started has copies of all descriptors for a moment, and what is only closed would be
- * watched that long; its events would name a slot that another connection has by then. */
+/* Takes it out of epoll first: a process that is being started has copies of all descriptors for a moment, and what is
+ * only closed would be watched that long; its events would name a slot that another connection has by then. */
 static void close_pending(const struct acceptor *acceptor, int socket)
 {
     (void)epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, socket, NULL); /* fails for one that is not watched yet */
@@ -115,7 +116,8 @@ static bool linger(const struct acceptor *acceptor, struct pending *slot)
 {
     enum { AT_ONCE = 64 << 10 };
     slot->n_dropped += AT_ONCE; /* at most */
-    if (refusal_drain(slot->socket, AT_ONCE) && slot->n_dropped < ACCEPTOR_MAX_DROPPED && acceptor->n_refused <= ACCEPTOR_MAX_REFUSED)
+    if (refusal_drain(slot->socket, AT_ONCE) && slot->n_dropped < ACCEPTOR_MAX_DROPPED &&
+        acceptor->n_refused <= ACCEPTOR_MAX_REFUSED)
         return false;
     close_pending(acceptor, slot->socket);
     return true;
@@ -129,8 +131,8 @@ static void websocket_ended(void *context)
 }
 
 /* Hands a WebSocket over, or says that there are too many. */
-static bool hand_to_net(struct acceptor *acceptor, int socket, const struct handshake *handshake, const struct address *client,
-                        struct problem *problem)
+static bool hand_to_net(struct acceptor *acceptor, int socket, const struct handshake *handshake,
+                        const struct address *client, struct problem *problem)
 {
     struct address counted = address_counted(client);
     struct websocket *unused = NULL;
@@ -143,7 +145,8 @@ static bool hand_to_net(struct acceptor *acceptor, int socket, const struct hand
             n_same += address_is_equal(&websocket->counted, &counted);
     }
     if (!unused || n_same >= ACCEPTOR_MAX_WEBSOCKETS_PER_ADDRESS) {
-        problem_set(problem, PROBLEM_LIMIT, "", "", "too many WebSockets are open: at most %d in all, %d from one address", ACCEPTOR_MAX_WEBSOCKETS,
+        problem_set(problem, PROBLEM_LIMIT, "", "",
+                    "too many WebSockets are open: at most %d in all, %d from one address", ACCEPTOR_MAX_WEBSOCKETS,
                     ACCEPTOR_MAX_WEBSOCKETS_PER_ADDRESS);
         problem->retry_after_ms = ACCEPTOR_RETRY_MS;
         return false;
@@ -177,8 +180,10 @@ static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended
         refuse(acceptor, slot, &problem);
         return linger(acceptor, slot);
     }
-    epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, slot->socket, NULL); /* a socket that was looked at before it was added is not there */
-    struct address client = address_of_client(&slot->peer, acceptor->options.trusted, acceptor->options.n_trusted, request.forwarded, request.n_forwarded);
+    epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, slot->socket,
+              NULL); /* a socket that was looked at before it was added is not there */
+    struct address client = address_of_client(&slot->peer, acceptor->options.trusted, acceptor->options.n_trusted,
+                                              request.forwarded, request.n_forwarded);
     if (kind == HEAD_HTTP) {
         http_add_connection(acceptor->options.http, slot->socket, &slot->peer, &client);
         return true;
@@ -197,7 +202,8 @@ static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended
 static bool end_late(struct acceptor *acceptor, struct pending *slot)
 {
     struct problem problem;
-    ssize_t n = slot->is_refused ? 0 : recv(slot->socket, acceptor->bytes, sizeof acceptor->bytes, MSG_PEEK | MSG_DONTWAIT);
+    ssize_t n =
+        slot->is_refused ? 0 : recv(slot->socket, acceptor->bytes, sizeof acceptor->bytes, MSG_PEEK | MSG_DONTWAIT);
     if (n <= 0) { /* one that said nothing expects no answer: browsers open connections before they need them */
         close_pending(acceptor, slot->socket);
         return true;
@@ -224,7 +230,8 @@ static void accept_one(struct acceptor *acceptor, int socket, const struct addre
     }
     if (!has_room && !slot->is_refused) {
         struct problem problem; /* the oldest ones run into their time limit soon */
-        problem_set(&problem, PROBLEM_LIMIT, "", "", "too many connections that have not said what they want: at most %d in all, %d from one address",
+        problem_set(&problem, PROBLEM_LIMIT, "", "",
+                    "too many connections that have not said what they want: at most %d in all, %d from one address",
                     ACCEPTOR_MAX_PENDING, ACCEPTOR_MAX_PENDING_PER_ADDRESS);
         problem.retry_after_ms = ACCEPTOR_HEAD_MS;
         refuse(acceptor, slot, &problem);
@@ -233,8 +240,10 @@ static void accept_one(struct acceptor *acceptor, int socket, const struct addre
             return;
         }
     }
-    /* edge-triggered: a peek leaves the bytes there, and only new ones may wake us; what came since the first look wakes us at once */
-    struct epoll_event event = { .events = EPOLLIN | EPOLLRDHUP | EPOLLET, .data.u64 = (uint64_t)(slot - acceptor->pending) };
+    /* edge-triggered: a peek leaves the bytes there, and only new ones may wake us; what came since the first look
+     * wakes us at once */
+    struct epoll_event event = { .events = EPOLLIN | EPOLLRDHUP | EPOLLET,
+                                 .data.u64 = (uint64_t)(slot - acceptor->pending) };
     if (epoll_ctl(acceptor->epoll, EPOLL_CTL_ADD, socket, &event) != 0) {
         close(socket);
         free_slot(acceptor, slot);
@@ -313,18 +322,24 @@ static bool start_listening(struct acceptor *acceptor, const char *listen_at, st
     size_t n = colon ? (size_t)(colon - listen_at) : 0;
     bool is_bracketed = n >= 2 && listen_at[0] == '[' && listen_at[n - 1] == ']';
     if (!colon || n == 0 || n >= sizeof host)
-        return error_set(err, ERROR_FORMAT, "--listen %.80s: expected ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080", listen_at);
+        return error_set(err, ERROR_FORMAT, "--listen %.80s: expected ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080",
+                         listen_at);
     (void)snprintf(host, sizeof host, "%.*s", (int)(is_bracketed ? n - 2 : n), listen_at + is_bracketed);
-    if (colon[1 + strspn(colon + 1, "0123456789")] || strlen(colon + 1) - 1 >= 5 || strtoul(colon + 1, NULL, 10) > 65535)
-        return error_set(err, ERROR_RANGE, "--listen %.80s: expected a port from 0 to 65535", listen_at); /* the library takes 16 bits of it */
-    struct addrinfo hints = { .ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE, .ai_socktype = SOCK_STREAM }, *found = NULL;
+    if (colon[1 + strspn(colon + 1, "0123456789")] || strlen(colon + 1) - 1 >= 5 ||
+        strtoul(colon + 1, NULL, 10) > 65535)
+        return error_set(err, ERROR_RANGE, "--listen %.80s: expected a port from 0 to 65535",
+                         listen_at); /* the library takes 16 bits of it */
+    struct addrinfo hints = { .ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE, .ai_socktype = SOCK_STREAM },
+                    *found = NULL;
     int failed = getaddrinfo(host, colon + 1, &hints, &found);
     if (failed)
-        return error_set(err, ERROR_FORMAT, "--listen %.80s: %s; expected a numeric address and port", listen_at, gai_strerror(failed));
+        return error_set(err, ERROR_FORMAT, "--listen %.80s: %s; expected a numeric address and port", listen_at,
+                         gai_strerror(failed));
     int on = 1;
     acceptor->listener = socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    bool ok = acceptor->listener >= 0 && setsockopt(acceptor->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) == 0 &&
-              bind(acceptor->listener, found->ai_addr, found->ai_addrlen) == 0 && listen(acceptor->listener, BACKLOG) == 0;
+    bool ok =
+        acceptor->listener >= 0 && setsockopt(acceptor->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) == 0 &&
+        bind(acceptor->listener, found->ai_addr, found->ai_addrlen) == 0 && listen(acceptor->listener, BACKLOG) == 0;
     freeaddrinfo(found);
     if (!ok)
         return error_set(err, ERROR_IO, "--listen %.80s: %s", listen_at, strerror(errno));
@@ -332,8 +347,10 @@ static bool start_listening(struct acceptor *acceptor, const char *listen_at, st
     socklen_t n_bound = sizeof bound;
     if (getsockname(acceptor->listener, (struct sockaddr *)&bound, &n_bound) != 0)
         return error_set(err, ERROR_IO, "--listen %.80s: %s", listen_at, strerror(errno));
-    unsigned port = ntohs(bound.ss_family == AF_INET ? ((struct sockaddr_in *)&bound)->sin_port : ((struct sockaddr_in6 *)&bound)->sin6_port);
-    (void)snprintf(acceptor->url, sizeof acceptor->url, bound.ss_family == AF_INET6 ? "http://[%s]:%u" : "http://%s:%u", host, port);
+    unsigned port = ntohs(bound.ss_family == AF_INET ? ((struct sockaddr_in *)&bound)->sin_port
+                                                     : ((struct sockaddr_in6 *)&bound)->sin6_port);
+    (void)snprintf(acceptor->url, sizeof acceptor->url, bound.ss_family == AF_INET6 ? "http://[%s]:%u" : "http://%s:%u",
+                   host, port);
     return true;
 }
 
@@ -359,7 +376,8 @@ struct acceptor *acceptor_create(const struct acceptor_options *options, struct 
     acceptor->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (!start_listening(acceptor, options->listen, err))
         goto fail;
-    if (acceptor->epoll < 0 || !watch(acceptor, acceptor->wake, wake_tag) || !watch(acceptor, acceptor->listener, listener_tag) ||
+    if (acceptor->epoll < 0 || !watch(acceptor, acceptor->wake, wake_tag) ||
+        !watch(acceptor, acceptor->listener, listener_tag) ||
         pthread_create(&acceptor->thread, NULL, run, acceptor) != 0) {
         error_set(err, ERROR_IO, "the acceptor did not start: %s", strerror(errno));
         goto fail;

@@ -17,7 +17,7 @@ struct heartbeat {
     struct http *http;
     struct acceptor *acceptor;
     atomic_bool has_moved[N_THREADS]; /* since it was asked last */
-    bool is_late; /* has been logged */
+    bool is_late;                     /* has been logged */
 };
 
 static void mark(struct net *net, void *moved)
@@ -64,7 +64,8 @@ void heartbeat_beat(struct heartbeat *heartbeat)
     for (int i = 0; i < N_THREADS; i++) {
         bool has_moved = atomic_load(&heartbeat->has_moved[i]);
         if (!has_moved && !heartbeat->is_late)
-            log_warn("the %s thread has not moved for %lld ms", names[i], (long long)(heartbeat_wait_us(heartbeat) / 1000));
+            log_warn("the %s thread has not moved for %lld ms", names[i],
+                     (long long)(heartbeat_wait_us(heartbeat) / 1000));
         have_all_moved = have_all_moved && has_moved;
     }
     heartbeat->is_late = !have_all_moved;

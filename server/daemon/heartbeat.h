@@ -1,6 +1,7 @@
 #pragma once
-/* Whether the threads that serve still move. Each is asked to set a mark; only when all have is the service manager told that we live, and
- * asks again. A thread that hangs leaves its mark unset: the manager then ends the process and starts another one. */
+/* Whether the threads that serve still move. Each is asked to set a mark; only when all have is the service manager
+ * told that we live, and asks again. A thread that hangs leaves its mark unset: the manager then ends the process and
+ * starts another one. */
 #include <stdint.h>
 
 struct net;

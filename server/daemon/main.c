@@ -1,4 +1,5 @@
-/* beamroomd: reads the settings, starts net, HTTP and the acceptor in this order, waits for a signal, stops them in the other. */
+/* beamroomd: reads the settings, starts net, HTTP and the acceptor in this order, waits for a signal, stops them in the
+ * other. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <signal.h>
@@ -27,7 +28,8 @@ enum {
     PATH_SIZE = 4096,
     LISTED_EVERY_MS = 5,
     SLOW_LISTING_S = 10,
-    N_DESCRIPTORS = 4096 /* for every connection that is allowed: three of HTTP, one of a WebSocket; and for the renderers */
+    N_DESCRIPTORS =
+        4096 /* for every connection that is allowed: three of HTTP, one of a WebSocket; and for the renderers */
 };
 
 static bool make_folders(const char *folder, struct error *err)
@@ -39,7 +41,8 @@ static bool make_folders(const char *folder, struct error *err)
         if (kept != '/' && kept != 0)
             continue;
         *slash = 0;
-        if (mkdir(path, kept ? 0755 : 0700) != 0 && errno != EEXIST) /* what is ours is in the last; those above only lead there */
+        if (mkdir(path, kept ? 0755 : 0700) != 0 &&
+            errno != EEXIST) /* what is ours is in the last; those above only lead there */
             return error_set(err, ERROR_IO, "--data %.150s: %s", path, strerror(errno));
         *slash = kept;
         if (!kept)
@@ -116,8 +119,11 @@ static bool give_up_root(struct options *options, struct error *err)
     places[n++] = (struct privilege_place){ "--web", options->web_folder, R_OK | X_OK };
     places[n++] = (struct privilege_place){ "--renderer", options->renderer_path, R_OK | X_OK };
     const char *colon = options->listen ? strrchr(options->listen, ':') : NULL;
-    struct privilege_options wanted = { .user = options->user, .data_folder = options->data_folder, .port = colon ? (int)strtol(colon + 1, NULL, 10) : 8080,
-                                        .places = places, .n_places = n };
+    struct privilege_options wanted = { .user = options->user,
+                                        .data_folder = options->data_folder,
+                                        .port = colon ? (int)strtol(colon + 1, NULL, 10) : 8080,
+                                        .places = places,
+                                        .n_places = n };
     bool ok = privilege_give_up(&wanted, err);
     for (size_t i = 0; i < options->n_plan_folders; i++)
         options->plan_folders[i] = places[i].path;
@@ -133,7 +139,8 @@ static bool gl_is_known(const char *gl, struct error *err)
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
         if (strcmp(gl, known[i]) == 0)
             return true;
-    return error_set(err, ERROR_FORMAT, "--gl is \"%.40s\", expected auto, egl-device, egl-surfaceless, osmesa or soft", gl);
+    return error_set(err, ERROR_FORMAT, "--gl is \"%.40s\", expected auto, egl-device, egl-surfaceless, osmesa or soft",
+                     gl);
 }
 
 /* The limit that shells give is for programs that wait for descriptors with select; we do not. */
@@ -145,7 +152,8 @@ static void raise_descriptors(void)
     now.rlim_cur = now.rlim_max < N_DESCRIPTORS ? now.rlim_max : N_DESCRIPTORS;
     (void)setrlimit(RLIMIT_NOFILE, &now);
     if (now.rlim_cur < N_DESCRIPTORS)
-        log_warn("%llu descriptors are allowed; %d are needed for every connection that may be open", (unsigned long long)now.rlim_cur, N_DESCRIPTORS);
+        log_warn("%llu descriptors are allowed; %d are needed for every connection that may be open",
+                 (unsigned long long)now.rlim_cur, N_DESCRIPTORS);
 }
 
 static void hang_net(struct net *net, void *argument)
@@ -169,7 +177,8 @@ static void let_hang(const char *thread, struct net *net, struct http *http, str
         log_warn("hang is \"%.40s\", expected net, http or acceptor", thread);
 }
 
-/* Until the plan folders have been listed: whoever is told that the server is ready finds their plans. False: a signal came before. */
+/* Until the plan folders have been listed: whoever is told that the server is ready finds their plans. False: a signal
+ * came before. */
 static bool wait_for_plans(const struct net *net)
 {
     for (int n = 1; !net_plans_are_listed(net); n++) {
@@ -177,7 +186,8 @@ static bool wait_for_plans(const struct net *net)
             return false;
         if (n % (SLOW_LISTING_S * 1000 / LISTED_EVERY_MS) != 0)
             continue;
-        notify_send("EXTEND_TIMEOUT_USEC=60000000"); /* the server answers meanwhile: the service manager must not give it up */
+        notify_send(
+            "EXTEND_TIMEOUT_USEC=60000000"); /* the server answers meanwhile: the service manager must not give it up */
         if (n == SLOW_LISTING_S * 1000 / LISTED_EVERY_MS)
             log_warn("the plan folders are still being listed: a disk answers slowly or not at all");
     }
@@ -272,7 +282,7 @@ int main(int argc, char **argv)
     }
     log_start("beamroomd", options.log_level);
 
-    signal(SIGPIPE, SIG_IGN); /* a write to a closed socket is an error */
+    signal(SIGPIPE, SIG_IGN);         /* a write to a closed socket is an error */
     struct rlimit no_core = { 0, 0 }; /* and so is what is in memory */
     (void)setrlimit(RLIMIT_CORE, &no_core);
 
@@ -280,7 +290,8 @@ int main(int argc, char **argv)
     raise_descriptors();
 
     bool ok = !options.gl || gl_is_known(options.gl, &err);
-    ok = ok && fill_path(&options.data_folder, default_data_folder, &err) && fill_path(&options.web_folder, default_web_folder, &err) &&
+    ok = ok && fill_path(&options.data_folder, default_data_folder, &err) &&
+         fill_path(&options.web_folder, default_web_folder, &err) &&
          fill_path(&options.renderer_path, default_renderer, &err) && make_folders(options.data_folder, &err);
     (void)umask(0077); /* what we and our children write is patients' data */
     ok = ok && give_up_root(&options, &err);

@@ -24,13 +24,15 @@ void notify_open(void)
         if (path[0] == '@')
             manager.sun_path[0] = 0; /* an abstract socket */
         sender = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-        if (sender >= 0 && connect(sender, (const struct sockaddr *)&manager, (socklen_t)(offsetof(struct sockaddr_un, sun_path) + n)) != 0) {
+        if (sender >= 0 && connect(sender, (const struct sockaddr *)&manager,
+                                   (socklen_t)(offsetof(struct sockaddr_un, sun_path) + n)) != 0) {
             log_warn("the service manager cannot be reached at NOTIFY_SOCKET: %s", strerror(errno));
             (void)close(sender);
             sender = -1;
         }
     } else if (n > 0) {
-        log_warn("NOTIFY_SOCKET is \"%.120s\"; expected is a path or @name of at most %zu bytes", path, sizeof manager.sun_path - 1);
+        log_warn("NOTIFY_SOCKET is \"%.120s\"; expected is a path or @name of at most %zu bytes", path,
+                 sizeof manager.sun_path - 1);
     }
     if (usec && sender >= 0 && (!pid || strtoll(pid, NULL, 10) == (long long)getpid())) {
         long long given = strtoll(usec, NULL, 10);

@@ -20,30 +20,49 @@ struct setting {
 
 #define AT(member) offsetof(struct options, member)
 static const struct setting settings[] = {
-    { "plans", "DIR", "a folder of plans, or one plan; may be repeated; only ever read", KIND_FOLDERS, AT(plan_folders), 0, 0 },
-    { "data", "DIR", "own state and cache; default: $XDG_STATE_HOME/beamroom or ~/.local/state/beamroom", KIND_TEXT, AT(data_folder), 0, 0 },
-    { "web", "DIR", "the page's files; default: beside the program or ../share/beamroom/web", KIND_TEXT, AT(web_folder), 0, 0 },
-    { "listen", "ADDRESS:PORT", "default 127.0.0.1:8080; port 0 lets the system choose. There is no TLS here: put a proxy in front", KIND_TEXT,
+    { "plans", "DIR", "a folder of plans, or one plan; may be repeated; only ever read", KIND_FOLDERS, AT(plan_folders),
+      0, 0 },
+    { "data", "DIR", "own state and cache; default: $XDG_STATE_HOME/beamroom or ~/.local/state/beamroom", KIND_TEXT,
+      AT(data_folder), 0, 0 },
+    { "web", "DIR", "the page's files; default: beside the program or ../share/beamroom/web", KIND_TEXT, AT(web_folder),
+      0, 0 },
+    { "listen", "ADDRESS:PORT",
+      "default 127.0.0.1:8080; port 0 lets the system choose. There is no TLS here: put a proxy in front", KIND_TEXT,
       AT(listen), 0, 0 },
     { "gl", "NAME", "auto (default), egl-device, egl-surfaceless, osmesa or soft", KIND_TEXT, AT(gl), 0, 0 },
-    { "renderer", "FILE", "the renderer's program; default: beamroom-render beside this one", KIND_TEXT, AT(renderer_path), 0, 0 },
+    { "renderer", "FILE", "the renderer's program; default: beamroom-render beside this one", KIND_TEXT,
+      AT(renderer_path), 0, 0 },
     { "max-renderers", "N", "plans open at once; default 8", KIND_COUNT, AT(max_renderers), 1, 1000 },
-    { "max-renderer-mib", "N", "memory one renderer may take in MiB, 0 no limit; default 16384", KIND_COUNT, AT(max_renderer_mib), 0, 1 << 24 },
-    { "plan-idle-close", "SECONDS", "close a plan nobody uses or is in a room with after this, 0 never; default 600", KIND_COUNT, AT(plan_idle_close_s), 0, 1 << 24 },
-    { "room-idle-close", "SECONDS", "close a room nobody is in after this, 0 never; default 86400", KIND_COUNT, AT(room_idle_close_s), 0, 1 << 24 },
-    { "max-rooms", "N", "rooms at once, of all plans; default 200, at most 10000", KIND_COUNT, AT(max_rooms), 1, SCENE_MAX_ROOMS },
+    { "max-renderer-mib", "N", "memory one renderer may take in MiB, 0 no limit; default 16384", KIND_COUNT,
+      AT(max_renderer_mib), 0, 1 << 24 },
+    { "plan-idle-close", "SECONDS", "close a plan nobody uses or is in a room with after this, 0 never; default 600",
+      KIND_COUNT, AT(plan_idle_close_s), 0, 1 << 24 },
+    { "room-idle-close", "SECONDS", "close a room nobody is in after this, 0 never; default 86400", KIND_COUNT,
+      AT(room_idle_close_s), 0, 1 << 24 },
+    { "max-rooms", "N", "rooms at once, of all plans; default 200, at most 10000", KIND_COUNT, AT(max_rooms), 1,
+      SCENE_MAX_ROOMS },
     { "max-members", "N", "people in one room; default 32, at most 64", KIND_COUNT, AT(max_members), 1, 64 },
-    { "max-upload-mib", "N", "largest archive that may be uploaded, in MiB; default 2048", KIND_COUNT, AT(max_upload_mib), 1, 1 << 24 },
-    { "max-unpacked-mib", "N", "what may come out of one, in MiB; default 8192", KIND_COUNT, AT(max_unpacked_mib), 1, 1 << 24 },
-    { "max-cache-mib", "N", "what opened plans kept for the next time may take in --data, in MiB; default 16384", KIND_COUNT, AT(max_cache_mib), 128, 1 << 24 },
-    { "disk-reserve-mib", "N", "what uploads and kept plans leave free on the disk of --data, in MiB; default 64", KIND_COUNT, AT(disk_reserve_mib), 0, 1 << 24 },
-    { "allow-origin", "ORIGIN", "a further origin whose pages may open WebSockets, as https://beamroom.example", KIND_TEXT, AT(allowed_origin), 0, 0 },
-    { "public-name", "NAME", "a name people reach this server by, as beamroom.example; may be repeated; * for any", KIND_NAMES, AT(public_names), 0, 0 },
-    { "trusted-proxy", "ADDRESS[/BITS]", "a proxy whose X-Forwarded-For says who its clients are; may be repeated", KIND_RANGES, AT(trusted_proxies), 0, 0 },
-    { "user", "NAME", "started by root: the user to run as; default beamroom where there is one, else nobody; root stays root", KIND_TEXT, AT(user), 0, 0 },
+    { "max-upload-mib", "N", "largest archive that may be uploaded, in MiB; default 2048", KIND_COUNT,
+      AT(max_upload_mib), 1, 1 << 24 },
+    { "max-unpacked-mib", "N", "what may come out of one, in MiB; default 8192", KIND_COUNT, AT(max_unpacked_mib), 1,
+      1 << 24 },
+    { "max-cache-mib", "N", "what opened plans kept for the next time may take in --data, in MiB; default 16384",
+      KIND_COUNT, AT(max_cache_mib), 128, 1 << 24 },
+    { "disk-reserve-mib", "N", "what uploads and kept plans leave free on the disk of --data, in MiB; default 64",
+      KIND_COUNT, AT(disk_reserve_mib), 0, 1 << 24 },
+    { "allow-origin", "ORIGIN", "a further origin whose pages may open WebSockets, as https://beamroom.example",
+      KIND_TEXT, AT(allowed_origin), 0, 0 },
+    { "public-name", "NAME", "a name people reach this server by, as beamroom.example; may be repeated; * for any",
+      KIND_NAMES, AT(public_names), 0, 0 },
+    { "trusted-proxy", "ADDRESS[/BITS]", "a proxy whose X-Forwarded-For says who its clients are; may be repeated",
+      KIND_RANGES, AT(trusted_proxies), 0, 0 },
+    { "user", "NAME",
+      "started by root: the user to run as; default beamroom where there is one, else nobody; root stays root",
+      KIND_TEXT, AT(user), 0, 0 },
     { "log-level", "LEVEL", "debug, info (default), warning or error", KIND_LEVEL, AT(log_level), 0, 0 },
     { "stub", NULL, "draw grey pictures instead of using GL; for tests", KIND_FLAG, AT(stub_renderer), 0, 0 },
-    { "hang", "THREAD", "let the thread net, http or acceptor hang once it serves; for tests", KIND_TEXT, AT(hang), 0, 0 },
+    { "hang", "THREAD", "let the thread net, http or acceptor hang once it serves; for tests", KIND_TEXT, AT(hang), 0,
+      0 },
 };
 enum { N_SETTINGS = sizeof settings / sizeof settings[0] };
 
@@ -61,8 +80,8 @@ static bool set_count(const struct setting *setting, const char *value, int64_t 
     errno = 0;
     long long number = strtoll(value, &end, 10);
     if (end == value || *end || errno || number < setting->least || number > setting->most)
-        return error_set(err, ERROR_FORMAT, "%s is \"%.40s\", expected a whole number from %lld to %lld", setting->name, value,
-                         (long long)setting->least, (long long)setting->most);
+        return error_set(err, ERROR_FORMAT, "%s is \"%.40s\", expected a whole number from %lld to %lld", setting->name,
+                         value, (long long)setting->least, (long long)setting->most);
     *count = number;
     return true;
 }
@@ -91,7 +110,8 @@ static bool set(struct options *options, const struct setting *setting, const ch
         if (options->n_public_names == OPTIONS_MAX_NAMES)
             return error_set(err, ERROR_LIMIT, "more than %d public names", OPTIONS_MAX_NAMES);
         if (!*value || strpbrk(value, ":/ \t[]"))
-            return error_set(err, ERROR_FORMAT, "public-name is \"%.80s\", expected a name alone, as beamroom.example", value);
+            return error_set(err, ERROR_FORMAT, "public-name is \"%.80s\", expected a name alone, as beamroom.example",
+                             value);
         options->public_names[options->n_public_names++] = mem_copy_text(value);
         return true;
     case KIND_RANGES:
@@ -135,7 +155,8 @@ static bool read_file(struct options *options, const char *name, const bool *giv
     bool ok = true;
     for (int number = 1; ok && fgets(line, sizeof line, file); number++) {
         if (!strchr(line, '\n') && !feof(file)) {
-            ok = error_set(err, ERROR_LIMIT, "%.100s line %d: longer than %d bytes", name, number, OPTIONS_MAX_LINE - 2);
+            ok =
+                error_set(err, ERROR_LIMIT, "%.100s line %d: longer than %d bytes", name, number, OPTIONS_MAX_LINE - 2);
             break;
         }
         line[strcspn(line, "#")] = 0;
@@ -144,7 +165,8 @@ static bool read_file(struct options *options, const char *name, const bool *giv
             continue;
         char *equals = strchr(key, '=');
         if (!equals) {
-            ok = error_set(err, ERROR_FORMAT, "%.100s line %d: expected \"key = value\", found \"%.60s\"", name, number, key);
+            ok = error_set(err, ERROR_FORMAT, "%.100s line %d: expected \"key = value\", found \"%.60s\"", name, number,
+                           key);
             break;
         }
         *equals = 0;
@@ -166,8 +188,16 @@ bool options_read(struct options *options, int argc, char **argv, struct error *
 {
     bool given[N_SETTINGS] = { false };
     const char *config = NULL;
-    *options = (struct options){ .max_renderers = 8, .max_renderer_mib = 16384, .plan_idle_close_s = 600, .room_idle_close_s = 86400,
-                                 .max_rooms = 200, .max_members = 32, .max_upload_mib = 2048, .max_unpacked_mib = 8192, .max_cache_mib = 16384, .disk_reserve_mib = 64,
+    *options = (struct options){ .max_renderers = 8,
+                                 .max_renderer_mib = 16384,
+                                 .plan_idle_close_s = 600,
+                                 .room_idle_close_s = 86400,
+                                 .max_rooms = 200,
+                                 .max_members = 32,
+                                 .max_upload_mib = 2048,
+                                 .max_unpacked_mib = 8192,
+                                 .max_cache_mib = 16384,
+                                 .disk_reserve_mib = 64,
                                  .log_level = LOG_INFO };
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "-h") == 0 || strcmp(argv[i], "--help") == 0) {
@@ -222,16 +252,18 @@ void options_finish(struct options *options)
 
 void options_print_help(void)
 {
-    printf("beamroomd: shows neutron capture therapy plans to browsers\n\n"
-           "  beamroomd --plans DIR [--listen ADDRESS:PORT] [flags]\n\n"
-           "Loads plans from the folders given, draws them here and streams the pictures to any browser that opens the\n"
-           "address it prints (\"ready http://...\"). Stops on SIGINT or SIGTERM. Research and plan review only.\n\n");
+    printf(
+        "beamroomd: shows neutron capture therapy plans to browsers\n\n"
+        "  beamroomd --plans DIR [--listen ADDRESS:PORT] [flags]\n\n"
+        "Loads plans from the folders given, draws them here and streams the pictures to any browser that opens the\n"
+        "address it prints (\"ready http://...\"). Stops on SIGINT or SIGTERM. Research and plan review only.\n\n");
     for (size_t i = 0; i < N_SETTINGS; i++) {
         char flag[64];
         (void)snprintf(flag, sizeof flag, "--%s%s%s", settings[i].name, settings[i].value_name ? " " : "",
                        settings[i].value_name ? settings[i].value_name : "");
         printf("  %-28s %s\n", flag, settings[i].about);
     }
-    printf("  %-28s %s\n  %-28s %s\n  %-28s %s\n", "--config FILE", "the same settings as lines of \"name = value\"; flags win", "--version",
-           "print the version", "--help", "print this");
+    printf("  %-28s %s\n  %-28s %s\n  %-28s %s\n", "--config FILE",
+           "the same settings as lines of \"name = value\"; flags win", "--version", "print the version", "--help",
+           "print this");
 }

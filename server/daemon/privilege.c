@@ -63,7 +63,7 @@ static bool become(const struct user *user)
            setresuid(user->uid, user->uid, user->uid) == 0;
 }
 
-/* ---- what the user can reach ---- */
+/* ---- what the user can reach ------------------------------------------------------------------------------------ */
 
 static bool is_reached(const char *path, int mode)
 {
@@ -71,8 +71,8 @@ static bool is_reached(const char *path, int mode)
     return mode == F_OK ? stat(path, &facts) == 0 : access(path, mode) == 0;
 }
 
-/* The path from the working folder on, when it lies inside; else NULL. A process may use names below its working folder, wherever that
- * lies, without a right to the folders above it. */
+/* The path from the working folder on, when it lies inside; else NULL. A process may use names below its working
+ * folder, wherever that lies, without a right to the folders above it. */
 static const char *from_here(const char *path, const char *here)
 {
     size_t n = strlen(here);
@@ -82,7 +82,8 @@ static const char *from_here(const char *path, const char *here)
 }
 
 /* Tries it in a process of its own, which becomes the user. False: that cannot be tried. */
-static bool try_as(const struct user *user, const struct privilege_options *options, const char *here, enum reach reached[])
+static bool try_as(const struct user *user, const struct privilege_options *options, const char *here,
+                   enum reach reached[])
 {
     int ends[2];
     unsigned char found[PRIVILEGE_MAX_PLACES] = { 0 };
@@ -95,7 +96,9 @@ static bool try_as(const struct user *user, const struct privilege_options *opti
         for (size_t i = 0; i < options->n_places; i++) {
             const struct privilege_place *place = &options->places[i];
             const char *inside = from_here(place->path, here);
-            found[i] = is_reached(place->path, place->mode) ? REACH_AS_GIVEN : inside && is_reached(inside, place->mode) ? REACH_FROM_HERE : REACH_NOT;
+            found[i] = is_reached(place->path, place->mode)        ? REACH_AS_GIVEN
+                       : inside && is_reached(inside, place->mode) ? REACH_FROM_HERE
+                                                                   : REACH_NOT;
         }
         _exit(write(ends[1], found, options->n_places) == (ssize_t)options->n_places ? 0 : 1);
     }
@@ -110,7 +113,7 @@ static bool try_as(const struct user *user, const struct privilege_options *opti
     return is_told && status == 0;
 }
 
-/* ---- the data folder ---- */
+/* ---- the data folder -------------------------------------------------------------------------------------------- */
 
 static bool is_ours(const char *name)
 {
@@ -121,7 +124,8 @@ static bool is_ours(const char *name)
     return false;
 }
 
-/* His already, or root's with nothing in it that is not ours: who names a folder full of other things does not mean to give it away. */
+/* His already, or root's with nothing in it that is not ours: who names a folder full of other things does not mean to
+ * give it away. */
 static bool may_give(const char *folder, const struct user *user, struct error *err)
 {
     struct stat facts;
@@ -139,11 +143,14 @@ static bool may_give(const char *folder, const struct user *user, struct error *
         if (!is_ours(entry->d_name))
             (void)snprintf(other, sizeof other, "%.60s", entry->d_name);
     closedir(entries);
-    return !other[0] || error_set(err, ERROR_IO, "--data %.120s belongs to root and holds other things (%.40s): it is not given to user %s", folder,
-                                  other, user->name);
+    return !other[0] ||
+           error_set(err, ERROR_IO,
+                     "--data %.120s belongs to root and holds other things (%.40s): it is not given to user %s", folder,
+                     other, user->name);
 }
 
-/* By descriptors, as another process of that user may put a link in the place of any folder meanwhile. Consumes the folder. */
+/* By descriptors, as another process of that user may put a link in the place of any folder meanwhile. Consumes the
+ * folder. */
 static bool give_opened(int folder, int depth, const struct user *user)
 {
     struct stat facts;
@@ -161,7 +168,8 @@ static bool give_opened(int folder, int depth, const struct user *user)
         }
         if (inner >= 0)
             close(inner);
-        /* what is opened is what is looked at and given; of a file with a second name the other may lie elsewhere: it stays as it is */
+        /* what is opened is what is looked at and given; of a file with a second name the other may lie elsewhere: it
+         * stays as it is */
         int thing = openat(folder, name->d_name, O_PATH | O_NOFOLLOW | O_CLOEXEC);
         if (thing < 0 || fstat(thing, &facts) != 0)
             is_given = errno == ENOENT;
@@ -179,15 +187,18 @@ static bool give_opened(int folder, int depth, const struct user *user)
     return is_given;
 }
 
-/* What an earlier daemon wrote as root is his from now on, in a folder that is his already, too; links inside are not followed. */
+/* What an earlier daemon wrote as root is his from now on, in a folder that is his already, too; links inside are not
+ * followed. */
 static bool give_folder(const char *folder, const struct user *user, struct error *err)
 {
-    int top = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC); /* the name itself may be a link: who started the daemon gave it */
+    int top = open(folder, O_RDONLY | O_DIRECTORY |
+                               O_CLOEXEC); /* the name itself may be a link: who started the daemon gave it */
     return (top >= 0 && give_opened(top, 0, user)) ||
-           error_set(err, ERROR_IO, "--data %.120s cannot be given to user %s: %s", folder, user->name, strerror(errno));
+           error_set(err, ERROR_IO, "--data %.120s cannot be given to user %s: %s", folder, user->name,
+                     strerror(errno));
 }
 
-/* ---- giving it up ---- */
+/* ---- giving it up ----------------------------------------------------------------------------------------------- */
 
 /* Nothing is left but, for a port below 1024, the right to listen there. */
 static bool drop_capabilities(int port)
@@ -204,15 +215,18 @@ static bool switch_to(const struct user *user, int port, struct error *err)
     bool wants_port = port > 0 && port < 1024;
     for (unsigned long capability = 0; capability < 64; capability++)
         if (!wants_port || capability != CAP_NET_BIND_SERVICE)
-            (void)prctl(PR_CAPBSET_DROP, capability, 0, 0, 0); /* a container may have taken that right: then there is less to drop */
+            (void)prctl(PR_CAPBSET_DROP, capability, 0, 0,
+                        0); /* a container may have taken that right: then there is less to drop */
     if (wants_port)
         (void)prctl(PR_SET_KEEPCAPS, 1, 0, 0, 0);
     if (!become(user) || !drop_capabilities(port) || setuid(0) == 0 || geteuid() != user->uid)
         return error_set(err, ERROR_IO, "the daemon cannot become user %s: %s", user->name, strerror(errno));
-    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 || error_set(err, ERROR_IO, "new privileges cannot be refused: %s", strerror(errno));
+    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 ||
+           error_set(err, ERROR_IO, "new privileges cannot be refused: %s", strerror(errno));
 }
 
-static bool can_be(const struct user *user, const struct privilege_options *options, const char *here, enum reach reached[], struct error *err)
+static bool can_be(const struct user *user, const struct privilege_options *options, const char *here,
+                   enum reach reached[], struct error *err)
 {
     if (!may_give(options->data_folder, user, err))
         return false;
@@ -220,7 +234,8 @@ static bool can_be(const struct user *user, const struct privilege_options *opti
         return error_set(err, ERROR_IO, "nobody can become user %s here", user->name);
     for (size_t i = 0; i < options->n_places; i++) {
         const struct privilege_place *place = &options->places[i];
-        if (reached[i] == REACH_NOT && is_reached(place->path, place->mode)) /* what root cannot reach either is reported by who needs it */
+        if (reached[i] == REACH_NOT &&
+            is_reached(place->path, place->mode)) /* what root cannot reach either is reported by who needs it */
             return error_set(err, ERROR_IO, "user %s cannot reach %s %.140s", user->name, place->flag, place->path);
     }
     return true;
@@ -235,11 +250,13 @@ bool privilege_give_up(const struct privilege_options *options, struct error *er
     if (geteuid() != 0)
         return true;
     if (options->user && strcmp(options->user, "root") == 0) {
-        log_warn("running as root, as --user root asks: plans are read and archives unpacked as root, without its capabilities");
+        log_warn(
+            "running as root, as --user root asks: plans are read and archives unpacked as root, without its capabilities");
         return true;
     }
     if (options->user ? !find_user(options->user, &user) : !find_user("beamroom", &user) && !find_user("nobody", &user))
-        return error_set(err, ERROR_NOT_FOUND, "there is no user %.40s to run as", options->user ? options->user : "beamroom or nobody");
+        return error_set(err, ERROR_NOT_FOUND, "there is no user %.40s to run as",
+                         options->user ? options->user : "beamroom or nobody");
     if (!getcwd(here, sizeof here))
         here[0] = 0;
     if (!can_be(&user, options, here, reached, &reason) || !give_folder(options->data_folder, &user, &reason)) {
@@ -247,7 +264,8 @@ bool privilege_give_up(const struct privilege_options *options, struct error *er
             error_set(err, reason.code, "%s; let him, or say --user root", reason.text);
             return false;
         }
-        log_warn("staying root: %s; let him, or name another by --user; renderers run as root without its capabilities", reason.text);
+        log_warn("staying root: %s; let him, or name another by --user; renderers run as root without its capabilities",
+                 reason.text);
         return true;
     }
     if (!switch_to(&user, options->port, err))

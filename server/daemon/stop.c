@@ -32,7 +32,8 @@ static void *wait_for_signal(void *argument)
     struct timespec left = { .tv_sec = STOP_WITHIN_S };
     while (nanosleep(&left, &left) != 0 && errno == EINTR)
         ;
-    log_error("a thread has not ended within %d s of %s: the process ends without it", STOP_WITHIN_S, strsignal(number));
+    log_error("a thread has not ended within %d s of %s: the process ends without it", STOP_WITHIN_S,
+              strsignal(number));
     _exit(1);
 }
 

@@ -20,7 +20,8 @@
 enum {
     MAX_WAITING = 4096,
     ID_SIZE = 64,
-    /* one emptying, which a renderer that makes files meanwhile must not make endless; what is left waits for the next look */
+    /* one emptying, which a renderer that makes files meanwhile must not make endless; what is left waits for the next
+       look */
     MAX_ROUNDS = 64,
     MAX_REMOVED = 2 * CACHE_MAX_FILES
 };
@@ -37,11 +38,11 @@ struct entry { /* a plan's folder */
     char id[ID_SIZE];
     uint64_t process; /* that uses it; 0: none */
     uint64_t n_bytes, n_files;
-    int64_t used_ns;  /* since 1970 */
-    bool is_ended;    /* its process was told to end; the folder is emptied when it has */
-    bool was_blamed;  /* ended once since the disk became short of space */
-    bool was_tried;   /* emptied in this look already */
-    bool has_rest;    /* nobody uses it, and its emptying stopped at a limit: the next look goes on */
+    int64_t used_ns; /* since 1970 */
+    bool is_ended;   /* its process was told to end; the folder is emptied when it has */
+    bool was_blamed; /* ended once since the disk became short of space */
+    bool was_tried;  /* emptied in this look already */
+    bool has_rest;   /* nobody uses it, and its emptying stopped at a limit: the next look goes on */
 };
 
 struct cache {
@@ -54,17 +55,21 @@ struct cache {
     size_t n_entries, room;
 };
 
-/* ---- one folder ---- */
+/* ---- one folder ------------------------------------------------------------------------------------------------- */
 
 /* The daemon lacks something: that says nothing about the renderer. */
-static bool is_own_lack(int reason) { return reason == EMFILE || reason == ENFILE || reason == ENOMEM; }
+static bool is_own_lack(int reason)
+{
+    return reason == EMFILE || reason == ENFILE || reason == ENOMEM;
+}
 
 static int open_inner(int folder, const char *name)
 {
     return openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
 }
 
-/* Adds what lies in the folder; consumes it. What cannot be seen counts as too much. False: the daemon lacks what it takes to look. */
+/* Adds what lies in the folder; consumes it. What cannot be seen counts as too much. False: the daemon lacks what it
+ * takes to look. */
 static bool measure(int folder, int depth, struct entry *entry)
 {
     bool is_measured = true;
@@ -109,11 +114,12 @@ static void look_at(const struct cache *cache, struct entry *entry)
 
 struct removing {
     int top;
-    unsigned long n_seen, n_done; /* in one round: things that were there; removed or moved */
+    unsigned long n_seen, n_done;   /* in one round: things that were there; removed or moved */
     unsigned long n_moved, n_tried; /* of all rounds */
 };
 
-/* A folder whose mode may have been changed. The name may become a link at any time: the mode is changed by what was opened. */
+/* A folder whose mode may have been changed. The name may become a link at any time: the mode is changed by what was
+ * opened. */
 static int open_for_removal(int folder, const char *name)
 {
     char path[40];
@@ -165,7 +171,8 @@ static void empty(const struct cache *cache, struct entry *entry)
     entry->has_rest = false;
     if (removing.top < 0)
         return;
-    for (int round = 0; round < MAX_ROUNDS && removing.n_tried < MAX_REMOVED; round++) { /* until one sees nothing, or gets no further */
+    for (int round = 0; round < MAX_ROUNDS && removing.n_tried < MAX_REMOVED;
+         round++) { /* until one sees nothing, or gets no further */
         removing.n_seen = removing.n_done = 0;
         flatten(&removing, removing.top);
         if (removing.n_done == 0)
@@ -178,7 +185,7 @@ static void empty(const struct cache *cache, struct entry *entry)
     look_at(cache, entry);
 }
 
-/* ---- all of them ---- */
+/* ---- all of them ------------------------------------------------------------------------------------------------ */
 
 static int64_t now_ns(void)
 {
@@ -213,8 +220,8 @@ static void list(struct cache *cache)
     DIR *names = copy >= 0 ? fdopendir(copy) : NULL;
     for (const struct dirent *name; names && (name = readdir(names));) {
         struct stat facts;
-        if (name->d_name[0] == '.' || strlen(name->d_name) >= ID_SIZE || fstatat(cache->file, name->d_name, &facts, AT_SYMLINK_NOFOLLOW) != 0 ||
-            !S_ISDIR(facts.st_mode))
+        if (name->d_name[0] == '.' || strlen(name->d_name) >= ID_SIZE ||
+            fstatat(cache->file, name->d_name, &facts, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISDIR(facts.st_mode))
             continue;
         struct entry *entry = entry_of(cache, name->d_name);
         if (!entry)
@@ -234,7 +241,8 @@ static struct entry *least_used(struct cache *cache, bool with_running)
         struct entry *entry = &cache->entries[i];
         if (entry->n_bytes == 0 || entry->is_ended || entry->was_tried || (entry->process && !with_running))
             continue;
-        if (!least || (!entry->process && least->process) || (!entry->process == !least->process && entry->used_ns < least->used_ns))
+        if (!least || (!entry->process && least->process) ||
+            (!entry->process == !least->process && entry->used_ns < least->used_ns))
             least = entry;
     }
     return least;
@@ -257,7 +265,8 @@ static void end_process(struct cache *cache, struct entry *entry, const char *re
 /* Once in a look. A renderer that fills its cache as fast as it is emptied is ended. */
 static void remove_one(struct cache *cache, struct entry *entry, const char *why)
 {
-    log_info("the cache of plan %s is removed (%llu MiB): %s", entry->id, (unsigned long long)(entry->n_bytes >> 20), why);
+    log_info("the cache of plan %s is removed (%llu MiB): %s", entry->id, (unsigned long long)(entry->n_bytes >> 20),
+             why);
     uint64_t before = entry->n_bytes;
     entry->was_tried = true;
     empty(cache, entry);
@@ -275,8 +284,8 @@ static bool is_short_of_space(const struct cache *cache)
     return fstatvfs(cache->file, &disk) == 0 && (uint64_t)disk.f_bavail * disk.f_frsize < cache->options.reserve_bytes;
 }
 
-/* A file that was removed and is still open takes space nobody sees: then the renderers end, the newest first, each once, until there is
- * space again. */
+/* A file that was removed and is still open takes space nobody sees: then the renderers end, the newest first, each
+ * once, until there is space again. */
 static void free_space(struct cache *cache)
 {
     struct entry *blamed = NULL;
@@ -287,7 +296,8 @@ static void free_space(struct cache *cache)
         struct entry *entry = &cache->entries[i];
         if (!is_short)
             entry->was_blamed = false;
-        else if (entry->process && !entry->was_blamed && !entry->is_ended && (!blamed || entry->process > blamed->process))
+        else if (entry->process && !entry->was_blamed && !entry->is_ended &&
+                 (!blamed || entry->process > blamed->process))
             blamed = entry;
     }
     if (!blamed)
@@ -310,7 +320,8 @@ static void look(struct cache *cache)
         look_at(cache, entry);
         if (entry->n_bytes <= max_bytes + slack_bytes && entry->n_files <= CACHE_MAX_FILES)
             continue;
-        (void)snprintf(reason, sizeof reason, "was ended because it wrote more to its cache than the %llu MiB or %d files it may",
+        (void)snprintf(reason, sizeof reason,
+                       "was ended because it wrote more to its cache than the %llu MiB or %d files it may",
                        (unsigned long long)(max_bytes >> 20), CACHE_MAX_FILES);
         end_process(cache, entry, reason);
     }
@@ -396,7 +407,10 @@ static void say(struct cache *cache, const char *id, uint64_t process, bool is_b
     if (queue_try_put(cache->words, word))
         return;
     free(word); /* thousands wait while it removes something large */
-    log_warn("%s%s", is_begin ? "a cache is not watched until its plan is opened again: " : "the end of a renderer was not seen by the watch on caches", id);
+    log_warn("%s%s",
+             is_begin ? "a cache is not watched until its plan is opened again: "
+                      : "the end of a renderer was not seen by the watch on caches",
+             id);
 }
 
 void cache_destroy(struct cache *cache)
@@ -419,5 +433,11 @@ uint64_t cache_max_file(const struct cache *cache)
     return half > CACHE_LEAST_FILE ? half : CACHE_LEAST_FILE;
 }
 
-void cache_begin(struct cache *cache, const char *plan_id, uint64_t process) { say(cache, plan_id, process, true); }
-void cache_end(struct cache *cache, uint64_t process) { say(cache, "", process, false); }
+void cache_begin(struct cache *cache, const char *plan_id, uint64_t process)
+{
+    say(cache, plan_id, process, true);
+}
+void cache_end(struct cache *cache, uint64_t process)
+{
+    say(cache, "", process, false);
+}

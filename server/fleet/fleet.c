@@ -18,10 +18,17 @@ enum {
     EVENTS_A_TURN = 256,
     LONGEST_STEP_US = 1000000, /* between two ticks; what is more, the thread did not run */
     LEAST_MEMORY_SLACK = 256 << 20,
-    PLACE_EVERY_US = 2000000   /* a plan that is held and closed for lack of a place tries again after this */
+    PLACE_EVERY_US = 2000000 /* a plan that is held and closed for lack of a place tries again after this */
 };
 
-static const struct fleet_times default_times = { .ping = 2000, .silent = 6000, .awaited_ping = 250, .awaited_silent = 600, .stall = 120000, .request = 30000, .scan = 30000, .unpack = 120000 };
+static const struct fleet_times default_times = { .ping = 2000,
+                                                  .silent = 6000,
+                                                  .awaited_ping = 250,
+                                                  .awaited_silent = 600,
+                                                  .stall = 120000,
+                                                  .request = 30000,
+                                                  .scan = 30000,
+                                                  .unpack = 120000 };
 
 const char *fleet_state_word(enum fleet_state state)
 {
@@ -37,7 +44,10 @@ const char *fleet_state_word(enum fleet_state state)
     return "unknown";
 }
 
-int64_t fleet_now_us(const struct fleet *fleet) { return run_clock_us(&fleet->clock); }
+int64_t fleet_now_us(const struct fleet *fleet)
+{
+    return run_clock_us(&fleet->clock);
+}
 
 bool fleet_no_plan(const struct fleet *fleet, const char *plan_id, struct problem *problem)
 {
@@ -49,7 +59,10 @@ bool fleet_no_plan(const struct fleet *fleet, const char *plan_id, struct proble
     return false;
 }
 
-uint64_t fleet_number(struct fleet *fleet) { return ++fleet->last_number; }
+uint64_t fleet_number(struct fleet *fleet)
+{
+    return ++fleet->last_number;
+}
 
 char **fleet_arguments(const char *const *words)
 {
@@ -76,7 +89,7 @@ void plan_entry_kill(struct fleet *fleet, struct plan_entry *plan, const char *r
     plan->is_dying = plan->process != 0;
 }
 
-/* ---- start and stop ---- */
+/* ---- start and stop --------------------------------------------------------------------------------------------- */
 
 void plan_entry_start(struct fleet *fleet, struct plan_entry *plan)
 {
@@ -85,8 +98,9 @@ void plan_entry_start(struct fleet *fleet, struct plan_entry *plan)
     (void)snprintf(limit, sizeof limit, "%llu", (unsigned long long)fleet->options.max_renderer_bytes);
     (void)mkdir(cache, 0700); /* without it the renderer does without a cache */
     (void)snprintf(file_limit, sizeof file_limit, "%llu", (unsigned long long)cache_max_file(fleet->cache));
-    const char *words[20] = { fleet->renderer_path, "--socket-fd", "3", "--plan-folder", plan->folder, "--plan-id", plan->id,
-                              "--cache", cache, "--max-file-bytes", file_limit, "--gl", fleet->gl_word };
+    const char *words[20] = { fleet->renderer_path, "--socket-fd", "3",           "--plan-folder", plan->folder,
+                              "--plan-id",          plan->id,      "--cache",     cache,           "--max-file-bytes",
+                              file_limit,           "--gl",        fleet->gl_word };
     size_t n = 13;
     if (fleet->options.max_renderer_bytes > 0) {
         words[n++] = "--max-bytes";
@@ -118,7 +132,10 @@ void plan_entry_start(struct fleet *fleet, struct plan_entry *plan)
     }
 }
 
-static bool has_renderer(const struct plan_entry *plan) { return plan->process != 0 || plan->restart_at_us != 0; }
+static bool has_renderer(const struct plan_entry *plan)
+{
+    return plan->process != 0 || plan->restart_at_us != 0;
+}
 
 static bool is_unused(const struct fleet *fleet, const struct plan_entry *plan)
 {
@@ -184,7 +201,8 @@ bool fleet_open(struct fleet *fleet, const char *plan_id, struct problem *proble
     if (plan->state != FLEET_CLOSED && plan->state != FLEET_FAILED)
         return true;
     if (!make_room(fleet)) {
-        problem_set(problem, PROBLEM_BUSY, "", "", "%d plans are open and in use, which is as many as may be", fleet->options.max_renderers);
+        problem_set(problem, PROBLEM_BUSY, "", "", "%d plans are open and in use, which is as many as may be",
+                    fleet->options.max_renderers);
         if (problem)
             problem->retry_after_ms = 5000;
         return false;
@@ -217,7 +235,8 @@ void plan_entry_open_held(struct fleet *fleet, struct plan_entry *plan)
     if (plan->wants_place)
         return;
     plan->wants_place = true;
-    problem_set(&plan->problem, PROBLEM_BUSY, "", "", "%.200s; this one is opened as soon as there is a place", problem.detail);
+    problem_set(&plan->problem, PROBLEM_BUSY, "", "", "%.200s; this one is opened as soon as there is a place",
+                problem.detail);
     plan_entry_change(fleet, plan, FLEET_FAILED);
 }
 
@@ -243,7 +262,7 @@ void fleet_release(struct fleet *fleet, const char *plan_id)
         plan_entry_close(fleet, plan, "nobody is there any more");
 }
 
-/* ---- events and time ---- */
+/* ---- events and time -------------------------------------------------------------------------------------------- */
 
 void fleet_rescan(struct fleet *fleet)
 {
@@ -263,17 +282,20 @@ static void take_list(struct fleet *fleet)
     folder_list_finish(&found);
 }
 
-/* The kernel's limit does not count memory that is shared, with others or by nobody; so what it has is looked at from outside. The slack
- * is for drivers of graphics cards, whose buffers are such memory. */
+/* The kernel's limit does not count memory that is shared, with others or by nobody; so what it has is looked at from
+ * outside. The slack is for drivers of graphics cards, whose buffers are such memory. */
 static void take_memory(struct fleet *fleet, struct plan_entry *plan, const struct watch_event *event)
 {
-    const uint64_t most = fleet->options.max_renderer_bytes, slack = most / 4 > LEAST_MEMORY_SLACK ? most / 4 : LEAST_MEMORY_SLACK;
+    const uint64_t most = fleet->options.max_renderer_bytes,
+                   slack = most / 4 > LEAST_MEMORY_SLACK ? most / 4 : LEAST_MEMORY_SLACK;
     char how[160];
     plan->memory_bytes = event->memory_bytes;
     if (most == 0 || event->own_bytes <= most + slack)
         return;
-    (void)snprintf(how, sizeof how, "was ended because it took %llu MiB of memory, more than the %llu MiB it may and %llu MiB beyond",
-                   (unsigned long long)(event->own_bytes >> 20), (unsigned long long)(most >> 20), (unsigned long long)(slack >> 20));
+    (void)snprintf(how, sizeof how,
+                   "was ended because it took %llu MiB of memory, more than the %llu MiB it may and %llu MiB beyond",
+                   (unsigned long long)(event->own_bytes >> 20), (unsigned long long)(most >> 20),
+                   (unsigned long long)(slack >> 20));
     plan_entry_kill(fleet, plan, how);
 }
 
@@ -350,8 +372,8 @@ static void tick_plan(struct fleet *fleet, struct plan_entry *plan, int64_t now_
     bool is_coming_up = plan->process && plan->state != FLEET_READY;
     if (is_coming_up && now_us - plan->moved_us > fleet->times.stall * 1000LL) {
         struct problem problem;
-        problem_set(&problem, PROBLEM_RENDERER, "", "", "reading the plan got no further for %d s (%.120s)", fleet->times.stall / 1000,
-                    plan->phase);
+        problem_set(&problem, PROBLEM_RENDERER, "", "", "reading the plan got no further for %d s (%.120s)",
+                    fleet->times.stall / 1000, plan->phase);
         if (plan->n_holds > 0) { /* its end plans the next start */
             char how[200];
             (void)snprintf(how, sizeof how, "was ended because %.180s", problem.detail);
@@ -361,7 +383,8 @@ static void tick_plan(struct fleet *fleet, struct plan_entry *plan, int64_t now_
             plan_entry_fail(fleet, plan, &problem);
         }
     }
-    if (fleet->options.idle_close_s > 0 && is_unused(fleet, plan) && now_us - plan->used_us > fleet->options.idle_close_s * 1000000LL)
+    if (fleet->options.idle_close_s > 0 && is_unused(fleet, plan) &&
+        now_us - plan->used_us > fleet->options.idle_close_s * 1000000LL)
         plan_entry_close(fleet, plan, "nobody used it");
 }
 
@@ -378,15 +401,22 @@ void fleet_tick(struct fleet *fleet)
     tell_news(fleet);
 }
 
-/* ---- looking at it ---- */
+/* ---- looking at it ---------------------------------------------------------------------------------------------- */
 
-bool fleet_is_listed(const struct fleet *fleet) { return fleet->is_listed; }
+bool fleet_is_listed(const struct fleet *fleet)
+{
+    return fleet->is_listed;
+}
 
-size_t fleet_n_plans(const struct fleet *fleet) { return fleet->n_plans; }
+size_t fleet_n_plans(const struct fleet *fleet)
+{
+    return fleet->n_plans;
+}
 
 static void describe(const struct fleet *fleet, const struct plan_entry *plan, struct fleet_plan *out)
 {
-    bool has_problem = plan->state == FLEET_FAILED || plan->state == FLEET_UNREADABLE || plan->state == FLEET_RESTARTING;
+    bool has_problem =
+        plan->state == FLEET_FAILED || plan->state == FLEET_UNREADABLE || plan->state == FLEET_RESTARTING;
     *out = (struct fleet_plan){
         .id = plan->id,
         .folder = plan->folder,
@@ -437,7 +467,7 @@ const cJSON *fleet_gl(const struct fleet *fleet, const struct problem **problem)
     return fleet->gl;
 }
 
-/* ---- beginning and end ---- */
+/* ---- beginning and end ------------------------------------------------------------------------------------------ */
 
 static char *beside_ourselves(struct error *err)
 {
@@ -528,7 +558,9 @@ static struct cache *make_cache(struct fleet *fleet, struct error *err)
 
 static void start_probe(struct fleet *fleet)
 {
-    const char *words[] = { fleet->renderer_path, "--probe-gl", "--gl", fleet->gl_word, fleet->options.stub_renderer ? "--stub" : NULL, NULL };
+    const char *words[] = {
+        fleet->renderer_path, "--probe-gl", "--gl", fleet->gl_word, fleet->options.stub_renderer ? "--stub" : NULL, NULL
+    };
     fleet->probe = fleet_number(fleet);
     if (!watch_start_program(fleet->watch, fleet->probe, fleet_arguments(words), fleet->times.scan))
         fleet->probe = 0;
@@ -554,15 +586,19 @@ struct fleet *fleet_create(const struct fleet_options *options, struct error *er
     }
     if (!make_cache_folder(fleet->data_folder, err) || !uploads_begin(fleet, err))
         goto fail;
-    fleet->plan_folders[options->n_plan_folders] = mem_copy_text(fleet->plans_home); /* last: a plan that was here before keeps its id */
-    struct watch_options watching = { fleet->times.ping, fleet->times.silent, fleet->times.awaited_ping, fleet->times.awaited_silent,
-                                      options->max_orders, options->wake, options->context };
+    fleet->plan_folders[options->n_plan_folders] =
+        mem_copy_text(fleet->plans_home); /* last: a plan that was here before keeps its id */
+    struct watch_options watching = { fleet->times.ping,         fleet->times.silent,
+                                      fleet->times.awaited_ping, fleet->times.awaited_silent,
+                                      options->max_orders,       options->wake,
+                                      options->context };
     fleet->watch = watch_create(&watching, err);
     fleet->cache = fleet->watch ? make_cache(fleet, err) : NULL;
     if (!fleet->cache)
         goto fail;
     fleet->lister = lister_create((const char *const *)fleet->plan_folders, options->n_plan_folders + 1,
-                                  options->list_folders ? options->list_folders : folders_list, options->wake, options->context, err);
+                                  options->list_folders ? options->list_folders : folders_list, options->wake,
+                                  options->context, err);
     if (!fleet->lister)
         goto fail;
     start_probe(fleet);

@@ -71,8 +71,8 @@ static void *work(void *argument)
     return NULL;
 }
 
-struct lister *lister_create(const char *const *folders, size_t n_folders, lister_function function, void (*wake)(void *context),
-                             void *context, struct error *err)
+struct lister *lister_create(const char *const *folders, size_t n_folders, lister_function function,
+                             void (*wake)(void *context), void *context, struct error *err)
 {
     struct lister *lister = mem_new(sizeof *lister);
     lister->folders = mem_new((n_folders + 1) * sizeof *lister->folders);

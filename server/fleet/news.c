@@ -9,7 +9,10 @@
 #include "server/fleet/restarts.h"
 #include "server/wire/document.h"
 
-static void copy_text(char *to, size_t n, const char *text) { (void)snprintf(to, n, "%s", text ? text : ""); }
+static void copy_text(char *to, size_t n, const char *text)
+{
+    (void)snprintf(to, n, "%s", text ? text : "");
+}
 
 void plan_entry_lose(struct plan_entry *plan)
 {
@@ -103,7 +106,8 @@ static bool take_ready(struct fleet *fleet, struct plan_entry *plan, cJSON *json
     const char *id = json_text(document, "id");
     struct problem problem;
     struct scene scene;
-    if (plan->state == FLEET_READY || !cJSON_IsObject(document) || !id || strcmp(id, plan->id) != 0 || !scene_read(defaults, &scene, &problem))
+    if (plan->state == FLEET_READY || !cJSON_IsObject(document) || !id || strcmp(id, plan->id) != 0 ||
+        !scene_read(defaults, &scene, &problem))
         return false;
     scene_finish(&scene);
     if (!images_are_valid(document))
@@ -129,8 +133,9 @@ static bool take_ready(struct fleet *fleet, struct plan_entry *plan, cJSON *json
 /* Not about the plan's files: memory, threads, disk or graphics were missing, and the next start may find them. */
 static bool is_of_the_moment(enum problem_type type)
 {
-    return type == PROBLEM_INTERNAL || type == PROBLEM_MEMORY || type == PROBLEM_BUSY || type == PROBLEM_GL_UNAVAILABLE ||
-           type == PROBLEM_RENDERER || type == PROBLEM_STORAGE || type == PROBLEM_TIMEOUT || type == PROBLEM_CANCELLED;
+    return type == PROBLEM_INTERNAL || type == PROBLEM_MEMORY || type == PROBLEM_BUSY ||
+           type == PROBLEM_GL_UNAVAILABLE || type == PROBLEM_RENDERER || type == PROBLEM_STORAGE ||
+           type == PROBLEM_TIMEOUT || type == PROBLEM_CANCELLED;
 }
 
 static bool take_failed(struct fleet *fleet, struct plan_entry *plan, const cJSON *json)
@@ -193,7 +198,8 @@ static void renderer_ended(struct fleet *fleet, struct plan_entry *plan, const s
     plan_entry_lose(plan);
     if (!plan->was_ready && plan->n_holds == 0) {
         if (event->signal && !event->reason[0])
-            problem_set(&problem, PROBLEM_RENDERER, "", "", "the renderer stopped while reading the plan (signal %d)", event->signal);
+            problem_set(&problem, PROBLEM_RENDERER, "", "", "the renderer stopped while reading the plan (signal %d)",
+                        event->signal);
         else
             problem_set(&problem, PROBLEM_RENDERER, "", "", "while reading the plan the renderer %.200s", how);
         plan_entry_fail(fleet, plan, &problem);
@@ -212,7 +218,8 @@ static void probe_ended(struct fleet *fleet, const struct watch_event *event)
     cJSON *json = event->is_exit ? json_read(event->output ? event->output : "", event->n_output, &problem) : NULL;
     if (!json || !fleet_take_gl(fleet, json)) {
         how_it_ended(event, how, sizeof how);
-        problem_set(&fleet->gl_problem, PROBLEM_GL_UNAVAILABLE, "", "", "looking for a way to draw failed: the renderer %.180s", how);
+        problem_set(&fleet->gl_problem, PROBLEM_GL_UNAVAILABLE, "", "",
+                    "looking for a way to draw failed: the renderer %.180s", how);
     }
     cJSON_Delete(json);
     if (fleet->gl_problem.type != PROBLEM_NONE)

@@ -13,11 +13,11 @@
 #include "core/base/mem.h"
 
 enum {
-    READ_ROUND = 4 << 20,       /* bytes read of one process before the others have their turn */
+    READ_ROUND = 4 << 20, /* bytes read of one process before the others have their turn */
     MEMORY_EVERY_US = 1000000,
-    STOP_GRACE_US = 1000000,    /* to end by itself after its socket closed */
-    DRAIN_US = 500000,          /* for what is still in the socket after the end */
-    JSON_WEIGHT = 16            /* a parsed document takes about so many times its text */
+    STOP_GRACE_US = 1000000, /* to end by itself after its socket closed */
+    DRAIN_US = 500000,       /* for what is still in the socket after the end */
+    JSON_WEIGHT = 16         /* a parsed document takes about so many times its text */
 };
 
 /* What of a renderer's words lies unhandled on the other side; shared by the process and its events. */
@@ -83,7 +83,8 @@ static void give(struct process *process, struct watch_event *event)
     process->news.event(process->news.context, event);
 }
 
-struct process *process_create(uint64_t number, char *const argv[], int limit_ms, bool is_teller, const struct process_news *news, int64_t now_us)
+struct process *process_create(uint64_t number, char *const argv[], int limit_ms, bool is_teller,
+                               const struct process_news *news, int64_t now_us)
 {
     struct process *process = mem_new(sizeof *process);
     process->number = number;
@@ -146,7 +147,10 @@ void process_destroy(struct process *process)
     free(process);
 }
 
-uint64_t process_number(const struct process *process) { return process->number; }
+uint64_t process_number(const struct process *process)
+{
+    return process->number;
+}
 
 static void set_reason(struct process *process, const char *reason)
 {
@@ -188,9 +192,15 @@ void process_send(struct process *process, uint8_t *bytes, size_t n_bytes, int64
     process->n_outgoing += n_bytes;
 }
 
-void process_await(struct process *process, bool is_awaited) { process->is_awaited = is_awaited; }
+void process_await(struct process *process, bool is_awaited)
+{
+    process->is_awaited = is_awaited;
+}
 
-bool process_is_awaited(const struct process *process) { return process->is_awaited && !process->has_ended; }
+bool process_is_awaited(const struct process *process)
+{
+    return process->is_awaited && !process->has_ended;
+}
 
 bool process_is_throttled(const struct process *process)
 {
@@ -214,7 +224,8 @@ static void write_out(struct process *process)
 {
     while (process->outgoing && process->child.channel >= 0) {
         struct chunk *chunk = process->outgoing;
-        ssize_t n = send(process->child.channel, chunk->bytes + chunk->n_sent, chunk->n_bytes - chunk->n_sent, MSG_NOSIGNAL);
+        ssize_t n =
+            send(process->child.channel, chunk->bytes + chunk->n_sent, chunk->n_bytes - chunk->n_sent, MSG_NOSIGNAL);
         if (n < 0 && errno == EINTR)
             continue;
         if (n < 0)
@@ -251,7 +262,7 @@ static void take_packets(struct process *process, int64_t now_us)
         uint64_t text = process->n_since_packet > packet.n_blob ? process->n_since_packet - packet.n_blob : 0;
         process->n_since_packet = 0;
         const char *type = json_text(packet.json, "type"); /* one of the known ones: the reader has seen to that */
-        if (strcmp(type, "pong") == 0) { /* its answer to our ping: that it speaks is all we wanted */
+        if (strcmp(type, "pong") == 0) {                   /* its answer to our ping: that it speaks is all we wanted */
             packet_finish(&packet);
             continue;
         }

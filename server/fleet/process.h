@@ -1,6 +1,6 @@
 #pragma once
-/* One child process as the watch sees it: its channel, what waits to be sent, and its times. Only for watch.c's thread; now_us is of the
- * watch's run_clock everywhere. */
+/* One child process as the watch sees it: its channel, what waits to be sent, and its times. Only for watch.c's thread;
+ * now_us is of the watch's run_clock everywhere. */
 #include <poll.h>
 
 #include "server/fleet/spawn.h"
@@ -8,14 +8,15 @@
 
 struct process;
 
-struct process_news { /* how a process gives its events away */
+struct process_news {                                        /* how a process gives its events away */
     void (*event)(void *context, struct watch_event *event); /* takes it */
     void *context;
 };
 
-/* Starts it; never NULL: one that could not be started has ended already. argv is borrowed. limit_ms: a program's; 0 for renderers.
- * is_teller: a program whose lines are told one by one; each gives it limit_ms more. */
-struct process *process_create(uint64_t number, char *const argv[], int limit_ms, bool is_teller, const struct process_news *news, int64_t now_us);
+/* Starts it; never NULL: one that could not be started has ended already. argv is borrowed. limit_ms: a program's; 0
+ * for renderers. is_teller: a program whose lines are told one by one; each gives it limit_ms more. */
+struct process *process_create(uint64_t number, char *const argv[], int limit_ms, bool is_teller,
+                               const struct process_news *news, int64_t now_us);
 void process_destroy(struct process *process); /* kills and reaps when still there */
 uint64_t process_number(const struct process *process);
 /* Appends to what is to be sent; takes bytes. A process that leaves too much unread is ended. */

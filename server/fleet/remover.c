@@ -32,7 +32,8 @@ static int remove_tree(const struct remover *remover, char *path)
     for (const FTSENT *entry; !atomic_load(&remover->is_stopping) && (entry = fts_read(tree));) {
         if (entry->fts_info == FTS_D)
             continue; /* it comes again, as FTS_DP, when it is empty */
-        int gone = entry->fts_info == FTS_DP || entry->fts_info == FTS_DNR ? rmdir(entry->fts_accpath) : unlink(entry->fts_accpath);
+        int gone = entry->fts_info == FTS_DP || entry->fts_info == FTS_DNR ? rmdir(entry->fts_accpath)
+                                                                           : unlink(entry->fts_accpath);
         if (gone != 0 && errno != ENOENT && !failed)
             failed = errno;
     }

@@ -1,5 +1,6 @@
 #pragma once
-/* Removes folders with all that is in them, on a thread of its own: a plan may have ten thousand files. Knows nothing of plans. */
+/* Removes folders with all that is in them, on a thread of its own: a plan may have ten thousand files. Knows nothing
+ * of plans. */
 #include "core/base/error.h"
 
 enum { REMOVER_MAX_WAITING = 4096 };

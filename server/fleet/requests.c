@@ -74,7 +74,7 @@ static void fail(struct fleet *fleet, struct fleet_ask *ask, const struct proble
     ask->plan = NULL;
 }
 
-/* ---- what a renderer is owed ---- */
+/* ---- what a renderer is owed ------------------------------------------------------------------------------------ */
 
 /* A scene, or that a room is gone, that found the orders to the watch full: sent before anything else is. */
 struct fleet_owed {
@@ -141,7 +141,7 @@ void owed_send(struct fleet *fleet)
         (void)send_owed(fleet, fleet->plans[i]);
 }
 
-/* ---- requests ---- */
+/* ---- requests --------------------------------------------------------------------------------------------------- */
 
 static void send_ask(struct fleet *fleet, struct fleet_ask *ask)
 {
@@ -196,7 +196,8 @@ uint64_t fleet_request(struct fleet *fleet, const char *plan_id, const cJSON *pa
         if (!ask->bytes)
             problem_from_error(&problem, &err);
         else if (plan->state != FLEET_READY && fleet->n_waiting_bytes > FLEET_MAX_WAITING_BYTES) {
-            problem_set(&problem, PROBLEM_BUSY, "", "", "requests of more than %d MiB wait for plans to be read", FLEET_MAX_WAITING_BYTES >> 20);
+            problem_set(&problem, PROBLEM_BUSY, "", "", "requests of more than %d MiB wait for plans to be read",
+                        FLEET_MAX_WAITING_BYTES >> 20);
             problem.retry_after_ms = 1000;
         } else {
             ask->plan = plan;
@@ -284,8 +285,9 @@ void asks_keep_time(struct fleet *fleet, int64_t now_us)
     for (struct fleet_ask *ask = fleet->asks; ask; ask = ask->next) {
         if (ask->is_failed || now_us < ask->until_us)
             continue;
-        /* Its main thread answers pings, so only this shows that drawing is stuck. One that finishes other pictures meanwhile is
-         * not stuck: too much was asked of it. Nor is one that has been ready for less than the time of a request. */
+        /* Its main thread answers pings, so only this shows that drawing is stuck. One that finishes other pictures
+         * meanwhile is not stuck: too much was asked of it. Nor is one that has been ready for less than the time of a
+         * request. */
         if (ask->is_render && ask->is_sent && now_us - last_drew_us(ask->plan) >= (int64_t)fleet->times.request * 1000)
             plan_entry_kill(fleet, ask->plan, "did not finish a picture in time");
         fail(fleet, ask, &problem);
@@ -332,7 +334,8 @@ bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packe
     if (is_problem) {
         if (!problem_from_json(cJSON_GetObjectItemCaseSensitive(packet->json, "problem"), &problem))
             return false;
-    } else if (strcmp(type, ask->is_render ? "frame" : "answer") != 0 || (ask->is_render && !packet_frame_read(packet, &frame)) ||
+    } else if (strcmp(type, ask->is_render ? "frame" : "answer") != 0 ||
+               (ask->is_render && !packet_frame_read(packet, &frame)) ||
                (!ask->is_render && !cJSON_GetObjectItemCaseSensitive(packet->json, "body"))) {
         return false;
     }

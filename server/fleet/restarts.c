@@ -14,7 +14,8 @@ int restart_pause_ms(int n_barren)
     return n_barren < 2 ? 0 : pause_ms < RESTART_LONGEST_PAUSE_MS ? pause_ms : RESTART_LONGEST_PAUSE_MS;
 }
 
-/* Books a quick start. False: too many were needed; a renderer that ends after each picture must not use up the machine. */
+/* Books a quick start. False: too many were needed; a renderer that ends after each picture must not use up the
+ * machine. */
 static bool book_quick(struct plan_entry *plan, int64_t now_us)
 {
     int64_t from_us = plan->quick_booked_us > now_us ? plan->quick_booked_us : now_us;
@@ -45,7 +46,8 @@ static void say_pause(struct fleet *fleet, struct plan_entry *plan, int64_t now_
         plan->problem.retry_after_ms = (int)seconds * 1000;
     }
     if (seconds > 0)
-        (void)snprintf(phase, sizeof phase, "the renderer %.120s; it is started again in %lld s", plan->ended_how, seconds);
+        (void)snprintf(phase, sizeof phase, "the renderer %.120s; it is started again in %lld s", plan->ended_how,
+                       seconds);
     else
         (void)snprintf(phase, sizeof phase, "starting the renderer again");
     if (strcmp(phase, plan->phase) == 0 && plan->state == FLEET_RESTARTING)
@@ -60,7 +62,8 @@ void restart_after_end(struct fleet *fleet, struct plan_entry *plan, const char 
     struct problem problem;
     count_end(plan, now_us);
     if (plan->n_holds == 0 && plan->n_barren > FLEET_MAX_RESTARTS) {
-        problem_set(&problem, PROBLEM_RENDERER, "", "", "the renderer stopped %d times without having drawn a picture; the last time it %.160s",
+        problem_set(&problem, PROBLEM_RENDERER, "", "",
+                    "the renderer stopped %d times without having drawn a picture; the last time it %.160s",
                     plan->n_barren, how);
         plan_entry_fail(fleet, plan, &problem);
         return;
@@ -80,7 +83,10 @@ void restart_after_end(struct fleet *fleet, struct plan_entry *plan, const char 
 
 void restart_not_begun(struct fleet *fleet, struct plan_entry *plan, const char *how)
 {
-    plan->n_barren = plan->n_barren < 1 ? 1 : plan->n_barren; /* the next is at least the second: the first would start at once, and again */
+    plan->n_barren =
+        plan->n_barren < 1
+            ? 1
+            : plan->n_barren; /* the next is at least the second: the first would start at once, and again */
     restart_after_end(fleet, plan, how);
 }
 

@@ -17,8 +17,25 @@ enum { CHILD_SOCKET = 3 };
 
 /* What a child may know of our environment; a prefix ends in '_'. Tokens and proxies stay with us. */
 static const char *const passed_names[] = {
-    "PATH=", "LANG=", "LC_", "TZ=", "LD_LIBRARY_PATH=", "LP_", "MESA_", "GALLIUM_", "EGL_", "LIBGL_", "__EGL_", "__GLX_", "__GL_",
-    "NVIDIA_", "CUDA_VISIBLE_DEVICES=", "ASAN_OPTIONS=", "LSAN_OPTIONS=", "UBSAN_OPTIONS=", "TSAN_OPTIONS=",
+    "PATH=",
+    "LANG=",
+    "LC_",
+    "TZ=",
+    "LD_LIBRARY_PATH=",
+    "LP_",
+    "MESA_",
+    "GALLIUM_",
+    "EGL_",
+    "LIBGL_",
+    "__EGL_",
+    "__GLX_",
+    "__GL_",
+    "NVIDIA_",
+    "CUDA_VISIBLE_DEVICES=",
+    "ASAN_OPTIONS=",
+    "LSAN_OPTIONS=",
+    "UBSAN_OPTIONS=",
+    "TSAN_OPTIONS=",
 };
 
 static char **child_environment(void)
@@ -42,7 +59,8 @@ static char **child_environment(void)
 static bool make_channel(enum spawn_channel channel, int *ours, int *theirs)
 {
     int ends[2];
-    if (channel == SPAWN_SOCKET ? socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0 : pipe2(ends, O_CLOEXEC) != 0)
+    if (channel == SPAWN_SOCKET ? socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0
+                                : pipe2(ends, O_CLOEXEC) != 0)
         return false;
     *ours = ends[0];
     *theirs = ends[1];

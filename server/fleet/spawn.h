@@ -15,7 +15,7 @@ struct child {
     int channel;  /* our end, non-blocking */
 };
 
-/* argv[0] is the program's path. Standard input is empty, standard error ours, the environment cut down to what graphics drivers,
- * locales and sanitizers read. The child leads its own process group.
- *   errors ERROR_IO with the system's reason */
+/* argv[0] is the program's path. Standard input is empty, standard error ours, the environment cut down to what
+ * graphics drivers, locales and sanitizers read. The child leads its own process group. errors ERROR_IO with the
+ * system's reason */
 NODISCARD bool spawn_child(char *const argv[], enum spawn_channel channel, struct child *child, struct error *err);

@@ -1,5 +1,6 @@
-/* Archives to plans: an archive in data/uploads is unpacked beside itself by a confined program, looked at like any plan folder, and
- * moved to data/plans, where the list finds it. What is no plan, was cancelled or is taken out again is removed. */
+/* Archives to plans: an archive in data/uploads is unpacked beside itself by a confined program, looked at like any
+ * plan folder, and moved to data/plans, where the list finds it. What is no plan, was cancelled or is taken out again
+ * is removed. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <errno.h>
@@ -21,8 +22,8 @@
 #include "server/fleet/parts.h"
 
 enum {
-    MAX_WRAPPING = 8,        /* folders that hold nothing but one folder, from the archive's top down */
-    MAX_SAME_NAME = 999,     /* plans of one name; folder_make_id leaves room for the number */
+    MAX_WRAPPING = 8,         /* folders that hold nothing but one folder, from the archive's top down */
+    MAX_SAME_NAME = 999,      /* plans of one name; folder_make_id leaves room for the number */
     LIST_WITHIN_US = 30000000 /* how long the list may take to find a new plan */
 };
 
@@ -51,7 +52,7 @@ struct upload {
     int64_t began_us, list_until_us;
 };
 
-/* ---- the folders ---- */
+/* ---- the folders ------------------------------------------------------------------------------------------------ */
 
 static char *path_in(const char *folder, const char *name)
 {
@@ -65,7 +66,8 @@ static char *path_in(const char *folder, const char *name)
 static bool throw_away(struct fleet *fleet, const char *path)
 {
     char name[96];
-    (void)snprintf(name, sizeof name, "trash-%lld-%d-%llu", (long long)clock_now_us(), (int)getpid(), (unsigned long long)++fleet->n_trash);
+    (void)snprintf(name, sizeof name, "trash-%lld-%d-%llu", (long long)clock_now_us(), (int)getpid(),
+                   (unsigned long long)++fleet->n_trash);
     char *trash = path_in(fleet->uploads_home, name);
     if (rename(path, trash) != 0) {
         free(trash);
@@ -96,7 +98,8 @@ static bool clear_leftovers(struct fleet *fleet, struct error *err)
     DIR *folder = opendir(fleet->uploads_home);
     if (!folder)
         return error_set(err, ERROR_IO, "%s: %s", fleet->uploads_home, strerror(errno));
-    char **names = mem_new(REMOVER_MAX_WAITING * sizeof *names); /* moved only after the listing, which must not see them again */
+    char **names =
+        mem_new(REMOVER_MAX_WAITING * sizeof *names); /* moved only after the listing, which must not see them again */
     size_t n = 0;
     for (const struct dirent *entry; n < REMOVER_MAX_WAITING && (entry = readdir(folder));)
         if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
@@ -149,7 +152,7 @@ bool uploads_owns(const struct fleet *fleet, const char *folder)
     return strncmp(folder, fleet->plans_home, n) == 0 && folder[n] == '/';
 }
 
-/* ---- one upload ---- */
+/* ---- one upload ------------------------------------------------------------------------------------------------- */
 
 static bool is_over(const struct upload *upload)
 {
@@ -169,7 +172,8 @@ static void end(struct fleet *fleet, struct upload *upload, enum fleet_upload_st
     upload->state = state;
     upload->stage = STAGE_OVER;
     if (upload->process)
-        watch_stop(fleet->watch, upload->process, true, "is no longer wanted"); /* its end cleans up: it may still write */
+        watch_stop(fleet->watch, upload->process, true,
+                   "is no longer wanted"); /* its end cleans up: it may still write */
     else
         clean(fleet, upload);
     fleet->options.wake(fleet->options.context);
@@ -178,7 +182,8 @@ static void end(struct fleet *fleet, struct upload *upload, enum fleet_upload_st
 static void fail(struct fleet *fleet, struct upload *upload, const struct problem *problem)
 {
     upload->problem = *problem;
-    log_info("upload %llu: failed: %s", (unsigned long long)upload->number, problem_word(problem->type)); /* the detail may hold names of files */
+    log_info("upload %llu: failed: %s", (unsigned long long)upload->number,
+             problem_word(problem->type)); /* the detail may hold names of files */
     end(fleet, upload, UPLOAD_FAILED);
 }
 
@@ -187,13 +192,17 @@ static void start_unpacking(struct fleet *fleet, struct upload *upload)
     char limit[32];
     struct problem problem;
     if (mkdir(upload->folder, 0700) != 0) {
-        problem_set(&problem, PROBLEM_STORAGE, "", "", "no folder can be made for what is in the archive: %s", strerror(errno));
+        problem_set(&problem, PROBLEM_STORAGE, "", "", "no folder can be made for what is in the archive: %s",
+                    strerror(errno));
         fail(fleet, upload, &problem);
         return;
     }
     (void)snprintf(limit, sizeof limit, "%llu",
-                   (unsigned long long)(fleet->options.max_unpacked_bytes ? fleet->options.max_unpacked_bytes : default_max_unpacked_bytes));
-    const char *words[] = { fleet->renderer_path, "--unpack", upload->archive, "--into", upload->folder, "--max-unpacked-bytes", limit, NULL };
+                   (unsigned long long)(fleet->options.max_unpacked_bytes ? fleet->options.max_unpacked_bytes
+                                                                          : default_max_unpacked_bytes));
+    const char *words[] = {
+        fleet->renderer_path, "--unpack", upload->archive, "--into", upload->folder, "--max-unpacked-bytes", limit, NULL
+    };
     upload->state = UPLOAD_RUNNING;
     upload->stage = STAGE_UNPACKING;
     upload->process = fleet_number(fleet);
@@ -284,7 +293,8 @@ static void take_home(struct fleet *fleet, struct upload *upload)
         fleet_rescan(fleet);
         return;
     }
-    problem_set(&problem, PROBLEM_STORAGE, "", "", "the plan cannot be moved to where the server keeps uploaded plans: %s", strerror(errno));
+    problem_set(&problem, PROBLEM_STORAGE, "", "",
+                "the plan cannot be moved to where the server keeps uploaded plans: %s", strerror(errno));
     fail(fleet, upload, &problem);
 }
 
@@ -311,12 +321,14 @@ static void look_for_it(struct fleet *fleet, struct upload *upload, int64_t now_
         (void)snprintf(upload->plan_id, sizeof upload->plan_id, "%s", plan->id);
         upload->state = UPLOAD_DONE;
         upload->stage = STAGE_OVER;
-        log_info("upload %llu: plan %s: %llu files, %llu bytes in %lld ms", (unsigned long long)upload->number, plan->id,
-                 (unsigned long long)upload->n_files, (unsigned long long)upload->n_bytes, (long long)((now_us - upload->began_us) / 1000));
+        log_info("upload %llu: plan %s: %llu files, %llu bytes in %lld ms", (unsigned long long)upload->number,
+                 plan->id, (unsigned long long)upload->n_files, (unsigned long long)upload->n_bytes,
+                 (long long)((now_us - upload->began_us) / 1000));
     } else if (fleet->is_listing) {
         return; /* however slow the disks of the other plans are */
     } else if (now_us > upload->list_until_us) {
-        problem_set(&problem, PROBLEM_LIMIT, "", "", "the list of plans has no place for it: at most %d are listed", FLEET_MAX_PLANS);
+        problem_set(&problem, PROBLEM_LIMIT, "", "", "the list of plans has no place for it: at most %d are listed",
+                    FLEET_MAX_PLANS);
         (void)throw_away(fleet, upload->root);
         fail(fleet, upload, &problem);
     } else {
@@ -324,7 +336,7 @@ static void look_for_it(struct fleet *fleet, struct upload *upload, int64_t now_
     }
 }
 
-/* ---- what its processes say ---- */
+/* ---- what its processes say ------------------------------------------------------------------------------------- */
 
 static uint64_t count_of(const cJSON *json, const char *name)
 {
@@ -361,9 +373,11 @@ static void unpacking_ended(struct fleet *fleet, struct upload *upload, const st
     if (problem.type == PROBLEM_NONE && event->reason[0])
         problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "the program that unpacks %.180s", event->reason);
     else if (problem.type == PROBLEM_NONE && event->signal)
-        problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "the program that unpacks stopped (signal %d)", event->signal);
+        problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "the program that unpacks stopped (signal %d)",
+                    event->signal);
     else if (problem.type == PROBLEM_NONE)
-        problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "the program that unpacks ended with status %d and said nothing", event->status);
+        problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "",
+                    "the program that unpacks ended with status %d and said nothing", event->status);
     fail(fleet, upload, &problem);
 }
 
@@ -376,7 +390,10 @@ static void looking_ended(struct fleet *fleet, struct upload *upload, const stru
         take_home(fleet, upload);
     } else {
         struct problem problem;
-        problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "%.250s", said && said[0] ? said : reason[0] ? reason : "there is no plan in the archive");
+        problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "%.250s",
+                    said && said[0] ? said
+                    : reason[0]     ? reason
+                                    : "there is no plan in the archive");
         fail(fleet, upload, &problem);
     }
     cJSON_Delete(json);
@@ -425,7 +442,7 @@ void uploads_go_on(struct fleet *fleet)
             look_for_it(fleet, upload, now_us);
 }
 
-/* ---- for others ---- */
+/* ---- for others ------------------------------------------------------------------------------------------------- */
 
 static void forget_old(struct fleet *fleet)
 {
@@ -441,8 +458,8 @@ static void forget_old(struct fleet *fleet)
     }
 }
 
-/* "Head.tar.gz" is called "Head". Without a name the plan is called after the day: what an archive is called on somebody's disk is often
- * a patient's name, and an id is in addresses, lists and logs. */
+/* "Head.tar.gz" is called "Head". Without a name the plan is called after the day: what an archive is called on
+ * somebody's disk is often a patient's name, and an id is in addresses, lists and logs. */
 static void make_base_id(const char *name, char id[PLAN_ID_SIZE])
 {
     time_t now = time(NULL);
@@ -470,7 +487,8 @@ uint64_t fleet_upload(struct fleet *fleet, const char *archive, const char *name
         n_going_on += !is_over(upload) || upload->process;
     if (n_going_on >= FLEET_MAX_UPLOADS) {
         (void)throw_away(fleet, archive);
-        problem_set(problem, PROBLEM_LIMIT, "", "", "%d archives are waiting to be unpacked already; at most so many may wait", FLEET_MAX_UPLOADS);
+        problem_set(problem, PROBLEM_LIMIT, "", "",
+                    "%d archives are waiting to be unpacked already; at most so many may wait", FLEET_MAX_UPLOADS);
         problem->retry_after_ms = 10000;
         return 0;
     }
@@ -481,7 +499,8 @@ uint64_t fleet_upload(struct fleet *fleet, const char *archive, const char *name
     size_t n = strlen(archive), n_ending = strlen(".part");
     upload->folder = mem_new(n + n_ending);
     bool is_part = n > n_ending && strcmp(archive + n - n_ending, ".part") == 0;
-    (void)snprintf(upload->folder, n + n_ending, "%.*s%s", (int)(is_part ? n - n_ending : n), archive, is_part ? "" : ".out");
+    (void)snprintf(upload->folder, n + n_ending, "%.*s%s", (int)(is_part ? n - n_ending : n), archive,
+                   is_part ? "" : ".out");
     make_base_id(name, upload->base_id);
     upload->began_us = fleet_now_us(fleet);
     upload->next = fleet->uploads;
@@ -531,9 +550,11 @@ bool fleet_remove_plan(struct fleet *fleet, const char *plan_id, struct problem 
     if (!plan)
         return fleet_no_plan(fleet, plan_id, problem);
     if (!uploads_owns(fleet, plan->folder))
-        return problem_set(problem, PROBLEM_FORBIDDEN, "", "", "the plan lies in a folder that the server does not own: only uploaded plans are deleted");
+        return problem_set(problem, PROBLEM_FORBIDDEN, "", "",
+                           "the plan lies in a folder that the server does not own: only uploaded plans are deleted");
     if (!throw_away(fleet, plan->folder) && errno != ENOENT)
-        return problem_set(problem, PROBLEM_STORAGE, "", "", "the plan's folder cannot be moved away: %s", strerror(errno));
+        return problem_set(problem, PROBLEM_STORAGE, "", "", "the plan's folder cannot be moved away: %s",
+                           strerror(errno));
     /* of a collection: the folder around it, once it is empty */
     char *around = mem_copy_text(plan->folder);
     *strrchr(around, '/') = 0;
@@ -541,7 +562,8 @@ bool fleet_remove_plan(struct fleet *fleet, const char *plan_id, struct problem 
         (void)rmdir(around);
     free(around);
     if (plan->process)
-        watch_stop(fleet->watch, plan->process, true, "draws a plan that is deleted"); /* at once: it may be writing to its cache */
+        watch_stop(fleet->watch, plan->process, true,
+                   "draws a plan that is deleted"); /* at once: it may be writing to its cache */
     plan_entry_close(fleet, plan, "it is deleted");
     char cache[PATH_MAX];
     (void)snprintf(cache, sizeof cache, "%s/cache/%s", fleet->data_folder, plan->id);

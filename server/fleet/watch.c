@@ -77,7 +77,10 @@ static void order_destroy(void *item)
     free(order);
 }
 
-static void event_drop(void *event) { watch_event_destroy(event); }
+static void event_drop(void *event)
+{
+    watch_event_destroy(event);
+}
 
 static bool give_order(struct watch *watch, struct order *order)
 {
@@ -151,9 +154,12 @@ bool watch_await(struct watch *watch, uint64_t number, bool is_awaited)
     return give_order(watch, order);
 }
 
-struct watch_event *watch_take(struct watch *watch) { return queue_try_take(watch->events); }
+struct watch_event *watch_take(struct watch *watch)
+{
+    return queue_try_take(watch->events);
+}
 
-/* ---- on the thread ---- */
+/* ---- on the thread ---------------------------------------------------------------------------------------------- */
 
 static void flush_held(struct watch *watch)
 {
@@ -202,7 +208,8 @@ static void start(struct watch *watch, const struct order *order, int64_t now_us
         give_event(watch, event);
         return;
     }
-    watch->processes[watch->n_processes++] = process_create(order->number, order->argv, order->limit_ms, order->is_teller, &news, now_us);
+    watch->processes[watch->n_processes++] =
+        process_create(order->number, order->argv, order->limit_ms, order->is_teller, &news, now_us);
 }
 
 static void obey(struct watch *watch, struct order *order, int64_t now_us)

@@ -9,7 +9,10 @@
 enum { N_MAPPED = 12 }; /* bytes in front of an IPv4 address */
 static const uint8_t mapped[N_MAPPED] = { [10] = 0xff, [11] = 0xff };
 
-static bool is_ipv4(const struct address *address) { return memcmp(address->bytes, mapped, N_MAPPED) == 0; }
+static bool is_ipv4(const struct address *address)
+{
+    return memcmp(address->bytes, mapped, N_MAPPED) == 0;
+}
 
 static bool read_bare(const char *text, struct address *address)
 {
@@ -60,7 +63,9 @@ bool address_range_read(const char *text, struct address_range *range, struct er
     if (n < sizeof copy)
         memcpy(copy, text, n);
     if (n >= sizeof copy || !read_bare(copy, &range->first))
-        return error_set(err, ERROR_FORMAT, "\"%.80s\" is no address; expected ADDRESS or ADDRESS/BITS, as 127.0.0.1 or 2001:db8::/32", text);
+        return error_set(err, ERROR_FORMAT,
+                         "\"%.80s\" is no address; expected ADDRESS or ADDRESS/BITS, as 127.0.0.1 or 2001:db8::/32",
+                         text);
     int most = is_ipv4(&range->first) && !strchr(copy, ':') ? 32 : 128;
     range->n_bits = 128;
     if (!slash)
@@ -85,7 +90,10 @@ struct address address_of_peer(const struct sockaddr_storage *peer)
     return address;
 }
 
-bool address_is_equal(const struct address *a, const struct address *b) { return memcmp(a->bytes, b->bytes, sizeof a->bytes) == 0; }
+bool address_is_equal(const struct address *a, const struct address *b)
+{
+    return memcmp(a->bytes, b->bytes, sizeof a->bytes) == 0;
+}
 
 static bool has_first_bits(const struct address *address, const struct address_range *range)
 {
@@ -111,8 +119,8 @@ struct address address_counted(const struct address *address)
     return counted;
 }
 
-struct address address_of_client(const struct address *peer, const struct address_range *trusted, size_t n_trusted, const char *forwarded,
-                                 size_t n)
+struct address address_of_client(const struct address *peer, const struct address_range *trusted, size_t n_trusted,
+                                 const char *forwarded, size_t n)
 {
     struct address client = *peer;
     size_t end = n;

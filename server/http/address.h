@@ -1,6 +1,6 @@
 #pragma once
-/* Who a connection is counted for: a network address, and the address of the client behind a trusted proxy. Knows no sockets but the
- * struct that the system gives with one. */
+/* Who a connection is counted for: a network address, and the address of the client behind a trusted proxy. Knows no
+ * sockets but the struct that the system gives with one. */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -23,15 +23,16 @@ struct address_range {
 
 /* Reads "192.0.2.1", "192.0.2.1:80", "2001:db8::1" or "[2001:db8::1]:80", n bytes; the port is not kept. */
 NODISCARD bool address_read(const char *text, size_t n, struct address *address);
-/* Reads ADDRESS or ADDRESS/BITS; BITS are those of the address's own kind: at most 32 or 128. errors ERROR_FORMAT, ERROR_RANGE */
+/* Reads ADDRESS or ADDRESS/BITS; BITS are those of the address's own kind: at most 32 or 128. errors ERROR_FORMAT,
+ * ERROR_RANGE */
 NODISCARD bool address_range_read(const char *text, struct address_range *range, struct error *err);
 /* The address of a socket's peer; all zeros for a socket that is no IP one. */
 struct address address_of_peer(const struct sockaddr_storage *peer);
 bool address_is_in(const struct address *address, const struct address_range *ranges, size_t n_ranges);
 bool address_is_equal(const struct address *a, const struct address *b);
 
-/* The address that limits are counted for: an IPv4 address as a whole, of an IPv6 address its network of 64 bits, because whoever has one
- * address of such a network has all of them. */
+/* The address that limits are counted for: an IPv4 address as a whole, of an IPv6 address its network of 64 bits,
+ * because whoever has one address of such a network has all of them. */
 struct address address_counted(const struct address *address);
 
 /* The client of a request.
@@ -39,7 +40,7 @@ struct address address_counted(const struct address *address);
  *   peer       the other end of the connection
  *   trusted    proxies whose X-Forwarded-For is believed
  *   forwarded  value of the last X-Forwarded-For, n bytes; addresses parted by commas, the newest last
- *   returns    peer when it is not trusted. Else the newest address in forwarded that is not a trusted proxy's, and when all are, the
- *              oldest of them. What stands before something that is no address is not believed. */
-struct address address_of_client(const struct address *peer, const struct address_range *trusted, size_t n_trusted, const char *forwarded,
-                                 size_t n);
+ *   returns    peer when it is not trusted. Else the newest address in forwarded that is not a trusted proxy's, and
+ * when all are, the oldest of them. What stands before something that is no address is not believed. */
+struct address address_of_client(const struct address *peer, const struct address_range *trusted, size_t n_trusted,
+                                 const char *forwarded, size_t n);

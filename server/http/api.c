@@ -82,7 +82,9 @@ static bool path_matches(struct call *call, const char *route)
 
 static const char *method_word(enum call_method method)
 {
-    static const char *const words[] = { "GET", "GET", "POST", "PATCH", "DELETE", "" }; /* HEAD is GET without the body */
+    static const char *const words[] = {
+        "GET", "GET", "POST", "PATCH", "DELETE", ""
+    }; /* HEAD is GET without the body */
     return words[method];
 }
 
@@ -195,7 +197,8 @@ static bool start_picture(struct api *api, struct call *call, const char *plan_i
         }
     if (n >= API_MAX_PICTURES || (n > 0 && n_before + n_pixels > API_MAX_PIXELS)) {
         struct problem problem;
-        problem_set(&problem, PROBLEM_BUSY, "", "", "%zu pictures of this plan are being made already, of %.0f million pixels", n, n_before / 1e6);
+        problem_set(&problem, PROBLEM_BUSY, "", "",
+                    "%zu pictures of this plan are being made already, of %.0f million pixels", n, n_before / 1e6);
         problem.retry_after_ms = 1000;
         call_answer_problem(call, &problem);
         return false;
@@ -239,8 +242,8 @@ static void picture_came(void *context, struct packet *answer, const struct prob
         return;
     }
     char timing[96], revision[24];
-    (void)snprintf(timing, sizeof timing, "render;dur=%.1f, encode;dur=%.1f", json_number(answer->json, "render_us", 0) / 1000,
-                   json_number(answer->json, "encode_us", 0) / 1000);
+    (void)snprintf(timing, sizeof timing, "render;dur=%.1f, encode;dur=%.1f",
+                   json_number(answer->json, "render_us", 0) / 1000, json_number(answer->json, "encode_us", 0) / 1000);
     (void)snprintf(revision, sizeof revision, "%.0f", json_number(answer->json, "scene_revision", 0));
     call_add_header(call, "Server-Timing", timing);
     if (has_revision)
@@ -256,18 +259,20 @@ static void picture_came(void *context, struct packet *answer, const struct prob
     call_answer_bytes(call, 200, bytes[0] == 0xff ? "image/jpeg" : "image/png", bytes, answer->n_blob);
 }
 
-void api_render(struct api *api, struct call *call, const char *plan_id, const cJSON *scene, const uint32_t *revision, const cJSON *view,
-                const char *format, double quality)
+void api_render(struct api *api, struct call *call, const char *plan_id, const cJSON *scene, const uint32_t *revision,
+                const cJSON *view, const char *format, double quality)
 {
     struct problem problem;
     bool is_jpeg = format && strcmp(format, "jpeg") == 0;
     if (format && !is_jpeg && strcmp(format, "png") != 0) {
-        problem_set(&problem, PROBLEM_VALIDATION, "/format", "enum", "format is \"%.20s\", expected png or jpeg", format);
+        problem_set(&problem, PROBLEM_VALIDATION, "/format", "enum", "format is \"%.20s\", expected png or jpeg",
+                    format);
         call_answer_problem(call, &problem);
         return;
     }
     if (!(quality >= 1 && quality <= 100) || quality != (int)quality) {
-        problem_set(&problem, PROBLEM_VALIDATION, "/quality", "range", "quality is %g, expected a whole number from 1 to 100", quality);
+        problem_set(&problem, PROBLEM_VALIDATION, "/quality", "range",
+                    "quality is %g, expected a whole number from 1 to 100", quality);
         call_answer_problem(call, &problem);
         return;
     }

@@ -1,7 +1,7 @@
 #pragma once
 /* The HTTP API's routes and what they do. Runs on the net thread. Knows nothing of libmicrohttpd. */
-#include "server/net/net.h"
 #include "server/http/call.h"
+#include "server/net/net.h"
 
 struct api;
 

@@ -6,8 +6,9 @@ enum {
     API_MAX_JOBS = 500,        /* ended ones are forgotten oldest first */
     API_MAX_PICTURES = 32,     /* asked of one plan and not answered yet; more are answered with 503 */
     API_MAX_PIXELS = 32 << 20, /* of these together; one alone may be larger */
-    API_MAX_FILES = 4,         /* surfaces asked for as files and not answered yet, of all plans: each may have PACKET_MAX_BLOB bytes */
-    API_MAX_TIMINGS = 2        /* shapes being timed, of all plans */
+    API_MAX_FILES =
+        4, /* surfaces asked for as files and not answered yet, of all plans: each may have PACKET_MAX_BLOB bytes */
+    API_MAX_TIMINGS = 2 /* shapes being timed, of all plans */
 };
 
 enum api_job_state { JOB_QUEUED, JOB_RUNNING, JOB_DONE, JOB_FAILED, JOB_CANCELLED };
@@ -29,9 +30,9 @@ struct api {
     uint64_t max_upload_bytes;
     int64_t started_us;
     struct api_job jobs[API_MAX_JOBS];
-    struct api_picture *pictures; /* being made */
-    size_t n_files, n_timings;    /* being made */
-    size_t n_jobs;    /* ever made; the job of number n is at n % API_MAX_JOBS */
+    struct api_picture *pictures;            /* being made */
+    size_t n_files, n_timings;               /* being made */
+    size_t n_jobs;                           /* ever made; the job of number n is at n % API_MAX_JOBS */
     _Atomic uint64_t n_calls[6], n_calls_us; /* by status / 100; time spent, for /metrics; counted by the HTTP thread */
 };
 
@@ -72,10 +73,10 @@ void api_room_members(struct api *api, struct call *call);
 void api_room_snapshot(struct api *api, struct call *call);
 void api_room_ws(struct api *api, struct call *call);
 
-/* A picture for a call: asks the plan's renderer and answers the call with the bytes. scene and view are complete documents, borrowed.
- * revision: of a room's scene, said in the answer; NULL: not a room's. */
-void api_render(struct api *api, struct call *call, const char *plan_id, const cJSON *scene, const uint32_t *revision, const cJSON *view,
-                const char *format, double quality);
+/* A picture for a call: asks the plan's renderer and answers the call with the bytes. scene and view are complete
+ * documents, borrowed. revision: of a room's scene, said in the answer; NULL: not a room's. */
+void api_render(struct api *api, struct call *call, const char *plan_id, const cJSON *scene, const uint32_t *revision,
+                const cJSON *view, const char *format, double quality);
 /* A query for a call: answered with the renderer's body. Takes query. */
 void api_query(struct api *api, struct call *call, const char *plan_id, cJSON *query);
 /* The same with another end: reply gets the call as its context, exactly once. */

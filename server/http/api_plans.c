@@ -29,7 +29,9 @@ static cJSON *plan_head(const struct fleet_plan *plan)
     }
     const cJSON *line;
     int n_warnings = 0;
-    cJSON_ArrayForEach(line, cJSON_GetObjectItemCaseSensitive(cJSON_GetObjectItemCaseSensitive(plan->document, "report"), "lines"))
+    cJSON_ArrayForEach(line,
+                       cJSON_GetObjectItemCaseSensitive(cJSON_GetObjectItemCaseSensitive(plan->document, "report"),
+                                                        "lines"))
     {
         const char *severity = json_text(line, "severity");
         n_warnings += severity && strcmp(severity, "note") != 0;
@@ -203,7 +205,8 @@ static struct api_job *find_job(struct api *api, struct call *call)
         if (strcmp(api->jobs[n % API_MAX_JOBS].id, call->ids[0]) == 0)
             return &api->jobs[n % API_MAX_JOBS];
     struct problem problem;
-    problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no job \"%.63s\"; the last %d are kept", call->ids[0], API_MAX_JOBS);
+    problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no job \"%.63s\"; the last %d are kept", call->ids[0],
+                API_MAX_JOBS);
     call_answer_problem(call, &problem);
     return NULL;
 }
@@ -231,7 +234,7 @@ void api_job_cancel(struct api *api, struct call *call)
     call_answer_json(call, 200, job_document(job));
 }
 
-/* ---- a picture without a room: the plan's own scene is known only once it is loaded, so the renderer is asked first whether it is --- */
+/* ---- a picture without a room: the plan's own scene is known only once it is loaded, so the renderer is asked fir */
 
 struct render_wish {
     char plan_id[64];
@@ -256,7 +259,8 @@ static bool check_wish(const cJSON *body, struct problem *problem)
         char pointer[64];
         (void)snprintf(pointer, sizeof pointer, "/%.60s", item->string);
         if (!is_known)
-            return problem_set(problem, PROBLEM_VALIDATION, pointer, "unknown-field", "%.60s is not a field of a render request", item->string);
+            return problem_set(problem, PROBLEM_VALIDATION, pointer, "unknown-field",
+                               "%.60s is not a field of a render request", item->string);
         bool right = strcmp(item->string, "format") == 0    ? cJSON_IsString(item)
                      : strcmp(item->string, "quality") == 0 ? cJSON_IsNumber(item)
                                                             : cJSON_IsObject(item);
@@ -286,7 +290,8 @@ static void render_when_ready(void *context, struct packet *answer, const struct
     }
     const cJSON *scene_patch = cJSON_GetObjectItemCaseSensitive(wish->body, "scene");
     const cJSON *view_patch = cJSON_GetObjectItemCaseSensitive(wish->body, "view");
-    scene = scene_document_patch(plan.document, plan.default_scene, plan.default_scene, scene_patch ? scene_patch : nothing, &problem);
+    scene = scene_document_patch(plan.document, plan.default_scene, plan.default_scene,
+                                 scene_patch ? scene_patch : nothing, &problem);
     if (!scene) {
         problem_below(&problem, "/scene");
         goto refuse;
@@ -297,7 +302,8 @@ static void render_when_ready(void *context, struct packet *answer, const struct
         problem_below(&problem, "/view");
         goto refuse;
     }
-    api_render(api, call, wish->plan_id, shown, NULL, view, json_text(wish->body, "format"), json_number(wish->body, "quality", 92));
+    api_render(api, call, wish->plan_id, shown, NULL, view, json_text(wish->body, "format"),
+               json_number(wish->body, "quality", 92));
     goto done;
 refuse:
     call_answer_problem(call, &problem);
@@ -342,7 +348,7 @@ void api_plan_render(struct api *api, struct call *call)
     when_ready(api, call, render_when_ready);
 }
 
-/* ---- numbers -------------------------------------------------------------------------------------------------------------------- */
+/* ---- numbers ---------------------------------------------------------------------------------------------------- */
 
 void api_plan_probe(struct api *api, struct call *call)
 {
@@ -351,7 +357,8 @@ void api_plan_probe(struct api *api, struct call *call)
     double point[3];
     if (!find_plan(api, call, &plan))
         return;
-    if (!call_query_number(call, "x", true, &point[0], &problem) || !call_query_number(call, "y", true, &point[1], &problem) ||
+    if (!call_query_number(call, "x", true, &point[0], &problem) ||
+        !call_query_number(call, "y", true, &point[1], &problem) ||
         !call_query_number(call, "z", true, &point[2], &problem)) {
         call_answer_problem(call, &problem);
         return;
@@ -367,7 +374,8 @@ struct pick_wish {
     double px, py;
 };
 
-static void ask_pick(struct api *api, struct call *call, const struct pick_wish *wish, const struct fleet_plan *plan, const cJSON *scene)
+static void ask_pick(struct api *api, struct call *call, const struct pick_wish *wish, const struct fleet_plan *plan,
+                     const cJSON *scene)
 {
     struct problem problem;
     cJSON *shown = scene_document_for_view(plan->document, plan->default_scene, scene, wish->view, &problem);

@@ -40,7 +40,8 @@ void api_room_new(struct api *api, struct call *call)
         char pointer[64];
         (void)snprintf(pointer, sizeof pointer, "/%.60s", item->string);
         if (strcmp(item->string, "plan") != 0)
-            problem_set(&problem, PROBLEM_VALIDATION, pointer, "unknown-field", "%.60s is not a field of a room", item->string);
+            problem_set(&problem, PROBLEM_VALIDATION, pointer, "unknown-field", "%.60s is not a field of a room",
+                        item->string);
     }
     if (!plan)
         problem_set(&problem, PROBLEM_VALIDATION, "/plan", "required", "which plan? \"plan\" is missing");
@@ -132,14 +133,15 @@ void api_room_scene_patch(struct api *api, struct call *call)
         return;
     write_etag(etag, revision);
     if (!call->if_match) {
-        problem_set(&problem, PROBLEM_REVISION_NEEDED, "", "", "send If-Match with the ETag of the scene you changed; it is %s now", etag);
+        problem_set(&problem, PROBLEM_REVISION_NEEDED, "", "",
+                    "send If-Match with the ETag of the scene you changed; it is %s now", etag);
         call_answer_problem(call, &problem);
         return;
     }
     if (!etag_is_listed(call->if_match, etag, false)) {
         call_add_header(call, "ETag", etag);
-        problem_set(&problem, PROBLEM_STALE_REVISION, "", "", "the scene is at %s now, If-Match says %.40s; get it and try again", etag,
-                    call->if_match);
+        problem_set(&problem, PROBLEM_STALE_REVISION, "", "",
+                    "the scene is at %s now, If-Match says %.40s; get it and try again", etag, call->if_match);
         call_answer_problem(call, &problem);
         return;
     }
@@ -209,7 +211,8 @@ void api_room_ws(struct api *api, struct call *call)
 {
     (void)api;
     struct problem problem;
-    problem_set(&problem, PROBLEM_UPGRADE, "", "", "the WebSocket is opened by the first request of a connection: GET with Upgrade: websocket");
+    problem_set(&problem, PROBLEM_UPGRADE, "", "",
+                "the WebSocket is opened by the first request of a connection: GET with Upgrade: websocket");
     call_add_header(call, "Upgrade", "websocket");
     call_add_header(call, "Connection", "close");
     call_answer_problem(call, &problem);

@@ -20,10 +20,10 @@ static const char *media_type(enum mesh_format format)
 struct shape_wish {
     char plan_id[64], region[64];
     struct shape_query query;
-    cJSON *body;          /* the figures, while pictures are timed */
-    cJSON *render;        /* the packet that asks for one */
+    cJSON *body;   /* the figures, while pictures are timed */
+    cJSON *render; /* the packet that asks for one */
     double draw_ms[SHAPE_QUERY_MAX_FRAMES];
-    int n_drawn;          /* -1: the first, which is not counted, is still to come */
+    int n_drawn; /* -1: the first, which is not counted, is still to come */
 };
 
 static void wish_destroy(struct api *api, struct shape_wish *wish)
@@ -50,8 +50,8 @@ static void file_came(struct call *call, struct shape_wish *wish, struct packet 
         return;
     }
     char disposition[192]; /* ids need no quoting */
-    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%.63s-%.63s.%s\"", wish->plan_id, wish->region,
-                   mesh_format_word(wish->query.format));
+    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%.63s-%.63s.%s\"", wish->plan_id,
+                   wish->region, mesh_format_word(wish->query.format));
     call_add_header(call, "Content-Disposition", disposition);
     uint8_t *bytes = answer->blob;
     answer->blob = NULL;
@@ -60,7 +60,7 @@ static void file_came(struct call *call, struct shape_wish *wish, struct packet 
     call_answer_bytes(call, 200, type, bytes, answer->n_blob);
 }
 
-/* ---- frames per second ---------------------------------------------------------------------------------------------------------- */
+/* ---- frames per second ------------------------------------------------------------------------------------------ */
 
 static int compare_numbers(const void *a, const void *b)
 {

@@ -86,7 +86,8 @@ static void text_add(struct text *text, const char *format, ...)
 
 static void add_metric(struct text *text, const char *name, const char *type, const char *help, double value)
 {
-    text_add(text, "# HELP beamroom_%s %s\n# TYPE beamroom_%s %s\nbeamroom_%s %.17g\n", name, help, name, type, name, value);
+    text_add(text, "# HELP beamroom_%s %s\n# TYPE beamroom_%s %s\nbeamroom_%s %.17g\n", name, help, name, type, name,
+             value);
 }
 
 /* No plan ids, no member names: metrics are read by people who may not see patients. */
@@ -116,18 +117,24 @@ void api_metrics(struct api *api, struct call *call)
     add_metric(&text, "renders_total", "counter", "Pictures asked for by rooms.", (double)n.rooms.renders_asked);
     add_metric(&text, "frames_sent_total", "counter", "Frames sent to browsers.", (double)n.rooms.frames_sent);
     add_metric(&text, "frame_bytes_total", "counter", "Bytes of them.", (double)n.rooms.frame_bytes);
-    add_metric(&text, "frames_skipped_total", "counter", "Frames a member did not get because it had not shown the last ones yet.",
+    add_metric(&text, "frames_skipped_total", "counter",
+               "Frames a member did not get because it had not shown the last ones yet.",
                (double)n.rooms.frames_skipped);
     add_metric(&text, "stills_sent_total", "counter", "Full pictures sent.", (double)n.rooms.stills_sent);
-    add_metric(&text, "messages_refused_total", "counter", "Messages of browsers answered with a problem.", (double)n.rooms.messages_refused);
-    text_add(&text, "# HELP beamroom_http_requests_total Requests by class of status.\n# TYPE beamroom_http_requests_total counter\n");
-    for (int class = 1; class < 6; class++)
+    add_metric(&text, "messages_refused_total", "counter", "Messages of browsers answered with a problem.",
+               (double)n.rooms.messages_refused);
+    text_add(
+        &text,
+        "# HELP beamroom_http_requests_total Requests by class of status.\n# TYPE beamroom_http_requests_total counter\n");
+    for (int class = 1; class < 6; class ++)
         text_add(&text, "beamroom_http_requests_total{code=\"%dxx\"} %" PRIu64 "\n", class, api->n_calls[class]);
     add_metric(&text, "http_seconds_total", "counter", "Time spent on them.", (double)api->n_calls_us / 1e6);
     const struct problem *problem = NULL;
     const cJSON *gl = fleet_gl(fleet, &problem);
     const char *back_end = json_text(gl, "back_end");
-    text_add(&text, "# HELP beamroom_gl_info What draws.\n# TYPE beamroom_gl_info gauge\nbeamroom_gl_info{back_end=\"%s\",software=\"%s\"} %d\n",
-             back_end ? back_end : "none", json_flag(gl, "is_software", false) ? "yes" : "no", gl ? 1 : 0);
+    text_add(
+        &text,
+        "# HELP beamroom_gl_info What draws.\n# TYPE beamroom_gl_info gauge\nbeamroom_gl_info{back_end=\"%s\",software=\"%s\"} %d\n",
+        back_end ? back_end : "none", json_flag(gl, "is_software", false) ? "yes" : "no", gl ? 1 : 0);
     call_answer_bytes(call, 200, "text/plain; version=0.0.4; charset=utf-8", (uint8_t *)text.bytes, text.used);
 }

@@ -13,7 +13,8 @@ void api_plan_upload(struct api *api, struct call *call)
     struct problem problem;
     const char *name = call_query(call, "name");
     if (!call->upload_path || call->n_upload == 0) {
-        problem_set(&problem, PROBLEM_VALIDATION, "", "length", "the body is empty, expected a zip, tar or tar.gz of a plan");
+        problem_set(&problem, PROBLEM_VALIDATION, "", "length",
+                    "the body is empty, expected a zip, tar or tar.gz of a plan");
         call_answer_problem(call, &problem);
         return;
     }
@@ -38,8 +39,11 @@ void api_update_upload(struct api *api, struct api_job *job)
         problem_set(&job->problem, PROBLEM_NOT_FOUND, "", "", "the upload is forgotten");
         return;
     }
-    static const int states[] = { [UPLOAD_QUEUED] = JOB_QUEUED, [UPLOAD_RUNNING] = JOB_RUNNING, [UPLOAD_DONE] = JOB_DONE,
-                                  [UPLOAD_FAILED] = JOB_FAILED, [UPLOAD_CANCELLED] = JOB_CANCELLED };
+    static const int states[] = { [UPLOAD_QUEUED] = JOB_QUEUED,
+                                  [UPLOAD_RUNNING] = JOB_RUNNING,
+                                  [UPLOAD_DONE] = JOB_DONE,
+                                  [UPLOAD_FAILED] = JOB_FAILED,
+                                  [UPLOAD_CANCELLED] = JOB_CANCELLED };
     job->state = (enum api_job_state)states[upload.state];
     (void)snprintf(job->phase, sizeof job->phase, "%s", upload.phase);
     job->percent = upload.percent;

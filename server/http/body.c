@@ -4,7 +4,11 @@
 
 void body_begin(struct body *body, bool is_chunked, uint64_t length)
 {
-    *body = (struct body){ .place = is_chunked ? BODY_SIZE : length > 0 ? BODY_DATA : BODY_ENDED, .is_chunked = is_chunked, .n_left = length };
+    *body = (struct body){ .place = is_chunked   ? BODY_SIZE
+                                    : length > 0 ? BODY_DATA
+                                                 : BODY_ENDED,
+                           .is_chunked = is_chunked,
+                           .n_left = length };
 }
 
 static int digit_of(char byte)
@@ -18,7 +22,8 @@ static int digit_of(char byte)
 
 static bool refuse(struct problem *problem, char found, const char *expected)
 {
-    return problem_set(problem, PROBLEM_REQUEST, "", "", "the chunked body has the byte 0x%02x; expected is %s", (unsigned)(unsigned char)found, expected);
+    return problem_set(problem, PROBLEM_REQUEST, "", "", "the chunked body has the byte 0x%02x; expected is %s",
+                       (unsigned)(unsigned char)found, expected);
 }
 
 /* The line in front of a chunk. */
@@ -26,7 +31,9 @@ static bool take_size(struct body *body, char byte, struct problem *problem)
 {
     int digit = digit_of(byte);
     if (++body->n_line > BODY_MAX_CHUNK_LINE)
-        return problem_set(problem, PROBLEM_REQUEST, "", "", "a chunk's first line has more than %d bytes; at most so many are read", BODY_MAX_CHUNK_LINE);
+        return problem_set(problem, PROBLEM_REQUEST, "", "",
+                           "a chunk's first line has more than %d bytes; at most so many are read",
+                           BODY_MAX_CHUNK_LINE);
     if (body->place == BODY_SIZE_LF) {
         if (byte != '\n')
             return refuse(problem, byte, "the end of the line, CR and LF, after a chunk's size");
@@ -40,7 +47,8 @@ static bool take_size(struct body *body, char byte, struct problem *problem)
         return true;
     }
     if (body->place == BODY_EXTENSION)
-        return (unsigned char)byte >= 32 || byte == '\t' || refuse(problem, byte, "no control character in a chunk's extension");
+        return (unsigned char)byte >= 32 || byte == '\t' ||
+               refuse(problem, byte, "no control character in a chunk's extension");
     if (byte == ';' && body->n_digits > 0) {
         body->place = BODY_EXTENSION;
         return true;
@@ -48,7 +56,8 @@ static bool take_size(struct body *body, char byte, struct problem *problem)
     if (digit < 0)
         return refuse(problem, byte, "a chunk's size in hexadecimal digits, then CR and LF");
     if (++body->n_digits > BODY_MAX_CHUNK_DIGITS)
-        return problem_set(problem, PROBLEM_REQUEST, "", "", "a chunk's size has more than %d digits; at most so many are read", BODY_MAX_CHUNK_DIGITS);
+        return problem_set(problem, PROBLEM_REQUEST, "", "",
+                           "a chunk's size has more than %d digits; at most so many are read", BODY_MAX_CHUNK_DIGITS);
     body->n_left = body->n_left * 16 + (uint64_t)digit;
     return true;
 }
@@ -57,8 +66,8 @@ static bool take_size(struct body *body, char byte, struct problem *problem)
 static bool take_trailer(struct body *body, char byte, struct problem *problem)
 {
     if (++body->n_line > BODY_MAX_TRAILERS)
-        return problem_set(problem, PROBLEM_HEADERS_TOO_LARGE, "", "", "more than %d bytes come after the last chunk; at most so many are read",
-                           BODY_MAX_TRAILERS);
+        return problem_set(problem, PROBLEM_HEADERS_TOO_LARGE, "", "",
+                           "more than %d bytes come after the last chunk; at most so many are read", BODY_MAX_TRAILERS);
     if (body->place == BODY_TRAILER_LF) {
         if (byte != '\n')
             return refuse(problem, byte, "LF after a CR");

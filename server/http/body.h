@@ -1,6 +1,6 @@
 #pragma once
-/* Where the body of a request ends: by its Content-Length, or by chunks (RFC 9112 7.1), which are read strictly, so that no other reader
- * finds another end. Keeps no bytes. */
+/* Where the body of a request ends: by its Content-Length, or by chunks (RFC 9112 7.1), which are read strictly, so
+ * that no other reader finds another end. Keeps no bytes. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -8,24 +8,38 @@
 #include "server/wire/problem.h"
 
 enum {
-    BODY_MAX_CHUNK_DIGITS = 15,  /* of a chunk's size: far less than 2^63 */
-    BODY_MAX_CHUNK_LINE = 1024,  /* the size with its extensions */
-    BODY_MAX_TRAILERS = 8 << 10  /* all fields after the last chunk */
+    BODY_MAX_CHUNK_DIGITS = 15, /* of a chunk's size: far less than 2^63 */
+    BODY_MAX_CHUNK_LINE = 1024, /* the size with its extensions */
+    BODY_MAX_TRAILERS = 8 << 10 /* all fields after the last chunk */
 };
 
-enum body_place { BODY_DATA, BODY_SIZE, BODY_EXTENSION, BODY_SIZE_LF, BODY_DATA_CR, BODY_DATA_LF, BODY_TRAILER, BODY_TRAILER_LF, BODY_ENDED };
+enum body_place {
+    BODY_DATA,
+    BODY_SIZE,
+    BODY_EXTENSION,
+    BODY_SIZE_LF,
+    BODY_DATA_CR,
+    BODY_DATA_LF,
+    BODY_TRAILER,
+    BODY_TRAILER_LF,
+    BODY_ENDED
+};
 
 struct body {
     enum body_place place;
     bool is_chunked;
-    uint64_t n_left;   /* of the data */
-    unsigned n_digits; /* of the size that is being read */
-    size_t n_line;     /* of its line, or of the trailers */
+    uint64_t n_left;    /* of the data */
+    unsigned n_digits;  /* of the size that is being read */
+    size_t n_line;      /* of its line, or of the trailers */
     bool is_line_empty; /* of the trailers */
 };
 
 /* length: of a body that is not chunked; 0: there is none. */
 void body_begin(struct body *body, bool is_chunked, uint64_t length);
-static inline bool body_is_ended(const struct body *body) { return body->place == BODY_ENDED; }
-/* The next bytes: *n_taken of them belong to the body; fewer than n only once it has ended. False: problem says what is no body. */
+static inline bool body_is_ended(const struct body *body)
+{
+    return body->place == BODY_ENDED;
+}
+/* The next bytes: *n_taken of them belong to the body; fewer than n only once it has ended. False: problem says what is
+ * no body. */
 NODISCARD bool body_take(struct body *body, const char *bytes, size_t n, size_t *n_taken, struct problem *problem);

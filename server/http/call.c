@@ -51,7 +51,8 @@ void call_set_path(struct call *call, const char *path)
 {
     size_t n = strlen(path);
     if (n >= sizeof call->path) {
-        problem_set(&call->early, PROBLEM_NOT_FOUND, "", "", "an address of %zu bytes, at most %d are read", n, CALL_MAX_PATH - 1);
+        problem_set(&call->early, PROBLEM_NOT_FOUND, "", "", "an address of %zu bytes, at most %d are read", n,
+                    CALL_MAX_PATH - 1);
         return;
     }
     memcpy(call->path, path, n + 1);
@@ -149,10 +150,12 @@ bool call_origin_is_own(const struct call *call, struct problem *problem)
         return true;
     if (call->origin)
         return origin_is_of_host(call->origin, call->host) ||
-               problem_set(problem, PROBLEM_FORBIDDEN, "", "", "the origin %.100s may not change anything here", call->origin);
+               problem_set(problem, PROBLEM_FORBIDDEN, "", "", "the origin %.100s may not change anything here",
+                           call->origin);
     /* browsers that leave Origin out say at least this much; programs say neither */
     return !call->fetch_site || strcmp(call->fetch_site, "same-origin") == 0 || strcmp(call->fetch_site, "none") == 0 ||
-           problem_set(problem, PROBLEM_FORBIDDEN, "", "", "a page of another site (Sec-Fetch-Site: %.40s) may not change anything here", call->fetch_site);
+           problem_set(problem, PROBLEM_FORBIDDEN, "", "",
+                       "a page of another site (Sec-Fetch-Site: %.40s) may not change anything here", call->fetch_site);
 }
 
 bool call_read_object(struct call *call, const char *const *media_types, cJSON **object)
@@ -162,8 +165,8 @@ bool call_read_object(struct call *call, const char *const *media_types, cJSON *
     while (*type && !call_media_type_is(call, *type))
         type++;
     if (!*type) {
-        problem_set(&problem, PROBLEM_MEDIA_TYPE, "", "", "Content-Type is \"%.60s\", expected %s", call->content_type ? call->content_type : "",
-                    media_types[0]);
+        problem_set(&problem, PROBLEM_MEDIA_TYPE, "", "", "Content-Type is \"%.60s\", expected %s",
+                    call->content_type ? call->content_type : "", media_types[0]);
         call_answer_problem(call, &problem);
         return false;
     }
@@ -180,17 +183,20 @@ bool call_read_object(struct call *call, const char *const *media_types, cJSON *
     return true;
 }
 
-bool call_query_number(const struct call *call, const char *name, bool is_required, double *value, struct problem *problem)
+bool call_query_number(const struct call *call, const char *name, bool is_required, double *value,
+                       struct problem *problem)
 {
     char pointer[64];
     (void)snprintf(pointer, sizeof pointer, "/%s", name);
     const char *text = call_query(call, name);
     if (!text)
-        return !is_required || problem_set(problem, PROBLEM_VALIDATION, pointer, "required", "the parameter %s is missing", name);
+        return !is_required ||
+               problem_set(problem, PROBLEM_VALIDATION, pointer, "required", "the parameter %s is missing", name);
     char *end;
     double number = strtod(text, &end);
     if (end == text || *end || !isfinite(number) || strpbrk(text, "xXnN")) /* no hexadecimal, no "inf" */
-        return problem_set(problem, PROBLEM_VALIDATION, pointer, "type", "the parameter %s is \"%.40s\", expected a number", name, text);
+        return problem_set(problem, PROBLEM_VALIDATION, pointer, "type",
+                           "the parameter %s is \"%.40s\", expected a number", name, text);
     *value = number;
     return true;
 }

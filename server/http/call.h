@@ -24,10 +24,10 @@ struct call_pair {
 struct call {
     /* the request */
     enum call_method method;
-    char path[CALL_MAX_PATH];                  /* decoded */
-    char *segments[CALL_MAX_SEGMENTS];         /* of path, split at '/' */
+    char path[CALL_MAX_PATH];          /* decoded */
+    char *segments[CALL_MAX_SEGMENTS]; /* of path, split at '/' */
     size_t n_segments;
-    const char *ids[CALL_MAX_SEGMENTS];        /* those that stand for {...} in the route, in order */
+    const char *ids[CALL_MAX_SEGMENTS]; /* those that stand for {...} in the route, in order */
     struct call_pair query[CALL_MAX_QUERY];
     size_t n_query;
     char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site; /* NULL when not sent */
@@ -45,12 +45,12 @@ struct call {
     struct call_pair headers[CALL_MAX_HEADERS];
     size_t n_headers;
 
-    void *api;                         /* whose tables the handlers use */
-    void *context;                     /* the handler's own while it waits */
+    void *api;                           /* whose tables the handlers use */
+    void *context;                       /* the handler's own while it waits */
     void (*finished)(struct call *call); /* set by the HTTP side: the answer is complete; any thread, exactly once */
-    void *connection;                  /* the HTTP side's */
+    void *connection;                    /* the HTTP side's */
     int64_t started_us;
-    const char *route;                 /* "GET /api/v1/plans/{plan}", for metrics; never an id */
+    const char *route; /* "GET /api/v1/plans/{plan}", for metrics; never an id */
 };
 
 struct call *call_create(void);
@@ -61,7 +61,8 @@ const char *call_query(const struct call *call, const char *name); /* NULL when 
 /* Each sets the answer and calls finished: the call must not be touched after it. */
 void call_answer_json(struct call *call, int status, cJSON *json); /* takes json */
 void call_answer_problem(struct call *call, const struct problem *problem);
-void call_answer_bytes(struct call *call, int status, const char *media_type, uint8_t *bytes, size_t n); /* takes bytes */
+void call_answer_bytes(struct call *call, int status, const char *media_type, uint8_t *bytes,
+                       size_t n); /* takes bytes */
 void call_answer_text(struct call *call, int status, const char *media_type, const char *text);
 void call_answer_nothing(struct call *call, int status);
 void call_add_header(struct call *call, const char *name, const char *value); /* before the answer */
@@ -70,7 +71,9 @@ void call_add_header(struct call *call, const char *name, const char *value); /*
 bool call_media_type_is(const struct call *call, const char *media_type);
 /* A page of another origin must not change anything here with the person's own browser. False with problem. */
 NODISCARD bool call_origin_is_own(const struct call *call, struct problem *problem);
-/* The body as a JSON object. media_types: NULL-terminated, which are read. false: the call has been answered with the problem. */
+/* The body as a JSON object. media_types: NULL-terminated, which are read. false: the call has been answered with the
+ * problem. */
 NODISCARD bool call_read_object(struct call *call, const char *const *media_types, cJSON **object);
 /* A query parameter as a finite number. NULL text: *value unchanged. */
-NODISCARD bool call_query_number(const struct call *call, const char *name, bool is_required, double *value, struct problem *problem);
+NODISCARD bool call_query_number(const struct call *call, const char *name, bool is_required, double *value,
+                                 struct problem *problem);

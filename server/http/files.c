@@ -19,9 +19,16 @@ struct files {
 static const char *media_type_of(const char *name)
 {
     static const char *const types[][2] = {
-        { ".html", "text/html; charset=utf-8" }, { ".css", "text/css; charset=utf-8" }, { ".js", "text/javascript; charset=utf-8" },
-        { ".mjs", "text/javascript; charset=utf-8" }, { ".json", "application/json" }, { ".svg", "image/svg+xml" },
-        { ".png", "image/png" }, { ".ico", "image/x-icon" }, { ".woff2", "font/woff2" }, { ".txt", "text/plain; charset=utf-8" },
+        { ".html", "text/html; charset=utf-8" },
+        { ".css", "text/css; charset=utf-8" },
+        { ".js", "text/javascript; charset=utf-8" },
+        { ".mjs", "text/javascript; charset=utf-8" },
+        { ".json", "application/json" },
+        { ".svg", "image/svg+xml" },
+        { ".png", "image/png" },
+        { ".ico", "image/x-icon" },
+        { ".woff2", "font/woff2" },
+        { ".txt", "text/plain; charset=utf-8" },
         { ".webmanifest", "application/manifest+json" },
     };
     size_t n = strlen(name);
@@ -42,7 +49,8 @@ static uint64_t hash_bytes(const uint8_t *bytes, size_t n)
     return hash;
 }
 
-static bool add_file(struct files *files, const char *folder, const char *path, const char *media_type, struct error *err)
+static bool add_file(struct files *files, const char *folder, const char *path, const char *media_type,
+                     struct error *err)
 {
     char name[4096];
     struct stat facts;
@@ -53,10 +61,11 @@ static bool add_file(struct files *files, const char *folder, const char *path, 
             fclose(stream);
         return error_set(err, ERROR_IO, "%s: %s", name, strerror(errno));
     }
-    if (!S_ISREG(facts.st_mode) || facts.st_size > FILES_MAX_BYTES || files->n == FILES_MAX || strlen(path) >= sizeof files->files->path) {
+    if (!S_ISREG(facts.st_mode) || facts.st_size > FILES_MAX_BYTES || files->n == FILES_MAX ||
+        strlen(path) >= sizeof files->files->path) {
         fclose(stream);
-        return error_set(err, ERROR_LIMIT, "%s: not a file, over %d bytes, its path too long, or more than %d files", name, FILES_MAX_BYTES,
-                         FILES_MAX);
+        return error_set(err, ERROR_LIMIT, "%s: not a file, over %d bytes, its path too long, or more than %d files",
+                         name, FILES_MAX_BYTES, FILES_MAX);
     }
     struct file *file = &files->files[files->n];
     file->n_bytes = (size_t)facts.st_size;

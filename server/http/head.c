@@ -38,7 +38,10 @@ static const char *show(struct text text, char shown[SHOWN_SIZE])
     return shown;
 }
 
-static bool is_word(struct text text, const char *word) { return text.n == strlen(word) && strncasecmp(text.at, word, text.n) == 0; }
+static bool is_word(struct text text, const char *word)
+{
+    return text.n == strlen(word) && strncasecmp(text.at, word, text.n) == 0;
+}
 
 /* RFC 9110 5.6.2 */
 static bool is_token(struct text text)
@@ -97,7 +100,8 @@ static bool next_line(const char **at, const char *end, struct text *line)
 static bool refuse_line(const struct head *head, struct text line, const char *expected)
 {
     char shown[SHOWN_SIZE];
-    return problem_set(head->problem, PROBLEM_REQUEST, "", "", "line 1, the request line, is \"%s\"; expected is %s", show(line, shown), expected);
+    return problem_set(head->problem, PROBLEM_REQUEST, "", "", "line 1, the request line, is \"%s\"; expected is %s",
+                       show(line, shown), expected);
 }
 
 /* METHOD SP TARGET SP HTTP/1.x */
@@ -117,27 +121,30 @@ static bool read_request_line(struct head *head, struct text line)
         if ((unsigned char)head->target.at[i] <= 32 || head->target.at[i] == 127)
             return refuse_line(head, line, "an address without control characters");
     bool is_path = head->target.n && head->target.at[0] == '/';
-    bool is_whole = head->target.n > 7 && (strncasecmp(head->target.at, "http://", 7) == 0 || strncasecmp(head->target.at, "https://", 8) == 0);
+    bool is_whole = head->target.n > 7 && (strncasecmp(head->target.at, "http://", 7) == 0 ||
+                                           strncasecmp(head->target.at, "https://", 8) == 0);
     if (!is_path && !is_whole && !is_word(head->target, "*"))
         return refuse_line(head, line, "an address that begins with \"/\" or \"http://\"");
-    if (version.n != 8 || memcmp(version.at, "HTTP/", 5) != 0 || !isdigit((unsigned char)version.at[5]) || version.at[6] != '.' ||
-        !isdigit((unsigned char)version.at[7]))
+    if (version.n != 8 || memcmp(version.at, "HTTP/", 5) != 0 || !isdigit((unsigned char)version.at[5]) ||
+        version.at[6] != '.' || !isdigit((unsigned char)version.at[7]))
         return refuse_line(head, line, form);
     head->minor = version.at[7] - '0';
     if (version.at[5] != '1' || head->minor > 1)
-        return problem_set(head->problem, PROBLEM_HTTP_VERSION, "", "", "the request is of HTTP/%.3s; expected is HTTP/1.1 or HTTP/1.0", version.at + 5);
+        return problem_set(head->problem, PROBLEM_HTTP_VERSION, "", "",
+                           "the request is of HTTP/%.3s; expected is HTTP/1.1 or HTTP/1.0", version.at + 5);
     return true;
 }
 
 static bool refuse_field(const struct head *head, size_t number, struct text line, const char *found)
 {
     char shown[SHOWN_SIZE];
-    return problem_set(head->problem, PROBLEM_REQUEST, "", "", "header %zu, \"%s\": %s; expected is \"Name: value\" on one line", number,
-                       show(line, shown), found);
+    return problem_set(head->problem, PROBLEM_REQUEST, "", "",
+                       "header %zu, \"%s\": %s; expected is \"Name: value\" on one line", number, show(line, shown),
+                       found);
 }
 
-/* The two fields that say where the body ends keep the blanks after their value, and are refused with them: libmicrohttpd takes those
- * blanks for a part of the value, and would look for another end of the body than we do. */
+/* The two fields that say where the body ends keep the blanks after their value, and are refused with them:
+ * libmicrohttpd takes those blanks for a part of the value, and would look for another end of the body than we do. */
 static void note_field(struct fields *fields, struct text name, struct text after_colon)
 {
     struct text whole = trim_front(after_colon), value = trim(after_colon);
@@ -185,36 +192,45 @@ static bool check_length(const struct head *head)
     const struct fields *fields = &head->fields;
     char shown[SHOWN_SIZE];
     if (fields->n_lengths > 1)
-        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "Content-Length is there %zu times; expected is once", fields->n_lengths);
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "",
+                           "Content-Length is there %zu times; expected is once", fields->n_lengths);
     if (fields->n_codings > 1)
-        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "Transfer-Encoding is there %zu times; expected is once", fields->n_codings);
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "",
+                           "Transfer-Encoding is there %zu times; expected is once", fields->n_codings);
     if (fields->n_lengths && fields->n_codings)
-        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "both Content-Length and Transfer-Encoding are there; expected is one of them");
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "",
+                           "both Content-Length and Transfer-Encoding are there; expected is one of them");
     if (fields->n_codings && (head->minor == 0 || !is_word(fields->coding, "chunked")))
-        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "Transfer-Encoding is \"%s\" in HTTP/1.%d; expected is \"chunked\" in HTTP/1.1",
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "",
+                           "Transfer-Encoding is \"%s\" in HTTP/1.%d; expected is \"chunked\" in HTTP/1.1",
                            show(fields->coding, shown), head->minor);
     if (!fields->n_lengths)
         return true;
     bool is_number = fields->length.n > 0 && fields->length.n <= 18; /* far less than 2^63 */
     for (size_t i = 0; i < fields->length.n; i++)
         is_number = is_number && isdigit((unsigned char)fields->length.at[i]);
-    return is_number || problem_set(head->problem, PROBLEM_REQUEST, "", "", "Content-Length is \"%s\"; expected is a number of at most 18 digits",
+    return is_number || problem_set(head->problem, PROBLEM_REQUEST, "", "",
+                                    "Content-Length is \"%s\"; expected is a number of at most 18 digits",
                                     show(fields->length, shown));
 }
 
 static bool refuse_host(struct problem *problem, struct text host)
 {
     char shown[SHOWN_SIZE];
-    return problem_set(problem, PROBLEM_MISDIRECTED, "", "",
-                       "Host is \"%s\"; expected is an address, localhost, this machine's name, or one that --public-name gave", show(host, shown));
+    return problem_set(
+        problem, PROBLEM_MISDIRECTED, "", "",
+        "Host is \"%s\"; expected is an address, localhost, this machine's name, or one that --public-name gave",
+        show(host, shown));
 }
 
 static bool check_host(const struct head *head, const struct hosts *hosts)
 {
     const struct fields *fields = &head->fields;
     if (fields->n_hosts > 1 || (fields->n_hosts == 0 && head->minor > 0))
-        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "Host is there %zu times; HTTP/1.1 expects it once", fields->n_hosts);
-    return fields->n_hosts == 0 || hosts_allow(hosts, fields->host.at, fields->host.n) || refuse_host(head->problem, fields->host);
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "Host is there %zu times; HTTP/1.1 expects it once",
+                           fields->n_hosts);
+    return fields->n_hosts == 0 || hosts_allow(hosts, fields->host.at, fields->host.n) ||
+           refuse_host(head->problem, fields->host);
 }
 
 /* "/api/v1/rooms/<anything>/ws"; room: the anything. */
@@ -250,24 +266,31 @@ static bool check_handshake(const struct head *head, size_t n_bytes)
     if (head->minor == 0)
         return problem_set(problem, PROBLEM_UPGRADE, "", "", "the handshake is of HTTP/1.0; expected is HTTP/1.1");
     if (!has_word(fields->connection, "upgrade"))
-        return problem_set(problem, PROBLEM_UPGRADE, "", "", "the handshake's Connection is \"%s\"; expected is that it says Upgrade",
+        return problem_set(problem, PROBLEM_UPGRADE, "", "",
+                           "the handshake's Connection is \"%s\"; expected is that it says Upgrade",
                            show(fields->connection, shown));
     if (fields->n_versions != 1 || !is_word(fields->version, "13"))
-        return problem_set(problem, PROBLEM_UPGRADE, "", "", "the handshake's Sec-WebSocket-Version is \"%s\"; expected is 13, once",
+        return problem_set(problem, PROBLEM_UPGRADE, "", "",
+                           "the handshake's Sec-WebSocket-Version is \"%s\"; expected is 13, once",
                            show(fields->version, shown));
     if (fields->n_keys != 1 || !is_key(fields->key))
-        return problem_set(problem, PROBLEM_REQUEST, "", "", "the handshake's Sec-WebSocket-Key is \"%s\"; expected are 16 bytes in base64, once",
+        return problem_set(problem, PROBLEM_REQUEST, "", "",
+                           "the handshake's Sec-WebSocket-Key is \"%s\"; expected are 16 bytes in base64, once",
                            show(fields->key, shown));
     if (fields->n_codings || (fields->n_lengths && !is_word(fields->length, "0")))
         return problem_set(problem, PROBLEM_REQUEST, "", "", "the handshake announces a body; expected is none");
     if (fields->n_origins > 1 || fields->origin.n > HANDSHAKE_MAX_ORIGIN)
-        return problem_set(problem, PROBLEM_REQUEST, "", "", "the handshake's Origin is there %zu times, with %zu bytes; expected is once at most, with %d",
-                           fields->n_origins, fields->origin.n, HANDSHAKE_MAX_ORIGIN);
+        return problem_set(
+            problem, PROBLEM_REQUEST, "", "",
+            "the handshake's Origin is there %zu times, with %zu bytes; expected is once at most, with %d",
+            fields->n_origins, fields->origin.n, HANDSHAKE_MAX_ORIGIN);
     if (fields->host.n > HANDSHAKE_MAX_HOST)
-        return problem_set(problem, PROBLEM_REQUEST, "", "", "the handshake's Host has %zu bytes; expected are %d at most", fields->host.n,
+        return problem_set(problem, PROBLEM_REQUEST, "", "",
+                           "the handshake's Host has %zu bytes; expected are %d at most", fields->host.n,
                            HANDSHAKE_MAX_HOST);
     if (n_bytes > HEAD_MAX_WEBSOCKET)
-        return problem_set(problem, PROBLEM_HEADERS_TOO_LARGE, "", "", "a handshake of %zu bytes; at most %d are read", n_bytes, HEAD_MAX_WEBSOCKET);
+        return problem_set(problem, PROBLEM_HEADERS_TOO_LARGE, "", "", "a handshake of %zu bytes; at most %d are read",
+                           n_bytes, HEAD_MAX_WEBSOCKET);
     return true;
 }
 
@@ -275,15 +298,17 @@ static enum head_kind refuse_size(const struct head *head, const char *line, con
 {
     size_t n_line = (size_t)((line ? line : end) - head->begin);
     if (n_line > HEAD_MAX_LINE)
-        (void)problem_set(head->problem, PROBLEM_ADDRESS_TOO_LONG, "", "", "the request line has more than %d bytes; at most so many are read",
-                          HEAD_MAX_LINE);
+        (void)problem_set(head->problem, PROBLEM_ADDRESS_TOO_LONG, "", "",
+                          "the request line has more than %d bytes; at most so many are read", HEAD_MAX_LINE);
     else
         (void)problem_set(head->problem, PROBLEM_HEADERS_TOO_LARGE, "", "",
-                          "the request's head has more than %d bytes; at most so many, in %d headers, are read", HEAD_MAX_BYTES, HEAD_MAX_FIELDS);
+                          "the request's head has more than %d bytes; at most so many, in %d headers, are read",
+                          HEAD_MAX_BYTES, HEAD_MAX_FIELDS);
     return HEAD_REFUSED;
 }
 
-/* The library behind keeps each parameter in the memory of its connection and gives no answer at all when they do not fit. */
+/* The library behind keeps each parameter in the memory of its connection and gives no answer at all when they do not
+ * fit. */
 static bool check_parameters(const struct head *head)
 {
     size_t n_parameters = 0;
@@ -294,7 +319,8 @@ static bool check_parameters(const struct head *head)
         is_query = is_query || is_mark;
     }
     return n_parameters <= HEAD_MAX_PARAMETERS ||
-           problem_set(head->problem, PROBLEM_TOO_LARGE, "", "", "the address has %zu parameters; at most %d are read", n_parameters, HEAD_MAX_PARAMETERS);
+           problem_set(head->problem, PROBLEM_TOO_LARGE, "", "", "the address has %zu parameters; at most %d are read",
+                       n_parameters, HEAD_MAX_PARAMETERS);
 }
 
 /* check_length has found it to be a number. */
@@ -312,13 +338,15 @@ enum head_kind head_look(const char *bytes, size_t n, const struct hosts *hosts,
     return head_read(bytes, n, hosts, &request, problem);
 }
 
-enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts, struct head_request *request, struct problem *problem)
+enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts, struct head_request *request,
+                         struct problem *problem)
 {
     struct head head = { .begin = bytes, .problem = problem };
     const char *at = bytes, *end = bytes + n;
     struct text line, room;
     size_t n_fields = 0;
-    for (int i = 0; i < HEAD_MAX_EMPTY && end - at >= 1 && (*at == '\n' || (*at == '\r' && end - at >= 2 && at[1] == '\n')); i++)
+    for (int i = 0;
+         i < HEAD_MAX_EMPTY && end - at >= 1 && (*at == '\n' || (*at == '\r' && end - at >= 2 && at[1] == '\n')); i++)
         head.begin = at += *at == '\r' ? 2 : 1;
     bool has_line = next_line(&at, end, &line);
     const char *after_line = has_line ? at : NULL;
@@ -390,8 +418,10 @@ void head_refuse_incomplete(const char *bytes, size_t n, bool has_ended, int wai
     bool has_line = n > 0 && memchr(bytes, '\n', n);
     const char *missing = has_line ? "the empty line after the headers" : "a request line";
     if (has_ended)
-        (void)problem_set(problem, PROBLEM_REQUEST, "", "", "the sender ended after %zu bytes of the request's head; expected is %s", n, missing);
+        (void)problem_set(problem, PROBLEM_REQUEST, "", "",
+                          "the sender ended after %zu bytes of the request's head; expected is %s", n, missing);
     else
-        (void)problem_set(problem, PROBLEM_TOO_SLOW, "", "", "%zu bytes of the request's head came in %g s; expected is %s by then", n,
-                          waited_ms / 1000.0, missing);
+        (void)problem_set(problem, PROBLEM_TOO_SLOW, "", "",
+                          "%zu bytes of the request's head came in %g s; expected is %s by then", n, waited_ms / 1000.0,
+                          missing);
 }

@@ -40,7 +40,10 @@ void hosts_destroy(struct hosts *hosts)
     free(hosts);
 }
 
-static bool is_port(const char *text) { return text[strspn(text, "0123456789")] == 0; }
+static bool is_port(const char *text)
+{
+    return text[strspn(text, "0123456789")] == 0;
+}
 
 /* The name alone, in place, without brackets, port and the dot of the root. */
 static char *bare_name(char *host, bool *is_bracketed)

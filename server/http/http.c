@@ -23,7 +23,9 @@
 /* Never met: what the relay has at most, and those that have died and the library has not noticed yet. */
 static const unsigned LIBRARY_LIMIT = 1000000;
 
-enum { MAX_ANSWERED = 1 << 16 }; /* requests that wait for an answer: at most one for each connection, and each of those that have died */
+enum {
+    MAX_ANSWERED = 1 << 16
+}; /* requests that wait for an answer: at most one for each connection, and each of those that have died */
 
 struct http {
     struct net *net;
@@ -32,9 +34,11 @@ struct http {
     struct intake *intake;
     struct relay *relay;
     struct MHD_Daemon *daemon;
-    struct queue *answered; /* requests whose answer is there; their connections are resumed on the HTTP thread, as the library expects */
+    struct queue *answered; /* requests whose answer is there; their connections are resumed on the HTTP thread, as the
+                               library expects */
     pthread_mutex_t asking; /* held while a task is posted: after http_stop_asking none is */
-    size_t max_archive_dropped; /* bytes of an archive beyond the limit that are read: a sender who streams hears why it was refused */
+    size_t max_archive_dropped; /* bytes of an archive beyond the limit that are read: a sender who streams hears why it
+                                   was refused */
     bool is_stopping;
 };
 
@@ -67,9 +71,11 @@ static enum MHD_Result send_file(struct MHD_Connection *connection, const struct
     const char *known = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "If-None-Match");
     bool is_fresh = known && etag_is_listed(known, file->etag, true);
     struct MHD_Response *response =
-        MHD_create_response_from_buffer(is_fresh ? 0 : file->n_bytes, file->bytes, MHD_RESPMEM_PERSISTENT); /* files outlive the daemon */
+        MHD_create_response_from_buffer(is_fresh ? 0 : file->n_bytes, file->bytes,
+                                        MHD_RESPMEM_PERSISTENT); /* files outlive the daemon */
     MHD_add_response_header(response, "ETag", file->etag);
-    MHD_add_response_header(response, "Cache-Control", "no-cache"); /* kept, but asked about: a page never mixes versions */
+    MHD_add_response_header(response, "Cache-Control",
+                            "no-cache"); /* kept, but asked about: a page never mixes versions */
     MHD_add_response_header(response, "Content-Type", file->media_type);
     MHD_add_response_header(response, "Content-Security-Policy", content_policy);
     return send_response(connection, is_fresh ? 304 : 200, response);
@@ -112,7 +118,8 @@ static enum MHD_Result add_query(void *context, enum MHD_ValueKind kind, const c
     (void)kind;
     size_t n = value ? strlen(value) : 0;
     if (call->n_query == CALL_MAX_QUERY || n > CALL_MAX_VALUE || strlen(name) > 64) {
-        problem_set(&call->early, PROBLEM_TOO_LARGE, "", "", "at most %d parameters of %d bytes are read", CALL_MAX_QUERY, CALL_MAX_VALUE);
+        problem_set(&call->early, PROBLEM_TOO_LARGE, "", "", "at most %d parameters of %d bytes are read",
+                    CALL_MAX_QUERY, CALL_MAX_VALUE);
         return MHD_NO;
     }
     call->query[call->n_query++] = (struct call_pair){ mem_copy_text(name), mem_copy_text(value ? value : "") };
@@ -142,7 +149,8 @@ static size_t unescape(void *context, struct MHD_Connection *connection, char *t
     char *out = text;
     for (const char *at = text; *at; out++) {
         unsigned value;
-        if (at[0] == '%' && isxdigit((unsigned char)at[1]) && isxdigit((unsigned char)at[2]) && sscanf(at + 1, "%2x", &value) == 1 && value != 0) {
+        if (at[0] == '%' && isxdigit((unsigned char)at[1]) && isxdigit((unsigned char)at[2]) &&
+            sscanf(at + 1, "%2x", &value) == 1 && value != 0) {
             *out = (char)value;
             at += 3;
         } else {
@@ -182,7 +190,11 @@ static bool begin_archive(struct request *request)
     unsigned long long n = length ? strtoull(length, NULL, 10) : 0;
     request->is_archive = true;
     if (call->early.type == PROBLEM_NONE)
-        request->archive = intake_begin(request->http->intake, call, !length ? -1 : n < INT64_MAX ? (int64_t)n : INT64_MAX, &call->early);
+        request->archive = intake_begin(request->http->intake, call,
+                                        !length         ? -1
+                                        : n < INT64_MAX ? (int64_t)n
+                                                        : INT64_MAX,
+                                        &call->early);
     return request->archive != NULL;
 }
 
@@ -191,7 +203,8 @@ static bool check_length(struct request *request)
 {
     const char *length = MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, "Content-Length");
     unsigned long long n = length ? strtoull(length, NULL, 10) : 0;
-    return n <= CALL_MAX_BODY || problem_set(&request->call->early, PROBLEM_TOO_LARGE, "", "", "a body of %llu bytes; at most %d are read", n, CALL_MAX_BODY);
+    return n <= CALL_MAX_BODY || problem_set(&request->call->early, PROBLEM_TOO_LARGE, "", "",
+                                             "a body of %llu bytes; at most %d are read", n, CALL_MAX_BODY);
 }
 
 static void finish_archive(struct request *request)
@@ -202,7 +215,8 @@ static void finish_archive(struct request *request)
     request->archive = NULL;
 }
 
-static struct request *request_create(struct http *http, struct MHD_Connection *connection, const char *url, const char *method)
+static struct request *request_create(struct http *http, struct MHD_Connection *connection, const char *url,
+                                      const char *method)
 {
     struct request *request = mem_new(sizeof *request);
     struct call *call = request->call = call_create();
@@ -255,18 +269,20 @@ static void ask(struct http *http, struct request *request)
 }
 
 /* Called by libmicrohttpd: first with the headers, then for each part of the body, then until a response is queued. */
-static enum MHD_Result handle(void *context, struct MHD_Connection *connection, const char *url, const char *method, const char *version,
-                              const char *upload, size_t *n_upload, void **state)
+static enum MHD_Result handle(void *context, struct MHD_Connection *connection, const char *url, const char *method,
+                              const char *version, const char *upload, size_t *n_upload, void **state)
 {
     struct http *http = context;
     struct request *request = *state;
     (void)version;
     if (!request) {
         *state = request = request_create(http, connection, url, method);
-        return (intake_is_for(request->call) ? begin_archive(request) : check_length(request)) ? MHD_YES : refuse_body(request);
+        return (intake_is_for(request->call) ? begin_archive(request) : check_length(request)) ? MHD_YES
+                                                                                               : refuse_body(request);
     }
     if (*n_upload) {
-        bool goes_on = request->is_archive ? intake_add(request->archive, upload, *n_upload, &request->call->early) : add_body(request, upload, *n_upload);
+        bool goes_on = request->is_archive ? intake_add(request->archive, upload, *n_upload, &request->call->early)
+                                           : add_body(request, upload, *n_upload);
         *n_upload = 0;
         return goes_on ? MHD_YES : refuse_body(request);
     }
@@ -274,7 +290,8 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
         return send_answer(connection, request);
     if (!request->is_posted) {
         enum call_method verb = request->call->method;
-        bool is_for_file = http->files && request->call->early.type == PROBLEM_NONE && (verb == CALL_GET || verb == CALL_HEAD);
+        bool is_for_file =
+            http->files && request->call->early.type == PROBLEM_NONE && (verb == CALL_GET || verb == CALL_HEAD);
         const struct file *file = is_for_file ? files_find(http->files, request->call->path) : NULL;
         if (file)
             return send_file(connection, file);
@@ -285,7 +302,8 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
     return MHD_YES;
 }
 
-static void completed(void *context, struct MHD_Connection *connection, void **state, enum MHD_RequestTerminationCode code)
+static void completed(void *context, struct MHD_Connection *connection, void **state,
+                      enum MHD_RequestTerminationCode code)
 {
     struct request *request = *state;
     (void)context;
@@ -300,11 +318,13 @@ static void completed(void *context, struct MHD_Connection *connection, void **s
     *state = NULL;
 }
 
-static void connection_changed(void *context, struct MHD_Connection *connection, void **link, enum MHD_ConnectionNotificationCode code)
+static void connection_changed(void *context, struct MHD_Connection *connection, void **link,
+                               enum MHD_ConnectionNotificationCode code)
 {
     struct http *http = context;
     if (code == MHD_CONNECTION_NOTIFY_STARTED)
-        *link = relay_find(http->relay, MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd);
+        *link =
+            relay_find(http->relay, MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd);
     else if (*link)
         relay_link_closed(*link);
 }
@@ -339,7 +359,8 @@ struct http *http_create(struct net *net, const struct http_options *options, st
     struct http *http = mem_new(sizeof *http);
     http->net = net;
     http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0);
-    http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes : HTTP_MIN_ARCHIVE_DROPPED;
+    http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes
+                                                                                     : HTTP_MIN_ARCHIVE_DROPPED;
     http->intake = intake_create(options->upload_folder, options->max_upload_bytes, options->disk_reserve_bytes);
     pthread_mutex_init(&http->asking, NULL);
     http->answered = queue_create(MAX_ANSWERED, NULL);
@@ -348,23 +369,29 @@ struct http *http_create(struct net *net, const struct http_options *options, st
         if (!http->files)
             goto fail;
     }
-    const struct relay_options relay_options = { .hosts = options->hosts, .trusted = options->trusted, .n_trusted = options->n_trusted };
+    const struct relay_options relay_options = { .hosts = options->hosts,
+                                                 .trusted = options->trusted,
+                                                 .n_trusted = options->n_trusted };
     http->relay = relay_create(&relay_options, err);
     if (!http->relay)
         goto fail;
     /* Without its log, which tells with each answer that a pair of sockets has no options of TCP.
-     * No limit and no time limit of the library's own: the relay has both, and the library hangs for ever when its limit is met (0.9.75). */
-    http->daemon = MHD_start_daemon(MHD_USE_EPOLL | MHD_USE_NO_LISTEN_SOCKET | MHD_ALLOW_SUSPEND_RESUME, 0, NULL,
-                                    NULL, handle, http, MHD_OPTION_NOTIFY_COMPLETED, completed, NULL,
-                                    MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http, MHD_OPTION_CONNECTION_LIMIT, LIBRARY_LIMIT,
-                                    MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)128 * 1024, MHD_OPTION_UNESCAPE_CALLBACK, unescape, NULL,
-                                    MHD_OPTION_END);
-    const union MHD_DaemonInfo *polled = http->daemon ? MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_EPOLL_FD) : NULL;
+     * No limit and no time limit of the library's own: the relay has both, and the library hangs for ever when its
+     * limit is met (0.9.75). */
+    http->daemon = MHD_start_daemon(MHD_USE_EPOLL | MHD_USE_NO_LISTEN_SOCKET | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
+                                    handle, http, MHD_OPTION_NOTIFY_COMPLETED, completed, NULL,
+                                    MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http, MHD_OPTION_CONNECTION_LIMIT,
+                                    LIBRARY_LIMIT, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)128 * 1024,
+                                    MHD_OPTION_UNESCAPE_CALLBACK, unescape, NULL, MHD_OPTION_END);
+    const union MHD_DaemonInfo *polled =
+        http->daemon ? MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_EPOLL_FD) : NULL;
     if (!polled) {
         error_set(err, ERROR_IO, "the HTTP library did not start");
         goto fail;
     }
-    const struct relay_server server = { .add = add_to_library, .run = run_library, .poll_fd = polled->epoll_fd, .context = http };
+    const struct relay_server server = {
+        .add = add_to_library, .run = run_library, .poll_fd = polled->epoll_fd, .context = http
+    };
     if (!relay_serve(http->relay, &server, err))
         goto fail;
     return http;

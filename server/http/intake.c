@@ -86,7 +86,8 @@ bool intake_is_for(const struct call *call)
 
 static bool refuse_size(const struct intake *intake, struct problem *problem)
 {
-    return problem_set(problem, PROBLEM_TOO_LARGE, "", "", "an archive of more than %" PRIu64 " MiB, the limit set by max-upload-mib",
+    return problem_set(problem, PROBLEM_TOO_LARGE, "", "",
+                       "an archive of more than %" PRIu64 " MiB, the limit set by max-upload-mib",
                        intake->max_bytes >> 20);
 }
 
@@ -97,15 +98,17 @@ static bool refuse_storage(int why, struct problem *problem)
 
 static bool check_sender(const struct call *call, struct problem *problem)
 {
-    static const char *const types[] = { "application/zip", "application/x-tar", "application/gzip", "application/octet-stream" };
+    static const char *const types[] = { "application/zip", "application/x-tar", "application/gzip",
+                                         "application/octet-stream" };
     if (!call_origin_is_own(call, problem))
         return false;
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
         if (call_media_type_is(call, types[i]))
             return true;
-    return problem_set(problem, PROBLEM_MEDIA_TYPE, "", "",
-                       "Content-Type is \"%.60s\", expected application/zip, application/x-tar, application/gzip or application/octet-stream",
-                       call->content_type ? call->content_type : "");
+    return problem_set(
+        problem, PROBLEM_MEDIA_TYPE, "", "",
+        "Content-Type is \"%.60s\", expected application/zip, application/x-tar, application/gzip or application/octet-stream",
+        call->content_type ? call->content_type : "");
 }
 
 /* Whether the disk holds what all files were granted, and more beside it, and the reserve stays free. */
@@ -115,13 +118,16 @@ static bool check_space(const struct intake *intake, uint64_t more, struct probl
     uint64_t n_free = intake->free_bytes(intake->context, &failed);
     if (failed)
         return refuse_storage(failed, problem);
-    uint64_t kept = intake->reserve_bytes + intake->n_promised; /* a few files of at most INT64_MAX in all: each was granted */
+    uint64_t kept =
+        intake->reserve_bytes + intake->n_promised; /* a few files of at most INT64_MAX in all: each was granted */
     if (n_free >= kept && n_free - kept >= more)
         return true;
     return problem_set(problem, PROBLEM_STORAGE, "", "",
-                       "the server's disk has %" PRIu64 " MiB free; expected are %" PRIu64 " MiB for this archive, %" PRIu64
-                       " for others that are being received, and %" PRIu64 " that stay free",
-                       n_free >> 20, (more + (1 << 20) - 1) >> 20, intake->n_promised >> 20, intake->reserve_bytes >> 20);
+                       "the server's disk has %" PRIu64 " MiB free; expected are %" PRIu64
+                       " MiB for this archive, %" PRIu64 " for others that are being received, and %" PRIu64
+                       " that stay free",
+                       n_free >> 20, (more + (1 << 20) - 1) >> 20, intake->n_promised >> 20,
+                       intake->reserve_bytes >> 20);
 }
 
 static void promise(struct intake_file *file, uint64_t n)
@@ -130,8 +136,8 @@ static void promise(struct intake_file *file, uint64_t n)
     file->intake->n_promised += n;
 }
 
-/* Before n bytes are written. A length that was announced is granted as a whole, one that was not in steps; and every step the disk is
- * looked at again, because others write to it too. */
+/* Before n bytes are written. A length that was announced is granted as a whole, one that was not in steps; and every
+ * step the disk is looked at again, because others write to it too. */
 static bool is_granted(struct intake_file *file, size_t n, struct problem *problem)
 {
     struct intake *intake = file->intake;
@@ -150,7 +156,8 @@ static bool is_granted(struct intake_file *file, size_t n, struct problem *probl
     return true;
 }
 
-struct intake_file *intake_begin(struct intake *intake, const struct call *call, int64_t length, struct problem *problem)
+struct intake_file *intake_begin(struct intake *intake, const struct call *call, int64_t length,
+                                 struct problem *problem)
 {
     if (!check_sender(call, problem))
         return NULL;
@@ -163,7 +170,8 @@ struct intake_file *intake_begin(struct intake *intake, const struct call *call,
         return NULL;
     }
     if (intake->n_files >= INTAKE_MAX_FILES) {
-        problem_set(problem, PROBLEM_LIMIT, "", "", "%d archives are being received already; at most so many are at once", INTAKE_MAX_FILES);
+        problem_set(problem, PROBLEM_LIMIT, "", "",
+                    "%d archives are being received already; at most so many are at once", INTAKE_MAX_FILES);
         problem->retry_after_ms = INTAKE_RETRY_MS;
         return NULL;
     }
@@ -196,8 +204,8 @@ static bool is_fast_enough(struct intake_file *file, size_t n, struct problem *p
         return true;
     bool is_enough = file->window_bytes >= INTAKE_WINDOW_BYTES;
     if (!is_enough)
-        problem_set(problem, PROBLEM_TOO_SLOW, "", "", "%" PRIu64 " bytes came in %.0f s; at least %d are expected", file->window_bytes,
-                    (double)(now_us - file->window_us) / 1e6, INTAKE_WINDOW_BYTES);
+        problem_set(problem, PROBLEM_TOO_SLOW, "", "", "%" PRIu64 " bytes came in %.0f s; at least %d are expected",
+                    file->window_bytes, (double)(now_us - file->window_us) / 1e6, INTAKE_WINDOW_BYTES);
     file->window_us = now_us;
     file->window_bytes = 0;
     return is_enough;

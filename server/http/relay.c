@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
-/* The HTTP thread and its set of links. The thread takes connections over from the acceptor, counts them, tells each link what epoll
- * reports of its sockets, lets the library run, ends the links whose time is over, and frees a link once both of its sides have ended. */
+/* The HTTP thread and its set of links. The thread takes connections over from the acceptor, counts them, tells each
+ * link what epoll reports of its sockets, lets the library run, ends the links whose time is over, and frees a link
+ * once both of its sides have ended. */
 #include <errno.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -28,7 +29,7 @@ struct handed { /* a connection on its way from the acceptor */
 
 static char wake_tag, server_tag; /* their addresses mark events that are no link's */
 
-/* ---- counting ------------------------------------------------------------------------------------------------------------ */
+/* ---- counting --------------------------------------------------------------------------------------------------- */
 
 static size_t count_address(const struct relay *relay, const struct address *counted)
 {
@@ -44,7 +45,8 @@ void relay_uncount(struct relay_link *link)
     link->is_counted = false;
 }
 
-/* One whose request waits inside the library keeps its place there, and a descriptor: it counts, or one client could ask and go for ever. */
+/* One whose request waits inside the library keeps its place there, and a descriptor: it counts, or one client could
+ * ask and go for ever. */
 void relay_uncount_ended(struct relay_link *link)
 {
     if (link->server < 0)
@@ -59,8 +61,8 @@ bool relay_count(struct relay_link *link, const struct address *client, struct p
         return true;
     size_t n_before = count_address(relay, &counted), n_all = relay->n_counted - link->is_counted;
     if (n_all >= RELAY_MAX_CONNECTIONS || n_before >= RELAY_MAX_PER_ADDRESS) {
-        problem_set(problem, PROBLEM_LIMIT, "", "", "too many connections: at most %d in all, %d from one address", RELAY_MAX_CONNECTIONS,
-                    RELAY_MAX_PER_ADDRESS);
+        problem_set(problem, PROBLEM_LIMIT, "", "", "too many connections: at most %d in all, %d from one address",
+                    RELAY_MAX_CONNECTIONS, RELAY_MAX_PER_ADDRESS);
         problem->retry_after_ms = RELAY_RETRY_MS;
         return false;
     }
@@ -82,7 +84,7 @@ void relay_log_refusal(struct relay *relay)
     relay->n_refused = 0;
 }
 
-/* ---- the set of links ---------------------------------------------------------------------------------------------------- */
+/* ---- the set of links ------------------------------------------------------------------------------------------- */
 
 void relay_touch(struct relay_link *link)
 {
@@ -113,22 +115,29 @@ struct relay_link *relay_find(struct relay *relay, int socket)
     return link;
 }
 
-/* ---- the thread ---------------------------------------------------------------------------------------------------------- */
+/* ---- the thread ------------------------------------------------------------------------------------------------- */
 
 static void take_over(struct relay *relay, const struct handed *handed)
 {
     struct problem problem;
     struct relay_link *link = mem_new(sizeof *link);
     int on = 1;
-    *link = (struct relay_link){ .next = relay->links, .relay = relay, .client = handed->socket, .inner = -1, .server = -1, .peer = handed->peer,
+    *link = (struct relay_link){ .next = relay->links,
+                                 .relay = relay,
+                                 .client = handed->socket,
+                                 .inner = -1,
+                                 .server = -1,
+                                 .peer = handed->peer,
                                  .client_readable = true };
     link->head_us = link->moved_us = clock_now_us();
     body_begin(&link->body, false, 0);
     if (relay->links)
         relay->links->previous = link;
     relay->links = link;
-    (void)setsockopt(handed->socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on); /* answers come in as few pieces as we can */
-    struct epoll_event event = { .events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET, .data.u64 = (uint64_t)(uintptr_t)link };
+    (void)setsockopt(handed->socket, IPPROTO_TCP, TCP_NODELAY, &on,
+                     sizeof on); /* answers come in as few pieces as we can */
+    struct epoll_event event = { .events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET,
+                                 .data.u64 = (uint64_t)(uintptr_t)link };
     if (epoll_ctl(relay->epoll, EPOLL_CTL_ADD, handed->socket, &event) != 0) {
         relay_link_die(link);
     } else if (!relay_count(link, &handed->client, &problem)) {
@@ -146,7 +155,8 @@ static void take_queued(struct relay *relay)
         take_over(relay, handed);
 }
 
-/* Once for each event of epoll: the link of an event may have died by an event before it, and is freed after all of them. */
+/* Once for each event of epoll: the link of an event may have died by an event before it, and is freed after all of
+ * them. */
 static void handle_event(struct relay *relay, const struct epoll_event *event)
 {
     if (event->data.u64 == (uint64_t)(uintptr_t)&wake_tag) {
@@ -212,7 +222,8 @@ static void look_at_answer(struct relay_link *link, int64_t now_us)
     } else if (still_us > RELAY_IDLE_MS * INT64_C(1000) || is_window_missed(link, now_us)) {
         relay_link_die(link);
     } else {
-        relay_touch(link); /* epoll tells of room only once much has been taken; a slow client's progress is looked for here */
+        relay_touch(
+            link); /* epoll tells of room only once much has been taken; a slow client's progress is looked for here */
     }
 }
 
@@ -234,7 +245,8 @@ static void look_at_times(struct relay *relay, int64_t now_us)
             break;
         case LINK_BODY:
             if (still_ms > RELAY_IDLE_MS || is_window_missed(link, now_us)) {
-                problem_set(&problem, PROBLEM_TOO_SLOW, "", "", "too little of the request's body came; expected are %d bytes in every %d s",
+                problem_set(&problem, PROBLEM_TOO_SLOW, "", "",
+                            "too little of the request's body came; expected are %d bytes in every %d s",
                             RELAY_WINDOW_BYTES, RELAY_WINDOW_MS / 1000);
                 relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
             }
@@ -391,7 +403,8 @@ void relay_add(struct relay *relay, int socket, const struct address *peer, cons
         return;
     }
     struct problem problem;
-    problem_set(&problem, PROBLEM_LIMIT, "", "", "%d connections wait to be taken over already; at most so many do", RELAY_MAX_QUEUED);
+    problem_set(&problem, PROBLEM_LIMIT, "", "", "%d connections wait to be taken over already; at most so many do",
+                RELAY_MAX_QUEUED);
     problem.retry_after_ms = RELAY_RETRY_MS;
     (void)refusal_drain(socket, HEAD_MAX_BYTES);
     refusal_send(socket, &problem);

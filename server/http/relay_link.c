@@ -1,7 +1,7 @@
 #define _GNU_SOURCE
-/* One link: one client's connection. It reads and checks a request's head, passes head and body to the library, passes the answer back,
- * and only then looks at the next request. A refused client may still be sending: its bytes are read for a while after the answer, so that
- * the answer reaches it. */
+/* One link: one client's connection. It reads and checks a request's head, passes head and body to the library, passes
+ * the answer back, and only then looks at the next request. A refused client may still be sending: its bytes are read
+ * for a while after the answer, so that the answer reaches it. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,12 +14,13 @@
 #include "server/wire/refusal.h"
 
 enum {
-    IN_SIZE = 64 << 10, /* of a client's bytes at once: at least a head */
+    IN_SIZE = 64 << 10,  /* of a client's bytes at once: at least a head */
     DROP_SIZE = 1 << 20, /* of a refused body at once */
-    N_CONTINUE = 25, /* bytes of "HTTP/1.1 100 Continue" with its empty line, the one answer that may come before the answer */
+    N_CONTINUE =
+        25, /* bytes of "HTTP/1.1 100 Continue" with its empty line, the one answer that may come before the answer */
 };
 
-/* ---- ends ---------------------------------------------------------------------------------------------------------------- */
+/* ---- ends ------------------------------------------------------------------------------------------------------- */
 
 static void drop_bytes(struct relay_link *link)
 {
@@ -43,7 +44,8 @@ void relay_link_die(struct relay_link *link)
     relay_unwatch_and_close(link->relay, &link->inner);
 }
 
-/* The answer is out: a socket that is closed with bytes unread takes the answer back, so what still comes is read for a while. */
+/* The answer is out: a socket that is closed with bytes unread takes the answer back, so what still comes is read for a
+ * while. */
 static void linger(struct relay_link *link, uint64_t max_dropped)
 {
     relay_uncount_ended(link);
@@ -77,9 +79,12 @@ void relay_link_begin_window(struct relay_link *link)
     link->window_bytes = 0;
 }
 
-/* ---- the answer ---------------------------------------------------------------------------------------------------------- */
+/* ---- the answer ------------------------------------------------------------------------------------------------- */
 
-static bool is_for_later(void) { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
+static bool is_for_later(void)
+{
+    return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
+}
 
 void relay_link_pump(struct relay_link *link)
 {
@@ -137,7 +142,7 @@ void relay_link_pump(struct relay_link *link)
     }
 }
 
-/* ---- the request --------------------------------------------------------------------------------------------------------- */
+/* ---- the request ------------------------------------------------------------------------------------------------ */
 
 /* More of the client's bytes. False: there are none now. */
 static bool read_client(struct relay_link *link)
@@ -173,7 +178,8 @@ static bool read_client(struct relay_link *link)
 
 static bool watch_inner(struct relay_link *link, int how)
 {
-    struct epoll_event event = { .events = EPOLLIN | EPOLLRDHUP | EPOLLET | (link->inner_wants_room ? (uint32_t)EPOLLOUT : 0),
+    struct epoll_event event = { .events =
+                                     EPOLLIN | EPOLLRDHUP | EPOLLET | (link->inner_wants_room ? (uint32_t)EPOLLOUT : 0),
                                  .data.u64 = (uint64_t)(uintptr_t)link | 1 };
     return epoll_ctl(link->relay->epoll, how, link->inner, &event) == 0;
 }
@@ -207,7 +213,8 @@ static bool step_head(struct relay_link *link)
     enum head_kind kind = HEAD_INCOMPLETE;
     do {
         if (link->n_in > 0)
-            kind = head_read(link->in, link->n_in < HEAD_MAX_BYTES ? link->n_in : HEAD_MAX_BYTES, relay->options.hosts, &request, &problem);
+            kind = head_read(link->in, link->n_in < HEAD_MAX_BYTES ? link->n_in : HEAD_MAX_BYTES, relay->options.hosts,
+                             &request, &problem);
     } while (kind == HEAD_INCOMPLETE && !link->client_ended && read_client(link));
     if (link->state == LINK_DEAD)
         return true;
@@ -225,7 +232,8 @@ static bool step_head(struct relay_link *link)
         relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
         return true;
     }
-    struct address client = address_of_client(&link->peer, relay->options.trusted, relay->options.n_trusted, request.forwarded, request.n_forwarded);
+    struct address client = address_of_client(&link->peer, relay->options.trusted, relay->options.n_trusted,
+                                              request.forwarded, request.n_forwarded);
     if (!relay_count(link, &client, &problem)) {
         relay_log_refusal(relay);
         relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
@@ -250,7 +258,8 @@ static bool step_body(struct relay_link *link)
     struct problem problem;
     for (;;) {
         size_t n_taken = 0;
-        if (!body_take(&link->body, link->in ? link->in + link->n_forward : "", link->n_in - link->n_forward, &n_taken, &problem)) {
+        if (!body_take(&link->body, link->in ? link->in + link->n_forward : "", link->n_in - link->n_forward, &n_taken,
+                       &problem)) {
             relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
             return true;
         }
@@ -300,7 +309,8 @@ static bool step_body(struct relay_link *link)
 static void finish(struct relay_link *link)
 {
     char byte;
-    bool has_more = link->n_in > 0 || !body_is_ended(&link->body) || recv(link->client, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
+    bool has_more =
+        link->n_in > 0 || !body_is_ended(&link->body) || recv(link->client, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
     if (has_more)
         linger(link, RELAY_MAX_DROPPED);
     else
@@ -380,7 +390,7 @@ void relay_link_advance(struct relay_link *link)
     }
 }
 
-/* ---- the library's side -------------------------------------------------------------------------------------------------- */
+/* ---- the library's side ----------------------------------------------------------------------------------------- */
 
 void relay_link_closed(struct relay_link *link)
 {

@@ -1,5 +1,5 @@
-/* Rooms and the fleet: what rooms ask for becomes packets, what renderers answer becomes pictures, and what happens to a plan is told
- * to its rooms. */
+/* Rooms and the fleet: what rooms ask for becomes packets, what renderers answer becomes pictures, and what happens to
+ * a plan is told to its rooms. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "server/net/parts.h"
 #include "server/wire/missing.h"
 
-/* ---- rooms to the fleet --------------------------------------------------------------------------------------------- */
+/* ---- rooms to the fleet ----------------------------------------------------------------------------------------- */
 
 static void unlink_asked(struct asked *asked)
 {
@@ -26,17 +26,18 @@ static bool read_frame(const struct asked *asked, const struct packet *answer, s
     struct packet_frame frame;
     if (!packet_frame_read(answer, &frame))
         return false;
-    *header = (struct frame_header){ .codec = 1,
-                                     .flags = asked->flags,
-                                     .quality = asked->quality,
-                                     .scale_percent = asked->scale_percent,
-                                     .scene_revision = asked->is_override ? asked->scene_revision : frame.scene_revision,
-                                     .width_px = frame.width_px,
-                                     .height_px = frame.height_px,
-                                     .render_us = frame.render_us,
-                                     .encode_us = frame.encode_us,
-                                     .payload_bytes = (uint32_t)answer->n_blob,
-                                     .pixels_per_mm_1000 = (uint32_t)llround(frame.pixels_per_mm * 1000) };
+    *header =
+        (struct frame_header){ .codec = 1,
+                               .flags = asked->flags,
+                               .quality = asked->quality,
+                               .scale_percent = asked->scale_percent,
+                               .scene_revision = asked->is_override ? asked->scene_revision : frame.scene_revision,
+                               .width_px = frame.width_px,
+                               .height_px = frame.height_px,
+                               .render_us = frame.render_us,
+                               .encode_us = frame.encode_us,
+                               .payload_bytes = (uint32_t)answer->n_blob,
+                               .pixels_per_mm_1000 = (uint32_t)llround(frame.pixels_per_mm * 1000) };
     memcpy(header->clip_from_lps_mm, frame.clip_from_lps_mm, sizeof header->clip_from_lps_mm);
     if (frame.is_light)
         header->flags |= FRAME_LIGHT; /* the renderer knows whether it really drew the lighter meshes */
@@ -57,7 +58,10 @@ static void picture_came(void *context, struct packet *answer, const struct prob
     }
     if (answer) {
         struct room_picture *picture = mem_new(sizeof *picture);
-        *picture = (struct room_picture){ .header = header, .bytes = answer->blob, .n_bytes = answer->n_blob, .references = 1,
+        *picture = (struct room_picture){ .header = header,
+                                          .bytes = answer->blob,
+                                          .n_bytes = answer->n_blob,
+                                          .references = 1,
                                           .missing = missing_read(answer->json) };
         answer->blob = NULL; /* taken */
         room_picture_came(place->room, asked->room_request, picture, clock_now_us());
@@ -123,7 +127,8 @@ void bridge_render(void *context, struct room *room, const struct room_render *r
                              .place = place,
                              .room_request = request->request,
                              .scene_revision = request->scene_revision,
-                             .flags = (uint8_t)((request->is_still ? FRAME_STILL : 0) | (request->full_color ? FRAME_FULL_COLOR : 0)),
+                             .flags = (uint8_t)((request->is_still ? FRAME_STILL : 0) |
+                                                (request->full_color ? FRAME_FULL_COLOR : 0)),
                              .quality = (uint8_t)request->quality,
                              .scale_percent = (uint8_t)request->scale_percent,
                              .is_override = scene != NULL };
@@ -136,7 +141,8 @@ void bridge_forget(void *context, struct room *room, uint64_t request)
 {
     struct net *net = context;
     struct place *place = place_with(net, room);
-    struct asked *asked = place ? place->asked : NULL; /* no place: the room is being closed, and all of it forgotten already */
+    struct asked *asked =
+        place ? place->asked : NULL; /* no place: the room is being closed, and all of it forgotten already */
     while (asked && asked->room_request != request)
         asked = asked->next;
     if (!asked)
@@ -151,7 +157,8 @@ void bridge_forget(void *context, struct room *room, uint64_t request)
     free(asked);
 }
 
-/* It is told with the next picture that needs it: rooms nobody looks into cost the renderer nothing, also after a restart. */
+/* It is told with the next picture that needs it: rooms nobody looks into cost the renderer nothing, also after a
+ * restart. */
 void bridge_scene_changed(void *context, struct room *room, const cJSON *scene, uint32_t revision)
 {
     struct place *place = place_with(context, room);
@@ -161,16 +168,18 @@ void bridge_scene_changed(void *context, struct room *room, const cJSON *scene, 
         place->is_scene_told = false;
 }
 
-/* ---- the fleet to rooms --------------------------------------------------------------------------------------------- */
+/* ---- the fleet to rooms ----------------------------------------------------------------------------------------- */
 
 static void tell_ready(struct place *place, const struct fleet_plan *plan)
 {
     const cJSON *gl = fleet_gl(place->net->fleet, NULL);
     const char *back_end = json_text(gl, "back_end"), *renderer = json_text(gl, "renderer");
     char words[200];
-    (void)snprintf(words, sizeof words, "%s%s%s", back_end ? back_end : "", back_end && renderer ? ", " : "", renderer ? renderer : "");
+    (void)snprintf(words, sizeof words, "%s%s%s", back_end ? back_end : "", back_end && renderer ? ", " : "",
+                   renderer ? renderer : "");
     place->generation = plan->generation;
-    room_plan_ready(place->room, plan->document, plan->default_scene, words, json_flag(gl, "is_software", true), clock_now_us());
+    room_plan_ready(place->room, plan->document, plan->default_scene, words, json_flag(gl, "is_software", true),
+                    clock_now_us());
 }
 
 static void tell_state(struct place *place, const struct fleet_plan *plan)
@@ -203,7 +212,8 @@ static void tell_state(struct place *place, const struct fleet_plan *plan)
 void bridge_tell_plan(struct place *place)
 {
     struct fleet_plan plan;
-    if (!fleet_plan_find(place->net->fleet, room_plan_id(place->room), &plan)) { /* while nobody was there its folder was taken away */
+    if (!fleet_plan_find(place->net->fleet, room_plan_id(place->room),
+                         &plan)) { /* while nobody was there its folder was taken away */
         struct problem gone;
         problem_set(&gone, PROBLEM_NOT_FOUND, "", "", "the plan of this room is gone");
         place->state = FLEET_UNREADABLE;

@@ -12,10 +12,10 @@
 #include "server/net/parts.h"
 
 enum {
-    MAX_TASKS = 4096,          /* waiting; who posts more waits */
+    MAX_TASKS = 4096, /* waiting; who posts more waits */
     FLEET_TICK_US = 250000,
-    FAREWELL_US = 1000000,     /* at the end: for byes to get out */
-    RESTART_RETRY_MS = 2000,   /* when pages come back after the daemon was stopped: a restart takes about that */
+    FAREWELL_US = 1000000,   /* at the end: for byes to get out */
+    RESTART_RETRY_MS = 2000, /* when pages come back after the daemon was stopped: a restart takes about that */
 };
 
 struct task {
@@ -23,7 +23,7 @@ struct task {
     void *argument;
 };
 
-/* ---- time ----------------------------------------------------------------------------------------------------------- */
+/* ---- time ------------------------------------------------------------------------------------------------------- */
 
 void net_plan_next_call(struct net *net)
 {
@@ -79,7 +79,7 @@ static void time_came(void *context)
     net_plan_next_call(net);
 }
 
-/* ---- connections ---------------------------------------------------------------------------------------------------- */
+/* ---- connections ------------------------------------------------------------------------------------------------ */
 
 static struct place *place_of(struct net *net, const char *id)
 {
@@ -125,7 +125,8 @@ static void opened(void *context, struct ws_connection *connection, const char *
         ws_bye(connection, WS_CLOSE_NORMAL, "the room is closed", -1);
 }
 
-static void message_came(void *context, struct ws_connection *connection, enum ws_opcode kind, const char *text, size_t n)
+static void message_came(void *context, struct ws_connection *connection, enum ws_opcode kind, const char *text,
+                         size_t n)
 {
     (void)kind; /* a text: binary ones are not taken */
     struct place *place = ((struct visitor *)ws_owner(connection))->place;
@@ -159,7 +160,7 @@ static void connection_closed(void *context, struct ws_connection *connection)
     free(visitor);
 }
 
-/* ---- rooms ---------------------------------------------------------------------------------------------------------- */
+/* ---- rooms ------------------------------------------------------------------------------------------------------ */
 
 /* 40 random bits as "7q4k-m2wz", without letters that are taken for another. */
 static bool make_id(char id[16])
@@ -186,11 +187,13 @@ struct room *net_room_create(struct net *net, const char *plan_id, struct proble
         return NULL;
     }
     if (net->n_places >= (size_t)net->max_rooms) {
-        problem_set(problem, PROBLEM_LIMIT, "", "", "there are %zu rooms already, at most %d are allowed", net->n_places, net->max_rooms);
+        problem_set(problem, PROBLEM_LIMIT, "", "", "there are %zu rooms already, at most %d are allowed",
+                    net->n_places, net->max_rooms);
         return NULL;
     }
     if (!id_is_valid(plan_id)) {
-        problem_set(problem, PROBLEM_VALIDATION, "/plan", "pattern", "/plan is \"%.40s\", expected 1 to 63 of a-z, 0-9 and -", plan_id);
+        problem_set(problem, PROBLEM_VALIDATION, "/plan", "pattern",
+                    "/plan is \"%.40s\", expected 1 to 63 of a-z, 0-9 and -", plan_id);
         return NULL;
     }
     do
@@ -201,9 +204,12 @@ struct room *net_room_create(struct net *net, const char *plan_id, struct proble
     while (place_of(net, id));
     if (!fleet_open(net->fleet, plan_id, problem))
         return NULL;
-    const struct room_callbacks callbacks = { bridge_render, bridge_forget, bridge_scene_changed, send_text, send_frame, close_connection, net };
+    const struct room_callbacks callbacks = {
+        bridge_render, bridge_forget, bridge_scene_changed, send_text, send_frame, close_connection, net
+    };
     struct place *place = mem_new(sizeof *place);
-    *place = (struct place){ .net = net, .room = room_create(id, plan_id, &callbacks, &net->limits), .state = FLEET_CLOSED };
+    *place =
+        (struct place){ .net = net, .room = room_create(id, plan_id, &callbacks, &net->limits), .state = FLEET_CLOSED };
     net->places[net->n_places++] = place;
     bridge_tell_plan(place);
     net_touch(place);
@@ -277,7 +283,7 @@ void net_count(const struct net *net, struct net_counters *counters)
         room_count(net->places[i]->room, &counters->rooms);
 }
 
-/* ---- tasks and the thread ------------------------------------------------------------------------------------------- */
+/* ---- tasks and the thread --------------------------------------------------------------------------------------- */
 
 static bool run_tasks(struct net *net)
 {
@@ -302,7 +308,9 @@ void net_post(struct net *net, void (*run)(struct net *net, void *argument), voi
     struct task *task = mem_new(sizeof *task);
     *task = (struct task){ run, argument };
     bool is_us = pthread_equal(pthread_self(), net->thread);
-    while (!queue_try_put(net->tasks, task)) { /* thousands wait: so does who adds to them, but for the thread that works them off */
+    while (
+        !queue_try_put(net->tasks,
+                       task)) { /* thousands wait: so does who adds to them, but for the thread that works them off */
         if (is_us)
             run_tasks(net);
         else
@@ -339,7 +347,8 @@ static void adopt(struct net *net, void *argument)
     free(adoption);
 }
 
-void net_adopt(struct net *net, int socket, const struct handshake *handshake, void (*ended)(void *context), void *context)
+void net_adopt(struct net *net, int socket, const struct handshake *handshake, void (*ended)(void *context),
+               void *context)
 {
     struct adoption *adoption = mem_new(sizeof *adoption);
     *adoption = (struct adoption){ socket, *handshake, { ended, context } };
@@ -366,13 +375,14 @@ static void *work(void *context)
     while (!net_is_stopping(net))
         ws_serve(net->ws);
     run_tasks(net);
-    for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next) /* before the rooms say that they are closed */
+    for (struct visitor *visitor = net->visitors; visitor;
+         visitor = visitor->next) /* before the rooms say that they are closed */
         ws_bye(visitor->connection, WS_CLOSE_GOING_AWAY, "the server is being stopped", RESTART_RETRY_MS);
     while (net->n_places)
         net_room_delete(net, room_id(net->places[0]->room));
     int64_t end_us = clock_now_us() + FAREWELL_US;
     while (n_connections(net) && clock_now_us() < end_us)
-        ws_serve(net->ws); /* the fleet's time wakes it four times a second */
+        ws_serve(net->ws);     /* the fleet's time wakes it four times a second */
     fleet_destroy(net->fleet); /* every reply that is owed comes now, and may post */
     net->fleet = NULL;
     run_tasks(net);
@@ -387,7 +397,8 @@ struct net *net_create(const struct net_options *options, struct error *err)
     net->limits = options->room;
     net->places = mem_array((size_t)net->max_rooms, sizeof net->places[0], 1 << 20, err);
     net->tasks = queue_create(MAX_TASKS, free);
-    const struct ws_callbacks callbacks = { has_room, opened, message_came, is_greeted, connection_closed, woken, time_came, net };
+    const struct ws_callbacks callbacks = { has_room,          opened, message_came, is_greeted,
+                                            connection_closed, woken,  time_came,    net };
     net->ws = net->places ? ws_create(&callbacks, &ws_limits_default, options->allowed_origin, err) : NULL;
     if (!net->ws)
         goto fail;

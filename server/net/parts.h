@@ -30,13 +30,13 @@ struct place { /* a room and what belongs to it here */
     struct net *net;
     struct room *room;
     struct asked *asked;
-    bool is_scene_told;      /* the renderer has the scene as it is */
-    uint32_t generation;     /* of the renderer, as last told to the room; 0 none */
-    enum fleet_state state;  /* as last told to the room */
+    bool is_scene_told;     /* the renderer has the scene as it is */
+    uint32_t generation;    /* of the renderer, as last told to the room; 0 none */
+    enum fleet_state state; /* as last told to the room */
     char phase[200];
     double percent;
-    int64_t wake_us;         /* when the room wants to be called */
-    int64_t empty_since_us;  /* 0: somebody is here */
+    int64_t wake_us;        /* when the room wants to be called */
+    int64_t empty_since_us; /* 0: somebody is here */
 };
 
 struct net {

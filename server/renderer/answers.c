@@ -16,17 +16,18 @@ static void add_number(cJSON *json, const char *name, double value)
     cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
 }
 
-static uint8_t *shape_file(const struct plan *plan, size_t region, const struct shape_query *query, const struct shape *shape, size_t *n_bytes,
-                           struct error *err)
+static uint8_t *shape_file(const struct plan *plan, size_t region, const struct shape_query *query,
+                           const struct shape *shape, size_t *n_bytes, struct error *err)
 {
     const struct region *what = &plan->regions.regions[region];
     bool is_surface = query->key.representation == REPRESENTATION_SURFACE;
-    const struct mesh_export_about about = {
-        plan->id,         what->id,
-        is_surface ? surface_algorithm_word(query->key.algorithm) : region_representation_word(query->key.representation),
-        plan->is_phantom, query->is_faceted || shape->is_faceted,
-        { what->rgb[0], what->rgb[1], what->rgb[2] }
-    };
+    const struct mesh_export_about about = { plan->id,
+                                             what->id,
+                                             is_surface ? surface_algorithm_word(query->key.algorithm)
+                                                        : region_representation_word(query->key.representation),
+                                             plan->is_phantom,
+                                             query->is_faceted || shape->is_faceted,
+                                             { what->rgb[0], what->rgb[1], what->rgb[2] } };
     return mesh_export(shape->mesh, query->format, &about, PACKET_MAX_BLOB, n_bytes, err);
 }
 
@@ -49,7 +50,8 @@ static void add_key(cJSON *json, const struct shape_query *query)
     }
 }
 
-cJSON *answer_shape(struct plan *plan, size_t region, const struct shape_query *query, uint8_t **file, size_t *n_file, struct problem *problem)
+cJSON *answer_shape(struct plan *plan, size_t region, const struct shape_query *query, uint8_t **file, size_t *n_file,
+                    struct problem *problem)
 {
     struct error err = { 0 };
     struct surface_facts facts;
@@ -116,7 +118,8 @@ cJSON *answer_probe(const struct plan *plan, struct vec3 point_lps_mm)
         dose_unit_of(dose, component->quantity, unit);
         cJSON_AddStringToObject(item, "unit", unit);
         cJSON_AddStringToObject(item, "per", dose->per);
-        cJSON_AddItemToObject(item, "frame_of_reference", dose->has_frame ? cJSON_CreateString(dose_frame_word(dose->frame)) : cJSON_CreateNull());
+        cJSON_AddItemToObject(item, "frame_of_reference",
+                              dose->has_frame ? cJSON_CreateString(dose_frame_word(dose->frame)) : cJSON_CreateNull());
         cJSON_AddItemToArray(doses, item);
     }
     return json;

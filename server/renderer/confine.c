@@ -17,7 +17,8 @@
 
 #include "server/renderer/seccomp.h"
 
-/* Rights that came after the first Landlock; older headers lack the names. Kernel documentation, userspace-api/landlock. */
+/* Rights that came after the first Landlock; older headers lack the names. Kernel documentation,
+ * userspace-api/landlock. */
 #define FS_REFER (UINT64_C(1) << 13)     /* 2 */
 #define FS_TRUNCATE (UINT64_C(1) << 14)  /* 3 */
 #define FS_IOCTL_DEV (UINT64_C(1) << 15) /* 5 */
@@ -27,8 +28,8 @@
 #define FS_READ (LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR)
 #define FS_RUN (FS_READ | LANDLOCK_ACCESS_FS_EXECUTE)
 #define FS_DEVICE (FS_READ | LANDLOCK_ACCESS_FS_WRITE_FILE | FS_IOCTL_DEV)
-#define FS_UNPACK                                                                                                                    \
-    (FS_READ | LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_MAKE_DIR |                           \
+#define FS_UNPACK \
+    (FS_READ | LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_MAKE_DIR | \
      LANDLOCK_ACCESS_FS_REMOVE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR | FS_REFER)
 
 struct ruleset { /* struct landlock_ruleset_attr of the newest kernels */
@@ -74,7 +75,9 @@ static const struct place {
 };
 
 /* What a rule on a file (not a folder) may carry. */
-#define FS_OF_FILES (LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_READ_FILE | FS_TRUNCATE | FS_IOCTL_DEV)
+#define FS_OF_FILES \
+    (LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_READ_FILE | FS_TRUNCATE | \
+     FS_IOCTL_DEV)
 
 static void allow(int rules, const char *path, uint64_t rights)
 {
@@ -95,7 +98,8 @@ static long restrict_files(const struct confine_options *options)
     long version = syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION);
     if (version < 1)
         return -1;
-    uint64_t known = FS_FIRST | (version >= 2 ? FS_REFER : 0) | (version >= 3 ? FS_TRUNCATE : 0) | (version >= 5 ? FS_IOCTL_DEV : 0);
+    uint64_t known =
+        FS_FIRST | (version >= 2 ? FS_REFER : 0) | (version >= 3 ? FS_TRUNCATE : 0) | (version >= 5 ? FS_IOCTL_DEV : 0);
     struct ruleset asked = { known, version >= 4 ? NET_ALL : 0, version >= 6 ? SCOPE_ALL : 0 };
     size_t size = version >= 6 ? sizeof asked : version >= 4 ? 2 * sizeof asked.fs : sizeof asked.fs;
     int rules = (int)syscall(SYS_landlock_create_ruleset, &asked, size, 0);
@@ -122,8 +126,9 @@ static long restrict_files(const struct confine_options *options)
     return failed ? -1 : version;
 }
 
-/* Everything root may do beyond its own files: gone for this process and for whatever it would start. True when nothing is left. The
- * bounding set can be lowered only by a process that has capabilities; for another one it bounds what it cannot get. */
+/* Everything root may do beyond its own files: gone for this process and for whatever it would start. True when nothing
+ * is left. The bounding set can be lowered only by a process that has capabilities; for another one it bounds what it
+ * cannot get. */
 static bool drop_capabilities(void)
 {
     struct __user_cap_header_struct header = { .version = _LINUX_CAPABILITY_VERSION_3, .pid = 0 };
@@ -132,7 +137,8 @@ static bool drop_capabilities(void)
         (void)prctl(PR_CAPBSET_DROP, capability, 0, 0, 0);
     (void)prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
     return syscall(SYS_capset, &header, sets) == 0 ||
-           (syscall(SYS_capget, &header, sets) == 0 && (sets[0].permitted | sets[1].permitted | sets[0].inheritable | sets[1].inheritable) == 0);
+           (syscall(SYS_capget, &header, sets) == 0 &&
+            (sets[0].permitted | sets[1].permitted | sets[0].inheritable | sets[1].inheritable) == 0);
 }
 
 static void limit(int resource, rlim_t most)
@@ -172,7 +178,10 @@ void confine(const struct confine_options *options, char got[128])
         (void)snprintf(files, sizeof files, "landlock not in this kernel");
     const struct seccomp_options filter = { .has_gpu = options->needs_gpu };
     bool is_filtered = is_fixed && seccomp_restrict(&filter);
-    (void)snprintf(calls, sizeof calls, "%s", !is_filtered ? "no seccomp" : SECCOMP_IS_RELAXED ? "seccomp (relaxed)" : "seccomp");
+    (void)snprintf(calls, sizeof calls, "%s",
+                   !is_filtered         ? "no seccomp"
+                   : SECCOMP_IS_RELAXED ? "seccomp (relaxed)"
+                                        : "seccomp");
     (void)snprintf(got, 128, "%s, %s, %s, %s", files, calls, is_fixed ? "no-new-privs" : "no-new-privs refused",
                    is_bare ? "no capabilities" : "capabilities kept");
 }

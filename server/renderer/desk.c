@@ -27,7 +27,10 @@ void note_destroy(struct note *note)
     free(note);
 }
 
-static void drop_note(void *note) { note_destroy(note); }
+static void drop_note(void *note)
+{
+    note_destroy(note);
+}
 
 struct desk *desk_create(void)
 {
@@ -50,7 +53,10 @@ void desk_destroy(struct desk *desk)
     free(desk);
 }
 
-int desk_bell(const struct desk *desk) { return desk->bell; }
+int desk_bell(const struct desk *desk)
+{
+    return desk->bell;
+}
 
 static void ring(struct desk *desk)
 {

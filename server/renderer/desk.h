@@ -14,11 +14,11 @@ struct note {
     struct error error;        /* gl, failed */
     char phase[200];           /* progress */
     double percent;
-    struct plan *plan;         /* loaded: the receiver's to destroy */
+    struct plan *plan; /* loaded: the receiver's to destroy */
     struct pipeline_frame frame;
-    uint64_t id;               /* answer */
-    cJSON *body;               /* answer: the receiver's; NULL: problem says why */
-    uint8_t *blob;             /* answer: bytes beside the body, the receiver's; NULL when there are none */
+    uint64_t id;   /* answer */
+    cJSON *body;   /* answer: the receiver's; NULL: problem says why */
+    uint8_t *blob; /* answer: bytes beside the body, the receiver's; NULL when there are none */
     size_t n_blob;
     struct problem problem;
     struct preparation *preparation; /* prepared: the receiver's; its shapes are built */

@@ -56,9 +56,15 @@ void link_destroy(struct link *link)
     free(link);
 }
 
-int link_file(const struct link *link) { return link->socket; }
+int link_file(const struct link *link)
+{
+    return link->socket;
+}
 
-bool link_has_outgoing(const struct link *link) { return link->first != NULL; }
+bool link_has_outgoing(const struct link *link)
+{
+    return link->first != NULL;
+}
 
 void link_write(struct link *link)
 {

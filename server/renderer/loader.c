@@ -15,7 +15,7 @@
 
 enum {
     PROGRESS_EVERY_US = 50000,
-    BUILD_AHEAD_US = 300000, /* after that a first picture goes ahead with what is there */
+    BUILD_AHEAD_US = 300000,  /* after that a first picture goes ahead with what is there */
     WORTH_KEEPING_US = 50000, /* opening took longer */
     MAX_QUESTIONS = 256,
     MAX_PREPARATIONS = 2 * PIPELINE_MAX_WAITING
@@ -70,7 +70,8 @@ static void answer(struct loader *loader, struct plan *plan, struct question *qu
     question_drop(question);
 }
 
-/* What a new room shows: its regions, in file order, and by which algorithm. Other shapes are built when they are asked for. */
+/* What a new room shows: its regions, in file order, and by which algorithm. Other shapes are built when they are asked
+ * for. */
 static size_t visible_regions(const struct plan *plan, size_t *regions, enum surface_algorithm *algorithm)
 {
     struct scene scene;
@@ -79,7 +80,8 @@ static size_t visible_regions(const struct plan *plan, size_t *regions, enum sur
     for (size_t i = 0; i < scene.n_regions; i++) {
         const struct region *region = region_find(&plan->regions, scene.regions[i].id);
         const struct scene_region_style *style = &scene.regions[i].value;
-        if (region && region->n_voxels > 0 && style->visible && style->opacity > 0 && style->representation == SCENE_REPRESENTATION_SURFACE)
+        if (region && region->n_voxels > 0 && style->visible && style->opacity > 0 &&
+            style->representation == SCENE_REPRESENTATION_SURFACE)
             regions[n++] = (size_t)(region - plan->regions.regions);
     }
     *algorithm = visible_surface_key(&(struct snapshot){ .scene = scene }).algorithm;
@@ -140,8 +142,10 @@ static void *load_main(void *argument)
     struct loader *loader = argument;
     struct note note = { .type = NOTE_LOADED };
     struct plan_sources *sources = NULL;
-    struct plan_load_options options = { .progress = { step, loader, &loader->cancel }, .max_bytes = loader->max_bytes,
-                                         .cache_folder = loader->cache_folder, .sources = &sources };
+    struct plan_load_options options = { .progress = { step, loader, &loader->cancel },
+                                         .max_bytes = loader->max_bytes,
+                                         .cache_folder = loader->cache_folder,
+                                         .sources = &sources };
     struct plan *plan = plan_load(loader->folder, loader->plan_id, &options, &note.error);
     note.plan = plan;
     if (!plan)
@@ -190,7 +194,10 @@ static void *prepare_main(void *argument)
     return NULL;
 }
 
-static void drop_preparation(void *item) { preparation_destroy(item); }
+static void drop_preparation(void *item)
+{
+    preparation_destroy(item);
+}
 
 static void stop(struct loader *loader, int n_started)
 {

@@ -15,7 +15,8 @@ struct question {
     double px, py;
 };
 
-/* Starts reading: notes PROGRESS, then LOADED and later BUILT (the surfaces a first picture needs), or FAILED. NULL: no thread. */
+/* Starts reading: notes PROGRESS, then LOADED and later BUILT (the surfaces a first picture needs), or FAILED. NULL: no
+ * thread. */
 struct loader_options {
     const char *folder, *plan_id;
     uint64_t max_bytes;       /* as plan_load */
@@ -24,7 +25,8 @@ struct loader_options {
 NODISCARD struct loader *loader_create(const struct loader_options *options, struct desk *desk, struct error *err);
 /* After LOADED. Answered by a note with the same id. Takes what question owns. False: too many wait. */
 NODISCARD bool loader_ask(struct loader *loader, const struct question *question);
-/* Before a picture: builds its shapes, then a note PREPARED. Takes preparation when it returns true. False: too many wait. */
+/* Before a picture: builds its shapes, then a note PREPARED. Takes preparation when it returns true. False: too many
+ * wait. */
 NODISCARD bool loader_prepare(struct loader *loader, struct preparation *preparation);
 /* Cancels reading, drops what waits, joins. The plan must outlive it. */
 void loader_destroy(struct loader *loader);

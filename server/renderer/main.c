@@ -20,31 +20,32 @@ enum { EXIT_USAGE = 2 };
 
 static void print_help(void)
 {
-    fputs("usage: beamroom-render --socket-fd FD --plan-folder DIR --plan-id ID --cache DIR [OPTION]...\n"
-          "       beamroom-render --scan DIR\n"
-          "       beamroom-render --probe-gl [--gl BACK-END]\n"
-          "       beamroom-render --unpack ARCHIVE --into FOLDER --max-unpacked-bytes N\n"
-          "Reads one plan, draws it and answers questions about it. beamroomd starts one of these for each open plan and speaks\n"
-          "with it over a socket; by hand only --scan, --probe-gl and --unpack are of use.\n\n"
-          "  --scan DIR         print as JSON what the plan folder DIR holds, without reading voxels, and end\n"
-          "  --probe-gl         print as JSON how pictures can be drawn on this machine, and end\n"
-          "  --unpack ARCHIVE   unpack a zip, or a tar (plain, gzip, bzip2, xz, zstd), printing one JSON object a line: percent, and\n"
-          "                     last done or problem; whatever breaks a rule refuses all of it\n"
-          "  --into FOLDER      an empty folder to unpack into\n"
-          "  --max-unpacked-bytes N  most bytes that may come out of the archive\n"
-          "  --gl BACK-END      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
-          "  --stub             no graphics: grey pictures of the right size, for tests\n"
-          "  --socket-fd FD     number of the open socket to the daemon\n"
-          "  --plan-folder DIR  the plan to read; nothing else is readable from then on\n"
-          "  --plan-id ID       what the daemon calls the plan: letters a-z, digits, '-'\n"
-          "  --cache DIR        folder that may be written\n"
-          "  --max-file-bytes N  largest file it may write; 0 (default): no limit\n"
-          "  --max-bytes N      most memory of its own the process may take; 0 (default): no limit\n"
-          "  --help, --version  this text, the version\n\n"
-          "It gives up the network, other programs and other files before it reads a plan, as far as the kernel offers that.\n"
-          "Exit status: 0 done, or the daemon closed the socket; 1 the connection broke, or GL does not start (--probe-gl);\n"
-          "2 wrong usage; 3 the plan cannot be read, or the archive was refused.\n",
-          stdout);
+    fputs(
+        "usage: beamroom-render --socket-fd FD --plan-folder DIR --plan-id ID --cache DIR [OPTION]...\n"
+        "       beamroom-render --scan DIR\n"
+        "       beamroom-render --probe-gl [--gl BACK-END]\n"
+        "       beamroom-render --unpack ARCHIVE --into FOLDER --max-unpacked-bytes N\n"
+        "Reads one plan, draws it and answers questions about it. beamroomd starts one of these for each open plan and speaks\n"
+        "with it over a socket; by hand only --scan, --probe-gl and --unpack are of use.\n\n"
+        "  --scan DIR         print as JSON what the plan folder DIR holds, without reading voxels, and end\n"
+        "  --probe-gl         print as JSON how pictures can be drawn on this machine, and end\n"
+        "  --unpack ARCHIVE   unpack a zip, or a tar (plain, gzip, bzip2, xz, zstd), printing one JSON object a line: percent, and\n"
+        "                     last done or problem; whatever breaks a rule refuses all of it\n"
+        "  --into FOLDER      an empty folder to unpack into\n"
+        "  --max-unpacked-bytes N  most bytes that may come out of the archive\n"
+        "  --gl BACK-END      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
+        "  --stub             no graphics: grey pictures of the right size, for tests\n"
+        "  --socket-fd FD     number of the open socket to the daemon\n"
+        "  --plan-folder DIR  the plan to read; nothing else is readable from then on\n"
+        "  --plan-id ID       what the daemon calls the plan: letters a-z, digits, '-'\n"
+        "  --cache DIR        folder that may be written\n"
+        "  --max-file-bytes N  largest file it may write; 0 (default): no limit\n"
+        "  --max-bytes N      most memory of its own the process may take; 0 (default): no limit\n"
+        "  --help, --version  this text, the version\n\n"
+        "It gives up the network, other programs and other files before it reads a plan, as far as the kernel offers that.\n"
+        "Exit status: 0 done, or the daemon closed the socket; 1 the connection broke, or GL does not start (--probe-gl);\n"
+        "2 wrong usage; 3 the plan cannot be read, or the archive was refused.\n",
+        stdout);
 }
 
 struct arguments {
@@ -56,7 +57,8 @@ struct arguments {
 
 static int refuse(const char *what, const char *value)
 {
-    fprintf(stderr, "beamroom-render: %s%s%s; see beamroom-render --help\n", what, value ? " " : "", value ? value : "");
+    fprintf(stderr, "beamroom-render: %s%s%s; see beamroom-render --help\n", what, value ? " " : "",
+            value ? value : "");
     return EXIT_USAGE;
 }
 
@@ -71,15 +73,38 @@ static bool read_number(const char *text, unsigned long long most, unsigned long
 /* -1: go on; else the exit status. */
 static int read_arguments(int argc, char **argv, struct arguments *arguments)
 {
-    enum { HELP = 256, VERSION, SOCKET, FOLDER, ID, CACHE, GL, STUB, MAX_BYTES, SCAN, PROBE, UNPACK, INTO, MAX_UNPACKED, MAX_FILE };
+    enum {
+        HELP = 256,
+        VERSION,
+        SOCKET,
+        FOLDER,
+        ID,
+        CACHE,
+        GL,
+        STUB,
+        MAX_BYTES,
+        SCAN,
+        PROBE,
+        UNPACK,
+        INTO,
+        MAX_UNPACKED,
+        MAX_FILE
+    };
     static const struct option options[] = {
-        { "help", no_argument, NULL, HELP },           { "version", no_argument, NULL, VERSION },
-        { "socket-fd", required_argument, NULL, SOCKET }, { "plan-folder", required_argument, NULL, FOLDER },
-        { "plan-id", required_argument, NULL, ID },    { "cache", required_argument, NULL, CACHE },
-        { "gl", required_argument, NULL, GL },         { "stub", no_argument, NULL, STUB },
-        { "max-bytes", required_argument, NULL, MAX_BYTES }, { "scan", required_argument, NULL, SCAN },
-        { "probe-gl", no_argument, NULL, PROBE },      { "unpack", required_argument, NULL, UNPACK },
-        { "into", required_argument, NULL, INTO },     { "max-unpacked-bytes", required_argument, NULL, MAX_UNPACKED },
+        { "help", no_argument, NULL, HELP },
+        { "version", no_argument, NULL, VERSION },
+        { "socket-fd", required_argument, NULL, SOCKET },
+        { "plan-folder", required_argument, NULL, FOLDER },
+        { "plan-id", required_argument, NULL, ID },
+        { "cache", required_argument, NULL, CACHE },
+        { "gl", required_argument, NULL, GL },
+        { "stub", no_argument, NULL, STUB },
+        { "max-bytes", required_argument, NULL, MAX_BYTES },
+        { "scan", required_argument, NULL, SCAN },
+        { "probe-gl", no_argument, NULL, PROBE },
+        { "unpack", required_argument, NULL, UNPACK },
+        { "into", required_argument, NULL, INTO },
+        { "max-unpacked-bytes", required_argument, NULL, MAX_UNPACKED },
         { "max-file-bytes", required_argument, NULL, MAX_FILE },
         { NULL, 0, NULL, 0 },
     };
@@ -160,7 +185,9 @@ static int scan(const char *folder)
 static int probe_gl(const struct session_options *options, const char *confined)
 {
     struct error err = { 0 };
-    static const struct render_facts stub_facts = { .vendor = "Beamroom", .renderer = "stub", .version = "none", .is_software = true };
+    static const struct render_facts stub_facts = {
+        .vendor = "Beamroom", .renderer = "stub", .version = "none", .is_software = true
+    };
     struct renderer *renderer = options->is_stub ? NULL : renderer_create(options->back_end, &err);
     cJSON *json;
     if (renderer || options->is_stub) {
@@ -190,7 +217,8 @@ int main(int argc, char **argv)
     (void)signal(SIGPIPE, SIG_IGN);
     if (arguments.archive)
         return unpack_run(arguments.archive, arguments.into, arguments.max_unpacked_bytes, arguments.max_bytes);
-    /* compiled shaders are code: one plan's renderer must not leave any for another's, so they stay in the plan's own cache */
+    /* compiled shaders are code: one plan's renderer must not leave any for another's, so they stay in the plan's own
+     * cache */
     if (arguments.cache) {
         (void)setenv("MESA_SHADER_CACHE_DIR", arguments.cache, 1);
         (void)setenv("__GL_SHADER_DISK_CACHE_PATH", arguments.cache, 1);

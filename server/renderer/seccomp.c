@@ -22,30 +22,129 @@
 
 #ifdef OUR_ARCH
 
-/* Calls that are allowed whatever their arguments are. The kernel remembers these (Linux 5.11 and later) and does not run the filter
- * for them. Everything that is neither here nor among the rules of add_rules is refused. Landlock decides which files the calls on
- * files reach. Each call here acts on the process itself, on its own open files, or on files that Landlock guards. */
+/* Calls that are allowed whatever their arguments are. The kernel remembers these (Linux 5.11 and later) and does not
+ * run the filter for them. Everything that is neither here nor among the rules of add_rules is refused. Landlock
+ * decides which files the calls on files reach. Each call here acts on the process itself, on its own open files, or on
+ * files that Landlock guards. */
 static const int allowed[] = {
     /* open files */
-    SYS_read, SYS_write, SYS_readv, SYS_writev, SYS_pread64, SYS_pwrite64, SYS_preadv, SYS_pwritev, SYS_preadv2, SYS_pwritev2, SYS_lseek,
-    SYS_close, SYS_close_range, SYS_dup, SYS_dup3, SYS_flock, SYS_fsync, SYS_fdatasync, SYS_ftruncate, SYS_fallocate, SYS_fadvise64,
-    SYS_readahead, SYS_sync_file_range, SYS_pipe2, SYS_eventfd2, SYS_memfd_create, SYS_ppoll, SYS_pselect6, SYS_epoll_create1, SYS_epoll_ctl,
-    SYS_epoll_pwait, SYS_timerfd_create, SYS_timerfd_settime, SYS_timerfd_gettime, SYS_recvfrom, SYS_shutdown,
+    SYS_read,
+    SYS_write,
+    SYS_readv,
+    SYS_writev,
+    SYS_pread64,
+    SYS_pwrite64,
+    SYS_preadv,
+    SYS_pwritev,
+    SYS_preadv2,
+    SYS_pwritev2,
+    SYS_lseek,
+    SYS_close,
+    SYS_close_range,
+    SYS_dup,
+    SYS_dup3,
+    SYS_flock,
+    SYS_fsync,
+    SYS_fdatasync,
+    SYS_ftruncate,
+    SYS_fallocate,
+    SYS_fadvise64,
+    SYS_readahead,
+    SYS_sync_file_range,
+    SYS_pipe2,
+    SYS_eventfd2,
+    SYS_memfd_create,
+    SYS_ppoll,
+    SYS_pselect6,
+    SYS_epoll_create1,
+    SYS_epoll_ctl,
+    SYS_epoll_pwait,
+    SYS_timerfd_create,
+    SYS_timerfd_settime,
+    SYS_timerfd_gettime,
+    SYS_recvfrom,
+    SYS_shutdown,
     /* names of files; not their modes, owners, times, attributes, links */
-    SYS_newfstatat, SYS_fstat, SYS_statx, SYS_statfs, SYS_fstatfs, SYS_faccessat, SYS_faccessat2, SYS_readlinkat, SYS_getdents64, SYS_getcwd,
-    SYS_mkdirat, SYS_unlinkat, SYS_renameat, SYS_renameat2, SYS_umask,
+    SYS_newfstatat,
+    SYS_fstat,
+    SYS_statx,
+    SYS_statfs,
+    SYS_fstatfs,
+    SYS_faccessat,
+    SYS_faccessat2,
+    SYS_readlinkat,
+    SYS_getdents64,
+    SYS_getcwd,
+    SYS_mkdirat,
+    SYS_unlinkat,
+    SYS_renameat,
+    SYS_renameat2,
+    SYS_umask,
     /* memory */
-    SYS_mmap, SYS_munmap, SYS_mprotect, SYS_mremap, SYS_madvise, SYS_brk, SYS_mincore, SYS_msync, SYS_mlock, SYS_mlock2, SYS_munlock,
-    SYS_membarrier, SYS_mbind, SYS_get_mempolicy, SYS_set_mempolicy,
+    SYS_mmap,
+    SYS_munmap,
+    SYS_mprotect,
+    SYS_mremap,
+    SYS_madvise,
+    SYS_brk,
+    SYS_mincore,
+    SYS_msync,
+    SYS_mlock,
+    SYS_mlock2,
+    SYS_munlock,
+    SYS_membarrier,
+    SYS_mbind,
+    SYS_get_mempolicy,
+    SYS_set_mempolicy,
     /* threads, signals and time of its own */
-    SYS_futex, SYS_set_robust_list, SYS_set_tid_address, SYS_rseq, SYS_exit, SYS_exit_group, SYS_restart_syscall, SYS_sched_yield,
-    SYS_sched_getaffinity, SYS_sched_getparam, SYS_sched_getscheduler, SYS_sched_get_priority_max, SYS_sched_get_priority_min, SYS_getcpu,
-    SYS_rt_sigaction, SYS_rt_sigprocmask, SYS_rt_sigreturn, SYS_rt_sigpending, SYS_rt_sigsuspend, SYS_rt_sigtimedwait, SYS_sigaltstack,
-    SYS_nanosleep, SYS_clock_nanosleep, SYS_clock_gettime, SYS_clock_getres, SYS_gettimeofday, SYS_getitimer, SYS_setitimer, SYS_timer_create,
-    SYS_timer_settime, SYS_timer_gettime, SYS_timer_delete,
+    SYS_futex,
+    SYS_set_robust_list,
+    SYS_set_tid_address,
+    SYS_rseq,
+    SYS_exit,
+    SYS_exit_group,
+    SYS_restart_syscall,
+    SYS_sched_yield,
+    SYS_sched_getaffinity,
+    SYS_sched_getparam,
+    SYS_sched_getscheduler,
+    SYS_sched_get_priority_max,
+    SYS_sched_get_priority_min,
+    SYS_getcpu,
+    SYS_rt_sigaction,
+    SYS_rt_sigprocmask,
+    SYS_rt_sigreturn,
+    SYS_rt_sigpending,
+    SYS_rt_sigsuspend,
+    SYS_rt_sigtimedwait,
+    SYS_sigaltstack,
+    SYS_nanosleep,
+    SYS_clock_nanosleep,
+    SYS_clock_gettime,
+    SYS_clock_getres,
+    SYS_gettimeofday,
+    SYS_getitimer,
+    SYS_setitimer,
+    SYS_timer_create,
+    SYS_timer_settime,
+    SYS_timer_gettime,
+    SYS_timer_delete,
     /* what it is and where it runs */
-    SYS_getpid, SYS_gettid, SYS_getppid, SYS_getuid, SYS_geteuid, SYS_getgid, SYS_getegid, SYS_getresuid, SYS_getresgid, SYS_getgroups,
-    SYS_uname, SYS_sysinfo, SYS_times, SYS_getrusage, SYS_getrandom,
+    SYS_getpid,
+    SYS_gettid,
+    SYS_getppid,
+    SYS_getuid,
+    SYS_geteuid,
+    SYS_getgid,
+    SYS_getegid,
+    SYS_getresuid,
+    SYS_getresgid,
+    SYS_getgroups,
+    SYS_uname,
+    SYS_sysinfo,
+    SYS_times,
+    SYS_getrusage,
+    SYS_getrandom,
 #ifdef SYS_epoll_pwait2
     SYS_epoll_pwait2,
 #endif
@@ -53,22 +152,56 @@ static const int allowed[] = {
     SYS_futex_waitv,
 #endif
 #ifdef __x86_64__ /* the same under the names of before; other machines never had them */
-    SYS_stat, SYS_lstat, SYS_access, SYS_readlink, SYS_mkdir, SYS_rmdir, SYS_unlink, SYS_rename, SYS_getdents, SYS_poll, SYS_select,
-    SYS_epoll_create, SYS_epoll_wait, SYS_eventfd, SYS_pipe, SYS_dup2, SYS_alarm, SYS_pause, SYS_time, SYS_getrlimit, SYS_arch_prctl,
+    SYS_stat,
+    SYS_lstat,
+    SYS_access,
+    SYS_readlink,
+    SYS_mkdir,
+    SYS_rmdir,
+    SYS_unlink,
+    SYS_rename,
+    SYS_getdents,
+    SYS_poll,
+    SYS_select,
+    SYS_epoll_create,
+    SYS_epoll_wait,
+    SYS_eventfd,
+    SYS_pipe,
+    SYS_dup2,
+    SYS_alarm,
+    SYS_pause,
+    SYS_time,
+    SYS_getrlimit,
+    SYS_arch_prctl,
 #else
     SYS_getrlimit,
 #endif
 #if SECCOMP_IS_RELAXED
-    SYS_execve, SYS_execveat, SYS_ptrace, SYS_clone, SYS_clone3, SYS_wait4, SYS_waitid, SYS_prctl, SYS_personality, SYS_socketpair,
+    SYS_execve,
+    SYS_execveat,
+    SYS_ptrace,
+    SYS_clone,
+    SYS_clone3,
+    SYS_wait4,
+    SYS_waitid,
+    SYS_prctl,
+    SYS_personality,
+    SYS_socketpair,
 #ifdef SYS_fork
-    SYS_fork, SYS_vfork,
+    SYS_fork,
+    SYS_vfork,
 #endif
 #endif
 };
 
-enum { N_ALLOWED = sizeof allowed / sizeof *allowed, MAX_STEPS = 2 * N_ALLOWED + 160, NEWEST_KNOWN = 449 /* futex_waitv, Linux 5.16 */ };
+enum {
+    N_ALLOWED = sizeof allowed / sizeof *allowed,
+    MAX_STEPS = 2 * N_ALLOWED + 160,
+    NEWEST_KNOWN = 449 /* futex_waitv, Linux 5.16 */
+};
 
-#define NEW_NAMESPACES (CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET)
+#define NEW_NAMESPACES \
+    (CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET)
 #define SET_VMA 0x53564d41 /* PR_SET_VMA: names a mapping of its own */
 
 struct program {
@@ -82,10 +215,22 @@ static void add(struct program *program, uint16_t code, uint32_t k, uint8_t on_t
         program->steps[program->n++] = (struct sock_filter){ code, on_true, on_false, k };
 }
 
-static void load(struct program *program, size_t offset) { add(program, BPF_LD | BPF_W | BPF_ABS, (uint32_t)offset, 0, 0); }
-static void give(struct program *program, uint32_t verdict) { add(program, BPF_RET | BPF_K, verdict, 0, 0); }
-static void allow(struct program *program) { give(program, SECCOMP_RET_ALLOW); }
-static void refuse(struct program *program, uint32_t reason) { give(program, SECCOMP_RET_ERRNO | reason); }
+static void load(struct program *program, size_t offset)
+{
+    add(program, BPF_LD | BPF_W | BPF_ABS, (uint32_t)offset, 0, 0);
+}
+static void give(struct program *program, uint32_t verdict)
+{
+    add(program, BPF_RET | BPF_K, verdict, 0, 0);
+}
+static void allow(struct program *program)
+{
+    give(program, SECCOMP_RET_ALLOW);
+}
+static void refuse(struct program *program, uint32_t reason)
+{
+    give(program, SECCOMP_RET_ERRNO | reason);
+}
 
 static void allow_if(struct program *program, uint32_t value)
 {
@@ -105,11 +250,21 @@ static void refuse_if_any_bit(struct program *program, uint32_t bits)
     refuse(program, EPERM);
 }
 
-static void keep_bits(struct program *program, uint32_t bits) { add(program, BPF_ALU | BPF_AND | BPF_K, bits, 0, 0); }
+static void keep_bits(struct program *program, uint32_t bits)
+{
+    add(program, BPF_ALU | BPF_AND | BPF_K, bits, 0, 0);
+}
 
-/* An argument's low half (both machines are little-endian), which is all the kernel looks at where the argument is an int. */
-static void load_argument(struct program *program, int i) { load(program, offsetof(struct seccomp_data, args) + (size_t)i * sizeof(uint64_t)); }
-static void load_high_half(struct program *program, int i) { load(program, offsetof(struct seccomp_data, args) + (size_t)i * sizeof(uint64_t) + 4); }
+/* An argument's low half (both machines are little-endian), which is all the kernel looks at where the argument is an
+ * int. */
+static void load_argument(struct program *program, int i)
+{
+    load(program, offsetof(struct seccomp_data, args) + (size_t)i * sizeof(uint64_t));
+}
+static void load_high_half(struct program *program, int i)
+{
+    load(program, offsetof(struct seccomp_data, args) + (size_t)i * sizeof(uint64_t) + 4);
+}
 
 /* What is added between these two is for one call alone, and decides. */
 static unsigned short begin_rule(struct program *program, uint32_t number)
@@ -124,8 +279,8 @@ static void end_rule(struct program *program, unsigned short body)
         program->steps[body - 1].jf = (uint8_t)(program->n - body);
 }
 
-/* Cutting a file short asks for no right of Landlock's before its version 3, and opening with both bits of the access mode set asks
- * for none at all: such flags are refused. */
+/* Cutting a file short asks for no right of Landlock's before its version 3, and opening with both bits of the access
+ * mode set asks for none at all: such flags are refused. */
 static void add_open_rule(struct program *program, uint32_t number, int flags_at)
 {
     unsigned short body = begin_rule(program, number);
@@ -141,8 +296,10 @@ static void add_open_rule(struct program *program, uint32_t number, int flags_at
 /* Not the owner, signal or lease of a file: by these the kernel sends signals to other processes and stops them. */
 static void add_fcntl_rule(struct program *program)
 {
-    static const uint32_t commands[] = { F_DUPFD, F_DUPFD_CLOEXEC, F_GETFD, F_SETFD, F_GETFL, F_SETFL, F_GETLK, F_SETLK, F_SETLKW,
-                                         F_OFD_GETLK, F_OFD_SETLK, F_OFD_SETLKW, F_ADD_SEALS, F_GET_SEALS, F_GETPIPE_SZ, F_SETPIPE_SZ };
+    static const uint32_t commands[] = { F_DUPFD,     F_DUPFD_CLOEXEC, F_GETFD,      F_SETFD,
+                                         F_GETFL,     F_SETFL,         F_GETLK,      F_SETLK,
+                                         F_SETLKW,    F_OFD_GETLK,     F_OFD_SETLK,  F_OFD_SETLKW,
+                                         F_ADD_SEALS, F_GET_SEALS,     F_GETPIPE_SZ, F_SETPIPE_SZ };
     unsigned short body = begin_rule(program, SYS_fcntl);
     load_argument(program, 1);
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
@@ -151,9 +308,9 @@ static void add_fcntl_rule(struct program *program)
     end_rule(program, body);
 }
 
-/* Requests carry their kind in the second byte. Of those of terminals a few that ask; none of file systems, disks and sockets, whose
- * requests change attributes of files, type keys into the terminal and name receivers of signals; the rest is for drivers of graphics
- * cards alone, whose device files are the only ones that can be opened. */
+/* Requests carry their kind in the second byte. Of those of terminals a few that ask; none of file systems, disks and
+ * sockets, whose requests change attributes of files, type keys into the terminal and name receivers of signals; the
+ * rest is for drivers of graphics cards alone, whose device files are the only ones that can be opened. */
 static void add_ioctl_rule(struct program *program, bool has_gpu)
 {
     static const uint32_t asking[] = { TCGETS, TIOCGWINSZ, FIONREAD, FIONBIO, FIOCLEX, FIONCLEX };
@@ -178,7 +335,8 @@ static void add_process_rules(struct program *program)
     static const uint32_t options[] = { PR_SET_NAME, PR_GET_NAME, PR_GET_DUMPABLE, PR_GET_NO_NEW_PRIVS, SET_VMA };
     unsigned short body;
     if (!SECCOMP_IS_RELAXED) {
-        refuse_if(program, SYS_clone3, ENOSYS); /* its flags are in memory, where no filter sees them; libc then takes clone */
+        refuse_if(program, SYS_clone3,
+                  ENOSYS); /* its flags are in memory, where no filter sees them; libc then takes clone */
         body = begin_rule(program, SYS_clone);
         load_argument(program, 0);
         refuse_if_any_bit(program, NEW_NAMESPACES);
@@ -213,7 +371,8 @@ static void add_rules(struct program *program, const struct seccomp_options *opt
 #ifdef SYS_open
     add_open_rule(program, SYS_open, 1);
 #endif
-    refuse_if(program, SYS_openat2, ENOSYS); /* its flags are in memory, where no filter sees them; folder.c does without it */
+    refuse_if(program, SYS_openat2,
+              ENOSYS); /* its flags are in memory, where no filter sees them; folder.c does without it */
     add_fcntl_rule(program);
     add_ioctl_rule(program, options->has_gpu);
     add_process_rules(program);
@@ -238,17 +397,19 @@ bool seccomp_restrict(const struct seccomp_options *options)
     for (int i = 0; i < N_ALLOWED; i++)
         allow_if(&program, (uint32_t)allowed[i]);
     add_rules(&program, options);
-    /* EPERM is a plain refusal. For a call that is newer than this list it is ENOSYS: libraries then take the older one. That holds
-     * for the numbers of x32, too, which begin at 0x40000000. */
+    /* EPERM is a plain refusal. For a call that is newer than this list it is ENOSYS: libraries then take the older
+     * one. That holds for the numbers of x32, too, which begin at 0x40000000. */
     add(&program, BPF_JMP | BPF_JGT | BPF_K, NEWEST_KNOWN, 0, 1);
     refuse(&program, ENOSYS);
     refuse(&program, EPERM);
     struct sock_fprog filter = { program.n, program.steps };
-    return program.n < MAX_STEPS && syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &filter) == 0;
+    return program.n < MAX_STEPS &&
+           syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &filter) == 0;
 }
 
 #else
-bool seccomp_restrict(const struct seccomp_options *options) /* the numbers of this machine's calls are not written down here */
+bool seccomp_restrict(
+    const struct seccomp_options *options) /* the numbers of this machine's calls are not written down here */
 {
     (void)options;
     return false;

@@ -1,6 +1,7 @@
 #pragma once
-/* The filter on system calls, a list of what is allowed: the process's own files, memory and threads. No sockets, no other programs, no
- * looking into other processes, none of the calls that change modes, owners, times or links of files. */
+/* The filter on system calls, a list of what is allowed: the process's own files, memory and threads. No sockets, no
+ * other programs, no looking into other processes, none of the calls that change modes, owners, times or links of
+ * files. */
 #include <stdbool.h>
 
 #if defined(__has_feature)
@@ -12,7 +13,8 @@
 #define SECCOMP_IS_RELAXED 1
 #endif
 #ifndef SECCOMP_IS_RELAXED
-#define SECCOMP_IS_RELAXED 0 /* sanitizers start a symbolizer and trace themselves: those calls stay allowed in such builds */
+#define SECCOMP_IS_RELAXED \
+    0 /* sanitizers start a symbolizer and trace themselves: those calls stay allowed in such builds */
 #endif
 
 struct seccomp_options {

@@ -17,7 +17,7 @@
 enum { LAST_WORDS_MS = 1000 };
 #define MAX_ID 9e15 /* ids of requests are exact as a double */
 
-/* ---- out ---- */
+/* ---- out -------------------------------------------------------------------------------------------------------- */
 
 cJSON *session_packet(const char *type)
 {
@@ -40,7 +40,8 @@ void session_say_problem(struct session *session, uint64_t id, const struct prob
     session_say(session, json, NULL, 0);
 }
 
-bool session_read_number(struct session *session, uint64_t id, const cJSON *json, const char *name, double low, double high, double *value)
+bool session_read_number(struct session *session, uint64_t id, const cJSON *json, const char *name, double low,
+                         double high, double *value)
 {
     *value = json_number(json, name, *value);
     if (*value >= low && *value <= high)
@@ -59,8 +60,9 @@ void session_add_limit(const struct session *session, struct problem *problem)
     if (problem->type != PROBLEM_MEMORY || session->options->max_bytes == 0)
         return;
     memcpy(detail, problem->detail, sizeof detail);
-    (void)snprintf(problem->detail, sizeof problem->detail, "%.*s; the renderer of a plan may take %llu MiB (max-renderer-mib)",
-                   (int)sizeof detail - 80, detail, (unsigned long long)(session->options->max_bytes >> 20));
+    (void)snprintf(problem->detail, sizeof problem->detail,
+                   "%.*s; the renderer of a plan may take %llu MiB (max-renderer-mib)", (int)sizeof detail - 80, detail,
+                   (unsigned long long)(session->options->max_bytes >> 20));
 }
 
 static void say_failed(struct session *session, const struct error *err)
@@ -102,7 +104,7 @@ static void say_ready_when_it_is(struct session *session)
     pictures_warm_up(session);
 }
 
-/* ---- what the daemon asks ---- */
+/* ---- what the daemon asks --------------------------------------------------------------------------------------- */
 
 static bool read_point(const cJSON *json, struct vec3 *point)
 {
@@ -131,7 +133,8 @@ static bool read_question(struct session *session, uint64_t id, const cJSON *jso
         const struct region *region = region_find(&session->plan->regions, name ? name : "");
         question->what = QUESTION_SURFACE;
         if (!region)
-            problem_set(&problem, PROBLEM_NOT_FOUND, "/region", "", "the plan has no region \"%.64s\"", name ? name : "");
+            problem_set(&problem, PROBLEM_NOT_FOUND, "/region", "", "the plan has no region \"%.64s\"",
+                        name ? name : "");
         else if (shape_query_read(json, &question->shape, &problem)) {
             question->region = (size_t)(region - session->plan->regions.regions);
             return true;
@@ -140,7 +143,8 @@ static bool read_question(struct session *session, uint64_t id, const cJSON *jso
         question->what = QUESTION_PROBE;
         if (read_point(json, &question->point_lps_mm))
             return true;
-        problem_set(&problem, PROBLEM_VALIDATION, "/point_lps_mm", "type", "a point is three numbers in mm, each -100000 to 100000");
+        problem_set(&problem, PROBLEM_VALIDATION, "/point_lps_mm", "type",
+                    "a point is three numbers in mm, each -100000 to 100000");
     } else if (what && strcmp(what, "pick") == 0) {
         uint32_t revision;
         question->what = QUESTION_PICK;
@@ -207,7 +211,7 @@ static void take_packet(struct session *session, cJSON *json)
     }
 }
 
-/* ---- what other threads tell ---- */
+/* ---- what other threads tell ------------------------------------------------------------------------------------ */
 
 static void gl_started(void *context, const struct render_facts *facts, const struct error *err)
 {
@@ -291,7 +295,7 @@ static void take_note(struct session *session, struct note *note)
     say_ready_when_it_is(session);
 }
 
-/* ---- the loop ---- */
+/* ---- the loop --------------------------------------------------------------------------------------------------- */
 
 static void loop(struct session *session)
 {
@@ -335,8 +339,8 @@ int session_run(const struct session_options *options)
         struct pipeline_callbacks callbacks = { gl_started, deliver, session.desk };
         session.pipeline = pipeline_create(options->back_end, options->is_stub, &callbacks, &err);
         if (session.pipeline)
-            session.loader = loader_create(&(struct loader_options){ options->plan_folder, options->plan_id, options->max_bytes,
-                                                                              options->cache },
+            session.loader = loader_create(&(struct loader_options){ options->plan_folder, options->plan_id,
+                                                                     options->max_bytes, options->cache },
                                            session.desk, &err);
     }
     if (session.loader)

@@ -1,6 +1,6 @@
 #pragma once
-/* One opened plan on one socket: the main thread's work. Reads what the daemon asks, hands pictures to the pipeline and questions to
- * the loader, sends what comes back. Never works itself for longer than a few milliseconds. */
+/* One opened plan on one socket: the main thread's work. Reads what the daemon asks, hands pictures to the pipeline and
+ * questions to the loader, sends what comes back. Never works itself for longer than a few milliseconds. */
 #include <stdint.h>
 
 #include "core/render/render.h"
@@ -17,5 +17,6 @@ struct session_options {
 
 enum { SESSION_DONE = 0, SESSION_BROKEN = 1, SESSION_UNREADABLE = 3 };
 
-/* Until the daemon's end closes (SESSION_DONE) or the plan cannot be read (SESSION_UNREADABLE). Gives the exit status. */
+/* Until the daemon's end closes (SESSION_DONE) or the plan cannot be read (SESSION_UNREADABLE). Gives the exit status.
+ */
 int session_run(const struct session_options *options);

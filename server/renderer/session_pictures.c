@@ -13,7 +13,7 @@
 enum { WARM_UP_PX = 64 };
 #define WARM_UP_ID UINT64_MAX /* never the id of a request, so its picture is dropped */
 
-/* ---- what pictures show: the rooms' scenes, a scene and a view of their own ---- */
+/* ---- what pictures show: the rooms' scenes, a scene and a view of their own ------------------------------------- */
 
 static struct room_scene *find_room(struct session *session, const char *id)
 {
@@ -119,7 +119,7 @@ struct snapshot *pictures_read_snapshot(struct session *session, uint64_t id, co
     return snapshot;
 }
 
-/* ---- pictures asked for ---- */
+/* ---- pictures asked for ----------------------------------------------------------------------------------------- */
 
 static void say_busy(struct session *session, uint64_t id)
 {
@@ -176,8 +176,8 @@ static uint64_t source_number(const char *source)
     return number;
 }
 
-static bool is_one_of(struct session *session, uint64_t id, const cJSON *json, const char *name, const char *first, const char *second,
-                      bool *is_second)
+static bool is_one_of(struct session *session, uint64_t id, const cJSON *json, const char *name, const char *first,
+                      const char *second, bool *is_second)
 {
     const char *word = json_text(json, name);
     *is_second = word && strcmp(word, second) == 0;
@@ -186,7 +186,8 @@ static bool is_one_of(struct session *session, uint64_t id, const cJSON *json, c
     struct problem problem;
     char pointer[32];
     (void)snprintf(pointer, sizeof pointer, "/%s", name);
-    problem_set(&problem, PROBLEM_VALIDATION, pointer, "enum", "%s is \"%.40s\", expected \"%s\" or \"%s\"", name, word, first, second);
+    problem_set(&problem, PROBLEM_VALIDATION, pointer, "enum", "%s is \"%.40s\", expected \"%s\" or \"%s\"", name, word,
+                first, second);
     session_say_problem(session, id, &problem);
     return false;
 }
@@ -200,19 +201,22 @@ void pictures_draw(struct session *session, uint64_t id, const cJSON *json)
         return;
     }
     if (!session_read_number(session, id, json, "scale_percent", 10, 100, &scale) ||
-        !session_read_number(session, id, json, "quality", 1, 100, &quality) || !is_one_of(session, id, json, "codec", "jpeg", "png", &is_png) ||
+        !session_read_number(session, id, json, "quality", 1, 100, &quality) ||
+        !is_one_of(session, id, json, "codec", "jpeg", "png", &is_png) ||
         !is_one_of(session, id, json, "detail", "full", "light", &is_light))
         return;
     uint32_t revision;
     struct snapshot *snapshot = pictures_read_snapshot(session, id, json, &revision);
     if (!snapshot)
         return;
-    int width = (int)lround(snapshot->view.size_px[0] * scale / 100), height = (int)lround(snapshot->view.size_px[1] * scale / 100);
+    int width = (int)lround(snapshot->view.size_px[0] * scale / 100),
+        height = (int)lround(snapshot->view.size_px[1] * scale / 100);
     struct pipeline_request request = {
         .id = id,
         .source = source_number(json_text(json, "source")),
         .snapshot = snapshot,
-        .render = { width > 1 ? width : 1, height > 1 ? height : 1, is_light ? SURFACE_LIGHT : SURFACE_FULL, json_flag(json, "still", false) },
+        .render = { width > 1 ? width : 1, height > 1 ? height : 1, is_light ? SURFACE_LIGHT : SURFACE_FULL,
+                    json_flag(json, "still", false) },
         .encode = { is_png ? ENCODE_PNG : ENCODE_JPEG, (int)quality, json_flag(json, "full_color", false) },
     };
     struct drawing *drawing = session->drawings;
@@ -253,7 +257,7 @@ void pictures_warm_up(struct session *session)
         log_warn("nothing could be drawn ahead: %s", err.text);
 }
 
-/* ---- pictures drawn ---- */
+/* ---- pictures drawn --------------------------------------------------------------------------------------------- */
 
 /* {n, regions: [{region, reason}]}; NULL: nothing is missing. */
 static cJSON *missing_of(const struct drawing *drawing)
@@ -305,7 +309,7 @@ void pictures_take_frame(struct session *session, const struct pipeline_frame *f
     session_say(session, json, frame->picture.bytes, frame->picture.n_bytes);
 }
 
-/* ---- begin and end ---- */
+/* ---- begin and end ---------------------------------------------------------------------------------------------- */
 
 void pictures_begin(struct session *session)
 {

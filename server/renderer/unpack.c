@@ -27,11 +27,11 @@ struct unpacker {
     struct unpack_names names;
     struct unpack_result result;
     struct problem problem;
-    uint64_t most;                 /* bytes of all entries together */
-    uint64_t n_read;               /* of them, litter too */
+    uint64_t most;   /* bytes of all entries together */
+    uint64_t n_read; /* of them, litter too */
     uint32_t n_entries;
-    int64_t entry_at;              /* of a tar: where the last one begins */
-    char top[FOLDER_NAME_SIZE];    /* the first part of every name so far */
+    int64_t entry_at;           /* of a tar: where the last one begins */
+    char top[FOLDER_NAME_SIZE]; /* the first part of every name so far */
     bool has_one_top, is_top_folder;
     char last_parent[FOLDER_NAME_SIZE]; /* whose folders are all made */
     int64_t start_cpu_ms, told_us;
@@ -52,7 +52,8 @@ static int64_t cpu_ms(void)
 static void tell(struct unpacker *unpacker)
 {
     int64_t now_us = clock_now_us();
-    if (!unpacker->options->progress || now_us - unpacker->told_us < (int64_t)UNPACK_PERCENT_MS * 1000 || unpacker->source.n_bytes == 0)
+    if (!unpacker->options->progress || now_us - unpacker->told_us < (int64_t)UNPACK_PERCENT_MS * 1000 ||
+        unpacker->source.n_bytes == 0)
         return;
     /* a zip's directory stands at its end and is read first: what counts is how much was read */
     double percent = 100.0 * (double)unpacker->source.n_read / (double)unpacker->source.n_bytes;
@@ -71,9 +72,10 @@ static bool goes_on(void *context)
         return problem_set(problem, PROBLEM_CANCELLED, "", "", "unpacking was cancelled");
     uint64_t seconds = unpack_cpu_seconds(unpacker->source.n_read, unpacker->n_read);
     if (cpu_ms() - unpacker->start_cpu_ms > (int64_t)seconds * 1000)
-        return problem_set(problem, PROBLEM_TIMEOUT, "", "",
-                           "unpacking %llu bytes took more than %llu s of processor time; no honest archive needs as much",
-                           (unsigned long long)unpacker->n_read, (unsigned long long)seconds);
+        return problem_set(
+            problem, PROBLEM_TIMEOUT, "", "",
+            "unpacking %llu bytes took more than %llu s of processor time; no honest archive needs as much",
+            (unsigned long long)unpacker->n_read, (unsigned long long)seconds);
     tell(unpacker);
     return true;
 }
@@ -90,12 +92,13 @@ static bool refuse_damaged(struct unpacker *unpacker, const char *name)
     unpack_show(name, shown);
     unpack_show(said ? said : "it cannot be read", words);
     if (*shown)
-        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format", "entry \"%s\": damaged: %s; expected is an archive that is whole", shown,
-                           words);
-    return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
-                       "the archive is damaged after entry %lu, before byte %llu of %llu: %s; expected is one that is whole",
-                       (unsigned long)unpacker->n_entries, (unsigned long long)unpacker->source.at, (unsigned long long)unpacker->source.n_bytes,
-                       words);
+        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
+                           "entry \"%s\": damaged: %s; expected is an archive that is whole", shown, words);
+    return problem_set(
+        &unpacker->problem, PROBLEM_VALIDATION, "", "format",
+        "the archive is damaged after entry %lu, before byte %llu of %llu: %s; expected is one that is whole",
+        (unsigned long)unpacker->n_entries, (unsigned long long)unpacker->source.at,
+        (unsigned long long)unpacker->source.n_bytes, words);
 }
 
 static bool is_tar(const struct unpacker *unpacker)
@@ -103,7 +106,8 @@ static bool is_tar(const struct unpacker *unpacker)
     return (archive_format(unpacker->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_TAR;
 }
 
-/* A sentence about an entry names it; here comes which it is, as names may be there twice, be cut or look like others. */
+/* A sentence about an entry names it; here comes which it is, as names may be there twice, be cut or look like others.
+ */
 static void add_place(struct unpacker *unpacker)
 {
     static const char before[] = "entry \"", many[] = "more than";
@@ -115,13 +119,15 @@ static void add_place(struct unpacker *unpacker)
     memcpy(said, problem->detail, sizeof said);
     if (is_tar(unpacker))
         (void)snprintf(place, sizeof place, " at byte %lld of the tar", (long long)unpacker->entry_at);
-    (void)snprintf(problem->detail, sizeof problem->detail, "entry %lu%s%s%.*s", (unsigned long)unpacker->n_entries, place, names_it ? ", \"" : ": ",
-                   (int)(sizeof said - sizeof place), said + (names_it ? sizeof before - 1 : 0));
+    (void)snprintf(problem->detail, sizeof problem->detail, "entry %lu%s%s%.*s", (unsigned long)unpacker->n_entries,
+                   place, names_it ? ", \"" : ": ", (int)(sizeof said - sizeof place),
+                   said + (names_it ? sizeof before - 1 : 0));
 }
 
 static bool refuse_no_file(struct unpacker *unpacker)
 {
-    return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "required", "the archive holds no file in %lu entries; expected are the files of a plan",
+    return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "required",
+                       "the archive holds no file in %lu entries; expected are the files of a plan",
                        (unsigned long)unpacker->n_entries);
 }
 
@@ -131,17 +137,23 @@ static bool refuse_unknown(struct unpacker *unpacker)
     if (unpack_source_zip_entries(&unpacker->source, &n_entries) && n_entries == 0)
         return refuse_no_file(unpacker);
     if (unpack_source_has(&unpacker->source, 0, "PK\3\4", 4))
-        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
-                           "a zip of %llu bytes whose directory at its end is missing or damaged; expected is its end mark, PK 5 6, in the last 65557 bytes: was all of it sent?",
-                           (unsigned long long)unpacker->source.n_bytes);
+        return problem_set(
+            &unpacker->problem, PROBLEM_VALIDATION, "", "format",
+            "a zip of %llu bytes whose directory at its end is missing or damaged; expected is its end mark, PK 5 6, in the last 65557 bytes: was all of it sent?",
+            (unsigned long long)unpacker->source.n_bytes);
     static const struct {
         const char *bytes;
         size_t n;
         const char *words;
-    } known[] = { { "Rar!", 4, "a RAR archive" }, { "7z\xbc\xaf\x27\x1c", 6, "a 7-Zip archive" }, { "\x1f\x8b", 2, "gzip data, of something else" },
+    } known[] = { { "Rar!", 4, "a RAR archive" },
+                  { "7z\xbc\xaf\x27\x1c", 6, "a 7-Zip archive" },
+                  { "\x1f\x8b", 2, "gzip data, of something else" },
                   { "BZh", 3, "bzip2 data, damaged or of something else" },
-                  { "\xfd" "7zXZ", 5, "xz data, damaged or of something else" },
-                  { "\x28\xb5\x2f\xfd", 4, "zstd data, damaged or of something else" }, { "MSCF", 4, "a cabinet file" } };
+                  { "\xfd"
+                    "7zXZ",
+                    5, "xz data, damaged or of something else" },
+                  { "\x28\xb5\x2f\xfd", 4, "zstd data, damaged or of something else" },
+                  { "MSCF", 4, "a cabinet file" } };
     uint8_t first[4];
     char other[64];
     const char *found = unpacker->source.n_bytes == 0 ? "an empty file" : other;
@@ -152,16 +164,19 @@ static bool refuse_unknown(struct unpacker *unpacker)
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (unpack_source_has(&unpacker->source, 0, known[i].bytes, known[i].n))
             found = known[i].words;
-    return problem_set(&unpacker->problem, PROBLEM_MEDIA_TYPE, "", "",
-                       "no archive that is read here: found is %s (%llu bytes), expected a zip, or a tar as it is or within gzip, bzip2, xz or zstd", found,
-                       (unsigned long long)unpacker->source.n_bytes);
+    return problem_set(
+        &unpacker->problem, PROBLEM_MEDIA_TYPE, "", "",
+        "no archive that is read here: found is %s (%llu bytes), expected a zip, or a tar as it is or within gzip, bzip2, xz or zstd",
+        found, (unsigned long long)unpacker->source.n_bytes);
 }
 
-static bool refuse_entry(struct unpacker *unpacker, const char *name, const char *code, const char *found, const char *expected)
+static bool refuse_entry(struct unpacker *unpacker, const char *name, const char *code, const char *found,
+                         const char *expected)
 {
     char shown[UNPACK_SHOWN_SIZE];
     unpack_show(name, shown);
-    return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", code, "entry \"%s\": %s; expected %s", shown, found, expected);
+    return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", code, "entry \"%s\": %s; expected %s", shown, found,
+                       expected);
 }
 
 static bool check_kind(struct unpacker *unpacker, struct archive_entry *entry, const char *raw, bool *is_folder)
@@ -196,7 +211,8 @@ static bool make_parents(struct unpacker *unpacker, const char *name, size_t n)
     for (size_t end = 0; end < n; end++) {
         end += strcspn(name + end, "/");
         enum unpack_known known = unpack_names_add(&unpacker->names, name, end, true, &unpacker->problem);
-        if (known == UNPACK_REFUSED || (known == UNPACK_NEW && !unpack_make_folder(&unpacker->writer, name, end, &unpacker->problem)))
+        if (known == UNPACK_REFUSED ||
+            (known == UNPACK_NEW && !unpack_make_folder(&unpacker->writer, name, end, &unpacker->problem)))
             return false;
     }
     memcpy(unpacker->last_parent, name, n);
@@ -224,16 +240,19 @@ static bool is_within(struct unpacker *unpacker, const char *name)
     char shown[UNPACK_SHOWN_SIZE];
     unpack_show(name, shown);
     if (unpacker->most == unpacker->options->max_bytes)
-        return problem_set(&unpacker->problem, PROBLEM_TOO_LARGE, "", "",
-                           "entry \"%s\": more than %llu bytes come out of the archive by then; at most so many are allowed", shown,
-                           (unsigned long long)unpacker->most);
-    return problem_set(&unpacker->problem, PROBLEM_TOO_LARGE, "", "",
-                       "entry \"%s\": more than %llu bytes come out of an archive of %llu; at most %d times its size is allowed", shown,
-                       (unsigned long long)unpacker->most, (unsigned long long)unpacker->source.n_bytes, UNPACK_MAX_RATIO);
+        return problem_set(
+            &unpacker->problem, PROBLEM_TOO_LARGE, "", "",
+            "entry \"%s\": more than %llu bytes come out of the archive by then; at most so many are allowed", shown,
+            (unsigned long long)unpacker->most);
+    return problem_set(
+        &unpacker->problem, PROBLEM_TOO_LARGE, "", "",
+        "entry \"%s\": more than %llu bytes come out of an archive of %llu; at most %d times its size is allowed",
+        shown, (unsigned long long)unpacker->most, (unsigned long long)unpacker->source.n_bytes, UNPACK_MAX_RATIO);
 }
 
 /* Reads the entry's data to their end; file -1: for their check sum alone. */
-static bool copy_data(struct unpacker *unpacker, struct archive_entry *entry, const char *name, int file, uint64_t *n_bytes)
+static bool copy_data(struct unpacker *unpacker, struct archive_entry *entry, const char *name, int file,
+                      uint64_t *n_bytes)
 {
     *n_bytes = 0;
     for (;;) {
@@ -286,15 +305,16 @@ static bool write_file(struct unpacker *unpacker, struct archive_entry *entry, c
 static bool take_entry(struct unpacker *unpacker, struct archive_entry *entry)
 {
     if (++unpacker->n_entries > UNPACK_MAX_ENTRIES)
-        return problem_set(&unpacker->problem, PROBLEM_TOO_LARGE, "", "", "the archive has more than %d entries; at most so many are allowed",
-                           UNPACK_MAX_ENTRIES);
+        return problem_set(&unpacker->problem, PROBLEM_TOO_LARGE, "", "",
+                           "the archive has more than %d entries; at most so many are allowed", UNPACK_MAX_ENTRIES);
     char name[FOLDER_NAME_SIZE];
     unpacker->entry_at = archive_read_header_position(unpacker->archive);
     const char *raw = archive_entry_pathname(entry);
     bool is_folder = false;
     uint64_t n_bytes;
     if (!raw)
-        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "pattern", "entry %lu has no name that can be read; expected is UTF-8",
+        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "pattern",
+                           "entry %lu has no name that can be read; expected is UTF-8",
                            (unsigned long)unpacker->n_entries);
     if (!check_kind(unpacker, entry, raw, &is_folder) || !unpack_name(raw, is_folder, name, &unpacker->problem))
         return false;
@@ -311,22 +331,25 @@ static bool take_entry(struct unpacker *unpacker, struct archive_entry *entry)
     return make_parents(unpacker, name, strlen(name));
 }
 
-/* A tar that is cut between two entries looks whole, but for the zeros it ends with. A zip may name the same bytes as many files; the
- * library takes the first. */
+/* A tar that is cut between two entries looks whole, but for the zeros it ends with. A zip may name the same bytes as
+ * many files; the library takes the first. */
 static bool check_end(struct unpacker *unpacker)
 {
     static const uint8_t zeros[512];
     uint32_t n_said;
-    if (!is_tar(unpacker) && unpack_source_zip_entries(&unpacker->source, &n_said) && n_said != (unpacker->n_entries & 0xffff)) /* older programs count on from 0 */
+    if (!is_tar(unpacker) && unpack_source_zip_entries(&unpacker->source, &n_said) &&
+        n_said != (unpacker->n_entries & 0xffff)) /* older programs count on from 0 */
         return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
-                           "the zip's directory says that it holds %lu entries; found are %lu that do not overlap", (unsigned long)n_said,
-                           (unsigned long)unpacker->n_entries);
+                           "the zip's directory says that it holds %lu entries; found are %lu that do not overlap",
+                           (unsigned long)n_said, (unsigned long)unpacker->n_entries);
     bool is_bare = !unpacker->source.is_gzip && archive_filter_count(unpacker->archive) <= 1;
     uint64_t n_bytes = unpacker->source.n_bytes;
-    if (is_tar(unpacker) && is_bare && (n_bytes < sizeof zeros || !unpack_source_has(&unpacker->source, n_bytes - sizeof zeros, zeros, sizeof zeros)))
-        return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
-                           "the tar ends at byte %llu, after entry %lu, without its end mark, 512 bytes of zero; was all of it sent?",
-                           (unsigned long long)n_bytes, (unsigned long)unpacker->n_entries);
+    if (is_tar(unpacker) && is_bare &&
+        (n_bytes < sizeof zeros || !unpack_source_has(&unpacker->source, n_bytes - sizeof zeros, zeros, sizeof zeros)))
+        return problem_set(
+            &unpacker->problem, PROBLEM_VALIDATION, "", "format",
+            "the tar ends at byte %llu, after entry %lu, without its end mark, 512 bytes of zero; was all of it sent?",
+            (unsigned long long)n_bytes, (unsigned long)unpacker->n_entries);
     if (!unpack_source_drain(&unpacker->source))
         return refuse_damaged(unpacker, "");
     return true;
@@ -340,31 +363,38 @@ static bool walk(struct unpacker *unpacker)
         struct archive_entry *entry;
         status = archive_read_next_header(archive, &entry);
         if (status == ARCHIVE_OK && archive_filter_count(archive) > (unpacker->source.is_gzip ? 1 : 2))
-            return problem_set(&unpacker->problem, PROBLEM_MEDIA_TYPE, "", "",
-                               "compressed more than once, from byte 0 on; expected is a zip, or a tar as it is or within gzip, bzip2, xz or zstd");
+            return problem_set(
+                &unpacker->problem, PROBLEM_MEDIA_TYPE, "", "",
+                "compressed more than once, from byte 0 on; expected is a zip, or a tar as it is or within gzip, bzip2, xz or zstd");
         if (status == ARCHIVE_OK && !goes_on(unpacker))
             return refuse_damaged(unpacker, "");
         if (status == ARCHIVE_OK && !take_entry(unpacker, entry))
             return false;
     }
     if (status != ARCHIVE_EOF)
-        return archive_format(archive) == 0 && unpacker->source.problem.type == PROBLEM_NONE ? refuse_unknown(unpacker)
-                                                                                            : refuse_damaged(unpacker, "");
+        return archive_format(archive) == 0 && unpacker->source.problem.type == PROBLEM_NONE
+                   ? refuse_unknown(unpacker)
+                   : refuse_damaged(unpacker, "");
     if (!check_end(unpacker))
         return false;
     if (unpacker->result.n_files == 0)
         return refuse_no_file(unpacker);
-    return !unpacker->has_one_top || !unpacker->is_top_folder || unpack_lift(&unpacker->writer, unpacker->top, &unpacker->problem);
+    return !unpacker->has_one_top || !unpacker->is_top_folder ||
+           unpack_lift(&unpacker->writer, unpacker->top, &unpacker->problem);
 }
 
 /* What is not asked for here is not read: no other kind of archive, no other program to undo compression. */
 static bool choose_kinds(struct archive *archive)
 {
-    /* zips by the directory at their end alone: without it nothing tells a link from a file, and a cut zip from a whole one */
-    return archive_read_support_format_zip_seekable(archive) == ARCHIVE_OK && archive_read_support_format_tar(archive) == ARCHIVE_OK &&
-           archive_read_support_filter_bzip2(archive) == ARCHIVE_OK && archive_read_support_filter_xz(archive) == ARCHIVE_OK &&
+    /* zips by the directory at their end alone: without it nothing tells a link from a file, and a cut zip from a whole
+     * one */
+    return archive_read_support_format_zip_seekable(archive) == ARCHIVE_OK &&
+           archive_read_support_format_tar(archive) == ARCHIVE_OK &&
+           archive_read_support_filter_bzip2(archive) == ARCHIVE_OK &&
+           archive_read_support_filter_xz(archive) == ARCHIVE_OK &&
            archive_read_support_filter_zstd(archive) == ARCHIVE_OK &&
-           archive_read_set_option(archive, "tar", "read_concatenated_archives", "1") == ARCHIVE_OK; /* to its end, so that all is checked */
+           archive_read_set_option(archive, "tar", "read_concatenated_archives", "1") ==
+               ARCHIVE_OK; /* to its end, so that all is checked */
 }
 
 static bool run(struct unpacker *unpacker, int archive, int folder)
@@ -382,7 +412,8 @@ static bool run(struct unpacker *unpacker, int archive, int folder)
         return false;
     unpacker->archive = archive_read_new();
     bool is_ready = unpacker->archive && choose_kinds(unpacker->archive);
-    bool is_done = is_ready || problem_set(problem, PROBLEM_INTERNAL, "", "", "the library that reads archives does not start");
+    bool is_done =
+        is_ready || problem_set(problem, PROBLEM_INTERNAL, "", "", "the library that reads archives does not start");
     if (is_done && !unpack_source_open(&unpacker->source, unpacker->archive, archive, undone, goes_on, unpacker))
         is_done = refuse_damaged(unpacker, "");
     is_done = is_done && walk(unpacker);
@@ -396,7 +427,8 @@ static bool run(struct unpacker *unpacker, int archive, int folder)
     return is_done;
 }
 
-bool unpack(int archive, int folder, const struct unpack_options *options, struct unpack_result *result, struct problem *problem)
+bool unpack(int archive, int folder, const struct unpack_options *options, struct unpack_result *result,
+            struct problem *problem)
 {
     struct unpacker *unpacker = calloc(1, sizeof *unpacker);
     *result = (struct unpack_result){ 0 };
@@ -406,7 +438,8 @@ bool unpack(int archive, int folder, const struct unpack_options *options, struc
     unpacker->start_cpu_ms = cpu_ms();
     unpacker->told_us = clock_now_us();
     unpack_writer_init(&unpacker->writer, folder);
-    /* the library turns names into the locale's bytes, and what is a capital letter is asked of it: UTF-8, for this thread alone */
+    /* the library turns names into the locale's bytes, and what is a capital letter is asked of it: UTF-8, for this
+     * thread alone */
     locale_t utf8 = newlocale(LC_CTYPE_MASK, "C.UTF-8", (locale_t)0), before = utf8 ? uselocale(utf8) : (locale_t)0;
     bool is_done = run(unpacker, archive, folder);
     if (utf8) {

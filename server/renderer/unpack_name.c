@@ -8,7 +8,8 @@
 #include <strings.h>
 #include <wctype.h>
 
-/* Length of the character of UTF-8 at the beginning of text (RFC 3629: shortest form, no surrogates), 0 when it is none. */
+/* Length of the character of UTF-8 at the beginning of text (RFC 3629: shortest form, no surrogates), 0 when it is
+ * none. */
 static size_t utf8_length(const char *text, uint32_t *code)
 {
     const unsigned char *byte = (const unsigned char *)text;
@@ -29,7 +30,10 @@ static size_t utf8_length(const char *text, uint32_t *code)
     return *code >= least[n] && *code <= 0x10ffff && (*code < 0xd800 || *code > 0xdfff) ? n : 0;
 }
 
-static bool is_control(uint32_t code) { return code < 32 || (code >= 127 && code < 160); }
+static bool is_control(uint32_t code)
+{
+    return code < 32 || (code >= 127 && code < 160);
+}
 
 void unpack_show(const char *raw, char shown[UNPACK_SHOWN_SIZE])
 {
@@ -58,8 +62,8 @@ static bool refuse(struct problem *problem, const char *raw, const char *code, c
 {
     char shown[UNPACK_SHOWN_SIZE];
     unpack_show(raw, shown);
-    return problem_set(problem, PROBLEM_VALIDATION, "", code, "entry \"%s\": %s; expected is a relative name below the archive's top", shown,
-                       found);
+    return problem_set(problem, PROBLEM_VALIDATION, "", code,
+                       "entry \"%s\": %s; expected is a relative name below the archive's top", shown, found);
 }
 
 /* Copies with '/' for '\' and every foreign byte replaced. */
@@ -74,8 +78,9 @@ static bool make_safe(const char *raw, char safe[FOLDER_NAME_SIZE], struct probl
         if (n + (length > 0 ? length : 3) >= FOLDER_NAME_SIZE) {
             char shown[UNPACK_SHOWN_SIZE];
             unpack_show(raw, shown);
-            return problem_set(problem, PROBLEM_VALIDATION, "", "length", "entry \"%s\": a name of %zu bytes; at most %d are allowed", shown,
-                               strlen(raw), FOLDER_NAME_SIZE - 1);
+            return problem_set(problem, PROBLEM_VALIDATION, "", "length",
+                               "entry \"%s\": a name of %zu bytes; at most %d are allowed", shown, strlen(raw),
+                               FOLDER_NAME_SIZE - 1);
         }
         if (length == 0)
             (void)snprintf(safe + n, 4, "_%02X", (unsigned)(unsigned char)*at);
@@ -145,19 +150,23 @@ bool unpack_is_litter(const char *name)
     return false;
 }
 
-/* ---- what has been before: a balanced tree, so that no choice of names makes it slow -------------------------------------------- */
+/* ---- what has been before: a balanced tree, so that no choice of names makes it slow ---------------------------- */
 
 struct node {
     bool is_folder;
-    size_t name_at;  /* text: the name in one case, and here as it is written */
+    size_t name_at; /* text: the name in one case, and here as it is written */
     char text[];
 };
 
-static int compare(const void *a, const void *b) { return strcmp(((const struct node *)a)->text, ((const struct node *)b)->text); }
+static int compare(const void *a, const void *b)
+{
+    return strcmp(((const struct node *)a)->text, ((const struct node *)b)->text);
+}
 
 enum { FOLDED_SIZE = 2 * FOLDER_NAME_SIZE };
 
-/* In lower case, as file systems that do not tell cases apart see it. One character's other case is at most one byte longer per two. */
+/* In lower case, as file systems that do not tell cases apart see it. One character's other case is at most one byte
+ * longer per two. */
 static size_t fold(const char *name, size_t n, char folded[FOLDED_SIZE])
 {
     size_t length = 0;
@@ -166,7 +175,8 @@ static size_t fold(const char *name, size_t n, char folded[FOLDED_SIZE])
         size_t step = utf8_length(name + i, &code);
         if (step == 0)
             break; /* names here are UTF-8 */
-        uint32_t lower = code < 128 ? (code >= 'A' && code <= 'Z' ? code + 32 : code) : (uint32_t)towlower((wint_t)code);
+        uint32_t lower =
+            code < 128 ? (code >= 'A' && code <= 'Z' ? code + 32 : code) : (uint32_t)towlower((wint_t)code);
         char *out = folded + length;
         if (lower < 0x80) {
             out[0] = (char)lower;
@@ -202,17 +212,21 @@ static enum unpack_known compare_known(const struct node *known, const struct no
     unpack_show(now, shown);
     unpack_show(old, other);
     if (strcmp(old, now) != 0)
-        (void)problem_set(problem, PROBLEM_VALIDATION, "", "duplicate",
-                          "entry \"%s\": differs from \"%s\" only in upper and lower case; expected are names that differ otherwise", shown, other);
+        (void)problem_set(
+            problem, PROBLEM_VALIDATION, "", "duplicate",
+            "entry \"%s\": differs from \"%s\" only in upper and lower case; expected are names that differ otherwise",
+            shown, other);
     else if (known->is_folder != fresh->is_folder)
-        (void)problem_set(problem, PROBLEM_VALIDATION, "", "duplicate", "entry \"%s\": both a file and a folder; expected is one of them",
-                          shown);
+        (void)problem_set(problem, PROBLEM_VALIDATION, "", "duplicate",
+                          "entry \"%s\": both a file and a folder; expected is one of them", shown);
     else
-        (void)problem_set(problem, PROBLEM_VALIDATION, "", "duplicate", "entry \"%s\": there twice; expected is each name once", shown);
+        (void)problem_set(problem, PROBLEM_VALIDATION, "", "duplicate",
+                          "entry \"%s\": there twice; expected is each name once", shown);
     return UNPACK_REFUSED;
 }
 
-enum unpack_known unpack_names_add(struct unpack_names *names, const char *name, size_t n, bool is_folder, struct problem *problem)
+enum unpack_known unpack_names_add(struct unpack_names *names, const char *name, size_t n, bool is_folder,
+                                   struct problem *problem)
 {
     char folded[FOLDED_SIZE];
     size_t n_folded = fold(name, n, folded);
@@ -230,7 +244,8 @@ enum unpack_known unpack_names_add(struct unpack_names *names, const char *name,
     if (place && *place == node) {
         if (++names->n <= UNPACK_MAX_ENTRIES)
             return UNPACK_NEW;
-        (void)problem_set(problem, PROBLEM_TOO_LARGE, "", "", "more than %d files and folders come out of the archive; at most so many are allowed",
+        (void)problem_set(problem, PROBLEM_TOO_LARGE, "", "",
+                          "more than %d files and folders come out of the archive; at most so many are allowed",
                           UNPACK_MAX_ENTRIES);
         return UNPACK_REFUSED;
     }

@@ -3,7 +3,8 @@
 #include "server/renderer/unpack.h"
 
 enum { UNPACK_SHOWN_SIZE = 72 };
-/* A name or another program's words as a sentence can carry them: UTF-8, no control characters, cut where it is long. */
+/* A name or another program's words as a sentence can carry them: UTF-8, no control characters, cut where it is long.
+ */
 void unpack_show(const char *raw, char shown[UNPACK_SHOWN_SIZE]);
 
 /* The name as it is written, "" for the archive's own "./". False: why in problem. */
@@ -17,5 +18,6 @@ struct unpack_names {
 };
 enum unpack_known { UNPACK_NEW, UNPACK_KNOWN, UNPACK_REFUSED };
 /* Notes a name, the first n bytes of it. UNPACK_KNOWN: a folder that is there already. */
-enum unpack_known unpack_names_add(struct unpack_names *names, const char *name, size_t n, bool is_folder, struct problem *problem);
+enum unpack_known unpack_names_add(struct unpack_names *names, const char *name, size_t n, bool is_folder,
+                                   struct problem *problem);
 void unpack_names_finish(struct unpack_names *names);

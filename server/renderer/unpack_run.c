@@ -73,20 +73,24 @@ int unpack_run(const char *archive, const char *folder, uint64_t max_unpacked_by
     struct unpack_result result;
     char confined[128];
     listen_to_signals();
-    int from = open(archive, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY), into = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    int from = open(archive, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY),
+        into = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (from < 0 || into < 0 || fstat(from, &facts) != 0) {
-        (void)problem_set(&problem, PROBLEM_INTERNAL, "", "", "%s cannot be opened: %s", from < 0 ? "the archive" : "the folder to unpack into",
-                          strerror(errno));
+        (void)problem_set(&problem, PROBLEM_INTERNAL, "", "", "%s cannot be opened: %s",
+                          from < 0 ? "the archive" : "the folder to unpack into", strerror(errno));
         return say_problem(&problem);
     }
     struct confine_options limits = {
         .unpack_folder = folder,
         .max_bytes = max_bytes > 0 ? max_bytes : UNPACK_MEMORY_BYTES,
-        .cpu_seconds = unpack_cpu_seconds(facts.st_size > 0 ? (uint64_t)facts.st_size : 0, max_unpacked_bytes) + UNPACK_CPU_S,
+        .cpu_seconds =
+            unpack_cpu_seconds(facts.st_size > 0 ? (uint64_t)facts.st_size : 0, max_unpacked_bytes) + UNPACK_CPU_S,
     };
     confine(&limits, confined);
     log_info("unpacking %llu bytes; %s", (unsigned long long)facts.st_size, confined);
-    struct unpack_options options = { .max_bytes = max_unpacked_bytes, .is_cancelled = is_cancelled, .progress = say_percent };
+    struct unpack_options options = { .max_bytes = max_unpacked_bytes,
+                                      .is_cancelled = is_cancelled,
+                                      .progress = say_percent };
     if (!unpack(from, into, &options, &result, &problem))
         return say_problem(&problem);
     cJSON *json = cJSON_CreateObject();

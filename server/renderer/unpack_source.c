@@ -16,9 +16,10 @@ static bool is_within(struct unpack_source *source, uint64_t n_undone)
 {
     if (n_undone <= source->most)
         return true;
-    return problem_set(&source->problem, PROBLEM_TOO_LARGE, "", "",
-                       "the archive's %llu bytes unpack to more than %llu by byte %llu; at most so many are allowed for it",
-                       (unsigned long long)source->n_bytes, (unsigned long long)source->most, (unsigned long long)source->at);
+    return problem_set(
+        &source->problem, PROBLEM_TOO_LARGE, "", "",
+        "the archive's %llu bytes unpack to more than %llu by byte %llu; at most so many are allowed for it",
+        (unsigned long long)source->n_bytes, (unsigned long long)source->most, (unsigned long long)source->at);
 }
 
 /* Next block of the file; -1: source->problem says why. */
@@ -31,7 +32,8 @@ static ssize_t read_block(struct unpack_source *source)
         n = pread(source->file, source->bytes, sizeof source->bytes, (off_t)source->at);
     while (n < 0 && errno == EINTR);
     if (n < 0) {
-        (void)problem_set(&source->problem, PROBLEM_INTERNAL, "", "", "the archive cannot be read: %s", strerror(errno));
+        (void)problem_set(&source->problem, PROBLEM_INTERNAL, "", "", "the archive cannot be read: %s",
+                          strerror(errno));
         return -1;
     }
     source->at += (uint64_t)n;
@@ -54,7 +56,9 @@ static la_int64_t seek_plain(struct archive *archive, void *context, la_int64_t 
 {
     (void)archive;
     struct unpack_source *source = context;
-    la_int64_t size = (la_int64_t)source->n_bytes, from = whence == SEEK_SET ? 0 : whence == SEEK_CUR ? (la_int64_t)source->at : size;
+    la_int64_t size = (la_int64_t)source->n_bytes, from = whence == SEEK_SET   ? 0
+                                                          : whence == SEEK_CUR ? (la_int64_t)source->at
+                                                                               : size;
     if (offset < -from || offset > size - from)
         return ARCHIVE_FATAL;
     source->at = (uint64_t)(from + offset);
@@ -103,8 +107,10 @@ static la_ssize_t read_gzip(struct archive *archive, void *context, const void *
         if (stream->avail_in == 0) {
             ssize_t n = read_block(source);
             if (n == 0)
-                (void)problem_set(&source->problem, PROBLEM_VALIDATION, "", "format",
-                                  "the archive's gzip data end early, at byte %llu; expected is their check sum at the end", (unsigned long long)source->at);
+                (void)problem_set(
+                    &source->problem, PROBLEM_VALIDATION, "", "format",
+                    "the archive's gzip data end early, at byte %llu; expected is their check sum at the end",
+                    (unsigned long long)source->at);
             if (n <= 0)
                 return ARCHIVE_FATAL;
             stream->next_in = source->bytes;
@@ -112,7 +118,8 @@ static la_ssize_t read_gzip(struct archive *archive, void *context, const void *
         }
         int status = inflate(stream, Z_NO_FLUSH);
         if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) {
-            (void)problem_set(&source->problem, PROBLEM_VALIDATION, "", "format", "the archive's gzip data are damaged before byte %llu: %s",
+            (void)problem_set(&source->problem, PROBLEM_VALIDATION, "", "format",
+                              "the archive's gzip data are damaged before byte %llu: %s",
                               (unsigned long long)source->at, stream->msg ? stream->msg : "not gzip");
             return ARCHIVE_FATAL;
         }
@@ -132,7 +139,8 @@ size_t unpack_source_first(const struct unpack_source *source, uint8_t *bytes, s
 bool unpack_source_has(const struct unpack_source *source, uint64_t at, const void *expected, size_t n)
 {
     uint8_t found[512];
-    return n <= sizeof found && pread(source->file, found, n, (off_t)at) == (ssize_t)n && memcmp(found, expected, n) == 0;
+    return n <= sizeof found && pread(source->file, found, n, (off_t)at) == (ssize_t)n &&
+           memcmp(found, expected, n) == 0;
 }
 
 /* End of central directory record: APPNOTE 4.3.16; a comment of up to 65535 bytes follows it. */
@@ -161,8 +169,8 @@ bool unpack_source_drain(struct unpack_source *source)
     return n >= 0;
 }
 
-bool unpack_source_open(struct unpack_source *source, struct archive *archive, int file, uint64_t most, bool (*goes_on)(void *context),
-                        void *context)
+bool unpack_source_open(struct unpack_source *source, struct archive *archive, int file, uint64_t most,
+                        bool (*goes_on)(void *context), void *context)
 {
     struct stat facts;
     source->file = file;

@@ -1,6 +1,6 @@
 #pragma once
-/* The archive's bytes as the library that reads it takes them. Undoes gzip itself: the library does not look at gzip's check sums.
- * Never gives more than is allowed, and stops when asked. */
+/* The archive's bytes as the library that reads it takes them. Undoes gzip itself: the library does not look at gzip's
+ * check sums. Never gives more than is allowed, and stops when asked. */
 #include <archive.h>
 #include <zlib.h>
 
@@ -8,11 +8,11 @@
 
 struct unpack_source {
     int file;
-    uint64_t n_bytes;       /* of the file */
-    uint64_t at;            /* next to be read */
-    uint64_t n_read;        /* so far, some perhaps twice */
-    uint64_t n_plain;       /* gzip: undone so far */
-    uint64_t most;          /* bytes undone that are allowed */
+    uint64_t n_bytes;                  /* of the file */
+    uint64_t at;                       /* next to be read */
+    uint64_t n_read;                   /* so far, some perhaps twice */
+    uint64_t n_plain;                  /* gzip: undone so far */
+    uint64_t most;                     /* bytes undone that are allowed */
     bool is_gzip, is_open, is_between; /* between: no member of the gzip file has begun */
     bool (*goes_on)(void *context);
     void *context;

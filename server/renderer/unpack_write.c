@@ -13,7 +13,10 @@
 
 enum { FOLDER_FLAGS = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC };
 
-void unpack_writer_init(struct unpack_writer *writer, int folder) { *writer = (struct unpack_writer){ .folder = folder, .parent = -1 }; }
+void unpack_writer_init(struct unpack_writer *writer, int folder)
+{
+    *writer = (struct unpack_writer){ .folder = folder, .parent = -1 };
+}
 
 void unpack_writer_finish(struct unpack_writer *writer)
 {
@@ -28,11 +31,13 @@ static bool refuse(struct problem *problem, const char *name, const char *what)
     char shown[UNPACK_SHOWN_SIZE];
     unpack_show(name, shown);
     bool is_full = reason == ENOSPC || reason == EDQUOT || reason == EFBIG;
-    return problem_set(problem, is_full ? PROBLEM_STORAGE : PROBLEM_INTERNAL, "", "", "entry \"%s\": %s: %s", shown, what, strerror(reason));
+    return problem_set(problem, is_full ? PROBLEM_STORAGE : PROBLEM_INTERNAL, "", "", "entry \"%s\": %s: %s", shown,
+                       what, strerror(reason));
 }
 
 /* Opens the folder a name of n bytes is in, step by step; base: its last part. */
-static bool enter(struct unpack_writer *writer, const char *name, size_t n, char base[UNPACK_PART_SIZE + 1], struct problem *problem)
+static bool enter(struct unpack_writer *writer, const char *name, size_t n, char base[UNPACK_PART_SIZE + 1],
+                  struct problem *problem)
 {
     size_t at = n;
     while (at > 0 && name[at - 1] != '/')
@@ -40,7 +45,8 @@ static bool enter(struct unpack_writer *writer, const char *name, size_t n, char
     memcpy(base, name + at, n - at);
     base[n - at] = 0;
     size_t n_parent = at > 0 ? at - 1 : 0;
-    if (writer->parent >= 0 && strlen(writer->parent_name) == n_parent && memcmp(writer->parent_name, name, n_parent) == 0)
+    if (writer->parent >= 0 && strlen(writer->parent_name) == n_parent &&
+        memcmp(writer->parent_name, name, n_parent) == 0)
         return true;
     unpack_writer_finish(writer);
     memcpy(writer->parent_name, name, n_parent);
@@ -99,7 +105,7 @@ bool unpack_write(int file, const char *name, const void *data, size_t n, struct
     return true;
 }
 
-/* ---- whole folders ------------------------------------------------------------------------------------------------------------------ */
+/* ---- whole folders ---------------------------------------------------------------------------------------------- */
 
 static DIR *list(int parent, const char *name)
 {
@@ -122,10 +128,12 @@ bool unpack_is_empty(int folder, struct problem *problem)
 {
     DIR *entries = list(folder, ".");
     if (!entries)
-        return problem_set(problem, PROBLEM_INTERNAL, "", "", "the folder to unpack into cannot be read: %s", strerror(errno));
+        return problem_set(problem, PROBLEM_INTERNAL, "", "", "the folder to unpack into cannot be read: %s",
+                           strerror(errno));
     bool is_empty = next_name(entries) == NULL;
     closedir(entries);
-    return is_empty || problem_set(problem, PROBLEM_INTERNAL, "", "", "the folder to unpack into is not empty; expected is an empty one");
+    return is_empty || problem_set(problem, PROBLEM_INTERNAL, "", "",
+                                   "the folder to unpack into is not empty; expected is an empty one");
 }
 
 static bool clear(int parent, const char *name, int depth)
@@ -136,12 +144,16 @@ static bool clear(int parent, const char *name, int depth)
     bool is_clear = true;
     for (const char *entry; (entry = next_name(entries));)
         if (unlinkat(dirfd(entries), entry, 0) != 0)
-            is_clear = depth > 0 && clear(dirfd(entries), entry, depth - 1) && unlinkat(dirfd(entries), entry, AT_REMOVEDIR) == 0 && is_clear;
+            is_clear = depth > 0 && clear(dirfd(entries), entry, depth - 1) &&
+                       unlinkat(dirfd(entries), entry, AT_REMOVEDIR) == 0 && is_clear;
     closedir(entries);
     return is_clear;
 }
 
-bool unpack_clear(int folder) { return clear(folder, ".", UNPACK_MAX_DEPTH + 1); }
+bool unpack_clear(int folder)
+{
+    return clear(folder, ".", UNPACK_MAX_DEPTH + 1);
+}
 
 bool unpack_lift(struct unpack_writer *writer, const char *top, struct problem *problem)
 {

@@ -1,11 +1,11 @@
 #pragma once
-/* Makes files and folders below one open folder and nowhere else: every step goes through an open folder, follows no link and opens no
- * file that is there already. Names are checked (unpack_name). */
+/* Makes files and folders below one open folder and nowhere else: every step goes through an open folder, follows no
+ * link and opens no file that is there already. Names are checked (unpack_name). */
 #include "server/renderer/unpack.h"
 
 struct unpack_writer {
-    int folder;                     /* -1: nothing is written */
-    int parent;                     /* the folder that the last name was in; -1: none */
+    int folder; /* -1: nothing is written */
+    int parent; /* the folder that the last name was in; -1: none */
     char parent_name[FOLDER_NAME_SIZE];
 };
 void unpack_writer_init(struct unpack_writer *writer, int folder);

@@ -14,7 +14,7 @@ static const char room_is_full[] = "the room is full";
 static const char old_page[] = "the page speaks another protocol version: reload it";
 enum { FULL_RETRY_MS = 30000 };
 
-/* ---- coming and going ----------------------------------------------------------------------------------------------- */
+/* ---- coming and going ------------------------------------------------------------------------------------------- */
 
 struct member *member_of(const struct room *room, const void *connection)
 {
@@ -146,7 +146,8 @@ static bool make_place(struct room *room)
         return true;
     int longest = -1;
     for (int i = 0; i < room->n_members; i++)
-        if (!room->members[i]->connection && (longest < 0 || room->members[i]->away_us < room->members[longest]->away_us))
+        if (!room->members[i]->connection &&
+            (longest < 0 || room->members[i]->away_us < room->members[longest]->away_us))
             longest = i;
     if (longest < 0)
         return false;
@@ -216,20 +217,22 @@ cJSON *room_members(const struct room *room)
     return list;
 }
 
-/* ---- views ---------------------------------------------------------------------------------------------------------- */
+/* ---- views ------------------------------------------------------------------------------------------------------ */
 
 void view_input(struct member_view *view, uint32_t input)
 {
     if (!view->stream || input == 0)
         return;
-    if (view->n_waiting == MAX_WAITING_INPUTS) /* the older of the two is then reported with the newer, never too early */
+    if (view->n_waiting ==
+        MAX_WAITING_INPUTS) /* the older of the two is then reported with the newer, never too early */
         view->n_waiting--;
     view->waiting[view->n_waiting].version = view->stream->version;
     view->waiting[view->n_waiting].input = input;
     view->n_waiting++;
 }
 
-static void view_join(struct room *room, struct member_view *view, struct stream *stream, bool is_following, uint32_t input)
+static void view_join(struct room *room, struct member_view *view, struct stream *stream, bool is_following,
+                      uint32_t input)
 {
     if (view->stream != stream)
         view_leave(room, view);
@@ -306,7 +309,8 @@ bool member_view_open(struct room *room, struct member *member, const struct mes
     return true;
 }
 
-static void tell_followers(struct room *room, struct stream *stream, const struct member_view *mover_view, const char *by)
+static void tell_followers(struct room *room, struct stream *stream, const struct member_view *mover_view,
+                           const char *by)
 {
     for (int m = 0; m < room->n_members; m++)
         for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
@@ -371,7 +375,8 @@ bool member_view_patch(struct room *room, struct member *member, const struct me
     return true;
 }
 
-bool member_view_follow(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+bool member_view_follow(struct room *room, struct member *member, const struct message *message,
+                        struct problem *problem)
 {
     const struct message_view_follow *follow = &message->view_follow;
     struct member_view *view = open_view(member, follow->view, problem);
@@ -409,15 +414,17 @@ bool member_view_close(struct room *room, struct member *member, const struct me
     return true;
 }
 
-bool member_frame_shown(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+bool member_frame_shown(struct room *room, struct member *member, const struct message *message,
+                        struct problem *problem)
 {
     struct member_view *view = &member->views[message->frame_shown.view - 1];
     uint32_t sequence = (uint32_t)message->frame_shown.sequence;
     if (!view->was_open) /* one that was closed may still be answered for */
         return open_view(member, message->frame_shown.view, problem) != NULL;
     if (sequence > view->sent_sequence)
-        return problem_set(problem, PROBLEM_VALIDATION, "/sequence", "range", "frame %u of view %d was never sent, the newest is %u",
-                           sequence, (int)message->frame_shown.view, view->sent_sequence);
+        return problem_set(problem, PROBLEM_VALIDATION, "/sequence", "range",
+                           "frame %u of view %d was never sent, the newest is %u", sequence,
+                           (int)message->frame_shown.view, view->sent_sequence);
     if (sequence <= view->shown_sequence)
         return true; /* already known */
     stream_acknowledged(room, view, sequence);

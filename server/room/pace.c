@@ -31,10 +31,12 @@ static void step_to(struct pace *pace, int step)
     pace->lag_us = 0;
 }
 
-void pace_drawn(struct pace *pace, int64_t render_us, int64_t encode_us, int64_t turnaround_us, int n_outstanding, int64_t now_us)
+void pace_drawn(struct pace *pace, int64_t render_us, int64_t encode_us, int64_t turnaround_us, int n_outstanding,
+                int64_t now_us)
 {
     /* Others share the renderer: what counts is also how long we waited, per picture outstanding. */
-    double cost = (double)(render_us + encode_us), waited = (double)turnaround_us / (n_outstanding > 1 ? n_outstanding : 1);
+    double cost = (double)(render_us + encode_us),
+           waited = (double)turnaround_us / (n_outstanding > 1 ? n_outstanding : 1);
     /* alone, the time also holds the way to the renderer and back, which no step makes shorter */
     if (n_outstanding > 1 && waited > cost)
         cost = waited;

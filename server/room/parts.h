@@ -26,19 +26,19 @@ struct request {
 
 struct stream {
     struct stream *next;
-    cJSON *view;        /* its document */
-    cJSON *scene;       /* with the view's override; NULL: the room's */
-    bool scene_is_old;  /* to be made again before the next request */
+    cJSON *view;       /* its document */
+    cJSON *scene;      /* with the view's override; NULL: the room's */
+    bool scene_is_old; /* to be made again before the next request */
     bool is_shared;
     int kind;
-    char mover[64];     /* shared: member who moved it last */
-    uint64_t version;   /* counts what changes its picture */
+    char mover[64];                              /* shared: member who moved it last */
+    uint64_t version;                            /* counts what changes its picture */
     uint64_t asked_version, still_asked_version; /* newest asked for; 0 none */
     uint64_t refused_version;                    /* newest that cannot be drawn; 0 none */
     struct problem refusal;                      /* why */
-    int64_t changed_us; /* when version last went up */
-    int64_t retry_us;   /* not before this */
-    int n_failed;       /* in a row */
+    int64_t changed_us;                          /* when version last went up */
+    int64_t retry_us;                            /* not before this */
+    int n_failed;                                /* in a row */
     struct request requests[2];
     struct room_picture *latest;
     uint64_t latest_number, latest_version; /* its request and the version it shows; 0 none */
@@ -46,32 +46,32 @@ struct stream {
     struct pace pace;
 };
 
-struct member_view { /* a member's; number = index + 1 */
+struct member_view {       /* a member's; number = index + 1 */
     struct stream *stream; /* NULL: closed */
     bool is_following, was_open;
-    int size_px[2];                          /* what this member wants; the shared view has that of who moved it last */
-    uint32_t sent_sequence, shown_sequence;  /* they differ by at most ROOM_MAX_UNSHOWN */
+    int size_px[2];                         /* what this member wants; the shared view has that of who moved it last */
+    uint32_t sent_sequence, shown_sequence; /* they differ by at most ROOM_MAX_UNSHOWN */
     struct {
         int64_t sent_us;
         bool is_still;
-    } sent[ROOM_MAX_UNSHOWN];                /* by sequence % ROOM_MAX_UNSHOWN */
-    uint64_t sent_number;                    /* request of the newest picture sent */
-    int64_t lag_least_us, lag_excess_us;     /* from sending to acknowledgement; 0 none yet */
+    } sent[ROOM_MAX_UNSHOWN];            /* by sequence % ROOM_MAX_UNSHOWN */
+    uint64_t sent_number;                /* request of the newest picture sent */
+    int64_t lag_least_us, lag_excess_us; /* from sending to acknowledgement; 0 none yet */
     struct {
         uint64_t version; /* a picture of at least this version shows it */
         uint32_t input;
     } waiting[MAX_WAITING_INPUTS];
     int n_waiting;
-    uint32_t input;    /* newest that a sent picture shows */
-    cJSON *missing;    /* of the newest picture sent, as the member was told; NULL: nothing is missing */
-    bool has_news;     /* somebody else moved the shared view; said with the next frame */
+    uint32_t input; /* newest that a sent picture shows */
+    cJSON *missing; /* of the newest picture sent, as the member was told; NULL: nothing is missing */
+    bool has_news;  /* somebody else moved the shared view; said with the next frame */
     char news_by[64];
 };
 
 struct member {
     char id[64], name[161], secret[2 * SECRET_BYTES + 1];
-    void *connection;  /* NULL: away */
-    int64_t away_us;   /* since */
+    void *connection; /* NULL: away */
+    int64_t away_us;  /* since */
     struct member_view views[ROOM_MAX_VIEWS];
 };
 
@@ -85,7 +85,7 @@ struct room {
     enum wire_renderer_state state;
     char phase[160];
     double percent;
-    struct problem problem; /* when failed */
+    struct problem problem;         /* when failed */
     cJSON *plan, *defaults, *scene; /* NULL before the plan is ready */
     uint32_t revision;
     char gl[200];
@@ -107,23 +107,29 @@ void member_disconnected(struct room *room, struct member *member);
 int64_t members_forget(struct room *room); /* those long away; when to come again */
 void members_free(struct room *room);
 bool member_view_open(struct room *room, struct member *member, const struct message *message, struct problem *problem);
-bool member_view_patch(struct room *room, struct member *member, const struct message *message, struct problem *problem);
-bool member_view_follow(struct room *room, struct member *member, const struct message *message, struct problem *problem);
-bool member_view_close(struct room *room, struct member *member, const struct message *message, struct problem *problem);
-bool member_frame_shown(struct room *room, struct member *member, const struct message *message, struct problem *problem);
+bool member_view_patch(struct room *room, struct member *member, const struct message *message,
+                       struct problem *problem);
+bool member_view_follow(struct room *room, struct member *member, const struct message *message,
+                        struct problem *problem);
+bool member_view_close(struct room *room, struct member *member, const struct message *message,
+                       struct problem *problem);
+bool member_frame_shown(struct room *room, struct member *member, const struct message *message,
+                        struct problem *problem);
 /* An input of a member that changed the stream of a view (or left it as it was). */
 void view_input(struct member_view *view, uint32_t input);
 
 /* stream.c */
 struct stream *stream_create(struct room *room, cJSON *view, bool is_shared); /* takes view */
 void stream_destroy(struct room *room, struct stream *stream);
-void stream_left(struct room *room, struct stream *stream); /* a view of it was closed: the last one's pictures are not waited for */
-bool stream_set_view(struct room *room, struct stream *stream, cJSON *view);  /* takes view; true when it differs */
+void stream_left(struct room *room,
+                 struct stream *stream); /* a view of it was closed: the last one's pictures are not waited for */
+bool stream_set_view(struct room *room, struct stream *stream, cJSON *view); /* takes view; true when it differs */
 void stream_changed(struct room *room, struct stream *stream);
 void streams_changed(struct room *room, bool scene_is_new);
 void streams_forget_requests(struct room *room); /* the renderer they were made to is gone */
 void streams_restart_pace(struct room *room);
-void stream_send(struct room *room, struct member *member, struct member_view *view); /* the latest picture, if it is new and there is credit */
+void stream_send(struct room *room, struct member *member,
+                 struct member_view *view); /* the latest picture, if it is new and there is credit */
 /* A view has come to a stream whose picture cannot be drawn: its member is told. */
 void stream_say_refusal(struct room *room, struct member *member, const struct member_view *view);
 void stream_acknowledged(struct room *room, struct member_view *view, uint32_t sequence);
@@ -143,6 +149,8 @@ void say_renderer(struct room *room, struct member *member); /* member NULL: all
 void say_plan(struct room *room);
 void say_scene(struct room *room, const cJSON *patch, struct member *by, uint32_t input, bool to_all);
 void say_view(struct room *room, struct member *member, int index, const char *by);
-void say_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input, const struct problem *problem);
+void say_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,
+                 const struct problem *problem);
 void say_missing(struct room *room, struct member *member, int index, const cJSON *missing); /* NULL: nothing is */
-void say_bye(struct room *room, void *connection, int retry_ms, const char *reason); /* and closes; retry_ms < 0: do not come back */
+void say_bye(struct room *room, void *connection, int retry_ms,
+             const char *reason); /* and closes; retry_ms < 0: do not come back */

@@ -13,16 +13,19 @@
 static const char room_is_closed[] = "the room is closed";
 static const char hello_first[] = "the first message must be hello";
 
-/* ---- life ----------------------------------------------------------------------------------------------------------- */
+/* ---- life ------------------------------------------------------------------------------------------------------- */
 
-struct room *room_create(const char *id, const char *plan_id, const struct room_callbacks *callbacks, const struct room_limits *limits)
+struct room *room_create(const char *id, const char *plan_id, const struct room_callbacks *callbacks,
+                         const struct room_limits *limits)
 {
     struct room *room = mem_new(sizeof *room);
     assert(id_is_valid(id) && id_is_valid(plan_id));
     (void)snprintf(room->id, sizeof room->id, "%s", id);
     (void)snprintf(room->plan_id, sizeof room->plan_id, "%s", plan_id);
     room->callbacks = *callbacks;
-    room->max_members = limits && limits->max_members > 0 && limits->max_members < ROOM_MAX_MEMBERS ? limits->max_members : ROOM_MAX_MEMBERS;
+    room->max_members = limits && limits->max_members > 0 && limits->max_members < ROOM_MAX_MEMBERS
+                            ? limits->max_members
+                            : ROOM_MAX_MEMBERS;
     room->created_at_s = (int64_t)time(NULL); /* for people; nothing is paced by it */
     return room;
 }
@@ -59,19 +62,21 @@ const char *room_plan_id(const struct room *room)
     return room->plan_id;
 }
 
-/* ---- the renderer --------------------------------------------------------------------------------------------------- */
+/* ---- the renderer ----------------------------------------------------------------------------------------------- */
 
 /* The scene goes on after a restart; a plan that was changed on disk meanwhile may have lost ids that it names. */
 static void renew_scene(struct room *room)
 {
-    cJSON *scene = room->scene ? scene_document_renew(room->plan, room->defaults, room->scene) : cJSON_Duplicate(room->defaults, true);
+    cJSON *scene = room->scene ? scene_document_renew(room->plan, room->defaults, room->scene)
+                               : cJSON_Duplicate(room->defaults, true);
     if (!room->scene || !cJSON_Compare(scene, room->scene, true))
         room->revision++;
     cJSON_Delete(room->scene);
     room->scene = scene;
 }
 
-static void set_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent, const struct problem *problem)
+static void set_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent,
+                      const struct problem *problem)
 {
     room->state = state;
     room->percent = percent >= 0 && percent <= 100 ? percent : 0;
@@ -79,8 +84,8 @@ static void set_state(struct room *room, enum wire_renderer_state state, const c
     room->problem = problem ? *problem : (struct problem){ 0 };
 }
 
-void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl, bool is_software,
-                     int64_t now_us)
+void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl,
+                     bool is_software, int64_t now_us)
 {
     room->now_us = now_us;
     forget_plan(room);
@@ -102,7 +107,8 @@ void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
     (void)streams_pump(room);
 }
 
-void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent, const struct problem *problem)
+void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent,
+                         const struct problem *problem)
 {
     bool was_ready = room->state == WIRE_RENDERER_STATE_READY;
     set_state(room, state, phase, percent, problem);
@@ -116,9 +122,10 @@ void room_renderer_state(struct room *room, enum wire_renderer_state state, cons
     (void)streams_pump(room);
 }
 
-/* ---- messages ------------------------------------------------------------------------------------------------------- */
+/* ---- messages --------------------------------------------------------------------------------------------------- */
 
-static bool apply_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input, struct problem *problem)
+static bool apply_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input,
+                        struct problem *problem)
 {
     if (!room->scene) {
         problem_set(problem, PROBLEM_BUSY, "", "", "the plan is not loaded yet");
@@ -141,16 +148,19 @@ static bool apply_patch(struct room *room, const cJSON *patch, struct member *by
         view_input(&by->views[i], input);
         stream_send(room, by, &by->views[i]);
     }
-    say_scene(room, patch, by, input, has_changed); /* what changed nothing only its sender hears: it waits for the answer */
+    say_scene(room, patch, by, input,
+              has_changed); /* what changed nothing only its sender hears: it waits for the answer */
     return true;
 }
 
-static bool handle_scene_patch(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+static bool handle_scene_patch(struct room *room, struct member *member, const struct message *message,
+                               struct problem *problem)
 {
     return apply_patch(room, message->scene_patch.patch, member, (uint32_t)message->scene_patch.input, problem);
 }
 
-static bool handle_ping(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+static bool handle_ping(struct room *room, struct member *member, const struct message *message,
+                        struct problem *problem)
 {
     (void)problem;
     struct message pong = { .type = MESSAGE_PONG, .pong = { message->ping.time_ms } };
@@ -158,7 +168,8 @@ static bool handle_ping(struct room *room, struct member *member, const struct m
     return true;
 }
 
-static bool handle_second_hello(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+static bool handle_second_hello(struct room *room, struct member *member, const struct message *message,
+                                struct problem *problem)
 {
     (void)room;
     (void)message;
@@ -170,14 +181,10 @@ static const struct {
     enum message_type type;
     bool (*handle)(struct room *room, struct member *member, const struct message *message, struct problem *problem);
 } handlers[] = {
-    { MESSAGE_HELLO, handle_second_hello },
-    { MESSAGE_VIEW_OPEN, member_view_open },
-    { MESSAGE_VIEW_PATCH, member_view_patch },
-    { MESSAGE_VIEW_FOLLOW, member_view_follow },
-    { MESSAGE_VIEW_CLOSE, member_view_close },
-    { MESSAGE_SCENE_PATCH, handle_scene_patch },
-    { MESSAGE_FRAME_SHOWN, member_frame_shown },
-    { MESSAGE_PING, handle_ping },
+    { MESSAGE_HELLO, handle_second_hello },      { MESSAGE_VIEW_OPEN, member_view_open },
+    { MESSAGE_VIEW_PATCH, member_view_patch },   { MESSAGE_VIEW_FOLLOW, member_view_follow },
+    { MESSAGE_VIEW_CLOSE, member_view_close },   { MESSAGE_SCENE_PATCH, handle_scene_patch },
+    { MESSAGE_FRAME_SHOWN, member_frame_shown }, { MESSAGE_PING, handle_ping },
 };
 
 static void whole_number(const cJSON *json, const char *name, double most, int64_t *value)
@@ -249,7 +256,7 @@ int64_t room_tick(struct room *room, int64_t now_us)
     return members_us < streams_us ? members_us : streams_us;
 }
 
-/* ---- pictures ------------------------------------------------------------------------------------------------------- */
+/* ---- pictures --------------------------------------------------------------------------------------------------- */
 
 struct room_picture *room_picture_hold(struct room_picture *picture)
 {
@@ -266,7 +273,7 @@ void room_picture_drop(struct room_picture *picture)
     free(picture);
 }
 
-/* ---- for HTTP ------------------------------------------------------------------------------------------------------- */
+/* ---- for HTTP --------------------------------------------------------------------------------------------------- */
 
 const cJSON *room_scene(const struct room *room, uint32_t *revision)
 {

@@ -1,21 +1,27 @@
 #pragma once
-/* Rooms: members, views, the shared scene, who sees what and when a picture is asked for. Pure logic: no sockets, no clock of its
- * own (now_us is handed in), no renderer: it asks through callbacks. One thread. */
+/* Rooms: members, views, the shared scene, who sees what and when a picture is asked for. Pure logic: no sockets, no
+ * clock of its own (now_us is handed in), no renderer: it asks through callbacks. One thread. */
 #include <stdint.h>
 
 #include "server/wire/document.h"
 #include "server/wire/frame_header.h"
 
-enum { ROOM_MAX_MEMBERS = 64, ROOM_MAX_VIEWS = 8, ROOM_MAX_UNSHOWN = 2, ROOM_STILL_AFTER_MS = 150, ROOM_MEMBER_KEPT_S = 300 };
+enum {
+    ROOM_MAX_MEMBERS = 64,
+    ROOM_MAX_VIEWS = 8,
+    ROOM_MAX_UNSHOWN = 2,
+    ROOM_STILL_AFTER_MS = 150,
+    ROOM_MEMBER_KEPT_S = 300
+};
 
 struct room;
 
-/* One picture wanted. A stream is what one render serves: the own view of a member, or the shared view of a kind for all who
- * follow it. The room never has more than two requests of a stream outstanding. */
+/* One picture wanted. A stream is what one render serves: the own view of a member, or the shared view of a kind for
+ * all who follow it. The room never has more than two requests of a stream outstanding. */
 struct room_render {
-    uint64_t request;             /* never the same twice; comes back with the picture */
-    const cJSON *view;            /* complete view document */
-    const cJSON *scene;           /* complete scene to show when the view has an override, else NULL: the room's */
+    uint64_t request;   /* never the same twice; comes back with the picture */
+    const cJSON *view;  /* complete view document */
+    const cJSON *scene; /* complete scene to show when the view has an override, else NULL: the room's */
     uint32_t scene_revision;
     int scale_percent, quality;
     bool is_still, full_color, light;
@@ -41,7 +47,8 @@ struct room_callbacks {
     /* a text message for one connection; text is borrowed */
     void (*send_text)(void *context, void *connection, const char *text);
     /* a frame for one connection: header filled for it; picture must be held (room_picture_hold) if kept */
-    void (*send_frame)(void *context, void *connection, const struct frame_header *header, struct room_picture *picture);
+    void (*send_frame)(void *context, void *connection, const struct frame_header *header,
+                       struct room_picture *picture);
     /* no more will be sent: close once what was sent is out; room_connection_closed may follow but need not */
     void (*close)(void *context, void *connection);
     void *context;
@@ -52,18 +59,21 @@ struct room_limits {
 };
 
 /* plan_document and default_scene come later (room_plan_ready). id: URL-safe, random, not guessable. */
-struct room *room_create(const char *id, const char *plan_id, const struct room_callbacks *callbacks, const struct room_limits *limits);
+struct room *room_create(const char *id, const char *plan_id, const struct room_callbacks *callbacks,
+                         const struct room_limits *limits);
 void room_destroy(struct room *room); /* says bye to every connection first */
 const char *room_id(const struct room *room);
 const char *room_plan_id(const struct room *room);
 
 /* The renderer's state: a member hears it; pictures are asked for only while ready. Each new renderer process tells
- * room_plan_ready; coming back to ready asks for everything anew, and what the old one still owed is forgotten. Until the first one is ready
- * the scene cannot be changed; while another is being started it can, checked by the plan as it was. Ids that the plan does not
- * have (any more) are then taken out of the scene, and overrides with such ids out of their views, whose members are told. */
-void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl, bool is_software,
-                     int64_t now_us);
-void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent, const struct problem *problem);
+ * room_plan_ready; coming back to ready asks for everything anew, and what the old one still owed is forgotten. Until
+ * the first one is ready the scene cannot be changed; while another is being started it can, checked by the plan as it
+ * was. Ids that the plan does not have (any more) are then taken out of the scene, and overrides with such ids out of
+ * their views, whose members are told. */
+void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl,
+                     bool is_software, int64_t now_us);
+void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent,
+                         const struct problem *problem);
 
 /* Connections: opaque pointers of the caller's. A connection becomes a member with hello. */
 void room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us);
@@ -71,17 +81,20 @@ void room_connection_closed(struct room *room, void *connection, int64_t now_us)
 bool room_has_member(const struct room *room, void *connection); /* said hello */
 
 /* A picture nobody waits for any more (of a renderer that was restarted, of a view that was closed) is dropped. */
-void room_picture_came(struct room *room, uint64_t request, struct room_picture *picture, int64_t now_us); /* takes the reference */
+void room_picture_came(struct room *room, uint64_t request, struct room_picture *picture,
+                       int64_t now_us); /* takes the reference */
 void room_picture_failed(struct room *room, uint64_t request, const struct problem *problem, int64_t now_us);
 struct room_picture *room_picture_hold(struct room_picture *picture);
 void room_picture_drop(struct room_picture *picture);
 
-/* Time-driven work: stills, forgetting members. Returns when it wants to be called again (INT64_MAX: not before something happens). */
+/* Time-driven work: stills, forgetting members. Returns when it wants to be called again (INT64_MAX: not before
+ * something happens). */
 int64_t room_tick(struct room *room, int64_t now_us);
 
 /* The shared scene, for HTTP: NULL before the plan is ready. */
 const cJSON *room_scene(const struct room *room, uint32_t *revision);
-/* The scene with the override of a view, which need not be one of the room's; room_scene is not NULL. NULL with problem. */
+/* The scene with the override of a view, which need not be one of the room's; room_scene is not NULL. NULL with
+ * problem. */
 NODISCARD cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct problem *problem);
 NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, struct problem *problem);
 /* {id, plan, revision, members: [...], created_at...}: what GET /rooms/{id} gives. */

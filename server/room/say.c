@@ -116,7 +116,8 @@ void say_view(struct room *room, struct member *member, int index, const char *b
     say(room, member, &message);
 }
 
-void say_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input, const struct problem *problem)
+void say_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,
+                 const struct problem *problem)
 {
     struct message message = { .type = MESSAGE_PROBLEM };
     copy_text(message.problem.to, sizeof message.problem.to, to);

@@ -1,6 +1,6 @@
 /* Streams: when a picture is asked for, how good, and who gets it. The rules are in design.md 6:
- * nothing is asked for while nobody could be sent it; what is asked for shows the newest state; a picture older than the newest one
- * is never sent; moving pictures are followed by a still. */
+ * nothing is asked for while nobody could be sent it; what is asked for shows the newest state; a picture older than
+ * the newest one is never sent; moving pictures are followed by a still. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,7 @@
 enum { STILL_QUALITY = 92 };
 static const int64_t still_after_us = ROOM_STILL_AFTER_MS * INT64_C(1000);
 
-/* ---- streams -------------------------------------------------------------------------------------------------------- */
+/* ---- streams ---------------------------------------------------------------------------------------------------- */
 
 int view_kind(const cJSON *view)
 {
@@ -32,7 +32,8 @@ static bool has_override(const cJSON *view)
 bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem)
 {
     if (!room->scene || !has_override(view))
-        return true; /* before the plan is known it cannot be said; looked at again when it is (streams_remove_bad_overrides) */
+        return true; /* before the plan is known it cannot be said; looked at again when it is
+                        (streams_remove_bad_overrides) */
     cJSON *shown = room_scene_for_view(room, view, problem);
     cJSON_Delete(shown);
     return shown != NULL;
@@ -172,7 +173,7 @@ void streams_restart_pace(struct room *room)
         start_pace(room, stream);
 }
 
-/* ---- asking --------------------------------------------------------------------------------------------------------- */
+/* ---- asking ----------------------------------------------------------------------------------------------------- */
 
 static int n_outstanding(const struct stream *stream)
 {
@@ -181,7 +182,8 @@ static int n_outstanding(const struct stream *stream)
 
 static bool still_is_outstanding(const struct stream *stream)
 {
-    return (stream->requests[0].number && stream->requests[0].is_still) || (stream->requests[1].number && stream->requests[1].is_still);
+    return (stream->requests[0].number && stream->requests[0].is_still) ||
+           (stream->requests[1].number && stream->requests[1].is_still);
 }
 
 static uint32_t n_unshown(const struct member_view *view)
@@ -256,13 +258,14 @@ static void ask(struct room *room, struct stream *stream, bool is_still)
     room->callbacks.render(room->callbacks.context, room, &render);
 }
 
-/* Asks for what is due of one stream; when to come again. What waits for credit or for a picture needs no time: its coming is an
- * event. */
+/* Asks for what is due of one stream; when to come again. What waits for credit or for a picture needs no time: its
+ * coming is an event. */
 static int64_t pump(struct room *room, struct stream *stream)
 {
     const int64_t still_due_us = stream->changed_us + still_after_us;
     for (;;) {
-        bool wants_still = stream->still_asked_version < stream->version, wants_moving = stream->asked_version < stream->version;
+        bool wants_still = stream->still_asked_version < stream->version,
+             wants_moving = stream->asked_version < stream->version;
         if ((!wants_still && !wants_moving) || !has_credit(room, stream))
             return INT64_MAX;
         if (room->now_us < stream->retry_us)
@@ -274,7 +277,8 @@ static int64_t pump(struct room *room, struct stream *stream)
             continue;
         }
         if (wants_moving) {
-            /* The second request only when the first is drawn and being compressed: made now, it would wait and show an older state. */
+            /* The second request only when the first is drawn and being compressed: made now, it would wait and show an
+             * older state. */
             const struct request *other = stream->requests[0].number ? &stream->requests[0] : &stream->requests[1];
             int64_t worth_us = other->asked_us + (int64_t)stream->pace.render_us;
             if (other->number && !other->is_still && room->now_us < worth_us)
@@ -298,7 +302,7 @@ int64_t streams_pump(struct room *room)
     return again_us;
 }
 
-/* ---- sending -------------------------------------------------------------------------------------------------------- */
+/* ---- sending ---------------------------------------------------------------------------------------------------- */
 
 /* Inputs that a picture of this version shows have been seen once it is sent. */
 static void take_inputs(struct member_view *view, uint64_t version)
@@ -393,7 +397,7 @@ void stream_acknowledged(struct room *room, struct member_view *view, uint32_t s
     measure_lag(room, view->stream);
 }
 
-/* ---- answers -------------------------------------------------------------------------------------------------------- */
+/* ---- answers ---------------------------------------------------------------------------------------------------- */
 
 static struct stream *take_request(struct room *room, uint64_t number, struct request *request)
 {
@@ -433,8 +437,8 @@ void room_picture_came(struct room *room, uint64_t number, struct room_picture *
     stream->n_failed = 0;
     stream->retry_us = 0;
     if (!request.is_still && !still_is_outstanding(stream))
-        pace_drawn(&stream->pace, picture->header.render_us, picture->header.encode_us, now_us - request.asked_us, request.n_outstanding,
-                   now_us);
+        pace_drawn(&stream->pace, picture->header.render_us, picture->header.encode_us, now_us - request.asked_us,
+                   request.n_outstanding, now_us);
     /* a still that was overtaken while it was drawn would only stand before the moving picture that is about to come */
     bool is_overtaken = request.is_still && newer_is_coming(stream, request.version);
     if (is_newer(stream, &request) && !is_overtaken) {
@@ -461,8 +465,8 @@ void stream_say_refusal(struct room *room, struct member *member, const struct m
         say_problem(room, member->connection, "", view - member->views + 1, 0, &view->stream->refusal);
 }
 
-/* A failure that will be no better the next time: a field that does not fit, a picture too large for the memory, or a written limit; a limit
- * of how much may wait says when to come again. */
+/* A failure that will be no better the next time: a field that does not fit, a picture too large for the memory, or a
+ * written limit; a limit of how much may wait says when to come again. */
 static bool is_final(const struct problem *problem)
 {
     return problem && (problem->type == PROBLEM_VALIDATION || problem->type == PROBLEM_MEMORY ||

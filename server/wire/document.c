@@ -3,7 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The fields of a scene that name something of the plan, and where the plan document lists what there is. An empty id names nothing. */
+/* The fields of a scene that name something of the plan, and where the plan document lists what there is. An empty id
+ * names nothing. */
 static const struct reference {
     const char *object, *id;        /* the field; id NULL: the keys of object are the ids */
     const char *list, *list_member; /* of the plan document; what a member is called */
@@ -15,8 +16,8 @@ static const struct reference {
 };
 enum { N_REFERENCES = sizeof references / sizeof references[0] };
 
-/* The member of list with this id, or NULL. The search begins at *next and leaves it behind the member found: ids that are asked for
- * in the list's order are found at once. */
+/* The member of list with this id, or NULL. The search begins at *next and leaves it behind the member found: ids that
+ * are asked for in the list's order are found at once. */
 static const cJSON *find_member(const cJSON *list, const cJSON **next, const char *id)
 {
     const cJSON *first = list ? list->child : NULL, *start = *next ? *next : first, *member = start;
@@ -36,7 +37,8 @@ static bool unknown_id(const struct reference *reference, const char *id, struct
 {
     char pointer[160];
     (void)snprintf(pointer, sizeof pointer, "/%s/%s", reference->object, reference->id ? reference->id : id);
-    return problem_set(problem, PROBLEM_VALIDATION, pointer, "unknown-id", "the plan has no %s \"%.63s\"", reference->list_member, id);
+    return problem_set(problem, PROBLEM_VALIDATION, pointer, "unknown-id", "the plan has no %s \"%.63s\"",
+                       reference->list_member, id);
 }
 
 /* Every id in the document, a scene whose fields were checked, must be the plan's. */
@@ -79,8 +81,8 @@ static void remove_unknown_ids(const cJSON *plan, cJSON *document)
     }
 }
 
-/* Members of the map that a merge left incomplete (a region's style with only "opacity") are completed from defaults by laying the
- * document over them: what the document does not say is the default's. */
+/* Members of the map that a merge left incomplete (a region's style with only "opacity") are completed from defaults by
+ * laying the document over them: what the document does not say is the default's. */
 static cJSON *check_scene(const cJSON *plan, const cJSON *defaults, cJSON *merged, struct problem *problem)
 {
     struct scene scene;
@@ -99,7 +101,8 @@ static cJSON *check_scene(const cJSON *plan, const cJSON *defaults, cJSON *merge
     return complete;
 }
 
-cJSON *scene_document_patch(const cJSON *plan, const cJSON *defaults, const cJSON *current, const cJSON *patch, struct problem *problem)
+cJSON *scene_document_patch(const cJSON *plan, const cJSON *defaults, const cJSON *current, const cJSON *patch,
+                            struct problem *problem)
 {
     if (!cJSON_IsObject(patch)) {
         problem_set(problem, PROBLEM_VALIDATION, "", "type", "a merge patch on the scene must be an object");
@@ -125,11 +128,13 @@ cJSON *document_told_patch(const cJSON *document, const cJSON *patch)
     cJSON *told = cJSON_CreateObject();
     const cJSON *field;
     cJSON_ArrayForEach(field, patch)
-        cJSON_AddItemToObject(told, field->string, document_told_patch(cJSON_GetObjectItemCaseSensitive(document, field->string), field));
+        cJSON_AddItemToObject(told, field->string,
+                              document_told_patch(cJSON_GetObjectItemCaseSensitive(document, field->string), field));
     return told;
 }
 
-cJSON *scene_document_for_view(const cJSON *plan, const cJSON *defaults, const cJSON *scene, const cJSON *view, struct problem *problem)
+cJSON *scene_document_for_view(const cJSON *plan, const cJSON *defaults, const cJSON *scene, const cJSON *view,
+                               struct problem *problem)
 {
     const cJSON *override = cJSON_GetObjectItemCaseSensitive(view, "override");
     if (!cJSON_IsObject(override))

@@ -50,18 +50,20 @@ static size_t code_points(const char *text)
     return n;
 }
 
-static bool read_number(const struct field *field, const cJSON *json, const struct place *place, double *value, struct problem *problem)
+static bool read_number(const struct field *field, const cJSON *json, const struct place *place, double *value,
+                        struct problem *problem)
 {
     if (!cJSON_IsNumber(json))
         return wrong_type(place, "a number", problem);
     if (!(json->valuedouble >= field->min && json->valuedouble <= field->max))
-        return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "range", "%s is %g, expected %.17g to %.17g", place->pointer,
-                           json->valuedouble, field->min, field->max);
+        return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "range", "%s is %g, expected %.17g to %.17g",
+                           place->pointer, json->valuedouble, field->min, field->max);
     *value = json->valuedouble;
     return true;
 }
 
-static bool read_integer(const struct field *field, const cJSON *json, const struct place *place, int64_t *value, struct problem *problem)
+static bool read_integer(const struct field *field, const cJSON *json, const struct place *place, int64_t *value,
+                         struct problem *problem)
 {
     double number;
     if (!read_number(field, json, place, &number, problem))
@@ -72,7 +74,8 @@ static bool read_integer(const struct field *field, const cJSON *json, const str
     return true;
 }
 
-static bool read_word(const struct field *field, const cJSON *json, const struct place *place, int *value, struct problem *problem)
+static bool read_word(const struct field *field, const cJSON *json, const struct place *place, int *value,
+                      struct problem *problem)
 {
     if (!cJSON_IsString(json))
         return wrong_type(place, "a word", problem);
@@ -84,8 +87,8 @@ static bool read_word(const struct field *field, const cJSON *json, const struct
     char list[160] = "";
     for (size_t i = 0, used = 0; i < field->words->n && used < sizeof list; i++)
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", field->words->words[i]);
-    return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "enum", "%s is \"%.40s\", expected one of: %s", place->pointer,
-                       json->valuestring, list);
+    return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "enum", "%s is \"%.40s\", expected one of: %s",
+                       place->pointer, json->valuestring, list);
 }
 
 static bool read_color(const cJSON *json, const struct place *place, uint32_t *rgb, struct problem *problem)
@@ -94,27 +97,31 @@ static bool read_color(const cJSON *json, const struct place *place, uint32_t *r
         return wrong_type(place, "a colour", problem);
     const char *text = json->valuestring;
     if (strlen(text) != 7 || text[0] != '#' || strspn(text + 1, "0123456789abcdefABCDEF") != 6)
-        return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "pattern", "%s is \"%.20s\", expected #rrggbb", place->pointer, text);
+        return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "pattern", "%s is \"%.20s\", expected #rrggbb",
+                           place->pointer, text);
     *rgb = (uint32_t)strtoul(text + 1, NULL, 16);
     return true;
 }
 
-static bool read_text(const struct field *field, const cJSON *json, const struct place *place, char *out, struct problem *problem)
+static bool read_text(const struct field *field, const cJSON *json, const struct place *place, char *out,
+                      struct problem *problem)
 {
     if (!cJSON_IsString(json))
         return wrong_type(place, "text", problem);
     size_t n = strlen(json->valuestring), points = code_points(json->valuestring);
     if ((double)points > field->max || n >= field->text_bytes)
-        return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "length", "%s has %zu characters, at most %g are allowed",
-                           place->pointer, points, field->max);
+        return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "length",
+                           "%s has %zu characters, at most %g are allowed", place->pointer, points, field->max);
     for (const char *c = json->valuestring; *c; c++)
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "pattern", "%s holds a control character", place->pointer);
+            return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "pattern", "%s holds a control character",
+                               place->pointer);
     memcpy(out, json->valuestring, n + 1);
     return true;
 }
 
-static bool read_id(const struct field *field, const cJSON *json, const struct place *place, char *out, struct problem *problem)
+static bool read_id(const struct field *field, const cJSON *json, const struct place *place, char *out,
+                    struct problem *problem)
 {
     if (!cJSON_IsString(json))
         return wrong_type(place, "an id", problem);
@@ -141,17 +148,18 @@ static bool read_numbers(const struct field *field, const cJSON *json, const str
     return true;
 }
 
-static bool read_object(const struct field_object *object, const cJSON *json, const char *skip, const struct place *place, void *out,
-                        struct problem *problem);
+static bool read_object(const struct field_object *object, const cJSON *json, const char *skip,
+                        const struct place *place, void *out, struct problem *problem);
 
-static bool read_map(const struct field *field, const cJSON *json, const struct place *place, char *base, struct problem *problem)
+static bool read_map(const struct field *field, const cJSON *json, const struct place *place, char *base,
+                     struct problem *problem)
 {
     if (!cJSON_IsObject(json))
         return wrong_type(place, "an object of ids", problem);
     size_t n = (size_t)cJSON_GetArraySize(json), at = 0;
     if (n > field->max_items)
-        return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "count", "%s has %zu entries, at most %zu are allowed",
-                           place->pointer, n, field->max_items);
+        return problem_set(problem, PROBLEM_VALIDATION, place->pointer, "count",
+                           "%s has %zu entries, at most %zu are allowed", place->pointer, n, field->max_items);
     char *entries = mem_new((n ? n : 1) * field->entry_size);
     for (const cJSON *item = json->child; item; item = item->next, at++) {
         struct place entry = inside(place, item->string);
@@ -160,7 +168,8 @@ static bool read_map(const struct field *field, const cJSON *json, const struct 
                   problem_set(problem, PROBLEM_VALIDATION, entry.pointer, "pattern", "%s is not an id", entry.pointer);
         for (size_t other = 0; ok && other < at; other++)
             if (strcmp(entries + other * field->entry_size, item->string) == 0)
-                ok = problem_set(problem, PROBLEM_VALIDATION, entry.pointer, "duplicate", "%s stands twice", entry.pointer);
+                ok = problem_set(problem, PROBLEM_VALIDATION, entry.pointer, "duplicate", "%s stands twice",
+                                 entry.pointer);
         if (ok) {
             memcpy(id, item->string, strlen(item->string) + 1);
             ok = read_object(field->object, item, NULL, &entry, id + field->value_offset, problem);
@@ -175,7 +184,8 @@ static bool read_map(const struct field *field, const cJSON *json, const struct 
     return true;
 }
 
-static bool read_field(const struct field *field, const cJSON *json, const struct place *place, char *base, struct problem *problem)
+static bool read_field(const struct field *field, const cJSON *json, const struct place *place, char *base,
+                       struct problem *problem)
 {
     char *at = base + field->offset;
     double numbers[3];
@@ -261,8 +271,8 @@ static const struct field *find_field(const struct field_object *object, const c
     return NULL;
 }
 
-static bool read_members(const struct field_object *object, const cJSON *json, const char *skip, const struct place *place, char *base,
-                         struct problem *problem)
+static bool read_members(const struct field_object *object, const cJSON *json, const char *skip,
+                         const struct place *place, char *base, struct problem *problem)
 {
     uint64_t seen = 0;
     assert(object->n_fields <= 64);
@@ -273,14 +283,15 @@ static bool read_members(const struct field_object *object, const cJSON *json, c
         struct place here = inside(place, item->string);
         const struct field *field = find_field(object, item->string, &index);
         if (!field)
-            return problem_set(problem, PROBLEM_VALIDATION, here.pointer, "unknown-field", "%s is not a field of %s", here.pointer,
-                               object->name);
+            return problem_set(problem, PROBLEM_VALIDATION, here.pointer, "unknown-field", "%s is not a field of %s",
+                               here.pointer, object->name);
         if (seen >> index & 1)
             return problem_set(problem, PROBLEM_VALIDATION, here.pointer, "duplicate", "%s stands twice", here.pointer);
         seen |= (uint64_t)1 << index;
         if (cJSON_IsNull(item)) {
             if (field->is_required)
-                return problem_set(problem, PROBLEM_VALIDATION, here.pointer, "required", "%s must not be null", here.pointer);
+                return problem_set(problem, PROBLEM_VALIDATION, here.pointer, "required", "%s must not be null",
+                                   here.pointer);
             continue;
         }
         if (!read_field(field, item, &here, base, problem))
@@ -298,8 +309,8 @@ static bool read_members(const struct field_object *object, const cJSON *json, c
     return true;
 }
 
-static bool read_object(const struct field_object *object, const cJSON *json, const char *skip, const struct place *place, void *out,
-                        struct problem *problem)
+static bool read_object(const struct field_object *object, const cJSON *json, const char *skip,
+                        const struct place *place, void *out, struct problem *problem)
 {
     memcpy(out, object->defaults, object->size);
     if (!cJSON_IsObject(json))
@@ -310,7 +321,8 @@ static bool read_object(const struct field_object *object, const cJSON *json, co
     return false;
 }
 
-bool fields_read(const struct field_object *object, const cJSON *json, const char *skip, void *out, struct problem *problem)
+bool fields_read(const struct field_object *object, const cJSON *json, const char *skip, void *out,
+                 struct problem *problem)
 {
     struct place top = { "" };
     return read_object(object, json, skip, &top, out, problem);

@@ -1,13 +1,25 @@
 #pragma once
-/* Structs from JSON and back, driven by the field tables that proto/gen makes. The tables are data; the checks are here, once. */
+/* Structs from JSON and back, driven by the field tables that proto/gen makes. The tables are data; the checks are
+ * here, once. */
 #include <stddef.h>
 #include <stdint.h>
 
 #include "server/wire/json.h"
 
 enum field_type {
-    FIELD_BOOL, FIELD_NUMBER, FIELD_INTEGER, FIELD_ENUM, FIELD_COLOR, FIELD_ID, FIELD_TEXT, FIELD_VEC3, FIELD_SIZE,
-    FIELD_OBJECT, FIELD_MAP, FIELD_PATCH, FIELD_JSON
+    FIELD_BOOL,
+    FIELD_NUMBER,
+    FIELD_INTEGER,
+    FIELD_ENUM,
+    FIELD_COLOR,
+    FIELD_ID,
+    FIELD_TEXT,
+    FIELD_VEC3,
+    FIELD_SIZE,
+    FIELD_OBJECT,
+    FIELD_MAP,
+    FIELD_PATCH,
+    FIELD_JSON
 };
 
 struct field_words {
@@ -39,10 +51,11 @@ struct field_object {
     const void *defaults;
 };
 
-/* Fills out (object->size bytes), absent and null fields get their defaults. Refuses unknown and duplicate fields, wrong types,
- * values out of range, over-long text, ids outside [a-z0-9-]{1,63}. On failure out owns nothing. skip, if given, names one member
- * that is not a field ("type" of a message). */
-NODISCARD bool fields_read(const struct field_object *object, const cJSON *json, const char *skip, void *out, struct problem *problem);
+/* Fills out (object->size bytes), absent and null fields get their defaults. Refuses unknown and duplicate fields,
+ * wrong types, values out of range, over-long text, ids outside [a-z0-9-]{1,63}. On failure out owns nothing. skip, if
+ * given, names one member that is not a field ("type" of a message). */
+NODISCARD bool fields_read(const struct field_object *object, const cJSON *json, const char *skip, void *out,
+                           struct problem *problem);
 /* The whole document, every field, as a new object. */
 NODISCARD cJSON *fields_write(const struct field_object *object, const void *in);
 /* Frees what in owns: maps, patches, json. */

@@ -51,17 +51,20 @@ void frame_header_write(const struct frame_header *header, uint8_t bytes[FRAME_H
     }
 }
 
-bool frame_header_read(const uint8_t *bytes, size_t n, struct frame_header *header, size_t *header_bytes, struct error *err)
+bool frame_header_read(const uint8_t *bytes, size_t n, struct frame_header *header, size_t *header_bytes,
+                       struct error *err)
 {
     if (n < FRAME_HEADER_BYTES)
         return error_set(err, ERROR_FORMAT, "a frame of %zu bytes, at least %d were expected", n, FRAME_HEADER_BYTES);
     if (get32(bytes) != FRAME_MAGIC)
-        return error_set(err, ERROR_FORMAT, "a frame begins with 0x%08x at byte 0, expected 0x%08x", get32(bytes), FRAME_MAGIC);
+        return error_set(err, ERROR_FORMAT, "a frame begins with 0x%08x at byte 0, expected 0x%08x", get32(bytes),
+                         FRAME_MAGIC);
     if (get16(bytes + 4) != FRAME_VERSION)
         return error_set(err, ERROR_FORMAT, "frame version %u at byte 4, expected %d", get16(bytes + 4), FRAME_VERSION);
     size_t head = get16(bytes + 6);
     if (head < FRAME_HEADER_BYTES || head > n)
-        return error_set(err, ERROR_FORMAT, "header_bytes %zu at byte 6, expected %d to %zu", head, FRAME_HEADER_BYTES, n);
+        return error_set(err, ERROR_FORMAT, "header_bytes %zu at byte 6, expected %d to %zu", head, FRAME_HEADER_BYTES,
+                         n);
     *header = (struct frame_header){ .codec = bytes[8],
                                      .flags = bytes[9],
                                      .quality = bytes[10],
@@ -77,13 +80,15 @@ bool frame_header_read(const uint8_t *bytes, size_t n, struct frame_header *head
                                      .payload_bytes = get32(bytes + 40),
                                      .pixels_per_mm_1000 = get32(bytes + 44) };
     if (header->payload_bytes != n - head)
-        return error_set(err, ERROR_FORMAT, "payload_bytes %u at byte 40, but %zu bytes follow the header", header->payload_bytes, n - head);
+        return error_set(err, ERROR_FORMAT, "payload_bytes %u at byte 40, but %zu bytes follow the header",
+                         header->payload_bytes, n - head);
     if (header->codec != 1 && header->codec != 2)
         return error_set(err, ERROR_FORMAT, "codec %u at byte 8, expected 1 (JPEG) or 2 (PNG)", header->codec);
     if (header->scale_percent < 10 || header->scale_percent > 100)
         return error_set(err, ERROR_FORMAT, "scale_percent %u at byte 11, expected 10 to 100", header->scale_percent);
     if (header->width_px == 0 || header->height_px == 0)
-        return error_set(err, ERROR_FORMAT, "a picture of %u x %u pixels at byte 28", header->width_px, header->height_px);
+        return error_set(err, ERROR_FORMAT, "a picture of %u x %u pixels at byte 28", header->width_px,
+                         header->height_px);
     for (int i = 0; i < 16; i++) {
         uint32_t word = get32(bytes + 48 + 4 * i);
         memcpy(&header->clip_from_lps_mm[i], &word, sizeof word);

@@ -19,4 +19,5 @@ struct frame_header {
 
 void frame_header_write(const struct frame_header *header, uint8_t bytes[FRAME_HEADER_BYTES]);
 /* n: the whole message. errors ERROR_FORMAT with what and where; header_bytes: where the picture starts */
-NODISCARD bool frame_header_read(const uint8_t *bytes, size_t n, struct frame_header *header, size_t *header_bytes, struct error *err);
+NODISCARD bool frame_header_read(const uint8_t *bytes, size_t n, struct frame_header *header, size_t *header_bytes,
+                                 struct error *err);

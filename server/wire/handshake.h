@@ -1,5 +1,6 @@
 #pragma once
-/* The handshake of a WebSocket as the acceptor has checked it: plain data from where requests are read to where they are answered. */
+/* The handshake of a WebSocket as the acceptor has checked it: plain data from where requests are read to where they
+ * are answered. */
 #include <stddef.h>
 
 enum { HANDSHAKE_MAX_ORIGIN = 300, HANDSHAKE_MAX_HOST = 300 };

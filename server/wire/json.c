@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes of the well-formed UTF-8 character at s, of at most n; 0: none, without overlong forms, surrogates or NUL (Unicode 15,
- * table 3-7). */
+/* Bytes of the well-formed UTF-8 character at s, of at most n; 0: none, without overlong forms, surrogates or NUL
+ * (Unicode 15, table 3-7). */
 static size_t utf8_character(const unsigned char *s, size_t n)
 {
     unsigned char c = s[0];
@@ -14,7 +14,8 @@ static size_t utf8_character(const unsigned char *s, size_t n)
     for (size_t k = 1; k <= more; k++)
         if ((s[k] & 0xc0) != 0x80)
             return 0;
-    bool is_odd = (c == 0xe0 && s[1] < 0xa0) || (c == 0xed && s[1] > 0x9f) || (c == 0xf0 && s[1] < 0x90) || (c == 0xf4 && s[1] > 0x8f);
+    bool is_odd = (c == 0xe0 && s[1] < 0xa0) || (c == 0xed && s[1] > 0x9f) || (c == 0xf0 && s[1] < 0x90) ||
+                  (c == 0xf4 && s[1] > 0x8f);
     return is_odd ? 0 : more + 1;
 }
 
@@ -100,7 +101,8 @@ cJSON *json_read(const char *bytes, size_t n, struct problem *problem)
     }
     for (; end < bytes + n; end++)
         if (!strchr(" \t\r\n", *end)) {
-            problem_set(problem, PROBLEM_JSON, "", "", "something follows the JSON value at byte %zu", (size_t)(end - bytes));
+            problem_set(problem, PROBLEM_JSON, "", "", "something follows the JSON value at byte %zu",
+                        (size_t)(end - bytes));
             cJSON_Delete(json);
             return NULL;
         }

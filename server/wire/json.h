@@ -1,5 +1,6 @@
 #pragma once
-/* JSON documents for the server's modules: the one door to cJSON, with bounds. Thread: any, a document has one owner. */
+/* JSON documents for the server's modules: the one door to cJSON, with bounds. Thread: any, a document has one owner.
+ */
 #include <cjson/cJSON.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -8,7 +9,8 @@
 
 enum { JSON_MAX_DEPTH = 32 };
 
-/* Parses exactly n bytes: valid UTF-8, at most JSON_MAX_DEPTH deep, nothing after the value. NULL with problem "json". */
+/* Parses exactly n bytes: valid UTF-8, at most JSON_MAX_DEPTH deep, nothing after the value. NULL with problem "json".
+ */
 NODISCARD cJSON *json_read(const char *bytes, size_t n, struct problem *problem);
 /* Compact text, free() it. Never NULL, always UTF-8: bytes in strings that are none come out as '?'. */
 NODISCARD char *json_write(const cJSON *json);

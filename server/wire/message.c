@@ -6,7 +6,8 @@ bool message_read(const char *bytes, size_t n, bool from_client, struct message 
 {
     memset(message, 0, sizeof *message);
     if (n > WIRE_MAX_CLIENT_BYTES && from_client)
-        return problem_set(problem, PROBLEM_TOO_LARGE, "", "", "a message of %zu bytes, at most %d are allowed", n, WIRE_MAX_CLIENT_BYTES);
+        return problem_set(problem, PROBLEM_TOO_LARGE, "", "", "a message of %zu bytes, at most %d are allowed", n,
+                           WIRE_MAX_CLIENT_BYTES);
     cJSON *json = json_read(bytes, n, problem);
     if (!json)
         return false;

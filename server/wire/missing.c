@@ -21,7 +21,8 @@ static cJSON *read_region(const cJSON *said)
 
 cJSON *missing_read(const cJSON *frame)
 {
-    const cJSON *said = cJSON_GetObjectItemCaseSensitive(frame, "missing"), *list = cJSON_GetObjectItemCaseSensitive(said, "regions"), *item;
+    const cJSON *said = cJSON_GetObjectItemCaseSensitive(frame, "missing"),
+                *list = cJSON_GetObjectItemCaseSensitive(said, "regions"), *item;
     double n = json_number(said, "n", 0);
     int n_listed = cJSON_GetArraySize(list);
     if (!cJSON_IsArray(list) || n_listed < 1 || n_listed > MISSING_MAX_REGIONS || !(n >= n_listed && n <= MAX_COUNT))

@@ -2,6 +2,7 @@
 /* Whether a page belongs to this server: the one rule for HTTP requests that change something and for WebSockets. */
 #include <stdbool.h>
 
-/* True when origin (RFC 6454: "http://name:port") has the scheme http or https and names exactly what the request's Host header names. A proxy
- * in front may speak https where we hear http, so either scheme is the server's own. NULL is no origin: false. */
+/* True when origin (RFC 6454: "http://name:port") has the scheme http or https and names exactly what the request's
+ * Host header names. A proxy in front may speak https where we hear http, so either scheme is the server's own. NULL is
+ * no origin: false. */
 bool origin_is_of_host(const char *origin, const char *host);

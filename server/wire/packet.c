@@ -32,15 +32,17 @@ void packet_finish(struct packet *packet)
 }
 
 /* Of a size that its type allows; err names type, sizes and limits. */
-static bool is_within_limit(const char *type, enum packet_direction direction, size_t n_json, size_t n_blob, struct error *err)
+static bool is_within_limit(const char *type, enum packet_direction direction, size_t n_json, size_t n_blob,
+                            struct error *err)
 {
     const struct packet_limit *limit = packet_limit_find(type);
     if (!limit || limit->direction != direction)
         return error_set(err, ERROR_FORMAT, "there is no packet \"%.40s\" %s", type ? type : "",
                          direction == PACKET_TO_DAEMON ? "to the daemon" : "to a renderer");
     if (n_json > limit->max_json || n_blob > limit->max_blob)
-        return error_set(err, ERROR_LIMIT, "a packet \"%s\" of %zu + %zu bytes, at most %" PRIu32 " + %" PRIu32 " are allowed", type, n_json,
-                         n_blob, limit->max_json, limit->max_blob);
+        return error_set(err, ERROR_LIMIT,
+                         "a packet \"%s\" of %zu + %zu bytes, at most %" PRIu32 " + %" PRIu32 " are allowed", type,
+                         n_json, n_blob, limit->max_json, limit->max_blob);
     return true;
 }
 
@@ -86,11 +88,13 @@ bool packet_frame_read(const struct packet *packet, struct packet_frame *frame)
     const char *type = json_text(json, "type");
     *frame = (struct packet_frame){ 0 };
     if (!type || strcmp(type, "frame") != 0 || packet->n_blob == 0 || packet->n_blob > PACKET_MAX_PICTURE ||
-        !is_number_within(json, "width_px", 1, PACKET_MAX_SIDE_PX, &width) || !is_number_within(json, "height_px", 1, PACKET_MAX_SIDE_PX, &height) ||
-        !is_number_within(json, "scene_revision", 0, UINT32_MAX, &revision) || !is_number_within(json, "render_us", 0, UINT32_MAX, &render_us) ||
+        !is_number_within(json, "width_px", 1, PACKET_MAX_SIDE_PX, &width) ||
+        !is_number_within(json, "height_px", 1, PACKET_MAX_SIDE_PX, &height) ||
+        !is_number_within(json, "scene_revision", 0, UINT32_MAX, &revision) ||
+        !is_number_within(json, "render_us", 0, UINT32_MAX, &render_us) ||
         !is_number_within(json, "encode_us", 0, UINT32_MAX, &encode_us) ||
-        !is_number_within(json, "pixels_per_mm", 0, MAX_PIXELS_PER_MM, &frame->pixels_per_mm) || !cJSON_IsArray(matrix) ||
-        cJSON_GetArraySize(matrix) != 16)
+        !is_number_within(json, "pixels_per_mm", 0, MAX_PIXELS_PER_MM, &frame->pixels_per_mm) ||
+        !cJSON_IsArray(matrix) || cJSON_GetArraySize(matrix) != 16)
         return false;
     frame->width_px = (uint16_t)width;
     frame->height_px = (uint16_t)height;
@@ -108,7 +112,7 @@ bool packet_frame_read(const struct packet *packet, struct packet_frame *frame)
     return true;
 }
 
-/* ---- reading ---------------------------------------------------------------------------------------------------------- */
+/* ---- reading ---------------------------------------------------------------------------------------------------- */
 
 struct packet_reader *packet_reader_create(enum packet_direction direction)
 {
@@ -138,13 +142,15 @@ static int read_head(const struct packet_reader *reader, struct head *head, stru
         return 0;
     memcpy(head, reader->bytes + reader->at, sizeof *head);
     if (head->magic != PACKET_MAGIC) {
-        error_set(err, ERROR_FORMAT, "a packet begins with 0x%08" PRIx32 ", expected 0x%08x", head->magic, PACKET_MAGIC);
+        error_set(err, ERROR_FORMAT, "a packet begins with 0x%08" PRIx32 ", expected 0x%08x", head->magic,
+                  PACKET_MAGIC);
         return -1;
     }
     struct packet_limit largest = packet_limit_largest(reader->direction);
     if (head->json_bytes > largest.max_json || head->blob_bytes > largest.max_blob) {
-        error_set(err, ERROR_LIMIT, "a packet of %" PRIu32 " + %" PRIu32 " bytes, at most %" PRIu32 " + %" PRIu32 " are allowed", head->json_bytes,
-                  head->blob_bytes, largest.max_json, largest.max_blob);
+        error_set(err, ERROR_LIMIT,
+                  "a packet of %" PRIu32 " + %" PRIu32 " bytes, at most %" PRIu32 " + %" PRIu32 " are allowed",
+                  head->json_bytes, head->blob_bytes, largest.max_json, largest.max_blob);
         return -1;
     }
     return 1;
@@ -168,7 +174,8 @@ uint8_t *packet_reader_space(struct packet_reader *reader, size_t *n, struct err
         least = sizeof head + head.json_bytes;
         want = want > least ? want : least;
     }
-    if (least > reader->room || reader->room > want + READ_STEP) { /* a large packet's memory is not kept for small ones */
+    if (least > reader->room ||
+        reader->room > want + READ_STEP) { /* a large packet's memory is not kept for small ones */
         uint8_t *changed = realloc(reader->bytes, want);
         if (!changed) {
             error_set(err, ERROR_MEMORY, "no memory for a packet of %zu bytes", want);

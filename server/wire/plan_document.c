@@ -125,7 +125,8 @@ static cJSON *region_object(const struct region_set *set, size_t index)
     add(object, "name", cJSON_CreateString(region->name));
     add(object, "color", cJSON_CreateString(color));
     add(object, "color_from_file", cJSON_CreateBool(region->has_file_color));
-    add(object, "parent", region->parent >= 0 ? cJSON_CreateString(set->regions[region->parent].id) : cJSON_CreateNull());
+    add(object, "parent",
+        region->parent >= 0 ? cJSON_CreateString(set->regions[region->parent].id) : cJSON_CreateNull());
     add(object, "depth", cJSON_CreateNumber(region_depth(set, index)));
     add(object, "grid", grid_object(grid));
     add(object, "label", cJSON_CreateNumber(region->label));
@@ -151,7 +152,8 @@ static cJSON *dose_object(const struct dose *dose)
     add(object, "name", cJSON_CreateString(dose->name));
     add(object, "unit", cJSON_CreateString(dose->unit));
     add(object, "per", cJSON_CreateString(dose->per));
-    add(object, "frame_of_reference", dose->has_frame ? cJSON_CreateString(dose_frame_word(dose->frame)) : cJSON_CreateNull());
+    add(object, "frame_of_reference",
+        dose->has_frame ? cJSON_CreateString(dose_frame_word(dose->frame)) : cJSON_CreateNull());
     add(object, "masked", cJSON_CreateBool(dose->mask != NULL));
     for (size_t i = 0; i < dose->n_components; i++) {
         const struct dose_component *component = &dose->components[i];
@@ -225,7 +227,7 @@ static cJSON *tracks_object(const struct track_set *tracks)
     cJSON *object = cJSON_CreateObject(), *classes = cJSON_CreateObject();
     add(object, "segments", number((double)tracks->n_segments));
     for (int class = 0; class < TRACK_N_CLASSES; class ++)
-        add(classes, track_class_word((enum track_class)class), number((double)tracks->n_of_class[class]));
+        add(classes, track_class_word((enum track_class) class), number((double)tracks->n_of_class[class]));
     add(object, "classes", classes);
     return object;
 }
@@ -237,7 +239,8 @@ static cJSON *curve_object(const struct dose_curve *curve)
     add(object, "name", cJSON_CreateString(curve->name));
     add(object, "unit", cJSON_CreateString(curve->unit));
     add(object, "per", cJSON_CreateString(curve->per));
-    const double ends[4] = { curve->depths_mm[0], curve->depths_mm[curve->n_depths - 1], curve->radii_mm[0], curve->radii_mm[curve->n_radii - 1] };
+    const double ends[4] = { curve->depths_mm[0], curve->depths_mm[curve->n_depths - 1], curve->radii_mm[0],
+                             curve->radii_mm[curve->n_radii - 1] };
     add(object, "depth_mm", cJSON_CreateDoubleArray(ends, 2));
     add(object, "radius_mm", cJSON_CreateDoubleArray(ends + 2, 2));
     for (size_t c = 0; c < curve->n_columns; c++) {

@@ -3,7 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-bool problem_set(struct problem *problem, enum problem_type type, const char *pointer, const char *code, const char *format, ...)
+bool problem_set(struct problem *problem, enum problem_type type, const char *pointer, const char *code,
+                 const char *format, ...)
 {
     if (!problem)
         return false;
@@ -22,7 +23,8 @@ void problem_below(struct problem *problem, const char *prefix)
 {
     char pointer[sizeof problem->pointer];
     memcpy(pointer, problem->pointer, sizeof pointer);
-    (void)snprintf(problem->pointer, sizeof problem->pointer, "%s%.*s", prefix, (int)(sizeof pointer - strlen(prefix) - 1), pointer);
+    (void)snprintf(problem->pointer, sizeof problem->pointer, "%s%.*s", prefix,
+                   (int)(sizeof pointer - strlen(prefix) - 1), pointer);
 }
 
 bool problem_from_error(struct problem *problem, const struct error *err)

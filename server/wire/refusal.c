@@ -19,10 +19,11 @@ char *refusal_write(const struct problem *problem, size_t *n)
     else if (problem->type == PROBLEM_UPGRADE) /* RFC 9110 15.5.22, RFC 6455 4.4 */
         (void)snprintf(more, sizeof more, "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n");
     const struct problem_words *words = &problem_types[problem->type];
-    int n_head = snprintf(head, sizeof head,
-                          "HTTP/1.1 %d %s\r\nContent-Type: application/problem+json\r\nContent-Length: %zu\r\n%sConnection: %s\r\n"
-                          "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n\r\n",
-                          words->status, words->title, strlen(body), more, problem->type == PROBLEM_UPGRADE ? "close, Upgrade" : "close");
+    int n_head = snprintf(
+        head, sizeof head,
+        "HTTP/1.1 %d %s\r\nContent-Type: application/problem+json\r\nContent-Length: %zu\r\n%sConnection: %s\r\n"
+        "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n\r\n",
+        words->status, words->title, strlen(body), more, problem->type == PROBLEM_UPGRADE ? "close, Upgrade" : "close");
     size_t n_body = strlen(body);
     *n = (size_t)n_head + n_body;
     char *text = mem_new(*n + 1);

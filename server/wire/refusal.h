@@ -6,8 +6,9 @@
 
 /* Status line, headers and body; the connection closes after it. For free(). */
 NODISCARD char *refusal_write(const struct problem *problem, size_t *n);
-/* Says it without waiting, and that nothing more will be sent; a peer that does not take it now gets less of it. Closes nothing. */
+/* Says it without waiting, and that nothing more will be sent; a peer that does not take it now gets less of it. Closes
+ * nothing. */
 void refusal_send(int socket, const struct problem *problem);
-/* Drops what has come by now, at most so many bytes: a socket that is closed with bytes unread takes the answer back. False once the peer
- * has ended. */
+/* Drops what has come by now, at most so many bytes: a socket that is closed with bytes unread takes the answer back.
+ * False once the peer has ended. */
 bool refusal_drain(int socket, size_t most);

@@ -6,21 +6,26 @@
 
 #include "wire_gen.h"
 
-const char *const shape_query_names[] = { "representation", "algorithm", "normals", "outline", "inner_boundary", "order", "sampling", "bins", "format", "frames",
-                                          NULL };
+const char *const shape_query_names[] = { "representation", "algorithm", "normals",  "outline",
+                                          "inner_boundary", "order",     "sampling", "bins",
+                                          "format",         "frames",    NULL };
 
-/* Words that the scene does not have. Those it has stand in the order of core's enums; the tests hold the two together. */
-static const struct field_words flags = { (const char *const[]){ "false", "true" }, 2 }, formats = { (const char *const[]){ "json", "stl", "ply", "glb" }, 4 };
+/* Words that the scene does not have. Those it has stand in the order of core's enums; the tests hold the two together.
+ */
+static const struct field_words flags = { (const char *const[]){ "false", "true" }, 2 },
+                                formats = { (const char *const[]){ "json", "stl", "ply", "glb" }, 4 };
 
 static bool refuse(struct problem *problem, const char *name, const char *found, const char *expected)
 {
     char pointer[48];
     (void)snprintf(pointer, sizeof pointer, "/%s", name);
-    return problem_set(problem, PROBLEM_VALIDATION, pointer, "enum", "%s is \"%.40s\", expected %s", name, found, expected);
+    return problem_set(problem, PROBLEM_VALIDATION, pointer, "enum", "%s is \"%.40s\", expected %s", name, found,
+                       expected);
 }
 
 /* The place of a word in its list; absent: start. */
-static bool read_word(const cJSON *json, const char *name, const struct field_words *words, int start, int *at, struct problem *problem)
+static bool read_word(const cJSON *json, const char *name, const struct field_words *words, int start, int *at,
+                      struct problem *problem)
 {
     const char *word = json_text(json, name);
     char list[160] = "";
@@ -36,7 +41,8 @@ static bool read_word(const cJSON *json, const char *name, const struct field_wo
     return refuse(problem, name, word, list);
 }
 
-static bool read_whole(const cJSON *json, const char *name, int low, int high, int start, int *value, struct problem *problem)
+static bool read_whole(const cJSON *json, const char *name, int low, int high, int start, int *value,
+                       struct problem *problem)
 {
     const char *word = json_text(json, name);
     char *end;
@@ -51,19 +57,23 @@ static bool read_whole(const cJSON *json, const char *name, int low, int high, i
     }
     char pointer[48];
     (void)snprintf(pointer, sizeof pointer, "/%s", name);
-    return problem_set(problem, PROBLEM_VALIDATION, pointer, is_whole ? "range" : "type", "%s is \"%.40s\", expected a whole number from %d to %d", name, word, low, high);
+    return problem_set(problem, PROBLEM_VALIDATION, pointer, is_whole ? "range" : "type",
+                       "%s is \"%.40s\", expected a whole number from %d to %d", name, word, low, high);
 }
 
 bool shape_query_read(const cJSON *json, struct shape_query *query, struct problem *problem)
 {
     const struct scene *start = &scene_default;
     int representation, algorithm, outline, sampling, is_face, has_inner, format, order, bins, n_frames;
-    if (!read_word(json, "representation", &scene_representation_words, REPRESENTATION_SURFACE, &representation, problem) ||
+    if (!read_word(json, "representation", &scene_representation_words, REPRESENTATION_SURFACE, &representation,
+                   problem) ||
         !read_word(json, "algorithm", &scene_algorithm_words, (int)start->surface.algorithm, &algorithm, problem) ||
         !read_word(json, "outline", &scene_outline_method_words, OUTLINE_TRACED, &outline, problem) ||
         !read_word(json, "sampling", &scene_nurbs_sampling_words, NURBS_TRACES, &sampling, problem) ||
-        !read_word(json, "inner_boundary", &flags, 0, &has_inner, problem) || !read_word(json, "normals", &scene_normals_words, 0, &is_face, problem) ||
-        !read_word(json, "format", &formats, 0, &format, problem) || !read_whole(json, "order", 2, 4, (int)start->nurbs.order, &order, problem) ||
+        !read_word(json, "inner_boundary", &flags, 0, &has_inner, problem) ||
+        !read_word(json, "normals", &scene_normals_words, 0, &is_face, problem) ||
+        !read_word(json, "format", &formats, 0, &format, problem) ||
+        !read_whole(json, "order", 2, 4, (int)start->nurbs.order, &order, problem) ||
         !read_whole(json, "bins", 8, 360, (int)start->nurbs.bins, &bins, problem) ||
         !read_whole(json, "frames", 0, SHAPE_QUERY_MAX_FRAMES, 0, &n_frames, problem))
         return false;
@@ -82,7 +92,8 @@ bool shape_query_read(const cJSON *json, struct shape_query *query, struct probl
     if (query->is_file && !mesh_format_from_word(word, &query->format))
         return refuse(problem, "format", word, "json, stl, ply, glb");
     if (query->is_file && !shape_query_has_triangles(query))
-        return problem_set(problem, PROBLEM_VALIDATION, "/format", "enum", "%s has no triangles to write as %s, expected json",
+        return problem_set(problem, PROBLEM_VALIDATION, "/format", "enum",
+                           "%s has no triangles to write as %s, expected json",
                            scene_representation_words.words[representation], word);
     return true;
 }
@@ -90,7 +101,8 @@ bool shape_query_read(const cJSON *json, struct shape_query *query, struct probl
 bool shape_query_has_triangles(const struct shape_query *query)
 {
     enum region_representation r = query->key.representation;
-    return r == REPRESENTATION_SURFACE || r == REPRESENTATION_UNIVELS || r == REPRESENTATION_NURBS || r == REPRESENTATION_FAN;
+    return r == REPRESENTATION_SURFACE || r == REPRESENTATION_UNIVELS || r == REPRESENTATION_NURBS ||
+           r == REPRESENTATION_FAN;
 }
 
 static cJSON *add_object(cJSON *to, const char *name)

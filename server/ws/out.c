@@ -13,7 +13,7 @@
 
 enum { LOG_EVERY_US = 10000000 };
 
-/* ---- what waits to go out ------------------------------------------------------------------------------------------- */
+/* ---- what waits to go out --------------------------------------------------------------------------------------- */
 
 struct message_out *out_message(enum ws_opcode opcode, const void *bytes, size_t n)
 {
@@ -148,7 +148,7 @@ void ws_bye(struct ws_connection *connection, enum ws_close_code code, const cha
     out_begin_close(connection, (uint16_t)code, reason);
 }
 
-/* ---- what goes out -------------------------------------------------------------------------------------------------- */
+/* ---- what goes out ---------------------------------------------------------------------------------------------- */
 
 static void begin_sending_message(struct ws_connection *connection, struct message_out *message)
 {
@@ -209,7 +209,8 @@ static bool has_more(const struct ws_connection *connection)
 static void finish_sending(struct ws_connection *connection)
 {
     struct sending *sending = &connection->sending;
-    if (sending->message && sending->message->opcode == WS_CLOSE) { /* RFC 6455 7.1.1: nothing more goes out; the client ends its side */
+    if (sending->message &&
+        sending->message->opcode == WS_CLOSE) { /* RFC 6455 7.1.1: nothing more goes out; the client ends its side */
         connection->state = STATE_LINGERING;
         (void)shutdown(lws_get_socket_fd(connection->wsi), SHUT_WR);
         end_within(connection, WS_LINGER_MS * INT64_C(1000));
@@ -225,7 +226,8 @@ enum sent { SENT_ALL, SENT_PART, SENT_FAILED };
 static enum sent send_some(struct ws_connection *connection)
 {
     struct sending *sending = &connection->sending;
-    size_t n_all = sending->n_head + sending->n_body, n_left_head = sending->n_done < sending->n_head ? sending->n_head - sending->n_done : 0;
+    size_t n_all = sending->n_head + sending->n_body,
+           n_left_head = sending->n_done < sending->n_head ? sending->n_head - sending->n_done : 0;
     size_t at_body = sending->n_done > sending->n_head ? sending->n_done - sending->n_head : 0;
     struct iovec parts[2] = { { sending->head + sending->n_head - n_left_head, n_left_head },
                               { (uint8_t *)(uintptr_t)sending->body + at_body, sending->n_body - at_body } };
@@ -242,7 +244,8 @@ static enum sent send_some(struct ws_connection *connection)
 
 int out_write(struct ws_connection *connection)
 {
-    if (connection->state == STATE_NONE || connection->state == STATE_LINGERING || (!is_sending(connection) && !begin_next(connection)))
+    if (connection->state == STATE_NONE || connection->state == STATE_LINGERING ||
+        (!is_sending(connection) && !begin_next(connection)))
         return 0;
     if (send_some(connection) == SENT_FAILED)
         return -1;

@@ -24,7 +24,7 @@ static bool fail(struct ws_parser *parser, struct ws_event *event, uint16_t code
     return false;
 }
 
-/* ---- UTF-8 ---------------------------------------------------------------------------------------------------------- */
+/* ---- UTF-8 ------------------------------------------------------------------------------------------------------ */
 
 static bool begin_character(struct ws_parser *parser, uint8_t byte)
 {
@@ -72,7 +72,7 @@ static bool check_utf8(struct ws_parser *parser, const uint8_t *bytes, size_t n)
     return true;
 }
 
-/* ---- the header of a frame ------------------------------------------------------------------------------------------ */
+/* ---- the header of a frame -------------------------------------------------------------------------------------- */
 
 static bool is_control(enum ws_opcode opcode)
 {
@@ -88,13 +88,15 @@ static bool check_first_byte(struct ws_parser *parser, struct ws_event *event)
         return fail(parser, event, WS_CLOSE_PROTOCOL, "a reserved bit is set; no extension was agreed on");
     switch (parser->opcode) {
     case WS_CONTINUATION:
-        return parser->kind != WS_CONTINUATION || fail(parser, event, WS_CLOSE_PROTOCOL, "a continuation without a message that it continues");
+        return parser->kind != WS_CONTINUATION ||
+               fail(parser, event, WS_CLOSE_PROTOCOL, "a continuation without a message that it continues");
     case WS_BINARY:
         if (!parser->takes_binary)
             return fail(parser, event, WS_CLOSE_UNSUPPORTED, "binary messages are not read; expected is text");
         /* fall through */
     case WS_TEXT:
-        return parser->kind == WS_CONTINUATION || fail(parser, event, WS_CLOSE_PROTOCOL, "a message begins inside another's fragments");
+        return parser->kind == WS_CONTINUATION ||
+               fail(parser, event, WS_CLOSE_PROTOCOL, "a message begins inside another's fragments");
     case WS_CLOSE:
     case WS_PING:
     case WS_PONG: return parser->is_final || fail(parser, event, WS_CLOSE_PROTOCOL, "a control frame is in fragments");
@@ -160,7 +162,7 @@ static bool take_head(struct ws_parser *parser, const uint8_t **at, const uint8_
     return true;
 }
 
-/* ---- the payload ---------------------------------------------------------------------------------------------------- */
+/* ---- the payload ------------------------------------------------------------------------------------------------ */
 
 static void unmask(const struct ws_parser *parser, uint8_t *out, const uint8_t *in, size_t n)
 {
@@ -223,12 +225,14 @@ static bool take_payload(struct ws_parser *parser, const uint8_t **at, const uin
     return true;
 }
 
-/* ---- whole frames --------------------------------------------------------------------------------------------------- */
+/* ---- whole frames ----------------------------------------------------------------------------------------------- */
 
-/* RFC 6455 7.4: those that are defined and may be sent, with what the registry added since, and those of libraries and programs */
+/* RFC 6455 7.4: those that are defined and may be sent, with what the registry added since, and those of libraries and
+ * programs */
 static bool code_may_be_sent(unsigned code)
 {
-    return (code >= 1000 && code <= 1014 && code != 1004 && code != 1005 && code != 1006) || (code >= 3000 && code <= 4999);
+    return (code >= 1000 && code <= 1014 && code != 1004 && code != 1005 && code != 1006) ||
+           (code >= 3000 && code <= 4999);
 }
 
 static bool finish_close(struct ws_parser *parser, struct ws_event *event)
@@ -253,13 +257,18 @@ static void finish_frame(struct ws_parser *parser, struct ws_event *event)
     if (parser->opcode == WS_CLOSE) {
         (void)finish_close(parser, event);
     } else if (is_control(parser->opcode)) {
-        *event = (struct ws_event){ .type = parser->opcode == WS_PING ? WS_EVENT_PING : WS_EVENT_PONG, .bytes = parser->control, .n = (size_t)parser->n_payload };
+        *event = (struct ws_event){ .type = parser->opcode == WS_PING ? WS_EVENT_PING : WS_EVENT_PONG,
+                                    .bytes = parser->control,
+                                    .n = (size_t)parser->n_payload };
     } else if (parser->is_final) {
         if (parser->kind == WS_TEXT && parser->utf8_more) {
             (void)fail(parser, event, WS_CLOSE_NOT_UTF8, "a text ends inside a character");
             return;
         }
-        *event = (struct ws_event){ .type = WS_EVENT_MESSAGE, .kind = parser->kind, .bytes = parser->message ? parser->message : parser->control, .n = parser->n_message };
+        *event = (struct ws_event){ .type = WS_EVENT_MESSAGE,
+                                    .kind = parser->kind,
+                                    .bytes = parser->message ? parser->message : parser->control,
+                                    .n = parser->n_message };
         parser->kind = WS_CONTINUATION;
         parser->is_delivered = true;
     }

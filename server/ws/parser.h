@@ -1,16 +1,18 @@
 #pragma once
-/* Bytes of a WebSocket client to messages: the frames of RFC 6455 as a server must read them. What breaks the protocol is seen at the
- * first byte that does, and ends the parser. Knows no sockets, no clock and nothing of what messages say.
+/* Bytes of a WebSocket client to messages: the frames of RFC 6455 as a server must read them. What breaks the protocol
+ * is seen at the first byte that does, and ends the parser. Knows no sockets, no clock and nothing of what messages
+ * say.
  *
- * "Frame" in this folder's parser is RFC 6455's word for a part of a message; a picture's frame is core's and wire's. */
+ * "Frame" in this folder's parser is RFC 6455's word for a part of a message; a picture's frame is core's and wire's.
+ */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 enum {
-    WS_MAX_CONTROL = 125,         /* bytes of a ping, a pong or a close (RFC 6455 5.5) */
-    WS_MAX_REASON = 123,          /* bytes of words in a close */
-    WS_MESSAGE_KEPT = 4096,       /* bytes kept between messages; more memory is given back */
+    WS_MAX_CONTROL = 125,   /* bytes of a ping, a pong or a close (RFC 6455 5.5) */
+    WS_MAX_REASON = 123,    /* bytes of words in a close */
+    WS_MESSAGE_KEPT = 4096, /* bytes kept between messages; more memory is given back */
 };
 
 enum ws_opcode { WS_CONTINUATION = 0, WS_TEXT = 1, WS_BINARY = 2, WS_CLOSE = 8, WS_PING = 9, WS_PONG = 10 };
@@ -33,8 +35,9 @@ enum ws_event_type {
     WS_EVENT_MESSAGE, /* a whole text (checked UTF-8) or binary message */
     WS_EVENT_PING,
     WS_EVENT_PONG,
-    WS_EVENT_CLOSE,   /* code: the client's, or WS_CLOSE_NO_CODE; nothing after it is read */
-    WS_EVENT_BROKEN   /* code: to close with; reason: a sentence of at most WS_MAX_REASON bytes; nothing after it is read */
+    WS_EVENT_CLOSE, /* code: the client's, or WS_CLOSE_NO_CODE; nothing after it is read */
+    WS_EVENT_BROKEN /* code: to close with; reason: a sentence of at most WS_MAX_REASON bytes; nothing after it is read
+                     */
 };
 
 struct ws_event {
@@ -61,11 +64,12 @@ struct ws_parser { /* in the caller's storage; only parser.c looks inside */
     uint8_t utf8_more, utf8_low, utf8_high; /* continuation bytes that a character lacks, and the range of the next */
 };
 
-/* max_message_bytes: of a message, its fragments together. takes_binary false: a binary message breaks it, with WS_CLOSE_UNSUPPORTED. */
+/* max_message_bytes: of a message, its fragments together. takes_binary false: a binary message breaks it, with
+ * WS_CLOSE_UNSUPPORTED. */
 void ws_parser_init(struct ws_parser *parser, size_t max_message_bytes, bool takes_binary);
 void ws_parser_finish(struct ws_parser *parser);
-/* Takes bytes up to the end of the next event; returns how many it took. Call it until it gives WS_EVENT_NONE. After a close or a break
- * it takes and drops all. */
+/* Takes bytes up to the end of the next event; returns how many it took. Call it until it gives WS_EVENT_NONE. After a
+ * close or a break it takes and drops all. */
 size_t ws_parser_take(struct ws_parser *parser, const uint8_t *bytes, size_t n, struct ws_event *event);
 
 /* Writes a server's frame header: FIN set, not masked, the shortest length. Returns its bytes, at most 10. */

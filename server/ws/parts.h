@@ -34,7 +34,7 @@ struct sending { /* what is partly in the kernel: nothing else may go before its
 };
 
 enum state {
-    STATE_NONE,     /* not open yet, or closed() has been told */
+    STATE_NONE, /* not open yet, or closed() has been told */
     STATE_OPEN,
     STATE_CLOSING,  /* what comes is dropped; what waits, then the close, goes out */
     STATE_LINGERING /* the close is out; the client's end is waited for */
@@ -73,12 +73,16 @@ struct ws {
 struct message_out *out_message(enum ws_opcode opcode, const void *bytes, size_t n);
 void out_queue_add(struct queue_out *queue, struct message_out *message);
 void out_queue_clear(struct queue_out *queue);
-void out_add_pong(struct ws_connection *connection, const void *bytes, size_t n); /* the oldest is left out where too many wait */
+void out_add_pong(struct ws_connection *connection, const void *bytes,
+                  size_t n); /* the oldest is left out where too many wait */
 /* One thing, as the kernel takes it; the loop calls it again when it takes more. Not 0: the connection is to be cut. */
 int out_write(struct ws_connection *connection);
-/* Pongs and closes go out before more is read: a client may end its side right after asking. Not 0: the connection is to be cut. */
+/* Pongs and closes go out before more is read: a client may end its side right after asking. Not 0: the connection is
+ * to be cut. */
 int out_answer_now(struct ws_connection *connection);
-/* What waits is still sent, and then a close with this code and reason (NULL: none); what comes from here on is dropped. */
+/* What waits is still sent, and then a close with this code and reason (NULL: none); what comes from here on is
+ * dropped. */
 void out_begin_close(struct ws_connection *connection, uint16_t code, const char *reason);
 void out_drop_frames(struct ws_connection *connection);
-void out_log_cut(struct ws *ws, const char *reason); /* a line at times: who connects again and again does not fill the log */
+void out_log_cut(struct ws *ws,
+                 const char *reason); /* a line at times: who connects again and again does not fill the log */

@@ -32,7 +32,7 @@ const struct ws_limits ws_limits_default = {
     .max_waiting_bytes = 4 << 20,
 };
 
-/* ---- the handshake -------------------------------------------------------------------------------------------------- */
+/* ---- the handshake ---------------------------------------------------------------------------------------------- */
 
 /* A page of another site must not open a connection with this browser's standing. Programs send no Origin. */
 static bool origin_is_allowed(const struct ws *ws, const struct handshake *handshake)
@@ -55,12 +55,16 @@ static void refuse(struct ws *ws, int socket, const struct problem *problem)
 static bool may_open(const struct ws *ws, const struct handshake *handshake, struct problem *problem)
 {
     if (!handshake->room_id[0] || !ws->callbacks.has_room(ws->callbacks.context, handshake->room_id))
-        return problem_set(problem, PROBLEM_NOT_FOUND, "", "", "there is no such room; expected is the id of one that is open");
+        return problem_set(problem, PROBLEM_NOT_FOUND, "", "",
+                           "there is no such room; expected is the id of one that is open");
     if (!origin_is_allowed(ws, handshake))
-        return problem_set(problem, PROBLEM_FORBIDDEN, "", "",
-                           "the origin \"%.100s\" may not open a WebSocket; expected is the server's own, or that of --allow-origin", handshake->origin);
+        return problem_set(
+            problem, PROBLEM_FORBIDDEN, "", "",
+            "the origin \"%.100s\" may not open a WebSocket; expected is the server's own, or that of --allow-origin",
+            handshake->origin);
     if (ws->counters.n_connections >= WS_MAX_CONNECTIONS) {
-        (void)problem_set(problem, PROBLEM_LIMIT, "", "", "too many WebSockets are open; at most %d are", WS_MAX_CONNECTIONS);
+        (void)problem_set(problem, PROBLEM_LIMIT, "", "", "too many WebSockets are open; at most %d are",
+                          WS_MAX_CONNECTIONS);
         problem->retry_after_ms = WS_RETRY_MS;
         return false;
     }
@@ -76,8 +80,10 @@ static bool answer_handshake(int socket, const char *key)
     lws_SHA1((const unsigned char *)bytes, (size_t)n_bytes, hash);
     if (lws_b64_encode_string((const char *)hash, sizeof hash, accept, sizeof accept) < 0)
         return false;
-    int n = snprintf(answer, sizeof answer, "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: %s\r\n\r\n",
-                     accept);
+    int n = snprintf(
+        answer, sizeof answer,
+        "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: %s\r\n\r\n",
+        accept);
     return send(socket, answer, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT) == n;
 }
 
@@ -158,12 +164,13 @@ void ws_refuse_as_stopping(struct ws *ws, int socket)
     refuse(ws, socket, &problem);
 }
 
-/* ---- what comes in -------------------------------------------------------------------------------------------------- */
+/* ---- what comes in ---------------------------------------------------------------------------------------------- */
 
 static void refuse_rate(struct ws_connection *connection, const struct rate_limit *limit, const char *what)
 {
     char reason[100];
-    (void)snprintf(reason, sizeof reason, "more than %lld %s a second, or %lld at once", (long long)limit->per_s, what, (long long)limit->burst);
+    (void)snprintf(reason, sizeof reason, "more than %lld %s a second, or %lld at once", (long long)limit->per_s, what,
+                   (long long)limit->burst);
     out_log_cut(connection->ws, reason);
     ws_bye(connection, WS_CLOSE_POLICY, reason, WS_RETRY_MS);
 }
@@ -271,14 +278,16 @@ static int handle(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     }
 }
 
-/* ---- life ----------------------------------------------------------------------------------------------------------- */
+/* ---- life ------------------------------------------------------------------------------------------------------- */
 
 static void log_library(int level, const char *line)
 {
-    log_line(level == LLL_ERR ? LOG_WARN : LOG_DEBUG, "libwebsockets: %s", line); /* its errors are about what clients do */
+    log_line(level == LLL_ERR ? LOG_WARN : LOG_DEBUG, "libwebsockets: %s",
+             line); /* its errors are about what clients do */
 }
 
-struct ws *ws_create(const struct ws_callbacks *callbacks, const struct ws_limits *limits, const char *allowed_origin, struct error *err)
+struct ws *ws_create(const struct ws_callbacks *callbacks, const struct ws_limits *limits, const char *allowed_origin,
+                     struct error *err)
 {
     struct ws *ws = mem_new(sizeof *ws);
     ws->callbacks = *callbacks;
@@ -338,7 +347,9 @@ void ws_wake_at(struct ws *ws, int64_t time_us)
 {
     int64_t wait_us = time_us - clock_now_us();
     lws_sul_schedule(ws->context, 0, &ws->timer, time_came,
-                     time_us == INT64_MAX ? LWS_SET_TIMER_USEC_CANCEL : wait_us > 0 ? wait_us : 1);
+                     time_us == INT64_MAX ? LWS_SET_TIMER_USEC_CANCEL
+                     : wait_us > 0        ? wait_us
+                                          : 1);
 }
 
 void ws_count(const struct ws *ws, struct ws_counters *counters)

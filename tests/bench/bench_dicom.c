@@ -1,5 +1,6 @@
-/* A CT series of 200 x 512 x 512 from its folder to a volume (scan, heads, sorting, voxels), against dcm2niix's whole run and pydicom with
- * numpy stacking the same files; all voxels compared. And what 20,000 files that are no DICOM cost. */
+/* A CT series of 200 x 512 x 512 from its folder to a volume (scan, heads, sorting, voxels), against dcm2niix's whole
+ * run and pydicom with numpy stacking the same files; all voxels compared. And what 20,000 files that are no DICOM
+ * cost. */
 #include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
@@ -15,9 +16,15 @@
 #include "core/formats/nifti.h"
 #include "tests/bench/peer.h"
 
-enum { ROUNDS = 3, OURS = 5, CONVERTER = 2, N_UNRELATED = 20000 }; /* each round runs all three, so that all meet the same machine */
+enum {
+    ROUNDS = 3,
+    OURS = 5,
+    CONVERTER = 2,
+    N_UNRELATED = 20000
+}; /* each round runs all three, so that all meet the same machine */
 
-static const char folder_path[] = "build/bench/dicom", out_path[] = "build/bench/dicom-out", values_path[] = "build/bench/dicom-out/values";
+static const char folder_path[] = "build/bench/dicom", out_path[] = "build/bench/dicom-out",
+                  values_path[] = "build/bench/dicom-out/values";
 
 static int compare(const void *a, const void *b)
 {
@@ -86,7 +93,8 @@ static bool same_as_nifti(const struct volume *volume)
 {
     struct folder folder;
     struct bytes bytes;
-    if (!folder_open(&folder, out_path, NULL) || !folder_read(&folder, "series.nii", UINT32_MAX, UINT64_MAX, &bytes, NULL))
+    if (!folder_open(&folder, out_path, NULL) ||
+        !folder_read(&folder, "series.nii", UINT32_MAX, UINT64_MAX, &bytes, NULL))
         return false;
     folder_close(&folder);
     struct volume *theirs = nifti_read(&bytes, "series.nii", RAW_IMAGE, NULL, NULL);
@@ -132,8 +140,9 @@ static void bench_unrelated(void)
         dicom_index_destroy(index);
         folder_close(&folder);
     }
-    printf("{\"name\":\"a file that is no DICOM, in a folder of 20,000\",\"value\":%.4f,\"unit\":\"ms\",\"note\":\"median of 5; at most 1 ms\"}\n",
-           median(ms, 5) / N_UNRELATED);
+    printf(
+        "{\"name\":\"a file that is no DICOM, in a folder of 20,000\",\"value\":%.4f,\"unit\":\"ms\",\"note\":\"median of 5; at most 1 ms\"}\n",
+        median(ms, 5) / N_UNRELATED);
 }
 
 int main(void)
@@ -143,7 +152,8 @@ int main(void)
     (void)mkdir("build/bench", 0755);
     (void)mkdir(out_path, 0755);
     if (access("build/bench/dicom/IM0001", R_OK) != 0 &&
-        peer_run_ms((const char *[]){ python, "tests/bench/dicom_make.py", folder_path, NULL }, line, sizeof line) < 0) {
+        peer_run_ms((const char *[]){ python, "tests/bench/dicom_make.py", folder_path, NULL }, line, sizeof line) <
+            0) {
         fprintf(stderr, "bench_dicom: no pydicom to make the series with\n");
         return 77;
     }
@@ -158,30 +168,39 @@ int main(void)
             volume_unref(volume);
         }
         for (int i = 0; i < CONVERTER; i++)
-            converter[round * CONVERTER + i] = peer_run_ms((const char *[]){ "dcm2niix", "-z", "n", "-b", "n", "-w", "1", "-f", "series", "-o", out_path,
-                                                                     folder_path, NULL }, line, sizeof line);
-        stack[round] = peer_run_ms((const char *[]){ python, "tests/bench/pydicom_load.py", folder_path, values_path, NULL }, line, sizeof line) < 0
-                           ? -1 : strtod(line, NULL);
+            converter[round * CONVERTER + i] =
+                peer_run_ms((const char *[]){ "dcm2niix", "-z", "n", "-b", "n", "-w", "1", "-f", "series", "-o",
+                                              out_path, folder_path, NULL },
+                            line, sizeof line);
+        stack[round] =
+            peer_run_ms((const char *[]){ python, "tests/bench/pydicom_load.py", folder_path, values_path, NULL }, line,
+                        sizeof line) < 0
+                ? -1
+                : strtod(line, NULL);
     }
     struct volume *volume = load(folder_path, 2);
     double bytes = (double)(grid_n_voxels(&volume->grid) * voxel_size(volume->type));
-    double ms = median(ours, ROUNDS * OURS), theirs = median(converter, ROUNDS * CONVERTER), stacking = median(stack, ROUNDS);
+    double ms = median(ours, ROUNDS * OURS), theirs = median(converter, ROUNDS * CONVERTER),
+           stacking = median(stack, ROUNDS);
     bool is_same = true;
     if (theirs > 0) {
         is_same = same_as_nifti(volume);
-        printf("{\"name\":\"CT series, 200 x 512 x 512\",\"value\":%.2f,\"unit\":\"ms\",\"peer\":\"dcm2niix -z n, whole run\",\"peer_value\":%.2f,"
-               "\"ratio\":%.3f,\"note\":\"median of %d, warm, 2 threads; voxels %s\"}\n",
-               ms, theirs, theirs / ms, ROUNDS * OURS, is_same ? "equal" : "DIFFER");
+        printf(
+            "{\"name\":\"CT series, 200 x 512 x 512\",\"value\":%.2f,\"unit\":\"ms\",\"peer\":\"dcm2niix -z n, whole run\",\"peer_value\":%.2f,"
+            "\"ratio\":%.3f,\"note\":\"median of %d, warm, 2 threads; voxels %s\"}\n",
+            ms, theirs, theirs / ms, ROUNDS * OURS, is_same ? "equal" : "DIFFER");
     }
     if (stacking > 0) {
         bool is_same_stack = same_as_values(volume);
-        printf("{\"name\":\"CT series, 200 x 512 x 512\",\"value\":%.2f,\"unit\":\"ms\",\"peer\":\"pydicom + numpy\",\"peer_value\":%.2f,"
-               "\"ratio\":%.3f,\"note\":\"voxels %s\"}\n",
-               ms, stacking, stacking / ms, is_same_stack ? "equal" : "DIFFER");
+        printf(
+            "{\"name\":\"CT series, 200 x 512 x 512\",\"value\":%.2f,\"unit\":\"ms\",\"peer\":\"pydicom + numpy\",\"peer_value\":%.2f,"
+            "\"ratio\":%.3f,\"note\":\"voxels %s\"}\n",
+            ms, stacking, stacking / ms, is_same_stack ? "equal" : "DIFFER");
         is_same = is_same && is_same_stack;
     }
-    printf("{\"name\":\"memory for the CT series, peak over decoded\",\"value\":%.3f,\"unit\":\"ratio\",\"note\":\"%.1f MiB of %.1f; at most 1.3\"}\n",
-           peak / bytes, peak / 1048576, bytes / 1048576);
+    printf(
+        "{\"name\":\"memory for the CT series, peak over decoded\",\"value\":%.3f,\"unit\":\"ratio\",\"note\":\"%.1f MiB of %.1f; at most 1.3\"}\n",
+        peak / bytes, peak / 1048576, bytes / 1048576);
     volume_unref(volume);
     bench_unrelated();
     return is_same ? 0 : 1;

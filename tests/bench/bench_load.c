@@ -1,5 +1,5 @@
-/* Opening the demo plan (image, labels, four dose components, tracks; five packed volumes of 256 x 256 x 128 and less), against
- * nibabel unpacking the same volumes to arrays, in one run. Ours does more: names, tree, checks, bounds. */
+/* Opening the demo plan (image, labels, four dose components, tracks; five packed volumes of 256 x 256 x 128 and less),
+ * against nibabel unpacking the same volumes to arrays, in one run. Ours does more: names, tree, checks, bounds. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
@@ -21,7 +21,8 @@ static int compare(const void *a, const void *b)
 static double nibabel_ms(const char *folder)
 {
     char line[64];
-    return peer_run_ms((const char *const[]){ peer_python(), "tests/bench/nibabel_load.py", folder, NULL }, line, sizeof line) < 0
+    return peer_run_ms((const char *const[]){ peer_python(), "tests/bench/nibabel_load.py", folder, NULL }, line,
+                       sizeof line) < 0
                ? 0
                : strtod(line, NULL);
 }
@@ -52,6 +53,7 @@ int main(void)
     if (theirs > 0)
         printf(",\"peer\":\"nibabel, the same volumes\",\"peer_value\":%.2f,\"ratio\":%.3f", theirs, theirs / ours);
     printf(",\"note\":\"median of %d, files in the cache\"}\n", REPEATS);
-    printf("{\"name\":\"memory to open the demo plan, peak\",\"value\":%.1f,\"unit\":\"MiB\"}\n", (double)usage.ru_maxrss / 1024);
+    printf("{\"name\":\"memory to open the demo plan, peak\",\"value\":%.1f,\"unit\":\"MiB\"}\n",
+           (double)usage.ru_maxrss / 1024);
     return 0;
 }

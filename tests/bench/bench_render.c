@@ -1,6 +1,7 @@
-/* Drawing and compressing the demo plan as a new room shows it (five surfaces, four of them translucent, and an axial slice), the
- * camera going round it: light surfaces as while moving at 100, 75, 60 and 50 % of 1024 x 768, full surfaces anti-aliased as still;
- * the axial pane; each by our own rasteriser and, picture by picture in turn, by the OpenGL there is; JPEG and PNG. */
+/* Drawing and compressing the demo plan as a new room shows it (five surfaces, four of them translucent, and an axial
+ * slice), the camera going round it: light surfaces as while moving at 100, 75, 60 and 50 % of 1024 x 768, full
+ * surfaces anti-aliased as still; the axial pane; each by our own rasteriser and, picture by picture in turn, by the
+ * OpenGL there is; JPEG and PNG. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -33,8 +34,8 @@ static void stop(const struct error *err)
 }
 
 /* One picture; step moves the camera round the plan (or the slice through it). */
-static struct image *draw(struct renderer *renderer, enum scene_kind kind, int step, double scale, enum surface_detail detail, bool is_still,
-                          struct render_timing *timing)
+static struct image *draw(struct renderer *renderer, enum scene_kind kind, int step, double scale,
+                          enum surface_detail detail, bool is_still, struct render_timing *timing)
 {
     struct scene scene;
     struct view view = view_default;
@@ -61,14 +62,15 @@ static struct image *draw(struct renderer *renderer, enum scene_kind kind, int s
 }
 
 /* Until the picture is in memory: drawing and reading back. */
-static double draw_ms(struct renderer *renderer, enum scene_kind kind, int step, double scale, enum surface_detail detail, bool is_still,
-                      struct render_timing *timing)
+static double draw_ms(struct renderer *renderer, enum scene_kind kind, int step, double scale,
+                      enum surface_detail detail, bool is_still, struct render_timing *timing)
 {
     image_destroy(draw(renderer, kind, step, scale, detail, is_still, timing));
     return (double)(timing->draw_us + timing->read_us) / 1e3;
 }
 
-static void bench_drawing(const char *name, enum scene_kind kind, double scale, enum surface_detail detail, bool is_still)
+static void bench_drawing(const char *name, enum scene_kind kind, double scale, enum surface_detail detail,
+                          bool is_still)
 {
     double ours_ms[REPEATS], peer_ms[REPEATS] = { 0 };
     struct render_timing timing;
@@ -83,10 +85,10 @@ static void bench_drawing(const char *name, enum scene_kind kind, double scale, 
     double ours = median(ours_ms), peer = median(peer_ms);
     printf("{\"name\":\"draw, %s\",\"value\":%.2f,\"unit\":\"ms\",", name, ours);
     if (gl)
-        printf("\"peer\":\"%s, %s\",\"peer_value\":%.2f,\"ratio\":%.2f,", render_back_end_word(renderer_facts(gl)->back_end),
-               renderer_facts(gl)->renderer, peer, peer / ours);
-    printf("\"note\":\"%d x %d, %zu triangles%s; %s; median of %d\"}\n", (int)(WIDTH * scale), (int)(HEIGHT * scale), timing.n_triangles,
-           is_still ? ", anti-aliased" : "", renderer_facts(soft)->renderer, REPEATS);
+        printf("\"peer\":\"%s, %s\",\"peer_value\":%.2f,\"ratio\":%.2f,",
+               render_back_end_word(renderer_facts(gl)->back_end), renderer_facts(gl)->renderer, peer, peer / ours);
+    printf("\"note\":\"%d x %d, %zu triangles%s; %s; median of %d\"}\n", (int)(WIDTH * scale), (int)(HEIGHT * scale),
+           timing.n_triangles, is_still ? ", anti-aliased" : "", renderer_facts(soft)->renderer, REPEATS);
 }
 
 static void bench_encoding(const char *name, struct encode_options options)
@@ -106,8 +108,8 @@ static void bench_encoding(const char *name, struct encode_options options)
         n_bytes = out.n_bytes;
         free(out.bytes);
     }
-    printf("{\"name\":\"encode, %s\",\"value\":%.2f,\"unit\":\"ms\",\"note\":\"%d x %d, %zu bytes; median of %d\"}\n", name, median(ms),
-           WIDTH, HEIGHT, n_bytes, REPEATS);
+    printf("{\"name\":\"encode, %s\",\"value\":%.2f,\"unit\":\"ms\",\"note\":\"%d x %d, %zu bytes; median of %d\"}\n",
+           name, median(ms), WIDTH, HEIGHT, n_bytes, REPEATS);
     image_destroy(image);
     encoder_destroy(encoder);
 }
@@ -118,8 +120,9 @@ static struct renderer *start(enum render_back_end back_end)
     int64_t began_us = clock_now_us();
     struct renderer *renderer = renderer_create(back_end, &err);
     if (renderer)
-        printf("{\"name\":\"start %s\",\"value\":%.1f,\"unit\":\"ms\",\"note\":\"%s\"}\n", render_back_end_word(back_end),
-               (double)(clock_now_us() - began_us) / 1e3, renderer_facts(renderer)->renderer);
+        printf("{\"name\":\"start %s\",\"value\":%.1f,\"unit\":\"ms\",\"note\":\"%s\"}\n",
+               render_back_end_word(back_end), (double)(clock_now_us() - began_us) / 1e3,
+               renderer_facts(renderer)->renderer);
     return renderer;
 }
 

@@ -1,5 +1,5 @@
-/* Opening a plan for the first time and again from the cache, in one process each time, files in the system's cache: SERA's head, a CT of
- * 200 slices of 512 x 512, and the same with 12 regions as contours and a dose. */
+/* Opening a plan for the first time and again from the cache, in one process each time, files in the system's cache:
+ * SERA's head, a CT of 200 slices of 512 x 512, and the same with 12 regions as contours and a dose. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include "core/base/clock.h"
+#include "core/load/cache.h"
 #include "core/load/load.h"
 #include "core/plan/plan.h"
-#include "core/load/cache.h"
 
 enum { REPEATS = 5 };
 
@@ -66,9 +66,10 @@ static int measure(const char *what, const char *folder)
     rmdir(cache);
     if (!is_good)
         return 1;
-    printf("{\"name\":\"open again, %s\",\"value\":%.1f,\"unit\":\"ms\",\"peer\":\"the first time\",\"peer_value\":%.1f,\"ratio\":%.2f,"
-           "\"note\":\"median of %d; written in %.0f ms, %.0f MiB\"}\n",
-           what, again_ms, first_ms, first_ms / again_ms, REPEATS, store_ms, (double)about.st_size / 1048576);
+    printf(
+        "{\"name\":\"open again, %s\",\"value\":%.1f,\"unit\":\"ms\",\"peer\":\"the first time\",\"peer_value\":%.1f,\"ratio\":%.2f,"
+        "\"note\":\"median of %d; written in %.0f ms, %.0f MiB\"}\n",
+        what, again_ms, first_ms, first_ms / again_ms, REPEATS, store_ms, (double)about.st_size / 1048576);
     return 0;
 }
 
@@ -77,6 +78,7 @@ int main(void)
     const char *data = getenv("BEAMROOM_DATA") ? getenv("BEAMROOM_DATA") : "../shared/data";
     char head[4096];
     snprintf(head, sizeof head, "%s/sera-head", data);
-    return measure("SERA's head with doses and tracks", head) | measure("CT 512 x 512 x 200 as DICOM", "build/bench/dicom") |
+    return measure("SERA's head with doses and tracks", head) |
+           measure("CT 512 x 512 x 200 as DICOM", "build/bench/dicom") |
            measure("CT, 12 regions, dose as DICOM", "build/bench/plans/rt");
 }

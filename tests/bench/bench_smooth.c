@@ -1,6 +1,7 @@
 /* All twelve regions of a 512 x 512 x 200 volume of labels, smoothed, against vtkDiscreteFlyingEdges3D and
- * vtkWindowedSincPolyDataFilter: the two take turns on the same labels, in one run, and the median of each counts. Both start from the
- * labels. And vertex normals of a surface of 156 thousand polygons, as many as the thesis on Sera3d counts on its head. */
+ * vtkWindowedSincPolyDataFilter: the two take turns on the same labels, in one run, and the median of each counts. Both
+ * start from the labels. And vertex normals of a surface of 156 thousand polygons, as many as the thesis on Sera3d
+ * counts on its head. */
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -22,7 +23,7 @@ static _Noreturn void die(const char *what, const struct error *err)
     exit(1);
 }
 
-/* ---- labels: a head that is nested, with neighbours, small things and pieces apart ---------------------------------------- */
+/* ---- labels: a head that is nested, with neighbours, small things and pieces apart ------------------------------ */
 
 struct ball {
     double x, y, z, rx, ry, rz; /* mm */
@@ -36,10 +37,14 @@ static bool is_within(const struct ball *ball, double x, double y, double z, dou
 
 static uint8_t label_at(double x, double y, double z)
 {
-    static const struct ball skin = { 0, 0, 0, 105, 125, 140 }, skull = { 0, 0, 10, 92, 112, 118 }, inner = { 0, 0, 10, 84, 104, 110 };
-    static const struct ball brain = { 0, 0, 12, 78, 97, 102 }, left = { -14, 0, 20, 9, 34, 22 }, right = { 14, 0, 20, 9, 34, 22 };
-    static const struct ball target = { 36, -20, 24, 26, 22, 24 }, tumour = { 38, -22, 25, 14, 12, 15 }, eye = { -32, -92, -22, 12, 12, 12 };
-    static const struct ball other_eye = { 32, -92, -22, 12, 12, 12 }, stem = { 0, 18, -60, 12, 14, 70 }, jaw = { 0, -70, -90, 50, 40, 18 };
+    static const struct ball skin = { 0, 0, 0, 105, 125, 140 }, skull = { 0, 0, 10, 92, 112, 118 },
+                             inner = { 0, 0, 10, 84, 104, 110 };
+    static const struct ball brain = { 0, 0, 12, 78, 97, 102 }, left = { -14, 0, 20, 9, 34, 22 },
+                             right = { 14, 0, 20, 9, 34, 22 };
+    static const struct ball target = { 36, -20, 24, 26, 22, 24 }, tumour = { 38, -22, 25, 14, 12, 15 },
+                             eye = { -32, -92, -22, 12, 12, 12 };
+    static const struct ball other_eye = { 32, -92, -22, 12, 12, 12 }, stem = { 0, 18, -60, 12, 14, 70 },
+                             jaw = { 0, -70, -90, 50, 40, 18 };
     /* folds: what is wavy in nature is so by a few per cent here */
     double wave = 1 + 0.05 * sin(x / 5.5 + cos(z / 9)) * cos(y / 6.5) + 0.035 * sin(z / 4.5 + y / 11);
     if (!is_within(&skin, x, y, z, 1 + (wave - 1) * 0.3))
@@ -57,7 +62,8 @@ static uint8_t label_at(double x, double y, double z)
             return 6;
         if (is_within(&left, x, y, z, wave) || is_within(&right, x, y, z, wave))
             return 5;
-        double u = fmod(x + 200, 34) - 17, v = fmod(y + 200, 41) - 20, w = fmod(z + 200, 37) - 18; /* lesions, each a piece of its own */
+        double u = fmod(x + 200, 34) - 17, v = fmod(y + 200, 41) - 20,
+               w = fmod(z + 200, 37) - 18; /* lesions, each a piece of its own */
         return u * u + v * v + w * w < 9 ? 12 : 4;
     }
     if (is_within(&inner, x, y, z, wave))
@@ -85,7 +91,7 @@ static struct volume *make_labels(void)
     return labels;
 }
 
-/* ---- VTK ------------------------------------------------------------------------------------------------------------------ */
+/* ---- VTK -------------------------------------------------------------------------------------------------------- */
 
 struct vtk {
     struct peer peer;
@@ -101,10 +107,13 @@ static bool vtk_start(struct vtk *vtk, const struct volume *labels)
         die("temporary file", NULL);
     for (int i = 0; i < 4; i++)
         snprintf(size[i], sizeof size[i], "%d", numbers[i]);
-    const char *arguments[] = { peer_python(), "tests/bench/vtk_smooth.py", vtk->path, size[0], size[1], size[2], size[3], NULL };
+    const char *arguments[] = {
+        peer_python(), "tests/bench/vtk_smooth.py", vtk->path, size[0], size[1], size[2], size[3], NULL
+    };
     if (!peer_start(&vtk->peer, arguments, line, sizeof line) || sscanf(line, "%15s %d", version, &n_threads) != 2)
         return false;
-    snprintf(vtk->name, sizeof vtk->name, "VTK %s, discrete flying edges and windowed sinc, %d threads", version, n_threads);
+    snprintf(vtk->name, sizeof vtk->name, "VTK %s, discrete flying edges and windowed sinc, %d threads", version,
+             n_threads);
     return true;
 }
 
@@ -126,9 +135,9 @@ static struct vtk_times vtk_run(struct vtk *vtk, size_t n_triangles)
     return times;
 }
 
-/* ---- ours ----------------------------------------------------------------------------------------------------------------- */
+/* ---- ours ------------------------------------------------------------------------------------------------------- */
 
-struct times { /* ms */
+struct times {           /* ms */
     double mask, smooth; /* smooth: from the labels on, masks included, to vertices with normals */
     double processor;    /* of all threads */
 };
@@ -148,11 +157,11 @@ static double processor_ms(void)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
 }
 
-/* All regions at once: their masks from one sweep, then threads take one after the other, the largest first, each on its own, as a plan
- * does when it is opened. */
+/* All regions at once: their masks from one sweep, then threads take one after the other, the largest first, each on
+ * its own, as a plan does when it is opened. */
 struct task {
     struct mask *masks[N_REGIONS];
-    bool is_bare; /* without normals */
+    bool is_bare;                   /* without normals */
     struct mesh *meshes[N_REGIONS]; /* kept to the end, as a plan keeps them, and VTK does */
     atomic_int next;
 };
@@ -218,7 +227,8 @@ static double median(double *values, size_t n)
 static void bench_regions(struct volume *labels, struct vtk *vtk)
 {
     /* as VTK does it; and with the normals that a picture needs */
-    static const char *const ways[3] = { "without normals, 2 threads", "with vertex normals, 1 thread", "with vertex normals, 2 threads" };
+    static const char *const ways[3] = { "without normals, 2 threads", "with vertex normals, 1 thread",
+                                         "with vertex normals, 2 threads" };
     enum { N_WAYS = sizeof ways / sizeof *ways };
     double ours[N_WAYS][REPEATS], mask[N_WAYS][REPEATS], processor[N_WAYS][REPEATS];
     double theirs[REPEATS], their_extract[REPEATS], their_processor[REPEATS];
@@ -245,10 +255,11 @@ static void bench_regions(struct volume *labels, struct vtk *vtk)
         printf("{\"name\":\"12 regions of 512 x 512 x 200, smooth, %s\",\"value\":%.1f,\"unit\":\"ms\"", ways[way], ms);
         if (vtk)
             printf(",\"peer\":\"%s\",\"peer_value\":%.1f,\"ratio\":%.2f", vtk->name, vtk_ms, vtk_ms / ms);
-        printf(",\"note\":\"%zu triangles; masks %.1f of it%s; processor time %.0f", n_triangles, median(mask[way], REPEATS),
-               way == 0 ? "; at least x5 asked for" : "", busy);
+        printf(",\"note\":\"%zu triangles; masks %.1f of it%s; processor time %.0f", n_triangles,
+               median(mask[way], REPEATS), way == 0 ? "; at least x5 asked for" : "", busy);
         if (vtk)
-            printf(", theirs %.0f, x%.2f; theirs: flying edges %.1f of it", vtk_processor, vtk_processor / busy, vtk_extract);
+            printf(", theirs %.0f, x%.2f; theirs: flying edges %.1f of it", vtk_processor, vtk_processor / busy,
+                   vtk_extract);
         printf("\"}\n");
     }
     fflush(stdout);
@@ -288,9 +299,11 @@ static void bench_thesis(void)
             mesh_unref(mesh);
             mask_destroy(mask);
         }
-        printf("{\"name\":\"156 thousand polygons with vertex normals, %s\",\"value\":%.2f,\"unit\":\"ms\",\"note\":\"%zu triangles, 2 threads, from labels; "
-               "%s\"}\n", surface_algorithm_word(algorithms[a]), median(ms, NORMAL_REPEATS), n,
-               a ? "smoothed too" : "the thesis: 5300; at most 5.3 asked for");
+        printf(
+            "{\"name\":\"156 thousand polygons with vertex normals, %s\",\"value\":%.2f,\"unit\":\"ms\",\"note\":\"%zu triangles, 2 threads, from labels; "
+            "%s\"}\n",
+            surface_algorithm_word(algorithms[a]), median(ms, NORMAL_REPEATS), n,
+            a ? "smoothed too" : "the thesis: 5300; at most 5.3 asked for");
     }
     volume_unref(labels);
 }

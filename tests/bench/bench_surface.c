@@ -1,5 +1,6 @@
-/* Extraction of regions of a 256 x 256 x 128 volume, against vtkFlyingEdges3D: the two take turns on the same labels, in one
- * run, and the median of each counts. Ours starts from the labels and includes making the mask; VTK's starts from a ready mask. */
+/* Extraction of regions of a 256 x 256 x 128 volume, against vtkFlyingEdges3D: the two take turns on the same labels,
+ * in one run, and the median of each counts. Ours starts from the labels and includes making the mask; VTK's starts
+ * from a ready mask. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,9 +18,9 @@ static const struct {
     const char *name, *text;
     uint16_t labels[8];
     size_t n;
-} sets[N_SETS] = {
-    { "head", "1,2,3,4,5", { 1, 2, 3, 4, 5 }, 5 }, { "brain", "3,4,5", { 3, 4, 5 }, 3 }, { "tumour", "5", { 5 }, 1 }
-};
+} sets[N_SETS] = { { "head", "1,2,3,4,5", { 1, 2, 3, 4, 5 }, 5 },
+                   { "brain", "3,4,5", { 3, 4, 5 }, 3 },
+                   { "tumour", "5", { 5 }, 1 } };
 static const char *const volumes[N_VOLUMES] = { "demo plan", "ragged" };
 
 static _Noreturn void die(const char *what, const struct error *err)
@@ -28,7 +29,7 @@ static _Noreturn void die(const char *what, const struct error *err)
     exit(1);
 }
 
-/* ---- labels ------------------------------------------------------------------------------------------------------------- */
+/* ---- labels ----------------------------------------------------------------------------------------------------- */
 
 static double noise_at_cell(int64_t x, int64_t y, int64_t z)
 {
@@ -68,7 +69,7 @@ static struct volume *make_labels(bool is_ragged)
     return labels;
 }
 
-/* ---- VTK ---------------------------------------------------------------------------------------------------------------- */
+/* ---- VTK -------------------------------------------------------------------------------------------------------- */
 
 struct vtk {
     struct peer peer;
@@ -84,8 +85,11 @@ static bool vtk_start(struct vtk *vtk, const struct volume *labels)
         die("temporary file", NULL);
     for (size_t axis = 0; axis < 3; axis++)
         snprintf(size[axis], sizeof size[axis], "%u", labels->grid.size[axis]);
-    const char *arguments[] = { peer_python(), "tests/bench/vtk_flying_edges.py", vtk->path, size[0], size[1], size[2],
-                                sets[0].text,  sets[1].text,                      sets[2].text, NULL };
+    const char *arguments[] = { peer_python(), "tests/bench/vtk_flying_edges.py",
+                                vtk->path,     size[0],
+                                size[1],       size[2],
+                                sets[0].text,  sets[1].text,
+                                sets[2].text,  NULL };
     if (!peer_start(&vtk->peer, arguments, line, sizeof line) || sscanf(line, "%15s %d", version, &n_threads) != 2)
         return false;
     snprintf(vtk->name[0], sizeof vtk->name[0], "vtkFlyingEdges3D %s, 1 thread", version);
@@ -109,10 +113,10 @@ static double vtk_time_ms(struct vtk *vtk, size_t set, bool with_normals, bool o
     return ms;
 }
 
-/* ---- ours --------------------------------------------------------------------------------------------------------------- */
+/* ---- ours ------------------------------------------------------------------------------------------------------- */
 
-struct times { /* ms */
-    double mask, surface, normals, with_normals; /* surface starts from the labels */
+struct times {                                         /* ms */
+    double mask, surface, normals, with_normals;       /* surface starts from the labels */
     double vtk, vtk_normals, vtk_all, vtk_all_normals; /* on one thread; on all */
 };
 
@@ -167,12 +171,14 @@ static struct spread spread_of(const struct times all[REPEATS], size_t offset)
     return (struct spread){ values[REPEATS / 2], values[0] };
 }
 
-static void print_result(const char *name, struct spread ours, const char *peer, struct spread theirs, size_t n_triangles)
+static void print_result(const char *name, struct spread ours, const char *peer, struct spread theirs,
+                         size_t n_triangles)
 {
     printf("{\"name\":\"%s\",\"value\":%.3f,\"unit\":\"ms\"", name, ours.median);
     if (peer)
-        printf(",\"peer\":\"%s\",\"peer_value\":%.3f,\"ratio\":%.2f,\"note\":\"%zu triangles; fastest %.2f, theirs %.2f\"}\n", peer,
-               theirs.median, theirs.median / ours.median, n_triangles, ours.fastest, theirs.fastest);
+        printf(
+            ",\"peer\":\"%s\",\"peer_value\":%.3f,\"ratio\":%.2f,\"note\":\"%zu triangles; fastest %.2f, theirs %.2f\"}\n",
+            peer, theirs.median, theirs.median / ours.median, n_triangles, ours.fastest, theirs.fastest);
     else
         printf(",\"note\":\"%zu triangles; fastest %.2f\"}\n", n_triangles, ours.fastest);
     fflush(stdout);
@@ -198,7 +204,8 @@ static void bench_set(const struct volume *labels, const char *volume, size_t se
         char name[128];
         struct spread surface = spread_of(times, offsetof(struct times, surface));
         struct spread with_normals = spread_of(times, offsetof(struct times, with_normals));
-        struct spread theirs[2] = { spread_of(times, offsetof(struct times, vtk)), spread_of(times, offsetof(struct times, vtk_all)) };
+        struct spread theirs[2] = { spread_of(times, offsetof(struct times, vtk)),
+                                    spread_of(times, offsetof(struct times, vtk_all)) };
         snprintf(name, sizeof name, "surface of %s, %s, %s", region, volume, threads[two]);
         print_result(name, surface, two ? every : one, theirs[two], n_triangles);
         if (set > 0)
@@ -207,7 +214,9 @@ static void bench_set(const struct volume *labels, const char *volume, size_t se
             print_result(name, surface, every, theirs[1], n_triangles);
         snprintf(name, sizeof name, "surface with normals of %s, %s, %s", region, volume, threads[two]);
         print_result(name, with_normals, two ? every : one,
-                     spread_of(times, two ? offsetof(struct times, vtk_all_normals) : offsetof(struct times, vtk_normals)), n_triangles);
+                     spread_of(times,
+                               two ? offsetof(struct times, vtk_all_normals) : offsetof(struct times, vtk_normals)),
+                     n_triangles);
         snprintf(name, sizeof name, "of it: mask of %s, %s, %s", region, volume, threads[two]);
         print_result(name, spread_of(times, offsetof(struct times, mask)), NULL, surface, n_triangles);
         snprintf(name, sizeof name, "of it: normals of %s, %s, %s", region, volume, threads[two]);

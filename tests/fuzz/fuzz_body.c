@@ -1,4 +1,5 @@
-/* Where a chunked body ends, and a client's address behind a proxy. The end does not depend on how the bytes are cut. */
+/* Where a chunked body ends, and a client's address behind a proxy. The end does not depend on how the bytes are cut.
+ */
 #include "server/http/address.h"
 #include "server/http/body.h"
 #include "tests/fuzz/fuzz.h"
@@ -14,7 +15,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     bool is_taken = body_take(&whole, bytes, n, &n_whole, &problem);
     REQUIRE(is_taken || strlen(problem.detail) > 20);
     REQUIRE(!is_taken || n_whole == n || body_is_ended(&whole));
-    bool are_taken = body_take(&parts, bytes, cut, &n_first, &problem) && body_take(&parts, bytes + n_first, n - n_first, &n_second, &problem);
+    bool are_taken = body_take(&parts, bytes, cut, &n_first, &problem) &&
+                     body_take(&parts, bytes + n_first, n - n_first, &n_second, &problem);
     REQUIRE(is_taken == are_taken);
     REQUIRE(!is_taken || (n_first + n_second == n_whole && body_is_ended(&whole) == body_is_ended(&parts)));
 

@@ -16,7 +16,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
 {
     const uint8_t *at = data, *end = data + n;
     struct bytes header = cut(&at, end);
-    struct chd_files files = { .table = cut(&at, end), .name = "fuzz.chd", .table_name = "fuzz.cdf", .mask_name = "fuzz.cmf" };
+    struct chd_files files = {
+        .table = cut(&at, end), .name = "fuzz.chd", .table_name = "fuzz.cdf", .mask_name = "fuzz.cmf"
+    };
     if (at < end)
         files.mask = (struct bytes){ (uint8_t *)(uintptr_t)at, (size_t)(end - at) };
     struct chd chd;

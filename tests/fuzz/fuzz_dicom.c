@@ -1,4 +1,5 @@
-/* One DICOM file: as bytes, by each extent and every way to ask; and as the only file of a folder, scanned and read as a series. */
+/* One DICOM file: as bytes, by each extent and every way to ask; and as the only file of a folder, scanned and read as
+ * a series. */
 #include <stdio.h>
 #include <unistd.h>
 
@@ -10,9 +11,10 @@ enum { MOST_PIXELS = 1 << 20 }; /* decoded; what is larger only takes longer */
 static void ask(const struct dicom_item *item, int depth)
 {
     static const uint32_t tags[] = {
-        DICOM_TAG(0x0008, 0x0005), DICOM_TAG(0x0008, 0x0016), DICOM_TAG(0x0008, 0x103E), DICOM_TAG(0x0008, 0x1140), DICOM_TAG(0x0020, 0x0032),
-        DICOM_TAG(0x0028, 0x0009), DICOM_TAG(0x0028, 0x0010), DICOM_TAG(0x0028, 0x1053), DICOM_TAG(0x3006, 0x0020), DICOM_TAG(0x3006, 0x0026),
-        DICOM_TAG(0x3006, 0x0039), DICOM_TAG(0x3006, 0x0040), DICOM_TAG(0x3006, 0x0050), DICOM_TAG(0x5200, 0x9229), DICOM_TAG(0x5200, 0x9230),
+        DICOM_TAG(0x0008, 0x0005), DICOM_TAG(0x0008, 0x0016), DICOM_TAG(0x0008, 0x103E), DICOM_TAG(0x0008, 0x1140),
+        DICOM_TAG(0x0020, 0x0032), DICOM_TAG(0x0028, 0x0009), DICOM_TAG(0x0028, 0x0010), DICOM_TAG(0x0028, 0x1053),
+        DICOM_TAG(0x3006, 0x0020), DICOM_TAG(0x3006, 0x0026), DICOM_TAG(0x3006, 0x0039), DICOM_TAG(0x3006, 0x0040),
+        DICOM_TAG(0x3006, 0x0050), DICOM_TAG(0x5200, 0x9229), DICOM_TAG(0x5200, 0x9230),
     };
     for (size_t i = 0; i < sizeof tags / sizeof tags[0]; i++) {
         char whole[48], part[48];
@@ -42,7 +44,8 @@ static void look_at_pixels(const struct dicom_file *file)
         REQUIRE(err.code != ERROR_NONE && err.text[0]);
         return;
     }
-    REQUIRE(pixels.rows >= 1 && pixels.columns >= 1 && pixels.n_frames >= 1 && pixels.bits_stored <= pixels.bits_allocated);
+    REQUIRE(pixels.rows >= 1 && pixels.columns >= 1 && pixels.n_frames >= 1 &&
+            pixels.bits_stored <= pixels.bits_allocated);
     size_t n = (size_t)pixels.rows * pixels.columns * (pixels.bits_allocated / 8);
     if (n > MOST_PIXELS)
         return;

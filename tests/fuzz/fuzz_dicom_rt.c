@@ -1,5 +1,5 @@
-/* RT objects, segmentations, and contours: the first byte says which. A DICOM file is read as all four kinds and its regions are filled,
- * on an image that may not hold them, too; else the bytes are points, contours and a grid. */
+/* RT objects, segmentations, and contours: the first byte says which. A DICOM file is read as all four kinds and its
+ * regions are filled, on an image that may not hold them, too; else the bytes are points, contours and a grid. */
 #include "core/formats/dicom/dicom_rtdose.h"
 #include "core/formats/dicom/dicom_rtplan.h"
 #include "core/formats/dicom/dicom_rtstruct.h"
@@ -47,7 +47,8 @@ static void fill_bytes(const uint8_t *data, size_t n)
         if (contour->n_points >= 64)
             continue;
         for (int axis = 0; axis < 3; axis++)
-            contour->points_lps_mm[3 * contour->n_points + (size_t)axis] = data[0] & 1 && axis == 2 ? data[at + 2] % 4 : data[at + (size_t)axis] / 4.0;
+            contour->points_lps_mm[3 * contour->n_points + (size_t)axis] =
+                data[0] & 1 && axis == 2 ? data[at + 2] % 4 : data[at + (size_t)axis] / 4.0;
         contour->n_points++;
     }
     if (data[0] & 2 && contours[0].n_points > 0)

@@ -1,11 +1,13 @@
-/* Merge patches on scene and view, from WebSocket and HTTP bodies: first byte odd patches the view instead of the scene. */
+/* Merge patches on scene and view, from WebSocket and HTTP bodies: first byte odd patches the view instead of the
+ * scene. */
 #include "server/wire/document.h"
 #include "tests/fuzz/fuzz.h"
 
 static cJSON *plan_of_scenes(void)
 {
-    static const char text[] = "{\"images\":[{\"id\":\"ct\"},{\"id\":\"mr-1\"}],\"regions\":[{\"id\":\"scalp\"},{\"id\":\"brain\"},{\"id\":\"tumour\"}],"
-                               "\"doses\":[{\"id\":\"plan\"}]}";
+    static const char text[] =
+        "{\"images\":[{\"id\":\"ct\"},{\"id\":\"mr-1\"}],\"regions\":[{\"id\":\"scalp\"},{\"id\":\"brain\"},{\"id\":\"tumour\"}],"
+        "\"doses\":[{\"id\":\"plan\"}]}";
     return json_read(text, strlen(text), NULL);
 }
 

@@ -1,4 +1,5 @@
-/* The head of a first request. What is refused has a sentence; a beginning is waited for, or refused as the whole is. */
+/* The head of a first request. What is refused has a sentence; a beginning is waited for, or refused as the whole is.
+ */
 #include "server/http/head.h"
 #include "server/wire/fields.h"
 #include "tests/fuzz/fuzz.h"

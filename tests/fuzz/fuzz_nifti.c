@@ -1,13 +1,16 @@
-/* NIfTI-1 and -2, packed or not: the first byte says what it is read for, and 8 and more that header and voxels are two files. */
+/* NIfTI-1 and -2, packed or not: the first byte says what it is read for, and 8 and more that header and voxels are two
+ * files. */
 #include "core/formats/nifti.h"
 #include "tests/fuzz/fuzz.h"
 
 static void read_pair(const uint8_t *data, size_t n, enum raw_use use)
 {
     size_t n_head = n < 348 ? n : 348;
-    struct bytes head = { (uint8_t *)(uintptr_t)data, n_head }, voxels = { (uint8_t *)(uintptr_t)data + n_head, n - n_head };
+    struct bytes head = { (uint8_t *)(uintptr_t)data, n_head },
+                 voxels = { (uint8_t *)(uintptr_t)data + n_head, n - n_head };
     struct error err = { 0 };
-    struct volume *volume = nifti_read_pair(&head, "fuzz.hdr", &voxels, n % 2 ? "fuzz.img" : "fuzz.img.gz", use, NULL, &err);
+    struct volume *volume =
+        nifti_read_pair(&head, "fuzz.hdr", &voxels, n % 2 ? "fuzz.img" : "fuzz.img.gz", use, NULL, &err);
     REQUIRE(volume ? volume->low <= volume->high : err.code != ERROR_NONE && err.text[0] != '\0');
     volume_unref(volume);
 }

@@ -38,7 +38,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     struct nrrd_header header;
     if (nrrd_parse_header(file.data, file.size, "a/fuzz.nrrd", &header, &report, &err)) {
         REQUIRE(header.data_bytes <= VOLUME_MAX_BYTES && header.n_layers >= 1 && header.head_bytes <= file.size);
-        REQUIRE(!header.data_file[0] || (folder_check_name(header.data_file, NULL) && strncmp(header.data_file, "a/", 2) == 0));
+        REQUIRE(!header.data_file[0] ||
+                (folder_check_name(header.data_file, NULL) && strncmp(header.data_file, "a/", 2) == 0));
         struct volume *volume = nrrd_read(&header, &file, "fuzz.nrrd", use, &report, &err);
         REQUIRE(volume || (err.code != ERROR_NONE && err.text[0] != '\0'));
         if (volume)

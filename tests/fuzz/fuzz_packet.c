@@ -1,5 +1,5 @@
-/* The stream between daemon and renderer, which a hostile plan may have taken over: the first byte says in what pieces it
- * arrives, its lowest bit which way. */
+/* The stream between daemon and renderer, which a hostile plan may have taken over: the first byte says in what pieces
+ * it arrives, its lowest bit which way. */
 #include "server/wire/packet.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -14,10 +14,12 @@ static void check(const struct packet *packet)
     uint8_t *bytes = packet_write(packet->json, packet->blob, packet->n_blob, &n_bytes, &err);
     /* numbers may be longer than they came: then it is too large, and nothing else */
     REQUIRE(bytes ? n_bytes >= PACKET_HEAD_BYTES + packet->n_blob : err.code == ERROR_LIMIT);
-    REQUIRE(!bytes || packet->n_blob == 0 || memcmp(bytes + n_bytes - packet->n_blob, packet->blob, packet->n_blob) == 0);
+    REQUIRE(!bytes || packet->n_blob == 0 ||
+            memcmp(bytes + n_bytes - packet->n_blob, packet->blob, packet->n_blob) == 0);
     free(bytes);
     if (packet_frame_read(packet, &frame))
-        REQUIRE(packet->n_blob > 0 && frame.width_px >= 1 && frame.width_px <= PACKET_MAX_SIDE_PX && frame.pixels_per_mm >= 0);
+        REQUIRE(packet->n_blob > 0 && frame.width_px >= 1 && frame.width_px <= PACKET_MAX_SIDE_PX &&
+                frame.pixels_per_mm >= 0);
     const struct packet_limit *limit = packet_limit_find(json_text(packet->json, "type"));
     REQUIRE(limit && packet->n_blob <= limit->max_blob);
 }

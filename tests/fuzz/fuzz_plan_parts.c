@@ -1,5 +1,6 @@
-/* A whole plan, read and put together: a folder with a small file of every kind, and a plan.json that names any of them in any place, any number
- * of times. First byte even: the rest is the plan.json; odd: pairs of bytes name entries, the list and its options, then the file. */
+/* A whole plan, read and put together: a folder with a small file of every kind, and a plan.json that names any of them
+ * in any place, any number of times. First byte even: the rest is the plan.json; odd: pairs of bytes name entries, the
+ * list and its options, then the file. */
 #include "core/formats/plan_json.h"
 #include "core/load/load.h"
 #include "core/load/summary.h"
@@ -15,16 +16,30 @@ enum { N_DOSES = PLAN_MAX_DOSES, MOST_ENTRIES = 80, TEXT_SIZE = 1 << 16 };
 static const struct {
     const char *name, *seed;
     size_t skip;
-} seeds[] = { { "labels.nii", "nifti/labels-u8", 1 },    { "mask.nii", "nifti/mask-u8-qform", 1 }, { "image.nii.gz", "nifti/image-i32-packed", 1 },
-              { "layers.seg.nrrd", "nrrd/labels-segments", 1 }, { "image.nrrd", "nrrd/image-i16-gzip", 1 }, { "head.uvh", "uvh/version-1", 0 },
-              { "mr.qhd", "qhd/bytes", 2 },              { "run.rst", "sera_rst/two-cells-12", 0 },  { "line.dose", "sera_table/three", 0 },
-              { "tracks.pp", "tracks/head", 0 },         { "colors.cmap", "rsc/cmap", 1 },           { "head.rsc", "rsc/sera3d", 1 },
-              { "tree.info", "hierarchy/head", 0 },      { "names.json", "plan_json/labels", 1 },    { "rt/dose.dcm", "dicom_rt/dose", 1 },
-              { "rt/plan.dcm", "dicom_rt/plan", 1 },     { "rt/structures.dcm", "dicom_rt/structures", 1 } };
+} seeds[] = { { "labels.nii", "nifti/labels-u8", 1 },
+              { "mask.nii", "nifti/mask-u8-qform", 1 },
+              { "image.nii.gz", "nifti/image-i32-packed", 1 },
+              { "layers.seg.nrrd", "nrrd/labels-segments", 1 },
+              { "image.nrrd", "nrrd/image-i16-gzip", 1 },
+              { "head.uvh", "uvh/version-1", 0 },
+              { "mr.qhd", "qhd/bytes", 2 },
+              { "run.rst", "sera_rst/two-cells-12", 0 },
+              { "line.dose", "sera_table/three", 0 },
+              { "tracks.pp", "tracks/head", 0 },
+              { "colors.cmap", "rsc/cmap", 1 },
+              { "head.rsc", "rsc/sera3d", 1 },
+              { "tree.info", "hierarchy/head", 0 },
+              { "names.json", "plan_json/labels", 1 },
+              { "rt/dose.dcm", "dicom_rt/dose", 1 },
+              { "rt/plan.dcm", "dicom_rt/plan", 1 },
+              { "rt/structures.dcm", "dicom_rt/structures", 1 } };
 /* What an entry may name: those, what lies beside them, folders, and nothing. */
-static const char *const paths[] = { "labels.nii", "mask.nii", "image.nii.gz", "layers.seg.nrrd", "image.nrrd", "head.uvh", "mr.qhd", "mr.qim",
-                                     "run.rst", "line.dose", "tracks.pp", "colors.cmap", "head.rsc", "tree.info", "names.json", "rt/dose.dcm",
-                                     "rt/plan.dcm", "rt/structures.dcm", "contours.chd", "doses", "doses/03.dcm", "rt", "absent.nii" };
+static const char *const paths[] = {
+    "labels.nii", "mask.nii",    "image.nii.gz", "layers.seg.nrrd",   "image.nrrd",   "head.uvh", "mr.qhd",
+    "mr.qim",     "run.rst",     "line.dose",    "tracks.pp",         "colors.cmap",  "head.rsc", "tree.info",
+    "names.json", "rt/dose.dcm", "rt/plan.dcm",  "rt/structures.dcm", "contours.chd", "doses",    "doses/03.dcm",
+    "rt",         "absent.nii"
+};
 enum { N_SEEDS = sizeof seeds / sizeof seeds[0], N_PATHS = sizeof paths / sizeof paths[0] };
 
 static char folder[256];
@@ -83,7 +98,8 @@ enum list { IMAGES, REGIONS, DOSES, BEAMS, TRACKS, CURVES, PREFERENCES, N_LISTS 
 
 static void put_entry(struct text *text, enum list list, unsigned options, const char *path)
 {
-    static const char *const quantities[] = { "total", "boron", "nitrogen", "fast", "gamma", "other", "weighted-total", "thermal-fluence" };
+    static const char *const quantities[] = { "total", "boron", "nitrogen",       "fast",
+                                              "gamma", "other", "weighted-total", "thermal-fluence" };
     if (list == BEAMS && options & 1) {
         put(text, "{\"entry_mm\": [0, 0, %u], \"target_mm\": [0, 0, 0]}", options + 1);
     } else if (list == REGIONS && options % 3 > 0) {
@@ -91,10 +107,12 @@ static void put_entry(struct text *text, enum list list, unsigned options, const
     } else if (list == DOSES && options & 1) {
         put(text, "{\"components\": [");
         for (unsigned c = 0; c <= options / 2 % 8; c++)
-            put(text, "%s{\"path\": \"%s\", \"quantity\": \"%s\"}", c ? ", " : "", c % 2 ? "mask.nii" : path, quantities[c]);
+            put(text, "%s{\"path\": \"%s\", \"quantity\": \"%s\"}", c ? ", " : "", c % 2 ? "mask.nii" : path,
+                quantities[c]);
         put(text, "]}");
     } else if (list == DOSES && options & 2) {
-        put(text, "{\"path\": \"%s\", \"id\": \"same\", \"mask\": \"mask.nii\", \"quantity\": \"%s\"}", path, quantities[options / 4 % 8]);
+        put(text, "{\"path\": \"%s\", \"id\": \"same\", \"mask\": \"mask.nii\", \"quantity\": \"%s\"}", path,
+            quantities[options / 4 % 8]);
     } else {
         put(text, "{\"path\": \"%s\"}", path);
     }
@@ -103,7 +121,9 @@ static void put_entry(struct text *text, enum list list, unsigned options, const
 /* Lists of entries from pairs of bytes; plan.json has each list once. */
 static void put_plan(struct text *text, const uint8_t *pairs, size_t n)
 {
-    static const char *const names[N_LISTS] = { "images", "regions", "doses", "beams", "tracks", "curves", "preferences" };
+    static const char *const names[N_LISTS] = {
+        "images", "regions", "doses", "beams", "tracks", "curves", "preferences"
+    };
     put(text, "{\"format\": \"beamroom-plan\", \"version\": 1");
     if (n > 0 && pairs[0] & 128)
         put(text, ", \"hierarchy\": \"tree.info\"");
@@ -125,7 +145,8 @@ static void put_plan(struct text *text, const uint8_t *pairs, size_t n)
 static void check_plan(const struct plan *plan)
 {
     REQUIRE(plan->n_images <= PLAN_MAX_IMAGES && plan->n_doses <= PLAN_MAX_DOSES && plan->n_beams <= PLAN_MAX_BEAMS);
-    REQUIRE(plan->n_curves <= PLAN_MAX_CURVES && plan->regions.n_regions <= REGION_MAX && plan->regions.n_layers <= REGION_MAX_LAYERS);
+    REQUIRE(plan->n_curves <= PLAN_MAX_CURVES && plan->regions.n_regions <= REGION_MAX &&
+            plan->regions.n_layers <= REGION_MAX_LAYERS);
     for (size_t i = 0; i < plan->n_images; i++)
         REQUIRE(plan->images[i].volume && plan->images[i].id[0]);
     for (size_t d = 0; d < plan->n_doses; d++) {
@@ -137,7 +158,8 @@ static void check_plan(const struct plan *plan)
             REQUIRE(strcmp(plan->doses[other].id, dose->id) != 0);
     }
     for (size_t r = 0; r < plan->regions.n_regions; r++)
-        REQUIRE(plan->regions.regions[r].layer < plan->regions.n_layers && plan->regions.regions[r].parent < (int)plan->regions.n_regions);
+        REQUIRE(plan->regions.regions[r].layer < plan->regions.n_layers &&
+                plan->regions.regions[r].parent < (int)plan->regions.n_regions);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
@@ -163,6 +185,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     plan_destroy(plan);
     struct plan_summary summary;
     plan_summarize(folder, &summary);
-    REQUIRE(summary.n_parts <= sizeof summary.parts / sizeof summary.parts[0] && (summary.is_readable || summary.reason[0]));
+    REQUIRE(summary.n_parts <= sizeof summary.parts / sizeof summary.parts[0] &&
+            (summary.is_readable || summary.reason[0]));
     return 0;
 }

@@ -1,5 +1,5 @@
-/* A room with two browsers: each line of the input is a message or an event. Whatever they say, no more than two frames are unshown,
- * sequences count up, the scene's revision never goes back, and no clock is asked for in the past. */
+/* A room with two browsers: each line of the input is a message or an event. Whatever they say, no more than two frames
+ * are unshown, sequences count up, the scene's revision never goes back, and no clock is asked for in the past. */
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/room/room.h"
@@ -102,7 +102,8 @@ static void follow_acknowledgement(struct page *page, const char *text, size_t n
 static void plan_ready(struct room *room, int64_t now_us)
 {
     static const char text[] = "{\"regions\":{\"scalp\":{\"visible\":true},\"brain\":{\"opacity\":0.5}}}";
-    static const char document[] = "{\"id\":\"head\",\"images\":[{\"id\":\"ct\"}],\"regions\":[{\"id\":\"scalp\"},{\"id\":\"brain\"}]}";
+    static const char document[] =
+        "{\"id\":\"head\",\"images\":[{\"id\":\"ct\"}],\"regions\":[{\"id\":\"scalp\"},{\"id\":\"brain\"}]}";
     struct scene scene;
     cJSON *said = json_read(text, strlen(text), NULL), *plan = json_read(document, strlen(document), NULL);
     REQUIRE(scene_read(said, &scene, NULL));
@@ -143,7 +144,8 @@ static void take_line(struct room *room, const char *line, size_t n, int64_t *no
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
 {
-    const struct room_callbacks callbacks = { render, forget, scene_changed, send_text, send_frame, close_connection, NULL };
+    const struct room_callbacks callbacks = { render,     forget,           scene_changed, send_text,
+                                              send_frame, close_connection, NULL };
     struct room *room = room_create("7q4k-m2wz", "head", &callbacks, NULL);
     int64_t now_us = 1000000;
     log_start("fuzz", LOG_ERROR); /* pictures that fail are the everyday here */

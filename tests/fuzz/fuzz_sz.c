@@ -10,7 +10,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     struct error err = { 0 };
     bool is_packed;
     bool is_read = zlib_all(data, n, "fuzz.sz", LIMIT, &out, &err);
-    REQUIRE(is_read ? out.size <= LIMIT && out.data[out.size] == 0 : !out.data && err.code != ERROR_NONE && err.text[0] != '\0');
+    REQUIRE(is_read ? out.size <= LIMIT && out.data[out.size] == 0
+                    : !out.data && err.code != ERROR_NONE && err.text[0] != '\0');
     if (is_read && out.size > 0) { /* exactly as much is enough, one byte less is not */
         REQUIRE(zlib_all(data, n, "fuzz.sz", out.size, &again, &err) && again.size == out.size);
         bytes_free(&again);

@@ -1,5 +1,5 @@
-/* What a WebSocket client sends. Read in one piece and byte by byte it gives the same events; messages keep to their limits, texts are
- * UTF-8 by another reading, and nothing comes after the end. */
+/* What a WebSocket client sends. Read in one piece and byte by byte it gives the same events; messages keep to their
+ * limits, texts are UTF-8 by another reading, and nothing comes after the end. */
 #include "server/ws/parser.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -15,7 +15,11 @@ struct told { /* an event, and its bytes in short */
 static bool is_utf8(const uint8_t *bytes, size_t n)
 {
     for (size_t i = 0; i < n;) {
-        size_t more = bytes[i] < 0x80 ? 0 : bytes[i] >> 5 == 6 ? 1 : bytes[i] >> 4 == 14 ? 2 : bytes[i] >> 3 == 30 ? 3 : 9;
+        size_t more = bytes[i] < 0x80       ? 0
+                      : bytes[i] >> 5 == 6  ? 1
+                      : bytes[i] >> 4 == 14 ? 2
+                      : bytes[i] >> 3 == 30 ? 3
+                                            : 9;
         if (more == 9 || n - i <= more)
             return false;
         uint32_t code = more ? bytes[i] & (0x3fU >> more) : bytes[i];
@@ -42,10 +46,13 @@ static void check(const struct ws_event *event)
         break;
     case WS_EVENT_PING:
     case WS_EVENT_PONG: REQUIRE(event->n <= WS_MAX_CONTROL); break;
-    case WS_EVENT_CLOSE: REQUIRE(event->code >= 1000 && event->code <= 4999 && event->code != 1006 && event->code != 1015); break;
+    case WS_EVENT_CLOSE:
+        REQUIRE(event->code >= 1000 && event->code <= 4999 && event->code != 1006 && event->code != 1015);
+        break;
     case WS_EVENT_BROKEN:
         REQUIRE(event->reason && strlen(event->reason) <= WS_MAX_REASON);
-        REQUIRE(event->code == WS_CLOSE_PROTOCOL || event->code == WS_CLOSE_NOT_UTF8 || event->code == WS_CLOSE_TOO_LARGE);
+        REQUIRE(event->code == WS_CLOSE_PROTOCOL || event->code == WS_CLOSE_NOT_UTF8 ||
+                event->code == WS_CLOSE_TOO_LARGE);
         break;
     }
 }
@@ -83,6 +90,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     size_t n_whole = read_all(data, n, n, whole), n_parts = read_all(data, n, 1, parts);
     REQUIRE(n_whole == n_parts);
     for (size_t i = 0; i < n_whole; i++)
-        REQUIRE(whole[i].type == parts[i].type && whole[i].n == parts[i].n && whole[i].code == parts[i].code && whole[i].sum == parts[i].sum);
+        REQUIRE(whole[i].type == parts[i].type && whole[i].n == parts[i].n && whole[i].code == parts[i].code &&
+                whole[i].sum == parts[i].sum);
     return 0;
 }

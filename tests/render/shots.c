@@ -76,7 +76,8 @@ struct image *shots_take(struct plan *plan, struct scene scene, struct view view
     char field[128];
     struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
     assert_string_equal(err.text, "");
-    struct image *image = render_snapshot(shots_renderer, snapshot, options, &camera, timing ? timing : &own_timing, &err);
+    struct image *image =
+        render_snapshot(shots_renderer, snapshot, options, &camera, timing ? timing : &own_timing, &err);
     assert_string_equal(err.text, "");
     assert_non_null(image);
     snapshot_unref(snapshot);

@@ -36,11 +36,12 @@ void shots_forget(struct plan *plan);
 const uint8_t *shots_pixel(const struct image *image, int x, int y);
 /* Shares of red, green and blue, within 2 of 255: a rounding each for light, blend and store. */
 void shots_expect_color(const uint8_t *pixel, const double color[3]);
-/* Mean position of the pixels whose named channel (0 red, 1 green, 2 blue) is larger than both others by 40; how many. */
+/* Mean position of the pixels whose named channel (0 red, 1 green, 2 blue) is larger than both others by 40; how many.
+ */
 size_t shots_centroid(const struct image *image, int channel, double *x_px, double *y_px);
 
-/* Light on a surface that faces the viewer squarely, by the shader's published constants: key (0.426, 0.568, 0.704) at 0.58,
- * fill (-0.741, 0.106, 0.663) at 0.18, gloss 0.07 key^16, ambient 0.3 where opaque and 0.5 where translucent. */
+/* Light on a surface that faces the viewer squarely, by the shader's published constants: key (0.426, 0.568, 0.704) at
+ * 0.58, fill (-0.741, 0.106, 0.663) at 0.18, gloss 0.07 key^16, ambient 0.3 where opaque and 0.5 where translucent. */
 double shots_facing_light(double color, bool is_opaque);
 
 enum { SHOTS_WIDTH = 400, SHOTS_HEIGHT = 300 };

@@ -1,5 +1,6 @@
-/* Left is left. A plan with marks on the patient's left, front and top is drawn from known directions on every back end; where
- * each mark must appear follows from the definition of the patient axes and of the views, not from a picture. */
+/* Left is left. A plan with marks on the patient's left, front and top is drawn from known directions on every back
+ * end; where each mark must appear follows from the definition of the patient axes and of the views, not from a
+ * picture. */
 #include "tests/render/shots.h"
 
 static const struct vec3 centre = { 5, -7, 11 }; /* off the origin, so that a mirrored axis cannot go unnoticed */
@@ -19,12 +20,18 @@ static double mark_label(struct vec3 p)
 /* The same marks as grey values: 0 elsewhere */
 static double mark_value(struct vec3 p)
 {
-    return is_near(p, LEFT_MM, 0, 0) ? 1000 : is_near(p, 0, -FRONT_MM, 0) ? 500 : is_near(p, 0, 0, TOP_MM) ? 250 : -1000;
+    return is_near(p, LEFT_MM, 0, 0)     ? 1000
+           : is_near(p, 0, -FRONT_MM, 0) ? 500
+           : is_near(p, 0, 0, TOP_MM)    ? 250
+                                         : -1000;
 }
 
-static const struct made_region marks[] = { { "left", -1, 0xff0000 }, { "front", -1, 0x00ff00 }, { "top", -1, 0x0000ff } };
+static const struct made_region marks[] = { { "left", -1, 0xff0000 },
+                                            { "front", -1, 0x00ff00 },
+                                            { "top", -1, 0x0000ff } };
 
-/* Anisotropic voxels in three orders: the patient's own axes, left-handed (to the Left, Anterior, Superior), and oblique. */
+/* Anisotropic voxels in three orders: the patient's own axes, left-handed (to the Left, Anterior, Superior), and
+ * oblique. */
 static struct grid marked_grid(int kind)
 {
     const uint32_t size[3] = { 80, 50, 40 };
@@ -33,7 +40,8 @@ static struct grid marked_grid(int kind)
     if (kind == 1)
         map = made_affine(vec3(1, 0, 0), vec3(0, -1.5, 0), vec3(0, 0, 2), size, centre);
     if (kind == 2)
-        map = made_affine(vec3(c, s, 0), vec3(-1.5 * s * c, 1.5 * c * c, 1.5 * s), vec3(2 * s * s, -2 * s * c, 2 * c), size, centre);
+        map = made_affine(vec3(c, s, 0), vec3(-1.5 * s * c, 1.5 * c * c, 1.5 * s), vec3(2 * s * s, -2 * s * c, 2 * c),
+                          size, centre);
     return made_grid(size[0], size[1], size[2], map);
 }
 
@@ -54,7 +62,8 @@ static void surfaces_from_the_front_have_the_patients_left_on_screen_right(void 
     for (int kind = 0; kind < 3; kind++) {
         struct grid grid = marked_grid(kind);
         struct plan *plan = made_plan(&grid, mark_label, marks, 3);
-        struct image *image = shots_plain(plan, shots_scene(plan), shots_view_from(centre, vec3(0, -1, 0), vec3(0, 0, 1), PIXELS_PER_MM));
+        struct image *image =
+            shots_plain(plan, shots_scene(plan), shots_view_from(centre, vec3(0, -1, 0), vec3(0, 0, 1), PIXELS_PER_MM));
         expect_mark(image, 0, LEFT_MM, 0);
         expect_mark(image, 1, 0, 0);
         expect_mark(image, 2, 0, TOP_MM);
@@ -70,7 +79,8 @@ static void surfaces_from_the_left_have_the_front_on_screen_left(void **state)
     for (int kind = 0; kind < 3; kind++) {
         struct grid grid = marked_grid(kind);
         struct plan *plan = made_plan(&grid, mark_label, marks, 3);
-        struct image *image = shots_plain(plan, shots_scene(plan), shots_view_from(centre, vec3(1, 0, 0), vec3(0, 0, 1), PIXELS_PER_MM));
+        struct image *image =
+            shots_plain(plan, shots_scene(plan), shots_view_from(centre, vec3(1, 0, 0), vec3(0, 0, 1), PIXELS_PER_MM));
         expect_mark(image, 0, 0, 0);
         expect_mark(image, 1, -FRONT_MM, 0);
         expect_mark(image, 2, 0, TOP_MM);
@@ -114,7 +124,8 @@ static void cross_sections_of_regions_lie_as_the_panes_say(void **state)
     for (int kind = 0; kind < 3; kind++) {
         struct grid grid = marked_grid(kind);
         struct plan *plan = made_plan(&grid, mark_label, marks, 3);
-        struct image *image = shots_plain(plan, centred_scene(plan), shots_view(SCENE_KIND_AXIAL, centre, PIXELS_PER_MM));
+        struct image *image =
+            shots_plain(plan, centred_scene(plan), shots_view(SCENE_KIND_AXIAL, centre, PIXELS_PER_MM));
         expect_mark(image, 0, LEFT_MM, 0);
         expect_mark(image, 1, 0, FRONT_MM);
         image_destroy(image);
@@ -131,10 +142,12 @@ static void cross_sections_of_regions_lie_as_the_panes_say(void **state)
     }
 }
 
-/* Image panes are grey: window 500 +- 500 shows the left mark white, the front mark mid grey, the top mark at 250 of 1000. */
+/* Image panes are grey: window 500 +- 500 shows the left mark white, the front mark mid grey, the top mark at 250 of
+ * 1000. */
 static void expect_grey(const struct image *image, double right_mm, double up_mm, int grey)
 {
-    int x = (int)floor(SHOTS_WIDTH / 2.0 + right_mm * PIXELS_PER_MM), y = (int)floor(SHOTS_HEIGHT / 2.0 - up_mm * PIXELS_PER_MM);
+    int x = (int)floor(SHOTS_WIDTH / 2.0 + right_mm * PIXELS_PER_MM),
+        y = (int)floor(SHOTS_HEIGHT / 2.0 - up_mm * PIXELS_PER_MM);
     const uint8_t *p = shots_pixel(image, x, y);
     assert_close(p[0], grey, 1);
     assert_int_equal(p[0], p[1]);
@@ -188,7 +201,8 @@ static void an_axial_slice_in_space_seen_from_above_has_the_left_on_screen_left(
     scene.image.slices.axial.visible = true;
     scene.image.window.center = 500;
     scene.image.window.width = 1000;
-    struct image *image = shots_plain(plan, scene, shots_view_from(centre, vec3(0, 0, 1), vec3(0, -1, 0), PIXELS_PER_MM));
+    struct image *image =
+        shots_plain(plan, scene, shots_view_from(centre, vec3(0, 0, 1), vec3(0, -1, 0), PIXELS_PER_MM));
     expect_grey(image, -LEFT_MM, 0, 255);
     expect_grey(image, LEFT_MM, 0, 0);
     expect_grey(image, 0, FRONT_MM, 128);

@@ -1,5 +1,5 @@
-/* What is painted over slice panes: outlines where the regions are, the check of a segmentation, the grid of a dose, on grids square
- * to the patient and on oblique ones; and images on grids of their own. */
+/* What is painted over slice panes: outlines where the regions are, the check of a segmentation, the grid of a dose, on
+ * grids square to the patient and on oblique ones; and images on grids of their own. */
 #include "core/plan/plan_shapes.h"
 #include "tests/render/shots.h"
 
@@ -12,10 +12,12 @@ static struct grid oblique_grid(uint32_t side)
     const uint32_t size[3] = { side, side, side };
     double c = cos(0.4), s = sin(0.4), d = cos(0.25), e = sin(0.25);
     return made_grid(side, side, side,
-                     made_affine(vec3(1.2 * c, 1.2 * s, 0), vec3(-0.9 * s * d, 0.9 * c * d, 0.9 * e), vec3(-1.5 * s * e, 1.5 * c * e, -1.5 * d), size, origin));
+                     made_affine(vec3(1.2 * c, 1.2 * s, 0), vec3(-0.9 * s * d, 0.9 * c * d, 0.9 * e),
+                                 vec3(-1.5 * s * e, 1.5 * c * e, -1.5 * d), size, origin));
 }
 
-/* Where a patient point is on a pane: axial and coronal have patient left on the right, sagittal the back; up is anterior, superior. */
+/* Where a patient point is on a pane: axial and coronal have patient left on the right, sagittal the back; up is
+ * anterior, superior. */
 static void on_pane(enum scene_kind kind, struct vec3 p, double pixels_per_mm, double *x, double *y)
 {
     double right = kind == SCENE_KIND_SAGITTAL ? p.y : p.x, up = kind == SCENE_KIND_AXIAL ? -p.y : p.z;
@@ -30,19 +32,28 @@ static void set_slices(struct scene *scene, struct vec3 at)
     scene->image.slices.axial.position_mm = at.z;
 }
 
-static double no_value(struct vec3 p) { return p.x > 1e9; } /* a black image */
+static double no_value(struct vec3 p)
+{
+    return p.x > 1e9;
+} /* a black image */
 
-/* ---- outlines ------------------------------------------------------------------------------------------------------------------- */
+/* ---- outlines --------------------------------------------------------------------------------------------------- */
 
 /* A box off the middle, a different length along each axis; voxel centres at halves. */
 static const struct vec3 box_low = { -8, -3, 2 }, box_high = { 10, 9, 16 };
 static double box_label(struct vec3 p)
 {
-    return p.x > box_low.x && p.x < box_high.x && p.y > box_low.y && p.y < box_high.y && p.z > box_low.z && p.z < box_high.z ? 1 : 0;
+    return p.x > box_low.x && p.x < box_high.x && p.y > box_low.y && p.y < box_high.y && p.z > box_low.z &&
+                   p.z < box_high.z
+               ? 1
+               : 0;
 }
 static const struct made_region box[] = { { "box", -1, 0x30ff60 } };
 
-static bool is_green(const uint8_t *pixel) { return pixel[1] > 200 && pixel[0] < 80; }
+static bool is_green(const uint8_t *pixel)
+{
+    return pixel[1] > 200 && pixel[0] < 80;
+}
 
 /* How far outside a rectangle (negative: inside). */
 static double beyond(double x, double y, const double low[2], const double high[2])
@@ -67,7 +78,8 @@ static void outlines_lie_on_the_regions_border(void **state)
             double inset = method ? 0 : 0.5, x[2], y[2];
             on_pane(kinds[k], vec3_add(box_low, vec3(inset, inset, inset)), 7, &x[0], &y[0]);
             on_pane(kinds[k], vec3_sub(box_high, vec3(inset, inset, inset)), 7, &x[1], &y[1]);
-            const double low[2] = { fmin(x[0], x[1]), fmin(y[0], y[1]) }, high[2] = { fmax(x[0], x[1]), fmax(y[0], y[1]) };
+            const double low[2] = { fmin(x[0], x[1]), fmin(y[0], y[1]) },
+                         high[2] = { fmax(x[0], x[1]), fmax(y[0], y[1]) };
             size_t n = 0;
             for (int row = 0; row < SHOTS_HEIGHT; row++)
                 for (int column = 0; column < SHOTS_WIDTH; column++) {
@@ -86,7 +98,10 @@ static void outlines_lie_on_the_regions_border(void **state)
         }
 }
 
-static double ball_label(struct vec3 p) { return vec3_length(vec3_sub(p, vec3(3, -2, 4))) < 12 ? 1 : 0; }
+static double ball_label(struct vec3 p)
+{
+    return vec3_length(vec3_sub(p, vec3(3, -2, 4))) < 12 ? 1 : 0;
+}
 
 static void outlines_of_oblique_grids_are_within_a_voxel_of_the_truth(void **state)
 {
@@ -122,7 +137,9 @@ static double nested_label(struct vec3 p)
     double r = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
     return r < 5 ? 3 : r < 10 ? 2 : r < 15 ? 1 : 0;
 }
-static const struct made_region nested[] = { { "outer", -1, 0xff3030 }, { "middle", 0, 0x30ff60 }, { "inner", 1, 0x3030ff } };
+static const struct made_region nested[] = { { "outer", -1, 0xff3030 },
+                                             { "middle", 0, 0x30ff60 },
+                                             { "inner", 1, 0x3030ff } };
 
 static void only_visible_regions_have_outlines_and_the_higher_order_is_on_top(void **state)
 {
@@ -152,7 +169,10 @@ static void only_visible_regions_have_outlines_and_the_higher_order_is_on_top(vo
     shots_forget(plan);
 }
 
-static double all_label(struct vec3 p) { return fabs(p.x) < 10 && fabs(p.y) < 10 && fabs(p.z) < 10 ? 1 : 0; }
+static double all_label(struct vec3 p)
+{
+    return fabs(p.x) < 10 && fabs(p.y) < 10 && fabs(p.z) < 10 ? 1 : 0;
+}
 static const struct made_region equals[] = { { "red", -1, 0xff3030 }, { "green", -1, 0x30ff60 } };
 
 static void the_order_decides_between_outlines_that_coincide(void **state)
@@ -178,7 +198,7 @@ static void the_order_decides_between_outlines_that_coincide(void **state)
     }
 }
 
-/* ---- the check ------------------------------------------------------------------------------------------------------------------ */
+/* ---- the check -------------------------------------------------------------------------------------------------- */
 
 static void the_check_marks_what_the_surface_leaves_out(void **state)
 {
@@ -192,9 +212,11 @@ static void the_check_marks_what_the_surface_leaves_out(void **state)
     struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, false };
     struct render_timing timing;
     struct image *image = shots_take(plan, scene, shots_view(SCENE_KIND_AXIAL, vec3(1, 3, 0), 16), &options, &timing);
-    /* marching cubes cuts a triangle with legs of half a voxel off each of four corners: 4 x 1/8 mm2, 256 pixels a mm2 */
+    /* marching cubes cuts a triangle with legs of half a voxel off each of four corners: 4 x 1/8 mm2, 256 pixels a mm2
+     */
     assert_int_equal(timing.n_added_px, 0);
-    assert_close((double)timing.n_left_out_px, 4 * 256 / 8.0, 40); /* a row of 8 pixels each way at every corner's long side */
+    assert_close((double)timing.n_left_out_px, 4 * 256 / 8.0,
+                 40); /* a row of 8 pixels each way at every corner's long side */
     image_destroy(image);
 
     /* only where it is asked for, and not in space */
@@ -208,10 +230,13 @@ static void the_check_marks_what_the_surface_leaves_out(void **state)
 /* Takes the place of the region's own shape: a box of triangles `grown` larger than the voxels on every side. */
 static void put_box(struct plan *plan, enum region_representation representation, double grown, bool is_faceted)
 {
-    static const uint32_t quads[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
+    static const uint32_t quads[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 },
+                                          { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
     struct error err = { 0 };
     struct shape *shape = mem_new(sizeof *shape);
-    struct shape_name name = { 0, { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 }, SURFACE_FULL };
+    struct shape_name name = { 0,
+                               { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 },
+                               SURFACE_FULL };
     struct surface_facts facts = { .reduction = 1 };
     shape->kind = SHAPE_TRIANGLES;
     shape->is_faceted = is_faceted;
@@ -235,15 +260,18 @@ static void put_box(struct plan *plan, enum region_representation representation
     shape_unref(shape);
 }
 
-/* On the border of the voxels to the last bit: at any zoom, at positions within a voxel and on its faces, nothing differs; half a
- * millimetre larger or smaller, a frame of that width does. An open surface encloses nothing. */
+/* On the border of the voxels to the last bit: at any zoom, at positions within a voxel and on its faces, nothing
+ * differs; half a millimetre larger or smaller, a frame of that width does. An open surface encloses nothing. */
 static void the_check_finds_exactly_what_differs(void **state)
 {
     (void)state;
     static const double positions[] = { 3, 4.25, 5.5, 8 }, zooms[] = { 3, 7, 16 };
-    static const double faces[] = { 16, 9, -8 }; /* of the region itself, by kind: all of it or nothing, for both alike */
+    static const double faces[] = { 16, 9,
+                                    -8 }; /* of the region itself, by kind: all of it or nothing, for both alike */
     const uint32_t size[3] = { 40, 40, 40 };
-    struct grid grids[2] = { made_cube_grid(40), made_grid(40, 40, 40, made_affine(vec3(-1, 0, 0), vec3(0, -1, 0), vec3(0, 0, -1), size, origin)) };
+    struct grid grids[2] = { made_cube_grid(40),
+                             made_grid(40, 40, 40,
+                                       made_affine(vec3(-1, 0, 0), vec3(0, -1, 0), vec3(0, 0, -1), size, origin)) };
     for (int grown = -1; grown <= 1; grown++)
         for (int way = 0; way < 4; way++) {
             bool fan = way & 1;
@@ -254,7 +282,8 @@ static void the_check_finds_exactly_what_differs(void **state)
                 struct scene scene = shots_scene(plan);
                 scene.check.visible = true;
                 snprintf(scene.check.region, sizeof scene.check.region, "box");
-                shots_style(&scene, "box")->representation = fan ? SCENE_REPRESENTATION_FAN : SCENE_REPRESENTATION_UNIVELS;
+                shots_style(&scene, "box")->representation =
+                    fan ? SCENE_REPRESENTATION_FAN : SCENE_REPRESENTATION_UNIVELS;
                 double at = grown == 0 && i % 4 == 0 ? faces[i / 12] : positions[i % 4], zoom = zooms[i / 4 % 3];
                 enum scene_kind kind = kinds[i / 12];
                 set_slices(&scene, vec3(at, at, at));
@@ -271,7 +300,8 @@ static void the_check_finds_exactly_what_differs(void **state)
                     assert_close((double)(grown > 0 ? timing.n_added_px : timing.n_left_out_px), fabs(frame), border);
                     assert_int_equal(grown > 0 ? timing.n_left_out_px : timing.n_added_px, 0);
                 }
-                if (!fan && grown && kind == SCENE_KIND_AXIAL && zoom > 10) { /* two colours, told apart by brightness as well */
+                if (!fan && grown && kind == SCENE_KIND_AXIAL &&
+                    zoom > 10) { /* two colours, told apart by brightness as well */
                     const uint8_t *pixel = shots_pixel(image, 200 + (int)((9 + 0.25 * grown) * zoom), 150);
                     assert_true(grown > 0 ? pixel[0] > pixel[2] + 50 : pixel[2] > pixel[0] + 50);
                 }
@@ -281,7 +311,7 @@ static void the_check_finds_exactly_what_differs(void **state)
         }
 }
 
-/* ---- grids of doses --------------------------------------------------------------------------------------------------------------- */
+/* ---- grids of doses --------------------------------------------------------------------------------------------- */
 
 static void give_dose(struct plan *plan, const struct grid *grid)
 {
@@ -293,7 +323,10 @@ static void give_dose(struct plan *plan, const struct grid *grid)
 }
 
 /* Half covered at least. */
-static bool is_white(const uint8_t *pixel) { return pixel[0] > 120 && pixel[1] > 120 && pixel[2] > 120; }
+static bool is_white(const uint8_t *pixel)
+{
+    return pixel[0] > 120 && pixel[1] > 120 && pixel[2] > 120;
+}
 
 static void a_doses_grid_is_where_its_voxels_are(void **state)
 {
@@ -337,10 +370,13 @@ static void a_doses_grid_is_where_its_voxels_are(void **state)
     shots_forget(plan);
 }
 
-/* ---- images on grids of their own ------------------------------------------------------------------------------------------------- */
+/* ---- images on grids of their own ------------------------------------------------------------------------------- */
 
 static const struct vec3 bright_at = { 7, -5, 6 };
-static double bright_ball(struct vec3 p) { return vec3_length(vec3_sub(p, bright_at)) < 5 ? 200 : 0; }
+static double bright_ball(struct vec3 p)
+{
+    return vec3_length(vec3_sub(p, bright_at)) < 5 ? 200 : 0;
+}
 
 static void slices_of_every_image_land_where_they_belong(void **state)
 {
@@ -375,9 +411,12 @@ static void slices_of_every_image_land_where_they_belong(void **state)
     shots_forget(plan);
 }
 
-/* ---- low values white ------------------------------------------------------------------------------------------------------------- */
+/* ---- low values white ------------------------------------------------------------------------------------------- */
 
-static double ramp(struct vec3 p) { return 100 + 5 * p.x; }
+static double ramp(struct vec3 p)
+{
+    return 100 + 5 * p.x;
+}
 
 /* 0 to 255 of a value, and the other way round; a level for rounding. */
 static void expect_ramp(struct plan *plan, enum scene_low_values low_values, bool is_low_white)
@@ -431,8 +470,11 @@ static void what_is_left_out_goes_by_values_and_not_by_greys(void **state)
         scene.image.low_values = i ? SCENE_LOW_VALUES_WHITE : SCENE_LOW_VALUES_BLACK;
         scene.image.slices.axial.visible = true;
         set_slices(&scene, origin);
-        struct image *image = shots_plain(plan, scene, shots_view_from(origin, vec3(0, 0, -1), vec3(0, -1, 0), 5)); /* as the axial pane */
-        assert_memory_equal(shots_pixel(image, SHOTS_WIDTH / 2 - 50, SHOTS_HEIGHT / 2), shots_background, 3); /* 10 mm to either side */
+        struct image *image =
+            shots_plain(plan, scene,
+                        shots_view_from(origin, vec3(0, 0, -1), vec3(0, -1, 0), 5)); /* as the axial pane */
+        assert_memory_equal(shots_pixel(image, SHOTS_WIDTH / 2 - 50, SHOTS_HEIGHT / 2), shots_background,
+                            3); /* 10 mm to either side */
         assert_close(shots_pixel(image, SHOTS_WIDTH / 2 + 49, SHOTS_HEIGHT / 2)[0], i ? 255 * 0.25 : 255 * 0.75, 2);
         image_destroy(image);
     }

@@ -8,8 +8,13 @@ static double nested(struct vec3 p)
     double r = vec3_length(vec3_sub(p, vec3(2, -1, 1)));
     return r < 5 ? 3 : r < 9 ? 2 : r < 13 ? 1 : 0;
 }
-static double waves(struct vec3 p) { return 200 * sin(p.x * 0.7) * cos(p.y * 0.5) + 10 * p.z; }
-static const struct made_region regions[] = { { "outer", -1, 0xd8a890 }, { "middle", 0, 0x90b0e0 }, { "inner", 1, 0x50c060 } };
+static double waves(struct vec3 p)
+{
+    return 200 * sin(p.x * 0.7) * cos(p.y * 0.5) + 10 * p.z;
+}
+static const struct made_region regions[] = { { "outer", -1, 0xd8a890 },
+                                              { "middle", 0, 0x90b0e0 },
+                                              { "inner", 1, 0x50c060 } };
 
 static struct plan *make_plan(void)
 {
@@ -24,15 +29,19 @@ struct wish {
     struct render_options options;
 };
 
-/* Moving and still, in space and on panes with outlines, of many sizes; the first is large enough for several parts on every back end. */
+/* Moving and still, in space and on panes with outlines, of many sizes; the first is large enough for several parts on
+ * every back end. */
 static void make_wishes(struct plan *plan, struct wish wishes[N_PICTURES])
 {
     static const struct {
         enum scene_kind kind;
         int width_px, height_px;
         bool is_still;
-    } pictures[N_PICTURES] = { { SCENE_KIND_3D, 2100, 2050, true }, { SCENE_KIND_3D, 401, 300, false }, { SCENE_KIND_AXIAL, 333, 400, true },
-                               { SCENE_KIND_3D, 640, 480, true },   { SCENE_KIND_CORONAL, 500, 200, false } };
+    } pictures[N_PICTURES] = { { SCENE_KIND_3D, 2100, 2050, true },
+                               { SCENE_KIND_3D, 401, 300, false },
+                               { SCENE_KIND_AXIAL, 333, 400, true },
+                               { SCENE_KIND_3D, 640, 480, true },
+                               { SCENE_KIND_CORONAL, 500, 200, false } };
     for (int i = 0; i < N_PICTURES; i++) {
         int shrunk = SHOTS_SANITIZED && i == 0 ? 3 : 1;
         struct scene scene;
@@ -46,7 +55,8 @@ static void make_wishes(struct plan *plan, struct wish wishes[N_PICTURES])
         view.kind = pictures[i].kind;
         view.size_px[0] = pictures[i].width_px / shrunk;
         view.size_px[1] = pictures[i].height_px / shrunk;
-        wishes[i].options = (struct render_options){ view.size_px[0], view.size_px[1], SURFACE_FULL, pictures[i].is_still };
+        wishes[i].options =
+            (struct render_options){ view.size_px[0], view.size_px[1], SURFACE_FULL, pictures[i].is_still };
         wishes[i].snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
         assert_string_equal(err.text, "");
     }
@@ -90,7 +100,8 @@ static void pictures_drawn_in_turns_are_the_same_as_in_one_go(void **state)
         expected[i] = draw_in_one_go(&wishes[i], &timings[i]);
         pictures[i] = render_begin(shots_renderer, wishes[i].snapshot, &wishes[i].options);
     }
-    for (int turn = 0; n_done < N_PICTURES; turn++) { /* each goes on in each turn, so what is kept of one is lost to others */
+    for (int turn = 0; n_done < N_PICTURES;
+         turn++) { /* each goes on in each turn, so what is kept of one is lost to others */
         int i = turn % N_PICTURES;
         struct error err = { 0 };
         if (!pictures[i])

@@ -1,13 +1,16 @@
-/* What a picture must show, worked out by hand: which side of a surface is seen, how colours blend, how large things are, which
- * grey a value has. */
+/* What a picture must show, worked out by hand: which side of a surface is seen, how colours blend, how large things
+ * are, which grey a value has. */
 #include "tests/render/shots.h"
 
 static const struct vec3 origin = { 0, 0, 0 };
 static const struct vec3 from_front = { 0, -1, 0 }, up = { 0, 0, 1 };
 
-/* ---- winding, depth, blending ---------------------------------------------------------------------------------------------- */
+/* ---- winding, depth, blending ----------------------------------------------------------------------------------- */
 
-static double ball_label(struct vec3 p) { return vec3_length(p) <= 20 ? 1 : 0; }
+static double ball_label(struct vec3 p)
+{
+    return vec3_length(p) <= 20 ? 1 : 0;
+}
 static const struct made_region ball[] = { { "ball", -1, 0xc8c8c8 } };
 
 static void the_near_side_of_a_ball_is_seen_lit_from_the_upper_right(void **state)
@@ -19,19 +22,23 @@ static void the_near_side_of_a_ball_is_seen_lit_from_the_upper_right(void **stat
     int right = shots_pixel(image, 200 + 60, 150 - 60)[0], left = shots_pixel(image, 200 - 60, 150 + 60)[0];
     assert_true(right > left + 60); /* were the far side drawn, its normals would make it the other way round */
     double grey = 0xc8 / 255.0;
-    assert_close(shots_pixel(image, 200, 150)[0], 255 * shots_facing_light(grey, true), 8); /* averaged normals of voxels: a few levels */
+    assert_close(shots_pixel(image, 200, 150)[0], 255 * shots_facing_light(grey, true),
+                 8); /* averaged normals of voxels: a few levels */
     assert_memory_equal(shots_pixel(image, 2, 2), shots_background, 3);
     image_destroy(image);
     shots_forget(plan);
 }
 
-/* Nested boxes, half sides 12, 24, 36; labels 3, 2, 1. Their front faces are flat, so in the middle normals are exact. */
+/* Nested boxes, half sides 12, 24, 36; labels 3, 2, 1. Their front faces are flat, so in the middle normals are exact.
+ */
 static double nested_label(struct vec3 p)
 {
     double r = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
     return r < 12 ? 3 : r < 24 ? 2 : r < 36 ? 1 : 0;
 }
-static const struct made_region nested[] = { { "outer", -1, 0xff8040 }, { "middle", 0, 0x40ff80 }, { "inner", 1, 0x8040ff } };
+static const struct made_region nested[] = { { "outer", -1, 0xff8040 },
+                                             { "middle", 0, 0x40ff80 },
+                                             { "inner", 1, 0x8040ff } };
 
 static void blend(double under[3], const double rgb[3], double alpha)
 {
@@ -149,9 +156,12 @@ static void a_folded_translucent_surface_shows_its_front_sheet_once(void **state
     shots_forget(plan);
 }
 
-/* ---- size ---------------------------------------------------------------------------------------------------------------------- */
+/* ---- size ------------------------------------------------------------------------------------------------------- */
 
-static double box_label(struct vec3 p) { return fabs(p.x) < 20 && fabs(p.y) < 20 && fabs(p.z) < 10 ? 1 : 0; }
+static double box_label(struct vec3 p)
+{
+    return fabs(p.x) < 20 && fabs(p.y) < 20 && fabs(p.z) < 10 ? 1 : 0;
+}
 
 static void measure_silhouette(const struct image *image, int *width_px, int *height_px)
 {
@@ -194,7 +204,8 @@ static void fewer_pixels_show_the_same_view(void **state)
     struct grid grid = made_cube_grid(60);
     struct plan *plan = made_plan(&grid, box_label, ball, 1);
     struct render_options options = { SHOTS_WIDTH / 2, SHOTS_HEIGHT / 2, SURFACE_FULL, false };
-    struct image *image = shots_take(plan, shots_scene(plan), shots_view_from(origin, from_front, up, 5), &options, NULL);
+    struct image *image =
+        shots_take(plan, shots_scene(plan), shots_view_from(origin, from_front, up, 5), &options, NULL);
     int width_px, height_px;
     assert_int_equal(image->width_px, SHOTS_WIDTH / 2);
     measure_silhouette(image, &width_px, &height_px);
@@ -212,7 +223,8 @@ static void what_is_out_of_sight_is_not_drawn_and_what_is_partly_in_sight_is(voi
     struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, false };
     struct render_timing timing;
     /* 5 pixels a millimetre: 80 mm across, and the box reaches 20 mm to the left of the patient's middle */
-    image_destroy(shots_take(plan, shots_scene(plan), shots_view_from(vec3(-61, 0, 0), from_front, up, 5), &options, &timing));
+    image_destroy(
+        shots_take(plan, shots_scene(plan), shots_view_from(vec3(-61, 0, 0), from_front, up, 5), &options, &timing));
     assert_int_equal(timing.n_triangles, 0);
     struct image *image =
         shots_take(plan, shots_scene(plan), shots_view_from(vec3(-59, 0, 0), from_front, up, 5), &options, &timing);
@@ -223,12 +235,24 @@ static void what_is_out_of_sight_is_not_drawn_and_what_is_partly_in_sight_is(voi
     shots_forget(plan);
 }
 
-/* ---- greys --------------------------------------------------------------------------------------------------------------------- */
+/* ---- greys ------------------------------------------------------------------------------------------------------ */
 
-static double ramp(struct vec3 p) { return floor(10 * p.x); } /* -300 .. 300: whole numbers, so that 16 bits hold them */
-static double high_ramp(struct vec3 p) { return floor(10 * p.x) + 40000; }
-static double small_ramp(struct vec3 p) { return floor(p.x) + 100; }
-static double empty_label(struct vec3 p) { return p.x * 0; }
+static double ramp(struct vec3 p)
+{
+    return floor(10 * p.x);
+} /* -300 .. 300: whole numbers, so that 16 bits hold them */
+static double high_ramp(struct vec3 p)
+{
+    return floor(10 * p.x) + 40000;
+}
+static double small_ramp(struct vec3 p)
+{
+    return floor(p.x) + 100;
+}
+static double empty_label(struct vec3 p)
+{
+    return p.x * 0;
+}
 
 static int expected_grey(double value, double center, double width)
 {
@@ -243,7 +267,9 @@ static void every_voxel_has_the_grey_its_window_says(void **state)
         enum voxel_type type;
         double (*value)(struct vec3 p);
         double center, width;
-    } cases[] = { { VOXEL_I16, ramp, 20, 333 }, { VOXEL_F32, ramp, -50, 400 }, { VOXEL_U16, high_ramp, 40000, 500 },
+    } cases[] = { { VOXEL_I16, ramp, 20, 333 },
+                  { VOXEL_F32, ramp, -50, 400 },
+                  { VOXEL_U16, high_ramp, 40000, 500 },
                   { VOXEL_U8, small_ramp, 100, 50 } };
     struct grid grid = made_cube_grid(60);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -291,7 +317,7 @@ static void a_slice_in_space_leaves_out_what_is_below_the_threshold(void **state
     scene.image.cull_below = 50;
     struct image *image = shots_plain(plan, scene, shots_view_from(origin, from_front, up, 4));
     assert_memory_equal(shots_pixel(image, 200 + 4 * 4, 150), shots_background, 3); /* 40 */
-    assert_close(shots_pixel(image, 200 + 6 * 4, 150)[0], 255 * 360 / 600.0, 3);    /* 60: half a millimetre is 2 levels */
+    assert_close(shots_pixel(image, 200 + 6 * 4, 150)[0], 255 * 360 / 600.0, 3); /* 60: half a millimetre is 2 levels */
     image_destroy(image);
 
     scene = shots_scene(plan); /* the slice's own pane shows everything */
@@ -303,7 +329,10 @@ static void a_slice_in_space_leaves_out_what_is_below_the_threshold(void **state
     shots_forget(plan);
 }
 
-static double holed(struct vec3 p) { return vec3_length(p) < 5 ? NAN : 100; }
+static double holed(struct vec3 p)
+{
+    return vec3_length(p) < 5 ? NAN : 100;
+}
 
 static void what_is_not_a_number_is_not_drawn(void **state)
 {
@@ -324,7 +353,8 @@ static void a_grid_beyond_the_drivers_limit_is_refused_with_its_size(void **stat
 {
     (void)state;
     const uint32_t size[3] = { 4096, 2, 2 };
-    struct grid grid = made_grid(size[0], size[1], size[2], made_affine(vec3(0.1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
+    struct grid grid =
+        made_grid(size[0], size[1], size[2], made_affine(vec3(0.1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, origin));
     struct plan *plan = made_plan(&grid, empty_label, ball, 0);
     made_plan_add_image(plan, &grid, VOXEL_U8, small_ramp);
     struct scene scene = shots_scene(plan);
@@ -345,7 +375,7 @@ static void a_grid_beyond_the_drivers_limit_is_refused_with_its_size(void **stat
     shots_forget(plan);
 }
 
-/* ---- stills, light surfaces, repeatability --------------------------------------------------------------------------------------- */
+/* ---- stills, light surfaces, repeatability ---------------------------------------------------------------------- */
 
 /* Pixels across the box's slanted edges that are neither the background nor the face. */
 static size_t count_between(const struct image *image)
@@ -370,16 +400,21 @@ static void stills_have_smooth_edges(void **state)
         struct scene scene = shots_scene(plan);
         scene.surface.normals = SCENE_NORMALS_FACE; /* one colour all over the front face */
         struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, is_still };
-        struct image *image = shots_take(plan, scene, shots_view_from(origin, from_front, vec3(0.3, 0, 1), 5), &options, NULL);
+        struct image *image =
+            shots_take(plan, scene, shots_view_from(origin, from_front, vec3(0.3, 0, 1), 5), &options, NULL);
         n[is_still] = count_between(image);
         image_destroy(image);
     }
-    /* marching cubes bevels the box's edges by half a voxel, 2.5 pixels here, which may shade differently: compare, do not count */
+    /* marching cubes bevels the box's edges by half a voxel, 2.5 pixels here, which may shade differently: compare, do
+     * not count */
     assert_true(n[1] > n[0] + 300); /* the outline is 600 pixels long, about 3 of 4 of them cut by a slanted edge */
     shots_forget(plan);
 }
 
-static double large_box_label(struct vec3 p) { return fabs(p.x) < 65 && fabs(p.y) < 65 && fabs(p.z) < 65 ? 1 : 0; }
+static double large_box_label(struct vec3 p)
+{
+    return fabs(p.x) < 65 && fabs(p.y) < 65 && fabs(p.z) < 65 ? 1 : 0;
+}
 
 static void light_surfaces_are_marked_and_lighter(void **state)
 {
@@ -388,8 +423,10 @@ static void light_surfaces_are_marked_and_lighter(void **state)
     struct plan *plan = made_plan(&grid, large_box_label, ball, 1); /* 6 x 130 x 130 squares: 200 000 triangles */
     struct render_timing full, light;
     struct view view = shots_view_from(origin, from_front, up, 2);
-    image_destroy(shots_take(plan, shots_scene(plan), view, &(struct render_options){ 400, 300, SURFACE_FULL, false }, &full));
-    image_destroy(shots_take(plan, shots_scene(plan), view, &(struct render_options){ 400, 300, SURFACE_LIGHT, false }, &light));
+    image_destroy(
+        shots_take(plan, shots_scene(plan), view, &(struct render_options){ 400, 300, SURFACE_FULL, false }, &full));
+    image_destroy(
+        shots_take(plan, shots_scene(plan), view, &(struct render_options){ 400, 300, SURFACE_LIGHT, false }, &light));
     assert_false(full.is_light);
     assert_true(light.is_light);
     assert_true(full.n_triangles > 6 * 128 * 128 * 2);
@@ -399,7 +436,9 @@ static void light_surfaces_are_marked_and_lighter(void **state)
 
 static double specks_label(struct vec3 p)
 {
-    return fabs(p.x) < 10 && fabs(p.y) < 10 && fabs(p.z) < 10 ? 1 : fabs(p.x - 14.5) < 0.4 && fabs(p.y - 0.5) < 0.4 && fabs(p.z - 0.5) < 0.4 ? 2 : 0;
+    return fabs(p.x) < 10 && fabs(p.y) < 10 && fabs(p.z) < 10                         ? 1
+           : fabs(p.x - 14.5) < 0.4 && fabs(p.y - 0.5) < 0.4 && fabs(p.z - 0.5) < 0.4 ? 2
+                                                                                      : 0;
 }
 
 static const struct made_region specks[] = { { "box", -1, 0xff8040 }, { "speck", -1, 0x40ff80 } };

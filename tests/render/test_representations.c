@@ -1,5 +1,5 @@
-/* Every way to draw a region, of one with spikes, lone univels, holes and separate pieces on an oblique grid of unequal spacings:
- * where it is drawn, against rays through its univels. */
+/* Every way to draw a region, of one with spikes, lone univels, holes and separate pieces on an oblique grid of unequal
+ * spacings: where it is drawn, against rays through its univels. */
 #include "tests/render/shots.h"
 
 static const struct vec3 origin = { 0, 0, 0 };
@@ -7,8 +7,8 @@ static const struct vec3 up = { 0, 0, 1 };
 static const struct made_region spiky[] = { { "spiky", -1, 0xf0c080 } };
 enum { NI = 44, NJ = 36, NK = 20 };
 
-/* In index space: a body with a hole through it, spikes one univel thick, two lone univels, a pair touching at a corner, and a piece
- * of its own with a hollow inside. */
+/* In index space: a body with a hole through it, spikes one univel thick, two lone univels, a pair touching at a
+ * corner, and a piece of its own with a hollow inside. */
 static bool is_spiky(int i, int j, int k)
 {
     double x = i - 15, y = j - 16, z = 1.5 * (k - 9);
@@ -24,7 +24,8 @@ static struct grid make_grid(void)
 {
     const uint32_t size[3] = { NI, NJ, NK };
     double c = cos(0.35), s = sin(0.35);
-    return made_grid(NI, NJ, NK, made_affine(vec3(1.1 * c, 1.1 * s, 0), vec3(-1.4 * s, 1.4 * c, 0), vec3(0, 0, 2.5), size, origin));
+    return made_grid(NI, NJ, NK,
+                     made_affine(vec3(1.1 * c, 1.1 * s, 0), vec3(-1.4 * s, 1.4 * c, 0), vec3(0, 0, 2.5), size, origin));
 }
 
 static double spiky_label(struct vec3 p)
@@ -40,18 +41,21 @@ static struct plan *make_plan(void)
     return made_plan(&grid, spiky_label, spiky, 1);
 }
 
-/* ---- the truth: which pixels' rays meet a univel --------------------------------------------------------------------------------- */
+/* ---- the truth: which pixels' rays meet a univel ---------------------------------------------------------------- */
 
 enum { N_VIEWS = 4 };
 static struct view make_view(int i)
 {
-    static const struct vec3 from[N_VIEWS] = { { 0.3, -1, 0.4 }, { -0.8, 0.5, -0.3 }, { 0.2, -1, 0.9 }, { 0, -1, 0.02 } };
+    static const struct vec3 from[N_VIEWS] = {
+        { 0.3, -1, 0.4 }, { -0.8, 0.5, -0.3 }, { 0.2, -1, 0.9 }, { 0, -1, 0.02 }
+    };
     struct view view = shots_view_from(origin, from[i], up, 5);
     if (i >= 2) {
         view.camera.projection = SCENE_PROJECTION_PERSPECTIVE;
         view.camera.has_height_mm = false;
         view.camera.fov_deg = i == 2 ? 30 : 70;
-        view.camera.position_mm = vec3_scale(vec3_normalize(from[i]), i == 2 ? 120 : 38); /* the last: voxels of 30 pixels and more */
+        view.camera.position_mm =
+            vec3_scale(vec3_normalize(from[i]), i == 2 ? 120 : 38); /* the last: voxels of 30 pixels and more */
     }
     return view;
 }
@@ -124,8 +128,8 @@ static bool is_drawn(const struct image *image, int x, int y)
     return memcmp(shots_pixel(image, x, y), shots_background, 3) != 0;
 }
 
-static void expect_way(const struct way *way, int view_number, const struct image *image, bool truth[SHOTS_HEIGHT][SHOTS_WIDTH],
-                       const double middle_px[2])
+static void expect_way(const struct way *way, int view_number, const struct image *image,
+                       bool truth[SHOTS_HEIGHT][SHOTS_WIDTH], const double middle_px[2])
 {
     /* a voxel's half diagonal of 1.5 mm at 5 pixels a mm; in the last view voxels are near */
     int reach = view_number < 3 ? 10 : 60;
@@ -142,13 +146,14 @@ static void expect_way(const struct way *way, int view_number, const struct imag
             bool is_wrong = way->is_exact      ? !is_near_truth(truth, is, x, y, 1)
                             : way->is_covering ? !is || !is_near_truth(truth, true, x, y, reach)
                             : is               ? !is_near_truth(truth, true, x, y, reach)
-                                               : !way->is_thin && !way->is_partial && !is_near_truth(truth, false, x, y, reach);
+                                 : !way->is_thin && !way->is_partial && !is_near_truth(truth, false, x, y, reach);
             n_wrong += is_wrong;
         }
     if (n_wrong > 0 || hypot(sum[0] / n - middle_px[0], sum[1] / n - middle_px[1]) > (way->is_partial ? 25 : 12))
-        printf("  %s, view %d: %.0f drawn, %.0f univels, %.0f wrong; middle off by %.1f, %.1f pixels\n", way->name, view_number, n, n_truth, n_wrong,
-               sum[0] / n - middle_px[0], sum[1] / n - middle_px[1]);
-    /* surfaces narrow a spike from both sides, so that where two cross the truth's edge may be farther off; splines round all off */
+        printf("  %s, view %d: %.0f drawn, %.0f univels, %.0f wrong; middle off by %.1f, %.1f pixels\n", way->name,
+               view_number, n, n_truth, n_wrong, sum[0] / n - middle_px[0], sum[1] / n - middle_px[1]);
+    /* surfaces narrow a spike from both sides, so that where two cross the truth's edge may be farther off; splines
+     * round all off */
     bool is_strict = way->is_exact || way->is_covering || way->is_thin;
     assert_true(n_wrong <= (is_strict ? 0 : way->representation == SCENE_REPRESENTATION_NURBS ? 0.05 : 0.01) * n_truth);
     assert_true(n > (way->is_thin ? 0.05 : 0.5) * n_truth);
@@ -212,9 +217,10 @@ static void every_back_end_draws_every_way_the_same(void **state)
     shots_forget(plan);
 }
 
-/* ---- solid points at any zoom ------------------------------------------------------------------------------------------------------ */
+/* ---- solid points at any zoom ----------------------------------------------------------------------------------- */
 
-/* Inside the body no pixel may show the background, from so far that a voxel is a third of a pixel to so near that it is a hundred. */
+/* Inside the body no pixel may show the background, from so far that a voxel is a third of a pixel to so near that it
+ * is a hundred. */
 static void solid_points_leave_no_gap_at_any_zoom(void **state)
 {
     (void)state;
@@ -253,11 +259,14 @@ static void solid_points_leave_no_gap_at_any_zoom(void **state)
     shots_forget(plan);
 }
 
-/* ---- light --------------------------------------------------------------------------------------------------------------------------- */
+/* ---- light ------------------------------------------------------------------------------------------------------ */
 
-/* Faceted: a face of a univel square to the viewer has one colour all over, the one its plane has; baked light does not follow the eye,
- * live light does. */
-static double block_label(struct vec3 p) { return fabs(p.x) < 10 && fabs(p.y) < 10 && fabs(p.z) < 10 ? 1 : 0; }
+/* Faceted: a face of a univel square to the viewer has one colour all over, the one its plane has; baked light does not
+ * follow the eye, live light does. */
+static double block_label(struct vec3 p)
+{
+    return fabs(p.x) < 10 && fabs(p.y) < 10 && fabs(p.z) < 10 ? 1 : 0;
+}
 
 static void light_is_of_faces_or_baked_or_live(void **state)
 {
@@ -278,7 +287,8 @@ static void light_is_of_faces_or_baked_or_live(void **state)
     }
     int baked[2], live[2];
     for (int side = 0; side < 2; side++)
-        for (int is_live = 0; is_live < 2; is_live++) { /* the same voxels, in the middle of a face, seen from before and from above */
+        for (int is_live = 0; is_live < 2;
+             is_live++) { /* the same voxels, in the middle of a face, seen from before and from above */
             struct scene scene = make_scene(plan, &ways[1]);
             scene.points.solid = is_live ? SCENE_SOLID_LIGHTING_LIVE : SCENE_SOLID_LIGHTING_BAKED;
             image = shots_plain(plan, scene, shots_view_from(origin, side ? vec3(0, -1, 0.9) : vec3(0, -1, 0), up, 8));
@@ -290,9 +300,13 @@ static void light_is_of_faces_or_baked_or_live(void **state)
     shots_forget(plan);
 }
 
-static double ball_label(struct vec3 p) { return vec3_length(p) < 12 ? 1 : 0; }
+static double ball_label(struct vec3 p)
+{
+    return vec3_length(p) < 12 ? 1 : 0;
+}
 
-/* Seen along an axis all faces of univels that show are parallel: one colour by faces alone, and a ball looks like a disk. */
+/* Seen along an axis all faces of univels that show are parallel: one colour by faces alone, and a ball looks like a
+ * disk. */
 static void univels_that_face_the_same_way_are_told_apart_unless_light_is_to_be_of_faces(void **state)
 {
     (void)state;

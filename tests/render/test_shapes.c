@@ -1,5 +1,5 @@
-/* Lines, points and open or faceted triangles: where they are drawn, how large, in which light. The shapes are made by hand and put
- * in the place of the plan's own. */
+/* Lines, points and open or faceted triangles: where they are drawn, how large, in which light. The shapes are made by
+ * hand and put in the place of the plan's own. */
 #include "core/plan/plan_shapes.h"
 #include "tests/render/shots.h"
 
@@ -8,7 +8,8 @@ static const struct vec3 from_front = { 0, -1, 0 }, up = { 0, 0, 1 };
 static const struct made_region two[] = { { "shown", -1, 0xf08020 }, { "plate", -1, 0x2040ff } };
 static const double orange[3] = { 0xf0 / 255.0, 0x80 / 255.0, 0x20 / 255.0 };
 
-/* A plate before the middle on the right half of the picture, and one voxel for the region whose shape is made by hand. */
+/* A plate before the middle on the right half of the picture, and one voxel for the region whose shape is made by hand.
+ */
 static double label(struct vec3 p)
 {
     if (p.x > 0 && fabs(p.z) < 25 && p.y > -20 && p.y < -15)
@@ -25,7 +26,9 @@ static struct plan *make_plan(void)
 /* Takes shape. */
 static void put(struct plan *plan, enum region_representation representation, struct shape *shape)
 {
-    struct shape_name name = { 0, { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 }, SURFACE_FULL };
+    struct shape_name name = { 0,
+                               { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 },
+                               SURFACE_FULL };
     struct surface_facts facts = { .reduction = 1 };
     shape_key_normalise(&name.key);
     shape->references = 1;
@@ -44,7 +47,8 @@ static void measure(struct shape *shape, const float *positions, size_t n)
 {
     shape->bounds_lps_mm = box3_empty();
     for (size_t i = 0; i < n; i++)
-        box3_add(&shape->bounds_lps_mm, vec3((double)positions[3 * i], (double)positions[3 * i + 1], (double)positions[3 * i + 2]));
+        box3_add(&shape->bounds_lps_mm,
+                 vec3((double)positions[3 * i], (double)positions[3 * i + 1], (double)positions[3 * i + 2]));
 }
 
 static struct shape *make_lines(const float *positions, size_t n)
@@ -102,7 +106,7 @@ static size_t drawn(const struct image *image, double *x_px, double *y_px)
     return n;
 }
 
-/* ---- lines -------------------------------------------------------------------------------------------------------------------- */
+/* ---- lines ------------------------------------------------------------------------------------------------------ */
 
 static void a_line_is_as_wide_as_the_scene_says_in_its_regions_colour(void **state)
 {
@@ -117,7 +121,8 @@ static void a_line_is_as_wide_as_the_scene_says_in_its_regions_colour(void **sta
         struct render_options options = { SHOTS_WIDTH / scale, SHOTS_HEIGHT / scale, SURFACE_FULL, false };
         struct image *image = shots_take(plan, scene, shots_view_from(origin, from_front, up, 6), &options, NULL);
         double x, y, n = (double)drawn(image, &x, &y);
-        assert_close(n, (60 + 6) * 6.0 / (scale * scale), 7.0); /* 10 mm, and half a width more at each end; a column of pixels */
+        assert_close(n, (60 + 6) * 6.0 / (scale * scale),
+                     7.0); /* 10 mm, and half a width more at each end; a column of pixels */
         assert_close(x, (200 - 15 * 6.0) / scale, 0.5);
         assert_close(y, (150 - 10 * 6.0) / scale, 0.5);
         const uint8_t *pixel = shots_pixel(image, (int)x, (int)y);
@@ -131,16 +136,17 @@ static void a_line_is_as_wide_as_the_scene_says_in_its_regions_colour(void **sta
 static void lines_behind_something_are_hidden_and_far_ones_are_darker(void **state)
 {
     (void)state;
-    static const float ends[18] = { -20, 20, 10, 20, 20, 10, /* far, behind the plate on the right */
-                                    -20, -25, -10, 20, -25, -10, /* near, before it */
-                                    -20, 20, -20, -10, 20, -20 };
+    static const float ends[18] = { -20, 20,  10,  20,  20,  10,  /* far, behind the plate on the right */
+                                    -20, -25, -10, 20,  -25, -10, /* near, before it */
+                                    -20, 20,  -20, -10, 20,  -20 };
     struct plan *plan = make_plan();
     put(plan, REPRESENTATION_OUTLINE, make_lines(ends, 6));
     struct scene scene = scene_as(plan, SCENE_REPRESENTATION_OUTLINE);
     scene.outline.width_px = 3;
     struct image *image = shots_plain(plan, scene, shots_view_from(origin, from_front, up, 6));
     int far_left = shots_pixel(image, 200 - 60, 150 - 60)[0], near_left = shots_pixel(image, 200 - 60, 150 + 60)[0];
-    const uint8_t *far_right = shots_pixel(image, 200 + 60, 150 - 60), *near_right = shots_pixel(image, 200 + 60, 150 + 60);
+    const uint8_t *far_right = shots_pixel(image, 200 + 60, 150 - 60),
+                  *near_right = shots_pixel(image, 200 + 60, 150 + 60);
     assert_close(near_left, 0xf0, 1);
     assert_close(far_left, 0xf0 * 0.4, 2);
     assert_true(far_right[2] > far_right[0]); /* the plate */
@@ -165,8 +171,10 @@ static void a_line_through_the_eyes_plane_is_cut_there(void **state)
     view.camera.position_mm = vec3(0, -40, 0);
     struct image *image = shots_plain(plan, scene, view);
     double pixels_per_tangent = SHOTS_HEIGHT / 2.0 / tan(MATH_PI * 30 / 180);
-    for (double y = -26; y < 30; y += 8) { /* along it, by the projection; within the plan, beyond which is the near plane */
-        double t = (y + 200) / 260, z = -8 + 18 * t, px = 200 + pixels_per_tangent * -5 / (y + 40), py = 150 - pixels_per_tangent * z / (y + 40);
+    for (double y = -26; y < 30;
+         y += 8) { /* along it, by the projection; within the plan, beyond which is the near plane */
+        double t = (y + 200) / 260, z = -8 + 18 * t, px = 200 + pixels_per_tangent * -5 / (y + 40),
+               py = 150 - pixels_per_tangent * z / (y + 40);
         if (px < 2 || py < 2 || px > SHOTS_WIDTH - 3 || py > SHOTS_HEIGHT - 3)
             continue;
         assert_memory_not_equal(shots_pixel(image, (int)px, (int)py), shots_background, 3);
@@ -175,12 +183,13 @@ static void a_line_through_the_eyes_plane_is_cut_there(void **state)
     shots_forget(plan);
 }
 
-/* ---- points ------------------------------------------------------------------------------------------------------------------- */
+/* ---- points ----------------------------------------------------------------------------------------------------- */
 
 static void points_are_squares_of_the_size_the_scene_says(void **state)
 {
     (void)state;
-    static const float positions[3] = { -10, 0, 5 }, normals[2][3] = { { 0, -1, 0 }, { 0, 0, 0 } }; /* none: as if it faced the viewer */
+    static const float positions[3] = { -10, 0, 5 },
+                       normals[2][3] = { { 0, -1, 0 }, { 0, 0, 0 } }; /* none: as if it faced the viewer */
     struct plan *plan = make_plan();
     put(plan, REPRESENTATION_POINTS, make_points(positions, normals[0], (uint8_t[]){ 128 }, 1));
     struct plan *without = make_plan();
@@ -191,7 +200,8 @@ static void points_are_squares_of_the_size_the_scene_says(void **state)
             shots_style(&scene, "plate")->visible = false;
             scene.points.size_px = size;
             struct render_options options = { SHOTS_WIDTH / scale, SHOTS_HEIGHT / scale, SURFACE_FULL, false };
-            struct image *image = shots_take(size > 4 ? without : plan, scene, shots_view_from(origin, from_front, up, 6.02), &options, NULL);
+            struct image *image = shots_take(size > 4 ? without : plan, scene,
+                                             shots_view_from(origin, from_front, up, 6.02), &options, NULL);
             double x, y, side = fmax(1, (double)size / scale);
             size_t n = drawn(image, &x, &y);
             assert_true((double)n >= floor(side) * floor(side) && (double)n <= ceil(side) * ceil(side));
@@ -214,30 +224,35 @@ static void solid_points_cover_their_voxel_in_the_light_worked_out_before(void *
     static const struct {
         struct vec3 from, up;
         double width_mm, height_mm; /* a voxel of 4 x 3 x 2 mm seen from there */
-    } sides[] = { { { 0, -1, 0 }, { 0, 0, 1 }, 4, 2 }, { { 1, 0, 0 }, { 0, 0, 1 }, 3, 2 }, { { 0, 0, -1 }, { 0, -1, 0 }, 4, 3 } };
+    } sides[] = { { { 0, -1, 0 }, { 0, 0, 1 }, 4, 2 },
+                  { { 1, 0, 0 }, { 0, 0, 1 }, 3, 2 },
+                  { { 0, 0, -1 }, { 0, -1, 0 }, 4, 3 } };
     for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++)
         for (int is_live = 0; is_live < 2; is_live++) {
             struct scene scene = scene_as(plan, SCENE_REPRESENTATION_SOLID);
             shots_style(&scene, "plate")->visible = false;
             scene.points.solid = is_live ? SCENE_SOLID_LIGHTING_LIVE : SCENE_SOLID_LIGHTING_BAKED;
-            struct image *image = shots_plain(plan, scene, shots_view_from(vec3(-10, 0, 5), sides[i].from, sides[i].up, 10));
+            struct image *image =
+                shots_plain(plan, scene, shots_view_from(vec3(-10, 0, 5), sides[i].from, sides[i].up, 10));
             double x, y;
             size_t n = drawn(image, &x, &y);
             assert_close((double)n, sides[i].width_mm * sides[i].height_mm * 100, 0.13 * 800); /* a pixel around it */
             const uint8_t *pixel = shots_pixel(image, 200, 150);
             for (int c = 0; c < 3 && (!is_live || i == 0); c++)
-                assert_close(pixel[c], 255 * (is_live ? shots_facing_light(orange[c], true) : orange[c] * 100 / 255), 2);
+                assert_close(pixel[c], 255 * (is_live ? shots_facing_light(orange[c], true) : orange[c] * 100 / 255),
+                             2);
             image_destroy(image);
         }
     shots_forget(plan);
 }
 
-/* ---- triangles ---------------------------------------------------------------------------------------------------------------- */
+/* ---- triangles -------------------------------------------------------------------------------------------------- */
 
 /* One triangle, its vertex normals wrong on purpose: faceted shading must not look at them. */
 static struct shape *make_triangle(bool is_faceted)
 {
-    static const float positions[9] = { -25, 0, -20, -5, 0, -20, -15, 0, 20 }, normals[9] = { 1, 0, 0, 1, 0, 0, 1, 0, 0 };
+    static const float positions[9] = { -25, 0, -20, -5, 0, -20, -15, 0, 20 },
+                       normals[9] = { 1, 0, 0, 1, 0, 0, 1, 0, 0 };
     struct error err = { 0 };
     struct shape *shape = mem_new(sizeof *shape);
     shape->kind = SHAPE_TRIANGLES;
@@ -284,7 +299,7 @@ static void open_surfaces_are_seen_from_both_sides_and_closed_ones_from_outside(
     }
 }
 
-/* ---- translucent, and the same everywhere --------------------------------------------------------------------------------------- */
+/* ---- translucent, and the same everywhere ----------------------------------------------------------------------- */
 
 static void translucent_points_and_lines_show_what_lies_behind(void **state)
 {
@@ -331,7 +346,9 @@ static void every_back_end_draws_the_same(void **state)
     struct renderer *soft = renderer_create(RENDER_SOFT, &err), *tested = shots_renderer;
     for (int kind = 0; kind < 3; kind++)
         for (int way = 0; way < 4; way++) {
-            static const enum scene_representation asked[] = { SCENE_REPRESENTATION_OUTLINE, SCENE_REPRESENTATION_POINTS, SCENE_REPRESENTATION_SOLID };
+            static const enum scene_representation asked[] = { SCENE_REPRESENTATION_OUTLINE,
+                                                               SCENE_REPRESENTATION_POINTS,
+                                                               SCENE_REPRESENTATION_SOLID };
             struct image *images[2];
             struct plan *plan = make_plan();
             put(plan, REPRESENTATION_OUTLINE, make_lines(positions, N));

@@ -1,5 +1,5 @@
-/* What the software rasteriser promises beyond what every back end must: the same picture as OpenGL's, the same bytes whatever
- * the processor and however many threads, no cracks, and the near plane where it should be. */
+/* What the software rasteriser promises beyond what every back end must: the same picture as OpenGL's, the same bytes
+ * whatever the processor and however many threads, no cracks, and the near plane where it should be. */
 #include "core/render/soft/soft.h"
 #include "tests/render/shots.h"
 
@@ -7,7 +7,8 @@ static const struct vec3 origin = { 0, 0, 0 };
 static const struct vec3 up = { 0, 0, 1 };
 enum { SIDE = 96 };
 
-/* A head as the demo plan has it: nested ellipsoids off each other's middles, and a tumour with its target around it. */
+/* A head as the demo plan has it: nested ellipsoids off each other's middles, and a tumour with its target around it.
+ */
 static double ellipsoid(struct vec3 p, double x, double y, double z, double rx, double ry, double rz)
 {
     double a = (p.x - x) / rx, b = (p.y - y) / ry, c = (p.z - z) / rz;
@@ -15,24 +16,35 @@ static double ellipsoid(struct vec3 p, double x, double y, double z, double rx, 
 }
 static double head_label(struct vec3 p)
 {
-    return ellipsoid(p, 12, -6, 10, 6, 6, 6) < 1 ? 5 : ellipsoid(p, 12, -6, 10, 12, 12, 12) < 1 ? 4 : ellipsoid(p, 0, 0, 4, 30, 36, 28) < 1 ? 3
-           : ellipsoid(p, 0, 0, 2, 35, 41, 34) < 1 ? 2 : ellipsoid(p, 0, 0, 0, 38, 45, 40) < 1 ? 1 : 0;
+    return ellipsoid(p, 12, -6, 10, 6, 6, 6) < 1      ? 5
+           : ellipsoid(p, 12, -6, 10, 12, 12, 12) < 1 ? 4
+           : ellipsoid(p, 0, 0, 4, 30, 36, 28) < 1    ? 3
+           : ellipsoid(p, 0, 0, 2, 35, 41, 34) < 1    ? 2
+           : ellipsoid(p, 0, 0, 0, 38, 45, 40) < 1    ? 1
+                                                      : 0;
 }
 static double head_value(struct vec3 p)
 {
     static const double values[] = { -1000, 20, 900, 40, 60, 140 };
     return values[(int)head_label(p)] + 30 * sin(p.x * 0.9) * sin(p.y * 0.7) * cos(p.z * 0.8);
 }
-static double float_value(struct vec3 p) { return vec3_length(p) < 8 ? NAN : head_value(p); }
-static const struct made_region head[] = { { "scalp", -1, 0xd8a890 }, { "cranium", 0, 0xe8dcc0 }, { "brain", 1, 0xc890a0 },
-                                           { "target", 2, 0xe0b040 }, { "tumour", 3, 0x50c060 } };
+static double float_value(struct vec3 p)
+{
+    return vec3_length(p) < 8 ? NAN : head_value(p);
+}
+static const struct made_region head[] = { { "scalp", -1, 0xd8a890 },
+                                           { "cranium", 0, 0xe8dcc0 },
+                                           { "brain", 1, 0xc890a0 },
+                                           { "target", 2, 0xe0b040 },
+                                           { "tumour", 3, 0x50c060 } };
 
 /* Oblique voxels, so that no edge or slice falls on a row of the picture. */
 static struct plan *make_head(enum voxel_type type)
 {
     const uint32_t size[3] = { SIDE, SIDE, SIDE };
     double c = cos(0.3), s = sin(0.3);
-    struct grid grid = made_grid(SIDE, SIDE, SIDE, made_affine(vec3(c, s, 0), vec3(-s, c, 0), vec3(0, 0, -1), size, origin));
+    struct grid grid =
+        made_grid(SIDE, SIDE, SIDE, made_affine(vec3(c, s, 0), vec3(-s, c, 0), vec3(0, 0, -1), size, origin));
     struct plan *plan = made_plan(&grid, head_label, head, 5);
     made_plan_add_image(plan, &grid, type, type == VOXEL_F32 ? float_value : head_value);
     return plan;
@@ -46,15 +58,17 @@ struct shot {
 };
 
 /* On a rasteriser alone, which may be told its number of threads. */
-static struct image *draw_on(struct soft_renderer *soft, const struct snapshot *snapshot, const struct render_options *options,
-                             const struct camera *camera, struct render_timing *timing, struct error *err)
+static struct image *draw_on(struct soft_renderer *soft, const struct snapshot *snapshot,
+                             const struct render_options *options, const struct camera *camera,
+                             struct render_timing *timing, struct error *err)
 {
     struct soft_frame *frame = soft_picture_begin(soft, snapshot, options, camera);
     assert_int_equal(soft_picture_go_on(frame, NULL, timing, err), RENDER_DONE);
     return soft_picture_end(frame);
 }
 
-static struct image *take(struct soft_renderer *soft, struct renderer *other, struct plan *plan, const struct shot *shot, int width, int height)
+static struct image *take(struct soft_renderer *soft, struct renderer *other, struct plan *plan,
+                          const struct shot *shot, int width, int height)
 {
     struct scene scene;
     struct view view = view_default;
@@ -95,14 +109,30 @@ static struct image *take(struct soft_renderer *soft, struct renderer *other, st
 static const struct shot shots[] = {
     { .name = "moving", .kind = SCENE_KIND_3D, .has_slices = true },
     { .name = "still", .kind = SCENE_KIND_3D, .is_still = true, .has_slices = true },
-    { .name = "flat and plain", .kind = SCENE_KIND_3D, .is_flat = true, .is_plain = true, .is_nearest = true, .has_slices = true },
+    { .name = "flat and plain",
+      .kind = SCENE_KIND_3D,
+      .is_flat = true,
+      .is_plain = true,
+      .is_nearest = true,
+      .has_slices = true },
     { .name = "parallel", .kind = SCENE_KIND_3D, .is_parallel = true, .has_slices = true },
     { .name = "from inside", .kind = SCENE_KIND_3D, .is_inside = true, .has_slices = true },
     { .name = "from inside, flat still", .kind = SCENE_KIND_3D, .is_inside = true, .is_flat = true, .is_still = true },
-    { .name = "solid points, still", .kind = SCENE_KIND_3D, .is_still = true, .representation = SCENE_REPRESENTATION_SOLID },
-    { .name = "solid points from inside", .kind = SCENE_KIND_3D, .is_inside = true, .has_slices = true, .representation = SCENE_REPRESENTATION_SOLID },
+    { .name = "solid points, still",
+      .kind = SCENE_KIND_3D,
+      .is_still = true,
+      .representation = SCENE_REPRESENTATION_SOLID },
+    { .name = "solid points from inside",
+      .kind = SCENE_KIND_3D,
+      .is_inside = true,
+      .has_slices = true,
+      .representation = SCENE_REPRESENTATION_SOLID },
     { .name = "points", .kind = SCENE_KIND_3D, .representation = SCENE_REPRESENTATION_POINTS },
-    { .name = "outlines, still", .kind = SCENE_KIND_3D, .is_still = true, .has_slices = true, .representation = SCENE_REPRESENTATION_OUTLINE },
+    { .name = "outlines, still",
+      .kind = SCENE_KIND_3D,
+      .is_still = true,
+      .has_slices = true,
+      .representation = SCENE_REPRESENTATION_OUTLINE },
     { .name = "fans", .kind = SCENE_KIND_3D, .is_parallel = true, .representation = SCENE_REPRESENTATION_FAN },
     { .name = "axial pane", .kind = SCENE_KIND_AXIAL },
     { .name = "coronal pane, nearest", .kind = SCENE_KIND_CORONAL, .is_nearest = true },
@@ -110,10 +140,10 @@ static const struct shot shots[] = {
 };
 enum { N_SHOTS = sizeof shots / sizeof shots[0], WIDTH = 404, HEIGHT = 301 };
 
-/* ---- the same as OpenGL ----------------------------------------------------------------------------------------------------- */
+/* ---- the same as OpenGL ----------------------------------------------------------------------------------------- */
 
-/* Edges fall between samples a little differently, as vertices are rounded to other fractions of one: pixels that differ by more
- * than 8 levels are counted apart, the others must agree but for rounding. */
+/* Edges fall between samples a little differently, as vertices are rounded to other fractions of one: pixels that
+ * differ by more than 8 levels are counted apart, the others must agree but for rounding. */
 static void expect_like(const struct image *a, const struct image *b, const char *name)
 {
     size_t n = (size_t)a->width_px * (size_t)a->height_px, n_far = 0;
@@ -132,7 +162,8 @@ static void expect_like(const struct image *a, const struct image *b, const char
     }
     double mean = sum / (double)(n - n_far), far = (double)n_far / (double)n;
     printf("  %s: %.3f grey levels apart, %.3f %% of the pixels by more than 8\n", name, mean, 100 * far);
-    assert_true(mean < 0.3); /* a rounding to whole levels leaves a quarter of one on average, and later blends weaken it */
+    assert_true(mean <
+                0.3); /* a rounding to whole levels leaves a quarter of one on average, and later blends weaken it */
     assert_true(far < 0.004);
 }
 
@@ -159,7 +190,8 @@ static void pictures_are_the_same_as_with_opengl(void **state)
         struct soft_renderer *soft = soft_renderer_create();
         struct plan *plan = make_head(types[type]);
         for (size_t i = 0; i < N_SHOTS; i++) {
-            struct image *a = take(soft, NULL, plan, &shots[i], WIDTH, HEIGHT), *b = take(NULL, gl, plan, &shots[i], WIDTH, HEIGHT);
+            struct image *a = take(soft, NULL, plan, &shots[i], WIDTH, HEIGHT),
+                         *b = take(NULL, gl, plan, &shots[i], WIDTH, HEIGHT);
             expect_like(a, b, shots[i].name);
             image_destroy(a);
             image_destroy(b);
@@ -171,7 +203,7 @@ static void pictures_are_the_same_as_with_opengl(void **state)
     renderer_destroy(gl);
 }
 
-/* ---- the same bytes ---------------------------------------------------------------------------------------------------------- */
+/* ---- the same bytes --------------------------------------------------------------------------------------------- */
 
 static void threads_and_processors_make_no_difference(void **state)
 {
@@ -219,13 +251,16 @@ static void pictures_of_other_sizes_leave_nothing_behind(void **state)
     plan_destroy(plan);
 }
 
-/* ---- coverage ----------------------------------------------------------------------------------------------------------------- */
+/* ---- coverage --------------------------------------------------------------------------------------------------- */
 
-static double ball_label(struct vec3 p) { return vec3_length(p) <= 30 ? 1 : 0; }
+static double ball_label(struct vec3 p)
+{
+    return vec3_length(p) <= 30 ? 1 : 0;
+}
 static const struct made_region ball[] = { { "ball", -1, 0xffffff } };
 
-/* A ball of a few thousand triangles, close enough that they are large or so far that most miss every sample: within its disc no
- * sample is left out. */
+/* A ball of a few thousand triangles, close enough that they are large or so far that most miss every sample: within
+ * its disc no sample is left out. */
 static void closed_surfaces_have_no_cracks(void **state)
 {
     (void)state;
@@ -256,10 +291,13 @@ static void closed_surfaces_have_no_cracks(void **state)
     plan_destroy(plan);
 }
 
-static double cube_label(struct vec3 p) { return fabs(p.x) < 20 && fabs(p.y) < 20 && fabs(p.z) < 20 ? 1 : 0; }
+static double cube_label(struct vec3 p)
+{
+    return fabs(p.x) < 20 && fabs(p.y) < 20 && fabs(p.z) < 20 ? 1 : 0;
+}
 
-/* The whole picture is one face of a cube, seen from so near that a voxel's triangles are larger than the picture: what crosses the
- * borders of what can be drawn is cut and nothing is lost. */
+/* The whole picture is one face of a cube, seen from so near that a voxel's triangles are larger than the picture: what
+ * crosses the borders of what can be drawn is cut and nothing is lost. */
 static void a_face_close_to_the_eye_fills_the_picture(void **state)
 {
     (void)state;
@@ -297,7 +335,8 @@ static void pictures_beyond_the_limit_are_refused(void **state)
         struct render_timing timing;
         scene_for_plan(plan, &scene);
         struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
-        assert_null(render_snapshot(shots_renderer, snapshot, &(struct render_options){ sizes[i][0], sizes[i][1], SURFACE_FULL, true }, &camera,
+        assert_null(render_snapshot(shots_renderer, snapshot,
+                                    &(struct render_options){ sizes[i][0], sizes[i][1], SURFACE_FULL, true }, &camera,
                                     &timing, &err));
         assert_int_equal(err.code, ERROR_RANGE);
         snapshot_unref(snapshot);

@@ -1,5 +1,5 @@
-/* What lies before what where regions are translucent: exact at every pixel, whatever the order of regions and triangles, and the
- * same on every back end; or whole regions over each other, when the scene asks for that. */
+/* What lies before what where regions are translucent: exact at every pixel, whatever the order of regions and
+ * triangles, and the same on every back end; or whole regions over each other, when the scene asks for that. */
 #include "tests/render/shots.h"
 
 static const struct vec3 origin = { 0, 0, 0 };
@@ -13,8 +13,8 @@ static void blend(double under[3], const double rgb[3], double alpha)
         under[c] = alpha * shots_facing_light(rgb[c], false) + (1 - alpha) * under[c];
 }
 
-/* Red is a plate; blue has a plate before it on the left (screen) and one behind it on the right. Whole regions in one order are
- * wrong on one side, whichever that order is. */
+/* Red is a plate; blue has a plate before it on the left (screen) and one behind it on the right. Whole regions in one
+ * order are wrong on one side, whichever that order is. */
 static double woven_label(struct vec3 p)
 {
     if (fabs(p.z) > 25 || fabs(p.x) > 30)
@@ -39,7 +39,8 @@ static void regions_that_cross_blend_in_each_pixels_own_order(void **state)
     (void)state;
     struct grid grid = made_cube_grid(70);
     struct plan *plan = made_plan(&grid, woven_label, red_and_blue, 2);
-    struct image *image = shots_plain(plan, woven_scene(plan, SCENE_TRANSLUCENT_ORDER_EXACT), shots_view_from(origin, from_front, up, 4));
+    struct image *image =
+        shots_plain(plan, woven_scene(plan, SCENE_TRANSLUCENT_ORDER_EXACT), shots_view_from(origin, from_front, up, 4));
     for (int side = 0; side < 2; side++) {
         double expected[3] = { 0x08 / 255.0, 0x09 / 255.0, 0x0b / 255.0 };
         blend(expected, side ? blue : red, side ? 0.7 : 0.5); /* left: red lies behind */
@@ -69,12 +70,18 @@ static void the_scene_can_lay_whole_regions_over_each_other(void **state)
     shots_forget(plan);
 }
 
-/* ---- two balls that cross, each on a layer of its own -------------------------------------------------------------------------- */
+/* ---- two balls that cross, each on a layer of its own ----------------------------------------------------------- */
 
 enum { RADIUS = 20 };
 static const struct vec3 middles[2] = { { -8, -3, 2 }, { 8, 3, -2 } };
-static double first_ball(struct vec3 p) { return vec3_length(vec3_sub(p, middles[0])) <= RADIUS ? 1 : 0; }
-static double second_ball(struct vec3 p) { return vec3_length(vec3_sub(p, middles[1])) <= RADIUS ? 2 : 0; }
+static double first_ball(struct vec3 p)
+{
+    return vec3_length(vec3_sub(p, middles[0])) <= RADIUS ? 1 : 0;
+}
+static double second_ball(struct vec3 p)
+{
+    return vec3_length(vec3_sub(p, middles[1])) <= RADIUS ? 2 : 0;
+}
 
 static struct plan *make_crossing_balls(bool is_swapped)
 {
@@ -126,7 +133,8 @@ static void crossing_balls_have_the_nearer_one_on_top_everywhere(void **state)
                 continue;
             const uint8_t *pixel = shots_pixel(image, x, y);
             bool is_red_near = y_mm[0] < y_mm[1];
-            assert_true(is_red_near ? pixel[0] > pixel[2] : pixel[2] > pixel[0]); /* at 0.8 the upper colour is the stronger */
+            assert_true(is_red_near ? pixel[0] > pixel[2]
+                                    : pixel[2] > pixel[0]); /* at 0.8 the upper colour is the stronger */
             n_checked[is_red_near]++;
         }
     assert_true(n_checked[0] > 1000 && n_checked[1] > 1000);
@@ -137,10 +145,12 @@ static void crossing_balls_have_the_nearer_one_on_top_everywhere(void **state)
 static void shuffle_triangles(struct plan *plan, size_t region)
 {
     struct error err = { 0 };
-    struct mesh *mesh = plan_surface(plan, region, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err); /* the one that is kept */
+    struct mesh *mesh =
+        plan_surface(plan, region, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err); /* the one that is kept */
     uint64_t state = 88172645463325252u + region;
     assert_string_equal(err.text, "");
-    for (size_t i = mesh->n_triangles - 1; i > 0; i--) { /* R. Durstenfeld, Algorithm 235, CACM 1964; G. Marsaglia, Xorshift RNGs, 2003 */
+    for (size_t i = mesh->n_triangles - 1; i > 0;
+         i--) { /* R. Durstenfeld, Algorithm 235, CACM 1964; G. Marsaglia, Xorshift RNGs, 2003 */
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;
@@ -158,10 +168,12 @@ static void the_order_of_regions_and_of_triangles_makes_no_difference(void **sta
 {
     (void)state;
     for (int is_still = 0; is_still < 2; is_still++) {
-        struct plan *plan = make_crossing_balls(false), *swapped = make_crossing_balls(true), *shuffled = make_crossing_balls(false);
+        struct plan *plan = make_crossing_balls(false), *swapped = make_crossing_balls(true),
+                    *shuffled = make_crossing_balls(false);
         shuffle_triangles(shuffled, 0);
         shuffle_triangles(shuffled, 1);
-        struct image *a = take_balls(shots_renderer, plan, is_still), *b = take_balls(shots_renderer, swapped, is_still),
+        struct image *a = take_balls(shots_renderer, plan, is_still),
+                     *b = take_balls(shots_renderer, swapped, is_still),
                      *c = take_balls(shots_renderer, shuffled, is_still);
         assert_memory_equal(a->rgba, b->rgba, (size_t)SHOTS_WIDTH * SHOTS_HEIGHT * 4);
         assert_memory_equal(a->rgba, c->rgba, (size_t)SHOTS_WIDTH * SHOTS_HEIGHT * 4);
@@ -189,7 +201,9 @@ static void every_back_end_draws_the_same(void **state)
                     n_far++;
                     break;
                 }
-        assert_true(n_far < n / 250); /* edges, and the curve where the balls cross, fall between samples a little differently */
+        assert_true(
+            n_far <
+            n / 250); /* edges, and the curve where the balls cross, fall between samples a little differently */
         image_destroy(a);
         image_destroy(b);
     }
@@ -198,7 +212,7 @@ static void every_back_end_draws_the_same(void **state)
     shots_forget(plan);
 }
 
-/* ---- many ------------------------------------------------------------------------------------------------------------------ */
+/* ---- many ------------------------------------------------------------------------------------------------------- */
 
 /* More plates than one composition takes, side by side before one large one. */
 enum { COLUMNS = 12, ROWS = 7, PLATES = COLUMNS * ROWS };
@@ -208,7 +222,9 @@ static double plates_label(struct vec3 p)
         return 1;
     int column = (int)floor((p.x + 36) / 6), row = (int)floor((p.z + 21) / 6);
     bool is_gap = fmod(p.x + 36, 6) > 4 || fmod(p.z + 21, 6) > 4;
-    return is_gap || column < 0 || column >= COLUMNS || row < 0 || row >= ROWS || p.y > -10 || p.y < -20 ? 0 : 2 + row * COLUMNS + column;
+    return is_gap || column < 0 || column >= COLUMNS || row < 0 || row >= ROWS || p.y > -10 || p.y < -20
+               ? 0
+               : 2 + row * COLUMNS + column;
 }
 
 static void many_regions_are_all_drawn(void **state)
@@ -232,9 +248,11 @@ static void many_regions_are_all_drawn(void **state)
     blend(expected, red, 0.5);
     for (int row = 0; row < ROWS; row++)
         for (int column = 0; column < COLUMNS; column++) {
-            const uint8_t *pixel = shots_pixel(image, 200 + (int)(5 * (column * 6 - 36 + 2.5)), 150 - (int)(5 * (row * 6 - 21 + 2.5)));
+            const uint8_t *pixel =
+                shots_pixel(image, 200 + (int)(5 * (column * 6 - 36 + 2.5)), 150 - (int)(5 * (row * 6 - 21 + 2.5)));
             for (int c = 0; c < 3; c++)
-                assert_close(pixel[c], 255 * expected[c], 12); /* averaged normals of a plate of 4 x 4 voxels; without it: 60 off */
+                assert_close(pixel[c], 255 * expected[c],
+                             12); /* averaged normals of a plate of 4 x 4 voxels; without it: 60 off */
         }
     image_destroy(image);
     shots_forget(plan);

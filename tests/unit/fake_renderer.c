@@ -15,7 +15,10 @@
 
 static char behaviour[64];
 
-static bool behaves(const char *word) { return strcmp(behaviour, word) == 0; }
+static bool behaves(const char *word)
+{
+    return strcmp(behaviour, word) == 0;
+}
 
 static const char *argument(int argc, char **argv, const char *flag)
 {
@@ -124,7 +127,8 @@ static void handle(const cJSON *packet, const char *folder)
         if (behaves("crash-on-render") || (behaves("crash-once") && access(mark, F_OK) != 0 && mkdir(mark, 0700) == 0))
             die();
         static int n_asked;
-        if (!behaves("never-draws") && !behaves("late-and-never-draws") && !(behaves("forgets-first") && n_asked++ == 0))
+        if (!behaves("never-draws") && !behaves("late-and-never-draws") &&
+            !(behaves("forgets-first") && n_asked++ == 0))
             say_frame(packet);
     } else if (strcmp(type, "query") == 0) {
         for (int64_t until_us = clock_now_us() + 2000000; behaves("computes") && clock_now_us() < until_us;)
@@ -174,7 +178,7 @@ static int renderer_main(const char *folder, const char *id, const char *cache)
         write_all("HTTP/1.1 200 OK\r\n\r\n", 19);
     if (behaves("no-type"))
         write_all("BRPK\2\0\0\0\0\0\0\0{}", 14); /* a little-endian machine's */
-    if (behaves("large-frame")) { /* within what an answer may have */
+    if (behaves("large-frame")) {                /* within what an answer may have */
         uint32_t head[3] = { 0x4b505242u, 16, 400u << 20 };
         write_all(head, sizeof head);
         write_all("{\"type\":\"frame\"}", 16);
@@ -182,7 +186,8 @@ static int renderer_main(const char *folder, const char *id, const char *cache)
     char read_mark[512], refused_mark[512];
     (void)snprintf(read_mark, sizeof read_mark, "%s/was-read", folder);
     (void)snprintf(refused_mark, sizeof refused_mark, "%s/was-refused", folder);
-    bool lacks_memory = behaves("memory-at-second-start") && mkdir(read_mark, 0700) != 0 && mkdir(refused_mark, 0700) == 0;
+    bool lacks_memory =
+        behaves("memory-at-second-start") && mkdir(read_mark, 0700) != 0 && mkdir(refused_mark, 0700) == 0;
     if (behaves("fails") || behaves("no-memory") || lacks_memory) {
         struct problem problem;
         if (behaves("fails"))
@@ -241,8 +246,9 @@ static int scan_main(const char *folder)
     if (behaves("scan-babbles"))
         for (;;)
             puts("more and more");
-    printf("{\"name\":\"A plan\",\"note\":\"n\",\"phantom\":true,\"readable\":%s,\"reason\":\"a DICOM folder\",\"parts\":[\"CT\"],\"n_bytes\":77}\n",
-           behaves("unreadable") ? "false" : "true");
+    printf(
+        "{\"name\":\"A plan\",\"note\":\"n\",\"phantom\":true,\"readable\":%s,\"reason\":\"a DICOM folder\",\"parts\":[\"CT\"],\"n_bytes\":77}\n",
+        behaves("unreadable") ? "false" : "true");
     return 0;
 }
 

@@ -7,7 +7,10 @@
 
 #include "tests/check.h"
 
-static void wake(void *context) { atomic_fetch_add(&((struct world *)context)->n_wakes, 1); }
+static void wake(void *context)
+{
+    atomic_fetch_add(&((struct world *)context)->n_wakes, 1);
+}
 
 static void changed(void *context, const char *plan_id)
 {
@@ -40,8 +43,15 @@ void world_begin(struct world *world)
     assert_true(n > 0);
     world->folders[0] = world->plans;
     world->options = (struct fleet_options){
-        .plan_folders = world->folders, .n_plan_folders = 1, .data_folder = world->data, .renderer_path = world->self, .gl = "auto",
-        .max_renderers = 4, .wake = wake, .changed = changed, .context = world,
+        .plan_folders = world->folders,
+        .n_plan_folders = 1,
+        .data_folder = world->data,
+        .renderer_path = world->self,
+        .gl = "auto",
+        .max_renderers = 4,
+        .wake = wake,
+        .changed = changed,
+        .context = world,
     };
 }
 
@@ -64,7 +74,8 @@ void world_wait_for_state(struct world *world, const char *id, enum fleet_state 
     struct fleet_plan plan = { 0 };
     WORLD_UNTIL(world, fleet_plan_find(world->fleet, id, &plan) && plan.state == state);
     if (plan.state != state)
-        fail_msg("%s is %s, expected %s (%s)", id, fleet_state_word(plan.state), fleet_state_word(state), plan.problem ? plan.problem->detail : "");
+        fail_msg("%s is %s, expected %s (%s)", id, fleet_state_word(plan.state), fleet_state_word(state),
+                 plan.problem ? plan.problem->detail : "");
 }
 
 static size_t n_looked_at(const struct world *world)

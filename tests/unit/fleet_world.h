@@ -17,16 +17,17 @@ struct world {
 };
 
 struct reply {
-    int n;          /* replies that came */
-    bool is_frame;  /* with the made-up renderer's picture */
+    int n;         /* replies that came */
+    bool is_frame; /* with the made-up renderer's picture */
     struct problem problem;
-    char what[32];  /* of an answer's body */
-    cJSON *json;    /* the answer; reply_finish frees it */
+    char what[32]; /* of an answer's body */
+    cJSON *json;   /* the answer; reply_finish frees it */
     uint8_t *blob;
     size_t n_blob;
 };
 
-/* A folder below /tmp with an empty folder of plans; options stand ready to be changed, the renderer is this test program. */
+/* A folder below /tmp with an empty folder of plans; options stand ready to be changed, the renderer is this test
+ * program. */
 void world_begin(struct world *world);
 /* A plan for the made-up renderer. */
 void world_add_plan(struct world *world, const char *name, const char *behave);

@@ -1,6 +1,6 @@
 #pragma once
-/* Small sets of SERA's dose contours, laid out as seraMC (fixed columns, numbers that touch) and seraPlan (blanks, another order of
- * columns) write them, for tests that read them. */
+/* Small sets of SERA's dose contours, laid out as seraMC (fixed columns, numbers that touch) and seraPlan (blanks,
+ * another order of columns) write them, for tests that read them. */
 #include "core/formats/sera_chd.h"
 #include "tests/check.h"
 
@@ -31,7 +31,8 @@ struct chd_text {
 void chd_put(struct chd_text *text, const char *format, ...) PRINTF_LIKE(2, 3);
 /* The physical value at a point: each quantity its own, growing with the point's number. */
 double chd_physical(enum dose_quantity quantity, size_t point);
-double chd_printed(const struct made_chd *made, const char *name, size_t point, int region); /* what a file prints there */
+double chd_printed(const struct made_chd *made, const char *name, size_t point,
+                   int region); /* what a file prints there */
 /* Both are the caller's to free. */
 struct chd_text chd_make_header(const struct made_chd *made);
 struct chd_text chd_make_table(const struct made_chd *made);
@@ -42,8 +43,10 @@ struct chd_result {
     struct report report;
     struct error err;
 };
-bool chd_read_both(const struct chd_text *header, const struct chd_text *table, const struct bytes *mask, struct chd_result *result);
+bool chd_read_both(const struct chd_text *header, const struct chd_text *table, const struct bytes *mask,
+                   struct chd_result *result);
 void chd_result_finish(struct chd_result *result);
 struct chd_result chd_read_made(const struct made_chd *made);
 const struct volume *chd_volume_of(const struct sera_doses *doses, enum dose_quantity quantity);
-void chd_check_quantity(const struct sera_doses *doses, enum dose_quantity quantity); /* against chd_physical; four digits are printed */
+void chd_check_quantity(const struct sera_doses *doses,
+                        enum dose_quantity quantity); /* against chd_physical; four digits are printed */

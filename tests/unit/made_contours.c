@@ -89,7 +89,8 @@ struct mask *contours_fill(const struct contour_set *set, const struct grid *gri
     return mask;
 }
 
-bool contours_enclose(const struct contour_set *set, struct vec3 normal, struct vec3 u, double half_mm, struct vec3 point)
+bool contours_enclose(const struct contour_set *set, struct vec3 normal, struct vec3 u, double half_mm,
+                      struct vec3 point)
 {
     struct vec3 v = vec3_cross(normal, u);
     bool is_inside = false;

@@ -16,6 +16,7 @@ struct affine rotation_of(double a, double b, double c); /* about z, then y, the
 struct grid grid_make(uint32_t nx, uint32_t ny, uint32_t nz, double dx, double dy, double dz, struct vec3 origin);
 /* contour_fill with the defaults; fails the test when it fails. */
 struct mask *contours_fill(const struct contour_set *set, const struct grid *grid, struct contour_facts *facts);
-/* How many times a ray within the plane from the point meets edges of contours whose plane is within half_mm of it, along the
- * direction u: odd is inside. All contours have the normal given. */
-bool contours_enclose(const struct contour_set *set, struct vec3 normal, struct vec3 u, double half_mm, struct vec3 point);
+/* How many times a ray within the plane from the point meets edges of contours whose plane is within half_mm of it,
+ * along the direction u: odd is inside. All contours have the normal given. */
+bool contours_enclose(const struct contour_set *set, struct vec3 normal, struct vec3 u, double half_mm,
+                      struct vec3 point);

@@ -70,10 +70,22 @@ void made_u32(struct made_dicom *made, uint32_t tag, const char *vr, uint32_t va
     put32(made, value);
 }
 
-void made_sequence(struct made_dicom *made, uint32_t tag) { made_head(made, tag, "SQ", UINT32_MAX); }
-void made_sequence_end(struct made_dicom *made) { made_head(made, DICOM_TAG(0xFFFE, 0xE0DD), "", 0); }
-void made_item(struct made_dicom *made) { made_head(made, DICOM_TAG(0xFFFE, 0xE000), "", UINT32_MAX); }
-void made_item_end(struct made_dicom *made) { made_head(made, DICOM_TAG(0xFFFE, 0xE00D), "", 0); }
+void made_sequence(struct made_dicom *made, uint32_t tag)
+{
+    made_head(made, tag, "SQ", UINT32_MAX);
+}
+void made_sequence_end(struct made_dicom *made)
+{
+    made_head(made, DICOM_TAG(0xFFFE, 0xE0DD), "", 0);
+}
+void made_item(struct made_dicom *made)
+{
+    made_head(made, DICOM_TAG(0xFFFE, 0xE000), "", UINT32_MAX);
+}
+void made_item_end(struct made_dicom *made)
+{
+    made_head(made, DICOM_TAG(0xFFFE, 0xE00D), "", 0);
+}
 
 void made_words(struct made_dicom *made, const uint16_t *words, size_t n)
 {

@@ -1,5 +1,6 @@
 #pragma once
-/* Small DICOM files, made byte by byte (PS3.5, PS3.10): for what no real file shows, and so that a test can say where it lies. */
+/* Small DICOM files, made byte by byte (PS3.5, PS3.10): for what no real file shows, and so that a test can say where
+ * it lies. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -37,7 +37,9 @@ static OPJ_OFF_T sink_skip(OPJ_OFF_T n, void *context)
 
 uint8_t *made_j2k_bytes(const struct made_j2k *like, int32_t (*value)(uint32_t x, uint32_t y), size_t *size)
 {
-    opj_image_cmptparm_t component = { .dx = 1, .dy = 1, .w = like->columns, .h = like->rows, .prec = like->bits, .sgnd = like->is_signed };
+    opj_image_cmptparm_t component = {
+        .dx = 1, .dy = 1, .w = like->columns, .h = like->rows, .prec = like->bits, .sgnd = like->is_signed
+    };
     opj_image_t *image = opj_image_create(1, &component, OPJ_CLRSPC_GRAY);
     assert_non_null(image);
     image->x1 = like->columns;
@@ -50,7 +52,8 @@ uint8_t *made_j2k_bytes(const struct made_j2k *like, int32_t (*value)(uint32_t x
     parameters.tcp_numlayers = 1;
     parameters.cp_disto_alloc = 1;
     parameters.numresolution = 3;
-    while (parameters.numresolution > 1 && 1u << (parameters.numresolution - 1) > (like->rows < like->columns ? like->rows : like->columns))
+    while (parameters.numresolution > 1 &&
+           1u << (parameters.numresolution - 1) > (like->rows < like->columns ? like->rows : like->columns))
         parameters.numresolution--;
     parameters.irreversible = like->is_lossy;
     parameters.tcp_rates[0] = like->is_lossy ? 4 : 0;

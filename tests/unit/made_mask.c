@@ -52,7 +52,8 @@ uint32_t next_random(uint64_t *state)
     return (uint32_t)((z ^ z >> 31) >> 32);
 }
 
-struct mask *random_mask(uint32_t nx, uint32_t ny, uint32_t nz, uint32_t percent, uint64_t seed, const struct affine *map)
+struct mask *random_mask(uint32_t nx, uint32_t ny, uint32_t nz, uint32_t percent, uint64_t seed,
+                         const struct affine *map)
 {
     struct mask *mask = mask_make(nx, ny, nz, map);
     for (uint32_t k = 0; k < nz; k++)
@@ -64,7 +65,8 @@ struct mask *random_mask(uint32_t nx, uint32_t ny, uint32_t nz, uint32_t percent
     return mask;
 }
 
-struct mesh *made_surface(enum surface_algorithm algorithm, const struct mask *mask, int n_threads, bool close_at_border)
+struct mesh *made_surface(enum surface_algorithm algorithm, const struct mask *mask, int n_threads,
+                          bool close_at_border)
 {
     struct surface_options options = surface_defaults;
     options.n_threads = n_threads;
@@ -100,10 +102,10 @@ static int groups_of_corners(const bool inside[8])
     return n;
 }
 
-/* Euler number of the solid that the surface bounds, put together from its pieces in the cells: a cell holds as many pieces as
- * its inside corners form groups; where cells meet, the pieces on the faces were counted twice and are taken off again, and so
- * on down to grid edges (a piece each if an end is inside) and points. All pieces are contractible, so each counts 1.
- * A closed surface has twice the number of its solid. */
+/* Euler number of the solid that the surface bounds, put together from its pieces in the cells: a cell holds as many
+ * pieces as its inside corners form groups; where cells meet, the pieces on the faces were counted twice and are taken
+ * off again, and so on down to grid edges (a piece each if an end is inside) and points. All pieces are contractible,
+ * so each counts 1. A closed surface has twice the number of its solid. */
 long euler_of_surface(const struct mask *mask)
 {
     long euler = 0;

@@ -1,11 +1,13 @@
 #pragma once
-/* Masks for tests of surfaces: empty, filled at random, and asked voxel by voxel; and empty volumes to make some from. */
+/* Masks for tests of surfaces: empty, filled at random, and asked voxel by voxel; and empty volumes to make some from.
+ */
 #include "core/region/mask.h"
 #include "core/surface/surface.h"
 
 extern const struct affine unit_map;
 
-struct volume *layer_make(uint32_t nx, uint32_t ny, uint32_t nz, enum voxel_type type, const struct affine *map); /* all zeros */
+struct volume *layer_make(uint32_t nx, uint32_t ny, uint32_t nz, enum voxel_type type,
+                          const struct affine *map); /* all zeros */
 
 struct mask *mask_make(uint32_t nx, uint32_t ny, uint32_t nz, const struct affine *map);
 void mask_put(struct mask *mask, uint32_t i, uint32_t j, uint32_t k);
@@ -14,9 +16,11 @@ uint32_t next_random(uint64_t *state); /* splitmix64, so a block is the same eve
 /* The voxels of a block of 2 x 2 x 2 whose bit is set: i is the lowest, then j, then k. */
 struct mask *mask_of_corners(int inside, const struct affine *map);
 /* percent of the voxels, and the middle one */
-struct mask *random_mask(uint32_t nx, uint32_t ny, uint32_t nz, uint32_t percent, uint64_t seed, const struct affine *map);
-struct mesh *made_surface(enum surface_algorithm algorithm, const struct mask *mask, int n_threads, bool close_at_border);
+struct mask *random_mask(uint32_t nx, uint32_t ny, uint32_t nz, uint32_t percent, uint64_t seed,
+                         const struct affine *map);
+struct mesh *made_surface(enum surface_algorithm algorithm, const struct mask *mask, int n_threads,
+                          bool close_at_border);
 void assert_same_bytes(const struct mesh *a, const struct mesh *b);
-/* Of the surface that cuts every crossed grid edge once and joins no two inside corners across a face, closed at the border: what it
- * must be, found without any table of cases. */
+/* Of the surface that cuts every crossed grid edge once and joins no two inside corners across a face, closed at the
+ * border: what it must be, found without any table of cases. */
 long euler_of_surface(const struct mask *mask);

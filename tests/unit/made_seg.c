@@ -5,7 +5,10 @@
 
 #define TAG DICOM_TAG
 
-bool made_seg_is_set(int segment, double z_mm, int x, int y) { return (2 * x + 3 * y + segment + 7 * (int)lround((z_mm + 5) / 3)) % 5 == 0; }
+bool made_seg_is_set(int segment, double z_mm, int x, int y)
+{
+    return (2 * x + 3 * y + segment + 7 * (int)lround((z_mm + 5) / 3)) % 5 == 0;
+}
 
 static const double *cosines_of(const struct made_seg *seg)
 {
@@ -81,7 +84,8 @@ static void put_pixels(struct made_dicom *made, const struct made_seg *seg)
         bits[i] = bits[i + 1];
         bits[i + 1] = low;
     }
-    made_element(made, TAG(0x7FE0, 0x0010), seg->is_fractional ? "OB" : "OW", seg->is_fractional ? cells : bits, seg->is_fractional ? n : (n + 15) / 16 * 2);
+    made_element(made, TAG(0x7FE0, 0x0010), seg->is_fractional ? "OB" : "OW", seg->is_fractional ? cells : bits,
+                 seg->is_fractional ? n : (n + 15) / 16 * 2);
     free(cells);
     free(bits);
 }

@@ -1,6 +1,6 @@
 #pragma once
-/* Made-up DICOM segmentations of 11 x 3 pixels: a frame's pixel (x, y) is set where 2 x + 3 y + segment + 7 plane is divisible by 5;
- * plane: of those 3 mm apart, the first at -5 mm. */
+/* Made-up DICOM segmentations of 11 x 3 pixels: a frame's pixel (x, y) is set where 2 x + 3 y + segment + 7 plane is
+ * divisible by 5; plane: of those 3 mm apart, the first at -5 mm. */
 #include "core/math/vec.h"
 #include "tests/unit/made_dicom.h"
 
@@ -14,9 +14,9 @@ struct made_seg {
     const struct made_seg_frame *frames;
     int n_frames, n_segments;
     bool is_fractional;
-    double between_mm, thickness_mm; /* 0: not said */
-    const double *cosines;           /* of rows and columns; NULL: 1 0 0 0 1 0 */
-    bool is_big_endian;              /* of BINARY alone */
+    double between_mm, thickness_mm;         /* 0: not said */
+    const double *cosines;                   /* of rows and columns; NULL: 1 0 0 0 1 0 */
+    bool is_big_endian;                      /* of BINARY alone */
     const char *frame_of_reference, *series; /* NULL: not said */
 };
 bool made_seg_is_set(int segment, double z_mm, int x, int y);

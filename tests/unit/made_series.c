@@ -123,7 +123,8 @@ struct volume *scanned_read(struct scanned *scanned, size_t stack)
 {
     struct error err = { 0 };
     assert_true(stack < scanned->index->n_stacks);
-    struct volume *volume = dicom_series_read(&scanned->folder, scanned->index, stack, NULL, NULL, &scanned->report, &err);
+    struct volume *volume =
+        dicom_series_read(&scanned->folder, scanned->index, stack, NULL, NULL, &scanned->report, &err);
     assert_string_equal(err.text, "");
     assert_non_null(volume);
     return volume;

@@ -4,7 +4,8 @@
 #include "tests/unit/made_dicom.h"
 
 struct made_slice {
-    const char *transfer_syntax, *series, *instance_uid, *modality, *description, *color, *image_type, *frame_of_reference;
+    const char *transfer_syntax, *series, *instance_uid, *modality, *description, *color, *image_type,
+        *frame_of_reference;
     double position[3], cosines[6], spacing[2] /* rows, columns */, thickness;
     int number, echo, rows, columns, bits, stored, is_signed, base;
     bool has_rescale;
@@ -26,7 +27,7 @@ struct scanned {
     struct dicom_index *index;
     struct report report;
 };
-void scanned_open(struct scanned *scanned); /* path is filled by the caller */
+void scanned_open(struct scanned *scanned);   /* path is filled by the caller */
 void scanned_finish(struct scanned *scanned); /* removes the folder, unless it is kept */
 /* The volume of a stack; fails the test when there is none. */
 struct volume *scanned_read(struct scanned *scanned, size_t stack);

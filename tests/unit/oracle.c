@@ -55,7 +55,8 @@ bool oracle_unpack(const char *archive, const char *folder)
     char out[4096];
     if (!is_there("tar") || !is_there("xz"))
         return false;
-    if (oracle_run((char *[]){ "tar", "-C", (char *)(uintptr_t)folder, "-xJf", (char *)(uintptr_t)archive, NULL }, out, sizeof out) != 0)
+    if (oracle_run((char *[]){ "tar", "-C", (char *)(uintptr_t)folder, "-xJf", (char *)(uintptr_t)archive, NULL }, out,
+                   sizeof out) != 0)
         fail_msg("%s cannot be unpacked", archive);
     return true;
 }

@@ -7,15 +7,16 @@ static void render(void *context, struct room *room, const struct room_render *r
     struct fake_room *fake = context;
     (void)room;
     assert_true(fake->n_requests < sizeof fake->requests / sizeof fake->requests[0]);
-    fake->requests[fake->n_requests++] = (struct fake_request){ .request = request->request,
-                                                                .view = cJSON_Duplicate(request->view, true),
-                                                                .scene = request->scene ? cJSON_Duplicate(request->scene, true) : NULL,
-                                                                .scene_revision = request->scene_revision,
-                                                                .scale_percent = request->scale_percent,
-                                                                .quality = request->quality,
-                                                                .is_still = request->is_still,
-                                                                .full_color = request->full_color,
-                                                                .light = request->light };
+    fake->requests[fake->n_requests++] =
+        (struct fake_request){ .request = request->request,
+                               .view = cJSON_Duplicate(request->view, true),
+                               .scene = request->scene ? cJSON_Duplicate(request->scene, true) : NULL,
+                               .scene_revision = request->scene_revision,
+                               .scale_percent = request->scale_percent,
+                               .quality = request->quality,
+                               .is_still = request->is_still,
+                               .full_color = request->full_color,
+                               .light = request->light };
 }
 
 static void forget(void *context, struct room *room, uint64_t request)
@@ -153,7 +154,8 @@ void fake_hello(struct fake_room *fake, struct fake_page *page)
 void fake_join(struct fake_room *fake, struct fake_page *page, bool follow)
 {
     fake_hello(fake, page);
-    fake_say(fake, page, "{\"type\":\"view.open\",\"view\":1,\"document\":{\"size_px\":[800,600]},\"follow\":%s}", follow ? "true" : "false");
+    fake_say(fake, page, "{\"type\":\"view.open\",\"view\":1,\"document\":{\"size_px\":[800,600]},\"follow\":%s}",
+             follow ? "true" : "false");
 }
 
 void fake_shown(struct fake_room *fake, struct fake_page *page)
@@ -218,7 +220,8 @@ void fake_draw_slow(struct fake_room *fake, struct fake_request *request, uint32
     picture->bytes[0] = (uint8_t)request->request;
     picture->missing = fake->missing ? json_read(fake->missing, strlen(fake->missing), NULL) : NULL;
     picture->header = (struct frame_header){ .codec = 1,
-                                             .flags = (uint8_t)((request->is_still ? FRAME_STILL : 0) | (request->light ? FRAME_LIGHT : 0)),
+                                             .flags = (uint8_t)((request->is_still ? FRAME_STILL : 0) |
+                                                                (request->light ? FRAME_LIGHT : 0)),
                                              .quality = (uint8_t)request->quality,
                                              .scale_percent = (uint8_t)request->scale_percent,
                                              .scene_revision = request->scene_revision,
@@ -293,8 +296,9 @@ size_t fake_n_heard(const struct fake_page *page, const char *type)
 
 void fake_turn(struct fake_room *room, struct fake_page *page, int degrees, unsigned input)
 {
-    fake_say(room, page,
-             "{\"type\":\"view.patch\",\"view\":1,\"input\":%u,\"patch\":{\"camera\":{\"position_mm\":[%d,-900,0],\"target_mm\":[0,0,0],"
-             "\"up\":[0,0,1]}}}",
-             input, degrees);
+    fake_say(
+        room, page,
+        "{\"type\":\"view.patch\",\"view\":1,\"input\":%u,\"patch\":{\"camera\":{\"position_mm\":[%d,-900,0],\"target_mm\":[0,0,0],"
+        "\"up\":[0,0,1]}}}",
+        input, degrees);
 }

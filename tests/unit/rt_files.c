@@ -25,7 +25,8 @@ struct rt_file rt_file_open(const char *path)
     struct bytes bytes = { NULL, 0 };
     struct error err = { 0 };
     snprintf(folder_path, sizeof folder_path, "%.*s", (int)(slash - path), path);
-    if (!folder_open(&folder, folder_path, &err) || !folder_read(&folder, slash + 1, UINT32_MAX, UINT64_MAX, &bytes, &err))
+    if (!folder_open(&folder, folder_path, &err) ||
+        !folder_read(&folder, slash + 1, UINT32_MAX, UINT64_MAX, &bytes, &err))
         fail_msg("%s", err.text);
     folder_close(&folder);
     return parsed(bytes, slash + 1);

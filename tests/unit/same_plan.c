@@ -3,8 +3,10 @@
 #include "core/region/mask.h"
 #include "tests/check.h"
 
-/* Who adds a field to a plan is stopped here until it is compared below: a conversion or a cache that loses it would not be noticed. */
-#define IS_COMPARED_UP_TO(type, bytes) _Static_assert(sizeof(void *) != 8 || sizeof(type) == (bytes), "compare the new field of " #type)
+/* Who adds a field to a plan is stopped here until it is compared below: a conversion or a cache that loses it would
+ * not be noticed. */
+#define IS_COMPARED_UP_TO(type, bytes) \
+    _Static_assert(sizeof(void *) != 8 || sizeof(type) == (bytes), "compare the new field of " #type)
 IS_COMPARED_UP_TO(struct plan, 57800);
 IS_COMPARED_UP_TO(struct plan_image, 248);
 IS_COMPARED_UP_TO(struct plan_preferences, 1296);
@@ -34,7 +36,8 @@ static void same_grid(const struct grid *found, const struct grid *expected, dou
 {
     assert_memory_equal(found->size, expected->size, sizeof found->size);
     for (int corner = 0; corner < 8; corner++) {
-        struct vec3 at = vec3(corner & 1 ? found->size[0] - 1 : 0, corner & 2 ? found->size[1] - 1 : 0, corner & 4 ? found->size[2] - 1 : 0);
+        struct vec3 at = vec3(corner & 1 ? found->size[0] - 1 : 0, corner & 2 ? found->size[1] - 1 : 0,
+                              corner & 4 ? found->size[2] - 1 : 0);
         struct vec3 a = affine_point(&found->lps_mm_from_ijk, at), b = affine_point(&expected->lps_mm_from_ijk, at);
         assert_close(vec3_length(vec3_sub(a, b)), 0, mm);
     }
@@ -67,7 +70,8 @@ static void same_mask(const struct region_set *found, const struct region_set *e
     struct mask *mask_a = mask_from_labels(found->layers[a->layer], &a->label, 1, 2, &err);
     struct mask *mask_b = mask_from_labels(expected->layers[b->layer], &b->label, 1, 2, &err);
     assert_string_equal(err.text, "");
-    assert_memory_equal(mask_a->bits, mask_b->bits, (size_t)mask_a->words * mask_a->size[1] * mask_a->size[2] * sizeof(uint64_t));
+    assert_memory_equal(mask_a->bits, mask_b->bits,
+                        (size_t)mask_a->words * mask_a->size[1] * mask_a->size[2] * sizeof(uint64_t));
     mask_destroy(mask_a);
     mask_destroy(mask_b);
 }

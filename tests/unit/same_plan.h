@@ -3,6 +3,6 @@
 #include "core/plan/plan.h"
 
 /* Fails the test that runs, with what differs. Every field but those that say how it was opened: id, report, load_us,
- * is_from_cache, shapes. Voxels by value; matrices, and what is measured from them, within mm; a layer by what it holds of its
- * regions, wherever it stands in the list. */
+ * is_from_cache, shapes. Voxels by value; matrices, and what is measured from them, within mm; a layer by what it holds
+ * of its regions, wherever it stands in the list. */
 void assert_same_plan(const struct plan *found, const struct plan *expected, double mm);

@@ -16,7 +16,8 @@ struct volume *sera_head_read(void)
         return NULL;
     }
     struct grid grid;
-    struct affine map = { { { 1.01562, 0, 0 }, { 0, 1.01562, 0 }, { 0, 0, 5.49991 } }, { -129.492, -129.492, -264.996 } };
+    struct affine map = { { { 1.01562, 0, 0 }, { 0, 1.01562, 0 }, { 0, 0, 5.49991 } },
+                          { -129.492, -129.492, -264.996 } };
     struct error err = { 0 };
     if (!grid_init(&grid, (uint32_t[3]){ 256, 256, 48 }, &map, &err))
         abort();

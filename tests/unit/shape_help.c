@@ -31,8 +31,9 @@ struct vec3 index_of(const struct mask *mask, struct vec3 lps_mm)
 
 bool is_border(const struct mask *mask, int64_t i, int64_t j, int64_t k)
 {
-    return mask_has(mask, i, j, k) && !(mask_has(mask, i - 1, j, k) && mask_has(mask, i + 1, j, k) && mask_has(mask, i, j - 1, k) &&
-                                        mask_has(mask, i, j + 1, k) && mask_has(mask, i, j, k - 1) && mask_has(mask, i, j, k + 1));
+    return mask_has(mask, i, j, k) &&
+           !(mask_has(mask, i - 1, j, k) && mask_has(mask, i + 1, j, k) && mask_has(mask, i, j - 1, k) &&
+             mask_has(mask, i, j + 1, k) && mask_has(mask, i, j, k - 1) && mask_has(mask, i, j, k + 1));
 }
 
 size_t count_border(const struct mask *mask)

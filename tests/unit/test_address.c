@@ -12,14 +12,30 @@ static struct address address(const char *text)
 static void an_address_is_read_with_or_without_a_port(void **state)
 {
     (void)state;
-    static const char *const same[][2] = { { "192.0.2.1", "192.0.2.1:65535" }, { "192.0.2.1", "::ffff:192.0.2.1" }, { "192.0.2.1", "::ffff:c000:201" },
-                                           { "2001:db8::1", "[2001:DB8:0::1]:80" }, { "2001:db8::1", "[2001:db8::1]" } };
+    static const char *const same[][2] = { { "192.0.2.1", "192.0.2.1:65535" },
+                                           { "192.0.2.1", "::ffff:192.0.2.1" },
+                                           { "192.0.2.1", "::ffff:c000:201" },
+                                           { "2001:db8::1", "[2001:DB8:0::1]:80" },
+                                           { "2001:db8::1", "[2001:db8::1]" } };
     for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
         struct address a = address(same[i][0]), b = address(same[i][1]);
         assert_true(address_is_equal(&a, &b));
     }
-    static const char *const wrong[] = { "", "unknown", "_hidden", "192.0.2", "192.0.2.256", "192.0.2.1:", "192.0.2.1:http", "192.0.2.1:123456", "[2001:db8::1", "[192.0.2.1]:80",
-                                         "[2001:db8::1]80", "2001:db8::1::", " 192.0.2.1", "192.0.2.1 ", "1" };
+    static const char *const wrong[] = { "",
+                                         "unknown",
+                                         "_hidden",
+                                         "192.0.2",
+                                         "192.0.2.256",
+                                         "192.0.2.1:",
+                                         "192.0.2.1:http",
+                                         "192.0.2.1:123456",
+                                         "[2001:db8::1",
+                                         "[192.0.2.1]:80",
+                                         "[2001:db8::1]80",
+                                         "2001:db8::1::",
+                                         " 192.0.2.1",
+                                         "192.0.2.1 ",
+                                         "1" };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         struct address found;
         assert_false(address_read(wrong[i], strlen(wrong[i]), &found));
@@ -34,10 +50,14 @@ static void a_range_holds_the_addresses_with_its_first_bits(void **state)
     (void)state;
     static const struct {
         const char *range, *inside, *outside;
-    } list[] = { { "192.0.2.1", "192.0.2.1", "192.0.2.2" },           { "192.0.2.0/24", "192.0.2.255", "192.0.3.0" },
-                 { "10.0.0.0/9", "10.127.255.255", "10.128.0.0" },    { "0.0.0.0/0", "203.0.113.9", "2001:db8::1" },
-                 { "2001:db8::/32", "2001:db8:ffff::1", "2001:db9::" }, { "::1", "::1", "::2" },
-                 { "::/0", "192.0.2.1", NULL },                       { "2001:db8::8/125", "2001:db8::f", "2001:db8::10" } };
+    } list[] = { { "192.0.2.1", "192.0.2.1", "192.0.2.2" },
+                 { "192.0.2.0/24", "192.0.2.255", "192.0.3.0" },
+                 { "10.0.0.0/9", "10.127.255.255", "10.128.0.0" },
+                 { "0.0.0.0/0", "203.0.113.9", "2001:db8::1" },
+                 { "2001:db8::/32", "2001:db8:ffff::1", "2001:db9::" },
+                 { "::1", "::1", "::2" },
+                 { "::/0", "192.0.2.1", NULL },
+                 { "2001:db8::8/125", "2001:db8::f", "2001:db8::10" } };
     for (size_t i = 0; i < sizeof list / sizeof list[0]; i++) {
         struct address_range range;
         struct error err = { 0 };
@@ -49,7 +69,9 @@ static void a_range_holds_the_addresses_with_its_first_bits(void **state)
         struct address outside = address(list[i].outside);
         assert_false(address_is_in(&outside, &range, 1));
     }
-    static const char *const wrong[] = { "", "proxy", "192.0.2.0/33", "2001:db8::/129", "192.0.2.0/", "192.0.2.0/-1", "192.0.2.0/24x", "192.0.2.1:80", "/24" };
+    static const char *const wrong[] = { "",           "proxy",        "192.0.2.0/33",  "2001:db8::/129",
+                                         "192.0.2.0/", "192.0.2.0/-1", "192.0.2.0/24x", "192.0.2.1:80",
+                                         "/24" };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         struct address_range range;
         struct error err = { 0 };
@@ -63,7 +85,8 @@ static void the_client_is_the_newest_address_that_is_no_trusted_proxy(void **sta
     (void)state;
     struct address_range trusted[2];
     struct error err = { 0 };
-    assert_true(address_range_read("127.0.0.1", &trusted[0], &err) && address_range_read("10.0.0.0/8", &trusted[1], &err));
+    assert_true(address_range_read("127.0.0.1", &trusted[0], &err) &&
+                address_range_read("10.0.0.0/8", &trusted[1], &err));
     static const struct {
         const char *peer, *forwarded, *client;
     } list[] = {
@@ -91,7 +114,10 @@ static void an_ipv6_client_is_counted_by_its_network_of_64_bits(void **state)
     static const struct {
         const char *a, *b;
         bool are_one;
-    } list[] = { { "2001:db8::1", "2001:db8::ffff:1:2:3", true }, { "2001:db8::1", "2001:db8:0:1::1", false }, { "192.0.2.1", "192.0.2.2", false }, { "192.0.2.1", "::ffff:192.0.2.1", true } };
+    } list[] = { { "2001:db8::1", "2001:db8::ffff:1:2:3", true },
+                 { "2001:db8::1", "2001:db8:0:1::1", false },
+                 { "192.0.2.1", "192.0.2.2", false },
+                 { "192.0.2.1", "::ffff:192.0.2.1", true } };
     for (size_t i = 0; i < sizeof list / sizeof list[0]; i++) {
         struct address a = address(list[i].a), b = address(list[i].b);
         a = address_counted(&a);

@@ -60,8 +60,9 @@ static void a_number_in_a_query_is_a_finite_decimal(void **state)
         const char *text;
         bool is_good;
         double value;
-    } cases[] = { { "1.5", true, 1.5 }, { "-2e1", true, -20 }, { "", false, 0 }, { "1x", false, 0 },   { "0x10", false, 0 },
-                  { "nan", false, 0 },  { "inf", false, 0 },   { "1e999", false, 0 }, { "1 2", false, 0 } };
+    } cases[] = { { "1.5", true, 1.5 }, { "-2e1", true, -20 }, { "", false, 0 },
+                  { "1x", false, 0 },   { "0x10", false, 0 },  { "nan", false, 0 },
+                  { "inf", false, 0 },  { "1e999", false, 0 }, { "1 2", false, 0 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct call *call = call_create();
         struct problem problem = { 0 };

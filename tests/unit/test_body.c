@@ -25,8 +25,12 @@ static void a_body_of_a_length_ends_there(void **state)
 static void chunks_end_with_the_empty_line_after_the_last_however_they_are_cut(void **state)
 {
     (void)state;
-    static const char *const list[] = { "0\r\n\r\n", "5\r\nhello\r\n0\r\n\r\n", "A\r\n0123456789\r\n0a\r\n0123456789\r\n000\r\n\r\n", "1;name=\"value\"\r\nx\r\n0;last\r\n\r\n",
-                                        "2\r\n\r\n\r\n0\r\n\r\n", "0\r\nContent-Length: 100\r\nX: y\r\n\r\n" };
+    static const char *const list[] = { "0\r\n\r\n",
+                                        "5\r\nhello\r\n0\r\n\r\n",
+                                        "A\r\n0123456789\r\n0a\r\n0123456789\r\n000\r\n\r\n",
+                                        "1;name=\"value\"\r\nx\r\n0;last\r\n\r\n",
+                                        "2\r\n\r\n\r\n0\r\n\r\n",
+                                        "0\r\nContent-Length: 100\r\nX: y\r\n\r\n" };
     for (size_t i = 0; i < sizeof list / sizeof list[0]; i++) {
         char bytes[200];
         size_t n = strlen(list[i]);
@@ -49,8 +53,23 @@ static void chunks_end_with_the_empty_line_after_the_last_however_they_are_cut(v
 static void chunks_that_another_reader_may_read_otherwise_are_refused(void **state)
 {
     (void)state;
-    static const char *const list[] = { "-2\r\n{}\r\n", "0x2\r\n{}\r\n", " 2\r\n{}\r\n", "2 \r\n{}\r\n", "\r\n", ";a\r\n", "2\n{}\n", "2\r{}", "1\r\n{}\r\n", "2\r\n{}\n0", "2\r\n{}\r0",
-                                        "0\r\nX: y\n\r\n", "0\r\nX\ry: z\r\n\r\n", "1;a\rb\r\n", "1;a\nb\r\n", "1000000000000000\r\n", "g\r\n" };
+    static const char *const list[] = { "-2\r\n{}\r\n",
+                                        "0x2\r\n{}\r\n",
+                                        " 2\r\n{}\r\n",
+                                        "2 \r\n{}\r\n",
+                                        "\r\n",
+                                        ";a\r\n",
+                                        "2\n{}\n",
+                                        "2\r{}",
+                                        "1\r\n{}\r\n",
+                                        "2\r\n{}\n0",
+                                        "2\r\n{}\r0",
+                                        "0\r\nX: y\n\r\n",
+                                        "0\r\nX\ry: z\r\n\r\n",
+                                        "1;a\rb\r\n",
+                                        "1;a\nb\r\n",
+                                        "1000000000000000\r\n",
+                                        "g\r\n" };
     for (size_t i = 0; i < sizeof list / sizeof list[0]; i++) {
         struct body body;
         struct problem problem = { 0 };
@@ -91,12 +110,25 @@ static void a_condition_names_each_tag_of_its_list(void **state)
     static const struct {
         const char *list;
         bool is_strong, is_weak; /* whether it names "17": with strong and with weak comparison (RFC 9110 8.8.3.2) */
-    } cases[] = { { "\"17\"", true, true },           { "*", true, true },          { " * ", true, true },      { "W/\"17\"", false, true },
-                  { "\"16\", \"17\"", true, true },   { "\"1,7\",W/\"17\"", false, true }, { ",, \"17\"", true, true }, { "\"16\"", false, false },
-                  { "", false, false },               { "17", false, false },        { "\"17", false, false },   { "\"x, \"17\"", false, false },
-                  { "w/\"17\"", false, false },       { "x, \"17\"", true, true },   { "*, \"16\"", false, false }, { "\"17\" \"18\"", true, true } };
+    } cases[] = { { "\"17\"", true, true },
+                  { "*", true, true },
+                  { " * ", true, true },
+                  { "W/\"17\"", false, true },
+                  { "\"16\", \"17\"", true, true },
+                  { "\"1,7\",W/\"17\"", false, true },
+                  { ",, \"17\"", true, true },
+                  { "\"16\"", false, false },
+                  { "", false, false },
+                  { "17", false, false },
+                  { "\"17", false, false },
+                  { "\"x, \"17\"", false, false },
+                  { "w/\"17\"", false, false },
+                  { "x, \"17\"", true, true },
+                  { "*, \"16\"", false, false },
+                  { "\"17\" \"18\"", true, true } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        if (etag_is_listed(cases[i].list, "\"17\"", false) != cases[i].is_strong || etag_is_listed(cases[i].list, "\"17\"", true) != cases[i].is_weak)
+        if (etag_is_listed(cases[i].list, "\"17\"", false) != cases[i].is_strong ||
+            etag_is_listed(cases[i].list, "\"17\"", true) != cases[i].is_weak)
             fail_msg("%s", cases[i].list);
     }
 }
@@ -107,11 +139,16 @@ static void only_http_and_https_with_the_own_name_are_the_own_origin(void **stat
     static const struct {
         const char *origin, *host;
         bool is_own;
-    } cases[] = { { "http://beamroom.example", "beamroom.example", true },         { "https://Beamroom.Example:8443", "beamroom.example:8443", true },
-                  { "evil://beamroom.example", "beamroom.example", false },        { "http://evil.example/http://beamroom.example", "beamroom.example", false },
-                  { "http://beamroom.example:81", "beamroom.example", false },     { "http://", "", false },
-                  { "null", "null", false },                                       { "beamroom.example", "beamroom.example", false },
-                  { NULL, "beamroom.example", false },                             { "http://beamroom.example", NULL, false } };
+    } cases[] = { { "http://beamroom.example", "beamroom.example", true },
+                  { "https://Beamroom.Example:8443", "beamroom.example:8443", true },
+                  { "evil://beamroom.example", "beamroom.example", false },
+                  { "http://evil.example/http://beamroom.example", "beamroom.example", false },
+                  { "http://beamroom.example:81", "beamroom.example", false },
+                  { "http://", "", false },
+                  { "null", "null", false },
+                  { "beamroom.example", "beamroom.example", false },
+                  { NULL, "beamroom.example", false },
+                  { "http://beamroom.example", NULL, false } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         assert_int_equal(origin_is_of_host(cases[i].origin, cases[i].host), cases[i].is_own);
 }

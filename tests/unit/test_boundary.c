@@ -24,7 +24,8 @@ static bool is_inside(const struct mask *mask, int64_t i, int64_t j, int64_t k, 
 static void border_voxels_are_those_with_an_outside_neighbour(void **state)
 {
     (void)state;
-    static const uint32_t sizes[][3] = { { 1, 1, 1 }, { 1, 5, 4 }, { 63, 7, 4 }, { 64, 7, 1 }, { 65, 1, 6 }, { 129, 6, 5 } };
+    static const uint32_t sizes[][3] = { { 1, 1, 1 },  { 1, 5, 4 },  { 63, 7, 4 },
+                                         { 64, 7, 1 }, { 65, 1, 6 }, { 129, 6, 5 } };
     for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
         for (uint32_t percent = 30; percent <= 100; percent += 35)
             for (int open = 0; open < 2; open++) {
@@ -37,8 +38,9 @@ static void border_voxels_are_those_with_an_outside_neighbour(void **state)
                             bool is_deep = true;
                             for (int way = 0; expected && way < 6; way++) {
                                 int64_t step = way % 2 ? 1 : -1;
-                                is_deep = is_deep && is_inside(mask, i + (way / 2 == 0 ? step : 0), j + (way / 2 == 1 ? step : 0),
-                                                               k + (way / 2 == 2 ? step : 0), open);
+                                is_deep = is_deep &&
+                                          is_inside(mask, i + (way / 2 == 0 ? step : 0), j + (way / 2 == 1 ? step : 0),
+                                                    k + (way / 2 == 2 ? step : 0), open);
                             }
                             const uint64_t *row = border->bits + ((size_t)k * mask->size[1] + (size_t)j) * mask->words;
                             assert_int_equal(row[i / 64] >> i % 64 & 1, expected && !is_deep);
@@ -62,8 +64,8 @@ static void threads_do_not_matter(void **state)
     mask_destroy(mask);
 }
 
-/* A block of 6 x 6 x 6 around one of 4 x 4 x 4: the outer border is the shell of the large one, with the hierarchy; alone the large
- * one is nothing but a shell, and all of it is border. */
+/* A block of 6 x 6 x 6 around one of 4 x 4 x 4: the outer border is the shell of the large one, with the hierarchy;
+ * alone the large one is nothing but a shell, and all of it is border. */
 static void with_the_hierarchy_a_region_has_no_border_along_what_is_inside_it(void **state)
 {
     (void)state;
@@ -95,12 +97,14 @@ static void with_the_hierarchy_a_region_has_no_border_along_what_is_inside_it(vo
     volume_unref(set.layers[0]);
 }
 
-/* By the original's own six-neighbour test, with its hierarchy and without; and where the scan cuts the head counted or not. */
+/* By the original's own six-neighbour test, with its hierarchy and without; and where the scan cuts the head counted or
+ * not. */
 static void counts_equal_the_original_sera3d_on_its_own_head(void **state)
 {
     (void)state;
-    static const uint64_t expected[2][2][3] = { { { 91488, 42307, 4978 }, { 68786, 42307, 4978 } },
-                                                { { 134181, 47425, 4978 }, { 112095, 47425, 4978 } } }; /* [own][open][region] */
+    static const uint64_t expected[2][2][3] = {
+        { { 91488, 42307, 4978 }, { 68786, 42307, 4978 } }, { { 134181, 47425, 4978 }, { 112095, 47425, 4978 } }
+    }; /* [own][open][region] */
     struct volume *layer = sera_head_read();
     if (!layer)
         skip();

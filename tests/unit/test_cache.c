@@ -70,13 +70,16 @@ static void add(const struct fixture *fixture, const char *id, uint64_t n_bytes,
     assert_int_equal(utimensat(AT_FDCWD, path_of(fixture, id), times, 0), 0);
 }
 
-static bool is_there(const struct fixture *fixture, const char *name) { return access(path_of(fixture, name), F_OK) == 0; }
+static bool is_there(const struct fixture *fixture, const char *name)
+{
+    return access(path_of(fixture, name), F_OK) == 0;
+}
 
-#define UNTIL(condition)                                                                              \
-    do {                                                                                              \
+#define UNTIL(condition) \
+    do { \
         for (int64_t until_us_ = clock_now_us() + 60000000; !(condition) && clock_now_us() < until_us_;) \
-            nanosleep(&(struct timespec){ .tv_nsec = 5000000 }, NULL);                                \
-        assert_true(condition);                                                                       \
+            nanosleep(&(struct timespec){ .tv_nsec = 5000000 }, NULL); \
+        assert_true(condition); \
     } while (0)
 
 /* Returns when its thread has looked for the first time: what is added after that is seen as written by a renderer. */
@@ -132,7 +135,8 @@ static void is_ended_and_emptied(struct fixture *at)
     assert_true(at->ended[0] == 7);
     assert_non_null(strstr(at->reason, "wrote more to its cache"));
     cache_end(at->cache, 7);
-    UNTIL(rmdir(path_of(at, "a")) == 0 || !is_there(at, "a")); /* empty; the folder itself stays for the next renderer */
+    UNTIL(rmdir(path_of(at, "a")) == 0 ||
+          !is_there(at, "a")); /* empty; the folder itself stays for the next renderer */
     assert_int_equal(at->n_ended, 1);
 }
 
@@ -225,7 +229,7 @@ static void a_full_disk_costs_caches_first_and_then_each_renderer_once(void **st
     UNTIL(at.n_ended == 2);
     cache_end(at.cache, at.ended[0]);
     cache_end(at.cache, at.ended[1]);
-    cache_begin(at.cache, "old", 9); /* started again */
+    cache_begin(at.cache, "old", 9);                                          /* started again */
     nanosleep(&(struct timespec){ .tv_sec = 2, .tv_nsec = 500000000 }, NULL); /* two looks at least */
     assert_int_equal(at.n_ended, 2);
     assert_int_equal(at.ended[0] + at.ended[1], 15);

@@ -2,8 +2,14 @@
 #include "tests/check.h"
 #include "tests/made_plan.h"
 
-static double no_label(struct vec3 p) { return p.x * 0; }
-static double halves(struct vec3 p) { return p.x < 0 ? 1 : 2; }
+static double no_label(struct vec3 p)
+{
+    return p.x * 0;
+}
+static double halves(struct vec3 p)
+{
+    return p.x < 0 ? 1 : 2;
+}
 static const struct made_region two[] = { { "right", -1, 0x804020 }, { "left", -1, 0x204080 } };
 
 /* 100 x 80 x 60 mm around (10, 20, 30) */
@@ -72,7 +78,9 @@ static void a_plan_of_a_small_region_in_a_large_image_is_framed_by_the_image(voi
         struct plan *plan = box_plan();
         double side_mm = is_large ? 10 : 4; /* 20 voxels a side: 346 or 139 mm across */
         const uint32_t size[3] = { 20, 20, 20 };
-        struct grid grid = made_grid(20, 20, 20, made_affine(vec3(side_mm, 0, 0), vec3(0, side_mm, 0), vec3(0, 0, side_mm), size, vec3(5, 6, 7)));
+        struct grid grid =
+            made_grid(20, 20, 20,
+                      made_affine(vec3(side_mm, 0, 0), vec3(0, side_mm, 0), vec3(0, 0, side_mm), size, vec3(5, 6, 7)));
         plan->images[0].volume = made_volume(&grid, VOXEL_U8, nothing);
         plan->n_images = 1;
         struct scene_camera camera;
@@ -123,11 +131,13 @@ static void clip_space_goes_to_the_patient_and_back(void **state)
             struct camera camera;
             camera_resolve(snapshot, &camera);
             struct vec3 p = vec3(-12.5, 31, 44);
-            struct vec3 clip = mat4_project(&camera.clip_from_lps_mm, p), back = mat4_project(&camera.lps_mm_from_clip, clip);
+            struct vec3 clip = mat4_project(&camera.clip_from_lps_mm, p),
+                        back = mat4_project(&camera.lps_mm_from_clip, clip);
             assert_close(back.x, p.x, 1e-6);
             assert_close(back.y, p.y, 1e-6);
             assert_close(back.z, p.z, 1e-6);
-            struct vec3 across = vec3_cross(camera.right, camera.up); /* towards the viewer: right-handed, orthonormal */
+            struct vec3 across =
+                vec3_cross(camera.right, camera.up); /* towards the viewer: right-handed, orthonormal */
             expect_vec3(vec3_add(across, camera.forward), 0, 0, 0);
             snapshot_unref(snapshot);
         }
@@ -196,7 +206,8 @@ static void panes_lie_on_their_slice_as_radiology_has_them(void **state)
         expect_vec3(camera.right, cases[i].right.x, cases[i].right.y, cases[i].right.z);
         expect_vec3(camera.up, cases[i].up.x, cases[i].up.y, cases[i].up.z);
         expect_vec3(camera.target_lps_mm, cases[i].target.x, cases[i].target.y, cases[i].target.z);
-        struct vec3 right = mat4_project(&camera.clip_from_lps_mm, vec3_add(camera.target_lps_mm, vec3_scale(camera.right, 128)));
+        struct vec3 right =
+            mat4_project(&camera.clip_from_lps_mm, vec3_add(camera.target_lps_mm, vec3_scale(camera.right, 128)));
         assert_close(right.x, 1, 1e-9);
         assert_close(right.y, 0, 1e-9);
         snapshot_unref(snapshot);
@@ -204,7 +215,8 @@ static void panes_lie_on_their_slice_as_radiology_has_them(void **state)
     plan_destroy(plan);
 }
 
-static void expect_refused(struct plan *plan, struct scene scene, struct view view, enum error_code code, const char *place)
+static void expect_refused(struct plan *plan, struct scene scene, struct view view, enum error_code code,
+                           const char *place)
 {
     struct error err = { 0 };
     char field[128];
@@ -269,8 +281,13 @@ static double shells(struct vec3 p)
     double r = vec3_length(p);
     return r < 5 ? 3 : r < 10 ? 2 : r < 15 ? 1 : 0;
 }
-static const struct made_region tree[] = { { "body", -1, 0x112233 }, { "organ", 0, 0x445566 }, { "tumour", 1, 0x778899 } };
-static double shifted_shells(struct vec3 p) { return shells(vec3_sub(p, vec3(3, -2, 1))); }
+static const struct made_region tree[] = { { "body", -1, 0x112233 },
+                                           { "organ", 0, 0x445566 },
+                                           { "tumour", 1, 0x778899 } };
+static double shifted_shells(struct vec3 p)
+{
+    return shells(vec3_sub(p, vec3(3, -2, 1)));
+}
 
 static void a_new_room_sees_through_to_the_innermost_region(void **state)
 {

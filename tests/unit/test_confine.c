@@ -70,7 +70,8 @@ static void end(const struct places *at)
     rmdir(at->folder);
 }
 
-/* Runs attempt in a confined child. 0: all as it should be; else the number it gave; 77: the kernel lacks what is tested. */
+/* Runs attempt in a confined child. 0: all as it should be; else the number it gave; 77: the kernel lacks what is
+ * tested. */
 static int confined(const struct places *at, const char *needed, bool is_bare, int (*attempt)(const struct places *at))
 {
     pid_t child = fork();
@@ -84,8 +85,13 @@ static int confined(const struct places *at, const char *needed, bool is_bare, i
         given_other_end = pair[1];
         if (is_bare) /* the attempt confines itself */
             _exit(prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 ? attempt(at) : 98);
-        confine(&(struct confine_options){ .plan_folder = at->plan, .cache_folder = at->cache, .needs_gpu = true, .max_file_bytes = 1 << 20 }, got);
-        bool is_missing = strstr(got, "landlock not") ? strcmp(needed, "landlock") == 0 : strstr(got, "no seccomp") != NULL;
+        confine(&(struct confine_options){ .plan_folder = at->plan,
+                                           .cache_folder = at->cache,
+                                           .needs_gpu = true,
+                                           .max_file_bytes = 1 << 20 },
+                got);
+        bool is_missing =
+            strstr(got, "landlock not") ? strcmp(needed, "landlock") == 0 : strstr(got, "no seccomp") != NULL;
         _exit(is_missing ? 77 : attempt(at));
     }
     int status;
@@ -105,7 +111,10 @@ static void check_with(const char *needed, bool is_bare, int (*attempt)(const st
     assert_int_equal(result, 0);
 }
 
-static void check(const char *needed, int (*attempt)(const struct places *at)) { check_with(needed, false, attempt); }
+static void check(const char *needed, int (*attempt)(const struct places *at))
+{
+    check_with(needed, false, attempt);
+}
 
 static bool can_open(const char *path, int flags)
 {
@@ -127,13 +136,15 @@ static int try_files(const struct places *at)
         return 4;
     if (!can_open(at->cache_file, O_RDWR | O_CREAT))
         return 5;
-    if (can_open("/etc/passwd", O_RDONLY) || can_open("/root", O_RDONLY | O_DIRECTORY) || can_open("/home", O_RDONLY | O_DIRECTORY))
+    if (can_open("/etc/passwd", O_RDONLY) || can_open("/root", O_RDONLY | O_DIRECTORY) ||
+        can_open("/home", O_RDONLY | O_DIRECTORY))
         return 6;
     char escape[96];
     snprintf(escape, sizeof escape, "%s/new", at->elsewhere);
     if (unlink(at->plan_file) == 0 || mkdir(escape, 0700) == 0)
         return 7;
-    if (!can_open("/usr/share", O_RDONLY | O_DIRECTORY) || !can_open("/proc/self/maps", O_RDONLY) || !can_open("/dev/null", O_RDWR))
+    if (!can_open("/usr/share", O_RDONLY | O_DIRECTORY) || !can_open("/proc/self/maps", O_RDONLY) ||
+        !can_open("/dev/null", O_RDWR))
         return 8;
     return 0;
 }
@@ -233,7 +244,7 @@ static void a_signal_to_oneself_still_works(void **state)
     check("seccomp", try_abort);
 }
 
-/* ---- other processes ---- */
+/* ---- other processes -------------------------------------------------------------------------------------------- */
 
 static int try_other_processes(const struct places *at)
 {
@@ -285,7 +296,7 @@ static void limits_priorities_and_signals_of_other_processes_are_out_of_reach(vo
     check("seccomp", try_other_processes);
 }
 
-/* ---- what belongs to files, and is not in them ---- */
+/* ---- what belongs to files, and is not in them ------------------------------------------------------------------ */
 
 static int try_attributes(const struct places *at)
 {
@@ -299,28 +310,33 @@ static int try_attributes(const struct places *at)
         return 2;
     if (fchmod(file, 0777) == 0 || errno != EPERM || fchmodat(AT_FDCWD, at->secret, 0777, 0) == 0 || errno != EPERM)
         return 3;
-    if (chown(at->secret, getuid(), getgid()) == 0 || errno != EPERM || fchown(file, getuid(), getgid()) == 0 || errno != EPERM)
+    if (chown(at->secret, getuid(), getgid()) == 0 || errno != EPERM || fchown(file, getuid(), getgid()) == 0 ||
+        errno != EPERM)
         return 4;
     if (lchown(at->secret, getuid(), getgid()) == 0 || errno != EPERM ||
         fchownat(AT_FDCWD, at->secret, getuid(), getgid(), 0) == 0 || errno != EPERM)
         return 5;
-    if (setxattr(at->secret, "user.mark", "x", 1, 0) == 0 || errno != EPERM || fsetxattr(file, "user.mark", "x", 1, 0) == 0 || errno != EPERM)
+    if (setxattr(at->secret, "user.mark", "x", 1, 0) == 0 || errno != EPERM ||
+        fsetxattr(file, "user.mark", "x", 1, 0) == 0 || errno != EPERM)
         return 6;
-    if (lsetxattr(at->secret, "user.mark", "x", 1, 0) == 0 || errno != EPERM || removexattr(at->secret, "user.mark") == 0 || errno != EPERM)
+    if (lsetxattr(at->secret, "user.mark", "x", 1, 0) == 0 || errno != EPERM ||
+        removexattr(at->secret, "user.mark") == 0 || errno != EPERM)
         return 7;
-    if (utimensat(AT_FDCWD, at->secret, times, 0) == 0 || errno != EPERM || futimens(file, times) == 0 || errno != EPERM)
+    if (utimensat(AT_FDCWD, at->secret, times, 0) == 0 || errno != EPERM || futimens(file, times) == 0 ||
+        errno != EPERM)
         return 8;
     if (utimes(at->secret, NULL) == 0 || errno != EPERM)
         return 9;
-    if (link(at->plan_file, link_name) == 0 || errno != EPERM || symlink(at->secret, link_name) == 0 || errno != EPERM ||
-        mkfifo(link_name, 0600) == 0 || errno != EPERM)
+    if (link(at->plan_file, link_name) == 0 || errno != EPERM || symlink(at->secret, link_name) == 0 ||
+        errno != EPERM || mkfifo(link_name, 0600) == 0 || errno != EPERM)
         return 10;
     int flags = FS_NOATIME_FL;
     if (ioctl(file, FS_IOC_SETFLAGS, &flags) == 0 || errno != EPERM)
         return 11;
     if (fcntl(file, F_SETLEASE, F_RDLCK) == 0 || errno != EPERM)
         return 12;
-    if (ioctl(file, TIOCSTI, "x") == 0 || errno != EPERM) /* a key, as if pressed at the terminal the daemon was started from */
+    if (ioctl(file, TIOCSTI, "x") == 0 ||
+        errno != EPERM) /* a key, as if pressed at the terminal the daemon was started from */
         return 13;
     return close(file);
 }
@@ -337,7 +353,8 @@ static int try_truncation(const struct places *at)
     struct stat facts;
     if (truncate(at->secret, 0) == 0 || errno != EPERM || truncate(at->plan_file, 0) == 0 || errno != EPERM)
         return 1;
-    if (open(at->plan_file, O_RDONLY | O_TRUNC) >= 0 || errno != EPERM || openat(AT_FDCWD, at->secret, O_ACCMODE | O_TRUNC) >= 0 || errno != EPERM)
+    if (open(at->plan_file, O_RDONLY | O_TRUNC) >= 0 || errno != EPERM ||
+        openat(AT_FDCWD, at->secret, O_ACCMODE | O_TRUNC) >= 0 || errno != EPERM)
         return 2;
     if (creat(at->secret, 0600) >= 0)
         return 3;
@@ -373,17 +390,20 @@ static int try_folders(const struct places *at)
     struct error err = { 0 };
     struct folder folder;
     struct bytes bytes;
-    if (!seccomp_restrict(&(struct seccomp_options){ .has_gpu = false }) || syscall(SYS_openat2, -1L, -1L, -1L, -1L) != -1 || errno != ENOSYS)
+    if (!seccomp_restrict(&(struct seccomp_options){ .has_gpu = false }) ||
+        syscall(SYS_openat2, -1L, -1L, -1L, -1L) != -1 || errno != ENOSYS)
         return 1;
     if (!folder_open(&folder, at->folder, &err))
         return 2;
-    static const char *const good[] = { "plan/ct", "plan//ct", "plan/./ct", "plan/link" /* leads elsewhere in the folder */ };
+    static const char *const good[] = { "plan/ct", "plan//ct", "plan/./ct",
+                                        "plan/link" /* leads elsewhere in the folder */ };
     for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
         if (!folder_read(&folder, good[i], 100, 100, &bytes, &err) || bytes.size != 9)
             return 10 + (int)i;
         bytes_free(&bytes);
     }
-    if (folder_look(&folder, "plan", NULL) != FOLDER_DIRECTORY || folder_look(&folder, "plan/none", NULL) != FOLDER_ABSENT ||
+    if (folder_look(&folder, "plan", NULL) != FOLDER_DIRECTORY ||
+        folder_look(&folder, "plan/none", NULL) != FOLDER_ABSENT ||
         folder_look(&folder, "plan/ct/x", NULL) != FOLDER_ABSENT)
         return 3;
     folder_close(&folder);
@@ -401,34 +421,94 @@ static void a_plan_is_read_without_the_call_that_opens_beneath_a_folder(void **s
     check_with("seccomp", true, try_folders);
 }
 
-/* ---- the kernel ---- */
+/* ---- the kernel ------------------------------------------------------------------------------------------------- */
 
-/* Calls nobody here needs, with arguments no kernel accepts: only a filter answers EPERM, or ENOSYS for what is newer than it. */
+/* Calls nobody here needs, with arguments no kernel accepts: only a filter answers EPERM, or ENOSYS for what is newer
+ * than it. */
 static const struct {
     const char *name;
     long number;
 } needless[] = {
-    { "mount", SYS_mount }, { "umount2", SYS_umount2 }, { "pivot_root", SYS_pivot_root }, { "chroot", SYS_chroot }, { "setns", SYS_setns },
-    { "unshare", SYS_unshare }, { "open_tree", SYS_open_tree }, { "move_mount", SYS_move_mount }, { "fsopen", SYS_fsopen },
-    { "fsconfig", SYS_fsconfig }, { "fsmount", SYS_fsmount }, { "fspick", SYS_fspick }, { "mount_setattr", SYS_mount_setattr },
-    { "keyctl", SYS_keyctl }, { "add_key", SYS_add_key }, { "request_key", SYS_request_key }, { "bpf", SYS_bpf },
-    { "perf_event_open", SYS_perf_event_open }, { "io_uring_setup", SYS_io_uring_setup }, { "io_uring_enter", SYS_io_uring_enter },
-    { "io_uring_register", SYS_io_uring_register }, { "userfaultfd", SYS_userfaultfd }, { "vmsplice", SYS_vmsplice },
-    { "process_vm_readv", SYS_process_vm_readv }, { "process_vm_writev", SYS_process_vm_writev }, { "process_madvise", SYS_process_madvise },
-    { "process_mrelease", SYS_process_mrelease }, { "pidfd_getfd", SYS_pidfd_getfd }, { "pidfd_send_signal", SYS_pidfd_send_signal },
-    { "kcmp", SYS_kcmp }, { "rt_sigqueueinfo", SYS_rt_sigqueueinfo }, { "rt_tgsigqueueinfo", SYS_rt_tgsigqueueinfo },
-    { "sched_setparam", SYS_sched_setparam }, { "sched_setattr", SYS_sched_setattr }, { "migrate_pages", SYS_migrate_pages },
-    { "move_pages", SYS_move_pages }, { "get_robust_list", SYS_get_robust_list }, { "setxattr", SYS_setxattr }, { "fremovexattr", SYS_fremovexattr },
-    { "mknodat", SYS_mknodat }, { "linkat", SYS_linkat }, { "symlinkat", SYS_symlinkat }, { "fchmodat2", 452 }, { "quotactl", SYS_quotactl },
-    { "quotactl_fd", SYS_quotactl_fd }, { "swapon", SYS_swapon }, { "swapoff", SYS_swapoff }, { "acct", SYS_acct }, { "syslog", SYS_syslog },
-    { "init_module", SYS_init_module }, { "delete_module", SYS_delete_module }, { "finit_module", SYS_finit_module }, { "kexec_load", SYS_kexec_load },
-    { "settimeofday", SYS_settimeofday }, { "clock_settime", SYS_clock_settime }, { "adjtimex", SYS_adjtimex },
-    { "sethostname", SYS_sethostname }, { "setdomainname", SYS_setdomainname }, { "setuid", SYS_setuid }, { "setgid", SYS_setgid },
-    { "setresuid", SYS_setresuid }, { "setgroups", SYS_setgroups }, { "capset", SYS_capset }, { "setsid", SYS_setsid },
-    { "name_to_handle_at", SYS_name_to_handle_at }, { "open_by_handle_at", SYS_open_by_handle_at }, { "fanotify_init", SYS_fanotify_init },
-    { "inotify_init1", SYS_inotify_init1 }, { "shmget", SYS_shmget }, { "semget", SYS_semget }, { "msgget", SYS_msgget }, { "mq_open", SYS_mq_open },
-    { "sync", SYS_sync }, { "vhangup", SYS_vhangup }, { "splice", SYS_splice }, { "tee", SYS_tee }, { "landlock_restrict_self", SYS_landlock_restrict_self },
-    { "seccomp", SYS_seccomp }, { "memfd_secret", 447 }, { "a call of the future", 2000 },
+    { "mount", SYS_mount },
+    { "umount2", SYS_umount2 },
+    { "pivot_root", SYS_pivot_root },
+    { "chroot", SYS_chroot },
+    { "setns", SYS_setns },
+    { "unshare", SYS_unshare },
+    { "open_tree", SYS_open_tree },
+    { "move_mount", SYS_move_mount },
+    { "fsopen", SYS_fsopen },
+    { "fsconfig", SYS_fsconfig },
+    { "fsmount", SYS_fsmount },
+    { "fspick", SYS_fspick },
+    { "mount_setattr", SYS_mount_setattr },
+    { "keyctl", SYS_keyctl },
+    { "add_key", SYS_add_key },
+    { "request_key", SYS_request_key },
+    { "bpf", SYS_bpf },
+    { "perf_event_open", SYS_perf_event_open },
+    { "io_uring_setup", SYS_io_uring_setup },
+    { "io_uring_enter", SYS_io_uring_enter },
+    { "io_uring_register", SYS_io_uring_register },
+    { "userfaultfd", SYS_userfaultfd },
+    { "vmsplice", SYS_vmsplice },
+    { "process_vm_readv", SYS_process_vm_readv },
+    { "process_vm_writev", SYS_process_vm_writev },
+    { "process_madvise", SYS_process_madvise },
+    { "process_mrelease", SYS_process_mrelease },
+    { "pidfd_getfd", SYS_pidfd_getfd },
+    { "pidfd_send_signal", SYS_pidfd_send_signal },
+    { "kcmp", SYS_kcmp },
+    { "rt_sigqueueinfo", SYS_rt_sigqueueinfo },
+    { "rt_tgsigqueueinfo", SYS_rt_tgsigqueueinfo },
+    { "sched_setparam", SYS_sched_setparam },
+    { "sched_setattr", SYS_sched_setattr },
+    { "migrate_pages", SYS_migrate_pages },
+    { "move_pages", SYS_move_pages },
+    { "get_robust_list", SYS_get_robust_list },
+    { "setxattr", SYS_setxattr },
+    { "fremovexattr", SYS_fremovexattr },
+    { "mknodat", SYS_mknodat },
+    { "linkat", SYS_linkat },
+    { "symlinkat", SYS_symlinkat },
+    { "fchmodat2", 452 },
+    { "quotactl", SYS_quotactl },
+    { "quotactl_fd", SYS_quotactl_fd },
+    { "swapon", SYS_swapon },
+    { "swapoff", SYS_swapoff },
+    { "acct", SYS_acct },
+    { "syslog", SYS_syslog },
+    { "init_module", SYS_init_module },
+    { "delete_module", SYS_delete_module },
+    { "finit_module", SYS_finit_module },
+    { "kexec_load", SYS_kexec_load },
+    { "settimeofday", SYS_settimeofday },
+    { "clock_settime", SYS_clock_settime },
+    { "adjtimex", SYS_adjtimex },
+    { "sethostname", SYS_sethostname },
+    { "setdomainname", SYS_setdomainname },
+    { "setuid", SYS_setuid },
+    { "setgid", SYS_setgid },
+    { "setresuid", SYS_setresuid },
+    { "setgroups", SYS_setgroups },
+    { "capset", SYS_capset },
+    { "setsid", SYS_setsid },
+    { "name_to_handle_at", SYS_name_to_handle_at },
+    { "open_by_handle_at", SYS_open_by_handle_at },
+    { "fanotify_init", SYS_fanotify_init },
+    { "inotify_init1", SYS_inotify_init1 },
+    { "shmget", SYS_shmget },
+    { "semget", SYS_semget },
+    { "msgget", SYS_msgget },
+    { "mq_open", SYS_mq_open },
+    { "sync", SYS_sync },
+    { "vhangup", SYS_vhangup },
+    { "splice", SYS_splice },
+    { "tee", SYS_tee },
+    { "landlock_restrict_self", SYS_landlock_restrict_self },
+    { "seccomp", SYS_seccomp },
+    { "memfd_secret", 447 },
+    { "a call of the future", 2000 },
 };
 
 static int try_needless(const struct places *at)
@@ -441,7 +521,8 @@ static int try_needless(const struct places *at)
             return 1;
         }
     }
-    if (!SECCOMP_IS_RELAXED && (prctl(PR_SET_PDEATHSIG, 0) == 0 || errno != EPERM)) /* else it could outlive the daemon */
+    if (!SECCOMP_IS_RELAXED &&
+        (prctl(PR_SET_PDEATHSIG, 0) == 0 || errno != EPERM)) /* else it could outlive the daemon */
         return 2;
     return 0;
 }
@@ -463,7 +544,9 @@ static int try_capabilities(const struct places *at)
         for (size_t i = 0; i < 5; i++)
             if (strncmp(line, sets[i], 7) == 0) {
                 n_found++;
-                bool is_bounding = i == 4; /* only what had the right to can lower the bounding set; it then bounds what cannot be had */
+                bool is_bounding =
+                    i ==
+                    4; /* only what had the right to can lower the bounding set; it then bounds what cannot be had */
                 if (strtoull(line + 7, NULL, 16) != 0 && !(is_bounding && geteuid() != 0))
                     return (int)i + 1;
             }
@@ -485,7 +568,8 @@ static int try_needed(const struct places *at)
     snprintf(folder, sizeof folder, "%s/d", at->cache);
     snprintf(from, sizeof from, "%s/from", folder);
     snprintf(to, sizeof to, "%s/to", folder);
-    if (mkdir(folder, 0700) != 0 || !can_open(from, O_RDWR | O_CREAT | O_EXCL) || rename(from, to) != 0 || unlink(to) != 0 || rmdir(folder) != 0)
+    if (mkdir(folder, 0700) != 0 || !can_open(from, O_RDWR | O_CREAT | O_EXCL) || rename(from, to) != 0 ||
+        unlink(to) != 0 || rmdir(folder) != 0)
         return 1;
     int memory = memfd_create("buffer", MFD_CLOEXEC);
     if (memory < 0 || ftruncate(memory, 4096) != 0)
@@ -493,18 +577,22 @@ static int try_needed(const struct places *at)
     void *mapped = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0);
     if (mapped == MAP_FAILED || mprotect(mapped, 4096, PROT_READ) != 0 || munmap(mapped, 4096) != 0)
         return 3;
-    void *code = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0); /* as shaders are compiled */
+    void *code =
+        mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0); /* as shaders are compiled */
     if (code == MAP_FAILED || mprotect(code, 4096, PROT_READ | PROT_EXEC) != 0)
         return 4;
     int file = open(at->plan_file, O_RDONLY | O_CLOEXEC);
     struct stat facts;
     char byte;
-    if (file < 0 || fstat(file, &facts) != 0 || pread(file, &byte, 1, 0) != 1 || flock(file, LOCK_SH) != 0 || lseek(file, 0, SEEK_END) < 1)
+    if (file < 0 || fstat(file, &facts) != 0 || pread(file, &byte, 1, 0) != 1 || flock(file, LOCK_SH) != 0 ||
+        lseek(file, 0, SEEK_END) < 1)
         return 5;
-    if (prctl(PR_SET_NAME, "worker") != 0 || sysconf(_SC_NPROCESSORS_ONLN) < 1 || sched_yield() != 0 || isatty(file) != 0 || errno != ENOTTY)
+    if (prctl(PR_SET_NAME, "worker") != 0 || sysconf(_SC_NPROCESSORS_ONLN) < 1 || sched_yield() != 0 ||
+        isatty(file) != 0 || errno != ENOTTY)
         return 6;
     cpu_set_t cores;
-    if (sched_getaffinity(0, sizeof cores, &cores) != 0 || fcntl(file, F_SETFD, FD_CLOEXEC) != 0 || fcntl(file, F_DUPFD_CLOEXEC, 10) < 0)
+    if (sched_getaffinity(0, sizeof cores, &cores) != 0 || fcntl(file, F_SETFD, FD_CLOEXEC) != 0 ||
+        fcntl(file, F_DUPFD_CLOEXEC, 10) < 0)
         return 7;
     return 0;
 }

@@ -89,7 +89,8 @@ static void a_circle_has_its_area(void **state)
     struct mask *mask = contours_fill(&set, &grid, &facts);
     double expected_cm3 = circle_mm2(20, 90) * 33 / 1000;
     assert_near(facts.polygon_cm3, expected_cm3, 1e-9);
-    assert_near(facts.filled_cm3, expected_cm3, 2e-3);  /* 80 voxels across: a rim of 250 voxels, half a voxel each way at random */
+    assert_near(facts.filled_cm3, expected_cm3,
+                2e-3); /* 80 voxels across: a rim of 250 voxels, half a voxel each way at random */
     assert_int_equal(facts.n_planes, 11);
     assert_close(facts.spacing_mm, 3, 1e-9);
     mask_destroy(mask);
@@ -103,10 +104,13 @@ static void neighbours_that_share_an_edge_share_no_voxel(void **state)
     struct contour_set left = { 0 }, right = { 0 }, whole = { 0 };
     const double border[] = { 30, 10, 30, 20, 34.7, 33.3, 30, 50 }; /* partly through voxel centres */
     contours_add(&left, (double[]){ 10, 10, 30, 10, 30, 20, 34.7, 33.3, 30, 50, 10, 50 }, 6, 1);
-    contours_add(&right, (double[]){ 50, 10, border[0], border[1], border[2], border[3], border[4], border[5], border[6], border[7], 50, 50 },
+    contours_add(&right,
+                 (double[]){ 50, 10, border[0], border[1], border[2], border[3], border[4], border[5], border[6],
+                             border[7], 50, 50 },
                  6, 1);
     contours_add_box(&whole, 10, 10, 50, 50, 1);
-    struct mask *a = contours_fill(&left, &grid, NULL), *b = contours_fill(&right, &grid, NULL), *c = contours_fill(&whole, &grid, NULL);
+    struct mask *a = contours_fill(&left, &grid, NULL), *b = contours_fill(&right, &grid, NULL),
+                *c = contours_fill(&whole, &grid, NULL);
     assert_int_equal(mask_count(c), 40 * 40);
     for (size_t i = 0; i < (size_t)a->words * 64 * 4; i++) {
         assert_int_equal(a->bits[i] & b->bits[i], 0);
@@ -125,7 +129,8 @@ static void a_figure_of_eight_fills_both_loops(void **state)
     (void)state;
     struct grid grid = grid_make(40, 20, 1, 1, 1, 1, vec3(0.5, 0.25, 0));
     struct contour_set set = { 0 };
-    contours_add(&set, (double[]){ 0, 0, 40, 20, 40, 0, 0, 20 }, 4, 0); /* crosses itself in the middle; its two halves turn opposite ways */
+    contours_add(&set, (double[]){ 0, 0, 40, 20, 40, 0, 0, 20 }, 4,
+                 0); /* crosses itself in the middle; its two halves turn opposite ways */
     struct contour_facts facts;
     struct mask *mask = contours_fill(&set, &grid, &facts);
     assert_int_equal(facts.n_degenerate, 0);
@@ -221,7 +226,8 @@ static struct contour_set made_ring(void)
 static void compare_with_every_voxel(const struct contour_set *set, const struct affine *turn, const struct grid *grid)
 {
     struct mask *mask = contours_fill(set, grid, NULL);
-    struct vec3 normal = turn->columns[2], u = vec3_normalize(vec3_add(turn->columns[0], vec3_scale(turn->columns[1], 0.3)));
+    struct vec3 normal = turn->columns[2],
+                u = vec3_normalize(vec3_add(turn->columns[0], vec3_scale(turn->columns[1], 0.3)));
     size_t n = 0;
     for (uint32_t k = 0; k < grid->size[2]; k++)
         for (uint32_t j = 0; j < grid->size[1]; j++)
@@ -239,9 +245,10 @@ static void compare_with_every_voxel(const struct contour_set *set, const struct
 static void any_orientation_is_filled_as_each_voxel_says(void **state)
 {
     (void)state;
-    const struct affine turns[] = { rotation_of(0, 0, 0),         rotation_of(0, MATH_PI / 2, 0), rotation_of(0, 0, MATH_PI / 2),
-                                    rotation_of(0.4, 0, 0),       rotation_of(0.1, 0.2, 0.3),     rotation_of(1, -2, 3),
-                                    rotation_of(-0.7, 0.02, 0.1), rotation_of(2, MATH_PI / 2, 1) };
+    const struct affine turns[] = { rotation_of(0, 0, 0),           rotation_of(0, MATH_PI / 2, 0),
+                                    rotation_of(0, 0, MATH_PI / 2), rotation_of(0.4, 0, 0),
+                                    rotation_of(0.1, 0.2, 0.3),     rotation_of(1, -2, 3),
+                                    rotation_of(-0.7, 0.02, 0.1),   rotation_of(2, MATH_PI / 2, 1) };
     for (size_t t = 0; t < sizeof turns / sizeof turns[0]; t++)
         for (int upside_down = 0; upside_down < 2; upside_down++) {
             struct contour_set set = made_ring();
@@ -257,7 +264,8 @@ static void an_oblique_grid_is_filled_as_each_voxel_says(void **state)
 {
     (void)state;
     struct affine none = rotation_of(0, 0, 0), turn = rotation_of(0.3, -0.2, 0.5);
-    struct affine map = { { vec3_scale(turn.columns[0], 1.1), vec3_scale(turn.columns[1], 0.8), vec3_scale(turn.columns[2], 2.3) },
+    struct affine map = { { vec3_scale(turn.columns[0], 1.1), vec3_scale(turn.columns[1], 0.8),
+                            vec3_scale(turn.columns[2], 2.3) },
                           vec3(-24.003, -31.007, -19.001) };
     struct grid grid;
     assert_true(grid_init(&grid, (uint32_t[3]){ 40, 60, 30 }, &map, NULL));
@@ -346,10 +354,10 @@ static void what_lies_beyond_the_grid_is_cut_and_counted(void **state)
     (void)state;
     struct grid grid = grid_make(20, 20, 6, 1, 1, 1, vec3(0, 0, 0));
     struct contour_set set = { 0 };
-    contours_add_box(&set, -30, -30, 9.5, 9.5, 2);   /* from the corner: 10 x 10 */
-    contours_add_box(&set, 15.5, -80, 99, 99, 3);    /* the right side: 4 x 20 */
+    contours_add_box(&set, -30, -30, 9.5, 9.5, 2);       /* from the corner: 10 x 10 */
+    contours_add_box(&set, 15.5, -80, 99, 99, 3);        /* the right side: 4 x 20 */
     contours_add_box(&set, -5000, -5000, 5000, 5000, 4); /* all of it */
-    contours_add_box(&set, 100, 100, 120, 120, 1);   /* nothing of it */
+    contours_add_box(&set, 100, 100, 120, 120, 1);       /* nothing of it */
     contours_add_box(&set, 3.5, 3.5, 4.5, 4.5, 0);
     contours_add_box(&set, 3.5, 3.5, 4.5, 4.5, 70);
     struct contour_facts facts;

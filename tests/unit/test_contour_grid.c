@@ -7,7 +7,8 @@
 static struct contour_options options; /* of the latest choose */
 
 /* Volume by formula: the area on each plane times the spacing. */
-static void assert_holds(const struct contour_set *set, const struct contour_choice *choice, double cm3, double accuracy)
+static void assert_holds(const struct contour_set *set, const struct contour_choice *choice, double cm3,
+                         double accuracy)
 {
     struct contour_facts facts;
     struct error err = { 0 };
@@ -55,12 +56,14 @@ static void a_region_the_image_holds_stays_on_the_image(void **state)
 static void a_region_over_1_cm3_is_within_1_percent_whatever_the_image(void **state)
 {
     (void)state;
-    static const double slices_mm[] = { 1, 2, 3, 5, 7 }, spacings_mm[] = { 1.25, 2, 2.5, 3, 5 }, radii_mm[] = { 7, 9, 14, 33 };
+    static const double slices_mm[] = { 1, 2, 3, 5, 7 }, spacings_mm[] = { 1.25, 2, 2.5, 3, 5 },
+                        radii_mm[] = { 7, 9, 14, 33 };
     for (int s = 0; s < 5; s++)
         for (int p = 0; p < 5; p++)
             for (int r = 0; r < 4; r++) {
                 double radius = radii_mm[r], spacing = spacings_mm[p];
-                struct grid image = grid_make(90, 90, (uint32_t)(140 / slices_mm[s]), 0.97, 0.97, slices_mm[s], vec3(-43, -43.3, -70.4));
+                struct grid image = grid_make(90, 90, (uint32_t)(140 / slices_mm[s]), 0.97, 0.97, slices_mm[s],
+                                              vec3(-43, -43.3, -70.4));
                 struct contour_set set = { 0 };
                 double cm3 = 0;
                 int n_planes = (int)(radius / spacing); /* a ball, and never less than two planes */
@@ -99,7 +102,9 @@ static void voxels_of_a_finer_grid_divide_those_of_the_image(void **state)
 {
     (void)state;
     struct affine turn = rotation_of(0.2, 0.3, -0.4);
-    struct affine map = { { vec3_scale(turn.columns[0], 1.2), vec3_scale(turn.columns[1], 1.2), vec3_scale(turn.columns[2], 4) }, vec3(9, 8, 7) };
+    struct affine map = { { vec3_scale(turn.columns[0], 1.2), vec3_scale(turn.columns[1], 1.2),
+                            vec3_scale(turn.columns[2], 4) },
+                          vec3(9, 8, 7) };
     struct grid image;
     assert_true(grid_init(&image, (uint32_t[3]){ 50, 50, 20 }, &map, NULL));
     struct contour_set set = { 0 };
@@ -160,12 +165,12 @@ static void contours_that_leave_the_image_keep_their_volume(void **state)
     struct grid image = grid_make(64, 64, 10, 1, 1, 3, vec3(0, 0, 0)); /* slices reach from -1.5 to 28.5 */
     struct contour_set sets[4] = { 0 };
     for (int k = -10; k < 20; k++) {
-        contours_add_box(&sets[0], 9.5, 9.5, 39.5, 39.5, 3 * k);   /* beyond both ends */
-        contours_add_box(&sets[1], 30.5, 9.5, 90.5, 39.5, 3 * k);  /* and to the side */
+        contours_add_box(&sets[0], 9.5, 9.5, 39.5, 39.5, 3 * k);  /* beyond both ends */
+        contours_add_box(&sets[1], 30.5, 9.5, 90.5, 39.5, 3 * k); /* and to the side */
     }
     for (int k = 0; k < 8; k++) {
-        contours_add_box(&sets[2], -20.5, 9.5, 9.5, 39.5, 3 * k);  /* to the side alone */
-        contours_add_box(&sets[3], 9.5, 9.5, 39.5, 39.5, 3 * k);   /* inside */
+        contours_add_box(&sets[2], -20.5, 9.5, 9.5, 39.5, 3 * k); /* to the side alone */
+        contours_add_box(&sets[3], 9.5, 9.5, 39.5, 39.5, 3 * k);  /* inside */
     }
     struct contour_choice choices[4];
     choose(sets, 4, &image, choices);
@@ -195,7 +200,8 @@ static void planes_beyond_a_lonely_slice_get_slices_of_their_own(void **state)
     for (int t = 0; t < 2; t++) {
         struct affine turn = rotation_of(tilt[t], tilt[t] / 2, 0);
         struct grid image;
-        struct affine map = { { turn.columns[0], vec3_scale(turn.columns[1], 2), turn.columns[2] }, vec3(0, 0, 0) }; /* 1 mm thick, as assumed */
+        struct affine map = { { turn.columns[0], vec3_scale(turn.columns[1], 2), turn.columns[2] },
+                              vec3(0, 0, 0) }; /* 1 mm thick, as assumed */
         assert_true(grid_init(&image, (uint32_t[3]){ 128, 64, 1 }, &map, NULL));
         struct contour_set set = { 0 };
         for (int k = 0; k < 40; k++)
@@ -205,7 +211,8 @@ static void planes_beyond_a_lonely_slice_get_slices_of_their_own(void **state)
         choose(&set, 1, &image, &choice);
         assert_true(choice.is_beyond);
         assert_holds(&set, &choice, 40 * 40 * 100 / 1000.0, 0.01);
-        assert_close(vec3_length(vec3_sub(choice.grid.lps_mm_from_ijk.columns[2], vec3_scale(turn.columns[2], 2.5))), 0, 1e-6);
+        assert_close(vec3_length(vec3_sub(choice.grid.lps_mm_from_ijk.columns[2], vec3_scale(turn.columns[2], 2.5))), 0,
+                     1e-6);
         struct vec3 at = affine_point(&choice.grid.ijk_from_lps_mm, affine_point(&turn, vec3(20, 22, 2.5 * 7 - 31.2)));
         assert_close(at.x - round(at.x), 0, 1e-6); /* on a voxel of the image's lattice and on a plane */
         assert_close(at.y - round(at.y), 0, 1e-6);
@@ -266,7 +273,8 @@ static void without_an_image_the_grid_lies_in_the_planes(void **state)
     choose(sets, 2, NULL, choices);
     struct vec3 along = choices[0].grid.lps_mm_from_ijk.columns[2];
     assert_close(vec3_length(vec3_sub(along, vec3_scale(turn.columns[2], 2.5))), 0, 1e-6);
-    struct vec3 at = affine_point(&choices[0].grid.ijk_from_lps_mm, affine_point(&turn, vec3(12, 30, 2.5 * 3 - 100.25)));
+    struct vec3 at =
+        affine_point(&choices[0].grid.ijk_from_lps_mm, affine_point(&turn, vec3(12, 30, 2.5 * 3 - 100.25)));
     assert_close(at.z, round(at.z), 1e-6);
     assert_holds(&sets[0], &choices[0], circle_mm2(25, 50) * 30 / 1000, 0.01);
     assert_holds(&sets[1], &choices[1], circle_mm2(5, 50) * 10 / 1000, 0.05);
@@ -380,7 +388,8 @@ static void masks_share_a_layer_as_long_as_they_share_no_voxel(void **state)
     contours_add_box(&a, 7, 7, 134.6, 9.6, 8);   /* i 2..129, j 1..3: over both borders of words */
     contours_add_box(&b, 5.5, 9.6, 70.5, 12, 8); /* below it */
     contours_add_box(&c, 69.5, 8.5, 70.5, 10.5, 8);
-    struct mask *masks[] = { contours_fill(&a, &grid, NULL), contours_fill(&b, &grid, NULL), contours_fill(&c, &grid, NULL) };
+    struct mask *masks[] = { contours_fill(&a, &grid, NULL), contours_fill(&b, &grid, NULL),
+                             contours_fill(&c, &grid, NULL) };
     struct error err = { 0 };
     struct volume *layer = mask_layer_create(masks[0], &err);
     assert_non_null(layer);
@@ -397,7 +406,8 @@ static void masks_share_a_layer_as_long_as_they_share_no_voxel(void **state)
     for (uint32_t k = 0; k < 3; k++)
         for (uint32_t j = 0; j < 7; j++)
             for (uint32_t i = 0; i < 130; i++) {
-                assert_int_equal(volume_label(layer, i, j, k), mask_has(masks[0], i, j, k) + 2 * mask_has(masks[1], i, j, k));
+                assert_int_equal(volume_label(layer, i, j, k),
+                                 mask_has(masks[0], i, j, k) + 2 * mask_has(masks[1], i, j, k));
                 assert_int_equal(volume_label(wide, i, j, k), 700 * mask_has(masks[2], i, j, k));
             }
     volume_unref(layer);

@@ -43,8 +43,9 @@ static struct volume *sheared_volume(enum voxel_type type, double spacing_mm)
 {
     struct error err = { 0 };
     const uint32_t size[3] = { 9, 8, 7 };
-    struct grid grid = made_grid(9, 8, 7, made_affine(vec3(spacing_mm, 0.1, 0), vec3(-0.1, spacing_mm, 0.2), vec3(0, -0.2, 3.3333333333),
-                                                       size, vec3(-101.01562, 77.7, 1234.56789)));
+    struct grid grid = made_grid(9, 8, 7,
+                                 made_affine(vec3(spacing_mm, 0.1, 0), vec3(-0.1, spacing_mm, 0.2),
+                                             vec3(0, -0.2, 3.3333333333), size, vec3(-101.01562, 77.7, 1234.56789)));
     struct volume *volume = volume_create(&grid, type, &err);
     assert_string_equal(err.text, "");
     return volume;
@@ -60,7 +61,8 @@ static struct volume *made_mask(uint32_t from, uint32_t to)
     return mask;
 }
 
-/* Oblique grids whose numbers 32 bits cannot hold, overlapping and empty regions, two of one name, a tree, a scaled image, a masked dose. */
+/* Oblique grids whose numbers 32 bits cannot hold, overlapping and empty regions, two of one name, a tree, a scaled
+ * image, a masked dose. */
 static void put_plan(const char *folder)
 {
     static const char text[] =
@@ -77,8 +79,9 @@ static void put_plan(const char *folder)
         "\"beams\": [{\"id\": \"AP\", \"entry_mm\": [0.1, -200.3, 7], \"target_mm\": [1e-3, 2, 3], \"aperture_mm\": 100.5},\n"
         "  {\"entry_mm\": [1, 2, 3], \"target_mm\": [4, 5, 6]}],\n"
         "\"tracks\": [{\"path\": \"t.pp\", \"unit\": \"mm\"}]}";
-    static const char tracks[] = "0.1234 2 3 4 5 6 0 1\n1 2 3 4 5 7.0001 0 2\n1 2 3 4 5 8 0 3\n1 2 3 4 5 9 1 1\n1 2 3 4 5 9 1 2\n"
-                                 "1 2 3 4 5 9 1 3\n1 2 3 4 5 9 2 0\n1 2 3 4 5 9 3 0\n";
+    static const char tracks[] =
+        "0.1234 2 3 4 5 6 0 1\n1 2 3 4 5 7.0001 0 2\n1 2 3 4 5 8 0 3\n1 2 3 4 5 9 1 1\n1 2 3 4 5 9 1 2\n"
+        "1 2 3 4 5 9 1 3\n1 2 3 4 5 9 2 0\n1 2 3 4 5 9 3 0\n";
     struct volume *a = sheared_volume(VOXEL_I16, 1.01562), *b = sheared_volume(VOXEL_F32, 0.7);
     a->slope = 0.1; /* not a 32-bit number */
     a->offset = -1024.3;
@@ -113,7 +116,8 @@ static void a_made_plan_comes_back_with_all_its_peculiarities(void **state)
     assert_true(plan->doses[1].components[0].has_boron_ppm);
     assert_close(plan->doses[1].components[0].boron_ppm, 12.7, 0);
     assert_non_null(strstr(report_said(&plan->report, "dose.frame-differs"), "\"e\""));
-    assert_true(plan->doses[2].frame == DOSE_FRAME_SAME && plan->doses[2].components[0].has_boron_ppm); /* 0 ppm is said too */
+    assert_true(plan->doses[2].frame == DOSE_FRAME_SAME &&
+                plan->doses[2].components[0].has_boron_ppm); /* 0 ppm is said too */
     assert_true(plan->doses[3].frame == DOSE_FRAME_UNKNOWN && !plan->doses[3].components[0].has_boron_ppm);
     plan_destroy(plan);
     assert_comes_back(folder);
@@ -123,9 +127,17 @@ static void a_made_plan_comes_back_with_all_its_peculiarities(void **state)
 static void real_plans_come_back(void **state)
 {
     (void)state;
-    static const char *const names[] = { "sera-head",        "sera-head/generated", "sera-head/original", /* without a plan.json: curves, levels, colours */
-                                         "sera-st",          "openkbp-pt99",        "mr-tumour-nrrd",     "matrad-phantoms/BOXPHANTOM",
-                                         "eclipse-ent-dose", "eclipse-ent-dose/struct", "glioma-tcga-du7294", "dicomrt-oncentra-phantom" };
+    static const char *const names[] = { "sera-head",
+                                         "sera-head/generated",
+                                         "sera-head/original", /* without a plan.json: curves, levels, colours */
+                                         "sera-st",
+                                         "openkbp-pt99",
+                                         "mr-tumour-nrrd",
+                                         "matrad-phantoms/BOXPHANTOM",
+                                         "eclipse-ent-dose",
+                                         "eclipse-ent-dose/struct",
+                                         "glioma-tcga-du7294",
+                                         "dicomrt-oncentra-phantom" };
     char path[512];
     size_t n = 0;
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)

@@ -1,4 +1,5 @@
-/* What stands at the edge of what a plan may hold comes back from its conversion, and what goes wrong on the way leaves nothing. */
+/* What stands at the edge of what a plan may hold comes back from its conversion, and what goes wrong on the way leaves
+ * nothing. */
 #include <dirent.h>
 #include <signal.h>
 #include <stdio.h>
@@ -26,7 +27,8 @@ static struct plan *load(const char *folder)
 static struct volume *cube(enum voxel_type type)
 {
     struct error err = { 0 };
-    struct grid grid = made_grid(SIDE, SIDE, SIDE, (struct affine){ { { 2, 0, 0 }, { 0, 2, 0 }, { 0, 0, 3 } }, { -20, -20, -30 } });
+    struct grid grid =
+        made_grid(SIDE, SIDE, SIDE, (struct affine){ { { 2, 0, 0 }, { 0, 2, 0 }, { 0, 0, 3 } }, { -20, -20, -30 } });
     struct volume *volume = volume_create(&grid, type, &err);
     assert_string_equal(err.text, "");
     return volume;
@@ -88,7 +90,12 @@ static void assert_comes_back(const struct plan *plan, const char *folder, size_
 /* Names in every script and with every mark; ids that are other regions' names; each region inside the one before. */
 static void name_regions(struct region_set *set)
 {
-    static const char *const names[] = { "\xce\xb3-Knife / left", "\xe8\x84\xb3\xe8\x85\xab\xe7\x98\xa4", "\"quoted\" \\ back", "../../etc/passwd", "a\xcc\x88", "%s%n" };
+    static const char *const names[] = { "\xce\xb3-Knife / left",
+                                         "\xe8\x84\xb3\xe8\x85\xab\xe7\x98\xa4",
+                                         "\"quoted\" \\ back",
+                                         "../../etc/passwd",
+                                         "a\xcc\x88",
+                                         "%s%n" };
     for (size_t r = 0; r < set->n_regions; r++) {
         struct region *region = &set->regions[r];
         snprintf(region->name, sizeof region->name, "%s %zu", names[r % 6], r);
@@ -101,7 +108,8 @@ static void name_regions(struct region_set *set)
         region->boron_ratio = r % 4 == 0 ? 1e6 : NAN;
         region->rbe_gamma = r % 4 == 1 ? 0 : NAN;
     }
-    snprintf(set->regions[0].name, sizeof set->regions[0].name, "r-7"); /* the id of the seventh, which the tree speaks of */
+    snprintf(set->regions[0].name, sizeof set->regions[0].name,
+             "r-7"); /* the id of the seventh, which the tree speaks of */
     set->hierarchy = HIERARCHY_FILE;
 }
 
@@ -127,7 +135,8 @@ static void voxels_that_are_not_written_are_said(void **state)
     folder_make(folder);
     struct plan *plan = load_made(folder);
     struct region_set *set = &plan->regions;
-    set->regions[100] = set->regions[--set->n_regions]; /* the sixteen voxels of the one that was there now belong to none */
+    set->regions[100] =
+        set->regions[--set->n_regions]; /* the sixteen voxels of the one that was there now belong to none */
     region_palette(100, set->regions[100].rgb);
     snprintf(out, sizeof out, "%s/out", folder);
     assert_true(plan_write(plan, out, &lost, &err));
@@ -143,13 +152,19 @@ static void voxels_that_are_not_written_are_said(void **state)
     folder_remove(folder);
 }
 
-/* 3 x 3 points, some of the first one's values none. Three of those as SERA's Fortran prints them, three of 15 columns and two with a sign
- * would make a first line of 114 characters, by which readers know SERA's own columns. */
+/* 3 x 3 points, some of the first one's values none. Three of those as SERA's Fortran prints them, three of 15 columns
+ * and two with a sign would make a first line of 114 characters, by which readers know SERA's own columns. */
 static void add_curve(struct plan *plan, const char *name, size_t n_gaps)
 {
     enum { N = 3 };
-    static const enum dose_quantity columns[] = { DOSE_TOTAL, DOSE_BORON,        DOSE_GAMMA,              DOSE_NITROGEN,
-                                                  DOSE_FAST,  DOSE_FAST_FLUENCE, DOSE_EPITHERMAL_FLUENCE, DOSE_THERMAL_FLUENCE };
+    static const enum dose_quantity columns[] = { DOSE_TOTAL,
+                                                  DOSE_BORON,
+                                                  DOSE_GAMMA,
+                                                  DOSE_NITROGEN,
+                                                  DOSE_FAST,
+                                                  DOSE_FAST_FLUENCE,
+                                                  DOSE_EPITHERMAL_FLUENCE,
+                                                  DOSE_THERMAL_FLUENCE };
     struct dose_curve *curve = &plan->curves[plan->n_curves++];
     snprintf(curve->id, sizeof curve->id, "curve-%zu", plan->n_curves);
     snprintf(curve->name, sizeof curve->name, "%s", name);
@@ -169,7 +184,8 @@ static void add_curve(struct plan *plan, const char *name, size_t n_gaps)
         curve->is_per_ppm[c] = columns[c] == DOSE_BORON;
         curve->values[c] = mem_new(N * N * sizeof(float));
         for (size_t p = 0; p < N * N; p++)
-            curve->values[c][p] = p == 4 || (p == 0 && c < n_gaps) ? NAN : 1.23456789F * (c > 5 ? -1 : 1) * (float)(c + 1) + (float)p;
+            curve->values[c][p] =
+                p == 4 || (p == 0 && c < n_gaps) ? NAN : 1.23456789F * (c > 5 ? -1 : 1) * (float)(c + 1) + (float)p;
     }
 }
 
@@ -180,11 +196,17 @@ static void curves_and_preferences_come_back_to_the_last_bit(void **state)
     folder_make(folder);
     struct plan *plan = load_made(folder);
     for (size_t gaps = 0; gaps <= 8; gaps++)
-        add_curve(plan, gaps % 2 ? "\xc3\x9c" "ber/Tiefe \"B\"" : "curve", gaps);
+        add_curve(plan,
+                  gaps % 2 ? "\xc3\x9c"
+                             "ber/Tiefe \"B\""
+                           : "curve",
+                  gaps);
     for (size_t i = 0; i < PLAN_MAX_LEVELS; i++)
-        plan->preferences.levels[plan->preferences.n_levels++] = (struct plan_level){ 1000.0 / (double)(3 * i + 1), { (uint8_t)i, 255, (uint8_t)(9 * i) } };
+        plan->preferences.levels[plan->preferences.n_levels++] =
+            (struct plan_level){ 1000.0 / (double)(3 * i + 1), { (uint8_t)i, 255, (uint8_t)(9 * i) } };
     for (size_t i = 0; i < PLAN_MAX_COLORS; i++)
-        memcpy(plan->preferences.colors[plan->preferences.n_colors++], (uint8_t[3]){ (uint8_t)i, (uint8_t)(255 - i), 3 }, 3);
+        memcpy(plan->preferences.colors[plan->preferences.n_colors++],
+               (uint8_t[3]){ (uint8_t)i, (uint8_t)(255 - i), 3 }, 3);
     assert_comes_back(plan, folder, 0);
     plan_destroy(plan);
     folder_remove(folder);
@@ -193,15 +215,34 @@ static void curves_and_preferences_come_back_to_the_last_bit(void **state)
 static void add_beam(struct plan *plan, const char *name, struct vec3 entry, double aperture_mm)
 {
     struct beam *beam = &plan->beams[plan->n_beams++];
-    *beam = (struct beam){ .entry_lps_mm = entry, .target_lps_mm = vec3(0.1, -1.0 / 3, 2e5), .aperture_mm = aperture_mm, .has_delivery = true };
+    *beam = (struct beam){ .entry_lps_mm = entry,
+                           .target_lps_mm = vec3(0.1, -1.0 / 3, 2e5),
+                           .aperture_mm = aperture_mm,
+                           .has_delivery = true };
     snprintf(beam->id, sizeof beam->id, "beam-%zu", plan->n_beams);
     snprintf(beam->name, sizeof beam->name, "%s", name);
     struct beam_delivery *d = &beam->delivery;
-    *d = (struct beam_delivery){ .number = -999999999999, .patient_position = PATIENT_FFDL, .gantry_deg = 0.1, .collimator_deg = 36000,
-                                 .couch_deg = -0.7, .energy_mev = 1e200, .gantry_stop_deg = 359.9999999999999, .gantry_travel_deg = -1234.5,
-                                 .n_control_points = 100000, .sad_mm = 1e5, .ssd_mm = NAN, .jaws_x_mm = { NAN, 50.3 }, .jaws_y_mm = { -1e12, NAN },
-                                 .opening_x_mm = { NAN, NAN }, .opening_y_mm = { -1.1, 1.1 }, .opening_cm2 = 4e9, .collimator_x_lps = { 0.6, 0.8, 0 },
-                                 .collimator_y_lps = { -0.8, 0.6, 0 }, .dose_gy = 1e10, .meterset = 12345678901.5, .n_fractions = 2147483647 };
+    *d = (struct beam_delivery){ .number = -999999999999,
+                                 .patient_position = PATIENT_FFDL,
+                                 .gantry_deg = 0.1,
+                                 .collimator_deg = 36000,
+                                 .couch_deg = -0.7,
+                                 .energy_mev = 1e200,
+                                 .gantry_stop_deg = 359.9999999999999,
+                                 .gantry_travel_deg = -1234.5,
+                                 .n_control_points = 100000,
+                                 .sad_mm = 1e5,
+                                 .ssd_mm = NAN,
+                                 .jaws_x_mm = { NAN, 50.3 },
+                                 .jaws_y_mm = { -1e12, NAN },
+                                 .opening_x_mm = { NAN, NAN },
+                                 .opening_y_mm = { -1.1, 1.1 },
+                                 .opening_cm2 = 4e9,
+                                 .collimator_x_lps = { 0.6, 0.8, 0 },
+                                 .collimator_y_lps = { -0.8, 0.6, 0 },
+                                 .dose_gy = 1e10,
+                                 .meterset = 12345678901.5,
+                                 .n_fractions = 2147483647 };
     snprintf(d->radiation, sizeof d->radiation, "NEUTRON");
     snprintf(d->machine, sizeof d->machine, "B\xc3\xbcndel");
     snprintf(d->meterset_unit, sizeof d->meterset_unit, "MINUTE");
@@ -214,7 +255,9 @@ static void add_tracks(struct plan *plan)
     for (size_t i = 0; i < N; i++) {
         float far = i == 3 ? 1e6F : 0.1F * (float)i;
         plan->tracks.segments[plan->tracks.n_segments++] =
-            (struct track_segment){ .from_lps_mm = { far, -1e-30F, 16777217.F / 16777219.F }, .to_lps_mm = { 1e-38F, -far, 3 }, .class = (uint8_t)(i % TRACK_N_CLASSES) };
+            (struct track_segment){ .from_lps_mm = { far, -1e-30F, 16777217.F / 16777219.F },
+                                    .to_lps_mm = { 1e-38F, -far, 3 },
+                                    .class = (uint8_t)(i % TRACK_N_CLASSES) };
         plan->tracks.n_of_class[i % TRACK_N_CLASSES]++;
     }
 }
@@ -305,9 +348,10 @@ static void a_plan_that_would_not_open_again_is_not_written(void **state)
 static void tracks_that_end_beyond_a_kilometre_are_left_out_and_said(void **state)
 {
     (void)state;
-    static const char tracks[] = "0 0 0 100000 0 0 0 1\n0 0 0 0 -100001 0 0 2\n1 2 3 4 5 6 1 0\n", text[] =
-        "{\"format\": \"beamroom-plan\", \"version\": 1, \"regions\": [{\"path\": \"labels.nii.gz\"}],\n"
-        "\"tracks\": [{\"path\": \"t.pp\", \"unit\": \"cm\"}]}";
+    static const char
+        tracks[] = "0 0 0 100000 0 0 0 1\n0 0 0 0 -100001 0 0 2\n1 2 3 4 5 6 1 0\n",
+        text[] = "{\"format\": \"beamroom-plan\", \"version\": 1, \"regions\": [{\"path\": \"labels.nii.gz\"}],\n"
+                 "\"tracks\": [{\"path\": \"t.pp\", \"unit\": \"cm\"}]}";
     char folder[256];
     folder_make(folder);
     folder_put_text(folder, "plan.json", text);
@@ -318,7 +362,8 @@ static void tracks_that_end_beyond_a_kilometre_are_left_out_and_said(void **stat
     assert_int_equal(plan->tracks.n_of_class[TRACK_NEUTRON_MEDIUM], 0);
     assert_close((double)plan->tracks.segments[0].to_lps_mm[0], 1e6, 0);
     assert_close((double)plan->tracks.segments[1].to_lps_mm[0], 40, 0);
-    assert_string_equal(report_said(&plan->report, "tracks.far"), "1 of 3 segments end more than 1000 m away and were left out.");
+    assert_string_equal(report_said(&plan->report, "tracks.far"),
+                        "1 of 3 segments end more than 1000 m away and were left out.");
     assert_comes_back(plan, folder, 0);
     plan_destroy(plan);
     folder_remove(folder);

@@ -63,8 +63,9 @@ static void numbers_are_read_as_people_write_them_and_the_rest_is_not_a_number(v
     (void)state;
     struct made_dicom made;
     made_begin(&made, MADE_EXPLICIT);
-    made_text(&made, DICOM_TAG(0x0020, 0x0032), "DS", "1.\\.5\\-0\\1E+3\\\\1,5\\abc\\inf\\nan\\ 12.25 \\0x10\\1e999\\--1\\+-1\\-inf\\-nan\\-.5\\.\\-\\0.1"
-                                                     "\\123456789012345\\-0.00000000000001\\12345.678901234567");
+    made_text(&made, DICOM_TAG(0x0020, 0x0032), "DS",
+              "1.\\.5\\-0\\1E+3\\\\1,5\\abc\\inf\\nan\\ 12.25 \\0x10\\1e999\\--1\\+-1\\-inf\\-nan\\-.5\\.\\-\\0.1"
+              "\\123456789012345\\-0.00000000000001\\12345.678901234567");
     struct dicom_file *file = made_parse(&made);
     double v[24] = { 0 };
     assert_int_equal(dicom_numbers(dicom_root(file), DICOM_TAG(0x0020, 0x0032), v, 24), 23);
@@ -120,13 +121,17 @@ static void texts_come_out_as_utf8_whatever_the_character_set(void **state)
     } cases[] = {
         { "", "plain", "plain" },
         { "ISO_IR 100", "Hypophyse r\xE9siduelle", "Hypophyse r\xC3\xA9siduelle" },
-        { "ISO_IR 192", "Hirnstamm \xC3\xA4u\xC3\x9F" "ere", "Hirnstamm \xC3\xA4u\xC3\x9F" "ere" },
+        { "ISO_IR 192",
+          "Hirnstamm \xC3\xA4u\xC3\x9F"
+          "ere",
+          "Hirnstamm \xC3\xA4u\xC3\x9F"
+          "ere" },
         { "ISO_IR 144", "\xBC\xDE\xD7\xD3", "\xD0\x9C\xD0\xBE\xD0\xB7\xD0\xB3" },
         { "\\ISO 2022 IR 87", "\x1B$B;3ED\x1B(B", "\xE5\xB1\xB1\xE7\x94\xB0" },
         { "\\ISO 2022 IR 149", "\x1B$)C\xB1\xE8\xC8\xF1", "\xEA\xB9\x80\xED\x9D\xAC" },
         { "GB18030", "\xCD\xF5", "\xE7\x8E\x8B" },
-        { "", "T\xC3\xBCr", "T\xC3\xBCr" },                  /* says nothing, is UTF-8 */
-        { "", "T\xFCr", "T\xC3\xBCr" },                       /* says nothing, is not */
+        { "", "T\xC3\xBCr", "T\xC3\xBCr" }, /* says nothing, is UTF-8 */
+        { "", "T\xFCr", "T\xC3\xBCr" },     /* says nothing, is not */
         { "NO SUCH SET", "T\xFCr", "T\xC3\xBCr" },
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -156,7 +161,8 @@ static void a_text_is_cut_at_a_whole_character_and_has_no_control_characters(voi
     char text[64], small[8];
     assert_true(dicom_text(dicom_root(file), DICOM_TAG(0x0008, 0x103E), text, sizeof text));
     assert_string_equal(text, "ab c\xC3\xA4\xC3\xA4");
-    assert_true(dicom_text(dicom_root(file), DICOM_TAG(0x0008, 0x103E), small, 8)); /* room for 7 bytes: the second letter has 2 */
+    assert_true(dicom_text(dicom_root(file), DICOM_TAG(0x0008, 0x103E), small,
+                           8)); /* room for 7 bytes: the second letter has 2 */
     assert_string_equal(small, "ab c\xC3\xA4");
     assert_true(dicom_text_at(dicom_root(file), DICOM_TAG(0x0008, 0x0008), 1, text, sizeof text));
     assert_string_equal(text, "PRIMARY");
@@ -230,7 +236,8 @@ static void sequences_may_be_nested_16_deep_and_no_deeper(void **state)
     }
 }
 
-/* With their lengths given and as implicit or unknown (UN) bytes, the library below still enters them: they count as well. */
+/* With their lengths given and as implicit or unknown (UN) bytes, the library below still enters them: they count as
+ * well. */
 static void nesting_in_bytes_of_a_known_length_counts(void **state)
 {
     (void)state;
@@ -371,7 +378,8 @@ static int read_confined(bool is_prepared)
     struct dicom_file *file = dicom_file_parse(made.data, made.size, "made.dcm", DICOM_WHOLE, NULL);
     int64_t rows = 0;
     bool is_read = file && dicom_text(dicom_root(file), DICOM_TAG(0x0008, 0x103E), text, sizeof text) &&
-                   strcmp(text, "r\xC3\xA9siduelle") == 0 && dicom_integer(dicom_root(file), DICOM_TAG(0x0028, 0x0010), &rows) && rows == 513;
+                   strcmp(text, "r\xC3\xA9siduelle") == 0 &&
+                   dicom_integer(dicom_root(file), DICOM_TAG(0x0028, 0x0010), &rows) && rows == 513;
     dicom_file_destroy(file);
     made_finish(&made);
     return is_read ? 0 : 1;

@@ -1,4 +1,5 @@
-/* Files made to break readers: each is read or refused with a sentence, within the written time and memory, in a process of its own. */
+/* Files made to break readers: each is read or refused with a sentence, within the written time and memory, in a
+ * process of its own. */
 #define _GNU_SOURCE
 #include <ftw.h>
 #include <sys/resource.h>
@@ -28,10 +29,11 @@ enum { MOST_MS = 1000, MOST_MIB = 256 };
 static void ask_everything(const struct dicom_item *item, int depth)
 {
     static const uint32_t tags[] = {
-        DICOM_TAG(0x0008, 0x0005), DICOM_TAG(0x0008, 0x0008), DICOM_TAG(0x0008, 0x0016), DICOM_TAG(0x0008, 0x0018), DICOM_TAG(0x0008, 0x103E),
-        DICOM_TAG(0x0008, 0x1140), DICOM_TAG(0x0010, 0x0010), DICOM_TAG(0x0020, 0x0032), DICOM_TAG(0x0020, 0x0037), DICOM_TAG(0x0028, 0x0010),
-        DICOM_TAG(0x0028, 0x0030), DICOM_TAG(0x0028, 0x1050), DICOM_TAG(0x0028, 0x1053), DICOM_TAG(0x3004, 0x000C), DICOM_TAG(0x3006, 0x0010),
-        DICOM_TAG(0x3006, 0x0020), DICOM_TAG(0x3006, 0x0039), DICOM_TAG(0x3006, 0x0040), DICOM_TAG(0x3006, 0x0050), DICOM_TAG(0x300A, 0x00B0),
+        DICOM_TAG(0x0008, 0x0005), DICOM_TAG(0x0008, 0x0008), DICOM_TAG(0x0008, 0x0016), DICOM_TAG(0x0008, 0x0018),
+        DICOM_TAG(0x0008, 0x103E), DICOM_TAG(0x0008, 0x1140), DICOM_TAG(0x0010, 0x0010), DICOM_TAG(0x0020, 0x0032),
+        DICOM_TAG(0x0020, 0x0037), DICOM_TAG(0x0028, 0x0010), DICOM_TAG(0x0028, 0x0030), DICOM_TAG(0x0028, 0x1050),
+        DICOM_TAG(0x0028, 0x1053), DICOM_TAG(0x3004, 0x000C), DICOM_TAG(0x3006, 0x0010), DICOM_TAG(0x3006, 0x0020),
+        DICOM_TAG(0x3006, 0x0039), DICOM_TAG(0x3006, 0x0040), DICOM_TAG(0x3006, 0x0050), DICOM_TAG(0x300A, 0x00B0),
         DICOM_TAG(0x300A, 0x0111), DICOM_TAG(0x300C, 0x0002), DICOM_TAG(0x5200, 0x9229), DICOM_TAG(0x5200, 0x9230),
     };
     char text[64];
@@ -121,8 +123,10 @@ static void measure_one(const char *path)
     assert_int_equal(wait4(child, &status, 0, &usage), child);
     double ms = (double)(clock_now_us() - began) / 1e3;
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        fail_msg("%s: %s %d", path, WIFEXITED(status) ? "exit" : "signal", WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status));
-    double cpu_ms = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1e3 + (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec) / 1e3;
+        fail_msg("%s: %s %d", path, WIFEXITED(status) ? "exit" : "signal",
+                 WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status));
+    double cpu_ms = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1e3 +
+                    (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec) / 1e3;
     if (ms > MOST_MS && cpu_ms > MOST_MS) /* a busy machine is not the file's fault */
         fail_msg("%s: %.0f ms; at most %d", path, ms, MOST_MS);
     if (usage.ru_maxrss / 1024 > MOST_MIB)

@@ -24,7 +24,8 @@ static void files_of_other_kinds_are_passed_over(void **state)
     folder_put(s.path, "empty.dcm", "", 0);
     folder_put(s.path, "notes.txt", "DICM is a word in this text", 27);
     folder_put(s.path, "zeros", zeros, sizeof zeros);
-    folder_put(s.path, "0800.bin", "\x08\x00\x05\x00\xFF\xFF\xFF\xFFxxxxxxxxxxxx", 20); /* like an element, but of no sane length */
+    folder_put(s.path, "0800.bin", "\x08\x00\x05\x00\xFF\xFF\xFF\xFFxxxxxxxxxxxx",
+               20); /* like an element, but of no sane length */
     folder_put(s.path, ".hidden", "DICM", 4);
     scanned_open(&s);
     assert_int_equal(s.index->n_files, 5);
@@ -80,7 +81,8 @@ static void a_file_without_preamble_and_without_header_is_found(void **state)
         slice.transfer_syntax = encodings[e];
         struct made_dicom made;
         made_slice_bytes(&made, &slice);
-        size_t skip_bytes = encodings[e] ? 132 + 12 + 8 + (strlen(encodings[e]) + 1) / 2 * 2 : 0; /* preamble, group length, transfer syntax */
+        size_t skip_bytes = encodings[e] ? 132 + 12 + 8 + (strlen(encodings[e]) + 1) / 2 * 2
+                                         : 0; /* preamble, group length, transfer syntax */
         folder_put(s.path, "bare", made.data + skip_bytes, made.size - skip_bytes);
         folder_put(s.path, "no-preamble", made.data + (encodings[e] ? 132 : 0), made.size - (encodings[e] ? 132 : 0));
         made_finish(&made);
@@ -94,8 +96,8 @@ static void a_file_without_preamble_and_without_header_is_found(void **state)
     }
 }
 
-static void put_object(const char *folder, const char *name, const char *sop_class, const char *modality, const char *instance,
-                       void (*more)(struct made_dicom *made))
+static void put_object(const char *folder, const char *name, const char *sop_class, const char *modality,
+                       const char *instance, void (*more)(struct made_dicom *made))
 {
     struct made_dicom made;
     made_begin(&made, MADE_EXPLICIT);
@@ -164,7 +166,8 @@ static void structures_doses_and_plans_are_told_with_what_they_refer_to(void **s
     put_object(s.path, "DICOMDIR", "1.2.840.10008.1.3.10", "", "1.2.3.60", NULL);
     scanned_open(&s);
     assert_int_equal(s.index->n_objects, 5);
-    const struct dicom_object *structs = object_named(&s, "rs"), *dose = object_named(&s, "rd"), *plan = object_named(&s, "rp");
+    const struct dicom_object *structs = object_named(&s, "rs"), *dose = object_named(&s, "rd"),
+                              *plan = object_named(&s, "rp");
     assert_int_equal(structs->kind, DICOM_KIND_STRUCT);
     assert_string_equal(structs->label, "Plan f\xC3\xBCr heute");
     assert_string_equal(structs->frame_of_reference, "1.2.9");
@@ -310,7 +313,9 @@ static void echoes_and_passes_at_the_same_places_become_stacks_of_their_own(void
             has_found[pass] = true;
             for (uint32_t k = 0; k < 3; k++)
                 assert_close(volume_value(volume, 0, 0, k), 300.0 * pass + 100 * k, 0);
-            const char *expected = has_echoes ? pass ? "made up (echo 2)" : "made up (echo 1)" : pass ? "made up (pass 2)" : "made up (pass 1)";
+            const char *expected = has_echoes ? pass ? "made up (echo 2)" : "made up (echo 1)"
+                                   : pass     ? "made up (pass 2)"
+                                              : "made up (pass 1)";
             assert_string_equal(s.index->stacks[i].description, expected);
             volume_unref(volume);
         }
@@ -381,7 +386,8 @@ static void pictures_that_cannot_be_used_say_why(void **state)
     bool is_flat_said = false, is_cut_said = false;
     for (size_t i = 0; i < s.report.n_lines; i++) {
         const struct report_line *line = &s.report.lines[i];
-        is_flat_said = is_flat_said || (strcmp(line->where, "flat") == 0 && strstr(line->sentence, "do not span a plane"));
+        is_flat_said =
+            is_flat_said || (strcmp(line->where, "flat") == 0 && strstr(line->sentence, "do not span a plane"));
         is_cut_said = is_cut_said || (strcmp(line->where, "cut") == 0 && strcmp(line->code, "dicom.unreadable") == 0);
     }
     assert_true(is_flat_said);
@@ -434,9 +440,12 @@ static void objects_that_are_not_read_are_warned_of_by_name_and_number(void **st
     scanned_open(&s);
     static const struct {
         const char *path, *words[2];
-    } cases[] = { { "i1", { "3 objects are not used", "RTImageStorage" } }, { "record", { "treatment record", "RTBeamsTreatmentRecordStorage" } },
-                  { "report", { "radiation dose report", "XRayRadiationDoseSRStorage" } }, { "shown", { "presentation state", "GrayscaleSoftcopy" } },
-                  { "capture", { "screen capture", "SecondaryCaptureImageStorage" } }, { "waves", { "no picture", "TwelveLeadECGWaveformStorage" } },
+    } cases[] = { { "i1", { "3 objects are not used", "RTImageStorage" } },
+                  { "record", { "treatment record", "RTBeamsTreatmentRecordStorage" } },
+                  { "report", { "radiation dose report", "XRayRadiationDoseSRStorage" } },
+                  { "shown", { "presentation state", "GrayscaleSoftcopy" } },
+                  { "capture", { "screen capture", "SecondaryCaptureImageStorage" } },
+                  { "waves", { "no picture", "TwelveLeadECGWaveformStorage" } },
                   { "table", { "Modality LUT", "(0028,3000)" } } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct report_line *found = NULL;

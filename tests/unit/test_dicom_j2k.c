@@ -9,14 +9,29 @@
 
 #define TAG DICOM_TAG
 
-static int32_t ramp(uint32_t x, uint32_t y) { return (int32_t)(100 * y + x); }
-static int32_t signed_ramp(uint32_t x, uint32_t y) { return 40 * (int32_t)y - 1000 + (int32_t)x; }
-static int32_t wave(uint32_t x, uint32_t y) { return 2048 + (int32_t)lround(500 * sin(x / 9.0) * cos(y / 7.0)); }
+static int32_t ramp(uint32_t x, uint32_t y)
+{
+    return (int32_t)(100 * y + x);
+}
+static int32_t signed_ramp(uint32_t x, uint32_t y)
+{
+    return 40 * (int32_t)y - 1000 + (int32_t)x;
+}
+static int32_t wave(uint32_t x, uint32_t y)
+{
+    return 2048 + (int32_t)lround(500 * sin(x / 9.0) * cos(y / 7.0));
+}
 
 static struct dicom_pixels pixels_of(const struct made_j2k *like, uint32_t allocated)
 {
-    return (struct dicom_pixels){ .rows = like->rows, .columns = like->columns, .n_frames = 1, .bits_allocated = allocated,
-                                  .bits_stored = like->bits, .high_bit = like->bits - 1, .is_signed = like->is_signed, .n_samples = 1 };
+    return (struct dicom_pixels){ .rows = like->rows,
+                                  .columns = like->columns,
+                                  .n_frames = 1,
+                                  .bits_allocated = allocated,
+                                  .bits_stored = like->bits,
+                                  .high_bit = like->bits - 1,
+                                  .is_signed = like->is_signed,
+                                  .n_samples = 1 };
 }
 
 static void pictures_without_loss_have_their_values_in_every_kind_of_cell(void **state)
@@ -25,8 +40,10 @@ static void pictures_without_loss_have_their_values_in_every_kind_of_cell(void *
     static const struct {
         struct made_j2k like;
         uint32_t allocated;
-    } cases[] = { { { 37, 21, 12, false, false, false, 0 }, 16 }, { { 37, 21, 16, true, false, false, 0 }, 16 },
-                  { { 37, 21, 13, true, false, true, 0 }, 16 },   { { 70, 45, 16, false, false, false, 32 }, 16 },
+    } cases[] = { { { 37, 21, 12, false, false, false, 0 }, 16 },
+                  { { 37, 21, 16, true, false, false, 0 }, 16 },
+                  { { 37, 21, 13, true, false, true, 0 }, 16 },
+                  { { 70, 45, 16, false, false, false, 32 }, 16 },
                   { { 37, 21, 20, true, false, false, 0 }, 32 } };
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
         const struct made_j2k *like = &cases[c].like;
@@ -42,7 +59,9 @@ static void pictures_without_loss_have_their_values_in_every_kind_of_cell(void *
         for (uint32_t y = 0; y < like->rows; y++)
             for (uint32_t x = 0; x < like->columns; x++) {
                 size_t i = y * like->columns + x;
-                int32_t found = cases[c].allocated == 32 ? out[i] : like->is_signed ? ((int16_t *)out)[i] : ((uint16_t *)out)[i];
+                int32_t found = cases[c].allocated == 32 ? out[i]
+                                : like->is_signed        ? ((int16_t *)out)[i]
+                                                         : ((uint16_t *)out)[i];
                 assert_int_equal(found, value(x, y));
             }
         assert_false(decoded.is_lossy);
@@ -75,8 +94,8 @@ static void a_picture_with_loss_is_near_and_says_so(void **state)
 }
 
 /* A slice whose pixels are a codestream; sign and bits as the data set says. */
-static void put_slice(const char *folder, const char *name, int number, const struct made_j2k *like, int32_t (*value)(uint32_t, uint32_t),
-                      bool says_signed, int says_bits)
+static void put_slice(const char *folder, const char *name, int number, const struct made_j2k *like,
+                      int32_t (*value)(uint32_t, uint32_t), bool says_signed, int says_bits)
 {
     struct made_slice slice = made_slice_defaults;
     struct made_dicom made;
@@ -103,17 +122,22 @@ static void put_slice(const char *folder, const char *name, int number, const st
     free(bytes);
 }
 
-static int32_t as_13_bits(uint32_t x, uint32_t y) { return signed_ramp(x, y) & 0x1FFF; }
+static int32_t as_13_bits(uint32_t x, uint32_t y)
+{
+    return signed_ramp(x, y) & 0x1FFF;
+}
 
 static void the_data_set_says_the_sign_and_the_codestream_the_bits(void **state)
 {
     (void)state;
-    const struct made_j2k plain = { 20, 10, 13, true, false, false, 0 }, other_sign = { 20, 10, 13, false, false, false, 0 };
+    const struct made_j2k plain = { 20, 10, 13, true, false, false, 0 },
+                          other_sign = { 20, 10, 13, false, false, false, 0 };
     for (int way = 0; way < 3; way++) { /* as it should be; codestream unsigned; other bits in the data set */
         struct scanned s = { 0 };
         folder_make(s.path);
         for (int k = 1; k <= 2; k++)
-            put_slice(s.path, k == 1 ? "a" : "b", k, way == 1 ? &other_sign : &plain, way == 1 ? as_13_bits : signed_ramp, true, way == 2 ? 16 : 13);
+            put_slice(s.path, k == 1 ? "a" : "b", k, way == 1 ? &other_sign : &plain,
+                      way == 1 ? as_13_bits : signed_ramp, true, way == 2 ? 16 : 13);
         scanned_open(&s);
         struct volume *volume = scanned_read(&s, 0);
         for (uint32_t y = 0; y < 10; y++)
@@ -123,8 +147,11 @@ static void the_data_set_says_the_sign_and_the_codestream_the_bits(void **state)
         if (way == 0)
             assert_string_equal(said, "");
         else
-            assert_non_null(strstr(said, way == 1 ? "(0028,0103), pixel representation: found 1, but the JPEG 2000 codestream of 2 of 2 slices holds unsigned"
-                                                  : "(0028,0101), bits stored: found 16, but the JPEG 2000 codestream of 2 of 2 slices holds values of 13 bits"));
+            assert_non_null(strstr(
+                said,
+                way == 1
+                    ? "(0028,0103), pixel representation: found 1, but the JPEG 2000 codestream of 2 of 2 slices holds unsigned"
+                    : "(0028,0101), bits stored: found 16, but the JPEG 2000 codestream of 2 of 2 slices holds values of 13 bits"));
         volume_unref(volume);
         scanned_finish(&s);
     }
@@ -145,7 +172,8 @@ static void loss_that_the_file_does_not_mention_is_said(void **state)
 }
 
 /* Everywhere else than asked for: the error names what is wrong. */
-static void refuse_with(const uint8_t *bytes, size_t size, const struct dicom_pixels *pixels, enum error_code code, const char *words)
+static void refuse_with(const uint8_t *bytes, size_t size, const struct dicom_pixels *pixels, enum error_code code,
+                        const char *words)
 {
     uint16_t out[20 * 10];
     struct dicom_decoded decoded;
@@ -233,7 +261,7 @@ static void a_small_stream_that_asks_for_much_work_is_refused(void **state)
     free(bytes);
 }
 
-/* ---- real ones --------------------------------------------------------------------------------------------------------------------------- */
+/* ---- real ones -------------------------------------------------------------------------------------------------- */
 
 static int16_t *read_real(const char *name, size_t *n)
 {
@@ -297,7 +325,9 @@ static void a_real_picture_with_loss_is_near_the_one_without(void **state)
     size_t n, size;
     char path[1024];
     int16_t *values = read_real("CTImage.dcm_JPEG2000TransferSyntax_1.2.840.10008.1.2.4.91.dcm", &n);
-    if (!values || !data_path("dicom-transfer-syntaxes/CTImage.dcm_LittleEndianExplicitTransferSyntax_1.2.840.10008.1.2.1.dcm", path, sizeof path))
+    if (!values ||
+        !data_path("dicom-transfer-syntaxes/CTImage.dcm_LittleEndianExplicitTransferSyntax_1.2.840.10008.1.2.1.dcm",
+                   path, sizeof path))
         skip();
     uint8_t *data = file_bytes(path, &size);
     struct error err = { 0 };
@@ -315,7 +345,8 @@ static void a_real_picture_with_loss_is_near_the_one_without(void **state)
     free(values);
 }
 
-/* Two frames in 11 fragments without a table of offsets: each frame begins where a fragment begins with a picture's mark. */
+/* Two frames in 11 fragments without a table of offsets: each frame begins where a fragment begins with a picture's
+ * mark. */
 static void frames_of_a_real_enhanced_ct_in_11_fragments_are_both_read(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Damaged numbers: every character of the numbers of a made-up plan, structure set, dose and CT is changed, one at a time, and the report has
- * to say so wherever what is read changes. */
+/* Damaged numbers: every character of the numbers of a made-up plan, structure set, dose and CT is changed, one at a
+ * time, and the report has to say so wherever what is read changes. */
 #include <ctype.h>
 
 #include "core/formats/dicom/dicom_rtdose.h"
@@ -14,7 +14,7 @@
 
 #define TAG DICOM_TAG
 
-/* ---- where the numbers stand ---------------------------------------------------------------------------------------------------------- */
+/* ---- where the numbers stand ------------------------------------------------------------------------------------ */
 
 struct number {
     uint32_t tag;
@@ -29,7 +29,8 @@ static size_t find_numbers(const struct made_dicom *made, struct number *numbers
         const uint8_t *p = made->data + at;
         uint32_t group = (uint32_t)(p[0] | p[1] << 8), element = (uint32_t)(p[2] | p[3] << 8);
         bool is_number = (p[4] == 'D' || p[4] == 'I') && p[5] == 'S';
-        if (!is_number || (group != 0x18 && group != 0x20 && group != 0x28 && group != 0x3004 && group != 0x3006 && group != 0x300a && group != 0x300c))
+        if (!is_number || (group != 0x18 && group != 0x20 && group != 0x28 && group != 0x3004 && group != 0x3006 &&
+                           group != 0x300a && group != 0x300c))
             continue;
         assert_true(n < most);
         numbers[n++] = (struct number){ TAG(group, element), at + 8, (size_t)(p[6] | p[7] << 8) };
@@ -45,7 +46,7 @@ static void begin(struct made_dicom *made, const char *sop_class, const char *mo
     made_text(made, TAG(0x0008, 0x0060), "CS", modality);
 }
 
-/* ---- a plan --------------------------------------------------------------------------------------------------------------------------- */
+/* ---- a plan ----------------------------------------------------------------------------------------------------- */
 
 static void put_device(struct made_dicom *made, const char *type, const char *pairs, const char *boundaries)
 {
@@ -134,7 +135,7 @@ static void make_plan(struct made_dicom *made)
     made_sequence_end(made);
 }
 
-/* ---- what is read, as bytes to compare ------------------------------------------------------------------------------------------------ */
+/* ---- what is read, as bytes to compare -------------------------------------------------------------------------- */
 
 struct outcome {
     struct report report;
@@ -254,7 +255,7 @@ static struct outcome read_dose(const struct made_dicom *made)
     return outcome;
 }
 
-/* ---- a CT of five slices, of which the third is damaged ---------------------------------------------------------------------------------- */
+/* ---- a CT of five slices, of which the third is damaged --------------------------------------------------------- */
 
 static struct made_slice ct_slice(int k)
 {
@@ -313,7 +314,7 @@ static struct outcome read_ct(const struct made_dicom *made)
     return outcome;
 }
 
-/* ---- changes ---------------------------------------------------------------------------------------------------------------------------- */
+/* ---- changes ---------------------------------------------------------------------------------------------------- */
 
 struct kind {
     const char *name;
@@ -323,12 +324,18 @@ struct kind {
 };
 
 static const struct kind kinds[] = {
-    { "plan", make_plan, read_plan,
-      { TAG(0x300a, 0x0026), TAG(0x300a, 0x0078), TAG(0x300a, 0x0084), TAG(0x300a, 0x0086), TAG(0x300a, 0x00b4), TAG(0x300a, 0x00be),
-        TAG(0x300a, 0x0114), TAG(0x300a, 0x011c), TAG(0x300a, 0x011e), TAG(0x300a, 0x0120), TAG(0x300a, 0x0122), TAG(0x300a, 0x0125),
-        TAG(0x300a, 0x012c), TAG(0x300a, 0x0130), TAG(0x300a, 0x0140), TAG(0x300a, 0x0144) } },
+    { "plan",
+      make_plan,
+      read_plan,
+      { TAG(0x300a, 0x0026), TAG(0x300a, 0x0078), TAG(0x300a, 0x0084), TAG(0x300a, 0x0086), TAG(0x300a, 0x00b4),
+        TAG(0x300a, 0x00be), TAG(0x300a, 0x0114), TAG(0x300a, 0x011c), TAG(0x300a, 0x011e), TAG(0x300a, 0x0120),
+        TAG(0x300a, 0x0122), TAG(0x300a, 0x0125), TAG(0x300a, 0x012c), TAG(0x300a, 0x0130), TAG(0x300a, 0x0140),
+        TAG(0x300a, 0x0144) } },
     { "structure set", make_structs, read_structs, { TAG(0x3006, 0x002a), TAG(0x3006, 0x0050) } },
-    { "dose", make_dose, read_dose, { TAG(0x0020, 0x0032), TAG(0x0028, 0x0030), TAG(0x3004, 0x000c), TAG(0x3004, 0x000e) } },
+    { "dose",
+      make_dose,
+      read_dose,
+      { TAG(0x0020, 0x0032), TAG(0x0028, 0x0030), TAG(0x3004, 0x000c), TAG(0x3004, 0x000e) } },
     { "CT", make_ct, read_ct, { 0 } },
 };
 
@@ -349,7 +356,8 @@ static bool is_undecidable(const struct kind *kind, uint32_t tag)
     return false;
 }
 
-/* Puts another character everywhere; returns how many changes of what is read pass without a warning where they must not. */
+/* Puts another character everywhere; returns how many changes of what is read pass without a warning where they must
+ * not. */
 static size_t change_all(const struct kind *kind, char (*change)(char c), bool may_be_undecidable)
 {
     struct made_dicom made;
@@ -368,27 +376,42 @@ static size_t change_all(const struct kind *kind, char (*change)(char c), bool m
             struct outcome damaged = kind->read(&made);
             made.data[at] = (uint8_t)was;
             n_changes++;
-            bool is_silent = damaged.hash != whole.hash && !damaged.is_refused && n_warnings(&damaged.report) <= n_before;
+            bool is_silent =
+                damaged.hash != whole.hash && !damaged.is_refused && n_warnings(&damaged.report) <= n_before;
             bool is_excused = is_silent && may_be_undecidable && is_undecidable(kind, numbers[i].tag);
             n_undecided += is_excused;
             if (is_silent && !is_excused) {
                 n_silent++;
-                printf("%s: (%04X,%04X), character %zu '%c' made '%c': no word\n", kind->name, numbers[i].tag >> 16, numbers[i].tag & 0xffff,
-                       at - numbers[i].at, was, now);
+                printf("%s: (%04X,%04X), character %zu '%c' made '%c': no word\n", kind->name, numbers[i].tag >> 16,
+                       numbers[i].tag & 0xffff, at - numbers[i].at, was, now);
             }
             report_finish(&damaged.report);
         }
-    printf("%s: %zu changes, %zu of them to another number that nothing can tell from the right one\n", kind->name, n_changes, n_undecided);
+    printf("%s: %zu changes, %zu of them to another number that nothing can tell from the right one\n", kind->name,
+           n_changes, n_undecided);
     assert_true(n_changes > 20);
     report_finish(&whole.report);
     made_finish(&made);
     return n_silent;
 }
 
-static char to_letter(char c) { (void)c; return 'x'; }
-static char to_other_digit(char c) { return isdigit((unsigned char)c) ? (char)('0' + (c - '0' + 5) % 10) : c; }
-static char flip_low_bit(char c) { return (char)(c ^ 1); }
-static char flip_high_bit(char c) { return (char)(c ^ 0x40); }
+static char to_letter(char c)
+{
+    (void)c;
+    return 'x';
+}
+static char to_other_digit(char c)
+{
+    return isdigit((unsigned char)c) ? (char)('0' + (c - '0' + 5) % 10) : c;
+}
+static char flip_low_bit(char c)
+{
+    return (char)(c ^ 1);
+}
+static char flip_high_bit(char c)
+{
+    return (char)(c ^ 0x40);
+}
 
 static void no_number_becomes_something_else_without_a_word(void **state)
 {
@@ -408,7 +431,7 @@ static void another_digit_is_said_where_anything_can_tell(void **state)
     assert_int_equal(n_silent, 0);
 }
 
-/* ---- single values ------------------------------------------------------------------------------------------------------------------------ */
+/* ---- single values ---------------------------------------------------------------------------------------------- */
 
 /* The plan with one value in another's place, of the same length. */
 static struct outcome plan_with(uint32_t tag, size_t nth, const char *value)
@@ -435,9 +458,21 @@ static void values_that_cannot_be_are_named_with_what_was_found_and_expected(voi
         size_t nth;
         const char *value, *code, *words[3];
     } cases[] = {
-        { TAG(0x300a, 0x011c), 0, "50\\-50", "beam.bad-value", { "ASYMX", "(300A,011C)", "50 and -50" } },          /* jaws across each other */
-        { TAG(0x300a, 0x011c), 2, "-30\\-20.5\\-20\\-30\\30\\-90\\20\\30", "beam.bad-value", { "pair 2", "(300A,011C)", "-20.5 and -90" } },
-        { TAG(0x300a, 0x011c), 3, "-40\\-30\\-30\\-40\\20\\30\\30", "beam.bad-value", { "control point 2", "are 7", "expected 8" } },
+        { TAG(0x300a, 0x011c),
+          0,
+          "50\\-50",
+          "beam.bad-value",
+          { "ASYMX", "(300A,011C)", "50 and -50" } }, /* jaws across each other */
+        { TAG(0x300a, 0x011c),
+          2,
+          "-30\\-20.5\\-20\\-30\\30\\-90\\20\\30",
+          "beam.bad-value",
+          { "pair 2", "(300A,011C)", "-20.5 and -90" } },
+        { TAG(0x300a, 0x011c),
+          3,
+          "-40\\-30\\-30\\-40\\20\\30\\30",
+          "beam.bad-value",
+          { "control point 2", "are 7", "expected 8" } },
         { TAG(0x300a, 0x011c), 0, "-999", "beam.bad-value", { "ASYMX", "are 1", "expected 2" } },
         { TAG(0x300a, 0x011c), 1, "-45\\4550", "beam.bad-value", { "ASYMY", "4550", "expected at most 500" } },
         { TAG(0x300a, 0x00be), 0, "-40\\-20\\0\\-2\\40", "beam.bad-value", { "boundary 4", "(300A,00BE)", "-2" } },
@@ -449,7 +484,11 @@ static void values_that_cannot_be_are_named_with_what_was_found_and_expected(voi
         { TAG(0x300a, 0x0078), 0, "-3", "beam.bad-value", { "number of fractions", "(300A,0078)", "-3" } },
         { TAG(0x300a, 0x0086), 0, "-1", "beam.bad-value", { "meterset", "(300A,0086)", "-1" } },
         { TAG(0x300c, 0x0006), 0, "7", "beam.bad-value", { "beam 7", "(300C,0006)", "does not have" } },
-        { TAG(0x300a, 0x0120), 0, "1O", "dicom.bad-number", { "(300A,00B0) item 1, (300A,0111) item 1, (300A,0120)", "1O", "expected a number" } },
+        { TAG(0x300a, 0x0120),
+          0,
+          "1O",
+          "dicom.bad-number",
+          { "(300A,00B0) item 1, (300A,0111) item 1, (300A,0120)", "1O", "expected a number" } },
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct outcome outcome = plan_with(cases[i].tag, cases[i].nth, cases[i].value);
@@ -472,13 +511,34 @@ static struct outcome ct_with(void (*change)(struct made_slice *slice))
     return outcome;
 }
 
-static void be_unsigned(struct made_slice *slice) { slice->is_signed = 0; }
-static void be_neither(struct made_slice *slice) { slice->is_signed = 3; }
-static void be_short(struct made_slice *slice) { slice->stored = 12; }
-static void be_scaled(struct made_slice *slice) { slice->slope = 6; }
-static void be_shifted(struct made_slice *slice) { slice->offset = -24; }
-static void be_wide(struct made_slice *slice) { slice->spacing[1] = 0.25; }
-static void be_turned(struct made_slice *slice) { slice->cosines[1] = 0.2; }
+static void be_unsigned(struct made_slice *slice)
+{
+    slice->is_signed = 0;
+}
+static void be_neither(struct made_slice *slice)
+{
+    slice->is_signed = 3;
+}
+static void be_short(struct made_slice *slice)
+{
+    slice->stored = 12;
+}
+static void be_scaled(struct made_slice *slice)
+{
+    slice->slope = 6;
+}
+static void be_shifted(struct made_slice *slice)
+{
+    slice->offset = -24;
+}
+static void be_wide(struct made_slice *slice)
+{
+    slice->spacing[1] = 0.25;
+}
+static void be_turned(struct made_slice *slice)
+{
+    slice->cosines[1] = 0.2;
+}
 
 static void a_slice_that_contradicts_the_others_is_named(void **state)
 {

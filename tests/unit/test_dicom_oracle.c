@@ -55,8 +55,9 @@ static void real_series_are_what_pydicom_and_numpy_make_of_them(void **state)
         int n_series;
         double tolerance; /* of a value: exact, or that of 32-bit numbers where slices have scales of their own */
     } sets[] = {
-        { "dicom-head-phantom/S2010.tar.xz", 1, 0 },  { "dicom-mr-head/VS-SEG-001.tar.xz", 1, 0 }, { "dicomrt-sts001/CT.tar.xz", 1, 0 },
-        { "dicomrt-sts001/MR_T1.tar.xz", 1, 0 },      { "dicomrt-sts001/PET.tar.xz", 1, 1e-7 },    { "dicomrt-lung-phantom/lung-2.tar.xz", 1, 0 },
+        { "dicom-head-phantom/S2010.tar.xz", 1, 0 }, { "dicom-mr-head/VS-SEG-001.tar.xz", 1, 0 },
+        { "dicomrt-sts001/CT.tar.xz", 1, 0 },        { "dicomrt-sts001/MR_T1.tar.xz", 1, 0 },
+        { "dicomrt-sts001/PET.tar.xz", 1, 1e-7 },    { "dicomrt-lung-phantom/lung-2.tar.xz", 1, 0 },
         { "dicomrt-oncentra-phantom", 1, 0 },
     };
     for (size_t i = 0; i < sizeof sets / sizeof sets[0]; i++) {
@@ -74,7 +75,8 @@ static void real_series_are_what_pydicom_and_numpy_make_of_them(void **state)
         char own[256];
         folder_make(own);
         snprintf(out, sizeof out, "%s/values", own);
-        int status = oracle_run((char *[]){ oracle_python(), script, is_archive ? s.path : path, out, NULL }, answer, sizeof answer);
+        int status = oracle_run((char *[]){ oracle_python(), script, is_archive ? s.path : path, out, NULL }, answer,
+                                sizeof answer);
         if (status == ORACLE_MISSING) {
             folder_remove(own);
             folder_remove(s.path);
@@ -101,7 +103,8 @@ static void real_series_are_what_pydicom_and_numpy_make_of_them(void **state)
     }
 }
 
-/* pydicom's pixel_array leaves MONOCHROME1 as it is stored, and so do we; the plan says that low values are to be white. */
+/* pydicom's pixel_array leaves MONOCHROME1 as it is stored, and so do we; the plan says that low values are to be
+ * white. */
 static void an_inverted_series_has_the_values_that_pydicom_reads(void **state)
 {
     (void)state;

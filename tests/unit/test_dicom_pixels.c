@@ -1,5 +1,5 @@
-/* Pixels of DICOM files, native and compressed. Expected values: the cells written here (PS3.5), pictures that other programs encoded, and
- * what eight encodings of one picture have in common. */
+/* Pixels of DICOM files, native and compressed. Expected values: the cells written here (PS3.5), pictures that other
+ * programs encoded, and what eight encodings of one picture have in common. */
 #include <dirent.h>
 
 #include "core/formats/dicom/dicom_series.h"
@@ -7,7 +7,8 @@
 #include "tests/unit/data_folder.h"
 #include "tests/unit/made_dicom.h"
 
-static void made_image(struct made_dicom *made, const char *encoding, uint16_t bits, uint16_t stored, uint16_t high, bool is_signed)
+static void made_image(struct made_dicom *made, const char *encoding, uint16_t bits, uint16_t stored, uint16_t high,
+                       bool is_signed)
 {
     made_begin(made, encoding);
     made_text(made, DICOM_TAG(0x0008, 0x0060), "CS", "CT");
@@ -32,9 +33,17 @@ static void pixels_come_without_their_unused_bits_and_with_their_sign(void **sta
     } cases[] = {
         { 16, 15, true, { 0, 1, 0xFFFF, 0x8000, 0x7FFF, 0xFC18 }, { 0, 1, -1, -32768, 32767, -1000 } },
         { 16, 15, false, { 0, 1, 0xFFFF, 0x8000, 0x7FFF, 0xFC18 }, { 0, 1, 65535, 32768, 32767, 64536 } },
-        { 12, 11, false, { 0xF001, 0x0FFF, 0x1000, 0x0800, 5, 0 }, { 1, 4095, 0, 2048, 5, 0 } },   /* an overlay above the value */
+        { 12,
+          11,
+          false,
+          { 0xF001, 0x0FFF, 0x1000, 0x0800, 5, 0 },
+          { 1, 4095, 0, 2048, 5, 0 } }, /* an overlay above the value */
         { 12, 11, true, { 0xF001, 0x0FFF, 0x1000, 0x0800, 5, 0 }, { 1, -1, 0, -2048, 5, 0 } },
-        { 12, 15, false, { 0x0010, 0xFFF0, 0x800F, 0, 0x10, 0x20 }, { 1, 4095, 2048, 0, 1, 2 } }, /* values at the top of the cell */
+        { 12,
+          15,
+          false,
+          { 0x0010, 0xFFF0, 0x800F, 0, 0x10, 0x20 },
+          { 1, 4095, 2048, 0, 1, 2 } }, /* values at the top of the cell */
         { 12, 13, true, { 0x2000, 0x0004, 0xC003, 0x3FFC, 0, 0 }, { -2048, 1, 0, -1, 0, 0 } },
     };
     static const char *const native[] = { MADE_EXPLICIT, MADE_IMPLICIT, MADE_BIG_ENDIAN };
@@ -73,7 +82,8 @@ static void two_pixels_of_8_bits_share_a_word_in_either_byte_order(void **state)
         if (e == 2)
             made_raw(&made, "\x01\x02\x03\x04\x05\x06", 6); /* bytes have no order */
         else
-            made_words(&made, (uint16_t[]){ 0x0201, 0x0403, 0x0605 }, 3); /* the first pixel is the low byte: PS3.5 8.1.1 */
+            made_words(&made, (uint16_t[]){ 0x0201, 0x0403, 0x0605 },
+                       3); /* the first pixel is the low byte: PS3.5 8.1.1 */
         struct dicom_file *file = made_parse(&made);
         uint8_t values[6];
         struct error err = { 0 };
@@ -96,7 +106,8 @@ static void pixels_that_contradict_themselves_are_refused(void **state)
     } cases[] = {
         { DICOM_TAG(0x0028, 0x0010), 0, ERROR_FORMAT, "rows: found 0, expected 1 to 4096" },
         { DICOM_TAG(0x0028, 0x0011), 65535, ERROR_LIMIT, "columns: found 65535, expected 1 to 4096" },
-        { DICOM_TAG(0x0028, 0x0010), 4096, ERROR_FORMAT, "pixel data of 12 bytes; 3 x 4096 x 1 pixels of 16 bits need 24576" },
+        { DICOM_TAG(0x0028, 0x0010), 4096, ERROR_FORMAT,
+          "pixel data of 12 bytes; 3 x 4096 x 1 pixels of 16 bits need 24576" },
         { DICOM_TAG(0x0028, 0x0100), 12, ERROR_UNSUPPORTED, "expected 8, 16 or 32" },
         { DICOM_TAG(0x0028, 0x0101), 17, ERROR_FORMAT, "17 bits up to bit 15 do not fit into 16" },
         { DICOM_TAG(0x0028, 0x0102), 3, ERROR_FORMAT, "do not fit" },
@@ -170,8 +181,8 @@ static void the_lossless_encodings_of_one_picture_decode_to_the_same_pixels(void
     assert_int_equal(n_lossy, 1);
 }
 
-/* Two frames of 8 x 8 pixels in four fragments: each a JPEG-LS picture cut in two. table: whether it is said where they begin; is_mute: the
- * second picture has no mark that begins it. */
+/* Two frames of 8 x 8 pixels in four fragments: each a JPEG-LS picture cut in two. table: whether it is said where they
+ * begin; is_mute: the second picture has no mark that begins it. */
 static void made_fragments(struct made_dicom *made, const uint8_t *picture, size_t n, bool has_table, bool is_mute)
 {
     size_t half = n / 2 / 2 * 2, rest = n - half;
@@ -203,7 +214,8 @@ static void frames_in_several_fragments_are_found_by_the_table_of_offsets_or_by_
 {
     (void)state;
     size_t size;
-    uint8_t *seed = file_bytes("tests/fuzz/corpus/dicom/jpeg-ls", &size); /* stored values 10 y + x, by another program's encoder */
+    uint8_t *seed =
+        file_bytes("tests/fuzz/corpus/dicom/jpeg-ls", &size); /* stored values 10 y + x, by another program's encoder */
     size_t at = size;
     while (at > 2 && !(seed[at - 2] == 0xFF && seed[at - 1] == 0xD8))
         at--;
@@ -220,7 +232,9 @@ static void frames_in_several_fragments_are_found_by_the_table_of_offsets_or_by_
             bool is_read = dicom_pixels_read(file, f, values, &err);
             if (way == NEITHER) {
                 assert_false(is_read);
-                assert_non_null(strstr(err.text, "4 fragments for 2 frames, and no table of offsets says which are whose; 1 of them begin"));
+                assert_non_null(
+                    strstr(err.text,
+                           "4 fragments for 2 frames, and no table of offsets says which are whose; 1 of them begin"));
                 continue;
             }
             assert_string_equal(err.text, "");

@@ -1,11 +1,12 @@
-/* RT Doses: made ones for every convention, the real ones against the maxima their planning system gives and against pydicom. */
+/* RT Doses: made ones for every convention, the real ones against the maxima their planning system gives and against
+ * pydicom. */
 #include "core/formats/dicom/dicom_rtdose.h"
 
 #include "core/formats/dicom/dicom_rtplan.h"
 #include "core/formats/dicom/dicom_rtstruct.h"
 #include "tests/check.h"
-#include "tests/unit/made_j2k.h"
 #include "tests/unit/data_folder.h"
+#include "tests/unit/made_j2k.h"
 #include "tests/unit/oracle.h"
 #include "tests/unit/plan_help.h"
 #include "tests/unit/rt_files.h"
@@ -22,8 +23,15 @@ struct made_dose {
     int beam;
     const char *syntax; /* explicit; NULL: implicit little endian */
 };
-static const struct made_dose plain = { .position = "10\\20\\30", .orientation = "1\\0\\0\\0\\1\\0", .spacing = "2\\5", .offsets = "0\\3\\6",
-                                        .scaling = "0.5", .type = "PHYSICAL", .summation = "PLAN", .n_frames = 3, .bits = 16 };
+static const struct made_dose plain = { .position = "10\\20\\30",
+                                        .orientation = "1\\0\\0\\0\\1\\0",
+                                        .spacing = "2\\5",
+                                        .offsets = "0\\3\\6",
+                                        .scaling = "0.5",
+                                        .type = "PHYSICAL",
+                                        .summation = "PLAN",
+                                        .n_frames = 3,
+                                        .bits = 16 };
 
 static void put_dose(struct made_dicom *made, const struct made_dose *dose)
 {
@@ -149,7 +157,8 @@ static void values_lie_where_rows_columns_and_offsets_put_them(void **state)
     assert_dose_at(&dose, 10 - 5 * 3, 20, 33, 0.5 * 103);
     rtdose_finish(&dose);
     made = plain;
-    made.orientation = "0\\1\\0\\0\\0\\-1"; /* sagittal, the head up: columns to the back, rows down, frames to the right */
+    made.orientation =
+        "0\\1\\0\\0\\0\\-1"; /* sagittal, the head up: columns to the back, rows down, frames to the right */
     dose = read_good(&made, &report);
     assert_dose_at(&dose, 10 - 3 * 2, 20 + 5 * 3, 30 - 2 * 1, 0.5 * 213);
     rtdose_finish(&dose);
@@ -173,8 +182,8 @@ static void uneven_frames_are_interpolated_and_said(void **state)
     struct rtdose dose = read_good(&made, &report);
     assert_true(report_has(&report, "dose.offsets-uneven"));
     assert_int_equal(dose.values->grid.size[2], 5);
-    assert_dose_at(&dose, 10, 20, 32, 50);             /* a frame: 100 stored */
-    assert_dose_at(&dose, 10, 20, 34, 50 + 50 / 3.0);  /* a third of the way to 200 stored */
+    assert_dose_at(&dose, 10, 20, 32, 50);            /* a frame: 100 stored */
+    assert_dose_at(&dose, 10, 20, 34, 50 + 50 / 3.0); /* a third of the way to 200 stored */
     assert_dose_at(&dose, 10, 20, 38, 100);
     rtdose_finish(&dose);
     report_finish(&report);
@@ -198,10 +207,18 @@ static void what_is_no_dose_is_refused_with_a_sentence(void **state)
     struct {
         struct made_dose made;
         const char *words;
-    } cases[] = { { plain, "Dose Grid Scaling (3004,000e)" },   { plain, "expected a number above 0" },   { plain, "value 1 is nan" },
-                  { plain, "expected two unit vectors" },       { plain, "has 2 values, expected 3" },    { plain, "frame 3 is 0 mm" },
-                  { plain, "expected frames that go one way" }, { plain, "is no number of a patient" },   { plain, "expected 16 or 32" },
-                  { plain, "has 0 values, expected 3" },        { plain, "spacing 0 mm" },                { plain, "even planes; the limit is 4096" } };
+    } cases[] = { { plain, "Dose Grid Scaling (3004,000e)" },
+                  { plain, "expected a number above 0" },
+                  { plain, "value 1 is nan" },
+                  { plain, "expected two unit vectors" },
+                  { plain, "has 2 values, expected 3" },
+                  { plain, "frame 3 is 0 mm" },
+                  { plain, "expected frames that go one way" },
+                  { plain, "is no number of a patient" },
+                  { plain, "expected 16 or 32" },
+                  { plain, "has 0 values, expected 3" },
+                  { plain, "spacing 0 mm" },
+                  { plain, "even planes; the limit is 4096" } };
     cases[0].made.scaling = NULL;
     cases[1].made.scaling = "-1";
     cases[2].made.position = "x\\0\\0";
@@ -232,14 +249,22 @@ static void descriptions_name_components(void **state)
         int quantity; /* -1: none */
         double ppm;
         bool is_stated;
-    } cases[] = { { "BNCT:boron;ppm=1", DOSE_BORON, 1, true },    { "BNCT:gamma", DOSE_GAMMA, NAN, true },
-                  { "BNCT:fast; note=x ;ppm=2", DOSE_FAST, 2, true }, { "BNCT:sugar", -1, NAN, false },
-                  { "B-10 dose (15.5 ppm)", DOSE_BORON, 15.5, false }, { "10B", DOSE_BORON, NAN, false },
-                  { "Boron neutron capture", DOSE_BORON, NAN, false }, { "N-14", DOSE_NITROGEN, NAN, false },
-                  { "Thermal neutron dose", DOSE_NITROGEN, NAN, false }, { "Fast Neutrons", DOSE_FAST, NAN, false },
-                  { "proton recoil", DOSE_FAST, NAN, false },      { "PHOTON", DOSE_GAMMA, NAN, false },
-                  { "gamma and boron", -1, NAN, false },           { "Total", DOSE_TOTAL, NAN, false },
-                  { "Breakfast", -1, NAN, false },                 { "", -1, NAN, false } };
+    } cases[] = { { "BNCT:boron;ppm=1", DOSE_BORON, 1, true },
+                  { "BNCT:gamma", DOSE_GAMMA, NAN, true },
+                  { "BNCT:fast; note=x ;ppm=2", DOSE_FAST, 2, true },
+                  { "BNCT:sugar", -1, NAN, false },
+                  { "B-10 dose (15.5 ppm)", DOSE_BORON, 15.5, false },
+                  { "10B", DOSE_BORON, NAN, false },
+                  { "Boron neutron capture", DOSE_BORON, NAN, false },
+                  { "N-14", DOSE_NITROGEN, NAN, false },
+                  { "Thermal neutron dose", DOSE_NITROGEN, NAN, false },
+                  { "Fast Neutrons", DOSE_FAST, NAN, false },
+                  { "proton recoil", DOSE_FAST, NAN, false },
+                  { "PHOTON", DOSE_GAMMA, NAN, false },
+                  { "gamma and boron", -1, NAN, false },
+                  { "Total", DOSE_TOTAL, NAN, false },
+                  { "Breakfast", -1, NAN, false },
+                  { "", -1, NAN, false } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         enum dose_quantity quantity;
         double ppm;
@@ -296,7 +321,8 @@ static void components_that_agree_become_one_dose(void **state)
     assert_string_equal(doses[1].per, "fraction");
     assert_int_equal(doses[2].components[0].quantity, DOSE_WEIGHTED_TOTAL);
     assert_string_equal(doses[2].id, "Weighted");
-    assert_true(report_has(&report, "dose.all-zero") && report_has(&report, "dose.components") && report_has(&report, "dose.per-ppm"));
+    assert_true(report_has(&report, "dose.all-zero") && report_has(&report, "dose.components") &&
+                report_has(&report, "dose.per-ppm"));
     for (int i = 0; i < 3; i++)
         dose_finish(&doses[i]);
     report_finish(&report);
@@ -362,7 +388,9 @@ static void the_oncentra_doses_have_their_maxima(void **state)
     const struct {
         const char *id;
         double high;
-    } expected[] = { { "Dose for Testplan, B1_photons", 6.252 }, { "Dose for Testplan, B2_photons_MLC", 5.527 }, { "Dose for Testplan, B3_electrons", 6.042 } };
+    } expected[] = { { "Dose for Testplan, B1_photons", 6.252 },
+                     { "Dose for Testplan, B2_photons_MLC", 5.527 },
+                     { "Dose for Testplan, B3_electrons", 6.042 } };
     for (size_t e = 0; e < 3; e++) {
         size_t at = 0;
         while (at < n && strcmp(doses[at].id, expected[e].id) != 0)
@@ -376,7 +404,7 @@ static void the_oncentra_doses_have_their_maxima(void **state)
     rtplan_destroy(plan);
 }
 
-/* ---- damaged files ---------------------------------------------------------------------------------------------------------------- */
+/* ---- damaged files ---------------------------------------------------------------------------------------------- */
 
 static void read_whatever(const uint8_t *data, size_t size)
 {
@@ -410,7 +438,8 @@ static void cut_and_flipped_copies_of_real_files_are_read_or_refused(void **stat
         size_t size = real.bytes.size;
         uint8_t *copy = malloc(size);
         assert_non_null(copy);
-        for (size_t cut = 0; cut < 60; cut++) { /* a buffer as long as what is left, so that reading past its end is seen */
+        for (size_t cut = 0; cut < 60;
+             cut++) { /* a buffer as long as what is left, so that reading past its end is seen */
             size_t n = size * cut / 60;
             uint8_t *rest = malloc(n + 1);
             assert_non_null(rest);
@@ -433,8 +462,14 @@ static void cut_and_flipped_copies_of_real_files_are_read_or_refused(void **stat
     }
 }
 
-static int32_t dose_value(uint32_t x, uint32_t y) { return (int32_t)(100 * y + 10 * x); }
-static int32_t next_dose_value(uint32_t x, uint32_t y) { return dose_value(x, y) + 1000; }
+static int32_t dose_value(uint32_t x, uint32_t y)
+{
+    return (int32_t)(100 * y + 10 * x);
+}
+static int32_t next_dose_value(uint32_t x, uint32_t y)
+{
+    return dose_value(x, y) + 1000;
+}
 
 static void put_fragment(struct made_dicom *made, const uint8_t *bytes, size_t n)
 {
@@ -476,13 +511,15 @@ static void a_dose_in_jpeg_2000_keeps_its_frames_apart_and_says_loss_and_other_b
         for (uint32_t k = 0; k < 2; k++)
             for (uint32_t y = 0; y < 3; y++)
                 for (uint32_t x = 0; x < 4; x++)
-                    assert_close(volume_value(dose.values, x, y, k), 0.5 * (k ? next_dose_value(x, y) : dose_value(x, y)), way == 1 ? 2 : 1e-9);
+                    assert_close(volume_value(dose.values, x, y, k),
+                                 0.5 * (k ? next_dose_value(x, y) : dose_value(x, y)), way == 1 ? 2 : 1e-9);
         assert_int_equal(report_has(&report, "image.lossy"), way == 1);
         assert_int_equal(report_has(&report, "image.coded-otherwise"), way == 2);
         if (way == 1)
             assert_non_null(strstr(report_said(&report, "image.lossy"), "2 of 2 frames were compressed with loss"));
         if (way == 2)
-            assert_non_null(strstr(report_said(&report, "image.coded-otherwise"), "2 of 2 frames holds values of 12 bits"));
+            assert_non_null(
+                strstr(report_said(&report, "image.coded-otherwise"), "2 of 2 frames holds values of 12 bits"));
         rtdose_finish(&dose);
         rt_file_close(&file);
         report_finish(&report);

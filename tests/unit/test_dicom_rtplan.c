@@ -18,24 +18,57 @@ static void the_source_is_where_hand_geometry_puts_it(void **state)
         double gantry, couch, x, y, z;
     } cases[] = {
         /* gantry at 0 is above the table, at 90 to the right of who stands at its foot and looks to the gantry */
-        { PATIENT_HFS, 0, 0, 0, a, 0 },   { PATIENT_HFS, 90, 0, l, 0, 0 },   { PATIENT_HFS, 180, 0, 0, p, 0 },  { PATIENT_HFS, 270, 0, r, 0, 0 },
-        { PATIENT_HFP, 0, 0, 0, p, 0 },   { PATIENT_HFP, 90, 0, r, 0, 0 },   { PATIENT_HFP, 180, 0, 0, a, 0 },  { PATIENT_HFP, 270, 0, l, 0, 0 },
-        { PATIENT_FFS, 0, 0, 0, a, 0 },   { PATIENT_FFS, 90, 0, r, 0, 0 },   { PATIENT_FFS, 180, 0, 0, p, 0 },  { PATIENT_FFS, 270, 0, l, 0, 0 },
-        { PATIENT_FFP, 0, 0, 0, p, 0 },   { PATIENT_FFP, 90, 0, l, 0, 0 },   { PATIENT_FFP, 180, 0, 0, a, 0 },  { PATIENT_FFP, 270, 0, r, 0, 0 },
-        { PATIENT_HFDR, 0, 0, l, 0, 0 },  { PATIENT_HFDR, 90, 0, 0, p, 0 },  { PATIENT_HFDR, 180, 0, r, 0, 0 }, { PATIENT_HFDR, 270, 0, 0, a, 0 },
-        { PATIENT_HFDL, 0, 0, r, 0, 0 },  { PATIENT_HFDL, 90, 0, 0, a, 0 },  { PATIENT_HFDL, 180, 0, l, 0, 0 }, { PATIENT_HFDL, 270, 0, 0, p, 0 },
-        { PATIENT_FFDR, 0, 0, l, 0, 0 },  { PATIENT_FFDR, 90, 0, 0, a, 0 },  { PATIENT_FFDR, 180, 0, r, 0, 0 }, { PATIENT_FFDR, 270, 0, 0, p, 0 },
-        { PATIENT_FFDL, 0, 0, r, 0, 0 },  { PATIENT_FFDL, 90, 0, 0, p, 0 },  { PATIENT_FFDL, 180, 0, l, 0, 0 }, { PATIENT_FFDL, 270, 0, 0, a, 0 },
-        /* the table turned by 90, against the clock seen from above: its far end, with head or feet, then points to the left of who looks */
-        { PATIENT_HFS, 0, 90, 0, a, 0 },  { PATIENT_HFS, 90, 90, 0, 0, i },  { PATIENT_HFS, 270, 90, 0, 0, s }, { PATIENT_HFS, 90, 270, 0, 0, s },
-        { PATIENT_FFS, 90, 90, 0, 0, s }, { PATIENT_HFP, 90, 90, 0, 0, i },  { PATIENT_FFP, 90, 90, 0, 0, s },  { PATIENT_HFDR, 90, 90, 0, 0, i },
+        { PATIENT_HFS, 0, 0, 0, a, 0 },
+        { PATIENT_HFS, 90, 0, l, 0, 0 },
+        { PATIENT_HFS, 180, 0, 0, p, 0 },
+        { PATIENT_HFS, 270, 0, r, 0, 0 },
+        { PATIENT_HFP, 0, 0, 0, p, 0 },
+        { PATIENT_HFP, 90, 0, r, 0, 0 },
+        { PATIENT_HFP, 180, 0, 0, a, 0 },
+        { PATIENT_HFP, 270, 0, l, 0, 0 },
+        { PATIENT_FFS, 0, 0, 0, a, 0 },
+        { PATIENT_FFS, 90, 0, r, 0, 0 },
+        { PATIENT_FFS, 180, 0, 0, p, 0 },
+        { PATIENT_FFS, 270, 0, l, 0, 0 },
+        { PATIENT_FFP, 0, 0, 0, p, 0 },
+        { PATIENT_FFP, 90, 0, l, 0, 0 },
+        { PATIENT_FFP, 180, 0, 0, a, 0 },
+        { PATIENT_FFP, 270, 0, r, 0, 0 },
+        { PATIENT_HFDR, 0, 0, l, 0, 0 },
+        { PATIENT_HFDR, 90, 0, 0, p, 0 },
+        { PATIENT_HFDR, 180, 0, r, 0, 0 },
+        { PATIENT_HFDR, 270, 0, 0, a, 0 },
+        { PATIENT_HFDL, 0, 0, r, 0, 0 },
+        { PATIENT_HFDL, 90, 0, 0, a, 0 },
+        { PATIENT_HFDL, 180, 0, l, 0, 0 },
+        { PATIENT_HFDL, 270, 0, 0, p, 0 },
+        { PATIENT_FFDR, 0, 0, l, 0, 0 },
+        { PATIENT_FFDR, 90, 0, 0, a, 0 },
+        { PATIENT_FFDR, 180, 0, r, 0, 0 },
+        { PATIENT_FFDR, 270, 0, 0, p, 0 },
+        { PATIENT_FFDL, 0, 0, r, 0, 0 },
+        { PATIENT_FFDL, 90, 0, 0, p, 0 },
+        { PATIENT_FFDL, 180, 0, l, 0, 0 },
+        { PATIENT_FFDL, 270, 0, 0, a, 0 },
+        /* the table turned by 90, against the clock seen from above: its far end, with head or feet, then points to the
+           left of who looks */
+        { PATIENT_HFS, 0, 90, 0, a, 0 },
+        { PATIENT_HFS, 90, 90, 0, 0, i },
+        { PATIENT_HFS, 270, 90, 0, 0, s },
+        { PATIENT_HFS, 90, 270, 0, 0, s },
+        { PATIENT_FFS, 90, 90, 0, 0, s },
+        { PATIENT_HFP, 90, 90, 0, 0, i },
+        { PATIENT_FFP, 90, 90, 0, 0, s },
+        { PATIENT_HFDR, 90, 90, 0, 0, i },
         { PATIENT_HFS, 90, 180, r, 0, 0 },
     };
     for (size_t at = 0; at < sizeof cases / sizeof cases[0]; at++) {
         struct beam_angles angles = { .gantry_deg = cases[at].gantry, .couch_deg = cases[at].couch };
-        assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, cases[at].position), cases[at].x, cases[at].y, cases[at].z, 1e-12);
+        assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, cases[at].position), cases[at].x, cases[at].y,
+                     cases[at].z, 1e-12);
         angles = (struct beam_angles){ .gantry_deg = cases[at].gantry, .eccentric_deg = cases[at].couch };
-        assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, cases[at].position), cases[at].x, cases[at].y, cases[at].z, 1e-12);
+        assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, cases[at].position), cases[at].x, cases[at].y,
+                     cases[at].z, 1e-12);
     }
 }
 
@@ -48,7 +81,8 @@ static void oblique_angles_pitch_and_roll_go_the_right_way(void **state)
     /* the head lifted by 20 degrees comes nearer to a source above */
     angles = (struct beam_angles){ .pitch_deg = 20 };
     assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, PATIENT_HFS), 0, -0.9396926208, 0.3420201433, 1e-9);
-    /* rolled about the axis towards the gantry by 20, the side that was to the right goes down: the source sees more of the other */
+    /* rolled about the axis towards the gantry by 20, the side that was to the right goes down: the source sees more of
+     * the other */
     angles = (struct beam_angles){ .roll_deg = 20 };
     assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, PATIENT_HFS), -0.3420201433, -0.9396926208, 0, 1e-9);
     /* the x of the gantry goes with it: from the left at 0 to the back at 90 */
@@ -68,10 +102,10 @@ static void positions_have_words(void **state)
     assert_false(patient_position_from_word("", &position));
 }
 
-/* ---- made plans ------------------------------------------------------------------------------------------------------------------- */
+/* ---- made plans ------------------------------------------------------------------------------------------------- */
 
 struct made_plan {
-    const char *position;   /* of setup 2; NULL: no setups */
+    const char *position; /* of setup 2; NULL: no setups */
     const char *radiation;
     const char *sad, *iso, *gantry;
     bool is_setup;
@@ -150,7 +184,12 @@ static void a_neutron_beam_lies_between_source_and_isocentre(void **state)
 {
     (void)state;
     struct report report = { 0 };
-    struct made_plan made = { .position = "FFS", .radiation = "NEUTRON", .sad = "1800", .iso = "10\\-20\\30", .n_points = 1, .gantries = { "270" } };
+    struct made_plan made = { .position = "FFS",
+                              .radiation = "NEUTRON",
+                              .sad = "1800",
+                              .iso = "10\\-20\\30",
+                              .n_points = 1,
+                              .gantries = { "270" } };
     struct rtplan *plan = read_made(&made, &report);
     assert_int_equal(report.n_lines, 0);
     assert_string_equal(plan->label, "Label");
@@ -181,7 +220,8 @@ static void what_a_plan_does_not_say_is_assumed_and_said(void **state)
     assert_point(plan->beams[0].entry_lps_mm, 1, 2 - 1000, 3, 1e-9);
     rtplan_destroy(plan);
     report_finish(&report);
-    made = (struct made_plan){ .position = "UPRIGHT", .sad = "-5", .iso = "1\\2\\3", .n_points = 1, .gantries = { "0" } };
+    made =
+        (struct made_plan){ .position = "UPRIGHT", .sad = "-5", .iso = "1\\2\\3", .n_points = 1, .gantries = { "0" } };
     plan = read_made(&made, &report);
     assert_true(report_has(&report, "beam.position-assumed"));
     assert_true(report_has(&report, "beam.distance-assumed"));
@@ -195,11 +235,11 @@ static void a_beam_that_cannot_be_placed_is_left_out(void **state)
 {
     (void)state;
     const struct made_plan plans[] = {
-        { .position = "HFS", .sad = "1000", .n_points = 1, .gantries = { "0" } },                     /* no isocentre */
-        { .position = "HFS", .sad = "1000", .iso = "1\\2", .n_points = 1, .gantries = { "0" } },      /* two thirds of one */
+        { .position = "HFS", .sad = "1000", .n_points = 1, .gantries = { "0" } },                /* no isocentre */
+        { .position = "HFS", .sad = "1000", .iso = "1\\2", .n_points = 1, .gantries = { "0" } }, /* two thirds of one */
         { .position = "HFS", .sad = "1000", .iso = "1\\2\\x", .n_points = 1, .gantries = { "0" } },   /* no number */
         { .position = "HFS", .sad = "1000", .iso = "1\\2\\1e9", .n_points = 1, .gantries = { "0" } }, /* in orbit */
-        { .position = "HFS", .sad = "1000", .iso = "1\\2\\3", .n_points = 0 },                        /* no control point */
+        { .position = "HFS", .sad = "1000", .iso = "1\\2\\3", .n_points = 0 }, /* no control point */
         { .position = "HFS", .sad = "1000", .iso = "1\\2\\3", .n_points = 1, .gantries = { "0" }, .is_setup = true },
     };
     for (size_t i = 0; i < sizeof plans / sizeof plans[0]; i++) {
@@ -218,11 +258,13 @@ static void arcs_travel_in_their_direction(void **state)
     const struct {
         struct made_plan plan;
         double stop, travel;
-    } cases[] = { { { .n_points = 3, .gantries = { "300", "0", "60" }, .directions = { "CW", NULL, "NONE" } }, 60, 120 },
-                  { { .n_points = 3, .gantries = { "60", "0", "300" }, .directions = { "CC", "CC", "NONE" } }, 300, -120 },
-                  { { .n_points = 4, .gantries = { "181", "300", "60", "179" }, .directions = { "CW" } }, 179, 358 },
-                  { { .n_points = 2, .gantries = { "10", "350" } }, 350, -20 },
-                  { { .n_points = 3, .gantries = { "10", NULL, NULL }, .directions = { "CW" } }, 10, 0 } };
+    } cases[] = {
+        { { .n_points = 3, .gantries = { "300", "0", "60" }, .directions = { "CW", NULL, "NONE" } }, 60, 120 },
+        { { .n_points = 3, .gantries = { "60", "0", "300" }, .directions = { "CC", "CC", "NONE" } }, 300, -120 },
+        { { .n_points = 4, .gantries = { "181", "300", "60", "179" }, .directions = { "CW" } }, 179, 358 },
+        { { .n_points = 2, .gantries = { "10", "350" } }, 350, -20 },
+        { { .n_points = 3, .gantries = { "10", NULL, NULL }, .directions = { "CW" } }, 10, 0 }
+    };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct made_plan made = cases[i].plan;
         made.position = "HFS";
@@ -290,14 +332,39 @@ static void angles_beyond_a_turn_are_taken_without_whole_turns_and_said(void **s
     static const struct {
         const char *gantry, *collimator, *table, *sentence;
         struct vec3 entry, collimator_x;
-    } cases[] = { { "450", "0", "0", "gantry angle (300A,011E) is 450, expected -360 to 360; 90 was taken", { 1000, 0, 0 }, { 0, 1, 0 } },
-                  { "-450", "0", "0", "gantry angle (300A,011E) is -450, expected -360 to 360; -90 was taken", { -1000, 0, 0 }, { 0, -1, 0 } },
-                  { "0", "450", "0", "beam limiting device angle (300A,0120) is 450, expected -360 to 360; 90 was taken", { 0, -1000, 0 }, { 0, 0, 1 } },
-                  { "90", "0", "-630", "patient support angle (300A,0122) is -630, expected -360 to 360; -270 was taken", { 0, 0, -1000 }, { 0, 1, 0 } },
+    } cases[] = { { "450",
+                    "0",
+                    "0",
+                    "gantry angle (300A,011E) is 450, expected -360 to 360; 90 was taken",
+                    { 1000, 0, 0 },
+                    { 0, 1, 0 } },
+                  { "-450",
+                    "0",
+                    "0",
+                    "gantry angle (300A,011E) is -450, expected -360 to 360; -90 was taken",
+                    { -1000, 0, 0 },
+                    { 0, -1, 0 } },
+                  { "0",
+                    "450",
+                    "0",
+                    "beam limiting device angle (300A,0120) is 450, expected -360 to 360; 90 was taken",
+                    { 0, -1000, 0 },
+                    { 0, 0, 1 } },
+                  { "90",
+                    "0",
+                    "-630",
+                    "patient support angle (300A,0122) is -630, expected -360 to 360; -270 was taken",
+                    { 0, 0, -1000 },
+                    { 0, 1, 0 } },
                   { "90", "0", "-270", "", { 0, 0, -1000 }, { 0, 1, 0 } } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .gantries = { cases[i].gantry },
-                                  .collimator = cases[i].collimator, .table = cases[i].table };
+        struct made_plan made = { .position = "HFS",
+                                  .sad = "1000",
+                                  .iso = "0\\0\\0",
+                                  .n_points = 1,
+                                  .gantries = { cases[i].gantry },
+                                  .collimator = cases[i].collimator,
+                                  .table = cases[i].table };
         struct report report = { 0 };
         struct rtplan *plan = read_made(&made, &report);
         const struct beam *beam = &plan->beams[0];
@@ -316,7 +383,9 @@ static void an_angle_that_is_no_number_is_said_to_be_assumed(void **state)
     (void)state;
     static const char *const words[] = { "ninety", "inf", "nan", "1e999" };
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
-        struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .gantries = { words[i] } };
+        struct made_plan made = {
+            .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .gantries = { words[i] }
+        };
         struct report report = { 0 };
         struct rtplan *plan = read_made(&made, &report);
         assert_true(report_has(&report, "beam.angle-assumed"));
@@ -347,9 +416,16 @@ static void doubts_about_where_a_beam_is_come_before_those_about_its_opening(voi
 {
     (void)state;
     struct report report = { 0 };
-    struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 3, .gantries = { "450", "460", "470" },
-                              .collimator = "361", .table = "362", .devices = strange_devices };
-    static const char *const first[] = { "(300A,011E) is 450", "(300A,0122) is 362", "(300A,0120) is 361", "\"SHUTTER\"", "\"SHUTTER\"", "\"SHUTTER\"" };
+    struct made_plan made = { .position = "HFS",
+                              .sad = "1000",
+                              .iso = "0\\0\\0",
+                              .n_points = 3,
+                              .gantries = { "450", "460", "470" },
+                              .collimator = "361",
+                              .table = "362",
+                              .devices = strange_devices };
+    static const char *const first[] = { "(300A,011E) is 450", "(300A,0122) is 362", "(300A,0120) is 361",
+                                         "\"SHUTTER\"",        "\"SHUTTER\"",        "\"SHUTTER\"" };
     enum { N = sizeof first / sizeof first[0] };
     struct rtplan *plan = read_made(&made, &report);
     assert_int_equal(n_lines_of(&report, "beam.bad-value"), N + 1);
@@ -374,11 +450,16 @@ static void a_single_boundary_is_too_few_for_any_number_of_leaves(void **state)
 {
     (void)state;
     struct report report = { 0 };
-    struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .gantries = { "0" },
+    struct made_plan made = { .position = "HFS",
+                              .sad = "1000",
+                              .iso = "0\\0\\0",
+                              .n_points = 1,
+                              .gantries = { "0" },
                               .devices = leaves_without_a_number_of_pairs };
     struct rtplan *plan = read_made(&made, &report);
     char expected[80];
-    snprintf(expected, sizeof expected, "MLCX: leaf position boundaries (300A,00BE) are 1, expected 2 to %d.", OPENING_MAX_LEAVES + 1);
+    snprintf(expected, sizeof expected, "MLCX: leaf position boundaries (300A,00BE) are 1, expected 2 to %d.",
+             OPENING_MAX_LEAVES + 1);
     assert_non_null(strstr(report_said(&report, "beam.bad-value"), expected));
     rtplan_destroy(plan);
     report_finish(&report);
@@ -387,13 +468,19 @@ static void a_single_boundary_is_too_few_for_any_number_of_leaves(void **state)
 static void the_opening_is_what_jaws_and_leaves_leave(void **state)
 {
     (void)state;
-    struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 3, .gantries = { "0" },
-                              .devices = jaws_and_leaves, .positions = three_steps };
+    struct made_plan made = { .position = "HFS",
+                              .sad = "1000",
+                              .iso = "0\\0\\0",
+                              .n_points = 3,
+                              .gantries = { "0" },
+                              .devices = jaws_and_leaves,
+                              .positions = three_steps };
     struct rtplan *plan = read_made(&made, NULL);
     const struct beam_delivery *d = &plan->beams[0].delivery;
     assert_memory_equal(d->jaws_x_mm, ((double[]){ -30, 30 }), sizeof d->jaws_x_mm);
     assert_memory_equal(d->jaws_y_mm, ((double[]){ -15, 40 }), sizeof d->jaws_y_mm);
-    /* first: leaves at y -20..-10 open -50..50, cut to x -30..30 and y -15..-10; y -10..0 open 10 wide, y 0..10 open 20 wide */
+    /* first: leaves at y -20..-10 open -50..50, cut to x -30..30 and y -15..-10; y -10..0 open 10 wide, y 0..10 open 20
+     * wide */
     assert_close(d->opening_cm2, (60 * 5 + 10 * 10 + 20 * 10) / 100.0, 1e-12);
     /* second: only the pair at y 10..20, cut to y 10..12, x 20..25; the hull over all is -30..30 by -15..12 */
     assert_memory_equal(d->opening_x_mm, ((double[]){ -30, 30 }), sizeof d->opening_x_mm);
@@ -419,9 +506,18 @@ static void put_block(struct made_dicom *made, size_t n, double rx, double ry)
     free(xy);
 }
 
-static void round_block(struct made_dicom *made) { put_block(made, 36, 60, 60); }
-static void oval_block(struct made_dicom *made) { put_block(made, 36, 60, 50); }
-static void square_block(struct made_dicom *made) { put_block(made, 4, 60, 60); }
+static void round_block(struct made_dicom *made)
+{
+    put_block(made, 36, 60, 60);
+}
+static void oval_block(struct made_dicom *made)
+{
+    put_block(made, 36, 60, 50);
+}
+static void square_block(struct made_dicom *made)
+{
+    put_block(made, 4, 60, 60);
+}
 static void round_applicator(struct made_dicom *made)
 {
     made_sequence(made, TAG(0x300a, 0x0107));
@@ -447,7 +543,11 @@ static void only_a_round_opening_has_a_diameter(void **state)
                   { square_block, NAN, 72 },
                   { round_applicator, 120, NAN } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct made_plan made = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .gantries = { "0" },
+        struct made_plan made = { .position = "HFS",
+                                  .sad = "1000",
+                                  .iso = "0\\0\\0",
+                                  .n_points = 1,
+                                  .gantries = { "0" },
                                   .devices = cases[i].devices };
         struct rtplan *plan = read_made(&made, NULL);
         const struct beam *beam = &plan->beams[0];
@@ -493,7 +593,8 @@ static void an_ion_plan_has_its_lines_and_says_what_is_not_read(void **state)
     assert_string_equal(err.text, "");
     assert_int_equal(plan->n_beams, 1);
     assert_point(plan->beams[0].target_lps_mm, 1, 2, 3, 0);
-    assert_point(plan->beams[0].entry_lps_mm, 2001, 2, 3, 1e-9); /* the patient's left, for the position that is taken */
+    assert_point(plan->beams[0].entry_lps_mm, 2001, 2, 3,
+                 1e-9); /* the patient's left, for the position that is taken */
     assert_close(plan->beams[0].delivery.opening_cm2, 7 * 4.5, 1e-9);
     assert_non_null(strstr(report_said(&report, "beam.ion"), "An RT Ion Plan of 1 beams"));
     rtplan_destroy(plan);
@@ -529,7 +630,9 @@ static void many_leaves(struct made_dicom *made)
 static void more_than_the_written_limits_is_refused_or_left_out(void **state)
 {
     (void)state;
-    struct made_plan leaves = { .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .devices = many_leaves };
+    struct made_plan leaves = {
+        .position = "HFS", .sad = "1000", .iso = "0\\0\\0", .n_points = 1, .devices = many_leaves
+    };
     struct made_dicom made;
     put_plan(&made, &leaves);
     struct rt_file file = rt_file_of(&made);

@@ -63,7 +63,8 @@ static void compare_beam(const struct beam *beam, char *rest)
         assert_same(d->jaws_x_mm[i], next_number(&rest));
     for (int i = 0; i < 2; i++)
         assert_same(d->jaws_y_mm[i], next_number(&rest));
-    double counted_cm2 = next_number(&rest); /* on points half a mm apart: one row of them on either side of each leaf */
+    double counted_cm2 =
+        next_number(&rest); /* on points half a mm apart: one row of them on either side of each leaf */
     assert_close(d->opening_cm2, counted_cm2, 0.05 + 0.002 * counted_cm2);
     assert_same(d->dose_gy, next_number(&rest));
     assert_same(d->meterset, next_number(&rest));
@@ -74,7 +75,9 @@ static void compare_beam(const struct beam *beam, char *rest)
 static bool compare_with_pydicom(const char *path, const struct rtplan *plan)
 {
     static char out[1 << 16];
-    int status = oracle_run((char *[]){ oracle_python(), "tests/oracle/dicom_rtplan.py", (char *)(uintptr_t)path, NULL }, out, sizeof out);
+    int status =
+        oracle_run((char *[]){ oracle_python(), "tests/oracle/dicom_rtplan.py", (char *)(uintptr_t)path, NULL }, out,
+                   sizeof out);
     if (status == ORACLE_MISSING)
         return false;
     assert_int_equal(status, 0);
@@ -131,7 +134,7 @@ static void two_arcs_turn_from_the_left_and_from_the_right(void **state)
     assert_int_equal(plan->n_beams, 2);
     assert_int_equal(plan->beams[0].delivery.n_control_points, 32);
     assert_int_equal(plan->beams[1].delivery.n_control_points, 31);
-    assert_point(surface_point(&plan->beams[0]), 51, 0, 0, 1e-9);  /* the file's own Surface Entry Points */
+    assert_point(surface_point(&plan->beams[0]), 51, 0, 0, 1e-9); /* the file's own Surface Entry Points */
     assert_point(surface_point(&plan->beams[1]), -51, 0, 0, 1e-9);
     assert_close(plan->beams[0].delivery.gantry_travel_deg, 60, 1e-9);  /* clockwise from 90 to 150 */
     assert_close(plan->beams[1].delivery.gantry_travel_deg, -60, 1e-9); /* against the clock from 270 to 210 */
@@ -155,11 +158,13 @@ static void the_oncentra_beams_meet_the_body_at_their_distances(void **state)
     struct rtplan *plan = read_real(path, NULL);
     assert_int_equal(plan->n_beams, 3);
     assert_string_equal(plan->beams[2].delivery.radiation, "ELECTRON");
-    /* the body's outline at z = 0 is the square x -20..30, y -20..30 of the structure set; distances are given to 0.01 mm */
+    /* the body's outline at z = 0 is the square x -20..30, y -20..30 of the structure set; distances are given to 0.01
+     * mm */
     assert_point(surface_point(&plan->beams[0]), 0.29, -20, 0, 0.011);
     assert_point(surface_point(&plan->beams[1]), 30, 0.59, 0, 0.011);
     assert_point(surface_point(&plan->beams[2]), 0.29, 30, 0, 0.011);
-    /* beam 2: gantry 90, collimator 90: x of the collimator runs to the head, y to the patient's front (gantry x points to the back) */
+    /* beam 2: gantry 90, collimator 90: x of the collimator runs to the head, y to the patient's front (gantry x points
+     * to the back) */
     assert_point(plan->beams[1].delivery.collimator_x_lps, 0, 0, 1, 1e-12);
     assert_point(plan->beams[1].delivery.collimator_y_lps, 0, -1, 0, 1e-12);
     bool is_compared = compare_with_pydicom(path, plan);

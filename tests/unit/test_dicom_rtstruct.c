@@ -250,15 +250,19 @@ static void more_regions_than_the_limit_are_refused(void **state)
 static void a_frame_of_reference_that_is_missing_or_another_is_said(void **state)
 {
     (void)state;
-    struct rtstruct_roi rois[] = { { .name = "a", .frame_uid = "1.2" }, { .name = "b", .frame_uid = "1.3" }, { .name = "c" } };
+    struct rtstruct_roi rois[] = { { .name = "a", .frame_uid = "1.2" },
+                                   { .name = "b", .frame_uid = "1.3" },
+                                   { .name = "c" } };
     struct rtstruct set = { .rois = rois, .n_rois = 3 };
     struct report report = { 0 };
     rtstruct_check_frame(&set, "1.2", "rs.dcm", &report);
     assert_int_equal(report.n_lines, 2);
-    assert_string_equal(report_said(&report, "region.no-frame"), "The regions name no frame of reference, so nothing says that 1 regions fit "
-                                                               "the image: c. They are shown where their coordinates are.");
-    assert_string_equal(report_said(&report, "region.frame-differs"),
-                        "1 regions were drawn in another frame of reference than the image's and may be shifted against it: b.");
+    assert_string_equal(report_said(&report, "region.no-frame"),
+                        "The regions name no frame of reference, so nothing says that 1 regions fit "
+                        "the image: c. They are shown where their coordinates are.");
+    assert_string_equal(
+        report_said(&report, "region.frame-differs"),
+        "1 regions were drawn in another frame of reference than the image's and may be shifted against it: b.");
     report_finish(&report);
     rtstruct_check_frame(&set, "", "rs.dcm", &report);
     assert_int_equal(report.n_lines, 1);
@@ -269,7 +273,7 @@ static void a_frame_of_reference_that_is_missing_or_another_is_said(void **state
     report_finish(&report);
 }
 
-/* ---- real files ------------------------------------------------------------------------------------------------------------------ */
+/* ---- real files ------------------------------------------------------------------------------------------------- */
 
 static struct rtstruct *read_real(const char *path, struct report *report)
 {
@@ -306,11 +310,13 @@ static void compare_region(const struct rtstruct_roi *roi, char *rest)
         const struct contour *contour = &roi->contours.contours[c];
         struct vec3 area = vec3(0, 0, 0);
         for (size_t i = 0; i < contour->n_points; i++) {
-            const double *a = contour->points_lps_mm + 3 * i, *b = contour->points_lps_mm + 3 * ((i + 1) % contour->n_points);
+            const double *a = contour->points_lps_mm + 3 * i,
+                         *b = contour->points_lps_mm + 3 * ((i + 1) % contour->n_points);
             const double *o = contour->points_lps_mm;
             for (int axis = 0; axis < 3; axis++)
                 sum[axis] += a[axis];
-            area = vec3_add(area, vec3_cross(vec3(a[0] - o[0], a[1] - o[1], a[2] - o[2]), vec3(b[0] - o[0], b[1] - o[1], b[2] - o[2])));
+            area = vec3_add(area, vec3_cross(vec3(a[0] - o[0], a[1] - o[1], a[2] - o[2]),
+                                             vec3(b[0] - o[0], b[1] - o[1], b[2] - o[2])));
         }
         area_mm2 += vec3_length(area) / 2;
         n_points += contour->n_points;
@@ -329,7 +335,9 @@ static void compare_region(const struct rtstruct_roi *roi, char *rest)
 static size_t compare_with_pydicom(const char *path, const struct rtstruct *set)
 {
     static char out[1 << 16];
-    int status = oracle_run((char *[]){ oracle_python(), "tests/oracle/dicom_rtstruct.py", (char *)(uintptr_t)path, NULL }, out, sizeof out);
+    int status =
+        oracle_run((char *[]){ oracle_python(), "tests/oracle/dicom_rtstruct.py", (char *)(uintptr_t)path, NULL }, out,
+                   sizeof out);
     if (status == ORACLE_MISSING)
         return SIZE_MAX;
     assert_int_equal(status, 0);
@@ -401,7 +409,8 @@ static void the_sarcoma_masks_come_out_voxel_for_voxel(void **state)
         assert_int_equal(facts.n_planes, 31);
         struct contour_choice choice; /* so the image's own grid is the one taken */
         struct error err = { 0 };
-        assert_true(contour_choose_grids(&set->rois[0].contours, 1, &reference->grid, &contour_defaults, &choice, &err));
+        assert_true(
+            contour_choose_grids(&set->rois[0].contours, 1, &reference->grid, &contour_defaults, &choice, &err));
         assert_int_equal(choice.group, 0);
         mask_destroy(mask);
         volume_unref(reference);
@@ -458,14 +467,16 @@ static void the_oncentra_phantom_has_7_regions(void **state)
 static bool run_plastimatch(const char *folder, const char *structures, const char *out_folder)
 {
     static char out[1 << 18];
-    int status = oracle_run((char *[]){ "plastimatch", "convert", "--input", (char *)(uintptr_t)structures, "--referenced-ct",
-                                        (char *)(uintptr_t)folder, "--output-prefix", (char *)(uintptr_t)out_folder, "--prefix-format",
-                                        "nii.gz", "--xor-contours", NULL },
-                            out, sizeof out);
+    int status =
+        oracle_run((char *[]){ "plastimatch", "convert", "--input", (char *)(uintptr_t)structures, "--referenced-ct",
+                               (char *)(uintptr_t)folder, "--output-prefix", (char *)(uintptr_t)out_folder,
+                               "--prefix-format", "nii.gz", "--xor-contours", NULL },
+                   out, sizeof out);
     return status == 0;
 }
 
-static void compare_with_plastimatch(const struct rtstruct *set, const char *out_folder, size_t n_regions, double least_dice)
+static void compare_with_plastimatch(const struct rtstruct *set, const char *out_folder, size_t n_regions,
+                                     double least_dice)
 {
     size_t n = 0;
     for (size_t i = 0; i < set->n_rois; i++) {
@@ -513,7 +524,8 @@ static void plastimatch_fills_the_oncentra_phantom_alike(void **state)
 {
     (void)state;
     char folder[512], images[256], out_folder[512], structures[1024], path[1024], out[256];
-    if (!data_path("dicomrt-oncentra-phantom", folder, sizeof folder) || !rt_find(folder, "RS", 0, structures, sizeof structures))
+    if (!data_path("dicomrt-oncentra-phantom", folder, sizeof folder) ||
+        !rt_find(folder, "RS", 0, structures, sizeof structures))
         skip();
     folder_make(images);
     for (size_t i = 0; rt_find(folder, "CT", i, path, sizeof path); i++)
@@ -522,7 +534,8 @@ static void plastimatch_fills_the_oncentra_phantom_alike(void **state)
     bool is_run = run_plastimatch(images, structures, out_folder);
     if (is_run) {
         struct rtstruct *set = read_real(structures, NULL);
-        compare_with_plastimatch(set, out_folder, 7, 0.99); /* edges of whole mm on voxels of 0.586 mm: a row more or less */
+        compare_with_plastimatch(set, out_folder, 7,
+                                 0.99); /* edges of whole mm on voxels of 0.586 mm: a row more or less */
         rtstruct_destroy(set);
     }
     folder_remove(images);

@@ -1,4 +1,5 @@
-/* DICOM Segmentations: made-up ones whose voxels follow a rule, contradicting ones, and real ones with the answer beside them. */
+/* DICOM Segmentations: made-up ones whose voxels follow a rule, contradicting ones, and real ones with the answer
+ * beside them. */
 #include "core/formats/dicom/dicom_seg.h"
 
 #include "tests/check.h"
@@ -14,7 +15,8 @@
 static const struct made_seg_frame frames[] = { { 2, -5 }, { 1, 4 }, { 1, -5 }, { 2, -2 }, { 1, 1 } };
 static const struct made_seg two_parts = { .frames = frames, .n_frames = 5, .n_segments = 3 };
 
-static bool read_seg(const struct made_dicom *made, const char *only, struct nrrd_layers *layers, struct report *report, struct error *err)
+static bool read_seg(const struct made_dicom *made, const char *only, struct nrrd_layers *layers, struct report *report,
+                     struct error *err)
 {
     struct rt_file file = rt_file_of(made);
     *err = (struct error){ 0 };
@@ -86,10 +88,12 @@ static void segments_have_the_voxels_of_their_frames_whatever_their_order(void *
         assert_false(two->has_color);
         assert_int_equal(layers.n, 1); /* they share no voxel */
         assert_int_equal(first, second);
-        assert_non_null(strstr(report_said(&report, "region.unused-names"), "1 of 3 segments have no voxel and are not listed: Part 3"));
+        assert_non_null(strstr(report_said(&report, "region.unused-names"),
+                               "1 of 3 segments have no voxel and are not listed: Part 3"));
         assert_int_equal(report_has(&report, "mask.fractional"), seg.is_fractional);
         if (seg.is_fractional)
-            assert_non_null(strstr(report_said(&report, "mask.fractional"), "(PROBABILITY): voxels of 100 of 200 and more"));
+            assert_non_null(
+                strstr(report_said(&report, "mask.fractional"), "(PROBABILITY): voxels of 100 of 200 and more"));
         nrrd_layers_finish(&layers);
         report_finish(&report);
         made_finish(&made);
@@ -99,7 +103,9 @@ static void segments_have_the_voxels_of_their_frames_whatever_their_order(void *
 static void segments_that_overlap_lie_on_layers_of_their_own(void **state)
 {
     (void)state;
-    static const struct made_seg_frame same[] = { { 1, 0 }, { 6, 0 }, { 2, 0 } }; /* 1 and 6: the same voxels; 2: others */
+    static const struct made_seg_frame same[] = { { 1, 0 },
+                                                  { 6, 0 },
+                                                  { 2, 0 } }; /* 1 and 6: the same voxels; 2: others */
     const struct made_seg seg = { .frames = same, .n_frames = 3, .n_segments = 6 };
     struct made_dicom made;
     struct nrrd_layers layers;
@@ -204,11 +210,18 @@ static void a_thickness_that_the_file_does_not_give_is_said(void **state)
         int n_frames;
         double thickness_mm, between_mm;
         const char *code, *words;
-    } cases[] = { { 1, 0, 0, "geometry.assumed", "1 mm was taken as its thickness" }, { 1, 3, 0, "geometry.assumed", "" }, { 1, 0, 2, "geometry.assumed", "" },
+    } cases[] = { { 1, 0, 0, "geometry.assumed", "1 mm was taken as its thickness" },
+                  { 1, 3, 0, "geometry.assumed", "" },
+                  { 1, 0, 2, "geometry.assumed", "" },
                   { 2, 3, 0, "image.thickness-differs", "Frames are 3 mm thick (0018,0050) and lie 6 mm apart" },
-                  { 2, 6, 0, "image.thickness-differs", "" }, { 2, 3, 6, "image.thickness-differs", "" }, { 2, 0, 0, "image.thickness-differs", "" } };
+                  { 2, 6, 0, "image.thickness-differs", "" },
+                  { 2, 3, 6, "image.thickness-differs", "" },
+                  { 2, 0, 0, "image.thickness-differs", "" } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct made_seg seg = { .frames = frames_apart, .n_frames = cases[i].n_frames, .n_segments = 1, .thickness_mm = cases[i].thickness_mm,
+        struct made_seg seg = { .frames = frames_apart,
+                                .n_frames = cases[i].n_frames,
+                                .n_segments = 1,
+                                .thickness_mm = cases[i].thickness_mm,
                                 .between_mm = cases[i].between_mm };
         struct made_dicom made;
         struct nrrd_layers layers;
@@ -248,11 +261,16 @@ static void colors_are_those_of_lindbloom_s_tables(void **state)
     static const struct {
         double lab[3]; /* white D50 */
         int rgb[3];
-    } colors[] = { { { 54.29, 80.81, 69.89 }, { 255, 0, 0 } }, { { 87.82, -79.29, 80.99 }, { 0, 255, 0 } }, { { 29.57, 68.30, -112.03 }, { 0, 0, 255 } },
-                   { { 100, 0, 0 }, { 255, 255, 255 } }, { { 0, 0, 0 }, { 0, 0, 0 } }, { { 53.585, 0, 0 }, { 128, 128, 128 } } };
+    } colors[] = { { { 54.29, 80.81, 69.89 }, { 255, 0, 0 } },
+                   { { 87.82, -79.29, 80.99 }, { 0, 255, 0 } },
+                   { { 29.57, 68.30, -112.03 }, { 0, 0, 255 } },
+                   { { 100, 0, 0 }, { 255, 255, 255 } },
+                   { { 0, 0, 0 }, { 0, 0, 0 } },
+                   { { 53.585, 0, 0 }, { 128, 128, 128 } } };
     for (size_t i = 0; i < sizeof colors / sizeof colors[0]; i++) {
         const double *lab = colors[i].lab;
-        uint16_t stored[3] = { (uint16_t)lround(lab[0] * 655.35), (uint16_t)lround((lab[1] + 128) * 257), (uint16_t)lround((lab[2] + 128) * 257) };
+        uint16_t stored[3] = { (uint16_t)lround(lab[0] * 655.35), (uint16_t)lround((lab[1] + 128) * 257),
+                               (uint16_t)lround((lab[2] + 128) * 257) };
         uint8_t rgb[3];
         dicom_seg_color(stored, rgb);
         for (int c = 0; c < 3; c++)
@@ -263,14 +281,17 @@ static void colors_are_those_of_lindbloom_s_tables(void **state)
 static void what_contradicts_itself_is_refused_by_name(void **state)
 {
     (void)state;
-    static const struct made_seg_frame uneven[] = { { 1, 0 }, { 1, 3 }, { 1, 7 } }, far[] = { { 1, 0 }, { 1, 0.01 }, { 1, 900 } };
+    static const struct made_seg_frame uneven[] = { { 1, 0 }, { 1, 3 }, { 1, 7 } },
+                                       far[] = { { 1, 0 }, { 1, 0.01 }, { 1, 900 } };
     static const struct made_seg_frame unknown[] = { { 1, 0 }, { 9, 3 } };
     struct {
         struct made_seg seg;
         size_t cut;
         const char *words;
     } cases[] = {
-        { { .frames = uneven, .n_frames = 3, .n_segments = 1 }, 0, "planes that are not even: 3 places, the nearest 3 mm apart over 7 mm" },
+        { { .frames = uneven, .n_frames = 3, .n_segments = 1 },
+          0,
+          "planes that are not even: 3 places, the nearest 3 mm apart over 7 mm" },
         { { .frames = far, .n_frames = 3, .n_segments = 1 }, 0, "0.01 mm apart: 90001 planes" },
         { { .frames = unknown, .n_frames = 2, .n_segments = 0 }, 0, "no Segment Sequence (0062,0002)" },
     };
@@ -286,14 +307,17 @@ static void what_contradicts_itself_is_refused_by_name(void **state)
         made_finish(&made);
         report_finish(&report);
     }
-    struct made_seg seg = { .frames = unknown, .n_frames = 2, .n_segments = 1 }; /* a frame of a segment that is not described */
+    struct made_seg seg = { .frames = unknown,
+                            .n_frames = 2,
+                            .n_segments = 1 }; /* a frame of a segment that is not described */
     struct made_dicom made;
     struct nrrd_layers layers;
     struct report report = { 0 };
     struct error err;
     made_seg_bytes(&made, &seg);
     assert_true(read_seg(&made, "", &layers, &report, &err));
-    assert_non_null(strstr(report_said(&report, "region.roi-number"), "1 frames belong to segments (0062,000B) that the file does not describe (the first: 9)"));
+    assert_non_null(strstr(report_said(&report, "region.roi-number"),
+                           "1 frames belong to segments (0062,000B) that the file does not describe (the first: 9)"));
     nrrd_layers_finish(&layers);
     report_finish(&report);
     made.data[made.size - 10 - 4] = 6; /* 66 pixels need 9 bytes, padded to 10: the length says 6 */
@@ -338,7 +362,8 @@ static void a_folder_with_a_segmentation_has_its_regions(void **state)
         assert_close(one->rgb[0], 255, 1);
         uint64_t n_expected = 0;
         for (int i = 0; i < 3 * MADE_SEG_ROWS * MADE_SEG_COLUMNS; i++)
-            n_expected += made_seg_is_set(1, (const double[]){ -5, 1, 4 }[i % 3], i / 3 % MADE_SEG_COLUMNS, i / 3 / MADE_SEG_COLUMNS);
+            n_expected += made_seg_is_set(1, (const double[]){ -5, 1, 4 }[i % 3], i / 3 % MADE_SEG_COLUMNS,
+                                          i / 3 / MADE_SEG_COLUMNS);
         assert_int_equal(one->n_voxels, n_expected);
         assert_int_equal(report_has(&plan->report, "region.image-chosen"), way == 1);
         assert_int_equal(report_has(&plan->report, "region.frame-differs"), way == 2);
@@ -348,7 +373,7 @@ static void a_folder_with_a_segmentation_has_its_regions(void **state)
     }
 }
 
-/* ---- real ones --------------------------------------------------------------------------------------------------------------------------- */
+/* ---- real ones -------------------------------------------------------------------------------------------------- */
 
 static void a_real_liver_is_the_one_of_its_nrrd_voxel_for_voxel(void **state)
 {
@@ -367,7 +392,9 @@ static void a_real_liver_is_the_one_of_its_nrrd_voxel_for_voxel(void **state)
         uint8_t *bytes = file_bytes(from, &size);
         folder_put(alone, i ? "liver_seg.nrrd" : "liver.dcm", bytes, size);
         if (i == 1)
-            folder_put_text(alone, "plan.json", "{\"format\": \"beamroom-plan\", \"version\": 1, \"regions\": [{\"path\": \"liver_seg.nrrd\"}]}");
+            folder_put_text(
+                alone, "plan.json",
+                "{\"format\": \"beamroom-plan\", \"version\": 1, \"regions\": [{\"path\": \"liver_seg.nrrd\"}]}");
         free(bytes);
         plans[i] = plan_of_folder(alone, &err);
         assert_string_equal(err.text, "");
@@ -378,9 +405,11 @@ static void a_real_liver_is_the_one_of_its_nrrd_voxel_for_voxel(void **state)
     assert_int_equal(region->n_voxels, 107098);
     assert_false(region->touches_edge); /* the writer left out frames without a voxel; nothing cuts the liver */
     struct affine first = seg->grid.lps_mm_from_ijk;
-    first.origin = affine_point(&first, vec3(0, 0, 1)); /* one empty plane lies before the first frame, and one behind the last */
+    first.origin =
+        affine_point(&first, vec3(0, 0, 1)); /* one empty plane lies before the first frame, and one behind the last */
     struct grid inner;
-    assert_true(grid_init(&inner, (uint32_t[]){ seg->grid.size[0], seg->grid.size[1], seg->grid.size[2] - 2 }, &first, NULL));
+    assert_true(
+        grid_init(&inner, (uint32_t[]){ seg->grid.size[0], seg->grid.size[1], seg->grid.size[2] - 2 }, &first, NULL));
     assert_true(grid_is_same(&inner, &nrrd->grid));
     for (uint32_t k = 0; k < 3; k++)
         for (uint32_t j = 0; j < 512; j++)
@@ -398,7 +427,9 @@ static void real_segments_that_overlap_have_the_voxels_that_pydicom_and_numpy_co
     static const struct {
         const char *id;
         uint64_t n;
-    } counts[] = { { "green", 9602 }, { "orange", 11888 }, { "purple", 10743 }, { "light-blue", 6693 }, { "dark-blue", 4713 } };
+    } counts[] = {
+        { "green", 9602 }, { "orange", 11888 }, { "purple", 10743 }, { "light-blue", 6693 }, { "dark-blue", 4713 }
+    };
     char folder[256], from[300], alone[256];
     struct error err;
     if (!rt_unpack("dicom-seg/seg.tar.xz", folder))

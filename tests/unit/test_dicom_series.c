@@ -86,7 +86,8 @@ static void a_tilted_gantry_stays_a_shear(void **state)
     (void)state;
     struct scanned s = { 0 };
     folder_make(s.path);
-    struct made_slice slice = made_slice_defaults; /* each slice 1 mm further back for 2 mm up: atan(1 / 2) = 26.57 degrees */
+    struct made_slice slice =
+        made_slice_defaults; /* each slice 1 mm further back for 2 mm up: atan(1 / 2) = 26.57 degrees */
     for (int k = 0; k < 4; k++) {
         char name[16];
         memcpy(slice.position, (double[]){ 5, 1.0 * k, 2.0 * k }, sizeof slice.position);
@@ -132,7 +133,8 @@ static void uneven_slices_are_brought_to_the_smallest_usual_distance(void **stat
     (void)state;
     struct scanned s = { 0 };
     folder_make(s.path);
-    put_row(s.path, &made_slice_defaults, (double[]){ 0, 1, 2, 3, 5.5, 8 }, 6); /* thin slices below, thick ones above */
+    put_row(s.path, &made_slice_defaults, (double[]){ 0, 1, 2, 3, 5.5, 8 },
+            6); /* thin slices below, thick ones above */
     scanned_open(&s);
     struct volume *volume = scanned_read(&s, 0);
     assert_int_equal(volume->grid.size[2], 9);
@@ -142,7 +144,9 @@ static void uneven_slices_are_brought_to_the_smallest_usual_distance(void **stat
     }
     const struct report_line *line = scanned_said(&s, "image.slices-resampled");
     assert_non_null(line);
-    assert_non_null(strstr(line->sentence, "6 slices between 1 and 2.5 mm apart were interpolated to 9, 1 mm apart; 5 kept their values"));
+    assert_non_null(
+        strstr(line->sentence,
+               "6 slices between 1 and 2.5 mm apart were interpolated to 9, 1 mm apart; 5 kept their values"));
     volume_unref(volume);
     scanned_finish(&s);
 }
@@ -207,8 +211,9 @@ static void values_are_rescaled_whatever_their_bits_and_sign(void **state)
         int bits, stored, is_signed, base;
         enum voxel_type type;
     } cases[] = {
-        { 16, 16, 1, -1000, VOXEL_I16 }, { 16, 12, 1, -1000, VOXEL_I16 }, { 16, 16, 0, 60000, VOXEL_U16 }, { 16, 12, 0, 4000, VOXEL_U16 },
-        { 8, 8, 0, 200, VOXEL_U8 },      { 8, 8, 1, -100, VOXEL_I16 },    { 32, 32, 1, -1000, VOXEL_F32 },
+        { 16, 16, 1, -1000, VOXEL_I16 }, { 16, 12, 1, -1000, VOXEL_I16 }, { 16, 16, 0, 60000, VOXEL_U16 },
+        { 16, 12, 0, 4000, VOXEL_U16 },  { 8, 8, 0, 200, VOXEL_U8 },      { 8, 8, 1, -100, VOXEL_I16 },
+        { 32, 32, 1, -1000, VOXEL_F32 },
     };
     static const char *const encodings[] = { MADE_EXPLICIT, MADE_IMPLICIT, MADE_BIG_ENDIAN };
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++)
@@ -367,7 +372,8 @@ static void thickness_is_not_taken_for_distance(void **state)
     scanned_finish(&s);
 }
 
-/* One file of four frames that lie in the order 2, 0, 3, 1; orientation and spacing shared, position and scale of each its own. */
+/* One file of four frames that lie in the order 2, 0, 3, 1; orientation and spacing shared, position and scale of each
+ * its own. */
 /* is_packed: run lengths (PS3.5 annex G), a fragment a frame. */
 static void put_enhanced(const char *folder, bool has_all_places, bool is_packed)
 {
@@ -391,7 +397,8 @@ static void put_enhanced(const char *folder, bool has_all_places, bool is_packed
     made_item(&made);
     made_sequence(&made, DICOM_TAG(0x0020, 0x9116));
     made_item(&made);
-    made_text(&made, DICOM_TAG(0x0020, 0x0037), "DS", "0\\1\\0\\0\\0\\-1"); /* sagittal: rows to P, columns to I; the normal is R */
+    made_text(&made, DICOM_TAG(0x0020, 0x0037), "DS",
+              "0\\1\\0\\0\\0\\-1"); /* sagittal: rows to P, columns to I; the normal is R */
     made_item_end(&made);
     made_sequence_end(&made);
     made_sequence(&made, DICOM_TAG(0x0028, 0x9110));
@@ -455,10 +462,11 @@ static void frames_of_an_enhanced_image_are_placed_one_by_one(void **state)
         assert_int_equal(volume->grid.size[2], 4);
         for (uint32_t k = 0; k < 4; k++)
             for (uint32_t i = 0; i < 2; i++)
-                assert_close(volume_value(volume, i, 0, k), (100.0 * k + i) * (k == 1 ? 2 : 1) - 3, 0); /* the last frame is slice 1 */
+                assert_close(volume_value(volume, i, 0, k), (100.0 * k + i) * (k == 1 ? 2 : 1) - 3,
+                             0); /* the last frame is slice 1 */
         check_point(volume, 0, 0, 0, 0, 1, 2);
-        check_point(volume, 2, 0, 0, 0, 2, 2);  /* along the row, 0.5 mm between columns */
-        check_point(volume, 0, 1, 0, 0, 1, 0);  /* down, 2 mm between rows */
+        check_point(volume, 2, 0, 0, 0, 2, 2); /* along the row, 0.5 mm between columns */
+        check_point(volume, 0, 1, 0, 0, 1, 0); /* down, 2 mm between rows */
         check_point(volume, 0, 0, 3, -15, 1, 2);
         volume_unref(volume);
         scanned_finish(&s);

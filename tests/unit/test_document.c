@@ -12,8 +12,10 @@ static cJSON *parse(const char *text)
 static cJSON *plan_defaults(void)
 {
     struct scene scene = scene_default;
-    struct scene_region_style_entry entries[2] = { { "brain", { .visible = true, .color_rgb = 0xd696a0, .opacity = 0.45 } },
-                                                    { "tumor", { .visible = true, .color_rgb = 0x46be50, .opacity = 1 } } };
+    struct scene_region_style_entry entries[2] = {
+        { "brain", { .visible = true, .color_rgb = 0xd696a0, .opacity = 0.45 } },
+        { "tumor", { .visible = true, .color_rgb = 0x46be50, .opacity = 1 } }
+    };
     scene.regions = entries;
     scene.n_regions = 2;
     memcpy(scene.image.id, "ct", 3);
@@ -23,8 +25,9 @@ static cJSON *plan_defaults(void)
 /* Its plan document, as far as scenes name something of it. */
 static cJSON *plan_of_scenes(void)
 {
-    return parse("{\"id\":\"head\",\"images\":[{\"id\":\"ct\"},{\"id\":\"mr\"}],\"regions\":[{\"id\":\"brain\"},{\"id\":\"tumor\"}],"
-                 "\"doses\":[{\"id\":\"plan\"}],\"beams\":[]}");
+    return parse(
+        "{\"id\":\"head\",\"images\":[{\"id\":\"ct\"},{\"id\":\"mr\"}],\"regions\":[{\"id\":\"brain\"},{\"id\":\"tumor\"}],"
+        "\"doses\":[{\"id\":\"plan\"}],\"beams\":[]}");
 }
 
 static cJSON *patch_scene(const cJSON *defaults, const cJSON *current, const cJSON *patch, struct problem *problem)
@@ -71,7 +74,8 @@ static void a_patch_changes_what_it_names_and_null_gives_the_plans_value_back(vo
 {
     (void)state;
     cJSON *defaults = plan_defaults();
-    cJSON *one = patched(defaults, defaults, "{\"regions\":{\"brain\":{\"opacity\":0.2}},\"image\":{\"window\":{\"width\":80}}}");
+    cJSON *one = patched(defaults, defaults,
+                         "{\"regions\":{\"brain\":{\"opacity\":0.2}},\"image\":{\"window\":{\"width\":80}}}");
     assert_close(at(one, "regions.brain.opacity")->valuedouble, 0.2, 0);
     assert_string_equal(at(one, "regions.brain.color")->valuestring, "#d696a0");
     assert_close(at(one, "regions.tumor.opacity")->valuedouble, 1, 0);
@@ -88,8 +92,10 @@ static void who_keeps_a_copy_is_told_what_null_became(void **state)
 {
     (void)state;
     cJSON *defaults = plan_defaults();
-    cJSON *one = patched(defaults, defaults, "{\"regions\":{\"brain\":{\"opacity\":0.2}},\"image\":{\"window\":{\"width\":80}}}");
-    cJSON *patch = parse("{\"regions\":{\"brain\":null,\"tumor\":{\"opacity\":0.5}},\"image\":{\"window\":{\"width\":null}}}");
+    cJSON *one = patched(defaults, defaults,
+                         "{\"regions\":{\"brain\":{\"opacity\":0.2}},\"image\":{\"window\":{\"width\":80}}}");
+    cJSON *patch =
+        parse("{\"regions\":{\"brain\":null,\"tumor\":{\"opacity\":0.5}},\"image\":{\"window\":{\"width\":null}}}");
     cJSON *two = patch_scene(defaults, one, patch, NULL);
     cJSON *told = document_told_patch(two, patch);
     cJSON *copy = json_merge(one, told); /* by RFC 7396 alone, as the page does it: null would take the field away */
@@ -120,7 +126,8 @@ static void expect_refused(const char *patch, enum problem_type type, const char
 static void a_patch_with_any_wrong_field_is_refused_whole(void **state)
 {
     (void)state;
-    expect_refused("{\"regions\":{\"tumor\":{\"opacity\":0.5},\"brain\":{\"opacity\":1.5}}}", PROBLEM_VALIDATION, "/regions/brain/opacity");
+    expect_refused("{\"regions\":{\"tumor\":{\"opacity\":0.5},\"brain\":{\"opacity\":1.5}}}", PROBLEM_VALIDATION,
+                   "/regions/brain/opacity");
     expect_refused("{\"regions\":{\"liver\":{\"visible\":true}}}", PROBLEM_VALIDATION, "/regions/liver");
     expect_refused("{\"regions\":{\"a/b\":{\"visible\":true}}}", PROBLEM_VALIDATION, "/regions/a~1b");
     expect_refused("{\"regions\":{\"brain\":{\"color\":\"red\"}}}", PROBLEM_VALIDATION, "/regions/brain/color");
@@ -129,12 +136,15 @@ static void a_patch_with_any_wrong_field_is_refused_whole(void **state)
     expect_refused("{\"surface\":{\"normals\":\"flat\"}}", PROBLEM_VALIDATION, "/surface/normals");
     expect_refused("{\"surface\":{\"algorithm\":\"magic\"}}", PROBLEM_VALIDATION, "/surface/algorithm");
     expect_refused("{\"beam\":{}}", PROBLEM_VALIDATION, "/beam");
-    expect_refused("{\"image\":{\"slices\":{\"axial\":{\"position_mm\":1e300}}}}", PROBLEM_VALIDATION, "/image/slices/axial/position_mm");
+    expect_refused("{\"image\":{\"slices\":{\"axial\":{\"position_mm\":1e300}}}}", PROBLEM_VALIDATION,
+                   "/image/slices/axial/position_mm");
     expect_refused("[1]", PROBLEM_VALIDATION, "");
 }
 
-/* Fields of ids in the description of the scene: a new one is refused here until server/wire/document.c knows what it names. */
-static size_t expect_references(const struct field_object *object, const char *before, const char *behind, const char *pointer)
+/* Fields of ids in the description of the scene: a new one is refused here until server/wire/document.c knows what it
+ * names. */
+static size_t expect_references(const struct field_object *object, const char *before, const char *behind,
+                                const char *pointer)
 {
     size_t n = 0;
     char opened[256], closed[64], at_field[128];
@@ -148,7 +158,8 @@ static size_t expect_references(const struct field_object *object, const char *b
             n += expect_references(field->object, opened, closed, at_field);
         } else if (field->type == FIELD_ID || field->type == FIELD_MAP) {
             char patch[512];
-            (void)snprintf(patch, sizeof patch, "%s%s%s", opened, field->type == FIELD_ID ? "\"nowhere\"" : "{\"nowhere\":{}}", behind);
+            (void)snprintf(patch, sizeof patch, "%s%s%s", opened,
+                           field->type == FIELD_ID ? "\"nowhere\"" : "{\"nowhere\":{}}", behind);
             if (field->type == FIELD_MAP)
                 (void)snprintf(at_field + strlen(at_field), sizeof at_field - strlen(at_field), "/nowhere");
             expect_refused(patch, PROBLEM_VALIDATION, at_field);
@@ -163,16 +174,19 @@ static void every_id_in_a_scene_must_be_the_plans(void **state)
     (void)state;
     assert_int_equal(expect_references(&scene_object, "{", "}", ""), 4); /* regions, check.region, image.id, dose.id */
     cJSON *defaults = plan_defaults();
-    cJSON *scene = patched(defaults, defaults, "{\"image\":{\"id\":\"mr\"},\"dose\":{\"id\":\"plan\"},\"check\":{\"region\":\"tumor\"}}");
+    cJSON *scene = patched(defaults, defaults,
+                           "{\"image\":{\"id\":\"mr\"},\"dose\":{\"id\":\"plan\"},\"check\":{\"region\":\"tumor\"}}");
     assert_string_equal(at(scene, "dose.id")->valuestring, "plan");
-    cJSON *none = patched(defaults, scene, "{\"image\":{\"id\":\"\"},\"dose\":{\"id\":\"\"},\"check\":{\"region\":\"\"}}");
+    cJSON *none =
+        patched(defaults, scene, "{\"image\":{\"id\":\"\"},\"dose\":{\"id\":\"\"},\"check\":{\"region\":\"\"}}");
     assert_string_equal(at(none, "check.region")->valuestring, ""); /* empty names nothing */
     cJSON_Delete(defaults);
     cJSON_Delete(scene);
     cJSON_Delete(none);
 }
 
-/* Keys may come in any order, and a plan has up to 1024 regions: each is found, and the one it does not have is named. */
+/* Keys may come in any order, and a plan has up to 1024 regions: each is found, and the one it does not have is named.
+ */
 static void regions_are_found_whatever_order_a_patch_names_them_in(void **state)
 {
     (void)state;
@@ -192,7 +206,8 @@ static void regions_are_found_whatever_order_a_patch_names_them_in(void **state)
         (void)cJSON_AddObjectToObject(down, id);
     }
     cJSON *nothing = cJSON_CreateObject();
-    cJSON *one = scene_document_patch(plan, nothing, nothing, forward, &problem), *two = scene_document_patch(plan, nothing, nothing, backward, &problem);
+    cJSON *one = scene_document_patch(plan, nothing, nothing, forward, &problem),
+          *two = scene_document_patch(plan, nothing, nothing, backward, &problem);
     assert_non_null(one);
     assert_non_null(two);
     assert_int_equal(cJSON_GetArraySize(at(two, "regions")), N);
@@ -208,11 +223,15 @@ static void a_scene_for_a_plan_that_changed_keeps_what_the_plan_still_has(void *
 {
     (void)state;
     cJSON *defaults = plan_defaults();
-    cJSON *scene = patched(defaults, defaults, "{\"regions\":{\"brain\":{\"opacity\":0.2},\"tumor\":{\"opacity\":0.3}},\"image\":{\"id\":\"mr\"},"
-                                               "\"dose\":{\"id\":\"plan\"},\"check\":{\"region\":\"tumor\",\"visible\":true}}");
-    cJSON *plan = parse("{\"images\":[{\"id\":\"ct\"}],\"regions\":[{\"id\":\"skin\"},{\"id\":\"brain\"}],\"doses\":[]}");
-    cJSON *others = parse("{\"regions\":{\"skin\":{\"visible\":true},\"brain\":{\"opacity\":0.9}},\"image\":{\"id\":\"ct\"},\"dose\":{\"id\":\"\"},"
-                          "\"check\":{\"region\":\"\",\"visible\":false}}");
+    cJSON *scene =
+        patched(defaults, defaults,
+                "{\"regions\":{\"brain\":{\"opacity\":0.2},\"tumor\":{\"opacity\":0.3}},\"image\":{\"id\":\"mr\"},"
+                "\"dose\":{\"id\":\"plan\"},\"check\":{\"region\":\"tumor\",\"visible\":true}}");
+    cJSON *plan =
+        parse("{\"images\":[{\"id\":\"ct\"}],\"regions\":[{\"id\":\"skin\"},{\"id\":\"brain\"}],\"doses\":[]}");
+    cJSON *others = parse(
+        "{\"regions\":{\"skin\":{\"visible\":true},\"brain\":{\"opacity\":0.9}},\"image\":{\"id\":\"ct\"},\"dose\":{\"id\":\"\"},"
+        "\"check\":{\"region\":\"\",\"visible\":false}}");
     cJSON *renewed = scene_document_renew(plan, others, scene);
     assert_close(at(renewed, "regions.brain.opacity")->valuedouble, 0.2, 0);
     assert_non_null(at(renewed, "regions.skin"));

@@ -9,9 +9,10 @@ static struct mesh *extract(const struct mask *mask, int n_threads, bool close_a
     return made_surface(SURFACE_EIGHT_CELL, mask, n_threads, close_at_border);
 }
 
-/* ---- the volume of a hull, by counting lattice points --------------------------------------------------------------------- */
+/* ---- the volume of a hull, by counting lattice points ----------------------------------------------------------- */
 
-/* Points with whole coordinates in `times` the hull of a cell's inside corners: on the inner side of every plane that touches it. */
+/* Points with whole coordinates in `times` the hull of a cell's inside corners: on the inner side of every plane that
+ * touches it. */
 static int lattice_points(int inside, int times)
 {
     int n = 0;
@@ -32,7 +33,8 @@ static int lattice_points(int inside, int times)
     return n;
 }
 
-/* Their number grows as a polynomial whose leading coefficient is the volume (Ehrhart): the third difference is 6 volumes. */
+/* Their number grows as a polynomial whose leading coefficient is the volume (Ehrhart): the third difference is 6
+ * volumes. */
 static double hull_volume(int inside)
 {
     if (!inside)
@@ -61,7 +63,7 @@ static double volume_of_hulls(const struct mask *mask)
     return sum * fabs(affine_determinant(&mask->lps_mm_from_ijk));
 }
 
-/* ---- edges ---------------------------------------------------------------------------------------------------------------- */
+/* ---- edges ------------------------------------------------------------------------------------------------------ */
 
 static int compare_numbers(const void *a, const void *b)
 {
@@ -95,7 +97,7 @@ static void assert_closed(const struct mesh *mesh)
     free(is_used);
 }
 
-/* ---- tests ---------------------------------------------------------------------------------------------------------------- */
+/* ---- tests ------------------------------------------------------------------------------------------------------ */
 
 static void every_corner_case_is_closed_and_is_the_hull_of_its_corners(void **state)
 {
@@ -141,7 +143,8 @@ static void cells_with_fewer_than_three_inside_corners_or_none_outside_give_noth
 static void the_surface_of_a_box_runs_through_its_outermost_centres(void **state)
 {
     (void)state;
-    static const uint32_t boxes[][3] = { { 2, 2, 2 }, { 3, 4, 5 }, { 63, 2, 3 }, { 64, 3, 2 }, { 65, 2, 4 }, { 129, 3, 3 } };
+    static const uint32_t boxes[][3] = { { 2, 2, 2 },  { 3, 4, 5 },  { 63, 2, 3 },
+                                         { 64, 3, 2 }, { 65, 2, 4 }, { 129, 3, 3 } };
     struct affine map = { { { 2, 0, 0 }, { 0, 3, 0 }, { 0, 0, 5 } }, { 10, 20, 30 } };
     for (size_t b = 0; b < sizeof boxes / sizeof *boxes; b++)
         for (uint32_t margin = 0; margin < 3; margin++) {
@@ -179,9 +182,11 @@ static void a_plate_is_two_sheets_and_what_is_thinner_vanishes(void **state)
     assert_same_bytes(closed, open); /* cells beyond the border have at most two inside corners here */
     struct error err = { 0 };
     assert_true(mesh_make_normals(closed, 2, &err));
-    for (size_t v = 0; v < closed->n_vertices; v++) /* the two sheets cancel each other, and still there is a direction */
+    for (size_t v = 0; v < closed->n_vertices;
+         v++) /* the two sheets cancel each other, and still there is a direction */
         assert_close(vec3_length(vec3((double)closed->normals[3 * v], (double)closed->normals[3 * v + 1],
-                                      (double)closed->normals[3 * v + 2])), 1, 1e-5);
+                                      (double)closed->normals[3 * v + 2])),
+                     1, 1e-5);
     mesh_unref(closed);
     mesh_unref(open);
     mask_destroy(mask);
@@ -211,7 +216,7 @@ static void a_region_cut_by_the_scan_is_open_only_when_asked(void **state)
     struct mesh *closed = extract(mask, 2, true), *open = extract(mask, 2, false);
     assert_int_equal(mesh_open_edges(closed), 0);
     assert_int_equal(closed->n_triangles, 4 * (65 * 1 + 65 * 2 + 1 * 2));
-    assert_int_equal(open->n_triangles, 4 * 65 * 2);                 /* only the two long walls face cells that are there */
+    assert_int_equal(open->n_triangles, 4 * 65 * 2); /* only the two long walls face cells that are there */
     assert_int_equal(mesh_open_edges(open), 2 * 2 * (65 + 2));
     mesh_unref(closed);
     mesh_unref(open);
@@ -222,11 +227,13 @@ static void random_blocks_are_closed_and_equal_for_any_threads(void **state)
 {
     (void)state;
     static const uint32_t sides[] = { 1, 2, 5, 31, 62, 63, 64, 65, 127, 128, 130 };
-    struct affine map = { { { 0.8, 0.6, 0 }, { -1.2, 1.6, 0 }, { 0, 0, -3 } }, { 5, 6, 7 } }; /* oblique and left-handed */
+    struct affine map = { { { 0.8, 0.6, 0 }, { -1.2, 1.6, 0 }, { 0, 0, -3 } },
+                          { 5, 6, 7 } }; /* oblique and left-handed */
     uint64_t seed = 41;
     for (size_t s = 0; s < sizeof sides / sizeof *sides; s++)
         for (uint32_t percent = 5; percent < 100; percent += 30) {
-            struct mask *mask = random_mask(sides[s], 1 + next_random(&seed) % 9, 1 + next_random(&seed) % 9, percent, seed, &map);
+            struct mask *mask =
+                random_mask(sides[s], 1 + next_random(&seed) % 9, 1 + next_random(&seed) % 9, percent, seed, &map);
             for (int open = 0; open < 2; open++) {
                 struct mesh *one = extract(mask, 1, !open);
                 for (int n_threads = 2; n_threads < 4; n_threads++) {

@@ -46,7 +46,9 @@ static void expect_jpeg(const struct image *image, int quality, bool full_color,
     assert_int_equal(height, HEIGHT);
     assert_int_equal(sampling, full_color ? TJSAMP_444 : TJSAMP_420);
     static uint8_t back[WIDTH * HEIGHT * 4];
-    assert_int_equal(tjDecompress2(reader, jpeg.bytes, jpeg.n_bytes, back, WIDTH, 0, HEIGHT, TJPF_RGBX, TJFLAG_ACCURATEDCT), 0);
+    assert_int_equal(tjDecompress2(reader, jpeg.bytes, jpeg.n_bytes, back, WIDTH, 0, HEIGHT, TJPF_RGBX,
+                                   TJFLAG_ACCURATEDCT),
+                     0);
     tjDestroy(reader);
     for (int i = 0; i < WIDTH * HEIGHT * 4; i++)
         if (i % 4 != 3)
@@ -116,7 +118,9 @@ static void what_cannot_be_encoded_is_refused(void **state)
     (void)state;
     struct image *image = smooth_image();
     struct encoder *encoder = encoder_create();
-    static const struct encode_options bad[] = { { ENCODE_JPEG, 0, true }, { ENCODE_JPEG, 101, true }, { (enum encode_codec)9, 80, true } };
+    static const struct encode_options bad[] = { { ENCODE_JPEG, 0, true },
+                                                 { ENCODE_JPEG, 101, true },
+                                                 { (enum encode_codec)9, 80, true } };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct error err = { 0 };
         struct encoded out = { image->rgba, 1 };

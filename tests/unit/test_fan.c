@@ -56,7 +56,8 @@ static void fan_triangles_join_three_border_voxels_that_are_neighbours_each_once
                     facing = vec3_add(facing, load_vec3(set->normals + 3 * (size_t)v[c]));
                 }
                 struct vec3 a = mesh_position(mesh, v[0]);
-                struct vec3 normal = vec3_cross(vec3_sub(mesh_position(mesh, v[1]), a), vec3_sub(mesh_position(mesh, v[2]), a));
+                struct vec3 normal =
+                    vec3_cross(vec3_sub(mesh_position(mesh, v[1]), a), vec3_sub(mesh_position(mesh, v[2]), a));
                 assert_true(vec3_dot(normal, facing) >= 0);
                 memcpy(triples[t].v, v, sizeof triples[t].v);
                 qsort(triples[t].v, 3, sizeof *triples[t].v, compare_u32);
@@ -71,7 +72,8 @@ static void fan_triangles_join_three_border_voxels_that_are_neighbours_each_once
         }
 }
 
-/* Around each voxel of a flat sheet lie eight neighbours; so of every four voxels in a square, each is left out of one triangle. */
+/* Around each voxel of a flat sheet lie eight neighbours; so of every four voxels in a square, each is left out of one
+ * triangle. */
 static void a_flat_sheet_has_four_triangles_in_every_square_and_a_line_has_none(void **state)
 {
     (void)state;
@@ -84,7 +86,8 @@ static void a_flat_sheet_has_four_triangles_in_every_square_and_a_line_has_none(
     for (size_t t = 0; t < mesh->n_triangles; t++) {
         struct vec3 middle = vec3(0, 0, 0);
         for (int c = 0; c < 3; c++)
-            middle = vec3_add(middle, vec3_scale(index_of(sheet, mesh_position(mesh, mesh->indices[3 * t + (size_t)c])), 1 / 3.0));
+            middle = vec3_add(middle, vec3_scale(index_of(sheet, mesh_position(mesh, mesh->indices[3 * t + (size_t)c])),
+                                                 1 / 3.0));
         in_middle += middle.x > 1 && middle.x < 5 && middle.y > 1 && middle.y < 4;
     }
     assert_int_equal(in_middle, 4 * 4 * 3);
@@ -101,7 +104,8 @@ static void a_flat_sheet_has_four_triangles_in_every_square_and_a_line_has_none(
     mask_destroy(line);
 }
 
-/* What the thesis could not: on the far side as on the near one, triangles face outward. Some stand square to the ball. */
+/* What the thesis could not: on the far side as on the near one, triangles face outward. Some stand square to the ball.
+ */
 static void a_balls_fan_faces_outward_all_around(void **state)
 {
     (void)state;
@@ -113,7 +117,8 @@ static void a_balls_fan_faces_outward_all_around(void **state)
         for (size_t t = 0; t < mesh->n_triangles; t++) {
             const uint32_t *v = mesh->indices + 3 * t;
             struct vec3 a = mesh_position(mesh, v[0]);
-            struct vec3 normal = vec3_cross(vec3_sub(mesh_position(mesh, v[1]), a), vec3_sub(mesh_position(mesh, v[2]), a));
+            struct vec3 normal =
+                vec3_cross(vec3_sub(mesh_position(mesh, v[1]), a), vec3_sub(mesh_position(mesh, v[2]), a));
             double facing = vec3_dot(normal, vec3_normalize(vec3_sub(a, middle)));
             *(facing >= 0 ? &outward : &inward) += fabs(facing);
         }
@@ -129,7 +134,8 @@ static void turning_the_grid_in_space_changes_no_triangle(void **state)
     (void)state;
     static const struct affine turned[] = {
         { { { 0.6, 0.8, 0 }, { -0.8, 0.6, 0 }, { 0, 0, 1 } }, { 5, 6, 7 } },
-        { { { 2 / 3.0, 2 / 3.0, 1 / 3.0 }, { -2 / 3.0, 1 / 3.0, 2 / 3.0 }, { 1 / 3.0, -2 / 3.0, 2 / 3.0 } }, { -50, 20, 3 } },
+        { { { 2 / 3.0, 2 / 3.0, 1 / 3.0 }, { -2 / 3.0, 1 / 3.0, 2 / 3.0 }, { 1 / 3.0, -2 / 3.0, 2 / 3.0 } },
+          { -50, 20, 3 } },
         { { { 0, 0, 1 }, { 1, 0, 0 }, { 0, 1, 0 } }, { 0, 0, 0 } },
     };
     struct mask *straight = random_mask(24, 20, 18, 45, 5, &unit_map);

@@ -126,7 +126,8 @@ static void a_crash_while_loading_fails_the_plan_and_says_how(void **state)
     world_ask(&world, "a", "render", &reply);
     world_wait_for_state(&world, "a", FLEET_FAILED);
     world_wait_for_state(&world, "b", FLEET_FAILED);
-    assert_string_equal(world_plan_of(&world, "a").problem->detail, "the renderer stopped while reading the plan (signal 9)");
+    assert_string_equal(world_plan_of(&world, "a").problem->detail,
+                        "the renderer stopped while reading the plan (signal 9)");
     assert_string_equal(world_plan_of(&world, "b").problem->detail, "ct.nii: byte 40: 9 axes, expected 3");
     assert_int_equal(world_plan_of(&world, "b").problem->type, PROBLEM_PLAN_UNREADABLE);
     world_wait_for_reply(&world, &reply);
@@ -172,8 +173,9 @@ static void a_crash_answers_what_waits_and_the_next_process_draws(void **state)
     assert_int_equal(first.problem.type, PROBLEM_RENDERER);
     assert_int_equal(world_plan_of(&world, "a").state, FLEET_RESTARTING);
     assert_non_null(world_plan_of(&world, "a").document); /* kept */
-    assert_int_equal(world_plan_of(&world, "a").generation, 2); /* the first restart waits for nothing: it has been started */
-    world_ask(&world, "a", "render", &second);                  /* waits for the new one */
+    assert_int_equal(world_plan_of(&world, "a").generation,
+                     2);                       /* the first restart waits for nothing: it has been started */
+    world_ask(&world, "a", "render", &second); /* waits for the new one */
     world_wait_for_reply(&world, &second);
     assert_true(second.is_frame);
     assert_int_equal(world_plan_of(&world, "a").generation, 2);
@@ -199,8 +201,9 @@ static void one_that_never_draws_a_picture_is_given_up_after_three_restarts_when
     }
     assert_int_equal(world_plan_of(&world, "a").state, FLEET_FAILED);
     assert_int_equal(world_plan_of(&world, "a").generation, FLEET_MAX_RESTARTS + 1);
-    assert_string_equal(world_plan_of(&world, "a").problem->detail,
-                        "the renderer stopped 4 times without having drawn a picture; the last time it stopped (signal 9)");
+    assert_string_equal(
+        world_plan_of(&world, "a").problem->detail,
+        "the renderer stopped 4 times without having drawn a picture; the last time it stopped (signal 9)");
     assert_true(clock_now_us() - began_us >= 3000000); /* 0 + 1 + 2 s of waiting */
     world_end(&world);
 }

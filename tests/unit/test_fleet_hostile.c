@@ -1,4 +1,5 @@
-/* Renderers that break the rules: wrong packets, too much of everything, nothing read. A hostile plan file may have taken them over. */
+/* Renderers that break the rules: wrong packets, too much of everything, nothing read. A hostile plan file may have
+ * taken them over. */
 #include <sys/stat.h>
 #include <time.h>
 
@@ -9,8 +10,8 @@
 static void garbage_ends_that_plan_only(void **state)
 {
     (void)state;
-    static const char *const kinds[] = { "garbage", "huge-head", "large-frame", "no-type", "other-id", "wrong-scene",
-                                        "image-id", "65-images" };
+    static const char *const kinds[] = { "garbage",  "huge-head",   "large-frame", "no-type",
+                                         "other-id", "wrong-scene", "image-id",    "65-images" };
     enum { N_KINDS = sizeof kinds / sizeof kinds[0] };
     struct world world;
     world_begin(&world);
@@ -90,8 +91,9 @@ static void one_that_reads_nothing_is_ended_before_memory_fills(void **state)
     world_end(&world);
 }
 
-/* Of 300 rooms each gets three scenes at once, while four orders may wait for the thread that sends: it is the last scene of each that
- * counts, and it is there before a picture of the room is drawn. Every third room is closed meanwhile. */
+/* Of 300 rooms each gets three scenes at once, while four orders may wait for the thread that sends: it is the last
+ * scene of each that counts, and it is there before a picture of the room is drawn. Every third room is closed
+ * meanwhile. */
 static void no_scene_is_lost_when_the_way_to_the_renderer_is_full(void **state)
 {
     (void)state;
@@ -116,8 +118,8 @@ static void no_scene_is_lost_when_the_way_to_the_renderer_is_full(void **state)
         }
     /* a request is refused while scenes wait, and answered after them */
     struct reply reply = { 0 };
-    WORLD_UNTIL(&world, (reply_finish(&reply), world_ask(&world, "a", "query", &reply), world_wait_for_reply(&world, &reply),
-                         reply.problem.type != PROBLEM_BUSY));
+    WORLD_UNTIL(&world, (reply_finish(&reply), world_ask(&world, "a", "query", &reply),
+                         world_wait_for_reply(&world, &reply), reply.problem.type != PROBLEM_BUSY));
     assert_int_equal(reply.problem.type, PROBLEM_NONE);
     cJSON *body = cJSON_GetObjectItemCaseSensitive(reply.json, "body");
     for (int i = 0; i < N_ROOMS; i++) {

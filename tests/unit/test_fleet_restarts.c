@@ -75,7 +75,8 @@ static void one_that_ends_after_each_picture_does_not_use_up_the_machine(void **
     }
     int64_t elapsed_s = (clock_now_us() - began_us) / 1000000;
     if (elapsed_s < 38) { /* a machine that is slower than that starts less than two a second in any case */
-        assert_true(n >= 60 && n < 62 + elapsed_s); /* a minute's worth at one a second, and one more each second that passed */
+        assert_true(n >= 60 &&
+                    n < 62 + elapsed_s); /* a minute's worth at one a second, and one more each second that passed */
     }
     draw(&world); /* it comes back all the same */
     world_end(&world);
@@ -97,9 +98,12 @@ static void one_that_never_drew_is_tried_again_after_growing_pauses_while_somebo
         assert_int_equal(reply.problem.retry_after_ms, expected_ms[i] + 500);
     }
     assert_int_equal(world_plan_of(&world, "a").state, FLEET_RESTARTING);
-    assert_string_equal(world_plan_of(&world, "a").phase, "the renderer stopped (signal 9); it is started again in 4 s");
-    WORLD_UNTIL(&world, strcmp(world_plan_of(&world, "a").phase, "the renderer stopped (signal 9); it is started again in 2 s") == 0);
-    assert_string_equal(world_plan_of(&world, "a").phase, "the renderer stopped (signal 9); it is started again in 2 s");
+    assert_string_equal(world_plan_of(&world, "a").phase,
+                        "the renderer stopped (signal 9); it is started again in 4 s");
+    WORLD_UNTIL(&world, strcmp(world_plan_of(&world, "a").phase,
+                               "the renderer stopped (signal 9); it is started again in 2 s") == 0);
+    assert_string_equal(world_plan_of(&world, "a").phase,
+                        "the renderer stopped (signal 9); it is started again in 2 s");
     fleet_release(world.fleet, "a"); /* nobody is there any more: not tried again */
     world_wait_for_state(&world, "a", FLEET_CLOSED);
     assert_true(fleet_hold(world.fleet, "a")); /* somebody enters */
@@ -126,7 +130,7 @@ static void a_plan_whose_file_is_bad_is_not_tried_again_until_the_file_has_chang
     begin(&world, "fails");
     assert_true(fleet_hold(world.fleet, "a"));
     world_wait_for_state(&world, "a", FLEET_FAILED);
-    assert_true(fleet_hold(world.fleet, "a")); /* one more enters */
+    assert_true(fleet_hold(world.fleet, "a"));                                /* one more enters */
     for (int64_t end_us = clock_now_us() + 1500000; clock_now_us() < end_us;) /* longer than the first pause */
         world_step(&world);
     assert_int_equal(world_plan_of(&world, "a").state, FLEET_FAILED);

@@ -25,7 +25,8 @@ static void step_for_ms(struct world *world, int ms)
         world_step(world);
 }
 
-/* 2 s are promised; 5 s are for machines that are busy with other things, and less than a renderer has while nothing is due. */
+/* 2 s are promised; 5 s are for machines that are busy with other things, and less than a renderer has while nothing is
+ * due. */
 static void one_that_was_stopped_is_replaced_soon_while_a_picture_is_due(void **state)
 {
     (void)state;
@@ -104,7 +105,8 @@ static int be_stopped(int told)
     world_open_plan(&world, "a");
     world_wait_for_state(&world, "a", FLEET_READY);
     struct reply picture = { 0 };
-    world_ask(&world, "a", "render", &picture); /* due for a moment only when we are stopped: it is not late after that */
+    world_ask(&world, "a", "render",
+              &picture); /* due for a moment only when we are stopped: it is not late after that */
     step_for_ms(&world, 300);
     if (write(told, "", 1) != 1)
         return 2;
@@ -112,7 +114,10 @@ static int be_stopped(int told)
     step_for_ms(&world, 700);
     world_ask(&world, "a", "query", &query);
     world_wait_for_reply(&world, &query);
-    int result = picture.n > 0 ? 3 : world_plan_of(&world, "a").generation != 1 ? 4 : world_plan_of(&world, "a").state != FLEET_READY ? 5 : 0;
+    int result = picture.n > 0                                     ? 3
+                 : world_plan_of(&world, "a").generation != 1      ? 4
+                 : world_plan_of(&world, "a").state != FLEET_READY ? 5
+                                                                   : 0;
     reply_finish(&query);
     world_end(&world);
     return result;
@@ -253,7 +258,7 @@ static void one_that_is_late_with_a_picture_but_draws_others_is_left_alone(void 
     world_end(&world);
 }
 
-/* ---- a disk that does not answer ---- */
+/* ---- a disk that does not answer -------------------------------------------------------------------------------- */
 
 static sem_t disk_answers;
 static atomic_bool is_slow;

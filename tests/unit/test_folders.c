@@ -11,8 +11,8 @@ static void an_id_is_safe_in_an_address_and_never_empty(void **state)
     static const struct {
         const char *name, *id;
     } cases[] = {
-        { "head-3", "head-3" },  { "Head of  Mr. X", "head-of-mr-x" }, { "..", "plan" },     { "", "plan" },
-        { "__a__b__", "a-b" },   { "\xc3\x84rger", "rger" },           { "a/../b", "a-b" },  { "%2e%2e", "2e-2e" },
+        { "head-3", "head-3" }, { "Head of  Mr. X", "head-of-mr-x" }, { "..", "plan" },    { "", "plan" },
+        { "__a__b__", "a-b" },  { "\xc3\x84rger", "rger" },           { "a/../b", "a-b" }, { "%2e%2e", "2e-2e" },
     };
     char id[64], longest[300];
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -43,9 +43,13 @@ static void plans_are_found_where_they_lie(void **state)
     (void)state;
     char folder[] = "/tmp/beamroom-folders-XXXXXX", alone[80], nowhere[80];
     assert_non_null(mkdtemp(folder));
-    static const char *const folders[] = { "b", "a", ".hidden", "set", "set/one", "set/two", "set/other", "c", "c/inner" };
-    static const char *const files[] = { "readme", "a/plan.json", "b/x.nii", "set/one/plan.json", "set/two/plan.json", "c/plan.json",
-                                         "c/inner/plan.json", ".hidden/plan.json" };
+    static const char *const folders[] = {
+        "b", "a", ".hidden", "set", "set/one", "set/two", "set/other", "c", "c/inner"
+    };
+    static const char *const files[] = {
+        "readme",      "a/plan.json",       "b/x.nii",          "set/one/plan.json", "set/two/plan.json",
+        "c/plan.json", "c/inner/plan.json", ".hidden/plan.json"
+    };
     for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
         make(folder, folders[i], true);
     for (size_t i = 0; i < sizeof files / sizeof *files; i++)

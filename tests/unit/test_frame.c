@@ -10,9 +10,20 @@
 
 static struct frame_header sample(void)
 {
-    struct frame_header header = { .codec = 1, .flags = FRAME_STILL | FRAME_SHARED, .quality = 92, .scale_percent = 100, .view = 3,
-                                   .sequence = 0x01020304, .scene_revision = 42, .input_id = 0xfffffffe, .width_px = 1024,
-                                   .height_px = 768, .render_us = 20000, .encode_us = 3000, .payload_bytes = 5, .pixels_per_mm_1000 = 2500 };
+    struct frame_header header = { .codec = 1,
+                                   .flags = FRAME_STILL | FRAME_SHARED,
+                                   .quality = 92,
+                                   .scale_percent = 100,
+                                   .view = 3,
+                                   .sequence = 0x01020304,
+                                   .scene_revision = 42,
+                                   .input_id = 0xfffffffe,
+                                   .width_px = 1024,
+                                   .height_px = 768,
+                                   .render_us = 20000,
+                                   .encode_us = 3000,
+                                   .payload_bytes = 5,
+                                   .pixels_per_mm_1000 = 2500 };
     for (int i = 0; i < 16; i++)
         header.clip_from_lps_mm[i] = (float)i * 0.5f;
     return header;
@@ -145,7 +156,8 @@ static void a_stream_that_is_not_packets_is_closed(void **state)
 }
 
 /* Head and JSON as they come, and what the reader says to them. */
-static int feed(struct packet_reader *reader, const char *json, size_t n_json, size_t n_blob, struct packet *packet, struct error *err)
+static int feed(struct packet_reader *reader, const char *json, size_t n_json, size_t n_blob, struct packet *packet,
+                struct error *err)
 {
     const uint32_t head[3] = { 0x4b505242, (uint32_t)n_json, (uint32_t)n_blob };
     const struct {
@@ -191,9 +203,9 @@ static int read_one(enum packet_direction direction, const char *type, size_t n_
     return got;
 }
 
-/* A frame of a 4096 x 4096 picture has at most 64 MiB of pixels (4 bytes each), and a MiB for the codec's own; the JSON of a frame has 24
- * numbers and up to 32 missing regions, each with an id of 63 letters and a reason of 239, which JSON may write six times as long: 58 KiB.
- * What is larger is refused before memory is taken for it. */
+/* A frame of a 4096 x 4096 picture has at most 64 MiB of pixels (4 bytes each), and a MiB for the codec's own; the JSON
+ * of a frame has 24 numbers and up to 32 missing regions, each with an id of 63 letters and a reason of 239, which JSON
+ * may write six times as long: 58 KiB. What is larger is refused before memory is taken for it. */
 static void a_packet_larger_than_its_type_may_be_is_refused_before_its_blob(void **state)
 {
     (void)state;
@@ -232,7 +244,8 @@ static void each_end_takes_only_what_is_for_it(void **state)
     assert_non_null(strstr(err.text, "\"gossip\""));
 }
 
-/* The writer's limits are the reader's: whatever is written can be read, and the first that cannot be read is not written. */
+/* The writer's limits are the reader's: whatever is written can be read, and the first that cannot be read is not
+ * written. */
 static void what_one_end_writes_the_other_reads(void **state)
 {
     (void)state;
@@ -257,7 +270,8 @@ static void what_one_end_writes_the_other_reads(void **state)
                 if (more == 0) {
                     assert_non_null(bytes);
                     assert_int_equal(n, 12 + limit->max_json);
-                    struct packet_reader *reader = packet_reader_create(direction == 0 ? PACKET_TO_DAEMON : PACKET_TO_RENDERER);
+                    struct packet_reader *reader =
+                        packet_reader_create(direction == 0 ? PACKET_TO_DAEMON : PACKET_TO_RENDERER);
                     struct packet packet;
                     assert_int_equal(feed(reader, (char *)bytes + 12, n - 12, 0, &packet, &err), 1);
                     packet_finish(&packet);
@@ -328,7 +342,8 @@ static int run_short_of_memory(void)
     struct packet packet;
     struct error err = { 0 };
     size_t n;
-    void *blob = mmap(NULL, blob_bytes, PROT_READ, MAP_SHARED | MAP_ANONYMOUS, -1, 0); /* shared memory does not count */
+    void *blob =
+        mmap(NULL, blob_bytes, PROT_READ, MAP_SHARED | MAP_ANONYMOUS, -1, 0); /* shared memory does not count */
     cJSON *json = cJSON_Parse("{\"type\":\"answer\"}");
     if (blob == MAP_FAILED || setrlimit(RLIMIT_DATA, &limit) != 0)
         return 1;
@@ -402,7 +417,8 @@ static void a_frame_has_numbers_within_bounds_and_a_picture(void **state)
     cJSON_AddItemToArray(cJSON_GetObjectItemCaseSensitive(json, "clip_from_lps_mm"), cJSON_CreateNumber(1));
     assert_false(is_frame(json, 1, &frame));
     json = frame_of(1, 1, 1);
-    cJSON_ReplaceItemInArray(cJSON_GetObjectItemCaseSensitive(json, "clip_from_lps_mm"), 3, cJSON_CreateNumber(1e300)); /* no float holds it */
+    cJSON_ReplaceItemInArray(cJSON_GetObjectItemCaseSensitive(json, "clip_from_lps_mm"), 3,
+                             cJSON_CreateNumber(1e300)); /* no float holds it */
     assert_false(is_frame(json, 1, &frame));
 }
 

@@ -39,8 +39,9 @@ static void only_a_post_to_the_plans_is_one(void **state)
         enum call_method method;
         const char *path;
         bool is_one;
-    } cases[] = { { CALL_POST, "/api/v1/plans", true },  { CALL_POST, "/api/v1/plans/", true }, { CALL_GET, "/api/v1/plans", false },
-                  { CALL_POST, "/api/v1/plans/x", false }, { CALL_POST, "/api/v1/rooms", false }, { CALL_POST, "/api/v2/plans", false } };
+    } cases[] = { { CALL_POST, "/api/v1/plans", true },  { CALL_POST, "/api/v1/plans/", true },
+                  { CALL_GET, "/api/v1/plans", false },  { CALL_POST, "/api/v1/plans/x", false },
+                  { CALL_POST, "/api/v1/rooms", false }, { CALL_POST, "/api/v2/plans", false } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct call *call = call_create();
         call->method = cases[i].method;
@@ -66,7 +67,8 @@ static enum problem_type refusal(struct intake *intake, const char *content_type
 static void what_may_not_come_is_refused_before_it_does(void **state)
 {
     (void)state;
-    struct intake *intake = intake_create(folder, 1000, 0), *none = intake_create(NULL, 1000, 0), *lost = intake_create("/nowhere", 1000, 0);
+    struct intake *intake = intake_create(folder, 1000, 0), *none = intake_create(NULL, 1000, 0),
+                  *lost = intake_create("/nowhere", 1000, 0);
     assert_int_equal(refusal(intake, "application/zip", NULL, 1000), PROBLEM_NONE);
     assert_int_equal(refusal(intake, "APPLICATION/X-TAR; x=y", NULL, -1), PROBLEM_NONE);
     assert_int_equal(refusal(intake, "application/gzip", "http://here.example:8080", 0), PROBLEM_NONE);
@@ -214,7 +216,8 @@ static void streams_that_come_together_leave_the_reserve(void **state)
             n_going--;
         }
     }
-    assert_in_range(n_blocks, 60 - INTAKE_MAX_FILES * (INTAKE_STEP_BYTES >> 20), 60); /* MiB: the disk less the reserve, to a step each */
+    assert_in_range(n_blocks, 60 - INTAKE_MAX_FILES * (INTAKE_STEP_BYTES >> 20),
+                    60); /* MiB: the disk less the reserve, to a step each */
     for (int i = 0; i < INTAKE_MAX_FILES; i++)
         intake_drop(files[i]);
     assert_int_equal(free_bytes(NULL, &failed), disk_bytes);
@@ -280,7 +283,8 @@ static void who_trickles_gives_the_place_back(void **state)
         intake_set_window_ms(intake, INTAKE_WINDOW_MS);
         struct intake_file *file = intake_begin(intake, call, -1, &problem);
         assert_non_null(file);
-        assert_true(intake_add(file, much, is_fast ? sizeof much : 1, &problem)); /* within the window anything may come */
+        assert_true(
+            intake_add(file, much, is_fast ? sizeof much : 1, &problem)); /* within the window anything may come */
         intake_set_window_ms(intake, 1);
         usleep(2000);
         assert_int_equal(intake_add(file, "x", 1, &problem), is_fast);
@@ -318,7 +322,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(only_a_post_to_the_plans_is_one),
         cmocka_unit_test_setup_teardown(what_may_not_come_is_refused_before_it_does, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(more_than_the_disk_holds_is_refused_before_it_comes, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(more_than_the_disk_holds_is_refused_before_it_comes, make_folder,
+                                        remove_folder),
         cmocka_unit_test_setup_teardown(it_ends_at_the_limit_and_not_before, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(what_has_come_whole_is_ours_alone_to_read, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(a_disk_that_takes_no_more_is_said, make_folder, remove_folder),

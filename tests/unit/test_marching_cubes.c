@@ -8,7 +8,7 @@ static struct mesh *extract(const struct mask *mask, int n_threads, bool close_a
     return made_surface(SURFACE_MARCHING_CUBES, mask, n_threads, close_at_border);
 }
 
-/* ---- tests -------------------------------------------------------------------------------------------------------------- */
+/* ---- tests ------------------------------------------------------------------------------------------------------ */
 
 static void every_corner_case_is_closed_and_encloses_its_corners(void **state)
 {
@@ -21,7 +21,8 @@ static void every_corner_case_is_closed_and_encloses_its_corners(void **state)
             struct mesh *mesh = extract(mask, 1, true);
             assert_int_equal(mesh_open_edges(mesh), 0);
             assert_int_equal(mesh_euler(mesh), euler_of_surface(mask));
-            /* every voxel keeps at least the octahedron around its centre, of 1/6, and the surface never leaves the box */
+            /* every voxel keeps at least the octahedron around its centre, of 1/6, and the surface never leaves the box
+             */
             int n = __builtin_popcount((unsigned)inside);
             assert_true(mesh_volume_mm3(mesh) >= n / 6.0 - 1e-6);
             assert_true(mesh_volume_mm3(mesh) <= 8);
@@ -63,8 +64,8 @@ static void a_single_voxel_is_an_octahedron_that_faces_outward(void **state)
     }
 }
 
-/* A box of a x b x c voxels: all of it but its 12 edges, each cut by a wedge of 1/8 (half of half x half) of its cells, and its 8
- * corners, where of the eighth cell only the tetrahedron of 1/48 is inside. */
+/* A box of a x b x c voxels: all of it but its 12 edges, each cut by a wedge of 1/8 (half of half x half) of its cells,
+ * and its 8 corners, where of the eighth cell only the tetrahedron of 1/48 is inside. */
 static double box_volume(double a, double b, double c)
 {
     double inner = (a - 1) * (b - 1) * (c - 1);
@@ -76,7 +77,8 @@ static double box_volume(double a, double b, double c)
 static void the_volume_of_a_box_is_exact_also_where_the_scan_cuts_it(void **state)
 {
     (void)state;
-    static const uint32_t boxes[][3] = { { 1, 1, 1 }, { 2, 3, 4 }, { 62, 2, 2 }, { 63, 1, 2 }, { 64, 3, 1 }, { 65, 2, 5 }, { 130, 4, 3 } };
+    static const uint32_t boxes[][3] = { { 1, 1, 1 },  { 2, 3, 4 },  { 62, 2, 2 }, { 63, 1, 2 },
+                                         { 64, 3, 1 }, { 65, 2, 5 }, { 130, 4, 3 } };
     for (size_t b = 0; b < sizeof boxes / sizeof *boxes; b++)
         for (uint32_t margin = 0; margin < 3; margin++) {
             const uint32_t *n = boxes[b];
@@ -135,9 +137,10 @@ static void a_sphere_has_the_analytic_volume_and_nearly_the_area(void **state)
     struct mesh *mesh = extract(mask, 2, true);
     assert_int_equal(mesh_open_edges(mesh), 0);
     assert_int_equal(mesh_euler(mesh), 2);
-    assert_near(mesh_volume_mm3(mesh), 4.0 / 3.0 * MATH_PI * 20 * 20 * 20, 0.01); /* the lattice points of a ball: well within 1 % */
-    /* midpoints leave steps of whole voxels that do not vanish with more voxels: the area is too large, never too small, and by
-     * less than the 3 / 2 that bare voxel faces have */
+    assert_near(mesh_volume_mm3(mesh), 4.0 / 3.0 * MATH_PI * 20 * 20 * 20,
+                0.01); /* the lattice points of a ball: well within 1 % */
+    /* midpoints leave steps of whole voxels that do not vanish with more voxels: the area is too large, never too
+     * small, and by less than the 3 / 2 that bare voxel faces have */
     double area = 4 * MATH_PI * 20 * 20;
     assert_true(mesh_area_mm2(mesh) > area && mesh_area_mm2(mesh) < 1.15 * area);
     struct box3 box = mesh->bounds_lps_mm;
@@ -197,7 +200,8 @@ static void random_blocks_are_closed_and_equal_for_any_threads_and_code(void **s
     struct affine map = { { { 0.8, 0.6, 0 }, { -1.2, 1.6, 0 }, { 0, 0, -3 } }, { 5, 6, 7 } };
     for (size_t s = 0; s < sizeof sides / sizeof *sides; s++)
         for (uint32_t percent = 5; percent < 100; percent += 30) {
-            struct mask *mask = random_mask(sides[s], 1 + next_random(&seed) % 9, 1 + next_random(&seed) % 9, percent, seed, &map);
+            struct mask *mask =
+                random_mask(sides[s], 1 + next_random(&seed) % 9, 1 + next_random(&seed) % 9, percent, seed, &map);
             struct mesh *one = extract(mask, 1, true);
             assert_int_equal(mesh_open_edges(one), 0);
             assert_int_equal(mesh_euler(one), euler_of_surface(mask));

@@ -7,7 +7,8 @@
 #include "tests/unit/made_mask.h"
 #include "tests/unit/oracle.h"
 
-static struct volume *field_of(uint32_t nx, uint32_t ny, uint32_t nz, struct affine map, double (*value)(struct vec3 lps_mm))
+static struct volume *field_of(uint32_t nx, uint32_t ny, uint32_t nz, struct affine map,
+                               double (*value)(struct vec3 lps_mm))
 {
     struct grid grid = made_grid(nx, ny, nz, map);
     return made_volume(&grid, VOXEL_F32, value);
@@ -25,14 +26,18 @@ static struct mesh *extract(const struct volume *field, double iso, int n_thread
     return mesh;
 }
 
-static double from_middle(struct vec3 p) { return 100 - vec3_length(p); } /* linear along rays */
+static double from_middle(struct vec3 p)
+{
+    return 100 - vec3_length(p);
+} /* linear along rays */
 
 static void a_sphere_is_where_it_is_to_a_hundredth_of_a_voxel(void **state)
 {
     (void)state;
     for (int mirrored = 0; mirrored < 2; mirrored++) {
         const uint32_t size[3] = { 48, 48, 24 };
-        struct affine map = made_affine(vec3(mirrored ? -1 : 1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 2), size, vec3(0.2, -0.3, 0.4));
+        struct affine map =
+            made_affine(vec3(mirrored ? -1 : 1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 2), size, vec3(0.2, -0.3, 0.4));
         struct volume *field = field_of(48, 48, 24, map, from_middle);
         struct mesh *mesh = extract(field, 82.5, 2, true); /* radius 17.5 */
         assert_int_equal(mesh_open_edges(mesh), 0);
@@ -43,7 +48,8 @@ static void a_sphere_is_where_it_is_to_a_hundredth_of_a_voxel(void **state)
             assert_close(vec3_length(vec3((double)p[0], (double)p[1], (double)p[2])), 17.5, 0.03);
         }
         assert_near(mesh_volume_mm3(mesh), 4 / 3.0 * MATH_PI * pow(17.5, 3), 0.006);
-        assert_near(mesh_area_mm2(mesh), 4 * MATH_PI * 17.5 * 17.5, 0.006); /* no stairs: with midpoints it is 9 % too large */
+        assert_near(mesh_area_mm2(mesh), 4 * MATH_PI * 17.5 * 17.5,
+                    0.006); /* no stairs: with midpoints it is 9 % too large */
         mesh_unref(mesh);
         volume_unref(field);
     }
@@ -51,7 +57,8 @@ static void a_sphere_is_where_it_is_to_a_hundredth_of_a_voxel(void **state)
 
 static double waves(struct vec3 p)
 {
-    return sin(p.x / 3.1) + cos(p.y / 2.3 + p.z / 4) + sin(p.z / 2.7 - p.x / 5) + 0.8 * sin(p.x * 1.9 + p.y * 2.3 + p.z * 1.7);
+    return sin(p.x / 3.1) + cos(p.y / 2.3 + p.z / 4) + sin(p.z / 2.7 - p.x / 5) +
+           0.8 * sin(p.x * 1.9 + p.y * 2.3 + p.z * 1.7);
 }
 
 static void write_floats(char *path, const float *values, size_t n)
@@ -69,12 +76,15 @@ static void triangles_and_vertices_equal_vtk_on_a_wavy_field(void **state)
     struct volume *field = field_of(41, 37, 29, unit_map, waves); /* the voxel's index is its place */
     for (int i = 0; i < 3; i++) {
         const double levels[3] = { 0, 0.7, -1.3 };
-        char field_path[] = "/tmp/beamroom-test-XXXXXX", vertex_path[] = "/tmp/beamroom-test-XXXXXX", level[32], out[256], *rest;
+        char field_path[] = "/tmp/beamroom-test-XXXXXX", vertex_path[] = "/tmp/beamroom-test-XXXXXX", level[32],
+             out[256], *rest;
         struct mesh *mesh = extract(field, levels[i], 2, false);
         write_floats(field_path, field->voxels, 41 * 37 * 29);
         write_floats(vertex_path, mesh->positions_lps_mm, 3 * mesh->n_vertices);
         snprintf(level, sizeof level, "%.17g", levels[i]);
-        char *arguments[] = { oracle_python(), "tests/oracle/vtk_field.py", field_path, vertex_path, "41", "37", "29", level, NULL };
+        char *arguments[] = {
+            oracle_python(), "tests/oracle/vtk_field.py", field_path, vertex_path, "41", "37", "29", level, NULL
+        };
         int status = oracle_run(arguments, out, sizeof out);
         unlink(field_path);
         unlink(vertex_path);
@@ -95,7 +105,10 @@ static void triangles_and_vertices_equal_vtk_on_a_wavy_field(void **state)
     volume_unref(field);
 }
 
-static double cut(struct vec3 p) { return p.x + 0.25; }
+static double cut(struct vec3 p)
+{
+    return p.x + 0.25;
+}
 
 static void a_field_cut_by_its_grid_is_closed_half_a_voxel_behind_it(void **state)
 {

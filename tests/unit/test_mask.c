@@ -1,12 +1,13 @@
 #include "core/base/mem.h"
-#include "core/region/mask.h"
 #include "core/region/boundary.h"
+#include "core/region/mask.h"
 #include "core/region/mask_pack.h"
 #include "core/region/mask_sweep.h"
 #include "tests/check.h"
 #include "tests/unit/made_mask.h"
 
-static struct volume *random_layer(uint32_t nx, uint32_t ny, uint32_t nz, enum voxel_type type, uint32_t n_values, uint64_t seed)
+static struct volume *random_layer(uint32_t nx, uint32_t ny, uint32_t nz, enum voxel_type type, uint32_t n_values,
+                                   uint64_t seed)
 {
     struct volume *layer = layer_make(nx, ny, nz, type, &unit_map);
     for (size_t at = 0, n = grid_n_voxels(&layer->grid); at < n; at++)
@@ -88,7 +89,8 @@ static void labels_above_255_are_found_in_wide_layers_and_never_in_bytes(void **
 {
     (void)state;
     const uint16_t labels[] = { 259, 65535, 32767, 32768 };
-    struct volume *wide = layer_make(70, 1, 1, VOXEL_U16, &unit_map), *bytes = layer_make(70, 1, 1, VOXEL_U8, &unit_map);
+    struct volume *wide = layer_make(70, 1, 1, VOXEL_U16, &unit_map),
+                  *bytes = layer_make(70, 1, 1, VOXEL_U8, &unit_map);
     uint16_t *voxels = wide->voxels;
     memset(bytes->voxels, 3, 70); /* 259 - 256 */
     for (size_t i = 0; i < 4; i++)
@@ -153,10 +155,14 @@ static void a_region_brings_its_descendants_on_the_same_grid(void **state)
     (void)state;
     struct affine other = unit_map;
     other.origin.x = 0.5;
-    /* regions: 0 head (label 1), 1 brain in it (2), 2 tumour in that (3), 3 a neighbour (4); on layer 1, same grid: 4 a vessel in
-     * the brain (1); on layer 2, half a voxel off: 5 a target in the brain (1) */
-    struct region regions[6] = { { .parent = -1, .label = 1 }, { .parent = 0, .label = 2 },  { .parent = 1, .label = 3 },
-                                 { .parent = -1, .label = 4 }, { .parent = 1, .layer = 1, .label = 1 }, { .parent = 1, .layer = 2, .label = 1 } };
+    /* regions: 0 head (label 1), 1 brain in it (2), 2 tumour in that (3), 3 a neighbour (4); on layer 1, same grid: 4 a
+     * vessel in the brain (1); on layer 2, half a voxel off: 5 a target in the brain (1) */
+    struct region regions[6] = { { .parent = -1, .label = 1 },
+                                 { .parent = 0, .label = 2 },
+                                 { .parent = 1, .label = 3 },
+                                 { .parent = -1, .label = 4 },
+                                 { .parent = 1, .layer = 1, .label = 1 },
+                                 { .parent = 1, .layer = 2, .label = 1 } };
     struct region_set set = { .n_layers = 3, .regions = regions, .n_regions = 6 };
     set.layers[0] = layer_make(10, 1, 1, VOXEL_U8, &unit_map);
     set.layers[1] = layer_make(10, 1, 1, VOXEL_U16, &unit_map);
@@ -186,7 +192,8 @@ static void reducing_keeps_what_is_half_full_and_nothing_that_is_empty(void **st
     struct mask *mask = from_labels(layer, &label, 1, 2);
     struct error err = { 0 };
     for (uint32_t f = 2; f <= 8; f++) {
-        struct mask *one = mask_reduce(mask, (uint32_t[]){ f, f, f }, 1, &err), *three = mask_reduce(mask, (uint32_t[]){ f, f, f }, 3, &err);
+        struct mask *one = mask_reduce(mask, (uint32_t[]){ f, f, f }, 1, &err),
+                    *three = mask_reduce(mask, (uint32_t[]){ f, f, f }, 3, &err);
         assert_non_null(one);
         assert_same_bits(one, three);
         for (int axis = 0; axis < 3; axis++)
@@ -219,10 +226,13 @@ static void a_reduced_mask_keeps_its_outer_faces(void **state)
     struct volume *layer = layer_make(12, 24, 6, VOXEL_U8, &map);
     memset(layer->voxels, 1, 12 * 24 * 6);
     struct error err = { 0 };
-    struct mask *mask = from_labels(layer, (uint16_t[]){ 1 }, 1, 1), *coarse = mask_reduce(mask, (uint32_t[]){ 3, 3, 3 }, 2, &err);
+    struct mask *mask = from_labels(layer, (uint16_t[]){ 1 }, 1, 1),
+                *coarse = mask_reduce(mask, (uint32_t[]){ 3, 3, 3 }, 2, &err);
     for (int corner = 0; corner < 8; corner++) {
-        struct vec3 fine = affine_point(&mask->lps_mm_from_ijk, vec3(corner & 1 ? 11.5 : -0.5, corner & 2 ? 23.5 : -0.5, corner & 4 ? 5.5 : -0.5));
-        struct vec3 same = affine_point(&coarse->lps_mm_from_ijk, vec3(corner & 1 ? 3.5 : -0.5, corner & 2 ? 7.5 : -0.5, corner & 4 ? 1.5 : -0.5));
+        struct vec3 fine = affine_point(&mask->lps_mm_from_ijk, vec3(corner & 1 ? 11.5 : -0.5, corner & 2 ? 23.5 : -0.5,
+                                                                     corner & 4 ? 5.5 : -0.5));
+        struct vec3 same = affine_point(&coarse->lps_mm_from_ijk, vec3(corner & 1 ? 3.5 : -0.5, corner & 2 ? 7.5 : -0.5,
+                                                                       corner & 4 ? 1.5 : -0.5));
         assert_close(vec3_length(vec3_sub(fine, same)), 0, 1e-9);
     }
     mask_destroy(mask);
@@ -251,7 +261,8 @@ static void a_small_region_does_not_vanish_when_reduced(void **state)
     volume_unref(layer);
 }
 
-/* Regions 0 to 8 on four layers: nested, two with one label, one without a voxel; layer 2 lies on another grid, layer 3 has less in it. */
+/* Regions 0 to 8 on four layers: nested, two with one label, one without a voxel; layer 2 lies on another grid, layer 3
+ * has less in it. */
 static void one_sweep_gives_the_masks_that_are_made_one_by_one(void **state)
 {
     (void)state;
@@ -259,11 +270,18 @@ static void one_sweep_gives_the_masks_that_are_made_one_by_one(void **state)
     struct affine other = unit_map;
     other.origin.x = 0.5;
     struct region regions[N] = {
-        { .parent = -1, .label = 1 }, { .parent = 0, .label = 2 },  { .parent = 1, .label = 3 },  { .parent = -1, .label = 2 },
-        { .parent = 1, .layer = 1, .label = 4 }, { .parent = 1, .layer = 2, .label = 1 }, { .parent = 5, .layer = 2, .label = 2 },
-        { .parent = -1, .label = 99 }, { .parent = 4, .layer = 3, .label = 3000 },
+        { .parent = -1, .label = 1 },
+        { .parent = 0, .label = 2 },
+        { .parent = 1, .label = 3 },
+        { .parent = -1, .label = 2 },
+        { .parent = 1, .layer = 1, .label = 4 },
+        { .parent = 1, .layer = 2, .label = 1 },
+        { .parent = 5, .layer = 2, .label = 2 },
+        { .parent = -1, .label = 99 },
+        { .parent = 4, .layer = 3, .label = 3000 },
     };
-    static const uint32_t sizes[][3] = { { 1, 1, 1 }, { 64, 3, 4 }, { 63, 5, 2 }, { 65, 4, 7 }, { 130, 9, 6 }, { 200, 30, 11 } };
+    static const uint32_t sizes[][3] = { { 1, 1, 1 },  { 64, 3, 4 },  { 63, 5, 2 },
+                                         { 65, 4, 7 }, { 130, 9, 6 }, { 200, 30, 11 } };
     for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
         for (uint32_t n_values = 2; n_values < 300; n_values *= 6) {
             const uint32_t *size = sizes[s];
@@ -273,8 +291,9 @@ static void one_sweep_gives_the_masks_that_are_made_one_by_one(void **state)
             set.layers[2] = layer_make(size[0], size[1], size[2], VOXEL_U8, &other);
             set.layers[3] = layer_make(size[0], size[1], size[2], VOXEL_U16, &unit_map);
             memset(set.layers[2]->voxels, 2, grid_n_voxels(&set.layers[2]->grid)); /* whole words of one label */
-            memset(set.layers[1]->voxels, 0, (size_t)size[0] * size[1] * sizeof(uint16_t)); /* its masks begin with the second slice, */
-            ((uint16_t *)set.layers[3]->voxels)[0] = 3000;                                 /* but with a later layer's first */
+            memset(set.layers[1]->voxels, 0,
+                   (size_t)size[0] * size[1] * sizeof(uint16_t)); /* its masks begin with the second slice, */
+            ((uint16_t *)set.layers[3]->voxels)[0] = 3000;        /* but with a later layer's first */
             struct mask_wish wishes[2 * N];
             for (size_t w = 0; w < 2 * N; w++)
                 wishes[w] = (struct mask_wish){ w % N, w >= N };
@@ -283,10 +302,13 @@ static void one_sweep_gives_the_masks_that_are_made_one_by_one(void **state)
                 struct mask *masks[2 * N];
                 assert_true(mask_sweep(&set, wishes, 2 * N, n_threads, masks, &err));
                 for (size_t w = 0; w < 2 * N; w++) {
-                    struct mask *alone = w < N ? mask_from_region(&set, w, 1, &err) : mask_from_region_own(&set, w - N, 1, &err);
+                    struct mask *alone =
+                        w < N ? mask_from_region(&set, w, 1, &err) : mask_from_region_own(&set, w - N, 1, &err);
                     assert_same_bits(masks[w], alone);
-                    assert_memory_equal(&masks[w]->lps_mm_from_ijk, &alone->lps_mm_from_ijk, sizeof alone->lps_mm_from_ijk);
-                    assert_int_equal(mask_count(masks[w]), mask_count(alone)); /* nothing lies beyond the reach that is told */
+                    assert_memory_equal(&masks[w]->lps_mm_from_ijk, &alone->lps_mm_from_ijk,
+                                        sizeof alone->lps_mm_from_ijk);
+                    assert_int_equal(mask_count(masks[w]),
+                                     mask_count(alone)); /* nothing lies beyond the reach that is told */
                     mask_destroy(alone);
                     mask_destroy(masks[w]);
                 }

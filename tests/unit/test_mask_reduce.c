@@ -12,7 +12,8 @@ static void put_in(struct mask *mask, bool is_inside(double x, double y, double 
                     mask_put(mask, i, j, k);
             }
 }
-static bool in_shell(double x, double y, double z) /* thick enough to be closed, voxels of 1 mm hanging together by faces */
+static bool in_shell(double x, double y,
+                     double z) /* thick enough to be closed, voxels of 1 mm hanging together by faces */
 {
     double r = sqrt(x * x + y * y + z * z);
     return r < 27 && r >= 25.2;
@@ -22,7 +23,10 @@ static bool in_ring(double x, double y, double z)
     double out = hypot(x, y) - 24;
     return out * out + z * z < 2.5;
 }
-static bool in_ball(double x, double y, double z) { return x * x + y * y + z * z < 29 * 29; }
+static bool in_ball(double x, double y, double z)
+{
+    return x * x + y * y + z * z < 29 * 29;
+}
 
 static void thin_shapes_keep_their_shape_when_reduced(void **state)
 {
@@ -42,9 +46,10 @@ static void thin_shapes_keep_their_shape_when_reduced(void **state)
             for (uint32_t along_z = 1; along_z <= f; along_z += f - 1) {
                 struct mask *coarse = mask_reduce(mask, (uint32_t[]){ f, f, along_z }, 2, &err);
                 assert_int_equal(euler_of_surface(coarse), shapes[s].euler);
-                /* and is no thicker than it must be: about one layer of blocks where it is thinner than that; a ball of four blocks'
-                 * radius is its volume to a share of the blocks at its border */
-                double least = shapes[s].is_inside == in_ball ? 0.93 : 0.9, most = shapes[s].is_inside == in_ball ? 1.07 : 0.9 + f;
+                /* and is no thicker than it must be: about one layer of blocks where it is thinner than that; a ball of
+                 * four blocks' radius is its volume to a share of the blocks at its border */
+                double least = shapes[s].is_inside == in_ball ? 0.93 : 0.9,
+                       most = shapes[s].is_inside == in_ball ? 1.07 : 0.9 + f;
                 double volume = (double)mask_count(coarse) * f * f * along_z / (double)mask_count(mask);
                 if (shapes[s].is_inside != in_ring && !(volume > least && volume < most))
                     fail_msg("shape %zu reduced by %u, %u: %.3f of its volume", s, f, along_z, volume);

@@ -1,4 +1,5 @@
-/* Drawing under a limit of memory: whatever the limit, a picture or an answer that says what was too large, and the process goes on. */
+/* Drawing under a limit of memory: whatever the limit, a picture or an answer that says what was too large, and the
+ * process goes on. */
 #include <pthread.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -44,7 +45,10 @@ static void on_frame(void *context, struct pipeline_frame *frame)
     pthread_mutex_unlock(&receiver->mutex);
 }
 
-static double label(struct vec3 p) { return vec3_length(p) < 10 ? 2 : vec3_length(p) < 14 ? 1 : 0; }
+static double label(struct vec3 p)
+{
+    return vec3_length(p) < 10 ? 2 : vec3_length(p) < 14 ? 1 : 0;
+}
 static const struct made_region balls[] = { { "outer", -1, 0xff0000 }, { "inner", 0, 0x00ff00 } };
 
 static struct pipeline_request picture(struct plan *plan, uint64_t id, int side_px, enum encode_codec codec)
@@ -54,8 +58,11 @@ static struct pipeline_request picture(struct plan *plan, uint64_t id, int side_
     char field[128];
     struct error err = { 0 };
     scene_for_plan(plan, &scene);
-    return (struct pipeline_request){ .id = id, .source = id, .snapshot = snapshot_create(plan, &scene, &view, 1, field, &err),
-                                      .render = { side_px, side_px, SURFACE_FULL, true }, .encode = { codec, 90, true } };
+    return (struct pipeline_request){ .id = id,
+                                      .source = id,
+                                      .snapshot = snapshot_create(plan, &scene, &view, 1, field, &err),
+                                      .render = { side_px, side_px, SURFACE_FULL, true },
+                                      .encode = { codec, 90, true } };
 }
 
 /* In a process of its own, which may take so much more than it has. */
@@ -64,7 +71,9 @@ static int draw_within(uint64_t more_bytes)
     static const struct {
         int side_px;
         enum encode_codec codec;
-    } wanted[N_PICTURES] = { { 4096, ENCODE_JPEG }, { 2048, ENCODE_PNG }, { 48, ENCODE_JPEG }, { 4096, ENCODE_JPEG }, { 1024, ENCODE_JPEG } };
+    } wanted[N_PICTURES] = {
+        { 4096, ENCODE_JPEG }, { 2048, ENCODE_PNG }, { 48, ENCODE_JPEG }, { 4096, ENCODE_JPEG }, { 1024, ENCODE_JPEG }
+    };
     struct receiver receiver = { .n_frames = 0 };
     struct pipeline_callbacks callbacks = { on_started, on_frame, &receiver };
     struct grid grid = made_cube_grid(40);
@@ -121,7 +130,8 @@ static void whatever_the_limit_there_is_a_picture_or_an_answer(void **state)
             printf("with %d MiB more\n", limits_mib[i]);
         assert_in_range(outcome, ALL_DRAWN, SOME_TOO_LARGE);
     }
-    assert_int_equal(outcome_within((uint64_t)40 << 20), SOME_TOO_LARGE); /* the image of 4096 x 4096 pixels alone takes 64 MiB */
+    assert_int_equal(outcome_within((uint64_t)40 << 20),
+                     SOME_TOO_LARGE); /* the image of 4096 x 4096 pixels alone takes 64 MiB */
     assert_int_equal(outcome_within((uint64_t)1 << 30), ALL_DRAWN);
 }
 

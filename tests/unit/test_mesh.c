@@ -4,8 +4,9 @@
 /* The corners of a box with its 12 triangles, counter-clockwise seen from outside. */
 static struct mesh *box_mesh(double x, double y, double z, struct vec3 at)
 {
-    static const uint32_t triangles[12][3] = { { 0, 4, 6 }, { 0, 6, 2 }, { 1, 3, 7 }, { 1, 7, 5 }, { 0, 1, 5 }, { 0, 5, 4 },
-                                               { 2, 6, 7 }, { 2, 7, 3 }, { 0, 2, 3 }, { 0, 3, 1 }, { 4, 5, 7 }, { 4, 7, 6 } };
+    static const uint32_t triangles[12][3] = { { 0, 4, 6 }, { 0, 6, 2 }, { 1, 3, 7 }, { 1, 7, 5 },
+                                               { 0, 1, 5 }, { 0, 5, 4 }, { 2, 6, 7 }, { 2, 7, 3 },
+                                               { 0, 2, 3 }, { 0, 3, 1 }, { 4, 5, 7 }, { 4, 7, 6 } };
     struct error err = { 0 };
     struct mesh *mesh = mesh_create(8, 12, &err);
     assert_non_null(mesh);

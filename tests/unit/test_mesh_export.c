@@ -26,7 +26,8 @@ static struct mesh *make_corner(void)
     return mesh;
 }
 
-static uint8_t *export_of(const struct mesh *mesh, enum mesh_format format, const struct mesh_export_about *what, size_t *n)
+static uint8_t *export_of(const struct mesh *mesh, enum mesh_format format, const struct mesh_export_about *what,
+                          size_t *n)
 {
     struct error err = { 0 };
     uint8_t *bytes = mesh_export(mesh, format, what, NO_LIMIT, n, &err);
@@ -130,7 +131,8 @@ static void ply_states_unit_space_and_origin_and_holds_points_normals_and_faces(
     mesh_unref(mesh);
 }
 
-/* GLB: head, JSON chunk, BIN chunk, each a multiple of four bytes, the lengths adding up (glTF 2.0, 4.4). Returns the JSON, free(). */
+/* GLB: head, JSON chunk, BIN chunk, each a multiple of four bytes, the lengths adding up (glTF 2.0, 4.4). Returns the
+ * JSON, free(). */
 static char *check_glb(const uint8_t *bytes, size_t n, uint32_t n_expected_data)
 {
     assert_memory_equal(bytes, "glTF", 4);
@@ -158,12 +160,14 @@ static void glb_holds_mm_lps_below_a_node_that_turns_them_to_metres_with_the_top
     const uint8_t *data = bytes + n - 144;
     assert_close(float_at(data + 3 * 12 + 8), 12, 0); /* the geometry itself stays mm LPS */
     assert_int_equal(u32_at(data + 48 + 4), 2);       /* second index */
-    for (const char *const *part = (const char *const[]){ "\"matrix\":[0.001,0,0,0,0,0,-0.001,0,0,0.001,0,0,0,0,0,1]",
-                                                          "\"min\":[0,0,0],\"max\":[3,4,12]", "\"unit\":\"mm\"", "DICOM LPS",
-                                                          "\"plan\":\"head-3\",\"region\":\"brain\",\"algorithm\":\"marching-cubes\",\"phantom\":true",
-                                                          "\"NORMAL\":2", "\"buffers\":[{\"byteLength\":144}]",
-                                                          "\"baseColorFactor\":[1.0000,0.0000,0.5029,1]", /* sRGB 188 is half the light */
-                                                          NULL };
+    for (const char *const *part =
+             (const char *const[]){
+                 "\"matrix\":[0.001,0,0,0,0,0,-0.001,0,0,0.001,0,0,0,0,0,1]", "\"min\":[0,0,0],\"max\":[3,4,12]",
+                 "\"unit\":\"mm\"", "DICOM LPS",
+                 "\"plan\":\"head-3\",\"region\":\"brain\",\"algorithm\":\"marching-cubes\",\"phantom\":true",
+                 "\"NORMAL\":2", "\"buffers\":[{\"byteLength\":144}]",
+                 "\"baseColorFactor\":[1.0000,0.0000,0.5029,1]", /* sRGB 188 is half the light */
+                 NULL };
          *part; part++)
         if (!strstr(json, *part))
             fail_msg("%s is not in %s", *part, json);
@@ -186,7 +190,9 @@ static void what_ids_hold_cannot_break_a_head(void **state)
     char wild[400];
     memset(wild, 1, sizeof wild - 1);
     wild[sizeof wild - 1] = 0;
-    const struct mesh_export_about worst = { wild, wild, wild, true, false, { 0 } }; /* 63 bytes of each, six characters a byte */
+    const struct mesh_export_about worst = {
+        wild, wild, wild, true, false, { 0 }
+    }; /* 63 bytes of each, six characters a byte */
     const struct mesh_export_about quotes = { "a\"b\\c\nend_header\n", "x", "y", false, false, { 0 } };
     size_t n;
     uint8_t *bytes = export_of(mesh, MESH_GLB, &worst, &n);
@@ -238,7 +244,9 @@ static void what_a_format_cannot_count_is_refused_before_anything_is_read(void *
     uint32_t index[3] = { 0 };
     struct error err = { 0 };
     size_t n;
-    struct mesh large = { .positions_lps_mm = point, .normals = point, .indices = index, .n_vertices = 1, .n_triangles = (size_t)1 << 33 };
+    struct mesh large = {
+        .positions_lps_mm = point, .normals = point, .indices = index, .n_vertices = 1, .n_triangles = (size_t)1 << 33
+    };
     assert_null(mesh_export(&large, MESH_STL, &about, NO_LIMIT, &n, &err));
     assert_int_equal(err.code, ERROR_LIMIT);
     err = (struct error){ 0 };
@@ -263,9 +271,10 @@ static void words_and_formats_name_each_other(void **state)
     assert_int_equal(kept, MESH_GLB);
 }
 
-/* ---- as VTK reads them -------------------------------------------------------------------------------------------------- */
+/* ---- as VTK reads them ------------------------------------------------------------------------------------------ */
 
-/* An ellipsoid off the middle of a turned grid with unequal spacing, so that no two axes can be taken for each other. */
+/* An ellipsoid off the middle of a turned grid with unequal spacing, so that no two axes can be taken for each other.
+ */
 static struct mesh *make_ellipsoid(enum surface_algorithm algorithm)
 {
     const double c = cos(0.3), s = sin(0.3);
@@ -323,7 +332,8 @@ static void assert_vtk_reads_the_same(enum surface_algorithm algorithm)
         for (int i = 0; i < 9; i++)
             values[i] = strtod(at, &at);
         bool is_glb = format == MESH_GLB;
-        double scale = is_glb ? 1e-3 : 1, tolerance = 1e-4 * scale; /* floats of some 200 mm: 1e-5 mm, times their differences */
+        double scale = is_glb ? 1e-3 : 1,
+               tolerance = 1e-4 * scale; /* floats of some 200 mm: 1e-5 mm, times their differences */
         assert_int_equal(values[0], n_triangles);
         assert_near(values[1], area * scale * scale, 1e-4);
         assert_near(values[2], volume * scale * scale * scale, 1e-4);

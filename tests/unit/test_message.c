@@ -1,4 +1,5 @@
-/* proto/fixtures: every good example decodes and encodes to itself, every bad one is refused with the error it names. */
+/* proto/fixtures: every good example decodes and encodes to itself, every bad one is refused with the error it names.
+ */
 #include <dirent.h>
 
 #include "server/wire/message.h"
@@ -20,7 +21,8 @@ static cJSON *read_file(const char *folder, const char *name)
     return json;
 }
 
-static int for_each_fixture(const char *folder, void (*check)(const char *name, const cJSON *fixture, const char *text, bool from_client))
+static int for_each_fixture(const char *folder,
+                            void (*check)(const char *name, const cJSON *fixture, const char *text, bool from_client))
 {
     DIR *dir = opendir(folder);
     assert_non_null(dir);
@@ -109,7 +111,8 @@ static void a_problem_survives_the_way_through_json(void **state)
 {
     (void)state;
     struct problem problem = { 0 }, back = { 0 };
-    assert_false(problem_set(&problem, PROBLEM_STALE_REVISION, "/regions/brain", "", "the scene is at revision %d", 43));
+    assert_false(
+        problem_set(&problem, PROBLEM_STALE_REVISION, "/regions/brain", "", "the scene is at revision %d", 43));
     problem.retry_after_ms = 250;
     cJSON *json = problem_to_json(&problem);
     assert_string_equal(json_text(json, "type"), "/problems/stale-revision");

@@ -3,11 +3,24 @@
 #include "tests/unit/nifti_bytes.h"
 #include "tests/unit/plan_help.h"
 
-enum { U8 = 2, I16 = 4, I32 = 8, F32 = 16, F64 = 64, I8 = 256, U16 = 512, U32 = 768, I64 = 1024, U64 = 1280, RGB = 128 };
+enum {
+    U8 = 2,
+    I16 = 4,
+    I32 = 8,
+    F32 = 16,
+    F64 = 64,
+    I8 = 256,
+    U16 = 512,
+    U32 = 768,
+    I64 = 1024,
+    U64 = 1280,
+    RGB = 128
+};
 
 static const double identity_ras[3][4] = { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } };
 
-static struct volume *read_from(const struct nifti_bytes *file, enum raw_use use, struct report *report, struct error *err)
+static struct volume *read_from(const struct nifti_bytes *file, enum raw_use use, struct report *report,
+                                struct error *err)
 {
     struct bytes bytes = { file->data, file->size };
     *err = (struct error){ 0 };
@@ -41,11 +54,11 @@ static void the_qform_is_a_rotation_with_a_sign_for_k(void **state)
     /* Half a turn about S: quaternion (0, 0, 0, 1): RAS x = -i, y = -j; qfac -1 turns k downward. */
     struct nifti_bytes file = nifti_bytes_make(2, 2, 2, U8, 8, 8, false);
     nifti_put_i16(&file, 252, 1);
-    nifti_put_f32(&file, 264, 1);  /* quatern_d */
-    nifti_put_f32(&file, 268, 5);  /* qoffset x, y, z */
+    nifti_put_f32(&file, 264, 1); /* quatern_d */
+    nifti_put_f32(&file, 268, 5); /* qoffset x, y, z */
     nifti_put_f32(&file, 272, 6);
     nifti_put_f32(&file, 276, 7);
-    nifti_put_f32(&file, 76, -1);  /* qfac */
+    nifti_put_f32(&file, 76, -1); /* qfac */
     nifti_put_f32(&file, 80, 2);
     nifti_put_f32(&file, 84, 3);
     nifti_put_f32(&file, 88, 4);

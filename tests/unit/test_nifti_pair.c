@@ -1,14 +1,17 @@
-/* NIfTI as a pair of header and voxels, .hdr and .img: as nibabel reads them, named either way, and found in a folder. */
+/* NIfTI as a pair of header and voxels, .hdr and .img: as nibabel reads them, named either way, and found in a folder.
+ */
+#include "core/load/nifti_parts.h"
 #include "core/load/summary.h"
 #include "core/plan/plan.h"
-#include "core/load/nifti_parts.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/nifti_bytes.h"
 #include "tests/unit/oracle.h"
 #include "tests/unit/plan_help.h"
 
-static const double rows[3][4] = { { -2, 0, 0, 10 }, { 0, -3, 0, 20 }, { 0, 0, 4, 30 } }; /* RAS: an index grows to left, to the back, up */
+static const double rows[3][4] = { { -2, 0, 0, 10 },
+                                   { 0, -3, 0, 20 },
+                                   { 0, 0, 4, 30 } }; /* RAS: an index grows to left, to the back, up */
 
 /* 3 x 2 x 2 voxels 0..11 as head and voxels of their own; packed when their names say so. */
 static void put_pair(const char *folder, const char *head_name, const char *voxels_name, const char *magic, int highest)
@@ -36,14 +39,17 @@ static void put_pair(const char *folder, const char *head_name, const char *voxe
 static void put_plan(const char *folder, const char *path)
 {
     char text[300];
-    snprintf(text, sizeof text, "{\"format\": \"beamroom-plan\", \"version\": 1, \"images\": [{\"path\": \"%s\"}]}", path);
+    snprintf(text, sizeof text, "{\"format\": \"beamroom-plan\", \"version\": 1, \"images\": [{\"path\": \"%s\"}]}",
+             path);
     folder_put_text(folder, "plan.json", text);
 }
 
 static void a_pair_opens_by_either_name_packed_or_not(void **state)
 {
     (void)state;
-    static const char *const pairs[][2] = { { "a.hdr", "a.img" }, { "a.hdr.gz", "a.img.gz" }, { "a.hdr", "a.img.gz" }, { "A.HDR", "A.IMG" } };
+    static const char *const pairs[][2] = {
+        { "a.hdr", "a.img" }, { "a.hdr.gz", "a.img.gz" }, { "a.hdr", "a.img.gz" }, { "A.HDR", "A.IMG" }
+    };
     for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++)
         for (int named = 0; named < 2; named++) {
             char folder[256];
@@ -56,7 +62,8 @@ static void a_pair_opens_by_either_name_packed_or_not(void **state)
             const struct volume *volume = plan->images[0].volume;
             assert_int_equal(volume->grid.size[0], 3);
             assert_int_equal(volume->grid.size[2], 2);
-            /* index (2, 1, 1) by hand: RAS 10 - 2 * 2, 20 - 3, 30 + 4, so LPS -6, -17, 34; stored 2 + 3 * (1 + 2) = 11 */
+            /* index (2, 1, 1) by hand: RAS 10 - 2 * 2, 20 - 3, 30 + 4, so LPS -6, -17, 34; stored 2 + 3 * (1 + 2) = 11
+             */
             struct vec3 point = affine_point(&volume->grid.lps_mm_from_ijk, vec3(2, 1, 1));
             assert_point(point, -6, -17, 34, 1e-6);
             assert_close(volume_value(volume, 2, 1, 1), 11, 0);
@@ -92,8 +99,8 @@ static void pairs_of_a_folder_are_found_once_each(void **state)
 }
 
 /* files: head, voxels; "" none */
-static void expect_refusal(const char *head_name, const char *voxels_name, const char *magic, const char *path, enum error_code code,
-                           const char *said)
+static void expect_refusal(const char *head_name, const char *voxels_name, const char *magic, const char *path,
+                           enum error_code code, const char *said)
 {
     char folder[256];
     struct error err;
@@ -128,8 +135,10 @@ static void analyze_7_5_is_refused_with_the_reason(void **state)
 static void half_a_pair_and_a_magic_that_does_not_fit_the_name_are_refused(void **state)
 {
     (void)state;
-    expect_refusal("a.hdr", NULL, "ni1", "a.hdr", ERROR_NOT_FOUND, "a.hdr: the voxels, the file of the same name with .img or .img.gz, is not there");
-    expect_refusal(NULL, "a.img", "ni1", "a.img", ERROR_NOT_FOUND, "a.img: the header, the file of the same name with .hdr or .hdr.gz, is not there");
+    expect_refusal("a.hdr", NULL, "ni1", "a.hdr", ERROR_NOT_FOUND,
+                   "a.hdr: the voxels, the file of the same name with .img or .img.gz, is not there");
+    expect_refusal(NULL, "a.img", "ni1", "a.img", ERROR_NOT_FOUND,
+                   "a.img: the header, the file of the same name with .hdr or .hdr.gz, is not there");
     expect_refusal("a.hdr", "a.img", "n+1", "a.hdr", ERROR_FORMAT, "follow in the same file");
 }
 
@@ -140,7 +149,9 @@ static void voxels_that_do_not_fit_the_header_are_refused_or_said(void **state)
         const char *name;
         size_t n;
         const char *said; /* of the refusal; NULL: opens, and the report has a line */
-    } cases[] = { { "a.img", 11, "a.img: cut short: 11 bytes" }, { "a.img.gz", 12, "a.img.gz: byte 0: expected a gzip stream" }, { "a.img", 13, NULL } };
+    } cases[] = { { "a.img", 11, "a.img: cut short: 11 bytes" },
+                  { "a.img.gz", 12, "a.img.gz: byte 0: expected a gzip stream" },
+                  { "a.img", 13, NULL } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char folder[256];
         struct error err;
@@ -217,7 +228,8 @@ static void pairs_that_nibabel_wrote_read_as_it_reads_them(void **state)
     char folder[256], *out = malloc(MOST);
     assert_non_null(out);
     folder_make(folder);
-    int status = oracle_run((char *[]){ oracle_python(), "tests/oracle/nifti_values.py", "pairs", folder, NULL }, out, MOST);
+    int status =
+        oracle_run((char *[]){ oracle_python(), "tests/oracle/nifti_values.py", "pairs", folder, NULL }, out, MOST);
     size_t n = 0;
     if (status != ORACLE_MISSING) {
         assert_int_equal(status, 0);

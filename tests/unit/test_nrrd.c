@@ -1,4 +1,5 @@
-/* NRRD files written by hand after Teem's definition of the format, and real ones with numbers numpy and Eclipse gave. */
+/* NRRD files written by hand after Teem's definition of the format, and real ones with numbers numpy and Eclipse gave.
+ */
 #include "core/formats/nrrd.h"
 #include "core/load/load.h"
 #include "core/load/summary.h"
@@ -21,7 +22,8 @@ static struct bytes make(const char *header, const void *data, size_t n)
     return file;
 }
 
-static struct volume *read_from(const char *head, const void *data, size_t n, enum raw_use use, struct report *report, struct error *err)
+static struct volume *read_from(const char *head, const void *data, size_t n, enum raw_use use, struct report *report,
+                                struct error *err)
 {
     struct bytes file = make(head, data, n);
     struct nrrd_header header;
@@ -59,13 +61,15 @@ static void the_space_says_how_the_axes_lie_in_the_patient(void **state)
                   { "Right-Posterior-Inferior", -11, 22, -33, "RPI" }, { "SLP", 22, 33, 11, "SLP" } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char head[400], letters[4];
-        snprintf(head, sizeof head, BYTES "space: %s\nspace directions: (1,0,0) (0,2,0) (0,0,3)\nspace origin: (10,20,30)\n\n",
+        snprintf(head, sizeof head,
+                 BYTES "space: %s\nspace directions: (1,0,0) (0,2,0) (0,0,3)\nspace origin: (10,20,30)\n\n",
                  cases[i].space);
         struct error err;
         struct report report = { 0 };
         struct volume *volume = read_from(head, eight, 8, RAW_IMAGE, &report, &err);
         assert_string_equal(err.text, "");
-        assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), cases[i].x, cases[i].y, cases[i].z, 1e-9);
+        assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), cases[i].x, cases[i].y, cases[i].z,
+                     1e-9);
         grid_letters(&volume->grid, letters);
         assert_string_equal(letters, cases[i].letters);
         assert_int_equal(report.n_lines, 0);
@@ -80,8 +84,10 @@ static void a_left_handed_grid_keeps_its_handedness(void **state)
 {
     (void)state;
     struct error err;
-    struct volume *volume = read_from(BYTES "space: left-posterior-superior\nspace directions: (0.5,0,0) (0,-0.5,0) (0,0,6)\n"
-                                      "space origin: (-99,99,-78)\n\n", eight, 8, RAW_IMAGE, NULL, &err);
+    struct volume *volume =
+        read_from(BYTES "space: left-posterior-superior\nspace directions: (0.5,0,0) (0,-0.5,0) (0,0,6)\n"
+                        "space origin: (-99,99,-78)\n\n",
+                  eight, 8, RAW_IMAGE, NULL, &err);
     assert_string_equal(err.text, "");
     assert_true(affine_determinant(&volume->grid.lps_mm_from_ijk) < 0);
     assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), -98.5, 98.5, -72, 1e-9);
@@ -98,8 +104,10 @@ static void what_the_file_leaves_open_is_reported(void **state)
         { "", "1 mm apart. Left and right may be wrong", 1, 1, 1 },
         { "spacings: 2 3 4\n", "Left and right may be wrong", 2, 3, 4 },
         { "space: RAS\nspacings: 2 3 4\n", "no directions", -2, -3, 4 },
-        { "space dimension: 3\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (1,1,1)\n", "axes of its space lie", 3, 4, 5 },
-        { "space: scanner-xyz\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (1,1,1)\n", "axes of its space lie", 3, 4, 5 },
+        { "space dimension: 3\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (1,1,1)\n",
+          "axes of its space lie", 3, 4, 5 },
+        { "space: scanner-xyz\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (1,1,1)\n",
+          "axes of its space lie", 3, 4, 5 },
         { "space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\n", "where its first voxel lies", 2, 3, 4 },
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -112,7 +120,8 @@ static void what_the_file_leaves_open_is_reported(void **state)
         const char *sentence = report_said(&report, "geometry.assumed");
         if (!strstr(sentence, cases[i].words))
             fail_msg("%s: \"%s\"", cases[i].fields, sentence);
-        assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), cases[i].x, cases[i].y, cases[i].z, 1e-9);
+        assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), cases[i].x, cases[i].y, cases[i].z,
+                     1e-9);
         volume_unref(volume);
         report_finish(&report);
     }
@@ -123,7 +132,8 @@ static void units_of_the_space_become_millimetres(void **state)
     (void)state;
     struct error err;
     struct report report = { 0 };
-    struct volume *volume = read_from(BYTES LPS "space units: \"cm\" \"cm\" \"cm\"\n\n", eight, 8, RAW_IMAGE, &report, &err);
+    struct volume *volume =
+        read_from(BYTES LPS "space units: \"cm\" \"cm\" \"cm\"\n\n", eight, 8, RAW_IMAGE, &report, &err);
     assert_point(affine_point(&volume->grid.lps_mm_from_ijk, vec3(1, 1, 1)), 10, 10, 10, 1e-9);
     assert_int_equal(report.n_lines, 0);
     volume_unref(volume);
@@ -157,7 +167,8 @@ static void every_scalar_type_is_read_in_both_byte_orders(void **state)
             char head[400];
             uint8_t data[16];
             int width = cases[i].bytes;
-            snprintf(head, sizeof head, "NRRD0005\ntype: %s\ndimension: 3\nsizes: 2 1 1\nencoding: raw\nendian: %s\n" LPS "\n",
+            snprintf(head, sizeof head,
+                     "NRRD0005\ntype: %s\ndimension: 3\nsizes: 2 1 1\nencoding: raw\nendian: %s\n" LPS "\n",
                      cases[i].word, is_big ? "big" : "little");
             for (int b = 0; b < 2 * width; b++) {
                 int at = is_big ? width - 1 - b % width : b % width;
@@ -178,10 +189,11 @@ static void gzip_skips_and_line_ends_of_either_kind_are_understood(void **state)
     (void)state;
     struct error err;
     struct bytes packed = nifti_bytes_pack(eight, 8);
-    struct volume *volume = read_from("NRRD0004\r\n# a comment: with colon\r\ntype: uchar\r\ndimension: 3\r\nsizes: 2 2 2\r\n"
-                                      "encoding: gzip\r\nspace: LPS\r\nspace directions: (1, 0, 0) (0, 1, 0) (0, 0, 1)\r\n"
-                                      "space origin: (0,0,0)\r\nkey:=value: with = all\r\n\r\n",
-                                      packed.data, packed.size, RAW_IMAGE, NULL, &err);
+    struct volume *volume =
+        read_from("NRRD0004\r\n# a comment: with colon\r\ntype: uchar\r\ndimension: 3\r\nsizes: 2 2 2\r\n"
+                  "encoding: gzip\r\nspace: LPS\r\nspace directions: (1, 0, 0) (0, 1, 0) (0, 0, 1)\r\n"
+                  "space origin: (0,0,0)\r\nkey:=value: with = all\r\n\r\n",
+                  packed.data, packed.size, RAW_IMAGE, NULL, &err);
     assert_string_equal(err.text, "");
     assert_close(volume_value(volume, 1, 1, 1), 7, 0);
     volume_unref(volume);
@@ -189,7 +201,8 @@ static void gzip_skips_and_line_ends_of_either_kind_are_understood(void **state)
     static const struct {
         const char *field, *data;
         size_t n;
-    } cases[] = { { "line skip: 2\nbyte skip: 1\n", "one\ntwo\nx\0\1\2\3\4\5\6\7", 17 }, { "byteskip: -1\n", "anything\0\1\2\3\4\5\6\7", 16 } };
+    } cases[] = { { "line skip: 2\nbyte skip: 1\n", "one\ntwo\nx\0\1\2\3\4\5\6\7", 17 },
+                  { "byteskip: -1\n", "anything\0\1\2\3\4\5\6\7", 16 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char head[400];
         snprintf(head, sizeof head, BYTES LPS "%s\n", cases[i].field);
@@ -212,9 +225,12 @@ static void a_header_that_is_wrong_is_refused_with_its_line(void **state)
     expect_refusal(BYTES "type: short\n\n", 8, ERROR_FORMAT, "line 6: \"type\" is there twice, first in line 2");
     expect_refusal("NRRD0004\ntype: block\n\n", 8, ERROR_UNSUPPORTED, "line 2: type is \"block\"");
     expect_refusal("NRRD0004\ntype: uchar\n\n", 8, ERROR_FORMAT, "the header has no \"encoding\"");
-    expect_refusal("NRRD0004\ntype: uchar\nencoding: bzip2\n\n", 8, ERROR_UNSUPPORTED, "line 3: encoding is \"bzip2\", expected raw or gzip");
-    expect_refusal("NRRD0004\ntype: short\nencoding: raw\n\n", 8, ERROR_FORMAT, "the header has no \"endian\", expected little or big");
-    expect_refusal("NRRD0004\ntype: uchar\nencoding: raw\ndimension: 2\n\n", 8, ERROR_UNSUPPORTED, "line 4: dimension is \"2\"");
+    expect_refusal("NRRD0004\ntype: uchar\nencoding: bzip2\n\n", 8, ERROR_UNSUPPORTED,
+                   "line 3: encoding is \"bzip2\", expected raw or gzip");
+    expect_refusal("NRRD0004\ntype: short\nencoding: raw\n\n", 8, ERROR_FORMAT,
+                   "the header has no \"endian\", expected little or big");
+    expect_refusal("NRRD0004\ntype: uchar\nencoding: raw\ndimension: 2\n\n", 8, ERROR_UNSUPPORTED,
+                   "line 4: dimension is \"2\"");
     expect_refusal("NRRD0004\ntype: uchar\nencoding: raw\ndimension: 99\n\n", 8, ERROR_LIMIT, "line 4: dimension");
     expect_refusal(SIZED("2 2") "\n", 8, ERROR_FORMAT, "line 4: sizes is \"2 2\"");
     expect_refusal(SIZED("2 2 2 2") "\n", 8, ERROR_FORMAT, "line 4: sizes");
@@ -229,19 +245,25 @@ static void a_header_that_is_wrong_is_refused_with_its_line(void **state)
     expect_refusal(BYTES "space: left-right-superior\n\n", 8, ERROR_UNSUPPORTED, "one along each");
     expect_refusal(BYTES "space: L-P\n\n", 8, ERROR_UNSUPPORTED, "line 6: space");
     expect_refusal(BYTES "space: left-posterior-superior-time\n\n", 8, ERROR_UNSUPPORTED, "line 6: space");
-    expect_refusal(BYTES "space: LPS\nspace directions: (nan,0,0) (0,1,0) (0,0,1)\n\n", 8, ERROR_RANGE, "line 7: space directions");
+    expect_refusal(BYTES "space: LPS\nspace directions: (nan,0,0) (0,1,0) (0,0,1)\n\n", 8, ERROR_RANGE,
+                   "line 7: space directions");
     expect_refusal(BYTES "space: LPS\nspace directions: (1,0,0) (0,1,0) (0,1,0)\n\n", 8, ERROR_RANGE, "line 7");
-    expect_refusal(BYTES "space: LPS\nspace directions: (1,0) (0,1) (1,1)\n\n", 8, ERROR_RANGE, "line 7: space directions");
+    expect_refusal(BYTES "space: LPS\nspace directions: (1,0) (0,1) (1,1)\n\n", 8, ERROR_RANGE,
+                   "line 7: space directions");
     expect_refusal(BYTES "space: LPS\nspace directions: (1,0,0) none (0,0,1)\n\n", 8, ERROR_UNSUPPORTED, "axis 1");
     expect_refusal(BYTES "spacings: 1 nan 1\n\n", 8, ERROR_RANGE, "line 6: spacings");
     expect_refusal(BYTES "spacings: 1 1 0\n\n", 8, ERROR_RANGE, "line 6");
     expect_refusal(BYTES LPS "kinds: RGB-color domain domain\n\n", 8, ERROR_UNSUPPORTED, "line 9: axis 0 (RGB-color)");
-    expect_refusal("NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: gzip\n" LPS "\n", 8, ERROR_FORMAT, "expected a gzip stream");
-    expect_refusal("NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 2 1\nencoding: raw\n\n", 8, ERROR_UNSUPPORTED, "line 3: four axes");
-    expect_refusal("NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 1 2\nencoding: raw\nkinds: domain domain list domain\n\n", 8,
-                   ERROR_UNSUPPORTED, "number 2, expected the first or the last");
-    expect_refusal("NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 1 2\nencoding: raw\nkinds: domain domain domain time\n\n", 8,
-                   ERROR_UNSUPPORTED, "kind \"time\"");
+    expect_refusal("NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: gzip\n" LPS "\n", 8, ERROR_FORMAT,
+                   "expected a gzip stream");
+    expect_refusal("NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 2 1\nencoding: raw\n\n", 8, ERROR_UNSUPPORTED,
+                   "line 3: four axes");
+    expect_refusal(
+        "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 1 2\nencoding: raw\nkinds: domain domain list domain\n\n", 8,
+        ERROR_UNSUPPORTED, "number 2, expected the first or the last");
+    expect_refusal(
+        "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 1 2\nencoding: raw\nkinds: domain domain domain time\n\n", 8,
+        ERROR_UNSUPPORTED, "kind \"time\"");
     expect_refusal(BYTES LPS "data file: /etc/passwd\n\n", 8, ERROR_RANGE, "line 9: data file");
     expect_refusal(BYTES LPS "data file: ../../x.raw\n\n", 8, ERROR_RANGE, "line 9: data file");
     expect_refusal(BYTES LPS "data file: LIST\nx.raw\n\n", 8, ERROR_FORMAT, "line 10");
@@ -273,13 +295,14 @@ static void long_headers_and_long_values_end_somewhere(void **state)
     free(head);
 }
 
-/* Two layers of 2 x 2 x 1, in the patient at 10 mm a voxel. Layer 0: 1 1 0 2; layer 1: 0 1 1 0: the two overlap at (1,0). */
-#define SEGMENTS                                                                                                          \
+/* Two layers of 2 x 2 x 1, in the patient at 10 mm a voxel. Layer 0: 1 1 0 2; layer 1: 0 1 1 0: the two overlap at
+ * (1,0). */
+#define SEGMENTS \
     "Segment0_ID:=a\nSegment0_Name:=Tum\xc3\xb6r\\nleft\nSegment0_Color:=1 0.5 0\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n" \
-    "Segment0_Extent:=0 1 0 1 0 0\nSegment1_ID:=Brain\nSegment1_LabelValue:=2\nSegment1_Layer:=0\n"                        \
-    "Segment2_Name:=Margin\nSegment2_LabelValue:=1\nSegment2_Layer:=1\nSegment2_Color:=2 0 0\n"                            \
+    "Segment0_Extent:=0 1 0 1 0 0\nSegment1_ID:=Brain\nSegment1_LabelValue:=2\nSegment1_Layer:=0\n" \
+    "Segment2_Name:=Margin\nSegment2_LabelValue:=1\nSegment2_Layer:=1\nSegment2_Color:=2 0 0\n" \
     "Segment3_Name:=Lost\nSegment3_LabelValue:=1\nSegment3_Layer:=7\nSegment4_Name:=Wrong\nSegment4_LabelValue:=zero\n"
-#define SEG_HEAD                                                                                                          \
+#define SEG_HEAD \
     "NRRD0004\ntype: uchar\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 2 2 1\nspace directions: none (10,0,0) (0,10,0) " \
     "(0,0,10)\nkinds: list domain domain domain\nencoding: raw\nspace origin: (0,0,0)\n"
 static const uint8_t seg_layers_together[8] = { 1, 0, 1, 1, 0, 1, 2, 0 };
@@ -290,10 +313,12 @@ static void overlapping_segments_come_as_layers_with_names_and_colours(void **st
     static const struct {
         const char *head;
         uint8_t data[8];
-    } cases[] = { { SEG_HEAD SEGMENTS "\n", { 1, 0, 1, 1, 0, 1, 2, 0 } },
-                  { "NRRD0004\ntype: uchar\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 2 1 2\nspace directions: (10,0,0) "
-                    "(0,10,0) (0,0,10) none\nencoding: raw\nspace origin: (0,0,0)\n" SEGMENTS "\n",
-                    { 1, 1, 0, 2, 0, 1, 1, 0 } } };
+    } cases[] = {
+        { SEG_HEAD SEGMENTS "\n", { 1, 0, 1, 1, 0, 1, 2, 0 } },
+        { "NRRD0004\ntype: uchar\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 2 1 2\nspace directions: (10,0,0) "
+          "(0,10,0) (0,0,10) none\nencoding: raw\nspace origin: (0,0,0)\n" SEGMENTS "\n",
+          { 1, 1, 0, 2, 0, 1, 1, 0 } }
+    };
     for (size_t c = 0; c < 2; c++) {
         struct bytes file = make(cases[c].head, cases[c].data, 8);
         struct nrrd_header header;
@@ -321,7 +346,8 @@ static void overlapping_segments_come_as_layers_with_names_and_colours(void **st
         assert_int_equal(layers.names[1].n, 1);
         assert_string_equal(layers.names[1].labels[0].name, "Margin");
         assert_false(layers.names[1].labels[0].has_color);
-        assert_int_equal(report.n_lines, 3); /* a colour above 1, a layer that is not there, a label that is no number */
+        assert_int_equal(report.n_lines,
+                         3); /* a colour above 1, a layer that is not there, a label that is no number */
         report_finish(&report);
         nrrd_layers_finish(&layers);
         nrrd_header_finish(&header);
@@ -345,8 +371,10 @@ static void segments_and_detached_headers_open_as_a_plan(void **state)
     folder_put(folder, "x.seg.nrrd", seg.data, seg.size);
     folder_put_text(folder, "mr/i.nhdr", BYTES LPS "data file: i.raw\n"); /* no empty line: nothing follows it */
     folder_put(folder, "mr/i.raw", eight, 8);
-    folder_put_text(folder, "plan.json", "{\"format\":\"beamroom-plan\",\"version\":1,\"images\":[{\"path\":\"mr/i.nhdr\"}],\"regions\":[{\"path\":"
-                    "\"x.seg.nrrd\"},{\"path\":\"mr/i.nhdr\",\"name\":\"All\"}],\"doses\":[{\"path\":\"mr/i.nhdr\",\"mask\":\"mr/i.nhdr\"}]}");
+    folder_put_text(
+        folder, "plan.json",
+        "{\"format\":\"beamroom-plan\",\"version\":1,\"images\":[{\"path\":\"mr/i.nhdr\"}],\"regions\":[{\"path\":"
+        "\"x.seg.nrrd\"},{\"path\":\"mr/i.nhdr\",\"name\":\"All\"}],\"doses\":[{\"path\":\"mr/i.nhdr\",\"mask\":\"mr/i.nhdr\"}]}");
     struct plan *plan = load(folder, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(plan->regions.n_regions, 4);
@@ -380,7 +408,8 @@ static void segments_and_detached_headers_open_as_a_plan(void **state)
     plan = load(folder, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(plan->n_images, 0);
-    assert_non_null(strstr(report_said(&plan->report, "plan.ignored-file"), "i.nhdr: its data file i.raw is not there"));
+    assert_non_null(
+        strstr(report_said(&plan->report, "plan.ignored-file"), "i.nhdr: its data file i.raw is not there"));
     plan_destroy(plan);
     folder_put(folder, "i.raw", eight, 8);
     plan = load(folder, &err);
@@ -470,14 +499,14 @@ static void doses_in_regions_are_those_of_the_planning_system(void **state)
     assert_string_equal(err.text, "");
     assert_string_equal(plan->doses[0].unit, "Gy"); /* plan.json says so, the NRRD does not */
     snprintf(table, sizeof table, "%s/EclipseEnt_DvhTable_Eclipse.csv", path);
-    /* Eclipse works on the contours, we on 2.5 mm voxels of them: large regions within 1 %, small ones in a gradient within
-     * 6 %. With left and right exchanged PTV1 would have 6 Gy. */
+    /* Eclipse works on the contours, we on 2.5 mm voxels of them: large regions within 1 %, small ones in a gradient
+     * within 6 %. With left and right exchanged PTV1 would have 6 Gy. */
     static const struct {
         const char *id;
         int column;
         double share;
-    } regions[] = { { "brain", 2, 0.01 },         { "ptv1", 26, 0.01 },         { "ctv", 6, 0.01 },
-                    { "brstem", 4, 0.04 },        { "orbit-left", 22, 0.02 },   { "orbit-right", 24, 0.06 } };
+    } regions[] = { { "brain", 2, 0.01 },  { "ptv1", 26, 0.01 },       { "ctv", 6, 0.01 },
+                    { "brstem", 4, 0.04 }, { "orbit-left", 22, 0.02 }, { "orbit-right", 24, 0.06 } };
     for (size_t i = 0; i < sizeof regions / sizeof regions[0]; i++)
         assert_near(region_mean(plan, regions[i].id), table_mean(table, regions[i].column), regions[i].share);
     plan_destroy(plan);

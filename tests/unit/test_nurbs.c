@@ -11,7 +11,7 @@
 #include "tests/unit/made_mask.h"
 #include "tests/unit/sera_head.h"
 
-/* ---- the functions ------------------------------------------------------------------------------------------------------------ */
+/* ---- the functions ---------------------------------------------------------------------------------------------- */
 
 /* With the means of order - 1 knots as control values, a spline is the straight line t (Greville's abscissae): so
  * every function has to be right, not only their sum. */
@@ -23,11 +23,13 @@ static void basis_functions_are_shares_of_1_and_make_straight_lines(void **state
         for (int round = 0; round < 200; round++) {
             enum { N_POINTS = 9 };
             double knots[N_POINTS + NURBS_MAX_ORDER] = { 0 };
-            for (int k = order; k < N_POINTS + order; k++) { /* the first order equal, the last too; some of the others */
+            for (int k = order; k < N_POINTS + order;
+                 k++) { /* the first order equal, the last too; some of the others */
                 bool is_equal = k > N_POINTS || (k < N_POINTS && round % 3 == 0 && k % 3 == 0);
                 knots[k] = knots[k - 1] + (is_equal ? 0 : 0.1 + next_random(&seed) % 100);
             }
-            double t = knots[N_POINTS] * (next_random(&seed) % 1000 / 1000.0), values[NURBS_MAX_ORDER], sum = 0, line = 0;
+            double t = knots[N_POINTS] * (next_random(&seed) % 1000 / 1000.0), values[NURBS_MAX_ORDER], sum = 0,
+                   line = 0;
             size_t span = (size_t)order - 1;
             while (knots[span + 1] <= t)
                 span++;
@@ -56,8 +58,9 @@ static void fill_cylinder(struct vec3 points[N_ROWS * N_AROUND], double radius)
         }
 }
 
-/* A uniform spline through control points every 30 degrees on a circle: at knots the cubic is (1, 4, 1) / 6 of three neighbours, the
- * quadratic (1, 1) / 2 of two; halfway they are (1, 23, 23, 1) / 48 and (1, 6, 1) / 8; the linear one is the chord. */
+/* A uniform spline through control points every 30 degrees on a circle: at knots the cubic is (1, 4, 1) / 6 of three
+ * neighbours, the quadratic (1, 1) / 2 of two; halfway they are (1, 23, 23, 1) / 48 and (1, 6, 1) / 8; the linear one
+ * is the chord. */
 static void a_circle_of_control_points_is_missed_by_the_known_amount(void **state)
 {
     (void)state;
@@ -94,7 +97,8 @@ static void a_surface_begins_at_its_first_row_and_ends_at_its_last(void **state)
             struct nurbs_tube tube = { points, NULL, N_AROUND, N_ROWS, order, order };
             struct nurbs_tube flat = { same, NULL, N_AROUND, N_ROWS, order, order };
             for (double u = 0; u <= N_AROUND; u += 0.3) {
-                struct vec3 on = nurbs_tube_point(&tube, u, end ? nurbs_tube_v_end(&tube) : 0), expected = nurbs_tube_point(&flat, u, 1.3);
+                struct vec3 on = nurbs_tube_point(&tube, u, end ? nurbs_tube_v_end(&tube) : 0),
+                            expected = nurbs_tube_point(&flat, u, 1.3);
                 assert_true(vec3_length(vec3_sub(on, expected)) < 1e-9);
             }
             struct vec3 home = vec3_sub(nurbs_tube_point(&tube, 0, 0.7), nurbs_tube_point(&tube, N_AROUND, 0.7));
@@ -120,12 +124,13 @@ static void weights_make_a_quarter_circle_exact(void **state)
     assert_close(nurbs_tube_point(&tube, 0, 0.5).x, sqrt(0.5), 1e-14);
 }
 
-/* ---- regions ------------------------------------------------------------------------------------------------------------------ */
+/* ---- regions ---------------------------------------------------------------------------------------------------- */
 
 static const struct affine slices_3mm = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 3 } }, { 0, 0, 0 } };
 
 /* Voxels whose index is in a shape. */
-static struct mask *made(uint32_t nx, uint32_t ny, uint32_t nz, const struct affine *map, bool (*is_in)(double x, double y, int z))
+static struct mask *made(uint32_t nx, uint32_t ny, uint32_t nz, const struct affine *map,
+                         bool (*is_in)(double x, double y, int z))
 {
     struct mask *mask = mask_make(nx, ny, nz, map);
     for (uint32_t k = 0; k < nz; k++)
@@ -136,9 +141,12 @@ static struct mask *made(uint32_t nx, uint32_t ny, uint32_t nz, const struct aff
     return mask;
 }
 
-static struct mesh *try_nurbs(const struct mask *mask, int order, enum nurbs_sampling sampling, int bins, struct error *err)
+static struct mesh *try_nurbs(const struct mask *mask, int order, enum nurbs_sampling sampling, int bins,
+                              struct error *err)
 {
-    struct shape_key key = { .representation = REPRESENTATION_NURBS, .nurbs_order = order, .nurbs_sampling = sampling, .nurbs_bins = bins };
+    struct shape_key key = {
+        .representation = REPRESENTATION_NURBS, .nurbs_order = order, .nurbs_sampling = sampling, .nurbs_bins = bins
+    };
     return shape_nurbs(mask, &key, 1, err);
 }
 
@@ -179,8 +187,8 @@ static bool in_cylinder(double x, double y, int z)
     return hypot(x - 22.3, y - 21.6) <= 18;
 }
 
-/* Outlines of a digital disc lie within a pixel of its circle. 8 control points on it make a cubic that is (2 + cos 45) / 3 of the
- * radius at the knots; 72 one that is 0.999 of it. */
+/* Outlines of a digital disc lie within a pixel of its circle. 8 control points on it make a cubic that is (2 + cos 45)
+ * / 3 of the radius at the knots; 72 one that is 0.999 of it. */
 static void a_cylinder_comes_out_as_far_inside_as_its_order_says(void **state)
 {
     (void)state;
@@ -217,7 +225,8 @@ static void the_higher_the_order_the_further_from_the_region(void **state)
         for (int order = 2; order <= 4; order++) {
             struct mesh *mesh = nurbs(mask, order, (enum nurbs_sampling)sampling, 24);
             mean[order] = mean_distance(mask, mesh);
-            assert_near(mesh_volume_mm3(mesh), voxels_mm3(mask), 0.05); /* 24 chords take 1.1 % off, a cubic 2 %; the rest is the ends */
+            assert_near(mesh_volume_mm3(mesh), voxels_mm3(mask),
+                        0.05); /* 24 chords take 1.1 % off, a cubic 2 %; the rest is the ends */
             assert_int_equal(mesh_euler(mesh), 2);
             mesh_unref(mesh);
         }
@@ -256,8 +265,10 @@ static void a_hollow_region_is_refused_for_degree_bins_and_drawn_from_its_traces
 {
     (void)state;
     struct mask *mask = made(32, 32, 5, &slices_3mm, in_c);
-    assert_refused(mask, "degree bins cannot show this region: slice 0 (S 0.0 mm) is so hollow that its middle lies outside it; sample the "
-                         "traces instead");
+    assert_refused(
+        mask,
+        "degree bins cannot show this region: slice 0 (S 0.0 mm) is so hollow that its middle lies outside it; sample the "
+        "traces instead");
     struct mesh *mesh = nurbs(mask, 2, NURBS_TRACES, 160);
     assert_int_equal(mesh_euler(mesh), 2);
     assert_near(mesh_volume_mm3(mesh), voxels_mm3(mask), 0.02);
@@ -293,7 +304,8 @@ static void a_hole_is_refused_for_degree_bins_and_a_surface_of_its_own_from_trac
 {
     (void)state;
     struct mask *mask = made(32, 32, 7, &slices_3mm, in_ring);
-    assert_refused(mask, "degree bins cannot show this region: slice 2 (S 6.0 mm) has 1 hole in it; sample the traces instead");
+    assert_refused(
+        mask, "degree bins cannot show this region: slice 2 (S 6.0 mm) has 1 hole in it; sample the traces instead");
     struct mesh *mesh = nurbs(mask, 2, NURBS_TRACES, 120);
     assert_int_equal(mesh_euler(mesh), 4);
     assert_near(mesh_volume_mm3(mesh), voxels_mm3(mask), 0.02);
@@ -315,7 +327,8 @@ static void a_region_that_divides_goes_on_in_its_largest_part(void **state)
 {
     (void)state;
     struct mask *mask = made(24, 12, 9, &slices_3mm, in_y);
-    assert_refused(mask, "degree bins cannot show this region: slice 4 (S 12.0 mm) has 2 pieces of it; sample the traces instead");
+    assert_refused(
+        mask, "degree bins cannot show this region: slice 4 (S 12.0 mm) has 2 pieces of it; sample the traces instead");
     struct nurbs_nets nets;
     struct error err = { 0 };
     assert_true(nurbs_nets_make(mask, NURBS_TRACES, 60, 1, &nets, &err));
@@ -425,8 +438,9 @@ static void a_missing_slice_is_refused_for_degree_bins_and_parts_two_pieces_from
 {
     (void)state;
     struct mask *mask = made(24, 24, 6, &slices_3mm, in_halves);
-    assert_refused(mask, "degree bins cannot show this region: slice 3 (S 9.0 mm) has none of it, but slices on both sides have; "
-                         "sample the traces instead");
+    assert_refused(
+        mask, "degree bins cannot show this region: slice 3 (S 9.0 mm) has none of it, but slices on both sides have; "
+              "sample the traces instead");
     struct mesh *mesh = nurbs(mask, 4, NURBS_TRACES, 40);
     assert_int_equal(mesh_euler(mesh), 4);
     mesh_unref(mesh);

@@ -41,7 +41,10 @@ static void write_lines(const struct outline_set *set, char *text)
     for (size_t l = 0; l < set->n_lines; l++)
         for (uint32_t at = set->line[l]; at < set->line[l + 1]; at++) {
             const float *p = set->points_ijk + 3 * (size_t)set->walk[at];
-            length += (size_t)snprintf(text + length, MAX_TEXT - length, "%s%g,%g", at > set->line[l] ? " " : l > 0 ? " / " : "",
+            length += (size_t)snprintf(text + length, MAX_TEXT - length, "%s%g,%g",
+                                       at > set->line[l] ? " "
+                                       : l > 0           ? " / "
+                                                         : "",
                                        (double)p[0], (double)p[1]);
         }
 }
@@ -65,7 +68,8 @@ static void a_block_is_traced_counter_clockwise_through_its_border_pixels(void *
     assert_lines(ART("#####", "#####", "#####"), OUTLINE_TRACED, "0,0 1,0 2,0 3,0 4,0 4,1 4,2 3,2 2,2 1,2 0,2 0,1");
 }
 
-/* The case that stopped the first tracer of the thesis: it went to the end of a line of pixels and could not turn round. */
+/* The case that stopped the first tracer of the thesis: it went to the end of a line of pixels and could not turn
+ * round. */
 static void a_spike_one_pixel_wide_is_walked_out_and_back(void **state)
 {
     (void)state;
@@ -97,9 +101,11 @@ static void separate_pieces_have_a_line_each(void **state)
 static void a_hole_has_a_line_the_other_way_round(void **state)
 {
     (void)state;
-    assert_lines(ART("####", "#..#", "####"), OUTLINE_TRACED, "0,0 1,0 2,0 3,0 3,1 3,2 2,2 1,2 0,2 0,1 / 1,2 2,2 3,1 2,0 1,0 0,1");
-    assert_lines(ART("###", "#.#", "###"), OUTLINE_MARCHING_SQUARES,
-                 "0,-0.5 1,-0.5 2,-0.5 2.5,0 2.5,1 2.5,2 2,2.5 1,2.5 0,2.5 -0.5,2 -0.5,1 -0.5,0 / 1,1.5 1.5,1 1,0.5 0.5,1");
+    assert_lines(ART("####", "#..#", "####"), OUTLINE_TRACED,
+                 "0,0 1,0 2,0 3,0 3,1 3,2 2,2 1,2 0,2 0,1 / 1,2 2,2 3,1 2,0 1,0 0,1");
+    assert_lines(
+        ART("###", "#.#", "###"), OUTLINE_MARCHING_SQUARES,
+        "0,-0.5 1,-0.5 2,-0.5 2.5,0 2.5,1 2.5,2 2,2.5 1,2.5 0,2.5 -0.5,2 -0.5,1 -0.5,0 / 1,1.5 1.5,1 1,0.5 0.5,1");
 }
 
 /* The spike is as wide as a pixel here, so nothing is walked twice. */
@@ -110,9 +116,11 @@ static void squares_go_round_a_spike_and_cut_corners_apart(void **state)
     assert_lines(ART("#.", ".#"), OUTLINE_MARCHING_SQUARES, "0,-0.5 0.5,0 0,0.5 -0.5,0 / 1,0.5 1.5,1 1,1.5 0.5,1");
 }
 
-/* ---- any mask --------------------------------------------------------------------------------------------------------------- */
+/* ---- any mask --------------------------------------------------------------------------------------------------- */
 
-static const uint32_t sizes[][3] = { { 1, 1, 1 }, { 7, 5, 4 }, { 63, 9, 3 }, { 64, 8, 5 }, { 65, 12, 7 }, { 130, 6, 2 } };
+static const uint32_t sizes[][3] = {
+    { 1, 1, 1 }, { 7, 5, 4 }, { 63, 9, 3 }, { 64, 8, 5 }, { 65, 12, 7 }, { 130, 6, 2 }
+};
 static const uint32_t percents[] = { 8, 35, 50, 65, 92 };
 
 struct made {
@@ -159,7 +167,8 @@ static void every_border_pixel_is_one_point_and_each_step_goes_to_a_neighbour(vo
                                has_pixel(made.mask, axis, s, x, y - 1) && has_pixel(made.mask, axis, s, x, y + 1));
             assert_int_equal(set->n_points, n);
             bool *seen = calloc(n, 1);
-            for (size_t p = 0; p < n; p++) { /* different points, all inside: with their number, exactly the border pixels */
+            for (size_t p = 0; p < n;
+                 p++) { /* different points, all inside: with their number, exactly the border pixels */
                 const float *at = set->points_ijk + 3 * p;
                 assert_true(mask_has(made.mask, (int64_t)at[0], (int64_t)at[1], (int64_t)at[2]));
                 for (size_t q = p > 40 ? p - 40 : 0; q < p; q++)
@@ -168,7 +177,8 @@ static void every_border_pixel_is_one_point_and_each_step_goes_to_a_neighbour(vo
             for (size_t l = 0; l < set->n_lines; l++)
                 for (uint32_t at = set->line[l]; at < set->line[l + 1]; at++) {
                     uint32_t next = at + 1 < set->line[l + 1] ? at + 1 : set->line[l];
-                    const float *a = set->points_ijk + 3 * (size_t)set->walk[at], *b = set->points_ijk + 3 * (size_t)set->walk[next];
+                    const float *a = set->points_ijk + 3 * (size_t)set->walk[at],
+                                *b = set->points_ijk + 3 * (size_t)set->walk[next];
                     assert_true(fabsf(a[u] - b[u]) <= 1 && fabsf(a[v] - b[v]) <= 1 && a[axis] == b[axis]);
                     assert_true(next == at || set->walk[at] != set->walk[next]);
                     seen[set->walk[at]] = true;
@@ -188,15 +198,17 @@ static double twice_area(const struct outline_set *set, uint32_t first, uint32_t
     for (uint32_t l = first; l < end; l++)
         for (uint32_t at = set->line[l]; at < set->line[l + 1]; at++) {
             uint32_t next = at + 1 < set->line[l + 1] ? at + 1 : set->line[l];
-            const float *a = set->points_ijk + 3 * (size_t)set->walk[at], *b = set->points_ijk + 3 * (size_t)set->walk[next];
+            const float *a = set->points_ijk + 3 * (size_t)set->walk[at],
+                        *b = set->points_ijk + 3 * (size_t)set->walk[next];
             twice += (double)(a[u] * b[v] - a[v] * b[u]);
         }
     return twice;
 }
 
-/* What the cells between four pixels say: areas in eighths, and the Euler number in quarters (S. B. Gray, Local properties of binary
- * images in two dimensions, IEEE Trans. Computers C-20, 1971). */
-static void count_cells(const struct mask *mask, int axis, int64_t slice, bool is_joined, long *eighths, long *euler_quarters)
+/* What the cells between four pixels say: areas in eighths, and the Euler number in quarters (S. B. Gray, Local
+ * properties of binary images in two dimensions, IEEE Trans. Computers C-20, 1971). */
+static void count_cells(const struct mask *mask, int axis, int64_t slice, bool is_joined, long *eighths,
+                        long *euler_quarters)
 {
     static const int of_count[5] = { 0, 1, 4, 7, 8 };
     int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
@@ -207,7 +219,10 @@ static void count_cells(const struct mask *mask, int axis, int64_t slice, bool i
             bool c = has_pixel(mask, axis, slice, x, y + 1), d = has_pixel(mask, axis, slice, x + 1, y + 1);
             bool is_diagonal = a == d && b == c && a != b;
             *eighths += is_diagonal ? (is_joined ? 6 : 2) : of_count[a + b + c + d];
-            *euler_quarters += is_diagonal ? (is_joined ? -2 : 2) : a + b + c + d == 1 ? 1 : a + b + c + d == 3 ? -1 : 0;
+            *euler_quarters += is_diagonal          ? (is_joined ? -2 : 2)
+                               : a + b + c + d == 1 ? 1
+                               : a + b + c + d == 3 ? -1
+                                                    : 0;
         }
 }
 
@@ -257,7 +272,8 @@ static void sort_segment(struct segment *s, const float *a, const float *b)
     }
 }
 
-/* The surface cut at a slice of voxel centres: the same line for both cells at each face, so each segment is there four times. */
+/* The surface cut at a slice of voxel centres: the same line for both cells at each face, so each segment is there four
+ * times. */
 static void squares_are_the_sections_of_the_marching_cubes_surface(void **state)
 {
     (void)state;
@@ -276,7 +292,8 @@ static void squares_are_the_sections_of_the_marching_cubes_surface(void **state)
         for (uint32_t l = set->slice[k]; l < set->slice[k + 1]; l++)
             for (uint32_t at = set->line[l]; at < set->line[l + 1]; at++) {
                 uint32_t next = at + 1 < set->line[l + 1] ? at + 1 : set->line[l];
-                sort_segment(&drawn[n_drawn++], set->points_ijk + 3 * (size_t)set->walk[at], set->points_ijk + 3 * (size_t)set->walk[next]);
+                sort_segment(&drawn[n_drawn++], set->points_ijk + 3 * (size_t)set->walk[at],
+                             set->points_ijk + 3 * (size_t)set->walk[next]);
             }
         qsort(cut, n_cut, sizeof *cut, compare_segments);
         qsort(drawn, n_drawn, sizeof *drawn, compare_segments);
@@ -312,7 +329,8 @@ static void squares_have_the_points_and_the_length_of_vtks(void **state)
         for (uint32_t l = set->slice[k]; l < set->slice[k + 1]; l++)
             for (uint32_t w = set->line[l]; w < set->line[l + 1]; w++) {
                 const float *a = set->points_ijk + 3 * (size_t)set->walk[w];
-                const float *b = set->points_ijk + 3 * (size_t)set->walk[w + 1 < set->line[l + 1] ? w + 1 : set->line[l]];
+                const float *b =
+                    set->points_ijk + 3 * (size_t)set->walk[w + 1 < set->line[l + 1] ? w + 1 : set->line[l]];
                 length += hypot((double)(a[0] - b[0]), (double)(a[1] - b[1]));
             }
         assert_int_equal(end - first, strtoul(at, &at, 10));
@@ -355,8 +373,8 @@ static void any_number_of_threads_and_slices_alone_give_the_same(void **state)
             struct outline_set *slice = outline_slice(mask, axis, s, method, &err);
             assert_non_null(slice);
             for (size_t at = 0; at < slice->n_walk; at++)
-                assert_memory_equal(slice->points_ijk + 3 * (size_t)slice->walk[at], one->points_ijk + 3 * (size_t)one->walk[walked + at],
-                                    3 * sizeof(float));
+                assert_memory_equal(slice->points_ijk + 3 * (size_t)slice->walk[at],
+                                    one->points_ijk + 3 * (size_t)one->walk[walked + at], 3 * sizeof(float));
             walked += slice->n_walk;
             outline_set_destroy(slice);
         }
@@ -399,7 +417,7 @@ static void noise_is_refused_before_it_fills_the_memory(void **state)
     mask_destroy(mask);
 }
 
-/* ---- other planes ----------------------------------------------------------------------------------------------------------- */
+/* ---- other planes ----------------------------------------------------------------------------------------------- */
 
 static void a_cut_across_an_oblique_grid_shows_the_voxels_it_goes_through(void **state)
 {
@@ -432,7 +450,7 @@ static void a_cut_across_an_oblique_grid_shows_the_voxels_it_goes_through(void *
     mask_destroy(mask);
 }
 
-/* ---- SERA's head ------------------------------------------------------------------------------------------------------------ */
+/* ---- SERA's head ------------------------------------------------------------------------------------------------ */
 
 /* Counts that the original Sera3d reports for its outlines: border pixels by 4 neighbours, slice by slice. */
 static void point_counts_equal_the_original_sera3d_on_its_own_head(void **state)

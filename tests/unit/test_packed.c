@@ -1,4 +1,5 @@
-/* Packed files that were damaged: single bits changed, cut, more behind the stream. Each is refused, or gives the very voxels it held. */
+/* Packed files that were damaged: single bits changed, cut, more behind the stream. Each is refused, or gives the very
+ * voxels it held. */
 #include <zlib.h>
 
 #include "core/formats/gzip.h"
@@ -15,13 +16,15 @@ enum { SIDE = 16, N_VOXELS = SIDE * SIDE * SIDE };
 
 static const char nrrd_head[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 16 16 16\nencoding: gzip\nspace: LPS\n"
                                 "space directions: (1,0,0) (0,1,0) (0,0,1)\n\n";
-static const char uvh_head[] = "Version: uvh2.0\nDimensionality: mm\nSliceOrientation: Axial\nImageRows: 16\nImageColumns: 16\nImageSlices: 16\n"
-                               "PixelSizeRows: 20\nPixelSizeColumns: 20\nPixelSizeSlices: 20\nRLaxisMin: -160\nRLaxisMax: 160\n"
-                               "PAaxisMin: -160\nPAaxisMax: 160\nISaxisMin: 0\nISaxisMax: 320\nImageRowAxis: PA-\nImageColumnAxis: RL+\n"
-                               "ImageSliceAxis: IS+\nbegin: brain\nuvval: 3\nend\n";
-static const char qhd_head[] = "Modality := MR\nSlice Orientation := Axial\nDimensionality := mm\nBytes Per Pixel := 1\nByte Order := big endian\n"
-                               "Number of Dimensions := 3\nSize of Dimension[0] := 16\nSize of Dimension[1] := 16\nSize of Dimension[2] := 16\n"
-                               "X Pixel Size := 20\nY Pixel Size := 20\nReference Location := 10\nUniform Spacing := 20\n";
+static const char uvh_head[] =
+    "Version: uvh2.0\nDimensionality: mm\nSliceOrientation: Axial\nImageRows: 16\nImageColumns: 16\nImageSlices: 16\n"
+    "PixelSizeRows: 20\nPixelSizeColumns: 20\nPixelSizeSlices: 20\nRLaxisMin: -160\nRLaxisMax: 160\n"
+    "PAaxisMin: -160\nPAaxisMax: 160\nISaxisMin: 0\nISaxisMax: 320\nImageRowAxis: PA-\nImageColumnAxis: RL+\n"
+    "ImageSliceAxis: IS+\nbegin: brain\nuvval: 3\nend\n";
+static const char qhd_head[] =
+    "Modality := MR\nSlice Orientation := Axial\nDimensionality := mm\nBytes Per Pixel := 1\nByte Order := big endian\n"
+    "Number of Dimensions := 3\nSize of Dimension[0] := 16\nSize of Dimension[1] := 16\nSize of Dimension[2] := 16\n"
+    "X Pixel Size := 20\nY Pixel Size := 20\nReference Location := 10\nUniform Spacing := 20\n";
 
 static uint32_t random_state;
 static uint32_t next_random(void) /* Marsaglia's xorshift: the same sequence everywhere */
@@ -45,7 +48,10 @@ static struct bytes pack(const uint8_t *data, size_t size, int window_bits)
 {
     struct bytes packed = { malloc(size + size / 2 + 1024), 0 };
     gz_header head = { .time = 1000000000, .name = (Bytef *)(uintptr_t) "head.nii", .os = 3 };
-    z_stream stream = { .next_in = (Bytef *)(uintptr_t)data, .avail_in = (uInt)size, .next_out = packed.data, .avail_out = (uInt)(size + size / 2 + 1024) };
+    z_stream stream = { .next_in = (Bytef *)(uintptr_t)data,
+                        .avail_in = (uInt)size,
+                        .next_out = packed.data,
+                        .avail_out = (uInt)(size + size / 2 + 1024) };
     assert_int_equal(deflateInit2(&stream, 6, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY), Z_OK);
     if (window_bits > 15)
         assert_int_equal(deflateSetHeader(&stream, &head), Z_OK);
@@ -55,10 +61,11 @@ static struct bytes pack(const uint8_t *data, size_t size, int window_bits)
     return packed;
 }
 
-/* ---- the files, each read as a plan reads it ------------------------------------------------------------------------------- */
+/* ---- the files, each read as a plan reads it -------------------------------------------------------------------- */
 
 enum kind { NIFTI_U8, NIFTI_I16, NIFTI_F32, NRRD_GZIP, UV_GZ, QIM_GZ, UV_SZ, QIM_SZ, N_KINDS };
-static const char *const names[N_KINDS] = { "a.nii.gz", "b.nii.gz", "c.nii.gz", "d.nrrd", "e.uv.gz", "f.qim.gz", "g.uv.sz", "h.qim.sz" };
+static const char *const names[N_KINDS] = { "a.nii.gz", "b.nii.gz", "c.nii.gz", "d.nrrd",
+                                            "e.uv.gz",  "f.qim.gz", "g.uv.sz",  "h.qim.sz" };
 
 static struct bytes make_nifti(int datatype, int bits)
 {
@@ -87,7 +94,8 @@ static struct bytes make_file(enum kind kind, size_t *stream_at)
     case NIFTI_I16: return make_nifti(4, 16);
     case NIFTI_F32: return make_nifti(16, 32);
     case NRRD_GZIP: {
-        struct bytes packed = pack(voxels, sizeof voxels, 15 + 16), file = { malloc(packed.size + sizeof nrrd_head), 0 };
+        struct bytes packed = pack(voxels, sizeof voxels, 15 + 16),
+                     file = { malloc(packed.size + sizeof nrrd_head), 0 };
         *stream_at = sizeof nrrd_head - 1;
         memcpy(file.data, nrrd_head, *stream_at);
         memcpy(file.data + *stream_at, packed.data, packed.size);
@@ -133,11 +141,13 @@ static struct volume *read_file(enum kind kind, const struct bytes *file, struct
 static bool is_same(const struct volume *a, const struct volume *b)
 {
     return a->type == b->type && memcmp(a->grid.size, b->grid.size, sizeof a->grid.size) == 0 &&
-           memcmp(&a->grid.lps_mm_from_ijk, &b->grid.lps_mm_from_ijk, sizeof a->grid.lps_mm_from_ijk) == 0 && a->slope == b->slope &&
-           a->offset == b->offset && memcmp(a->voxels, b->voxels, N_VOXELS * voxel_size(a->type)) == 0;
+           memcmp(&a->grid.lps_mm_from_ijk, &b->grid.lps_mm_from_ijk, sizeof a->grid.lps_mm_from_ijk) == 0 &&
+           a->slope == b->slope && a->offset == b->offset &&
+           memcmp(a->voxels, b->voxels, N_VOXELS * voxel_size(a->type)) == 0;
 }
 
-/* Adler-32, all that a zlib stream has, is weak: the changes -1, -1, +4, -1, -1 to five voxels in a row leave it as it is. */
+/* Adler-32, all that a zlib stream has, is weak: the changes -1, -1, +4, -1, -1 to five voxels in a row leave it as it
+ * is. */
 static bool has_equal_sum(enum kind kind, const struct volume *a, const struct volume *b)
 {
     return (kind == UV_SZ || kind == QIM_SZ) && memcmp(a->grid.size, b->grid.size, sizeof a->grid.size) == 0 &&
@@ -149,12 +159,13 @@ static bool is_silent(enum kind kind, const struct bytes *file, const struct vol
 {
     struct error err;
     struct volume *volume = read_file(kind, file, NULL, &err);
-    bool is_wrong = volume ? !is_same(volume, whole) && !has_equal_sum(kind, volume, whole) : !strstr(err.text, names[kind]);
+    bool is_wrong =
+        volume ? !is_same(volume, whole) && !has_equal_sum(kind, volume, whole) : !strstr(err.text, names[kind]);
     volume_unref(volume);
     return is_wrong;
 }
 
-/* ---- damage ------------------------------------------------------------------------------------------------------------------ */
+/* ---- damage ----------------------------------------------------------------------------------------------------- */
 
 /* Whether the file with one bit changed opens with other voxels; the bit is put back. */
 static bool is_silent_without(enum kind kind, struct bytes *file, size_t bit, const struct volume *whole)
@@ -190,7 +201,8 @@ static void no_changed_bit_of_a_packed_file_gives_other_voxels(void **state)
         volume_unref(whole);
         bytes_free(&file);
         if (n_silent > 0)
-            fail_msg("%s: %d of %d changed bits gave other voxels", names[kind], n_silent, HEAD_BITS + END_BITS + FLIPS);
+            fail_msg("%s: %d of %d changed bits gave other voxels", names[kind], n_silent,
+                     HEAD_BITS + END_BITS + FLIPS);
     }
     assert_true(n_flips >= 1000);
 }
@@ -204,11 +216,13 @@ static void a_packed_file_that_is_cut_anywhere_is_refused(void **state)
         struct bytes file = make_file(kind, &stream_at);
         size_t size = file.size;
         for (size_t cut = 1; cut < size - stream_at; cut += cut < 16 ? 1 : 37) {
-            struct bytes part = { malloc(size - cut), size - cut }; /* of exactly that size, for the address sanitizer */
+            struct bytes part = { malloc(size - cut),
+                                  size - cut }; /* of exactly that size, for the address sanitizer */
             memcpy(part.data, file.data, size - cut);
             struct volume *volume = read_file(kind, &part, NULL, &err);
             if (volume || !strstr(err.text, names[kind]))
-                fail_msg("%s without its last %zu bytes opened, or was refused without its name: %s", names[kind], cut, err.text);
+                fail_msg("%s without its last %zu bytes opened, or was refused without its name: %s", names[kind], cut,
+                         err.text);
             free(part.data);
         }
         bytes_free(&file);
@@ -223,7 +237,8 @@ static struct bytes with_tail(const struct bytes *file, const void *tail, size_t
     return all;
 }
 
-/* Tapes and transfers fill up with zeros, and gzip(1) takes them; other bytes may be a member whose head was damaged. */
+/* Tapes and transfers fill up with zeros, and gzip(1) takes them; other bytes may be a member whose head was damaged.
+ */
 static void zeros_behind_a_stream_are_padding_and_other_bytes_are_refused_with_their_place(void **state)
 {
     (void)state;
@@ -271,7 +286,7 @@ static void the_sentence_says_where_a_stream_is_damaged(void **state)
     bytes_free(&file);
 }
 
-/* ---- several members ----------------------------------------------------------------------------------------------------------- */
+/* ---- several members -------------------------------------------------------------------------------------------- */
 
 static void every_member_of_a_stream_is_read_and_checked(void **state)
 {
@@ -296,7 +311,8 @@ static void every_member_of_a_stream_is_read_and_checked(void **state)
             *byte ^= 16;
             assert_false(gzip_exact(both.data, both.size, "m", out, N_VOXELS, &n_more, &err));
             assert_int_equal(err.code, ERROR_FORMAT);
-            assert_false(gzip_exact(both.data, both.size, "m", out, 1000, &n_more, &err)); /* also behind what is asked for */
+            assert_false(
+                gzip_exact(both.data, both.size, "m", out, 1000, &n_more, &err)); /* also behind what is asked for */
             assert_int_equal(err.code, ERROR_FORMAT);
             assert_false(gzip_all(both.data, both.size, "m", 1 << 20, &unpacked, &err));
             *byte ^= 16;
@@ -350,13 +366,16 @@ static void bytes_behind_the_voxels_are_said_with_their_number(void **state)
     memcpy(nifti.data + nifti.size - N_VOXELS, voxels, N_VOXELS);
     struct bytes file = { nifti.data, nifti.size };
     struct bytes longer = with_tail(&file, "12345", 5), packed = pack(longer.data, longer.size, 15 + 16),
-                 stream = pack(voxels, sizeof voxels, 15 + 16), head = { (uint8_t *)(uintptr_t)nrrd_head, sizeof nrrd_head - 1 },
+                 stream = pack(voxels, sizeof voxels, 15 + 16),
+                 head = { (uint8_t *)(uintptr_t)nrrd_head, sizeof nrrd_head - 1 },
                  nrrd = with_tail(&head, stream.data, stream.size);
     const struct {
         enum kind kind;
         const struct bytes *file;
         bool is_longer;
-    } cases[] = { { NIFTI_U8, &file, false }, { NIFTI_U8, &longer, true }, { NIFTI_U8, &packed, true }, { NRRD_GZIP, &nrrd, true } };
+    } cases[] = {
+        { NIFTI_U8, &file, false }, { NIFTI_U8, &longer, true }, { NIFTI_U8, &packed, true }, { NRRD_GZIP, &nrrd, true }
+    };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct report report = { 0 };
         struct error err;
@@ -365,7 +384,8 @@ static void bytes_behind_the_voxels_are_said_with_their_number(void **state)
         assert_memory_equal(volume->voxels, voxels, N_VOXELS);
         assert_int_equal(report_has(&report, "image.bytes-behind"), cases[i].is_longer);
         if (cases[i].is_longer)
-            assert_non_null(strstr(report_said(&report, "image.bytes-behind"), "5 bytes follow the 4096 bytes of voxels"));
+            assert_non_null(
+                strstr(report_said(&report, "image.bytes-behind"), "5 bytes follow the 4096 bytes of voxels"));
         volume_unref(volume);
         report_finish(&report);
     }

@@ -13,7 +13,7 @@
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 
-/* ---- anatomy --------------------------------------------------------------------------------------------------------- */
+/* ---- anatomy ---------------------------------------------------------------------------------------------------- */
 
 static void fill(const uint32_t size[3], uint64_t seed, struct volume **ct, struct volume **labels)
 {
@@ -32,9 +32,11 @@ static void each_tissue_has_the_volume_of_its_ellipsoid(void **state)
     const uint8_t *label = labels->voxels;
     for (size_t at = 0; at < grid_n_voxels(&labels->grid); at++)
         n_of[label[at]]++;
-    /* semi-axes in mm: the paper's three, and ours. The error of counting voxel centres is under the surface's share of half a
-     * voxel over the square root of the voxels it crosses: 0.1 % for the head, 1 % for the tumour's 3400 voxels */
-    const double axes_mm[PHANTOM_N_LABELS][3] = { { 0 }, { 73, 103, 88 }, { 68, 98, 83 }, { 60, 90, 65 }, { 20, 22, 18 }, { 11, 12, 10 } };
+    /* semi-axes in mm: the paper's three, and ours. The error of counting voxel centres is under the surface's share of
+     * half a voxel over the square root of the voxels it crosses: 0.1 % for the head, 1 % for the tumour's 3400 voxels
+     */
+    const double axes_mm[PHANTOM_N_LABELS][3] = { { 0 },          { 73, 103, 88 }, { 68, 98, 83 },
+                                                  { 60, 90, 65 }, { 20, 22, 18 },  { 11, 12, 10 } };
     const double share[PHANTOM_N_LABELS] = { 0, 0.001, 0.001, 0.001, 0.005, 0.01 };
     double inner_mm3 = 0;
     for (int i = PHANTOM_TUMOUR; i >= PHANTOM_SCALP; i--) {
@@ -103,14 +105,14 @@ static void noise_follows_the_seed_and_labels_do_not(void **state)
     }
 }
 
-/* ---- dose ------------------------------------------------------------------------------------------------------------ */
+/* ---- dose ------------------------------------------------------------------------------------------------------- */
 
 static const struct {
     double depth_mm, nitrogen, fast, gamma, boron;
 } published[] = {
-    { 2, .0913, .1404, .506, .0477 },   { 10, .1565, .1130, .726, .0793 },   { 18, .1974, .0812, .895, .0981 },
-    { 22, .2056, .0687, .941, .1016 },  { 26, .2063, .0585, .970, .1015 },   { 30, .2011, .0500, .971, .0986 },
-    { 38, .1781, .0372, .937, .0869 },  { 50, .1315, .0246, .800, .0639 },   { 70, .0654, .0131, .533, .0316 },
+    { 2, .0913, .1404, .506, .0477 },   { 10, .1565, .1130, .726, .0793 },    { 18, .1974, .0812, .895, .0981 },
+    { 22, .2056, .0687, .941, .1016 },  { 26, .2063, .0585, .970, .1015 },    { 30, .2011, .0500, .971, .0986 },
+    { 38, .1781, .0372, .937, .0869 },  { 50, .1315, .0246, .800, .0639 },    { 70, .0654, .0131, .533, .0316 },
     { 90, .0279, .00708, .322, .0135 }, { 110, .0112, .00392, .192, .00539 }, { 130, .00411, .00217, .115, .00198 },
 };
 
@@ -186,7 +188,7 @@ static void off_the_axis_the_dose_only_falls_and_halves_near_the_edge(void **sta
     assert_true(phantom_dose_at(gamma, vec3(0, 0, 87.5)) > 0);
 }
 
-/* ---- tracks ---------------------------------------------------------------------------------------------------------- */
+/* ---- tracks ----------------------------------------------------------------------------------------------------- */
 
 static void tracks_hold_every_class_and_start_in_the_beam(void **state)
 {
@@ -199,7 +201,8 @@ static void tracks_hold_every_class_and_start_in_the_beam(void **state)
             const struct track_segment *s = &segments[i];
             n_of[s->class]++;
             for (int axis = 0; axis < 3; axis++)
-                assert_true(fabsf(s->from_lps_mm[axis]) <= 160 && fabsf(s->to_lps_mm[axis]) <= 160); /* semi-axis + 40, source at 150 */
+                assert_true(fabsf(s->from_lps_mm[axis]) <= 160 &&
+                            fabsf(s->to_lps_mm[axis]) <= 160); /* semi-axis + 40, source at 150 */
             if (s->from_lps_mm[2] > 149.9F) {
                 assert_true(hypotf(s->from_lps_mm[0], s->from_lps_mm[1]) <= 50.001F);
                 assert_close(s->to_lps_mm[0], s->from_lps_mm[0], 1e-3); /* the beam is parallel */
@@ -233,7 +236,7 @@ static void a_track_is_written_in_fixed_columns_with_posterior_turned_to_anterio
     free(text);
 }
 
-/* ---- files ----------------------------------------------------------------------------------------------------------- */
+/* ---- files ------------------------------------------------------------------------------------------------------ */
 
 static char folder[64];
 
@@ -277,8 +280,9 @@ static void equal_seeds_give_equal_bytes(void **state)
     assert_true(phantom_write(in_folder(a, "a"), &small, false, &err));
     sleep(1); /* a time stamp in seconds would now differ */
     assert_true(phantom_write(in_folder(b, "b"), &small, false, &err));
-    const char *names[] = { "plan.json", "README.txt", "labels.json", "ct.nii.gz", "labels.nii.gz", "tracks.pp", "dose/boron.nii.gz",
-                            "dose/nitrogen.nii.gz", "dose/fast.nii.gz", "dose/gamma.nii.gz", "dose/valid.nii.gz" };
+    const char *names[] = { "plan.json",        "README.txt",        "labels.json",       "ct.nii.gz",
+                            "labels.nii.gz",    "tracks.pp",         "dose/boron.nii.gz", "dose/nitrogen.nii.gz",
+                            "dose/fast.nii.gz", "dose/gamma.nii.gz", "dose/valid.nii.gz" };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         size_t n, n_b;
         snprintf(path_a, sizeof path_a, "%s/%s", a, names[i]);
@@ -322,7 +326,9 @@ static void the_plan_says_that_it_is_a_phantom_and_fits_the_plans_limits(void **
     assert_non_null(strstr(text, "\"phantom\": true"));
     assert_non_null(strstr(text, "\"name\": \"Phantom: "));
     assert_non_null(strstr(text, "\"unit\": \"Gy\", \"per\": \"minute at 1e10 n/cm2/s\""));
-    assert_non_null(strstr(text, "{ \"scalp\": [\"cranium\"], \"cranium\": [\"brain\"], \"brain\": [\"target\"], \"target\": [\"tumour\"] }"));
+    assert_non_null(strstr(
+        text,
+        "{ \"scalp\": [\"cranium\"], \"cranium\": [\"brain\"], \"brain\": [\"target\"], \"target\": [\"tumour\"] }"));
     assert_non_null(strstr(text, "\"entry_mm\": [0, 0, 88]"));
     const char *note = strstr(text, "\"note\": \"") + strlen("\"note\": \"");
     assert_true(strchr(note, '"') - note < 512); /* plan.h keeps 511 bytes of it */
@@ -368,7 +374,8 @@ static void a_phantom_that_cannot_be_written_leaves_nothing_behind(void **state)
     struct error err = { 0 };
     assert_false(phantom_write(in_folder(path, "no/such/parent"), &small, false, &err));
     assert_int_equal(err.code, ERROR_IO);
-    const struct phantom_options thin = { { 256, 256, 15 }, 1 }, wide = { { 1025, 16, 16 }, 1 }, huge = { { 1024, 1024, 1024 }, 1 };
+    const struct phantom_options thin = { { 256, 256, 15 }, 1 }, wide = { { 1025, 16, 16 }, 1 },
+                                 huge = { { 1024, 1024, 1024 }, 1 };
     in_folder(path, "refused");
     assert_false(phantom_write(path, &thin, false, &err));
     assert_int_equal(err.code, ERROR_RANGE);

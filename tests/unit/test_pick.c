@@ -2,7 +2,8 @@
 #include "tests/check.h"
 #include "tests/made_plan.h"
 
-/* Nested boxes around the origin, half sides 5, 10, 15 along the grid's own axes, whatever their direction in the patient. */
+/* Nested boxes around the origin, half sides 5, 10, 15 along the grid's own axes, whatever their direction in the
+ * patient. */
 static struct affine axes;
 static double nested(struct vec3 p)
 {
@@ -11,8 +12,13 @@ static double nested(struct vec3 p)
         r = fmax(r, fabs(vec3_dot(p, vec3_normalize(axes.columns[a]))));
     return r < 5 ? 3 : r < 10 ? 2 : r < 15 ? 1 : 0;
 }
-static const struct made_region tree[] = { { "body", -1, 0xff0000 }, { "organ", 0, 0x00ff00 }, { "tumour", 1, 0x0000ff } };
-static double grey(struct vec3 p) { return 100 + p.x * 0; }
+static const struct made_region tree[] = { { "body", -1, 0xff0000 },
+                                           { "organ", 0, 0x00ff00 },
+                                           { "tumour", 1, 0x0000ff } };
+static double grey(struct vec3 p)
+{
+    return 100 + p.x * 0;
+}
 
 static struct plan *nested_plan(bool is_oblique)
 {
@@ -24,7 +30,8 @@ static struct plan *nested_plan(bool is_oblique)
     return made_plan(&grid, nested, tree, 3);
 }
 
-static struct snapshot *look(struct plan *plan, struct vec3 from, struct vec3 at, void (*change)(struct scene *scene), enum scene_kind kind)
+static struct snapshot *look(struct plan *plan, struct vec3 from, struct vec3 at, void (*change)(struct scene *scene),
+                             enum scene_kind kind)
 {
     struct scene scene;
     struct view view = view_default;
@@ -117,7 +124,8 @@ static void every_pixel_agrees_with_small_steps_along_its_ray(void **state)
         for (int py = 4; py < 101; py += 9) {
             struct pick_hit hits[PICK_MAX_HITS];
             size_t n = snapshot_pick(snapshot, px + 0.5, py + 0.5, hits);
-            struct vec3 far = mat4_project(&camera.lps_mm_from_clip, vec3((px + 0.5) / 50.5 - 1, 1 - (py + 0.5) / 50.5, 1));
+            struct vec3 far =
+                mat4_project(&camera.lps_mm_from_clip, vec3((px + 0.5) / 50.5 - 1, 1 - (py + 0.5) / 50.5, 1));
             struct vec3 direction = vec3_normalize(vec3_sub(far, camera.eye_lps_mm));
             double first = -1; /* of the body, by steps of 0.02 mm on label values */
             for (double t = 0; t < 200 && first < 0; t += 0.02) {
@@ -162,7 +170,8 @@ static void from_inside_a_region_its_own_wall_is_not_a_hit(void **state)
 {
     (void)state;
     struct plan *plan = nested_plan(false);
-    struct snapshot *snapshot = look(plan, vec3(0.2, -12, 0.5), vec3(0.2, 0, 0.5), NULL, SCENE_KIND_3D); /* in the body */
+    struct snapshot *snapshot =
+        look(plan, vec3(0.2, -12, 0.5), vec3(0.2, 0, 0.5), NULL, SCENE_KIND_3D); /* in the body */
     struct pick_hit hits[PICK_MAX_HITS];
     assert_int_equal(snapshot_pick(snapshot, 50.5, 50.5, hits), 2);
     expect_hit(&hits[0], 1, vec3(0.2, -10, 0.5), 2);
@@ -192,7 +201,10 @@ static void slices_in_space_are_hit_between_regions(void **state)
     plan_destroy(plan);
 }
 
-static double ramp(struct vec3 p) { return 100 + p.y; }
+static double ramp(struct vec3 p)
+{
+    return 100 + p.y;
+}
 
 static void show_coronal_of_dense(struct scene *scene)
 {
@@ -237,13 +249,17 @@ static void a_pane_gives_the_point_and_its_regions_innermost_first(void **state)
     plan_destroy(plan);
 }
 
-static double stripes(struct vec3 p) { return 1 + floor(p.y + 20); }
+static double stripes(struct vec3 p)
+{
+    return 1 + floor(p.y + 20);
+}
 
 static void more_hits_than_fit_keep_the_nearest(void **state)
 {
     (void)state;
     const uint32_t size[3] = { 10, 40, 10 };
-    struct grid grid = made_grid(10, 40, 10, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
+    struct grid grid =
+        made_grid(10, 40, 10, made_affine(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), size, vec3(0, 0, 0)));
     char ids[40][8];
     struct made_region regions[40];
     for (int i = 0; i < 40; i++) {

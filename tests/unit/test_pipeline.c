@@ -80,7 +80,10 @@ static void open_receiver(struct receiver *receiver)
     pthread_mutex_unlock(&receiver->mutex);
 }
 
-static double label(struct vec3 p) { return vec3_length(p) < 5; }
+static double label(struct vec3 p)
+{
+    return vec3_length(p) < 5;
+}
 static const struct made_region ball[] = { { "ball", -1, 0xff0000 } };
 
 static struct plan *small_plan(void)
@@ -103,20 +106,24 @@ static struct pipeline *start(struct receiver *receiver)
     return start_back_end(receiver, RENDER_AUTO, true);
 }
 
-static bool submit_picture(struct pipeline *pipeline, struct plan *plan, uint64_t id, uint64_t source, int width_px, int height_px, bool is_still,
-                           struct error *err)
+static bool submit_picture(struct pipeline *pipeline, struct plan *plan, uint64_t id, uint64_t source, int width_px,
+                           int height_px, bool is_still, struct error *err)
 {
     struct scene scene;
     struct view view = view_default;
     char field[128];
     scene_for_plan(plan, &scene);
     struct snapshot *snapshot = snapshot_create(plan, &scene, &view, (uint32_t)id, field, err);
-    struct pipeline_request request = { .id = id, .source = source, .snapshot = snapshot,
-                                        .render = { width_px, height_px, SURFACE_LIGHT, is_still }, .encode = { ENCODE_JPEG, 80, false } };
+    struct pipeline_request request = { .id = id,
+                                        .source = source,
+                                        .snapshot = snapshot,
+                                        .render = { width_px, height_px, SURFACE_LIGHT, is_still },
+                                        .encode = { ENCODE_JPEG, 80, false } };
     return pipeline_submit(pipeline, &request, err);
 }
 
-static bool submit_kind(struct pipeline *pipeline, struct plan *plan, uint64_t id, int width_px, bool is_still, struct error *err)
+static bool submit_kind(struct pipeline *pipeline, struct plan *plan, uint64_t id, int width_px, bool is_still,
+                        struct error *err)
 {
     return submit_picture(pipeline, plan, id, 1, width_px, 48, is_still, err);
 }
@@ -195,7 +202,8 @@ static void what_is_dropped_while_it_waits_is_not_drawn(void **state)
     struct plan *plan = small_plan();
     struct pipeline *pipeline = start(&receiver);
     struct error err = { 0 };
-    /* while the first is delivered at most five others are drawn: two drawn, one on the way to them, one with the encoder */
+    /* while the first is delivered at most five others are drawn: two drawn, one on the way to them, one with the
+     * encoder */
     for (uint64_t id = 1; id <= 20; id++)
         assert_true(submit(pipeline, plan, id, 64, &err));
     for (uint64_t id = 10; id <= 19; id++)
@@ -249,7 +257,8 @@ static void more_than_the_limit_is_refused_and_never_blocks(void **state)
         }
     }
     assert_true(n_refused > 0);
-    assert_in_range(n_taken, PIPELINE_MAX_WAITING, PIPELINE_MAX_WAITING + 4); /* being drawn, two drawn, being compressed */
+    assert_in_range(n_taken, PIPELINE_MAX_WAITING,
+                    PIPELINE_MAX_WAITING + 4); /* being drawn, two drawn, being compressed */
     open_receiver(&receiver);
     pipeline_destroy(pipeline); /* with most of them still waiting */
     assert_true(receiver.n_frames < n_taken);
@@ -274,8 +283,8 @@ static void wait_for_id(struct receiver *receiver, uint64_t id)
     pthread_mutex_unlock(&receiver->mutex);
 }
 
-/* A large one takes a hundred times as long as a small one. Were pictures drawn one after the other, a small one that is asked for when the last
- * came would have to wait for a large one each time. */
+/* A large one takes a hundred times as long as a small one. Were pictures drawn one after the other, a small one that
+ * is asked for when the last came would have to wait for a large one each time. */
 static void large_pictures_of_one_source_do_not_hold_up_small_ones_of_another(void **state)
 {
     (void)state;

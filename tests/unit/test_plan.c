@@ -44,12 +44,14 @@ static void a_plan_without_a_tree_gets_one_from_what_encloses_what(void **state)
     char folder[256];
     struct error err;
     make_folder_of_boxes(folder, "labels.nii");
-    folder_put_text(folder, "names.json",
-                    "{\"labels\":[{\"value\":1,\"name\":\"Skin\",\"color\":\"#ff8000\"},{\"value\":2,\"name\":\"Skull\"},"
-                    "{\"value\":3,\"name\":\"Brain\",\"color\":[0,0.5,1]},{\"value\":9,\"name\":\"none\"}]}");
-    folder_put_text(folder, "plan.json",
-                    "{\"format\":\"beamroom-plan\",\"version\":1,\"name\":\"boxes\",\"phantom\":true,\"regions\":[{\"path\":\"labels.nii\","
-                    "\"names\":\"names.json\"}],\"colour\":1}");
+    folder_put_text(
+        folder, "names.json",
+        "{\"labels\":[{\"value\":1,\"name\":\"Skin\",\"color\":\"#ff8000\"},{\"value\":2,\"name\":\"Skull\"},"
+        "{\"value\":3,\"name\":\"Brain\",\"color\":[0,0.5,1]},{\"value\":9,\"name\":\"none\"}]}");
+    folder_put_text(
+        folder, "plan.json",
+        "{\"format\":\"beamroom-plan\",\"version\":1,\"name\":\"boxes\",\"phantom\":true,\"regions\":[{\"path\":\"labels.nii\","
+        "\"names\":\"names.json\"}],\"colour\":1}");
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
     assert_true(plan->is_phantom);
@@ -130,8 +132,8 @@ static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
     assert_int_equal(light.reduction, 1);
     assert_int_equal(facts.n_univels, 125);
     assert_close(facts.univel_volume_mm3, 125000, 1e-6);
-    /* through the outermost centres 4^3; on its faces 6 slabs of half a voxel; along its edges 12 prisms of 4 x 1/8; at its
-     * corners 8 tetrahedra of 1/48: 118.1667 voxels of 1000 mm3 */
+    /* through the outermost centres 4^3; on its faces 6 slabs of half a voxel; along its edges 12 prisms of 4 x 1/8; at
+     * its corners 8 tetrahedra of 1/48: 118.1667 voxels of 1000 mm3 */
     assert_near(facts.volume_mm3, 118166.667, 1e-5);
     assert_int_equal(mesh_open_edges(first), 0);
     assert_non_null(first->normals);
@@ -155,7 +157,8 @@ static void ask_for_all(void *context, int part, int n_parts)
     struct crowd *crowd = context;
     for (size_t r = 0; r < 3; r++)
         for (int detail = 0; detail < 2; detail++)
-            crowd->meshes[part][r][detail] = plan_surface(crowd->plan, r, SURFACE_MARCHING_CUBES, (enum surface_detail)detail, NULL, NULL);
+            crowd->meshes[part][r][detail] =
+                plan_surface(crowd->plan, r, SURFACE_MARCHING_CUBES, (enum surface_detail)detail, NULL, NULL);
 }
 
 static void many_threads_get_the_same_surfaces(void **state)
@@ -223,9 +226,10 @@ static void masks_share_a_layer_until_they_overlap_or_their_grids_differ(void **
     put_row(folder, "c.nii", (const uint8_t[4]){ 0, 0, 1, 1 }, 1);
     put_row(folder, "d.nii", (const uint8_t[4]){ 0, 0, 0, 1 }, 2);
     put_row(folder, "e.nii", (const uint8_t[4]){ 0, 0, 0, 0 }, 1);
-    folder_put_text(folder, "plan.json",
-                    "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.nii\",\"name\":\"A\"},{\"path\":\"b.nii\",\"name\":"
-                    "\"B\"},{\"path\":\"c.nii\",\"name\":\"C\"},{\"path\":\"d.nii\",\"name\":\"D\"},{\"path\":\"e.nii\",\"name\":\"A\"}]}");
+    folder_put_text(
+        folder, "plan.json",
+        "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.nii\",\"name\":\"A\"},{\"path\":\"b.nii\",\"name\":"
+        "\"B\"},{\"path\":\"c.nii\",\"name\":\"C\"},{\"path\":\"d.nii\",\"name\":\"D\"},{\"path\":\"e.nii\",\"name\":\"A\"}]}");
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(plan->regions.n_layers, 3); /* a with b and e; c; d */
@@ -245,7 +249,8 @@ static void expect_refused(const char *folder, const char *json, enum error_code
     folder_put_text(folder, "plan.json", json);
     struct plan *plan = plan_of_folder(folder, &err);
     if (plan || err.code != code || !strstr(err.text, said))
-        fail_msg("%s\n  gave %s: %s\n  expected %s with \"%s\"", json, error_word(err.code), err.text, error_word(code), said);
+        fail_msg("%s\n  gave %s: %s\n  expected %s with \"%s\"", json, error_word(err.code), err.text, error_word(code),
+                 said);
 }
 
 static void a_plan_never_leaves_its_folder(void **state)
@@ -295,29 +300,39 @@ static void a_plan_that_is_wrong_is_refused_with_the_place(void **state)
     expect_refused(folder, PLAN("\"images\":{}"), ERROR_FORMAT, "images: expected a list");
     expect_refused(folder, PLAN("\"images\":[{\"id\":\"x\"}]"), ERROR_FORMAT, "images[0].path: is missing");
     expect_refused(folder, PLAN("\"images\":[{\"path\":\"b.nii\"}]"), ERROR_NOT_FOUND, "b.nii");
-    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\",\"modality\":4}]"), ERROR_FORMAT, "images[0].modality");
-    expect_refused(folder, PLAN("\"regions\":[{\"path\":\"a.nii\",\"name\":\"x\",\"names\":\"y.json\"}]"), ERROR_FORMAT, "not both");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\",\"modality\":4}]"), ERROR_FORMAT,
+                   "images[0].modality");
+    expect_refused(folder, PLAN("\"regions\":[{\"path\":\"a.nii\",\"name\":\"x\",\"names\":\"y.json\"}]"), ERROR_FORMAT,
+                   "not both");
     expect_refused(folder, PLAN("\"regions\":[{\"path\":\"a.nii\",\"names\":\"y.json\"}]"), ERROR_NOT_FOUND, "y.json");
-    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"alpha\"}]"), ERROR_RANGE, "doses[0].quantity");
-    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"fast\",\"per_ppm\":true}]"), ERROR_RANGE, "per_ppm");
-    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"boron\",\"boron_ppm\":1}]"), ERROR_RANGE, "boron_ppm");
+    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"alpha\"}]"), ERROR_RANGE,
+                   "doses[0].quantity");
+    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"fast\",\"per_ppm\":true}]"), ERROR_RANGE,
+                   "per_ppm");
+    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"boron\",\"boron_ppm\":1}]"), ERROR_RANGE,
+                   "boron_ppm");
     expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"boron_ppm\":-1}]"), ERROR_RANGE, "boron_ppm");
     expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"boron_ppm\":1000001}]"), ERROR_RANGE, "0 to 1e6");
-    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"frame_of_reference\":\"other\"}]"), ERROR_RANGE, "same, unknown or differs");
-    expect_refused(folder, PLAN("\"doses\":[{\"components\":[{\"path\":\"a.nii\"},{\"path\":\"a.nii\"}]}]"), ERROR_RANGE,
-                   "doses[0].components[1].quantity: is there twice");
-    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"}],\"beams\":[{\"entry_mm\":[1,2,3],\"target_mm\":[1,2,3]}]"),
+    expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"frame_of_reference\":\"other\"}]"), ERROR_RANGE,
+                   "same, unknown or differs");
+    expect_refused(folder, PLAN("\"doses\":[{\"components\":[{\"path\":\"a.nii\"},{\"path\":\"a.nii\"}]}]"),
+                   ERROR_RANGE, "doses[0].components[1].quantity: is there twice");
+    expect_refused(folder,
+                   PLAN("\"images\":[{\"path\":\"a.nii\"}],\"beams\":[{\"entry_mm\":[1,2,3],\"target_mm\":[1,2,3]}]"),
                    ERROR_RANGE, "same point");
-    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"}],\"beams\":[{\"entry_mm\":[1,2],\"target_mm\":[1,2,3]}]"),
+    expect_refused(folder,
+                   PLAN("\"images\":[{\"path\":\"a.nii\"}],\"beams\":[{\"entry_mm\":[1,2],\"target_mm\":[1,2,3]}]"),
                    ERROR_FORMAT, "beams[0].entry_mm");
-    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"}],\"tracks\":[{\"path\":\"a.pp\",\"unit\":\"m\"}]"), ERROR_RANGE,
-                   "tracks[0].unit");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"}],\"tracks\":[{\"path\":\"a.pp\",\"unit\":\"m\"}]"),
+                   ERROR_RANGE, "tracks[0].unit");
     folder_put_text(folder, "c.dcm", "not one");
-    expect_refused(folder, PLAN("\"images\":[{\"path\":\"c.dcm\"}]"), ERROR_UNSUPPORTED, "c.dcm: no DICOM image series");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"c.dcm\"}]"), ERROR_UNSUPPORTED,
+                   "c.dcm: no DICOM image series");
     struct nifti_bytes file = nested_boxes();
     folder_put(folder, "cut.nii", file.data, 400);
     nifti_bytes_free(&file);
-    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"},{\"path\":\"cut.nii\"}]"), ERROR_FORMAT, "cut.nii: cut short");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"},{\"path\":\"cut.nii\"}]"), ERROR_FORMAT,
+                   "cut.nii: cut short");
     folder_remove(folder);
 }
 
@@ -328,12 +343,14 @@ static void a_dose_in_a_format_not_read_is_left_out_and_said(void **state)
     struct error err;
     make_folder_of_boxes(folder, "a.nii");
     folder_put_text(folder, "d.uvh", "not one");
-    folder_put_text(folder, "plan.json",
-                    PLAN("\"images\":[{\"path\":\"a.nii\",\"modality\":\"CT\"}],\"doses\":[{\"id\":\"x\",\"path\":\"d.uvh\"},"
-                         "{\"id\":\"Run 1\",\"unit\":\"Gy\",\"per\":\"fraction\",\"mask\":\"a.nii\",\"components\":[{\"quantity\":\"boron\","
-                         "\"path\":\"a.nii\",\"per_ppm\":true},{\"quantity\":\"gamma\",\"path\":\"a.nii\"}]}],"
-                         "\"beams\":[{\"id\":\"B\",\"entry_mm\":[0,0,0],\"target_mm\":[0,0,9],\"aperture_mm\":120},"
-                         "{\"entry_mm\":[0,0,1],\"target_mm\":[0,0,9]}]"));
+    folder_put_text(
+        folder, "plan.json",
+        PLAN(
+            "\"images\":[{\"path\":\"a.nii\",\"modality\":\"CT\"}],\"doses\":[{\"id\":\"x\",\"path\":\"d.uvh\"},"
+            "{\"id\":\"Run 1\",\"unit\":\"Gy\",\"per\":\"fraction\",\"mask\":\"a.nii\",\"components\":[{\"quantity\":\"boron\","
+            "\"path\":\"a.nii\",\"per_ppm\":true},{\"quantity\":\"gamma\",\"path\":\"a.nii\"}]}],"
+            "\"beams\":[{\"id\":\"B\",\"entry_mm\":[0,0,0],\"target_mm\":[0,0,9],\"aperture_mm\":120},"
+            "{\"entry_mm\":[0,0,1],\"target_mm\":[0,0,9]}]"));
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
     assert_true(report_has(&plan->report, "dose.unsupported"));
@@ -375,13 +392,15 @@ static void an_image_beside_the_regions_is_reported(void **state)
     put_row(folder, "mask.nii", (const uint8_t[4]){ 1, 1, 0, 0 }, 1);
     put_row(folder, "near.nii", (const uint8_t[4]){ 1, 2, 3, 4 }, 1);
     put_row(folder, "mirrored.nii", (const uint8_t[4]){ 1, 2, 3, 4 }, -1);
-    folder_put_text(folder, "plan.json", PLAN("\"images\":[{\"path\":\"near.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
+    folder_put_text(folder, "plan.json",
+                    PLAN("\"images\":[{\"path\":\"near.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
     struct plan *plan = plan_of_folder(folder, &err);
     assert_false(report_has(&plan->report, "geometry.apart"));
     plan_destroy(plan);
     put_row(folder, "mask.nii", (const uint8_t[4]){ 0, 0, 1, 1 }, 1);
-    folder_put_text(folder, "plan.json",
-                    PLAN("\"images\":[{\"path\":\"mirrored.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
+    folder_put_text(
+        folder, "plan.json",
+        PLAN("\"images\":[{\"path\":\"mirrored.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
     plan = plan_of_folder(folder, &err);
     assert_true(report_has(&plan->report, "geometry.apart"));
     assert_close(plan->bounds_lps_mm.high.x, -1.5, 1e-9); /* of the region alone: RAS x 1.5 .. 3.5 */

@@ -10,21 +10,30 @@
 
 #include "core/base/clock.h"
 #include "core/formats/nifti_write.h"
-#include "core/load/load.h"
-#include "core/plan/plan.h"
 #include "core/load/cache.h"
 #include "core/load/cache_fields.h"
+#include "core/load/load.h"
+#include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/made_plan.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/same_plan.h"
 
-enum { SIZE_IMAGE = 248, SIZE_REGION = 328, SIZE_DOSE = 760, SIZE_BEAM = 464, SIZE_SEGMENT = 28, SIZE_VOLUME = 264, SIZE_PLAN = 57800 };
+enum {
+    SIZE_IMAGE = 248,
+    SIZE_REGION = 328,
+    SIZE_DOSE = 760,
+    SIZE_BEAM = 464,
+    SIZE_SEGMENT = 28,
+    SIZE_VOLUME = 264,
+    SIZE_PLAN = 57800
+};
 
 static struct plan *load_with_sources(const char *folder, const char *cache, struct plan_sources **sources)
 {
     struct error err = { 0 };
-    struct plan *plan = plan_load(folder, "p", &(struct plan_load_options){ .cache_folder = cache, .sources = sources }, &err);
+    struct plan *plan =
+        plan_load(folder, "p", &(struct plan_load_options){ .cache_folder = cache, .sources = sources }, &err);
     assert_string_equal(err.text, "");
     return plan;
 }
@@ -38,7 +47,8 @@ static void put_grid(const char *folder, const char *name, enum voxel_type type,
 {
     struct error err = { 0 };
     const uint32_t size[3] = { side, side, side };
-    struct grid grid = made_grid(side, side, side, made_affine(vec3(1.3, 0, 0), vec3(0, 1.3, 0), vec3(0, 0, 1.7), size, vec3(1, 2, 3)));
+    struct grid grid = made_grid(side, side, side,
+                                 made_affine(vec3(1.3, 0, 0), vec3(0, 1.3, 0), vec3(0, 0, 1.7), size, vec3(1, 2, 3)));
     struct volume *volume = volume_create(&grid, type, &err);
     for (size_t i = 0; i < grid_n_voxels(&grid); i++) {
         if (type == VOXEL_U8)
@@ -116,8 +126,8 @@ static void a_kept_plan_opens_as_the_same_plan_with_its_report(void **state)
     world_end(&world);
 }
 
-/* Every field of these structs is written by core/load/cache_fields.c. Whoever adds one adds it there, raises PLAN_CACHE_FORMAT and sets the
- * size here. */
+/* Every field of these structs is written by core/load/cache_fields.c. Whoever adds one adds it there, raises
+ * PLAN_CACHE_FORMAT and sets the size here. */
 static void the_cache_knows_every_field(void **state)
 {
     (void)state;
@@ -199,7 +209,8 @@ static void a_damaged_cache_is_not_believed_and_is_written_anew(void **state)
     world_end(&world);
 }
 
-/* Fields alone, without the checksum that would catch it: no flipped bit may crash, and what is accepted is within a plan's bounds. */
+/* Fields alone, without the checksum that would catch it: no flipped bit may crash, and what is accepted is within a
+ * plan's bounds. */
 static void no_bits_of_the_fields_can_make_an_impossible_plan(void **state)
 {
     (void)state;
@@ -295,8 +306,12 @@ static void a_plan_larger_than_a_file_may_be_is_not_kept(void **state)
         struct error err = { 0 };
         struct rlimit limit = { 4096, 4096 };
         (void)signal(SIGXFSZ, SIG_DFL); /* a write would end the process */
-        bool is_refused = setrlimit(RLIMIT_FSIZE, &limit) == 0 && !plan_cache_store(world.first, world.sources, world.cache, &err);
-        _exit(is_refused && err.code == ERROR_LIMIT && strstr(err.text, "more than a file may have") && access(partial, F_OK) != 0 ? 0 : 1);
+        bool is_refused =
+            setrlimit(RLIMIT_FSIZE, &limit) == 0 && !plan_cache_store(world.first, world.sources, world.cache, &err);
+        _exit(is_refused && err.code == ERROR_LIMIT && strstr(err.text, "more than a file may have") &&
+                      access(partial, F_OK) != 0
+                  ? 0
+                  : 1);
     }
     int status;
     assert_int_equal(waitpid(child, &status, 0), child);

@@ -1,4 +1,5 @@
-/* Every folder of real data: it opens, or is refused for the reason written here. Archives are unpacked by tar into a folder of their own. */
+/* Every folder of real data: it opens, or is refused for the reason written here. Archives are unpacked by tar into a
+ * folder of their own. */
 #define _GNU_SOURCE
 #include <ftw.h>
 #include <stdio.h>
@@ -6,8 +7,8 @@
 #include <unistd.h>
 
 #include "core/load/load.h"
-#include "core/plan/plan.h"
 #include "core/load/write_plan.h"
+#include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/oracle.h"
@@ -124,10 +125,10 @@ static void every_folder_opens_or_is_refused_for_a_stated_reason(void **state)
             fail_msg("%s: %s instead of \"%s\"", e->name, plan ? "opens" : err.text, e->reason);
         if (!e->reason && !plan)
             fail_msg("%s: %s", e->name, err.text);
-        if (plan && (plan->n_images != e->n_images || plan->regions.n_regions != e->n_regions || plan->n_doses != e->n_doses ||
-                     plan->n_beams != e->n_beams))
-            fail_msg("%s: %zu images, %zu regions, %zu doses, %zu beams", e->name, plan->n_images, plan->regions.n_regions, plan->n_doses,
-                     plan->n_beams);
+        if (plan && (plan->n_images != e->n_images || plan->regions.n_regions != e->n_regions ||
+                     plan->n_doses != e->n_doses || plan->n_beams != e->n_beams))
+            fail_msg("%s: %zu images, %zu regions, %zu doses, %zu beams", e->name, plan->n_images,
+                     plan->regions.n_regions, plan->n_doses, plan->n_beams);
         plan_destroy(plan);
     }
 }
@@ -167,7 +168,8 @@ static void structure_sets_fill_the_voxels_of_the_reference_masks(void **state)
                 for (uint32_t i = 0; i < b->grid.size[0]; i++) {
                     uint32_t at[3];
                     struct vec3 point = affine_point(&b->grid.lps_mm_from_ijk, vec3(i, j, k));
-                    bool is_inside = volume_voxel_at(a, point, at) && volume_label(a, at[0], at[1], at[2]) == set->label;
+                    bool is_inside =
+                        volume_voxel_at(a, point, at) && volume_label(a, at[0], at[1], at[2]) == set->label;
                     n_different += is_inside != (volume_label(b, i, j, k) == mask->label);
                 }
         print_message("%s: %zu voxels differ\n", pairs[p].set, n_different);
@@ -176,7 +178,8 @@ static void structure_sets_fill_the_voxels_of_the_reference_masks(void **state)
     plan_destroy(plan);
 }
 
-/* By hand, from the file: a body of 35.4 l and a ball of a tumour of radius 20 mm (33.5 cm3), as its maker's program describes it. */
+/* By hand, from the file: a body of 35.4 l and a ball of a tumour of radius 20 mm (33.5 cm3), as its maker's program
+ * describes it. */
 static void the_lung_phantom_has_its_three_regions(void **state)
 {
     (void)state;
@@ -225,7 +228,8 @@ static void check_beam(const struct plan *plan, const char *name, struct vec3 is
     fail_msg("no beam %s", name);
 }
 
-/* Oracle: pydicom and numpy. Doses at voxel centres within 1e-6 Gy; beams within 1e-6 mm; volumes of regions without holes within 1 %. */
+/* Oracle: pydicom and numpy. Doses at voxel centres within 1e-6 Gy; beams within 1e-6 mm; volumes of regions without
+ * holes within 1 %. */
 static void check_against_pydicom(const char *folder, size_t least_doses, size_t least_regions, size_t least_beams)
 {
     char path[512], script[] = "tests/oracle/rt_plan.py", *answer = malloc(1 << 20), *rest = NULL;
@@ -312,7 +316,8 @@ static void images_keep_their_own_grids(void **state)
 static void dicom_plans_come_back_from_their_conversion(void **state)
 {
     (void)state;
-    static const char *const names[] = { "dicomrt-oncentra-phantom", "dicomrt-sts001", "dicomrt-plans", "dicom-mr-head", "dicomrt-lung-phantom" };
+    static const char *const names[] = { "dicomrt-oncentra-phantom", "dicomrt-sts001", "dicomrt-plans", "dicom-mr-head",
+                                         "dicomrt-lung-phantom" };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         char out[300];
         struct error err;

@@ -23,7 +23,8 @@ static void put_slices(const char *folder, int n, double pitch_mm)
     }
 }
 
-/* Boxes of 20 x 30 mm around (39, 40) on n planes each, every region above the one before; region 0 on the first slices. */
+/* Boxes of 20 x 30 mm around (39, 40) on n planes each, every region above the one before; region 0 on the first
+ * slices. */
 static void put_boxes(const char *folder, int n_regions, int n_planes, double pitch_mm)
 {
     struct made_dicom made;
@@ -87,7 +88,8 @@ static void regions_drawn_on_slices_that_are_not_there_are_whole(void **state)
         assert_false(report_has(&plan->report, "region.empty"));
         assert_false(report_has(&plan->report, "region.contours-outside"));
         char beginning[80];
-        snprintf(beginning, sizeof beginning, "Contours of %d of 9 regions reach beyond the image", n_slices == 1 ? 9 : 8);
+        snprintf(beginning, sizeof beginning, "Contours of %d of 9 regions reach beyond the image",
+                 n_slices == 1 ? 9 : 8);
         assert_memory_equal(report_said(&plan->report, "region.contours-beyond"), beginning, strlen(beginning));
         plan_destroy(plan);
         folder_remove(folder);

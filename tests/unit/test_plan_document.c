@@ -31,11 +31,18 @@ static void a_plan_is_told_with_units_and_null_where_nothing_is_known(void **sta
     struct plan plan = { .id = "head", .name = "Head \"1\"", .is_phantom = true, .load_us = 1500 };
     plan.bounds_lps_mm = box3_empty();
     plan.n_images = 1;
-    plan.images[0] = (struct plan_image){ .id = "ct", .modality = "CT", .unit = "HU", .window_center = 40, .window_width = 400 };
+    plan.images[0] =
+        (struct plan_image){ .id = "ct", .modality = "CT", .unit = "HU", .window_center = 40, .window_width = 400 };
     plan.images[0].volume = make_volume(VOXEL_I16);
     plan.images[0].volume->low = -1000;
     struct region regions[2] = {
-        { .id = "skin", .name = "Skin", .rgb = { 1, 2, 255 }, .parent = -1, .label = 1, .n_voxels = 5, .volume_cm3 = 0.03 },
+        { .id = "skin",
+          .name = "Skin",
+          .rgb = { 1, 2, 255 },
+          .parent = -1,
+          .label = 1,
+          .n_voxels = 5,
+          .volume_cm3 = 0.03 },
         { .id = "gone", .name = "Gone", .parent = 0, .label = 2 },
     };
     for (int i = 0; i < 2; i++)
@@ -79,7 +86,8 @@ static void a_plan_is_told_with_units_and_null_where_nothing_is_known(void **sta
     assert_json_point(item(item(grid, "bounds_mm"), "low"), 9.5, 19, 19.5); /* k = 3.5: 30 - 10.5 */
     assert_json_point(item(item(grid, "bounds_mm"), "high"), 11.5, 25, 31.5);
 
-    const cJSON *skin = cJSON_GetArrayItem(item(document, "regions"), 0), *gone = cJSON_GetArrayItem(item(document, "regions"), 1);
+    const cJSON *skin = cJSON_GetArrayItem(item(document, "regions"), 0),
+                *gone = cJSON_GetArrayItem(item(document, "regions"), 1);
     assert_string_equal(item(skin, "color")->valuestring, "#0102ff");
     assert_true(cJSON_IsNull(item(skin, "parent")));
     assert_json_point(item(item(skin, "bounds_mm"), "low"), 9.5, 19, 25.5); /* voxels (0,0,0) and (0,0,1) */
@@ -107,7 +115,8 @@ static void doses_tracks_and_the_report_keep_their_words(void **state)
     plan.bounds_lps_mm = (struct box3){ { -1, -2, -3 }, { 4, 5, 6 } };
     plan.n_doses = 1;
     plan.doses[0] = (struct dose){ .id = "d", .unit = "cGy", .per = "fraction", .n_components = 2 };
-    plan.doses[0].components[0] = (struct dose_component){ .quantity = DOSE_BORON, .is_per_ppm = true, .values = make_volume(VOXEL_F32) };
+    plan.doses[0].components[0] =
+        (struct dose_component){ .quantity = DOSE_BORON, .is_per_ppm = true, .values = make_volume(VOXEL_F32) };
     plan.doses[0].components[1] = (struct dose_component){ .quantity = DOSE_TOTAL, .values = make_volume(VOXEL_F32) };
     plan.doses[0].components[0].values->high = 0.25;
     plan.doses[0].components[1].has_boron_ppm = true;
@@ -127,7 +136,8 @@ static void doses_tracks_and_the_report_keep_their_words(void **state)
     assert_string_equal(item(dose, "unit")->valuestring, "cGy");
     assert_string_equal(item(dose, "per")->valuestring, "fraction");
     assert_true(cJSON_IsFalse(item(dose, "masked")));
-    const cJSON *boron = cJSON_GetArrayItem(item(dose, "components"), 0), *total = cJSON_GetArrayItem(item(dose, "components"), 1);
+    const cJSON *boron = cJSON_GetArrayItem(item(dose, "components"), 0),
+                *total = cJSON_GetArrayItem(item(dose, "components"), 1);
     assert_string_equal(item(boron, "quantity")->valuestring, "boron");
     assert_true(cJSON_IsTrue(item(boron, "per_ppm")) && cJSON_IsFalse(item(total, "per_ppm")));
     assert_close(item(boron, "high")->valuedouble, 0.25, 0);

@@ -18,7 +18,8 @@ static void make_large_folder(char folder[256])
 {
     struct error err = { 0 };
     const uint32_t size[3] = { SIDE, SIDE, N_SLICES };
-    struct grid grid = made_grid(SIDE, SIDE, N_SLICES, made_affine(vec3(0.5, 0, 0), vec3(0, 0.5, 0), vec3(0, 0, 2), size, vec3(0, 0, 0)));
+    struct grid grid = made_grid(SIDE, SIDE, N_SLICES,
+                                 made_affine(vec3(0.5, 0, 0), vec3(0, 0.5, 0), vec3(0, 0, 2), size, vec3(0, 0, 0)));
     struct volume *volume = volume_create(&grid, VOXEL_U8, &err);
     assert_non_null(volume);
     for (size_t at = 0; at < grid_n_voxels(&grid); at += 97)
@@ -101,7 +102,8 @@ static void a_load_is_given_up_within_a_fifth_of_a_second_wherever_it_is(void **
     folder_remove(folder);
 }
 
-/* In a process of its own, as the high-water mark of memory never falls: opens a folder (or nothing) and prints its mark in KiB. */
+/* In a process of its own, as the high-water mark of memory never falls: opens a folder (or nothing) and prints its
+ * mark in KiB. */
 static int open_and_tell(const char *folder)
 {
     struct error err = { 0 };
@@ -191,7 +193,8 @@ static void estimates_of_real_plans_are_within_the_stated_factor(void **state)
         if (!data_path(plans[i].name, path, sizeof path))
             continue;
         n++;
-        double estimate_mib = estimated_mib(path, plans[i].largest), found_mib = (double)(peak_kib(path) - before) / 1024;
+        double estimate_mib = estimated_mib(path, plans[i].largest),
+               found_mib = (double)(peak_kib(path) - before) / 1024;
         print_message("%s: estimate %.0f MiB, measured %.0f MiB\n", plans[i].name, estimate_mib, found_mib);
         check_estimate(estimate_mib, found_mib);
     }

@@ -1,4 +1,5 @@
-/* plan.json that names more than a plan holds: what is over a limit is left out and said, or the plan is refused; nothing is written beyond. */
+/* plan.json that names more than a plan holds: what is over a limit is left out and said, or the plan is refused;
+ * nothing is written beyond. */
 #include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/made_plan.h"
@@ -36,9 +37,10 @@ static void a_dose_beyond_the_limit_is_left_out_and_named_whatever_came_before_i
         put_rtdose(folder, i, ".dcm");
     put_grid(folder, "last.nii.gz");
     put_grid(folder, "valid.nii.gz");
-    folder_put_text(folder, "plan.json",
-                    "{\"format\": \"beamroom-plan\", \"version\": 1, \"doses\": [{\"path\": \"doses\"},"
-                    "{\"id\": \"one-more\", \"path\": \"last.nii.gz\", \"unit\": \"Gy\", \"per\": \"fraction\", \"mask\": \"valid.nii.gz\"}]}");
+    folder_put_text(
+        folder, "plan.json",
+        "{\"format\": \"beamroom-plan\", \"version\": 1, \"doses\": [{\"path\": \"doses\"},"
+        "{\"id\": \"one-more\", \"path\": \"last.nii.gz\", \"unit\": \"Gy\", \"per\": \"fraction\", \"mask\": \"valid.nii.gz\"}]}");
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(plan->n_doses, PLAN_MAX_DOSES);
@@ -59,7 +61,8 @@ static void a_dose_beyond_the_limit_is_left_out_and_named_whatever_came_before_i
     folder_remove(folder);
 }
 
-/* The objects of a folder are DICOM by what they hold. Read by their names they would all be the one component of this entry. */
+/* The objects of a folder are DICOM by what they hold. Read by their names they would all be the one component of this
+ * entry. */
 static void doses_of_a_dicom_folder_are_dicom_whatever_their_files_are_called(void **state)
 {
     (void)state;
@@ -69,7 +72,8 @@ static void doses_of_a_dicom_folder_are_dicom_whatever_their_files_are_called(vo
     put_rtdose(folder, 0, ".dcm");
     put_rtdose(folder, 1, ".nii");
     put_rtdose(folder, 2, ".nrrd");
-    folder_put_text(folder, "plan.json", "{\"format\": \"beamroom-plan\", \"version\": 1, \"doses\": [{\"path\": \"doses\"}]}");
+    folder_put_text(folder, "plan.json",
+                    "{\"format\": \"beamroom-plan\", \"version\": 1, \"doses\": [{\"path\": \"doses\"}]}");
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(plan->n_doses, 3);

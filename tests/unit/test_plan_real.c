@@ -5,16 +5,19 @@
 #include "tests/unit/data_folder.h"
 #include "tests/unit/plan_help.h"
 
-static void assert_extent(const struct region *r, uint32_t i0, uint32_t i1, uint32_t j0, uint32_t j1, uint32_t k0, uint32_t k1)
+static void assert_extent(const struct region *r, uint32_t i0, uint32_t i1, uint32_t j0, uint32_t j1, uint32_t k0,
+                          uint32_t k1)
 {
     const uint32_t expected[6] = { i0, i1, j0, j1, k0, k1 };
-    const uint32_t found[6] = { r->low_ijk[0], r->high_ijk[0], r->low_ijk[1], r->high_ijk[1], r->low_ijk[2], r->high_ijk[2] };
+    const uint32_t found[6] = { r->low_ijk[0],  r->high_ijk[0], r->low_ijk[1],
+                                r->high_ijk[1], r->low_ijk[2],  r->high_ijk[2] };
     assert_memory_equal(found, expected, sizeof found);
 }
 
 static void assert_sera_head(const struct plan *plan)
 {
-    /* counts and extents as published with the sample; the tumour's centroid is the planned target (24.9, 38.4, -64.9) */
+    /* counts and extents as published with the sample; the tumour's centroid is the planned target (24.9, 38.4, -64.9)
+     */
     assert_int_equal(plan->regions.n_regions, 3);
     assert_int_equal(region_of(plan, "scalp")->n_voxels, 590872);
     assert_int_equal(region_of(plan, "brain")->n_voxels, 302070);
@@ -72,7 +75,8 @@ static void the_distributed_head_opens_from_nifti_copies_and_from_headers_that_l
     assert_true(report_has(&plan->report, "image.slices-differ"));
     assert_true(report_has(&plan->report, "geometry.borrowed"));
     assert_memory_equal(plan->images[0].volume->grid.size, plan->regions.layers[0]->grid.size, sizeof(uint32_t[3]));
-    assert_close(plan->images[0].volume->grid.lps_mm_from_ijk.origin.z, -264.999145, 1e-3); /* of the corrected header */
+    assert_close(plan->images[0].volume->grid.lps_mm_from_ijk.origin.z, -264.999145,
+                 1e-3); /* of the corrected header */
     plan_destroy(plan);
 }
 
@@ -155,7 +159,8 @@ static void every_folder_of_data_is_summarised_with_a_reason_when_it_cannot_be_r
         if (!data_path(folders[i].name, path, sizeof path))
             skip();
         plan_summarize(path, &summary);
-        if (summary.is_readable != (folders[i].reason == NULL) || (folders[i].reason && !strstr(summary.reason, folders[i].reason)))
+        if (summary.is_readable != (folders[i].reason == NULL) ||
+            (folders[i].reason && !strstr(summary.reason, folders[i].reason)))
             fail_msg("%s: \"%s\"", folders[i].name, summary.reason);
     }
     struct plan_summary summary;

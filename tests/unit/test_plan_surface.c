@@ -14,7 +14,9 @@ static double boxes_label(struct vec3 p)
         return 2;
     return fabs(p.x + 71.5) < 0.4 && fabs(p.y - 0.5) < 0.4 && fabs(p.z - 0.5) < 0.4 ? 3 : 0;
 }
-static const struct made_region boxes[] = { { "large", -1, 0xff8040 }, { "small", -1, 0x40ff80 }, { "lone", -1, 0x8040ff } };
+static const struct made_region boxes[] = { { "large", -1, 0xff8040 },
+                                            { "small", -1, 0x40ff80 },
+                                            { "lone", -1, 0x8040ff } };
 
 static struct plan *plan_of_boxes(void)
 {
@@ -114,12 +116,14 @@ static void assert_same_shape(const struct shape *a, const struct shape *b)
     assert_int_equal(a->kind, b->kind);
     assert_int_equal(a->n_bytes, b->n_bytes);
     if (a->mesh) {
-        assert_memory_equal(a->mesh->positions_lps_mm, b->mesh->positions_lps_mm, 3 * b->mesh->n_vertices * sizeof(float));
+        assert_memory_equal(a->mesh->positions_lps_mm, b->mesh->positions_lps_mm,
+                            3 * b->mesh->n_vertices * sizeof(float));
         assert_memory_equal(a->mesh->indices, b->mesh->indices, 3 * b->mesh->n_triangles * sizeof(uint32_t));
         assert_memory_equal(a->mesh->normals, b->mesh->normals, 3 * b->mesh->n_vertices * sizeof(float));
     }
     if (a->points)
-        assert_memory_equal(a->points->positions_lps_mm, b->points->positions_lps_mm, 3 * b->points->n_points * sizeof(float));
+        assert_memory_equal(a->points->positions_lps_mm, b->points->positions_lps_mm,
+                            3 * b->points->n_points * sizeof(float));
 }
 
 static void shapes_of_all_kinds_built_at_once_are_those_built_one_by_one(void **state)
@@ -162,7 +166,8 @@ static void masks_are_the_regions_however_many_are_made_at_once_and_asked_for_ag
         struct error err = { 0 };
         struct plan_masks *masks = plan_masks_create(plan, wishes, 4, most[m]);
         for (size_t i = 0; i < 5; i++) {
-            struct mask *mask = plan_masks_take(masks, order[i], &err), *alone = mask_from_region(&plan->regions, wishes[order[i]].region, 1, &err);
+            struct mask *mask = plan_masks_take(masks, order[i], &err),
+                        *alone = mask_from_region(&plan->regions, wishes[order[i]].region, 1, &err);
             assert_non_null(mask);
             assert_memory_equal(mask->bits, alone->bits, one);
             mask_destroy(mask);
@@ -193,10 +198,12 @@ static void thick_slices_are_not_thinned_before_the_pixels_are_as_large(void **s
         assert_non_null(mesh);
         assert_true(facts.reduction > 1 && facts.reduction <= 5);
         assert_true(facts.n_triangles <= PLAN_LIGHT_TRIANGLES);
-        /* 19 plates still, each on its own; the 8-cell algorithm draws a plate of one univel as two sheets that share their rim */
+        /* 19 plates still, each on its own; the 8-cell algorithm draws a plate of one univel as two sheets that share
+         * their rim */
         if (algorithm != SURFACE_EIGHT_CELL)
             assert_int_equal(mesh_euler(mesh), 2 * 19);
-        assert_close(mesh->bounds_lps_mm.high.z - mesh->bounds_lps_mm.low.z, 37 * 4, 4); /* between outermost centres and a slice more */
+        assert_close(mesh->bounds_lps_mm.high.z - mesh->bounds_lps_mm.low.z, 37 * 4,
+                     4); /* between outermost centres and a slice more */
         mesh_unref(mesh);
         plan_destroy(plan);
     }
@@ -214,8 +221,8 @@ static void seras_head_by_either_algorithm_in_full_and_light(void **state)
         mesh_unref(plan_surface(plan, r, SURFACE_MARCHING_CUBES, SURFACE_FULL, &cubes, NULL));
         mesh_unref(plan_surface(plan, r, SURFACE_EIGHT_CELL, SURFACE_FULL, &cells, NULL));
         mesh_unref(plan_surface(plan, r, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &light, NULL));
-        /* Sera3d on this head: 137,132 of 189,092, 85,240 of 108,558, 10,236 of 13,028; closed at the scan's end the caps, with as
-         * many triangles by either, bring the scalp's nearer to 1 */
+        /* Sera3d on this head: 137,132 of 189,092, 85,240 of 108,558, 10,236 of 13,028; closed at the scan's end the
+         * caps, with as many triangles by either, bring the scalp's nearer to 1 */
         double share = (double)cells.n_triangles / (double)cubes.n_triangles;
         assert_true(share > 0.7 && share < 0.85);
         assert_true(cells.volume_mm3 < cubes.volume_mm3);
@@ -226,7 +233,8 @@ static void seras_head_by_either_algorithm_in_full_and_light(void **state)
     plan_destroy(plan);
 }
 
-static struct shape *shape_of(struct plan *plan, size_t region, enum surface_algorithm algorithm, struct surface_facts *facts)
+static struct shape *shape_of(struct plan *plan, size_t region, enum surface_algorithm algorithm,
+                              struct surface_facts *facts)
 {
     struct error err = { 0 };
     /* a field that surfaces do not use makes no other shape */

@@ -8,7 +8,9 @@ static double nested_label(struct vec3 p)
     double r = vec3_length(p);
     return r < 4 ? 3 : r < 7 ? 2 : r < 10 ? 1 : 0;
 }
-static const struct made_region nested[] = { { "outer", -1, 0xff0000 }, { "middle", 0, 0x00ff00 }, { "inner", 1, 0x0000ff } };
+static const struct made_region nested[] = { { "outer", -1, 0xff0000 },
+                                             { "middle", 0, 0x00ff00 },
+                                             { "inner", 1, 0x0000ff } };
 
 static struct plan *make_plan(void)
 {
@@ -19,7 +21,7 @@ static struct plan *make_plan(void)
 struct asked {
     enum scene_kind kind;
     enum scene_representation representation;
-    double opacity; /* of the outer one */
+    double opacity;      /* of the outer one */
     const char *checked; /* NULL: no check */
     enum surface_detail detail;
 };
@@ -38,7 +40,8 @@ static struct preparation *prepare(struct plan *plan, const struct asked *asked)
     }
     scene.check.visible = asked->checked != NULL;
     snprintf(scene.check.region, sizeof scene.check.region, "%s", asked->checked ? asked->checked : "");
-    struct pipeline_request request = { .snapshot = snapshot_create(plan, &scene, &view, 1, field, &err), .render = { 64, 64, asked->detail, false } };
+    struct pipeline_request request = { .snapshot = snapshot_create(plan, &scene, &view, 1, field, &err),
+                                        .render = { 64, 64, asked->detail, false } };
     assert_string_equal(err.text, "");
     return preparation_create(&request);
 }
@@ -53,13 +56,41 @@ static void a_picture_wants_the_shapes_that_can_be_seen(void **state)
         enum region_representation representation;
         enum surface_detail detail;
     } cases[] = {
-        { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 1, NULL, SURFACE_LIGHT }, 1, 0, REPRESENTATION_SURFACE, SURFACE_LIGHT }, /* hides all */
-        { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 0.5, NULL, SURFACE_FULL }, 2, 0, REPRESENTATION_SURFACE, SURFACE_FULL },
-        { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 0, NULL, SURFACE_FULL }, 1, 1, REPRESENTATION_SURFACE, SURFACE_FULL },
-        { { SCENE_KIND_3D, SCENE_REPRESENTATION_POINTS, 1, NULL, SURFACE_LIGHT }, 3, 0, REPRESENTATION_POINTS, SURFACE_FULL }, /* one sees through */
-        { { SCENE_KIND_AXIAL, SCENE_REPRESENTATION_UNIVELS, 1, NULL, SURFACE_LIGHT }, 0, 0, REPRESENTATION_SURFACE, SURFACE_FULL },
-        { { SCENE_KIND_AXIAL, SCENE_REPRESENTATION_UNIVELS, 1, "", SURFACE_LIGHT }, 3, 0, REPRESENTATION_UNIVELS, SURFACE_FULL },
-        { { SCENE_KIND_CORONAL, SCENE_REPRESENTATION_OUTLINE, 1, "middle", SURFACE_LIGHT }, 1, 1, REPRESENTATION_SURFACE, SURFACE_FULL },
+        { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 1, NULL, SURFACE_LIGHT },
+          1,
+          0,
+          REPRESENTATION_SURFACE,
+          SURFACE_LIGHT }, /* hides all */
+        { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 0.5, NULL, SURFACE_FULL },
+          2,
+          0,
+          REPRESENTATION_SURFACE,
+          SURFACE_FULL },
+        { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 0, NULL, SURFACE_FULL },
+          1,
+          1,
+          REPRESENTATION_SURFACE,
+          SURFACE_FULL },
+        { { SCENE_KIND_3D, SCENE_REPRESENTATION_POINTS, 1, NULL, SURFACE_LIGHT },
+          3,
+          0,
+          REPRESENTATION_POINTS,
+          SURFACE_FULL }, /* one sees through */
+        { { SCENE_KIND_AXIAL, SCENE_REPRESENTATION_UNIVELS, 1, NULL, SURFACE_LIGHT },
+          0,
+          0,
+          REPRESENTATION_SURFACE,
+          SURFACE_FULL },
+        { { SCENE_KIND_AXIAL, SCENE_REPRESENTATION_UNIVELS, 1, "", SURFACE_LIGHT },
+          3,
+          0,
+          REPRESENTATION_UNIVELS,
+          SURFACE_FULL },
+        { { SCENE_KIND_CORONAL, SCENE_REPRESENTATION_OUTLINE, 1, "middle", SURFACE_LIGHT },
+          1,
+          1,
+          REPRESENTATION_SURFACE,
+          SURFACE_FULL },
     };
     struct plan *plan = make_plan();
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

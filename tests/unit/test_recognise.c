@@ -7,8 +7,8 @@
 #include "core/formats/folder.h"
 #include "core/formats/nifti_write.h"
 #include "core/load/load.h"
-#include "core/plan/plan.h"
 #include "core/load/parts.h"
+#include "core/plan/plan.h"
 #include "tests/check.h"
 #include "tests/made_plan.h"
 #include "tests/unit/data_folder.h"
@@ -17,7 +17,8 @@ static void put_grid(const char *folder, const char *name, enum voxel_type type)
 {
     struct error err = { 0 };
     const uint32_t size[3] = { 4, 4, 4 };
-    struct grid grid = made_grid(4, 4, 4, made_affine(vec3(10, 0, 0), vec3(0, 10, 0), vec3(0, 0, 10), size, vec3(0, 0, 0)));
+    struct grid grid =
+        made_grid(4, 4, 4, made_affine(vec3(10, 0, 0), vec3(0, 10, 0), vec3(0, 0, 10), size, vec3(0, 0, 0)));
     struct volume *volume = volume_create(&grid, type, &err);
     assert_non_null(volume);
     for (size_t i = 0; type == VOXEL_U8 && i < 64; i++)
@@ -109,7 +110,8 @@ static void parts_are_found_in_folders_below_and_plans_of_their_own_are_left_out
     folder_make(folder);
     put_grid(folder, "t1.nii.gz", VOXEL_F32);
     put_grid(folder, "segmentation/parts.nii.gz", VOXEL_U8);
-    folder_put_text(folder, "segmentation/parts.json", "{\"labels\": [{\"value\": 1, \"name\": \"brain\"}, {\"value\": 2, \"name\": \"tumour\"}]}");
+    folder_put_text(folder, "segmentation/parts.json",
+                    "{\"labels\": [{\"value\": 1, \"name\": \"brain\"}, {\"value\": 2, \"name\": \"tumour\"}]}");
     put_grid(folder, "plan/dose_total.nii.gz", VOXEL_F32);
     put_grid(folder, "other/ct.nii.gz", VOXEL_F32);
     folder_put_text(folder, "other/plan.json", "{}");
@@ -128,17 +130,23 @@ static void parts_are_found_in_folders_below_and_plans_of_their_own_are_left_out
     folder_remove(folder);
 }
 
-/* A data set whose first byte is that of something else is none: no reader finds its elements (pydicom with force and dcmdump do not). */
+/* A data set whose first byte is that of something else is none: no reader finds its elements (pydicom with force and
+ * dcmdump do not). */
 static void a_folder_of_what_only_is_named_dicom_is_refused_with_what_was_found(void **state)
 {
     (void)state;
     char folder[256];
     struct error err = { 0 };
     folder_make(folder);
-    folder_put(folder, "cut/shifted.dcm", "\x20\x08\x00\x05\x00" "CS\x0a\x00ISO_IR 100", 19);
+    folder_put(folder, "cut/shifted.dcm",
+               "\x20\x08\x00\x05\x00"
+               "CS\x0a\x00ISO_IR 100",
+               19);
     assert_null(plan_load(folder, "p", NULL, &err));
     assert_non_null(strstr(err.text, "cut/shifted.dcm: "));
-    assert_non_null(strstr(err.text, "byte 0: expected \"DICM\" at byte 128, or an element of group 0002 or 0008 here; found 20 08 00 05"));
+    assert_non_null(
+        strstr(err.text,
+               "byte 0: expected \"DICM\" at byte 128, or an element of group 0002 or 0008 here; found 20 08 00 05"));
     folder_remove(folder);
 }
 

@@ -100,9 +100,9 @@ static void a_list_without_a_map_goes_to_the_one_it_is_called_after_or_to_the_on
     static const struct {
         const char *with_names, *without[2];
     } cases[] = { { "labels.nii.gz", { "possible_mask.nii.gz", "b_seg.nii.gz" } }, /* called after it */
-                  { "tumour_seg.nii.gz", { "brain_mask.nii.gz", NULL } },          /* a list of labels is not one of a mask */
+                  { "tumour_seg.nii.gz", { "brain_mask.nii.gz", NULL } }, /* a list of labels is not one of a mask */
                   { "only_mask.nii.gz", { NULL, NULL } },
-                  { NULL, { "a_seg.nii.gz", "b_seg.nii.gz" } } };                   /* nothing says whose it is */
+                  { NULL, { "a_seg.nii.gz", "b_seg.nii.gz" } } }; /* nothing says whose it is */
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char folder[256];
         folder_make(folder);
@@ -146,8 +146,10 @@ static void a_plan_that_gives_a_map_the_list_of_another_is_followed_with_a_warni
     folder_put_text(folder, "names.json", "{\"file\": \"right.nii.gz\", " NAMES "}");
     put_map(folder, "right.nii.gz", 2, false);
     put_map(folder, "wrong.nii.gz", 1, false);
-    folder_put_text(folder, "plan.json", "{\"format\": \"beamroom-plan\", \"version\": 1, \"regions\": [{\"path\": \"right.nii.gz\", \"names\": \"names.json\"}, "
-                                         "{\"path\": \"wrong.nii.gz\", \"names\": \"names.json\"}]}");
+    folder_put_text(
+        folder, "plan.json",
+        "{\"format\": \"beamroom-plan\", \"version\": 1, \"regions\": [{\"path\": \"right.nii.gz\", \"names\": \"names.json\"}, "
+        "{\"path\": \"wrong.nii.gz\", \"names\": \"names.json\"}]}");
     struct plan *plan = open_and_remove(folder);
     assert_int_equal(n_named(plan, "necrosis"), 2);
     assert_non_null(strstr(line_about(plan, "region.names-elsewhere", "wrong.nii.gz")->sentence, "right.nii.gz"));
@@ -192,7 +194,9 @@ static void an_image_of_zeros_and_ones_is_said_to_be_what_may_be_a_region(void *
         const char *name;
         int highest;
         bool is_float, is_said;
-    } cases[] = { { "PTV70.nii.gz", 1, false, true }, { "ptv.nii.gz", 1, true, true }, { "ct.nii.gz", 2, false, false } };
+    } cases[] = { { "PTV70.nii.gz", 1, false, true },
+                  { "ptv.nii.gz", 1, true, true },
+                  { "ct.nii.gz", 2, false, false } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char folder[256];
         folder_make(folder);
@@ -214,7 +218,8 @@ static void an_image_of_zeros_and_ones_is_said_to_be_what_may_be_a_region(void *
     char folder[256]; /* a person who calls it an image knows */
     folder_make(folder);
     put_map(folder, "PTV70.nii.gz", 1, false);
-    folder_put_text(folder, "plan.json", "{\"format\": \"beamroom-plan\", \"version\": 1, \"images\": [{\"path\": \"PTV70.nii.gz\"}]}");
+    folder_put_text(folder, "plan.json",
+                    "{\"format\": \"beamroom-plan\", \"version\": 1, \"images\": [{\"path\": \"PTV70.nii.gz\"}]}");
     struct plan *plan = open_and_remove(folder);
     assert_false(report_has(&plan->report, "image.may-be-region"));
     plan_destroy(plan);
@@ -223,8 +228,9 @@ static void an_image_of_zeros_and_ones_is_said_to_be_what_may_be_a_region(void *
 static void a_mask_with_the_name_that_was_advised_is_a_region_beside_the_images(void **state)
 {
     (void)state;
-    static const char nrrd[] = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 6 6 6\nencoding: raw\nspace: left-posterior-superior\n"
-                               "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n\n";
+    static const char nrrd[] =
+        "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 6 6 6\nencoding: raw\nspace: left-posterior-superior\n"
+        "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n\n";
     char folder[256], bytes[sizeof nrrd - 1 + 216];
     memcpy(bytes, nrrd, sizeof nrrd - 1);
     for (size_t i = 0; i < 216; i++)
@@ -238,14 +244,16 @@ static void a_mask_with_the_name_that_was_advised_is_a_region_beside_the_images(
         assert_int_equal(plan->n_images, is_renamed ? 1 : 3);
         assert_int_equal(plan->regions.n_regions, is_renamed ? 2 : 0);
         if (!is_renamed) {
-            assert_non_null(strstr(line_about(plan, "image.may-be-region", "GTV.nrrd")->sentence, "call the file GTV_mask.nrrd, or"));
-            assert_non_null(strstr(line_about(plan, "image.may-be-region", "PTV70.nii.gz")->sentence, "call the file PTV70_mask.nii.gz, or"));
+            assert_non_null(strstr(line_about(plan, "image.may-be-region", "GTV.nrrd")->sentence,
+                                   "call the file GTV_mask.nrrd, or"));
+            assert_non_null(strstr(line_about(plan, "image.may-be-region", "PTV70.nii.gz")->sentence,
+                                   "call the file PTV70_mask.nii.gz, or"));
         }
         plan_destroy(plan);
     }
 }
 
-/* ---- real folders, without the plan.json they were given here -------------------------------------------------------------------- */
+/* ---- real folders, without the plan.json they were given here --------------------------------------------------- */
 
 static struct plan *plan_of_files(const char *set, const char *const *files)
 {
@@ -281,7 +289,8 @@ static void the_brain_of_a_real_glioblastoma_is_no_necrosis(void **state)
 static void a_real_head_and_neck_plan_has_each_target_once_and_its_masks_are_offered(void **state)
 {
     (void)state;
-    static const char *const files[] = { "labels.json", "labels.nii.gz", "possible_dose_mask.nii.gz", "struct/PTV70.nii.gz", NULL };
+    static const char *const files[] = { "labels.json", "labels.nii.gz", "possible_dose_mask.nii.gz",
+                                         "struct/PTV70.nii.gz", NULL };
     struct plan *plan = plan_of_files("openkbp-pt99", files);
     if (!plan)
         skip();

@@ -34,7 +34,8 @@ static void put_box(struct volume *layer, const uint32_t low[3], const uint32_t 
 #define BOX(layer, a, b, label) put_box(layer, (uint32_t[3]){ a, a, a }, (uint32_t[3]){ b, b, b }, label)
 
 /* Regions named by a letter each, one a label of the layer given. */
-static struct region_set set_make(struct volume **layers, size_t n_layers, const uint32_t *layer_of, const uint16_t *label_of, size_t n)
+static struct region_set set_make(struct volume **layers, size_t n_layers, const uint32_t *layer_of,
+                                  const uint16_t *label_of, size_t n)
 {
     struct region_set set = { .n_layers = n_layers, .n_regions = n };
     set.regions = calloc(n, sizeof *set.regions);
@@ -57,7 +58,9 @@ static void ids_are_safe_in_a_url_and_unique(void **state)
     struct region_set set = { .regions = regions };
     const struct {
         const char *name, *id;
-    } names[] = { { "Optic Nerve_-_Rt", "optic-nerve-rt" }, { "optic nerve rt", "optic-nerve-rt-2" }, { "\xc3\xa4\xc3\xb6 !", "region" },
+    } names[] = { { "Optic Nerve_-_Rt", "optic-nerve-rt" },
+                  { "optic nerve rt", "optic-nerve-rt-2" },
+                  { "\xc3\xa4\xc3\xb6 !", "region" },
                   { "", "region-2" } };
     for (size_t i = 0; i < 4; i++) {
         region_make_id(&set, names[i].name, regions[i].id);
@@ -115,7 +118,8 @@ static void shells_are_put_into_one_another(void **state)
     BOX(layer, 4, 15, 2);
     BOX(layer, 6, 13, 3);
     BOX(layer, 8, 9, 4);
-    put_box(layer, (uint32_t[3]){ 5, 5, 5 }, (uint32_t[3]){ 5, 6, 6 }, 5); /* touches 2 and 3: inside 2 by its outer side */
+    put_box(layer, (uint32_t[3]){ 5, 5, 5 }, (uint32_t[3]){ 5, 6, 6 },
+            5); /* touches 2 and 3: inside 2 by its outer side */
     struct region_set set = set_make(&layer, 1, (uint32_t[5]){ 0 }, (uint16_t[]){ 4, 3, 2, 1, 5 }, 5);
     region_set_derive_hierarchy(&set);
     assert_int_equal(set.hierarchy, HIERARCHY_DERIVED);
@@ -175,7 +179,8 @@ static void a_region_in_a_notch_does_not_lie_inside(void **state)
 static void regions_on_other_layers_lie_inside_when_their_voxels_do(void **state)
 {
     (void)state;
-    struct volume *layers[3] = { layer_make(20, 20, 20, VOXEL_U8, &map_2mm), layer_make(20, 20, 20, VOXEL_U8, &map_2mm), layer_make(12, 12, 12, VOXEL_U8, &map_2mm) };
+    struct volume *layers[3] = { layer_make(20, 20, 20, VOXEL_U8, &map_2mm), layer_make(20, 20, 20, VOXEL_U8, &map_2mm),
+                                 layer_make(12, 12, 12, VOXEL_U8, &map_2mm) };
     BOX(layers[0], 2, 17, 1);
     BOX(layers[1], 4, 15, 1);
     BOX(layers[2], 5, 9, 1);

@@ -1,4 +1,5 @@
-/* The fleet with the real beamroom-render on a small demo plan: --stub, so that sanitizers can watch, and GL where there is one. */
+/* The fleet with the real beamroom-render on a small demo plan: --stub, so that sanitizers can watch, and GL where
+ * there is one. */
 #include <errno.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -70,13 +71,15 @@ static void ask(struct world *world, const char *packet, struct reply *reply)
     world_wait_for_reply(world, reply);
 }
 
-/* Width and height from a baseline JPEG's frame header (ITU T.81, B.2.2); false when the markers do not follow each other to the end. */
+/* Width and height from a baseline JPEG's frame header (ITU T.81, B.2.2); false when the markers do not follow each
+ * other to the end. */
 static bool jpeg_size(const uint8_t *bytes, size_t n, int *width, int *height)
 {
     *width = *height = 0;
     if (n < 4 || bytes[0] != 0xff || bytes[1] != 0xd8 || bytes[n - 2] != 0xff || bytes[n - 1] != 0xd9)
         return false;
-    for (size_t at = 2; at + 9 < n && bytes[at] == 0xff && bytes[at + 1] != 0xda; at += 2 + ((size_t)bytes[at + 2] << 8 | bytes[at + 3]))
+    for (size_t at = 2; at + 9 < n && bytes[at] == 0xff && bytes[at + 1] != 0xda;
+         at += 2 + ((size_t)bytes[at + 2] << 8 | bytes[at + 3]))
         if (bytes[at + 1] == 0xc0) {
             *height = bytes[at + 5] << 8 | bytes[at + 6];
             *width = bytes[at + 7] << 8 | bytes[at + 8];
@@ -115,7 +118,8 @@ static void a_plan_is_read_and_drawn_and_drawn_again_after_a_kill(void **state)
 
     ask(&world, "{\"type\":\"render\",\"view\":{\"size_px\":[320,200]}}", &reply);
     assert_frame(&reply, 320, 200);
-    ask(&world, "{\"type\":\"render\",\"scale_percent\":50,\"detail\":\"light\",\"view\":{\"size_px\":[320,200]}}", &reply);
+    ask(&world, "{\"type\":\"render\",\"scale_percent\":50,\"detail\":\"light\",\"view\":{\"size_px\":[320,200]}}",
+        &reply);
     assert_frame(&reply, 160, 100);
 
     cJSON *scene = cJSON_CreateObject();
@@ -162,7 +166,8 @@ static void numbers_are_answered(void **state)
     begin_head(&world, true, small);
     world_start(&world, 1);
     world_open_plan(&world, PLAN);
-    /* modified Snyder head: the middle of the brain, (0, 0, 10) mm in the paper's frame, is inside brain, cranium and scalp */
+    /* modified Snyder head: the middle of the brain, (0, 0, 10) mm in the paper's frame, is inside brain, cranium and
+     * scalp */
     ask(&world, "{\"type\":\"query\",\"what\":\"probe\",\"point_lps_mm\":[30,0,-10]}", &reply);
     const cJSON *json = body(&reply);
     assert_true(cJSON_GetArraySize(cJSON_GetObjectItem(json, "regions")) >= 1);
@@ -170,7 +175,8 @@ static void numbers_are_answered(void **state)
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "images")), 1);
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "doses")), 4);
 
-    ask(&world, "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"algorithm\":\"marching-cubes\"}", &reply);
+    ask(&world, "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"algorithm\":\"marching-cubes\"}",
+        &reply);
     json = body(&reply);
     double univels = json_number(json, "n_univels", 0), volume = json_number(json, "univel_volume_mm3", 0);
     assert_close(volume, univels * 4 * 4 * 6.4, 0.5); /* 256 x 256 x 204.8 mm in 64 x 64 x 32 voxels */
@@ -183,8 +189,9 @@ static void numbers_are_answered(void **state)
     ask(&world, "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"algorithm\":\"eight-cell\"}", &reply);
     json = body(&reply);
     assert_string_equal(json_text(json, "algorithm"), "eight-cell");
-    /* a mesh has twice as many triangles as vertices: those of marching cubes are |n.x| + |n.y| + |n.z| a univel's face, mean 1.5 over
-     * all directions, those here at least the largest of the three, mean 0.83: not below 0.55, and stairs bring it towards 1 */
+    /* a mesh has twice as many triangles as vertices: those of marching cubes are |n.x| + |n.y| + |n.z| a univel's
+     * face, mean 1.5 over all directions, those here at least the largest of the three, mean 0.83: not below 0.55, and
+     * stairs bring it towards 1 */
     assert_true(json_number(json, "triangles", 0) < n_cubes * 0.85);
     assert_true(json_number(json, "triangles", 0) > n_cubes * 0.5);
     assert_close(json_number(json, "n_univels", 0), univels, 0);
@@ -193,10 +200,12 @@ static void numbers_are_answered(void **state)
     assert_close(json_number(body(&reply), "triangles", 0), n_cubes, 0);
     assert_close((double)reply.n_blob, 84 + 50 * n_cubes, 0);
 
-    ask(&world, "{\"type\":\"query\",\"what\":\"pick\",\"view\":{\"size_px\":[200,200]},\"px\":100.5,\"py\":100.5}", &reply);
+    ask(&world, "{\"type\":\"query\",\"what\":\"pick\",\"view\":{\"size_px\":[200,200]},\"px\":100.5,\"py\":100.5}",
+        &reply);
     const cJSON *hits = cJSON_GetObjectItem(body(&reply), "hits");
     assert_true(cJSON_GetArraySize(hits) >= 1);
-    assert_string_equal(json_text(cJSON_GetArrayItem(hits, 0), "region"), "scalp"); /* from the front the skin comes first */
+    assert_string_equal(json_text(cJSON_GetArrayItem(hits, 0), "region"),
+                        "scalp"); /* from the front the skin comes first */
     ask(&world, "{\"type\":\"query\",\"what\":\"ready\"}", &reply);
     assert_int_equal(cJSON_GetArraySize(body(&reply)), 0);
     reply_finish(&reply);
@@ -215,14 +224,16 @@ static void what_is_asked_wrongly_is_refused_with_its_place(void **state)
         { "{\"type\":\"render\",\"view\":{\"kind\":\"4d\"}}", PROBLEM_VALIDATION, "/view/kind" },
         { "{\"type\":\"render\",\"scene\":{\"regions\":{\"liver\":{}}}}", PROBLEM_VALIDATION, "/scene/regions/liver" },
         { "{\"type\":\"render\",\"scene\":{\"image\":{\"id\":\"pet\"}}}", PROBLEM_VALIDATION, "/scene/image/id" },
-        { "{\"type\":\"render\",\"view\":{\"camera\":{\"position_mm\":[1,1,1],\"target_mm\":[1,1,1],\"up\":[0,0,1]}}}", PROBLEM_VALIDATION,
-          "/view/camera/position_mm" },
+        { "{\"type\":\"render\",\"view\":{\"camera\":{\"position_mm\":[1,1,1],\"target_mm\":[1,1,1],\"up\":[0,0,1]}}}",
+          PROBLEM_VALIDATION, "/view/camera/position_mm" },
         { "{\"type\":\"render\",\"quality\":0}", PROBLEM_VALIDATION, "/quality" },
         { "{\"type\":\"render\",\"codec\":\"gif\"}", PROBLEM_VALIDATION, "/codec" },
         { "{\"type\":\"render\",\"room\":\"nowhere\"}", PROBLEM_NOT_FOUND, "/room" },
         { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"liver\"}", PROBLEM_NOT_FOUND, "/region" },
-        { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"algorithm\":\"magic\"}", PROBLEM_VALIDATION, "/algorithm" },
-        { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"format\":\"obj\"}", PROBLEM_VALIDATION, "/format" },
+        { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"algorithm\":\"magic\"}", PROBLEM_VALIDATION,
+          "/algorithm" },
+        { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"format\":\"obj\"}", PROBLEM_VALIDATION,
+          "/format" },
         { "{\"type\":\"query\",\"what\":\"probe\",\"point_lps_mm\":[1,2]}", PROBLEM_VALIDATION, "/point_lps_mm" },
         { "{\"type\":\"query\",\"what\":\"pick\",\"view\":{},\"px\":-1,\"py\":0}", PROBLEM_VALIDATION, "/px" },
         { "{\"type\":\"query\",\"what\":\"weather\"}", PROBLEM_VALIDATION, "/what" },
@@ -235,7 +246,8 @@ static void what_is_asked_wrongly_is_refused_with_its_place(void **state)
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         ask(&world, wrong[i].packet, &reply);
         if (reply.problem.type != wrong[i].type || strcmp(reply.problem.pointer, wrong[i].pointer) != 0)
-            fail_msg("%s: %s at %s, expected %s", wrong[i].packet, reply.problem.detail, reply.problem.pointer, wrong[i].pointer);
+            fail_msg("%s: %s at %s, expected %s", wrong[i].packet, reply.problem.detail, reply.problem.pointer,
+                     wrong[i].pointer);
     }
     assert_int_equal(world_plan_of(&world, PLAN).generation, 1);
     reply_finish(&reply);
@@ -245,7 +257,10 @@ static void what_is_asked_wrongly_is_refused_with_its_place(void **state)
 static void tell_scene(struct world *world, int room)
 {
     char text[160];
-    (void)snprintf(text, sizeof text, "{\"type\":\"scene\",\"room\":\"r%d\",\"revision\":%d,\"scene\":{\"surface\":{\"normals\":\"face\"}}}", room, room);
+    (void)
+        snprintf(text, sizeof text,
+                 "{\"type\":\"scene\",\"room\":\"r%d\",\"revision\":%d,\"scene\":{\"surface\":{\"normals\":\"face\"}}}",
+                 room, room);
     cJSON *packet = parse(text);
     WORLD_UNTIL(world, fleet_tell(world->fleet, PLAN, packet)); /* waits while too much is on the way */
     cJSON_Delete(packet);
@@ -304,7 +319,8 @@ static void a_plan_that_cannot_be_read_fails_with_the_loaders_sentence(void **st
     world_end(&world);
 }
 
-/* A name in another encoding, long enough to be cut in every sentence: still a plan that says what is wrong, not a renderer that lies. */
+/* A name in another encoding, long enough to be cut in every sentence: still a plan that says what is wrong, not a
+ * renderer that lies. */
 static void a_file_name_that_is_no_utf8_comes_out_readable(void **state)
 {
     (void)state;
@@ -313,7 +329,8 @@ static void a_file_name_that_is_no_utf8_comes_out_readable(void **state)
     begin_head(&world, true, small);
     for (size_t i = 0; i < 90; i++)
         memcpy(name + 3 * i, "\xe2\x82\xac", 4); /* the euro sign, three bytes */
-    snprintf(text, sizeof text, "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"%s.nii\"}]}", name);
+    snprintf(text, sizeof text, "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"%s.nii\"}]}",
+             name);
     folder_put_text(world.plans, PLAN "/plan.json", text);
     folder_put_text(world.plans, "latin1/K\xf6pf.nii", "no image");
     world_start(&world, 2);
@@ -347,7 +364,8 @@ static void a_plan_larger_than_the_memory_limit_fails_and_says_so(void **state)
     world_open_plan(&world, PLAN);
     world_wait_for_state(&world, PLAN, FLEET_FAILED);
     printf("%s\n", world_plan_of(&world, PLAN).problem->detail);
-    assert_non_null(strstr(world_plan_of(&world, PLAN).problem->detail, "of memory, and 80 MiB are allowed; the largest part is ct.nii.gz"));
+    assert_non_null(strstr(world_plan_of(&world, PLAN).problem->detail,
+                           "of memory, and 80 MiB are allowed; the largest part is ct.nii.gz"));
     world_end(&world);
 }
 
@@ -399,7 +417,8 @@ static void with_gl_a_frame_of_the_demo_plan_comes_and_comes_again(void **state)
     assert_frame(&reply, 1024, 768);
     assert_true(json_number(reply.json, "n_triangles", 0) > 1000);
     assert_true(reply.n_blob > 8000); /* a flat grey picture takes less */
-    printf("process start to ready %.0f ms, first picture %.0f ms later, ", (double)(ready_us - began_us) / 1000, (double)(drawn_us - ready_us) / 1000);
+    printf("process start to ready %.0f ms, first picture %.0f ms later, ", (double)(ready_us - began_us) / 1000,
+           (double)(drawn_us - ready_us) / 1000);
     ask(&world, "{\"type\":\"render\",\"still\":true,\"view\":{\"size_px\":[1024,768]}}", &reply);
     printf("a still %.0f ms, ", (double)(clock_now_us() - drawn_us) / 1000);
     for (int64_t until_us = clock_now_us() + 1500000; clock_now_us() < until_us;)
@@ -407,7 +426,8 @@ static void with_gl_a_frame_of_the_demo_plan_comes_and_comes_again(void **state)
     drawn_us = clock_now_us();
     ask(&world, "{\"type\":\"render\",\"detail\":\"light\",\"view\":{\"size_px\":[1024,768]}}", &reply);
     printf("the next %.0f ms, ", (double)(clock_now_us() - drawn_us) / 1000);
-    printf("resident %.0f MB; %s\n", (double)world_plan_of(&world, PLAN).memory_bytes / 1e6, world_plan_of(&world, PLAN).confined);
+    printf("resident %.0f MB; %s\n", (double)world_plan_of(&world, PLAN).memory_bytes / 1e6,
+           world_plan_of(&world, PLAN).confined);
 
     kill(world_plan_of(&world, PLAN).pid, SIGKILL);
     world_wait_for_state(&world, PLAN, FLEET_RESTARTING);
@@ -452,8 +472,8 @@ static void each_real_plan_becomes_ready_or_says_why_not(void **state)
         world_ask_packet(&world, ids[i], parse("{\"type\":\"render\",\"view\":{\"size_px\":[64,64]}}"), &reply);
         world_wait_for_reply(&world, &reply);
         plan = world_plan_of(&world, ids[i]);
-        printf("%-24s %-7s %6.0f ms  %s\n", ids[i], fleet_state_word(plan.state), (double)(clock_now_us() - began_us) / 1000,
-               plan.problem ? plan.problem->detail : "");
+        printf("%-24s %-7s %6.0f ms  %s\n", ids[i], fleet_state_word(plan.state),
+               (double)(clock_now_us() - began_us) / 1000, plan.problem ? plan.problem->detail : "");
         if (plan.state == FLEET_READY)
             assert_frame(&reply, 64, 64);
         else

@@ -108,7 +108,8 @@ static void a_change_that_changes_nothing_is_not_drawn(void **state)
     uint32_t revision;
     (void)room_scene(fake.room, &revision);
     fake_turn(&fake, &ann, 3, 0);
-    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"input\":9,\"patch\":{\"regions\":{\"brain\":{\"visible\":true}}}}");
+    fake_say(&fake, &ann,
+             "{\"type\":\"scene.patch\",\"input\":9,\"patch\":{\"regions\":{\"brain\":{\"visible\":true}}}}");
     fake_pass(&fake, 1000);
     assert_int_equal(fake.n_requests, before);
     cJSON *scene = fake_heard(&ann, "scene"); /* its sender still hears that it was taken, at the revision it had */
@@ -449,7 +450,8 @@ static void a_picture_that_cannot_be_is_told_once_and_not_asked_for_again(void *
     assert_int_equal(fake_n_heard(&ann, "problem"), 1);
     cJSON *problem = fake_heard(&ann, "problem");
     assert_int_equal(json_number(problem, "view", 0), 1);
-    assert_string_equal(json_text(cJSON_GetObjectItemCaseSensitive(problem, "problem"), "type"), "/problems/validation");
+    assert_string_equal(json_text(cJSON_GetObjectItemCaseSensitive(problem, "problem"), "type"),
+                        "/problems/validation");
     cJSON_Delete(problem);
     fake_turn(&fake, &ann, 8, 21); /* another view of it may well be drawn */
     settle_one();

@@ -63,7 +63,7 @@ static void move(struct fake_page *page, int x)
     fake_say(&fake, page, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"camera\":{\"target_mm\":[%d,0,0]}}}", x);
 }
 
-/* ---- members -------------------------------------------------------------------------------------------------------- */
+/* ---- members ---------------------------------------------------------------------------------------------------- */
 
 static void hello_is_answered_with_everything_a_page_needs(void **state)
 {
@@ -206,7 +206,7 @@ static void a_closed_room_says_bye_to_everybody(void **state)
     fake.room = NULL;
 }
 
-/* ---- views ---------------------------------------------------------------------------------------------------------- */
+/* ---- views ------------------------------------------------------------------------------------------------------ */
 
 static void the_shared_view_goes_on_from_who_opened_it_first(void **state)
 {
@@ -245,7 +245,8 @@ static void the_size_is_that_of_the_follower_who_moved_last(void **state)
     fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
     assert_int_equal(width_of(&fake.requests[fake.n_requests - 1]), 800);
     size_t before = fake.n_requests;
-    fake_say(&fake, &ben, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"size_px\":[500,300]}}"); /* a resize takes no lead */
+    fake_say(&fake, &ben,
+             "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"size_px\":[500,300]}}"); /* a resize takes no lead */
     fake_pass(&fake, 1000);
     assert_int_equal(fake.n_requests, before);
     move(&ben, 1);
@@ -282,7 +283,9 @@ static void each_kind_has_its_own_shared_view(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, true);
-    fake_say(&fake, &ann, "{\"type\":\"view.open\",\"view\":2,\"document\":{\"kind\":\"axial\",\"size_px\":[300,300]},\"follow\":true}");
+    fake_say(
+        &fake, &ann,
+        "{\"type\":\"view.open\",\"view\":2,\"document\":{\"kind\":\"axial\",\"size_px\":[300,300]},\"follow\":true}");
     assert_int_equal(fake_outstanding(&fake), 2);
     fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":2,\"patch\":{\"camera\":{\"height_mm\":120}}}");
     fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
@@ -319,7 +322,9 @@ static void pictures_of_a_closed_view_are_waited_for_by_nobody(void **state)
     assert_int_equal(fake_outstanding(&fake), 0);
     fake_pass(&fake, 1000);
     assert_int_equal(fake_outstanding(&fake), 0); /* and nothing is asked for meanwhile */
-    fake_say(&fake, &ann, "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"kind\":\"3d\",\"size_px\":[800,600]}}");
+    fake_say(
+        &fake, &ann,
+        "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"kind\":\"3d\",\"size_px\":[800,600]}}");
     assert_true(fake_outstanding(&fake) > 0); /* who comes back wants it again */
     fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
     assert_true(ann.frames[ann.n_frames - 1].flags & FRAME_STILL);
@@ -327,7 +332,9 @@ static void pictures_of_a_closed_view_are_waited_for_by_nobody(void **state)
     fake_turn(&fake, &ann, 10, 5);
     fake_say(&fake, &ann, "{\"type\":\"view.close\",\"view\":1}");
     assert_int_equal(fake_outstanding(&fake), 0);
-    fake_say(&fake, &ann, "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"kind\":\"3d\",\"size_px\":[800,600]}}");
+    fake_say(
+        &fake, &ann,
+        "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"kind\":\"3d\",\"size_px\":[800,600]}}");
     assert_int_equal(fake_outstanding(&fake), 1); /* at once, long before a still is due */
     assert_false(fake_newest(&fake)->is_still);
     fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
@@ -354,7 +361,9 @@ static void an_override_shows_another_scene_to_one_view(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, false);
-    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"scalp\":{\"visible\":false}}}}}");
+    fake_say(
+        &fake, &ann,
+        "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"scalp\":{\"visible\":false}}}}}");
     fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
     const cJSON *scene = fake.requests[fake.n_requests - 1].scene;
     assert_non_null(scene);
@@ -363,8 +372,11 @@ static void an_override_shows_another_scene_to_one_view(void **state)
     /* the room's scene goes on under it */
     fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.5}}}}");
     scene = fake_newest(&fake)->scene;
-    assert_close(json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "brain"), "opacity", 0), 0.5, 0);
-    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"liver\":{\"visible\":false}}}}}");
+    assert_close(json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "brain"), "opacity", 0), 0.5,
+                 0);
+    fake_say(
+        &fake, &ann,
+        "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"liver\":{\"visible\":false}}}}}");
     assert_string_equal(refused(&ann), "422 /override/regions/liver");
 }
 
@@ -380,7 +392,7 @@ static void a_view_number_outside_one_to_eight_is_refused(void **state)
     assert_int_equal(fake.n_requests, 0);
 }
 
-/* ---- the scene ------------------------------------------------------------------------------------------------------ */
+/* ---- the scene -------------------------------------------------------------------------------------------------- */
 
 static void a_change_of_the_scene_reaches_all_and_raises_the_revision_by_one(void **state)
 {
@@ -390,7 +402,8 @@ static void a_change_of_the_scene_reaches_all_and_raises_the_revision_by_one(voi
     fake_join(&fake, &ben, false);
     fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
     (void)room_scene(fake.room, &before);
-    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"input\":3,\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.1}}}}");
+    fake_say(&fake, &ann,
+             "{\"type\":\"scene.patch\",\"input\":3,\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.1}}}}");
     (void)room_scene(fake.room, &after);
     assert_int_equal(after, before + 1);
     assert_int_equal(fake.told_revision, after);
@@ -412,8 +425,9 @@ static void a_bad_patch_is_refused_whole_and_only_its_sender_hears_it(void **sta
     fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
     size_t texts = ben.n_texts, requests = fake.n_requests;
     (void)room_scene(fake.room, &before);
-    fake_say(&fake, &ann,
-             "{\"type\":\"scene.patch\",\"input\":4,\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.9},\"liver\":{\"visible\":true}}}}");
+    fake_say(
+        &fake, &ann,
+        "{\"type\":\"scene.patch\",\"input\":4,\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.9},\"liver\":{\"visible\":true}}}}");
     assert_string_equal(refused(&ann), "422 /regions/liver");
     fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"scalp\":{\"opacity\":2}}}}");
     assert_string_equal(refused(&ann), "422 /regions/scalp/opacity");
@@ -424,7 +438,8 @@ static void a_bad_patch_is_refused_whole_and_only_its_sender_hears_it(void **sta
     assert_string_equal(refused(&ann), "400 ");
     const cJSON *scene = room_scene(fake.room, &after);
     assert_int_equal(after, before);
-    assert_close(json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "scalp"), "opacity", 0), 0.4, 1e-12);
+    assert_close(json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "scalp"), "opacity", 0), 0.4,
+                 1e-12);
     fake_pass(&fake, 1000);
     assert_int_equal(ben.n_texts, texts);
     assert_int_equal(fake.n_requests, requests);
@@ -483,8 +498,12 @@ static void an_override_said_too_early_is_taken_out_and_told_when_the_plan_has_n
     fake_room_start(&early, 3);
     struct fake_page page = { 0 };
     fake_hello(&early, &page);
-    fake_say(&early, &page, "{\"type\":\"view.open\",\"view\":1,\"document\":{\"override\":{\"regions\":{\"liver\":{\"visible\":false}}}}}");
-    fake_say(&early, &page, "{\"type\":\"view.open\",\"view\":2,\"document\":{\"override\":{\"regions\":{\"brain\":{\"visible\":false}}}}}");
+    fake_say(
+        &early, &page,
+        "{\"type\":\"view.open\",\"view\":1,\"document\":{\"override\":{\"regions\":{\"liver\":{\"visible\":false}}}}}");
+    fake_say(
+        &early, &page,
+        "{\"type\":\"view.open\",\"view\":2,\"document\":{\"override\":{\"regions\":{\"brain\":{\"visible\":false}}}}}");
     assert_int_equal(fake_n_heard(&page, "problem"), 0);
     fake_plan_ready(&early, true);
     assert_string_equal(refused(&page), "422 /override/regions/liver");
@@ -507,8 +526,12 @@ static void after_a_restart_with_another_plan_nothing_names_what_is_gone(void **
     uint32_t before, after;
     (void)state;
     fake_join(&fake, &ann, false);
-    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"scalp\":{\"visible\":false}}}}}");
-    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.3}},\"check\":{\"region\":\"scalp\"}}}");
+    fake_say(
+        &fake, &ann,
+        "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"scalp\":{\"visible\":false}}}}}");
+    fake_say(
+        &fake, &ann,
+        "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.3}},\"check\":{\"region\":\"scalp\"}}}");
     fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
     room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, NULL, 0, NULL);
     /* while it restarts, the plan as it was decides */

@@ -95,7 +95,8 @@ static void a_step_up_that_does_not_hold_is_tried_less_and_less_often(void **sta
     int64_t now_us = 1;
     (void)state;
     pace_start(&pace, false);
-    for (int i = 0; i < 60 * 25; i++, now_us += 40000) { /* one minute: full size is too slow, three quarters are fast */
+    for (int i = 0; i < 60 * 25;
+         i++, now_us += 40000) { /* one minute: full size is too slow, three quarters are fast */
         int before = pace.step;
         pace_drawn(&pace, pace.step == 0 ? 50000 : 10000, 2000, 0, 1, now_us);
         n_up += pace.step < before;

@@ -13,23 +13,26 @@
 struct uvh_words {
     const char *version, *unit, *orientation, *column_axis, *row_axis, *slice_axis, *faces, *more;
 };
-static const struct uvh_words plain = { "uvh2.0",
-                                        "mm",
-                                        "Transverse",
-                                        "RL+",
-                                        "PA-",
-                                        "IS+",
-                                        "RLaxisMin: 100\nRLaxisMax: 180\nPAaxisMin: 10\nPAaxisMax: 70\nISaxisMin: -50\nISaxisMax: 50\n",
-                                        "" };
+static const struct uvh_words plain = {
+    "uvh2.0",
+    "mm",
+    "Transverse",
+    "RL+",
+    "PA-",
+    "IS+",
+    "RLaxisMin: 100\nRLaxisMax: 180\nPAaxisMin: 10\nPAaxisMax: 70\nISaxisMin: -50\nISaxisMax: 50\n",
+    ""
+};
 
 static bool parse(const struct uvh_words *w, struct uvh *uvh, struct report *report, struct error *err)
 {
     char text[4096];
-    int n = snprintf(text, sizeof text,
-                     "# a comment\n\nVersion: %s\nDimensionality: %s\nSliceOrientation:%s\nImageColumns: 4\nimagerows: 3\n"
-                     "ImageSlices: 2\nPixelSizeColumns: 20\nPixelSizeRows: 20.0\nPixelSizeSlices: .5E+02\n%sImageColumnAxis: %s\n"
-                     "ImageRowAxis: %s\nImageSliceAxis: %s\nbegin: 'brain' # quoted\n uvval: 3\n color_red: 200\nend\n%s",
-                     w->version, w->unit, w->orientation, w->faces, w->column_axis, w->row_axis, w->slice_axis, w->more);
+    int n = snprintf(
+        text, sizeof text,
+        "# a comment\n\nVersion: %s\nDimensionality: %s\nSliceOrientation:%s\nImageColumns: 4\nimagerows: 3\n"
+        "ImageSlices: 2\nPixelSizeColumns: 20\nPixelSizeRows: 20.0\nPixelSizeSlices: .5E+02\n%sImageColumnAxis: %s\n"
+        "ImageRowAxis: %s\nImageSliceAxis: %s\nbegin: 'brain' # quoted\n uvval: 3\n color_red: 200\nend\n%s",
+        w->version, w->unit, w->orientation, w->faces, w->column_axis, w->row_axis, w->slice_axis, w->more);
     *err = (struct error){ 0 };
     return uvh_parse((const uint8_t *)text, (size_t)n, "a.uvh", uvh, report, err);
 }
@@ -67,8 +70,9 @@ static void all_axis_codes_in_all_places_put_the_first_univel_where_the_header_s
             for (int a = 0; a < 3; a++)
                 high[axis[a]] = size[a] * steps[a];
             char faces[256];
-            snprintf(faces, sizeof faces, "RLaxisMin: 0\nRLaxisMax: %g\nPAaxisMin: 0\nPAaxisMax: %g\nISaxisMin: 0\nISaxisMax: %g\n",
-                     high[0], high[1], high[2]);
+            snprintf(faces, sizeof faces,
+                     "RLaxisMin: 0\nRLaxisMax: %g\nPAaxisMin: 0\nPAaxisMax: %g\nISaxisMin: 0\nISaxisMax: %g\n", high[0],
+                     high[1], high[2]);
             struct uvh_words w = plain;
             w.faces = faces;
             w.orientation = axis[2] == 0 ? "Sagittal" : axis[2] == 1 ? "Coronal" : "Axial";
@@ -114,10 +118,11 @@ static void centimetres_become_millimetres_unless_the_patient_would_be_metres_wi
     assert_close(grid_spacing_mm(&uvh.grid).x, 200, 1e-9);
     assert_int_equal(report.n_lines, 0);
     uvh_finish(&uvh);
-    const char *trap = "Version: uvh2.0\nDimensionality: cm\nSliceOrientation:Transverse\nImageColumns: 256\nImageRows: 256\n"
-                       "ImageSlices: 48\nPixelSizeRows: 1.015620\nPixelSizeColumns: 1.015620\nPixelSizeSlices: 5.499910\n"
-                       "RLaxisMin: -130\nRLaxisMax: 130\nPAaxisMin: -130\nPAaxisMax: 130\nISaxisMin: -267.7491\n"
-                       "ISaxisMax: -3.75342\nImageColumnAxis: RL+\nImageRowAxis: PA-\nImageSliceAxis: IS+\n";
+    const char *trap =
+        "Version: uvh2.0\nDimensionality: cm\nSliceOrientation:Transverse\nImageColumns: 256\nImageRows: 256\n"
+        "ImageSlices: 48\nPixelSizeRows: 1.015620\nPixelSizeColumns: 1.015620\nPixelSizeSlices: 5.499910\n"
+        "RLaxisMin: -130\nRLaxisMax: 130\nPAaxisMin: -130\nPAaxisMax: 130\nISaxisMin: -267.7491\n"
+        "ISaxisMax: -3.75342\nImageColumnAxis: RL+\nImageRowAxis: PA-\nImageSliceAxis: IS+\n";
     assert_true(uvh_parse((const uint8_t *)trap, strlen(trap), "a.uvh", &uvh, &report, &err));
     assert_close(grid_spacing_mm(&uvh.grid).x, 1.01562, 1e-9);
     assert_true(report_has(&report, "geometry.unit-assumed"));
@@ -141,8 +146,9 @@ static void a_grid_smaller_than_any_patient_is_reported(void **state)
 static void version_1_is_positional_and_in_centimetres(void **state)
 {
     (void)state;
-    const char *text = "uvh1.0  # version\n 2 # slices\n 4\n 3\n 2.0\n 2.0\n 5.0\n -4.0\n -3.0\n -5.0\n\nuvval 2\n  regionnum 9\n"
-                       "  bodyname 'left eye'\n";
+    const char *text =
+        "uvh1.0  # version\n 2 # slices\n 4\n 3\n 2.0\n 2.0\n 5.0\n -4.0\n -3.0\n -5.0\n\nuvval 2\n  regionnum 9\n"
+        "  bodyname 'left eye'\n";
     struct uvh uvh;
     struct error err = { 0 };
     assert_true(uvh_parse((const uint8_t *)text, strlen(text), "a.uvh", &uvh, NULL, &err));
@@ -239,7 +245,8 @@ static void numbers_are_read_as_fortran_writes_them(void **state)
     const struct {
         const char *word;
         double value;
-    } good[] = { { ".5E+00", 0.5 }, { "1.0D-3", 0.001 }, { "1.0-101", 1e-101 }, { "-1.000E+00", -1 }, { "+7", 7 }, { "2.", 2 } };
+    } good[] = { { ".5E+00", 0.5 },    { "1.0D-3", 0.001 }, { "1.0-101", 1e-101 },
+                 { "-1.000E+00", -1 }, { "+7", 7 },         { "2.", 2 } };
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
         assert_true(text_number(good[i].word, &value));
         assert_near(value, good[i].value, 1e-12);
@@ -249,15 +256,17 @@ static void numbers_are_read_as_fortran_writes_them(void **state)
         assert_false(text_number(bad[i], &value));
 }
 
-/* ---- images ---------------------------------------------------------------------------------------------------------- */
+/* ---- images ----------------------------------------------------------------------------------------------------- */
 
-static const char axial_qhd[] = "Patient Name := nobody\nModality := MR\nSlice Orientation := %s\nDimensionality := %s\n"
-                                "Bytes Per Pixel := %s\nByte Order := big endian\nNumber of Dimensions := 3\n"
-                                "Size of Dimension[0] := %d\nSize of Dimension[1] := 3\nSize of Dimension[2] := 4\n"
-                                "X Pixel Size := 20\nY Pixel Size := 30\n%s";
+static const char axial_qhd[] =
+    "Patient Name := nobody\nModality := MR\nSlice Orientation := %s\nDimensionality := %s\n"
+    "Bytes Per Pixel := %s\nByte Order := big endian\nNumber of Dimensions := 3\n"
+    "Size of Dimension[0] := %d\nSize of Dimension[1] := 3\nSize of Dimension[2] := 4\n"
+    "X Pixel Size := 20\nY Pixel Size := 30\n%s";
 
-static struct volume *read_image(const char *orientation, const char *unit, const char *depth, int n_slices, const char *more,
-                                 const uint8_t *pixels, size_t n, bool *is_doubtful, struct report *report, struct error *err)
+static struct volume *read_image(const char *orientation, const char *unit, const char *depth, int n_slices,
+                                 const char *more, const uint8_t *pixels, size_t n, bool *is_doubtful,
+                                 struct report *report, struct error *err)
 {
     char text[2048];
     struct qhd qhd;
@@ -279,8 +288,8 @@ static void an_axial_image_lies_centred_with_row_0_in_front(void **state)
     bool is_doubtful;
     struct error err;
     struct report report = { 0 };
-    struct volume *volume = read_image("Axial", "mm", "1", 2, "Image Location[0] := -10\nImage Location[1] := 40\n", pixels, 24,
-                                       &is_doubtful, &report, &err);
+    struct volume *volume = read_image("Axial", "mm", "1", 2, "Image Location[0] := -10\nImage Location[1] := 40\n",
+                                       pixels, 24, &is_doubtful, &report, &err);
     assert_string_equal(err.text, "");
     assert_false(is_doubtful);
     assert_close(volume_value(volume, 2, 1, 1), 77, 0);
@@ -317,8 +326,8 @@ static void falling_slice_positions_turn_the_axis(void **state)
     const uint8_t pixels[24] = { 0 };
     bool is_doubtful;
     struct error err;
-    struct volume *volume = read_image("Axial", "mm", "1", 2, "Image Location[0] := 40\nImage Location[1] := -10\n", pixels, 24,
-                                       &is_doubtful, NULL, &err);
+    struct volume *volume = read_image("Axial", "mm", "1", 2, "Image Location[0] := 40\nImage Location[1] := -10\n",
+                                       pixels, 24, &is_doubtful, NULL, &err);
     assert_close(affine_point(&volume->grid.lps_mm_from_ijk, vec3(0, 0, 0)).z, 40, 1e-9);
     assert_close(affine_point(&volume->grid.lps_mm_from_ijk, vec3(0, 0, 1)).z, -10, 1e-9);
     volume_unref(volume);
@@ -331,19 +340,19 @@ static void the_number_of_bytes_beats_the_header_s_number_of_slices(void **state
     bool is_doubtful;
     struct error err;
     struct report report = { 0 };
-    struct volume *volume = read_image("Axial", "mm", "1", 2, "Reference Location := 5\nUniform Spacing := 50\n", pixels, 36,
-                                       &is_doubtful, &report, &err);
+    struct volume *volume = read_image("Axial", "mm", "1", 2, "Reference Location := 5\nUniform Spacing := 50\n",
+                                       pixels, 36, &is_doubtful, &report, &err);
     assert_int_equal(volume->grid.size[2], 3);
     assert_true(is_doubtful);
     assert_true(report_has(&report, "image.slices-differ"));
     assert_close(affine_point(&volume->grid.lps_mm_from_ijk, vec3(0, 0, 2)).z, 105, 1e-9);
     volume_unref(volume);
     report_finish(&report);
-    assert_null(read_image("Axial", "mm", "1", 2, "Reference Location := 5\nUniform Spacing := 50\n", pixels, 35, &is_doubtful, NULL,
-                           &err));
+    assert_null(read_image("Axial", "mm", "1", 2, "Reference Location := 5\nUniform Spacing := 50\n", pixels, 35,
+                           &is_doubtful, NULL, &err));
     assert_non_null(strstr(err.text, "35 bytes are not whole slices"));
-    assert_null(read_image("Axial", "mm", "1", 2, "Reference Location := 5\nUniform Spacing := 50\n", pixels, 0, &is_doubtful, NULL,
-                           &err));
+    assert_null(read_image("Axial", "mm", "1", 2, "Reference Location := 5\nUniform Spacing := 50\n", pixels, 0,
+                           &is_doubtful, NULL, &err));
 }
 
 static void explicit_slice_positions_beat_reference_and_spacing(void **state)
@@ -353,9 +362,10 @@ static void explicit_slice_positions_beat_reference_and_spacing(void **state)
     bool is_doubtful;
     struct error err;
     struct report report = { 0 };
-    struct volume *volume = read_image("Axial", "mm", "1", 2,
-                                       "Reference Location := 5\nUniform Spacing := 7\nImage Location[0] := -10\nImage Location[1] := 40\n",
-                                       pixels, 24, &is_doubtful, &report, &err);
+    struct volume *volume =
+        read_image("Axial", "mm", "1", 2,
+                   "Reference Location := 5\nUniform Spacing := 7\nImage Location[0] := -10\nImage Location[1] := 40\n",
+                   pixels, 24, &is_doubtful, &report, &err);
     assert_close(volume->grid.lps_mm_from_ijk.origin.z, -10, 1e-9);
     assert_close(grid_spacing_mm(&volume->grid).z, 50, 1e-9);
     assert_true(report_has(&report, "image.locations-differ"));
@@ -369,10 +379,12 @@ static void uneven_slice_positions_are_refused(void **state)
     const uint8_t pixels[36] = { 0 };
     bool is_doubtful;
     struct error err;
-    assert_null(read_image("Axial", "mm", "1", 3, "Image Location[0] := 0\nImage Location[1] := 40\nImage Location[2] := 200\n", pixels,
-                           36, &is_doubtful, NULL, &err));
+    assert_null(read_image("Axial", "mm", "1", 3,
+                           "Image Location[0] := 0\nImage Location[1] := 40\nImage Location[2] := 200\n", pixels, 36,
+                           &is_doubtful, NULL, &err));
     assert_int_equal(err.code, ERROR_UNSUPPORTED);
-    assert_null(read_image("Axial", "mm", "1", 3, "Image Location[0] := 7\nImage Location[1] := 7\nImage Location[2] := 7\n", pixels, 36,
+    assert_null(read_image("Axial", "mm", "1", 3,
+                           "Image Location[0] := 7\nImage Location[1] := 7\nImage Location[2] := 7\n", pixels, 36,
                            &is_doubtful, NULL, &err));
 }
 
@@ -383,27 +395,28 @@ static void two_byte_pixels_follow_the_byte_order_and_inches_are_an_inch(void **
     bool is_doubtful;
     struct error err;
     struct report report = { 0 };
-    struct volume *volume = read_image("Axial", "mm", "2", 2, "Reference Location := 5\nUniform Spacing := 50\n", pixels, 48,
-                                       &is_doubtful, NULL, &err);
+    struct volume *volume = read_image("Axial", "mm", "2", 2, "Reference Location := 5\nUniform Spacing := 50\n",
+                                       pixels, 48, &is_doubtful, NULL, &err);
     assert_int_equal(volume->type, VOXEL_U16);
     assert_close(volume_value(volume, 0, 0, 0), 0x1234, 0);
     volume_unref(volume);
     /* 80 inches wide cannot be: millimetres */
-    volume = read_image("Axial", "in", "2", 2, "Reference Location := 5\nUniform Spacing := 50\n", pixels, 48, &is_doubtful, &report,
-                        &err);
+    volume = read_image("Axial", "in", "2", 2, "Reference Location := 5\nUniform Spacing := 50\n", pixels, 48,
+                        &is_doubtful, &report, &err);
     assert_close(grid_spacing_mm(&volume->grid).x, 20, 1e-9);
     assert_true(report_has(&report, "geometry.unit-assumed"));
     volume_unref(volume);
     report_finish(&report);
 }
 
-/* ---- tracks and hierarchy -------------------------------------------------------------------------------------------- */
+/* ---- tracks and hierarchy --------------------------------------------------------------------------------------- */
 
 static void tracks_go_to_lps_and_keep_their_class(void **state)
 {
     (void)state;
-    const char *text = "# header\n   1.0 2.0 3.0  4.0 5.0 6.0  0  3\n 0 0 0 1 0 0 0 1\n 0 0 0 1 0 0 0 2\n 0 0 0 1 0 0  1  0\n"
-                       "0 0 0 1 1 1 2 0\n0 0 0 2 1 1 3 0\n5 5 5 5 5 5 0 1\n 1 2 3 oops\n 0 0 0 1 0 0 9 0\n";
+    const char *text =
+        "# header\n   1.0 2.0 3.0  4.0 5.0 6.0  0  3\n 0 0 0 1 0 0 0 1\n 0 0 0 1 0 0 0 2\n 0 0 0 1 0 0  1  0\n"
+        "0 0 0 1 1 1 2 0\n0 0 0 2 1 1 3 0\n5 5 5 5 5 5 0 1\n 1 2 3 oops\n 0 0 0 1 0 0 9 0\n";
     struct track_set set = { 0 };
     struct report report = { 0 };
     struct error err = { 0 };
@@ -411,8 +424,8 @@ static void tracks_go_to_lps_and_keep_their_class(void **state)
     assert_int_equal(set.n_segments, 6);
     assert_close(set.segments[0].from_lps_mm[1], -2, 0); /* PA 2 is P -2 */
     assert_close(set.segments[0].to_lps_mm[2], 6, 0);
-    static const uint8_t classes[] = { TRACK_NEUTRON_LOW, TRACK_NEUTRON_HIGH, TRACK_NEUTRON_MEDIUM, TRACK_GAMMA_HIGH, TRACK_BEAM_LINE,
-                                       TRACK_LOST };
+    static const uint8_t classes[] = { TRACK_NEUTRON_LOW, TRACK_NEUTRON_HIGH, TRACK_NEUTRON_MEDIUM,
+                                       TRACK_GAMMA_HIGH,  TRACK_BEAM_LINE,    TRACK_LOST };
     for (size_t i = 0; i < 6; i++)
         assert_int_equal(set.segments[i].class, classes[i]);
     assert_int_equal(set.n_of_class[TRACK_LOST], 1);

@@ -1,5 +1,5 @@
-/* SERA's dose contours: small sets laid out by hand as seraMC (fixed columns, numbers that touch) and seraPlan (blanks, another order of
- * columns) write them. */
+/* SERA's dose contours: small sets laid out by hand as seraMC (fixed columns, numbers that touch) and seraPlan (blanks,
+ * another order of columns) write them. */
 #include "core/formats/sera_row.h"
 #include "tests/unit/made_chd.h"
 #include "tests/unit/plan_help.h"
@@ -13,14 +13,17 @@ static void columns_are_found_by_their_names_whoever_wrote_them(void **state)
         made.version = writer % 2 ? "seraPlan_1C0" : "seraMC_1A0";
         made.is_plan = writer >= 2;
         struct chd_result result = chd_read_made(&made);
-        static const enum dose_quantity all[] = { DOSE_BLOOD_BORON, DOSE_GAMMA, DOSE_NITROGEN, DOSE_FAST, DOSE_OTHER, DOSE_FAST_FLUENCE,
-                                                  DOSE_EPITHERMAL_FLUENCE, DOSE_THERMAL_FLUENCE };
+        static const enum dose_quantity all[] = {
+            DOSE_BLOOD_BORON, DOSE_GAMMA,        DOSE_NITROGEN,           DOSE_FAST,
+            DOSE_OTHER,       DOSE_FAST_FLUENCE, DOSE_EPITHERMAL_FLUENCE, DOSE_THERMAL_FLUENCE
+        };
         assert_int_equal(result.doses.n_components, 9);
         for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
             chd_check_quantity(&result.doses, all[i]);
         assert_near(result.doses.reference[DOSE_THERMAL_FLUENCE], 1.25e11, 1e-5);
         assert_near(result.doses.reference[DOSE_OTHER], 0.125, 1e-5);
-        assert_true((strstr(report_said(&result.report, "dose.column-order"), "Column 5 holds other") != NULL) == (writer % 2 == 1));
+        assert_true((strstr(report_said(&result.report, "dose.column-order"), "Column 5 holds other") != NULL) ==
+                    (writer % 2 == 1));
         chd_result_finish(&result);
     }
 }
@@ -28,7 +31,8 @@ static void columns_are_found_by_their_names_whoever_wrote_them(void **state)
 static void negative_numbers_that_touch_are_told_apart_by_their_columns(void **state)
 {
     (void)state;
-    const char line[] = "-1.000E+00-1.000E+00-2.038E+00   4-5.353E-01 4.183E-03 4.224E-01-8.696E-03-9.385E-02 1.619E+08 4.137E+09 4.889E+08 6.092E-03";
+    const char line[] =
+        "-1.000E+00-1.000E+00-2.038E+00   4-5.353E-01 4.183E-03 4.224E-01-8.696E-03-9.385E-02 1.619E+08 4.137E+09 4.889E+08 6.092E-03";
     struct sera_row row;
     assert_int_equal(sizeof line - 1, 124);
     assert_true(sera_row_is_fixed(line, sizeof line - 1, 9));
@@ -55,7 +59,8 @@ static void fov_is_half_the_width_and_rows_run_toward_the_front(void **state)
     struct chd_result result = chd_read_made(&chd_plain);
     const struct grid *grid = &chd_volume_of(&result.doses, DOSE_GAMMA)->grid;
     /* FOV 10 cm: x runs from -100 to 100 mm in three columns; y from the posterior (P +100) up; z -5 and -4 cm */
-    struct vec3 first = affine_point(&grid->lps_mm_from_ijk, vec3(0, 0, 0)), last = affine_point(&grid->lps_mm_from_ijk, vec3(2, 1, 1));
+    struct vec3 first = affine_point(&grid->lps_mm_from_ijk, vec3(0, 0, 0)),
+                last = affine_point(&grid->lps_mm_from_ijk, vec3(2, 1, 1));
     assert_close(first.x, -100, 1e-6);
     assert_close(first.y, 100, 1e-6);
     assert_close(first.z, -50, 1e-6);
@@ -121,7 +126,8 @@ static void weights_and_ppm_are_divided_away_and_a_weighted_total_keeps_its_name
     /* 12 points are too few to say that the ratio is 1: boron keeps the name that says so */
     assert_null(chd_volume_of(&result.doses, DOSE_TOTAL));
     assert_null(chd_volume_of(&result.doses, DOSE_BORON));
-    const struct volume *total = chd_volume_of(&result.doses, DOSE_WEIGHTED_TOTAL), *boron = chd_volume_of(&result.doses, DOSE_BLOOD_BORON);
+    const struct volume *total = chd_volume_of(&result.doses, DOSE_WEIGHTED_TOTAL),
+                        *boron = chd_volume_of(&result.doses, DOSE_BLOOD_BORON);
     assert_non_null(total);
     assert_non_null(boron);
     assert_near(volume_value(total, 0, 0, 0), chd_printed(&made, "total", 0, 6), 6e-4);
@@ -151,13 +157,17 @@ static struct chd_result read_wide_with(double ratio, const char *concentrations
 {
     struct chd_text header = { malloc(CHD_TEXT_SIZE), 0 }, table = { malloc(CHD_TEXT_SIZE), 0 };
     struct chd_result result;
-    chd_put(&header, "Version_stamp: seraMC_1C0\nFOV: 10\nxmin: -1\nxmax: 1\nymin: -1\nymax: 1\nnum_cols: 41\nnum_rows: 2\nnum_planes: 1\n"
-                 "z_value_00: 0\nref_dose_7: 1E11\n%s", concentrations);
+    chd_put(
+        &header,
+        "Version_stamp: seraMC_1C0\nFOV: 10\nxmin: -1\nxmax: 1\nymin: -1\nymax: 1\nnum_cols: 41\nnum_rows: 2\nnum_planes: 1\n"
+        "z_value_00: 0\nref_dose_7: 1E11\n%s",
+        concentrations);
     for (int i = 0; i < 9; i++)
         chd_put(&header, "dose_comp_%d: %s\nrbe_val_%d: 1\n", i, chd_sera_mc[i], i);
     for (int r = 0; r < 2; r++)
         for (int c = 0; c < 41; c++)
-            chd_put(&table, "%.4f %d 0 %d 1 %.5E 1 1 1 1 1 1E11 1\n", -1 + c * 0.05, 2 * r - 1, 6 + r, 10 * 0.73 * (r == 1 ? ratio : 1));
+            chd_put(&table, "%.4f %d 0 %d 1 %.5E 1 1 1 1 1 1E11 1\n", -1 + c * 0.05, 2 * r - 1, 6 + r,
+                    10 * 0.73 * (r == 1 ? ratio : 1));
     if (!chd_read_both(&header, &table, NULL, &result))
         fail_msg("%s", result.err.text);
     free(header.at);
@@ -303,7 +313,8 @@ static void pictures_of_uneven_planes_go_with_the_nearest(void **state)
     const struct bytes mask = { pixels, sizeof pixels };
     struct chd_result result;
     assert_true(chd_read_both(&header, &table, &mask, &result));
-    assert_int_equal(result.doses.mask->grid.size[2], 4); /* -5, -3.97, -2.93 and -1.9 cm: the third is the nearer to the last */
+    assert_int_equal(result.doses.mask->grid.size[2],
+                     4); /* -5, -3.97, -2.93 and -1.9 cm: the third is the nearer to the last */
     for (uint32_t k = 0; k < 4; k++)
         assert_int_equal(volume_label(result.doses.mask, 3, 3, k), k < 2);
     chd_result_finish(&result);
@@ -314,11 +325,14 @@ static void pictures_of_uneven_planes_go_with_the_nearest(void **state)
 static void pictures_that_show_other_regions_are_not_believed(void **state)
 {
     (void)state;
-    static const char header[] = "FOV: 13\nxmin: -.5\nxmax: .5\nymin: -.5\nymax: .5\nnum_cols: 2\nnum_rows: 2\nnum_planes: 1\nz_value_00: 0\n"
-                                 "dose_comp_2: gamma\nrbe_val_2: 1\n";
+    static const char header[] =
+        "FOV: 13\nxmin: -.5\nxmax: .5\nymin: -.5\nymax: .5\nnum_cols: 2\nnum_rows: 2\nnum_planes: 1\nz_value_00: 0\n"
+        "dose_comp_2: gamma\nrbe_val_2: 1\n";
     /* region 2 posterior, 1 anterior: 255 / 2 = 127, so 254 below and 127 above */
-    static const char points[] = "-.5 -.5 0 2 1 1 1 1 1 1 1 1 1\n.5 -.5 0 2 1 1 1 1 1 1 1 1 1\n-.5 .5 0 1 1 1 1 1 1 1 1 1 1\n.5 .5 0 1 1 1 1 1 1 1 1 1 1\n";
-    struct chd_text head = { (char *)(uintptr_t)header, sizeof header - 1 }, table = { (char *)(uintptr_t)points, sizeof points - 1 };
+    static const char points[] =
+        "-.5 -.5 0 2 1 1 1 1 1 1 1 1 1\n.5 -.5 0 2 1 1 1 1 1 1 1 1 1\n-.5 .5 0 1 1 1 1 1 1 1 1 1 1\n.5 .5 0 1 1 1 1 1 1 1 1 1 1\n";
+    struct chd_text head = { (char *)(uintptr_t)header, sizeof header - 1 },
+                    table = { (char *)(uintptr_t)points, sizeof points - 1 };
     uint8_t pixels[256];
     const struct bytes mask = { pixels, sizeof pixels };
     for (int is_turned = 0; is_turned < 2; is_turned++) {
@@ -328,7 +342,8 @@ static void pictures_that_show_other_regions_are_not_believed(void **state)
         pixels[0] = 0;
         assert_true(chd_read_both(&head, &table, &mask, &result));
         assert_int_equal(result.doses.mask != NULL, !is_turned);
-        assert_int_equal(strstr(report_said(&result.report, "dose.mask-unread"), "at 100 % of its points") != NULL, is_turned);
+        assert_int_equal(strstr(report_said(&result.report, "dose.mask-unread"), "at 100 % of its points") != NULL,
+                         is_turned);
         chd_result_finish(&result);
     }
 }
@@ -338,7 +353,9 @@ static void numbers_that_are_none_and_a_reference_of_zero_are_counted(void **sta
     (void)state;
     static const struct {
         const char *word, *sentence;
-    } bad[] = { { "**********", "1 values too large" }, { "NaN", "and 1 that are no numbers" }, { "1E99", "1 values too large" } };
+    } bad[] = { { "**********", "1 values too large" },
+                { "NaN", "and 1 that are no numbers" },
+                { "1E99", "1 values too large" } };
     struct made_chd made = chd_plain;
     for (size_t i = 0; i < 3; i++) {
         made.special = bad[i].word;
@@ -365,7 +382,8 @@ static void expect_header(const char *more, enum error_code code, const char *wo
     struct chd_result result;
     made.more = more;
     struct chd_text header = chd_make_header(&made), table = chd_make_table(&made);
-    if (chd_read_both(&header, &table, NULL, &result) || result.err.code != code || !strstr(result.err.text, words) || !strstr(result.err.text, "a.c"))
+    if (chd_read_both(&header, &table, NULL, &result) || result.err.code != code || !strstr(result.err.text, words) ||
+        !strstr(result.err.text, "a.c"))
         fail_msg("%s: \"%s\"", more, result.err.text);
     free(header.at);
     free(table.at);

@@ -1,5 +1,5 @@
-/* What goes with a plan of SERA's: tables of doses over depth and radius, and preferences. Published tables are those of the SERA
- * package; their figures are quoted from it and from notes made when the original programs ran. */
+/* What goes with a plan of SERA's: tables of doses over depth and radius, and preferences. Published tables are those
+ * of the SERA package; their figures are quoted from it and from notes made when the original programs ran. */
 #include "core/formats/sera_rsc.h"
 #include "core/formats/sera_table.h"
 #include "core/load/load.h"
@@ -10,18 +10,19 @@
 
 enum { TEXT_SIZE = 1 << 15 };
 
-/* ---- tables -------------------------------------------------------------------------------------------------------------------- */
+/* ---- tables ----------------------------------------------------------------------------------------------------- */
 
-/* Three depths and radii: -1, 0 and 1.5 cm; 0, 1 and 2 cm. Total is depth number * 10 + radius number + 1; the other columns are a
- * hundredth of it more each; the last radius of the first depth holds zeros. */
+/* Three depths and radii: -1, 0 and 1.5 cm; 0, 1 and 2 cm. Total is depth number * 10 + radius number + 1; the other
+ * columns are a hundredth of it more each; the last radius of the first depth holds zeros. */
 static size_t make_table(char text[TEXT_SIZE], const char *special)
 {
     static const double depths[] = { -1, 0, 1.5 };
-    size_t n = (size_t)snprintf(text, TEXT_SIZE,
-                                " Center Point   -3.84000E+00    2.49000E+00    .649000E+01\n"
-                                " no. d,r points used         3 no. azimuthal angles used for average dose at d,r         50\n"
-                                "   depth    radius      dist   reg   total    B-10      gamma      N-14      fast      Gp 1      Gp 2     thermal\n"
-                                "   (cm)     (cm)       (cm)          dose     dose      dose       dose      dose     fluence   fluence   fluence\n\n");
+    size_t n = (size_t)snprintf(
+        text, TEXT_SIZE,
+        " Center Point   -3.84000E+00    2.49000E+00    .649000E+01\n"
+        " no. d,r points used         3 no. azimuthal angles used for average dose at d,r         50\n"
+        "   depth    radius      dist   reg   total    B-10      gamma      N-14      fast      Gp 1      Gp 2     thermal\n"
+        "   (cm)     (cm)       (cm)          dose     dose      dose       dose      dose     fluence   fluence   fluence\n\n");
     for (int d = 0; d < 3; d++)
         for (int r = 0; r < 3; r++) {
             n += (size_t)snprintf(text + n, TEXT_SIZE - n, "%10.3E%10.3E%10.3E   0", depths[d], (double)r, 0.0);
@@ -61,8 +62,14 @@ static void a_table_has_its_depths_radii_and_columns(void **state)
     assert_close(curve.center_lps_mm.x, 24.9, 1e-9);
     assert_close(curve.center_lps_mm.y, 38.4, 1e-9);
     assert_close(curve.center_lps_mm.z, 64.9, 1e-9);
-    static const enum dose_quantity order[] = { DOSE_TOTAL, DOSE_BORON, DOSE_GAMMA, DOSE_NITROGEN, DOSE_FAST, DOSE_FAST_FLUENCE,
-                                                DOSE_EPITHERMAL_FLUENCE, DOSE_THERMAL_FLUENCE };
+    static const enum dose_quantity order[] = { DOSE_TOTAL,
+                                                DOSE_BORON,
+                                                DOSE_GAMMA,
+                                                DOSE_NITROGEN,
+                                                DOSE_FAST,
+                                                DOSE_FAST_FLUENCE,
+                                                DOSE_EPITHERMAL_FLUENCE,
+                                                DOSE_THERMAL_FLUENCE };
     for (size_t c = 0; c < 8; c++) {
         assert_int_equal(curve.quantities[c], order[c]);
         assert_int_equal(curve.is_per_ppm[c], order[c] == DOSE_BORON);
@@ -171,7 +178,8 @@ static void published_tables_have_their_published_figures(void **state)
     struct plan *plan = plan_load(folder, "p", NULL, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(plan->n_curves, 3);
-    const struct dose_curve *bmrr = curve_of(plan, "bptb-b-8cm"), *left = curve_of(plan, "ltright"), *head = curve_of(plan, "head1");
+    const struct dose_curve *bmrr = curve_of(plan, "bptb-b-8cm"), *left = curve_of(plan, "ltright"),
+                            *head = curve_of(plan, "head1");
     assert_string_equal(bmrr->name, "BPTB_B_8cm");
     assert_string_equal(bmrr->unit, "cGy");
     /* depth; total, boron, gamma, nitrogen, fast; fluences: the table of the 8 cm beam, on its axis */
@@ -215,7 +223,7 @@ static void published_tables_have_their_published_figures(void **state)
     folder_remove(folder);
 }
 
-/* ---- preferences ----------------------------------------------------------------------------------------------------------------- */
+/* ---- preferences ------------------------------------------------------------------------------------------------ */
 
 static bool read_rsc(const char *text, const char *name, struct rsc *rsc, struct report *report, struct error *err)
 {
@@ -229,9 +237,10 @@ static void preferences_give_colours_levels_maps_and_tissues(void **state)
     static struct rsc rsc;
     struct report report = { 0 };
     struct error err;
-    assert_true(read_rsc("# Sera3d resources\nMain_Window_Size: 650\nGamma: 65535 0 0 1 2\ncontour_level: 95 65535 0 32896  #(level r g b )\n"
-                         "contour_level: 50 0 65535 65535\nLeft-Eye_color: 65535 42663 0 40 # (R G B Opacity(0-100))\nBad_color: 70000 0 0\n",
-                         "Sera3d.rsc", &rsc, &report, &err));
+    assert_true(read_rsc(
+        "# Sera3d resources\nMain_Window_Size: 650\nGamma: 65535 0 0 1 2\ncontour_level: 95 65535 0 32896  #(level r g b )\n"
+        "contour_level: 50 0 65535 65535\nLeft-Eye_color: 65535 42663 0 40 # (R G B Opacity(0-100))\nBad_color: 70000 0 0\n",
+        "Sera3d.rsc", &rsc, &report, &err));
     assert_int_equal(rsc.n_levels, 2);
     assert_close(rsc.levels[0].percent, 95, 0);
     assert_int_equal(rsc.levels[0].rgb[0], 255);
@@ -243,9 +252,11 @@ static void preferences_give_colours_levels_maps_and_tissues(void **state)
     assert_close(eye->opacity, 0.4, 1e-9);
     assert_null(rsc_find(&rsc, "left_ey"));
     assert_null(rsc_find(&rsc, "left_eyes"));
-    assert_non_null(strstr(report_said(&report, "header.bad-number"), "1 values are not numbers in range, the first in line 7"));
+    assert_non_null(
+        strstr(report_said(&report, "header.bad-number"), "1 values are not numbers in range, the first in line 7"));
     report_finish(&report);
-    assert_true(read_rsc("view contour lines:True\ncontour levels:\n10:White\n90:Red\nMax:Blue\n", "seradose_prefs.rsc", &rsc, NULL, &err));
+    assert_true(read_rsc("view contour lines:True\ncontour levels:\n10:White\n90:Red\nMax:Blue\n", "seradose_prefs.rsc",
+                         &rsc, NULL, &err));
     assert_int_equal(rsc.n_levels, 2);
     assert_close(rsc.levels[1].percent, 90, 0);
     assert_int_equal(rsc.levels[1].rgb[0], 255);
@@ -253,8 +264,10 @@ static void preferences_give_colours_levels_maps_and_tissues(void **state)
     assert_true(read_rsc("0 0 0\n51 0 68 \n255 255 255", "a.cmap", &rsc, NULL, &err));
     assert_int_equal(rsc.n_colors, 3);
     assert_int_equal(rsc.colors[1][2], 68);
-    assert_true(read_rsc("* 11 Jan 1999\n\nbegin: brain\n boron_CF:  1.3\n nitrogen_RBE: 3.2\n tissue_to_blood: 1.0\n matname: x\n"
-                         "end: brain\nboron_CF: 9\n", "body_data.txt", &rsc, NULL, &err));
+    assert_true(read_rsc(
+        "* 11 Jan 1999\n\nbegin: brain\n boron_CF:  1.3\n nitrogen_RBE: 3.2\n tissue_to_blood: 1.0\n matname: x\n"
+        "end: brain\nboron_CF: 9\n",
+        "body_data.txt", &rsc, NULL, &err));
     assert_close(rsc.bodies[0].cbe_boron, 1.3, 0);
     assert_close(rsc.bodies[0].boron_ratio, 1, 0);
     assert_true(isnan(rsc.bodies[0].rbe_gamma));
@@ -273,16 +286,18 @@ static void preferences_fill_only_what_regions_do_not_have(void **state)
     char folder[256];
     struct error err = { 0 };
     folder_make(folder);
-    static const char header[] = "Version: uvh2.0\nDimensionality: mm\nSliceOrientation: Axial\nImageRows: 16\nImageColumns: 16\nImageSlices: 2\n"
-                                 "PixelSizeRows: 10\nPixelSizeColumns: 10\nPixelSizeSlices: 10\nRLaxisMin: -80\nRLaxisMax: 80\nPAaxisMin: -80\n"
-                                 "PAaxisMax: 80\nISaxisMin: 0\nISaxisMax: 20\nImageRowAxis: PA-\nImageColumnAxis: RL+\nImageSliceAxis: IS+\n"
-                                 "begin: Brain\nuvval: 3\ntissue_to_blood: 2\nend\nbegin: Tumor\nuvval: 4\ncolor_red: 1\ncolor_green: 2\n"
-                                 "color_blue: 3\nend\nbegin: something\nuvval: 5\nend\n";
+    static const char header[] =
+        "Version: uvh2.0\nDimensionality: mm\nSliceOrientation: Axial\nImageRows: 16\nImageColumns: 16\nImageSlices: 2\n"
+        "PixelSizeRows: 10\nPixelSizeColumns: 10\nPixelSizeSlices: 10\nRLaxisMin: -80\nRLaxisMax: 80\nPAaxisMin: -80\n"
+        "PAaxisMax: 80\nISaxisMin: 0\nISaxisMax: 20\nImageRowAxis: PA-\nImageColumnAxis: RL+\nImageSliceAxis: IS+\n"
+        "begin: Brain\nuvval: 3\ntissue_to_blood: 2\nend\nbegin: Tumor\nuvval: 4\ncolor_red: 1\ncolor_green: 2\n"
+        "color_blue: 3\nend\nbegin: something\nuvval: 5\nend\n";
     uint8_t univels[512];
     for (size_t i = 0; i < sizeof univels; i++)
         univels[i] = (uint8_t)(3 + i % 3);
-    static const char colors[] = "contour_level: 80 0 65535 0\nBrain_color: 257 514 771 30\nTumor_color: 65535 65535 65535 100\n"
-                                 "Default_color: 2570 2570 2570 100\n";
+    static const char colors[] =
+        "contour_level: 80 0 65535 0\nBrain_color: 257 514 771 30\nTumor_color: 65535 65535 65535 100\n"
+        "Default_color: 2570 2570 2570 100\n";
     static const char tissues[] = "begin: brain\ntissue_to_blood: 1\nboron_CF: 1.3\nend\n", map[] = "0 0 0\n255 0 0\n";
     folder_put(folder, "a.uvh", header, sizeof header - 1);
     folder_put(folder, "a.uv", univels, sizeof univels);
@@ -325,14 +340,16 @@ static void a_plan_file_names_curves_and_preferences(void **state)
     folder_put(folder, "a.dose", text, n);
     folder_put(folder, "S.rsc", "contour_level: 80 0 65535 0\n", 28);
     folder_put(folder, "l.nhdr", "", 0);
-    static const char all[] = "{\"format\":\"beamroom-plan\",\"version\":1,\"doses\":[{\"path\":\"a.rst\"}],\"curves\":[{\"path\":\"a.dose\","
-                              "\"name\":\"Phantom\",\"per\":\"MW-min\"},{\"id\":\"b\",\"path\":\"a.dose\"},{\"id\":\"b\",\"path\":\"gone.dose\"},"
-                              "{\"id\":\"b\",\"path\":\"a.dose\"}],\"preferences\":[{\"path\":\"S.rsc\"}]}";
-    static const char rst[] = "   1seraMC_1C0\nnone\nA\nc\nu\nm\ns\nr\n   0.000000E+00   0.000000E+00   0.000000E+00   1.000000E+00       1       3\n"
-                              "      32      72      94\nN     20_NOV_2026       1.000000E+00   1.000000E+00   3.600000E+06\n"
-                              "10000000       0       0   2.500000E-01\nx\n1\n0\nr\n5\n1\n0\n"
-                              "   1.0E0          1.0E0          1.0E0          1.0E0          1.0E0          1.0E0\n"
-                              "   1.0E0          1.0E0          1.0E0          1.0E0          1.0E0          1.0E0\n";
+    static const char all[] =
+        "{\"format\":\"beamroom-plan\",\"version\":1,\"doses\":[{\"path\":\"a.rst\"}],\"curves\":[{\"path\":\"a.dose\","
+        "\"name\":\"Phantom\",\"per\":\"MW-min\"},{\"id\":\"b\",\"path\":\"a.dose\"},{\"id\":\"b\",\"path\":\"gone.dose\"},"
+        "{\"id\":\"b\",\"path\":\"a.dose\"}],\"preferences\":[{\"path\":\"S.rsc\"}]}";
+    static const char rst[] =
+        "   1seraMC_1C0\nnone\nA\nc\nu\nm\ns\nr\n   0.000000E+00   0.000000E+00   0.000000E+00   1.000000E+00       1       3\n"
+        "      32      72      94\nN     20_NOV_2026       1.000000E+00   1.000000E+00   3.600000E+06\n"
+        "10000000       0       0   2.500000E-01\nx\n1\n0\nr\n5\n1\n0\n"
+        "   1.0E0          1.0E0          1.0E0          1.0E0          1.0E0          1.0E0\n"
+        "   1.0E0          1.0E0          1.0E0          1.0E0          1.0E0          1.0E0\n";
     folder_put(folder, "a.rst", rst, sizeof rst - 1);
     folder_put(folder, "plan.json", all, sizeof all - 1);
     struct plan *plan = plan_load(folder, "p", NULL, &err);

@@ -1,5 +1,5 @@
-/* Whole folders of SERA's files: the original programs' own figures from them, the ways they are packed, and copies of each real file
- * that are cut short or changed. */
+/* Whole folders of SERA's files: the original programs' own figures from them, the ways they are packed, and copies of
+ * each real file that are cut short or changed. */
 #include <zlib.h>
 
 #include "core/formats/zlib_stream.h"
@@ -29,7 +29,7 @@ static struct bytes pack(const uint8_t *data, size_t size)
     return blob;
 }
 
-/* ---- figures --------------------------------------------------------------------------------------------------------------------- */
+/* ---- figures ---------------------------------------------------------------------------------------------------- */
 
 static const struct volume *component_of(const struct dose *dose, enum dose_quantity quantity)
 {
@@ -40,8 +40,8 @@ static const struct volume *component_of(const struct dose *dose, enum dose_quan
     return NULL;
 }
 
-/* Mean over the univels that carry the region's label of the dose with SERA's weights: boron times blood ppm, the tissue's ratio and its
- * factor; nitrogen, fast, gamma and other with theirs. */
+/* Mean over the univels that carry the region's label of the dose with SERA's weights: boron times blood ppm, the
+ * tissue's ratio and its factor; nitrogen, fast, gamma and other with theirs. */
 static double mean_weighted(const struct plan *plan, const struct dose *dose, const char *id, double blood_ppm)
 {
     const struct region *region = region_find(&plan->regions, id);
@@ -78,8 +78,9 @@ static void mean_weighted_doses_are_those_of_sera_plan_and_sera_mc(void **state)
     struct plan *plan = plan_of_data("sera-head");
     if (!plan)
         skip();
-    /* Published, at 15 ppm in blood: seraPlan 455.2 and 22.87 cGy, from the mesh, between whose cells it interpolates in a way of its own
-     * (1 to 3 % at a point, so 2 % of a mean); seraMC 453.1 and 22.81, whose own interpolated points the contours are. */
+    /* Published, at 15 ppm in blood: seraPlan 455.2 and 22.87 cGy, from the mesh, between whose cells it interpolates
+     * in a way of its own (1 to 3 % at a point, so 2 % of a mean); seraMC 453.1 and 22.81, whose own interpolated
+     * points the contours are. */
     static const char *const ids[] = { "tumor", "brain" };
     static const double sera_plan[] = { 455.2, 22.87 }, sera_mc[] = { 453.1, 22.81 }, volume_cm3[] = { 67.15, 1713.7 };
     for (size_t r = 0; r < 2; r++) {
@@ -98,7 +99,8 @@ static void a_wrong_unit_is_taken_for_what_it_must_be_or_for_what_the_plan_says(
     if (!data_path("sera-head", path, sizeof path))
         skip();
     folder_make(folder);
-    struct bytes header = read_data("sera-head/original/CoryST.uvh"), univels = read_data("sera-head/original/CoryST.uv.gz");
+    struct bytes header = read_data("sera-head/original/CoryST.uvh"),
+                 univels = read_data("sera-head/original/CoryST.uv.gz");
     folder_put(folder, "a.uvh", header.data, header.size);
     folder_put(folder, "a.uv.gz", univels.data, univels.size);
     static const struct {
@@ -109,7 +111,9 @@ static void a_wrong_unit_is_taken_for_what_it_must_be_or_for_what_the_plan_says(
                   { ",\"unit\":\"cm\"", "", 10.1562 } };
     for (size_t i = 0; i < 3; i++) {
         char text[256];
-        int n = snprintf(text, sizeof text, "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.uvh\"%s}]}", cases[i].unit);
+        int n = snprintf(text, sizeof text,
+                         "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.uvh\"%s}]}",
+                         cases[i].unit);
         folder_put(folder, "plan.json", text, (size_t)n);
         struct plan *plan = plan_load(folder, "p", NULL, &err);
         assert_string_equal(err.text, "");
@@ -119,7 +123,8 @@ static void a_wrong_unit_is_taken_for_what_it_must_be_or_for_what_the_plan_says(
             assert_int_equal(report_said(&plan->report, codes[c])[0] != 0, strcmp(codes[c], cases[i].code) == 0);
         plan_destroy(plan);
     }
-    static const char bad[] = "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.uvh\",\"unit\":\"ft\"}]}";
+    static const char bad[] =
+        "{\"format\":\"beamroom-plan\",\"version\":1,\"regions\":[{\"path\":\"a.uvh\",\"unit\":\"ft\"}]}";
     folder_put(folder, "plan.json", bad, sizeof bad - 1);
     assert_null(plan_load(folder, "p", NULL, &err));
     assert_non_null(strstr(err.text, "regions[0].unit: expected mm or cm"));
@@ -128,7 +133,7 @@ static void a_wrong_unit_is_taken_for_what_it_must_be_or_for_what_the_plan_says(
     folder_remove(folder);
 }
 
-/* ---- contours --------------------------------------------------------------------------------------------------------------------- */
+/* ---- contours --------------------------------------------------------------------------------------------------- */
 
 static void sera_s_own_contours_agree_with_its_dose_file(void **state)
 {
@@ -142,12 +147,14 @@ static void sera_s_own_contours_agree_with_its_dose_file(void **state)
     assert_int_equal(dose->n_components, 9);
     component_of(dose, DOSE_BORON); /* it is there, as the card's ratio is 1 everywhere */
     const struct volume *thermal = component_of(dose, DOSE_THERMAL_FLUENCE);
-    /* 24 points behind the source plane reach 300 times the peak, which is 4.25e11 along the beam (notes beside the data) */
+    /* 24 points behind the source plane reach 300 times the peak, which is 4.25e11 along the beam (notes beside the
+     * data) */
     assert_near(thermal->high, 1.3e14, 0.02);
     assert_near(dose->body_high[DOSE_THERMAL_FLUENCE], 4.25e11, 0.05);
     assert_near(dose->reference[DOSE_THERMAL_FLUENCE], 4.10769e11, 1e-6);
     assert_non_null(strstr(report_said(&plan->report, "dose.absurd-outside"), "4 of 9 quantities"));
-    /* the reference point, (PA, RL, IS) (-4.5, 4.5, -4.5): trilinear of the .rst gives 4.010e11; published: they agree within 5 % */
+    /* the reference point, (PA, RL, IS) (-4.5, 4.5, -4.5): trilinear of the .rst gives 4.010e11; published: they agree
+     * within 5 % */
     double value;
     assert_true(volume_sample(thermal, vec3(45, 45, -45), &value));
     assert_near(value, 4.010e11, 0.05);
@@ -181,8 +188,8 @@ static void numpy_reads_the_same_values_and_the_published_agreement(void **state
             n_agreements++;
             continue;
         }
-        if (sscanf(line, "point %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", &x, &y, &z, &v[0], &v[1], &v[2], &v[3], &v[4], &v[5],
-                   &v[6], &v[7], &v[8]) != 12)
+        if (sscanf(line, "point %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", &x, &y, &z, &v[0], &v[1], &v[2],
+                   &v[3], &v[4], &v[5], &v[6], &v[7], &v[8]) != 12)
             continue;
         for (size_t c = 0; c < 9; c++) {
             double value;
@@ -197,15 +204,17 @@ static void numpy_reads_the_same_values_and_the_published_agreement(void **state
     plan_destroy(plan);
 }
 
-/* ---- packed ---------------------------------------------------------------------------------------------------------------------- */
+/* ---- packed ----------------------------------------------------------------------------------------------------- */
 
-static const char small_uvh[] = "Version: uvh2.0\nDimensionality: mm\nSliceOrientation: Axial\nImageRows: 8\nImageColumns: 8\nImageSlices: 4\n"
-                                "PixelSizeRows: 20\nPixelSizeColumns: 20\nPixelSizeSlices: 20\nRLaxisMin: -80\nRLaxisMax: 80\nPAaxisMin: -80\n"
-                                "PAaxisMax: 80\nISaxisMin: 0\nISaxisMax: 80\nImageRowAxis: PA-\nImageColumnAxis: RL+\nImageSliceAxis: IS+\n"
-                                "begin: brain\nuvval: 3\nend\n";
-static const char small_qhd[] = "Modality := MR\nSlice Orientation := Axial\nDimensionality := mm\nBytes Per Pixel := 1\nByte Order := big endian\n"
-                                "Number of Dimensions := 3\nSize of Dimension[0] := 4\nSize of Dimension[1] := 8\nSize of Dimension[2] := 8\n"
-                                "X Pixel Size := 20\nY Pixel Size := 20\nReference Location := 10\nUniform Spacing := 20\n";
+static const char small_uvh[] =
+    "Version: uvh2.0\nDimensionality: mm\nSliceOrientation: Axial\nImageRows: 8\nImageColumns: 8\nImageSlices: 4\n"
+    "PixelSizeRows: 20\nPixelSizeColumns: 20\nPixelSizeSlices: 20\nRLaxisMin: -80\nRLaxisMax: 80\nPAaxisMin: -80\n"
+    "PAaxisMax: 80\nISaxisMin: 0\nISaxisMax: 80\nImageRowAxis: PA-\nImageColumnAxis: RL+\nImageSliceAxis: IS+\n"
+    "begin: brain\nuvval: 3\nend\n";
+static const char small_qhd[] =
+    "Modality := MR\nSlice Orientation := Axial\nDimensionality := mm\nBytes Per Pixel := 1\nByte Order := big endian\n"
+    "Number of Dimensions := 3\nSize of Dimension[0] := 4\nSize of Dimension[1] := 8\nSize of Dimension[2] := 8\n"
+    "X Pixel Size := 20\nY Pixel Size := 20\nReference Location := 10\nUniform Spacing := 20\n";
 
 static void a_zlib_stream_is_bounded_whole_and_told_by_its_name(void **state)
 {
@@ -274,9 +283,11 @@ static void images_and_univels_may_be_bare_zlib_streams(void **state)
     free(pixels.data);
 }
 
-static const char chd[] = "Version_stamp: seraMC_1C0\nFOV: 13\nxmin: -1\nxmax: 1\nymin: -1\nymax: 1\nnum_cols: 2\nnum_rows: 2\nnum_planes: 1\n"
-                          "z_value_00: 0\ndose_comp_2: gamma\nrbe_val_2: 2\nref_dose_2: 8\ndose_comp_4: fast\nrbe_val_4: 1\n";
-static const char table[] = "-1 -1 0 1 1 1 1 1 1 1 1 1 1\n1 -1 0 1 1 1 1 1 1 1 1 1 1\n-1 1 0 1 1 1 1 1 1 1 1 1 1\n1 1 0 1 1 1 1 1 1 1 1 1 1\n";
+static const char chd[] =
+    "Version_stamp: seraMC_1C0\nFOV: 13\nxmin: -1\nxmax: 1\nymin: -1\nymax: 1\nnum_cols: 2\nnum_rows: 2\nnum_planes: 1\n"
+    "z_value_00: 0\ndose_comp_2: gamma\nrbe_val_2: 2\nref_dose_2: 8\ndose_comp_4: fast\nrbe_val_4: 1\n";
+static const char table[] =
+    "-1 -1 0 1 1 1 1 1 1 1 1 1 1\n1 -1 0 1 1 1 1 1 1 1 1 1 1\n-1 1 0 1 1 1 1 1 1 1 1 1 1\n1 1 0 1 1 1 1 1 1 1 1 1 1\n";
 
 static void a_plan_asks_contours_for_a_quantity_and_says_what_is_100_percent(void **state)
 {
@@ -297,8 +308,9 @@ static void a_plan_asks_contours_for_a_quantity_and_says_what_is_100_percent(voi
     folder_make(folder);
     folder_put(folder, "a.chd", chd, sizeof chd - 1);
     folder_put(folder, "a.cdf", table, sizeof table - 1);
-    static const char mask[] = "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 2 2 2\n"
-                               "space directions: (9,0,0) (0,9,0) (0,0,9)\nspace origin: (0,0,0)\nencoding: raw\n\n\1\1\1\1\1\1\1";
+    static const char mask[] =
+        "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 2 2 2\n"
+        "space directions: (9,0,0) (0,9,0) (0,0,9)\nspace origin: (0,0,0)\nencoding: raw\n\n\1\1\1\1\1\1\1";
     folder_put(folder, "m.nrrd", mask, sizeof mask);
     /* pictures of 16 x 16 of region 1, less one pixel: the file's own mask, which the plan's replaces */
     uint8_t pictures[256];
@@ -306,7 +318,8 @@ static void a_plan_asks_contours_for_a_quantity_and_says_what_is_100_percent(voi
     pictures[0] = 0;
     folder_put(folder, "a.cmf", pictures, sizeof pictures);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        int n = snprintf(text, sizeof text, "{\"format\":\"beamroom-plan\",\"version\":1,\"doses\":[%s]}", cases[i].dose);
+        int n =
+            snprintf(text, sizeof text, "{\"format\":\"beamroom-plan\",\"version\":1,\"doses\":[%s]}", cases[i].dose);
         folder_put(folder, "plan.json", text, (size_t)n);
         struct plan *plan = plan_load(folder, "p", NULL, &err);
         assert_string_equal(err.text, "");
@@ -318,7 +331,8 @@ static void a_plan_asks_contours_for_a_quantity_and_says_what_is_100_percent(voi
         assert_close(plan->doses[0].reference[DOSE_GAMMA], cases[i].gamma_reference, 1e-9);
         plan_destroy(plan);
     }
-    static const char bad[] = "{\"format\":\"beamroom-plan\",\"version\":1,\"doses\":[{\"path\":\"a.chd\",\"reference\":0}]}";
+    static const char bad[] =
+        "{\"format\":\"beamroom-plan\",\"version\":1,\"doses\":[{\"path\":\"a.chd\",\"reference\":0}]}";
     folder_put(folder, "plan.json", bad, sizeof bad - 1);
     assert_null(plan_load(folder, "p", NULL, &err));
     assert_non_null(strstr(err.text, "doses[0].reference: expected a number above 0"));
@@ -339,7 +353,8 @@ static void a_stream_that_swells_is_stopped_at_what_its_header_allows(void **sta
     for (size_t i = 0; i < 4; i++) {
         folder_make(folder);
         folder_put(folder, "a.uvh", small_uvh, sizeof small_uvh - 1);
-        folder_put(folder, i == 0 ? "a.uv.sz" : "a.uv", i == 0 ? (void *)bomb.data : voxels, i == 0 ? bomb.size : sizeof voxels);
+        folder_put(folder, i == 0 ? "a.uv.sz" : "a.uv", i == 0 ? (void *)bomb.data : voxels,
+                   i == 0 ? bomb.size : sizeof voxels);
         if (i == 1)
             folder_put(folder, "a.qhd", small_qhd, sizeof small_qhd - 1);
         if (i >= 2)
@@ -364,11 +379,16 @@ static void a_header_of_65535_squared_is_refused(void **state)
     (void)state;
     static const struct {
         const char *name, *data_name, *text, *words;
-    } big[] = { { "a.uvh", "a.uv", "Version: uvh2.0\nDimensionality: mm\nImageRows: 65535\nImageColumns: 65535\n", "65535" },
-                { "a.qhd", "a.qim", "Slice Orientation := Axial\nDimensionality := mm\nSize of Dimension[1] := 65535\n", "65535" },
-                { "a.chd", "a.cdf", "FOV: 13\nxmin: -1\nxmax: 1\nymin: -1\nymax: 1\nnum_cols: 65535\nnum_rows: 65535\nnum_planes: 1\n", "65535" },
-                { "a.rst", "a.rst", "   1seraMC_1C0\nnone\nA\nc\nu\nm\ns\nr\n   0.000000E+00   0.000000E+00   0.000000E+00   1.000000E+00   65535       3\n",
-                  "" } };
+    } big[] = {
+        { "a.uvh", "a.uv", "Version: uvh2.0\nDimensionality: mm\nImageRows: 65535\nImageColumns: 65535\n", "65535" },
+        { "a.qhd", "a.qim", "Slice Orientation := Axial\nDimensionality := mm\nSize of Dimension[1] := 65535\n",
+          "65535" },
+        { "a.chd", "a.cdf",
+          "FOV: 13\nxmin: -1\nxmax: 1\nymin: -1\nymax: 1\nnum_cols: 65535\nnum_rows: 65535\nnum_planes: 1\n", "65535" },
+        { "a.rst", "a.rst",
+          "   1seraMC_1C0\nnone\nA\nc\nu\nm\ns\nr\n   0.000000E+00   0.000000E+00   0.000000E+00   1.000000E+00   65535       3\n",
+          "" }
+    };
     char folder[256];
     for (size_t i = 0; i < sizeof big / sizeof big[0]; i++) {
         struct error err = { 0 };
@@ -382,7 +402,7 @@ static void a_header_of_65535_squared_is_refused(void **state)
     }
 }
 
-/* ---- damaged --------------------------------------------------------------------------------------------------------------------- */
+/* ---- damaged ---------------------------------------------------------------------------------------------------- */
 
 /* Files of one part each, so that a copy opens quickly; the first is the one that is damaged, then the others. */
 struct part {
@@ -422,14 +442,19 @@ static void damaged_copies_of_every_real_file_are_survived(void **state)
         { { "a.qhd", "a.qim.gz" }, { "generated/head-48.qhd", "original/ST.qim.gz" } },
         { { "a.qim.gz", "a.qhd" }, { "original/ST.qim.gz", "generated/head-48.qhd" } },
         { { "a.rst.gz" }, { "generated/head1.rst.gz" } },
-        { { "a.chd", "a.cdf.sz", "a.cmf.sz" }, { "generated/head1.chd", "generated/head1.cdf.sz", "generated/head1.cmf.sz" } },
-        { { "a.cdf.sz", "a.chd", "a.cmf.sz" }, { "generated/head1.cdf.sz", "generated/head1.chd", "generated/head1.cmf.sz" } },
-        { { "a.cmf.sz", "a.chd", "a.cdf.sz" }, { "generated/head1.cmf.sz", "generated/head1.chd", "generated/head1.cdf.sz" } },
+        { { "a.chd", "a.cdf.sz", "a.cmf.sz" },
+          { "generated/head1.chd", "generated/head1.cdf.sz", "generated/head1.cmf.sz" } },
+        { { "a.cdf.sz", "a.chd", "a.cmf.sz" },
+          { "generated/head1.cdf.sz", "generated/head1.chd", "generated/head1.cmf.sz" } },
+        { { "a.cmf.sz", "a.chd", "a.cdf.sz" },
+          { "generated/head1.cmf.sz", "generated/head1.chd", "generated/head1.cdf.sz" } },
         { { "a.dose", "a.uvh", "a.uv.gz" }, { "generated/head1.dose", "generated/head.uvh", "generated/head.uv.gz" } },
         { { "a.pp", "a.uvh", "a.uv.gz" }, { "generated/head1.pp", "generated/head.uvh", "generated/head.uv.gz" } },
         { { "a.rsc", "a.uvh", "a.uv.gz" }, { "generated/Sera3d.rsc", "generated/head.uvh", "generated/head.uv.gz" } },
-        { { "body_data.txt", "a.uvh", "a.uv.gz" }, { "original/body_data.txt", "generated/head.uvh", "generated/head.uv.gz" } },
-        { { "a.info", "a.uvh", "a.uv.gz" }, { "original/body_containment.info", "generated/head.uvh", "generated/head.uv.gz" } },
+        { { "body_data.txt", "a.uvh", "a.uv.gz" },
+          { "original/body_data.txt", "generated/head.uvh", "generated/head.uv.gz" } },
+        { { "a.info", "a.uvh", "a.uv.gz" },
+          { "original/body_containment.info", "generated/head.uvh", "generated/head.uv.gz" } },
     };
     enum { CUTS = 5, FLIPS = 6 };
     char folder[256], unused[512];
@@ -456,7 +481,8 @@ static void damaged_copies_of_every_real_file_are_survived(void **state)
             expect_survival(folder, parts[p].from[0], "cut short");
         }
         for (size_t c = 0; c < FLIPS; c++) {
-            size_t at = c < 2 ? next_random(&random) % (whole.size < 200 ? whole.size : 200) : next_random(&random) % whole.size;
+            size_t at = c < 2 ? next_random(&random) % (whole.size < 200 ? whole.size : 200)
+                              : next_random(&random) % whole.size;
             whole.data[at] ^= (uint8_t)(1u << next_random(&random) % 8);
             folder_put(folder, parts[p].name[0], whole.data, whole.size);
             expect_survival(folder, parts[p].from[0], "with some bits changed");
@@ -469,9 +495,11 @@ static void damaged_copies_of_every_real_file_are_survived(void **state)
 static void a_folder_of_sera_s_files_opens_without_a_plan_file(void **state)
 {
     (void)state;
-    static const char *const names[] = { "generated/head.uvh", "generated/head.uv.gz", "generated/head1.chd", "generated/head1.cdf.sz",
-                                         "generated/head1.cmf.sz", "generated/head1.rst.gz", "generated/head1.pp", "generated/head1.dose",
-                                         "generated/Sera3d.rsc", "original/body_containment.info", "original/body_data.txt" };
+    static const char *const names[] = {
+        "generated/head.uvh",     "generated/head.uv.gz",           "generated/head1.chd",   "generated/head1.cdf.sz",
+        "generated/head1.cmf.sz", "generated/head1.rst.gz",         "generated/head1.pp",    "generated/head1.dose",
+        "generated/Sera3d.rsc",   "original/body_containment.info", "original/body_data.txt"
+    };
     char folder[256], name[600];
     struct error err = { 0 };
     if (!data_path("sera-head", name, sizeof name))
@@ -489,7 +517,8 @@ static void a_folder_of_sera_s_files_opens_without_a_plan_file(void **state)
     assert_int_equal(plan->tracks.n_segments, 579);
     assert_int_equal(plan->preferences.n_levels, 6); /* 95 red, 90 green, 80 blue, 70 yellow, 60 magenta, 50 cyan */
     assert_close(plan->preferences.levels[3].percent, 70, 0);
-    assert_int_equal(plan->preferences.levels[3].rgb[0] << 16 | plan->preferences.levels[3].rgb[1] << 8 | plan->preferences.levels[3].rgb[2],
+    assert_int_equal(plan->preferences.levels[3].rgb[0] << 16 | plan->preferences.levels[3].rgb[1] << 8 |
+                         plan->preferences.levels[3].rgb[2],
                      0xffff00);
     assert_string_equal(report_said(&plan->report, "preferences.colors"), ""); /* head.uvh has its own */
     assert_non_null(strstr(report_said(&plan->report, "tracks.unit-assumed"), "taken as mm"));

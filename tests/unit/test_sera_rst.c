@@ -1,4 +1,5 @@
-/* SERA's dose files: texts laid out by hand in the columns of seraMC, and its own sample with the figures published beside it. */
+/* SERA's dose files: texts laid out by hand in the columns of seraMC, and its own sample with the figures published
+ * beside it. */
 #include "core/formats/sera_rst.h"
 #include "core/load/load.h"
 #include "core/load/summary.h"
@@ -17,16 +18,17 @@ enum { TEXT_SIZE = 1 << 16 };
 static struct text make_header(const char *histories, const char *mesh)
 {
     struct text text = { malloc(TEXT_SIZE), 0 };
-    text.n = (size_t)snprintf(text.at, TEXT_SIZE,
-                              "   1seraMC_1C0  \nnone\nA plan\ncg.geom\nhead.uv\nx.mat\nx.sigma\nrun\n%s\n      32      72      94\n"
-                              "N     20_NOV_2026       1.000000E+00   1.000000E+00   3.600000E+06\n%s\nx.source\n 1\n"
-                              "   0.000000E+00\nhead.rst\n       5\n   1.0\n   0.0\n",
-                              mesh, histories);
+    text.n = (size_t)
+        snprintf(text.at, TEXT_SIZE,
+                 "   1seraMC_1C0  \nnone\nA plan\ncg.geom\nhead.uv\nx.mat\nx.sigma\nrun\n%s\n      32      72      94\n"
+                 "N     20_NOV_2026       1.000000E+00   1.000000E+00   3.600000E+06\n%s\nx.source\n 1\n"
+                 "   0.000000E+00\nhead.rst\n       5\n   1.0\n   0.0\n",
+                 mesh, histories);
     return text;
 }
 
-/* 2^3 cells of 2 cm with corner (PA, RL, IS) = (-10, -20, -30) cm. Each value of the array is its cell's number in the file,
- * z fastest, with a share of .001 times its column. */
+/* 2^3 cells of 2 cm with corner (PA, RL, IS) = (-10, -20, -30) cm. Each value of the array is its cell's number in the
+ * file, z fastest, with a share of .001 times its column. */
 #define MESH "  -1.000000E+01  -2.000000E+01  -3.000000E+01   2.000000E+00       2       3"
 #define HISTORIES "10000000       0       0   2.500000E-01"
 static struct text make(size_t n_columns, const char *special, size_t special_at)
@@ -38,7 +40,8 @@ static struct text make(size_t n_columns, const char *special, size_t special_at
         snprintf(word, sizeof word, "%15.6E", (double)(i / n_columns) + 0.001 * (double)(i % n_columns));
         if (special && i == special_at)
             snprintf(word, sizeof word, "%15s", special);
-        text.n += (size_t)snprintf(text.at + text.n, TEXT_SIZE - text.n, "%s%s", word, i % 6 == 5 || i + 1 == n ? "\n" : "");
+        text.n +=
+            (size_t)snprintf(text.at + text.n, TEXT_SIZE - text.n, "%s%s", word, i % 6 == 5 || i + 1 == n ? "\n" : "");
     }
     return text;
 }
@@ -77,7 +80,8 @@ static void columns_axes_and_scale_are_those_of_the_program(void **state)
                 assert_near(volume_value(nth(&doses, d), y, x, z), factor * (cell + column[d]), 1e-6);
             }
         }
-        /* centre of the first cell: (PA, RL, IS) = (-9, -19, -29) cm, so L = -190, P = 90, S = -290 mm; RL along i, PA along j */
+        /* centre of the first cell: (PA, RL, IS) = (-9, -19, -29) cm, so L = -190, P = 90, S = -290 mm; RL along i, PA
+         * along j */
         struct vec3 first = affine_point(&nth(&doses, 0)->grid.lps_mm_from_ijk, vec3(0, 0, 0));
         struct vec3 last = affine_point(&nth(&doses, 0)->grid.lps_mm_from_ijk, vec3(1, 1, 1));
         assert_close(first.x, -190, 1e-9);
@@ -153,7 +157,8 @@ static void expect_refusal(struct text text, enum error_code code, const char *w
 {
     struct sera_doses doses;
     struct error err;
-    if (read_text(&text, &doses, NULL, &err) || err.code != code || !strstr(err.text, words) || !strstr(err.text, "a.rst"))
+    if (read_text(&text, &doses, NULL, &err) || err.code != code || !strstr(err.text, words) ||
+        !strstr(err.text, "a.rst"))
         fail_msg("%s: \"%s\"", words, err.text);
     assert_int_equal(doses.n_components, 0);
     free(text.at);
@@ -180,14 +185,19 @@ static void a_file_that_is_wrong_is_refused_with_its_line(void **state)
     expect_refusal(copy_of("   3\n"), ERROR_FORMAT, "line 1, column 5: found \"\", expected the version");
     expect_refusal(copy_of("   3seraMC_1C0\nnone\n"), ERROR_FORMAT, "ends after line 2");
 #define CELLS(n, groups) "  -1.000000E+01  -2.000000E+01  -3.000000E+01   2.000000E+00" n groups
-    expect_refusal(make_header(HISTORIES, CELLS("     129", "       3")), ERROR_FORMAT, "line 9, column 61: found \"129\"");
-    expect_refusal(make_header(HISTORIES, CELLS("       0", "       3")), ERROR_FORMAT, "cells along an edge, 1 to 128");
+    expect_refusal(make_header(HISTORIES, CELLS("     129", "       3")), ERROR_FORMAT,
+                   "line 9, column 61: found \"129\"");
+    expect_refusal(make_header(HISTORIES, CELLS("       0", "       3")), ERROR_FORMAT,
+                   "cells along an edge, 1 to 128");
     expect_refusal(make_header(HISTORIES, CELLS("       2", "99999999")), ERROR_FORMAT, "line 9, column 69");
-    expect_refusal(make_header(HISTORIES, "            NaN  -2.000000E+01  -3.000000E+01   2.000000E+00       2       3"), ERROR_FORMAT,
-                   "line 9, column 1: found \"NaN\"");
-    expect_refusal(make_header(HISTORIES, "  -1.000000E+01  -2.000000E+01  -3.000000E+01   0.000000E+00       2       3"), ERROR_FORMAT,
-                   "the width of a cell");
-    expect_refusal(make_header("10000000       x       0   2.500000E-01", MESH), ERROR_FORMAT, "line 12, column 16: found \"x\"");
+    expect_refusal(make_header(HISTORIES,
+                               "            NaN  -2.000000E+01  -3.000000E+01   2.000000E+00       2       3"),
+                   ERROR_FORMAT, "line 9, column 1: found \"NaN\"");
+    expect_refusal(make_header(HISTORIES,
+                               "  -1.000000E+01  -2.000000E+01  -3.000000E+01   0.000000E+00       2       3"),
+                   ERROR_FORMAT, "the width of a cell");
+    expect_refusal(make_header("10000000       x       0   2.500000E-01", MESH), ERROR_FORMAT,
+                   "line 12, column 16: found \"x\"");
     expect_refusal(make_header("10000000       0       0   2.500000E+01", MESH), ERROR_FORMAT, "line 12, column 28");
     expect_refusal(make_header(HISTORIES, MESH), ERROR_FORMAT, "0 values after line 19; 2^3 cells need 112, or 96");
     struct text whole = make(14, NULL, 0);
@@ -230,8 +240,9 @@ static void a_plan_may_ask_for_all_of_it_or_for_one_quantity(void **state)
     folder_make(folder);
     struct text text = make(14, NULL, 0);
     folder_put(folder, "a.rst", text.at, text.n);
-    static const char all[] = "{\"format\":\"beamroom-plan\",\"version\":1,\"doses\":[{\"path\":\"a.rst\",\"unit\":\"Gy\"},{\"per\":\"250 kW-min\","
-                              "\"components\":[{\"path\":\"a.rst\",\"quantity\":\"gamma\"},{\"path\":\"a.rst\",\"quantity\":\"boron\"}]}]}";
+    static const char all[] =
+        "{\"format\":\"beamroom-plan\",\"version\":1,\"doses\":[{\"path\":\"a.rst\",\"unit\":\"Gy\"},{\"per\":\"250 kW-min\","
+        "\"components\":[{\"path\":\"a.rst\",\"quantity\":\"gamma\"},{\"path\":\"a.rst\",\"quantity\":\"boron\"}]}]}";
     folder_put(folder, "plan.json", all, sizeof all - 1);
     struct plan *plan = plan_load(folder, "p", NULL, &err);
     assert_string_equal(err.text, "");
@@ -266,12 +277,16 @@ static void sera_s_own_dose_has_the_figures_published_with_it(void **state)
     assert_int_equal(dose->n_components, RST_N_DOSES);
     assert_string_equal(dose->unit, "cGy");
     assert_string_equal(dose->per, "unit of the source");
-    /* "Tri-linear at the reference point" (PA, RL, IS) (-4.5, 4.5, -4.5) cm, in the notes beside the data: four digits */
+    /* "Tri-linear at the reference point" (PA, RL, IS) (-4.5, 4.5, -4.5) cm, in the notes beside the data: four digits
+     */
     static const struct {
         enum dose_quantity quantity;
         bool is_per_ppm;
         double value;
-    } expected[] = { { DOSE_BORON, true, 2.876 }, { DOSE_NITROGEN, false, 5.881 }, { DOSE_FAST, false, 1.794 }, { DOSE_GAMMA, false, 28.19 } };
+    } expected[] = { { DOSE_BORON, true, 2.876 },
+                     { DOSE_NITROGEN, false, 5.881 },
+                     { DOSE_FAST, false, 1.794 },
+                     { DOSE_GAMMA, false, 28.19 } };
     struct plan_probe probe;
     plan_probe(plan, vec3(45, 45, -45), &probe);
     assert_true(probe.n_doses >= RST_N_DOSES);

@@ -2,8 +2,14 @@
 #include "tests/check.h"
 #include "tests/made_plan.h"
 
-static double ball(struct vec3 p) { return vec3_length(p) < 20; }
-static double box(struct vec3 p) { return fabs(p.x) < 20 && fabs(p.y) < 20 && fabs(p.z) < 20; }
+static double ball(struct vec3 p)
+{
+    return vec3_length(p) < 20;
+}
+static double box(struct vec3 p)
+{
+    return fabs(p.x) < 20 && fabs(p.y) < 20 && fabs(p.z) < 20;
+}
 static const struct made_region one[] = { { "one", -1, 0xffffff } };
 
 static struct mesh *mesh_of(double (*label)(struct vec3 p))
@@ -38,7 +44,7 @@ static void the_normals_of_a_voxel_ball_come_to_point_away_from_its_middle(void 
     float *none = shading_normals(mesh, 0, &err), *many = shading_normals(mesh, 12, &err);
     assert_memory_equal(none, mesh->normals, mesh->n_vertices * 3 * sizeof *none);
     double before_deg = mean_error_deg(mesh, none), after_deg = mean_error_deg(mesh, many);
-    assert_true(before_deg > 6);                  /* terraces of one voxel at 20 voxels of radius */
+    assert_true(before_deg > 6); /* terraces of one voxel at 20 voxels of radius */
     assert_true(after_deg < before_deg / 3);
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         const float *n = &many[3 * v];
@@ -58,7 +64,8 @@ static void a_flat_face_keeps_its_normal_beyond_the_reach_of_its_edges(void **st
     size_t n_checked = 0;
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         const float *p = &mesh->positions_lps_mm[3 * v];
-        if (fabsf(p[0] - 20) > 1e-3f || fabsf(p[1]) > 6 || fabsf(p[2]) > 6) /* 14 mm from the edges: more than 12 triangles */
+        if (fabsf(p[0] - 20) > 1e-3f || fabsf(p[1]) > 6 ||
+            fabsf(p[2]) > 6) /* 14 mm from the edges: more than 12 triangles */
             continue;
         n_checked++;
         assert_close(normals[3 * v], 1, 1e-5);

@@ -1,4 +1,5 @@
-/* What a region is drawn as besides surfaces and splines: univels, points, outlines, and all of them through the door. */
+/* What a region is drawn as besides surfaces and splines: univels, points, outlines, and all of them through the door.
+ */
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,7 +21,7 @@ static bool has_at(const struct mask *mask, struct vec3 ijk)
     return mask_has(mask, (int64_t)floor(ijk.x + 0.5), (int64_t)floor(ijk.y + 0.5), (int64_t)floor(ijk.z + 0.5));
 }
 
-/* ---- univels ------------------------------------------------------------------------------------------------------------------ */
+/* ---- univels ---------------------------------------------------------------------------------------------------- */
 
 static struct mesh *univels(const struct mask *mask, int n_threads)
 {
@@ -83,7 +84,8 @@ static void univels_enclose_exactly_their_volume_with_every_face_between_inside_
                 assert_int_equal(mesh->n_vertices, corners);
                 double area = 0;
                 for (int axis = 0; axis < 3; axis++)
-                    area += (double)faces[axis] * vec3_length(vec3_cross(maps[m].columns[(axis + 1) % 3], maps[m].columns[(axis + 2) % 3]));
+                    area += (double)faces[axis] *
+                            vec3_length(vec3_cross(maps[m].columns[(axis + 1) % 3], maps[m].columns[(axis + 2) % 3]));
                 assert_int_equal(mesh->n_triangles, 2 * (faces[0] + faces[1] + faces[2]));
                 /* positions are floats of numbers up to 130 mm: 1e-5 mm */
                 assert_near(mesh_area_mm2(mesh), area, m == 0 ? 0 : 2e-5);
@@ -137,7 +139,7 @@ static void one_univel_alone_is_a_box(void **state)
     }
 }
 
-/* ---- points -------------------------------------------------------------------------------------------------------------------- */
+/* ---- points ----------------------------------------------------------------------------------------------------- */
 
 static void there_is_a_point_at_the_centre_of_every_border_voxel(void **state)
 {
@@ -185,7 +187,8 @@ static void points_face_the_way_that_leads_out_on_average(void **state)
     mask_destroy(mask);
 }
 
-/* The directions of 26 neighbours lie up to 55 degrees apart, so 27 is what an estimate from them may be off at worst. */
+/* The directions of 26 neighbours lie up to 55 degrees apart, so 27 is what an estimate from them may be off at worst.
+ */
 static void points_on_a_ball_face_away_from_its_middle(void **state)
 {
     (void)state;
@@ -260,7 +263,7 @@ static void a_point_is_lit_by_the_way_it_faces_and_one_that_faces_no_way_lies_be
         front = p[0] == 2 && p[1] == 0 && p[2] == 1 ? at : front;
         back = p[0] == 2 && p[1] == 4 && p[2] == 1 ? at : back;
     }
-    assert_int_equal(set->shade[top], 216);   /* 255 (0.25 + 0.75 x 0.79851) = 216.5 less the rounding of the normal's */
+    assert_int_equal(set->shade[top], 216); /* 255 (0.25 + 0.75 x 0.79851) = 216.5 less the rounding of the normal's */
     assert_int_equal(set->shade[alone], 159); /* 255 (0.25 + 0.375) = 159.4 */
     assert_int_equal(set->shade[front], 226); /* 255 (0.25 + 0.75 x 0.84826) = 226.0 */
     assert_int_equal(set->shade[back], 93);   /* 255 (0.25 + 0.75 x 0.15174) = 92.8 */
@@ -269,7 +272,7 @@ static void a_point_is_lit_by_the_way_it_faces_and_one_that_faces_no_way_lies_be
     mask_destroy(mask);
 }
 
-/* ---- all of them through the door ---------------------------------------------------------------------------------------------- */
+/* ---- all of them through the door ------------------------------------------------------------------------------- */
 
 static struct shape *make(const struct region_set *set, size_t region, struct shape_key key, int n_threads)
 {
@@ -295,7 +298,8 @@ static void a_ragged_region_has_every_shape_the_same_for_any_number_of_threads(v
     assert_non_null(mask);
     for (enum region_representation r = 0; r < REPRESENTATION_N; r++) {
         struct shape *one = make(&plan->regions, 0, key_of(r), 1);
-        struct box3 box = one->bounds_lps_mm; /* within the univels, but where a spline or a surface is not drawn at all */
+        struct box3 box =
+            one->bounds_lps_mm; /* within the univels, but where a spline or a surface is not drawn at all */
         assert_true(box.low.x >= -0.5 && box.low.y >= -0.5 && box.low.z >= -1.25);
         assert_true(box.high.x <= 47.5 && box.high.y <= 39.5 && box.high.z <= 58.75);
         assert_true(one->n_bytes > 1000);
@@ -309,12 +313,14 @@ static void a_ragged_region_has_every_shape_the_same_for_any_number_of_threads(v
                 assert_int_equal(one->lines->n_vertices, more->lines->n_vertices);
                 assert_memory_equal(one->lines->positions_lps_mm, more->lines->positions_lps_mm,
                                     3 * one->lines->n_vertices * sizeof(float));
-                assert_memory_equal(one->lines->indices, more->lines->indices, 2 * one->lines->n_segments * sizeof(uint32_t));
+                assert_memory_equal(one->lines->indices, more->lines->indices,
+                                    2 * one->lines->n_segments * sizeof(uint32_t));
             } else {
                 assert_int_equal(one->points->n_points, more->points->n_points);
                 assert_memory_equal(one->points->positions_lps_mm, more->points->positions_lps_mm,
                                     3 * one->points->n_points * sizeof(float));
-                assert_memory_equal(one->points->normals, more->points->normals, 3 * one->points->n_points * sizeof(float));
+                assert_memory_equal(one->points->normals, more->points->normals,
+                                    3 * one->points->n_points * sizeof(float));
                 assert_memory_equal(one->points->shade, more->points->shade, one->points->n_points);
             }
             shape_unref(more);
@@ -413,7 +419,9 @@ static void what_cannot_be_made_is_refused_with_a_reason(void **state)
 static void keys_forget_what_does_not_matter_to_their_representation(void **state)
 {
     (void)state;
-    struct shape_key a = { REPRESENTATION_POINTS, SURFACE_EIGHT_CELL, OUTLINE_MARCHING_SQUARES, true, 3, NURBS_DEGREE_BINS, 40 };
+    struct shape_key a = {
+        REPRESENTATION_POINTS, SURFACE_EIGHT_CELL, OUTLINE_MARCHING_SQUARES, true, 3, NURBS_DEGREE_BINS, 40
+    };
     struct shape_key b = { .representation = REPRESENTATION_POINTS, .has_inner_boundary = true };
     assert_false(shape_key_equal(&a, &b));
     shape_key_normalise(&a);

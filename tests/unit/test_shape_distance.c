@@ -6,10 +6,10 @@
 static const struct affine maps[] = {
     { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { 0, 0, 0 } },
     { { { 1.5, 0, 0 }, { 0, -0.8, 0 }, { 0, 0, 5 } }, { 3, -2, 40 } },
-    { { { 0.3, 0.4, 2 }, { 1.2, -0.9, 0 }, { 0.72, 0.96, -0.3 } }, { 11, -12, 13 } },   /* turned, square */
-    { { { 1, 0, 0 }, { 0.2, 1.1, 0 }, { 0, 0.7, 2.4 } }, { -5, 1, 2 } },               /* sheared, as by a tilted gantry */
-    { { { 0.5, 0, 0 }, { 0, 0.5, 0 }, { 0, 0, 75 } }, { -100, -50, -150 } },           /* thick slices */
-    { { { 40, 0, 0 }, { 0, 0, 0.25 }, { 0, 8, 0.1 } }, { 1, 2, 3 } },                  /* thick along a row, and sheared */
+    { { { 0.3, 0.4, 2 }, { 1.2, -0.9, 0 }, { 0.72, 0.96, -0.3 } }, { 11, -12, 13 } }, /* turned, square */
+    { { { 1, 0, 0 }, { 0.2, 1.1, 0 }, { 0, 0.7, 2.4 } }, { -5, 1, 2 } },     /* sheared, as by a tilted gantry */
+    { { { 0.5, 0, 0 }, { 0, 0.5, 0 }, { 0, 0, 75 } }, { -100, -50, -150 } }, /* thick slices */
+    { { { 40, 0, 0 }, { 0, 0, 0.25 }, { 0, 8, 0.1 } }, { 1, 2, 3 } },        /* thick along a row, and sheared */
 };
 enum { N_MAPS = 6 };
 
@@ -22,8 +22,8 @@ static struct shape_distance measure(const struct mask *mask, const float *posit
     return distance;
 }
 
-/* To a parallelogram, by descent: steps along one side and then the other, each to its nearest point, come ever closer, and since the
- * distance is convex they end at the nearest of all. */
+/* To a parallelogram, by descent: steps along one side and then the other, each to its nearest point, come ever closer,
+ * and since the distance is convex they end at the nearest of all. */
 static double descend(struct vec3 p, struct vec3 corner, struct vec3 u, struct vec3 v)
 {
     double s = 0.5, t = 0.5;
@@ -72,7 +72,8 @@ static void distances_are_those_to_the_nearest_face_of_all(void **state)
                     at[axis] = (next_random(&seed) % 30000 / 10000.0 - 1) * (double)mask->size[axis];
                 struct vec3 p = affine_point(&maps[m], vec3(at[0], at[1], at[2]));
                 float position[3] = { (float)p.x, (float)p.y, (float)p.z };
-                double expected = nearest_face(mask, vec3((double)position[0], (double)position[1], (double)position[2]));
+                double expected =
+                    nearest_face(mask, vec3((double)position[0], (double)position[1], (double)position[2]));
                 struct shape_distance distance = measure(mask, position, 1, 1);
                 assert_close(distance.max_mm, expected, 1e-6 * (1 + expected));
                 assert_true(distance.mean_mm == distance.max_mm);
@@ -87,7 +88,8 @@ static void on_the_border_it_is_0_and_within_a_voxel_to_its_nearest_face(void **
     struct mask *mask = mask_make(3, 3, 3, &maps[1]);
     mask_put(mask, 1, 1, 1);
     struct vec3 centre = affine_point(&maps[1], vec3(1, 1, 1)), side = affine_point(&maps[1], vec3(1.5, 1.25, 0.75));
-    float positions[6] = { (float)centre.x, (float)centre.y, (float)centre.z, (float)side.x, (float)side.y, (float)side.z };
+    float positions[6] = { (float)centre.x, (float)centre.y, (float)centre.z,
+                           (float)side.x,   (float)side.y,   (float)side.z };
     struct shape_distance distance = measure(mask, positions, 2, 2);
     assert_close(distance.max_mm, 0.4, 1e-5); /* half of 0.8 mm; positions are floats */
     assert_close(distance.mean_mm, 0.2, 1e-5);
@@ -125,8 +127,9 @@ static void threads_do_not_matter_and_no_position_has_no_distance(void **state)
     mask_destroy(mask);
 }
 
-/* Three slices of a disc, 64 mm in radius and 75 mm apart: in the middle of an end slice the nearest face is 37.5 mm above, which is 75 voxels
- * along the other axes; some pi x 75^2 = 18000 faces are as near in voxels, at each of which the former search looked. */
+/* Three slices of a disc, 64 mm in radius and 75 mm apart: in the middle of an end slice the nearest face is 37.5 mm
+ * above, which is 75 voxels along the other axes; some pi x 75^2 = 18000 faces are as near in voxels, at each of which
+ * the former search looked. */
 static void thick_slices_cost_no_more_than_cubes(void **state)
 {
     (void)state;
@@ -140,7 +143,8 @@ static void thick_slices_cost_no_more_than_cubes(void **state)
     struct mesh *mesh = made_surface(SURFACE_EIGHT_CELL, mask, 2, true);
     struct shape_distance distance = measure(mask, mesh->positions_lps_mm, mesh->n_vertices, 0);
     assert_true(mesh->n_vertices > 100000);
-    assert_close(distance.max_mm, 37.5, 1e-3); /* a voxel's centre in an end slice, at least 37.5 mm from the disc's rim */
+    assert_close(distance.max_mm, 37.5,
+                 1e-3); /* a voxel's centre in an end slice, at least 37.5 mm from the disc's rim */
     assert_true(distance.n_asked < 300 * distance.n_positions);
     mesh_unref(mesh);
     mask_destroy(mask);

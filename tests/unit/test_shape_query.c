@@ -20,7 +20,8 @@ static void the_words_of_the_scene_are_those_of_the_shapes_in_the_same_order(voi
     (void)state;
     assert_int_equal(scene_representation_words.n, REPRESENTATION_N);
     for (int i = 0; i < REPRESENTATION_N; i++)
-        assert_string_equal(scene_representation_words.words[i], region_representation_word((enum region_representation)i));
+        assert_string_equal(scene_representation_words.words[i],
+                            region_representation_word((enum region_representation)i));
     assert_int_equal(scene_algorithm_words.n, SURFACE_N_ALGORITHMS);
     for (int i = 0; i < SURFACE_N_ALGORITHMS; i++)
         assert_string_equal(scene_algorithm_words.words[i], surface_algorithm_word((enum surface_algorithm)i));
@@ -34,7 +35,8 @@ static void what_is_left_out_is_the_scenes_default(void **state)
     (void)state;
     struct shape_query query = good("{}");
     assert_int_equal(query.key.representation, REPRESENTATION_SURFACE);
-    assert_string_equal(surface_algorithm_word(query.key.algorithm), scene_algorithm_words.words[scene_default.surface.algorithm]);
+    assert_string_equal(surface_algorithm_word(query.key.algorithm),
+                        scene_algorithm_words.words[scene_default.surface.algorithm]);
     assert_false(query.is_faceted || query.is_file || query.n_frames);
     query = good("{\"representation\":\"nurbs\"}");
     assert_int_equal(query.key.nurbs_order, scene_default.nurbs.order);
@@ -44,8 +46,11 @@ static void what_is_left_out_is_the_scenes_default(void **state)
 static void each_word_decides_what_it_names_and_nothing_else(void **state)
 {
     (void)state;
-    struct shape_query query = good("{\"representation\":\"nurbs\",\"order\":\"3\",\"sampling\":\"degree-bins\",\"bins\":\"72\",\"algorithm\":\"eight-cell\"}");
-    struct shape_key key = { .representation = REPRESENTATION_NURBS, .nurbs_order = 3, .nurbs_sampling = NURBS_DEGREE_BINS, .nurbs_bins = 72 };
+    struct shape_query query = good(
+        "{\"representation\":\"nurbs\",\"order\":\"3\",\"sampling\":\"degree-bins\",\"bins\":\"72\",\"algorithm\":\"eight-cell\"}");
+    struct shape_key key = {
+        .representation = REPRESENTATION_NURBS, .nurbs_order = 3, .nurbs_sampling = NURBS_DEGREE_BINS, .nurbs_bins = 72
+    };
     shape_key_normalise(&key);
     assert_true(shape_key_equal(&query.key, &key)); /* the algorithm is not a spline's */
     query = good("{\"representation\":\"points\",\"inner_boundary\":\"true\"}");
@@ -64,13 +69,20 @@ static void what_cannot_be_is_refused_by_name(void **state)
     static const struct {
         const char *text, *pointer;
     } bad[] = {
-        { "{\"representation\":\"hologram\"}", "/representation" }, { "{\"algorithm\":\"magic\"}", "/algorithm" },
-        { "{\"normals\":\"both\"}", "/normals" },                   { "{\"outline\":\"\"}", "/outline" },
-        { "{\"inner_boundary\":\"yes\"}", "/inner_boundary" },      { "{\"order\":\"1\"}", "/order" },
-        { "{\"order\":\"5\"}", "/order" },                          { "{\"order\":\"3.5\"}", "/order" },
-        { "{\"order\":\" 3\"}", "/order" },                         { "{\"bins\":\"7\"}", "/bins" },
-        { "{\"bins\":\"99999999999999999999\"}", "/bins" },         { "{\"sampling\":\"dice\"}", "/sampling" },
-        { "{\"frames\":\"51\"}", "/frames" },                       { "{\"format\":\"obj\"}", "/format" },
+        { "{\"representation\":\"hologram\"}", "/representation" },
+        { "{\"algorithm\":\"magic\"}", "/algorithm" },
+        { "{\"normals\":\"both\"}", "/normals" },
+        { "{\"outline\":\"\"}", "/outline" },
+        { "{\"inner_boundary\":\"yes\"}", "/inner_boundary" },
+        { "{\"order\":\"1\"}", "/order" },
+        { "{\"order\":\"5\"}", "/order" },
+        { "{\"order\":\"3.5\"}", "/order" },
+        { "{\"order\":\" 3\"}", "/order" },
+        { "{\"bins\":\"7\"}", "/bins" },
+        { "{\"bins\":\"99999999999999999999\"}", "/bins" },
+        { "{\"sampling\":\"dice\"}", "/sampling" },
+        { "{\"frames\":\"51\"}", "/frames" },
+        { "{\"format\":\"obj\"}", "/format" },
         { "{\"representation\":\"points\",\"format\":\"stl\"}", "/format" },
         { "{\"representation\":\"outline\",\"format\":\"ply\"}", "/format" },
     };
@@ -90,7 +102,8 @@ static void the_scene_of_a_shape_shows_it_alone(void **state)
 {
     (void)state;
     struct scene scene = scene_default;
-    struct scene_region_style_entry entries[2] = { { "brain", { .visible = true, .opacity = 0.4 } }, { "tumor", { .visible = true, .opacity = 1 } } };
+    struct scene_region_style_entry entries[2] = { { "brain", { .visible = true, .opacity = 0.4 } },
+                                                   { "tumor", { .visible = true, .opacity = 1 } } };
     scene.regions = entries;
     scene.n_regions = 2;
     scene.image.slices.coronal.visible = true;

@@ -17,7 +17,7 @@ static struct vec3 vertex(const struct mesh *mesh, size_t v)
     return vec3((double)p[0], (double)p[1], (double)p[2]);
 }
 
-/* ---- bodies whose normals are known --------------------------------------------------------------------------------------- */
+/* ---- bodies whose normals are known ----------------------------------------------------------------------------- */
 
 struct body {
     double spacing_mm[3], radius_mm[3], tilt_rad;
@@ -47,14 +47,17 @@ static struct mask *mask_of(const struct body *body)
     map.columns[1].y = body->spacing_mm[1];
     map.columns[2].z = body->spacing_mm[2];
     /* the middle lies nowhere in particular between the univels */
-    map.origin = vec3(-body->spacing_mm[0] * ((size[0] - 1) / 2.0 - 0.13), -body->spacing_mm[1] * ((size[1] - 1) / 2.0 + 0.21),
-                      -body->spacing_mm[2] * ((size[2] - 1) / 2.0 - 0.17));
+    map.origin =
+        vec3(-body->spacing_mm[0] * ((size[0] - 1) / 2.0 - 0.13), -body->spacing_mm[1] * ((size[1] - 1) / 2.0 + 0.21),
+             -body->spacing_mm[2] * ((size[2] - 1) / 2.0 - 0.17));
     struct mask *mask = mask_make(size[0], size[1], size[2], &map);
     for (uint32_t k = 0; k < size[2]; k++)
         for (uint32_t j = 0; j < size[1]; j++)
             for (uint32_t i = 0; i < size[0]; i++) {
                 struct vec3 p = to_body(body, affine_point(&map, vec3(i, j, k)));
-                if (pow(p.x / body->radius_mm[0], 2) + pow(p.y / body->radius_mm[1], 2) + pow(p.z / body->radius_mm[2], 2) < 1)
+                if (pow(p.x / body->radius_mm[0], 2) + pow(p.y / body->radius_mm[1], 2) +
+                        pow(p.z / body->radius_mm[2], 2) <
+                    1)
                     mask_put(mask, i, j, k);
             }
     return mask;
@@ -77,7 +80,8 @@ static struct deviation deviation_of(const struct mesh *mesh, const struct body 
         if (!(twice > 0))
             continue;
         struct vec3 p = to_body(body, vec3_scale(vec3_add(a, vec3_add(b, c)), 1 / 3.0));
-        struct vec3 gradient = vec3(p.x / pow(body->radius_mm[0], 2), p.y / pow(body->radius_mm[1], 2), p.z / pow(body->radius_mm[2], 2));
+        struct vec3 gradient =
+            vec3(p.x / pow(body->radius_mm[0], 2), p.y / pow(body->radius_mm[1], 2), p.z / pow(body->radius_mm[2], 2));
         double distance = (vec3_dot(p, gradient) - 1) / (2 * vec3_length(gradient));
         double cosine = vec3_dot(from_body(body, gradient), cross) / (vec3_length(gradient) * twice);
         double angle = acos(fmax(-1, fmin(1, cosine))) * 180 / MATH_PI;
@@ -88,10 +92,13 @@ static struct deviation deviation_of(const struct mesh *mesh, const struct body 
     double shown = 0;
     for (size_t v = 0; mesh->normals && v < mesh->n_vertices; v++) {
         struct vec3 p = to_body(body, vertex(mesh, v));
-        struct vec3 gradient = vec3(p.x / pow(body->radius_mm[0], 2), p.y / pow(body->radius_mm[1], 2), p.z / pow(body->radius_mm[2], 2));
-        struct vec3 n = vec3((double)mesh->normals[3 * v], (double)mesh->normals[3 * v + 1], (double)mesh->normals[3 * v + 2]);
+        struct vec3 gradient =
+            vec3(p.x / pow(body->radius_mm[0], 2), p.y / pow(body->radius_mm[1], 2), p.z / pow(body->radius_mm[2], 2));
+        struct vec3 n =
+            vec3((double)mesh->normals[3 * v], (double)mesh->normals[3 * v + 1], (double)mesh->normals[3 * v + 2]);
         assert_close(vec3_length(n), 1, 1e-5);
-        double angle = acos(fmax(-1, fmin(1, vec3_dot(from_body(body, gradient), n) / vec3_length(gradient)))) * 180 / MATH_PI;
+        double angle =
+            acos(fmax(-1, fmin(1, vec3_dot(from_body(body, gradient), n) / vec3_length(gradient)))) * 180 / MATH_PI;
         shown += angle * angle;
     }
     return (struct deviation){ sqrt(angles / area), sqrt(distances / area), sqrt(shown / (double)mesh->n_vertices) };
@@ -111,8 +118,10 @@ static bool deviation_of_vtk(const struct mask *mask, const struct body *body, s
                 fputc(mask_has(mask, i, j, k), to);
     fclose(to);
     struct vec3 origin = mask->lps_mm_from_ijk.origin;
-    double numbers[10] = { body->spacing_mm[0], body->spacing_mm[1], body->spacing_mm[2], origin.x, origin.y, origin.z,
-                           body->radius_mm[0],  body->radius_mm[1],  body->radius_mm[2],  body->tilt_rad };
+    double numbers[10] = {
+        body->spacing_mm[0], body->spacing_mm[1], body->spacing_mm[2], origin.x,      origin.y, origin.z,
+        body->radius_mm[0],  body->radius_mm[1],  body->radius_mm[2],  body->tilt_rad
+    };
     for (int n = 0; n < 13; n++) {
         arguments[3 + n] = words[n];
         if (n < 3)
@@ -138,15 +147,16 @@ static bool deviation_of_vtk(const struct mask *mask, const struct body *body, s
 static void no_stair_steps_however_thick_the_slices(void **state)
 {
     (void)state;
-    /* most: of the root mean square deviation of normals, in degrees. Steps of a slice over a shallow slope are told from the slope
-     * itself only where they follow one another within some ten pixels; above the last slice nothing is known at all */
+    /* most: of the root mean square deviation of normals, in degrees. Steps of a slice over a shallow slope are told
+     * from the slope itself only where they follow one another within some ten pixels; above the last slice nothing is
+     * known at all */
     static const struct {
         struct body body;
         double most_deg;
     } cases[] = {
-        { { { 1, 1, 4 }, { 40, 40, 40 }, 0 }, 6 },       { { { 1, 1, 4 }, { 60, 40, 30 }, 0.35 }, 6.5 },
-        { { { 1, 1, 5.5 }, { 80, 80, 80 }, 0 }, 6 },     { { { 1, 1, 5.5 }, { 90, 60, 70 }, 0.3 }, 6.5 },
-        { { { 1, 1, 1 }, { 40, 30, 20 }, 0.4 }, 2.5 },   { { { 0.5, 0.5, 1 }, { 40, 30, 20 }, 0.4 }, 3 },
+        { { { 1, 1, 4 }, { 40, 40, 40 }, 0 }, 6 },     { { { 1, 1, 4 }, { 60, 40, 30 }, 0.35 }, 6.5 },
+        { { { 1, 1, 5.5 }, { 80, 80, 80 }, 0 }, 6 },   { { { 1, 1, 5.5 }, { 90, 60, 70 }, 0.3 }, 6.5 },
+        { { { 1, 1, 1 }, { 40, 30, 20 }, 0.4 }, 2.5 }, { { { 0.5, 0.5, 1 }, { 40, 30, 20 }, 0.4 }, 3 },
     };
     bool has_vtk = true;
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
@@ -158,7 +168,8 @@ static void no_stair_steps_however_thick_the_slices(void **state)
             fail_msg("case %zu: normals %.2f degrees off, expected below %.2f", c, ours.normal_deg, cases[c].most_deg);
         assert_true(ours.normal_deg < plain.normal_deg / 5);
         if (!(ours.shown_deg < cases[c].most_deg))
-            fail_msg("case %zu: vertex normals %.2f degrees off, expected below %.2f", c, ours.shown_deg, cases[c].most_deg);
+            fail_msg("case %zu: vertex normals %.2f degrees off, expected below %.2f", c, ours.shown_deg,
+                     cases[c].most_deg);
         assert_true(ours.distance_mm < plain.distance_mm / 1.9);
         has_vtk = has_vtk && deviation_of_vtk(mask, body, &vtk);
         if (has_vtk) { /* 20 iterations, pass band 0.1: its defaults */
@@ -173,7 +184,7 @@ static void no_stair_steps_however_thick_the_slices(void **state)
         print_message("no VTK for Python here: not compared with its filter\n");
 }
 
-/* ---- bounds ---------------------------------------------------------------------------------------------------------------- */
+/* ---- bounds ----------------------------------------------------------------------------------------------------- */
 
 /* The same triangles as by marching cubes, and each vertex moved along one axis only, no further than allowed. */
 static void assert_within_bounds(const struct mask *mask, const struct mesh *smooth, const struct mesh *cubes)
@@ -188,13 +199,15 @@ static void assert_within_bounds(const struct mask *mask, const struct mesh *smo
         struct vec3 moved = affine_vector(&ijk_from_lps_mm, vec3_sub(vertex(smooth, v), vertex(cubes, v)));
         double place[3] = { at.x, at.y, at.z }, by[3] = { moved.x, moved.y, moved.z };
         for (int axis = 0; axis < 3; axis++) {
-            bool is_own = fabs(place[axis] - floor(place[axis]) - 0.5) < 0.01; /* a half: this edge runs along the axis */
+            bool is_own =
+                fabs(place[axis] - floor(place[axis]) - 0.5) < 0.01; /* a half: this edge runs along the axis */
             assert_true(fabs(by[axis]) <= (is_own ? 0.5 - SURFACE_SMOOTH_MARGIN : 0) + 1e-4); /* positions are floats */
         }
     }
 }
 
-/* How often a closed mesh winds around a point (A. Van Oosterom, J. Strackee, The Solid Angle of a Plane Triangle, 1983). */
+/* How often a closed mesh winds around a point (A. Van Oosterom, J. Strackee, The Solid Angle of a Plane Triangle,
+ * 1983). */
 static double winding(const struct mesh *mesh, struct vec3 at)
 {
     double sum = 0;
@@ -205,8 +218,8 @@ static double winding(const struct mesh *mesh, struct vec3 at)
             p[c] = vec3_sub(vertex(mesh, mesh->indices[3 * t + (size_t)c]), at);
             length[c] = vec3_length(p[c]);
         }
-        double below = length[0] * length[1] * length[2] + vec3_dot(p[0], p[1]) * length[2] + vec3_dot(p[1], p[2]) * length[0] +
-                       vec3_dot(p[2], p[0]) * length[1];
+        double below = length[0] * length[1] * length[2] + vec3_dot(p[0], p[1]) * length[2] +
+                       vec3_dot(p[1], p[2]) * length[0] + vec3_dot(p[2], p[0]) * length[1];
         sum += 2 * atan2(vec3_dot(p[0], vec3_cross(p[1], p[2])), below);
     }
     return sum / (4 * MATH_PI);
@@ -215,7 +228,8 @@ static double winding(const struct mesh *mesh, struct vec3 at)
 static void the_centre_of_every_univel_stays_on_its_side(void **state)
 {
     (void)state;
-    struct affine map = { { { 0.8, 0.6, 0 }, { -1.2, 1.6, 0 }, { 0, 0, -4 } }, { 5, 6, 7 } }; /* oblique and left-handed */
+    struct affine map = { { { 0.8, 0.6, 0 }, { -1.2, 1.6, 0 }, { 0, 0, -4 } },
+                          { 5, 6, 7 } }; /* oblique and left-handed */
     for (uint64_t seed = 1; seed <= 12; seed++) {
         struct mask *mask = random_mask(7, 6, 5, (uint32_t)(8 * seed), seed, &map);
         struct mesh *mesh = extract(mask, 1, true);
@@ -246,7 +260,8 @@ static void every_corner_case_is_closed_and_within_bounds(void **state)
             assert_int_equal(mesh_open_edges(mesh), 0);
             assert_int_equal(mesh_euler(mesh), euler_of_surface(mask));
             assert_within_bounds(mask, mesh, cubes);
-            assert_near(mesh_volume_mm3(mesh), 4 * __builtin_popcount((unsigned)inside), 0.1); /* so small that edges end before all is made up */
+            assert_near(mesh_volume_mm3(mesh), 4 * __builtin_popcount((unsigned)inside),
+                        0.1); /* so small that edges end before all is made up */
             mesh_unref(mesh);
             mesh_unref(cubes);
             mask_destroy(mask);
@@ -262,9 +277,11 @@ static void random_blocks_are_closed_within_bounds_and_equal_for_any_threads(voi
     uint64_t seed = 77;
     for (size_t s = 0; s < sizeof sides / sizeof *sides; s++)
         for (uint32_t percent = 5; percent < 100; percent += 15) {
-            struct mask *mask = random_mask(sides[s], 1 + next_random(&seed) % 9, 1 + next_random(&seed) % 9, percent, seed, &map);
+            struct mask *mask =
+                random_mask(sides[s], 1 + next_random(&seed) % 9, 1 + next_random(&seed) % 9, percent, seed, &map);
             for (int open = 0; open < 2; open++) {
-                struct mesh *mesh = extract(mask, 1, !open), *cubes = made_surface(SURFACE_MARCHING_CUBES, mask, 1, !open);
+                struct mesh *mesh = extract(mask, 1, !open),
+                            *cubes = made_surface(SURFACE_MARCHING_CUBES, mask, 1, !open);
                 assert_within_bounds(mask, mesh, cubes);
                 if (!open) {
                     assert_int_equal(mesh_open_edges(mesh), 0);
@@ -276,7 +293,8 @@ static void random_blocks_are_closed_within_bounds_and_equal_for_any_threads(voi
             }
             mask_destroy(mask);
         }
-    /* large enough that three threads are worth it; few pieces, then very many; and with fewer slices than threads can share */
+    /* large enough that three threads are worth it; few pieces, then very many; and with fewer slices than threads can
+     * share */
     static const uint32_t sizes[][3] = { { 130, 70, 40 }, { 300, 200, 6 } };
     for (uint32_t each = 0; each < 4; each++) {
         uint32_t percent = each % 2 ? 53 : 3;
@@ -320,15 +338,16 @@ static void vertex_normals_are_unit_and_outward_also_on_mirrored_oblique_grids(v
     }
 }
 
-/* ---- volume ---------------------------------------------------------------------------------------------------------------- */
+/* ---- volume ----------------------------------------------------------------------------------------------------- */
 
 static void each_piece_keeps_the_volume_of_its_univels(void **state)
 {
     (void)state;
     /* bodies from some ten univels across down to four: filters alone would shrink the small ones by half */
     static const struct body bodies[] = {
-        { { 1, 1, 4 }, { 60, 40, 30 }, 0.35 }, { { 1, 1, 4 }, { 20, 5, 12 }, 0.5 }, { { 1, 1, 5.5 }, { 80, 80, 80 }, 0 },
-        { { 1, 1, 1 }, { 5, 5, 5 }, 0.4 },     { { 1, 1, 4 }, { 8, 8, 8 }, 0.4 },   { { 1, 1, 1 }, { 2.2, 2.2, 2.2 }, 0.4 },
+        { { 1, 1, 4 }, { 60, 40, 30 }, 0.35 }, { { 1, 1, 4 }, { 20, 5, 12 }, 0.5 },
+        { { 1, 1, 5.5 }, { 80, 80, 80 }, 0 },  { { 1, 1, 1 }, { 5, 5, 5 }, 0.4 },
+        { { 1, 1, 4 }, { 8, 8, 8 }, 0.4 },     { { 1, 1, 1 }, { 2.2, 2.2, 2.2 }, 0.4 },
     };
     for (size_t b = 0; b < sizeof bodies / sizeof *bodies; b++) {
         struct mask *mask = mask_of(&bodies[b]);
@@ -379,7 +398,8 @@ static void a_plate_of_one_univel_keeps_its_two_sides(void **state)
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         struct vec3 p = vertex(mesh, v);
         if (p.x > 14 && p.x < 16 && p.y > 14 && p.y < 16)
-            assert_close(fabs(p.z - 2), 0.5, 0.1); /* far from the rims nothing pulls; what is lost there is made up by all */
+            assert_close(fabs(p.z - 2), 0.5,
+                         0.1); /* far from the rims nothing pulls; what is lost there is made up by all */
     }
     assert_int_equal(mesh_open_edges(open), 2 * 4 * 29);
     mesh_unref(mesh);

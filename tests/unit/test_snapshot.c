@@ -3,7 +3,10 @@
 #include "tests/check.h"
 #include "tests/made_plan.h"
 
-static double label(struct vec3 p) { return p.x > 0 ? 1 : 0; }
+static double label(struct vec3 p)
+{
+    return p.x > 0 ? 1 : 0;
+}
 static const struct made_region regions[] = { { "half", -1, 0xffffff } };
 
 static struct plan *make_plan(void)
@@ -27,7 +30,10 @@ static struct snapshot *name(struct plan *plan, enum named what, const char *id,
     struct scene scene;
     struct view view = view_default;
     scene_for_plan(plan, &scene);
-    snprintf(what == IMAGE ? scene.image.id : what == DOSE ? scene.dose.id : scene.check.region, sizeof scene.image.id, "%s", id);
+    snprintf(what == IMAGE  ? scene.image.id
+             : what == DOSE ? scene.dose.id
+                            : scene.check.region,
+             sizeof scene.image.id, "%s", id);
     return snapshot_create(plan, &scene, &view, 1, field, err);
 }
 

@@ -1,4 +1,5 @@
-/* Our marching cubes against VTK's on the same voxels, and both algorithms against the counts known for SERA's sample head. */
+/* Our marching cubes against VTK's on the same voxels, and both algorithms against the counts known for SERA's sample
+ * head. */
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -14,7 +15,8 @@ struct label_set {
     size_t n;
 };
 
-static struct mesh *extract(enum surface_algorithm algorithm, const struct volume *layer, const struct label_set *set, bool close_at_border)
+static struct mesh *extract(enum surface_algorithm algorithm, const struct volume *layer, const struct label_set *set,
+                            bool close_at_border)
 {
     struct error err = { 0 };
     struct mask *mask = mask_from_labels(layer, set->labels, set->n, 2, &err);
@@ -48,7 +50,8 @@ static int run_vtk(const struct volume *layer, const struct label_set *sets, siz
     }
     close(file);
 
-    char sizes[3][16], *arguments[16] = { oracle_python(), "tests/oracle/vtk_counts.py", path, sizes[0], sizes[1], sizes[2] };
+    char sizes[3][16],
+        *arguments[16] = { oracle_python(), "tests/oracle/vtk_counts.py", path, sizes[0], sizes[1], sizes[2] };
     for (size_t axis = 0; axis < 3; axis++)
         snprintf(sizes[axis], sizeof sizes[axis], "%u", layer->grid.size[axis]);
     for (size_t s = 0; s < n_sets; s++)
@@ -111,8 +114,8 @@ static struct volume *read_sera_head(void)
     return layer;
 }
 
-/* What the original Sera3d reports of its own head, open where the scan cuts it: its table joins a few ambiguous cells otherwise, two
- * triangles a cell. To the triangle they are VTK's, below. */
+/* What the original Sera3d reports of its own head, open where the scan cuts it: its table joins a few ambiguous cells
+ * otherwise, two triangles a cell. To the triangle they are VTK's, below. */
 static void seras_own_head_has_the_counts_and_volumes_it_should(void **state)
 {
     (void)state;

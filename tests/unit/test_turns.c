@@ -40,8 +40,9 @@ static void run(struct world *world, int64_t duration_us)
         for (int other = 1; other < MAX_SOURCES; other++)
             if (other != s && world->cost_us[other]) {
                 world->waited_us[other] += step_us;
-                world->worst_wait_us[other] = world->waited_us[other] > world->worst_wait_us[other] ? world->waited_us[other]
-                                                                                                   : world->worst_wait_us[other];
+                world->worst_wait_us[other] = world->waited_us[other] > world->worst_wait_us[other]
+                                                  ? world->waited_us[other]
+                                                  : world->worst_wait_us[other];
             }
         if ((world->left_us[s] -= step_us) == 0) {
             world->n_pictures[s]++;

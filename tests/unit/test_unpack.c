@@ -1,4 +1,5 @@
-/* Unpacking of archives that Python's zipfile and tarfile made (tests/oracle/archives.py): in this process, and as beamroomd starts it. */
+/* Unpacking of archives that Python's zipfile and tarfile made (tests/oracle/archives.py): in this process, and as
+ * beamroomd starts it. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <errno.h>
@@ -73,8 +74,10 @@ static int count_names(const char *path)
 static bool names_a_place(const char *detail)
 {
     for (const char *at = detail; (at = strpbrk(at, "0123456789")); at++)
-        if ((at - detail >= 6 && memcmp(at - 6, "entry ", 6) == 0) || (at - detail >= 5 && memcmp(at - 5, "byte ", 5) == 0) ||
-            strncmp(at + strspn(at, "0123456789"), " bytes", 6) == 0 || strncmp(at + strspn(at, "0123456789"), " entries", 8) == 0)
+        if ((at - detail >= 6 && memcmp(at - 6, "entry ", 6) == 0) ||
+            (at - detail >= 5 && memcmp(at - 5, "byte ", 5) == 0) ||
+            strncmp(at + strspn(at, "0123456789"), " bytes", 6) == 0 ||
+            strncmp(at + strspn(at, "0123456789"), " entries", 8) == 0)
             return true;
     return false;
 }
@@ -88,8 +91,8 @@ static void assert_refused(const char *name, enum problem_type type, const char 
     if (!names_a_place(run.problem.detail))
         fail_msg("%s: \"%s\" says nowhere where", name, run.problem.detail);
     if (run.is_done || run.problem.type != type || !strstr(run.problem.detail, words) || n_left != 0)
-        fail_msg("%s: done %d, type %d (expected %d), \"%s\" (expected \"%s\"), %d names left", name, run.is_done, (int)run.problem.type, (int)type,
-                 run.problem.detail, words, n_left);
+        fail_msg("%s: done %d, type %d (expected %d), \"%s\" (expected \"%s\"), %d names left", name, run.is_done,
+                 (int)run.problem.type, (int)type, run.problem.detail, words, n_left);
     assert_int_equal(run.result.n_files, 0);
 }
 
@@ -108,8 +111,9 @@ static void assert_file(const struct run *run, const char *name, off_t bytes)
 static void every_kind_of_archive_gives_the_same_files(void **state)
 {
     (void)state;
-    static const char *const names[] = { "good.zip", "stored.zip", "pax.tar", "ustar.tar", "gnu.tar", "good.tar.gz", "members.tar.gz",
-                                         "good.tar.bz2", "good.tar.xz", "good.tar.zst", "dots.tar", "litter.zip", "back.zip" };
+    static const char *const names[] = { "good.zip",    "stored.zip",     "pax.tar",      "ustar.tar",   "gnu.tar",
+                                         "good.tar.gz", "members.tar.gz", "good.tar.bz2", "good.tar.xz", "good.tar.zst",
+                                         "dots.tar",    "litter.zip",     "back.zip" };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         struct run run;
         begin(&run, names[i], NULL);
@@ -142,10 +146,17 @@ static void names_are_kept_or_made_safe(void **state)
 {
     (void)state;
     static const struct expected list[] = {
-        { "same-top.zip", "plan/a", 1, 2 },       { "same-top.zip", "b", 2, 2 },
-        { "two-tops.zip", "a/x", 1, 2 },          { "latin.tar", "M_FCller", 1, 2 },
-        { "latin.tar", "\xc3\x9c/\xc3\xa9", 2, 2 }, { "utf8.zip", "Gr\xc3\xb6\xc3\x9f" "e/\xc3\xb1.txt", 1, 2 },
-        { "nested.zip", "b", 1, 2 },              { "deep.tar", "a/b/c/d/e/f/g/h/i/j/k/l/m/n/o/p", 1, 2 },
+        { "same-top.zip", "plan/a", 1, 2 },
+        { "same-top.zip", "b", 2, 2 },
+        { "two-tops.zip", "a/x", 1, 2 },
+        { "latin.tar", "M_FCller", 1, 2 },
+        { "latin.tar", "\xc3\x9c/\xc3\xa9", 2, 2 },
+        { "utf8.zip",
+          "Gr\xc3\xb6\xc3\x9f"
+          "e/\xc3\xb1.txt",
+          1, 2 },
+        { "nested.zip", "b", 1, 2 },
+        { "deep.tar", "a/b/c/d/e/f/g/h/i/j/k/l/m/n/o/p", 1, 2 },
         { "many.zip", "series6/19998", 1, 7 },
     };
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
@@ -333,14 +344,18 @@ static void the_limit_is_counted_to_the_byte(void **state)
     folder_remove(run.folder);
 }
 
-static bool after_a_while(void *context) { return ++*(int *)context > 20; }
+static bool after_a_while(void *context)
+{
+    return ++*(int *)context > 20;
+}
 
 static void cancelling_leaves_nothing(void **state)
 {
     (void)state;
     struct run run;
     int n_asked = 0;
-    begin(&run, "many.zip", &(struct unpack_options){ .max_bytes = 1 << 30, .is_cancelled = after_a_while, .context = &n_asked });
+    begin(&run, "many.zip",
+          &(struct unpack_options){ .max_bytes = 1 << 30, .is_cancelled = after_a_while, .context = &n_asked });
     assert_false(run.is_done);
     assert_int_equal(run.problem.type, PROBLEM_CANCELLED);
     assert_int_equal(count_names(run.folder), 0);
@@ -367,7 +382,7 @@ static void a_folder_with_something_in_it_is_left_alone(void **state)
     folder_remove(folder);
 }
 
-/* ---- the confined program --------------------------------------------------------------------------------------------------------- */
+/* ---- the confined program --------------------------------------------------------------------------------------- */
 
 struct program {
     pid_t pid;
@@ -392,7 +407,14 @@ static void start(struct program *program, const char *name)
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    char *arguments[] = { path, (char *)"--unpack", archive, (char *)"--into", program->folder, (char *)"--max-unpacked-bytes", (char *)"2000000000", NULL };
+    char *arguments[] = { path,
+                          (char *)"--unpack",
+                          archive,
+                          (char *)"--into",
+                          program->folder,
+                          (char *)"--max-unpacked-bytes",
+                          (char *)"2000000000",
+                          NULL };
     assert_int_equal(posix_spawn(&program->pid, path, &actions, NULL, arguments, environ), 0);
     posix_spawn_file_actions_destroy(&actions);
     close(ends[1]);
@@ -416,7 +438,8 @@ static int finish(struct program *program, char said[4096])
 static void the_confined_program_unpacks_each_kind(void **state)
 {
     (void)state;
-    static const char *const names[] = { "good.zip", "pax.tar", "good.tar.gz", "good.tar.bz2", "good.tar.xz", "good.tar.zst" };
+    static const char *const names[] = { "good.zip",     "pax.tar",     "good.tar.gz",
+                                         "good.tar.bz2", "good.tar.xz", "good.tar.zst" };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         struct program program;
         char said[4096];
@@ -433,7 +456,8 @@ static void the_confined_program_unpacks_each_kind(void **state)
 static void the_confined_program_says_why_it_refuses(void **state)
 {
     (void)state;
-    static const char *const names[] = { "link-through.tar", "name-dotdot.zip", "crc.tar.gz", "zeros.tar.gz", "zeros.gz" };
+    static const char *const names[] = { "link-through.tar", "name-dotdot.zip", "crc.tar.gz", "zeros.tar.gz",
+                                         "zeros.gz" };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         struct program program;
         char said[4096];

@@ -21,7 +21,10 @@ static void start_with(struct world *world, int unpack_ms)
     world_start(world, 1);
 }
 
-static void start(struct world *world) { start_with(world, 0); }
+static void start(struct world *world)
+{
+    start_with(world, 0);
+}
 
 static size_t n_in(const struct world *world, const char *name)
 {
@@ -145,10 +148,12 @@ static void plans_of_one_name_get_numbers_and_keep_them(void **state)
     struct world world;
     struct error err = { 0 };
     start(&world);
-    assert_string_equal(wait_for_end(&world, begin_upload(&world, "Head", "a/")).plan_id, "head-2"); /* beside the one that is read */
+    assert_string_equal(wait_for_end(&world, begin_upload(&world, "Head", "a/")).plan_id,
+                        "head-2"); /* beside the one that is read */
     assert_string_equal(wait_for_end(&world, begin_upload(&world, "head.zip", "a/")).plan_id, "head-3");
     assert_string_equal(wait_for_end(&world, begin_upload(&world, "../../etc", "a/")).plan_id, "etc");
-    assert_string_equal(wait_for_end(&world, begin_upload(&world, "***.zip", "a/")).plan_id, "plan"); /* nothing of it is left */
+    assert_string_equal(wait_for_end(&world, begin_upload(&world, "***.zip", "a/")).plan_id,
+                        "plan"); /* nothing of it is left */
     fleet_destroy(world.fleet);
     world.fleet = NULL;
     world_start(&world, 5);

@@ -80,7 +80,8 @@ static void sampling_is_linear_inside_and_refuses_outside(void **state)
     double value;
     assert_true(volume_sample(volume, affine_point(&grid.lps_mm_from_ijk, vec3(2.25, 3.5, 1.75)), &value));
     assert_close(value, 2 * (2.25 + 35 + 175) - 1000, 1e-9);
-    assert_true(volume_sample(volume, affine_point(&grid.lps_mm_from_ijk, vec3(-0.4, 0, 0)), &value)); /* half a voxel out: clamped */
+    assert_true(volume_sample(volume, affine_point(&grid.lps_mm_from_ijk, vec3(-0.4, 0, 0)),
+                              &value)); /* half a voxel out: clamped */
     assert_close(value, -1000, 1e-9);
     assert_false(volume_sample(volume, affine_point(&grid.lps_mm_from_ijk, vec3(-0.6, 0, 0)), &value));
     assert_false(volume_sample(volume, vec3(NAN, 0, 0), &value));

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE
-/* Connections over a socket pair whose other end is the test: what waits is bounded, what is old drops, who sends too much is closed. */
+/* Connections over a socket pair whose other end is the test: what waits is bounded, what is old drops, who sends too
+ * much is closed. */
 #include <unistd.h>
 
 #include "core/base/clock.h"
@@ -76,7 +77,9 @@ static void wait_for_messages(size_t n)
 
 static void start_with(const struct ws_limits *limits)
 {
-    const struct ws_callbacks callbacks = { has_room, opened, message_came, is_greeted, closed, nothing, nothing, NULL };
+    const struct ws_callbacks callbacks = {
+        has_room, opened, message_came, is_greeted, closed, nothing, nothing, NULL
+    };
     n_closed = 0;
     n_came = n_messages = 0;
     ws = ws_create(&callbacks, limits, NULL, NULL);
@@ -157,7 +160,13 @@ static void a_newer_frame_replaces_one_that_has_not_gone_out(void **state)
     for (uint32_t sequence = 1; sequence <= 40; sequence++) { /* nobody reads */
         struct room_picture *picture = mem_new(sizeof *picture);
         *picture = (struct room_picture){ .bytes = mem_new(100000), .n_bytes = 100000, .references = 1 };
-        struct frame_header header = { .codec = 1, .scale_percent = 100, .view = 1, .sequence = sequence, .width_px = 1, .height_px = 1, .payload_bytes = 100000 };
+        struct frame_header header = { .codec = 1,
+                                       .scale_percent = 100,
+                                       .view = 1,
+                                       .sequence = sequence,
+                                       .width_px = 1,
+                                       .height_px = 1,
+                                       .payload_bytes = 100000 };
         ws_send_frame(connection, &header, picture);
         room_picture_drop(picture); /* the connection holds its own */
         serve_a_while();
@@ -174,7 +183,7 @@ static void a_newer_frame_replaces_one_that_has_not_gone_out(void **state)
         before = newest = header.sequence;
         at += 10 + 100112;
     }
-    assert_int_equal(newest, 40);   /* the newest is there */
+    assert_int_equal(newest, 40);     /* the newest is there */
     assert_in_range(n_frames, 2, 10); /* and not the forty */
 }
 
@@ -206,7 +215,8 @@ static void after_a_close_a_client_has_a_second_to_end_its_side(void **state)
     (void)state;
     int64_t start_us = clock_now_us();
     ws_close(connection, WS_CLOSE_NORMAL);
-    ws_client_expect_end(&client, 1000); /* the server's side is ended; the connection is kept so that the close arrives */
+    ws_client_expect_end(&client,
+                         1000); /* the server's side is ended; the connection is kept so that the close arrives */
     assert_int_equal(n_closed, 0);
     while (n_closed == 0) {
         ws_wake_at(ws, clock_now_us() + 5000);
@@ -306,7 +316,7 @@ static void binary_messages_close_with_1003(void **state)
     assert_int_equal(n_messages, 0);
 }
 
-/* ---- how much may come ---------------------------------------------------------------------------------------------- */
+/* ---- how much may come ------------------------------------------------------------------------------------------ */
 
 /* 5 at once and then one a second: fifty at once are too many on every machine that takes less than 45 s for them. */
 static const struct rate_limit five = { .per_s = 1, .burst = 5 };

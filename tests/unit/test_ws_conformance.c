@@ -1,6 +1,7 @@
-/* RFC 6455 case by case against an echo server: the 301 cases without compression of the Autobahn Testsuite 25.10.1, by their numbers.
- * What a case sends and expects was written from its published description and from the RFC. Where the RFC leaves a choice, the test
- * asks for the strict one: text that is not UTF-8 is refused as soon as a byte shows it, every ping is answered in order. */
+/* RFC 6455 case by case against an echo server: the 301 cases without compression of the Autobahn Testsuite 25.10.1, by
+ * their numbers. What a case sends and expects was written from its published description and from the RFC. Where the
+ * RFC leaves a choice, the test asks for the strict one: text that is not UTF-8 is refused as soon as a byte shows it,
+ * every ping is answered in order. */
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "tests/check.h"
@@ -11,7 +12,7 @@ enum { N_CASES = 301, LARGEST = 16 << 20, CODE_PROTOCOL = 1002, CODE_NOT_UTF8 = 
 static struct ws *ws;
 static struct ws_client client;
 
-/* ---- the echo server ------------------------------------------------------------------------------------------------ */
+/* ---- the echo server -------------------------------------------------------------------------------------------- */
 
 static bool has_room(void *context, const char *room_id)
 {
@@ -72,7 +73,7 @@ static int end(void **state)
     return 0;
 }
 
-/* ---- what cases are made of ----------------------------------------------------------------------------------------- */
+/* ---- what cases are made of ------------------------------------------------------------------------------------- */
 
 static const char hello[] = "Hello, world!";
 
@@ -115,7 +116,7 @@ struct number { /* of a case: its group and place, and what a table of its group
     int a, b, c;
 };
 
-/* ---- 1: sizes ------------------------------------------------------------------------------------------------------- */
+/* ---- 1: sizes --------------------------------------------------------------------------------------------------- */
 
 static void sizes(void **state)
 {
@@ -131,7 +132,7 @@ static void sizes(void **state)
     free(payload);
 }
 
-/* ---- 2: pings and pongs --------------------------------------------------------------------------------------------- */
+/* ---- 2: pings and pongs ----------------------------------------------------------------------------------------- */
 
 static void ten_pings(size_t n_chop)
 {
@@ -153,7 +154,9 @@ static void pings(void **state)
     static const uint8_t odd[] = { 0x00, 0xff, 0xfe, 0xfd, 0xfc, 0xfb, 0x00, 0xff };
     const struct number *number = *state;
     uint8_t *large = make_payload(126);
-    const void *payload = number->b == 3 ? (const void *)odd : number->b >= 4 ? (const void *)large : (const void *)hello;
+    const void *payload = number->b == 3   ? (const void *)odd
+                          : number->b >= 4 ? (const void *)large
+                                           : (const void *)hello;
     size_t n = number->b == 1 ? 0 : number->b == 2 ? strlen(hello) : number->b == 3 ? sizeof odd : 125;
     switch (number->b) {
     case 5:
@@ -181,7 +184,7 @@ static void pings(void **state)
     free(large);
 }
 
-/* ---- 3, 4: reserved bits and opcodes -------------------------------------------------------------------------------- */
+/* ---- 3, 4: reserved bits and opcodes ---------------------------------------------------------------------------- */
 
 /* The wrong frame alone, or between a text, which is echoed, and a ping, which is not answered. */
 static void refuses_frame(unsigned first, size_t n_payload, bool is_between, size_t n_chop)
@@ -203,7 +206,8 @@ static void reserved_bits(void **state)
         unsigned kind;
         size_t n, n_chop;
         bool is_between;
-    } table[] = { { TEXT, 13, 0, false }, { TEXT, 13, 0, true }, { TEXT, 13, 8, true }, { TEXT, 13, 1, true }, { BINARY, 13, 0, false }, { PING, 13, 0, false }, { CLOSE, 0, 0, false } };
+    } table[] = { { TEXT, 13, 0, false },   { TEXT, 13, 0, true },  { TEXT, 13, 8, true }, { TEXT, 13, 1, true },
+                  { BINARY, 13, 0, false }, { PING, 13, 0, false }, { CLOSE, 0, 0, false } };
     const struct number *number = *state;
     int i = number->b - 1;
     refuses_frame(table[i].kind | (unsigned)number->b << 4, table[i].n, table[i].is_between, table[i].n_chop);
@@ -216,7 +220,7 @@ static void reserved_opcodes(void **state)
     refuses_frame(opcode, number->c % 2 ? 0 : strlen(hello), number->c >= 3, number->c == 5 ? 1 : 0);
 }
 
-/* ---- 5: fragments --------------------------------------------------------------------------------------------------- */
+/* ---- 5: fragments ----------------------------------------------------------------------------------------------- */
 
 enum chop { AT_ONCE, BY_FRAME, BY_OCTET };
 
@@ -232,7 +236,9 @@ static void fragments(void **state)
 {
     const struct number *number = *state;
     int b = number->b;
-    enum chop chop = b == 4 || b == 7 || b == 10 || b == 13 || b == 20 ? BY_FRAME : b == 5 || b == 8 || b == 11 || b == 14 ? BY_OCTET : AT_ONCE;
+    enum chop chop = b == 4 || b == 7 || b == 10 || b == 13 || b == 20 ? BY_FRAME
+                     : b == 5 || b == 8 || b == 11 || b == 14          ? BY_OCTET
+                                                                       : AT_ONCE;
     bool is_pinged = b >= 6 && b <= 8, is_stray = b >= 9 && b <= 14;
     if (b <= 2) {
         piece(b == 1 ? 9 : 10, "fragment1", chop);
@@ -282,15 +288,18 @@ static void fragments(void **state)
         ws_client_expect_end(&client, CODE_PROTOCOL);
 }
 
-/* ---- 6: UTF-8 ------------------------------------------------------------------------------------------------------- */
+/* ---- 6: UTF-8 --------------------------------------------------------------------------------------------------- */
 
-/* Groups 6.5 to 6.23, each of single texts in order; "-" in front: not UTF-8. Hexadecimal; 6.12.8, 6.13 and 6.22 are made below. */
+/* Groups 6.5 to 6.23, each of single texts in order; "-" in front: not UTF-8. Hexadecimal; 6.12.8, 6.13 and 6.22 are
+ * made below. */
 static const struct {
     int group;
     const char *texts;
 } utf8_table[] = {
-    { 5, "68656c6c6f24776f726c64 68656c6c6fc2a2776f726c64 68656c6c6fe282ac776f726c64 68656c6c6ff0a4ada2776f726c64 cebae1bdb9cf83cebcceb5" },
-    { 6, "-ce ceba -cebae1 -cebae1bd cebae1bdb9 -cebae1bdb9cf cebae1bdb9cf83 -cebae1bdb9cf83ce cebae1bdb9cf83cebc -cebae1bdb9cf83cebcce cebae1bdb9cf83cebcceb5" },
+    { 5,
+      "68656c6c6f24776f726c64 68656c6c6fc2a2776f726c64 68656c6c6fe282ac776f726c64 68656c6c6ff0a4ada2776f726c64 cebae1bdb9cf83cebcceb5" },
+    { 6,
+      "-ce ceba -cebae1 -cebae1bd cebae1bdb9 -cebae1bdb9cf cebae1bdb9cf83 -cebae1bdb9cf83ce cebae1bdb9cf83cebc -cebae1bdb9cf83cebcce cebae1bdb9cf83cebcceb5" },
     { 7, "00 c280 e0a080 f0908080" },
     { 8, "-f888808080 -fc8480808080" },
     { 9, "7f dfbf efbfbf f48fbfbf" },
@@ -305,7 +314,8 @@ static const struct {
     { 18, "-c1bf -e09fbf -f08fbfbf -f887bfbfbf -fc83bfbfbfbf" },
     { 19, "-c080 -e08080 -f0808080 -f880808080 -fc8080808080" },
     { 20, "-eda080 -edadbf -edae80 -edafbf -edb080 -edbe80 -edbfbf" },
-    { 21, "-eda080edb080 -eda080edbfbf -edadbfedb080 -edadbfedbfbf -edae80edb080 -edae80edbfbf -edafbfedb080 -edafbfedbfbf" },
+    { 21,
+      "-eda080edb080 -eda080edbfbf -edadbfedb080 -edadbfedbfbf -edae80edb080 -edae80edbfbf -edafbfedb080 -edafbfedbfbf" },
     { 22, "* * * * * * * * * * * * * * * * * * * * * * * * * * * * * * * * * *" },
     { 23, "efbfb9 efbfba efbfbb efbfbc efbfbd efbfbe efbfbf" },
 };
@@ -374,8 +384,10 @@ static void send_by_octet_fragments(const uint8_t *bytes, size_t n)
 
 static void utf8_fragments(void **state)
 {
-    static const char valid[] = "Hello-\xc2\xb5@\xc3\x9f\xc3\xb6\xc3\xa4\xc3\xbc\xc3\xa0\xc3\xa1-UTF-8!!", greek[] = "\xce\xba\xe1\xbd\xb9\xcf\x83\xce\xbc\xce\xb5";
-    static const char wrong[] = "\xce\xba\xe1\xbd\xb9\xcf\x83\xce\xbc\xce\xb5\xed\xa0\x80" "edited";
+    static const char valid[] = "Hello-\xc2\xb5@\xc3\x9f\xc3\xb6\xc3\xa4\xc3\xbc\xc3\xa0\xc3\xa1-UTF-8!!",
+                      greek[] = "\xce\xba\xe1\xbd\xb9\xcf\x83\xce\xbc\xce\xb5";
+    static const char wrong[] = "\xce\xba\xe1\xbd\xb9\xcf\x83\xce\xbc\xce\xb5\xed\xa0\x80"
+                                "edited";
     const struct number *number = *state;
     const char *text = number->b == 2 && number->c == 4 ? greek : valid;
     if (number->b == 1) {
@@ -408,7 +420,8 @@ static void utf8_fragments(void **state)
 /* Refused at the byte that shows it, although the message, and in .3 and .4 the frame, is not whole. */
 static void utf8_at_once(void **state)
 {
-    static const char text[] = "\xce\xba\xe1\xbd\xb9\xcf\x83\xce\xbc\xce\xb5\xf4\x90\x80\x80" "edited";
+    static const char text[] = "\xce\xba\xe1\xbd\xb9\xcf\x83\xce\xbc\xce\xb5\xf4\x90\x80\x80"
+                               "edited";
     const struct number *number = *state;
     size_t n_first = number->c % 2 ? 11 : 12, n_until = 13; /* after f4 only 80 to 8f may come */
     struct ws_answer answer;
@@ -433,7 +446,7 @@ static void utf8_at_once(void **state)
     assert_false(ws_client_next(&client, &answer));
 }
 
-/* ---- 7: closing ----------------------------------------------------------------------------------------------------- */
+/* ---- 7: closing ------------------------------------------------------------------------------------------------- */
 
 static void close_and_more(void **state)
 {
@@ -480,7 +493,8 @@ static void close_payloads(void **state)
 static void close_with_bad_reason(void **state)
 {
     (void)state;
-    send_close(1000, "\xce\xba\xe1\xbd\xb9\xcf\x83\xce\xbc\xce\xb5\xed\xa0\x80" "edited");
+    send_close(1000, "\xce\xba\xe1\xbd\xb9\xcf\x83\xce\xbc\xce\xb5\xed\xa0\x80"
+                     "edited");
     ws_client_expect_end(&client, CODE_NOT_UTF8);
 }
 
@@ -494,15 +508,18 @@ static void close_codes(void **state)
     ws_client_expect_end(&client, number->b == 7 ? code : CODE_PROTOCOL);
 }
 
-/* ---- 9, 10: large messages, many of them ---------------------------------------------------------------------------- */
+/* ---- 9, 10: large messages, many of them ------------------------------------------------------------------------ */
 
 static void large_messages(void **state)
 {
     const struct number *number = *state;
-    bool is_text = number->b % 2, is_fragmented = number->b == 3 || number->b == 4 || number->a == 10, is_chopped = number->b == 5 || number->b == 6;
+    bool is_text = number->b % 2, is_fragmented = number->b == 3 || number->b == 4 || number->a == 10,
+         is_chopped = number->b == 5 || number->b == 6;
     static const size_t sizes_[] = { 64 << 10, 256 << 10, 1 << 20, 4 << 20, 8 << 20, 16 << 20 };
     size_t n = number->a == 10 ? 65536 : is_fragmented ? 4 << 20 : is_chopped ? 1 << 20 : sizes_[number->c - 1];
-    size_t n_fragment = number->a == 10 ? 1300 : is_fragmented ? (size_t)64 << 2 * (number->c - 1) : n; /* 64 bytes to 4 MiB */
+    size_t n_fragment = number->a == 10 ? 1300
+                        : is_fragmented ? (size_t)64 << 2 * (number->c - 1)
+                                        : n; /* 64 bytes to 4 MiB */
     uint8_t *payload = make_payload(n);
     for (size_t at = 0; at < n; at += n_fragment) {
         size_t n_now = n - at < n_fragment ? n - at : n_fragment;
@@ -529,7 +546,7 @@ static void thousand_messages(void **state)
     free(payload);
 }
 
-/* ---- the list ------------------------------------------------------------------------------------------------------- */
+/* ---- the list --------------------------------------------------------------------------------------------------- */
 
 int main(void)
 {
@@ -539,14 +556,50 @@ int main(void)
         int a, b, n; /* cases a.b.1 to a.b.n; b 0: a.1 to a.n */
         void (*run)(void **state);
     } groups[] = {
-        { 1, 1, 8, sizes }, { 1, 2, 8, sizes }, { 2, 0, 11, pings }, { 3, 0, 7, reserved_bits }, { 4, 1, 5, reserved_opcodes }, { 4, 2, 5, reserved_opcodes },
-        { 5, 0, 20, fragments }, { 6, 1, 3, utf8_fragments }, { 6, 2, 4, utf8_fragments }, { 6, 3, 2, utf8_fragments }, { 6, 4, 4, utf8_at_once },
-        { 6, 5, 5, utf8_texts }, { 6, 6, 11, utf8_texts }, { 6, 7, 4, utf8_texts }, { 6, 8, 2, utf8_texts }, { 6, 9, 4, utf8_texts }, { 6, 10, 3, utf8_texts },
-        { 6, 11, 5, utf8_texts }, { 6, 12, 8, utf8_texts }, { 6, 13, 5, utf8_texts }, { 6, 14, 10, utf8_texts }, { 6, 15, 1, utf8_texts }, { 6, 16, 3, utf8_texts },
-        { 6, 17, 5, utf8_texts }, { 6, 18, 5, utf8_texts }, { 6, 19, 5, utf8_texts }, { 6, 20, 7, utf8_texts }, { 6, 21, 8, utf8_texts }, { 6, 22, 34, utf8_texts },
-        { 6, 23, 7, utf8_texts }, { 7, 1, 6, close_and_more }, { 7, 3, 6, close_payloads }, { 7, 5, 1, close_with_bad_reason }, { 7, 7, 13, close_codes },
-        { 7, 9, 9, close_codes }, { 7, 13, 2, close_codes }, { 9, 1, 6, large_messages }, { 9, 2, 6, large_messages }, { 9, 3, 9, large_messages },
-        { 9, 4, 9, large_messages }, { 9, 5, 6, large_messages }, { 9, 6, 6, large_messages }, { 9, 7, 6, thousand_messages }, { 9, 8, 6, thousand_messages },
+        { 1, 1, 8, sizes },
+        { 1, 2, 8, sizes },
+        { 2, 0, 11, pings },
+        { 3, 0, 7, reserved_bits },
+        { 4, 1, 5, reserved_opcodes },
+        { 4, 2, 5, reserved_opcodes },
+        { 5, 0, 20, fragments },
+        { 6, 1, 3, utf8_fragments },
+        { 6, 2, 4, utf8_fragments },
+        { 6, 3, 2, utf8_fragments },
+        { 6, 4, 4, utf8_at_once },
+        { 6, 5, 5, utf8_texts },
+        { 6, 6, 11, utf8_texts },
+        { 6, 7, 4, utf8_texts },
+        { 6, 8, 2, utf8_texts },
+        { 6, 9, 4, utf8_texts },
+        { 6, 10, 3, utf8_texts },
+        { 6, 11, 5, utf8_texts },
+        { 6, 12, 8, utf8_texts },
+        { 6, 13, 5, utf8_texts },
+        { 6, 14, 10, utf8_texts },
+        { 6, 15, 1, utf8_texts },
+        { 6, 16, 3, utf8_texts },
+        { 6, 17, 5, utf8_texts },
+        { 6, 18, 5, utf8_texts },
+        { 6, 19, 5, utf8_texts },
+        { 6, 20, 7, utf8_texts },
+        { 6, 21, 8, utf8_texts },
+        { 6, 22, 34, utf8_texts },
+        { 6, 23, 7, utf8_texts },
+        { 7, 1, 6, close_and_more },
+        { 7, 3, 6, close_payloads },
+        { 7, 5, 1, close_with_bad_reason },
+        { 7, 7, 13, close_codes },
+        { 7, 9, 9, close_codes },
+        { 7, 13, 2, close_codes },
+        { 9, 1, 6, large_messages },
+        { 9, 2, 6, large_messages },
+        { 9, 3, 9, large_messages },
+        { 9, 4, 9, large_messages },
+        { 9, 5, 6, large_messages },
+        { 9, 6, 6, large_messages },
+        { 9, 7, 6, thousand_messages },
+        { 9, 8, 6, thousand_messages },
         { 10, 1, 1, large_messages },
     };
     size_t n = 0;
@@ -554,7 +607,8 @@ int main(void)
         for (int i = 1; i <= groups[g].n && n < N_CASES; i++, n++) {
             struct number *number = &numbers[n];
             *number = (struct number){ .a = groups[g].a, .b = groups[g].b ? groups[g].b : i, .c = groups[g].b ? i : 0 };
-            (void)snprintf(number->name, sizeof number->name, number->c ? "case_%d.%d.%d" : "case_%d.%d", number->a, number->b, number->c);
+            (void)snprintf(number->name, sizeof number->name, number->c ? "case_%d.%d.%d" : "case_%d.%d", number->a,
+                           number->b, number->c);
             tests[n] = (struct CMUnitTest){ number->name, groups[g].run, start, end, number };
         }
     if (n != N_CASES)

@@ -1,4 +1,5 @@
-/* Bytes of a client to messages. What RFC 6455 says beyond the cases of test_ws_conformance.c: masks, lengths, memory. */
+/* Bytes of a client to messages. What RFC 6455 says beyond the cases of test_ws_conformance.c: masks, lengths, memory.
+ */
 #include "core/base/mem.h"
 #include "server/ws/parser.h"
 #include "tests/check.h"
@@ -72,7 +73,8 @@ static void a_message_that_is_too_large_breaks_it_before_it_comes(void **state)
 {
     (void)state;
     assert_breaks((const uint8_t[]){ 0x81, 0xff, 0, 0, 0, 0, 0, 1, 0, 1 }, 10, 1009, "too large");
-    assert_breaks((const uint8_t[]){ 0x81, 0xff, 0x7f, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff }, 10, 1009, "too large");
+    assert_breaks((const uint8_t[]){ 0x81, 0xff, 0x7f, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff }, 10, 1009,
+                  "too large");
     /* 5 bytes, then a fragment of 65532: together one more than 65536 */
     static const uint8_t fragments[] = { 0x01, 0x85, 0, 0, 0, 0, 'a', 'b', 'c', 'd', 'e', 0x80, 0xfe, 0xff, 0xfc };
     assert_breaks(fragments, sizeof fragments, 1009, "too large");
@@ -131,7 +133,8 @@ static void a_close_after_a_text_that_is_not_whole_is_a_close(void **state)
 
 static void a_ping_inside_a_character_leaves_the_text_whole(void **state)
 {
-    static const uint8_t bytes[] = { 0x01, 0x82, 0, 0, 0, 0, 0xe2, 0x82, 0x89, 0x81, 0, 0, 0, 0, 0xff, 0x80, 0x81, 0, 0, 0, 0, 0xac };
+    static const uint8_t bytes[] = { 0x01, 0x82, 0, 0,    0,    0,    0xe2, 0x82, 0x89, 0x81, 0,
+                                     0,    0,    0, 0xff, 0x80, 0x81, 0,    0,    0,    0,    0xac };
     struct ws_parser parser;
     struct ws_event event;
     (void)state;
@@ -151,8 +154,12 @@ static void a_servers_header_has_the_shortest_length(void **state)
         uint64_t n;
         uint8_t head[10];
         size_t n_head;
-    } cases[] = { { 0, { 0x82, 0 }, 2 }, { 125, { 0x82, 125 }, 2 }, { 126, { 0x82, 126, 0, 126 }, 4 }, { 256, { 0x82, 126, 1, 0 }, 4 },
-                  { 65535, { 0x82, 126, 0xff, 0xff }, 4 }, { 65536, { 0x82, 127, 0, 0, 0, 0, 0, 1, 0, 0 }, 10 } };
+    } cases[] = { { 0, { 0x82, 0 }, 2 },
+                  { 125, { 0x82, 125 }, 2 },
+                  { 126, { 0x82, 126, 0, 126 }, 4 },
+                  { 256, { 0x82, 126, 1, 0 }, 4 },
+                  { 65535, { 0x82, 126, 0xff, 0xff }, 4 },
+                  { 65536, { 0x82, 127, 0, 0, 0, 0, 0, 1, 0, 0 }, 10 } };
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         uint8_t head[10];

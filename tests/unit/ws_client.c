@@ -13,9 +13,12 @@ static const uint8_t mask[4] = { 0x37, 0xfa, 0x21, 0x3d };
 
 void ws_client_open(struct ws_client *client, struct ws *ws)
 {
-    static const char request[] = "GET /api/v1/rooms/7q4k-m2wz/ws HTTP/1.1\r\nHost: here\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
-                                  "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
-    const struct handshake handshake = { .room_id = "7q4k-m2wz", .key = "dGhlIHNhbXBsZSBub25jZQ==", .host = "here", .n_head = sizeof request - 1 };
+    static const char request[] =
+        "GET /api/v1/rooms/7q4k-m2wz/ws HTTP/1.1\r\nHost: here\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+        "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
+    const struct handshake handshake = {
+        .room_id = "7q4k-m2wz", .key = "dGhlIHNhbXBsZSBub25jZQ==", .host = "here", .n_head = sizeof request - 1
+    };
     const int socket_bytes = 64 << 10; /* what the kernel holds of the unread, the same on every machine */
     int ends[2];
     *client = (struct ws_client){ .ws = ws };
@@ -94,7 +97,8 @@ void ws_client_flush(struct ws_client *client, size_t n_chop)
 {
     for (size_t at = 0; at < client->n_out && !client->has_ended;) {
         size_t n = client->n_out - at;
-        ssize_t sent = send(client->fd, client->out + at, n_chop && n > n_chop ? n_chop : n, MSG_NOSIGNAL | MSG_DONTWAIT);
+        ssize_t sent =
+            send(client->fd, client->out + at, n_chop && n > n_chop ? n_chop : n, MSG_NOSIGNAL | MSG_DONTWAIT);
         if (sent < 0 && errno != EAGAIN && errno != EINTR)
             break; /* the server has ended: what it said is still to be read */
         at += sent > 0 ? (size_t)sent : 0;

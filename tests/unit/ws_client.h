@@ -1,6 +1,6 @@
 #pragma once
-/* A client of RFC 6455 for tests, in the thread of the server it talks to, over a socket pair: it can send any bytes, in any pieces. It
- * shares no code with server/ws. */
+/* A client of RFC 6455 for tests, in the thread of the server it talks to, over a socket pair: it can send any bytes,
+ * in any pieces. It shares no code with server/ws. */
 #include "server/ws/ws.h"
 
 struct ws_client {
@@ -17,7 +17,15 @@ struct ws_answer { /* one frame of the server's */
     size_t n;
 };
 
-enum { FIN = 0x80, TEXT = FIN | 1, BINARY = FIN | 2, CONTINUED = FIN | 0, CLOSE = FIN | 8, PING = FIN | 9, PONG = FIN | 10 };
+enum {
+    FIN = 0x80,
+    TEXT = FIN | 1,
+    BINARY = FIN | 2,
+    CONTINUED = FIN | 0,
+    CLOSE = FIN | 8,
+    PING = FIN | 9,
+    PONG = FIN | 10
+};
 
 /* Opens a connection to the room 7q4k-m2wz. */
 void ws_client_open(struct ws_client *client, struct ws *ws);
@@ -27,7 +35,8 @@ void ws_client_serve(struct ws_client *client);
 /* Adds a masked frame to what is sent by the next flush; first: FIN, reserved bits and opcode. */
 void ws_client_add(struct ws_client *client, unsigned first, const void *payload, size_t n);
 void ws_client_add_raw(struct ws_client *client, const void *bytes, size_t n);
-/* Sends it, n_chop bytes at a time with the server running between (0: as much as fits), until all is sent or the server has ended. */
+/* Sends it, n_chop bytes at a time with the server running between (0: as much as fits), until all is sent or the
+ * server has ended. */
 void ws_client_flush(struct ws_client *client, size_t n_chop);
 void ws_client_send(struct ws_client *client, unsigned first, const void *payload, size_t n); /* add and flush */
 /* Waits for a frame; false: the server ended instead. Fails the test when neither comes within 60 s. */

@@ -54,7 +54,8 @@ static const struct dicom_image *image_of(const struct dicom_index *index, const
     return index->objects[stack->objects[i]].image;
 }
 
-/* The value more than half of the slices have, if there is one. R. S. Boyer, J S. Moore, MJRTY: A Fast Majority Vote Algorithm, 1981. */
+/* The value more than half of the slices have, if there is one. R. S. Boyer, J S. Moore, MJRTY: A Fast Majority Vote
+ * Algorithm, 1981. */
 static size_t usual_slice(const struct dicom_index *index, const struct dicom_stack *stack, enum trait trait)
 {
     size_t usual = 0, lead = 0;
@@ -86,8 +87,10 @@ void dicom_slices_compare(const struct dicom_index *index, const struct dicom_st
         uint32_t tag = is_of_pet ? TAG_UNITS : traits[t].tag;
         put_value(usual, trait, expected);
         put_value(image_of(index, stack, first), trait, found);
-        report_add(report, REPORT_WARNING, "image.slices-contradict", index->objects[stack->objects[first]].path,
-                   "Element (%04X,%04X), %s: found %s, expected %s as in other slices of the series; %zu of %zu slices differ. Each was read as "
-                   "it says.", tag >> 16, tag & 0xFFFF, traits[t].name, found, expected, n_others, stack->n_objects);
+        report_add(
+            report, REPORT_WARNING, "image.slices-contradict", index->objects[stack->objects[first]].path,
+            "Element (%04X,%04X), %s: found %s, expected %s as in other slices of the series; %zu of %zu slices differ. Each was read as "
+            "it says.",
+            tag >> 16, tag & 0xFFFF, traits[t].name, found, expected, n_others, stack->n_objects);
     }
 }

@@ -10,5 +10,5 @@ struct dicom_coded {
 /* Takes what the codestream of the frame read last says. */
 void dicom_coded_count(struct dicom_coded *coded, const struct dicom_file *file, const struct dicom_pixels *pixels);
 /* Says loss (also the one that the file itself says, (0028,2110)), another sign and other bits. */
-void dicom_coded_report(const struct dicom_coded *coded, const struct dicom_file *file, const struct dicom_pixels *pixels, const char *where,
-                        struct report *report);
+void dicom_coded_report(const struct dicom_coded *coded, const struct dicom_file *file,
+                        const struct dicom_pixels *pixels, const char *where, struct report *report);

@@ -9,11 +9,11 @@ extern "C" {
 
 #include <dcmtk/config/osconfig.h>
 
-#include <dcmtk/dcmdata/dcrledrg.h>
-#include <dcmtk/dcmdata/dctk.h>
 #include <dcmtk/dcmdata/dcpixel.h>
 #include <dcmtk/dcmdata/dcpixseq.h>
 #include <dcmtk/dcmdata/dcpxitem.h>
+#include <dcmtk/dcmdata/dcrledrg.h>
+#include <dcmtk/dcmdata/dctk.h>
 #include <dcmtk/dcmjpeg/djdecode.h>
 #include <dcmtk/dcmjpls/djdecode.h>
 
@@ -35,10 +35,10 @@ const struct encoding {
     const char *uid;
     stream kind;
 } decoded[] = {
-    { "1.2.840.10008.1.2.4.50", stream::jpeg },    { "1.2.840.10008.1.2.4.51", stream::jpeg },
-    { "1.2.840.10008.1.2.4.53", stream::jpeg },    { "1.2.840.10008.1.2.4.55", stream::jpeg },
-    { "1.2.840.10008.1.2.4.57", stream::jpeg },    { "1.2.840.10008.1.2.4.70", stream::jpeg },
-    { "1.2.840.10008.1.2.4.80", stream::jpeg_ls }, { "1.2.840.10008.1.2.4.81", stream::jpeg_ls },
+    { "1.2.840.10008.1.2.4.50", stream::jpeg },      { "1.2.840.10008.1.2.4.51", stream::jpeg },
+    { "1.2.840.10008.1.2.4.53", stream::jpeg },      { "1.2.840.10008.1.2.4.55", stream::jpeg },
+    { "1.2.840.10008.1.2.4.57", stream::jpeg },      { "1.2.840.10008.1.2.4.70", stream::jpeg },
+    { "1.2.840.10008.1.2.4.80", stream::jpeg_ls },   { "1.2.840.10008.1.2.4.81", stream::jpeg_ls },
     { "1.2.840.10008.1.2.4.90", stream::jpeg_2000 }, { "1.2.840.10008.1.2.4.91", stream::jpeg_2000 },
     { "1.2.840.10008.1.2.5", stream::rle },
 };
@@ -51,7 +51,10 @@ const encoding *find_encoding(const char *uid)
     return nullptr;
 }
 
-uint32_t big16(const uint8_t *p) { return uint32_t(p[0]) << 8 | p[1]; }
+uint32_t big16(const uint8_t *p)
+{
+    return uint32_t(p[0]) << 8 | p[1];
+}
 
 // A JPEG or JPEG-LS frame header says its own size: a decoder believes it, so it is compared with the image's first.
 // ITU-T T.81 B.1.1, B.2.2; T.87 C.2.2.
@@ -62,21 +65,27 @@ bool jpeg_fits(const std::vector<uint8_t> &bytes, const dicom_pixels &pixels, co
         return error_set(err, ERROR_FORMAT, "%s: a compressed frame does not begin like JPEG (FF D8)", name);
     while (at + 4 <= bytes.size()) {
         if (bytes[at] != 0xFF)
-            return error_set(err, ERROR_FORMAT, "%s: byte %zu of a JPEG frame: expected a marker, found %02X", name, at, bytes[at]);
+            return error_set(err, ERROR_FORMAT, "%s: byte %zu of a JPEG frame: expected a marker, found %02X", name, at,
+                             bytes[at]);
         uint8_t marker = bytes[at + 1];
         if (marker == 0xFF) {
             at++;
             continue;
         }
         size_t length = big16(&bytes[at + 2]);
-        bool is_frame = (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) || marker == 0xF7;
+        bool is_frame =
+            (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) || marker == 0xF7;
         if (is_frame) {
             if (at + 10 > bytes.size())
                 break;
-            uint32_t bits = bytes[at + 4], rows = big16(&bytes[at + 5]), columns = big16(&bytes[at + 7]), samples = bytes[at + 9];
-            if (rows != pixels.rows || columns != pixels.columns || samples != 1 || bits > pixels.bits_allocated || bits < 2)
-                return error_set(err, ERROR_FORMAT, "%s: a JPEG frame of %u x %u, %u samples of %u bits; expected %u x %u, 1 of at most %u",
-                                 name, columns, rows, samples, bits, pixels.columns, pixels.rows, pixels.bits_allocated);
+            uint32_t bits = bytes[at + 4], rows = big16(&bytes[at + 5]), columns = big16(&bytes[at + 7]),
+                     samples = bytes[at + 9];
+            if (rows != pixels.rows || columns != pixels.columns || samples != 1 || bits > pixels.bits_allocated ||
+                bits < 2)
+                return error_set(
+                    err, ERROR_FORMAT,
+                    "%s: a JPEG frame of %u x %u, %u samples of %u bits; expected %u x %u, 1 of at most %u", name,
+                    columns, rows, samples, bits, pixels.columns, pixels.rows, pixels.bits_allocated);
             return true;
         }
         if (length < 2 || marker == 0xDA || marker == 0xD9)
@@ -94,13 +103,16 @@ bool rle_fits(const std::vector<uint8_t> &bytes, const dicom_pixels &pixels, con
     };
     uint32_t expected = pixels.bits_allocated / 8, last = 64;
     if (bytes.size() < 64)
-        return error_set(err, ERROR_FORMAT, "%s: an RLE frame of %zu bytes; its header alone has 64", name, bytes.size());
+        return error_set(err, ERROR_FORMAT, "%s: an RLE frame of %zu bytes; its header alone has 64", name,
+                         bytes.size());
     if (little32(0) != expected)
-        return error_set(err, ERROR_FORMAT, "%s: an RLE frame of %u byte planes; expected %u", name, little32(0), expected);
+        return error_set(err, ERROR_FORMAT, "%s: an RLE frame of %u byte planes; expected %u", name, little32(0),
+                         expected);
     for (uint32_t plane = 0; plane < expected; plane++) {
         uint32_t at = little32(4 + 4 * plane);
         if (at < last || at > bytes.size())
-            return error_set(err, ERROR_FORMAT, "%s: byte plane %u of an RLE frame begins at %u of %zu bytes", name, plane, at, bytes.size());
+            return error_set(err, ERROR_FORMAT, "%s: byte plane %u of an RLE frame begins at %u of %zu bytes", name,
+                             plane, at, bytes.size());
         last = at;
     }
     return true;
@@ -134,7 +146,8 @@ bool dicom_begins_picture(const char *transfer_syntax, const uint8_t *bytes, siz
     if (!encoding || encoding->kind == stream::rle || size < 8)
         return false;
     if (encoding->kind == stream::jpeg_2000)
-        return (bytes[0] == 0xFF && bytes[1] == 0x4F && bytes[2] == 0xFF && bytes[3] == 0x51) || std::memcmp(bytes, boxed, sizeof boxed) == 0;
+        return (bytes[0] == 0xFF && bytes[1] == 0x4F && bytes[2] == 0xFF && bytes[3] == 0x51) ||
+               std::memcmp(bytes, boxed, sizeof boxed) == 0;
     return bytes[0] == 0xFF && bytes[1] == 0xD8 && bytes[2] == 0xFF;
 }
 
@@ -146,13 +159,14 @@ bool dicom_ends_picture(const uint8_t *bytes, size_t size)
 }
 
 // The decoder sees a data set made here of what was checked, and one frame: nothing else of the file.
-bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, const char *name, const std::vector<dicom_fragment> &fragments,
-                        void *out, dicom_decoded *decoded, error *err)
+bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, const char *name,
+                        const std::vector<dicom_fragment> &fragments, void *out, dicom_decoded *decoded, error *err)
 {
     *decoded = dicom_decoded{};
     const encoding *encoding = find_encoding(layout.transfer_syntax);
     if (!encoding)
-        return error_set(err, ERROR_UNSUPPORTED, "%s: transfer syntax %s cannot be decoded", name, layout.transfer_syntax);
+        return error_set(err, ERROR_UNSUPPORTED, "%s: transfer syntax %s cannot be decoded", name,
+                         layout.transfer_syntax);
     std::vector<uint8_t> bytes;
     for (const dicom_fragment &fragment : fragments)
         bytes.insert(bytes.end(), layout.data + fragment.at, layout.data + fragment.at + fragment.size);
@@ -190,10 +204,11 @@ bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, 
     std::vector<uint8_t> odd(padded != size ? padded : 0);
     Uint32 first = 0;
     OFString colors;
-    OFCondition condition = frame->getUncompressedFrame(&image, 0, first, odd.empty() ? out : odd.data(), Uint32(padded), colors);
+    OFCondition condition =
+        frame->getUncompressedFrame(&image, 0, first, odd.empty() ? out : odd.data(), Uint32(padded), colors);
     if (condition.bad())
-        return error_set(err, ERROR_FORMAT, "%s: a compressed frame (%s) cannot be decoded: %.80s", name, DcmXfer(xfer).getXferName(),
-                         condition.text());
+        return error_set(err, ERROR_FORMAT, "%s: a compressed frame (%s) cannot be decoded: %.80s", name,
+                         DcmXfer(xfer).getXferName(), condition.text());
     if (!odd.empty())
         std::memcpy(out, odd.data(), size);
     dicom_pixels_unpack(&pixels, false, out, size_t(pixels.rows) * pixels.columns);

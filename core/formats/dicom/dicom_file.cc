@@ -43,12 +43,18 @@ struct dicom_file {
     std::vector<size_t> first_fragments;   // of each frame
     bool has_frames = false;
     dicom_decoded decoded{}; // of the frame read last
-    ~dicom_file() { free(layout.inflated); }
+    ~dicom_file()
+    {
+        free(layout.inflated);
+    }
 };
 
 namespace {
 
-DcmTagKey key_of(uint32_t tag) { return DcmTagKey(Uint16(tag >> 16), Uint16(tag & 0xFFFF)); }
+DcmTagKey key_of(uint32_t tag)
+{
+    return DcmTagKey(Uint16(tag >> 16), Uint16(tag & 0xFFFF));
+}
 
 DcmElement *find(const dicom_item *item, uint32_t tag)
 {
@@ -63,13 +69,34 @@ enum class values { none, text, binary };
 values values_of(DcmElement &element)
 {
     switch (element.ident()) {
-    case EVR_AE: case EVR_AS: case EVR_CS: case EVR_DA: case EVR_DS: case EVR_DT: case EVR_IS: case EVR_LO: case EVR_LT: case EVR_PN:
-    case EVR_SH: case EVR_ST: case EVR_TM: case EVR_UC: case EVR_UI: case EVR_UR: case EVR_UT:
-        return values::text;
-    case EVR_AT: case EVR_FD: case EVR_FL: case EVR_SL: case EVR_SS: case EVR_UL: case EVR_US: case EVR_up: case EVR_xs: case EVR_lt:
-        return values::binary;
-    default:
-        return values::none;
+    case EVR_AE:
+    case EVR_AS:
+    case EVR_CS:
+    case EVR_DA:
+    case EVR_DS:
+    case EVR_DT:
+    case EVR_IS:
+    case EVR_LO:
+    case EVR_LT:
+    case EVR_PN:
+    case EVR_SH:
+    case EVR_ST:
+    case EVR_TM:
+    case EVR_UC:
+    case EVR_UI:
+    case EVR_UR:
+    case EVR_UT: return values::text;
+    case EVR_AT:
+    case EVR_FD:
+    case EVR_FL:
+    case EVR_SL:
+    case EVR_SS:
+    case EVR_UL:
+    case EVR_US:
+    case EVR_up:
+    case EVR_xs:
+    case EVR_lt: return values::binary;
+    default: return values::none;
     }
 }
 
@@ -170,12 +197,32 @@ size_t binary_numbers(DcmElement &element, double *out, size_t most)
 {
     size_t bytes = element.getLength();
     switch (element.ident()) {
-    case EVR_FD: { Float64 *p = nullptr; return element.getFloat64Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
-    case EVR_FL: { Float32 *p = nullptr; return element.getFloat32Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
-    case EVR_SL: { Sint32 *p = nullptr; return element.getSint32Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
-    case EVR_SS: { Sint16 *p = nullptr; return element.getSint16Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
-    case EVR_UL: case EVR_up: { Uint32 *p = nullptr; return element.getUint32Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
-    case EVR_US: case EVR_xs: { Uint16 *p = nullptr; return element.getUint16Array(p).good() ? copy_numbers(p, bytes, out, most) : 0; }
+    case EVR_FD: {
+        Float64 *p = nullptr;
+        return element.getFloat64Array(p).good() ? copy_numbers(p, bytes, out, most) : 0;
+    }
+    case EVR_FL: {
+        Float32 *p = nullptr;
+        return element.getFloat32Array(p).good() ? copy_numbers(p, bytes, out, most) : 0;
+    }
+    case EVR_SL: {
+        Sint32 *p = nullptr;
+        return element.getSint32Array(p).good() ? copy_numbers(p, bytes, out, most) : 0;
+    }
+    case EVR_SS: {
+        Sint16 *p = nullptr;
+        return element.getSint16Array(p).good() ? copy_numbers(p, bytes, out, most) : 0;
+    }
+    case EVR_UL:
+    case EVR_up: {
+        Uint32 *p = nullptr;
+        return element.getUint32Array(p).good() ? copy_numbers(p, bytes, out, most) : 0;
+    }
+    case EVR_US:
+    case EVR_xs: {
+        Uint16 *p = nullptr;
+        return element.getUint16Array(p).good() ? copy_numbers(p, bytes, out, most) : 0;
+    }
     case EVR_AT: {
         Uint16 *p = nullptr;
         size_t n = element.getUint16Array(p).good() && p ? bytes / 4 : 0;
@@ -183,8 +230,7 @@ size_t binary_numbers(DcmElement &element, double *out, size_t most)
             out[i] = p[2 * i] * 65536.0 + p[2 * i + 1];
         return n;
     }
-    default:
-        return 0;
+    default: return 0;
     }
 }
 
@@ -255,7 +301,8 @@ void find_bad_numbers(bad_numbers &all, DcmItem &item, const std::string &inside
         auto *sequence = static_cast<DcmSequenceOfItems *>(object);
         size_t at = 0;
         for (DcmObject *inner = nullptr; (inner = sequence->nextInContainer(inner));)
-            find_bad_numbers(all, *static_cast<DcmItem *>(inner), inside + tag_text(*object) + " item " + std::to_string(++at) + ", ");
+            find_bad_numbers(all, *static_cast<DcmItem *>(inner),
+                             inside + tag_text(*object) + " item " + std::to_string(++at) + ", ");
     }
 }
 
@@ -303,7 +350,7 @@ bool parse(dicom_file &file, const uint8_t *data, size_t size, dicom_extent exte
         DcmInputBufferStream stream;
         stream.setBuffer(layout.data + layout.begin, static_cast<offile_off_t>(layout.end - layout.begin));
         stream.setEos();
-        E_TransferSyntax xfer = layout.is_implicit    ? EXS_LittleEndianImplicit
+        E_TransferSyntax xfer = layout.is_implicit     ? EXS_LittleEndianImplicit
                                 : layout.is_big_endian ? EXS_BigEndianExplicit
                                                        : EXS_LittleEndianExplicit;
         file.data_set.transferInit();
@@ -311,28 +358,32 @@ bool parse(dicom_file &file, const uint8_t *data, size_t size, dicom_extent exte
         file.data_set.transferEnd();
         if (condition.bad())
             return error_set(err, ERROR_FORMAT, "%s: byte %lld: the data set cannot be read: %.80s", name,
-                             static_cast<long long>(layout.begin) + static_cast<long long>(stream.tell()), condition.text());
+                             static_cast<long long>(layout.begin) + static_cast<long long>(stream.tell()),
+                             condition.text());
     }
     file.root = { &file.data_set, &file, nullptr };
     return true;
 }
 
-bool need_integer(const dicom_file *file, uint32_t tag, const char *what, int64_t low, int64_t high, uint32_t *out, error *err)
+bool need_integer(const dicom_file *file, uint32_t tag, const char *what, int64_t low, int64_t high, uint32_t *out,
+                  error *err)
 {
     int64_t value = 0;
     if (!dicom_integer(&file->root, tag, &value))
-        return error_set(err, ERROR_FORMAT, "%s: element (%04X,%04X), %s: expected a whole number, found none", file->name.c_str(), tag >> 16,
-                         tag & 0xFFFF, what);
+        return error_set(err, ERROR_FORMAT, "%s: element (%04X,%04X), %s: expected a whole number, found none",
+                         file->name.c_str(), tag >> 16, tag & 0xFFFF, what);
     if (value < low || value > high)
-        return error_set(err, value > high ? ERROR_LIMIT : ERROR_FORMAT, "%s: element (%04X,%04X), %s: found %lld, expected %lld to %lld",
-                         file->name.c_str(), tag >> 16, tag & 0xFFFF, what, static_cast<long long>(value), static_cast<long long>(low),
+        return error_set(err, value > high ? ERROR_LIMIT : ERROR_FORMAT,
+                         "%s: element (%04X,%04X), %s: found %lld, expected %lld to %lld", file->name.c_str(),
+                         tag >> 16, tag & 0xFFFF, what, static_cast<long long>(value), static_cast<long long>(low),
                          static_cast<long long>(high));
     *out = static_cast<uint32_t>(value);
     return true;
 }
 
 // What may be absent: then otherwise. What is there must be a whole number in its range.
-bool optional_integer(const dicom_file *file, uint32_t tag, const char *what, uint32_t high, uint32_t otherwise, uint32_t *out, error *err)
+bool optional_integer(const dicom_file *file, uint32_t tag, const char *what, uint32_t high, uint32_t otherwise,
+                      uint32_t *out, error *err)
 {
     double ignored;
     *out = otherwise;
@@ -345,7 +396,8 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
     const dicom_layout &layout = file->layout;
     *pixels = dicom_pixels{};
     if (layout.has_float_pixels)
-        return error_set(err, ERROR_UNSUPPORTED, "%s: its pixels are floating-point numbers; only whole ones are read", name);
+        return error_set(err, ERROR_UNSUPPORTED, "%s: its pixels are floating-point numbers; only whole ones are read",
+                         name);
     if (!layout.has_pixels)
         return error_set(err, ERROR_FORMAT, "%s: expected pixel data (7FE0,0010), found none", name);
     if (!need_integer(file, 0x00280010, "rows", 1, DICOM_MAX_SIDE, &pixels->rows, err) ||
@@ -353,7 +405,8 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
         !need_integer(file, 0x00280100, "bits allocated", 1, 64, &pixels->bits_allocated, err))
         return false;
     if (pixels->bits_allocated != 8 && pixels->bits_allocated != 16 && pixels->bits_allocated != 32)
-        return error_set(err, ERROR_UNSUPPORTED, "%s: element (0028,0100), bits allocated: found %u, expected 8, 16 or 32", name,
+        return error_set(err, ERROR_UNSUPPORTED,
+                         "%s: element (0028,0100), bits allocated: found %u, expected 8, 16 or 32", name,
                          pixels->bits_allocated);
     uint32_t is_signed = 0;
     if (!optional_integer(file, 0x00280002, "samples per pixel", 16, 1, &pixels->n_samples, err) ||
@@ -366,38 +419,46 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
     bool has_color = dicom_text(&file->root, 0x00280004, color, sizeof color);
     pixels->is_monochrome1 = std::strcmp(color, "MONOCHROME1") == 0;
     if (pixels->n_samples != 1 || (has_color && !pixels->is_monochrome1 && std::strcmp(color, "MONOCHROME2") != 0))
-        return error_set(err, ERROR_UNSUPPORTED, "%s: it is a colour picture (%s, %u samples a pixel); only grey ones are read", name,
-                         has_color ? color : "kind not said",
-                         pixels->n_samples);
-    if (pixels->bits_stored < 1 || pixels->bits_stored > pixels->bits_allocated || pixels->high_bit >= pixels->bits_allocated ||
-        pixels->high_bit + 1 < pixels->bits_stored)
-        return error_set(err, ERROR_FORMAT, "%s: elements (0028,0100) to (0028,0102): %u bits up to bit %u do not fit into %u", name,
+        return error_set(err, ERROR_UNSUPPORTED,
+                         "%s: it is a colour picture (%s, %u samples a pixel); only grey ones are read", name,
+                         has_color ? color : "kind not said", pixels->n_samples);
+    if (pixels->bits_stored < 1 || pixels->bits_stored > pixels->bits_allocated ||
+        pixels->high_bit >= pixels->bits_allocated || pixels->high_bit + 1 < pixels->bits_stored)
+        return error_set(err, ERROR_FORMAT,
+                         "%s: elements (0028,0100) to (0028,0102): %u bits up to bit %u do not fit into %u", name,
                          pixels->bits_stored, pixels->high_bit, pixels->bits_allocated);
     pixels->n_frames = 1;
-    if (dicom_has(&file->root, 0x00280008) && !need_integer(file, 0x00280008, "number of frames", 1, INT32_MAX, &pixels->n_frames, err))
+    if (dicom_has(&file->root, 0x00280008) &&
+        !need_integer(file, 0x00280008, "number of frames", 1, INT32_MAX, &pixels->n_frames, err))
         return false;
     if (layout.is_encapsulated) {
         const char *encoding;
         if (!dicom_can_decode(layout.transfer_syntax, &encoding))
-            return error_set(err, ERROR_UNSUPPORTED, "%s: its pixels are encoded as %s (%s), which is not read", name, encoding,
-                             layout.transfer_syntax);
+            return error_set(err, ERROR_UNSUPPORTED, "%s: its pixels are encoded as %s (%s), which is not read", name,
+                             encoding, layout.transfer_syntax);
         return true;
     }
     const char *encoding;
     if (dicom_can_decode(layout.transfer_syntax, &encoding) || DcmXfer(layout.transfer_syntax).isEncapsulated())
-        return error_set(err, ERROR_FORMAT, "%s: byte %zu: pixel data of %llu bytes where the transfer syntax (%s) needs fragments", name,
+        return error_set(err, ERROR_FORMAT,
+                         "%s: byte %zu: pixel data of %llu bytes where the transfer syntax (%s) needs fragments", name,
                          layout.pixels_at, static_cast<unsigned long long>(layout.pixels_size), encoding);
     uint64_t frame = uint64_t(pixels->rows) * pixels->columns * (pixels->bits_allocated / 8);
     uint64_t needed = frame * pixels->n_frames;
     if (layout.pixels_size < needed)
-        return error_set(err, ERROR_FORMAT, "%s: byte %zu: pixel data of %llu bytes; %u x %u x %u pixels of %u bits need %llu", name,
-                         layout.pixels_at, static_cast<unsigned long long>(layout.pixels_size), pixels->columns, pixels->rows, pixels->n_frames,
-                         pixels->bits_allocated, static_cast<unsigned long long>(needed));
+        return error_set(err, ERROR_FORMAT,
+                         "%s: byte %zu: pixel data of %llu bytes; %u x %u x %u pixels of %u bits need %llu", name,
+                         layout.pixels_at, static_cast<unsigned long long>(layout.pixels_size), pixels->columns,
+                         pixels->rows, pixels->n_frames, pixels->bits_allocated,
+                         static_cast<unsigned long long>(needed));
     return true;
 }
 
 // Bytes (OB) have no order; words (OW) do, also where two pixels of 8 bits share one.
-bool is_swapped(const dicom_layout &layout) { return layout.is_big_endian && std::strcmp(layout.pixels_vr, "OB") != 0; }
+bool is_swapped(const dicom_layout &layout)
+{
+    return layout.is_big_endian && std::strcmp(layout.pixels_vr, "OB") != 0;
+}
 
 bool read_frame(dicom_file &file, uint32_t frame, void *out, error *err)
 {
@@ -410,11 +471,14 @@ bool read_frame(dicom_file &file, uint32_t frame, void *out, error *err)
         return error_set(err, ERROR_RANGE, "%s: frame %u of %u", name, frame, pixels.n_frames);
     size_t n = size_t(pixels.rows) * pixels.columns, bytes = n * (pixels.bits_allocated / 8);
     if (layout.is_encapsulated) {
-        if (!file.has_frames && !dicom_find_frames(layout, name, pixels.n_frames, file.fragments, file.first_fragments, err))
+        if (!file.has_frames &&
+            !dicom_find_frames(layout, name, pixels.n_frames, file.fragments, file.first_fragments, err))
             return false;
         file.has_frames = true;
-        std::vector<dicom_fragment> own(file.fragments.begin() + static_cast<std::ptrdiff_t>(file.first_fragments[frame]),
-                                        file.fragments.begin() + static_cast<std::ptrdiff_t>(file.first_fragments[frame + 1]));
+        std::vector<dicom_fragment> own(file.fragments.begin() +
+                                            static_cast<std::ptrdiff_t>(file.first_fragments[frame]),
+                                        file.fragments.begin() +
+                                            static_cast<std::ptrdiff_t>(file.first_fragments[frame + 1]));
         return dicom_decode_frame(layout, pixels, name, own, out, &file.decoded, err);
     }
     uint64_t at = layout.pixels_at + uint64_t(frame) * bytes;
@@ -432,10 +496,14 @@ extern "C" {
 
 void dicom_prepare(void)
 {
-    guarded(0, [] { prepare(); return 0; });
+    guarded(0, [] {
+        prepare();
+        return 0;
+    });
 }
 
-struct dicom_file *dicom_file_parse(const uint8_t *data, size_t size, const char *name, enum dicom_extent extent, struct error *err)
+struct dicom_file *dicom_file_parse(const uint8_t *data, size_t size, const char *name, enum dicom_extent extent,
+                                    struct error *err)
 {
     std::unique_ptr<dicom_file> file;
     bool is_parsed = guarded_call(name, err, [&] {
@@ -447,11 +515,23 @@ struct dicom_file *dicom_file_parse(const uint8_t *data, size_t size, const char
     return is_parsed ? file.release() : nullptr;
 }
 
-void dicom_file_destroy(struct dicom_file *file) { guarded(0, [&] { delete file; return 0; }); }
+void dicom_file_destroy(struct dicom_file *file)
+{
+    guarded(0, [&] {
+        delete file;
+        return 0;
+    });
+}
 
-const struct dicom_item *dicom_root(const struct dicom_file *file) { return &file->root; }
+const struct dicom_item *dicom_root(const struct dicom_file *file)
+{
+    return &file->root;
+}
 
-const char *dicom_transfer_syntax(const struct dicom_file *file) { return file->layout.transfer_syntax; }
+const char *dicom_transfer_syntax(const struct dicom_file *file)
+{
+    return file->layout.transfer_syntax;
+}
 
 const char *dicom_uid_word(const char *uid)
 {
@@ -459,7 +539,10 @@ const char *dicom_uid_word(const char *uid)
     return word ? word : "";
 }
 
-bool dicom_is_cut(const struct dicom_file *file) { return file->layout.is_cut; }
+bool dicom_is_cut(const struct dicom_file *file)
+{
+    return file->layout.is_cut;
+}
 
 bool dicom_has(const struct dicom_item *item, uint32_t tag)
 {
@@ -510,7 +593,8 @@ bool dicom_integer(const struct dicom_item *item, uint32_t tag, int64_t *value)
     return true;
 }
 
-size_t dicom_bad_numbers(const struct dicom_item *item, bool is_deep, uint32_t but_not, struct dicom_bad_number *bad, size_t most)
+size_t dicom_bad_numbers(const struct dicom_item *item, bool is_deep, uint32_t but_not, struct dicom_bad_number *bad,
+                         size_t most)
 {
     return guarded(size_t(0), [&] {
         bad_numbers all{ is_deep, but_not, bad, most, 0 };
@@ -560,10 +644,14 @@ bool dicom_pixels_look(const struct dicom_file *file, struct dicom_pixels *pixel
 bool dicom_pixels_read(const struct dicom_file *file, uint32_t frame, void *out, struct error *err)
 {
     // the fragments found are kept for the next frame: a file is read by one thread at a time
-    return guarded_call(file->name.c_str(), err, [&] { return read_frame(*const_cast<dicom_file *>(file), frame, out, err); });
+    return guarded_call(file->name.c_str(), err,
+                        [&] { return read_frame(*const_cast<dicom_file *>(file), frame, out, err); });
 }
 
-struct dicom_decoded dicom_pixels_decoded(const struct dicom_file *file) { return file->decoded; }
+struct dicom_decoded dicom_pixels_decoded(const struct dicom_file *file)
+{
+    return file->decoded;
+}
 
 const uint8_t *dicom_pixels_bytes(const struct dicom_file *file, uint64_t *size, bool *swapped)
 {

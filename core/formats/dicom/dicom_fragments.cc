@@ -1,8 +1,8 @@
 // Which fragments of compressed pixels make a frame. PS3.5 A.4.
 #include "core/formats/dicom/dicom_decode.hh"
 
-bool dicom_find_frames(const dicom_layout &layout, const char *name, uint32_t n_frames, std::vector<dicom_fragment> &fragments,
-                       std::vector<size_t> &first_fragments, error *err)
+bool dicom_find_frames(const dicom_layout &layout, const char *name, uint32_t n_frames,
+                       std::vector<dicom_fragment> &fragments, std::vector<size_t> &first_fragments, error *err)
 {
     size_t n = 0;
     if (!dicom_walk_fragments(&layout, name, nullptr, 0, &n, err))
@@ -11,13 +11,14 @@ bool dicom_find_frames(const dicom_layout &layout, const char *name, uint32_t n_
     if (!dicom_walk_fragments(&layout, name, fragments.data(), n, &n, err))
         return false;
     if (n < 1 + size_t(n_frames))
-        return error_set(err, ERROR_FORMAT, "%s: %zu fragments of compressed pixels for %u frames", name, n > 0 ? n - 1 : 0,
-                         n_frames);
+        return error_set(err, ERROR_FORMAT, "%s: %zu fragments of compressed pixels for %u frames", name,
+                         n > 0 ? n - 1 : 0, n_frames);
     first_fragments.clear();
     if (n_frames == 1 || n - 1 == n_frames) {
         for (size_t i = 0; i < n_frames; i++)
             first_fragments.push_back(1 + i);
-    } else if (fragments[0].size == 0) { // no table of offsets: a fragment that begins a picture behind one that ends it
+    } else if (fragments[0].size ==
+               0) { // no table of offsets: a fragment that begins a picture behind one that ends it
         for (size_t i = 1; i < n; i++) {
             const dicom_fragment &own = fragments[i], &before = fragments[i - 1];
             if (dicom_begins_picture(layout.transfer_syntax, layout.data + own.at, own.size) &&
@@ -25,8 +26,11 @@ bool dicom_find_frames(const dicom_layout &layout, const char *name, uint32_t n_
                 first_fragments.push_back(i);
         }
         if (first_fragments.size() != n_frames || first_fragments[0] != 1)
-            return error_set(err, ERROR_FORMAT, "%s: %zu fragments for %u frames, and no table of offsets says which are whose; %zu of them begin "
-                             "a picture", name, n - 1, n_frames, first_fragments.size());
+            return error_set(
+                err, ERROR_FORMAT,
+                "%s: %zu fragments for %u frames, and no table of offsets says which are whose; %zu of them begin "
+                "a picture",
+                name, n - 1, n_frames, first_fragments.size());
     } else { // by the table of offsets: positions from the first fragment's own tag
         const dicom_fragment table = fragments[0];
         size_t base = fragments[1].at - 8, fragment = 1;
@@ -39,7 +43,8 @@ bool dicom_find_frames(const dicom_layout &layout, const char *name, uint32_t n_
                 first_fragments.push_back(fragment);
         }
         if (first_fragments.size() != n_frames)
-            return error_set(err, ERROR_FORMAT, "%s: %zu fragments for %u frames, and the table of offsets does not say which are whose",
+            return error_set(err, ERROR_FORMAT,
+                             "%s: %zu fragments for %u frames, and the table of offsets does not say which are whose",
                              name, n - 1, n_frames);
     }
     first_fragments.push_back(n);

@@ -65,7 +65,8 @@ static const struct {
 static const char *known_class(const char *sop_class, enum dicom_kind *kind)
 {
     for (size_t i = 0; i < sizeof classes / sizeof classes[0]; i++)
-        if (strncmp(sop_class, CLASSES, sizeof CLASSES - 1) == 0 && strcmp(sop_class + sizeof CLASSES - 1, classes[i].uid) == 0) {
+        if (strncmp(sop_class, CLASSES, sizeof CLASSES - 1) == 0 &&
+            strcmp(sop_class + sizeof CLASSES - 1, classes[i].uid) == 0) {
             *kind = classes[i].kind;
             return classes[i].name;
         }
@@ -94,9 +95,10 @@ static int64_t integer_or_none(const struct dicom_item *item, uint32_t tag)
     return dicom_integer(item, tag, &value) ? value : INT64_MIN;
 }
 
-/* n finite numbers, each at most high; false with the reason: not there ("it does not say ..."), or what is wrong with them. */
-static bool read_all(const struct dicom_item *root, uint32_t tag, const char *name, const char *not_said, double high, double *values, size_t n,
-                     char *reason, size_t size)
+/* n finite numbers, each at most high; false with the reason: not there ("it does not say ..."), or what is wrong with
+ * them. */
+static bool read_all(const struct dicom_item *root, uint32_t tag, const char *name, const char *not_said, double high,
+                     double *values, size_t n, char *reason, size_t size)
 {
     char found[40];
     if (!dicom_text(root, tag, found, sizeof found))
@@ -104,21 +106,24 @@ static bool read_all(const struct dicom_item *root, uint32_t tag, const char *na
     bool is_good = dicom_numbers(root, tag, values, n) == n;
     for (size_t i = 0; i < n; i++)
         is_good = is_good && fabs(values[i]) <= high;
-    return is_good || snprintf(reason, size, "%s (%04X,%04X): expected %zu number%s up to %g, found \"%s\"", name, tag >> 16, tag & 0xFFFF, n,
-                               n == 1 ? "" : "s", high, found) < 0;
+    return is_good || snprintf(reason, size, "%s (%04X,%04X): expected %zu number%s up to %g, found \"%s\"", name,
+                               tag >> 16, tag & 0xFFFF, n, n == 1 ? "" : "s", high, found) < 0;
 }
 
-/* Position, orientation and spacing of a picture of its own; false with the reason when one is not there or cannot be. */
+/* Position, orientation and spacing of a picture of its own; false with the reason when one is not there or cannot be.
+ */
 static bool read_place(const struct dicom_item *root, struct dicom_image *image, char *reason, size_t size)
 {
     double cosines[6];
-    if (!read_all(root, TAG_POSITION, "position", "where it lies in the patient", 1e6, image->position_mm, 3, reason, size) ||
+    if (!read_all(root, TAG_POSITION, "position", "where it lies in the patient", 1e6, image->position_mm, 3, reason,
+                  size) ||
         !read_all(root, TAG_ORIENTATION, "orientation", "how it lies in the patient", 2, cosines, 6, reason, size) ||
-        !read_all(root, TAG_SPACING, "pixel spacing", "how large its pixels are", 1e4, image->spacing_mm, 2, reason, size))
+        !read_all(root, TAG_SPACING, "pixel spacing", "how large its pixels are", 1e4, image->spacing_mm, 2, reason,
+                  size))
         return false;
     if (!(image->spacing_mm[0] > 0 && image->spacing_mm[1] > 0))
-        return snprintf(reason, size, "pixel spacing (0028,0030): expected numbers above 0, found %g\\%g", image->spacing_mm[0],
-                        image->spacing_mm[1]) < 0;
+        return snprintf(reason, size, "pixel spacing (0028,0030): expected numbers above 0, found %g\\%g",
+                        image->spacing_mm[0], image->spacing_mm[1]) < 0;
     memcpy(image->row, cosines, sizeof image->row);
     memcpy(image->column, cosines + 3, sizeof image->column);
     image->has_place = true;
@@ -139,8 +144,8 @@ static bool read_scale(const struct dicom_item *root, struct dicom_image *image,
 /* Optional elements: ignored when malformed. */
 static void note_bad_number(const struct dicom_item *root, struct dicom_image *image)
 {
-    static const uint32_t used[] = { TAG_THICKNESS, TAG_INSTANCE, TAG_ACQUISITION, TAG_ECHO_NUMBER, TAG_TEMPORAL, TAG_ECHO_TIME,
-                                     TAG_TRIGGER_TIME, TAG_WINDOW_CENTER, TAG_WINDOW_WIDTH };
+    static const uint32_t used[] = { TAG_THICKNESS, TAG_INSTANCE,     TAG_ACQUISITION,   TAG_ECHO_NUMBER, TAG_TEMPORAL,
+                                     TAG_ECHO_TIME, TAG_TRIGGER_TIME, TAG_WINDOW_CENTER, TAG_WINDOW_WIDTH };
     enum { MOST = 16 };
     struct dicom_bad_number bad[MOST];
     size_t n = dicom_bad_numbers(root, false, 0, bad, MOST);
@@ -190,7 +195,8 @@ static void read_image(const struct dicom_file *file, uint64_t n_bytes, struct d
     }
     read_image_facts(root, &image);
     if (dicom_n_items(root, TAG_MODALITY_LUT) > 0) {
-        snprintf(object->reason, sizeof object->reason, "it gives its values by a table (Modality LUT Sequence (0028,3000)), which is not applied");
+        snprintf(object->reason, sizeof object->reason,
+                 "it gives its values by a table (Modality LUT Sequence (0028,3000)), which is not applied");
         return;
     }
     if (strstr(image.image_type, "LOCALIZER")) {
@@ -203,8 +209,8 @@ static void read_image(const struct dicom_file *file, uint64_t n_bytes, struct d
     }
     bool has_frames = dicom_has(root, TAG_FRAME_GROUPS);
     if (!has_frames && image.pixels.n_frames > 1) {
-        snprintf(object->reason, sizeof object->reason, "it has %u frames and does not say where they lie in the patient (5200,9230)",
-                 image.pixels.n_frames);
+        snprintf(object->reason, sizeof object->reason,
+                 "it has %u frames and does not say where they lie in the patient (5200,9230)", image.pixels.n_frames);
         return;
     }
     if (!has_frames && !read_place(root, &image, object->reason, sizeof object->reason))
@@ -213,9 +219,11 @@ static void read_image(const struct dicom_file *file, uint64_t n_bytes, struct d
         return;
     note_bad_number(root, &image);
     image.has_stored = dicom_pixels_stored(file, &image.stored);
-    uint64_t needed = (uint64_t)image.pixels.rows * image.pixels.columns * (image.pixels.bits_allocated / 8) * image.pixels.n_frames;
+    uint64_t needed =
+        (uint64_t)image.pixels.rows * image.pixels.columns * (image.pixels.bits_allocated / 8) * image.pixels.n_frames;
     if (image.has_stored && (image.stored.at > n_bytes || needed > n_bytes - image.stored.at)) {
-        snprintf(object->reason, sizeof object->reason, "cut short: its pixels need %llu bytes from byte %llu on, the file has %llu",
+        snprintf(object->reason, sizeof object->reason,
+                 "cut short: its pixels need %llu bytes from byte %llu on, the file has %llu",
                  (unsigned long long)needed, (unsigned long long)image.stored.at, (unsigned long long)n_bytes);
         return;
     }
@@ -233,7 +241,8 @@ static const struct dicom_item *first_item(const struct dicom_item *item, uint32
 static void read_references(const struct dicom_item *root, struct dicom_object *object)
 {
     const struct dicom_item *frame = first_item(root, DICOM_TAG(0x3006, 0x0010));
-    const struct dicom_item *series = first_item(first_item(frame, DICOM_TAG(0x3006, 0x0012)), DICOM_TAG(0x3006, 0x0014));
+    const struct dicom_item *series =
+        first_item(first_item(frame, DICOM_TAG(0x3006, 0x0012)), DICOM_TAG(0x3006, 0x0014));
     if (object->kind == DICOM_KIND_STRUCT && frame && !object->frame_of_reference[0])
         (void)dicom_text(frame, TAG_FRAME_OF_REFERENCE, object->frame_of_reference, DICOM_UID_SIZE);
     if (series)
@@ -272,7 +281,9 @@ static enum dicom_kind kind_of(const struct dicom_object *object, const char **n
     static const struct {
         const char *modality;
         enum dicom_kind kind;
-    } modalities[] = { { "RTSTRUCT", DICOM_KIND_STRUCT }, { "RTDOSE", DICOM_KIND_DOSE }, { "RTPLAN", DICOM_KIND_PLAN } };
+    } modalities[] = { { "RTSTRUCT", DICOM_KIND_STRUCT },
+                       { "RTDOSE", DICOM_KIND_DOSE },
+                       { "RTPLAN", DICOM_KIND_PLAN } };
     enum dicom_kind kind = DICOM_KIND_IMAGE;
     *name = known_class(object->sop_class, &kind);
     for (size_t i = 0; !*name && i < sizeof modalities / sizeof modalities[0]; i++)
@@ -296,8 +307,9 @@ static enum dicom_head_result say_foreign(const uint8_t *data, size_t n, const c
     char found[16] = "";
     for (size_t i = 0; i < n && i < 4; i++)
         (void)snprintf(found + 3 * i, sizeof found - 3 * i, " %02x", data[i]);
-    (void)error_set(err, ERROR_FORMAT, "%s: byte 0: expected \"DICM\" at byte 128, or an element of group 0002 or 0008 here; found%s", path,
-                    n > 0 ? found : " an empty file");
+    (void)error_set(err, ERROR_FORMAT,
+                    "%s: byte 0: expected \"DICM\" at byte 128, or an element of group 0002 or 0008 here; found%s",
+                    path, n > 0 ? found : " an empty file");
     return DICOM_HEAD_FOREIGN;
 }
 
@@ -305,7 +317,8 @@ static enum dicom_head_result describe(const struct dicom_file *file, uint64_t n
 {
     const char *name;
     object->kind = kind_of(object, &name);
-    if (strcmp(object->sop_class, "1.2.840.10008.1.3.10") == 0 || dicom_has(dicom_root(file), DICOM_TAG(0x0004, 0x1220)))
+    if (strcmp(object->sop_class, "1.2.840.10008.1.3.10") == 0 ||
+        dicom_has(dicom_root(file), DICOM_TAG(0x0004, 0x1220)))
         return DICOM_HEAD_DIRECTORY;
     if (object->kind == DICOM_KIND_IMAGE)
         read_image(file, n_bytes, object);
@@ -316,8 +329,8 @@ static enum dicom_head_result describe(const struct dicom_file *file, uint64_t n
     return DICOM_HEAD_READ;
 }
 
-enum dicom_head_result dicom_head_read(const struct folder *folder, const char *path, struct dicom_object *object, struct bytes *scratch,
-                                       struct error *err)
+enum dicom_head_result dicom_head_read(const struct folder *folder, const char *path, struct dicom_object *object,
+                                       struct bytes *scratch, struct error *err)
 {
     /* Most heads end within the first bytes; private ones of some vendors, and tables of frames, are longer. */
     static const uint64_t steps[] = { 1 << 14, 1 << 18, 1 << 22, 1 << 26, (uint64_t)DICOM_MAX_FILE_MIB << 20 };

@@ -8,8 +8,8 @@ enum dicom_head_result {
     DICOM_HEAD_BROKEN,    /* DICOM that cannot be read: err says why */
     DICOM_HEAD_READ
 };
-/* Fills object but for its path; what it owns is freed by dicom_object_finish. scratch: memory that is kept between calls, freed by the
- * caller. */
-enum dicom_head_result dicom_head_read(const struct folder *folder, const char *path, struct dicom_object *object, struct bytes *scratch,
-                                       struct error *err);
+/* Fills object but for its path; what it owns is freed by dicom_object_finish. scratch: memory that is kept between
+ * calls, freed by the caller. */
+enum dicom_head_result dicom_head_read(const struct folder *folder, const char *path, struct dicom_object *object,
+                                       struct bytes *scratch, struct error *err);
 void dicom_object_finish(struct dicom_object *object);

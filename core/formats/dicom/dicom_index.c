@@ -38,7 +38,8 @@ static void look_at(struct scan *scan, struct looked *file, struct bytes *scratc
         dicom_object_finish(&file->object);
     if (file->result == DICOM_HEAD_BROKEN || is_misnamed) {
         size_t n = strlen(file->path); /* the line of the report names the file itself */
-        file->why = mem_copy_text(strncmp(err.text, file->path, n) == 0 && strncmp(err.text + n, ": ", 2) == 0 ? err.text + n + 2 : err.text);
+        file->why = mem_copy_text(
+            strncmp(err.text, file->path, n) == 0 && strncmp(err.text + n, ": ", 2) == 0 ? err.text + n + 2 : err.text);
     }
     if (file->result == DICOM_HEAD_READ && atomic_fetch_add(&scan->n_kept, 1) >= DICOM_MAX_OBJECTS) {
         dicom_object_finish(&file->object);
@@ -75,8 +76,8 @@ static int compare_looked(const void *a, const void *b)
 }
 
 /* The files behind the names given: a file itself, of a folder what is in it. */
-static bool list_files(const struct folder *folder, char *const *names, size_t n_names, struct scan *scan, struct report *report,
-                       struct error *err)
+static bool list_files(const struct folder *folder, char *const *names, size_t n_names, struct scan *scan,
+                       struct report *report, struct error *err)
 {
     static char whole[] = "";
     char *all[] = { whole };
@@ -93,8 +94,10 @@ static bool list_files(const struct folder *folder, char *const *names, size_t n
             return false;
         }
         if (tree.is_cut)
-            report_add(report, REPORT_WARNING, "dicom.too-many", names[i], "Of this folder the first %d files down to %d folders deep were "
-                       "looked at; there are more.", FOLDER_MAX_FILES, FOLDER_MAX_DEPTH);
+            report_add(report, REPORT_WARNING, "dicom.too-many", names[i],
+                       "Of this folder the first %d files down to %d folders deep were "
+                       "looked at; there are more.",
+                       FOLDER_MAX_FILES, FOLDER_MAX_DEPTH);
         size_t n = is_file ? 1 : tree.n_files;
         if (scan->n_files + n > room) {
             room = 2 * (scan->n_files + n);
@@ -148,7 +151,8 @@ static bool collect(struct scan *scan, struct dicom_index *index, struct report 
         } else if (file->result == DICOM_HEAD_FOREIGN) {
             index->n_foreign++;
             if (file->why && n_misnamed++ < MOST_LINES)
-                report_add(report, REPORT_WARNING, "dicom.unreadable", file->path, "Named like DICOM, and is none: %s", file->why);
+                report_add(report, REPORT_WARNING, "dicom.unreadable", file->path, "Named like DICOM, and is none: %s",
+                           file->why);
         } else if (file->result == DICOM_HEAD_BROKEN && !file->why) {
             n_too_many++;
         } else if (file->result == DICOM_HEAD_BROKEN && n_broken++ < MOST_LINES) {
@@ -156,10 +160,11 @@ static bool collect(struct scan *scan, struct dicom_index *index, struct report 
         }
     }
     if (n_broken > MOST_LINES)
-        report_add(report, REPORT_ERROR, "dicom.unreadable", "", "%zu more files cannot be read.", n_broken - MOST_LINES);
+        report_add(report, REPORT_ERROR, "dicom.unreadable", "", "%zu more files cannot be read.",
+                   n_broken - MOST_LINES);
     if (n_too_many > 0)
-        report_add(report, REPORT_WARNING, "dicom.too-many", "", "%zu DICOM objects beyond the first %d were left out.", n_too_many,
-                   DICOM_MAX_OBJECTS);
+        report_add(report, REPORT_WARNING, "dicom.too-many", "", "%zu DICOM objects beyond the first %d were left out.",
+                   n_too_many, DICOM_MAX_OBJECTS);
     return true;
 }
 
@@ -175,8 +180,9 @@ static bool is_copy(const struct dicom_object *a, const struct dicom_object *b)
 {
     if (!a->sop_instance[0] || strcmp(a->sop_instance, b->sop_instance) != 0 || a->kind != b->kind)
         return false;
-    return a->kind != DICOM_KIND_IMAGE || (a->image->instance == b->image->instance &&
-                                           memcmp(a->image->position_mm, b->image->position_mm, sizeof a->image->position_mm) == 0);
+    return a->kind != DICOM_KIND_IMAGE ||
+           (a->image->instance == b->image->instance &&
+            memcmp(a->image->position_mm, b->image->position_mm, sizeof a->image->position_mm) == 0);
 }
 
 static bool drop_copies(struct dicom_index *index, struct report *report, struct error *err)
@@ -206,8 +212,9 @@ static bool drop_copies(struct dicom_index *index, struct report *report, struct
         }
     }
     if (n_copies > 0)
-        report_add(report, REPORT_WARNING, "dicom.duplicate", example->path, "%zu object%s more than once in the folder; this file: %s.",
-                   n_copies, n_copies == 1 ? " is there" : "s are there", example->reason);
+        report_add(report, REPORT_WARNING, "dicom.duplicate", example->path,
+                   "%zu object%s more than once in the folder; this file: %s.", n_copies,
+                   n_copies == 1 ? " is there" : "s are there", example->reason);
     free(order);
     return true;
 }
@@ -244,10 +251,12 @@ static void report_unused(const struct dicom_index *index, struct report *report
         if (count[r] == 1)
             report_add(report, severity, code, first[r]->path, "Not used: %s.", reason);
         else
-            report_add(report, severity, code, first[r]->path, "%zu objects are not used; this one: %s.", count[r], reason);
+            report_add(report, severity, code, first[r]->path, "%zu objects are not used; this one: %s.", count[r],
+                       reason);
     }
     if (n_more > 0)
-        report_add(report, REPORT_WARNING, "dicom.not-used", "", "%zu more objects are not used, for other reasons.", n_more);
+        report_add(report, REPORT_WARNING, "dicom.not-used", "", "%zu more objects are not used, for other reasons.",
+                   n_more);
 }
 
 /* One line for each element that is no number in pictures that are used all the same. */
@@ -273,8 +282,10 @@ static void report_bad_numbers(const struct dicom_index *index, struct report *r
     }
     for (size_t t = 0; t < n_tags; t++) {
         uint32_t tag = first[t]->image->bad_tag;
-        report_add(report, REPORT_WARNING, "dicom.bad-number", first[t]->path, "Element (%04X,%04X): expected numbers, found \"%s\"; it is not "
-                   "used (in %zu pictures).", tag >> 16, tag & 0xFFFF, first[t]->image->bad_found, count[t]);
+        report_add(report, REPORT_WARNING, "dicom.bad-number", first[t]->path,
+                   "Element (%04X,%04X): expected numbers, found \"%s\"; it is not "
+                   "used (in %zu pictures).",
+                   tag >> 16, tag & 0xFFFF, first[t]->image->bad_found, count[t]);
     }
 }
 

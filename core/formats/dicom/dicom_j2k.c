@@ -4,10 +4,20 @@
 
 #include <openjpeg-2.5/openjpeg.h>
 
-/* ---- the markers ------------------------------------------------------------------------------------------------------------------------ */
+/* ---- the markers ------------------------------------------------------------------------------------------------ */
 
-enum marker { SOC = 0xFF4F, SOT = 0xFF90, SOD = 0xFF93, EOC = 0xFFD9, SIZ = 0xFF51, COD = 0xFF52, COC = 0xFF53, RGN = 0xFF5E, POC = 0xFF5F,
-              CAP = 0xFF50 };
+enum marker {
+    SOC = 0xFF4F,
+    SOT = 0xFF90,
+    SOD = 0xFF93,
+    EOC = 0xFFD9,
+    SIZ = 0xFF51,
+    COD = 0xFF52,
+    COC = 0xFF53,
+    RGN = 0xFF5E,
+    POC = 0xFF5F,
+    CAP = 0xFF50
+};
 
 struct scan {
     const uint8_t *data;
@@ -20,8 +30,14 @@ struct scan {
     struct error *err;
 };
 
-static uint32_t big16(const uint8_t *p) { return (uint32_t)p[0] << 8 | p[1]; }
-static uint32_t big32(const uint8_t *p) { return big16(p) << 16 | big16(p + 2); }
+static uint32_t big16(const uint8_t *p)
+{
+    return (uint32_t)p[0] << 8 | p[1];
+}
+static uint32_t big32(const uint8_t *p)
+{
+    return big16(p) << 16 | big16(p + 2);
+}
 
 static bool refuse(const struct scan *scan, enum error_code code, const char *what)
 {
@@ -33,23 +49,28 @@ static bool read_size(struct scan *scan, const uint8_t *p, size_t n)
 {
     if (n < 41)
         return refuse(scan, ERROR_FORMAT, "has a size segment (SIZ) that is too short");
-    uint32_t x1 = big32(p + 4), y1 = big32(p + 8), x0 = big32(p + 12), y0 = big32(p + 16), tile_x = big32(p + 20), tile_y = big32(p + 24);
+    uint32_t x1 = big32(p + 4), y1 = big32(p + 8), x0 = big32(p + 12), y0 = big32(p + 16), tile_x = big32(p + 20),
+             tile_y = big32(p + 24);
     uint32_t tile_x0 = big32(p + 28), tile_y0 = big32(p + 32), n_components = big16(p + 36);
     uint32_t columns = x1 > x0 ? x1 - x0 : 0, rows = y1 > y0 ? y1 - y0 : 0;
     scan->precision = (p[38] & 0x7Fu) + 1;
     scan->is_signed = p[38] >> 7;
-    if (columns != scan->pixels->columns || rows != scan->pixels->rows || n_components != 1 || scan->precision > scan->pixels->bits_allocated)
-        return error_set(scan->err, ERROR_FORMAT, "%s: a JPEG 2000 frame of %u x %u, %u components of %u bits; expected %u x %u, 1 of at most %u",
-                         scan->name, columns, rows, n_components, scan->precision, scan->pixels->columns, scan->pixels->rows,
-                         scan->pixels->bits_allocated);
+    if (columns != scan->pixels->columns || rows != scan->pixels->rows || n_components != 1 ||
+        scan->precision > scan->pixels->bits_allocated)
+        return error_set(
+            scan->err, ERROR_FORMAT,
+            "%s: a JPEG 2000 frame of %u x %u, %u components of %u bits; expected %u x %u, 1 of at most %u", scan->name,
+            columns, rows, n_components, scan->precision, scan->pixels->columns, scan->pixels->rows,
+            scan->pixels->bits_allocated);
     if (p[39] != 1 || p[40] != 1)
         return refuse(scan, ERROR_UNSUPPORTED, "has fewer values than pixels (subsampling), which is not read");
-    if (tile_x == 0 || tile_y == 0 || tile_x0 > x0 || tile_y0 > y0 || (uint64_t)tile_x0 + tile_x <= x0 || (uint64_t)tile_y0 + tile_y <= y0)
+    if (tile_x == 0 || tile_y == 0 || tile_x0 > x0 || tile_y0 > y0 || (uint64_t)tile_x0 + tile_x <= x0 ||
+        (uint64_t)tile_y0 + tile_y <= y0)
         return refuse(scan, ERROR_FORMAT, "has tiles that do not cover it");
     uint64_t n_x = ((uint64_t)x1 - tile_x0 + tile_x - 1) / tile_x, n_y = ((uint64_t)y1 - tile_y0 + tile_y - 1) / tile_y;
     if (n_x > J2K_MAX_TILES || n_y > J2K_MAX_TILES || n_x * n_y > J2K_MAX_TILES)
-        return error_set(scan->err, ERROR_LIMIT, "%s: a JPEG 2000 frame of %llu x %llu tiles; at most %d are read", scan->name,
-                         (unsigned long long)n_x, (unsigned long long)n_y, J2K_MAX_TILES);
+        return error_set(scan->err, ERROR_LIMIT, "%s: a JPEG 2000 frame of %llu x %llu tiles; at most %d are read",
+                         scan->name, (unsigned long long)n_x, (unsigned long long)n_y, J2K_MAX_TILES);
     scan->n_tiles = (uint32_t)(n_x * n_y);
     scan->tile_width = tile_x < columns ? tile_x : columns;
     scan->tile_height = tile_y < rows ? tile_y : rows;
@@ -64,15 +85,18 @@ static bool read_coding(struct scan *scan, const uint8_t *p, size_t n)
         return refuse(scan, ERROR_FORMAT, "has a coding style segment (COD) that is too short or out of place");
     bool has_precincts = p[2] & 1;
     uint32_t n_layers = big16(p + 4), n_levels = p[7], block_x = (p[8] & 15u) + 2, block_y = (p[9] & 15u) + 2;
-    if (n_levels > 32 || block_x > 10 || block_y > 10 || block_x + block_y > 12 || (has_precincts && n < 12 + 1 + (size_t)n_levels))
+    if (n_levels > 32 || block_x > 10 || block_y > 10 || block_x + block_y > 12 ||
+        (has_precincts && n < 12 + 1 + (size_t)n_levels))
         return refuse(scan, ERROR_FORMAT, "has a coding style (COD) that the standard does not allow");
     if (p[10] & 0xC0)
-        return refuse(scan, ERROR_UNSUPPORTED, "has code-blocks of high throughput (part 15 of the standard), which are not read");
+        return refuse(scan, ERROR_UNSUPPORTED,
+                      "has code-blocks of high throughput (part 15 of the standard), which are not read");
     scan->is_lossy |= p[11] == 0;
     uint64_t n_blocks = 0, n_precincts = 0;
     for (uint32_t level = 0; level <= n_levels; level++) { /* p[12] is of the smallest resolution */
         uint32_t down = n_levels - level < 31 ? n_levels - level : 31;
-        uint64_t width = (scan->tile_width >> down) + 2, height = (scan->tile_height >> down) + 2; /* a little more: edges of tiles */
+        uint64_t width = (scan->tile_width >> down) + 2,
+                 height = (scan->tile_height >> down) + 2; /* a little more: edges of tiles */
         uint32_t x = has_precincts ? p[12 + level] & 15u : 15, y = has_precincts ? p[12 + level] >> 4 : 15;
         uint32_t half = level > 0; /* precincts of higher resolutions are cut over their subbands */
         uint32_t cut_x = x > half && x - half < block_x ? x - half : x > half ? block_x : 0;
@@ -83,9 +107,12 @@ static bool read_coding(struct scan *scan, const uint8_t *p, size_t n)
     n_precincts *= scan->n_tiles;
     n_blocks *= scan->n_tiles;
     if (n_blocks > J2K_MAX_BLOCKS || n_precincts > J2K_MAX_BLOCKS || n_precincts * n_layers > J2K_MAX_PACKETS)
-        return error_set(scan->err, ERROR_LIMIT, "%s: a JPEG 2000 frame of about %llu code-blocks, %llu precincts and %u layers; at most %d, %d, and "
-                         "%d packets are read", scan->name, (unsigned long long)n_blocks, (unsigned long long)n_precincts, n_layers,
-                         J2K_MAX_BLOCKS, J2K_MAX_BLOCKS, J2K_MAX_PACKETS);
+        return error_set(
+            scan->err, ERROR_LIMIT,
+            "%s: a JPEG 2000 frame of about %llu code-blocks, %llu precincts and %u layers; at most %d, %d, and "
+            "%d packets are read",
+            scan->name, (unsigned long long)n_blocks, (unsigned long long)n_precincts, n_layers, J2K_MAX_BLOCKS,
+            J2K_MAX_BLOCKS, J2K_MAX_PACKETS);
     scan->has_coding = true;
     return true;
 }
@@ -98,7 +125,9 @@ static bool read_segment(struct scan *scan, uint32_t marker, const uint8_t *p, s
     case COC: return refuse(scan, ERROR_UNSUPPORTED, "codes components differently (COC), which is not read");
     case POC: return refuse(scan, ERROR_UNSUPPORTED, "changes its order of progression (POC), which is not read");
     case RGN: return refuse(scan, ERROR_UNSUPPORTED, "has a region of interest (RGN), which is not read");
-    case CAP: return refuse(scan, ERROR_UNSUPPORTED, "uses a part of the standard (CAP: high throughput, or another) that is not read");
+    case CAP:
+        return refuse(scan, ERROR_UNSUPPORTED,
+                      "uses a part of the standard (CAP: high throughput, or another) that is not read");
     default: return true;
     }
 }
@@ -109,7 +138,8 @@ static uint32_t read_segments(struct scan *scan, size_t *at)
     while (*at + 4 <= scan->size) {
         uint32_t marker = big16(scan->data + *at);
         if (marker < 0xFF00) {
-            error_set(scan->err, ERROR_FORMAT, "%s: byte %zu of a JPEG 2000 frame: expected a marker, found %04X", scan->name, *at, marker);
+            error_set(scan->err, ERROR_FORMAT, "%s: byte %zu of a JPEG 2000 frame: expected a marker, found %04X",
+                      scan->name, *at, marker);
             return 0;
         }
         *at += 2;
@@ -117,7 +147,8 @@ static uint32_t read_segments(struct scan *scan, size_t *at)
             return marker;
         size_t n = big16(scan->data + *at);
         if (n < 2 || n > scan->size - *at) {
-            error_set(scan->err, ERROR_FORMAT, "%s: byte %zu of a JPEG 2000 frame: a segment of %zu bytes, the frame ends after %zu", scan->name,
+            error_set(scan->err, ERROR_FORMAT,
+                      "%s: byte %zu of a JPEG 2000 frame: a segment of %zu bytes, the frame ends after %zu", scan->name,
                       *at, n, scan->size - *at);
             return 0;
         }
@@ -157,7 +188,9 @@ static bool scan_stream(struct scan *scan)
         marker = big16(scan->data + at);
         at += 2;
     }
-    return marker == EOC ? true : marker == 0 ? false : refuse(scan, ERROR_FORMAT, "has something other than a tile between its tiles");
+    return marker == EOC ? true
+           : marker == 0 ? false
+                         : refuse(scan, ERROR_FORMAT, "has something other than a tile between its tiles");
 }
 
 /* The codestream within boxes, as some writers leave it. T.800 I.4. */
@@ -180,7 +213,7 @@ static void unwrap(const uint8_t **data, size_t *size)
     }
 }
 
-/* ---- the library -------------------------------------------------------------------------------------------------------------------------- */
+/* ---- the library ------------------------------------------------------------------------------------------------ */
 
 struct source {
     const uint8_t *data;
@@ -223,7 +256,8 @@ static void keep_quiet(const char *message, void *context)
     (void)context;
 }
 
-static void put_values(const OPJ_INT32 *from, size_t n, uint32_t precision, const struct dicom_pixels *pixels, void *out)
+static void put_values(const OPJ_INT32 *from, size_t n, uint32_t precision, const struct dicom_pixels *pixels,
+                       void *out)
 {
     uint32_t up = 32 - precision;
     for (size_t i = 0; i < n; i++) {
@@ -238,18 +272,20 @@ static void put_values(const OPJ_INT32 *from, size_t n, uint32_t precision, cons
     }
 }
 
-static bool run_decoder(const struct scan *scan, opj_codec_t *codec, opj_stream_t *stream, opj_image_t **image, void *out)
+static bool run_decoder(const struct scan *scan, opj_codec_t *codec, opj_stream_t *stream, opj_image_t **image,
+                        void *out)
 {
     const struct dicom_pixels *pixels = scan->pixels;
     opj_dparameters_t parameters;
     opj_set_default_decoder_parameters(&parameters);
     if (!opj_setup_decoder(codec, &parameters) || !opj_decoder_set_strict_mode(codec, OPJ_TRUE))
         return error_set(scan->err, ERROR_MEMORY, "%s: no memory for a JPEG 2000 decoder", scan->name);
-    if (!opj_read_header(stream, codec, image) || !opj_decode(codec, stream, *image) || !opj_end_decompress(codec, stream))
+    if (!opj_read_header(stream, codec, image) || !opj_decode(codec, stream, *image) ||
+        !opj_end_decompress(codec, stream))
         return refuse(scan, ERROR_FORMAT, "cannot be decoded: it is damaged or cut short");
     const opj_image_comp_t *component = (*image)->comps;
-    if ((*image)->numcomps != 1 || component->w != pixels->columns || component->h != pixels->rows || component->prec != scan->precision ||
-        !component->data)
+    if ((*image)->numcomps != 1 || component->w != pixels->columns || component->h != pixels->rows ||
+        component->prec != scan->precision || !component->data)
         return refuse(scan, ERROR_FORMAT, "was decoded to another size than its header says");
     put_values(component->data, (size_t)pixels->rows * pixels->columns, scan->precision, pixels, out);
     return true;
@@ -281,7 +317,8 @@ bool dicom_j2k_decode(const uint8_t *data, size_t size, const struct dicom_pixel
         error_set(err, ERROR_MEMORY, "%s: no memory for a JPEG 2000 decoder", name);
     }
     if (is_decoded)
-        *decoded = (struct dicom_decoded){ .is_lossy = scan.is_lossy, .is_signed = scan.is_signed, .n_bits = scan.precision };
+        *decoded =
+            (struct dicom_decoded){ .is_lossy = scan.is_lossy, .is_signed = scan.is_signed, .n_bits = scan.precision };
     opj_image_destroy(image);
     opj_stream_destroy(stream);
     opj_destroy_codec(codec);

@@ -9,8 +9,8 @@ void dicom_numbers_report(const struct dicom_file *file, uint32_t but_not, const
     struct dicom_bad_number bad[MOST];
     size_t n = dicom_bad_numbers(dicom_root(file), true, but_not, bad, MOST);
     for (size_t i = 0; i < n && i < MOST; i++)
-        report_add(report, REPORT_WARNING, "dicom.bad-number", where, "Element %s: expected a number, found \"%s\"; it is not used.",
-                   bad[i].place, bad[i].found);
+        report_add(report, REPORT_WARNING, "dicom.bad-number", where,
+                   "Element %s: expected a number, found \"%s\"; it is not used.", bad[i].place, bad[i].found);
     if (n > MOST)
         report_add(report, REPORT_WARNING, "dicom.bad-number", where, "%zu more values are no numbers.", n - MOST);
 }
@@ -41,8 +41,8 @@ void dicom_doubt_place(struct dicom_doubts *doubts, uint32_t tag, const char *fo
     va_end(arguments);
 }
 
-bool dicom_number_within(const struct dicom_item *item, uint32_t tag, const char *name, double low, double high, double *value,
-                         struct dicom_doubts *doubts)
+bool dicom_number_within(const struct dicom_item *item, uint32_t tag, const char *name, double low, double high,
+                         double *value, struct dicom_doubts *doubts)
 {
     double found;
     if (!dicom_number(item, tag, &found))
@@ -55,7 +55,8 @@ bool dicom_number_within(const struct dicom_item *item, uint32_t tag, const char
     return true;
 }
 
-void dicom_doubts_report(const struct dicom_doubts *doubts, const char *code, const char *who, const char *where, struct report *report)
+void dicom_doubts_report(const struct dicom_doubts *doubts, const char *code, const char *who, const char *where,
+                         struct report *report)
 {
     for (size_t i = 0; i < doubts->n_places; i++)
         report_add(report, REPORT_WARNING, code, where, "%s: %s.", who, doubts->places[i].text);

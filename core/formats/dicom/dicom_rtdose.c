@@ -50,18 +50,19 @@ struct reading {
     struct report *report;
 };
 
-/* ---- geometry --------------------------------------------------------------------------------------------------------------------- */
+/* ---- geometry --------------------------------------------------------------------------------------------------- */
 
-static bool read_three(const struct reading *reading, uint32_t tag, const char *name, double *values, size_t n, struct error *err)
+static bool read_three(const struct reading *reading, uint32_t tag, const char *name, double *values, size_t n,
+                       struct error *err)
 {
     size_t found = dicom_numbers(reading->root, tag, values, n);
     if (found != n)
-        return error_set(err, ERROR_FORMAT, "%s: %s (%04x,%04x) has %zu values, expected %zu", reading->where, name, tag >> 16,
-                         tag & 0xffff, found, n);
+        return error_set(err, ERROR_FORMAT, "%s: %s (%04x,%04x) has %zu values, expected %zu", reading->where, name,
+                         tag >> 16, tag & 0xffff, found, n);
     for (size_t i = 0; i < n; i++)
         if (!isfinite(values[i]) || fabs(values[i]) > 1e6)
-            return error_set(err, ERROR_RANGE, "%s: %s (%04x,%04x): value %zu is %g, expected a number of a patient", reading->where,
-                             name, tag >> 16, tag & 0xffff, i + 1, values[i]);
+            return error_set(err, ERROR_RANGE, "%s: %s (%04x,%04x): value %zu is %g, expected a number of a patient",
+                             reading->where, name, tag >> 16, tag & 0xffff, i + 1, values[i]);
     return true;
 }
 
@@ -73,9 +74,12 @@ static bool read_frame(const struct reading *reading, struct planes *planes, str
         !read_three(reading, PIXEL_SPACING, "Pixel Spacing", spacing_mm, 2, err))
         return false;
     struct vec3 row = vec3(cosines[0], cosines[1], cosines[2]), column = vec3(cosines[3], cosines[4], cosines[5]);
-    if (!(fabs(vec3_length(row) - 1) < 0.01 && fabs(vec3_length(column) - 1) < 0.01 && fabs(vec3_dot(row, column)) < 0.01))
-        return error_set(err, ERROR_RANGE, "%s: Image Orientation (0020,0037) is %g %g %g, %g %g %g, expected two unit vectors at right angles",
-                         reading->where, row.x, row.y, row.z, column.x, column.y, column.z);
+    if (!(fabs(vec3_length(row) - 1) < 0.01 && fabs(vec3_length(column) - 1) < 0.01 &&
+          fabs(vec3_dot(row, column)) < 0.01))
+        return error_set(
+            err, ERROR_RANGE,
+            "%s: Image Orientation (0020,0037) is %g %g %g, %g %g %g, expected two unit vectors at right angles",
+            reading->where, row.x, row.y, row.z, column.x, column.y, column.z);
     planes->row = vec3_normalize(row);
     planes->column = vec3_normalize(column);
     planes->normal = vec3_normalize(vec3_cross(row, column));
@@ -90,7 +94,8 @@ static bool is_axial(const struct planes *planes)
     return fabs(planes->normal.z) > 0.9999;
 }
 
-/* Both conventions of the standard (C.8.8.3.2): from the first plane along the normal; or, for axial planes, the z of each. */
+/* Both conventions of the standard (C.8.8.3.2): from the first plane along the normal; or, for axial planes, the z of
+ * each. */
 static void make_relative(const struct reading *reading, struct planes *planes)
 {
     double first_mm = planes->at_mm[0], direction = 1;
@@ -101,9 +106,10 @@ static void make_relative(const struct reading *reading, struct planes *planes)
     if (is_absolute)
         direction = planes->normal.z < 0 ? -1 : 1;
     else
-        report_add(reading->report, REPORT_WARNING, "dose.offsets-doubtful", reading->where,
-                   "The first frame's offset is %g mm, neither 0 nor the z of its position (%g mm); offsets were counted from the first.",
-                   first_mm, planes->first_lps_mm.z);
+        report_add(
+            reading->report, REPORT_WARNING, "dose.offsets-doubtful", reading->where,
+            "The first frame's offset is %g mm, neither 0 nor the z of its position (%g mm); offsets were counted from the first.",
+            first_mm, planes->first_lps_mm.z);
     for (size_t i = 0; i < planes->n; i++)
         planes->at_mm[i] = direction * (planes->at_mm[i] - first_mm);
 }
@@ -114,8 +120,11 @@ static bool check_order(const struct reading *reading, const struct planes *plan
     for (size_t i = 1; i < planes->n; i++) {
         double step_mm = planes->at_mm[i] - planes->at_mm[i - 1];
         if (!(is_up ? step_mm > 1e-6 : step_mm < -1e-6))
-            return error_set(err, ERROR_RANGE, "%s: Grid Frame Offset Vector (3004,000c): frame %zu is %g mm from the one before, expected "
-                             "frames that go one way", reading->where, i + 1, step_mm);
+            return error_set(
+                err, ERROR_RANGE,
+                "%s: Grid Frame Offset Vector (3004,000c): frame %zu is %g mm from the one before, expected "
+                "frames that go one way",
+                reading->where, i + 1, step_mm);
     }
     return true;
 }
@@ -132,11 +141,13 @@ static bool read_offsets(const struct reading *reading, struct planes *planes, u
         return true;
     }
     if (n != n_frames)
-        return error_set(err, ERROR_FORMAT, "%s: Grid Frame Offset Vector (3004,000c) has %zu values, expected %u, one a frame",
+        return error_set(err, ERROR_FORMAT,
+                         "%s: Grid Frame Offset Vector (3004,000c) has %zu values, expected %u, one a frame",
                          reading->where, n, n_frames);
     for (size_t i = 0; i < n; i++)
         if (!(fabs(planes->at_mm[i]) <= 1e6))
-            return error_set(err, ERROR_RANGE, "%s: Grid Frame Offset Vector (3004,000c): value %zu is no number of a patient",
+            return error_set(err, ERROR_RANGE,
+                             "%s: Grid Frame Offset Vector (3004,000c): value %zu is no number of a patient",
                              reading->where, i + 1);
     make_relative(reading, planes);
     return check_order(reading, planes, err);
@@ -160,8 +171,8 @@ static double smallest_step_mm(const struct planes *planes)
     return least_mm;
 }
 
-static bool make_grid(const struct reading *reading, const struct planes *planes, const struct dicom_pixels *pixels, size_t n_planes,
-                      double step_mm, struct grid *grid, struct error *err)
+static bool make_grid(const struct reading *reading, const struct planes *planes, const struct dicom_pixels *pixels,
+                      size_t n_planes, double step_mm, struct grid *grid, struct error *err)
 {
     struct affine map = { { vec3_scale(planes->row, planes->column_mm), vec3_scale(planes->column, planes->row_mm),
                             vec3_scale(planes->normal, step_mm) },
@@ -179,11 +190,12 @@ static double lone_thickness_mm(const struct reading *reading, const struct plan
     double mm;
     if (!dicom_number(reading->root, SLICE_THICKNESS, &mm) || !(mm > 0 && mm <= 1e4))
         mm = planes->column_mm;
-    report_add(reading->report, REPORT_NOTE, "dose.single-plane", reading->where, "The dose is a single plane; it is shown %g mm thick.", mm);
+    report_add(reading->report, REPORT_NOTE, "dose.single-plane", reading->where,
+               "The dose is a single plane; it is shown %g mm thick.", mm);
     return mm;
 }
 
-/* ---- values ----------------------------------------------------------------------------------------------------------------------- */
+/* ---- values ----------------------------------------------------------------------------------------------------- */
 
 static enum voxel_type type_for(const struct dicom_pixels *pixels)
 {
@@ -200,8 +212,8 @@ static void scale_32(float *out, const void *stored, size_t n, bool is_signed, d
             out[i] = (float)(((const uint32_t *)stored)[i] * scaling);
 }
 
-static struct volume *read_even(const struct dicom_file *file, const struct dicom_pixels *pixels, const struct grid *grid, double scaling,
-                                struct dicom_coded *coded, struct error *err)
+static struct volume *read_even(const struct dicom_file *file, const struct dicom_pixels *pixels,
+                                const struct grid *grid, double scaling, struct dicom_coded *coded, struct error *err)
 {
     enum voxel_type type = type_for(pixels);
     struct volume *volume = volume_create(grid, type, err);
@@ -224,8 +236,8 @@ static struct volume *read_even(const struct dicom_file *file, const struct dico
     return volume;
 }
 
-static bool read_scaled_frame(const struct dicom_file *file, const struct dicom_pixels *pixels, uint32_t k, double scaling, void *stored,
-                              float *out, struct dicom_coded *coded, struct error *err)
+static bool read_scaled_frame(const struct dicom_file *file, const struct dicom_pixels *pixels, uint32_t k,
+                              double scaling, void *stored, float *out, struct dicom_coded *coded, struct error *err)
 {
     if (!dicom_pixels_read(file, k, stored, err))
         return false;
@@ -241,14 +253,17 @@ static bool read_scaled_frame(const struct dicom_file *file, const struct dicom_
 }
 
 /* Linear between the two planes around each even one. */
-static struct volume *read_uneven(const struct dicom_file *file, const struct dicom_pixels *pixels, const struct planes *planes,
-                                  const struct grid *grid, double step_mm, double scaling, struct dicom_coded *coded, struct error *err)
+static struct volume *read_uneven(const struct dicom_file *file, const struct dicom_pixels *pixels,
+                                  const struct planes *planes, const struct grid *grid, double step_mm, double scaling,
+                                  struct dicom_coded *coded, struct error *err)
 {
     size_t n = (size_t)pixels->rows * pixels->columns;
     struct volume *volume = volume_create(grid, VOXEL_F32, err);
     void *stored = mem_array(n, sizeof(uint32_t), VOLUME_MAX_BYTES, err);
-    float *low = mem_array(n, sizeof *low, VOLUME_MAX_BYTES, err), *high = mem_array(n, sizeof *high, VOLUME_MAX_BYTES, err);
-    bool is_read = volume && stored && low && high && read_scaled_frame(file, pixels, 0, scaling, stored, low, coded, err) &&
+    float *low = mem_array(n, sizeof *low, VOLUME_MAX_BYTES, err),
+          *high = mem_array(n, sizeof *high, VOLUME_MAX_BYTES, err);
+    bool is_read = volume && stored && low && high &&
+                   read_scaled_frame(file, pixels, 0, scaling, stored, low, coded, err) &&
                    read_scaled_frame(file, pixels, 1, scaling, stored, high, coded, err);
     uint32_t frame = 0; /* low is this one, high the next */
     for (uint32_t k = 0; is_read && k < grid->size[2]; k++) {
@@ -275,37 +290,41 @@ static struct volume *read_uneven(const struct dicom_file *file, const struct di
     return NULL;
 }
 
-static struct volume *read_values(const struct reading *reading, const struct dicom_file *file, const struct dicom_pixels *pixels,
-                                  const struct planes *planes, double scaling, struct dicom_coded *coded, struct error *err)
+static struct volume *read_values(const struct reading *reading, const struct dicom_file *file,
+                                  const struct dicom_pixels *pixels, const struct planes *planes, double scaling,
+                                  struct dicom_coded *coded, struct error *err)
 {
     struct grid grid;
     double step_mm = planes->n == 1 ? lone_thickness_mm(reading, planes) : even_step_mm(planes);
     if (step_mm != 0)
-        return make_grid(reading, planes, pixels, planes->n, step_mm, &grid, err) ? read_even(file, pixels, &grid, scaling, coded, err)
-                                                                                     : NULL;
+        return make_grid(reading, planes, pixels, planes->n, step_mm, &grid, err)
+                   ? read_even(file, pixels, &grid, scaling, coded, err)
+                   : NULL;
     double least_mm = smallest_step_mm(planes), length_mm = planes->at_mm[planes->n - 1];
     double n = round(fabs(length_mm) / least_mm) + 1;
     if (n > VOLUME_MAX_SIDE) {
-        error_set(err, ERROR_LIMIT, "%s: frames from %g mm apart over %g mm would need %g even planes; the limit is %d", reading->where,
-                  least_mm, fabs(length_mm), n, VOLUME_MAX_SIDE);
+        error_set(err, ERROR_LIMIT, "%s: frames from %g mm apart over %g mm would need %g even planes; the limit is %d",
+                  reading->where, least_mm, fabs(length_mm), n, VOLUME_MAX_SIDE);
         return NULL;
     }
     step_mm = length_mm / (n - 1);
     if (!make_grid(reading, planes, pixels, (size_t)n, step_mm, &grid, err))
         return NULL;
-    report_add(reading->report, REPORT_WARNING, "dose.offsets-uneven", reading->where,
-               "The %zu frames are not evenly spaced (from %g mm on); the dose was interpolated linearly onto %g planes %.4g mm apart.",
-               planes->n, least_mm, n, fabs(step_mm));
+    report_add(
+        reading->report, REPORT_WARNING, "dose.offsets-uneven", reading->where,
+        "The %zu frames are not evenly spaced (from %g mm on); the dose was interpolated linearly onto %g planes %.4g mm apart.",
+        planes->n, least_mm, n, fabs(step_mm));
     return read_uneven(file, pixels, planes, &grid, step_mm, scaling, coded, err);
 }
 
-/* ---- the object ------------------------------------------------------------------------------------------------------------------- */
+/* ---- the object ------------------------------------------------------------------------------------------------- */
 
 static void add_beams(struct rtdose *dose, const struct dicom_item *item)
 {
     size_t n = dicom_n_items(item, REFERENCED_BEAM_SEQUENCE);
     for (size_t i = 0; i < n && dose->n_beams < RTDOSE_MAX_BEAMS; i++)
-        dose->n_beams += dicom_integer(dicom_item_at(item, REFERENCED_BEAM_SEQUENCE, i), REFERENCED_BEAM, &dose->beams[dose->n_beams]);
+        dose->n_beams += dicom_integer(dicom_item_at(item, REFERENCED_BEAM_SEQUENCE, i), REFERENCED_BEAM,
+                                       &dose->beams[dose->n_beams]);
 }
 
 static void read_references(struct rtdose *dose, const struct dicom_item *root)
@@ -344,18 +363,23 @@ static void read_words(struct rtdose *dose, const struct dicom_item *root)
     dose->ppm = ppm[best];
 }
 
-static bool check_kind(const struct reading *reading, const struct dicom_pixels *pixels, double *scaling, struct error *err)
+static bool check_kind(const struct reading *reading, const struct dicom_pixels *pixels, double *scaling,
+                       struct error *err)
 {
     if (pixels->bits_allocated != 16 && pixels->bits_allocated != 32)
-        return error_set(err, ERROR_UNSUPPORTED, "%s: dose of %u bits a value, expected 16 or 32", reading->where, pixels->bits_allocated);
+        return error_set(err, ERROR_UNSUPPORTED, "%s: dose of %u bits a value, expected 16 or 32", reading->where,
+                         pixels->bits_allocated);
     if (!dicom_number(reading->root, GRID_SCALING, scaling))
-        return error_set(err, ERROR_FORMAT, "%s: no Dose Grid Scaling (3004,000e), so the values are in no unit", reading->where);
+        return error_set(err, ERROR_FORMAT, "%s: no Dose Grid Scaling (3004,000e), so the values are in no unit",
+                         reading->where);
     if (!(*scaling > 0 && *scaling < 1e30))
-        return error_set(err, ERROR_RANGE, "%s: Dose Grid Scaling (3004,000e) is %g, expected a number above 0", reading->where, *scaling);
+        return error_set(err, ERROR_RANGE, "%s: Dose Grid Scaling (3004,000e) is %g, expected a number above 0",
+                         reading->where, *scaling);
     return true;
 }
 
-bool rtdose_read(const struct dicom_file *file, const char *where, struct rtdose *dose, struct report *report, struct error *err)
+bool rtdose_read(const struct dicom_file *file, const char *where, struct rtdose *dose, struct report *report,
+                 struct error *err)
 {
     const struct dicom_item *root = dicom_root(file);
     struct reading reading = { root, where, report };
@@ -363,7 +387,8 @@ bool rtdose_read(const struct dicom_file *file, const char *where, struct rtdose
     dicom_text(root, SOP_CLASS, class, sizeof class);
     dicom_text(root, MODALITY, modality, sizeof modality);
     if (strcmp(class, RTDOSE_CLASS) != 0 && strcmp(modality, "RTDOSE") != 0)
-        return error_set(err, ERROR_UNSUPPORTED, "%s: a DICOM object of modality \"%s\", expected RTDOSE", where, modality);
+        return error_set(err, ERROR_UNSUPPORTED, "%s: a DICOM object of modality \"%s\", expected RTDOSE", where,
+                         modality);
     dicom_numbers_report(file, 0, where, report);
     struct dicom_pixels pixels;
     struct planes planes = { 0 };
@@ -383,7 +408,8 @@ bool rtdose_read(const struct dicom_file *file, const char *where, struct rtdose
     volume_measure(read.values);
     read.is_all_zero = read.values->low == 0 && read.values->high == 0;
     if (strcmp(read.units, "GY") == 0 && read.values->high > MOST_GY)
-        report_add(report, REPORT_WARNING, "dose.doubtful", where, "The dose reaches %g Gy, expected at most %g: Dose Grid Scaling (3004,000E) is %g.",
+        report_add(report, REPORT_WARNING, "dose.doubtful", where,
+                   "The dose reaches %g Gy, expected at most %g: Dose Grid Scaling (3004,000E) is %g.",
                    read.values->high, MOST_GY, scaling);
     if (read.values->low < 0)
         report_add(report, REPORT_WARNING, "dose.negative", where, "The dose goes down to %g.", read.values->low);
@@ -401,9 +427,12 @@ void rtdose_check_frame(struct rtdose *dose, const char *image_frame_uid, const 
 {
     bool is_known = dose->frame_uid[0] && image_frame_uid && image_frame_uid[0];
     dose->has_frame = true;
-    dose->frame = !is_known ? DOSE_FRAME_UNKNOWN : strcmp(dose->frame_uid, image_frame_uid) == 0 ? DOSE_FRAME_SAME : DOSE_FRAME_DIFFERS;
+    dose->frame = !is_known                                       ? DOSE_FRAME_UNKNOWN
+                  : strcmp(dose->frame_uid, image_frame_uid) == 0 ? DOSE_FRAME_SAME
+                                                                  : DOSE_FRAME_DIFFERS;
     if (!is_known)
-        report_add(report, REPORT_NOTE, "dose.no-frame", where, "%s names no frame of reference, so nothing says that the dose fits the image.",
+        report_add(report, REPORT_NOTE, "dose.no-frame", where,
+                   "%s names no frame of reference, so nothing says that the dose fits the image.",
                    dose->frame_uid[0] ? "The image" : "The dose");
     else if (dose->frame == DOSE_FRAME_DIFFERS)
         report_add(report, REPORT_WARNING, "dose.frame-differs", where,

@@ -7,7 +7,7 @@
 #include "core/formats/dicom/dicom_rtdose.h"
 #include "core/formats/text.h"
 
-/* ---- words ------------------------------------------------------------------------------------------------------------------------ */
+/* ---- words ------------------------------------------------------------------------------------------------------ */
 
 enum { MOST_WORDS = 16, WORD_SIZE = 20 };
 
@@ -69,10 +69,13 @@ static bool quantity_from_words(const struct words *words, enum dose_quantity *q
     bool is_neutron = has_word(words, "neutron") || has_word(words, "neutrons");
     bool is_found[DOSE_N_QUANTITIES] = { false };
     is_found[DOSE_BORON] = has_word(words, "boron") || has_pair(words, "b", "10");
-    is_found[DOSE_NITROGEN] = has_word(words, "nitrogen") || has_pair(words, "n", "14") || (is_neutron && has_word(words, "thermal"));
-    is_found[DOSE_FAST] = has_word(words, "fast") || has_word(words, "recoil") || has_word(words, "hydrogen") ||
-                          (is_neutron && !is_found[DOSE_NITROGEN] && !is_found[DOSE_BORON] && !has_word(words, "capture"));
-    is_found[DOSE_GAMMA] = has_word(words, "gamma") || has_word(words, "gammas") || has_word(words, "photon") || has_word(words, "photons");
+    is_found[DOSE_NITROGEN] =
+        has_word(words, "nitrogen") || has_pair(words, "n", "14") || (is_neutron && has_word(words, "thermal"));
+    is_found[DOSE_FAST] =
+        has_word(words, "fast") || has_word(words, "recoil") || has_word(words, "hydrogen") ||
+        (is_neutron && !is_found[DOSE_NITROGEN] && !is_found[DOSE_BORON] && !has_word(words, "capture"));
+    is_found[DOSE_GAMMA] = has_word(words, "gamma") || has_word(words, "gammas") || has_word(words, "photon") ||
+                           has_word(words, "photons");
     size_t n = 0;
     for (int i = 0; i < DOSE_N_QUANTITIES; i++)
         if (is_found[i]) {
@@ -138,7 +141,7 @@ bool rtdose_component_from_text(const char *text, enum dose_quantity *quantity, 
     return true;
 }
 
-/* ---- groups ----------------------------------------------------------------------------------------------------------------------- */
+/* ---- groups ----------------------------------------------------------------------------------------------------- */
 
 struct grouping {
     struct rtdose *objects;
@@ -153,8 +156,9 @@ struct grouping {
 
 static bool agree(const struct rtdose *a, const struct rtdose *b)
 {
-    return strcmp(a->type, b->type) == 0 && strcmp(a->summation, b->summation) == 0 && strcmp(a->units, b->units) == 0 &&
-           strcmp(a->plan_uid, b->plan_uid) == 0 && strcmp(a->frame_uid, b->frame_uid) == 0 && a->n_beams == b->n_beams &&
+    return strcmp(a->type, b->type) == 0 && strcmp(a->summation, b->summation) == 0 &&
+           strcmp(a->units, b->units) == 0 && strcmp(a->plan_uid, b->plan_uid) == 0 &&
+           strcmp(a->frame_uid, b->frame_uid) == 0 && a->n_beams == b->n_beams &&
            memcmp(a->beams, b->beams, a->n_beams * sizeof *a->beams) == 0;
 }
 
@@ -165,7 +169,8 @@ static bool is_component(const struct grouping *grouping, const struct rtdose *o
         return object->is_component;
     for (size_t i = 0; i < grouping->n_objects; i++) {
         const struct rtdose *other = &grouping->objects[i];
-        bool is_other = other->values && other->is_component && other->quantity != object->quantity && other->quantity != DOSE_TOTAL;
+        bool is_other = other->values && other->is_component && other->quantity != object->quantity &&
+                        other->quantity != DOSE_TOTAL;
         if (is_other && object->quantity != DOSE_TOTAL && agree(object, other))
             return true;
     }
@@ -221,13 +226,15 @@ static bool is_taken(const struct grouping *grouping, const char *name)
 static void name_dose(const struct grouping *grouping, const struct rtdose *object, char id[64])
 {
     char base[200], name[300], numbered[64];
-    const char *text = object->description[0] && !(object->is_stated && strncmp(object->description, "BNCT:", 5) == 0) ? object->description
-                       : object->comment[0] && !object->is_stated                                                      ? object->comment
-                       : object->is_stated                                                                             ? "BNCT"
-                                                                                                                       : "Dose";
+    const char *text = object->description[0] && !(object->is_stated && strncmp(object->description, "BNCT:", 5) == 0)
+                           ? object->description
+                       : object->comment[0] && !object->is_stated ? object->comment
+                       : object->is_stated                        ? "BNCT"
+                                                                  : "Dose";
     put_text(base, sizeof base, text);
     put_text(name, sizeof name, base);
-    const char *beam = object->n_beams == 1 && grouping->beam_name ? grouping->beam_name(grouping->context, object->beams[0]) : NULL;
+    const char *beam =
+        object->n_beams == 1 && grouping->beam_name ? grouping->beam_name(grouping->context, object->beams[0]) : NULL;
     if (object->n_beams == 1 && strncmp(object->summation, "BEAM", 4) == 0) {
         if (beam)
             snprintf(name, sizeof name, "%.40s, %s", base, beam);
@@ -245,8 +252,8 @@ static void name_dose(const struct grouping *grouping, const struct rtdose *obje
 static struct dose *new_dose(struct grouping *grouping, const struct rtdose *object)
 {
     if (grouping->n_doses >= grouping->most) {
-        report_add(grouping->report, REPORT_WARNING, "dose.left-out", grouping->where, "More than %zu doses; \"%s\" is left out.",
-                   grouping->most, object->description);
+        report_add(grouping->report, REPORT_WARNING, "dose.left-out", grouping->where,
+                   "More than %zu doses; \"%s\" is left out.", grouping->most, object->description);
         return NULL;
     }
     struct dose *dose = &grouping->doses[grouping->n_doses];
@@ -256,10 +263,11 @@ static struct dose *new_dose(struct grouping *grouping, const struct rtdose *obj
     snprintf(dose->per, sizeof dose->per, "%s", per_of(object));
     grouping->n_doses++;
     if (!dose->unit[0])
-        report_add(grouping->report, REPORT_WARNING, "dose.no-unit", grouping->where, "\"%s\": the dose's units are \"%s\".", dose->id,
-                   object->units);
+        report_add(grouping->report, REPORT_WARNING, "dose.no-unit", grouping->where,
+                   "\"%s\": the dose's units are \"%s\".", dose->id, object->units);
     if (!dose->per[0])
-        report_add(grouping->report, REPORT_NOTE, "dose.no-per", grouping->where, "\"%s\": the file does not say what was summed.", dose->id);
+        report_add(grouping->report, REPORT_NOTE, "dose.no-per", grouping->where,
+                   "\"%s\": the file does not say what was summed.", dose->id);
     if (strcmp(object->type, "PHYSICAL") != 0 && strcmp(object->type, "EFFECTIVE") != 0)
         report_add(grouping->report, REPORT_WARNING, "dose.type", grouping->where,
                    "\"%s\" is of type \"%s\": it may not be a dose but a difference of two.", dose->id, object->type);
@@ -313,7 +321,8 @@ static void add_components(struct grouping *grouping, size_t first, const bool *
         snprintf(words + n, sizeof words - n, "%s%s", n ? ", " : "", dose_quantity_word(other->quantity));
         if (other->quantity == DOSE_BORON && !(other->ppm > 0))
             report_add(grouping->report, REPORT_WARNING, "dose.no-ppm", grouping->where,
-                       "\"%s\": nothing says for how much boron-10 the boron dose holds; it is shown as it is.", dose->id);
+                       "\"%s\": nothing says for how much boron-10 the boron dose holds; it is shown as it is.",
+                       dose->id);
         if (other->quantity == DOSE_BORON && other->ppm > 0 && other->ppm != 1)
             report_add(grouping->report, REPORT_NOTE, "dose.per-ppm", grouping->where,
                        "\"%s\": the boron dose holds for %g ppm and was divided by that.", dose->id, other->ppm);
@@ -338,8 +347,8 @@ static void leave_out_zeros(struct grouping *grouping)
         if (!object->values || !object->is_all_zero)
             continue;
         report_add(grouping->report, REPORT_WARNING, "dose.all-zero", grouping->where,
-                   "A dose (\"%s\", %s of %zu beams) is 0 everywhere and is not listed.", object->description, object->summation,
-                   object->n_beams);
+                   "A dose (\"%s\", %s of %zu beams) is 0 everywhere and is not listed.", object->description,
+                   object->summation, object->n_beams);
         rtdose_finish(object);
     }
 }
@@ -351,8 +360,8 @@ static void report_beams(const struct grouping *grouping, size_t n_beam_doses, b
                    "%zu doses are of single beams and stand one beside the other; they were not added.", n_beam_doses);
 }
 
-size_t rtdose_group(struct rtdose *objects, size_t n_objects, rtdose_beam_name beam_name, void *context, const char *where,
-                    struct dose *doses, size_t most, struct report *report)
+size_t rtdose_group(struct rtdose *objects, size_t n_objects, rtdose_beam_name beam_name, void *context,
+                    const char *where, struct dose *doses, size_t most, struct report *report)
 {
     struct grouping grouping = { objects, n_objects, beam_name, context, where, doses, 0, most, report };
     size_t n_beam_doses = 0;

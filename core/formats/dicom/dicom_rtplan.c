@@ -10,10 +10,10 @@
 #define RTPLAN_CLASS "1.2.840.10008.5.1.4.1.1.481.5"
 #define RTIONPLAN_CLASS "1.2.840.10008.5.1.4.1.1.481.8"
 #define ASSUMED_SAD_MM 1000.0
-#define NEAREST_MM 1e-3  /* distances below are none */
-#define FURTHEST_MM 1e5 /* sources beyond are no numbers of a treatment room */
+#define NEAREST_MM 1e-3           /* distances below are none */
+#define FURTHEST_MM 1e5           /* sources beyond are no numbers of a treatment room */
 #define FURTHEST_ISOCENTRE_MM 1e4 /* nor are isocentres: as GRID_FARTHEST_MM */
-#define MOST_ENERGY 2000.0 /* MeV, or MeV a nucleon; kilovolts of an X-ray tube are far below, too */
+#define MOST_ENERGY 2000.0        /* MeV, or MeV a nucleon; kilovolts of an X-ray tube are far below, too */
 #define MOST_DOSE_GY 1000.0
 #define MOST_METERSET 1e6
 #define MOST_FRACTIONS 1000
@@ -80,16 +80,18 @@ struct reading {
     struct dicom_doubts *doubts; /* of the beam being read */
 };
 
-/* ---- a beam ----------------------------------------------------------------------------------------------------------------------- */
+/* ---- a beam ----------------------------------------------------------------------------------------------------- */
 
 static bool left_out(const struct reading *reading, const struct beam *beam, const char *why)
 {
-    report_add(reading->report, REPORT_WARNING, "beam.left-out", reading->where, "Beam \"%s\" %s; it is not shown.", beam->name, why);
+    report_add(reading->report, REPORT_WARNING, "beam.left-out", reading->where, "Beam \"%s\" %s; it is not shown.",
+               beam->name, why);
     return false;
 }
 
 /* Of the setup the beam refers to; the only one there is when it refers to none. */
-static enum patient_position position_of(const struct reading *reading, const struct dicom_item *beam_item, const struct beam *beam)
+static enum patient_position position_of(const struct reading *reading, const struct dicom_item *beam_item,
+                                         const struct beam *beam)
 {
     size_t n = dicom_n_items(reading->root, SETUP_SEQUENCE);
     int64_t wanted;
@@ -105,13 +107,15 @@ static enum patient_position position_of(const struct reading *reading, const st
             break;
         if (patient_position_from_word(word, &position))
             return position;
-        report_add(reading->report, REPORT_WARNING, "beam.position-assumed", reading->where,
-                   "Beam \"%s\": the patient's position is \"%s\", which is not known; head first, on the back (HFS) was taken.", beam->name,
-                   word);
+        report_add(
+            reading->report, REPORT_WARNING, "beam.position-assumed", reading->where,
+            "Beam \"%s\": the patient's position is \"%s\", which is not known; head first, on the back (HFS) was taken.",
+            beam->name, word);
         return PATIENT_HFS;
     }
     report_add(reading->report, REPORT_WARNING, "beam.position-assumed", reading->where,
-               "Beam \"%s\": the plan does not say how the patient lies; head first, on the back (HFS) was taken.", beam->name);
+               "Beam \"%s\": the plan does not say how the patient lies; head first, on the back (HFS) was taken.",
+               beam->name);
     return PATIENT_HFS;
 }
 
@@ -124,7 +128,8 @@ static void fill_unknown(struct beam_delivery *d)
         d->jaws_x_mm[i] = d->jaws_y_mm[i] = d->opening_x_mm[i] = d->opening_y_mm[i] = NAN;
 }
 
-static bool read_distance(const struct reading *reading, const struct dicom_item *item, uint32_t tag, const char *name, double *mm)
+static bool read_distance(const struct reading *reading, const struct dicom_item *item, uint32_t tag, const char *name,
+                          double *mm)
 {
     return dicom_number_within(item, tag, name, NEAREST_MM, FURTHEST_MM, mm, reading->doubts);
 }
@@ -134,7 +139,8 @@ static void read_words(const struct reading *reading, const struct dicom_item *i
     struct beam_delivery *d = &beam->delivery;
     if (!dicom_integer(item, BEAM_NUMBER, &d->number))
         d->number = (int64_t)index + 1;
-    if (!dicom_text(item, BEAM_NAME, beam->name, sizeof beam->name) && !dicom_text(item, BEAM_DESCRIPTION, beam->name, sizeof beam->name))
+    if (!dicom_text(item, BEAM_NAME, beam->name, sizeof beam->name) &&
+        !dicom_text(item, BEAM_DESCRIPTION, beam->name, sizeof beam->name))
         snprintf(beam->name, sizeof beam->name, "Beam %lld", (long long)d->number);
     snprintf(beam->id, sizeof beam->id, "%.*s", (int)sizeof beam->id - 1, beam->name);
     dicom_text(item, RADIATION_TYPE, d->radiation, sizeof d->radiation);
@@ -144,8 +150,8 @@ static void read_words(const struct reading *reading, const struct dicom_item *i
         !read_distance(reading, item, VIRTUAL_DISTANCES, "virtual source-axis distance", &d->sad_mm)) {
         d->sad_mm = ASSUMED_SAD_MM;
         report_add(reading->report, REPORT_WARNING, "beam.distance-assumed", reading->where,
-                   "Beam \"%s\": the plan does not say how far the source is from the isocentre; %g mm was taken.", beam->name,
-                   ASSUMED_SAD_MM);
+                   "Beam \"%s\": the plan does not say how far the source is from the isocentre; %g mm was taken.",
+                   beam->name, ASSUMED_SAD_MM);
     }
 }
 
@@ -160,7 +166,8 @@ struct course {
 };
 
 /* One beyond a whole turn is taken without its whole turns, and said. false: there is none that is a number. */
-static bool read_angle(const struct reading *reading, const struct dicom_item *item, uint32_t tag, const char *name, double *deg)
+static bool read_angle(const struct reading *reading, const struct dicom_item *item, uint32_t tag, const char *name,
+                       double *deg)
 {
     double found;
     if (!dicom_number(item, tag, &found))
@@ -168,8 +175,8 @@ static bool read_angle(const struct reading *reading, const struct dicom_item *i
     *deg = found;
     if (fabs(found) > 360) {
         *deg = fmod(found, 360);
-        dicom_doubt_place(reading->doubts, tag, "%s (%04X,%04X) is %g, expected -360 to 360; %g was taken", name, tag >> 16, tag & 0xFFFF, found,
-                          *deg);
+        dicom_doubt_place(reading->doubts, tag, "%s (%04X,%04X) is %g, expected -360 to 360; %g was taken", name,
+                          tag >> 16, tag & 0xFFFF, found, *deg);
     }
     return true;
 }
@@ -187,7 +194,8 @@ static bool read_isocentre(const struct reading *reading, const struct dicom_ite
     }
     for (int i = 0; i < 3; i++)
         if (!(fabs(at[i]) <= FURTHEST_ISOCENTRE_MM)) {
-            dicom_doubt_place(reading->doubts, ISOCENTRE, "isocentre (300A,012C): value %d is %g mm, expected at most %g", i + 1, at[i],
+            dicom_doubt_place(reading->doubts, ISOCENTRE,
+                              "isocentre (300A,012C): value %d is %g mm, expected at most %g", i + 1, at[i],
                               FURTHEST_ISOCENTRE_MM);
             return false;
         }
@@ -207,8 +215,8 @@ static double travelled_deg(double from_deg, double to_deg, const char *directio
     return clockwise > 180 ? clockwise - 360 : clockwise; /* no direction: the shorter way */
 }
 
-static void read_control_point(const struct reading *reading, struct course *course, const struct dicom_item *item, bool is_first,
-                               struct beam_delivery *d)
+static void read_control_point(const struct reading *reading, struct course *course, const struct dicom_item *item,
+                               bool is_first, struct beam_delivery *d)
 {
     double gantry_before = course->angles.gantry_deg, couch_before = course->angles.couch_deg, pitch = 0;
     struct vec3 isocentre;
@@ -226,15 +234,18 @@ static void read_control_point(const struct reading *reading, struct course *cou
         course->has_isocentre = true;
     }
     if (is_first) {
-        (void)dicom_number_within(item, BEAM_ENERGY, "nominal beam energy", 0, MOST_ENERGY, &d->energy_mev, reading->doubts);
+        (void)dicom_number_within(item, BEAM_ENERGY, "nominal beam energy", 0, MOST_ENERGY, &d->energy_mev,
+                                  reading->doubts);
         (void)read_distance(reading, item, SURFACE_DISTANCE, "source to surface distance", &d->ssd_mm);
     } else {
         d->gantry_travel_deg += travelled_deg(gantry_before, course->angles.gantry_deg, course->direction);
         course->moves_couch |= fabs(course->angles.couch_deg - couch_before) > 0.1;
     }
-    if (dicom_text(item, GANTRY_DIRECTION, course->direction, sizeof course->direction) && strcmp(course->direction, "CW") != 0 &&
-        strcmp(course->direction, "CC") != 0 && strcmp(course->direction, "NONE") != 0)
-        dicom_doubt(reading->doubts, "gantry rotation direction (300A,011F) is \"%s\", expected CW, CC or NONE", course->direction);
+    if (dicom_text(item, GANTRY_DIRECTION, course->direction, sizeof course->direction) &&
+        strcmp(course->direction, "CW") != 0 && strcmp(course->direction, "CC") != 0 &&
+        strcmp(course->direction, "NONE") != 0)
+        dicom_doubt(reading->doubts, "gantry rotation direction (300A,011F) is \"%s\", expected CW, CC or NONE",
+                    course->direction);
 }
 
 /* The collimator's axes in the patient, as the first control point has them. */
@@ -260,17 +271,19 @@ static void report_course(const struct reading *reading, const struct beam *beam
                    course->moves_isocentre ? "the isocentre" : "the table");
     if (course->has_gantry_pitch)
         report_add(reading->report, REPORT_WARNING, "beam.pitch", reading->where,
-                   "Beam \"%s\": the gantry is pitched, which is not regarded; its direction is wrong by that angle.", beam->name);
+                   "Beam \"%s\": the gantry is pitched, which is not regarded; its direction is wrong by that angle.",
+                   beam->name);
     const struct beam_delivery *d = &beam->delivery;
     if (fabs(d->gantry_travel_deg) > 0.1)
-        report_add(reading->report, REPORT_NOTE, "beam.arc", reading->where,
-                   "Beam \"%s\" turns from %.1f to %.1f degrees over %zu control points; its line is shown where it starts.", beam->name,
-                   d->gantry_deg, d->gantry_stop_deg, d->n_control_points);
+        report_add(
+            reading->report, REPORT_NOTE, "beam.arc", reading->where,
+            "Beam \"%s\" turns from %.1f to %.1f degrees over %zu control points; its line is shown where it starts.",
+            beam->name, d->gantry_deg, d->gantry_stop_deg, d->n_control_points);
 }
 
 /* false without err: left out. */
-static bool read_beam(const struct reading *reading, const struct dicom_item *item, size_t index, bool is_ion, struct beam *beam,
-                      struct error *err)
+static bool read_beam(const struct reading *reading, const struct dicom_item *item, size_t index, bool is_ion,
+                      struct beam *beam, struct error *err)
 {
     uint32_t sequence = is_ion ? ION_CONTROL_POINT_SEQUENCE : CONTROL_POINT_SEQUENCE;
     struct beam_delivery *d = &beam->delivery;
@@ -281,8 +294,8 @@ static bool read_beam(const struct reading *reading, const struct dicom_item *it
     read_words(reading, item, index, beam);
     d->n_control_points = dicom_n_items(item, sequence);
     if (d->n_control_points > RTPLAN_MAX_CONTROL_POINTS)
-        return error_set(err, ERROR_LIMIT, "%s: beam \"%s\" has %zu control points; the limit is %d", reading->where, beam->name,
-                         d->n_control_points, RTPLAN_MAX_CONTROL_POINTS);
+        return error_set(err, ERROR_LIMIT, "%s: beam \"%s\" has %zu control points; the limit is %d", reading->where,
+                         beam->name, d->n_control_points, RTPLAN_MAX_CONTROL_POINTS);
     if (dicom_text(item, DELIVERY_TYPE, type, sizeof type) && strcmp(type, "SETUP") == 0)
         return left_out(reading, beam, "is for setting up the patient and not for treatment");
     if (d->n_control_points == 0)
@@ -304,20 +317,21 @@ static bool read_beam(const struct reading *reading, const struct dicom_item *it
         return left_out(reading, beam, "has no isocentre, so nothing says where it is in the patient");
     beam->target_lps_mm = course.isocentre_lps_mm;
     /* z of the collimator's system points to the source */
-    beam->entry_lps_mm = vec3_add(beam->target_lps_mm, vec3_scale(vec3_cross(d->collimator_x_lps, d->collimator_y_lps), d->sad_mm));
+    beam->entry_lps_mm =
+        vec3_add(beam->target_lps_mm, vec3_scale(vec3_cross(d->collimator_x_lps, d->collimator_y_lps), d->sad_mm));
     d->gantry_stop_deg = course.angles.gantry_deg;
     double diameter_mm = opening_diameter_mm(reading->opening, d);
     beam->aperture_mm = diameter_mm > 0 && diameter_mm <= BEAM_MAX_APERTURE_MM ? diameter_mm : NAN;
     int64_t n_said;
     if (dicom_integer(item, N_CONTROL_POINTS, &n_said) && n_said != (int64_t)d->n_control_points)
         report_add(reading->report, REPORT_WARNING, "beam.control-points", reading->where,
-                   "Beam \"%s\" says %lld control points and has %zu; those it has were taken.", beam->name, (long long)n_said,
-                   d->n_control_points);
+                   "Beam \"%s\" says %lld control points and has %zu; those it has were taken.", beam->name,
+                   (long long)n_said, d->n_control_points);
     report_course(reading, beam, &course);
     return true;
 }
 
-/* ---- the plan --------------------------------------------------------------------------------------------------------------------- */
+/* ---- the plan --------------------------------------------------------------------------------------------------- */
 
 static bool read_beams(const struct reading *reading, struct error *err)
 {
@@ -330,8 +344,8 @@ static bool read_beams(const struct reading *reading, struct error *err)
         return false;
     for (size_t i = 0; i < n; i++) {
         if (plan->n_beams >= RTPLAN_MAX_BEAMS) {
-            report_add(reading->report, REPORT_WARNING, "beam.left-out", reading->where, "Beams from the %zu. of %zu on are left out: at most %d.",
-                       i + 1, n, RTPLAN_MAX_BEAMS);
+            report_add(reading->report, REPORT_WARNING, "beam.left-out", reading->where,
+                       "Beams from the %zu. of %zu on are left out: at most %d.", i + 1, n, RTPLAN_MAX_BEAMS);
             break;
         }
         struct error reason = { 0 };
@@ -350,15 +364,18 @@ static bool read_beams(const struct reading *reading, struct error *err)
         }
     }
     if (n > 0 && is_ion)
-        report_add(reading->report, REPORT_WARNING, "beam.ion", reading->where, "An RT Ion Plan of %zu beams: their lines, angles, jaws and blocks are "
-                   "shown; snouts, range shifters, modulators, scan spots and the energies behind the first are not.", n);
+        report_add(reading->report, REPORT_WARNING, "beam.ion", reading->where,
+                   "An RT Ion Plan of %zu beams: their lines, angles, jaws and blocks are "
+                   "shown; snouts, range shifters, modulators, scan spots and the energies behind the first are not.",
+                   n);
     if (n == 0)
         report_add(reading->report, REPORT_NOTE, "beam.none", reading->where, "The plan has no external beam.");
     return true;
 }
 
 /* Dose and meterset of one beam of a fraction group. false: the plan has no beam of that number. */
-static bool read_reference(const struct reading *reading, const struct dicom_item *item, int64_t number, int64_t n_fractions)
+static bool read_reference(const struct reading *reading, const struct dicom_item *item, int64_t number,
+                           int64_t n_fractions)
 {
     struct rtplan *plan = reading->plan;
     bool is_known = false;
@@ -369,7 +386,8 @@ static bool read_reference(const struct reading *reading, const struct dicom_ite
             continue;
         d->n_fractions = n_fractions;
         (void)dicom_number_within(item, BEAM_DOSE, "beam dose", 0, MOST_DOSE_GY, &d->dose_gy, reading->doubts);
-        (void)dicom_number_within(item, BEAM_METERSET, "beam meterset", 0, MOST_METERSET, &d->meterset, reading->doubts);
+        (void)dicom_number_within(item, BEAM_METERSET, "beam meterset", 0, MOST_METERSET, &d->meterset,
+                                  reading->doubts);
     }
     return is_known;
 }
@@ -382,7 +400,9 @@ static bool has_beam_number(const struct reading *reading, int64_t number)
         size_t n = dicom_n_items(reading->root, sequence);
         for (size_t i = 0; i < n; i++) {
             int64_t other;
-            if (dicom_integer(dicom_item_at(reading->root, sequence, i), BEAM_NUMBER, &other) ? other == number : (int64_t)i + 1 == number)
+            if (dicom_integer(dicom_item_at(reading->root, sequence, i), BEAM_NUMBER, &other)
+                    ? other == number
+                    : (int64_t)i + 1 == number)
                 return true;
         }
     }
@@ -397,7 +417,8 @@ static void read_fractions(const struct reading *reading)
     for (size_t g = 0; g < n_groups; g++) {
         const struct dicom_item *group = dicom_item_at(reading->root, FRACTION_SEQUENCE, g);
         double n_said = 0;
-        (void)dicom_number_within(group, N_FRACTIONS, "number of fractions planned", 0, MOST_FRACTIONS, &n_said, reading->doubts);
+        (void)dicom_number_within(group, N_FRACTIONS, "number of fractions planned", 0, MOST_FRACTIONS, &n_said,
+                                  reading->doubts);
         int64_t n_fractions = (int64_t)n_said;
         plan->n_fractions = plan->n_fractions ? plan->n_fractions : n_fractions;
         size_t n = dicom_n_items(group, REFERENCED_BEAM_SEQUENCE);
@@ -406,7 +427,8 @@ static void read_fractions(const struct reading *reading)
             int64_t number;
             if (dicom_integer(item, REFERENCED_BEAM, &number) && !read_reference(reading, item, number, n_fractions) &&
                 !has_beam_number(reading, number))
-                dicom_doubt(reading->doubts, "fraction group %zu refers to beam %lld (300C,0006), which the plan does not have", g + 1,
+                dicom_doubt(reading->doubts,
+                            "fraction group %zu refers to beam %lld (300C,0006), which the plan does not have", g + 1,
                             (long long)number);
         }
     }
@@ -427,7 +449,8 @@ static void read_prescription(const struct reading *reading)
         char type[17];
         double dose_gy;
         if (dicom_text(item, DOSE_REFERENCE_TYPE, type, sizeof type) && strcmp(type, "TARGET") == 0 &&
-            dicom_number_within(item, TARGET_DOSE, "target prescription dose", 0, MOST_DOSE_GY, &dose_gy, reading->doubts))
+            dicom_number_within(item, TARGET_DOSE, "target prescription dose", 0, MOST_DOSE_GY, &dose_gy,
+                                reading->doubts))
             plan->target_dose_gy = fmax(isnan(plan->target_dose_gy) ? dose_gy : plan->target_dose_gy, dose_gy);
     }
 }

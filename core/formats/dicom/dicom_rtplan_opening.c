@@ -22,8 +22,8 @@ enum {
     ION_BLOCK_SEQUENCE = DICOM_TAG(0x300a, 0x0436)
 };
 enum { MOST_BLOCK_POINTS = 5000, LEAST_ROUND_POINTS = 12 };
-#define ROUND_SHARE 0.02   /* a block whose points are this near to a circle is one */
-#define WIDE_OPEN_MM 1e4   /* a side that nothing closes */
+#define ROUND_SHARE 0.02 /* a block whose points are this near to a circle is one */
+#define WIDE_OPEN_MM 1e4 /* a side that nothing closes */
 
 /* A side of a rectangle that may be open. */
 struct rectangle {
@@ -81,27 +81,32 @@ static bool is_known_type(const char *type)
 }
 
 /* Boundaries of leaves: one more than pairs, each further than the one before. */
-static bool read_boundaries(struct opening *opening, struct opening_device *device, const struct dicom_item *item, int64_t n_pairs)
+static bool read_boundaries(struct opening *opening, struct opening_device *device, const struct dicom_item *item,
+                            int64_t n_pairs)
 {
     size_t n = dicom_numbers(item, LEAF_BOUNDARIES, device->boundaries_mm, OPENING_MAX_LEAVES + 1), which;
     if (n_pairs > 0 ? n != (size_t)n_pairs + 1 : n < 2 || n > OPENING_MAX_LEAVES + 1) {
         char expected[60];
         if (n_pairs > 0)
-            snprintf(expected, sizeof expected, "%lld for %lld pairs of leaves", (long long)n_pairs + 1, (long long)n_pairs);
+            snprintf(expected, sizeof expected, "%lld for %lld pairs of leaves", (long long)n_pairs + 1,
+                     (long long)n_pairs);
         else
             snprintf(expected, sizeof expected, "2 to %d", OPENING_MAX_LEAVES + 1);
-        dicom_doubt(opening->doubts, "%s: leaf position boundaries (300A,00BE) are %zu, expected %s", device->type, n, expected);
+        dicom_doubt(opening->doubts, "%s: leaf position boundaries (300A,00BE) are %zu, expected %s", device->type, n,
+                    expected);
         return false;
     }
     if (!are_within(device->boundaries_mm, n, OPENING_MOST_MM, &which)) {
-        dicom_doubt(opening->doubts, "%s: leaf position boundary %zu (300A,00BE) is %g mm, expected at most %g", device->type, which + 1,
-                    device->boundaries_mm[which], OPENING_MOST_MM);
+        dicom_doubt(opening->doubts, "%s: leaf position boundary %zu (300A,00BE) is %g mm, expected at most %g",
+                    device->type, which + 1, device->boundaries_mm[which], OPENING_MOST_MM);
         return false;
     }
     for (size_t i = 1; i < n; i++)
         if (!(device->boundaries_mm[i] > device->boundaries_mm[i - 1])) {
-            dicom_doubt(opening->doubts, "%s: leaf position boundary %zu (300A,00BE) is %g mm, expected more than the %g mm of the one before",
-                        device->type, i + 1, device->boundaries_mm[i], device->boundaries_mm[i - 1]);
+            dicom_doubt(
+                opening->doubts,
+                "%s: leaf position boundary %zu (300A,00BE) is %g mm, expected more than the %g mm of the one before",
+                device->type, i + 1, device->boundaries_mm[i], device->boundaries_mm[i - 1]);
             return false;
         }
     device->n_pairs = n - 1;
@@ -117,23 +122,26 @@ static bool add_device(struct opening *opening, const struct dicom_item *item, s
     *device = (struct opening_device){ .n_pairs = 1 };
     (void)dicom_text(item, DEVICE_TYPE, device->type, sizeof device->type);
     if (!is_known_type(device->type)) {
-        dicom_doubt(opening->doubts, "type of a beam limiting device (300A,00B8) is \"%s\", expected X, ASYMX, Y, ASYMY, MLCX or MLCY",
+        dicom_doubt(opening->doubts,
+                    "type of a beam limiting device (300A,00B8) is \"%s\", expected X, ASYMX, Y, ASYMY, MLCX or MLCY",
                     device->type);
         return true;
     }
     bool has_pairs = dicom_integer(item, DEVICE_N_PAIRS, &n_pairs);
     if (n_pairs > OPENING_MAX_LEAVES)
-        return error_set(err, ERROR_LIMIT, "a collimator of %lld pairs of leaves; the limit is %d", (long long)n_pairs, OPENING_MAX_LEAVES);
+        return error_set(err, ERROR_LIMIT, "a collimator of %lld pairs of leaves; the limit is %d", (long long)n_pairs,
+                         OPENING_MAX_LEAVES);
     if (has_pairs && (n_pairs < 1 || (!is_leaves(device) && n_pairs != 1)))
-        dicom_doubt(opening->doubts, "%s: number of pairs (300A,00BC) is %lld, expected %s", device->type, (long long)n_pairs,
-                    is_leaves(device) ? "1 or more" : "1");
+        dicom_doubt(opening->doubts, "%s: number of pairs (300A,00BC) is %lld, expected %s", device->type,
+                    (long long)n_pairs, is_leaves(device) ? "1 or more" : "1");
     if (is_leaves(device) && !read_boundaries(opening, device, item, n_pairs))
         return true;
     opening->n_devices++;
     return true;
 }
 
-/* Area, extents and, for a block whose points lie on a circle, the diameter. Coordinates are in the plane of the isocentre. */
+/* Area, extents and, for a block whose points lie on a circle, the diameter. Coordinates are in the plane of the
+ * isocentre. */
 static void add_block(struct opening *opening, const double *xy, size_t n)
 {
     double doubled = 0, sum_x = 0, sum_y = 0, radius = 0;
@@ -178,16 +186,18 @@ static void add_blocks(struct opening *opening, const struct dicom_item *beam, u
         size_t n_values = dicom_numbers(item, BLOCK_DATA, xy, 2 * MOST_BLOCK_POINTS), which;
         int64_t n_said;
         if (n_values < 6 || n_values > 2 * MOST_BLOCK_POINTS || n_values % 2) {
-            dicom_doubt(opening->doubts, "block data (300A,0106) has %zu values, expected 6 to %d, two a point", n_values, 2 * MOST_BLOCK_POINTS);
+            dicom_doubt(opening->doubts, "block data (300A,0106) has %zu values, expected 6 to %d, two a point",
+                        n_values, 2 * MOST_BLOCK_POINTS);
             continue;
         }
         if (!are_within(xy, n_values, WIDE_OPEN_MM, &which)) {
-            dicom_doubt(opening->doubts, "block data (300A,0106): value %zu is %g mm, expected at most %g", which + 1, xy[which], WIDE_OPEN_MM);
+            dicom_doubt(opening->doubts, "block data (300A,0106): value %zu is %g mm, expected at most %g", which + 1,
+                        xy[which], WIDE_OPEN_MM);
             continue;
         }
         if (dicom_integer(item, BLOCK_N_POINTS, &n_said) && n_said != (int64_t)(n_values / 2))
-            dicom_doubt(opening->doubts, "block data (300A,0106) has %zu points, expected the %lld of (300A,0104)", n_values / 2,
-                        (long long)n_said);
+            dicom_doubt(opening->doubts, "block data (300A,0106) has %zu points, expected the %lld of (300A,0104)",
+                        n_values / 2, (long long)n_said);
         add_block(opening, xy, n_values / 2);
     }
 }
@@ -211,29 +221,34 @@ bool opening_init(struct opening *opening, const struct dicom_item *beam, struct
     char shape[17];
     double diameter_mm;
     if (geometry && dicom_text(geometry, APPLICATOR_SHAPE, shape, sizeof shape) && strcmp(shape, "SYM_CIRCULAR") == 0 &&
-        dicom_number_within(geometry, APPLICATOR_OPENING, "applicator opening", 1, 2 * OPENING_MOST_MM, &diameter_mm, opening->doubts))
+        dicom_number_within(geometry, APPLICATOR_OPENING, "applicator opening", 1, 2 * OPENING_MOST_MM, &diameter_mm,
+                            opening->doubts))
         opening->round_mm = diameter_mm;
     return true;
 }
 
 /* The positions of one device at one control point; false: they cannot be used. */
-static bool check_positions(struct opening *opening, const struct opening_device *device, const double *mm, size_t n, size_t number)
+static bool check_positions(struct opening *opening, const struct opening_device *device, const double *mm, size_t n,
+                            size_t number)
 {
     size_t which;
     if (n != 2 * device->n_pairs) {
-        dicom_doubt(opening->doubts, "control point %zu, %s: leaf/jaw positions (300A,011C) are %zu, expected %zu", number, device->type, n,
-                    2 * device->n_pairs);
+        dicom_doubt(opening->doubts, "control point %zu, %s: leaf/jaw positions (300A,011C) are %zu, expected %zu",
+                    number, device->type, n, 2 * device->n_pairs);
         return false;
     }
     if (!are_within(mm, n, OPENING_MOST_MM, &which)) {
-        dicom_doubt(opening->doubts, "control point %zu, %s: leaf/jaw position %zu (300A,011C) is %g mm, expected at most %g", number,
+        dicom_doubt(opening->doubts,
+                    "control point %zu, %s: leaf/jaw position %zu (300A,011C) is %g mm, expected at most %g", number,
                     device->type, which + 1, mm[which], OPENING_MOST_MM);
         return false;
     }
     for (size_t i = 0; i < device->n_pairs; i++)
         if (mm[i] > mm[device->n_pairs + i] + CLOSED_MM)
-            dicom_doubt(opening->doubts, "control point %zu, %s: positions of pair %zu (300A,011C) are %g and %g mm, the first beyond the second",
-                        number, device->type, i + 1, mm[i], mm[device->n_pairs + i]);
+            dicom_doubt(
+                opening->doubts,
+                "control point %zu, %s: positions of pair %zu (300A,011C) are %g and %g mm, the first beyond the second",
+                number, device->type, i + 1, mm[i], mm[device->n_pairs + i]);
     return true;
 }
 
@@ -258,7 +273,9 @@ void opening_move(struct opening *opening, const struct dicom_item *control_poin
             device->is_placed = true;
         }
         if (!is_known)
-            dicom_doubt(opening->doubts, "control point %zu: positions of a device \"%s\" (300A,00B8) that the beam does not have", number, type);
+            dicom_doubt(opening->doubts,
+                        "control point %zu: positions of a device \"%s\" (300A,00B8) that the beam does not have",
+                        number, type);
     }
 }
 
@@ -279,7 +296,8 @@ static struct rectangle jaws_of(const struct opening *opening, bool *has_x, bool
 }
 
 /* What the leaves leave of the jaws' opening: its hull and its area. */
-static struct rectangle open_between_leaves(const struct opening_device *device, const struct rectangle *jaws, double *mm2)
+static struct rectangle open_between_leaves(const struct opening_device *device, const struct rectangle *jaws,
+                                            double *mm2)
 {
     struct rectangle hull = { { INFINITY, -INFINITY }, { INFINITY, -INFINITY } };
     bool is_x = moves_along_x(device);

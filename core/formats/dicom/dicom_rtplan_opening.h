@@ -4,7 +4,8 @@
 #include "core/formats/dicom/dicom_numbers.h"
 
 enum { OPENING_MAX_DEVICES = 8, OPENING_MAX_LEAVES = 400 };
-#define OPENING_MOST_MM 500.0 /* from the isocentre to a jaw or leaf: treatment machines open to 200 mm and draw back a little further */
+#define OPENING_MOST_MM \
+    500.0 /* from the isocentre to a jaw or leaf: treatment machines open to 200 mm and draw back a little further */
 
 /* Devices and where they stand; positions stay until a control point moves them. */
 struct opening_device {
@@ -20,7 +21,7 @@ struct opening {
     struct opening_device devices[OPENING_MAX_DEVICES];
     size_t n_devices;
     double block_x_mm[2], block_y_mm[2], block_cm2; /* of aperture blocks; not-a-number without one */
-    double round_mm;                                /* diameter of a round block or applicator; not-a-number without one */
+    double round_mm; /* diameter of a round block or applicator; not-a-number without one */
 };
 
 /* Devices, blocks and applicator of a beam; opening->doubts is set. errors ERROR_LIMIT RTPLAN_MAX_LEAVES */

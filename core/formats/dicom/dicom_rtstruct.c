@@ -144,8 +144,8 @@ static enum contour_kind kind_of(const struct dicom_item *item, size_t n_points)
     return strcmp(type, "POINT") == 0 ? KIND_POINT : KIND_OPEN;
 }
 
-static bool read_contour(struct reading *reading, struct reading_roi *roi, const struct dicom_item *item, struct contour *contour,
-                         struct error *err)
+static bool read_contour(struct reading *reading, struct reading_roi *roi, const struct dicom_item *item,
+                         struct contour *contour, struct error *err)
 {
     size_t n = read_values(reading, item, err);
     if (n == SIZE_MAX)
@@ -156,8 +156,8 @@ static bool read_contour(struct reading *reading, struct reading_roi *roi, const
     roi->n_miscounted += dicom_integer(item, CONTOUR_N_POINTS, &n_said) && (n_said < 0 || (uint64_t)n_said != n_points);
     reading->n_points += n_points;
     if (reading->n_points > RTSTRUCT_MAX_POINTS || ++reading->n_contours > RTSTRUCT_MAX_CONTOURS)
-        return error_set(err, ERROR_LIMIT, "%s: more than %d contours or %d points", reading->where, RTSTRUCT_MAX_CONTOURS,
-                         RTSTRUCT_MAX_POINTS);
+        return error_set(err, ERROR_LIMIT, "%s: more than %d contours or %d points", reading->where,
+                         RTSTRUCT_MAX_CONTOURS, RTSTRUCT_MAX_POINTS);
     enum contour_kind kind = kind_of(item, n_points);
     roi->n_points_alone += kind == KIND_POINT;
     roi->n_open += kind == KIND_OPEN;
@@ -171,7 +171,8 @@ static bool read_contour(struct reading *reading, struct reading_roi *roi, const
     return true;
 }
 
-static bool read_contours(struct reading *reading, struct reading_roi *roi, const struct dicom_item *item, struct error *err)
+static bool read_contours(struct reading *reading, struct reading_roi *roi, const struct dicom_item *item,
+                          struct error *err)
 {
     size_t n = dicom_n_items(item, CONTOUR_SEQUENCE);
     struct contour_set *set = &roi->roi.contours;
@@ -203,8 +204,10 @@ static void read_color(const struct reading *reading, struct rtstruct_roi *roi, 
     if (!is_color) {
         char found[40];
         dicom_text(item, ROI_COLOR, found, sizeof found);
-        report_add(reading->report, REPORT_WARNING, "dicom.bad-number", reading->where, "\"%s\": its colour (3006,002A) is \"%s\", expected three "
-                   "numbers from 0 to 255; it has the palette's.", roi->name, found);
+        report_add(reading->report, REPORT_WARNING, "dicom.bad-number", reading->where,
+                   "\"%s\": its colour (3006,002A) is \"%s\", expected three "
+                   "numbers from 0 to 255; it has the palette's.",
+                   roi->name, found);
         return;
     }
     for (int i = 0; i < 3; i++)
@@ -231,8 +234,8 @@ static bool read_all_contours(struct reading *reading, struct error *err)
                 return false;
             snprintf(roi->roi.name, sizeof roi->roi.name, "ROI %lld", (long long)number);
             report_add(reading->report, REPORT_WARNING, "region.roi-number", reading->where,
-                       "There are contours for region %lld, which the file does not describe; it is called \"%s\".", (long long)number,
-                       roi->roi.name);
+                       "There are contours for region %lld, which the file does not describe; it is called \"%s\".",
+                       (long long)number, roi->roi.name);
         }
         read_color(reading, &roi->roi, item);
         if (!read_contours(reading, roi, item, err))
@@ -255,20 +258,21 @@ static void report_roi(const struct reading *reading, const struct reading_roi *
 {
     const char *name = roi->roi.name;
     if (roi->is_unnamed)
-        report_add(reading->report, REPORT_NOTE, "region.unnamed", reading->where, "Region %lld has no name; it is called \"%s\".",
-                   (long long)roi->roi.number, name);
+        report_add(reading->report, REPORT_NOTE, "region.unnamed", reading->where,
+                   "Region %lld has no name; it is called \"%s\".", (long long)roi->roi.number, name);
     if (roi->n_points_alone + roi->n_open > 0)
         report_add(reading->report, REPORT_NOTE, "region.contours-open", reading->where,
-                   "\"%s\" has %zu points and %zu open contours; they enclose nothing and were left out.", name, roi->n_points_alone,
-                   roi->n_open);
+                   "\"%s\" has %zu points and %zu open contours; they enclose nothing and were left out.", name,
+                   roi->n_points_alone, roi->n_open);
     if (roi->n_miscounted > 0)
-        report_add(reading->report, REPORT_WARNING, "region.contours-count", reading->where,
-                   "\"%s\": %zu contours have another number of points than the file says; the points there are were taken.", name,
-                   roi->n_miscounted);
+        report_add(
+            reading->report, REPORT_WARNING, "region.contours-count", reading->where,
+            "\"%s\": %zu contours have another number of points than the file says; the points there are were taken.",
+            name, roi->n_miscounted);
     if (roi->n_uneven > 0)
         report_add(reading->report, REPORT_WARNING, "region.contours-count", reading->where,
-                   "\"%s\": %zu contours have coordinates that are not three for each point; the last were left out.", name,
-                   roi->n_uneven);
+                   "\"%s\": %zu contours have coordinates that are not three for each point; the last were left out.",
+                   name, roi->n_uneven);
 }
 
 static void report_empty(const struct reading *reading)
@@ -282,7 +286,8 @@ static void report_empty(const struct reading *reading)
         }
     if (n_empty > 0)
         report_add(reading->report, REPORT_NOTE, "region.no-contours", reading->where,
-                   "%zu of %zu regions have no closed contour and are not listed: %s.", n_empty, reading->n_rois, names);
+                   "%zu of %zu regions have no closed contour and are not listed: %s.", n_empty, reading->n_rois,
+                   names);
 }
 
 static void find_references(struct rtstruct *set, const struct dicom_item *root, char *frame_uid, size_t frame_size)
@@ -314,7 +319,8 @@ static struct rtstruct *made_set(struct reading *reading, struct rtstruct *set, 
     return set;
 }
 
-struct rtstruct *rtstruct_read(const struct dicom_file *file, const char *where, struct report *report, struct error *err)
+struct rtstruct *rtstruct_read(const struct dicom_file *file, const char *where, struct report *report,
+                               struct error *err)
 {
     const struct dicom_item *root = dicom_root(file);
     char class[DICOM_UID_SIZE], modality[17], frame_uid[DICOM_UID_SIZE] = "";
@@ -359,7 +365,8 @@ void rtstruct_destroy(struct rtstruct *set)
     free(set);
 }
 
-void rtstruct_check_frame(const struct rtstruct *set, const char *image_frame_uid, const char *where, struct report *report)
+void rtstruct_check_frame(const struct rtstruct *set, const char *image_frame_uid, const char *where,
+                          struct report *report)
 {
     size_t n_unknown = 0, n_other = 0;
     char unknown[200] = "", other[200] = "";
@@ -375,17 +382,19 @@ void rtstruct_check_frame(const struct rtstruct *set, const char *image_frame_ui
         }
     }
     if (n_unknown > 0)
-        report_add(report, REPORT_NOTE, "region.no-frame", where,
-                   "%s frame of reference, so nothing says that %zu regions fit the image: %s. They are shown where their coordinates are.",
-                   is_known ? "The regions name no" : "The image names no", n_unknown, unknown);
+        report_add(
+            report, REPORT_NOTE, "region.no-frame", where,
+            "%s frame of reference, so nothing says that %zu regions fit the image: %s. They are shown where their coordinates are.",
+            is_known ? "The regions name no" : "The image names no", n_unknown, unknown);
     if (n_other > 0)
-        report_add(report, REPORT_WARNING, "region.frame-differs", where,
-                   "%zu regions were drawn in another frame of reference than the image's and may be shifted against it: %s.", n_other,
-                   other);
+        report_add(
+            report, REPORT_WARNING, "region.frame-differs", where,
+            "%zu regions were drawn in another frame of reference than the image's and may be shifted against it: %s.",
+            n_other, other);
 }
 
-void rtstruct_report_reach(const struct rtstruct *set, const struct contour_choice *choices, const char *only, const char *image,
-                           const char *where, struct report *report)
+void rtstruct_report_reach(const struct rtstruct *set, const struct contour_choice *choices, const char *only,
+                           const char *image, const char *where, struct report *report)
 {
     char names[200] = "";
     size_t n_beyond = 0, n_all = 0;
@@ -398,11 +407,14 @@ void rtstruct_report_reach(const struct rtstruct *set, const struct contour_choi
         n_beyond += choices[i].is_beyond;
     }
     if (n_beyond > 0)
-        report_add(report, REPORT_WARNING, "region.contours-beyond", where, "Contours of %zu of %zu regions reach beyond the image \"%s\"; they "
-                   "were filled on a grid that continues it and covers them: %s.", n_beyond, n_all, image, names);
+        report_add(report, REPORT_WARNING, "region.contours-beyond", where,
+                   "Contours of %zu of %zu regions reach beyond the image \"%s\"; they "
+                   "were filled on a grid that continues it and covers them: %s.",
+                   n_beyond, n_all, image, names);
 }
 
-static void report_left_out(const char *name, const struct contour_facts *facts, const char *where, struct report *report)
+static void report_left_out(const char *name, const struct contour_facts *facts, const char *where,
+                            struct report *report)
 {
     const struct {
         size_t n;
@@ -417,8 +429,8 @@ static void report_left_out(const char *name, const struct contour_facts *facts,
                        "\"%s\": %zu contours %s and were left out.", name, reasons[i].n, reasons[i].why);
 }
 
-void rtstruct_report_fill(const struct rtstruct_roi *roi, const struct contour_choice *choice, const struct contour_facts *facts,
-                          const char *where, struct report *report)
+void rtstruct_report_fill(const struct rtstruct_roi *roi, const struct contour_choice *choice,
+                          const struct contour_facts *facts, const char *where, struct report *report)
 {
     const char *name = roi->name;
     const uint32_t *s = choice->subdivision;
@@ -432,18 +444,23 @@ void rtstruct_report_fill(const struct rtstruct_roi *roi, const struct contour_c
     else if (s[0] * s[1] * s[2] > 1)
         snprintf(grid, sizeof grid, "voxels of the image divided %u x %u x %u", s[0], s[1], s[2]);
     double percent = facts->polygon_cm3 > 0 ? 100 * (facts->filled_cm3 / facts->polygon_cm3 - 1) : 0;
-    report_add(report, choice->is_short ? REPORT_WARNING : REPORT_NOTE, choice->is_short ? "region.contours-coarse" : "region.contours-filled",
-               where, "\"%s\": %zu planes %.4g mm apart, filled by even-odd at the centres of %s: %.4g cm3, its polygons enclose %.4g cm3 (%+.1f %%).",
-               name, facts->n_planes, facts->spacing_mm, grid, facts->filled_cm3, facts->polygon_cm3, percent);
+    report_add(
+        report, choice->is_short ? REPORT_WARNING : REPORT_NOTE,
+        choice->is_short ? "region.contours-coarse" : "region.contours-filled", where,
+        "\"%s\": %zu planes %.4g mm apart, filled by even-odd at the centres of %s: %.4g cm3, its polygons enclose %.4g cm3 (%+.1f %%).",
+        name, facts->n_planes, facts->spacing_mm, grid, facts->filled_cm3, facts->polygon_cm3, percent);
     if (facts->n_gaps > 0)
-        report_add(report, REPORT_NOTE, "region.contours-gap", where,
-                   "\"%s\": at %zu places the next contour is further away than %.4g mm (up to %.4g mm); nothing was filled there.", name,
-                   facts->n_gaps, facts->spacing_mm, facts->widest_gap_mm);
+        report_add(
+            report, REPORT_NOTE, "region.contours-gap", where,
+            "\"%s\": at %zu places the next contour is further away than %.4g mm (up to %.4g mm); nothing was filled there.",
+            name, facts->n_gaps, facts->spacing_mm, facts->widest_gap_mm);
     if (facts->n_outside > 0)
-        report_add(report, REPORT_WARNING, "region.contours-outside", where,
-                   "\"%s\": %zu contours leave the image, further than %g mm or with too many points to be filled there; what lies outside is "
-                   "not shown.", name, facts->n_outside, CONTOUR_MAX_REACH_MM);
+        report_add(
+            report, REPORT_WARNING, "region.contours-outside", where,
+            "\"%s\": %zu contours leave the image, further than %g mm or with too many points to be filled there; what lies outside is "
+            "not shown.",
+            name, facts->n_outside, CONTOUR_MAX_REACH_MM);
     if (facts->n_not_planar > 0)
-        report_add(report, REPORT_NOTE, "region.contours-not-planar", where, "\"%s\": %zu contours are not flat; they were flattened.", name,
-                   facts->n_not_planar);
+        report_add(report, REPORT_NOTE, "region.contours-not-planar", where,
+                   "\"%s\": %zu contours are not flat; they were flattened.", name, facts->n_not_planar);
 }

@@ -44,16 +44,16 @@ struct reading {
     size_t n_segments;
     struct seg_grid grid;
     bool is_fractional;
-    uint32_t threshold;    /* fractional: least value inside */
-    const uint8_t *bits;   /* binary: of all frames, one behind the other */
+    uint32_t threshold;  /* fractional: least value inside */
+    const uint8_t *bits; /* binary: of all frames, one behind the other */
     bool is_swapped;
-    uint8_t *cells;        /* fractional: one frame */
+    uint8_t *cells;             /* fractional: one frame */
     struct dicom_pixels pixels; /* fractional */
     struct dicom_coded coded;
-    size_t n_repeated;     /* frames of a segment where it has another one */
+    size_t n_repeated; /* frames of a segment where it has another one */
 };
 
-/* ---- segments -------------------------------------------------------------------------------------------------------------------------- */
+/* ---- segments --------------------------------------------------------------------------------------------------- */
 
 static double linear_to_srgb(double c)
 {
@@ -68,9 +68,11 @@ static double lab_inverse(double t)
 
 void dicom_seg_color(const uint16_t lab[3], uint8_t rgb[3])
 {
-    double l = lab[0] / 65535.0 * 100, a = lab[1] / 65535.0 * 255 - 128, b = lab[2] / 65535.0 * 255 - 128, y = (l + 16) / 116;
-    double xyz[3] = { 0.96422 * lab_inverse(y + a / 500), lab_inverse(y), 0.82521 * lab_inverse(y - b / 200) }; /* white D50 */
-    static const double from_xyz[3][3] = { { 3.1338561, -1.6168667, -0.4906146 },  /* D50 to D65 and to sRGB in one */
+    double l = lab[0] / 65535.0 * 100, a = lab[1] / 65535.0 * 255 - 128, b = lab[2] / 65535.0 * 255 - 128,
+           y = (l + 16) / 116;
+    double xyz[3] = { 0.96422 * lab_inverse(y + a / 500), lab_inverse(y),
+                      0.82521 * lab_inverse(y - b / 200) };                       /* white D50 */
+    static const double from_xyz[3][3] = { { 3.1338561, -1.6168667, -0.4906146 }, /* D50 to D65 and to sRGB in one */
                                            { -0.9787684, 1.9161415, 0.0334540 },
                                            { 0.0719453, -0.2289914, 1.4052427 } };
     for (int i = 0; i < 3; i++) {
@@ -92,8 +94,10 @@ static void read_color(const struct reading *reading, const struct dicom_item *i
         lab[i] = is_color ? (uint16_t)values[i] : 0;
     }
     if (!is_color) {
-        report_add(reading->report, REPORT_WARNING, "dicom.bad-number", reading->where, "\"%s\": its colour (0062,000D) has %zu values, expected three "
-                   "from 0 to 65535; it has the palette's.", name->name, n);
+        report_add(reading->report, REPORT_WARNING, "dicom.bad-number", reading->where,
+                   "\"%s\": its colour (0062,000D) has %zu values, expected three "
+                   "from 0 to 65535; it has the palette's.",
+                   name->name, n);
         return;
     }
     dicom_seg_color(lab, name->rgb);
@@ -114,7 +118,8 @@ static bool read_segments(struct reading *reading, struct error *err)
     if (n == 0)
         return error_set(err, ERROR_FORMAT, "%s: no Segment Sequence (0062,0002)", reading->where);
     if (n > DICOM_SEG_MAX_SEGMENTS)
-        return error_set(err, ERROR_LIMIT, "%s: %zu segments; at most %d are read", reading->where, n, DICOM_SEG_MAX_SEGMENTS);
+        return error_set(err, ERROR_LIMIT, "%s: %zu segments; at most %d are read", reading->where, n,
+                         DICOM_SEG_MAX_SEGMENTS);
     reading->segments = mem_array(n, sizeof *reading->segments, UINT64_MAX, err);
     if (!reading->segments)
         return false;
@@ -122,34 +127,37 @@ static bool read_segments(struct reading *reading, struct error *err)
         const struct dicom_item *item = dicom_item_at(reading->root, SEGMENT_SEQUENCE, i);
         int64_t number;
         if (!dicom_integer(item, SEGMENT_NUMBER, &number) || find_segment(reading, number)) {
-            report_add(reading->report, REPORT_WARNING, "region.roi-number", reading->where, "Item %zu of the segments (0062,0002) has no number "
-                       "(0062,0004) of its own, so no frame can refer to it; it was left out.", i + 1);
+            report_add(reading->report, REPORT_WARNING, "region.roi-number", reading->where,
+                       "Item %zu of the segments (0062,0002) has no number "
+                       "(0062,0004) of its own, so no frame can refer to it; it was left out.",
+                       i + 1);
             continue;
         }
         struct segment *segment = &reading->segments[reading->n_segments++];
         segment->number = number;
         if (!dicom_text(item, SEGMENT_LABEL, segment->name.name, sizeof segment->name.name)) {
             snprintf(segment->name.name, sizeof segment->name.name, "Segment %lld", (long long)number);
-            report_add(reading->report, REPORT_NOTE, "region.unnamed", reading->where, "Segment %lld has no label; it is called \"%s\".",
-                       (long long)number, segment->name.name);
+            report_add(reading->report, REPORT_NOTE, "region.unnamed", reading->where,
+                       "Segment %lld has no label; it is called \"%s\".", (long long)number, segment->name.name);
         }
         read_color(reading, item, &segment->name);
     }
     return true;
 }
 
-/* ---- pixels ---------------------------------------------------------------------------------------------------------------------------- */
+/* ---- pixels ----------------------------------------------------------------------------------------------------- */
 
-static bool need_integer(const struct reading *reading, uint32_t tag, const char *name, int64_t low, int64_t high, uint32_t *out,
-                         struct error *err)
+static bool need_integer(const struct reading *reading, uint32_t tag, const char *name, int64_t low, int64_t high,
+                         uint32_t *out, struct error *err)
 {
     int64_t value;
     if (!dicom_integer(reading->root, tag, &value))
-        return error_set(err, ERROR_FORMAT, "%s: element (%04X,%04X), %s: expected a whole number, found none", reading->where, tag >> 16,
-                         tag & 0xFFFF, name);
+        return error_set(err, ERROR_FORMAT, "%s: element (%04X,%04X), %s: expected a whole number, found none",
+                         reading->where, tag >> 16, tag & 0xFFFF, name);
     if (value < low || value > high)
-        return error_set(err, ERROR_LIMIT, "%s: element (%04X,%04X), %s: found %lld, expected %lld to %lld", reading->where, tag >> 16, tag & 0xFFFF,
-                         name, (long long)value, (long long)low, (long long)high);
+        return error_set(err, ERROR_LIMIT, "%s: element (%04X,%04X), %s: found %lld, expected %lld to %lld",
+                         reading->where, tag >> 16, tag & 0xFFFF, name, (long long)value, (long long)low,
+                         (long long)high);
     *out = (uint32_t)value;
     return true;
 }
@@ -162,11 +170,13 @@ static bool look_at_bits(struct reading *reading, struct error *err)
     if (reading->is_swapped)
         needed += needed % 2; /* the last byte lies in the upper half of a word */
     if (!reading->bits)
-        return error_set(err, ERROR_UNSUPPORTED, "%s: its bits are compressed (%s), or not there; only plain ones are read", reading->where,
+        return error_set(err, ERROR_UNSUPPORTED,
+                         "%s: its bits are compressed (%s), or not there; only plain ones are read", reading->where,
                          dicom_transfer_syntax(reading->file));
     if (size < needed)
-        return error_set(err, ERROR_FORMAT, "%s: pixel data of %llu bytes; %u x %u x %u pixels of 1 bit need %llu", reading->where,
-                         (unsigned long long)size, grid->columns, grid->rows, grid->n_frames, (unsigned long long)needed);
+        return error_set(err, ERROR_FORMAT, "%s: pixel data of %llu bytes; %u x %u x %u pixels of 1 bit need %llu",
+                         reading->where, (unsigned long long)size, grid->columns, grid->rows, grid->n_frames,
+                         (unsigned long long)needed);
     return true;
 }
 
@@ -179,14 +189,17 @@ static bool look_at_fractions(struct reading *reading, struct error *err)
         !need_integer(reading, MOST_FRACTION, "maximum fractional value", 1, 255, &most, err))
         return false;
     if (pixels.bits_allocated != 8 || pixels.is_signed)
-        return error_set(err, ERROR_UNSUPPORTED, "%s: a fractional segmentation of %u bits a pixel, expected 8 without a sign", reading->where,
+        return error_set(err, ERROR_UNSUPPORTED,
+                         "%s: a fractional segmentation of %u bits a pixel, expected 8 without a sign", reading->where,
                          pixels.bits_allocated);
     reading->pixels = pixels;
     reading->threshold = (most + 1) / 2;
     reading->cells = mem_array((size_t)pixels.rows * pixels.columns, 1, UINT32_MAX, err);
     dicom_text(reading->root, FRACTION_TYPE, type, sizeof type);
-    report_add(reading->report, REPORT_NOTE, "mask.fractional", reading->where, "The segments are fractional (%s): voxels of %u of %u and more count "
-               "as inside.", type[0] ? type : "of a kind not said", reading->threshold, most);
+    report_add(reading->report, REPORT_NOTE, "mask.fractional", reading->where,
+               "The segments are fractional (%s): voxels of %u of %u and more count "
+               "as inside.",
+               type[0] ? type : "of a kind not said", reading->threshold, most);
     return reading->cells != NULL;
 }
 
@@ -203,12 +216,16 @@ static bool read_pixels_module(struct reading *reading, struct error *err)
     dicom_text(reading->root, SEGMENTATION_TYPE, type, sizeof type);
     reading->is_fractional = strcmp(type, "FRACTIONAL") == 0;
     if ((!reading->is_fractional && strcmp(type, "BINARY") != 0) || bits != (reading->is_fractional ? 8 : 1))
-        return error_set(err, ERROR_UNSUPPORTED, "%s: a segmentation of type (0062,0001) \"%s\" with %u bits a pixel; BINARY with 1 and FRACTIONAL "
-                         "with 8 are read", reading->where, type, bits);
+        return error_set(
+            err, ERROR_UNSUPPORTED,
+            "%s: a segmentation of type (0062,0001) \"%s\" with %u bits a pixel; BINARY with 1 and FRACTIONAL "
+            "with 8 are read",
+            reading->where, type, bits);
     return reading->is_fractional ? look_at_fractions(reading, err) : look_at_bits(reading, err);
 }
 
-/* A row of bits into a row of a mask. at: of its first pixel among all frames; the lowest bit of a byte is the first. PS3.5 8.1.1. */
+/* A row of bits into a row of a mask. at: of its first pixel among all frames; the lowest bit of a byte is the first.
+ * PS3.5 8.1.1. */
 static void add_bits(const struct reading *reading, uint64_t at, uint32_t n, uint64_t *row)
 {
     for (uint32_t i = 0; i < n;) {
@@ -245,14 +262,16 @@ static bool add_frame(struct reading *reading, uint32_t frame, struct mask *mask
     return true;
 }
 
-/* ---- layers ---------------------------------------------------------------------------------------------------------------------------- */
+/* ---- layers ----------------------------------------------------------------------------------------------------- */
 
 static struct mask *read_mask(struct reading *reading, const struct segment *segment, struct error *err)
 {
     const struct seg_grid *grid = &reading->grid;
     struct mask *mask = mask_create_empty(grid->grid.size, &grid->grid.lps_mm_from_ijk, err);
-    uint32_t low_k = grid->grid.size[2], end_k = 0; /* the reach of the segment: nothing else of the mask is looked at */
-    bool *has_plane = mask ? mem_array(grid->grid.size[2], sizeof *has_plane, UINT32_MAX, err) : NULL, is_read = has_plane != NULL;
+    uint32_t low_k = grid->grid.size[2],
+             end_k = 0; /* the reach of the segment: nothing else of the mask is looked at */
+    bool *has_plane = mask ? mem_array(grid->grid.size[2], sizeof *has_plane, UINT32_MAX, err) : NULL,
+         is_read = has_plane != NULL;
     for (uint32_t f = 0; is_read && f < grid->n_frames; f++) {
         if (!grid->frames[f].is_used || grid->frames[f].segment != segment->number)
             continue;
@@ -284,8 +303,8 @@ static bool add_name(struct label_names *names, const struct label_name *name, u
 }
 
 /* Into the first layer where it overlaps nothing. */
-static bool add_mask(const struct reading *reading, const struct mask *mask, const struct label_name *name, struct nrrd_layers *layers,
-                     struct error *err)
+static bool add_mask(const struct reading *reading, const struct mask *mask, const struct label_name *name,
+                     struct nrrd_layers *layers, struct error *err)
 {
     size_t at = 0;
     while (at < layers->n && (layers->names[at].n >= UINT8_MAX || !mask_layer_is_free(mask, layers->volumes[at])))
@@ -296,7 +315,9 @@ static bool add_mask(const struct reading *reading, const struct mask *mask, con
         return add_name(&layers->names[at], name, value, err);
     }
     if (at == REGION_MAX_LAYERS || (at + 1) * (uint64_t)grid_n_voxels(&reading->grid.grid) > VOLUME_MAX_BYTES)
-        return error_set(err, ERROR_LIMIT, "%s: its segments overlap so much that more than %zu layers of labels would be needed", reading->where, at);
+        return error_set(err, ERROR_LIMIT,
+                         "%s: its segments overlap so much that more than %zu layers of labels would be needed",
+                         reading->where, at);
     layers->volumes[at] = mask_layer_create(mask, err);
     if (!layers->volumes[at])
         return false;
@@ -327,11 +348,13 @@ static bool fill_layers(struct reading *reading, const char *only, struct nrrd_l
         mask_destroy(mask);
     }
     if (n_empty > 0)
-        report_add(reading->report, REPORT_WARNING, "region.unused-names", reading->where, "%zu of %zu segments have no voxel and are not listed: %s.",
-                   n_empty, reading->n_segments, empty);
+        report_add(reading->report, REPORT_WARNING, "region.unused-names", reading->where,
+                   "%zu of %zu segments have no voxel and are not listed: %s.", n_empty, reading->n_segments, empty);
     if (reading->n_repeated > 0)
-        report_add(reading->report, REPORT_WARNING, "image.slices-repeated", reading->where, "%zu frames lie where another one of the same segment "
-                   "does; both were taken together.", reading->n_repeated);
+        report_add(reading->report, REPORT_WARNING, "image.slices-repeated", reading->where,
+                   "%zu frames lie where another one of the same segment "
+                   "does; both were taken together.",
+                   reading->n_repeated);
     if (only[0] && n_wanted == 0)
         return error_set(err, ERROR_NOT_FOUND, "%s: no segment is called \"%s\"", reading->where, only);
     return is_filled;
@@ -354,19 +377,22 @@ static void assign_frames(struct reading *reading)
         }
     }
     if (n_unknown > 0)
-        report_add(reading->report, REPORT_WARNING, "region.roi-number", reading->where, "%zu frames belong to segments (0062,000B) that the file "
-                   "does not describe (the first: %lld); they were left out.", n_unknown, (long long)first_unknown);
+        report_add(reading->report, REPORT_WARNING, "region.roi-number", reading->where,
+                   "%zu frames belong to segments (0062,000B) that the file "
+                   "does not describe (the first: %lld); they were left out.",
+                   n_unknown, (long long)first_unknown);
 }
 
-bool dicom_seg_read(const struct dicom_file *file, const char *where, const char *only, struct nrrd_layers *layers, struct report *report,
-                    struct error *err)
+bool dicom_seg_read(const struct dicom_file *file, const char *where, const char *only, struct nrrd_layers *layers,
+                    struct report *report, struct error *err)
 {
     struct reading reading = { .file = file, .root = dicom_root(file), .where = where, .report = report };
     char class[DICOM_UID_SIZE];
     *layers = (struct nrrd_layers){ 0 };
     dicom_text(reading.root, SOP_CLASS, class, sizeof class);
     if (strcmp(class, SEG_CLASS) != 0)
-        return error_set(err, ERROR_UNSUPPORTED, "%s: a DICOM object of class %s, expected a segmentation", where, class);
+        return error_set(err, ERROR_UNSUPPORTED, "%s: a DICOM object of class %s, expected a segmentation", where,
+                         class);
     dicom_numbers_report(file, 0, where, report);
     bool is_read = read_segments(&reading, err) && read_pixels_module(&reading, err) &&
                    seg_grid_find(&reading.grid, reading.root, where, report, err);
@@ -378,9 +404,11 @@ bool dicom_seg_read(const struct dicom_file *file, const char *where, const char
         dicom_coded_report(&reading.coded, file, &reading.pixels, where, report);
     if (is_read) {
         const uint32_t *size = reading.grid.grid.size;
-        report_add(report, REPORT_NOTE, "region.segments", where, "%zu segments in %u frames (%s), on the frames' own grid of %u x %u x %u voxels; "
-                   "%zu layers of labels.", reading.n_segments, reading.grid.n_frames, reading.is_fractional ? "FRACTIONAL" : "BINARY", size[0], size[1],
-                   size[2], layers->n);
+        report_add(report, REPORT_NOTE, "region.segments", where,
+                   "%zu segments in %u frames (%s), on the frames' own grid of %u x %u x %u voxels; "
+                   "%zu layers of labels.",
+                   reading.n_segments, reading.grid.n_frames, reading.is_fractional ? "FRACTIONAL" : "BINARY", size[0],
+                   size[1], size[2], layers->n);
     } else {
         nrrd_layers_finish(layers);
     }
@@ -394,10 +422,11 @@ bool dicom_seg_measure(const struct dicom_file *file, uint64_t *n_voxels, size_t
 {
     struct reading reading = { .file = file, .root = dicom_root(file), .where = "" };
     struct seg_grid *grid = &reading.grid;
-    bool is_found = need_integer(&reading, ROWS, "rows", 1, DICOM_MAX_SIDE, &grid->rows, NULL) &&
-                    need_integer(&reading, COLUMNS, "columns", 1, DICOM_MAX_SIDE, &grid->columns, NULL) &&
-                    need_integer(&reading, N_FRAMES, "number of frames", 1, DICOM_SEG_MAX_FRAMES, &grid->n_frames, NULL) &&
-                    seg_grid_find(grid, reading.root, "", NULL, NULL);
+    bool is_found =
+        need_integer(&reading, ROWS, "rows", 1, DICOM_MAX_SIDE, &grid->rows, NULL) &&
+        need_integer(&reading, COLUMNS, "columns", 1, DICOM_MAX_SIDE, &grid->columns, NULL) &&
+        need_integer(&reading, N_FRAMES, "number of frames", 1, DICOM_SEG_MAX_FRAMES, &grid->n_frames, NULL) &&
+        seg_grid_find(grid, reading.root, "", NULL, NULL);
     *n_voxels = is_found ? grid_n_voxels(&grid->grid) : 0;
     *n_segments = dicom_n_items(reading.root, SEGMENT_SEQUENCE);
     free(grid->frames);

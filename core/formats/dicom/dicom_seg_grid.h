@@ -16,7 +16,9 @@ struct seg_grid {
     struct grid grid;
 };
 
-/* Planes at the distance the file gives (0018,0088) where all frames fit to it, else at the smallest distance of two frames. One empty plane
- * lies before the first frame and one behind the last. Frames of another orientation or pixel size than the first are left out, and said so.
- * errors ERROR_FORMAT, ERROR_UNSUPPORTED frames on uneven planes or not behind each other, ERROR_LIMIT, ERROR_RANGE, ERROR_MEMORY */
-NODISCARD bool seg_grid_find(struct seg_grid *grid, const struct dicom_item *root, const char *where, struct report *report, struct error *err);
+/* Planes at the distance the file gives (0018,0088) where all frames fit to it, else at the smallest distance of two
+ * frames. One empty plane lies before the first frame and one behind the last. Frames of another orientation or pixel
+ * size than the first are left out, and said so. errors ERROR_FORMAT, ERROR_UNSUPPORTED frames on uneven planes or not
+ * behind each other, ERROR_LIMIT, ERROR_RANGE, ERROR_MEMORY */
+NODISCARD bool seg_grid_find(struct seg_grid *grid, const struct dicom_item *root, const char *where,
+                             struct report *report, struct error *err);

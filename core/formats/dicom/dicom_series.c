@@ -27,11 +27,11 @@ struct series {
     size_t n_slices;
     struct dicom_plane plane;
     enum voxel_type type;
-    bool is_uniform;      /* all slices have one type and scale: cells are kept as stored */
+    bool is_uniform; /* all slices have one type and scale: cells are kept as stored */
     size_t plane_cells;
-    uint8_t *cells;       /* of all slices, [n_slices][plane_cells] of type */
-    struct bytes whole;   /* of the one file that holds all frames, when it must be decoded */
-    int32_t range[2];     /* of integer cells */
+    uint8_t *cells;     /* of all slices, [n_slices][plane_cells] of type */
+    struct bytes whole; /* of the one file that holds all frames, when it must be decoded */
+    int32_t range[2];   /* of integer cells */
     size_t n_done;
     struct coded coded;
     atomic_size_t next;
@@ -66,7 +66,8 @@ static bool open_file(struct series *series, struct reader *reader, size_t objec
     const struct dicom_object *about = &series->index->objects[object];
     struct bytes bytes = series->whole;
     if (!bytes.data) {
-        if (!folder_read(series->folder, about->path, (uint64_t)DICOM_MAX_FILE_MIB << 20, UINT64_MAX, &reader->bytes, err))
+        if (!folder_read(series->folder, about->path, (uint64_t)DICOM_MAX_FILE_MIB << 20, UINT64_MAX, &reader->bytes,
+                         err))
             return false;
         bytes = reader->bytes;
     }
@@ -79,8 +80,9 @@ static bool open_file(struct series *series, struct reader *reader, size_t objec
 
 static bool same_pixels(const struct dicom_pixels *a, const struct dicom_pixels *b)
 {
-    return a->rows == b->rows && a->columns == b->columns && a->n_frames == b->n_frames && a->bits_allocated == b->bits_allocated &&
-           a->bits_stored == b->bits_stored && a->high_bit == b->high_bit && a->is_signed == b->is_signed;
+    return a->rows == b->rows && a->columns == b->columns && a->n_frames == b->n_frames &&
+           a->bits_allocated == b->bits_allocated && a->bits_stored == b->bits_stored && a->high_bit == b->high_bit &&
+           a->is_signed == b->is_signed;
 }
 
 static void count_coded(struct dicom_decoded decoded, const struct dicom_image *image, struct coded *coded)
@@ -101,20 +103,25 @@ static void report_coded(const struct series *series, struct report *report)
     const struct dicom_object *first = object_of(series, &series->slices[0]);
     const struct dicom_pixels *pixels = &first->image->pixels;
     if (coded->n_unsaid > 0)
-        report_add(report, REPORT_WARNING, "image.lossy", first->path, "%zu of %zu slices were compressed with loss (JPEG 2000 with its irreversible "
-                   "transform), and their element (0028,2110) does not say so.", coded->n_unsaid, series->n_slices);
+        report_add(report, REPORT_WARNING, "image.lossy", first->path,
+                   "%zu of %zu slices were compressed with loss (JPEG 2000 with its irreversible "
+                   "transform), and their element (0028,2110) does not say so.",
+                   coded->n_unsaid, series->n_slices);
     if (coded->n_other_sign > 0)
-        report_add(report, REPORT_WARNING, "image.coded-otherwise", first->path, "Element (0028,0103), pixel representation: found %d, but the JPEG "
-                   "2000 codestream of %zu of %zu slices holds %s values; their bits were taken as the element says.", pixels->is_signed,
-                   coded->n_other_sign, series->n_slices, pixels->is_signed ? "unsigned" : "signed");
+        report_add(report, REPORT_WARNING, "image.coded-otherwise", first->path,
+                   "Element (0028,0103), pixel representation: found %d, but the JPEG "
+                   "2000 codestream of %zu of %zu slices holds %s values; their bits were taken as the element says.",
+                   pixels->is_signed, coded->n_other_sign, series->n_slices, pixels->is_signed ? "unsigned" : "signed");
     if (coded->n_other_bits > 0)
-        report_add(report, REPORT_WARNING, "image.coded-otherwise", first->path, "Element (0028,0101), bits stored: found %u, but the JPEG 2000 "
-                   "codestream of %zu of %zu slices holds values of %u bits; those were taken.", pixels->bits_stored, coded->n_other_bits,
-                   series->n_slices, coded->n_bits);
+        report_add(report, REPORT_WARNING, "image.coded-otherwise", first->path,
+                   "Element (0028,0101), bits stored: found %u, but the JPEG 2000 "
+                   "codestream of %zu of %zu slices holds values of %u bits; those were taken.",
+                   pixels->bits_stored, coded->n_other_bits, series->n_slices, coded->n_bits);
 }
 
 /* The stored values of a slice: straight from their place in the file, or decoded. */
-static bool read_stored(struct series *series, struct reader *reader, const struct dicom_slice *slice, void *out, struct error *err)
+static bool read_stored(struct series *series, struct reader *reader, const struct dicom_slice *slice, void *out,
+                        struct error *err)
 {
     const struct dicom_object *object = object_of(series, slice);
     const struct dicom_image *image = object->image;
@@ -133,10 +140,11 @@ static bool read_stored(struct series *series, struct reader *reader, const stru
     struct folder_part part;
     if (!folder_open_part(series->folder, object->path, &part, err))
         return false;
-    bool is_read = part.n_bytes == object->n_bytes
-                       ? folder_read_part(&part, object->path, image->stored.at + (uint64_t)slice->frame * bytes, out, bytes, err)
-                       : error_set(err, ERROR_IO, "%s: the file changed while it was read: %llu bytes, %llu before", object->path,
-                                   (unsigned long long)part.n_bytes, (unsigned long long)object->n_bytes);
+    bool is_read =
+        part.n_bytes == object->n_bytes
+            ? folder_read_part(&part, object->path, image->stored.at + (uint64_t)slice->frame * bytes, out, bytes, err)
+            : error_set(err, ERROR_IO, "%s: the file changed while it was read: %llu bytes, %llu before", object->path,
+                        (unsigned long long)part.n_bytes, (unsigned long long)object->n_bytes);
     folder_close_part(&part);
     if (is_read)
         dicom_pixels_unpack(&image->pixels, image->stored.is_swapped, out, series->plane_cells);
@@ -147,8 +155,12 @@ static double stored_value(const struct dicom_pixels *pixels, const uint8_t *cel
 {
     switch (pixels->bits_allocated) {
     case 8: return pixels->is_signed ? ((const int8_t *)cells)[i] : cells[i];
-    case 16: return pixels->is_signed ? ((const int16_t *)(const void *)cells)[i] : ((const uint16_t *)(const void *)cells)[i];
-    default: return pixels->is_signed ? (double)((const int32_t *)(const void *)cells)[i] : (double)((const uint32_t *)(const void *)cells)[i];
+    case 16:
+        return pixels->is_signed ? ((const int16_t *)(const void *)cells)[i]
+                                 : ((const uint16_t *)(const void *)cells)[i];
+    default:
+        return pixels->is_signed ? (double)((const int32_t *)(const void *)cells)[i]
+                                 : (double)((const uint32_t *)(const void *)cells)[i];
     }
 }
 
@@ -239,7 +251,8 @@ static void slices_of_files(struct series *series)
     for (size_t i = 0; i < series->stack->n_objects; i++) {
         const struct dicom_image *image = series->index->objects[series->stack->objects[i]].image;
         series->slices[i] = (struct dicom_slice){ .object = series->stack->objects[i],
-                                                  .position_lps_mm = { image->position_mm[0], image->position_mm[1], image->position_mm[2] },
+                                                  .position_lps_mm = { image->position_mm[0], image->position_mm[1],
+                                                                       image->position_mm[2] },
                                                   .slope = image->slope,
                                                   .offset = image->offset };
     }
@@ -249,7 +262,8 @@ static void slices_of_files(struct series *series)
     memcpy(series->plane.column, first->column, sizeof first->column);
     memcpy(series->plane.spacing_mm, first->spacing_mm, sizeof first->spacing_mm);
     series->plane.thickness_mm = first->thickness_mm;
-    struct vec3 row = vec3(first->row[0], first->row[1], first->row[2]), column = vec3(first->column[0], first->column[1], first->column[2]);
+    struct vec3 row = vec3(first->row[0], first->row[1], first->row[2]),
+                column = vec3(first->column[0], first->column[1], first->column[2]);
     struct vec3 normal = vec3_normalize(vec3_cross(row, column));
     for (size_t i = 0; i < series->n_slices; i++)
         series->slices[i].along_mm = vec3_dot(normal, series->slices[i].position_lps_mm);
@@ -299,12 +313,14 @@ static void read_facts(const struct series *series, const struct dicom_file *fil
 }
 
 /* Slices and facts, from the index or from the head of the one file that holds the frames. */
-static bool find_slices(struct series *series, struct dicom_series_facts *facts, struct report *report, struct error *err)
+static bool find_slices(struct series *series, struct dicom_series_facts *facts, struct report *report,
+                        struct error *err)
 {
     const struct dicom_stack *stack = series->stack;
     const struct dicom_object *first = &series->index->objects[stack->objects[0]];
     if (stack->n_slices > DICOM_MAX_SLICES)
-        return error_set(err, ERROR_LIMIT, "%s: %u frames; at most %d are read", first->path, stack->n_slices, DICOM_MAX_SLICES);
+        return error_set(err, ERROR_LIMIT, "%s: %u frames; at most %d are read", first->path, stack->n_slices,
+                         DICOM_MAX_SLICES);
     series->slices = mem_array(stack->n_slices, sizeof *series->slices, UINT32_MAX, err);
     if (!series->slices)
         return false;
@@ -315,8 +331,8 @@ static bool find_slices(struct series *series, struct dicom_series_facts *facts,
     if (file && first->image->has_place)
         slices_of_files(series);
     else if (file)
-        is_found = dicom_frames_find(file, first->path, stack->objects[0], first->image->pixels.n_frames, series->slices, &series->n_slices,
-                                     &series->plane, report, err);
+        is_found = dicom_frames_find(file, first->path, stack->objects[0], first->image->pixels.n_frames,
+                                     series->slices, &series->n_slices, &series->plane, report, err);
     if (is_found && facts)
         read_facts(series, file, facts);
     dicom_file_destroy(file);
@@ -340,8 +356,10 @@ static void check_scales(struct series *series, struct report *report)
         n++;
     }
     if (n > 0)
-        report_add(report, REPORT_WARNING, "image.rescale", object_of(series, &series->slices[0])->path, "%zu of %zu slices have a rescale slope "
-                   "of 0 or beyond all use; their values were taken as stored.", n, series->n_slices);
+        report_add(report, REPORT_WARNING, "image.rescale", object_of(series, &series->slices[0])->path,
+                   "%zu of %zu slices have a rescale slope "
+                   "of 0 or beyond all use; their values were taken as stored.",
+                   n, series->n_slices);
 }
 
 /* The type that holds all slices, and whether they share one scale. */
@@ -358,7 +376,8 @@ static void choose_type(struct series *series, struct dicom_series_facts *facts,
         n_scales += !is_same_scale;
         n_lossy += image->is_lossy;
         n_inverted += image->pixels.is_monochrome1;
-        series->is_uniform = series->is_uniform && is_same_scale && image->pixels.bits_allocated == pixels->bits_allocated &&
+        series->is_uniform = series->is_uniform && is_same_scale &&
+                             image->pixels.bits_allocated == pixels->bits_allocated &&
                              image->pixels.is_signed == pixels->is_signed;
     }
     if (!series->is_uniform || pixels->bits_allocated == 32)
@@ -369,19 +388,28 @@ static void choose_type(struct series *series, struct dicom_series_facts *facts,
         series->type = pixels->is_signed ? VOXEL_I16 : VOXEL_U8;
     const char *where = object_of(series, first)->path;
     if (n_scales > 0)
-        report_add(report, REPORT_NOTE, "image.slopes-differ", where, "%zu of %zu slices have another scale than the first; all were brought to "
-                   "one unit.", n_scales, series->n_slices);
+        report_add(report, REPORT_NOTE, "image.slopes-differ", where,
+                   "%zu of %zu slices have another scale than the first; all were brought to "
+                   "one unit.",
+                   n_scales, series->n_slices);
     if (pixels->bits_allocated == 32 && pixels->bits_stored > 24)
-        report_add(report, REPORT_NOTE, "image.precision", where, "Values of %u bits are kept with 24.", pixels->bits_stored);
+        report_add(report, REPORT_NOTE, "image.precision", where, "Values of %u bits are kept with 24.",
+                   pixels->bits_stored);
     if (n_lossy > 0)
-        report_add(report, REPORT_NOTE, "image.lossy", where, "%zu of %zu slices were compressed with loss.", n_lossy, series->n_slices);
+        report_add(report, REPORT_NOTE, "image.lossy", where, "%zu of %zu slices were compressed with loss.", n_lossy,
+                   series->n_slices);
     bool is_inverted = n_inverted > series->n_slices / 2;
     if (facts)
         facts->is_inverted = is_inverted;
     if (n_inverted > 0)
-        report_add(report, n_inverted < series->n_slices ? REPORT_WARNING : REPORT_NOTE, "image.inverted", where, "%zu of %zu slices are "
-                   "MONOCHROME1: their low values are meant to be white. %s are drawn so; the values are as in the file.", n_inverted,
-                   series->n_slices, n_inverted == series->n_slices ? "They" : is_inverted ? "All slices" : "None");
+        report_add(
+            report, n_inverted < series->n_slices ? REPORT_WARNING : REPORT_NOTE, "image.inverted", where,
+            "%zu of %zu slices are "
+            "MONOCHROME1: their low values are meant to be white. %s are drawn so; the values are as in the file.",
+            n_inverted, series->n_slices,
+            n_inverted == series->n_slices ? "They"
+            : is_inverted                  ? "All slices"
+                                           : "None");
 }
 
 static bool read_cells(struct series *series, struct error *err)
@@ -398,12 +426,12 @@ static bool read_cells(struct series *series, struct error *err)
     return false;
 }
 
-#define MIX(type, nearest)                                                                                         \
-    do {                                                                                                           \
-        const type *a = low, *b = high;                                                                            \
-        type *to = out;                                                                                            \
-        for (size_t i = 0; i < n; i++)                                                                             \
-            to[i] = (type)nearest((double)a[i] + weight * ((double)b[i] - (double)a[i]));                          \
+#define MIX(type, nearest) \
+    do { \
+        const type *a = low, *b = high; \
+        type *to = out; \
+        for (size_t i = 0; i < n; i++) \
+            to[i] = (type)nearest((double)a[i] + weight * ((double)b[i] - (double)a[i])); \
     } while (0)
 
 static void mix_planes(enum voxel_type type, const void *low, const void *high, double weight, void *out, size_t n)
@@ -425,7 +453,8 @@ static void interpolate(const struct series *series, const struct dicom_layout_o
         if (plane->a == plane->b)
             memcpy(out, series->cells + plane->a * bytes, bytes);
         else
-            mix_planes(series->type, series->cells + plane->a * bytes, series->cells + plane->b * bytes, plane->weight, out, series->plane_cells);
+            mix_planes(series->type, series->cells + plane->a * bytes, series->cells + plane->b * bytes, plane->weight,
+                       out, series->plane_cells);
     }
 }
 
@@ -468,17 +497,20 @@ static struct volume *read_volume(struct series *series, const struct dicom_layo
 }
 
 struct volume *dicom_series_read(const struct folder *folder, const struct dicom_index *index, size_t stack,
-                                 const struct dicom_progress *progress, struct dicom_series_facts *facts, struct report *report,
-                                 struct error *err)
+                                 const struct dicom_progress *progress, struct dicom_series_facts *facts,
+                                 struct report *report, struct error *err)
 {
     static const struct dicom_progress quiet;
-    struct series series = { .folder = folder, .index = index, .stack = &index->stacks[stack], .progress = progress ? progress : &quiet };
+    struct series series = {
+        .folder = folder, .index = index, .stack = &index->stacks[stack], .progress = progress ? progress : &quiet
+    };
     pthread_mutex_init(&series.lock, NULL);
     struct dicom_layout_of_slices layout = { 0 };
     struct volume *volume = NULL;
     series.plane_cells = (size_t)series.stack->rows * series.stack->columns;
     if (find_slices(&series, facts, report, err) &&
-        dicom_slices_lay_out(series.slices, series.n_slices, &series.plane, index->objects[series.stack->objects[0]].path, &layout, report, err)) {
+        dicom_slices_lay_out(series.slices, series.n_slices, &series.plane,
+                             index->objects[series.stack->objects[0]].path, &layout, report, err)) {
         check_scales(&series, report);
         dicom_slices_compare(index, series.stack, report);
         choose_type(&series, facts, report);

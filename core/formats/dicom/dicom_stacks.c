@@ -87,7 +87,16 @@ static size_t sort_by_place(struct group *group)
 }
 
 /* What may set pictures of one place apart, as a text for the stack's name. */
-enum trait { TRAIT_ECHO, TRAIT_ECHO_TIME, TRAIT_B_VALUE, TRAIT_TIME, TRAIT_ACQUISITION, TRAIT_TRIGGER, TRAIT_TYPE, N_TRAITS };
+enum trait {
+    TRAIT_ECHO,
+    TRAIT_ECHO_TIME,
+    TRAIT_B_VALUE,
+    TRAIT_TIME,
+    TRAIT_ACQUISITION,
+    TRAIT_TRIGGER,
+    TRAIT_TYPE,
+    N_TRAITS
+};
 
 static void trait_of(const struct dicom_image *image, enum trait trait, char out[80])
 {
@@ -168,7 +177,8 @@ static bool part_by_order(const struct group *group, struct parts *parts)
     size_t times = 0;
     for (size_t i = 0, run = 0; i < group->n; i++) {
         run = i > 0 && group->members[i].along_mm - group->members[i - 1].along_mm < DICOM_SAME_PLACE_MM ? run + 1 : 0;
-        bool is_last = i + 1 == group->n || group->members[i + 1].along_mm - group->members[i].along_mm >= DICOM_SAME_PLACE_MM;
+        bool is_last =
+            i + 1 == group->n || group->members[i + 1].along_mm - group->members[i].along_mm >= DICOM_SAME_PLACE_MM;
         if (is_last && times == 0)
             times = run + 1;
         if (is_last && run + 1 != times)
@@ -196,7 +206,8 @@ static uint64_t bytes_of(const struct group *group)
         const struct dicom_image *image = group->members[i].image;
         voxels += (uint64_t)image->pixels.rows * image->pixels.columns * image->pixels.n_frames;
         is_wide = is_wide || image->slope != first->slope || image->offset != first->offset ||
-                  image->pixels.is_signed != first->pixels.is_signed || image->pixels.bits_allocated != first->pixels.bits_allocated;
+                  image->pixels.is_signed != first->pixels.is_signed ||
+                  image->pixels.bits_allocated != first->pixels.bits_allocated;
     }
     bool is_bytes = first->pixels.bits_allocated == 8 && !first->pixels.is_signed;
     return voxels * (is_wide ? 4 : is_bytes ? 1 : 2);
@@ -210,13 +221,15 @@ static void add_stack(struct dicom_index *index, const struct group *group, cons
     }
     const struct dicom_object *first = &index->objects[group->members[0].object];
     struct dicom_stack *stack = &index->stacks[index->n_stacks++];
-    *stack = (struct dicom_stack){ .rows = first->image->pixels.rows, .columns = first->image->pixels.columns, .n_objects = group->n };
+    *stack = (struct dicom_stack){ .rows = first->image->pixels.rows,
+                                   .columns = first->image->pixels.columns,
+                                   .n_objects = group->n };
     memcpy(stack->series, first->series, sizeof stack->series);
     memcpy(stack->study, first->study, sizeof stack->study);
     memcpy(stack->frame_of_reference, first->frame_of_reference, sizeof stack->frame_of_reference);
     memcpy(stack->modality, first->modality, sizeof stack->modality);
-    if (apart[0] && snprintf(stack->description, sizeof stack->description, "%s%s(%s)", first->description, first->description[0] ? " " : "",
-                             apart) >= (int)sizeof stack->description)
+    if (apart[0] && snprintf(stack->description, sizeof stack->description, "%s%s(%s)", first->description,
+                             first->description[0] ? " " : "", apart) >= (int)sizeof stack->description)
         snprintf(stack->description, sizeof stack->description, "%s", apart);
     else if (!apart[0])
         memcpy(stack->description, first->description, sizeof stack->description);
@@ -229,7 +242,8 @@ static void add_stack(struct dicom_index *index, const struct group *group, cons
 }
 
 /* One group to stacks: one, or several where places are taken more than once. */
-static void close_group(struct dicom_index *index, struct group *group, const char *apart, size_t *n_left_out, struct report *report)
+static void close_group(struct dicom_index *index, struct group *group, const char *apart, size_t *n_left_out,
+                        struct report *report)
 {
     const struct dicom_object *first = &index->objects[group->members[0].object];
     size_t n_repeated = sort_by_place(group);
@@ -248,8 +262,10 @@ static void close_group(struct dicom_index *index, struct group *group, const ch
         is_parted = part_by_order(group, parts);
     }
     if (is_parted) {
-        report_add(report, REPORT_NOTE, "image.split", first->path, "The series \"%s\" holds %zu stacks at the same places (%s, %s, ...); "
-                   "each became an image.", first->description, parts->n, parts->names[0], parts->names[1]);
+        report_add(report, REPORT_NOTE, "image.split", first->path,
+                   "The series \"%s\" holds %zu stacks at the same places (%s, %s, ...); "
+                   "each became an image.",
+                   first->description, parts->n, parts->names[0], parts->names[1]);
         for (size_t p = 0; p < parts->n; p++)
             add_stack(index, &parts->groups[p], parts->names[p], n_left_out);
     } else {
@@ -257,8 +273,10 @@ static void close_group(struct dicom_index *index, struct group *group, const ch
         for (size_t i = 1; i < group->n; i++)
             if (group->members[i].along_mm - group->members[n - 1].along_mm >= DICOM_SAME_PLACE_MM)
                 group->members[n++] = group->members[i];
-        report_add(report, REPORT_WARNING, "image.slices-repeated", first->path, "%zu of %zu slices of the series \"%s\" lie where another "
-                   "one does; of each place the one with the lowest number was used.", group->n - n, group->n, first->description);
+        report_add(report, REPORT_WARNING, "image.slices-repeated", first->path,
+                   "%zu of %zu slices of the series \"%s\" lie where another "
+                   "one does; of each place the one with the lowest number was used.",
+                   group->n - n, group->n, first->description);
         group->n = n;
         add_stack(index, group, apart, n_left_out);
     }
@@ -287,7 +305,8 @@ static struct group *group_for(struct grouping *all, const struct dicom_index *i
     for (size_t g = 0; g < all->n; g++) {
         const struct member *first = &all->groups[g].members[0];
         const struct dicom_object *other = &index->objects[first->object];
-        if (strcmp(one->series, other->series) == 0 && strcmp(one->frame_of_reference, other->frame_of_reference) == 0 &&
+        if (strcmp(one->series, other->series) == 0 &&
+            strcmp(one->frame_of_reference, other->frame_of_reference) == 0 &&
             strcmp(one->modality, other->modality) == 0 && fit_together(one->image, other->image))
             return &all->groups[g];
     }
@@ -301,36 +320,44 @@ static void name_difference(const struct dicom_object *a, const struct dicom_obj
     if (found->has_place != expected->has_place)
         snprintf(out, 240, "frames of its own");
     else if (found->pixels.rows != expected->pixels.rows || found->pixels.columns != expected->pixels.columns)
-        snprintf(out, 240, "(0028,0011) and (0028,0010), size: found %u x %u, expected %u x %u", found->pixels.columns, found->pixels.rows,
-                 expected->pixels.columns, expected->pixels.rows);
-    else if (!are_close(found->spacing_mm, expected->spacing_mm, 2, 1e-3 * fmin(expected->spacing_mm[0], expected->spacing_mm[1])))
-        snprintf(out, 240, "(0028,0030), pixel spacing: found %g\\%g, expected %g\\%g", found->spacing_mm[0], found->spacing_mm[1],
-                 expected->spacing_mm[0], expected->spacing_mm[1]);
+        snprintf(out, 240, "(0028,0011) and (0028,0010), size: found %u x %u, expected %u x %u", found->pixels.columns,
+                 found->pixels.rows, expected->pixels.columns, expected->pixels.rows);
+    else if (!are_close(found->spacing_mm, expected->spacing_mm, 2,
+                        1e-3 * fmin(expected->spacing_mm[0], expected->spacing_mm[1])))
+        snprintf(out, 240, "(0028,0030), pixel spacing: found %g\\%g, expected %g\\%g", found->spacing_mm[0],
+                 found->spacing_mm[1], expected->spacing_mm[0], expected->spacing_mm[1]);
     else if (!are_close(found->row, expected->row, 3, 1e-3) || !are_close(found->column, expected->column, 3, 1e-3))
-        snprintf(out, 240, "(0020,0037), orientation: found %.4g\\%.4g\\%.4g\\%.4g\\%.4g\\%.4g, expected %.4g\\%.4g\\%.4g\\%.4g\\%.4g\\%.4g",
-                 found->row[0], found->row[1], found->row[2], found->column[0], found->column[1], found->column[2], expected->row[0],
-                 expected->row[1], expected->row[2], expected->column[0], expected->column[1], expected->column[2]);
+        snprintf(
+            out, 240,
+            "(0020,0037), orientation: found %.4g\\%.4g\\%.4g\\%.4g\\%.4g\\%.4g, expected %.4g\\%.4g\\%.4g\\%.4g\\%.4g\\%.4g",
+            found->row[0], found->row[1], found->row[2], found->column[0], found->column[1], found->column[2],
+            expected->row[0], expected->row[1], expected->row[2], expected->column[0], expected->column[1],
+            expected->column[2]);
     else if (strcmp(a->frame_of_reference, b->frame_of_reference) != 0)
         snprintf(out, 240, "(0020,0052), frame of reference");
     else
         snprintf(out, 240, "(0008,0060), modality: found %s, expected %s", a->modality, b->modality);
 }
 
-/* A few pictures that do not fit to the many others of their series: one of them may be damaged, and it is missing there. */
-static void report_stray(const struct grouping *all, const struct dicom_index *index, size_t group, struct report *report)
+/* A few pictures that do not fit to the many others of their series: one of them may be damaged, and it is missing
+ * there. */
+static void report_stray(const struct grouping *all, const struct dicom_index *index, size_t group,
+                         struct report *report)
 {
     const struct group *few = &all->groups[group], *most = few;
     const struct dicom_object *stray = &index->objects[few->members[0].object];
     for (size_t g = 0; g < all->n; g++)
-        if (all->groups[g].n > most->n && strcmp(index->objects[all->groups[g].members[0].object].series, stray->series) == 0)
+        if (all->groups[g].n > most->n &&
+            strcmp(index->objects[all->groups[g].members[0].object].series, stray->series) == 0)
             most = &all->groups[g];
     if (4 * few->n > most->n)
         return;
     char difference[240];
     name_difference(stray, &index->objects[most->members[0].object], difference);
-    report_add(report, REPORT_WARNING, "image.slices-stray", stray->path, "%zu of %zu pictures of the series \"%.60s\" cannot lie in one volume "
-               "with the others: %s. They became an image of their own and are missing among the others.", few->n, few->n + most->n,
-               stray->description, difference);
+    report_add(report, REPORT_WARNING, "image.slices-stray", stray->path,
+               "%zu of %zu pictures of the series \"%.60s\" cannot lie in one volume "
+               "with the others: %s. They became an image of their own and are missing among the others.",
+               few->n, few->n + most->n, stray->description, difference);
 }
 
 /* "2 of 3": which group of its series this is, so that their names differ; "" when it is alone. */
@@ -369,7 +396,8 @@ bool dicom_stacks_find(struct dicom_index *index, struct report *report, struct 
                            "The directions of its rows and columns (0020,0037) do not span a plane.");
                 continue;
             }
-            along_mm = vec3_dot(axes[2], vec3(object->image->position_mm[0], object->image->position_mm[1], object->image->position_mm[2]));
+            along_mm = vec3_dot(axes[2], vec3(object->image->position_mm[0], object->image->position_mm[1],
+                                              object->image->position_mm[2]));
         }
         struct group *group = group_for(all, index, i);
         if (group)
@@ -381,16 +409,18 @@ bool dicom_stacks_find(struct dicom_index *index, struct report *report, struct 
         char apart[80];
         name_group(all, index, g, apart);
         if (strncmp(apart, "1 of ", 5) == 0)
-            report_add(report, REPORT_NOTE, "image.split", index->objects[all->groups[g].members[0].object].path,
-                       "The series \"%s\" holds pictures of different orientation, size or kind; it was split, this is %s.",
-                       index->objects[all->groups[g].members[0].object].description, apart);
+            report_add(
+                report, REPORT_NOTE, "image.split", index->objects[all->groups[g].members[0].object].path,
+                "The series \"%s\" holds pictures of different orientation, size or kind; it was split, this is %s.",
+                index->objects[all->groups[g].members[0].object].description, apart);
         if (apart[0])
             report_stray(all, index, g, report);
         close_group(index, &all->groups[g], apart, &n_left_out, report);
     }
     if (n_left_out > 0)
-        report_add(report, REPORT_WARNING, "dicom.too-many", "", "%zu pictures were left out: at most %d stacks of %d slices are kept.",
-                   n_left_out, DICOM_MAX_STACKS, DICOM_MAX_SLICES);
+        report_add(report, REPORT_WARNING, "dicom.too-many", "",
+                   "%zu pictures were left out: at most %d stacks of %d slices are kept.", n_left_out, DICOM_MAX_STACKS,
+                   DICOM_MAX_SLICES);
     if (index->n_stacks > 1)
         qsort(index->stacks, index->n_stacks, sizeof *index->stacks, by_size);
     for (size_t g = 0; g < all->n; g++)

@@ -23,7 +23,12 @@ size_t utf8_length(const unsigned char *p, size_t left)
     size_t n = p[0] >= 0xC2 && p[0] <= 0xDF ? 2 : (p[0] & 0xF0) == 0xE0 ? 3 : p[0] >= 0xF0 && p[0] <= 0xF4 ? 4 : 0;
     if (n == 0 || n > left)
         return 0;
-    unsigned low = p[0] == 0xE0 ? 0xA0 : p[0] == 0xF0 ? 0x90 : 0x80, high = p[0] == 0xED ? 0x9F : p[0] == 0xF4 ? 0x8F : 0xBF;
+    unsigned low = p[0] == 0xE0   ? 0xA0
+                   : p[0] == 0xF0 ? 0x90
+                                  : 0x80,
+             high = p[0] == 0xED   ? 0x9F
+                    : p[0] == 0xF4 ? 0x8F
+                                   : 0xBF;
     for (size_t i = 1; i < n; i++, low = 0x80, high = 0xBF)
         if (p[i] < low || p[i] > high)
             return 0;
@@ -53,7 +58,8 @@ std::string from_latin1(const std::string &text)
     return out;
 }
 
-// Escape sequences of Japanese sets (ISO-IR 6, 14, 87, 159), which DCMTK over the C library's iconv does not know by their own names.
+// Escape sequences of Japanese sets (ISO-IR 6, 14, 87, 159), which DCMTK over the C library's iconv does not know by
+// their own names.
 bool from_iso2022(const std::string &text, std::string &out)
 {
     iconv_t converter = iconv_open("UTF-8", "ISO-2022-JP-2");
@@ -69,7 +75,10 @@ bool from_iso2022(const std::string &text, std::string &out)
     return is_converted && is_utf8(out);
 }
 
-bool is_padding(char c) { return c == ' ' || c == 0 || c == '\t' || c == '\r' || c == '\n'; }
+bool is_padding(char c)
+{
+    return c == ' ' || c == 0 || c == '\t' || c == '\r' || c == '\n';
+}
 
 } // namespace
 
@@ -115,8 +124,8 @@ bool dicom_text_put(const std::string &text, char *out, size_t size)
 
 namespace {
 
-// "-123.45" and its like, up to 15 digits: digits and the power of ten are exact, and so is their quotient when it is rounded once.
-// W. D. Clinger, How to Read Floating Point Numbers Accurately, PLDI 1990. false: something else.
+// "-123.45" and its like, up to 15 digits: digits and the power of ten are exact, and so is their quotient when it is
+// rounded once. W. D. Clinger, How to Read Floating Point Numbers Accurately, PLDI 1990. false: something else.
 bool short_decimal(const char *from, const char *end, double *value)
 {
     static const double tens[] = { 1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15 };
@@ -181,4 +190,3 @@ size_t dicom_text_numbers(const char *text, size_t size, double *out, size_t mos
         from = stop + 1;
     }
 }
-

@@ -26,17 +26,18 @@ static void swap32(uint32_t *values, size_t n)
         values[i] = values[i] << 24 | (values[i] & 0xFF00) << 8 | (values[i] >> 8 & 0xFF00) | values[i] >> 24;
 }
 
-/* up, then down again: what lies above the value falls out, what lies below it too, and the sign is drawn over what is left */
-#define KEEP_BITS(signed_type, unsigned_type)                                                                                          \
-    do {                                                                                                                               \
-        unsigned_type *cells = values;                                                                                                 \
-        for (size_t i = 0; i < n; i++) {                                                                                               \
-            unsigned_type top = (unsigned_type)((uint32_t)cells[i] << up);                                                             \
-            if (pixels->is_signed)                                                                                                     \
-                cells[i] = (unsigned_type)((signed_type)top >> down);                                                                  \
-            else                                                                                                                       \
-                cells[i] = (unsigned_type)(top >> down);                                                                               \
-        }                                                                                                                              \
+/* up, then down again: what lies above the value falls out, what lies below it too, and the sign is drawn over what is
+ * left */
+#define KEEP_BITS(signed_type, unsigned_type) \
+    do { \
+        unsigned_type *cells = values; \
+        for (size_t i = 0; i < n; i++) { \
+            unsigned_type top = (unsigned_type)((uint32_t)cells[i] << up); \
+            if (pixels->is_signed) \
+                cells[i] = (unsigned_type)((signed_type)top >> down); \
+            else \
+                cells[i] = (unsigned_type)(top >> down); \
+        } \
     } while (0)
 
 void dicom_pixels_unpack(const struct dicom_pixels *pixels, bool is_swapped, void *values, size_t n)
@@ -47,7 +48,8 @@ void dicom_pixels_unpack(const struct dicom_pixels *pixels, bool is_swapped, voi
         swap_pairs(values, n);
     if (is_swapped && pixels->bits_allocated == 32)
         swap32(values, n);
-    int up = (int)(pixels->bits_allocated - 1 - pixels->high_bit), down = (int)(pixels->bits_allocated - pixels->bits_stored);
+    int up = (int)(pixels->bits_allocated - 1 - pixels->high_bit),
+        down = (int)(pixels->bits_allocated - pixels->bits_stored);
     if (down == 0)
         return;
     if (pixels->bits_allocated == 8)
@@ -58,16 +60,16 @@ void dicom_pixels_unpack(const struct dicom_pixels *pixels, bool is_swapped, voi
         KEEP_BITS(int32_t, uint32_t);
 }
 
-#define WIDEN(type)                                  \
-    do {                                             \
-        const type *v = cells;                       \
-        type least = v[0], most = v[0];              \
-        for (size_t i = 0; i < n; i++) {             \
-            least = v[i] < least ? v[i] : least;     \
-            most = v[i] > most ? v[i] : most;        \
-        }                                            \
+#define WIDEN(type) \
+    do { \
+        const type *v = cells; \
+        type least = v[0], most = v[0]; \
+        for (size_t i = 0; i < n; i++) { \
+            least = v[i] < least ? v[i] : least; \
+            most = v[i] > most ? v[i] : most; \
+        } \
         range[0] = least < range[0] ? least : range[0]; \
-        range[1] = most > range[1] ? most : range[1];   \
+        range[1] = most > range[1] ? most : range[1]; \
     } while (0)
 
 void dicom_cells_measure(enum voxel_type type, const void *cells, size_t n, int32_t range[2])

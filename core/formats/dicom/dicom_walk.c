@@ -28,7 +28,10 @@ static uint32_t get_tag(const uint8_t *p, bool is_big_endian)
     return get16(p, is_big_endian) << 16 | get16(p + 2, is_big_endian);
 }
 
-static bool is_upper(uint8_t c) { return c >= 'A' && c <= 'Z'; }
+static bool is_upper(uint8_t c)
+{
+    return c >= 'A' && c <= 'Z';
+}
 
 static bool is_vr(const uint8_t *p)
 {
@@ -39,8 +42,8 @@ static bool is_vr(const uint8_t *p)
     return false;
 }
 
-/* Whether the length that follows a value representation has 32 bits. Of those that are not known the newer ones all do; two
- * characters that are no letters stand in old files, with 16 bits. */
+/* Whether the length that follows a value representation has 32 bits. Of those that are not known the newer ones all
+ * do; two characters that are no letters stand in old files, with 16 bits. */
 static bool has_long_length(const uint8_t *vr)
 {
     static const char shorts[] = "AEASATCSDADSDTFDFLISLOLTPNSHSLSSSTTMUIULUS";
@@ -60,7 +63,8 @@ bool dicom_looks_like(const uint8_t *data, size_t size)
         uint32_t group = get16(data, order == 1), element = get16(data + 2, order == 1);
         if (group != 0x0002 && group != 0x0008)
             continue;
-        if (is_vr(data + 4) && element <= 0x0100) /* the first of its group: a group length, a version, a character set, a type */
+        if (is_vr(data + 4) &&
+            element <= 0x0100) /* the first of its group: a group length, a version, a character set, a type */
             return true;
         if (order == 0 && group == 0x0008 && element <= 0x0018 && get32(data + 4, false) <= 128) /* implicit */
             return true;
@@ -87,7 +91,8 @@ struct walk {
 static bool cut_short(struct walk *walk, size_t at, const char *what)
 {
     walk->is_cut = true;
-    return error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: expected %s, found the end of the file", walk->name, at, what);
+    return error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: expected %s, found the end of the file", walk->name, at,
+                     what);
 }
 
 static bool read_element(struct walk *walk, size_t at, bool is_implicit, bool is_big_endian, struct element *element)
@@ -116,8 +121,8 @@ static bool read_element(struct walk *walk, size_t at, bool is_implicit, bool is
 
 static bool wrong_element(struct walk *walk, const struct element *element, const char *what)
 {
-    return error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: element (%04X,%04X): %s", walk->name, element->at, element->tag >> 16,
-                     element->tag & 0xFFFF, what);
+    return error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: element (%04X,%04X): %s", walk->name, element->at,
+                     element->tag >> 16, element->tag & 0xFFFF, what);
 }
 
 /* What is open around an element: the data set, a sequence (of items) or an item (of elements). */
@@ -131,7 +136,8 @@ struct level {
 
 static bool begins_with_item(const struct walk *walk, const struct element *element)
 {
-    return element->length >= 8 && walk->size - element->value_at >= 4 && get_tag(walk->data + element->value_at, false) == TAG_ITEM;
+    return element->length >= 8 && walk->size - element->value_at >= 4 &&
+           get_tag(walk->data + element->value_at, false) == TAG_ITEM;
 }
 
 static bool vr_is(const struct element *element, const char *vr)
@@ -139,9 +145,10 @@ static bool vr_is(const struct element *element, const char *vr)
     return element->vr[0] == (uint8_t)vr[0] && element->vr[1] == (uint8_t)vr[1];
 }
 
-/* What an element opens, if it is a sequence. What stands as bytes of an unknown kind (UN, or no VR at all) and begins with an item is
- * read as a sequence by the library where its dictionary says so: its depth counts. */
-static bool opens_level(const struct walk *walk, const struct element *element, const struct level *inside, struct level *opened)
+/* What an element opens, if it is a sequence. What stands as bytes of an unknown kind (UN, or no VR at all) and begins
+ * with an item is read as a sequence by the library where its dictionary says so: its depth counts. */
+static bool opens_level(const struct walk *walk, const struct element *element, const struct level *inside,
+                        struct level *opened)
 {
     opened->is_sequence = true;
     if (vr_is(element, "SQ"))
@@ -158,13 +165,15 @@ static bool opens_level(const struct walk *walk, const struct element *element, 
     return false;
 }
 
-/* One step through the data set: past an element or into it. depth counts the open levels but for the data set itself. */
+/* One step through the data set: past an element or into it. depth counts the open levels but for the data set itself.
+ */
 static bool step(struct walk *walk, struct level *levels, int *depth, size_t *at)
 {
     struct level *inside = &levels[*depth];
     struct element element;
     if (inside->end < walk->size && inside->end - *at < 8)
-        return error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: expected an end mark, found the end of what holds the sequence", walk->name,
+        return error_set(walk->err, ERROR_FORMAT,
+                         "%s: byte %zu: expected an end mark, found the end of what holds the sequence", walk->name,
                          *at);
     if (!read_element(walk, *at, inside->is_implicit, inside->is_big_endian, &element))
         return false;
@@ -179,18 +188,23 @@ static bool step(struct walk *walk, struct level *levels, int *depth, size_t *at
         return true;
     }
     if (inside->is_sequence != (element.tag == TAG_ITEM))
-        return wrong_element(walk, &element, inside->is_sequence ? "expected an item of a sequence" : "an item outside a sequence");
+        return wrong_element(walk, &element,
+                             inside->is_sequence ? "expected an item of a sequence" : "an item outside a sequence");
     if (!inside->is_sequence && element.tag >> 16 == 0xFFFE)
         return wrong_element(walk, &element, "an end mark of something that is not open");
     if (!inside->is_sequence && element.tag <= inside->last_tag && ++walk->n_disorder > DICOM_MAX_DISORDER)
-        return error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: element (%04X,%04X) behind (%04X,%04X): more than %d are not in order", walk->name,
-                         element.at, element.tag >> 16, element.tag & 0xFFFF, inside->last_tag >> 16, inside->last_tag & 0xFFFF,
-                         DICOM_MAX_DISORDER);
+        return error_set(walk->err, ERROR_FORMAT,
+                         "%s: byte %zu: element (%04X,%04X) behind (%04X,%04X): more than %d are not in order",
+                         walk->name, element.at, element.tag >> 16, element.tag & 0xFFFF, inside->last_tag >> 16,
+                         inside->last_tag & 0xFFFF, DICOM_MAX_DISORDER);
     inside->last_tag = element.tag > inside->last_tag ? element.tag : inside->last_tag;
-    if (element.value_at > inside->end || (element.length != UNDEFINED && element.length > inside->end - element.value_at)) {
+    if (element.value_at > inside->end ||
+        (element.length != UNDEFINED && element.length > inside->end - element.value_at)) {
         walk->is_cut = inside->end == walk->size;
-        return error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: element (%04X,%04X) says %u bytes, but %s ends after %zu", walk->name,
-                         element.at, element.tag >> 16, element.tag & 0xFFFF, element.length, walk->is_cut ? "the file" : "what holds it",
+        return error_set(walk->err, ERROR_FORMAT,
+                         "%s: byte %zu: element (%04X,%04X) says %u bytes, but %s ends after %zu", walk->name,
+                         element.at, element.tag >> 16, element.tag & 0xFFFF, element.length,
+                         walk->is_cut ? "the file" : "what holds it",
                          element.value_at > inside->end ? 0 : inside->end - element.value_at);
     }
     struct level opened = { .end = element.length == UNDEFINED ? inside->end : element.value_at + element.length,
@@ -201,8 +215,8 @@ static bool step(struct walk *walk, struct level *levels, int *depth, size_t *at
     *at = element.value_at;
     if (is_opened) {
         if (*depth >= 2 * DICOM_MAX_DEPTH)
-            return error_set(walk->err, ERROR_LIMIT, "%s: byte %zu: sequences are nested more than %d deep", walk->name, element.at,
-                             DICOM_MAX_DEPTH);
+            return error_set(walk->err, ERROR_LIMIT, "%s: byte %zu: sequences are nested more than %d deep", walk->name,
+                             element.at, DICOM_MAX_DEPTH);
         levels[++*depth] = opened;
         return true;
     }
@@ -235,8 +249,9 @@ static bool look_at_pixels(struct walk *walk, const struct level *root, size_t a
 
 static bool walk_elements(struct walk *walk, struct dicom_layout *layout)
 {
-    struct level levels[2 * DICOM_MAX_DEPTH + 1] = { { .end = walk->size, .is_implicit = layout->is_implicit,
-                                                       .is_big_endian = layout->is_big_endian } };
+    struct level levels[2 * DICOM_MAX_DEPTH + 1] = {
+        { .end = walk->size, .is_implicit = layout->is_implicit, .is_big_endian = layout->is_big_endian }
+    };
     int depth = 0;
     size_t at = layout->begin;
     while (at < walk->size || depth > 0) {
@@ -247,7 +262,9 @@ static bool walk_elements(struct walk *walk, struct dicom_layout *layout)
                 if (tag == TAG_PIXELS || tag == TAG_FLOAT_PIXELS || tag == TAG_DOUBLE_PIXELS)
                     return look_at_pixels(walk, &levels[0], at, layout);
                 if (tag >> 16 == 0 || (tag == 0xFFFFFFFF)) /* filling behind the last element */
-                    return at > layout->begin ? true : error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: no element of a data set", walk->name, at);
+                    return at > layout->begin ? true
+                                              : error_set(walk->err, ERROR_FORMAT,
+                                                          "%s: byte %zu: no element of a data set", walk->name, at);
             }
         }
         if (!step(walk, levels, &depth, &at))
@@ -285,9 +302,11 @@ static bool inflate_data_set(struct walk *walk, size_t from, struct dicom_layout
     }
     inflateEnd(&stream);
     if (status == Z_DATA_ERROR)
-        return error_set(walk->err, ERROR_FORMAT, "%s: the deflated data set is damaged after %zu bytes", walk->name, n);
+        return error_set(walk->err, ERROR_FORMAT, "%s: the deflated data set is damaged after %zu bytes", walk->name,
+                         n);
     if (status == Z_OK && walk->extent != DICOM_START)
-        return error_set(walk->err, ERROR_LIMIT, "%s: the deflated data set is larger than %d MiB", walk->name, DICOM_MAX_INFLATED_MIB);
+        return error_set(walk->err, ERROR_LIMIT, "%s: the deflated data set is larger than %d MiB", walk->name,
+                         DICOM_MAX_INFLATED_MIB);
     walk->data = layout->inflated;
     walk->size = n;
     layout->begin = 0;
@@ -300,7 +319,8 @@ static bool walk_header(struct walk *walk, size_t at, struct dicom_layout *layou
     while (walk->size - at >= 8 && get16(walk->data + at, false) == 0x0002) {
         struct element element;
         if (!is_vr(walk->data + at + 4))
-            return error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: the file header is not in explicit encoding", walk->name, at);
+            return error_set(walk->err, ERROR_FORMAT, "%s: byte %zu: the file header is not in explicit encoding",
+                             walk->name, at);
         if (!read_element(walk, at, false, false, &element))
             return false;
         if (element.length > walk->size - element.value_at)
@@ -312,7 +332,8 @@ static bool walk_header(struct walk *walk, size_t at, struct dicom_layout *layou
             while (n > 0 && (layout->transfer_syntax[n - 1] == ' ' || layout->transfer_syntax[n - 1] == 0))
                 layout->transfer_syntax[--n] = 0;
             for (size_t i = 0; i < n; i++)
-                if ((layout->transfer_syntax[i] < '0' || layout->transfer_syntax[i] > '9') && layout->transfer_syntax[i] != '.')
+                if ((layout->transfer_syntax[i] < '0' || layout->transfer_syntax[i] > '9') &&
+                    layout->transfer_syntax[i] != '.')
                     return wrong_element(walk, &element, "the transfer syntax is not a UID");
         }
         at = element.value_at + element.length;
@@ -321,7 +342,8 @@ static bool walk_header(struct walk *walk, size_t at, struct dicom_layout *layou
     return true;
 }
 
-/* What the first element shows counts more than what the header says: files that contradict themselves are read by every viewer. */
+/* What the first element shows counts more than what the header says: files that contradict themselves are read by
+ * every viewer. */
 static void look_at_encoding(const struct walk *walk, struct dicom_layout *layout)
 {
     const uint8_t *p = walk->data + layout->begin;
@@ -337,23 +359,27 @@ static void look_at_encoding(const struct walk *walk, struct dicom_layout *layou
         layout->is_big_endian = false; /* there is no such encoding */
 }
 
-bool dicom_walk(const uint8_t *data, size_t size, const char *name, enum dicom_extent extent, struct dicom_layout *layout, struct error *err)
+bool dicom_walk(const uint8_t *data, size_t size, const char *name, enum dicom_extent extent,
+                struct dicom_layout *layout, struct error *err)
 {
     struct walk walk = { .data = data, .size = size, .name = name, .extent = extent, .err = err };
     *layout = (struct dicom_layout){ 0 };
     if (!dicom_looks_like(data, size))
-        return error_set(err, ERROR_FORMAT, "%s: not a DICOM file: neither \"DICM\" at byte 128 nor an element at byte 0", name);
+        return error_set(err, ERROR_FORMAT,
+                         "%s: not a DICOM file: neither \"DICM\" at byte 128 nor an element at byte 0", name);
     if (size >> 20 >= DICOM_MAX_FILE_MIB)
         return error_set(err, ERROR_LIMIT, "%s: %zu bytes; at most %d MiB are read", name, size, DICOM_MAX_FILE_MIB);
     bool has_preamble = size >= 132 && memcmp(data + 128, "DICM", 4) == 0;
     if (!walk_header(&walk, has_preamble ? 132 : 0, layout))
         return false;
-    if (strcmp(layout->transfer_syntax, "1.2.840.10008.1.2.1.99") == 0 && !inflate_data_set(&walk, layout->begin, layout))
+    if (strcmp(layout->transfer_syntax, "1.2.840.10008.1.2.1.99") == 0 &&
+        !inflate_data_set(&walk, layout->begin, layout))
         goto fail;
     layout->data = walk.data;
     layout->size = walk.size;
     if (walk.size == layout->begin) {
-        error_set(err, ERROR_FORMAT, "%s: byte %zu: expected a data set, found the end of the file", name, layout->begin);
+        error_set(err, ERROR_FORMAT, "%s: byte %zu: expected a data set, found the end of the file", name,
+                  layout->begin);
         goto fail;
     }
     look_at_encoding(&walk, layout);
@@ -371,8 +397,8 @@ fail:
     return false;
 }
 
-bool dicom_walk_fragments(const struct dicom_layout *layout, const char *name, struct dicom_fragment *fragments, size_t most,
-                          size_t *n_fragments, struct error *err)
+bool dicom_walk_fragments(const struct dicom_layout *layout, const char *name, struct dicom_fragment *fragments,
+                          size_t most, size_t *n_fragments, struct error *err)
 {
     *n_fragments = 0;
     struct walk walk = { .data = layout->data, .size = layout->size, .name = name, .err = err };

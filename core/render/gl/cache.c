@@ -87,8 +87,8 @@ static struct entry *find(const struct gl_cache *cache, const struct plan *plan,
     return NULL;
 }
 
-static struct entry *find_shape(const struct gl_cache *cache, const struct plan *plan, size_t region, const struct shape_key *key,
-                                enum surface_detail detail)
+static struct entry *find_shape(const struct gl_cache *cache, const struct plan *plan, size_t region,
+                                const struct shape_key *key, enum surface_detail detail)
 {
     for (struct entry *entry = cache->first; entry; entry = entry->next)
         if (entry->plan == plan && entry->kind == ENTRY_SHAPE && entry->index == region && entry->detail == detail &&
@@ -118,11 +118,17 @@ const struct gl_shape *gl_cache_shape(const struct gl *gl, struct gl_cache *cach
     }
     struct surface_facts facts = { 0 };
     struct error why = { 0 };
-    struct entry made = { .plan = plan, .kind = ENTRY_SHAPE, .index = region, .key = *key, .detail = detail,
-                          .n_bytes = sizeof made, .used = cache->n_pictures };
+    struct entry made = { .plan = plan,
+                          .kind = ENTRY_SHAPE,
+                          .index = region,
+                          .key = *key,
+                          .detail = detail,
+                          .n_bytes = sizeof made,
+                          .used = cache->n_pictures };
     made.shape.bounds_lps_mm = box3_empty();
     struct shape *shape = plan_shape(plan, region, key, detail, &facts, &why);
-    bool is_good = shape ? gl_upload_shape(gl, shape, visible_shading_passes(key, facts.reduction), &made.shape, &made.n_bytes, &why)
+    bool is_good = shape ? gl_upload_shape(gl, shape, visible_shading_passes(key, facts.reduction), &made.shape,
+                                           &made.n_bytes, &why)
                          : plan_is_refusal(why.code);
     if (!shape && is_good)
         log_info("region %s is not drawn: %s", plan->regions.regions[region].id, why.text);
@@ -140,7 +146,7 @@ const struct gl_shape *gl_cache_shape(const struct gl *gl, struct gl_cache *cach
     return NULL;
 }
 
-/* ---- grids -------------------------------------------------------------------------------------------------------------- */
+/* ---- grids ------------------------------------------------------------------------------------------------------ */
 
 struct texel_format {
     GLenum internal, format, type;
@@ -164,24 +170,28 @@ static const struct texel_format label_formats[] = {
 };
 
 /* The driver's limits first, so that what does not fit is refused with numbers and not found out half way. */
-static bool check_size(const struct gl *gl, const struct volume *volume, const struct texel_format *format, struct error *err)
+static bool check_size(const struct gl *gl, const struct volume *volume, const struct texel_format *format,
+                       struct error *err)
 {
     const uint32_t *size = volume->grid.size;
     GLint most = 0, width = 0;
     gl->GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
     if ((GLint)size[0] > most || (GLint)size[1] > most || (GLint)size[2] > most)
-        return error_set(err, ERROR_LIMIT, "a grid of %u x %u x %u voxels: this graphics driver takes at most %d along a side", size[0],
+        return error_set(err, ERROR_LIMIT,
+                         "a grid of %u x %u x %u voxels: this graphics driver takes at most %d along a side", size[0],
                          size[1], size[2], most);
-    gl->TexImage3D(GL_PROXY_TEXTURE_3D, 0, (GLint)format->internal, (GLsizei)size[0], (GLsizei)size[1], (GLsizei)size[2], 0,
-                   format->format, format->type, NULL);
+    gl->TexImage3D(GL_PROXY_TEXTURE_3D, 0, (GLint)format->internal, (GLsizei)size[0], (GLsizei)size[1],
+                   (GLsizei)size[2], 0, format->format, format->type, NULL);
     gl->GetTexLevelParameteriv(GL_PROXY_TEXTURE_3D, 0, GL_TEXTURE_WIDTH, &width);
     if (width == 0)
-        return error_set(err, ERROR_LIMIT, "a grid of %u x %u x %u voxels of %zu bytes is more than this graphics driver takes", size[0],
+        return error_set(err, ERROR_LIMIT,
+                         "a grid of %u x %u x %u voxels of %zu bytes is more than this graphics driver takes", size[0],
                          size[1], size[2], format->size);
     return true;
 }
 
-static bool upload_slabs(const struct gl *gl, const struct volume *volume, const struct texel_format *format, struct error *err)
+static bool upload_slabs(const struct gl *gl, const struct volume *volume, const struct texel_format *format,
+                         struct error *err)
 {
     const uint32_t *size = volume->grid.size;
     size_t n_slab = (size_t)size[0] * size[1];
@@ -189,20 +199,21 @@ static bool upload_slabs(const struct gl *gl, const struct volume *volume, const
     if (volume->type == VOXEL_I16 && format->zero < 0 && !shifted)
         return false;
     if (!shifted)
-        gl->TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, (GLsizei)size[0], (GLsizei)size[1], (GLsizei)size[2], format->format, format->type,
-                          volume->voxels);
+        gl->TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, (GLsizei)size[0], (GLsizei)size[1], (GLsizei)size[2],
+                          format->format, format->type, volume->voxels);
     for (uint32_t k = 0; shifted && k < size[2]; k++) {
         const uint16_t *from = (const uint16_t *)volume->voxels + k * n_slab;
         for (size_t i = 0; i < n_slab; i++)
             shifted[i] = (uint16_t)(from[i] ^ 0x8000u);
-        gl->TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, (GLsizei)size[0], (GLsizei)size[1], 1, format->format, format->type, shifted);
+        gl->TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, (GLsizei)size[0], (GLsizei)size[1], 1, format->format,
+                          format->type, shifted);
     }
     free(shifted);
     return true;
 }
 
-static bool upload_grid(const struct gl *gl, const struct volume *volume, const struct texel_format *format, struct gl_grid *grid,
-                        struct error *err)
+static bool upload_grid(const struct gl *gl, const struct volume *volume, const struct texel_format *format,
+                        struct gl_grid *grid, struct error *err)
 {
     if (!format->size)
         return error_set(err, ERROR_UNSUPPORTED, "a label layer of real numbers");
@@ -218,9 +229,10 @@ static bool upload_grid(const struct gl *gl, const struct volume *volume, const 
     gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gl->TexImage3D(GL_TEXTURE_3D, 0, (GLint)format->internal, (GLsizei)size[0], (GLsizei)size[1], (GLsizei)size[2], 0, format->format,
-                   format->type, NULL);
-    bool is_good = gl_check(gl, "uploading a grid", err) && upload_slabs(gl, volume, format, err) && gl_check(gl, "uploading a grid", err);
+    gl->TexImage3D(GL_TEXTURE_3D, 0, (GLint)format->internal, (GLsizei)size[0], (GLsizei)size[1], (GLsizei)size[2], 0,
+                   format->format, format->type, NULL);
+    bool is_good = gl_check(gl, "uploading a grid", err) && upload_slabs(gl, volume, format, err) &&
+                   gl_check(gl, "uploading a grid", err);
     gl->BindTexture(GL_TEXTURE_3D, 0);
     if (is_good)
         return true;

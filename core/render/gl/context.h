@@ -11,11 +11,11 @@ struct gl_context {
 
 enum gl_device_wish { GL_DEVICE_ANY, GL_DEVICE_HARDWARE };
 
-/* Opens the context, makes it current and fills the table. back_end is not RENDER_AUTO; wish is for RENDER_EGL_DEVICE: real
- * devices come first, and with GL_DEVICE_HARDWARE software ones are left out.
- *   errors ERROR_GL with what the back end said */
-NODISCARD bool gl_context_open(struct gl_context *context, enum render_back_end back_end, enum gl_device_wish wish, struct gl *gl,
-                               struct error *err);
+/* Opens the context, makes it current and fills the table. back_end is not RENDER_AUTO; wish is for RENDER_EGL_DEVICE:
+ * real devices come first, and with GL_DEVICE_HARDWARE software ones are left out. errors ERROR_GL with what the back
+ * end said */
+NODISCARD bool gl_context_open(struct gl_context *context, enum render_back_end back_end, enum gl_device_wish wish,
+                               struct gl *gl, struct error *err);
 void gl_context_close(struct gl_context *context);
 
 /* the two kinds, for context.c */

@@ -7,15 +7,15 @@
 
 #include "core/render/gl/context.h"
 
-#define EGL_FUNCTIONS(X)                                                                                               \
-    X(PFNEGLBINDAPIPROC, BindAPI)                                                                                      \
-    X(PFNEGLCHOOSECONFIGPROC, ChooseConfig)                                                                            \
-    X(PFNEGLCREATECONTEXTPROC, CreateContext)                                                                          \
-    X(PFNEGLDESTROYCONTEXTPROC, DestroyContext)                                                                        \
-    X(PFNEGLGETERRORPROC, GetError)                                                                                    \
-    X(PFNEGLGETPROCADDRESSPROC, GetProcAddress)                                                                        \
-    X(PFNEGLINITIALIZEPROC, Initialize)                                                                                \
-    X(PFNEGLMAKECURRENTPROC, MakeCurrent)                                                                              \
+#define EGL_FUNCTIONS(X) \
+    X(PFNEGLBINDAPIPROC, BindAPI) \
+    X(PFNEGLCHOOSECONFIGPROC, ChooseConfig) \
+    X(PFNEGLCREATECONTEXTPROC, CreateContext) \
+    X(PFNEGLDESTROYCONTEXTPROC, DestroyContext) \
+    X(PFNEGLGETERRORPROC, GetError) \
+    X(PFNEGLGETPROCADDRESSPROC, GetProcAddress) \
+    X(PFNEGLINITIALIZEPROC, Initialize) \
+    X(PFNEGLMAKECURRENTPROC, MakeCurrent) \
     X(PFNEGLQUERYSTRINGPROC, QueryString)
 
 enum { MAX_DEVICES = 16 };
@@ -27,8 +27,8 @@ static struct {
     EGL_FUNCTIONS(EGL_MEMBER)
 #undef EGL_MEMBER
     PFNEGLGETPLATFORMDISPLAYEXTPROC GetPlatformDisplayEXT;
-    PFNEGLQUERYDEVICESEXTPROC QueryDevicesEXT;             /* may be missing */
-    PFNEGLQUERYDEVICESTRINGEXTPROC QueryDeviceStringEXT;   /* may be missing */
+    PFNEGLQUERYDEVICESEXTPROC QueryDevicesEXT;           /* may be missing */
+    PFNEGLQUERYDEVICESTRINGEXTPROC QueryDeviceStringEXT; /* may be missing */
 } egl;
 
 static void keep_why_not(const char *text)
@@ -44,10 +44,10 @@ static void load_egl(void)
         keep_why_not(dlerror());
         return;
     }
-#define EGL_GET(type, name)                                                                                            \
-    if (!(egl.name = (type)gl_symbol(library, "egl" #name))) {                                                             \
-        keep_why_not("libEGL.so.1 has no egl" #name);                                                                  \
-        return;                                                                                                        \
+#define EGL_GET(type, name) \
+    if (!(egl.name = (type)gl_symbol(library, "egl" #name))) { \
+        keep_why_not("libEGL.so.1 has no egl" #name); \
+        return; \
     }
     EGL_FUNCTIONS(EGL_GET)
 #undef EGL_GET
@@ -74,7 +74,8 @@ static gl_function get_function(const char *name)
     return (gl_function)egl.GetProcAddress(name);
 }
 
-/* A context on one display. Displays are shared by the whole process and stay initialised: another renderer may use the same. */
+/* A context on one display. Displays are shared by the whole process and stay initialised: another renderer may use the
+ * same. */
 static bool open_display(struct gl_context *context, EGLDisplay display, struct gl *gl, struct error *err)
 {
     if (display == EGL_NO_DISPLAY || !egl.Initialize(display, NULL, NULL))
@@ -90,8 +91,10 @@ static bool open_display(struct gl_context *context, EGLDisplay display, struct 
         if (!egl.ChooseConfig(display, wanted, &config, 1, &n_configs) || n_configs < 1)
             return error_set(err, ERROR_GL, "no configuration for OpenGL (0x%04x)", (unsigned)egl.GetError());
     }
-    const EGLint attributes[] = { EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                  EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE };
+    const EGLint attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE
+    };
     if (!egl.BindAPI(EGL_OPENGL_API))
         return error_set(err, ERROR_GL, "no OpenGL, only OpenGL ES");
     EGLContext made = egl.CreateContext(display, config, EGL_NO_CONTEXT, attributes);
@@ -122,7 +125,8 @@ static bool open_device(struct gl_context *context, enum gl_device_wish wish, st
     error_set(err, ERROR_GL, "no graphics device among %d", n_devices);
     for (int is_software = 0; is_software <= (wish == GL_DEVICE_ANY); is_software++)
         for (EGLint i = 0; i < n_devices; i++) {
-            if (has_word(egl.QueryDeviceStringEXT(devices[i], EGL_EXTENSIONS), "EGL_MESA_device_software") != is_software)
+            if (has_word(egl.QueryDeviceStringEXT(devices[i], EGL_EXTENSIONS), "EGL_MESA_device_software") !=
+                is_software)
                 continue;
             EGLDisplay display = egl.GetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], NULL);
             if (open_display(context, display, gl, err))
@@ -142,7 +146,8 @@ bool gl_egl_open(struct gl_context *context, enum gl_device_wish wish, struct gl
         return open_device(context, wish, gl, err);
     if (!has_word(egl.QueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_MESA_platform_surfaceless"))
         return error_set(err, ERROR_GL, "no EGL_MESA_platform_surfaceless");
-    return open_display(context, egl.GetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), gl, err);
+    return open_display(context, egl.GetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL),
+                        gl, err);
 }
 
 void gl_egl_close(struct gl_context *context)

@@ -54,8 +54,17 @@ bool gl_osmesa_open(struct gl_context *context, struct gl *gl, struct error *err
     pthread_once(&once, load_osmesa);
     if (!osmesa.is_loaded)
         return error_set(err, ERROR_GL, "%s", osmesa.why_not);
-    const int attributes[] = { OSMESA_FORMAT, GL_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                               OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0 };
+    const int attributes[] = { OSMESA_FORMAT,
+                               GL_RGBA,
+                               OSMESA_DEPTH_BITS,
+                               24,
+                               OSMESA_PROFILE,
+                               OSMESA_CORE_PROFILE,
+                               OSMESA_CONTEXT_MAJOR_VERSION,
+                               3,
+                               OSMESA_CONTEXT_MINOR_VERSION,
+                               3,
+                               0 };
     void *made = osmesa.create_context(attributes, NULL);
     if (!made)
         return error_set(err, ERROR_GL, "no OpenGL 3.3 core context");

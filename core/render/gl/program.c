@@ -5,8 +5,8 @@
 
 #include "core/render/visible/visible.h"
 
-/* Every picture is drawn upside down (flip in the camera's matrix, see renderer.c), so that reading it back gives row 0 at the
- * top. */
+/* Every picture is drawn upside down (flip in the camera's matrix, see renderer.c), so that reading it back gives row 0
+ * at the top. */
 
 /* A key light from the upper right, a weak fill from the left, a soft rim; translucency as proto/scene.json says.
  * n: the normal in eye space (x right, y up, z towards the viewer); facing: its cosine with the line of sight. */
@@ -25,9 +25,9 @@ static const char surface_light[] =
     "    return vec4(min(lit, 1.0), min(alpha, 1.0));\n"
     "}\n";
 
-/* Light is worked out at the vertices: a voxel's surface has triangles of a pixel or few, and on a software rasteriser a fragment
- * costs what a vertex does.
- * viewer: xyz the eye and w 1 in perspective, xyz the direction towards the viewer and w 0 in parallel projection. */
+/* Light is worked out at the vertices: a voxel's surface has triangles of a pixel or few, and on a software rasteriser
+ * a fragment costs what a vertex does. viewer: xyz the eye and w 1 in perspective, xyz the direction towards the viewer
+ * and w 0 in parallel projection. */
 static const char smooth_vertex[] =
     "layout(location = 0) in vec3 position;\n"
     "layout(location = 1) in vec3 normal;\n"
@@ -38,15 +38,15 @@ static const char smooth_vertex[] =
     "out vec4 shade;\n"
     "void main() {\n"
     "    vec3 towards = normalize(viewer.xyz - viewer.w * position);\n"
-    "    float cosine = dot(normal, towards), side = is_two_sided != 0 && cosine < 0.0 ? -1.0 : 1.0;\n" /* that is seen */
+    "    float cosine = dot(normal, towards), side = is_two_sided != 0 && cosine < 0.0 ? -1.0 : 1.0;\n" /* that is seen
+                                                                                                         */
     "    shade = light(eye_from_lps * (side * normal), clamp(side * cosine, 0.0, 1.0));\n"
     "    gl_Position = clip_from_lps * vec4(position, 1.0);\n"
     "}\n";
 
-static const char smooth_fragment[] =
-    "in vec4 shade;\n"
-    "out vec4 result;\n"
-    "void main() { result = shade; }\n";
+static const char smooth_fragment[] = "in vec4 shade;\n"
+                                      "out vec4 result;\n"
+                                      "void main() { result = shade; }\n";
 
 /* rounding: share of the light that falls as on a rounded surface (visible.h). */
 static const char faceted_vertex[] =
@@ -82,7 +82,8 @@ static const char faceted_fragment[] =
     "}\n";
 
 /* Lines and points are rectangles square to the picture: an instance of four corners each, laid out here as
- * core/render/soft/quads.c does. half_view: half the picture's size in samples; half_size: of a line or point, in samples. */
+ * core/render/soft/quads.c does. half_view: half the picture's size in samples; half_size: of a line or point, in
+ * samples. */
 static const char line_vertex[] =
     "layout(location = 0) in vec3 first;\n"
     "layout(location = 1) in vec3 second;\n"
@@ -147,17 +148,16 @@ static const char point_vertex[] =
     "}\n";
 
 /* A polygon in a plane through a grid. at: 0 .. 1 over the grid's outer faces. */
-static const char slice_vertex[] =
-    "layout(location = 0) in vec3 position;\n"
-    "layout(location = 1) in vec3 place;\n"
-    "uniform mat4 clip_from_lps;\n"
-    "out vec3 at;\n"
-    "void main() { at = place; gl_Position = clip_from_lps * vec4(position, 1.0); }\n";
+static const char slice_vertex[] = "layout(location = 0) in vec3 position;\n"
+                                   "layout(location = 1) in vec3 place;\n"
+                                   "uniform mat4 clip_from_lps;\n"
+                                   "out vec3 at;\n"
+                                   "void main() { at = place; gl_Position = clip_from_lps * vec4(position, 1.0); }\n";
 
 static const char image_fragment[] =
     "uniform sampler3D source;\n"
-    "uniform vec2 grey;\n" /* stored value to 0 .. 1 */
-    "uniform vec2 ends;\n" /* what 0 and 1 are drawn as */
+    "uniform vec2 grey;\n"  /* stored value to 0 .. 1 */
+    "uniform vec2 ends;\n"  /* what 0 and 1 are drawn as */
     "uniform float cull;\n" /* in the same scale: what is below is left out */
     "in vec3 at;\n"
     "out vec4 result;\n"
@@ -187,8 +187,8 @@ static const char test_vertex[] =
     "    gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);\n"
     "}\n";
 
-/* Layers over each other, the farther first: with rank_depth 0 in their own order, else each sample in its own. What is laid down
- * comes out with the share of what was there before that still shows, for blending. */
+/* Layers over each other, the farther first: with rank_depth 0 in their own order, else each sample in its own. What is
+ * laid down comes out with the share of what was there before that still shows, for blending. */
 static const char compose_fragment[] =
     "uniform sampler2DArray source;\n"
     "uniform sampler2DArray depths;\n"
@@ -220,12 +220,12 @@ static const char compose_fragment[] =
     "    if (last_layer < 0) discard;\n"
     "}\n";
 
-static const char test_fragment[] =
-    "uniform sampler2D source;\n"
-    "out vec4 result;\n"
-    "void main() { result = texelFetch(source, ivec2(gl_FragCoord.xy), 0); }\n";
+static const char test_fragment[] = "uniform sampler2D source;\n"
+                                    "out vec4 result;\n"
+                                    "void main() { result = texelFetch(source, ivec2(gl_FragCoord.xy), 0); }\n";
 
-static GLuint compile(const struct gl *gl, GLenum kind, const char *name, const char *library, const char *source, struct error *err)
+static GLuint compile(const struct gl *gl, GLenum kind, const char *name, const char *library, const char *source,
+                      struct error *err)
 {
     const char *parts[3] = { "#version 330 core\n", library, source };
     GLuint shader = gl->CreateShader(kind);
@@ -269,13 +269,30 @@ static bool create(const struct gl *gl, struct gl_program *program, const char *
         GLint *place;
         const char *name;
     } uniforms[] = {
-        { &program->clip_from_lps, "clip_from_lps" }, { &program->eye_from_lps, "eye_from_lps" }, { &program->viewer, "viewer" },
-        { &program->color, "color" }, { &program->opacity, "opacity" }, { &program->is_rim, "is_rim" },
-        { &program->source, "source" }, { &program->palette, "palette" }, { &program->grey, "grey" }, { &program->ends, "ends" },
-        { &program->cull, "cull" }, { &program->scale, "scale" }, { &program->depths, "depths" }, { &program->before, "before" },
-        { &program->n_layers, "n_layers" }, { &program->rank_depth, "rank_depth" },
-        { &program->is_two_sided, "is_two_sided" }, { &program->rounding, "rounding" }, { &program->is_baked, "is_baked" }, { &program->is_covering, "is_covering" },
-        { &program->half_size, "half_size" }, { &program->half_view, "half_view" }, { &program->cue, "cue" }, { &program->edges, "edges" },
+        { &program->clip_from_lps, "clip_from_lps" },
+        { &program->eye_from_lps, "eye_from_lps" },
+        { &program->viewer, "viewer" },
+        { &program->color, "color" },
+        { &program->opacity, "opacity" },
+        { &program->is_rim, "is_rim" },
+        { &program->source, "source" },
+        { &program->palette, "palette" },
+        { &program->grey, "grey" },
+        { &program->ends, "ends" },
+        { &program->cull, "cull" },
+        { &program->scale, "scale" },
+        { &program->depths, "depths" },
+        { &program->before, "before" },
+        { &program->n_layers, "n_layers" },
+        { &program->rank_depth, "rank_depth" },
+        { &program->is_two_sided, "is_two_sided" },
+        { &program->rounding, "rounding" },
+        { &program->is_baked, "is_baked" },
+        { &program->is_covering, "is_covering" },
+        { &program->half_size, "half_size" },
+        { &program->half_view, "half_view" },
+        { &program->cue, "cue" },
+        { &program->edges, "edges" },
     };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++)
         *uniforms[i].place = gl->GetUniformLocation(program->name, uniforms[i].name);
@@ -293,7 +310,8 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
     char constants[80];
     *programs = (struct gl_programs){ 0 };
     if (create(gl, &programs->smooth, "smooth", surface_light, smooth_vertex, "", smooth_fragment, err) &&
-        create(gl, &programs->faceted, "faceted", surface_light, faceted_vertex, surface_light, faceted_fragment, err) &&
+        create(gl, &programs->faceted, "faceted", surface_light, faceted_vertex, surface_light, faceted_fragment,
+               err) &&
         create(gl, &programs->lines, "lines", line_constants(constants), line_vertex, "", smooth_fragment, err) &&
         create(gl, &programs->points, "points", surface_light, point_vertex, "", smooth_fragment, err) &&
         create(gl, &programs->compose, "compose", "", test_vertex, "", compose_fragment, err) &&
@@ -307,8 +325,9 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
 
 void gl_programs_destroy(const struct gl *gl, struct gl_programs *programs)
 {
-    const GLuint names[] = { programs->smooth.name, programs->faceted.name, programs->compose.name, programs->lines.name, programs->points.name, programs->image.name, programs->labels.name,
-                             programs->test.name };
+    const GLuint names[] = { programs->smooth.name, programs->faceted.name, programs->compose.name,
+                             programs->lines.name,  programs->points.name,  programs->image.name,
+                             programs->labels.name, programs->test.name };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (names[i])
             gl->DeleteProgram(names[i]);

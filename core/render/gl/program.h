@@ -5,8 +5,8 @@
 struct gl_program {
     GLuint name;
     /* places of uniforms; -1 where the program has none of that name */
-    GLint clip_from_lps, eye_from_lps, viewer, color, opacity, is_rim, source, palette, grey, ends, cull, scale, depths, before, n_layers, rank_depth, is_two_sided, rounding, is_baked, is_covering, half_size,
-        half_view, cue, edges;
+    GLint clip_from_lps, eye_from_lps, viewer, color, opacity, is_rim, source, palette, grey, ends, cull, scale, depths,
+        before, n_layers, rank_depth, is_two_sided, rounding, is_baked, is_covering, half_size, half_view, cue, edges;
 };
 
 struct gl_programs {

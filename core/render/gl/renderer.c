@@ -22,11 +22,11 @@ struct gl_renderer {
     struct gl_cache *cache;
     GLuint no_vertices, polygon_array, polygon, palette;
     uint8_t colors[VISIBLE_N_LABELS][4]; /* of the palette */
-    uint8_t *samples; /* a band of a still picture as it is read back */
+    uint8_t *samples;                    /* a band of a still picture as it is read back */
     size_t n_samples_bytes;
 };
 
-/* ---- start and stop ------------------------------------------------------------------------------------------------------- */
+/* ---- start and stop --------------------------------------------------------------------------------------------- */
 
 static void copy_text(char *to, size_t size, const GLubyte *from)
 {
@@ -104,11 +104,13 @@ static bool draw_test_pixel(struct gl_renderer *renderer, struct error *err)
     if (!gl_check(gl, "drawing a test pixel", err))
         return false;
     if (memcmp(pixel, texel, sizeof pixel) != 0)
-        return error_set(err, ERROR_GL, "a test pixel came back as %d %d %d %d", pixel[0], pixel[1], pixel[2], pixel[3]);
+        return error_set(err, ERROR_GL, "a test pixel came back as %d %d %d %d", pixel[0], pixel[1], pixel[2],
+                         pixel[3]);
     return true;
 }
 
-static bool start(struct gl_renderer *renderer, enum render_back_end back_end, enum gl_device_wish wish, struct error *err)
+static bool start(struct gl_renderer *renderer, enum render_back_end back_end, enum gl_device_wish wish,
+                  struct error *err)
 {
     if (!gl_context_open(&renderer->context, back_end, wish, &renderer->gl, err))
         return false;
@@ -159,9 +161,10 @@ void gl_renderer_forget(struct gl_renderer *renderer, const struct plan *plan)
     gl_cache_forget(&renderer->gl, renderer->cache, plan);
 }
 
-/* ---- a picture -------------------------------------------------------------------------------------------------------------- */
+/* ---- a picture -------------------------------------------------------------------------------------------------- */
 
-/* The camera's matrix for rows first .. first + n of a picture of `rows` rows, upside down, so that row 0 is read first. */
+/* The camera's matrix for rows first .. first + n of a picture of `rows` rows, upside down, so that row 0 is read
+ * first. */
 static void band_matrix(const struct camera *camera, int first, int n, int rows, float out[16])
 {
     double scale = (double)rows / n, centre = (2.0 * first + n) / rows - 1;
@@ -179,11 +182,13 @@ static bool draw_passes(const struct gl_frame *frame, struct error *err)
     const struct gl *gl = frame->gl;
     gl->BindFramebuffer(GL_FRAMEBUFFER, frame->target->framebuffer);
     gl->Viewport(0, 0, frame->target->width_px, frame->target->height_px);
-    gl->ClearColor((float)visible_background[0] / 255.0f, (float)visible_background[1] / 255.0f, (float)visible_background[2] / 255.0f, 1);
+    gl->ClearColor((float)visible_background[0] / 255.0f, (float)visible_background[1] / 255.0f,
+                   (float)visible_background[2] / 255.0f, 1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     if (frame->snapshot->view.kind != SCENE_KIND_3D)
         return gl_draw_pane(frame, err);
-    return gl_draw_opaque_shapes(frame, err) && gl_draw_slices_in_space(frame, err) && gl_draw_translucent_shapes(frame, err);
+    return gl_draw_opaque_shapes(frame, err) && gl_draw_slices_in_space(frame, err) &&
+           gl_draw_translucent_shapes(frame, err);
 }
 
 /* Mean of 2 x 2 samples, rounded. */
@@ -195,11 +200,14 @@ static void average_samples(const uint8_t *restrict samples, int width_px, int n
         uint8_t *out = rgba + (size_t)y * (size_t)width_px * 4;
         for (int x = 0; x < width_px; x++)
             for (int c = 0; c < 4; c++)
-                out[4 * x + c] = (uint8_t)((upper[8 * x + c] + upper[8 * x + 4 + c] + lower[8 * x + c] + lower[8 * x + 4 + c] + 2) >> 2);
+                out[4 * x + c] =
+                    (uint8_t)((upper[8 * x + c] + upper[8 * x + 4 + c] + lower[8 * x + c] + lower[8 * x + 4 + c] + 2) >>
+                              2);
     }
 }
 
-static bool read_band(struct gl_renderer *renderer, struct image *image, int first, int n, int samples, struct error *err)
+static bool read_band(struct gl_renderer *renderer, struct image *image, int first, int n, int samples,
+                      struct error *err)
 {
     const struct gl *gl = &renderer->gl;
     uint8_t *rgba = image->rgba + (size_t)first * (size_t)image->width_px * 4, *to = rgba;
@@ -223,8 +231,8 @@ static bool read_band(struct gl_renderer *renderer, struct image *image, int fir
     return true;
 }
 
-static bool draw_band(struct gl_renderer *renderer, struct gl_frame *frame, struct image *image, int first, int n, int samples,
-                      struct error *err)
+static bool draw_band(struct gl_renderer *renderer, struct gl_frame *frame, struct image *image, int first, int n,
+                      int samples, struct error *err)
 {
     int64_t start_us = clock_now_us();
     if (!gl_target_resize(&renderer->gl, &renderer->target, image->width_px * samples, n * samples, err))
@@ -250,31 +258,41 @@ struct gl_picture {
     int samples;
 };
 
-struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
-                                    const struct camera *camera)
+struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct snapshot *snapshot,
+                                    const struct render_options *options, const struct camera *camera)
 {
     struct gl_picture *picture = mem_new(sizeof *picture);
     picture->renderer = renderer;
     picture->options = *options;
-    picture->frame = (struct gl_frame){ .gl = &renderer->gl, .programs = &renderer->programs, .cache = renderer->cache,
-                                        .target = &renderer->target, .layers = &renderer->layers, .no_vertices = renderer->no_vertices,
-                                        .polygon_array = renderer->polygon_array, .polygon = renderer->polygon,
-                                        .palette = renderer->palette, .colors = renderer->colors, .snapshot = snapshot,
-                                        .camera = camera, .detail = options->detail };
+    picture->frame = (struct gl_frame){ .gl = &renderer->gl,
+                                        .programs = &renderer->programs,
+                                        .cache = renderer->cache,
+                                        .target = &renderer->target,
+                                        .layers = &renderer->layers,
+                                        .no_vertices = renderer->no_vertices,
+                                        .polygon_array = renderer->polygon_array,
+                                        .polygon = renderer->polygon,
+                                        .palette = renderer->palette,
+                                        .colors = renderer->colors,
+                                        .snapshot = snapshot,
+                                        .camera = camera,
+                                        .detail = options->detail };
     return picture;
 }
 
 static bool prepare(struct gl_picture *picture, struct error *err)
 {
     const struct render_options *options = &picture->options;
-    if (options->width_px < 1 || options->height_px < 1 || options->width_px > MAX_SIDE_PX || options->height_px > MAX_SIDE_PX)
-        return error_set(err, ERROR_RANGE, "a picture of %d x %d pixels: each side must be 1 to %d", options->width_px, options->height_px,
-                         MAX_SIDE_PX);
+    if (options->width_px < 1 || options->height_px < 1 || options->width_px > MAX_SIDE_PX ||
+        options->height_px > MAX_SIDE_PX)
+        return error_set(err, ERROR_RANGE, "a picture of %d x %d pixels: each side must be 1 to %d", options->width_px,
+                         options->height_px, MAX_SIDE_PX);
     picture->image = image_create(options->width_px, options->height_px, err);
     if (!picture->image)
         return false;
     gl_cache_trim(&picture->renderer->gl, picture->renderer->cache);
-    picture->samples = visible_samples(picture->frame.snapshot, picture->frame.camera, options->width_px, options->is_still);
+    picture->samples =
+        visible_samples(picture->frame.snapshot, picture->frame.camera, options->width_px, options->is_still);
     int row = options->width_px * picture->samples * picture->samples, band = MAX_BAND_SAMPLES / row;
     int n_layers = (int)visible_n_translucent(picture->frame.snapshot);
     n_layers = n_layers < GL_LAYERS_MAX ? n_layers : GL_LAYERS_MAX;
@@ -284,7 +302,8 @@ static bool prepare(struct gl_picture *picture, struct error *err)
     return true;
 }
 
-enum render_state gl_picture_go_on(struct gl_picture *picture, const struct render_pause *pause, struct render_timing *timing, struct error *err)
+enum render_state gl_picture_go_on(struct gl_picture *picture, const struct render_pause *pause,
+                                   struct render_timing *timing, struct error *err)
 {
     picture->frame.timing = timing;
     if (!picture->image && !prepare(picture, err))

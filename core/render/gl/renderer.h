@@ -4,17 +4,18 @@
 
 struct gl_renderer;
 
-/* back_end is one of OpenGL's; is_hardware_wanted leaves out the software devices of RENDER_EGL_DEVICE. The context is current on
- * the calling thread, which makes every other call. errors ERROR_GL */
-NODISCARD struct gl_renderer *gl_renderer_create(enum render_back_end back_end, bool is_hardware_wanted, struct error *err);
+/* back_end is one of OpenGL's; is_hardware_wanted leaves out the software devices of RENDER_EGL_DEVICE. The context is
+ * current on the calling thread, which makes every other call. errors ERROR_GL */
+NODISCARD struct gl_renderer *gl_renderer_create(enum render_back_end back_end, bool is_hardware_wanted,
+                                                 struct error *err);
 void gl_renderer_destroy(struct gl_renderer *renderer);
 const struct render_facts *gl_renderer_facts(const struct gl_renderer *renderer);
-/* The parts of render_begin, render_go_on and render_end. snapshot and camera, which is the snapshot's, resolved, outlive the picture; timing:
- * zeroed before the first time. */
+/* The parts of render_begin, render_go_on and render_end. snapshot and camera, which is the snapshot's, resolved,
+ * outlive the picture; timing: zeroed before the first time. */
 struct gl_picture;
-struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
-                                    const struct camera *camera);
-NODISCARD enum render_state gl_picture_go_on(struct gl_picture *picture, const struct render_pause *pause, struct render_timing *timing,
-                                             struct error *err);
+struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct snapshot *snapshot,
+                                    const struct render_options *options, const struct camera *camera);
+NODISCARD enum render_state gl_picture_go_on(struct gl_picture *picture, const struct render_pause *pause,
+                                             struct render_timing *timing, struct error *err);
 NODISCARD struct image *gl_picture_end(struct gl_picture *picture); /* NULL: not done */
 void gl_renderer_forget(struct gl_renderer *renderer, const struct plan *plan);

@@ -59,8 +59,8 @@ static const struct gl_program *use_program(const struct gl_frame *frame, const 
                                        : is_flat                           ? &programs->faceted
                                                                            : &programs->smooth;
     const struct vec3 *r = &camera->right, *u = &camera->up, *f = &camera->forward, *e = &camera->eye_lps_mm;
-    const float eye_from_lps[9] = { (float)r->x, (float)u->x, (float)-f->x, (float)r->y, (float)u->y,
-                                    (float)-f->y, (float)r->z, (float)u->z, (float)-f->z };
+    const float eye_from_lps[9] = { (float)r->x,  (float)u->x, (float)-f->x, (float)r->y, (float)u->y,
+                                    (float)-f->y, (float)r->z, (float)u->z,  (float)-f->z };
     uint32_t rgb = item->style->color_rgb;
     gl->UseProgram(program->name);
     gl->UniformMatrix4fv(program->clip_from_lps, 1, GL_FALSE, frame->clip_from_lps);
@@ -69,7 +69,8 @@ static const struct gl_program *use_program(const struct gl_frame *frame, const 
         gl->Uniform4f(program->viewer, (float)-f->x, (float)-f->y, (float)-f->z, 0);
     else
         gl->Uniform4f(program->viewer, (float)e->x, (float)e->y, (float)e->z, 1);
-    gl->Uniform4f(program->color, (float)(rgb >> 16 & 255) / 255.0f, (float)(rgb >> 8 & 255) / 255.0f, (float)(rgb & 255) / 255.0f, 1);
+    gl->Uniform4f(program->color, (float)(rgb >> 16 & 255) / 255.0f, (float)(rgb >> 8 & 255) / 255.0f,
+                  (float)(rgb & 255) / 255.0f, 1);
     gl->Uniform1f(program->opacity, (float)item->style->opacity);
     gl->Uniform1i(program->is_rim, item->look.is_rim);
     gl->Uniform1i(program->is_two_sided, item->look.is_two_sided);
@@ -101,7 +102,8 @@ static void draw_rectangles(const struct gl_frame *frame, const struct item *ite
             edges[i][row] = m[0] * (float)e->x + m[4] * (float)e->y + m[8] * (float)e->z;
         }
     gl->Uniform2f(program->half_view, (float)frame->target->width_px / 2.0f, (float)frame->target->height_px / 2.0f);
-    gl->Uniform1f(program->half_size, (float)(fmax(1, item->look.size_px * samples_per_px) / 2)); /* never gone in a small picture */
+    gl->Uniform1f(program->half_size,
+                  (float)(fmax(1, item->look.size_px * samples_per_px) / 2)); /* never gone in a small picture */
     gl->Uniform4f(program->cue, (float)cue.x, (float)cue.y, (float)cue.z, (float)cue.w);
     gl->Uniform4fv(program->edges, 3, &edges[0][0]);
     gl->Uniform1i(program->is_baked, item->look.is_baked);
@@ -174,7 +176,8 @@ bool gl_draw_translucent_shapes(const struct gl_frame *frame, struct error *err)
     struct item *items = collect(frame, false, &n, err);
     if (!items)
         return false;
-    bool is_good = n == 0 || gl_layers_resize(frame->gl, frame->layers, frame->target, n < GL_LAYERS_MAX ? (int)n : GL_LAYERS_MAX, err);
+    bool is_good = n == 0 || gl_layers_resize(frame->gl, frame->layers, frame->target,
+                                              n < GL_LAYERS_MAX ? (int)n : GL_LAYERS_MAX, err);
     for (size_t first = 0; is_good && first < n; first += GL_LAYERS_MAX) {
         int n_here = n - first < GL_LAYERS_MAX ? (int)(n - first) : GL_LAYERS_MAX;
         frame->gl->Enable(GL_DEPTH_TEST);

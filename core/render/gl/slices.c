@@ -1,8 +1,8 @@
 #include "core/render/gl/draw.h"
 #include "core/render/visible/visible.h"
 
-/* A plane square to a patient axis cuts a grid's box in at most six corners; each half-space adds at most one to the square we
- * start from. */
+/* A plane square to a patient axis cuts a grid's box in at most six corners; each half-space adds at most one to the
+ * square we start from. */
 enum { MAX_CORNERS = 10 };
 
 struct polygon {
@@ -68,7 +68,7 @@ static void draw_polygon(const struct gl_frame *frame, const struct grid *grid, 
     gl->DrawArrays(GL_TRIANGLE_FAN, 0, polygon->n);
 }
 
-/* ---- images ----------------------------------------------------------------------------------------------------------------- */
+/* ---- images ----------------------------------------------------------------------------------------------------- */
 
 static bool draw_image_slice(const struct gl_frame *frame, enum scene_kind kind, double position_mm, struct error *err)
 {
@@ -111,11 +111,13 @@ bool gl_draw_slices_in_space(const struct gl_frame *frame, struct error *err)
         return true;
     frame->gl->Enable(GL_DEPTH_TEST);
     return (!slices->axial.visible || draw_image_slice(frame, SCENE_KIND_AXIAL, slices->axial.position_mm, err)) &&
-           (!slices->coronal.visible || draw_image_slice(frame, SCENE_KIND_CORONAL, slices->coronal.position_mm, err)) &&
-           (!slices->sagittal.visible || draw_image_slice(frame, SCENE_KIND_SAGITTAL, slices->sagittal.position_mm, err));
+           (!slices->coronal.visible ||
+            draw_image_slice(frame, SCENE_KIND_CORONAL, slices->coronal.position_mm, err)) &&
+           (!slices->sagittal.visible ||
+            draw_image_slice(frame, SCENE_KIND_SAGITTAL, slices->sagittal.position_mm, err));
 }
 
-/* ---- labels ------------------------------------------------------------------------------------------------------------------- */
+/* ---- labels ----------------------------------------------------------------------------------------------------- */
 
 static bool draw_label_slice(const struct gl_frame *frame, size_t layer, struct error *err)
 {

@@ -14,8 +14,8 @@ gl_function gl_symbol(void *library, const char *name)
 
 bool gl_load(struct gl *gl, gl_function (*get)(const char *name), struct error *err)
 {
-#define GL_GET(type, name)                                                                                             \
-    if (!(gl->name = (type)get("gl" #name)))                                                                           \
+#define GL_GET(type, name) \
+    if (!(gl->name = (type)get("gl" #name))) \
         return error_set(err, ERROR_GL, "the driver has no gl" #name);
     GL_FUNCTIONS(GL_GET)
 #undef GL_GET

@@ -46,8 +46,8 @@ bool gl_target_resize(const struct gl *gl, struct gl_target *target, int width_p
     gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
     GLint most = renderbuffer < texture ? renderbuffer : texture;
     if (width_px > most || height_px > most)
-        return error_set(err, ERROR_LIMIT, "drawing %d x %d pixels: this graphics driver takes at most %d along a side", width_px,
-                         height_px, most);
+        return error_set(err, ERROR_LIMIT, "drawing %d x %d pixels: this graphics driver takes at most %d along a side",
+                         width_px, height_px, most);
     gl_target_destroy(gl, target);
     target->width_px = width_px;
     target->height_px = height_px;
@@ -55,7 +55,8 @@ bool gl_target_resize(const struct gl *gl, struct gl_target *target, int width_p
     gl->BindRenderbuffer(GL_RENDERBUFFER, target->color);
     gl->RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width_px, height_px);
     target->depth = make_texture(gl, GL_TEXTURE_2D);
-    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, width_px, height_px, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, NULL);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, width_px, height_px, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
+                   NULL);
     gl->BindTexture(GL_TEXTURE_2D, 0);
     GLenum status = make_framebuffers(gl, target);
 
@@ -69,7 +70,7 @@ bool gl_target_resize(const struct gl *gl, struct gl_target *target, int width_p
     return false;
 }
 
-/* ---- layers --------------------------------------------------------------------------------------------------------------- */
+/* ---- layers ----------------------------------------------------------------------------------------------------- */
 
 void gl_layers_destroy(const struct gl *gl, struct gl_layers *layers)
 {
@@ -88,7 +89,8 @@ void gl_layers_bind(const struct gl *gl, const struct gl_layers *layers, int i)
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-bool gl_layers_resize(const struct gl *gl, struct gl_layers *layers, const struct gl_target *target, int n, struct error *err)
+bool gl_layers_resize(const struct gl *gl, struct gl_layers *layers, const struct gl_target *target, int n,
+                      struct error *err)
 {
     int width = target->width_px, height = target->height_px;
     if (layers->framebuffer && layers->width_px == width && layers->height_px == height && layers->n >= n)
@@ -100,7 +102,8 @@ bool gl_layers_resize(const struct gl *gl, struct gl_layers *layers, const struc
     layers->color = make_texture(gl, GL_TEXTURE_2D_ARRAY);
     gl->TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA8, width, height, n, 0, GL_RGBA, GL_UNSIGNED_BYTE, NULL);
     layers->depth = make_texture(gl, GL_TEXTURE_2D_ARRAY);
-    gl->TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT24, width, height, n, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, NULL);
+    gl->TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT24, width, height, n, 0, GL_DEPTH_COMPONENT,
+                   GL_UNSIGNED_INT, NULL);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
     gl->GenFramebuffers(1, &layers->framebuffer);
     gl_layers_bind(gl, layers, 0);

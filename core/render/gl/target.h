@@ -11,7 +11,8 @@ struct gl_target {
 };
 
 /* Makes the target this large; keeps it when it is so already. errors ERROR_LIMIT, ERROR_GL */
-NODISCARD bool gl_target_resize(const struct gl *gl, struct gl_target *target, int width_px, int height_px, struct error *err);
+NODISCARD bool gl_target_resize(const struct gl *gl, struct gl_target *target, int width_px, int height_px,
+                                struct error *err);
 void gl_target_destroy(const struct gl *gl, struct gl_target *target);
 
 /* One picture's worth of colour and depth for every translucent region: what each shows nearest to the viewer. */
@@ -21,12 +22,13 @@ struct gl_layers {
     GLuint color, depth; /* array textures */
 };
 enum {
-    GL_LAYERS_MAX = 64,            /* regions in one composition */
+    GL_LAYERS_MAX = 64,              /* regions in one composition */
     GL_LAYERS_MAX_SAMPLES = 16 << 20 /* of all layers together, 8 bytes each: larger pictures are drawn in bands */
 };
 
 /* As large as the target, n of them or more. errors ERROR_GL */
-NODISCARD bool gl_layers_resize(const struct gl *gl, struct gl_layers *layers, const struct gl_target *target, int n, struct error *err);
+NODISCARD bool gl_layers_resize(const struct gl *gl, struct gl_layers *layers, const struct gl_target *target, int n,
+                                struct error *err);
 /* From now on layer i is drawn into; it is clear. */
 void gl_layers_bind(const struct gl *gl, const struct gl_layers *layers, int i);
 void gl_layers_destroy(const struct gl *gl, struct gl_layers *layers);

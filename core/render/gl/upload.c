@@ -36,18 +36,20 @@ static void send(const struct gl *gl, GLenum kind, const void *bytes, size_t n, 
 }
 
 /* What the vertex shaders call attribute `place`. divisor 1: of an instance. */
-static void attribute(const struct gl *gl, GLuint place, GLint n, GLenum type, size_t stride, size_t offset, GLuint divisor)
+static void attribute(const struct gl *gl, GLuint place, GLint n, GLenum type, size_t stride, size_t offset,
+                      GLuint divisor)
 {
     gl->VertexAttribPointer(place, n, type, type != GL_FLOAT, (GLsizei)stride, (const void *)offset);
     gl->EnableVertexAttribArray(place);
     gl->VertexAttribDivisor(place, divisor);
 }
 
-static bool send_triangles(const struct gl *gl, const struct mesh *mesh, int n_passes, struct gl_shape *out, uint64_t *n_bytes,
-                           struct error *err)
+static bool send_triangles(const struct gl *gl, const struct mesh *mesh, int n_passes, struct gl_shape *out,
+                           uint64_t *n_bytes, struct error *err)
 {
     float *smooth = n_passes > 0 ? shading_normals(mesh, n_passes, err) : NULL;
-    struct vertex *vertices = smooth || n_passes == 0 ? mem_array(mesh->n_vertices, sizeof *vertices, UINT64_MAX, err) : NULL;
+    struct vertex *vertices =
+        smooth || n_passes == 0 ? mem_array(mesh->n_vertices, sizeof *vertices, UINT64_MAX, err) : NULL;
     for (size_t i = 0; vertices && i < mesh->n_vertices; i++)
         pack(&mesh->positions_lps_mm[3 * i], smooth ? &smooth[3 * i] : &mesh->normals[3 * i], &vertices[i]);
     free(smooth);
@@ -65,14 +67,16 @@ static bool send_triangles(const struct gl *gl, const struct mesh *mesh, int n_p
     return true;
 }
 
-static bool send_lines(const struct gl *gl, const struct line_set *lines, struct gl_shape *out, uint64_t *n_bytes, struct error *err)
+static bool send_lines(const struct gl *gl, const struct line_set *lines, struct gl_shape *out, uint64_t *n_bytes,
+                       struct error *err)
 {
     struct segment *segments = mem_array(lines->n_segments, sizeof *segments, UINT64_MAX, err);
     if (!segments)
         return false;
     for (size_t i = 0; i < lines->n_segments; i++)
         for (size_t end = 0; end < 2; end++)
-            memcpy(segments[i].ends_lps_mm[end], &lines->positions_lps_mm[3 * (size_t)lines->indices[2 * i + end]], 3 * sizeof(float));
+            memcpy(segments[i].ends_lps_mm[end], &lines->positions_lps_mm[3 * (size_t)lines->indices[2 * i + end]],
+                   3 * sizeof(float));
     out->n = (GLsizei)lines->n_segments;
     send(gl, GL_ARRAY_BUFFER, segments, lines->n_segments * sizeof *segments, n_bytes);
     for (GLuint end = 0; end < 2; end++)
@@ -81,7 +85,8 @@ static bool send_lines(const struct gl *gl, const struct line_set *lines, struct
     return true;
 }
 
-static bool send_points(const struct gl *gl, const struct point_set *set, struct gl_shape *out, uint64_t *n_bytes, struct error *err)
+static bool send_points(const struct gl *gl, const struct point_set *set, struct gl_shape *out, uint64_t *n_bytes,
+                        struct error *err)
 {
     struct point *points = mem_array(set->n_points, sizeof *points, UINT64_MAX, err);
     if (!points)
@@ -107,10 +112,13 @@ static bool send_points(const struct gl *gl, const struct point_set *set, struct
 
 static size_t n_primitives(const struct shape *shape)
 {
-    return shape->kind == SHAPE_TRIANGLES ? shape->mesh->n_triangles : shape->kind == SHAPE_LINES ? shape->lines->n_segments : shape->points->n_points;
+    return shape->kind == SHAPE_TRIANGLES ? shape->mesh->n_triangles
+           : shape->kind == SHAPE_LINES   ? shape->lines->n_segments
+                                          : shape->points->n_points;
 }
 
-bool gl_upload_shape(const struct gl *gl, const struct shape *shape, int n_passes, struct gl_shape *out, uint64_t *n_bytes, struct error *err)
+bool gl_upload_shape(const struct gl *gl, const struct shape *shape, int n_passes, struct gl_shape *out,
+                     uint64_t *n_bytes, struct error *err)
 {
     size_t n = n_primitives(shape);
     if (n > (size_t)INT32_MAX / 3)

@@ -43,7 +43,12 @@ static double inside(const struct soft_corner *corner, int plane)
 
 static struct soft_corner between(const struct soft_corner *a, const struct soft_corner *b, double t)
 {
-    struct soft_corner out = { a->x + t * (b->x - a->x), a->y + t * (b->y - a->y), a->z + t * (b->z - a->z), a->w + t * (b->w - a->w), { 0 }, NULL };
+    struct soft_corner out = { a->x + t * (b->x - a->x),
+                               a->y + t * (b->y - a->y),
+                               a->z + t * (b->z - a->z),
+                               a->w + t * (b->w - a->w),
+                               { 0 },
+                               NULL };
     for (int c = 0; c < 4; c++)
         out.shade[c] = a->shade[c] + t * (b->shade[c] - a->shade[c]);
     return out;
@@ -59,7 +64,8 @@ static void clip(struct soft_polygon *polygon)
             double fa = inside(a, plane), fb = inside(b, plane);
             if (fa >= 0 && kept.n < SOFT_MAX_CORNERS)
                 kept.corners[kept.n++] = *a;
-            if ((fa >= 0) != (fb >= 0) && kept.n < SOFT_MAX_CORNERS) /* from the inner one, so that a neighbour gets the same point */
+            if ((fa >= 0) != (fb >= 0) &&
+                kept.n < SOFT_MAX_CORNERS) /* from the inner one, so that a neighbour gets the same point */
                 kept.corners[kept.n++] = fa >= 0 ? between(a, b, fa / (fa - fb)) : between(b, a, fb / (fb - fa));
         }
         *polygon = kept;
@@ -78,8 +84,8 @@ static struct soft_vertex to_vertex(const struct soft_corner *corner)
 }
 
 /* Whether a triangle faces the viewer and its box holds a sample, and in which bands. */
-static bool can_be_seen(const struct soft_vertex *a, const struct soft_vertex *b, const struct soft_vertex *c, int width, int height,
-                        struct soft_kept *kept)
+static bool can_be_seen(const struct soft_vertex *a, const struct soft_vertex *b, const struct soft_vertex *c,
+                        int width, int height, struct soft_kept *kept)
 {
     int32_t low_x = a->x, high_x = a->x, low_y = a->y, high_y = a->y;
     low_x = b->x < low_x ? b->x : low_x;
@@ -97,7 +103,8 @@ static bool can_be_seen(const struct soft_vertex *a, const struct soft_vertex *b
     int64_t area = (int64_t)(b->x - a->x) * (c->y - a->y) - (int64_t)(b->y - a->y) * (c->x - a->x);
     kept->first_band = (uint16_t)(top / SOFT_BAND_ROWS);
     kept->last_band = (uint16_t)(bottom / SOFT_BAND_ROWS);
-    return (area < 0) & (left <= right) & (top <= bottom) & (left < width) & (right >= 0); /* y is down: counter-clockwise is negative */
+    return (area < 0) & (left <= right) & (top <= bottom) & (left < width) &
+           (right >= 0); /* y is down: counter-clockwise is negative */
 }
 
 static bool keep(struct soft_chunk *chunk, const struct soft_vertex corners[3], uint32_t kind, struct soft_kept kept)
@@ -114,13 +121,17 @@ static bool keep(struct soft_chunk *chunk, const struct soft_vertex corners[3], 
 bool soft_keep_triangle(struct soft_chunk *chunk, const struct soft_vertex triangle[3], int width, int height)
 {
     struct soft_kept kept;
-    return !can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept) || keep(chunk, triangle, SOFT_EXTRA, kept);
+    return !can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept) ||
+           keep(chunk, triangle, SOFT_EXTRA, kept);
 }
 
-bool soft_keep_rectangle(struct soft_chunk *chunk, const struct soft_vertex *low, const struct soft_vertex *high, int width, int height)
+bool soft_keep_rectangle(struct soft_chunk *chunk, const struct soft_vertex *low, const struct soft_vertex *high,
+                         int width, int height)
 {
-    int left = (low->x + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS, right = ((high->x + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS) - 1;
-    int top = (low->y + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS, bottom = ((high->y + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS) - 1;
+    int left = (low->x + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS,
+        right = ((high->x + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS) - 1;
+    int top = (low->y + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS,
+        bottom = ((high->y + SOFT_SUB / 2 - 1) >> SOFT_SUB_BITS) - 1;
     top = top > 0 ? top : 0;
     bottom = bottom < height ? bottom : height - 1;
     if (left > right || top > bottom || left >= width || right < 0)
@@ -130,7 +141,8 @@ bool soft_keep_rectangle(struct soft_chunk *chunk, const struct soft_vertex *low
                 (struct soft_kept){ 0, (uint16_t)(top / SOFT_BAND_ROWS), (uint16_t)(bottom / SOFT_BAND_ROWS) });
 }
 
-/* The light on a triangle of its own plane, seen from its middle; from behind, where that can be, the plane's other side. */
+/* The light on a triangle of its own plane, seen from its middle; from behind, where that can be, the plane's other
+ * side. */
 static uint32_t flat_shade(const struct soft_item *item, const uint32_t *corners)
 {
     const struct soft_points *points = &item->shape->points;
@@ -140,8 +152,10 @@ static uint32_t flat_shade(const struct soft_item *item, const uint32_t *corners
         p[i] = vec3((double)points->x[corners[i]], (double)points->y[corners[i]], (double)points->z[corners[i]]);
     struct vec3 middle = vec3_scale(vec3_add(vec3_add(p[0], p[1]), p[2]), 1 / 3.0);
     struct vec3 n = vec3_normalize(vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])));
-    struct vec3 t = vec3_normalize(vec3_sub(vec3((double)viewer[0], (double)viewer[1], (double)viewer[2]), vec3_scale(middle, (double)viewer[3])));
-    return soft_light(&item->lighting, (float[3]){ (float)n.x, (float)n.y, (float)n.z }, (float[3]){ (float)t.x, (float)t.y, (float)t.z });
+    struct vec3 t = vec3_normalize(
+        vec3_sub(vec3((double)viewer[0], (double)viewer[1], (double)viewer[2]), vec3_scale(middle, (double)viewer[3])));
+    return soft_light(&item->lighting, (float[3]){ (float)n.x, (float)n.y, (float)n.z },
+                      (float[3]){ (float)t.x, (float)t.y, (float)t.z });
 }
 
 static double apply(const float row[4], double x, double y, double z)
@@ -151,15 +165,21 @@ static double apply(const float row[4], double x, double y, double z)
 
 void soft_project(const struct soft_lighting *l, double x, double y, double z, struct soft_corner *corner)
 {
-    *corner = (struct soft_corner){ apply(l->row_x, x, y, z), apply(l->row_y, x, y, z), apply(l->row_z, x, y, z), apply(l->row_w, x, y, z),
-                                    { 0 }, NULL };
+    *corner = (struct soft_corner){ apply(l->row_x, x, y, z),
+                                    apply(l->row_y, x, y, z),
+                                    apply(l->row_z, x, y, z),
+                                    apply(l->row_w, x, y, z),
+                                    { 0 },
+                                    NULL };
 }
 
-bool soft_keep_polygon(struct soft_chunk *chunk, struct soft_polygon *polygon, const uint32_t *shade, int width, int height)
+bool soft_keep_polygon(struct soft_chunk *chunk, struct soft_polygon *polygon, const uint32_t *shade, int width,
+                       int height)
 {
     clip(polygon);
     for (int i = 2; i < polygon->n; i++) {
-        struct soft_vertex triangle[3] = { to_vertex(&polygon->corners[0]), to_vertex(&polygon->corners[i - 1]), to_vertex(&polygon->corners[i]) };
+        struct soft_vertex triangle[3] = { to_vertex(&polygon->corners[0]), to_vertex(&polygon->corners[i - 1]),
+                                           to_vertex(&polygon->corners[i]) };
         for (int corner = 0; shade && corner < 3; corner++)
             triangle[corner].shade = *shade;
         if (!soft_keep_triangle(chunk, triangle, width, height))
@@ -177,14 +197,16 @@ static uint32_t round_off(const struct soft_item *item, uint32_t flat, uint32_t 
     return mixed;
 }
 
-static bool keep_clipped(struct soft_chunk *chunk, const uint32_t *corners, const uint32_t *shade, int width, int height)
+static bool keep_clipped(struct soft_chunk *chunk, const uint32_t *corners, const uint32_t *shade, int width,
+                         int height)
 {
     const struct soft_item *item = chunk->item;
     const struct soft_points *points = &item->shape->points;
     struct soft_polygon polygon = { .n = 3 };
     for (int i = 0; i < 3; i++) {
         struct soft_corner *corner = &polygon.corners[i];
-        soft_project(&item->lighting, (double)points->x[corners[i]], (double)points->y[corners[i]], (double)points->z[corners[i]], corner);
+        soft_project(&item->lighting, (double)points->x[corners[i]], (double)points->y[corners[i]],
+                     (double)points->z[corners[i]], corner);
         corner->own = &item->vertices[corners[i]];
         uint32_t own = shade ? round_off(item, *shade, corner->own->shade) : corner->own->shade;
         for (int c = 0; c < 4; c++)
@@ -233,13 +255,15 @@ static bool keep_triangles(struct soft_chunk *chunk, int width, int height)
     bool is_special = item->look.is_flat || item->shape->is_faceted || item->look.is_two_sided;
     for (size_t t = chunk->first; t < chunk->first + chunk->n; t++) {
         const uint32_t *corners = item->shape->indices + 3 * t;
-        const struct soft_vertex *a = &item->vertices[corners[0]], *b = &item->vertices[corners[1]], *c = &item->vertices[corners[2]];
+        const struct soft_vertex *a = &item->vertices[corners[0]], *b = &item->vertices[corners[1]],
+                                 *c = &item->vertices[corners[2]];
         if (is_special | !is_in_picture(a, b, c)) {
             if (!keep_special(chunk, corners, width, height))
                 return false;
         } else {
             if (chunk->n_kept == chunk->kept_capacity &&
-                !reserve(&chunk->kept, &chunk->kept_capacity, chunk->n_kept + SOFT_CHUNK_PRIMITIVES, sizeof *chunk->kept))
+                !reserve(&chunk->kept, &chunk->kept_capacity, chunk->n_kept + SOFT_CHUNK_PRIMITIVES,
+                         sizeof *chunk->kept))
                 return false;
             struct soft_kept *kept = &chunk->kept[chunk->n_kept]; /* written anyway: a branch less */
             kept->ref = (uint32_t)t;
@@ -263,7 +287,8 @@ static bool keep_all(struct soft_chunk *chunk, int width, int height)
 bool soft_chunk_sort(struct soft_chunk *chunk, int width, int height, int n_bands)
 {
     size_t n_starts = (size_t)n_bands + 1;
-    if (!keep_all(chunk, width, height) || !reserve(&chunk->starts, &chunk->starts_capacity, n_starts, sizeof *chunk->starts))
+    if (!keep_all(chunk, width, height) ||
+        !reserve(&chunk->starts, &chunk->starts_capacity, n_starts, sizeof *chunk->starts))
         return false;
     /* count[b + 1], summed up to ends, then filled from the back of each band so that ends become starts */
     uint32_t *starts = chunk->starts;

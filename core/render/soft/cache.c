@@ -78,9 +78,10 @@ uint64_t soft_cache_trim(struct soft_cache *cache, uint64_t oldest_begun)
     return ++cache->n_pictures;
 }
 
-/* By component, so that one instruction works on several vertices; normals in 16 bits, fine enough to shade with. normals NULL:
- * none. */
-static bool fill_vertices(struct entry *entry, const float *positions, const float *normals, size_t n, struct error *err)
+/* By component, so that one instruction works on several vertices; normals in 16 bits, fine enough to shade with.
+ * normals NULL: none. */
+static bool fill_vertices(struct entry *entry, const float *positions, const float *normals, size_t n,
+                          struct error *err)
 {
     entry->positions = mem_large_array(n, 3 * sizeof *entry->positions, UINT64_MAX, err);
     entry->normals = entry->positions ? mem_large_array(n, 3 * sizeof *entry->normals, UINT64_MAX, err) : NULL;
@@ -143,18 +144,19 @@ static bool fill(struct entry *entry, uint32_t reduction, struct error *err)
     case SHAPE_POINTS: is_good = fill_points(entry, err); break;
     }
     if (is_good && entry->drawn.n_primitives > (size_t)INT32_MAX / 3)
-        return error_set(err, ERROR_LIMIT, "%zu triangles, lines or points: at most %d can be drawn", entry->drawn.n_primitives,
-                         INT32_MAX / 3);
+        return error_set(err, ERROR_LIMIT, "%zu triangles, lines or points: at most %d can be drawn",
+                         entry->drawn.n_primitives, INT32_MAX / 3);
     entry->n_bytes = sizeof *entry + shape->n_bytes + entry->drawn.n_vertices * 3 * (sizeof(float) + sizeof(int16_t));
     return is_good;
 }
 
-const struct soft_shape *soft_cache_shape(struct soft_cache *cache, struct plan *plan, size_t region, const struct shape_key *key,
-                                          enum surface_detail detail, struct error *err)
+const struct soft_shape *soft_cache_shape(struct soft_cache *cache, struct plan *plan, size_t region,
+                                          const struct shape_key *key, enum surface_detail detail, struct error *err)
 {
     detail = key->representation == REPRESENTATION_SURFACE ? detail : SURFACE_FULL;
     for (struct entry *entry = cache->first; entry; entry = entry->next)
-        if (entry->plan == plan && entry->region == region && entry->detail == detail && shape_key_equal(&entry->key, key)) {
+        if (entry->plan == plan && entry->region == region && entry->detail == detail &&
+            shape_key_equal(&entry->key, key)) {
             entry->used = cache->n_pictures;
             return &entry->drawn;
         }

@@ -25,7 +25,8 @@ static void put(float out[3], struct vec3 v)
     out[2] = (float)v.z;
 }
 
-static struct soft_lighting make_lighting(const struct soft_frame *frame, const struct scene_region_style *style, const struct visible_look *look)
+static struct soft_lighting make_lighting(const struct soft_frame *frame, const struct scene_region_style *style,
+                                          const struct visible_look *look)
 {
     const struct camera *camera = frame->camera;
     struct soft_lighting l = { 0 };
@@ -49,7 +50,8 @@ static struct soft_lighting make_lighting(const struct soft_frame *frame, const 
     return l;
 }
 
-static void add_item(struct soft_frame *frame, const struct visible_shape *from, const struct soft_shape *shape, bool is_opaque)
+static void add_item(struct soft_frame *frame, const struct visible_shape *from, const struct soft_shape *shape,
+                     bool is_opaque)
 {
     struct shape_key key = visible_shape_key(frame->snapshot, from->region);
     struct visible_look look = visible_look(frame->snapshot, from->region, &key);
@@ -71,8 +73,8 @@ bool soft_collect_shapes(struct soft_frame *frame, struct render_timing *timing,
     struct visible_shape *visible[2] = { NULL, NULL }; /* translucent, opaque */
     size_t n[2] = { 0, 0 };
     for (int is_opaque = 0; is_opaque < 2; is_opaque++) {
-        visible[is_opaque] =
-            visible_shapes(snapshot, frame->camera, &frame->camera->clip_from_lps_mm, is_opaque, bounds, frame, &n[is_opaque], err);
+        visible[is_opaque] = visible_shapes(snapshot, frame->camera, &frame->camera->clip_from_lps_mm, is_opaque,
+                                            bounds, frame, &n[is_opaque], err);
         if (!visible[is_opaque])
             goto fail;
     }
@@ -100,7 +102,9 @@ fail:
 
 static void add_image(struct soft_frame *frame, enum scene_kind kind, double position_mm)
 {
-    static const enum soft_voxel types[] = { [VOXEL_U8] = SOFT_U8, [VOXEL_I16] = SOFT_I16, [VOXEL_U16] = SOFT_U16, [VOXEL_F32] = SOFT_F32 };
+    static const enum soft_voxel types[] = {
+        [VOXEL_U8] = SOFT_U8, [VOXEL_I16] = SOFT_I16, [VOXEL_U16] = SOFT_U16, [VOXEL_F32] = SOFT_F32
+    };
     const struct snapshot *snapshot = frame->snapshot;
     const struct scene_image_style *style = &snapshot->scene.image;
     const struct volume *volume = snapshot->plan->images[snapshot->image].volume;
@@ -135,8 +139,8 @@ static bool add_labels(struct soft_frame *frame, struct error *err)
         if (volume->type == VOXEL_F32)
             return error_set(err, ERROR_UNSUPPORTED, "label layer %zu: a label layer of real numbers", layers[i]);
         struct soft_plane *plane = &frame->planes[frame->n_planes++];
-        soft_plane_init(plane, volume, kind, scene_slice_position_mm(&snapshot->scene, kind), &frame->camera->clip_from_lps_mm,
-                        frame->width, frame->height);
+        soft_plane_init(plane, volume, kind, scene_slice_position_mm(&snapshot->scene, kind),
+                        &frame->camera->clip_from_lps_mm, frame->width, frame->height);
         plane->texture.type = volume->type == VOXEL_U8 ? SOFT_U8 : SOFT_U16; /* labels are never negative */
         plane->texture.palette = palette;
     }

@@ -10,14 +10,16 @@
 #include "core/render/soft/kernels.inc"
 
 /* Samples are packed as they lie in memory. */
-_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the software rasteriser packs samples for little-endian machines");
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
+               "the software rasteriser packs samples for little-endian machines");
 
-const struct soft_kernels soft_kernels_portable = { "portable", shade_portable, raster_portable, compose_portable, sample_portable,
-                                                    halve_portable };
+const struct soft_kernels soft_kernels_portable = { "portable",       shade_portable,  raster_portable,
+                                                    compose_portable, sample_portable, halve_portable };
 
 uint32_t soft_light(const struct soft_lighting *lighting, const float normal_lps[3], const float towards_lps[3])
 {
-    return light_at(lighting, normal_lps[0], normal_lps[1], normal_lps[2], towards_lps[0], towards_lps[1], towards_lps[2]);
+    return light_at(lighting, normal_lps[0], normal_lps[1], normal_lps[2], towards_lps[0], towards_lps[1],
+                    towards_lps[2]);
 }
 
 #if defined(__x86_64__)
@@ -27,5 +29,8 @@ const struct soft_kernels *soft_kernels_best(void)
     return __builtin_cpu_supports("avx2") ? &soft_kernels_avx2 : &soft_kernels_portable;
 }
 #else
-const struct soft_kernels *soft_kernels_best(void) { return &soft_kernels_portable; }
+const struct soft_kernels *soft_kernels_best(void)
+{
+    return &soft_kernels_portable;
+}
 #endif

@@ -5,7 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Sub-samples along a sample: vertices are rounded to these, and all decisions about coverage are exact from there on. */
+/* Sub-samples along a sample: vertices are rounded to these, and all decisions about coverage are exact from there on.
+ */
 enum { SOFT_SUB_BITS = 8, SOFT_SUB = 1 << SOFT_SUB_BITS };
 /* Vertices farther from the picture's corner than this (in sub-samples) go through the clipper: 32768 samples. */
 enum { SOFT_GUARD = 1 << 23 };
@@ -44,8 +45,8 @@ struct soft_band {
     uint32_t *color;
 };
 
-/* What one translucent region has in the same rows: its nearest sheet. Where it has none, and everywhere between pictures, depth 1
- * and colour 0. */
+/* What one translucent region has in the same rows: its nearest sheet. Where it has none, and everywhere between
+ * pictures, depth 1 and colour 0. */
 struct soft_layer {
     float *depth;
     uint32_t *color;
@@ -53,8 +54,9 @@ struct soft_layer {
 };
 enum { SOFT_MAX_LAYERS = 1024 };
 
-/* Triangles to draw into a band: refs count the triangles of indices, or with SOFT_EXTRA those of extras. With SOFT_RECTANGLE too it is
- * a rectangle of one depth and colour: from the first corner, left and above, to the second; the third is nothing. */
+/* Triangles to draw into a band: refs count the triangles of indices, or with SOFT_EXTRA those of extras. With
+ * SOFT_RECTANGLE too it is a rectangle of one depth and colour: from the first corner, left and above, to the second;
+ * the third is nothing. */
 #define SOFT_EXTRA 0x80000000u
 #define SOFT_RECTANGLE 0x40000000u
 struct soft_triangles {
@@ -65,7 +67,8 @@ struct soft_triangles {
     const struct soft_vertex *extras;
 };
 
-/* One row of a plane through a grid: index along each axis times 1 / w, 1 / w and depth, at the first sample and a sample's step. */
+/* One row of a plane through a grid: index along each axis times 1 / w, 1 / w and depth, at the first sample and a
+ * sample's step. */
 struct soft_row {
     double at[5], step[5];
 };
@@ -83,14 +86,17 @@ struct soft_texture {
 
 struct soft_kernels {
     const char *name;
-    void (*shade)(const struct soft_lighting *lighting, const struct soft_points *points, size_t first, size_t n, struct soft_vertex *out);
+    void (*shade)(const struct soft_lighting *lighting, const struct soft_points *points, size_t first, size_t n,
+                  struct soft_vertex *out);
     /* range grows to the columns touched, [0] <= x < [1]. */
     void (*raster)(const struct soft_band *band, const struct soft_triangles *triangles, int range[2]);
-    /* Lays what is nearer than the band's depth over its colours, and clears the layers. rank_depth > 0: at each sample the farther
-     * first, where a layer counts as so much nearer for each one before it; else in the order of the layers. */
+    /* Lays what is nearer than the band's depth over its colours, and clears the layers. rank_depth > 0: at each sample
+     * the farther first, where a layer counts as so much nearer for each one before it; else in the order of the
+     * layers. */
     void (*compose)(const struct soft_band *band, struct soft_layer *layers, int n_layers, float rank_depth);
     /* Samples first .. first + n of a row of a plane. */
-    void (*sample)(const struct soft_texture *texture, const struct soft_row *row, int first, int n, float *depth, uint32_t *color);
+    void (*sample)(const struct soft_texture *texture, const struct soft_row *row, int first, int n, float *depth,
+                   uint32_t *color);
     /* Mean of 2 x 2 samples. */
     void (*halve)(const uint32_t *upper, const uint32_t *lower, int n, uint32_t *out);
 };

@@ -1,32 +1,36 @@
 #pragma once
-/* The light on a surface, as core/render/gl/program.c has it: a key light from the upper right, a weak fill from the left, a soft
- * rim; translucency as proto/scene.json says. Without branches, so that a compiler can work on many points at once. */
+/* The light on a surface, as core/render/gl/program.c has it: a key light from the upper right, a weak fill from the
+ * left, a soft rim; translucency as proto/scene.json says. Without branches, so that a compiler can work on many points
+ * at once. */
 #include <math.h>
 
 #include "core/render/soft/kernels.h"
 
 /* edge^1.8 from its square root, within 7e-5 (less than a fiftieth of a grey level) */
-#define LIGHT_RIM(s) ((s) * (s) * (s) * (0.16669681f + (s) * (1.21131124f + (s) * (-0.52702127f + (s) * 0.14907992f))))
+#define LIGHT_RIM(s) ((s) * (s) * (s) * (0.16669681f + (s) * (1.21131124f + (s) * (-0.52702127f + (s)*0.14907992f))))
 #define LIGHT_CLAMP(x) ((x) > 0.0f ? (x) : 0.0f)
 #define LIGHT_BYTE(x) ((uint32_t)(int32_t)(((x) < 1.0f ? (x) : 1.0f) * 255.0f + 0.5f))
 
 /* (nx, ny, nz): normal, (tx, ty, tz): direction towards the viewer; both of length 1, in patient space. */
-__attribute__((always_inline)) static inline uint32_t light_at(const struct soft_lighting *s, float nx, float ny, float nz, float tx,
-                                                               float ty, float tz)
+__attribute__((always_inline)) static inline uint32_t light_at(const struct soft_lighting *s, float nx, float ny,
+                                                               float nz, float tx, float ty, float tz)
 {
     const float cosine = nx * tx + ny * ty + nz * tz;
     const float side = (s->is_two_sided & (cosine < 0.0f)) ? -1.0f : 1.0f; /* the side that is seen */
     const float facing = side * cosine;
     float edge = 1.0f - LIGHT_CLAMP(facing);
     edge = LIGHT_CLAMP(edge);
-    const float ex = side * (s->right[0] * nx + s->right[1] * ny + s->right[2] * nz), ey = side * (s->up[0] * nx + s->up[1] * ny + s->up[2] * nz),
+    const float ex = side * (s->right[0] * nx + s->right[1] * ny + s->right[2] * nz),
+                ey = side * (s->up[0] * nx + s->up[1] * ny + s->up[2] * nz),
                 ez = side * (s->towards[0] * nx + s->towards[1] * ny + s->towards[2] * nz);
-    const float key_cosine = 0.426f * ex + 0.568f * ey + 0.704f * ez, fill_cosine = -0.741f * ex + 0.106f * ey + 0.663f * ez;
+    const float key_cosine = 0.426f * ex + 0.568f * ey + 0.704f * ez,
+                fill_cosine = -0.741f * ex + 0.106f * ey + 0.663f * ez;
     const float key = LIGHT_CLAMP(key_cosine), fill = LIGHT_CLAMP(fill_cosine);
     const float key_2 = key * key, key_4 = key_2 * key_2, key_8 = key_4 * key_4, gloss = 0.07f * (key_8 * key_8);
     const float ambient = s->opacity < 1.0f ? 0.5f : 0.3f; /* what shows through black must be brighter to be seen */
     const float lit = ambient + 0.58f * key + 0.18f * fill + 0.24f * (edge * edge);
-    const float root = sqrtf(edge), rim = s->is_rim ? 1.82f * s->opacity : 0.0f, flat = s->is_rim ? 0.3f * s->opacity : s->opacity;
+    const float root = sqrtf(edge), rim = s->is_rim ? 1.82f * s->opacity : 0.0f,
+                flat = s->is_rim ? 0.3f * s->opacity : s->opacity;
     const float alpha = flat + rim * LIGHT_RIM(root);
     const float red = s->color[0] * lit + gloss, green = s->color[1] * lit + gloss, blue = s->color[2] * lit + gloss;
     return LIGHT_BYTE(red) | LIGHT_BYTE(green) << 8 | LIGHT_BYTE(blue) << 16 | LIGHT_BYTE(alpha) << 24;

@@ -9,7 +9,8 @@ struct mat3 {
 
 static double determinant(const struct mat3 *a)
 {
-    return a->m[0][0] * (a->m[1][1] * a->m[2][2] - a->m[1][2] * a->m[2][1]) - a->m[0][1] * (a->m[1][0] * a->m[2][2] - a->m[1][2] * a->m[2][0]) +
+    return a->m[0][0] * (a->m[1][1] * a->m[2][2] - a->m[1][2] * a->m[2][1]) -
+           a->m[0][1] * (a->m[1][0] * a->m[2][2] - a->m[1][2] * a->m[2][0]) +
            a->m[0][2] * (a->m[1][0] * a->m[2][1] - a->m[1][1] * a->m[2][0]);
 }
 
@@ -17,7 +18,8 @@ static bool invert(const struct mat3 *a, struct mat3 *inverse)
 {
     double size = 1, d = determinant(a);
     for (int column = 0; column < 3; column++)
-        size *= sqrt(a->m[0][column] * a->m[0][column] + a->m[1][column] * a->m[1][column] + a->m[2][column] * a->m[2][column]);
+        size *= sqrt(a->m[0][column] * a->m[0][column] + a->m[1][column] * a->m[1][column] +
+                     a->m[2][column] * a->m[2][column]);
     if (!(fabs(d) > 1e-12 * size)) /* the eye lies in the plane */
         return false;
     for (int row = 0; row < 3; row++)
@@ -31,11 +33,12 @@ static bool invert(const struct mat3 *a, struct mat3 *inverse)
 static void clip_coordinates(const struct mat4 *matrix, struct vec3 p, double last, double clip[4])
 {
     for (int row = 0; row < 4; row++)
-        clip[row] = matrix->m[row] * p.x + matrix->m[4 + row] * p.y + matrix->m[8 + row] * p.z + matrix->m[12 + row] * last;
+        clip[row] =
+            matrix->m[row] * p.x + matrix->m[4 + row] * p.y + matrix->m[8 + row] * p.z + matrix->m[12 + row] * last;
 }
 
-/* A point of the plane is origin + u along + v across. Its place in the picture, times w, is linear in (u, v, 1); so by the inverse
- * u / w, v / w and 1 / w are linear in the place, and with them all that is linear on the plane. */
+/* A point of the plane is origin + u along + v across. Its place in the picture, times w, is linear in (u, v, 1); so by
+ * the inverse u / w, v / w and 1 / w are linear in the place, and with them all that is linear on the plane. */
 void soft_plane_init(struct soft_plane *plane, const struct volume *volume, enum scene_kind kind, double position_mm,
                      const struct mat4 *clip_from_lps_mm, int width, int height)
 {
@@ -53,7 +56,8 @@ void soft_plane_init(struct soft_plane *plane, const struct volume *volume, enum
     clip_coordinates(clip_from_lps_mm, along, 0, clip[0]);
     clip_coordinates(clip_from_lps_mm, across, 0, clip[1]);
     clip_coordinates(clip_from_lps_mm, origin, 1, clip[2]);
-    struct vec3 index[3] = { affine_vector(&grid->ijk_from_lps_mm, along), affine_vector(&grid->ijk_from_lps_mm, across),
+    struct vec3 index[3] = { affine_vector(&grid->ijk_from_lps_mm, along),
+                             affine_vector(&grid->ijk_from_lps_mm, across),
                              affine_point(&grid->ijk_from_lps_mm, origin) };
     struct mat3 place, inverse;
     double linear[5][3];

@@ -11,7 +11,7 @@ static uint32_t pack(const float color[3], float light, float opacity)
     return packed;
 }
 
-/* ---- lines ------------------------------------------------------------------------------------------------------------------ */
+/* ---- lines ------------------------------------------------------------------------------------------------------ */
 
 static float cue_at(const struct visible_cue *cue, double x, double y, double z)
 {
@@ -27,7 +27,12 @@ static bool cut(const struct soft_corner *a, struct soft_corner *b)
     if (!(fa > 0))
         return false;
     t = fa / (fa - fb);
-    *b = (struct soft_corner){ a->x + t * (b->x - a->x), a->y + t * (b->y - a->y), a->z + t * (b->z - a->z), a->w + t * (b->w - a->w), { 0 }, NULL };
+    *b = (struct soft_corner){ a->x + t * (b->x - a->x),
+                               a->y + t * (b->y - a->y),
+                               a->z + t * (b->z - a->z),
+                               a->w + t * (b->w - a->w),
+                               { 0 },
+                               NULL };
     return true;
 }
 
@@ -37,7 +42,8 @@ static bool is_beside(double a, double b, double margin, double last)
 }
 
 /* A rectangle round the segment, as much longer at both ends as it is wide, so that neighbours close. */
-static bool keep_line(struct soft_chunk *chunk, struct soft_corner a, struct soft_corner b, uint32_t shade, int width, int height)
+static bool keep_line(struct soft_chunk *chunk, struct soft_corner a, struct soft_corner b, uint32_t shade, int width,
+                      int height)
 {
     const double half = chunk->item->size / 2, guard = SOFT_GUARD / 4;
     if (!cut(&a, &b) || !cut(&b, &a) || !(a.w > 0) || !(b.w > 0))
@@ -46,7 +52,8 @@ static bool keep_line(struct soft_chunk *chunk, struct soft_corner a, struct sof
            bz = b.z / b.w - 2 * VISIBLE_LINE_DEPTH;
     if (is_beside(ax, bx, 2 * half, (double)width * SOFT_SUB) || is_beside(ay, by, 2 * half, (double)height * SOFT_SUB))
         return true;
-    double length = hypot(bx - ax, by - ay), dx = length > 1e-9 ? (bx - ax) / length * half : half, dy = length > 1e-9 ? (by - ay) / length * half : 0;
+    double length = hypot(bx - ax, by - ay), dx = length > 1e-9 ? (bx - ax) / length * half : half,
+           dy = length > 1e-9 ? (by - ay) / length * half : 0;
     /* counter-clockwise as seen, y down */
     const double x[4] = { ax - dx - dy, bx + dx - dy, bx + dx + dy, ax - dx + dy };
     const double y[4] = { ay - dy + dx, by + dy + dx, by + dy - dx, ay - dy - dx };
@@ -85,7 +92,7 @@ bool soft_keep_lines(struct soft_chunk *chunk, int width, int height)
     return true;
 }
 
-/* ---- points ----------------------------------------------------------------------------------------------------------------- */
+/* ---- points ----------------------------------------------------------------------------------------------------- */
 
 /* Half the extent of a voxel's picture along x and y, in sub-samples: no less than that of any of its corners. */
 static void cover(const struct soft_item *item, const struct soft_corner *middle, double half[2])
@@ -113,7 +120,8 @@ static uint32_t live_shade(const struct soft_item *item, size_t p)
     if (points->nx[p] | points->ny[p] | points->nz[p])
         return item->vertices[p].shade;
     const float *viewer = item->lighting.viewer;
-    struct vec3 t = vec3_normalize(vec3((double)(viewer[0] - viewer[3] * points->x[p]), (double)(viewer[1] - viewer[3] * points->y[p]),
+    struct vec3 t = vec3_normalize(vec3((double)(viewer[0] - viewer[3] * points->x[p]),
+                                        (double)(viewer[1] - viewer[3] * points->y[p]),
                                         (double)(viewer[2] - viewer[3] * points->z[p])));
     const float towards[3] = { (float)t.x, (float)t.y, (float)t.z };
     return soft_light(&item->lighting, towards, towards);
@@ -146,9 +154,11 @@ bool soft_keep_points(struct soft_chunk *chunk, int width, int height)
         extent(middle.x / middle.w, half[0], item->look.is_covering, width, x);
         extent(middle.y / middle.w, half[1], item->look.is_covering, height, y);
         float z = (float)(middle.z / middle.w);
-        uint32_t shade = item->look.is_baked ? pack(item->lighting.color, (float)item->shape->shade[p] / 255.0f, item->lighting.opacity)
-                                             : live_shade(item, p);
-        if (!soft_keep_rectangle(chunk, &(struct soft_vertex){ x[0], y[0], z, shade }, &(struct soft_vertex){ x[1], y[1], z, shade }, width, height))
+        uint32_t shade = item->look.is_baked
+                             ? pack(item->lighting.color, (float)item->shape->shade[p] / 255.0f, item->lighting.opacity)
+                             : live_shade(item, p);
+        if (!soft_keep_rectangle(chunk, &(struct soft_vertex){ x[0], y[0], z, shade },
+                                 &(struct soft_vertex){ x[1], y[1], z, shade }, width, height))
             return false;
     }
     return true;

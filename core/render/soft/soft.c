@@ -13,7 +13,8 @@
 
 /* More threads than this wait for memory and for each other. */
 enum { MAX_THREADS = 16, VERTEX_BLOCK = 8192 };
-/* Pictures whose projected and sorted triangles are kept while others are drawn; those of a further one are made again. */
+/* Pictures whose projected and sorted triangles are kept while others are drawn; those of a further one are made again.
+ */
 enum { MAX_SORTED = 2 };
 /* Of a thread's translucent layers together, unless one row of them takes more. */
 enum { LAYER_BYTES = 1 << 20 };
@@ -49,15 +50,18 @@ struct soft_renderer {
     struct scratch scratch[MAX_THREADS];
 };
 
-/* ---- start and stop ------------------------------------------------------------------------------------------------------- */
+/* ---- start and stop --------------------------------------------------------------------------------------------- */
 
 static void learn_facts(struct soft_renderer *renderer)
 {
     struct render_facts *facts = &renderer->facts;
-    *facts = (struct render_facts){ .back_end = RENDER_SOFT, .vendor = "Beamroom", .version = BEAMROOM_VERSION, .is_software = true,
+    *facts = (struct render_facts){ .back_end = RENDER_SOFT,
+                                    .vendor = "Beamroom",
+                                    .version = BEAMROOM_VERSION,
+                                    .is_software = true,
                                     .max_samples = 4 };
-    snprintf(facts->renderer, sizeof facts->renderer, "software rasteriser, %s (%d thread%s)", renderer->kernels->name, renderer->n_threads,
-             renderer->n_threads == 1 ? "" : "s");
+    snprintf(facts->renderer, sizeof facts->renderer, "software rasteriser, %s (%d thread%s)", renderer->kernels->name,
+             renderer->n_threads, renderer->n_threads == 1 ? "" : "s");
 }
 
 struct soft_renderer *soft_renderer_create(void)
@@ -115,7 +119,7 @@ void soft_renderer_forget(struct soft_renderer *renderer, const struct plan *pla
     drop_buffers(renderer);
 }
 
-/* ---- memory --------------------------------------------------------------------------------------------------------------- */
+/* ---- memory ----------------------------------------------------------------------------------------------------- */
 
 static bool make_scratch(struct soft_frame *frame, struct scratch *scratch, struct error *err)
 {
@@ -219,7 +223,7 @@ static bool make_scratches(struct soft_frame *frame, struct error *err)
     return true;
 }
 
-/* ---- drawing -------------------------------------------------------------------------------------------------------------- */
+/* ---- drawing ---------------------------------------------------------------------------------------------------- */
 
 static void shade_vertices(void *context, int part, int n_parts)
 {
@@ -233,8 +237,8 @@ static void shade_vertices(void *context, int part, int n_parts)
             item++;
         }
         size_t first = piece * VERTEX_BLOCK, n = item->shape->n_vertices - first;
-        frame->renderer->kernels->shade(&item->lighting, &item->shape->points, first, n < VERTEX_BLOCK ? n : VERTEX_BLOCK,
-                                        item->vertices + first);
+        frame->renderer->kernels->shade(&item->lighting, &item->shape->points, first,
+                                        n < VERTEX_BLOCK ? n : VERTEX_BLOCK, item->vertices + first);
     }
 }
 
@@ -247,21 +251,24 @@ static void sort_triangles(void *context, int part, int n_parts)
             atomic_store(&frame->is_out_of_memory, true);
 }
 
-static void draw_item(const struct soft_frame *frame, const struct soft_item *item, const struct soft_band *band, int index, int range[2])
+static void draw_item(const struct soft_frame *frame, const struct soft_item *item, const struct soft_band *band,
+                      int index, int range[2])
 {
     range[0] = band->width;
     range[1] = 0;
     for (size_t i = 0; i < item->n_chunks; i++) {
         const struct soft_chunk *chunk = &frame->sorted->chunks[item->first_chunk + i];
-        const struct soft_triangles triangles = { chunk->refs + chunk->starts[index], chunk->starts[index + 1] - chunk->starts[index],
-                                                  item->shape->indices, item->vertices, chunk->extras };
+        const struct soft_triangles triangles = { chunk->refs + chunk->starts[index],
+                                                  chunk->starts[index + 1] - chunk->starts[index], item->shape->indices,
+                                                  item->vertices, chunk->extras };
         if (triangles.n_refs > 0)
             frame->renderer->kernels->raster(band, &triangles, range);
     }
 }
 
 /* Each region's nearest sheet into a layer of its own, a few rows at a time, then all of them over the picture. */
-static void draw_translucent(const struct soft_frame *frame, const struct scratch *scratch, const struct soft_band *band, int index)
+static void draw_translucent(const struct soft_frame *frame, const struct scratch *scratch,
+                             const struct soft_band *band, int index)
 {
     struct soft_layer layers[SOFT_MAX_LAYERS];
     const struct soft_item *items = frame->items + (frame->n_items - frame->n_translucent);
@@ -318,12 +325,17 @@ static void draw_bands(void *context, int part, int n_parts)
     struct soft_renderer *renderer = frame->renderer;
     bool is_first = part == 0;
     (void)n_parts;
-    for (size_t piece; (is_first || !pause_is_due(frame)) && (piece = atomic_fetch_add(&frame->next_band, 1)) < (size_t)frame->n_bands;) {
+    for (size_t piece; (is_first || !pause_is_due(frame)) &&
+                       (piece = atomic_fetch_add(&frame->next_band, 1)) < (size_t)frame->n_bands;) {
         is_first = false;
         int first = (int)piece * SOFT_BAND_ROWS, n = frame->height - first;
         const struct scratch *scratch = &renderer->scratch[part];
-        struct soft_band band = { first, n < SOFT_BAND_ROWS ? n : SOFT_BAND_ROWS, frame->width, frame->width + SOFT_PADDING,
-                                  (float *)(void *)scratch->band, scratch->band + scratch->n_band };
+        struct soft_band band = { first,
+                                  n < SOFT_BAND_ROWS ? n : SOFT_BAND_ROWS,
+                                  frame->width,
+                                  frame->width + SOFT_PADDING,
+                                  (float *)(void *)scratch->band,
+                                  scratch->band + scratch->n_band };
         clear(&band);
         for (size_t i = 0; i < frame->n_items - frame->n_translucent; i++)
             draw_item(frame, &frame->items[i], &band, (int)piece, (int[2]){ 0, 0 });
@@ -373,7 +385,8 @@ static bool sort(struct soft_frame *frame, struct error *err)
         run(frame, shade_vertices);
         run(frame, sort_triangles);
         if (atomic_load(&frame->is_out_of_memory))
-            return error_set(err, ERROR_MEMORY, "no memory to sort %zu triangles, lines and points", n_primitives(frame));
+            return error_set(err, ERROR_MEMORY, "no memory to sort %zu triangles, lines and points",
+                             n_primitives(frame));
     }
     return true;
 }
@@ -386,10 +399,10 @@ static bool draw(struct soft_frame *frame, struct render_timing *timing, struct 
     return true;
 }
 
-/* ---- pictures ------------------------------------------------------------------------------------------------------------- */
+/* ---- pictures --------------------------------------------------------------------------------------------------- */
 
-struct soft_frame *soft_picture_begin(struct soft_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
-                                      const struct camera *camera)
+struct soft_frame *soft_picture_begin(struct soft_renderer *renderer, const struct snapshot *snapshot,
+                                      const struct render_options *options, const struct camera *camera)
 {
     struct soft_frame *frame = mem_new(sizeof *frame);
     uint64_t oldest = UINT64_MAX;
@@ -406,7 +419,8 @@ struct soft_frame *soft_picture_begin(struct soft_renderer *renderer, const stru
     return frame;
 }
 
-enum render_state soft_picture_go_on(struct soft_frame *frame, const struct render_pause *pause, struct render_timing *timing, struct error *err)
+enum render_state soft_picture_go_on(struct soft_frame *frame, const struct render_pause *pause,
+                                     struct render_timing *timing, struct error *err)
 {
     int64_t start_us = clock_now_us();
     frame->pause = pause;

@@ -1,5 +1,6 @@
 #pragma once
-/* The implementation of render.h in plain C, for render.c alone. Draws what core/render/gl draws, by the same rules; knows no GL. */
+/* The implementation of render.h in plain C, for render.c alone. Draws what core/render/gl draws, by the same rules;
+ * knows no GL. */
 #include "core/render/visible/back_end.h"
 
 struct soft_renderer;
@@ -8,13 +9,13 @@ struct soft_frame;
 struct soft_renderer *soft_renderer_create(void);
 void soft_renderer_destroy(struct soft_renderer *renderer);
 const struct render_facts *soft_renderer_facts(const struct soft_renderer *renderer);
-/* The parts of render_begin, render_go_on and render_end. snapshot and camera, which is the snapshot's, resolved, outlive the picture; timing:
- * zeroed before the first time. Equal bytes for any number of threads and pauses. Several pictures may be begun.
- * errors ERROR_RANGE, ERROR_LIMIT, ERROR_MEMORY, ERROR_UNSUPPORTED */
-struct soft_frame *soft_picture_begin(struct soft_renderer *renderer, const struct snapshot *snapshot, const struct render_options *options,
-                                      const struct camera *camera);
-NODISCARD enum render_state soft_picture_go_on(struct soft_frame *frame, const struct render_pause *pause, struct render_timing *timing,
-                                               struct error *err);
+/* The parts of render_begin, render_go_on and render_end. snapshot and camera, which is the snapshot's, resolved,
+ * outlive the picture; timing: zeroed before the first time. Equal bytes for any number of threads and pauses. Several
+ * pictures may be begun. errors ERROR_RANGE, ERROR_LIMIT, ERROR_MEMORY, ERROR_UNSUPPORTED */
+struct soft_frame *soft_picture_begin(struct soft_renderer *renderer, const struct snapshot *snapshot,
+                                      const struct render_options *options, const struct camera *camera);
+NODISCARD enum render_state soft_picture_go_on(struct soft_frame *frame, const struct render_pause *pause,
+                                               struct render_timing *timing, struct error *err);
 NODISCARD struct image *soft_picture_end(struct soft_frame *frame); /* NULL: not done */
 /* No picture is begun. */
 void soft_renderer_forget(struct soft_renderer *renderer, const struct plan *plan);

@@ -1,9 +1,17 @@
 #pragma once
-/* What render.h asks of a back end and hears from it: its kind, the options and timing of a picture, pauses. Knows no back end. */
+/* What render.h asks of a back end and hears from it: its kind, the options and timing of a picture, pauses. Knows no
+ * back end. */
 #include "core/base/image.h"
 #include "core/scene/snapshot.h"
 
-enum render_back_end { RENDER_AUTO, RENDER_EGL_DEVICE, RENDER_EGL_SURFACELESS, RENDER_OSMESA, RENDER_SOFT, RENDER_N_BACK_ENDS };
+enum render_back_end {
+    RENDER_AUTO,
+    RENDER_EGL_DEVICE,
+    RENDER_EGL_SURFACELESS,
+    RENDER_OSMESA,
+    RENDER_SOFT,
+    RENDER_N_BACK_ENDS
+};
 
 struct render_facts {
     enum render_back_end back_end;
@@ -15,14 +23,15 @@ struct render_facts {
 struct render_options {
     int width_px, height_px; /* of the picture; may be smaller than the view's size: the same view, fewer pixels */
     enum surface_detail detail;
-    bool is_still;           /* anti-aliased */
+    bool is_still; /* anti-aliased */
 };
 
 struct render_timing {
     int64_t draw_us, read_us;
     size_t n_triangles;
     bool is_light; /* some surface drawn was a reduced one */
-    size_t n_added_px, n_left_out_px; /* the check of a segmentation: what a surface encloses beyond the univels, what it leaves out */
+    size_t n_added_px,
+        n_left_out_px; /* the check of a segmentation: what a surface encloses beyond the univels, what it leaves out */
 };
 
 struct render_pause {

@@ -10,8 +10,8 @@ static const uint8_t added_rgb[3] = { 0xff, 0xb0, 0x00 }, left_out_rgb[3] = { 0x
 
 /* Where the surface's lines cross the rows of the picture. */
 struct crossings {
-    double *x;      /* sorted within a row */
-    size_t *starts; /* [height + 1] */
+    double *x;                    /* sorted within a row */
+    size_t *starts;               /* [height + 1] */
     double low_px[2], high_px[2]; /* around all lines */
 };
 
@@ -21,7 +21,8 @@ static struct vec3 to_pixels(const struct camera *camera, const struct image *im
     return vec3((clip.x + 1) / 2 * image->width_px, (1 - clip.y) / 2 * image->height_px, 0);
 }
 
-/* Rows whose line lies between the ends, the lower one included: then every corner of an outline belongs to one of its sides. */
+/* Rows whose line lies between the ends, the lower one included: then every corner of an outline belongs to one of its
+ * sides. */
 static bool rows_of(const struct vec3 *a, const struct vec3 *b, int height, int *first, int *last)
 {
     double low = fmin(a->y, b->y), high = fmax(a->y, b->y);
@@ -44,8 +45,8 @@ static void widen(struct crossings *box, const struct vec3 *p)
     box->high_px[1] = fmax(box->high_px[1], p->y);
 }
 
-static bool find_crossings(const struct cut_lines *lines, const struct camera *camera, const struct image *image, struct crossings *out,
-                           struct error *err)
+static bool find_crossings(const struct cut_lines *lines, const struct camera *camera, const struct image *image,
+                           struct crossings *out, struct error *err)
 {
     int height = image->height_px, first, last;
     struct vec3(*ends)[2] = mem_array(lines->n, sizeof *ends, UINT64_MAX, err);
@@ -92,24 +93,29 @@ static void mark(struct image *image, int x, int y, bool is_added, int period)
         pixel[c] = (uint8_t)((rgb[c] * weight + pixel[c] * (256 - weight)) >> 8);
 }
 
-bool check_paint(const struct cut_region *univels, const struct cut_lines *surface, const struct camera *camera, double position_mm,
-                 struct image *image, double scale, struct overlay_check *check, struct error *err)
+bool check_paint(const struct cut_region *univels, const struct cut_lines *surface, const struct camera *camera,
+                 double position_mm, struct image *image, double scale, struct overlay_check *check, struct error *err)
 {
     struct crossings crossings = { .low_px = { INFINITY, INFINITY }, .high_px = { -INFINITY, -INFINITY } };
     if (!find_crossings(surface, camera, image, &crossings, err))
         return false;
     const double *m = camera->lps_mm_from_clip.m; /* of a parallel view: linear */
-    struct vec3 across = vec3_scale(vec3(m[0], m[1], m[2]), 2.0 / image->width_px), down = vec3_scale(vec3(m[4], m[5], m[6]), -2.0 / image->height_px);
+    struct vec3 across = vec3_scale(vec3(m[0], m[1], m[2]), 2.0 / image->width_px),
+                down = vec3_scale(vec3(m[4], m[5], m[6]), -2.0 / image->height_px);
     struct vec3 f = camera->forward; /* along a patient axis, up or down it */
-    struct vec3 middle = vec3_add(camera->target_lps_mm, vec3_scale(f, (f.x + f.y + f.z) * position_mm - vec3_dot(f, camera->target_lps_mm)));
+    struct vec3 middle = vec3_add(camera->target_lps_mm,
+                                  vec3_scale(f, (f.x + f.y + f.z) * position_mm - vec3_dot(f, camera->target_lps_mm)));
     for (int corner = 0; corner < 8; corner++) { /* nothing differs outside of both */
         const struct box3 *box = &univels->bounds_lps_mm;
-        const double p[3] = { corner & 1 ? box->high.x : box->low.x, corner & 2 ? box->high.y : box->low.y, corner & 4 ? box->high.z : box->low.z };
+        const double p[3] = { corner & 1 ? box->high.x : box->low.x, corner & 2 ? box->high.y : box->low.y,
+                              corner & 4 ? box->high.z : box->low.z };
         struct vec3 pixel = to_pixels(camera, image, p);
         widen(&crossings, &pixel);
     }
-    int low_x = (int)fmax(0, fmin(crossings.low_px[0] - 1, image->width_px)), high_x = (int)fmin(image->width_px - 1, fmax(crossings.high_px[0] + 1, -1));
-    int low_y = (int)fmax(0, fmin(crossings.low_px[1] - 1, image->height_px)), high_y = (int)fmin(image->height_px - 1, fmax(crossings.high_px[1] + 1, -1));
+    int low_x = (int)fmax(0, fmin(crossings.low_px[0] - 1, image->width_px)),
+        high_x = (int)fmin(image->width_px - 1, fmax(crossings.high_px[0] + 1, -1));
+    int low_y = (int)fmax(0, fmin(crossings.low_px[1] - 1, image->height_px)),
+        high_y = (int)fmin(image->height_px - 1, fmax(crossings.high_px[1] + 1, -1));
     int period = (int)fmax(4, round(7 * scale));
     for (int y = low_y; y <= high_y; y++) {
         const double *x_crossed = crossings.x + crossings.starts[y];
@@ -118,8 +124,9 @@ bool check_paint(const struct cut_region *univels, const struct cut_lines *surfa
             double at = x + 0.5 + CHECK_NUDGE;
             while (passed < n && x_crossed[passed] <= at)
                 passed++;
-            struct vec3 p = vec3_add(middle, vec3_add(vec3_scale(across, at - image->width_px / 2.0),
-                                                    vec3_scale(down, y + 0.5 + CHECK_NUDGE - image->height_px / 2.0)));
+            struct vec3 p =
+                vec3_add(middle, vec3_add(vec3_scale(across, at - image->width_px / 2.0),
+                                          vec3_scale(down, y + 0.5 + CHECK_NUDGE - image->height_px / 2.0)));
             bool is_enclosed = passed % 2 == 1, is_univel = cut_region_holds(univels, p);
             if (is_enclosed == is_univel)
                 continue;

@@ -3,12 +3,13 @@
 #include "core/render/visible/cut.h"
 #include "core/render/visible/overlay.h"
 
-/* Everything is asked a little beside the middle of pixels and the position of the plane (in parts of a pixel, of a voxel), so that
- * what lies exactly on the border of a voxel is on the same side of its surface. */
+/* Everything is asked a little beside the middle of pixels and the position of the plane (in parts of a pixel, of a
+ * voxel), so that what lies exactly on the border of a voxel is on the same side of its surface. */
 #define CHECK_NUDGE 1.7e-3
 
-/* Paints over what the surface encloses without being univels (amber, hatched upwards) and over univels outside it (blue, hatched
- * downwards), and counts both. surface: closed lines, filled by even and odd; a row where they do not close is left as it is.
- * errors ERROR_MEMORY */
-NODISCARD bool check_paint(const struct cut_region *univels, const struct cut_lines *surface, const struct camera *camera, double position_mm,
-                           struct image *image, double scale, struct overlay_check *check, struct error *err);
+/* Paints over what the surface encloses without being univels (amber, hatched upwards) and over univels outside it
+ * (blue, hatched downwards), and counts both. surface: closed lines, filled by even and odd; a row where they do not
+ * close is left as it is. errors ERROR_MEMORY */
+NODISCARD bool check_paint(const struct cut_region *univels, const struct cut_lines *surface,
+                           const struct camera *camera, double position_mm, struct image *image, double scale,
+                           struct overlay_check *check, struct error *err);

@@ -30,19 +30,21 @@ static bool add(struct cut_lines *lines, struct vec3 a, struct vec3 b, struct er
     return true;
 }
 
-/* ---- univels ---------------------------------------------------------------------------------------------------------------- */
+/* ---- univels ---------------------------------------------------------------------------------------------------- */
 
 static bool is_same_grid(const struct grid *a, const struct grid *b)
 {
-    return memcmp(a->size, b->size, sizeof a->size) == 0 && memcmp(&a->lps_mm_from_ijk, &b->lps_mm_from_ijk, sizeof a->lps_mm_from_ijk) == 0;
+    return memcmp(a->size, b->size, sizeof a->size) == 0 &&
+           memcmp(&a->lps_mm_from_ijk, &b->lps_mm_from_ijk, sizeof a->lps_mm_from_ijk) == 0;
 }
 
 static void add_bounds(struct box3 *box, const struct region *region, const struct grid *grid)
 {
     for (int corner = 0; region->n_voxels > 0 && corner < 8; corner++)
-        box3_add(box, affine_point(&grid->lps_mm_from_ijk, vec3(corner & 1 ? region->high_ijk[0] + 0.5 : region->low_ijk[0] - 0.5,
-                                                               corner & 2 ? region->high_ijk[1] + 0.5 : region->low_ijk[1] - 0.5,
-                                                               corner & 4 ? region->high_ijk[2] + 0.5 : region->low_ijk[2] - 0.5)));
+        box3_add(box, affine_point(&grid->lps_mm_from_ijk,
+                                   vec3(corner & 1 ? region->high_ijk[0] + 0.5 : region->low_ijk[0] - 0.5,
+                                        corner & 2 ? region->high_ijk[1] + 0.5 : region->low_ijk[1] - 0.5,
+                                        corner & 4 ? region->high_ijk[2] + 0.5 : region->low_ijk[2] - 0.5)));
 }
 
 bool cut_region_init(struct cut_region *cut, const struct region_set *set, size_t region, struct error *err)
@@ -151,28 +153,33 @@ static bool pixel_map(const struct grid *grid, const struct cut_plane *plane, st
     size[1] = (uint32_t)fmax(1, ceil(extent[1] / side));
     *map = (struct affine){ { vec3_scale(unit(a), side), vec3_scale(unit(b), side), vec3_scale(unit(patient), side) },
                             vec3_add(vec3_scale(unit(patient), plane->position_mm),
-                                     vec3_add(vec3_scale(unit(a), along(box.low, a) + side / 2), vec3_scale(unit(b), along(box.low, b) + side / 2))) };
+                                     vec3_add(vec3_scale(unit(a), along(box.low, a) + side / 2),
+                                              vec3_scale(unit(b), along(box.low, b) + side / 2))) };
     return true;
 }
 
 /* Pixels first .. end - 1 of a row; index: their place in the grid. */
-static void cut_row(const struct cut_region *cut, const struct affine *index, uint32_t v, uint32_t first_u, uint32_t end_u, uint64_t *bits)
+static void cut_row(const struct cut_region *cut, const struct affine *index, uint32_t v, uint32_t first_u,
+                    uint32_t end_u, uint64_t *bits)
 {
     struct vec3 step = index->columns[0], first = affine_point(index, vec3(0, v, 0));
     const uint32_t *size = cut->grid->size;
     for (uint32_t u = first_u; u < end_u; u++) {
-        double i = floor(first.x + step.x * u + 0.5), j = floor(first.y + step.y * u + 0.5), k = floor(first.z + step.z * u + 0.5);
+        double i = floor(first.x + step.x * u + 0.5), j = floor(first.y + step.y * u + 0.5),
+               k = floor(first.z + step.z * u + 0.5);
         if (!(i >= 0 && j >= 0 && k >= 0 && i < size[0] && j < size[1] && k < size[2]))
             continue;
         bool is_inside = false;
         for (size_t part = 0; part < cut->n_parts; part++)
-            is_inside |= cut->parts[part].is_inside[volume_label(cut->parts[part].layer, (uint32_t)i, (uint32_t)j, (uint32_t)k)];
+            is_inside |=
+                cut->parts[part].is_inside[volume_label(cut->parts[part].layer, (uint32_t)i, (uint32_t)j, (uint32_t)k)];
         bits[u / 64] |= (uint64_t)is_inside << u % 64;
     }
 }
 
 /* Which pixels the region's box covers, and one more on every side: most regions are small. */
-static void find_pixels(const struct cut_region *cut, const struct affine *map, const uint32_t size[2], uint32_t first[2], uint32_t end[2])
+static void find_pixels(const struct cut_region *cut, const struct affine *map, const uint32_t size[2],
+                        uint32_t first[2], uint32_t end[2])
 {
     const struct box3 *box = &cut->bounds_lps_mm;
     struct affine pixel;
@@ -180,8 +187,9 @@ static void find_pixels(const struct cut_region *cut, const struct affine *map, 
     bool is_inverted = affine_invert(map, &pixel);
     assert(is_inverted); /* made of a grid's axes */
     for (int corner = 0; corner < 8; corner++) {
-        struct vec3 p = affine_point(&pixel, vec3(corner & 1 ? box->high.x : box->low.x, corner & 2 ? box->high.y : box->low.y,
-                                                  corner & 4 ? box->high.z : box->low.z));
+        struct vec3 p =
+            affine_point(&pixel, vec3(corner & 1 ? box->high.x : box->low.x, corner & 2 ? box->high.y : box->low.y,
+                                      corner & 4 ? box->high.z : box->low.z));
         const double at[2] = { p.x, p.y };
         for (int i = 0; i < 2; i++) {
             low[i] = fmin(low[i], at[i]);
@@ -201,8 +209,8 @@ bool cut_univels(const struct cut_region *cut, const struct cut_plane *plane, st
     *mask = NULL;
     const struct box3 *box = &cut->bounds_lps_mm;
     int axis = patient_axis(plane);
-    if (box3_is_empty(box) || plane->position_mm < along(box->low, axis) || plane->position_mm > along(box->high, axis) ||
-        !pixel_map(cut->grid, plane, &map, size))
+    if (box3_is_empty(box) || plane->position_mm < along(box->low, axis) ||
+        plane->position_mm > along(box->high, axis) || !pixel_map(cut->grid, plane, &map, size))
         return true;
     struct mask *made = mask_create(size, &map, err);
     if (!made)
@@ -217,7 +225,7 @@ bool cut_univels(const struct cut_region *cut, const struct cut_plane *plane, st
     return true;
 }
 
-/* ---- lines ------------------------------------------------------------------------------------------------------------------ */
+/* ---- lines ------------------------------------------------------------------------------------------------------ */
 
 static bool add_diamond(struct cut_lines *lines, const struct affine *map, struct vec3 at, struct error *err)
 {
@@ -283,7 +291,8 @@ static struct vec3 meet(struct vec3 below, struct vec3 above, int axis, double p
 }
 
 /* Adds where the plane cuts a polygon of n corners, seen as a fan of its edges: at two of them when it is convex. */
-static bool cut_polygon(const struct vec3 *corner, int n, int axis, double position_mm, struct cut_lines *lines, struct error *err)
+static bool cut_polygon(const struct vec3 *corner, int n, int axis, double position_mm, struct cut_lines *lines,
+                        struct error *err)
 {
     struct vec3 found[2];
     int n_found = 0;
@@ -303,7 +312,8 @@ bool cut_mesh(const struct mesh *mesh, const struct cut_plane *plane, struct cut
     const float *at = mesh->positions_lps_mm + axis;
     for (size_t t = 0; t < mesh->n_triangles; t++) {
         const uint32_t *index = &mesh->indices[3 * t];
-        bool above[3] = { at[3 * (size_t)index[0]] >= position, at[3 * (size_t)index[1]] >= position, at[3 * (size_t)index[2]] >= position };
+        bool above[3] = { at[3 * (size_t)index[0]] >= position, at[3 * (size_t)index[1]] >= position,
+                          at[3 * (size_t)index[2]] >= position };
         if (above[0] == above[1] && above[1] == above[2])
             continue;
         struct vec3 corner[3];
@@ -320,13 +330,15 @@ bool cut_mesh(const struct mesh *mesh, const struct cut_plane *plane, struct cut
 void cut_grid_corners(const struct grid *grid, struct vec3 corners_lps_mm[8])
 {
     for (int corner = 0; corner < 8; corner++)
-        corners_lps_mm[corner] = affine_point(&grid->lps_mm_from_ijk, vec3(corner & 1 ? grid->size[0] - 0.5 : -0.5, corner & 2 ? grid->size[1] - 0.5 : -0.5,
+        corners_lps_mm[corner] = affine_point(&grid->lps_mm_from_ijk, vec3(corner & 1 ? grid->size[0] - 0.5 : -0.5,
+                                                                           corner & 2 ? grid->size[1] - 0.5 : -0.5,
                                                                            corner & 4 ? grid->size[2] - 0.5 : -0.5));
 }
 
 bool cut_grid(const struct grid *grid, const struct cut_plane *plane, struct cut_lines *lines, struct error *err)
 {
-    static const int faces[6][4] = { { 0, 2, 6, 4 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 3, 7, 6 }, { 0, 1, 3, 2 }, { 4, 5, 7, 6 } };
+    static const int faces[6][4] = { { 0, 2, 6, 4 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 },
+                                     { 2, 3, 7, 6 }, { 0, 1, 3, 2 }, { 4, 5, 7, 6 } };
     struct vec3 corners[8];
     cut_grid_corners(grid, corners);
     for (int face = 0; face < 6; face++) {

@@ -64,12 +64,13 @@ void overlay_destroy(struct overlay *overlay)
     free(overlay);
 }
 
-/* ---- lines, made and kept ----------------------------------------------------------------------------------------------------- */
+/* ---- lines, made and kept --------------------------------------------------------------------------------------- */
 
 static bool is_same(const struct entry *a, const struct entry *b)
 {
-    return a->plan == b->plan && a->region == b->region && a->what == b->what && a->method == b->method && shape_key_equal(&a->key, &b->key) &&
-           a->plane.kind == b->plane.kind && !(a->plane.position_mm < b->plane.position_mm) && !(a->plane.position_mm > b->plane.position_mm);
+    return a->plan == b->plan && a->region == b->region && a->what == b->what && a->method == b->method &&
+           shape_key_equal(&a->key, &b->key) && a->plane.kind == b->plane.kind &&
+           !(a->plane.position_mm < b->plane.position_mm) && !(a->plane.position_mm > b->plane.position_mm);
 }
 
 static bool fill_univels(struct entry *entry, struct error *err)
@@ -80,7 +81,8 @@ static bool fill_univels(struct entry *entry, struct error *err)
         return false;
     bool is_good = cut_univels(&cut, &entry->plane, &mask, err);
     if (is_good && mask)
-        is_good = entry->what == LINES_OF_BORDER ? cut_borders(mask, &entry->lines, err) : cut_outlines(mask, entry->method, &entry->lines, err);
+        is_good = entry->what == LINES_OF_BORDER ? cut_borders(mask, &entry->lines, err)
+                                                 : cut_outlines(mask, entry->method, &entry->lines, err);
     mask_destroy(mask);
     cut_region_finish(&cut);
     return is_good;
@@ -114,7 +116,8 @@ static void trim(struct overlay *overlay)
 }
 
 /* Borrowed until the next picture. */
-static const struct entry *lines_of(struct overlay *overlay, struct plan *plan, const struct entry *wanted, struct error *err)
+static const struct entry *lines_of(struct overlay *overlay, struct plan *plan, const struct entry *wanted,
+                                    struct error *err)
 {
     for (struct entry **at = &overlay->first; *at; at = &(*at)->next)
         if (is_same(*at, wanted)) {
@@ -135,7 +138,7 @@ static const struct entry *lines_of(struct overlay *overlay, struct plan *plan, 
     return made;
 }
 
-/* ---- painting ------------------------------------------------------------------------------------------------------------------ */
+/* ---- painting --------------------------------------------------------------------------------------------------- */
 
 struct job {
     struct overlay *overlay;
@@ -155,7 +158,8 @@ static struct paint_point project(const struct job *job, const double p[3])
 static void paint_lines(const struct job *job, const struct cut_lines *lines, double width_px, uint32_t rgb)
 {
     for (size_t i = 0; i < lines->n; i++)
-        paint_line(job->paint, project(job, lines->ends_lps_mm[i][0]), project(job, lines->ends_lps_mm[i][1]), fmax(1, width_px * job->scale));
+        paint_line(job->paint, project(job, lines->ends_lps_mm[i][0]), project(job, lines->ends_lps_mm[i][1]),
+                   fmax(1, width_px * job->scale));
     paint_flush(job->paint, rgb, 1);
 }
 
@@ -168,8 +172,12 @@ static bool paint_outline(const struct job *job, size_t region, struct error *er
 {
     const struct snapshot *snapshot = job->snapshot;
     const struct scene_outline_style *style = &snapshot->scene.outline;
-    struct entry wanted = { .plan = snapshot->plan, .region = region, .what = LINES_OF_OUTLINE, .plane = pane_plane(snapshot),
-                            .method = style->method == SCENE_OUTLINE_METHOD_TRACED ? OUTLINE_TRACED : OUTLINE_MARCHING_SQUARES };
+    struct entry wanted = { .plan = snapshot->plan,
+                            .region = region,
+                            .what = LINES_OF_OUTLINE,
+                            .plane = pane_plane(snapshot),
+                            .method = style->method == SCENE_OUTLINE_METHOD_TRACED ? OUTLINE_TRACED
+                                                                                   : OUTLINE_MARCHING_SQUARES };
     const struct entry *found = lines_of(job->overlay, snapshot->plan, &wanted, err);
     if (found)
         paint_lines(job, &found->lines, style->width_px, snapshot->styles[region].color_rgb);
@@ -179,17 +187,22 @@ static bool paint_outline(const struct job *job, size_t region, struct error *er
 static bool paint_check(const struct job *job, size_t region, struct overlay_check *check, struct error *err)
 {
     const struct snapshot *snapshot = job->snapshot;
-    struct entry wanted = { .plan = snapshot->plan, .region = region, .what = LINES_OF_SHAPE, .plane = pane_plane(snapshot),
+    struct entry wanted = { .plan = snapshot->plan,
+                            .region = region,
+                            .what = LINES_OF_SHAPE,
+                            .plane = pane_plane(snapshot),
                             .key = visible_checked_key(snapshot, region) };
     const struct grid *grid = &snapshot->plan->regions.layers[snapshot->plan->regions.regions[region].layer]->grid;
     struct vec3 spacing = grid_spacing_mm(grid);
-    wanted.plane.position_mm += CHECK_NUDGE * fmin(fmin(spacing.x, spacing.y), spacing.z); /* never along faces of voxels */
+    wanted.plane.position_mm +=
+        CHECK_NUDGE * fmin(fmin(spacing.x, spacing.y), spacing.z); /* never along faces of voxels */
     const struct entry *surface = lines_of(job->overlay, snapshot->plan, &wanted, err);
     struct cut_region cut;
     if (!surface || !cut_region_init(&cut, &snapshot->plan->regions, region, err))
         return false;
-    bool is_good = surface->is_open || surface->is_absent ||
-                   check_paint(&cut, &surface->lines, job->camera, wanted.plane.position_mm, job->image, job->scale, check, err);
+    bool is_good =
+        surface->is_open || surface->is_absent ||
+        check_paint(&cut, &surface->lines, job->camera, wanted.plane.position_mm, job->image, job->scale, check, err);
     cut_region_finish(&cut);
     struct entry border = { .plan = snapshot->plan, .region = region, .what = LINES_OF_BORDER, .plane = wanted.plane };
     const struct entry *univels = is_good ? lines_of(job->overlay, snapshot->plan, &border, err) : NULL;
@@ -228,7 +241,8 @@ static bool paint_regions(const struct job *job, struct overlay_check *check, st
     bool is_good = ranks != NULL;
     for (size_t i = 0; is_good && i < set->n_regions; i++)
         if (snapshot->styles[i].visible && snapshot->styles[i].opacity > 0 && set->regions[i].n_voxels > 0)
-            ranks[n++] = (struct ranked){ i, (int)snapshot->styles[i].order, region_depth(set, i), set->regions[i].n_voxels };
+            ranks[n++] =
+                (struct ranked){ i, (int)snapshot->styles[i].order, region_depth(set, i), set->regions[i].n_voxels };
     if (is_good)
         qsort(ranks, n, sizeof *ranks, compare_ranks);
     for (size_t i = 0; is_good && i < n; i++) {
@@ -242,7 +256,7 @@ static bool paint_regions(const struct job *job, struct overlay_check *check, st
     return is_good;
 }
 
-/* ---- the dose's grid ------------------------------------------------------------------------------------------------------------ */
+/* ---- the dose's grid -------------------------------------------------------------------------------------------- */
 
 /* The part of an edge before the eye; false: none. */
 static bool cut_before_eye(const struct camera *camera, double a[3], double b[3])
@@ -287,15 +301,16 @@ static bool paint_dose_grid(const struct job *job, struct error *err)
         struct cut_plane plane = pane_plane(job->snapshot);
         is_good = cut_grid(grid, &plane, &lines, err);
         for (size_t l = 0; l < lines.n; l++)
-            paint_line(job->paint, project(job, lines.ends_lps_mm[l][0]), project(job, lines.ends_lps_mm[l][1]), fmax(1, 1.5 * job->scale));
+            paint_line(job->paint, project(job, lines.ends_lps_mm[l][0]), project(job, lines.ends_lps_mm[l][1]),
+                       fmax(1, 1.5 * job->scale));
         cut_lines_finish(&lines);
     }
     paint_flush(job->paint, grid_rgb, 1);
     return is_good;
 }
 
-bool overlay_draw(struct overlay *overlay, const struct snapshot *snapshot, const struct camera *camera, struct image *image,
-                  struct overlay_check *check, struct error *err)
+bool overlay_draw(struct overlay *overlay, const struct snapshot *snapshot, const struct camera *camera,
+                  struct image *image, struct overlay_check *check, struct error *err)
 {
     struct overlay_check unwanted;
     bool is_pane = snapshot->view.kind != SCENE_KIND_3D;
@@ -305,8 +320,11 @@ bool overlay_draw(struct overlay *overlay, const struct snapshot *snapshot, cons
     *check = (struct overlay_check){ 0, 0 };
     if (!has_lines && !has_grid)
         return true;
-    struct job job = { overlay, snapshot, camera, image, paint_create(image, err), (double)image->width_px / snapshot->view.size_px[0] };
-    bool is_good = job.paint && (!has_lines || paint_regions(&job, check, err)) && (!has_grid || paint_dose_grid(&job, err));
+    struct job job = {
+        overlay, snapshot, camera, image, paint_create(image, err), (double)image->width_px / snapshot->view.size_px[0]
+    };
+    bool is_good =
+        job.paint && (!has_lines || paint_regions(&job, check, err)) && (!has_grid || paint_dose_grid(&job, err));
     paint_destroy(job.paint);
     trim(overlay);
     return is_good;

@@ -1,6 +1,6 @@
 #pragma once
-/* What is painted over a finished picture, alike for every back end: on slice panes the regions' outlines and the check of a
- * segmentation, on all pictures the box of a dose's grid. Lines have smooth edges, in moving pictures too. */
+/* What is painted over a finished picture, alike for every back end: on slice panes the regions' outlines and the check
+ * of a segmentation, on all pictures the box of a dose's grid. Lines have smooth edges, in moving pictures too. */
 #include "core/base/image.h"
 #include "core/scene/snapshot.h"
 
@@ -18,5 +18,5 @@ struct overlay_check {
 };
 
 /* camera: the snapshot's, resolved. check: NULL when nobody wants to know. errors ERROR_MEMORY, those of plan_shape */
-NODISCARD bool overlay_draw(struct overlay *overlay, const struct snapshot *snapshot, const struct camera *camera, struct image *image,
-                            struct overlay_check *check, struct error *err);
+NODISCARD bool overlay_draw(struct overlay *overlay, const struct snapshot *snapshot, const struct camera *camera,
+                            struct image *image, struct overlay_check *check, struct error *err);

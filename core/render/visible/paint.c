@@ -11,7 +11,7 @@
 
 struct paint {
     struct image *image;
-    uint8_t *cover; /* of each pixel, 0..255 */
+    uint8_t *cover;                   /* of each pixel, 0..255 */
     int low_x, high_x, low_y, high_y; /* touched, inclusive */
 };
 
@@ -48,13 +48,16 @@ static double clamp(double value, double low, double high)
     return fmin(fmax(value, low), high);
 }
 
-/* A pixel is covered by how far its centre lies within the line's edge: a whole pixel inside fully, half a pixel outside not. */
+/* A pixel is covered by how far its centre lies within the line's edge: a whole pixel inside fully, half a pixel
+ * outside not. */
 static void paint_piece(struct paint *paint, struct paint_point a, struct paint_point b, double radius)
 {
     const int width = paint->image->width_px, height = paint->image->height_px;
     double reach = radius + 0.5;
-    int low_x = (int)clamp(floor(fmin(a.x, b.x) - reach), 0, width), high_x = (int)clamp(ceil(fmax(a.x, b.x) + reach), -1, width - 1);
-    int low_y = (int)clamp(floor(fmin(a.y, b.y) - reach), 0, height), high_y = (int)clamp(ceil(fmax(a.y, b.y) + reach), -1, height - 1);
+    int low_x = (int)clamp(floor(fmin(a.x, b.x) - reach), 0, width),
+        high_x = (int)clamp(ceil(fmax(a.x, b.x) + reach), -1, width - 1);
+    int low_y = (int)clamp(floor(fmin(a.y, b.y) - reach), 0, height),
+        high_y = (int)clamp(ceil(fmax(a.y, b.y) + reach), -1, height - 1);
     if (low_x > high_x || low_y > high_y)
         return;
     paint->low_x = low_x < paint->low_x ? low_x : paint->low_x;
@@ -92,9 +95,11 @@ void paint_line(struct paint *paint, struct paint_point a, struct paint_point b,
 {
     double radius = width_px / 2, reach = radius + 1, t0 = 0, t1 = 1;
     if (!isfinite(a.x) || !isfinite(a.y) || !isfinite(b.x) || !isfinite(b.y) ||
-        !narrow(a.x, b.x, -reach, paint->image->width_px + reach, &t0, &t1) || !narrow(a.y, b.y, -reach, paint->image->height_px + reach, &t0, &t1))
+        !narrow(a.x, b.x, -reach, paint->image->width_px + reach, &t0, &t1) ||
+        !narrow(a.y, b.y, -reach, paint->image->height_px + reach, &t0, &t1))
         return;
-    struct paint_point from = { a.x + t0 * (b.x - a.x), a.y + t0 * (b.y - a.y) }, to = { a.x + t1 * (b.x - a.x), a.y + t1 * (b.y - a.y) };
+    struct paint_point from = { a.x + t0 * (b.x - a.x), a.y + t0 * (b.y - a.y) },
+                       to = { a.x + t1 * (b.x - a.x), a.y + t1 * (b.y - a.y) };
     int n = (int)ceil(hypot(to.x - from.x, to.y - from.y) / PIECE_PX);
     n = n < 1 ? 1 : n;
     for (int i = 0; i < n; i++) {
@@ -111,7 +116,8 @@ void paint_flush(struct paint *paint, uint32_t rgb, double opacity)
     size_t width = (size_t)paint->image->width_px;
     for (int y = paint->low_y; y <= paint->high_y; y++)
         for (int x = paint->low_x; x <= paint->high_x; x++) {
-            uint8_t *cover = &paint->cover[(size_t)y * width + (size_t)x], *pixel = &paint->image->rgba[4 * ((size_t)y * width + (size_t)x)];
+            uint8_t *cover = &paint->cover[(size_t)y * width + (size_t)x],
+                    *pixel = &paint->image->rgba[4 * ((size_t)y * width + (size_t)x)];
             int alpha = *cover * weight >> 8;
             for (int c = 0; alpha && c < 3; c++)
                 pixel[c] = (uint8_t)((color[c] * alpha + pixel[c] * (255 - alpha) + 127) / 255);

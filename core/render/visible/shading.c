@@ -12,7 +12,8 @@ static void spread(const struct mesh *mesh, const float *restrict from, float *r
     memset(to, 0, mesh->n_vertices * 3 * sizeof *to);
     for (size_t t = 0; t < mesh->n_triangles; t++) {
         const uint32_t *corner = &mesh->indices[3 * t];
-        const float *a = &from[3 * (size_t)corner[0]], *b = &from[3 * (size_t)corner[1]], *c = &from[3 * (size_t)corner[2]];
+        const float *a = &from[3 * (size_t)corner[0]], *b = &from[3 * (size_t)corner[1]],
+                    *c = &from[3 * (size_t)corner[2]];
         const float sum[3] = { a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2] };
         for (int i = 0; i < 3; i++) {
             float *vertex = &to[3 * (size_t)corner[i]];
@@ -53,8 +54,8 @@ float *shading_normals(const struct mesh *mesh, int n_passes, struct error *err)
     return now;
 }
 
-/* As wide as the terraces of a surface that rises one voxel in a dozen. A reduced surface has larger triangles, so fewer passes
- * reach as far. */
+/* As wide as the terraces of a surface that rises one voxel in a dozen. A reduced surface has larger triangles, so
+ * fewer passes reach as far. */
 enum { FULL_PASSES = 12 };
 
 int shading_passes(uint32_t reduction)

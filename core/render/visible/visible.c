@@ -8,7 +8,7 @@
 
 const uint8_t visible_background[3] = { 0x08, 0x09, 0x0b };
 
-/* ---- shapes --------------------------------------------------------------------------------------------------------------- */
+/* ---- shapes ----------------------------------------------------------------------------------------------------- */
 
 struct shape_key visible_surface_key(const struct snapshot *snapshot)
 {
@@ -17,7 +17,8 @@ struct shape_key visible_surface_key(const struct snapshot *snapshot)
         [SCENE_ALGORITHM_EIGHT_CELL] = SURFACE_EIGHT_CELL,
         [SCENE_ALGORITHM_SMOOTH] = SURFACE_SMOOTH,
     };
-    struct shape_key key = { .representation = REPRESENTATION_SURFACE, .algorithm = algorithms[snapshot->scene.surface.algorithm] };
+    struct shape_key key = { .representation = REPRESENTATION_SURFACE,
+                             .algorithm = algorithms[snapshot->scene.surface.algorithm] };
     shape_key_normalise(&key);
     return key;
 }
@@ -25,9 +26,12 @@ struct shape_key visible_surface_key(const struct snapshot *snapshot)
 struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t region)
 {
     static const enum region_representation representations[] = {
-        [SCENE_REPRESENTATION_SURFACE] = REPRESENTATION_SURFACE, [SCENE_REPRESENTATION_OUTLINE] = REPRESENTATION_OUTLINE,
-        [SCENE_REPRESENTATION_POINTS] = REPRESENTATION_POINTS,   [SCENE_REPRESENTATION_UNIVELS] = REPRESENTATION_UNIVELS,
-        [SCENE_REPRESENTATION_SOLID] = REPRESENTATION_SOLID,     [SCENE_REPRESENTATION_NURBS] = REPRESENTATION_NURBS,
+        [SCENE_REPRESENTATION_SURFACE] = REPRESENTATION_SURFACE,
+        [SCENE_REPRESENTATION_OUTLINE] = REPRESENTATION_OUTLINE,
+        [SCENE_REPRESENTATION_POINTS] = REPRESENTATION_POINTS,
+        [SCENE_REPRESENTATION_UNIVELS] = REPRESENTATION_UNIVELS,
+        [SCENE_REPRESENTATION_SOLID] = REPRESENTATION_SOLID,
+        [SCENE_REPRESENTATION_NURBS] = REPRESENTATION_NURBS,
         [SCENE_REPRESENTATION_FAN] = REPRESENTATION_FAN,
     };
     const struct scene *scene = &snapshot->scene;
@@ -48,12 +52,15 @@ struct visible_look visible_look(const struct snapshot *snapshot, size_t region,
 {
     const struct scene *scene = &snapshot->scene;
     enum region_representation kind = key->representation;
-    bool is_line = kind == REPRESENTATION_OUTLINE, is_point = kind == REPRESENTATION_POINTS || kind == REPRESENTATION_SOLID;
+    bool is_line = kind == REPRESENTATION_OUTLINE,
+         is_point = kind == REPRESENTATION_POINTS || kind == REPRESENTATION_SOLID;
     return (struct visible_look){
         .is_flat = scene->surface.normals == SCENE_NORMALS_FACE,
-        .rounding = kind == REPRESENTATION_UNIVELS && scene->surface.normals == SCENE_NORMALS_VERTEX ? VISIBLE_ROUNDING : 0,
+        .rounding =
+            kind == REPRESENTATION_UNIVELS && scene->surface.normals == SCENE_NORMALS_VERTEX ? VISIBLE_ROUNDING : 0,
         .is_two_sided = kind == REPRESENTATION_FAN || kind == REPRESENTATION_NURBS,
-        .is_rim = !is_line && !is_point && snapshot->styles[region].opacity < 1 && scene->surface.translucency == SCENE_TRANSLUCENCY_RIM,
+        .is_rim = !is_line && !is_point && snapshot->styles[region].opacity < 1 &&
+                  scene->surface.translucency == SCENE_TRANSLUCENCY_RIM,
         .is_baked = kind == REPRESENTATION_SOLID && scene->points.solid == SCENE_SOLID_LIGHTING_BAKED,
         .is_covering = kind == REPRESENTATION_SOLID,
         .size_px = is_line ? scene->outline.width_px : scene->points.size_px,
@@ -63,7 +70,8 @@ struct visible_look visible_look(const struct snapshot *snapshot, size_t region,
 /* Only what is made of voxels' terraces needs its light smoothed. */
 int visible_shading_passes(const struct shape_key *key, uint32_t reduction)
 {
-    bool has_terraces = key->representation == REPRESENTATION_UNIVELS || (key->representation == REPRESENTATION_SURFACE && key->algorithm != SURFACE_SMOOTH);
+    bool has_terraces = key->representation == REPRESENTATION_UNIVELS ||
+                        (key->representation == REPRESENTATION_SURFACE && key->algorithm != SURFACE_SMOOTH);
     return has_terraces ? shading_passes(reduction) : 0;
 }
 
@@ -72,7 +80,8 @@ struct visible_cue visible_depth_cue(const struct camera *camera, const struct b
     struct vec3 f = camera->forward, size = vec3_sub(box->high, box->low);
     double length = fabs(f.x) * size.x + fabs(f.y) * size.y + fabs(f.z) * size.z; /* along the line of sight */
     double slope = -(1 - VISIBLE_DARKEST) / fmax(length, 1e-6);
-    struct vec3 nearest = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y, f.z > 0 ? box->low.z : box->high.z);
+    struct vec3 nearest = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y,
+                               f.z > 0 ? box->low.z : box->high.z);
     return (struct visible_cue){ slope * f.x, slope * f.y, slope * f.z, 1 - slope * vec3_dot(f, nearest) };
 }
 
@@ -80,7 +89,8 @@ static double nearest_mm(const struct camera *camera, const struct box3 *box)
 {
     if (camera->is_parallel) {
         struct vec3 f = camera->forward;
-        struct vec3 corner = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y, f.z > 0 ? box->low.z : box->high.z);
+        struct vec3 corner = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y,
+                                  f.z > 0 ? box->low.z : box->high.z);
         return vec3_dot(vec3_sub(corner, camera->eye_lps_mm), f);
     }
     struct vec3 e = camera->eye_lps_mm;
@@ -93,7 +103,8 @@ static double nearest_mm(const struct camera *camera, const struct box3 *box)
 static bool is_wholly_ahead(const struct camera *camera, const struct box3 *box)
 {
     struct vec3 f = camera->forward;
-    struct vec3 corner = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y, f.z > 0 ? box->low.z : box->high.z);
+    struct vec3 corner = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y,
+                              f.z > 0 ? box->low.z : box->high.z);
     return vec3_dot(vec3_sub(corner, camera->eye_lps_mm), f) > camera->near_mm;
 }
 
@@ -103,7 +114,8 @@ static bool is_out_of_sight(const struct mat4 *clip_from_lps_mm, const struct bo
     const double *m = clip_from_lps_mm->m;
     int n_beyond[6] = { 0 };
     for (int corner = 0; corner < 8; corner++) {
-        double x = corner & 1 ? box->high.x : box->low.x, y = corner & 2 ? box->high.y : box->low.y, z = corner & 4 ? box->high.z : box->low.z;
+        double x = corner & 1 ? box->high.x : box->low.x, y = corner & 2 ? box->high.y : box->low.y,
+               z = corner & 4 ? box->high.z : box->low.z;
         double clip[4];
         for (int row = 0; row < 4; row++)
             clip[row] = m[row] * x + m[4 + row] * y + m[8 + row] * z + m[12 + row];
@@ -144,16 +156,16 @@ static bool can_enclose(const struct snapshot *snapshot, size_t outer, size_t in
            (a == b || (a == SCENE_REPRESENTATION_UNIVELS && b == SCENE_REPRESENTATION_SURFACE));
 }
 
-/* A region inside an opaque one, in the same label layer, cannot be seen: the outer surface is closed and encloses it. Unless the
- * eye is within the outer one's box, or the near plane cuts it open. False on failure. */
-static bool find_hidden(const struct snapshot *snapshot, const struct camera *camera, size_t region, visible_bounds *bounds, void *context,
-                        bool *is_hidden, struct error *err)
+/* A region inside an opaque one, in the same label layer, cannot be seen: the outer surface is closed and encloses it.
+ * Unless the eye is within the outer one's box, or the near plane cuts it open. False on failure. */
+static bool find_hidden(const struct snapshot *snapshot, const struct camera *camera, size_t region,
+                        visible_bounds *bounds, void *context, bool *is_hidden, struct error *err)
 {
     const struct region *regions = snapshot->plan->regions.regions;
     *is_hidden = false;
     for (int outer = regions[region].parent; outer >= 0 && !*is_hidden; outer = regions[outer].parent) {
-        if (!is_drawn(snapshot, (size_t)outer) || snapshot->styles[outer].opacity < 1 || regions[outer].layer != regions[region].layer ||
-            !can_enclose(snapshot, (size_t)outer, region))
+        if (!is_drawn(snapshot, (size_t)outer) || snapshot->styles[outer].opacity < 1 ||
+            regions[outer].layer != regions[region].layer || !can_enclose(snapshot, (size_t)outer, region))
             continue;
         const struct box3 *box = bounds(context, (size_t)outer, err);
         if (!box)
@@ -163,7 +175,8 @@ static bool find_hidden(const struct snapshot *snapshot, const struct camera *ca
     return true;
 }
 
-/* As visible_shapes says. What encloses another is never farther away, so at equal distances the inner one comes first. */
+/* As visible_shapes says. What encloses another is never farther away, so at equal distances the inner one comes first.
+ */
 static int compare_back_to_front(const void *left, const void *right)
 {
     const struct visible_shape *a = left, *b = right;
@@ -183,8 +196,8 @@ static bool may_be_seen(const struct snapshot *snapshot, size_t region)
 {
     const struct region *regions = snapshot->plan->regions.regions;
     for (int outer = regions[region].parent; outer >= 0; outer = regions[outer].parent)
-        if (is_drawn(snapshot, (size_t)outer) && snapshot->styles[outer].opacity >= 1 && regions[outer].layer == regions[region].layer &&
-            can_enclose(snapshot, (size_t)outer, region))
+        if (is_drawn(snapshot, (size_t)outer) && snapshot->styles[outer].opacity >= 1 &&
+            regions[outer].layer == regions[region].layer && can_enclose(snapshot, (size_t)outer, region))
             return false;
     return true;
 }
@@ -208,7 +221,9 @@ bool visible_is_checked(const struct snapshot *snapshot, size_t region)
 static struct plan_want want_of(const struct snapshot *snapshot, size_t region, enum surface_detail detail)
 {
     bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
-    struct plan_want want = { region, is_in_space ? visible_shape_key(snapshot, region) : visible_checked_key(snapshot, region), SURFACE_FULL };
+    struct plan_want want = { region,
+                              is_in_space ? visible_shape_key(snapshot, region) : visible_checked_key(snapshot, region),
+                              SURFACE_FULL };
     if (is_in_space && want.key.representation == REPRESENTATION_SURFACE)
         want.detail = detail;
     return want;
@@ -224,7 +239,8 @@ size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail
     return n;
 }
 
-size_t visible_missing(const struct snapshot *snapshot, enum surface_detail detail, struct visible_missing missing[VISIBLE_MAX_MISSING])
+size_t visible_missing(const struct snapshot *snapshot, enum surface_detail detail,
+                       struct visible_missing missing[VISIBLE_MAX_MISSING])
 {
     bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
     size_t n = 0;
@@ -242,8 +258,9 @@ size_t visible_missing(const struct snapshot *snapshot, enum surface_detail deta
     return n;
 }
 
-struct visible_shape *visible_shapes(const struct snapshot *snapshot, const struct camera *camera, const struct mat4 *clip_from_lps_mm,
-                                         bool is_opaque, visible_bounds *bounds, void *context, size_t *n, struct error *err)
+struct visible_shape *visible_shapes(const struct snapshot *snapshot, const struct camera *camera,
+                                     const struct mat4 *clip_from_lps_mm, bool is_opaque, visible_bounds *bounds,
+                                     void *context, size_t *n, struct error *err)
 {
     const struct region_set *set = &snapshot->plan->regions;
     struct visible_shape *shapes = mem_array(set->n_regions, sizeof *shapes, UINT64_MAX, err);
@@ -261,16 +278,19 @@ struct visible_shape *visible_shapes(const struct snapshot *snapshot, const stru
             return NULL;
         }
         if (!box3_is_empty(box) && !is_out_of_sight(clip_from_lps_mm, box))
-            shapes[(*n)++] = (struct visible_shape){ i, &snapshot->styles[i], nearest_mm(camera, box),
-                                                         (int)snapshot->styles[i].order, region_depth(set, i),
-                                                         set->regions[i].n_voxels };
+            shapes[(*n)++] = (struct visible_shape){ i,
+                                                     &snapshot->styles[i],
+                                                     nearest_mm(camera, box),
+                                                     (int)snapshot->styles[i].order,
+                                                     region_depth(set, i),
+                                                     set->regions[i].n_voxels };
     }
     if (shapes)
         qsort(shapes, *n, sizeof *shapes, compare_back_to_front);
     return shapes;
 }
 
-/* ---- cross-sections ------------------------------------------------------------------------------------------------------- */
+/* ---- cross-sections --------------------------------------------------------------------------------------------- */
 
 size_t visible_palette(const struct snapshot *snapshot, size_t layer, uint8_t (*colors)[4])
 {
