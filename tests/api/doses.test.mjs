@@ -10,8 +10,7 @@ import { parseStrict } from './strict_json.mjs';
 
 const head = realData && join(realData, 'sera-head');
 const phantom = realData && join(realData, 'dicomrt-oncentra-phantom');
-const missing = [head, phantom].find((folder) => !folder || !existsSync(folder));
-const skip = missing === undefined ? false : 'no real plans on this machine';
+const skip = [head, phantom].every((plan) => plan && existsSync(plan)) ? false : 'no real plans on this machine';
 let folder, daemon;
 
 /** Another frame of reference (0020,0052) in every RTDOSE: its last digit is changed. */

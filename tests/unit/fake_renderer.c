@@ -1,6 +1,7 @@
 #include "tests/unit/fake_renderer.h"
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -114,6 +115,19 @@ static void die(void)
     pause();
 }
 
+/* Writes 80 MiB, and again when the file was removed while it still grew; ends with the process. */
+static void *fill(void *path)
+{
+    for (;; nanosleep(&(struct timespec){ .tv_nsec = 20000000 }, NULL)) {
+        int file = open(path, O_RDWR | O_CREAT, 0600);
+        if (file >= 0) {
+            (void)posix_fallocate(file, 0, 80 << 20);
+            close(file);
+        }
+    }
+    return NULL;
+}
+
 static cJSON *revisions; /* of each room's scene, the last that was told */
 
 static void handle(const cJSON *packet, const char *folder)
@@ -153,10 +167,10 @@ static int renderer_main(const char *folder, const char *id, const char *cache)
 {
     read_behaviour(folder);
     if (behaves("fills-its-cache")) {
-        char path[512];
+        static char path[512];
+        pthread_t filler;
         snprintf(path, sizeof path, "%s/large", cache);
-        int file = open(path, O_RDWR | O_CREAT, 0600);
-        if (file < 0 || posix_fallocate(file, 0, 80 << 20) != 0)
+        if (pthread_create(&filler, NULL, fill, path) != 0)
             return 8;
     }
     if (behaves("crash-loading"))
