@@ -30,27 +30,6 @@ static struct vec3 box_centre(const struct box3 *box)
     return vec3_scale(vec3_add(box->low, box->high), 0.5);
 }
 
-struct pane_axes {
-    struct vec3 right, up, forward;
-};
-
-static struct pane_axes pane_axes(enum scene_kind kind)
-{
-    switch (kind) {
-    case SCENE_KIND_CORONAL: return (struct pane_axes){ vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0) };
-    case SCENE_KIND_SAGITTAL: return (struct pane_axes){ vec3(0, 1, 0), vec3(0, 0, 1), vec3(-1, 0, 0) };
-    case SCENE_KIND_AXIAL: /* from the feet */
-    case SCENE_KIND_3D: break;
-    }
-    return (struct pane_axes){ vec3(1, 0, 0), vec3(0, -1, 0), vec3(0, 0, 1) };
-}
-
-/* Extent of a box along a unit axis of the patient. */
-static double box_extent(const struct box3 *box, struct vec3 axis)
-{
-    return fabs(vec3_dot(vec3_sub(box->high, box->low), axis));
-}
-
 static struct box3 pane_box(const struct plan *plan)
 {
     return plan->n_images ? grid_bounds_lps_mm(&plan->images[0].volume->grid) : plan_box(plan);
@@ -61,6 +40,12 @@ static double box_diagonal(const struct box3 *box)
     return vec3_length(vec3_sub(box->high, box->low));
 }
 
+/* Length of the shadow of a box of this size on a unit axis. */
+static double box_extent(struct vec3 size, struct vec3 axis)
+{
+    return fabs(axis.x) * size.x + fabs(axis.y) * size.y + fabs(axis.z) * size.z;
+}
+
 /* What the first 3-D picture frames: the regions; where they are only a small part of what was scanned (a lesion, and
  * no head around it) the image, so that it is seen where in the body one looks. */
 static struct box3 home_box(const struct plan *plan)
@@ -69,10 +54,10 @@ static struct box3 home_box(const struct plan *plan)
     return box_diagonal(&regions) < 0.5 * box_diagonal(&image) ? image : regions;
 }
 
-static double pane_height_mm(const struct box3 *box, enum scene_kind kind)
+static double pane_height_mm(const struct box3 *box, const struct plane *plane)
 {
-    struct pane_axes axes = pane_axes(kind);
-    return fmax(home_margin * fmax(box_extent(box, axes.right), box_extent(box, axes.up)), 0.1);
+    struct vec3 size = vec3_sub(box->high, box->low);
+    return fmax(home_margin * fmax(box_extent(size, plane->right), box_extent(size, plane->up)), 0.1);
 }
 
 /* How far in front of the centre the eye must stand so that every corner of the box lies within the opening angle. */
@@ -92,51 +77,35 @@ void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_cam
 {
     double fov_deg = scene_camera_default.fov_deg;
     struct box3 box = kind == SCENE_KIND_3D ? home_box(plan) : pane_box(plan);
-    struct pane_axes axes = kind == SCENE_KIND_3D ? pane_axes(SCENE_KIND_CORONAL) : pane_axes(kind);
+    struct plane plane = plane_of_kind(kind, 0);
 
     *camera = scene_camera_default;
     camera->has_position_mm = camera->has_target_mm = camera->has_up = true;
     camera->target_mm = box_centre(&box);
-    camera->up = axes.up;
+    camera->up = plane.up;
     double distance = kind == SCENE_KIND_3D ? home_distance_mm(&box, fov_deg) : 1000;
-    camera->position_mm = vec3_sub(camera->target_mm, vec3_scale(axes.forward, distance));
+    camera->position_mm = vec3_sub(camera->target_mm, vec3_scale(plane_forward(&plane), distance));
     if (kind != SCENE_KIND_3D) {
         camera->projection = SCENE_PROJECTION_PARALLEL;
         camera->has_height_mm = true;
-        camera->height_mm = pane_height_mm(&box, kind);
+        camera->height_mm = pane_height_mm(&box, &plane);
     }
 }
 
-static double *axis_of(struct vec3 *p, enum scene_kind kind)
-{
-    return kind == SCENE_KIND_AXIAL ? &p->z : kind == SCENE_KIND_CORONAL ? &p->y : &p->x;
-}
-
-double scene_slice_position_mm(const struct scene *scene, enum scene_kind kind)
-{
-    const struct scene_slices *slices = &scene->image.slices;
-    return kind == SCENE_KIND_AXIAL     ? slices->axial.position_mm
-           : kind == SCENE_KIND_CORONAL ? slices->coronal.position_mm
-                                        : slices->sagittal.position_mm;
-}
-
-/* Slice panes: parallel, square to the patient, the slice's own plane through the target. Returns millimetres across
- * the smaller side. */
+/* Slice panes: parallel, square to their plane, the target on it. Returns millimetres across the smaller side. */
 static double resolve_pane(const struct snapshot *snapshot, struct camera *camera)
 {
     const struct scene_camera *asked = &snapshot->view.camera;
-    enum scene_kind kind = snapshot->view.kind;
+    const struct plane *plane = &snapshot->pane;
     struct box3 box = pane_box(snapshot->plan);
-    struct pane_axes axes = pane_axes(kind);
 
-    camera->right = axes.right;
-    camera->up = axes.up;
-    camera->forward = axes.forward;
+    camera->right = plane->right;
+    camera->up = plane->up;
+    camera->forward = plane_forward(plane);
     camera->is_parallel = true;
-    camera->target_lps_mm = asked->has_target_mm ? asked->target_mm : box_centre(&box);
-    *axis_of(&camera->target_lps_mm, kind) = scene_slice_position_mm(&snapshot->scene, kind);
+    camera->target_lps_mm = plane_nearest(plane, asked->has_target_mm ? asked->target_mm : box_centre(&box));
     camera->eye_lps_mm = vec3_sub(camera->target_lps_mm, vec3_scale(camera->forward, 1000));
-    return asked->has_height_mm ? asked->height_mm : pane_height_mm(&box, kind);
+    return asked->has_height_mm ? asked->height_mm : pane_height_mm(&box, plane);
 }
 
 static double resolve_space(const struct snapshot *snapshot, struct camera *camera)
@@ -220,7 +189,7 @@ void camera_resolve(const struct snapshot *snapshot, struct camera *camera)
     const struct view *view = &snapshot->view;
     double width = view->size_px[0], height = view->size_px[1], smaller = fmin(width, height);
     *camera = (struct camera){ 0 };
-    double across_mm = view->kind == SCENE_KIND_3D ? resolve_space(snapshot, camera) : resolve_pane(snapshot, camera);
+    double across_mm = snapshot_is_pane(snapshot) ? resolve_pane(snapshot, camera) : resolve_space(snapshot, camera);
     resolve_depth(snapshot, camera);
 
     double half = camera->is_parallel ? across_mm / 2 : tan(view->camera.fov_deg / 2 * MATH_PI / 180);

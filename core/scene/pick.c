@@ -211,19 +211,13 @@ static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray
 {
     if (snapshot->image < 0)
         return n;
-    const struct scene_slices *slices = &snapshot->scene.image.slices;
     const struct volume *volume = snapshot->plan->images[snapshot->image].volume;
-    const struct {
-        const struct scene_slice *slice;
-        struct vec3 normal;
-    } planes[3] = { { &slices->axial, { 0, 0, 1 } },
-                    { &slices->coronal, { 0, 1, 0 } },
-                    { &slices->sagittal, { 1, 0, 0 } } };
-    for (int i = 0; i < 3; i++) {
-        double across = vec3_dot(ray->direction, planes[i].normal);
-        if (!planes[i].slice->visible || fabs(across) < 1e-12)
+    for (size_t i = 0; i < snapshot->n_slices; i++) {
+        const struct plane *plane = &snapshot->slices[i];
+        double across = vec3_dot(ray->direction, plane->normal);
+        if (fabs(across) < 1e-12)
             continue;
-        double t = (planes[i].slice->position_mm - vec3_dot(ray->origin_lps_mm, planes[i].normal)) / across;
+        double t = (plane_position_mm(plane) - vec3_dot(ray->origin_lps_mm, plane->normal)) / across;
         struct vec3 point = ray_point(ray, t);
         if (t >= 0 && slice_is_drawn_at(snapshot, volume, point))
             n = add_hit(hits, n, (struct pick_hit){ point, -1, t });
@@ -277,7 +271,7 @@ size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, stru
 {
     struct camera camera;
     camera_resolve(snapshot, &camera);
-    if (snapshot->view.kind != SCENE_KIND_3D)
+    if (snapshot_is_pane(snapshot))
         return pick_pane(snapshot, &camera, px, py, hits);
     struct ray ray = pixel_ray(&camera, &snapshot->view, px, py);
     size_t n = pick_regions(snapshot, &ray, hits);

@@ -117,6 +117,8 @@ struct snapshot *snapshot_create(struct plan *plan, struct scene *scene, struct 
         goto fail;
     if (!find_things(snapshot, field, err))
         goto fail;
+    snapshot->pane = plane_of_view(&snapshot->scene, &snapshot->view);
+    snapshot->n_slices = planes_of_slices(&snapshot->scene, snapshot->slices);
     if (!check_camera(&snapshot->view.camera, &snapshot->view, field, err))
         goto fail;
     /* position alone: the target is the plan's centre, which the position must not be */

@@ -2,6 +2,7 @@
 /* What is asked to be seen, frozen: a plan, a scene and a view. A picture is a pure function of it. No JSON, no GL. */
 #include "core/math/vec.h"
 #include "core/plan/plan.h"
+#include "core/scene/plane.h"
 #include "scene.h" /* generated from proto/scene.json */
 
 struct snapshot {
@@ -9,9 +10,12 @@ struct snapshot {
     struct scene scene; /* owned */
     struct view view;   /* owned */
     uint32_t scene_revision;
-    struct scene_region_style *styles; /* owned; by region index of the plan */
-    int image;                         /* index of the image shown, or -1 when the plan has none */
-    int dose;                          /* the same of the dose */
+    struct scene_region_style *styles;     /* owned; by region index of the plan */
+    int image;                             /* index of the image shown, or -1 when the plan has none */
+    int dose;                              /* the same of the dose */
+    struct plane pane;                     /* of a slice pane: the plane it shows */
+    struct plane slices[PLANE_MAX_SLICES]; /* of the image, shown in space; in the order of drawing */
+    size_t n_slices;
     _Atomic int references;
 };
 
@@ -32,8 +36,11 @@ void scene_for_plan(const struct plan *plan, struct scene *scene);
 int scene_image_index(const struct plan *plan, const struct scene *scene);
 /* Whether low values of the image shown are white: as the scene says, else as the image asks. image >= 0 */
 bool snapshot_is_low_white(const struct snapshot *snapshot);
-/* Where the slice of a pane lies along its patient axis; kind is not 3-D. */
-double scene_slice_position_mm(const struct scene *scene, enum scene_kind kind);
+/* Whether the picture is a slice pane: parallel, looking at the snapshot's pane. Else it looks into space. */
+static inline bool snapshot_is_pane(const struct snapshot *snapshot)
+{
+    return snapshot->view.kind != SCENE_KIND_3D;
+}
 
 /* The home camera of a kind: all regions (the image where they are less than half as long), from the front, superior
  * up; slice panes the whole image or regions. */
@@ -48,9 +55,7 @@ struct camera {
     double near_mm, far_mm; /* along forward from the eye, around the plan's bounds */
     struct mat4 clip_from_lps_mm, lps_mm_from_clip;
 };
-/* Slice panes: axial looks from the feet (right of the picture = patient left, up = anterior); coronal from the front
- * (right = patient left, up = superior); sagittal from the patient's left (right = posterior, up = superior: anterior
- * on screen left). */
+/* A slice pane's camera looks at its plane: right and up are the plane's, the target is on it. */
 void camera_resolve(const struct snapshot *snapshot, struct camera *camera);
 
 /* What lies under a pixel of the full-size view, front to back, worked out on univels and slices, not on the picture.

@@ -185,7 +185,7 @@ static bool draw_passes(const struct gl_frame *frame, struct error *err)
     gl->ClearColor((float)visible_background[0] / 255.0f, (float)visible_background[1] / 255.0f,
                    (float)visible_background[2] / 255.0f, 1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    if (frame->snapshot->view.kind != SCENE_KIND_3D)
+    if (snapshot_is_pane(frame->snapshot))
         return gl_draw_pane(frame, err);
     return gl_draw_opaque_shapes(frame, err) && gl_draw_slices_in_space(frame, err) &&
            gl_draw_translucent_shapes(frame, err);

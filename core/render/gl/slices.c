@@ -1,8 +1,7 @@
 #include "core/render/gl/draw.h"
 #include "core/render/visible/visible.h"
 
-/* A plane square to a patient axis cuts a grid's box in at most six corners; each half-space adds at most one to the
- * square we start from. */
+/* A plane cuts a grid's box in at most six corners; each half-space adds at most one to the rectangle we start from. */
 enum { MAX_CORNERS = 10 };
 
 struct polygon {
@@ -33,17 +32,17 @@ static void clip_face(const struct grid *grid, int face, struct polygon *polygon
     *polygon = kept;
 }
 
-/* Where a slice of a kind cuts a grid; n < 3: nowhere. */
-static struct polygon slice_polygon(const struct grid *grid, enum scene_kind kind, double position_mm)
+/* Where a plane cuts a grid; n < 3: nowhere. */
+static struct polygon slice_polygon(const struct grid *grid, const struct plane *plane)
 {
     struct box3 box = grid_bounds_lps_mm(grid);
-    struct vec3 l = box.low, h = box.high;
-    double p = position_mm;
-    struct polygon polygon = { 4, { { l.x, l.y, p }, { h.x, l.y, p }, { h.x, h.y, p }, { l.x, h.y, p } } };
-    if (kind == SCENE_KIND_CORONAL)
-        polygon = (struct polygon){ 4, { { l.x, p, l.z }, { h.x, p, l.z }, { h.x, p, h.z }, { l.x, p, h.z } } };
-    if (kind == SCENE_KIND_SAGITTAL)
-        polygon = (struct polygon){ 4, { { p, l.y, l.z }, { p, h.y, l.z }, { p, h.y, h.z }, { p, l.y, h.z } } };
+    struct plane upright = plane_upright(plane);
+    struct plane_reach reach = plane_reach(&upright, &box);
+    struct polygon polygon = { 4,
+                               { plane_point(&upright, reach.low_right_mm, reach.low_up_mm),
+                                 plane_point(&upright, reach.high_right_mm, reach.low_up_mm),
+                                 plane_point(&upright, reach.high_right_mm, reach.high_up_mm),
+                                 plane_point(&upright, reach.low_right_mm, reach.high_up_mm) } };
     for (int face = 0; face < 6; face++)
         clip_face(grid, face, &polygon);
     return polygon;
@@ -70,7 +69,7 @@ static void draw_polygon(const struct gl_frame *frame, const struct grid *grid, 
 
 /* ---- images ----------------------------------------------------------------------------------------------------- */
 
-static bool draw_image_slice(const struct gl_frame *frame, enum scene_kind kind, double position_mm, struct error *err)
+static bool draw_image_slice(const struct gl_frame *frame, const struct plane *plane, struct error *err)
 {
     const struct gl *gl = frame->gl;
     const struct snapshot *snapshot = frame->snapshot;
@@ -78,7 +77,7 @@ static bool draw_image_slice(const struct gl_frame *frame, enum scene_kind kind,
     const struct scene_image_style *style = &snapshot->scene.image;
     const struct gl_program *program = &frame->programs->image;
     const struct grid *grid = &plan->images[snapshot->image].volume->grid;
-    struct polygon polygon = slice_polygon(grid, kind, position_mm);
+    struct polygon polygon = slice_polygon(grid, plane);
     if (polygon.n < 3)
         return true;
     const struct gl_grid *image = gl_cache_image(gl, frame->cache, plan, (size_t)snapshot->image, err);
@@ -92,7 +91,7 @@ static bool draw_image_slice(const struct gl_frame *frame, enum scene_kind kind,
                   (float)((image->value_at_zero - low) / style->window.width));
     bool is_low_white = snapshot_is_low_white(snapshot);
     gl->Uniform2f(program->ends, is_low_white ? 1 : 0, is_low_white ? 0 : 1);
-    bool is_culled = snapshot->view.kind == SCENE_KIND_3D;
+    bool is_culled = !snapshot_is_pane(snapshot);
     gl->Uniform1f(program->cull, is_culled ? (float)((style->cull_below - low) / style->window.width) : -INFINITY);
     gl->Uniform1i(program->source, 0);
     gl->ActiveTexture(GL_TEXTURE0);
@@ -106,15 +105,14 @@ static bool draw_image_slice(const struct gl_frame *frame, enum scene_kind kind,
 
 bool gl_draw_slices_in_space(const struct gl_frame *frame, struct error *err)
 {
-    const struct scene_slices *slices = &frame->snapshot->scene.image.slices;
-    if (frame->snapshot->image < 0)
+    const struct snapshot *snapshot = frame->snapshot;
+    if (snapshot->image < 0)
         return true;
     frame->gl->Enable(GL_DEPTH_TEST);
-    return (!slices->axial.visible || draw_image_slice(frame, SCENE_KIND_AXIAL, slices->axial.position_mm, err)) &&
-           (!slices->coronal.visible ||
-            draw_image_slice(frame, SCENE_KIND_CORONAL, slices->coronal.position_mm, err)) &&
-           (!slices->sagittal.visible ||
-            draw_image_slice(frame, SCENE_KIND_SAGITTAL, slices->sagittal.position_mm, err));
+    for (size_t i = 0; i < snapshot->n_slices; i++)
+        if (!draw_image_slice(frame, &snapshot->slices[i], err))
+            return false;
+    return true;
 }
 
 /* ---- labels ----------------------------------------------------------------------------------------------------- */
@@ -125,8 +123,7 @@ static bool draw_label_slice(const struct gl_frame *frame, size_t layer, struct 
     const struct snapshot *snapshot = frame->snapshot;
     const struct gl_program *program = &frame->programs->labels;
     const struct grid *grid = &snapshot->plan->regions.layers[layer]->grid;
-    enum scene_kind kind = snapshot->view.kind;
-    struct polygon polygon = slice_polygon(grid, kind, scene_slice_position_mm(&snapshot->scene, kind));
+    struct polygon polygon = slice_polygon(grid, &snapshot->pane);
     if (polygon.n < 3 || visible_palette(snapshot, layer, frame->colors) == 0)
         return true;
     const struct gl_grid *labels = gl_cache_layer(gl, frame->cache, snapshot->plan, layer, err);
@@ -152,10 +149,9 @@ bool gl_draw_pane(const struct gl_frame *frame, struct error *err)
 {
     const struct snapshot *snapshot = frame->snapshot;
     const struct region_set *set = &snapshot->plan->regions;
-    enum scene_kind kind = snapshot->view.kind;
     frame->gl->Disable(GL_DEPTH_TEST);
     if (snapshot->image >= 0)
-        return draw_image_slice(frame, kind, scene_slice_position_mm(&snapshot->scene, kind), err);
+        return draw_image_slice(frame, &snapshot->pane, err);
     size_t layers[REGION_MAX_LAYERS];
     visible_layers(set, layers);
     for (size_t i = 0; i < set->n_layers; i++)

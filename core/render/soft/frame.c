@@ -100,7 +100,7 @@ fail:
     return false;
 }
 
-static void add_image(struct soft_frame *frame, enum scene_kind kind, double position_mm)
+static void add_image(struct soft_frame *frame, const struct plane *plane_lps)
 {
     static const enum soft_voxel types[] = {
         [VOXEL_U8] = SOFT_U8, [VOXEL_I16] = SOFT_I16, [VOXEL_U16] = SOFT_U16, [VOXEL_F32] = SOFT_F32
@@ -109,9 +109,9 @@ static void add_image(struct soft_frame *frame, enum scene_kind kind, double pos
     const struct scene_image_style *style = &snapshot->scene.image;
     const struct volume *volume = snapshot->plan->images[snapshot->image].volume;
     struct soft_plane *plane = &frame->planes[frame->n_planes++];
-    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
+    bool is_in_space = !snapshot_is_pane(snapshot);
     double low = style->window.center - style->window.width / 2, width = style->window.width;
-    soft_plane_init(plane, volume, kind, position_mm, &frame->camera->clip_from_lps_mm, frame->width, frame->height);
+    soft_plane_init(plane, volume, plane_lps, &frame->camera->clip_from_lps_mm, frame->width, frame->height);
     plane->texture.type = types[volume->type];
     plane->texture.grey_scale = (float)(volume->slope / width);
     plane->texture.grey_offset = (float)((volume->offset - low) / width);
@@ -125,7 +125,6 @@ static bool add_labels(struct soft_frame *frame, struct error *err)
 {
     const struct snapshot *snapshot = frame->snapshot;
     const struct region_set *set = &snapshot->plan->regions;
-    enum scene_kind kind = snapshot->view.kind;
     size_t layers[REGION_MAX_LAYERS];
     visible_layers(set, layers);
     frame->palettes = mem_array(set->n_layers, VISIBLE_N_LABELS * sizeof *frame->palettes, UINT64_MAX, err);
@@ -139,8 +138,7 @@ static bool add_labels(struct soft_frame *frame, struct error *err)
         if (volume->type == VOXEL_F32)
             return error_set(err, ERROR_UNSUPPORTED, "label layer %zu: a label layer of real numbers", layers[i]);
         struct soft_plane *plane = &frame->planes[frame->n_planes++];
-        soft_plane_init(plane, volume, kind, scene_slice_position_mm(&snapshot->scene, kind),
-                        &frame->camera->clip_from_lps_mm, frame->width, frame->height);
+        soft_plane_init(plane, volume, &snapshot->pane, &frame->camera->clip_from_lps_mm, frame->width, frame->height);
         plane->texture.type = volume->type == VOXEL_U8 ? SOFT_U8 : SOFT_U16; /* labels are never negative */
         plane->texture.palette = palette;
     }
@@ -150,19 +148,13 @@ static bool add_labels(struct soft_frame *frame, struct error *err)
 bool soft_collect_planes(struct soft_frame *frame, struct error *err)
 {
     const struct snapshot *snapshot = frame->snapshot;
-    const struct scene_slices *slices = &snapshot->scene.image.slices;
-    enum scene_kind kind = snapshot->view.kind;
-    if (kind != SCENE_KIND_3D) {
+    if (snapshot_is_pane(snapshot)) {
         if (snapshot->image < 0)
             return add_labels(frame, err);
-        add_image(frame, kind, scene_slice_position_mm(&snapshot->scene, kind));
+        add_image(frame, &snapshot->pane);
         return true;
     }
-    if (snapshot->image >= 0 && slices->axial.visible)
-        add_image(frame, SCENE_KIND_AXIAL, slices->axial.position_mm);
-    if (snapshot->image >= 0 && slices->coronal.visible)
-        add_image(frame, SCENE_KIND_CORONAL, slices->coronal.position_mm);
-    if (snapshot->image >= 0 && slices->sagittal.visible)
-        add_image(frame, SCENE_KIND_SAGITTAL, slices->sagittal.position_mm);
+    for (size_t i = 0; snapshot->image >= 0 && i < snapshot->n_slices; i++)
+        add_image(frame, &snapshot->slices[i]);
     return true;
 }

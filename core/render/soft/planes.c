@@ -37,28 +37,19 @@ static void clip_coordinates(const struct mat4 *matrix, struct vec3 p, double la
             matrix->m[row] * p.x + matrix->m[4 + row] * p.y + matrix->m[8 + row] * p.z + matrix->m[12 + row] * last;
 }
 
-/* A point of the plane is origin + u along + v across. Its place in the picture, times w, is linear in (u, v, 1); so by
+/* A point of the plane is origin + u right + v up. Its place in the picture, times w, is linear in (u, v, 1); so by
  * the inverse u / w, v / w and 1 / w are linear in the place, and with them all that is linear on the plane. */
-void soft_plane_init(struct soft_plane *plane, const struct volume *volume, enum scene_kind kind, double position_mm,
+void soft_plane_init(struct soft_plane *plane, const struct volume *volume, const struct plane *plane_lps,
                      const struct mat4 *clip_from_lps_mm, int width, int height)
 {
     const struct grid *grid = &volume->grid;
-    struct vec3 along = vec3(1, 0, 0), across = vec3(0, 1, 0), origin = vec3(0, 0, position_mm);
-    if (kind == SCENE_KIND_CORONAL) {
-        across = vec3(0, 0, 1);
-        origin = vec3(0, position_mm, 0);
-    } else if (kind == SCENE_KIND_SAGITTAL) {
-        along = vec3(0, 1, 0);
-        across = vec3(0, 0, 1);
-        origin = vec3(position_mm, 0, 0);
-    }
     double clip[3][4];
-    clip_coordinates(clip_from_lps_mm, along, 0, clip[0]);
-    clip_coordinates(clip_from_lps_mm, across, 0, clip[1]);
-    clip_coordinates(clip_from_lps_mm, origin, 1, clip[2]);
-    struct vec3 index[3] = { affine_vector(&grid->ijk_from_lps_mm, along),
-                             affine_vector(&grid->ijk_from_lps_mm, across),
-                             affine_point(&grid->ijk_from_lps_mm, origin) };
+    clip_coordinates(clip_from_lps_mm, plane_lps->right, 0, clip[0]);
+    clip_coordinates(clip_from_lps_mm, plane_lps->up, 0, clip[1]);
+    clip_coordinates(clip_from_lps_mm, plane_lps->origin_lps_mm, 1, clip[2]);
+    struct vec3 index[3] = { affine_vector(&grid->ijk_from_lps_mm, plane_lps->right),
+                             affine_vector(&grid->ijk_from_lps_mm, plane_lps->up),
+                             affine_point(&grid->ijk_from_lps_mm, plane_lps->origin_lps_mm) };
     struct mat3 place, inverse;
     double linear[5][3];
     for (int c = 0; c < 3; c++) {

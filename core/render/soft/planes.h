@@ -1,5 +1,5 @@
 #pragma once
-/* Slices through grids: planes square to a patient axis, cut out by the grid's outer faces. */
+/* Slices through grids: planes, cut off at the grid's outer faces. */
 #include "core/render/soft/kernels.h"
 #include "core/scene/snapshot.h"
 
@@ -10,6 +10,6 @@ struct soft_plane {
 };
 
 /* Of a picture of width x height samples. texture's grid is volume's; its colours are the caller's to fill. */
-void soft_plane_init(struct soft_plane *plane, const struct volume *volume, enum scene_kind kind, double position_mm,
+void soft_plane_init(struct soft_plane *plane, const struct volume *volume, const struct plane *plane_lps,
                      const struct mat4 *clip_from_lps_mm, int width, int height);
 void soft_plane_draw(const struct soft_plane *plane, const struct soft_kernels *kernels, const struct soft_band *band);

@@ -362,7 +362,6 @@ static size_t n_primitives(const struct soft_frame *frame)
 
 static bool collect(struct soft_frame *frame, struct render_timing *timing, struct error *err)
 {
-    bool is_in_space = frame->snapshot->view.kind == SCENE_KIND_3D;
     frame->image = image_create(frame->options.width_px, frame->options.height_px, err);
     if (!frame->image)
         return false;
@@ -370,7 +369,8 @@ static bool collect(struct soft_frame *frame, struct render_timing *timing, stru
     frame->width = frame->options.width_px * frame->samples;
     frame->height = frame->options.height_px * frame->samples;
     frame->n_bands = (frame->height + SOFT_BAND_ROWS - 1) / SOFT_BAND_ROWS;
-    return (!is_in_space || soft_collect_shapes(frame, timing, err)) && soft_collect_planes(frame, err);
+    return (snapshot_is_pane(frame->snapshot) || soft_collect_shapes(frame, timing, err)) &&
+           soft_collect_planes(frame, err);
 }
 
 static bool sort(struct soft_frame *frame, struct error *err)

@@ -94,7 +94,8 @@ static void mark(struct image *image, int x, int y, bool is_added, int period)
 }
 
 bool check_paint(const struct cut_region *univels, const struct cut_lines *surface, const struct camera *camera,
-                 double position_mm, struct image *image, double scale, struct overlay_check *check, struct error *err)
+                 const struct plane *plane, struct image *image, double scale, struct overlay_check *check,
+                 struct error *err)
 {
     struct crossings crossings = { .low_px = { INFINITY, INFINITY }, .high_px = { -INFINITY, -INFINITY } };
     if (!find_crossings(surface, camera, image, &crossings, err))
@@ -102,9 +103,7 @@ bool check_paint(const struct cut_region *univels, const struct cut_lines *surfa
     const double *m = camera->lps_mm_from_clip.m; /* of a parallel view: linear */
     struct vec3 across = vec3_scale(vec3(m[0], m[1], m[2]), 2.0 / image->width_px),
                 down = vec3_scale(vec3(m[4], m[5], m[6]), -2.0 / image->height_px);
-    struct vec3 f = camera->forward; /* along a patient axis, up or down it */
-    struct vec3 middle = vec3_add(camera->target_lps_mm,
-                                  vec3_scale(f, (f.x + f.y + f.z) * position_mm - vec3_dot(f, camera->target_lps_mm)));
+    struct vec3 middle = plane_nearest(plane, camera->target_lps_mm);
     for (int corner = 0; corner < 8; corner++) { /* nothing differs outside of both */
         const struct box3 *box = &univels->bounds_lps_mm;
         const double p[3] = { corner & 1 ? box->high.x : box->low.x, corner & 2 ? box->high.y : box->low.y,

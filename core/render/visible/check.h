@@ -11,5 +11,5 @@
  * (blue, hatched downwards), and counts both. surface: closed lines, filled by even and odd; a row where they do not
  * close is left as it is. errors ERROR_MEMORY */
 NODISCARD bool check_paint(const struct cut_region *univels, const struct cut_lines *surface,
-                           const struct camera *camera, double position_mm, struct image *image, double scale,
+                           const struct camera *camera, const struct plane *plane, struct image *image, double scale,
                            struct overlay_check *check, struct error *err);

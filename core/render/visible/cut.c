@@ -99,28 +99,13 @@ bool cut_region_holds(const struct cut_region *cut, struct vec3 point_lps_mm)
     return false;
 }
 
-static int patient_axis(const struct cut_plane *plane)
-{
-    return plane->kind == SCENE_KIND_AXIAL ? 2 : plane->kind == SCENE_KIND_CORONAL ? 1 : 0;
-}
-
-static double along(struct vec3 p, int axis)
-{
-    return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-}
-
-static struct vec3 unit(int axis)
-{
-    return vec3(axis == 0, axis == 1, axis == 2);
-}
-
-/* Whether the plane is one of the grid's own slices: its axes but one have no part across the plane. */
-static bool find_slice_axis(const struct grid *grid, int patient, int *index_axis)
+/* Whether the plane is one of the grid's own slices: two of the grid's axes lie in the plane. */
+static bool find_slice_axis(const struct grid *grid, const struct plane *plane, int *index_axis)
 {
     int n_in_plane = 0;
     for (int i = 0; i < 3; i++) {
         struct vec3 column = grid->lps_mm_from_ijk.columns[i];
-        if (fabs(along(column, patient)) < 1e-6 * vec3_length(column))
+        if (fabs(vec3_dot(column, plane->normal)) < 1e-6 * vec3_length(column))
             n_in_plane++;
         else
             *index_axis = i;
@@ -129,32 +114,32 @@ static bool find_slice_axis(const struct grid *grid, int patient, int *index_axi
 }
 
 /* Pixels of the plane over the whole grid; columns[2] is across it. */
-static bool pixel_map(const struct grid *grid, const struct cut_plane *plane, struct affine *map, uint32_t size[2])
+static bool pixel_map(const struct grid *grid, const struct plane *plane, struct affine *map, uint32_t size[2])
 {
-    int patient = patient_axis(plane), axis = 0;
+    int axis = 0;
     struct box3 box = grid_bounds_lps_mm(grid);
-    if (plane->position_mm < along(box.low, patient) || plane->position_mm > along(box.high, patient))
+    struct plane upright = plane_upright(plane);
+    struct plane_reach reach = plane_reach(&upright, &box);
+    if (!plane_meets(&reach))
         return false;
-    if (find_slice_axis(grid, patient, &axis)) {
+    if (find_slice_axis(grid, plane, &axis)) {
         int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
         const struct affine *lps = &grid->lps_mm_from_ijk;
-        double index = (plane->position_mm - along(lps->origin, patient)) / along(lps->columns[axis], patient);
+        double index = -plane_height_mm(plane, lps->origin) / vec3_dot(lps->columns[axis], plane->normal);
         *map = (struct affine){ { lps->columns[a], lps->columns[b], lps->columns[axis] },
                                 vec3_add(lps->origin, vec3_scale(lps->columns[axis], index)) };
         size[0] = grid->size[a];
         size[1] = grid->size[b];
         return true;
     }
-    int a = patient == 0 ? 1 : 0, b = patient == 2 ? 1 : 2;
     struct vec3 spacing = grid_spacing_mm(grid);
-    double extent[2] = { along(box.high, a) - along(box.low, a), along(box.high, b) - along(box.low, b) };
+    double extent[2] = { reach.high_right_mm - reach.low_right_mm, reach.high_up_mm - reach.low_up_mm };
     double side = fmax(fmin(fmin(spacing.x, spacing.y), spacing.z), fmax(extent[0], extent[1]) / MAX_SIDE);
     size[0] = (uint32_t)fmax(1, ceil(extent[0] / side));
     size[1] = (uint32_t)fmax(1, ceil(extent[1] / side));
-    *map = (struct affine){ { vec3_scale(unit(a), side), vec3_scale(unit(b), side), vec3_scale(unit(patient), side) },
-                            vec3_add(vec3_scale(unit(patient), plane->position_mm),
-                                     vec3_add(vec3_scale(unit(a), along(box.low, a) + side / 2),
-                                              vec3_scale(unit(b), along(box.low, b) + side / 2))) };
+    *map = (struct affine){ { vec3_scale(upright.right, side), vec3_scale(upright.up, side),
+                              vec3_scale(upright.normal, side) },
+                            plane_point(&upright, reach.low_right_mm + side / 2, reach.low_up_mm + side / 2) };
     return true;
 }
 
@@ -202,15 +187,15 @@ static void find_pixels(const struct cut_region *cut, const struct affine *map, 
     }
 }
 
-bool cut_univels(const struct cut_region *cut, const struct cut_plane *plane, struct mask **mask, struct error *err)
+bool cut_univels(const struct cut_region *cut, const struct plane *plane, struct mask **mask, struct error *err)
 {
     struct affine map;
     uint32_t size[3] = { 0, 0, 1 };
     *mask = NULL;
-    const struct box3 *box = &cut->bounds_lps_mm;
-    int axis = patient_axis(plane);
-    if (box3_is_empty(box) || plane->position_mm < along(box->low, axis) ||
-        plane->position_mm > along(box->high, axis) || !pixel_map(cut->grid, plane, &map, size))
+    if (box3_is_empty(&cut->bounds_lps_mm))
+        return true;
+    struct plane_reach reach = plane_reach(plane, &cut->bounds_lps_mm);
+    if (!plane_meets(&reach) || !pixel_map(cut->grid, plane, &map, size))
         return true;
     struct mask *made = mask_create(size, &map, err);
     if (!made)
@@ -283,45 +268,57 @@ bool cut_borders(const struct mask *slice, struct cut_lines *lines, struct error
     return true;
 }
 
+/* A corner of a polygon; its position along the plane's normal, beside the plane's own, decides on which side it is. */
+struct corner {
+    struct vec3 lps_mm;
+    double position_mm;
+};
+
 /* Where an edge from one side of the plane to the other meets it; the same point whichever way the edge is taken. */
-static struct vec3 meet(struct vec3 below, struct vec3 above, int axis, double position_mm)
+static struct vec3 meet(const struct corner *below, const struct corner *above, double position_mm)
 {
-    double low = along(below, axis), t = (position_mm - low) / (along(above, axis) - low);
-    return vec3_add(below, vec3_scale(vec3_sub(above, below), t));
+    double t = (position_mm - below->position_mm) / (above->position_mm - below->position_mm);
+    return vec3_add(below->lps_mm, vec3_scale(vec3_sub(above->lps_mm, below->lps_mm), t));
 }
 
 /* Adds where the plane cuts a polygon of n corners, seen as a fan of its edges: at two of them when it is convex. */
-static bool cut_polygon(const struct vec3 *corner, int n, int axis, double position_mm, struct cut_lines *lines,
+static bool cut_polygon(const struct corner *corners, int n, double position_mm, struct cut_lines *lines,
                         struct error *err)
 {
     struct vec3 found[2];
     int n_found = 0;
     for (int i = 0; i < n && n_found < 2; i++) {
-        struct vec3 a = corner[i], b = corner[(i + 1) % n];
-        bool is_a_above = along(a, axis) >= position_mm, is_b_above = along(b, axis) >= position_mm;
+        const struct corner *a = &corners[i], *b = &corners[(i + 1) % n];
+        bool is_a_above = a->position_mm >= position_mm, is_b_above = b->position_mm >= position_mm;
         if (is_a_above != is_b_above)
-            found[n_found++] = is_a_above ? meet(b, a, axis, position_mm) : meet(a, b, axis, position_mm);
+            found[n_found++] = is_a_above ? meet(b, a, position_mm) : meet(a, b, position_mm);
     }
     return n_found < 2 || add(lines, found[0], found[1], err);
 }
 
-bool cut_mesh(const struct mesh *mesh, const struct cut_plane *plane, struct cut_lines *lines, struct error *err)
+static inline float position_of(const float *p, const float normal[3])
 {
-    int axis = patient_axis(plane);
-    const float position = (float)plane->position_mm;
-    const float *at = mesh->positions_lps_mm + axis;
+    return normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2];
+}
+
+bool cut_mesh(const struct mesh *mesh, const struct plane *plane, struct cut_lines *lines, struct error *err)
+{
+    const float normal[3] = { (float)plane->normal.x, (float)plane->normal.y, (float)plane->normal.z };
+    const float position = (float)plane_position_mm(plane);
     for (size_t t = 0; t < mesh->n_triangles; t++) {
-        const uint32_t *index = &mesh->indices[3 * t];
-        bool above[3] = { at[3 * (size_t)index[0]] >= position, at[3 * (size_t)index[1]] >= position,
-                          at[3 * (size_t)index[2]] >= position };
+        const float *p[3];
+        float at[3];
+        for (size_t i = 0; i < 3; i++) {
+            p[i] = &mesh->positions_lps_mm[3 * (size_t)mesh->indices[3 * t + i]];
+            at[i] = position_of(p[i], normal);
+        }
+        bool above[3] = { at[0] >= position, at[1] >= position, at[2] >= position };
         if (above[0] == above[1] && above[1] == above[2])
             continue;
-        struct vec3 corner[3];
-        for (int i = 0; i < 3; i++) {
-            const float *p = &mesh->positions_lps_mm[3 * (size_t)index[i]];
-            corner[i] = vec3((double)p[0], (double)p[1], (double)p[2]);
-        }
-        if (!cut_polygon(corner, 3, axis, (double)position, lines, err))
+        struct corner corners[3];
+        for (int i = 0; i < 3; i++)
+            corners[i] = (struct corner){ vec3((double)p[i][0], (double)p[i][1], (double)p[i][2]), (double)at[i] };
+        if (!cut_polygon(corners, 3, (double)position, lines, err))
             return false;
     }
     return true;
@@ -335,17 +332,19 @@ void cut_grid_corners(const struct grid *grid, struct vec3 corners_lps_mm[8])
                                                                            corner & 4 ? grid->size[2] - 0.5 : -0.5));
 }
 
-bool cut_grid(const struct grid *grid, const struct cut_plane *plane, struct cut_lines *lines, struct error *err)
+bool cut_grid(const struct grid *grid, const struct plane *plane, struct cut_lines *lines, struct error *err)
 {
     static const int faces[6][4] = { { 0, 2, 6, 4 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 },
                                      { 2, 3, 7, 6 }, { 0, 1, 3, 2 }, { 4, 5, 7, 6 } };
     struct vec3 corners[8];
     cut_grid_corners(grid, corners);
     for (int face = 0; face < 6; face++) {
-        struct vec3 quad[4];
-        for (int i = 0; i < 4; i++)
-            quad[i] = corners[faces[face][i]];
-        if (!cut_polygon(quad, 4, patient_axis(plane), plane->position_mm, lines, err))
+        struct corner quad[4];
+        for (int i = 0; i < 4; i++) {
+            struct vec3 p = corners[faces[face][i]];
+            quad[i] = (struct corner){ p, vec3_dot(p, plane->normal) };
+        }
+        if (!cut_polygon(quad, 4, plane_position_mm(plane), lines, err))
             return false;
     }
     return true;

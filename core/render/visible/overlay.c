@@ -21,7 +21,7 @@ struct entry {
     enum lines_of what;
     enum outline_method method;
     struct shape_key key; /* of a shape */
-    struct cut_plane plane;
+    struct plane plane;
     struct cut_lines lines;
     bool is_open;   /* a shape that encloses nothing */
     bool is_absent; /* the region cannot be shown in this way */
@@ -69,8 +69,7 @@ void overlay_destroy(struct overlay *overlay)
 static bool is_same(const struct entry *a, const struct entry *b)
 {
     return a->plan == b->plan && a->region == b->region && a->what == b->what && a->method == b->method &&
-           shape_key_equal(&a->key, &b->key) && a->plane.kind == b->plane.kind &&
-           !(a->plane.position_mm < b->plane.position_mm) && !(a->plane.position_mm > b->plane.position_mm);
+           shape_key_equal(&a->key, &b->key) && plane_equal(&a->plane, &b->plane);
 }
 
 static bool fill_univels(struct entry *entry, struct error *err)
@@ -163,11 +162,6 @@ static void paint_lines(const struct job *job, const struct cut_lines *lines, do
     paint_flush(job->paint, rgb, 1);
 }
 
-static struct cut_plane pane_plane(const struct snapshot *snapshot)
-{
-    return (struct cut_plane){ snapshot->view.kind, scene_slice_position_mm(&snapshot->scene, snapshot->view.kind) };
-}
-
 static bool paint_outline(const struct job *job, size_t region, struct error *err)
 {
     const struct snapshot *snapshot = job->snapshot;
@@ -175,7 +169,7 @@ static bool paint_outline(const struct job *job, size_t region, struct error *er
     struct entry wanted = { .plan = snapshot->plan,
                             .region = region,
                             .what = LINES_OF_OUTLINE,
-                            .plane = pane_plane(snapshot),
+                            .plane = snapshot->pane,
                             .method = style->method == SCENE_OUTLINE_METHOD_TRACED ? OUTLINE_TRACED
                                                                                    : OUTLINE_MARCHING_SQUARES };
     const struct entry *found = lines_of(job->overlay, snapshot->plan, &wanted, err);
@@ -187,22 +181,19 @@ static bool paint_outline(const struct job *job, size_t region, struct error *er
 static bool paint_check(const struct job *job, size_t region, struct overlay_check *check, struct error *err)
 {
     const struct snapshot *snapshot = job->snapshot;
-    struct entry wanted = { .plan = snapshot->plan,
-                            .region = region,
-                            .what = LINES_OF_SHAPE,
-                            .plane = pane_plane(snapshot),
-                            .key = visible_checked_key(snapshot, region) };
+    struct entry wanted = {
+        .plan = snapshot->plan, .region = region, .what = LINES_OF_SHAPE, .key = visible_checked_key(snapshot, region)
+    };
     const struct grid *grid = &snapshot->plan->regions.layers[snapshot->plan->regions.regions[region].layer]->grid;
     struct vec3 spacing = grid_spacing_mm(grid);
-    wanted.plane.position_mm +=
-        CHECK_NUDGE * fmin(fmin(spacing.x, spacing.y), spacing.z); /* never along faces of voxels */
+    /* never along faces of voxels */
+    wanted.plane = plane_moved(&snapshot->pane, CHECK_NUDGE * fmin(fmin(spacing.x, spacing.y), spacing.z));
     const struct entry *surface = lines_of(job->overlay, snapshot->plan, &wanted, err);
     struct cut_region cut;
     if (!surface || !cut_region_init(&cut, &snapshot->plan->regions, region, err))
         return false;
-    bool is_good =
-        surface->is_open || surface->is_absent ||
-        check_paint(&cut, &surface->lines, job->camera, wanted.plane.position_mm, job->image, job->scale, check, err);
+    bool is_good = surface->is_open || surface->is_absent ||
+                   check_paint(&cut, &surface->lines, job->camera, &wanted.plane, job->image, job->scale, check, err);
     cut_region_finish(&cut);
     struct entry border = { .plan = snapshot->plan, .region = region, .what = LINES_OF_BORDER, .plane = wanted.plane };
     const struct entry *univels = is_good ? lines_of(job->overlay, snapshot->plan, &border, err) : NULL;
@@ -293,13 +284,12 @@ static bool paint_dose_grid(const struct job *job, struct error *err)
     bool is_good = true;
     for (size_t i = 0; is_good && i < dose->n_components; i++) {
         const struct grid *grid = &dose->components[i].values->grid;
-        if (job->snapshot->view.kind == SCENE_KIND_3D) {
+        if (!snapshot_is_pane(job->snapshot)) {
             paint_box(job, grid);
             continue;
         }
         struct cut_lines lines = { 0 };
-        struct cut_plane plane = pane_plane(job->snapshot);
-        is_good = cut_grid(grid, &plane, &lines, err);
+        is_good = cut_grid(grid, &job->snapshot->pane, &lines, err);
         for (size_t l = 0; l < lines.n; l++)
             paint_line(job->paint, project(job, lines.ends_lps_mm[l][0]), project(job, lines.ends_lps_mm[l][1]),
                        fmax(1, 1.5 * job->scale));
@@ -313,8 +303,7 @@ bool overlay_draw(struct overlay *overlay, const struct snapshot *snapshot, cons
                   struct image *image, struct overlay_check *check, struct error *err)
 {
     struct overlay_check unwanted;
-    bool is_pane = snapshot->view.kind != SCENE_KIND_3D;
-    bool has_lines = is_pane && (snapshot->scene.outline.on_slices || snapshot->scene.check.visible);
+    bool has_lines = snapshot_is_pane(snapshot) && (snapshot->scene.outline.on_slices || snapshot->scene.check.visible);
     bool has_grid = snapshot->scene.dose.grid && snapshot->dose >= 0;
     check = check ? check : &unwanted;
     *check = (struct overlay_check){ 0, 0 };

@@ -220,7 +220,7 @@ bool visible_is_checked(const struct snapshot *snapshot, size_t region)
 /* What a region of a picture is made of. */
 static struct plan_want want_of(const struct snapshot *snapshot, size_t region, enum surface_detail detail)
 {
-    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
+    bool is_in_space = !snapshot_is_pane(snapshot);
     struct plan_want want = { region,
                               is_in_space ? visible_shape_key(snapshot, region) : visible_checked_key(snapshot, region),
                               SURFACE_FULL };
@@ -231,7 +231,7 @@ static struct plan_want want_of(const struct snapshot *snapshot, size_t region, 
 
 size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct plan_want *wants)
 {
-    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
+    bool is_in_space = !snapshot_is_pane(snapshot);
     size_t n = 0;
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++)
         if (is_in_space ? is_drawn(snapshot, i) && may_be_seen(snapshot, i) : visible_is_checked(snapshot, i))
@@ -242,7 +242,7 @@ size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail
 size_t visible_missing(const struct snapshot *snapshot, enum surface_detail detail,
                        struct visible_missing missing[VISIBLE_MAX_MISSING])
 {
-    bool is_in_space = snapshot->view.kind == SCENE_KIND_3D;
+    bool is_in_space = !snapshot_is_pane(snapshot);
     size_t n = 0;
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
         if (!(is_in_space ? is_drawn(snapshot, i) : visible_is_checked(snapshot, i)))
@@ -343,7 +343,7 @@ int visible_samples(const struct snapshot *snapshot, const struct camera *camera
     enum { STILL_SAMPLES = 2 };
     if (!is_still)
         return 1;
-    if (snapshot->view.kind == SCENE_KIND_3D || snapshot->image < 0)
+    if (!snapshot_is_pane(snapshot) || snapshot->image < 0)
         return STILL_SAMPLES;
     struct vec3 spacing_mm = grid_spacing_mm(&snapshot->plan->images[snapshot->image].volume->grid);
     double pixels_per_mm = camera->pixels_per_mm * width_px / snapshot->view.size_px[0];
