@@ -181,7 +181,7 @@ enum render_state render_go_on(struct render_picture *picture, const struct rend
             return RENDER_PAUSED;
     }
     int64_t start_us = clock_now_us();
-    struct overlay_check check;
+    struct check_counts check;
     if (!overlay_draw(picture->renderer->overlay, picture->snapshot, &picture->camera, picture->image, &check, err))
         return RENDER_FAILED;
     picture->timing.n_added_px = check.n_added;

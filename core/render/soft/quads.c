@@ -1,7 +1,7 @@
-/* Lines and points as triangles, for bins.c. */
-#include <math.h>
+/* The lines and points of a shape in a chunk, as rectangles square to the picture. */
+#include "core/render/soft/quads.h"
 
-#include "core/render/soft/bins.h"
+#include <math.h>
 
 static uint32_t pack(const float color[3], float light, float opacity)
 {

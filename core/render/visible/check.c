@@ -94,7 +94,7 @@ static void mark(struct image *image, int x, int y, bool is_added, int period)
 }
 
 bool check_paint(const struct cut_region *univels, const struct cut_lines *surface, const struct camera *camera,
-                 const struct plane *plane, struct image *image, double scale, struct overlay_check *check,
+                 const struct plane *plane, struct image *image, double scale, struct check_counts *check,
                  struct error *err)
 {
     struct crossings crossings = { .low_px = { INFINITY, INFINITY }, .high_px = { -INFINITY, -INFINITY } };

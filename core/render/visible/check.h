@@ -1,7 +1,14 @@
 #pragma once
 /* Checking a segmentation on a slice pane: where a region's univels and its surface differ. */
+#include "core/base/image.h"
 #include "core/render/visible/cut.h"
-#include "core/render/visible/overlay.h"
+#include "core/scene/snapshot.h"
+
+/* What the check of a segmentation found on a picture, in pixels of it. */
+struct check_counts {
+    size_t n_added;    /* enclosed by the surface, but no univels of the region */
+    size_t n_left_out; /* univels outside the surface */
+};
 
 /* Everything is asked a little beside the middle of pixels and the position of the plane (in parts of a pixel, of a
  * voxel), so that what lies exactly on the border of a voxel is on the same side of its surface. */
@@ -12,4 +19,4 @@
  * close is left as it is. errors ERROR_MEMORY */
 NODISCARD bool check_paint(const struct cut_region *univels, const struct cut_lines *surface,
                            const struct camera *camera, const struct plane *plane, struct image *image, double scale,
-                           struct overlay_check *check, struct error *err);
+                           struct check_counts *check, struct error *err);

@@ -178,7 +178,7 @@ static bool paint_outline(const struct job *job, size_t region, struct error *er
     return found != NULL;
 }
 
-static bool paint_check(const struct job *job, size_t region, struct overlay_check *check, struct error *err)
+static bool paint_check(const struct job *job, size_t region, struct check_counts *check, struct error *err)
 {
     const struct snapshot *snapshot = job->snapshot;
     struct entry wanted = {
@@ -223,7 +223,7 @@ static int compare_ranks(const void *left, const void *right)
     return a->region < b->region ? -1 : 1;
 }
 
-static bool paint_regions(const struct job *job, struct overlay_check *check, struct error *err)
+static bool paint_regions(const struct job *job, struct check_counts *check, struct error *err)
 {
     const struct snapshot *snapshot = job->snapshot;
     const struct region_set *set = &snapshot->plan->regions;
@@ -300,13 +300,13 @@ static bool paint_dose_grid(const struct job *job, struct error *err)
 }
 
 bool overlay_draw(struct overlay *overlay, const struct snapshot *snapshot, const struct camera *camera,
-                  struct image *image, struct overlay_check *check, struct error *err)
+                  struct image *image, struct check_counts *check, struct error *err)
 {
-    struct overlay_check unwanted;
+    struct check_counts unwanted;
     bool has_lines = snapshot_is_pane(snapshot) && (snapshot->scene.outline.on_slices || snapshot->scene.check.visible);
     bool has_grid = snapshot->scene.dose.grid && snapshot->dose >= 0;
     check = check ? check : &unwanted;
-    *check = (struct overlay_check){ 0, 0 };
+    *check = (struct check_counts){ 0, 0 };
     if (!has_lines && !has_grid)
         return true;
     struct job job = {
