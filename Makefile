@@ -58,7 +58,7 @@ SERVER_LIBS := -lmicrohttpd -lwebsockets -lcjson -lm
 c_files = $(if $(wildcard $(1)),$(sort $(shell find $(wildcard $(1)) -name '*.c')))
 
 # ---- generated from proto/ ------------------------------------------------------------------------------------------
-PROTO := $(wildcard proto/*.json proto/*.md proto/*.yaml proto/gen/*.mjs) core/report/report_codes.h
+PROTO := $(wildcard proto/*.json proto/*.md proto/*.yaml proto/gen/*.mjs) core/report/report_codes.h $(wildcard core/render/gl/shaders/*)
 GEN_STAMP := $(GEN)/.stamp
 $(GEN_STAMP): $(PROTO)
 	$(Q)mkdir -p $(GEN)
@@ -94,7 +94,7 @@ $(B)/obj/%.o: %.c | $(GEN_STAMP)
 	$(if $(Q),@echo "  CC $<")
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_$(subst /,_,$(basename $<))) -c $< -o $@
 
-$(B)/libcore.a: $(call obj,$(CORE_SRC) $(GEN)/scene.c)
+$(B)/libcore.a: $(call obj,$(CORE_SRC) $(GEN)/scene.c $(GEN)/gl_shaders.c)
 $(B)/libwire.a: $(call obj,$(WIRE_SRC) $(GEN_SRC))
 $(B)/libserver.a: $(call obj,$(SERVER_SRC))
 $(B)/lib%.a:

@@ -2,6 +2,7 @@
 //   scene.h scene.c      structs, enums, defaults of scene and view; no JSON, for core
 //   wire_gen.h wire_gen.c  field tables and message structs for server/wire
 //   problem_gen.h problem_gen.c  types of problems
+//   gl_shaders.h gl_shaders.c  the shaders of core/render/gl/shaders
 //   openapi.json openapi.c  the HTTP API, for people and for the daemon to serve
 //   wire.js              the same tables for the page
 //   reference.html       for people
@@ -13,6 +14,7 @@ import { wireHeader, wireSource } from './wire_c.mjs';
 import { wireScript } from './wire_js.mjs';
 import { openapi, openapiSource } from './openapi.mjs';
 import { problemHeader, problemSource } from './problem_c.mjs';
+import { readShaders, shadersHeader, shadersSource } from './shaders_c.mjs';
 import { referencePage } from './reference.mjs';
 import { reportCodes } from './report_codes.mjs';
 
@@ -21,6 +23,7 @@ const read = (name) => JSON.parse(readFileSync(join(proto, name), 'utf8'));
 const scene = read('scene.json');
 const messages = read('messages.json');
 const problems = read('problems.json');
+const shaders = readShaders(join(proto, '../core/render/gl/shaders'));
 const api = openapi(read('http.json'), scene, '1');
 const out = process.argv[2];
 mkdirSync(out, { recursive: true });
@@ -32,6 +35,8 @@ write('wire_gen.h', wireHeader(scene, messages));
 write('wire_gen.c', wireSource(scene, messages));
 write('problem_gen.h', problemHeader(problems));
 write('problem_gen.c', problemSource(problems));
+write('gl_shaders.h', shadersHeader(shaders));
+write('gl_shaders.c', shadersSource(shaders));
 write('wire.js', wireScript(scene, messages));
 write('reference.html', referencePage(scene, messages, problems, reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8'))));
 write('openapi.json', JSON.stringify(api, null, 1));

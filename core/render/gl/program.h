@@ -1,12 +1,14 @@
 #pragma once
-/* The shader programs, compiled once, and the places of their uniforms. */
+/* The shader programs, compiled once, and the locations of their uniforms. A uniform is named in a shader alone. */
 #include "core/render/gl/table.h"
+#include "gl_shaders.h" /* generated from core/render/gl/shaders */
 
 struct gl_program {
     GLuint name;
-    /* places of uniforms; -1 where the program has none of that name */
-    GLint clip_from_lps, eye_from_lps, viewer, color, opacity, is_rim, source, palette, grey, ends, cull, scale, depths,
-        before, n_layers, rank_depth, is_two_sided, rounding, is_baked, is_covering, half_size, half_view, cue, edges;
+    /* locations of uniforms; -1 where the program has none of that name */
+#define UNIFORM_LOCATION(uniform) GLint uniform;
+    GL_UNIFORMS(UNIFORM_LOCATION)
+#undef UNIFORM_LOCATION
 };
 
 struct gl_programs {

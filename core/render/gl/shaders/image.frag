@@ -1,0 +1,14 @@
+// A slice of an image: window and level.
+uniform sampler3D source;
+uniform vec2 grey; // stored value to 0 .. 1
+uniform vec2 ends; // what 0 and 1 are drawn as
+uniform float cull; // in the same scale: what is below is left out
+in vec3 at;
+out vec4 result;
+void main() {
+    float value = texture(source, at).r;
+    if (isnan(value) || isinf(value)) discard;
+    if (value * grey.x + grey.y < cull)
+        discard;
+    result = vec4(vec3(mix(ends.x, ends.y, clamp(value * grey.x + grey.y, 0.0, 1.0))), 1.0);
+}

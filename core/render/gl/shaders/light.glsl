@@ -1,0 +1,16 @@
+// The light on a surface: a key light from the upper right, a weak fill from the left, a soft rim; translucency as
+// proto/scene.json says. core/render/soft/light.h has the same light.
+// n: the normal in eye space (x right, y up, z towards the viewer); facing: its cosine with the line of sight.
+uniform vec4 color;
+uniform float opacity;
+uniform int is_rim;
+vec4 light(vec3 n, float facing) {
+    float edge = 1.0 - facing;
+    float key = max(dot(n, vec3(0.426, 0.568, 0.704)), 0.0);
+    float fill = max(dot(n, vec3(-0.741, 0.106, 0.663)), 0.0);
+    float ambient = opacity < 1.0 ? 0.5 : 0.3; // what shows through black must be brighter to be seen
+    float gloss = key * key; gloss *= gloss; gloss *= gloss; gloss *= gloss;
+    vec3 lit = color.rgb * (ambient + 0.58 * key + 0.18 * fill + 0.24 * edge * edge) + 0.07 * gloss;
+    float alpha = is_rim != 0 ? opacity * (0.3 + 1.82 * pow(edge, 1.8)) : opacity;
+    return vec4(min(lit, 1.0), min(alpha, 1.0));
+}
