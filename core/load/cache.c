@@ -374,7 +374,6 @@ bool plan_cache_read(const char *cache_folder, const struct plan_sources *source
     if (is_read) {
         region_set_measure(&read->regions);
         memcpy(read->id, plan->id, sizeof read->id);
-        read->shapes = plan->shapes;
         *plan = *read;
     } else {
         empty(read);

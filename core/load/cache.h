@@ -2,6 +2,8 @@
 /* A whole opened plan kept in one file, so that opening it again is reading and no decoding. The file is believed only
  * when the plan's folder holds the very files it was made from (name, size, inode, time to the nanosecond), when the
  * same version of the program wrote it and every checksum fits; it is treated as anybody's bytes all the same. */
+#include <stdatomic.h>
+
 #include "core/formats/folder.h"
 #include "core/plan/plan.h"
 

@@ -1,6 +1,7 @@
 #include "core/load/cache_fields.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 

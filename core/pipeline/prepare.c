@@ -43,14 +43,15 @@ static bool go_on(void *context)
 void preparation_build(struct preparation *preparation, const atomic_bool *cancel)
 {
     struct building building = { preparation, cancel, false };
-    plan_build_shapes(preparation->request.snapshot->plan, preparation->wants, preparation->n_wants, go_on, &building);
+    derive_build_shapes(preparation->request.snapshot->derived, preparation->wants, preparation->n_wants, go_on,
+                        &building);
     preparation->is_built = !building.has_stopped;
 }
 
 /* ---- what was built --------------------------------------------------------------------------------------------- */
 
 struct prepared {
-    struct plan_want wants[MAX_PREPARED];
+    struct shape_want wants[MAX_PREPARED];
     size_t n;
 };
 
@@ -64,11 +65,12 @@ void prepared_destroy(struct prepared *prepared)
     free(prepared);
 }
 
-static bool has(const struct prepared *prepared, const struct plan_want *want)
+static bool has(const struct prepared *prepared, const struct shape_want *want)
 {
     for (size_t i = prepared->n; i-- > 0;) { /* the newest first */
-        const struct plan_want *one = &prepared->wants[i];
-        if (one->region == want->region && one->detail == want->detail && shape_key_equal(&one->key, &want->key))
+        const struct shape_want *one = &prepared->wants[i];
+        if (subject_equal(one->subject, want->subject) && one->detail == want->detail &&
+            shape_key_equal(&one->key, &want->key))
             return true;
     }
     return false;

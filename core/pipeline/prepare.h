@@ -11,7 +11,7 @@ struct preparation {
     struct pipeline_request request; /* with its snapshot */
     const _Atomic uint64_t *wanted;  /* holds the request's id while the picture is wanted; NULL: it always is */
     bool is_built;                   /* all of it was built, or tried */
-    struct plan_want *wants;
+    struct shape_want *wants;
     size_t n_wants;
 };
 /* Takes request->snapshot. */

@@ -4,13 +4,11 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
-#include "core/plan/plan_shapes.h"
 
 struct plan *plan_create(const char *id)
 {
     struct plan *plan = mem_new(sizeof *plan);
     snprintf(plan->id, sizeof plan->id, "%s", id);
-    plan->shapes = plan_shapes_create(PLAN_SHAPE_BUDGET_BYTES);
     return plan;
 }
 
@@ -18,7 +16,6 @@ void plan_destroy(struct plan *plan)
 {
     if (!plan)
         return;
-    plan_shapes_destroy(plan->shapes);
     for (size_t i = 0; i < plan->n_images; i++)
         volume_unref(plan->images[i].volume);
     region_set_finish(&plan->regions);

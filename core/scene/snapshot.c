@@ -1,6 +1,7 @@
 #include "core/scene/snapshot.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,13 +103,16 @@ static bool find_things(struct snapshot *snapshot, char field[128], struct error
     return true;
 }
 
-struct snapshot *snapshot_create(struct plan *plan, struct scene *scene, struct view *view, uint32_t scene_revision,
-                                 char field[128], struct error *err)
+struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, struct view *view,
+                                 uint32_t scene_revision, char field[128], struct error *err)
 {
     struct snapshot *snapshot = mem_new(sizeof *snapshot);
-    *snapshot = (struct snapshot){
-        .plan = plan, .scene = *scene, .view = *view, .scene_revision = scene_revision, .references = 1
-    };
+    *snapshot = (struct snapshot){ .plan = derive_plan(derived),
+                                   .derived = derived,
+                                   .scene = *scene,
+                                   .view = *view,
+                                   .scene_revision = scene_revision,
+                                   .references = 1 };
     *scene = scene_default;
     *view = view_default;
     field[0] = 0;

@@ -1,14 +1,16 @@
 #pragma once
 /* What is asked to be seen, frozen: a plan, a scene and a view. A picture is a pure function of it. No JSON, no GL. */
+#include "core/derive/derive.h"
 #include "core/math/vec.h"
 #include "core/plan/plan.h"
 #include "core/scene/plane.h"
 #include "scene.h" /* generated from proto/scene.json */
 
 struct snapshot {
-    struct plan *plan;  /* borrowed; outlives every snapshot (its surfaces are built on demand, hence not const) */
-    struct scene scene; /* owned */
-    struct view view;   /* owned */
+    const struct plan *plan; /* borrowed; outlives every snapshot */
+    struct derive *derived;  /* borrowed, of the plan: what is computed from it on demand; outlives every snapshot */
+    struct scene scene;      /* owned */
+    struct view view;        /* owned */
     uint32_t scene_revision;
     struct scene_region_style *styles;     /* owned; by region index of the plan */
     int image;                             /* index of the image shown, or -1 when the plan has none */
@@ -19,10 +21,11 @@ struct snapshot {
     _Atomic int references;
 };
 
-/* Takes scene and view, on failure too (their structs are emptied). Checks them against the plan: every region id
- * known, the image's and the dose's known (or empty), a camera that can be used (position != target, up not along the
- * line of sight). errors ERROR_NOT_FOUND, ERROR_RANGE; field names the place as a JSON pointer, "/regions/foo" */
-NODISCARD struct snapshot *snapshot_create(struct plan *plan, struct scene *scene, struct view *view,
+/* A snapshot of the plan that derived is of. Takes scene and view, on failure too (their structs are emptied). Checks
+ * them against the plan: every region id known, the image's and the dose's known (or empty), a camera that can be used
+ * (position != target, up not along the line of sight). errors ERROR_NOT_FOUND, ERROR_RANGE; field names the place as a
+ * JSON pointer, "/regions/foo" */
+NODISCARD struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, struct view *view,
                                            uint32_t scene_revision, char field[128], struct error *err);
 struct snapshot *snapshot_ref(const struct snapshot *snapshot);
 void snapshot_unref(const struct snapshot *snapshot);

@@ -108,9 +108,11 @@ int command_bench(int argc, char **argv)
     bool is_measured = true;
     for (int i = 0; is_measured && i < job.n_folders; i++) {
         struct plan *plan = command_open_plan("bench", job.folders[i]);
-        is_measured = plan && bench_measure(plan, renderer, job.n_repeats, &plans[i], &err);
+        struct derive *derived = plan ? derive_create(plan) : NULL;
+        is_measured = plan && bench_measure(derived, renderer, job.n_repeats, &plans[i], &err);
         if (plan)
             renderer_forget(renderer, plan);
+        derive_destroy(derived);
         plan_destroy(plan);
     }
     if (is_measured)

@@ -116,22 +116,22 @@ static void set_scene(const struct plan *plan, int region, const struct shape_ke
 }
 
 /* Takes the scene. The picture from a camera turned by so many degrees around the patient's long axis. */
-static struct snapshot *turned(struct plan *plan, struct scene *scene, double turn_deg, struct error *err)
+static struct snapshot *turned(struct derive *derived, struct scene *scene, double turn_deg, struct error *err)
 {
     struct view view = view_default;
     struct scene_camera home;
     char field[128];
-    camera_home(plan, SCENE_KIND_3D, &home);
+    camera_home(derive_plan(derived), SCENE_KIND_3D, &home);
     struct vec3 arm = vec3_sub(home.position_mm, home.target_mm);
     double c = cos(turn_deg * M_PI / 180), s = sin(turn_deg * M_PI / 180);
     view.size_px[0] = view.size_px[1] = BENCH_SIZE_PX;
     view.camera = home;
     view.camera.position_mm = vec3_add(home.target_mm, vec3(c * arm.x - s * arm.y, s * arm.x + c * arm.y, arm.z));
-    return snapshot_create(plan, scene, &view, 0, field, err);
+    return snapshot_create(derived, scene, &view, 0, field, err);
 }
 
 /* Median of n pictures, each 7 degrees further; the first, which uploads, is not counted. */
-static bool time_pictures(struct plan *plan, struct renderer *renderer, int region, const struct shape_key *key,
+static bool time_pictures(struct derive *derived, struct renderer *renderer, int region, const struct shape_key *key,
                           bool is_faceted, bool has_slice, int n, double *median_ms, struct error *err)
 {
     double samples[MAX_SAMPLES];
@@ -140,10 +140,10 @@ static bool time_pictures(struct plan *plan, struct renderer *renderer, int regi
         struct scene scene;
         struct camera camera;
         struct render_timing timing;
-        set_scene(plan, region, key, &scene);
+        set_scene(derive_plan(derived), region, key, &scene);
         scene.surface.normals = is_faceted ? SCENE_NORMALS_FACE : SCENE_NORMALS_VERTEX;
         scene.image.slices.axial.visible = has_slice;
-        struct snapshot *snapshot = turned(plan, &scene, 7 * i, err);
+        struct snapshot *snapshot = turned(derived, &scene, 7 * i, err);
         struct image *image = snapshot ? render_snapshot(renderer, snapshot, &options, &camera, &timing, err) : NULL;
         snapshot_unref(snapshot);
         if (!image)
@@ -159,40 +159,42 @@ static bool time_pictures(struct plan *plan, struct renderer *renderer, int regi
 /* ---- shapes ----------------------------------------------------------------------------------------------------- */
 
 /* From the region's univels to the shape, each time anew. A shape that cannot be made is a row with the reason. */
-static bool measure(struct plan *plan, struct renderer *renderer, size_t region, const struct method *method,
+static bool measure(struct derive *derived, struct renderer *renderer, size_t region, const struct method *method,
                     int n_repeats, struct bench_row *row, struct error *err)
 {
     double samples[MAX_SAMPLES];
+    const struct plan *plan = derive_plan(derived);
+    const struct shape_want want = { subject_region(region), method->key, SURFACE_FULL };
     *row = (struct bench_row){ .method = method->name, .draw_ms = NAN, .made_ms = NAN };
     (void)snprintf(row->region, sizeof row->region, "%s", plan->regions.regions[region].name);
-    plan_set_shape_budget(plan, 0); /* nothing is kept, so each is made anew */
+    derive_set_budget(derived, 0); /* nothing is kept, so each is made anew */
     for (int i = 0; i < n_repeats; i++) {
         struct error refusal = { 0 };
-        struct shape *shape = plan_shape(plan, region, &method->key, SURFACE_FULL, &row->facts, &refusal);
+        struct shape *shape = derive_shape(derived, &want, &row->facts, &refusal);
         if (!shape) {
             (void)snprintf(row->refusal, sizeof row->refusal, "%s", refusal.text);
-            plan_set_shape_budget(plan, PLAN_SHAPE_BUDGET_BYTES);
+            derive_set_budget(derived, DERIVE_BUDGET_BYTES);
             return true;
         }
         samples[i] = row->facts.build_ms;
-        bool is_measured =
-            i + 1 < n_repeats || plan_shape_distance(plan, region, &method->key, shape, &row->facts, err);
+        bool is_measured = i + 1 < n_repeats || derive_shape_distance(derived, &want, shape, &row->facts, err);
         shape_unref(shape);
         if (!is_measured)
             return false;
     }
-    plan_set_shape_budget(plan, PLAN_SHAPE_BUDGET_BYTES);
+    derive_set_budget(derived, DERIVE_BUDGET_BYTES);
     row->made_ms = median(samples, (size_t)n_repeats);
     bool is_drawn =
-        time_pictures(plan, renderer, (int)region, &method->key, false, false, 5 * n_repeats, &row->draw_ms, err);
+        time_pictures(derived, renderer, (int)region, &method->key, false, false, 5 * n_repeats, &row->draw_ms, err);
     renderer_forget(renderer, plan);
     return is_drawn;
 }
 
 /* Region to triangles with the normals that the row of the table needs. */
-static bool measure_table1(struct plan *plan, struct renderer *renderer, size_t region, int n_repeats,
+static bool measure_table1(struct derive *derived, struct renderer *renderer, size_t region, int n_repeats,
                            struct bench_row rows[3], struct error *err)
 {
+    const struct plan *plan = derive_plan(derived);
     for (int i = 0; i < 3; i++) {
         struct bench_row *row = &rows[i];
         const struct shape_key key = { .representation = REPRESENTATION_SURFACE,
@@ -212,16 +214,17 @@ static bool measure_table1(struct plan *plan, struct renderer *renderer, size_t 
                 return false;
         }
         row->made_ms = median(samples, (size_t)n_repeats);
-        if (!time_pictures(plan, renderer, (int)region, &key, i == 0, false, 5 * n_repeats, &row->draw_ms, err))
+        if (!time_pictures(derived, renderer, (int)region, &key, i == 0, false, 5 * n_repeats, &row->draw_ms, err))
             return false;
     }
     renderer_forget(renderer, plan);
     return true;
 }
 
-bool bench_measure(struct plan *plan, struct renderer *renderer, int n_repeats, struct bench_plan *result,
+bool bench_measure(struct derive *derived, struct renderer *renderer, int n_repeats, struct bench_plan *result,
                    struct error *err)
 {
+    const struct plan *plan = derive_plan(derived);
     size_t largest = SIZE_MAX, n_regions = plan->regions.n_regions;
     *result = (struct bench_plan){ .is_phantom = plan->is_phantom, .slice_fps = NAN };
     (void)snprintf(result->name, sizeof result->name, "%s", plan->name);
@@ -235,18 +238,18 @@ bool bench_measure(struct plan *plan, struct renderer *renderer, int n_repeats, 
             (!has_scalp && plan->regions.regions[r].n_voxels > plan->regions.regions[largest].n_voxels))
             largest = r; /* the thesis's region, where the plan has it */
         for (size_t m = 0; m < N_METHODS; m++)
-            if (!measure(plan, renderer, r, &methods[m], n_repeats, &result->rows[result->n_rows++], err))
+            if (!measure(derived, renderer, r, &methods[m], n_repeats, &result->rows[result->n_rows++], err))
                 return false;
     }
     if (largest == SIZE_MAX)
         return error_set(err, ERROR_RANGE, "the plan \"%s\" has no region with a voxel", plan->name);
     (void)snprintf(result->scalp, sizeof result->scalp, "%s", plan->regions.regions[largest].name);
-    if (!measure_table1(plan, renderer, largest, n_repeats, result->table1, err))
+    if (!measure_table1(derived, renderer, largest, n_repeats, result->table1, err))
         return false;
     double slice_ms;
     if (plan->n_images == 0)
         return true;
-    if (!time_pictures(plan, renderer, -1, NULL, false, true, 5 * n_repeats, &slice_ms, err))
+    if (!time_pictures(derived, renderer, -1, NULL, false, true, 5 * n_repeats, &slice_ms, err))
         return false;
     result->slice_fps = 1000 / slice_ms;
     return true;

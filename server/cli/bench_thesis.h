@@ -1,7 +1,7 @@
 #pragma once
 /* Every way of showing every region of a plan, measured, and set beside what the thesis on Sera3d measured. */
+#include "core/derive/shapes.h"
 #include "core/render/render.h"
-#include "core/surface/shape.h"
 
 enum { BENCH_MAX_METHODS = 24, BENCH_SIZE_PX = 650 }; /* Sera3d's window */
 
@@ -32,9 +32,9 @@ struct bench_machine {
 };
 void bench_machine_look(struct bench_machine *machine, const struct render_facts *facts);
 
-/* Measures one plan. n_repeats builds and 5 n_repeats pictures of each. errors those of rendering */
-NODISCARD bool bench_measure(struct plan *plan, struct renderer *renderer, int n_repeats, struct bench_plan *result,
-                             struct error *err);
+/* Measures the plan that derived is of. n_repeats builds and 5 n_repeats pictures of each. errors those of rendering */
+NODISCARD bool bench_measure(struct derive *derived, struct renderer *renderer, int n_repeats,
+                             struct bench_plan *result, struct error *err);
 void bench_plan_finish(struct bench_plan *result);
 
 /* The page as Markdown, to free(). */

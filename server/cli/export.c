@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "core/base/file_write.h"
+#include "core/derive/shapes.h"
 #include "server/cli/command.h"
 #include "server/cli/text.h"
 #include "server/wire/shape_query.h"
@@ -52,15 +53,17 @@ static const struct region *find_region(const struct plan *plan, const char *id,
     return NULL;
 }
 
-static bool export_region(struct plan *plan, const struct export_job *job, struct error *err)
+static bool export_region(const struct plan *plan, const struct export_job *job, struct error *err)
 {
     const struct region *region = find_region(plan, job->region, err);
     if (!region)
         return false;
     struct surface_facts facts;
     const struct shape_query *query = &job->shape;
-    struct shape *shape =
-        plan_shape(plan, (size_t)(region - plan->regions.regions), &query->key, SURFACE_FULL, &facts, err);
+    const struct shape_want want = { subject_region((size_t)(region - plan->regions.regions)), query->key,
+                                     SURFACE_FULL };
+    struct derive *derived = derive_create(plan);
+    struct shape *shape = derive_shape(derived, &want, &facts, err);
     const char *method = query->key.representation == REPRESENTATION_SURFACE
                              ? surface_algorithm_word(query->key.algorithm)
                              : region_representation_word(query->key.representation);
@@ -73,6 +76,7 @@ static bool export_region(struct plan *plan, const struct export_job *job, struc
     size_t n_bytes = 0;
     uint8_t *bytes = shape ? mesh_export(shape->mesh, query->format, &about, FILE_MAX_BYTES, &n_bytes, err) : NULL;
     shape_unref(shape);
+    derive_destroy(derived);
     bool is_written = bytes && file_write(job->out, bytes, n_bytes, err);
     free(bytes);
     if (is_written) {

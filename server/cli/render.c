@@ -118,8 +118,9 @@ static cJSON *make_view(const char *path, const int size_px[2], struct error *er
 }
 
 /* Scene and view of the job as a snapshot. NULL with err. */
-static struct snapshot *make_snapshot(struct plan *plan, const struct render_job *job, struct error *err)
+static struct snapshot *make_snapshot(struct derive *derived, const struct render_job *job, struct error *err)
 {
+    const struct plan *plan = derive_plan(derived);
     struct scene scene = { 0 };
     struct view view = { 0 };
     struct problem problem = { 0 };
@@ -146,7 +147,7 @@ static struct snapshot *make_snapshot(struct plan *plan, const struct render_job
         refuse_problem("view", &problem, err);
         goto done;
     }
-    snapshot = snapshot_create(plan, &scene, &view, 0, field, err);
+    snapshot = snapshot_create(derived, &scene, &view, 0, field, err);
     if (!snapshot && *field)
         error_prefix(err, "%s", field);
 done:
@@ -185,9 +186,9 @@ static void print_missing(const struct snapshot *snapshot)
         fprintf(stderr, "beamroom render: not in the picture: %zu more regions\n", n - VISIBLE_MAX_MISSING);
 }
 
-static bool draw(struct plan *plan, const struct render_job *job, struct error *err)
+static bool draw(struct derive *derived, const struct render_job *job, struct error *err)
 {
-    struct snapshot *snapshot = make_snapshot(plan, job, err);
+    struct snapshot *snapshot = make_snapshot(derived, job, err);
     if (!snapshot)
         return false;
     bool is_drawn = false;
@@ -209,7 +210,7 @@ static bool draw(struct plan *plan, const struct render_job *job, struct error *
         }
         if (is_drawn)
             print_missing(snapshot);
-        renderer_forget(renderer, plan);
+        renderer_forget(renderer, derive_plan(derived));
     }
     image_destroy(image);
     renderer_destroy(renderer);
@@ -312,7 +313,9 @@ int command_render(int argc, char **argv)
     struct plan *plan = command_open_plan("render", job.folder);
     if (!plan)
         return EXIT_REFUSED;
-    code = draw(plan, &job, &err) ? EXIT_DONE : command_refused("render", &err);
+    struct derive *derived = derive_create(plan);
+    code = draw(derived, &job, &err) ? EXIT_DONE : command_refused("render", &err);
+    derive_destroy(derived);
     plan_destroy(plan);
     return code;
 }

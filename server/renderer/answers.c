@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "core/derive/shapes.h"
 #include "server/wire/document.h"
 #include "server/wire/packet.h"
 #include "wire_gen.h"
@@ -16,18 +17,18 @@ static void add_number(cJSON *json, const char *name, double value)
     cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
 }
 
-static uint8_t *shape_file(const struct plan *plan, size_t region, const struct shape_query *query,
+static uint8_t *shape_file(const struct plan *plan, struct subject subject, const struct shape_query *query,
                            const struct shape *shape, size_t *n_bytes, struct error *err)
 {
-    const struct region *what = &plan->regions.regions[region];
+    const struct region *region = &plan->regions.regions[subject.index];
     bool is_surface = query->key.representation == REPRESENTATION_SURFACE;
     const struct mesh_export_about about = { plan->id,
-                                             what->id,
+                                             region->id,
                                              is_surface ? surface_algorithm_word(query->key.algorithm)
                                                         : region_representation_word(query->key.representation),
                                              plan->is_phantom,
                                              query->is_faceted || shape->is_faceted,
-                                             { what->rgb[0], what->rgb[1], what->rgb[2] } };
+                                             { region->rgb[0], region->rgb[1], region->rgb[2] } };
     return mesh_export(shape->mesh, query->format, &about, PACKET_MAX_BLOB, n_bytes, err);
 }
 
@@ -50,25 +51,27 @@ static void add_key(cJSON *json, const struct shape_query *query)
     }
 }
 
-cJSON *answer_shape(struct plan *plan, size_t region, const struct shape_query *query, uint8_t **file, size_t *n_file,
-                    struct problem *problem)
+cJSON *answer_shape(struct derive *derived, struct subject subject, const struct shape_query *query, uint8_t **file,
+                    size_t *n_file, struct problem *problem)
 {
     struct error err = { 0 };
     struct surface_facts facts;
+    const struct plan *plan = derive_plan(derived);
+    const struct shape_want want = { subject, query->key, SURFACE_FULL };
     *file = NULL;
-    struct shape *shape = plan_shape(plan, region, &query->key, SURFACE_FULL, &facts, &err);
+    struct shape *shape = derive_shape(derived, &want, &facts, &err);
     bool is_good = shape != NULL, has_mesh = shape && shape->kind == SHAPE_TRIANGLES;
     if (shape && query->is_file)
-        is_good = (*file = shape_file(plan, region, query, shape, n_file, &err)) != NULL;
+        is_good = (*file = shape_file(plan, subject, query, shape, n_file, &err)) != NULL;
     else if (shape)
-        is_good = plan_shape_distance(plan, region, &query->key, shape, &facts, &err);
+        is_good = derive_shape_distance(derived, &want, shape, &facts, &err);
     shape_unref(shape);
     if (!is_good) {
         problem_from_error(problem, &err);
         return NULL;
     }
     cJSON *json = cJSON_CreateObject();
-    cJSON_AddStringToObject(json, "region", plan->regions.regions[region].id);
+    cJSON_AddStringToObject(json, "region", subject_id(plan, subject));
     add_key(json, query);
     add_number(json, "triangles", (double)facts.n_triangles);
     add_number(json, "vertices", (double)facts.n_vertices);

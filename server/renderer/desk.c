@@ -19,6 +19,7 @@ void note_destroy(struct note *note)
 {
     if (!note)
         return;
+    derive_destroy(note->derived);
     plan_destroy(note->plan);
     free(note->frame.picture.bytes);
     cJSON_Delete(note->body);

@@ -14,7 +14,8 @@ struct note {
     struct error error;        /* gl, failed */
     char phase[200];           /* progress */
     double percent;
-    struct plan *plan; /* loaded: the receiver's to destroy */
+    struct plan *plan;      /* loaded: the receiver's to destroy, after derived */
+    struct derive *derived; /* loaded: the plan's store, the receiver's to destroy */
     struct pipeline_frame frame;
     uint64_t id;   /* answer */
     cJSON *body;   /* answer: the receiver's; NULL: problem says why */

@@ -9,6 +9,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
+#include "core/derive/shapes.h"
 #include "core/load/load.h"
 #include "core/render/visible/visible.h"
 #include "server/renderer/answers.h"
@@ -29,7 +30,8 @@ struct loader {
     pthread_t load_thread, quick_thread, prepare_thread;
     struct queue *slow, *quick; /* questions: surfaces, on the load thread; points, on their own */
     struct queue *preparations; /* pictures that wait for shapes, on a thread of their own */
-    struct plan *plan;          /* the load thread's; the quick one gets it with its first question */
+    const struct plan *plan;    /* the load thread's; the quick one gets it with its first question */
+    struct derive *derived;     /* of the plan */
     int64_t told_us;
 };
 
@@ -56,14 +58,15 @@ static void step(void *context, const char *phase, double percent)
     tell(context, phase, percent * 0.9); /* the rest is for surfaces */
 }
 
-static void answer(struct loader *loader, struct plan *plan, struct question *question)
+static void answer(struct loader *loader, struct question *question)
 {
     struct note note = { .type = NOTE_ANSWER, .id = question->id };
     switch (question->what) {
     case QUESTION_SURFACE:
-        note.body = answer_shape(plan, question->region, &question->shape, &note.blob, &note.n_blob, &note.problem);
+        note.body =
+            answer_shape(loader->derived, question->subject, &question->shape, &note.blob, &note.n_blob, &note.problem);
         break;
-    case QUESTION_PROBE: note.body = answer_probe(plan, question->point_lps_mm); break;
+    case QUESTION_PROBE: note.body = answer_probe(loader->plan, question->point_lps_mm); break;
     case QUESTION_PICK: note.body = answer_pick(question->snapshot, question->px, question->py); break;
     }
     desk_put(loader->desk, &note);
@@ -72,7 +75,7 @@ static void answer(struct loader *loader, struct plan *plan, struct question *qu
 
 /* What a new room shows: its regions, in file order, and by which algorithm. Other shapes are built when they are asked
  * for. */
-static size_t visible_regions(const struct plan *plan, size_t *regions, enum surface_algorithm *algorithm)
+static size_t visible_regions(const struct plan *plan, struct subject *subjects, enum surface_algorithm *algorithm)
 {
     struct scene scene;
     size_t n = 0;
@@ -82,7 +85,7 @@ static size_t visible_regions(const struct plan *plan, size_t *regions, enum sur
         const struct scene_region_style *style = &scene.regions[i].value;
         if (region && region->n_voxels > 0 && style->visible && style->opacity > 0 &&
             style->representation == SCENE_REPRESENTATION_SURFACE)
-            regions[n++] = (size_t)(region - plan->regions.regions);
+            subjects[n++] = subject_region((size_t)(region - plan->regions.regions));
     }
     *algorithm = visible_surface_key(&(struct snapshot){ .scene = scene }).algorithm;
     scene_finish(&scene);
@@ -106,7 +109,7 @@ static bool look_around(void *context)
         building->is_told = true;
     }
     for (struct question *question; building->is_told && (question = queue_try_take(loader->slow));)
-        answer(loader, loader->plan, question);
+        answer(loader, question);
     if (!building->is_told)
         tell(loader, "building surfaces", 90 + 10.0 * (double)building->n_begun++ / (double)building->n);
     return !atomic_load(&loader->cancel);
@@ -115,16 +118,15 @@ static bool look_around(void *context)
 /* Light surfaces first: they are what a picture that moves needs. */
 static void build_ahead(struct loader *loader)
 {
-    struct plan *plan = loader->plan;
-    size_t *regions = mem_new((plan->regions.n_regions + 1) * sizeof *regions);
+    struct subject *subjects = mem_new((loader->plan->regions.n_regions + 1) * sizeof *subjects);
     enum surface_algorithm algorithm;
-    size_t n = visible_regions(plan, regions, &algorithm);
+    size_t n = visible_regions(loader->plan, subjects, &algorithm);
     struct building building = { loader, clock_now_us(), 2 * n + 1, 0, false };
-    plan_build_surfaces(plan, regions, n, algorithm, SURFACE_LIGHT, look_around, &building);
-    plan_build_surfaces(plan, regions, n, algorithm, SURFACE_FULL, look_around, &building);
+    derive_build_surfaces(loader->derived, subjects, n, algorithm, SURFACE_LIGHT, look_around, &building);
+    derive_build_surfaces(loader->derived, subjects, n, algorithm, SURFACE_FULL, look_around, &building);
     if (!building.is_told)
         desk_put(loader->desk, &(struct note){ .type = NOTE_BUILT });
-    free(regions);
+    free(subjects);
 }
 
 /* A plan that took its time is kept for the next opening; without that it is read again. */
@@ -147,10 +149,11 @@ static void *load_main(void *argument)
                                          .cache_folder = loader->cache_folder,
                                          .sources = &sources };
     struct plan *plan = plan_load(loader->folder, loader->plan_id, &options, &note.error);
-    note.plan = plan;
-    if (!plan)
+    loader->plan = note.plan = plan;
+    if (plan)
+        loader->derived = note.derived = derive_create(plan);
+    else
         note.type = NOTE_FAILED;
-    loader->plan = plan;
     desk_put(loader->desk, &note);
     if (plan) {
         build_ahead(loader);
@@ -163,7 +166,7 @@ static void *load_main(void *argument)
         if (atomic_load(&loader->cancel))
             question_drop(question);
         else
-            answer(loader, plan, question);
+            answer(loader, question);
     }
     return NULL;
 }
@@ -175,7 +178,7 @@ static void *quick_main(void *argument)
         if (atomic_load(&loader->cancel))
             question_drop(question);
         else
-            answer(loader, loader->plan, question); /* set before LOADED was said, and questions come after that */
+            answer(loader, question); /* set before LOADED was said, and questions come after that */
     }
     return NULL;
 }

@@ -8,7 +8,7 @@ struct loader;
 struct question {
     enum { QUESTION_SURFACE, QUESTION_PROBE, QUESTION_PICK } what;
     uint64_t id;
-    size_t region;            /* surface */
+    struct subject subject;   /* surface: the region */
     struct shape_query shape; /* surface */
     struct vec3 point_lps_mm;
     struct snapshot *snapshot; /* pick: one reference, taken */

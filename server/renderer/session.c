@@ -136,7 +136,7 @@ static bool read_question(struct session *session, uint64_t id, const cJSON *jso
             problem_set(&problem, PROBLEM_NOT_FOUND, "/region", "", "the plan has no region \"%.64s\"",
                         name ? name : "");
         else if (shape_query_read(json, &question->shape, &problem)) {
-            question->region = (size_t)(region - session->plan->regions.regions);
+            question->subject = subject_region((size_t)(region - session->plan->regions.regions));
             return true;
         }
     } else if (what && strcmp(what, "probe") == 0) {
@@ -251,7 +251,9 @@ static void take_loaded(struct session *session, struct note *note)
 {
     struct scene scene;
     session->plan = note->plan;
+    session->derived = note->derived;
     note->plan = NULL;
+    note->derived = NULL;
     scene_for_plan(session->plan, &scene);
     session->default_scene = scene_write(&scene);
     scene_finish(&scene);
@@ -355,6 +357,7 @@ int session_run(const struct session_options *options)
     desk_destroy(session.desk);
     pictures_end(&session);
     cJSON_Delete(session.default_scene);
+    derive_destroy(session.derived);
     plan_destroy(session.plan);
     link_destroy(session.link);
     return session.status < 0 ? SESSION_BROKEN : session.status;

@@ -29,6 +29,7 @@ struct session {
     struct loader *loader;
     struct pipeline *pipeline;
     struct plan *plan;
+    struct derive *derived; /* of the plan */
     struct room_scene *rooms;
     size_t n_rooms, room_capacity; /* at most SCENE_MAX_ROOMS */
     cJSON *default_scene;

@@ -108,7 +108,7 @@ struct snapshot *pictures_read_snapshot(struct session *session, uint64_t id, co
     }
     char field[128] = "";
     struct error err = { 0 };
-    struct snapshot *snapshot = snapshot_create(session->plan, &scene, &view, *revision, field, &err);
+    struct snapshot *snapshot = snapshot_create(session->derived, &scene, &view, *revision, field, &err);
     if (!snapshot) {
         problem_from_error(&problem, &err);
         if (problem.type == PROBLEM_NOT_FOUND)
@@ -249,7 +249,7 @@ void pictures_warm_up(struct session *session)
     view.size_px[0] = view.size_px[1] = WARM_UP_PX;
     struct pipeline_request request = {
         .id = WARM_UP_ID,
-        .snapshot = snapshot_create(session->plan, &scene, &view, 0, field, &err),
+        .snapshot = snapshot_create(session->derived, &scene, &view, 0, field, &err),
         .render = { WARM_UP_PX, WARM_UP_PX, SURFACE_LIGHT, false },
         .encode = { ENCODE_JPEG, 50, false },
     };
@@ -263,7 +263,6 @@ void pictures_warm_up(struct session *session)
 static cJSON *missing_of(const struct drawing *drawing)
 {
     struct visible_missing missing[VISIBLE_MAX_MISSING];
-    const struct region *regions = drawing->snapshot->plan->regions.regions;
     size_t n = visible_missing(drawing->snapshot, drawing->detail, missing);
     if (n == 0)
         return NULL;
@@ -271,7 +270,7 @@ static cJSON *missing_of(const struct drawing *drawing)
     cJSON_AddNumberToObject(json, "n", (double)n);
     for (size_t i = 0; i < n && i < VISIBLE_MAX_MISSING; i++) {
         cJSON *region = cJSON_CreateObject();
-        cJSON_AddStringToObject(region, "region", regions[missing[i].region].id);
+        cJSON_AddStringToObject(region, "region", subject_id(drawing->snapshot->plan, missing[i].subject));
         cJSON_AddStringToObject(region, "reason", missing[i].why.text);
         cJSON_AddItemToArray(list, region);
     }

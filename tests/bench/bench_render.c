@@ -14,6 +14,7 @@ enum { REPEATS = 15, WIDTH = 1024, HEIGHT = 768 };
 
 static struct renderer *soft, *gl; /* gl: NULL where there is none */
 static struct plan *plan;
+static struct derive *derived;
 
 static int compare(const void *a, const void *b)
 {
@@ -51,7 +52,7 @@ static struct image *draw(struct renderer *renderer, enum scene_kind kind, int s
             vec3_add(view.camera.target_mm, vec3_scale(vec3_normalize(vec3(sin(turn), -cos(turn), 0.25)), distance));
     } else
         scene.image.slices.axial.position_mm += step;
-    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
+    struct snapshot *snapshot = snapshot_create(derived, &scene, &view, 1, field, &err);
     struct render_options options = { (int)(WIDTH * scale), (int)(HEIGHT * scale), detail, is_still };
     struct camera camera;
     struct image *image = snapshot ? render_snapshot(renderer, snapshot, &options, &camera, timing, &err) : NULL;
@@ -133,6 +134,7 @@ int main(void)
     struct error err = { 0 };
     snprintf(folder, sizeof folder, "%s/phantom", plans);
     plan = plan_load(folder, "phantom", NULL, &err);
+    derived = plan ? derive_create(plan) : NULL;
     if (!plan)
         stop(&err);
     soft = start(RENDER_SOFT);
@@ -154,6 +156,7 @@ int main(void)
     if (gl)
         renderer_forget(gl, plan);
     renderer_destroy(gl);
+    derive_destroy(derived);
     plan_destroy(plan);
     return 0;
 }

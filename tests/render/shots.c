@@ -74,7 +74,7 @@ struct image *shots_take(struct plan *plan, struct scene scene, struct view view
     struct camera camera;
     struct render_timing own_timing;
     char field[128];
-    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
+    struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
     assert_string_equal(err.text, "");
     struct image *image =
         render_snapshot(shots_renderer, snapshot, options, &camera, timing ? timing : &own_timing, &err);
@@ -93,7 +93,7 @@ struct image *shots_plain(struct plan *plan, struct scene scene, struct view vie
 void shots_forget(struct plan *plan)
 {
     renderer_forget(shots_renderer, plan);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 const uint8_t *shots_pixel(const struct image *image, int x, int y)

@@ -2,6 +2,7 @@
 /* What the render tests share: one renderer at a time, pictures of a plan, and questions to ask a picture. */
 #include "core/render/render.h"
 #include "tests/check.h"
+#include "tests/derived_of.h"
 #include "tests/made_plan.h"
 
 /* Graphics drivers do not get on with sanitizers: then only our own rasteriser is asked. */

@@ -69,7 +69,7 @@ static void surfaces_from_the_front_have_the_patients_left_on_screen_right(void 
         expect_mark(image, 2, 0, TOP_MM);
         image_destroy(image);
         renderer_forget(shots_renderer, plan);
-        plan_destroy(plan);
+        plan_and_derived_destroy(plan);
     }
 }
 
@@ -86,7 +86,7 @@ static void surfaces_from_the_left_have_the_front_on_screen_left(void **state)
         expect_mark(image, 2, 0, TOP_MM);
         image_destroy(image);
         renderer_forget(shots_renderer, plan);
-        plan_destroy(plan);
+        plan_and_derived_destroy(plan);
     }
 }
 
@@ -106,7 +106,7 @@ static void a_view_without_camera_is_from_the_front_with_the_head_up(void **stat
     assert_close(x, 512, 20);
     image_destroy(image);
     renderer_forget(shots_renderer, plan);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static struct scene centred_scene(const struct plan *plan)
@@ -138,7 +138,7 @@ static void cross_sections_of_regions_lie_as_the_panes_say(void **state)
         expect_mark(image, 2, 0, TOP_MM);
         image_destroy(image);
         renderer_forget(shots_renderer, plan);
-        plan_destroy(plan);
+        plan_and_derived_destroy(plan);
     }
 }
 
@@ -187,7 +187,7 @@ static void image_slices_lie_as_the_panes_say(void **state)
         expect_grey(image, 0, TOP_MM, 64);
         image_destroy(image);
         renderer_forget(shots_renderer, plan);
-        plan_destroy(plan);
+        plan_and_derived_destroy(plan);
     }
 }
 
@@ -209,7 +209,7 @@ static void an_axial_slice_in_space_seen_from_above_has_the_left_on_screen_left(
     expect_grey(image, 0, -FRONT_MM, 0);
     image_destroy(image);
     renderer_forget(shots_renderer, plan);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 int main(void)

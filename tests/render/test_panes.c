@@ -1,6 +1,6 @@
 /* What is painted over slice panes: outlines where the regions are, the check of a segmentation, the grid of a dose, on
  * grids square to the patient and on oblique ones; and images on grids of their own. */
-#include "core/plan/plan_shapes.h"
+#include "core/derive/region_shape.h"
 #include "tests/render/shots.h"
 
 static const struct vec3 origin = { 0, 0, 0 };
@@ -234,9 +234,8 @@ static void put_box(struct plan *plan, enum region_representation representation
                                           { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
     struct error err = { 0 };
     struct shape *shape = mem_new(sizeof *shape);
-    struct shape_name name = { 0,
-                               { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 },
-                               SURFACE_FULL };
+    const struct shape_key key = { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 };
+    const struct region_shape_recipe recipe = region_shape_recipe(subject_region(0), &key, 1);
     struct surface_facts facts = { .reduction = 1 };
     shape->kind = SHAPE_TRIANGLES;
     shape->is_faceted = is_faceted;
@@ -255,8 +254,7 @@ static void put_box(struct plan *plan, enum region_representation representation
     assert_true(mesh_make_normals(shape->mesh, 1, &err));
     mesh_measure_bounds(shape->mesh);
     shape->bounds_lps_mm = shape->mesh->bounds_lps_mm;
-    shape_key_normalise(&name.key);
-    plan_shapes_offer(plan->shapes, &name, shape, &facts);
+    region_shape_offer(derived_of(plan), &recipe, shape, &facts);
     shape_unref(shape);
 }
 

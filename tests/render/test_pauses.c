@@ -57,7 +57,7 @@ static void make_wishes(struct plan *plan, struct wish wishes[N_PICTURES])
         view.size_px[1] = pictures[i].height_px / shrunk;
         wishes[i].options =
             (struct render_options){ view.size_px[0], view.size_px[1], SURFACE_FULL, pictures[i].is_still };
-        wishes[i].snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
+        wishes[i].snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
         assert_string_equal(err.text, "");
     }
 }

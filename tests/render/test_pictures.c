@@ -364,7 +364,7 @@ static void a_grid_beyond_the_drivers_limit_is_refused_with_its_size(void **stat
     struct camera camera;
     struct render_timing timing;
     struct render_options options = { 64, 64, SURFACE_FULL, false };
-    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
+    struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
     struct image *image = render_snapshot(shots_renderer, snapshot, &options, &camera, &timing, &err);
     if (!image) { /* a driver that takes 4096 draws it */
         assert_int_equal(err.code, ERROR_LIMIT);
@@ -430,7 +430,7 @@ static void light_surfaces_are_marked_and_lighter(void **state)
     assert_false(full.is_light);
     assert_true(light.is_light);
     assert_true(full.n_triangles > 6 * 128 * 128 * 2);
-    assert_true(light.n_triangles <= PLAN_LIGHT_TRIANGLES);
+    assert_true(light.n_triangles <= COARSE_MAX_TRIANGLES);
     shots_forget(plan);
 }
 

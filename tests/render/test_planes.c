@@ -42,7 +42,7 @@ static struct snapshot *snapshot_on(struct plan *plan, struct scene scene, struc
 {
     struct error err = { 0 };
     char field[128];
-    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
+    struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
     assert_string_equal(err.text, "");
     snapshot->pane = snapshot->slices[0] = *plane;
     snapshot->n_slices = 1;

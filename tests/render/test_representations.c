@@ -67,7 +67,7 @@ static void find_truth(struct plan *plan, int view_number, bool truth[SHOTS_HEIG
     struct view view = make_view(view_number);
     struct error err = { 0 };
     char field[128];
-    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
+    struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
     double n = 0;
     middle_px[0] = middle_px[1] = 0;
     for (int y = 0; y < SHOTS_HEIGHT; y++)
@@ -238,7 +238,7 @@ static void solid_points_leave_no_gap_at_any_zoom(void **state)
             struct scene asked = shots_scene(plan);
             struct error err = { 0 };
             char field[128];
-            struct snapshot *snapshot = snapshot_create(plan, &asked, &view, 1, field, &err);
+            struct snapshot *snapshot = snapshot_create(derived_of(plan), &asked, &view, 1, field, &err);
             size_t n = 0;
             memset(truth, 0, sizeof truth);
             for (int y = 0; y < SHOTS_HEIGHT; y++)

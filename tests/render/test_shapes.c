@@ -1,6 +1,6 @@
 /* Lines, points and open or faceted triangles: where they are drawn, how large, in which light. The shapes are made by
  * hand and put in the place of the plan's own. */
-#include "core/plan/plan_shapes.h"
+#include "core/derive/region_shape.h"
 #include "tests/render/shots.h"
 
 static const struct vec3 origin = { 0, 0, 0 };
@@ -26,13 +26,11 @@ static struct plan *make_plan(void)
 /* Takes shape. */
 static void put(struct plan *plan, enum region_representation representation, struct shape *shape)
 {
-    struct shape_name name = { 0,
-                               { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 },
-                               SURFACE_FULL };
+    const struct shape_key key = { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 };
+    const struct region_shape_recipe recipe = region_shape_recipe(subject_region(0), &key, 1);
     struct surface_facts facts = { .reduction = 1 };
-    shape_key_normalise(&name.key);
     shape->references = 1;
-    plan_shapes_offer(plan->shapes, &name, shape, &facts);
+    region_shape_offer(derived_of(plan), &recipe, shape, &facts);
     shape_unref(shape);
 }
 

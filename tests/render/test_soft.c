@@ -95,7 +95,7 @@ static struct image *take(struct soft_renderer *soft, struct renderer *other, st
         view.camera.up = up;
         view.camera.projection = shot->is_parallel ? SCENE_PROJECTION_PARALLEL : SCENE_PROJECTION_PERSPECTIVE;
     }
-    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
+    struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
     assert_string_equal(err.text, "");
     camera_resolve(snapshot, &camera);
     struct image *image = other ? render_snapshot(other, snapshot, &options, &camera, &timing, &err)
@@ -198,7 +198,7 @@ static void pictures_are_the_same_as_with_opengl(void **state)
         }
         renderer_forget(gl, plan);
         soft_renderer_destroy(soft);
-        plan_destroy(plan);
+        plan_and_derived_destroy(plan);
     }
     renderer_destroy(gl);
 }
@@ -228,7 +228,7 @@ static void threads_and_processors_make_no_difference(void **state)
         }
         image_destroy(first);
     }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void pictures_of_other_sizes_leave_nothing_behind(void **state)
@@ -248,7 +248,7 @@ static void pictures_of_other_sizes_leave_nothing_behind(void **state)
             soft_renderer_destroy(fresh);
         }
     soft_renderer_destroy(used);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 /* ---- coverage --------------------------------------------------------------------------------------------------- */
@@ -288,7 +288,7 @@ static void closed_surfaces_have_no_cracks(void **state)
         image_destroy(image);
     }
     renderer_forget(shots_renderer, plan);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static double cube_label(struct vec3 p)
@@ -318,7 +318,7 @@ static void a_face_close_to_the_eye_fills_the_picture(void **state)
     assert_memory_not_equal(shots_pixel(image, 0, 0), shots_background, 3);
     image_destroy(image);
     renderer_forget(shots_renderer, plan);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void pictures_beyond_the_limit_are_refused(void **state)
@@ -334,7 +334,7 @@ static void pictures_beyond_the_limit_are_refused(void **state)
         struct camera camera;
         struct render_timing timing;
         scene_for_plan(plan, &scene);
-        struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
         assert_null(render_snapshot(shots_renderer, snapshot,
                                     &(struct render_options){ sizes[i][0], sizes[i][1], SURFACE_FULL, true }, &camera,
                                     &timing, &err));
@@ -342,7 +342,7 @@ static void pictures_beyond_the_limit_are_refused(void **state)
         snapshot_unref(snapshot);
     }
     renderer_forget(shots_renderer, plan);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 int main(void)

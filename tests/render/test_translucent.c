@@ -146,7 +146,7 @@ static void shuffle_triangles(struct plan *plan, size_t region)
 {
     struct error err = { 0 };
     struct mesh *mesh =
-        plan_surface(plan, region, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err); /* the one that is kept */
+        surface_of(plan, region, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err); /* the one that is kept */
     uint64_t state = 88172645463325252u + region;
     assert_string_equal(err.text, "");
     for (size_t i = mesh->n_triangles - 1; i > 0;

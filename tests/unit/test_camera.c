@@ -1,5 +1,6 @@
 #include "core/scene/snapshot.h"
 #include "tests/check.h"
+#include "tests/derived_of.h"
 #include "tests/made_plan.h"
 
 static double no_label(struct vec3 p)
@@ -27,7 +28,7 @@ static struct snapshot *snapshot_of(struct plan *plan, struct view view)
     struct error err = { 0 };
     char field[128];
     scene_for_plan(plan, &scene);
-    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 7, field, &err);
+    struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 7, field, &err);
     assert_string_equal(err.text, "");
     return snapshot;
 }
@@ -61,7 +62,7 @@ static void the_home_camera_looks_from_the_front_and_holds_the_whole_plan(void *
     }
     assert_close(most, 1 / 1.08, 1e-9);
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static double nothing(struct vec3 p)
@@ -89,7 +90,7 @@ static void a_plan_of_a_small_region_in_a_large_image_is_framed_by_the_image(voi
             expect_vec3(camera.target_mm, 5, 6, 7);
         else
             expect_vec3(camera.target_mm, 10, 20, 30);
-        plan_destroy(plan);
+        plan_and_derived_destroy(plan);
     }
 }
 
@@ -112,7 +113,7 @@ static void a_view_without_position_has_the_home_camera(void **state)
         snapshot_unref(a);
         snapshot_unref(b);
     }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void clip_space_goes_to_the_patient_and_back(void **state)
@@ -141,7 +142,7 @@ static void clip_space_goes_to_the_patient_and_back(void **state)
             expect_vec3(vec3_add(across, camera.forward), 0, 0, 0);
             snapshot_unref(snapshot);
         }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void perspective_spans_the_smaller_side_with_its_opening_angle(void **state)
@@ -172,7 +173,7 @@ static void perspective_spans_the_smaller_side_with_its_opening_angle(void **sta
     assert_close(edge.x, 1, 1e-9);
     assert_close(camera.pixels_per_mm, 300 / (200 * tan(25 * MATH_PI / 180)), 1e-9);
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void panes_lie_on_their_slice_as_radiology_has_them(void **state)
@@ -198,7 +199,7 @@ static void panes_lie_on_their_slice_as_radiology_has_them(void **state)
         view.camera.has_target_mm = view.camera.has_height_mm = true;
         view.camera.target_mm = vec3(1, 2, 3);
         view.camera.height_mm = 192;
-        struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
         struct camera camera;
         camera_resolve(snapshot, &camera);
         assert_true(camera.is_parallel);
@@ -212,7 +213,7 @@ static void panes_lie_on_their_slice_as_radiology_has_them(void **state)
         assert_close(right.y, 0, 1e-9);
         snapshot_unref(snapshot);
     }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void expect_refused(struct plan *plan, struct scene scene, struct view view, enum error_code code,
@@ -220,7 +221,7 @@ static void expect_refused(struct plan *plan, struct scene scene, struct view vi
 {
     struct error err = { 0 };
     char field[128];
-    assert_null(snapshot_create(plan, &scene, &view, 1, field, &err));
+    assert_null(snapshot_create(derived_of(plan), &scene, &view, 1, field, &err));
     assert_int_equal(err.code, code);
     assert_string_equal(field, place);
     assert_true(strlen(err.text) > 10);
@@ -257,7 +258,7 @@ static void what_cannot_be_drawn_is_refused_with_its_place(void **state)
     view.camera.up = vec3(0, 0, 0);
     scene_for_plan(plan, &scene);
     expect_refused(plan, scene, view, ERROR_RANGE, "/camera/up");
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void looking_straight_down_without_an_up_still_has_one(void **state)
@@ -272,7 +273,7 @@ static void looking_straight_down_without_an_up_still_has_one(void **state)
     camera_resolve(snapshot, &camera);
     expect_vec3(camera.up, 0, -1, 0); /* anterior */
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 /* body 1 > organ 2 > tumour 3 */
@@ -308,7 +309,7 @@ static void a_new_room_sees_through_to_the_innermost_region(void **state)
     assert_close(scene.image.slices.axial.position_mm, 1, 1e-9);
     assert_close(scene.image.window.center, plan->images[0].window_center, 0);
     scene_finish(&scene);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 int main(void)

@@ -8,6 +8,7 @@
 #include "core/base/mem.h"
 #include "core/pipeline/pipeline.h"
 #include "tests/check.h"
+#include "tests/derived_of.h"
 #include "tests/made_plan.h"
 
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
@@ -60,7 +61,7 @@ static struct pipeline_request picture(struct plan *plan, uint64_t id, int side_
     scene_for_plan(plan, &scene);
     return (struct pipeline_request){ .id = id,
                                       .source = id,
-                                      .snapshot = snapshot_create(plan, &scene, &view, 1, field, &err),
+                                      .snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err),
                                       .render = { side_px, side_px, SURFACE_FULL, true },
                                       .encode = { codec, 90, true } };
 }
@@ -104,7 +105,7 @@ static int draw_within(uint64_t more_bytes)
         pthread_cond_wait(&receiver.changed, &receiver.mutex);
     pthread_mutex_unlock(&receiver.mutex);
     pipeline_destroy(pipeline);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     return receiver.is_wrong ? WRONG_ANSWER : receiver.n_too_large ? SOME_TOO_LARGE : ALL_DRAWN;
 }
 

@@ -1,5 +1,6 @@
 #include "core/scene/snapshot.h"
 #include "tests/check.h"
+#include "tests/derived_of.h"
 #include "tests/made_plan.h"
 
 /* Nested boxes around the origin, half sides 5, 10, 15 along the grid's own axes, whatever their direction in the
@@ -47,7 +48,7 @@ static struct snapshot *look(struct plan *plan, struct vec3 from, struct vec3 at
     view.camera.position_mm = from;
     view.camera.target_mm = at;
     view.camera.height_mm = 101; /* 1 mm a pixel in panes */
-    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &err);
+    struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
     assert_string_equal(err.text, "");
     return snapshot;
 }
@@ -73,7 +74,7 @@ static void a_ray_enters_regions_on_the_faces_of_their_univels(void **state)
     expect_hit(&hits[2], 2, vec3(0.3, -5, 0.7), 95);
     assert_int_equal(snapshot_pick(snapshot, 0.5, 0.5, hits), 0); /* the corner looks past */
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void an_oblique_grid_is_hit_on_its_own_faces(void **state)
@@ -87,7 +88,7 @@ static void an_oblique_grid_is_hit_on_its_own_faces(void **state)
     expect_hit(&hits[0], 0, vec3_scale(along, -15), 85);
     expect_hit(&hits[2], 2, vec3_scale(along, -5), 95);
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static enum scene_representation drawn_as;
@@ -109,7 +110,7 @@ static void whatever_a_region_is_drawn_as_its_univels_are_hit(void **state)
         expect_hit(&hits[2], 2, vec3(0.3, -5, 0.7), 95);
         snapshot_unref(snapshot);
     }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void every_pixel_agrees_with_small_steps_along_its_ray(void **state)
@@ -145,7 +146,7 @@ static void every_pixel_agrees_with_small_steps_along_its_ray(void **state)
         }
     assert_true(n_compared > 20);
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void hide_body_fade_organ(struct scene *scene)
@@ -163,7 +164,7 @@ static void only_what_is_shown_is_hit(void **state)
     assert_int_equal(snapshot_pick(snapshot, 50.5, 50.5, hits), 1);
     expect_hit(&hits[0], 2, vec3(0, -5, 0.5), 95);
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void from_inside_a_region_its_own_wall_is_not_a_hit(void **state)
@@ -177,7 +178,7 @@ static void from_inside_a_region_its_own_wall_is_not_a_hit(void **state)
     expect_hit(&hits[0], 1, vec3(0.2, -10, 0.5), 2);
     expect_hit(&hits[1], 2, vec3(0.2, -5, 0.5), 7);
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void show_coronal(struct scene *scene)
@@ -198,7 +199,7 @@ static void slices_in_space_are_hit_between_regions(void **state)
     expect_hit(&hits[2], -1, vec3(0, -7, 0.5), 93);
     assert_int_equal(hits[3].region, 2);
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static double ramp(struct vec3 p)
@@ -224,7 +225,7 @@ static void a_pick_goes_through_where_a_slice_leaves_out_air(void **state)
     for (int i = 0; i < 3; i++)
         assert_int_equal(hits[i].region, i);
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void move_slice(struct scene *scene)
@@ -246,7 +247,7 @@ static void a_pane_gives_the_point_and_its_regions_innermost_first(void **state)
     expect_hit(&hits[1], 0, vec3(7, -2, 3), 0);
     expect_hit(&hits[2], -1, vec3(7, -2, 3), 0);
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static double stripes(struct vec3 p)
@@ -277,7 +278,7 @@ static void more_hits_than_fit_keep_the_nearest(void **state)
         }
         snapshot_unref(snapshot);
     }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 int main(void)

@@ -4,6 +4,7 @@
 
 #include "core/pipeline/pipeline.h"
 #include "tests/check.h"
+#include "tests/derived_of.h"
 #include "tests/made_plan.h"
 
 enum { MAX_FRAMES = 256 };
@@ -113,7 +114,7 @@ static bool submit_picture(struct pipeline *pipeline, struct plan *plan, uint64_
     struct view view = view_default;
     char field[128];
     scene_for_plan(plan, &scene);
-    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, (uint32_t)id, field, err);
+    struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, (uint32_t)id, field, err);
     struct pipeline_request request = { .id = id,
                                         .source = source,
                                         .snapshot = snapshot,
@@ -160,7 +161,7 @@ static void frames_come_back_in_order_and_none_is_lost(void **state)
     assert_int_equal(receiver.last.picture.bytes[1], 0xd8);
     assert_close(receiver.last.camera.forward.y, 1, 1e-9); /* the view's own camera, also from the stub */
     pipeline_destroy(pipeline);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     receiver_finish(&receiver);
 }
 
@@ -189,7 +190,7 @@ static void moving_pictures_overtake_stills_but_not_for_ever(void **state)
     assert_int_equal(receiver.ids[16], 15);
     assert_int_equal(receiver.ids[17], 16);
     pipeline_destroy(pipeline);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     receiver_finish(&receiver);
 }
 
@@ -214,7 +215,7 @@ static void what_is_dropped_while_it_waits_is_not_drawn(void **state)
         assert_int_equal(receiver.ids[i], i + 1);
     assert_int_equal(receiver.ids[9], 20);
     pipeline_destroy(pipeline);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     receiver_finish(&receiver);
 }
 
@@ -233,7 +234,7 @@ static void a_picture_that_cannot_be_drawn_comes_back_as_an_error(void **state)
     assert_int_equal(receiver.codes[0], ERROR_RANGE); /* no picture is 0 wide */
     assert_int_equal(receiver.codes[1], ERROR_NONE);  /* and the next one is a picture again */
     pipeline_destroy(pipeline);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     receiver_finish(&receiver);
 }
 
@@ -262,7 +263,7 @@ static void more_than_the_limit_is_refused_and_never_blocks(void **state)
     open_receiver(&receiver);
     pipeline_destroy(pipeline); /* with most of them still waiting */
     assert_true(receiver.n_frames < n_taken);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     receiver_finish(&receiver);
 }
 
@@ -310,7 +311,7 @@ static void large_pictures_of_one_source_do_not_hold_up_small_ones_of_another(vo
         pipeline_destroy(pipeline);
         for (size_t i = 0; i < receiver.n_frames; i++)
             assert_int_equal(receiver.codes[i], ERROR_NONE);
-        plan_destroy(plan);
+        plan_and_derived_destroy(plan);
         receiver_finish(&receiver);
     }
 }
@@ -331,7 +332,7 @@ static void a_picture_that_is_dropped_while_it_is_drawn_is_drawn_no_further(void
     assert_true(submit_picture(pipeline, plan, 21, 7, 64, 48, true, &err));
     wait_for_id(&receiver, 21);
     pipeline_destroy(pipeline);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     receiver_finish(&receiver);
 }
 
@@ -350,7 +351,7 @@ static void it_can_be_destroyed_in_any_state(void **state)
         if (n_submitted % 3 == 1)
             wait_for(&receiver, (size_t)n_submitted / 2);
         pipeline_destroy(pipeline);
-        plan_destroy(plan);
+        plan_and_derived_destroy(plan);
         receiver_finish(&receiver);
     }
     pipeline_destroy(NULL);
@@ -367,12 +368,12 @@ static void a_forgotten_plan_may_be_destroyed_at_once(void **state)
     for (uint64_t id = 0; id < 8; id++)
         assert_true(submit(pipeline, plan, id, 64, &err));
     pipeline_forget(pipeline, plan);
-    plan_destroy(plan); /* what was asked before is drawn, or at least no longer needs the plan */
+    plan_and_derived_destroy(plan); /* what was asked before is drawn, or at least no longer needs the plan */
     assert_true(submit(pipeline, next, 8, 64, &err));
     wait_for(&receiver, 9);
     assert_int_equal(receiver.ids[8], 8);
     pipeline_destroy(pipeline);
-    plan_destroy(next);
+    plan_and_derived_destroy(next);
     receiver_finish(&receiver);
 }
 

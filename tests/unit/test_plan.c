@@ -7,6 +7,7 @@
 #include "core/load/summary.h"
 #include "core/plan/plan.h"
 #include "tests/check.h"
+#include "tests/derived_of.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/nifti_bytes.h"
 #include "tests/unit/plan_help.h"
@@ -88,7 +89,7 @@ static void a_plan_without_a_tree_gets_one_from_what_encloses_what(void **state)
     assert_int_equal(probe.n_regions, 0);
     plan_probe(plan, vec3(NAN, 0, 0), &probe);
     assert_int_equal(probe.n_regions, 0);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     folder_remove(folder);
 }
 
@@ -110,7 +111,7 @@ static void a_tree_from_the_plan_wins_and_unknown_names_and_circles_are_reported
     assert_true(report_has(&plan->report, "hierarchy.cycle"));
     assert_true(report_has(&plan->report, "hierarchy.unknown-name"));
     assert_true(report_has(&plan->report, "region.unnamed"));
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     folder_remove(folder);
 }
 
@@ -124,9 +125,9 @@ static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
     struct plan *plan = plan_of_folder(folder, &err);
     size_t skin = (size_t)(region_of(plan, "label-1") - plan->regions.regions);
     struct surface_facts facts, light;
-    struct mesh *first = plan_surface(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err);
-    struct mesh *second = plan_surface(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err);
-    struct mesh *moving = plan_surface(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_LIGHT, &light, &err);
+    struct mesh *first = surface_of(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err);
+    struct mesh *second = surface_of(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err);
+    struct mesh *moving = surface_of(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_LIGHT, &light, &err);
     assert_ptr_equal(first, second);
     assert_ptr_equal(first, moving); /* so few triangles that nothing is to be saved */
     assert_int_equal(light.reduction, 1);
@@ -140,9 +141,9 @@ static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
     mesh_unref(first);
     mesh_unref(second);
     mesh_unref(moving);
-    assert_null(plan_surface(plan, 99, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err));
+    assert_null(surface_of(plan, 99, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err));
     assert_int_equal(err.code, ERROR_RANGE);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     folder_remove(folder);
 }
 
@@ -158,7 +159,7 @@ static void ask_for_all(void *context, int part, int n_parts)
     for (size_t r = 0; r < 3; r++)
         for (int detail = 0; detail < 2; detail++)
             crowd->meshes[part][r][detail] =
-                plan_surface(crowd->plan, r, SURFACE_MARCHING_CUBES, (enum surface_detail)detail, NULL, NULL);
+                surface_of(crowd->plan, r, SURFACE_MARCHING_CUBES, (enum surface_detail)detail, NULL, NULL);
 }
 
 static void many_threads_get_the_same_surfaces(void **state)
@@ -177,7 +178,7 @@ static void many_threads_get_the_same_surfaces(void **state)
                 assert_ptr_equal(crowd.meshes[part][r][detail], crowd.meshes[0][r][detail]);
                 mesh_unref(crowd.meshes[part][r][detail]);
             }
-    plan_destroy(crowd.plan);
+    plan_and_derived_destroy(crowd.plan);
     folder_remove(folder);
 }
 
@@ -190,8 +191,8 @@ static void light_surfaces_of_a_whole_plan_stay_under_their_limit(void **state)
     size_t n_full = 0, n_light = 0;
     for (size_t r = 0; r < plan->regions.n_regions; r++) {
         struct surface_facts full, light;
-        mesh_unref(plan_surface(plan, r, SURFACE_MARCHING_CUBES, SURFACE_FULL, &full, NULL));
-        mesh_unref(plan_surface(plan, r, SURFACE_MARCHING_CUBES, SURFACE_LIGHT, &light, NULL));
+        mesh_unref(surface_of(plan, r, SURFACE_MARCHING_CUBES, SURFACE_FULL, &full, NULL));
+        mesh_unref(surface_of(plan, r, SURFACE_MARCHING_CUBES, SURFACE_LIGHT, &light, NULL));
         n_full += full.n_triangles;
         n_light += light.n_triangles;
         assert_int_equal(light.n_univels, full.n_univels);
@@ -199,9 +200,9 @@ static void light_surfaces_of_a_whole_plan_stay_under_their_limit(void **state)
         /* descendants lie inside: scalp holds brain and tumour */
         assert_near(full.volume_mm3, full.univel_volume_mm3, 0.02);
     }
-    assert_true(n_full > PLAN_LIGHT_TRIANGLES);
-    assert_true(n_light <= PLAN_LIGHT_TRIANGLES);
-    plan_destroy(plan);
+    assert_true(n_full > COARSE_MAX_TRIANGLES);
+    assert_true(n_light <= COARSE_MAX_TRIANGLES);
+    plan_and_derived_destroy(plan);
 }
 
 /* A mask of one 4 x 1 x 1 row. */
@@ -239,7 +240,7 @@ static void masks_share_a_layer_until_they_overlap_or_their_grids_differ(void **
     assert_int_not_equal(region_of(plan, "b")->layer, region_of(plan, "c")->layer);
     assert_true(report_has(&plan->report, "region.empty"));
     assert_true(report_has(&plan->report, "region.renamed"));
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     folder_remove(folder);
 }
 
@@ -278,7 +279,7 @@ static void a_plan_never_leaves_its_folder(void **state)
     assert_int_equal(symlink("inside.nii", link), 0);
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     unlink(link);
     assert_int_equal(mkfifo(link, 0600), 0); /* a pipe must not hang the reader */
     assert_null(plan_of_folder(folder, &err));
@@ -374,7 +375,7 @@ static void a_dose_in_a_format_not_read_is_left_out_and_said(void **state)
     plan_probe(plan, vec3(0, 0, 0), &probe); /* the mask is 0 there: no dose, but an image */
     assert_int_equal(probe.n_doses, 0);
     assert_true(probe.has_image[0]);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     struct plan_summary summary;
     plan_summarize(folder, &summary);
     assert_true(summary.is_readable);
@@ -396,7 +397,7 @@ static void an_image_beside_the_regions_is_reported(void **state)
                     PLAN("\"images\":[{\"path\":\"near.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
     struct plan *plan = plan_of_folder(folder, &err);
     assert_false(report_has(&plan->report, "geometry.apart"));
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     put_row(folder, "mask.nii", (const uint8_t[4]){ 0, 0, 1, 1 }, 1);
     folder_put_text(
         folder, "plan.json",
@@ -404,7 +405,7 @@ static void an_image_beside_the_regions_is_reported(void **state)
     plan = plan_of_folder(folder, &err);
     assert_true(report_has(&plan->report, "geometry.apart"));
     assert_close(plan->bounds_lps_mm.high.x, -1.5, 1e-9); /* of the region alone: RAS x 1.5 .. 3.5 */
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     folder_remove(folder);
 }
 

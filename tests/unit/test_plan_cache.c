@@ -26,7 +26,7 @@ enum {
     SIZE_BEAM = 464,
     SIZE_SEGMENT = 28,
     SIZE_VOLUME = 264,
-    SIZE_PLAN = 57800
+    SIZE_PLAN = 57792
 };
 
 static struct plan *load_with_sources(const char *folder, const char *cache, struct plan_sources **sources)

@@ -1,6 +1,7 @@
 /* The surfaces a plan keeps, by algorithm and detail. */
-#include "core/plan/plan_masks.h"
+#include "core/derive/region_masks.h"
 #include "tests/check.h"
+#include "tests/derived_of.h"
 #include "tests/made_plan.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/plan_help.h"
@@ -32,9 +33,9 @@ static void surfaces_are_kept_by_algorithm(void **state)
     struct plan *plan = plan_of_boxes();
     struct error err = { 0 };
     struct surface_facts facts;
-    struct mesh *cubes = plan_surface(plan, 1, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err);
-    struct mesh *cells = plan_surface(plan, 1, SURFACE_EIGHT_CELL, SURFACE_FULL, &facts, &err);
-    struct mesh *again = plan_surface(plan, 1, SURFACE_EIGHT_CELL, SURFACE_FULL, NULL, &err);
+    struct mesh *cubes = surface_of(plan, 1, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err);
+    struct mesh *cells = surface_of(plan, 1, SURFACE_EIGHT_CELL, SURFACE_FULL, &facts, &err);
+    struct mesh *again = surface_of(plan, 1, SURFACE_EIGHT_CELL, SURFACE_FULL, NULL, &err);
     assert_ptr_not_equal(cubes, cells);
     assert_ptr_equal(cells, again);
     assert_int_equal(facts.n_triangles, 12); /* a cube between the eight centres */
@@ -48,12 +49,12 @@ static void surfaces_are_kept_by_algorithm(void **state)
     mesh_unref(cells);
     mesh_unref(again);
 
-    struct mesh *lone = plan_surface(plan, 2, SURFACE_EIGHT_CELL, SURFACE_FULL, &facts, &err);
+    struct mesh *lone = surface_of(plan, 2, SURFACE_EIGHT_CELL, SURFACE_FULL, &facts, &err);
     assert_non_null(lone); /* a surface, but an empty one */
     assert_int_equal(facts.n_triangles, 0);
     assert_int_equal(facts.n_univels, 1);
     mesh_unref(lone);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void a_small_region_does_not_vanish_in_motion(void **state)
@@ -62,15 +63,15 @@ static void a_small_region_does_not_vanish_in_motion(void **state)
     struct plan *plan = plan_of_boxes();
     struct error err = { 0 };
     struct surface_facts large, small, lone;
-    mesh_unref(plan_surface(plan, 0, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &large, &err));
-    mesh_unref(plan_surface(plan, 1, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &small, &err));
-    mesh_unref(plan_surface(plan, 2, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &lone, &err));
+    mesh_unref(surface_of(plan, 0, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &large, &err));
+    mesh_unref(surface_of(plan, 1, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &small, &err));
+    mesh_unref(surface_of(plan, 2, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &lone, &err));
     assert_true(large.reduction > 1); /* 12 x 133 x 133 triangles are too many */
-    assert_true(large.n_triangles < PLAN_LIGHT_TRIANGLES);
+    assert_true(large.n_triangles < COARSE_MAX_TRIANGLES);
     assert_int_equal(small.reduction, 1); /* two voxels wide: any reduction makes it one, and so nothing */
     assert_int_equal(small.n_triangles, 12);
     assert_int_equal(lone.n_triangles, 0);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static bool no_more_than(void *context)
@@ -83,32 +84,33 @@ static void several_surfaces_are_built_at_once_and_are_those_built_one_by_one(vo
 {
     (void)state;
     struct plan *plan = plan_of_boxes(), *other = plan_of_boxes();
-    struct plan_shape_usage usage;
-    const size_t regions[3] = { 2, 0, 1 };
-    plan_build_surfaces(plan, regions, 3, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL);
-    plan_shape_usage(plan, &usage);
-    assert_int_equal(usage.n_shapes, 3);
+    struct once_cache_usage usage;
+    const struct subject regions[3] = { subject_region(2), subject_region(0), subject_region(1) };
+    derive_build_surfaces(derived_of(plan), regions, 3, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL);
+    derive_usage(derived_of(plan), &usage);
+    assert_int_equal(usage.n_results, 3);
     for (size_t r = 0; r < 3; r++) {
-        struct mesh *together = plan_surface(plan, r, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL);
-        struct mesh *alone = plan_surface(other, r, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL);
+        struct mesh *together = surface_of(plan, r, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL);
+        struct mesh *alone = surface_of(other, r, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL);
         assert_int_equal(together->n_vertices, alone->n_vertices);
         assert_memory_equal(together->positions_lps_mm, alone->positions_lps_mm, 3 * alone->n_vertices * sizeof(float));
         assert_memory_equal(together->normals, alone->normals, 3 * alone->n_vertices * sizeof(float));
         mesh_unref(together);
         mesh_unref(alone);
     }
-    plan_shape_usage(plan, &usage);
-    assert_int_equal(usage.n_shapes, 3); /* they were there */
-    plan_destroy(plan);
+    derive_usage(derived_of(plan), &usage);
+    assert_int_equal(usage.n_results, 3); /* they were there */
+    plan_and_derived_destroy(plan);
 
     size_t left = 0;
     plan = plan_of_boxes();
-    plan_build_surfaces(plan, regions, 1, SURFACE_SMOOTH, SURFACE_FULL, no_more_than, &left);
-    plan_shape_usage(plan, &usage);
-    assert_int_equal(usage.n_shapes, 0);
-    plan_build_surfaces(plan, regions, 0, SURFACE_SMOOTH, SURFACE_FULL, NULL, NULL); /* nothing is asked for */
-    plan_destroy(plan);
-    plan_destroy(other);
+    derive_build_surfaces(derived_of(plan), regions, 1, SURFACE_SMOOTH, SURFACE_FULL, no_more_than, &left);
+    derive_usage(derived_of(plan), &usage);
+    assert_int_equal(usage.n_results, 0);
+    derive_build_surfaces(derived_of(plan), regions, 0, SURFACE_SMOOTH, SURFACE_FULL, NULL,
+                          NULL); /* nothing is asked for */
+    plan_and_derived_destroy(plan);
+    plan_and_derived_destroy(other);
 }
 
 static void assert_same_shape(const struct shape *a, const struct shape *b)
@@ -130,29 +132,33 @@ static void shapes_of_all_kinds_built_at_once_are_those_built_one_by_one(void **
 {
     (void)state;
     struct plan *plan = plan_of_boxes(), *other = plan_of_boxes();
-    const struct plan_want wants[] = {
-        { 0, { .representation = REPRESENTATION_UNIVELS }, SURFACE_FULL },
-        { 0, { .representation = REPRESENTATION_POINTS, .has_inner_boundary = true }, SURFACE_FULL },
-        { 1, { .representation = REPRESENTATION_FAN }, SURFACE_LIGHT },
-        { 1, { .representation = REPRESENTATION_SURFACE, .algorithm = SURFACE_MARCHING_CUBES }, SURFACE_LIGHT },
-        { 2, { .representation = REPRESENTATION_SURFACE, .algorithm = SURFACE_EIGHT_CELL }, SURFACE_FULL },
-        { 9, { .representation = REPRESENTATION_POINTS }, SURFACE_FULL }, /* there is no such region */
+    const struct shape_want wants[] = {
+        { subject_region(0), { .representation = REPRESENTATION_UNIVELS }, SURFACE_FULL },
+        { subject_region(0), { .representation = REPRESENTATION_POINTS, .has_inner_boundary = true }, SURFACE_FULL },
+        { subject_region(1), { .representation = REPRESENTATION_FAN }, SURFACE_LIGHT },
+        { subject_region(1),
+          { .representation = REPRESENTATION_SURFACE, .algorithm = SURFACE_MARCHING_CUBES },
+          SURFACE_LIGHT },
+        { subject_region(2),
+          { .representation = REPRESENTATION_SURFACE, .algorithm = SURFACE_EIGHT_CELL },
+          SURFACE_FULL },
+        { subject_region(9), { .representation = REPRESENTATION_POINTS }, SURFACE_FULL }, /* there is no such region */
     };
     enum { N = sizeof wants / sizeof *wants };
-    plan_build_shapes(plan, wants, N, NULL, NULL);
-    plan_build_shapes(plan, wants, N, NULL, NULL); /* all are there */
+    derive_build_shapes(derived_of(plan), wants, N, NULL, NULL);
+    derive_build_shapes(derived_of(plan), wants, N, NULL, NULL); /* all are there */
     for (size_t i = 0; i + 1 < N; i++) {
         struct surface_facts facts, alone_facts;
-        struct shape *together = plan_shape(plan, wants[i].region, &wants[i].key, wants[i].detail, &facts, NULL);
-        struct shape *alone = plan_shape(other, wants[i].region, &wants[i].key, wants[i].detail, &alone_facts, NULL);
+        struct shape *together = derive_shape(derived_of(plan), &wants[i], &facts, NULL);
+        struct shape *alone = derive_shape(derived_of(other), &wants[i], &alone_facts, NULL);
         assert_same_shape(together, alone);
         assert_int_equal(facts.n_univels, alone_facts.n_univels);
         assert_int_equal(facts.reduction, alone_facts.reduction);
         shape_unref(together);
         shape_unref(alone);
     }
-    plan_destroy(plan);
-    plan_destroy(other);
+    plan_and_derived_destroy(plan);
+    plan_and_derived_destroy(other);
 }
 
 static void masks_are_the_regions_however_many_are_made_at_once_and_asked_for_again(void **state)
@@ -164,18 +170,18 @@ static void masks_are_the_regions_however_many_are_made_at_once_and_asked_for_ag
     const size_t order[] = { 1, 0, 3, 1, 2 };
     for (size_t m = 0; m < 4; m++) {
         struct error err = { 0 };
-        struct plan_masks *masks = plan_masks_create(plan, wishes, 4, most[m]);
+        struct region_masks *masks = region_masks_create(plan, wishes, 4, most[m]);
         for (size_t i = 0; i < 5; i++) {
-            struct mask *mask = plan_masks_take(masks, order[i], &err),
+            struct mask *mask = region_masks_take(masks, order[i], &err),
                         *alone = mask_from_region(&plan->regions, wishes[order[i]].region, 1, &err);
             assert_non_null(mask);
             assert_memory_equal(mask->bits, alone->bits, one);
             mask_destroy(mask);
             mask_destroy(alone);
         }
-        plan_masks_destroy(masks); /* with what nobody took */
+        region_masks_destroy(masks); /* with what nobody took */
     }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 /* Every other slice of 4 mm is a plate. */
@@ -194,10 +200,10 @@ static void thick_slices_are_not_thinned_before_the_pixels_are_as_large(void **s
         struct plan *plan = made_plan(&grid, plates_label, boxes, 1);
         struct surface_facts facts;
         struct error err = { 0 };
-        struct mesh *mesh = plan_surface(plan, 0, algorithm, SURFACE_LIGHT, &facts, &err);
+        struct mesh *mesh = surface_of(plan, 0, algorithm, SURFACE_LIGHT, &facts, &err);
         assert_non_null(mesh);
         assert_true(facts.reduction > 1 && facts.reduction <= 5);
-        assert_true(facts.n_triangles <= PLAN_LIGHT_TRIANGLES);
+        assert_true(facts.n_triangles <= COARSE_MAX_TRIANGLES);
         /* 19 plates still, each on its own; the 8-cell algorithm draws a plate of one univel as two sheets that share
          * their rim */
         if (algorithm != SURFACE_EIGHT_CELL)
@@ -205,7 +211,7 @@ static void thick_slices_are_not_thinned_before_the_pixels_are_as_large(void **s
         assert_close(mesh->bounds_lps_mm.high.z - mesh->bounds_lps_mm.low.z, 37 * 4,
                      4); /* between outermost centres and a slice more */
         mesh_unref(mesh);
-        plan_destroy(plan);
+        plan_and_derived_destroy(plan);
     }
 }
 
@@ -218,9 +224,9 @@ static void seras_head_by_either_algorithm_in_full_and_light(void **state)
     size_t n_light = 0;
     for (size_t r = 0; r < plan->regions.n_regions; r++) {
         struct surface_facts cubes, cells, light;
-        mesh_unref(plan_surface(plan, r, SURFACE_MARCHING_CUBES, SURFACE_FULL, &cubes, NULL));
-        mesh_unref(plan_surface(plan, r, SURFACE_EIGHT_CELL, SURFACE_FULL, &cells, NULL));
-        mesh_unref(plan_surface(plan, r, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &light, NULL));
+        mesh_unref(surface_of(plan, r, SURFACE_MARCHING_CUBES, SURFACE_FULL, &cubes, NULL));
+        mesh_unref(surface_of(plan, r, SURFACE_EIGHT_CELL, SURFACE_FULL, &cells, NULL));
+        mesh_unref(surface_of(plan, r, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &light, NULL));
         /* Sera3d on this head: 137,132 of 189,092, 85,240 of 108,558, 10,236 of 13,028; closed at the scan's end the
          * caps, with as many triangles by either, bring the scalp's nearer to 1 */
         double share = (double)cells.n_triangles / (double)cubes.n_triangles;
@@ -229,8 +235,8 @@ static void seras_head_by_either_algorithm_in_full_and_light(void **state)
         assert_true(light.n_triangles > 0 && light.n_triangles < cells.n_triangles);
         n_light += light.n_triangles;
     }
-    assert_true(n_light <= PLAN_LIGHT_TRIANGLES);
-    plan_destroy(plan);
+    assert_true(n_light <= COARSE_MAX_TRIANGLES);
+    plan_and_derived_destroy(plan);
 }
 
 static struct shape *shape_of(struct plan *plan, size_t region, enum surface_algorithm algorithm,
@@ -239,7 +245,8 @@ static struct shape *shape_of(struct plan *plan, size_t region, enum surface_alg
     struct error err = { 0 };
     /* a field that surfaces do not use makes no other shape */
     struct shape_key key = { .representation = REPRESENTATION_SURFACE, .algorithm = algorithm, .nurbs_order = 3 };
-    struct shape *shape = plan_shape(plan, region, &key, SURFACE_FULL, facts, &err);
+    const struct shape_want want = { subject_region(region), key, SURFACE_FULL };
+    struct shape *shape = derive_shape(derived_of(plan), &want, facts, &err);
     assert_string_equal(err.text, "");
     assert_non_null(shape);
     return shape;
@@ -250,10 +257,10 @@ static void what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds
     (void)state;
     struct plan *plan = plan_of_boxes();
     struct surface_facts facts;
-    struct plan_shape_usage usage;
-    plan_shape_usage(plan, &usage);
-    assert_int_equal(usage.n_shapes, 0);
-    assert_int_equal(usage.budget_bytes, PLAN_SHAPE_BUDGET_BYTES);
+    struct once_cache_usage usage;
+    derive_usage(derived_of(plan), &usage);
+    assert_int_equal(usage.n_results, 0);
+    assert_int_equal(usage.budget_bytes, DERIVE_BUDGET_BYTES);
     struct shape *small = shape_of(plan, 1, SURFACE_MARCHING_CUBES, &facts);
     struct shape *lone = shape_of(plan, 2, SURFACE_MARCHING_CUBES, NULL);
     struct shape *again = shape_of(plan, 1, SURFACE_MARCHING_CUBES, NULL); /* so the lone one is the oldest */
@@ -261,32 +268,33 @@ static void what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds
     assert_ptr_equal(small, again);
     assert_int_equal(facts.n_bytes, small->n_bytes);
     assert_true(facts.n_bytes >= facts.n_triangles * 12 + facts.n_vertices * 24);
-    plan_shape_usage(plan, &usage);
-    assert_int_equal(usage.n_shapes, 3);
+    derive_usage(derived_of(plan), &usage);
+    assert_int_equal(usage.n_results, 3);
     assert_int_equal(usage.n_bytes, small->n_bytes + lone->n_bytes + cells->n_bytes);
 
-    plan_set_shape_budget(plan, usage.n_bytes - 1);
-    plan_shape_usage(plan, &usage);
-    assert_int_equal(usage.n_shapes, 2);
+    derive_set_budget(derived_of(plan), usage.n_bytes - 1);
+    derive_usage(derived_of(plan), &usage);
+    assert_int_equal(usage.n_results, 2);
     assert_int_equal(usage.n_bytes, small->n_bytes + cells->n_bytes);
-    plan_set_shape_budget(plan, lone->n_bytes);
+    derive_set_budget(derived_of(plan), lone->n_bytes);
     assert_int_equal(lone->mesh->n_triangles, 8); /* an octahedron still, as this test holds it */
     struct shape *rebuilt = shape_of(plan, 2, SURFACE_MARCHING_CUBES, NULL); /* takes the place of the other */
     assert_ptr_not_equal(rebuilt, lone);
     assert_memory_equal(rebuilt->mesh->positions_lps_mm, lone->mesh->positions_lps_mm, 3 * 6 * sizeof(float));
-    plan_shape_usage(plan, &usage);
-    assert_int_equal(usage.n_shapes, 1);
+    derive_usage(derived_of(plan), &usage);
+    assert_int_equal(usage.n_results, 1);
 
-    plan_set_shape_budget(plan, 0); /* even then the newest is kept, or two who take turns would build without end */
+    derive_set_budget(derived_of(plan),
+                      0); /* even then the newest is kept, or two who take turns would build without end */
     shape_unref(shape_of(plan, 0, SURFACE_MARCHING_CUBES, NULL));
-    plan_shape_usage(plan, &usage);
-    assert_int_equal(usage.n_shapes, 1);
+    derive_usage(derived_of(plan), &usage);
+    assert_int_equal(usage.n_results, 1);
     shape_unref(small);
     shape_unref(again);
     shape_unref(lone);
     shape_unref(cells);
     shape_unref(rebuilt);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 int main(void)

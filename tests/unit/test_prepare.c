@@ -1,6 +1,7 @@
 /* Which shapes a picture waits for, and that they are there when it no longer does. */
 #include "core/pipeline/prepare.h"
 #include "tests/check.h"
+#include "tests/derived_of.h"
 #include "tests/made_plan.h"
 
 static double nested_label(struct vec3 p)
@@ -40,7 +41,7 @@ static struct preparation *prepare(struct plan *plan, const struct asked *asked)
     }
     scene.check.visible = asked->checked != NULL;
     snprintf(scene.check.region, sizeof scene.check.region, "%s", asked->checked ? asked->checked : "");
-    struct pipeline_request request = { .snapshot = snapshot_create(plan, &scene, &view, 1, field, &err),
+    struct pipeline_request request = { .snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err),
                                         .render = { 64, 64, asked->detail, false } };
     assert_string_equal(err.text, "");
     return preparation_create(&request);
@@ -97,13 +98,13 @@ static void a_picture_wants_the_shapes_that_can_be_seen(void **state)
         struct preparation *preparation = prepare(plan, &cases[i].asked);
         assert_int_equal(preparation->n_wants, cases[i].n);
         if (cases[i].n > 0) {
-            assert_int_equal(preparation->wants[0].region, cases[i].first);
+            assert_int_equal(preparation->wants[0].subject.index, cases[i].first);
             assert_int_equal(preparation->wants[0].key.representation, cases[i].representation);
             assert_int_equal(preparation->wants[0].detail, cases[i].detail);
         }
         preparation_destroy(preparation);
     }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void what_was_built_once_is_not_waited_for_again(void **state)
@@ -114,13 +115,13 @@ static void what_was_built_once_is_not_waited_for_again(void **state)
     struct plan *plan = make_plan();
     struct prepared *prepared = prepared_create();
     struct preparation *first = prepare(plan, &solid), *again = prepare(plan, &solid), *other = prepare(plan, &points);
-    struct plan_shape_usage usage;
+    struct once_cache_usage usage;
     assert_false(prepared_has_all(prepared, first));
     atomic_bool cancel = false;
     preparation_build(first, &cancel);
     assert_true(first->is_built);
-    plan_shape_usage(plan, &usage);
-    assert_int_equal(usage.n_shapes, 3);
+    derive_usage(derived_of(plan), &usage);
+    assert_int_equal(usage.n_results, 3);
     prepared_add(prepared, first);
     assert_true(prepared_has_all(prepared, again));
     assert_false(prepared_has_all(prepared, other));
@@ -128,7 +129,7 @@ static void what_was_built_once_is_not_waited_for_again(void **state)
     preparation_destroy(again);
     preparation_destroy(other);
     prepared_destroy(prepared);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void what_is_not_wanted_any_more_is_not_built(void **state)
@@ -136,7 +137,7 @@ static void what_is_not_wanted_any_more_is_not_built(void **state)
     (void)state;
     static const struct asked solid = { SCENE_KIND_3D, SCENE_REPRESENTATION_SOLID, 0.5, NULL, SURFACE_FULL };
     struct plan *plan = make_plan();
-    struct plan_shape_usage usage;
+    struct once_cache_usage usage;
     for (int way = 0; way < 3; way++) {
         _Atomic uint64_t wanted = way == 0 ? 77 : 5; /* its slot serves another picture now */
         atomic_bool cancel = way == 1;
@@ -144,12 +145,12 @@ static void what_is_not_wanted_any_more_is_not_built(void **state)
         preparation->request.id = 5;
         preparation->wanted = &wanted;
         preparation_build(preparation, &cancel);
-        plan_shape_usage(plan, &usage);
-        assert_int_equal(usage.n_shapes, way == 2 ? 3 : 0);
+        derive_usage(derived_of(plan), &usage);
+        assert_int_equal(usage.n_results, way == 2 ? 3 : 0);
         assert_int_equal(preparation->is_built, way == 2);
         preparation_destroy(preparation);
     }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 int main(void)

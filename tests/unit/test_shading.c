@@ -1,5 +1,6 @@
 #include "core/render/visible/shading.h"
 #include "tests/check.h"
+#include "tests/derived_of.h"
 #include "tests/made_plan.h"
 
 static double ball(struct vec3 p)
@@ -18,9 +19,9 @@ static struct mesh *mesh_of(double (*label)(struct vec3 p))
     struct plan *plan = made_plan(&grid, label, one, 1);
     struct surface_facts facts;
     struct error err = { 0 };
-    struct mesh *mesh = plan_surface(plan, 0, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err);
+    struct mesh *mesh = surface_of(plan, 0, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err);
     assert_non_null(mesh);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
     return mesh;
 }
 

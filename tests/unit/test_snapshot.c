@@ -1,6 +1,7 @@
 /* What a scene may name: only what the plan has. */
 #include "core/scene/snapshot.h"
 #include "tests/check.h"
+#include "tests/derived_of.h"
 #include "tests/made_plan.h"
 
 static double label(struct vec3 p)
@@ -34,7 +35,7 @@ static struct snapshot *name(struct plan *plan, enum named what, const char *id,
              : what == DOSE ? scene.dose.id
                             : scene.check.region,
              sizeof scene.image.id, "%s", id);
-    return snapshot_create(plan, &scene, &view, 1, field, err);
+    return snapshot_create(derived_of(plan), &scene, &view, 1, field, err);
 }
 
 static void images_and_doses_are_found_by_their_id_and_the_first_without_one(void **state)
@@ -51,7 +52,7 @@ static void images_and_doses_are_found_by_their_id_and_the_first_without_one(voi
         assert_int_equal(i < 3 ? snapshot->image : snapshot->dose, expected[i]);
         snapshot_unref(snapshot);
     }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 /* What lies below is left out in space, as air; where low values are white they are no air, but HU are HU. */
@@ -75,7 +76,7 @@ static void a_new_room_leaves_out_air_and_not_what_is_white(void **state)
         assert_int_equal(scene.image.low_values, SCENE_LOW_VALUES_OWN);
         scene_finish(&scene);
     }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void what_the_plan_does_not_have_is_refused_by_the_fields_place(void **state)
@@ -91,7 +92,7 @@ static void what_the_plan_does_not_have_is_refused_by_the_fields_place(void **st
         assert_string_equal(field, fields[what]);
         assert_non_null(strstr(err.text, "nowhere"));
     }
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 static void a_plan_without_images_and_doses_has_neither(void **state)
@@ -106,7 +107,7 @@ static void a_plan_without_images_and_doses_has_neither(void **state)
     assert_int_equal(snapshot->image, -1);
     assert_int_equal(snapshot->dose, -1);
     snapshot_unref(snapshot);
-    plan_destroy(plan);
+    plan_and_derived_destroy(plan);
 }
 
 int main(void)

@@ -107,9 +107,11 @@ static struct entry *keep(struct gl_cache *cache, struct entry entry)
     return kept;
 }
 
-const struct gl_shape *gl_cache_shape(const struct gl *gl, struct gl_cache *cache, struct plan *plan, size_t region,
-                                      const struct shape_key *key, enum surface_detail detail, struct error *err)
+const struct gl_shape *gl_cache_shape(const struct gl *gl, struct gl_cache *cache, struct derive *derived,
+                                      size_t region, const struct shape_key *key, enum surface_detail detail,
+                                      struct error *err)
 {
+    const struct plan *plan = derive_plan(derived);
     detail = key->representation == REPRESENTATION_SURFACE ? detail : SURFACE_FULL;
     struct entry *entry = find_shape(cache, plan, region, key, detail);
     if (entry) {
@@ -126,10 +128,11 @@ const struct gl_shape *gl_cache_shape(const struct gl *gl, struct gl_cache *cach
                           .n_bytes = sizeof made,
                           .used = cache->n_pictures };
     made.shape.bounds_lps_mm = box3_empty();
-    struct shape *shape = plan_shape(plan, region, key, detail, &facts, &why);
+    struct shape *shape =
+        derive_shape(derived, &(struct shape_want){ subject_region(region), *key, detail }, &facts, &why);
     bool is_good = shape ? gl_upload_shape(gl, shape, visible_shading_passes(key, facts.reduction), &made.shape,
                                            &made.n_bytes, &why)
-                         : plan_is_refusal(why.code);
+                         : derive_is_refusal(why.code);
     if (!shape && is_good)
         log_info("region %s is not drawn: %s", plan->regions.regions[region].id, why.text);
     shape_unref(shape);

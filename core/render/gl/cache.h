@@ -1,6 +1,7 @@
 #pragma once
 /* What is kept on the graphics card: shapes, images, label layers; each uploaded on first use, dropped with its plan.
  */
+#include "core/derive/shapes.h"
 #include "core/render/gl/table.h"
 #include "core/scene/snapshot.h"
 #include "core/surface/shape.h"
@@ -33,8 +34,8 @@ void gl_cache_forget(const struct gl *gl, struct gl_cache *cache, const struct p
 void gl_cache_trim(const struct gl *gl, struct gl_cache *cache);
 
 /* Borrowed for this picture. A region that cannot be shown in this way is empty.
- * errors ERROR_GL, ERROR_MEMORY, ERROR_LIMIT, and those of plan_shape */
-NODISCARD const struct gl_shape *gl_cache_shape(const struct gl *gl, struct gl_cache *cache, struct plan *plan,
+ * errors ERROR_GL, ERROR_MEMORY, ERROR_LIMIT, and those of derive_shape */
+NODISCARD const struct gl_shape *gl_cache_shape(const struct gl *gl, struct gl_cache *cache, struct derive *derived,
                                                 size_t region, const struct shape_key *key, enum surface_detail detail,
                                                 struct error *err);
 /* Borrowed, good until the plan is forgotten. errors ERROR_GL, ERROR_MEMORY, ERROR_LIMIT */

@@ -14,7 +14,7 @@ struct item {
 static const struct gl_shape *shape_of(const struct gl_frame *frame, size_t region, struct error *err)
 {
     struct shape_key key = visible_shape_key(frame->snapshot, region);
-    return gl_cache_shape(frame->gl, frame->cache, frame->snapshot->plan, region, &key, frame->detail, err);
+    return gl_cache_shape(frame->gl, frame->cache, frame->snapshot->derived, region, &key, frame->detail, err);
 }
 
 static const struct box3 *bounds(void *context, size_t region, struct error *err)

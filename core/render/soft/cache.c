@@ -150,9 +150,10 @@ static bool fill(struct entry *entry, uint32_t reduction, struct error *err)
     return is_good;
 }
 
-const struct soft_shape *soft_cache_shape(struct soft_cache *cache, struct plan *plan, size_t region,
+const struct soft_shape *soft_cache_shape(struct soft_cache *cache, struct derive *derived, size_t region,
                                           const struct shape_key *key, enum surface_detail detail, struct error *err)
 {
+    const struct plan *plan = derive_plan(derived);
     detail = key->representation == REPRESENTATION_SURFACE ? detail : SURFACE_FULL;
     for (struct entry *entry = cache->first; entry; entry = entry->next)
         if (entry->plan == plan && entry->region == region && entry->detail == detail &&
@@ -170,8 +171,8 @@ const struct soft_shape *soft_cache_shape(struct soft_cache *cache, struct plan 
     made->used = cache->n_pictures;
     made->drawn.bounds_lps_mm = box3_empty();
     made->n_bytes = sizeof *made;
-    made->shape = plan_shape(plan, region, key, detail, &facts, &why);
-    if (made->shape ? fill(made, facts.reduction, &why) : plan_is_refusal(why.code)) {
+    made->shape = derive_shape(derived, &(struct shape_want){ subject_region(region), *key, detail }, &facts, &why);
+    if (made->shape ? fill(made, facts.reduction, &why) : derive_is_refusal(why.code)) {
         if (!made->shape)
             log_info("region %s is not drawn: %s", plan->regions.regions[region].id, why.text);
         made->next = cache->first;

@@ -1,6 +1,7 @@
 #pragma once
 /* Shapes as the rasteriser wants them, kept by least recent use within a budget of memory, no longer than their plan.
  * Images and labels are read where the plan has them. */
+#include "core/derive/shapes.h"
 #include "core/render/soft/kernels.h"
 #include "core/scene/snapshot.h"
 #include "core/surface/shape.h"
@@ -30,7 +31,7 @@ void soft_cache_forget(struct soft_cache *cache, const struct plan *plan);
 uint64_t soft_cache_trim(struct soft_cache *cache, uint64_t oldest_begun);
 
 /* Borrowed until the picture is done. A region that cannot be shown in this way is empty.
- * errors ERROR_MEMORY, ERROR_LIMIT, and those of plan_shape */
-NODISCARD const struct soft_shape *soft_cache_shape(struct soft_cache *cache, struct plan *plan, size_t region,
+ * errors ERROR_MEMORY, ERROR_LIMIT, and those of derive_shape */
+NODISCARD const struct soft_shape *soft_cache_shape(struct soft_cache *cache, struct derive *derived, size_t region,
                                                     const struct shape_key *key, enum surface_detail detail,
                                                     struct error *err);

@@ -8,7 +8,7 @@
 static const struct soft_shape *shape_of(const struct soft_frame *frame, size_t region, struct error *err)
 {
     struct shape_key key = visible_shape_key(frame->snapshot, region);
-    return soft_cache_shape(frame->cache, frame->snapshot->plan, region, &key, frame->options.detail, err);
+    return soft_cache_shape(frame->cache, frame->snapshot->derived, region, &key, frame->options.detail, err);
 }
 
 static const struct box3 *bounds(void *context, size_t region, struct error *err)

@@ -2,6 +2,7 @@
 /* What render.h asks of a back end and hears from it: its kind, the options and timing of a picture, pauses. Knows no
  * back end. */
 #include "core/base/image.h"
+#include "core/derive/shapes.h"
 #include "core/scene/snapshot.h"
 
 enum render_back_end {

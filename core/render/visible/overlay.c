@@ -87,11 +87,13 @@ static bool fill_univels(struct entry *entry, struct error *err)
     return is_good;
 }
 
-static bool fill_shape(struct entry *entry, struct plan *plan, struct error *err)
+static bool fill_shape(struct entry *entry, struct derive *derived, struct error *err)
 {
     struct error why = { 0 };
-    struct shape *shape = plan_shape(plan, entry->region, &entry->key, SURFACE_FULL, NULL, &why);
-    entry->is_absent = !shape && plan_is_refusal(why.code);
+    struct shape *shape =
+        derive_shape(derived, &(struct shape_want){ subject_region(entry->region), entry->key, SURFACE_FULL }, NULL,
+                     &why);
+    entry->is_absent = !shape && derive_is_refusal(why.code);
     entry->is_open = entry->key.representation == REPRESENTATION_FAN;
     bool is_good = shape ? cut_mesh(shape->mesh, &entry->plane, &entry->lines, &why) : entry->is_absent;
     shape_unref(shape);
@@ -115,7 +117,7 @@ static void trim(struct overlay *overlay)
 }
 
 /* Borrowed until the next picture. */
-static const struct entry *lines_of(struct overlay *overlay, struct plan *plan, const struct entry *wanted,
+static const struct entry *lines_of(struct overlay *overlay, struct derive *derived, const struct entry *wanted,
                                     struct error *err)
 {
     for (struct entry **at = &overlay->first; *at; at = &(*at)->next)
@@ -128,7 +130,7 @@ static const struct entry *lines_of(struct overlay *overlay, struct plan *plan, 
         }
     struct entry *made = mem_new(sizeof *made);
     *made = *wanted;
-    if (!(made->what == LINES_OF_SHAPE ? fill_shape(made, plan, err) : fill_univels(made, err))) {
+    if (!(made->what == LINES_OF_SHAPE ? fill_shape(made, derived, err) : fill_univels(made, err))) {
         entry_destroy(made);
         return NULL;
     }
@@ -172,7 +174,7 @@ static bool paint_outline(const struct job *job, size_t region, struct error *er
                             .plane = snapshot->pane,
                             .method = style->method == SCENE_OUTLINE_METHOD_TRACED ? OUTLINE_TRACED
                                                                                    : OUTLINE_MARCHING_SQUARES };
-    const struct entry *found = lines_of(job->overlay, snapshot->plan, &wanted, err);
+    const struct entry *found = lines_of(job->overlay, snapshot->derived, &wanted, err);
     if (found)
         paint_lines(job, &found->lines, style->width_px, snapshot->styles[region].color_rgb);
     return found != NULL;
@@ -188,7 +190,7 @@ static bool paint_check(const struct job *job, size_t region, struct check_count
     struct vec3 spacing = grid_spacing_mm(grid);
     /* never along faces of voxels */
     wanted.plane = plane_moved(&snapshot->pane, CHECK_NUDGE * fmin(fmin(spacing.x, spacing.y), spacing.z));
-    const struct entry *surface = lines_of(job->overlay, snapshot->plan, &wanted, err);
+    const struct entry *surface = lines_of(job->overlay, snapshot->derived, &wanted, err);
     struct cut_region cut;
     if (!surface || !cut_region_init(&cut, &snapshot->plan->regions, region, err))
         return false;
@@ -196,7 +198,7 @@ static bool paint_check(const struct job *job, size_t region, struct check_count
                    check_paint(&cut, &surface->lines, job->camera, &wanted.plane, job->image, job->scale, check, err);
     cut_region_finish(&cut);
     struct entry border = { .plan = snapshot->plan, .region = region, .what = LINES_OF_BORDER, .plane = wanted.plane };
-    const struct entry *univels = is_good ? lines_of(job->overlay, snapshot->plan, &border, err) : NULL;
+    const struct entry *univels = is_good ? lines_of(job->overlay, snapshot->derived, &border, err) : NULL;
     if (!univels)
         return false;
     paint_lines(job, &univels->lines, 1, univel_rgb);

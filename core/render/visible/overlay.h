@@ -11,6 +11,7 @@ struct overlay *overlay_create(void);
 void overlay_destroy(struct overlay *overlay);
 void overlay_forget(struct overlay *overlay, const struct plan *plan);
 
-/* camera: the snapshot's, resolved. check: NULL when nobody wants to know. errors ERROR_MEMORY, those of plan_shape */
+/* camera: the snapshot's, resolved. check: NULL when nobody wants to know. errors ERROR_MEMORY, those of derive_shape
+ */
 NODISCARD bool overlay_draw(struct overlay *overlay, const struct snapshot *snapshot, const struct camera *camera,
                             struct image *image, struct check_counts *check, struct error *err);

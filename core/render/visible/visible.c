@@ -218,18 +218,19 @@ bool visible_is_checked(const struct snapshot *snapshot, size_t region)
 }
 
 /* What a region of a picture is made of. */
-static struct plan_want want_of(const struct snapshot *snapshot, size_t region, enum surface_detail detail)
+static struct shape_want want_of(const struct snapshot *snapshot, size_t region, enum surface_detail detail)
 {
     bool is_in_space = !snapshot_is_pane(snapshot);
-    struct plan_want want = { region,
-                              is_in_space ? visible_shape_key(snapshot, region) : visible_checked_key(snapshot, region),
-                              SURFACE_FULL };
+    struct shape_want want = { subject_region(region),
+                               is_in_space ? visible_shape_key(snapshot, region)
+                                           : visible_checked_key(snapshot, region),
+                               SURFACE_FULL };
     if (is_in_space && want.key.representation == REPRESENTATION_SURFACE)
         want.detail = detail;
     return want;
 }
 
-size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct plan_want *wants)
+size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct shape_want *wants)
 {
     bool is_in_space = !snapshot_is_pane(snapshot);
     size_t n = 0;
@@ -247,12 +248,12 @@ size_t visible_missing(const struct snapshot *snapshot, enum surface_detail deta
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
         if (!(is_in_space ? is_drawn(snapshot, i) : visible_is_checked(snapshot, i)))
             continue;
-        struct plan_want want = want_of(snapshot, i, detail);
+        struct shape_want want = want_of(snapshot, i, detail);
         struct error why = { 0 };
-        if (!plan_shape_refused(snapshot->plan, &want, &why))
+        if (!derive_shape_is_refused(snapshot->derived, &want, &why))
             continue;
         if (n < VISIBLE_MAX_MISSING)
-            missing[n] = (struct visible_missing){ i, why };
+            missing[n] = (struct visible_missing){ want.subject, why };
         n++;
     }
     return n;

@@ -1,7 +1,7 @@
 #pragma once
 /* What of a snapshot is drawn, and in which order: the same for every back end. Knows no pixels and no GL. */
+#include "core/derive/shapes.h"
 #include "core/scene/snapshot.h"
-#include "core/surface/shape.h"
 
 /* What the scene wants a region drawn as; normalised. */
 struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t region);
@@ -12,12 +12,12 @@ struct shape_key visible_surface_key(const struct snapshot *snapshot);
 /* The shapes that a picture of the snapshot needs, as far as the scene tells; wants holds as many as the plan has
  * regions. Returns how many. For building them before the picture is drawn: what is missing here the renderer has built
  * itself. */
-size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct plan_want *wants);
+size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct shape_want *wants);
 /* Regions that a picture of the snapshot should show and does not, because their shape cannot be had
- * (plan_shape_refused). After it was drawn. Fills the first VISIBLE_MAX_MISSING; returns how many there are. */
+ * (derive_shape_is_refused). After it was drawn. Fills the first VISIBLE_MAX_MISSING; returns how many there are. */
 enum { VISIBLE_MAX_MISSING = 32 };
 struct visible_missing {
-    size_t region;
+    struct subject subject;
     struct error why;
 };
 size_t visible_missing(const struct snapshot *snapshot, enum surface_detail detail,

@@ -1,0 +1,72 @@
+#pragma once
+/* The store of what is computed from a plan for a scene. A recipe (a plain struct that names all inputs) leads to an
+ * immutable, reference-counted result, which is built once, by the first thread that asks, and kept within one budget
+ * of memory over all kinds of result. Knows no kind by name: a kind is one file of its own, which exports its functions
+ * and calls derive_get with its `struct derive_kind`. Kinds now: region_shape.h, coarse_reduction.h. */
+#include "core/base/once_cache.h"
+#include "core/derive/subject.h"
+
+struct derive;
+
+/* The first member of every recipe. */
+struct derive_recipe {
+    const struct derive_kind *kind;
+    struct subject subject;
+};
+
+/* The first member of every result. Frozen but for its counter. */
+struct derive_result {
+    const struct derive_kind *kind;
+    uint64_t n_bytes; /* memory that dropping the result frees; 0: too small to count, never dropped */
+    _Atomic int references;
+};
+
+struct derive_kind {
+    size_t recipe_size; /* of the kind's recipe struct */
+    /* Whether two recipes of this kind and of one subject have the same other inputs. NULL: there are none. */
+    bool (*is_equal)(const struct derive_recipe *a, const struct derive_recipe *b);
+    /* Builds the result, begun with derive_result_init; NULL on failure. Any thread, no lock held; may ask the store
+     * for other results, as long as no two builds wait for each other. way: as given to derive_get. */
+    struct derive_result *(*build)(struct derive *derive, const struct derive_recipe *recipe, const void *way,
+                                   struct error *err);
+    void (*destroy)(struct derive_result *result); /* after the last reference is dropped */
+};
+
+#define DERIVE_BUDGET_BYTES ((uint64_t)1 << 30) /* unless set otherwise */
+
+/* The plan is borrowed and outlives the store; it is frozen from then on. */
+struct derive *derive_create(const struct plan *plan);
+void derive_destroy(struct derive *derive);
+const struct plan *derive_plan(const struct derive *derive);
+
+/* One reference, the creator's. n_bytes as in derive_result. */
+void derive_result_init(struct derive_result *result, const struct derive_kind *kind, uint64_t n_bytes);
+void derive_result_unref(struct derive_result *result);
+
+/* The result of a recipe: the kept one, or built now. The first thread that asks builds; others that ask for the same
+ * recipe wait. What was not used for longest is dropped when all that is kept exceeds the budget; a reference keeps its
+ * result alive.
+ *
+ *   way      how to build, handed to the kind's build: what makes it faster and changes nothing of the result (threads,
+ *            a mask that is there already). May be NULL if the kind allows it
+ *   returns  one reference, the caller's; NULL on failure
+ *   errors   those of the kind's build. A refusal (derive_is_refusal) is remembered and given again without a build;
+ *            after any other failure the next thread that asks builds again
+ *   thread   any */
+NODISCARD struct derive_result *derive_get(struct derive *derive, const struct derive_recipe *recipe, const void *way,
+                                           struct error *err);
+/* Keeps a result that was built on the way to another one, unless the store has one for the recipe. Adds a reference.
+ */
+void derive_offer(struct derive *derive, const struct derive_recipe *recipe, struct derive_result *result);
+/* True if the result is kept, is being built, or was refused. It may be dropped before it is asked for. */
+bool derive_has(struct derive *derive, const struct derive_recipe *recipe);
+
+/* True if a build that failed with this code fails each time: by what the plan is, or by a written limit. */
+bool derive_is_refusal(enum error_code code);
+/* True if the recipe was refused before; fills why. Builds nothing. ONCE_CACHE_MAX_REFUSALS are remembered. */
+bool derive_is_refused(struct derive *derive, const struct derive_recipe *recipe, struct error *why);
+bool derive_has_refusals(struct derive *derive);
+
+/* Drops at once what exceeds the new budget. */
+void derive_set_budget(struct derive *derive, uint64_t n_bytes);
+void derive_usage(struct derive *derive, struct once_cache_usage *usage);
