@@ -36,7 +36,7 @@ static inline void plan_and_derived_destroy(struct plan *plan)
 
 /* The surface of a region as its mesh; one reference, the caller's. facts may be NULL. */
 static inline struct mesh *surface_of(const struct plan *plan, size_t region, enum surface_algorithm algorithm,
-                                      enum surface_detail detail, struct surface_facts *facts, struct error *err)
+                                      enum surface_detail detail, struct shape_facts *facts, struct error *err)
 {
     const struct shape_want want = { subject_region(region),
                                      { .representation = REPRESENTATION_SURFACE, .algorithm = algorithm },

@@ -28,7 +28,7 @@ struct result {
 /* The coarse surfaces of one region, by reduction; NULL: not tried, or failed. */
 struct ladder {
     struct shape *shape[MAX_REDUCTION + 1];
-    struct surface_facts facts[MAX_REDUCTION + 1];
+    struct shape_facts facts[MAX_REDUCTION + 1];
 };
 
 struct search {

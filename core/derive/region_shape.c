@@ -31,13 +31,13 @@ struct mask *region_shape_mask(const struct plan *plan, struct subject subject, 
 }
 
 static struct shape *build_other(const struct shape_key *key, const struct mask *mask, int n_threads,
-                                 struct surface_facts *facts, struct error *err)
+                                 struct shape_facts *facts, struct error *err)
 {
     int64_t began_us = clock_now_us();
     struct shape *shape = shape_make_from_mask(key, mask, n_threads, err);
     if (!shape)
         return NULL;
-    *facts = (struct surface_facts){ .reduction = 1, .n_univels = mask_count(mask) };
+    *facts = (struct shape_facts){ .reduction = 1, .n_univels = mask_count(mask) };
     facts->build_ms = (double)(clock_now_us() - began_us) / 1000;
     facts->univel_volume_mm3 = (double)facts->n_univels * fabs(affine_determinant(&mask->lps_mm_from_ijk));
     shape_facts_count(shape, facts);
@@ -68,7 +68,7 @@ static void destroy(struct derive_result *base)
 static const struct derive_kind kind = { sizeof(struct region_shape_recipe), is_equal, build, destroy };
 
 /* Takes the shape. */
-static struct region_shape *result_of(struct shape *shape, const struct surface_facts *facts)
+static struct region_shape *result_of(struct shape *shape, const struct shape_facts *facts)
 {
     struct region_shape *result = mem_new(sizeof *result);
     derive_result_init(&result->base, &kind, shape->n_bytes);
@@ -84,7 +84,7 @@ static struct derive_result *build(struct derive *derive, const struct derive_re
     const struct way *way = argument;
     const struct plan *plan = derive_plan(derive);
     struct shape *shape = NULL;
-    struct surface_facts facts = { 0 };
+    struct shape_facts facts = { 0 };
     int64_t began_us = clock_now_us();
     struct mask *mask = way->masks ? region_masks_take(way->masks, way->wish, err)
                                    : region_shape_mask(plan, base->subject, &recipe->key, err);
@@ -119,7 +119,7 @@ struct region_shape *region_shape_get(struct derive *derive, const struct region
 }
 
 void region_shape_offer(struct derive *derive, const struct region_shape_recipe *recipe, const struct shape *shape,
-                        const struct surface_facts *facts)
+                        const struct shape_facts *facts)
 {
     struct region_shape *result = result_of(shape_ref(shape), facts);
     derive_offer(derive, &recipe->base, &result->base);

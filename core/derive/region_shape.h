@@ -13,7 +13,7 @@ struct region_shape_recipe {
 struct region_shape {
     struct derive_result base;
     struct shape *shape;
-    struct surface_facts facts; /* distances are not measured */
+    struct shape_facts facts; /* distances are not measured */
 };
 
 struct region_shape_recipe region_shape_recipe(struct subject subject, const struct shape_key *key, uint32_t reduction);
@@ -23,7 +23,7 @@ NODISCARD struct region_shape *region_shape_get(struct derive *derive, const str
                                                 struct error *err);
 /* Keeps a shape that was built on the way to something else (derive_offer). Adds a reference to the shape. */
 void region_shape_offer(struct derive *derive, const struct region_shape_recipe *recipe, const struct shape *shape,
-                        const struct surface_facts *facts);
+                        const struct shape_facts *facts);
 /* The mask that a shape is made from: the region with its descendants, or its own univels alone when the key asks for
  * the inner boundary. errors as mask_from_region */
 NODISCARD struct mask *region_shape_mask(const struct plan *plan, struct subject subject, const struct shape_key *key,

@@ -23,7 +23,7 @@ static struct mesh *extract(enum surface_algorithm algorithm, const struct mask 
 
 /* Takes the mesh. The facts count the univels of the unreduced mask. */
 static struct shape *shape_of(struct mesh *mesh, const struct mask *full, uint32_t reduction, int64_t started_us,
-                              struct surface_facts *facts)
+                              struct shape_facts *facts)
 {
     struct shape *shape = mem_new(sizeof *shape);
     atomic_init(&shape->references, 1);
@@ -32,7 +32,7 @@ static struct shape *shape_of(struct mesh *mesh, const struct mask *full, uint32
     shape->bounds_lps_mm = mesh->bounds_lps_mm;
     shape->n_bytes =
         sizeof *shape + sizeof *mesh + mesh->n_vertices * 6 * sizeof(float) + mesh->n_triangles * 3 * sizeof(uint32_t);
-    *facts = (struct surface_facts){ .n_univels = mask_count(full), .reduction = reduction };
+    *facts = (struct shape_facts){ .n_univels = mask_count(full), .reduction = reduction };
     facts->univel_volume_mm3 = (double)facts->n_univels * fabs(affine_determinant(&full->lps_mm_from_ijk));
     shape_facts_count(shape, facts);
     facts->build_ms = (double)(clock_now_us() - started_us) / 1000;
@@ -40,7 +40,7 @@ static struct shape *shape_of(struct mesh *mesh, const struct mask *full, uint32
 }
 
 struct shape *region_surface_build(const struct mask *mask, enum surface_algorithm algorithm, int n_threads,
-                                   struct surface_facts *facts, struct error *err)
+                                   struct shape_facts *facts, struct error *err)
 {
     int64_t started_us = clock_now_us();
     struct mesh *mesh = extract(algorithm, mask, n_threads, err);
@@ -66,7 +66,7 @@ static void factors_of(const struct mask *mask, uint32_t reduction, uint32_t fac
 /* A region that has no triangle at this reduction (small ones by the 8-cell algorithm) is reduced less: it must not
  * vanish in motion. */
 struct shape *region_surface_build_coarse(const struct mask *full, enum surface_algorithm algorithm, uint32_t reduction,
-                                          struct surface_facts *facts, struct error *err)
+                                          struct shape_facts *facts, struct error *err)
 {
     int64_t started_us = clock_now_us();
     struct shape *shape = NULL;

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-void shape_facts_count(const struct shape *shape, struct surface_facts *facts)
+void shape_facts_count(const struct shape *shape, struct shape_facts *facts)
 {
     facts->distance_mean_mm = facts->distance_max_mm = NAN;
     facts->n_bytes = shape->n_bytes;

@@ -2,7 +2,7 @@
 /* What was built of a region, for people to read. */
 #include "core/surface/shape.h"
 
-struct surface_facts {
+struct shape_facts {
     size_t n_triangles, n_vertices; /* vertices of triangles or of lines */
     size_t n_lines, n_points;       /* closed outlines; points */
     double area_mm2, volume_mm3;    /* of triangles; volume: enclosed, not-a-number for a fan: its triangles overlap */
@@ -16,4 +16,4 @@ struct surface_facts {
 };
 
 /* Fills what the shape alone tells: counts, area, volume, memory; distances become not-a-number. */
-void shape_facts_count(const struct shape *shape, struct surface_facts *facts);
+void shape_facts_count(const struct shape *shape, struct shape_facts *facts);

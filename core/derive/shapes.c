@@ -21,12 +21,12 @@ static bool find_recipe(struct derive *derive, const struct shape_want *want, st
         return error_set(err, ERROR_RANGE, "region %zu; the plan has %zu", want->subject.index, set->n_regions);
     if (set->regions[want->subject.index].n_voxels == 0)
         return error_set(err, ERROR_RANGE, "the region \"%s\" has no voxel", set->regions[want->subject.index].name);
-    if (want->detail == SURFACE_LIGHT && recipe->key.representation == REPRESENTATION_SURFACE)
+    if (want->detail == SURFACE_COARSE && recipe->key.representation == REPRESENTATION_SURFACE)
         recipe->reduction = coarse_reduction_get(derive, recipe->key.algorithm, err);
     return recipe->reduction > 0;
 }
 
-struct shape *derive_shape(struct derive *derive, const struct shape_want *want, struct surface_facts *facts,
+struct shape *derive_shape(struct derive *derive, const struct shape_want *want, struct shape_facts *facts,
                            struct error *err)
 {
     struct region_shape_recipe recipe;
@@ -49,7 +49,7 @@ bool derive_shape_is_refused(struct derive *derive, const struct shape_want *wan
 }
 
 bool derive_shape_distance(const struct derive *derive, const struct shape_want *want, const struct shape *shape,
-                           struct surface_facts *facts, struct error *err)
+                           struct shape_facts *facts, struct error *err)
 {
     const float *positions = shape->mesh    ? shape->mesh->positions_lps_mm
                              : shape->lines ? shape->lines->positions_lps_mm

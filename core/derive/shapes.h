@@ -3,9 +3,9 @@
 #include "core/derive/derive.h"
 #include "core/derive/shape_facts.h"
 
-/* Detail of a surface: FULL is every univel; LIGHT is for moving pictures: made from the mask reduced until all
+/* Detail of a surface: FULL is every univel; COARSE is for moving pictures: made from the mask reduced until all
  * surfaces of the plan by the same algorithm stay together under COARSE_MAX_TRIANGLES, or the reduction is 8. */
-enum surface_detail { SURFACE_FULL, SURFACE_LIGHT };
+enum surface_detail { SURFACE_FULL, SURFACE_COARSE };
 
 /* A shape that is asked for. */
 struct shape_want {
@@ -21,14 +21,14 @@ struct shape_want {
  *   returns  one reference, the caller's; NULL on failure
  *   errors   ERROR_RANGE no such region, or one without a voxel; those of surface_make and shape_make
  *   thread   any; the first builds, others wait */
-NODISCARD struct shape *derive_shape(struct derive *derive, const struct shape_want *want, struct surface_facts *facts,
+NODISCARD struct shape *derive_shape(struct derive *derive, const struct shape_want *want, struct shape_facts *facts,
                                      struct error *err);
 /* True if the shape was tried before and refused (derive_is_refusal); fills why. */
 bool derive_shape_is_refused(struct derive *derive, const struct shape_want *want, struct error *why);
 /* Fills the distances of facts: of the shape's vertices from the border of the univels it was made from. Not part of
  * the shape's own facts, as it takes about as long as building. errors those of shape_distance */
 NODISCARD bool derive_shape_distance(const struct derive *derive, const struct shape_want *want,
-                                     const struct shape *shape, struct surface_facts *facts, struct error *err);
+                                     const struct shape *shape, struct shape_facts *facts, struct error *err);
 
 /* Builds several shapes side by side, a thread each, in this order, to have them ready; what fails is logged. go_on is
  * asked at the beginning and before each shape that the calling thread builds; false ends the rest; NULL: always true.

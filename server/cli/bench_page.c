@@ -75,7 +75,7 @@ static void put_row(FILE *out, const struct bench_row *row)
         fputs(" | | | | | | | | |\n", out);
         return;
     }
-    const struct surface_facts *facts = &row->facts;
+    const struct shape_facts *facts = &row->facts;
     bool has_mesh = facts->n_triangles > 0;
     if (has_mesh)
         put_count(out, facts->n_triangles);

@@ -9,7 +9,7 @@ enum { BENCH_MAX_METHODS = 24, BENCH_SIZE_PX = 650 }; /* Sera3d's window */
 struct bench_row {
     char region[REGION_NAME_SIZE];
     const char *method; /* borrowed: a constant */
-    struct surface_facts facts;
+    struct shape_facts facts;
     double made_ms;    /* median */
     double draw_ms;    /* median, the region alone, full detail, turning; not-a-number when it was not drawn */
     char refusal[240]; /* not "": why there is no such shape */

@@ -58,7 +58,7 @@ static bool export_region(const struct plan *plan, const struct export_job *job,
     const struct region *region = find_region(plan, job->region, err);
     if (!region)
         return false;
-    struct surface_facts facts;
+    struct shape_facts facts;
     const struct shape_query *query = &job->shape;
     const struct shape_want want = { subject_region((size_t)(region - plan->regions.regions)), query->key,
                                      SURFACE_FULL };

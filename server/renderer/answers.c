@@ -55,7 +55,7 @@ cJSON *answer_shape(struct derive *derived, struct subject subject, const struct
                     size_t *n_file, struct problem *problem)
 {
     struct error err = { 0 };
-    struct surface_facts facts;
+    struct shape_facts facts;
     const struct plan *plan = derive_plan(derived);
     const struct shape_want want = { subject, query->key, SURFACE_FULL };
     *file = NULL;

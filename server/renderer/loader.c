@@ -122,7 +122,7 @@ static void build_ahead(struct loader *loader)
     enum surface_algorithm algorithm;
     size_t n = visible_regions(loader->plan, subjects, &algorithm);
     struct building building = { loader, clock_now_us(), 2 * n + 1, 0, false };
-    derive_build_surfaces(loader->derived, subjects, n, algorithm, SURFACE_LIGHT, look_around, &building);
+    derive_build_surfaces(loader->derived, subjects, n, algorithm, SURFACE_COARSE, look_around, &building);
     derive_build_surfaces(loader->derived, subjects, n, algorithm, SURFACE_FULL, look_around, &building);
     if (!building.is_told)
         desk_put(loader->desk, &(struct note){ .type = NOTE_BUILT });

@@ -215,7 +215,7 @@ void pictures_draw(struct session *session, uint64_t id, const cJSON *json)
         .id = id,
         .source = source_number(json_text(json, "source")),
         .snapshot = snapshot,
-        .render = { width > 1 ? width : 1, height > 1 ? height : 1, is_light ? SURFACE_LIGHT : SURFACE_FULL,
+        .render = { width > 1 ? width : 1, height > 1 ? height : 1, is_light ? SURFACE_COARSE : SURFACE_FULL,
                     json_flag(json, "still", false) },
         .encode = { is_png ? ENCODE_PNG : ENCODE_JPEG, (int)quality, json_flag(json, "full_color", false) },
     };
@@ -250,7 +250,7 @@ void pictures_warm_up(struct session *session)
     struct pipeline_request request = {
         .id = WARM_UP_ID,
         .snapshot = snapshot_create(session->derived, &scene, &view, 0, field, &err),
-        .render = { WARM_UP_PX, WARM_UP_PX, SURFACE_LIGHT, false },
+        .render = { WARM_UP_PX, WARM_UP_PX, SURFACE_COARSE, false },
         .encode = { ENCODE_JPEG, 50, false },
     };
     if (request.snapshot && !pipeline_submit(session->pipeline, &request, &err))

@@ -141,12 +141,12 @@ int main(void)
     for (int back_end = RENDER_EGL_DEVICE; !gl && back_end <= RENDER_OSMESA; back_end++)
         gl = start((enum render_back_end)back_end);
 
-    bench_drawing("moving", SCENE_KIND_3D, 1, SURFACE_LIGHT, false);
-    bench_drawing("moving at 75 %", SCENE_KIND_3D, 0.75, SURFACE_LIGHT, false);
-    bench_drawing("moving at 60 %", SCENE_KIND_3D, 0.6, SURFACE_LIGHT, false);
-    bench_drawing("moving at 50 %", SCENE_KIND_3D, 0.5, SURFACE_LIGHT, false);
+    bench_drawing("moving", SCENE_KIND_3D, 1, SURFACE_COARSE, false);
+    bench_drawing("moving at 75 %", SCENE_KIND_3D, 0.75, SURFACE_COARSE, false);
+    bench_drawing("moving at 60 %", SCENE_KIND_3D, 0.6, SURFACE_COARSE, false);
+    bench_drawing("moving at 50 %", SCENE_KIND_3D, 0.5, SURFACE_COARSE, false);
     bench_drawing("still", SCENE_KIND_3D, 1, SURFACE_FULL, true);
-    bench_drawing("axial pane", SCENE_KIND_AXIAL, 1, SURFACE_LIGHT, false);
+    bench_drawing("axial pane", SCENE_KIND_AXIAL, 1, SURFACE_COARSE, false);
     bench_encoding("JPEG quality 80 4:2:0", (struct encode_options){ ENCODE_JPEG, 80, false });
     bench_encoding("JPEG quality 92 4:4:4", (struct encode_options){ ENCODE_JPEG, 92, true });
     bench_encoding("PNG", (struct encode_options){ ENCODE_PNG, 0, false });

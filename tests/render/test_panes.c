@@ -236,7 +236,7 @@ static void put_box(struct plan *plan, enum region_representation representation
     struct shape *shape = mem_new(sizeof *shape);
     const struct shape_key key = { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 };
     const struct region_shape_recipe recipe = region_shape_recipe(subject_region(0), &key, 1);
-    struct surface_facts facts = { .reduction = 1 };
+    struct shape_facts facts = { .reduction = 1 };
     shape->kind = SHAPE_TRIANGLES;
     shape->is_faceted = is_faceted;
     shape->references = 1;

@@ -426,7 +426,7 @@ static void light_surfaces_are_marked_and_lighter(void **state)
     image_destroy(
         shots_take(plan, shots_scene(plan), view, &(struct render_options){ 400, 300, SURFACE_FULL, false }, &full));
     image_destroy(
-        shots_take(plan, shots_scene(plan), view, &(struct render_options){ 400, 300, SURFACE_LIGHT, false }, &light));
+        shots_take(plan, shots_scene(plan), view, &(struct render_options){ 400, 300, SURFACE_COARSE, false }, &light));
     assert_false(full.is_light);
     assert_true(light.is_light);
     assert_true(full.n_triangles > 6 * 128 * 128 * 2);

@@ -28,7 +28,7 @@ static void put(struct plan *plan, enum region_representation representation, st
 {
     const struct shape_key key = { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 };
     const struct region_shape_recipe recipe = region_shape_recipe(subject_region(0), &key, 1);
-    struct surface_facts facts = { .reduction = 1 };
+    struct shape_facts facts = { .reduction = 1 };
     shape->references = 1;
     region_shape_offer(derived_of(plan), &recipe, shape, &facts);
     shape_unref(shape);

@@ -118,7 +118,7 @@ static bool submit_picture(struct pipeline *pipeline, struct plan *plan, uint64_
     struct pipeline_request request = { .id = id,
                                         .source = source,
                                         .snapshot = snapshot,
-                                        .render = { width_px, height_px, SURFACE_LIGHT, is_still },
+                                        .render = { width_px, height_px, SURFACE_COARSE, is_still },
                                         .encode = { ENCODE_JPEG, 80, false } };
     return pipeline_submit(pipeline, &request, err);
 }

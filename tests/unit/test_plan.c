@@ -124,13 +124,13 @@ static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
     folder_put_text(folder, "plan.json", PLAN("\"regions\":[{\"path\":\"labels.nii\"}]"));
     struct plan *plan = plan_of_folder(folder, &err);
     size_t skin = (size_t)(region_of(plan, "label-1") - plan->regions.regions);
-    struct surface_facts facts, light;
+    struct shape_facts facts, coarse;
     struct mesh *first = surface_of(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err);
     struct mesh *second = surface_of(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err);
-    struct mesh *moving = surface_of(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_LIGHT, &light, &err);
+    struct mesh *moving = surface_of(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_COARSE, &coarse, &err);
     assert_ptr_equal(first, second);
     assert_ptr_equal(first, moving); /* so few triangles that nothing is to be saved */
-    assert_int_equal(light.reduction, 1);
+    assert_int_equal(coarse.reduction, 1);
     assert_int_equal(facts.n_univels, 125);
     assert_close(facts.univel_volume_mm3, 125000, 1e-6);
     /* through the outermost centres 4^3; on its faces 6 slabs of half a voxel; along its edges 12 prisms of 4 x 1/8; at
@@ -147,7 +147,7 @@ static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
     folder_remove(folder);
 }
 
-struct crowd {
+struct batch {
     struct plan *plan;
     struct mesh *meshes[4][3][2];
 };
@@ -155,11 +155,11 @@ struct crowd {
 static void ask_for_all(void *context, int part, int n_parts)
 {
     (void)n_parts;
-    struct crowd *crowd = context;
+    struct batch *batch = context;
     for (size_t r = 0; r < 3; r++)
         for (int detail = 0; detail < 2; detail++)
-            crowd->meshes[part][r][detail] =
-                surface_of(crowd->plan, r, SURFACE_MARCHING_CUBES, (enum surface_detail)detail, NULL, NULL);
+            batch->meshes[part][r][detail] =
+                surface_of(batch->plan, r, SURFACE_MARCHING_CUBES, (enum surface_detail)detail, NULL, NULL);
 }
 
 static void many_threads_get_the_same_surfaces(void **state)
@@ -169,39 +169,39 @@ static void many_threads_get_the_same_surfaces(void **state)
     struct error err;
     make_folder_of_boxes(folder, "labels.nii");
     folder_put_text(folder, "plan.json", PLAN("\"regions\":[{\"path\":\"labels.nii\"}]"));
-    struct crowd crowd = { .plan = plan_of_folder(folder, &err) };
-    parallel_run(4, ask_for_all, &crowd);
+    struct batch batch = { .plan = plan_of_folder(folder, &err) };
+    parallel_run(4, ask_for_all, &batch);
     for (size_t r = 0; r < 3; r++)
         for (int detail = 0; detail < 2; detail++)
             for (int part = 0; part < 4; part++) {
-                assert_non_null(crowd.meshes[part][r][detail]);
-                assert_ptr_equal(crowd.meshes[part][r][detail], crowd.meshes[0][r][detail]);
-                mesh_unref(crowd.meshes[part][r][detail]);
+                assert_non_null(batch.meshes[part][r][detail]);
+                assert_ptr_equal(batch.meshes[part][r][detail], batch.meshes[0][r][detail]);
+                mesh_unref(batch.meshes[part][r][detail]);
             }
-    plan_and_derived_destroy(crowd.plan);
+    plan_and_derived_destroy(batch.plan);
     folder_remove(folder);
 }
 
-static void light_surfaces_of_a_whole_plan_stay_under_their_limit(void **state)
+static void coarse_surfaces_of_a_whole_plan_stay_under_their_limit(void **state)
 {
     (void)state;
     struct plan *plan = plan_of_data("sera-head");
     if (!plan)
         skip();
-    size_t n_full = 0, n_light = 0;
+    size_t n_full = 0, n_coarse = 0;
     for (size_t r = 0; r < plan->regions.n_regions; r++) {
-        struct surface_facts full, light;
+        struct shape_facts full, coarse;
         mesh_unref(surface_of(plan, r, SURFACE_MARCHING_CUBES, SURFACE_FULL, &full, NULL));
-        mesh_unref(surface_of(plan, r, SURFACE_MARCHING_CUBES, SURFACE_LIGHT, &light, NULL));
+        mesh_unref(surface_of(plan, r, SURFACE_MARCHING_CUBES, SURFACE_COARSE, &coarse, NULL));
         n_full += full.n_triangles;
-        n_light += light.n_triangles;
-        assert_int_equal(light.n_univels, full.n_univels);
-        assert_true(light.reduction > 1);
+        n_coarse += coarse.n_triangles;
+        assert_int_equal(coarse.n_univels, full.n_univels);
+        assert_true(coarse.reduction > 1);
         /* descendants lie inside: scalp holds brain and tumour */
         assert_near(full.volume_mm3, full.univel_volume_mm3, 0.02);
     }
     assert_true(n_full > COARSE_MAX_TRIANGLES);
-    assert_true(n_light <= COARSE_MAX_TRIANGLES);
+    assert_true(n_coarse <= COARSE_MAX_TRIANGLES);
     plan_and_derived_destroy(plan);
 }
 
@@ -429,7 +429,7 @@ int main(void)
         cmocka_unit_test(a_tree_from_the_plan_wins_and_unknown_names_and_circles_are_reported),
         cmocka_unit_test(surfaces_are_built_once_and_hold_what_lies_inside),
         cmocka_unit_test(many_threads_get_the_same_surfaces),
-        cmocka_unit_test(light_surfaces_of_a_whole_plan_stay_under_their_limit),
+        cmocka_unit_test(coarse_surfaces_of_a_whole_plan_stay_under_their_limit),
         cmocka_unit_test(masks_share_a_layer_until_they_overlap_or_their_grids_differ),
         cmocka_unit_test(a_plan_never_leaves_its_folder),
         cmocka_unit_test(a_plan_that_is_wrong_is_refused_with_the_place),

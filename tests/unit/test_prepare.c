@@ -57,11 +57,11 @@ static void a_picture_wants_the_shapes_that_can_be_seen(void **state)
         enum region_representation representation;
         enum surface_detail detail;
     } cases[] = {
-        { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 1, NULL, SURFACE_LIGHT },
+        { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 1, NULL, SURFACE_COARSE },
           1,
           0,
           REPRESENTATION_SURFACE,
-          SURFACE_LIGHT }, /* hides all */
+          SURFACE_COARSE }, /* hides all */
         { { SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, 0.5, NULL, SURFACE_FULL },
           2,
           0,
@@ -72,22 +72,22 @@ static void a_picture_wants_the_shapes_that_can_be_seen(void **state)
           1,
           REPRESENTATION_SURFACE,
           SURFACE_FULL },
-        { { SCENE_KIND_3D, SCENE_REPRESENTATION_POINTS, 1, NULL, SURFACE_LIGHT },
+        { { SCENE_KIND_3D, SCENE_REPRESENTATION_POINTS, 1, NULL, SURFACE_COARSE },
           3,
           0,
           REPRESENTATION_POINTS,
           SURFACE_FULL }, /* one sees through */
-        { { SCENE_KIND_AXIAL, SCENE_REPRESENTATION_UNIVELS, 1, NULL, SURFACE_LIGHT },
+        { { SCENE_KIND_AXIAL, SCENE_REPRESENTATION_UNIVELS, 1, NULL, SURFACE_COARSE },
           0,
           0,
           REPRESENTATION_SURFACE,
           SURFACE_FULL },
-        { { SCENE_KIND_AXIAL, SCENE_REPRESENTATION_UNIVELS, 1, "", SURFACE_LIGHT },
+        { { SCENE_KIND_AXIAL, SCENE_REPRESENTATION_UNIVELS, 1, "", SURFACE_COARSE },
           3,
           0,
           REPRESENTATION_UNIVELS,
           SURFACE_FULL },
-        { { SCENE_KIND_CORONAL, SCENE_REPRESENTATION_OUTLINE, 1, "middle", SURFACE_LIGHT },
+        { { SCENE_KIND_CORONAL, SCENE_REPRESENTATION_OUTLINE, 1, "middle", SURFACE_COARSE },
           1,
           1,
           REPRESENTATION_SURFACE,

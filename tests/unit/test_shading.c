@@ -17,7 +17,7 @@ static struct mesh *mesh_of(double (*label)(struct vec3 p))
 {
     struct grid grid = made_cube_grid(50);
     struct plan *plan = made_plan(&grid, label, one, 1);
-    struct surface_facts facts;
+    struct shape_facts facts;
     struct error err = { 0 };
     struct mesh *mesh = surface_of(plan, 0, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err);
     assert_non_null(mesh);

@@ -118,7 +118,7 @@ const struct gl_shape *gl_cache_shape(const struct gl *gl, struct gl_cache *cach
         entry->used = cache->n_pictures;
         return &entry->shape;
     }
-    struct surface_facts facts = { 0 };
+    struct shape_facts facts = { 0 };
     struct error why = { 0 };
     struct entry made = { .plan = plan,
                           .kind = ENTRY_SHAPE,

@@ -161,7 +161,7 @@ const struct soft_shape *soft_cache_shape(struct soft_cache *cache, struct deriv
             entry->used = cache->n_pictures;
             return &entry->drawn;
         }
-    struct surface_facts facts = { 0 };
+    struct shape_facts facts = { 0 };
     struct error why = { 0 };
     struct entry *made = mem_new(sizeof *made);
     made->plan = plan;

@@ -1,4 +1,4 @@
-/* The surfaces a plan keeps, by algorithm and detail. */
+/* Shapes as the store keeps them: by algorithm, detail and representation; within its budget; many at once. */
 #include "core/derive/region_masks.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"
@@ -32,7 +32,7 @@ static void surfaces_are_kept_by_algorithm(void **state)
     (void)state;
     struct plan *plan = plan_of_boxes();
     struct error err = { 0 };
-    struct surface_facts facts;
+    struct shape_facts facts;
     struct mesh *cubes = surface_of(plan, 1, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err);
     struct mesh *cells = surface_of(plan, 1, SURFACE_EIGHT_CELL, SURFACE_FULL, &facts, &err);
     struct mesh *again = surface_of(plan, 1, SURFACE_EIGHT_CELL, SURFACE_FULL, NULL, &err);
@@ -62,10 +62,10 @@ static void a_small_region_does_not_vanish_in_motion(void **state)
     (void)state;
     struct plan *plan = plan_of_boxes();
     struct error err = { 0 };
-    struct surface_facts large, small, lone;
-    mesh_unref(surface_of(plan, 0, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &large, &err));
-    mesh_unref(surface_of(plan, 1, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &small, &err));
-    mesh_unref(surface_of(plan, 2, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &lone, &err));
+    struct shape_facts large, small, lone;
+    mesh_unref(surface_of(plan, 0, SURFACE_EIGHT_CELL, SURFACE_COARSE, &large, &err));
+    mesh_unref(surface_of(plan, 1, SURFACE_EIGHT_CELL, SURFACE_COARSE, &small, &err));
+    mesh_unref(surface_of(plan, 2, SURFACE_EIGHT_CELL, SURFACE_COARSE, &lone, &err));
     assert_true(large.reduction > 1); /* 12 x 133 x 133 triangles are too many */
     assert_true(large.n_triangles < COARSE_MAX_TRIANGLES);
     assert_int_equal(small.reduction, 1); /* two voxels wide: any reduction makes it one, and so nothing */
@@ -135,10 +135,10 @@ static void shapes_of_all_kinds_built_at_once_are_those_built_one_by_one(void **
     const struct shape_want wants[] = {
         { subject_region(0), { .representation = REPRESENTATION_UNIVELS }, SURFACE_FULL },
         { subject_region(0), { .representation = REPRESENTATION_POINTS, .has_inner_boundary = true }, SURFACE_FULL },
-        { subject_region(1), { .representation = REPRESENTATION_FAN }, SURFACE_LIGHT },
+        { subject_region(1), { .representation = REPRESENTATION_FAN }, SURFACE_COARSE },
         { subject_region(1),
           { .representation = REPRESENTATION_SURFACE, .algorithm = SURFACE_MARCHING_CUBES },
-          SURFACE_LIGHT },
+          SURFACE_COARSE },
         { subject_region(2),
           { .representation = REPRESENTATION_SURFACE, .algorithm = SURFACE_EIGHT_CELL },
           SURFACE_FULL },
@@ -148,7 +148,7 @@ static void shapes_of_all_kinds_built_at_once_are_those_built_one_by_one(void **
     derive_build_shapes(derived_of(plan), wants, N, NULL, NULL);
     derive_build_shapes(derived_of(plan), wants, N, NULL, NULL); /* all are there */
     for (size_t i = 0; i + 1 < N; i++) {
-        struct surface_facts facts, alone_facts;
+        struct shape_facts facts, alone_facts;
         struct shape *together = derive_shape(derived_of(plan), &wants[i], &facts, NULL);
         struct shape *alone = derive_shape(derived_of(other), &wants[i], &alone_facts, NULL);
         assert_same_shape(together, alone);
@@ -198,9 +198,9 @@ static void thick_slices_are_not_thinned_before_the_pixels_are_as_large(void **s
     struct grid grid = made_grid(150, 150, 40, map);
     for (enum surface_algorithm algorithm = 0; algorithm < SURFACE_N_ALGORITHMS; algorithm++) {
         struct plan *plan = made_plan(&grid, plates_label, boxes, 1);
-        struct surface_facts facts;
+        struct shape_facts facts;
         struct error err = { 0 };
-        struct mesh *mesh = surface_of(plan, 0, algorithm, SURFACE_LIGHT, &facts, &err);
+        struct mesh *mesh = surface_of(plan, 0, algorithm, SURFACE_COARSE, &facts, &err);
         assert_non_null(mesh);
         assert_true(facts.reduction > 1 && facts.reduction <= 5);
         assert_true(facts.n_triangles <= COARSE_MAX_TRIANGLES);
@@ -215,32 +215,32 @@ static void thick_slices_are_not_thinned_before_the_pixels_are_as_large(void **s
     }
 }
 
-static void seras_head_by_either_algorithm_in_full_and_light(void **state)
+static void seras_head_by_either_algorithm_in_full_and_coarse(void **state)
 {
     (void)state;
     struct plan *plan = plan_of_data("sera-head");
     if (!plan)
         skip();
-    size_t n_light = 0;
+    size_t n_coarse = 0;
     for (size_t r = 0; r < plan->regions.n_regions; r++) {
-        struct surface_facts cubes, cells, light;
+        struct shape_facts cubes, cells, coarse;
         mesh_unref(surface_of(plan, r, SURFACE_MARCHING_CUBES, SURFACE_FULL, &cubes, NULL));
         mesh_unref(surface_of(plan, r, SURFACE_EIGHT_CELL, SURFACE_FULL, &cells, NULL));
-        mesh_unref(surface_of(plan, r, SURFACE_EIGHT_CELL, SURFACE_LIGHT, &light, NULL));
+        mesh_unref(surface_of(plan, r, SURFACE_EIGHT_CELL, SURFACE_COARSE, &coarse, NULL));
         /* Sera3d on this head: 137,132 of 189,092, 85,240 of 108,558, 10,236 of 13,028; closed at the scan's end the
          * caps, with as many triangles by either, bring the scalp's nearer to 1 */
         double share = (double)cells.n_triangles / (double)cubes.n_triangles;
         assert_true(share > 0.7 && share < 0.85);
         assert_true(cells.volume_mm3 < cubes.volume_mm3);
-        assert_true(light.n_triangles > 0 && light.n_triangles < cells.n_triangles);
-        n_light += light.n_triangles;
+        assert_true(coarse.n_triangles > 0 && coarse.n_triangles < cells.n_triangles);
+        n_coarse += coarse.n_triangles;
     }
-    assert_true(n_light <= COARSE_MAX_TRIANGLES);
+    assert_true(n_coarse <= COARSE_MAX_TRIANGLES);
     plan_and_derived_destroy(plan);
 }
 
 static struct shape *shape_of(struct plan *plan, size_t region, enum surface_algorithm algorithm,
-                              struct surface_facts *facts)
+                              struct shape_facts *facts)
 {
     struct error err = { 0 };
     /* a field that surfaces do not use makes no other shape */
@@ -256,7 +256,7 @@ static void what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds
 {
     (void)state;
     struct plan *plan = plan_of_boxes();
-    struct surface_facts facts;
+    struct shape_facts facts;
     struct once_cache_usage usage;
     derive_usage(derived_of(plan), &usage);
     assert_int_equal(usage.n_results, 0);
@@ -307,7 +307,7 @@ int main(void)
         cmocka_unit_test(shapes_of_all_kinds_built_at_once_are_those_built_one_by_one),
         cmocka_unit_test(masks_are_the_regions_however_many_are_made_at_once_and_asked_for_again),
         cmocka_unit_test(thick_slices_are_not_thinned_before_the_pixels_are_as_large),
-        cmocka_unit_test(seras_head_by_either_algorithm_in_full_and_light),
+        cmocka_unit_test(seras_head_by_either_algorithm_in_full_and_coarse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
