@@ -1,3 +1,4 @@
+/* `beamroom bench`: measures every way of showing every region of plans, and writes the page. */
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,8 @@
 #include "core/base/mem.h"
 #include "server/cli/bench_thesis.h"
 #include "server/cli/command.h"
+#include "server/cli/exit_code.h"
+#include "server/cli/open_plan.h"
 #include "server/cli/text.h"
 
 enum { MAX_PLANS = 8, DEFAULT_REPEATS = 5, MAX_REPEATS = 100 };

@@ -1,3 +1,4 @@
+/* `beamroom convert`: writes a plan of any format as a plan folder of our own. */
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
@@ -5,6 +6,8 @@
 #include "core/base/clock.h"
 #include "core/load/write_plan.h"
 #include "server/cli/command.h"
+#include "server/cli/exit_code.h"
+#include "server/cli/open_plan.h"
 #include "server/cli/text.h"
 
 static void print_help(void)

@@ -1,3 +1,4 @@
+/* `beamroom export`: writes the shape of a region as STL, PLY or GLB. */
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,8 @@
 #include "core/base/file_write.h"
 #include "core/derive/shapes.h"
 #include "server/cli/command.h"
+#include "server/cli/exit_code.h"
+#include "server/cli/open_plan.h"
 #include "server/cli/text.h"
 #include "server/wire/shape_query.h"
 

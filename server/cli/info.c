@@ -1,9 +1,12 @@
+/* `beamroom info`: prints what a plan holds and its report. */
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "server/cli/command.h"
+#include "server/cli/exit_code.h"
+#include "server/cli/open_plan.h"
 #include "server/cli/text.h"
 #include "server/wire/plan_document.h"
 

@@ -1,10 +1,11 @@
-#include <stdarg.h>
+/* `beamroom`: chooses the subcommand by the first word. */
 #include <stdio.h>
 #include <string.h>
 
 #include "core/base/standard_files.h"
 #include "server/cli/command.h"
-#include "server/cli/text.h"
+#include "server/cli/exit_code.h"
+#include "server/cli/open_plan.h"
 
 static const struct command {
     const char *name, *about;
@@ -32,25 +33,6 @@ static void print_help(FILE *out)
           "Exit status: 0 done; 1 refused, with the reason on standard error; 2 wrong usage.\n"
           "For research and plan review; not a medical device.\n",
           out);
-}
-
-int command_usage_error(const char *name, const char *format, ...)
-{
-    fprintf(stderr, "beamroom %s: ", name);
-    va_list args;
-    va_start(args, format);
-    vfprintf(stderr, format, args);
-    va_end(args);
-    fprintf(stderr, "; see beamroom %s --help\n", name);
-    return EXIT_USAGE;
-}
-
-int command_refused(const char *name, const struct error *err)
-{
-    fprintf(stderr, "beamroom %s: ", name);
-    text_print(stderr, err->text, 0);
-    fputc('\n', stderr);
-    return EXIT_REFUSED;
 }
 
 int main(int argc, char **argv)

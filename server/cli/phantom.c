@@ -1,3 +1,4 @@
+/* `beamroom phantom`: writes the demo plan, a made-up head. */
 #include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
@@ -7,6 +8,7 @@
 #include "core/base/clock.h"
 #include "core/phantom/phantom.h"
 #include "server/cli/command.h"
+#include "server/cli/exit_code.h"
 
 static void print_help(void)
 {

@@ -1,3 +1,4 @@
+/* `beamroom render`: draws one picture of a plan. */
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
@@ -11,6 +12,8 @@
 #include "core/render/render.h"
 #include "core/render/visible/visible.h"
 #include "server/cli/command.h"
+#include "server/cli/exit_code.h"
+#include "server/cli/open_plan.h"
 #include "server/cli/text.h"
 #include "server/wire/document.h"
 #include "server/wire/plan_document.h"

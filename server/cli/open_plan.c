@@ -1,10 +1,13 @@
+/* Opening a plan by its folder. */
+#include "server/cli/open_plan.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/load/load.h"
-#include "server/cli/command.h"
+#include "server/cli/exit_code.h"
 
 static uint64_t max_bytes; /* 0: no limit */
 
