@@ -1,3 +1,5 @@
+#include "core/load/assemble.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -5,39 +7,29 @@
 #include "core/base/mem.h"
 #include "core/formats/hierarchy.h"
 #include "core/formats/text.h"
+#include "core/load/assemble_dicom.h"
+#include "core/load/assemble_dicom_doses.h"
 #include "core/load/curves_and_preferences.h"
+#include "core/load/dose_entry.h"
 #include "core/load/dose_in_body.h"
 #include "core/load/image_window.h"
-#include "core/load/loading.h"
+#include "core/load/part_names.h"
+#include "core/load/plan_ids.h"
 #include "core/load/region_builder.h"
 #include "core/load/tracks_part.h"
 #include "core/plan/plan_bounds.h"
 
-static struct volume *take_volume(struct job *job)
-{
-    struct volume *volume = job->volume;
-    job->volume = NULL;
-    return volume;
-}
+/* Lists of the plan file are copied into the plan's without a check of their length. */
+_Static_assert((int)PLAN_FILE_MAX_IMAGES == (int)PLAN_MAX_IMAGES, "every image of a plan file has its place");
+_Static_assert((int)PLAN_FILE_MAX_DOSES == (int)PLAN_MAX_DOSES, "every dose of a plan file has its place");
+_Static_assert((int)PLAN_FILE_MAX_BEAMS == (int)PLAN_MAX_BEAMS, "every beam of a plan file has its place");
+_Static_assert((int)PLAN_FILE_MAX_CURVES == (int)PLAN_MAX_CURVES, "every curve of a plan file has its place");
 
-void plan_make_id(char id[64], const char *given, const char *path, const char *const *others, size_t n_others)
+static struct volume *take_volume(struct part_reading *reading)
 {
-    const struct region_set none = { 0 };
-    const char *slash = strrchr(path, '/');
-    const char *base = slash ? slash + 1 : path;
-    char stem[128];
-    size_t length = strcspn(base, ".");
-    snprintf(stem, sizeof stem, "%.*s", (int)(length < 100 ? length : 100), base);
-    region_make_id(&none, given[0] ? given : stem, id);
-    size_t n = strlen(id);
-    bool is_taken = true;
-    for (int number = 1; is_taken; number++) {
-        if (number > 1)
-            snprintf(id + n, 64 - n, "-%d", number);
-        is_taken = false;
-        for (size_t i = 0; i < n_others; i++)
-            is_taken |= strcmp(others[i], id) == 0;
-    }
+    struct volume *volume = reading->volume;
+    reading->volume = NULL;
+    return volume;
 }
 
 static bool holds_only_0_and_1(const struct volume *volume)
@@ -67,37 +59,37 @@ static bool holds_only_0_and_1(const struct volume *volume)
 /* A mask whose name did not say so: shown as the image it was taken for, and said, with what makes it a region: a name
  * that says so, where that is enough (a file of whole numbers), or a plan.json, which has to name the other files, too.
  */
-static void note_mask(struct loading *loading, const struct job *job, const struct plan_image *image)
+static void note_mask(struct loading *loading, const struct part_reading *reading, const struct plan_image *image)
 {
-    const char *base = part_base_name(job->path);
+    const char *base = part_base_name(reading->path);
     int stem = (int)strcspn(base, ".");
-    if (!loading->parts.is_recognised || job->format == PART_DICOM || !holds_only_0_and_1(image->volume))
+    if (!loading->parts.is_recognised || reading->format == PART_DICOM || !holds_only_0_and_1(image->volume))
         return;
     char rename[160] = "";
     if (image->volume->type != VOXEL_F32 && !text_has_ending(base, ".hdr") && !text_has_ending(base, ".hdr.gz"))
         snprintf(rename, sizeof rename, "call the file %.*s_mask%.20s, or ", stem < 80 ? stem : 80, base, base + stem);
     report_add(
-        &loading->plan->report, REPORT_WARNING, "image.may-be-region", job->path,
+        &loading->plan->report, REPORT_WARNING, "image.may-be-region", reading->path,
         "Every voxel is 0 or 1, so this may be a mask. To show it as a region %swrite a plan.json that names it in \"regions\" and the "
         "folder's other files as well.",
         rename);
 }
 
-static void add_image(struct loading *loading, struct job *job)
+static void add_image(struct loading *loading, struct part_reading *reading)
 {
     struct plan *plan = loading->plan;
-    const struct plan_file_image *entry = &loading->file->images[job->index];
+    const struct plan_file_image *entry = &loading->file->images[reading->index];
     struct plan_image *image = &plan->images[plan->n_images];
     const char *others[PLAN_MAX_IMAGES];
     for (size_t i = 0; i < plan->n_images; i++)
         others[i] = plan->images[i].id;
     plan_make_id(image->id, entry->id, entry->path, others, plan->n_images);
-    job->image = plan->n_images;
-    loading->image_stacks[plan->n_images++] = job->format == PART_DICOM ? job->stack : -1;
+    reading->image = plan->n_images;
+    loading->image_stacks[plan->n_images++] = reading->format == PART_DICOM ? reading->stack : -1;
     memcpy(image->name, entry->name, sizeof image->name);
-    snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : job->modality);
-    image->volume = take_volume(job);
-    note_mask(loading, job, image);
+    snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : reading->modality);
+    image->volume = take_volume(reading);
+    note_mask(loading, reading, image);
     if (text_equal(image->modality, "CT")) {
         snprintf(image->unit, sizeof image->unit, "HU");
         if (image->volume->low >= 0 && image->volume->high > 0)
@@ -105,73 +97,66 @@ static void add_image(struct loading *loading, struct job *job)
                        "The CT's values run from %g to %g; HU of a patient begin below 0.", image->volume->low,
                        image->volume->high);
     }
-    image->is_inverted = entry->is_inverted || job->facts.is_inverted;
+    image->is_inverted = entry->is_inverted || reading->facts.is_inverted;
     plan_image_window(image);
     if (!image->unit[0])
-        snprintf(image->unit, sizeof image->unit, "%.7s", job->facts.unit);
+        snprintf(image->unit, sizeof image->unit, "%.7s", reading->facts.unit);
     if (entry->value_unit[0])
         memcpy(image->unit, entry->value_unit, sizeof image->unit);
     if (entry->window_width > 0) {
         image->window_center = entry->window_center;
         image->window_width = entry->window_width;
-    } else if (job->facts.n_windows > 0 &&
+    } else if (reading->facts.n_windows > 0 &&
                !text_equal(image->modality, "CT")) { /* a CT begins with one window whoever made it */
-        image->window_center = job->facts.windows[0].center;
-        image->window_width = job->facts.windows[0].width;
+        image->window_center = reading->facts.windows[0].center;
+        image->window_width = reading->facts.windows[0].width;
     }
     plan_image_window_limit(image);
 }
 
 /* An image whose header described another one: univels with exactly as many voxels along each axis are the same scan.
  */
-static void borrow_grid(struct loading *loading, const struct job *job)
+static void borrow_grid(struct loading *loading, const struct part_reading *reading)
 {
     struct plan *plan = loading->plan;
-    struct volume *volume = plan->images[job->image].volume;
-    for (size_t i = 0; job->is_grid_doubtful && i < loading->n_jobs; i++) {
-        const struct job *other = &loading->jobs[i];
+    struct volume *volume = plan->images[reading->image].volume;
+    for (size_t i = 0; reading->is_grid_doubtful && i < loading->n_readings; i++) {
+        const struct part_reading *other = &loading->readings[i];
         if (!other->uvh.bodies || memcmp(other->uvh.grid.size, volume->grid.size, sizeof volume->grid.size) != 0)
             continue;
         volume->grid = other->uvh.grid;
         report_add(
-            &plan->report, REPORT_WARNING, "geometry.borrowed", job->path,
+            &plan->report, REPORT_WARNING, "geometry.borrowed", reading->path,
             "The image's header describes another image; %s has as many univels as this has pixels, and its grid was taken.",
             other->path);
         return;
     }
 }
 
-static bool add_regions(struct loading *loading, struct region_builder *builder, struct job *job, struct error *err)
+static bool add_regions(struct loading *loading, struct region_builder *builder, struct part_reading *reading,
+                        struct error *err)
 {
-    const struct plan_file_region *entry = &loading->file->regions[job->index];
-    if (job->layers && job->format == PART_DICOM)
-        plan_dicom_check_segmentation(loading, job);
-    for (size_t i = 0; job->layers && i < job->layers->n; i++) {
-        struct volume *layer = job->layers->volumes[i];
-        job->layers->volumes[i] = NULL;
-        if (!region_builder_add_labels(builder, layer, job->names.n > 0 ? &job->names : &job->layers->names[i],
-                                       job->path, err))
+    const struct plan_file_region *entry = &loading->file->regions[reading->index];
+    if (reading->layers && reading->format == PART_DICOM)
+        plan_dicom_check_segmentation(loading, reading);
+    for (size_t i = 0; reading->layers && i < reading->layers->n; i++) {
+        struct volume *layer = reading->layers->volumes[i];
+        reading->layers->volumes[i] = NULL;
+        if (!region_builder_add_labels(builder, layer,
+                                       reading->names.n > 0 ? &reading->names : &reading->layers->names[i],
+                                       reading->path, err))
             return false;
     }
-    if (job->layers)
+    if (reading->layers)
         return true;
-    if (job->structs)
-        return plan_dicom_add_regions(loading, builder, job, err);
-    struct volume *volume = take_volume(job);
-    if (job->uvh.bodies)
-        return region_builder_add_univels(builder, volume, &job->uvh, job->path, err);
+    if (reading->structs)
+        return plan_dicom_add_regions(loading, builder, reading, err);
+    struct volume *volume = take_volume(reading);
+    if (reading->uvh.bodies)
+        return region_builder_add_univels(builder, volume, &reading->uvh, reading->path, err);
     if (entry->name[0])
         return region_builder_add_mask(builder, volume, entry, err);
-    return region_builder_add_labels(builder, volume, &job->names, job->path, err);
-}
-
-bool plan_has_room_for_dose(struct plan *plan, const char *id, const char *where)
-{
-    if (plan->n_doses < PLAN_MAX_DOSES)
-        return true;
-    report_add(&plan->report, REPORT_WARNING, "plan.ignored-file", where, "More than %d doses; \"%s\" was left out.",
-               PLAN_MAX_DOSES, id);
-    return false;
+    return region_builder_add_labels(builder, volume, &reading->names, reading->path, err);
 }
 
 /* The dose of an entry of the plan file, still without components; NULL when the plan is full. */
@@ -194,24 +179,24 @@ static struct dose *start_dose(struct loading *loading, size_t index, bool is_se
     return dose;
 }
 
-static void add_component(struct loading *loading, struct dose *dose, struct job *job)
+static void add_component(struct loading *loading, struct dose *dose, struct part_reading *reading)
 {
-    const struct plan_file_dose *entry = &loading->file->doses[job->index];
-    if (part_is_sera_dose(job->format))
-        plan_add_sera(dose, entry, job->component, &job->doses, &loading->plan->report);
-    else if (job->format == PART_DICOM)
-        plan_dicom_add_component(loading, dose, job);
+    const struct plan_file_dose *entry = &loading->file->doses[reading->index];
+    if (part_is_sera_dose(reading->format))
+        plan_add_sera(dose, entry, reading->component, &reading->doses, &loading->plan->report);
+    else if (reading->format == PART_DICOM)
+        plan_dicom_add_component(loading, dose, reading);
     else
-        plan_add_component(dose, entry, job->component, take_volume(job), &loading->plan->report);
+        plan_add_component(dose, entry, reading->component, take_volume(reading), &loading->plan->report);
 }
 
-static void add_dose_mask(struct loading *loading, struct dose *dose, struct job *job)
+static void add_dose_mask(struct loading *loading, struct dose *dose, struct part_reading *reading)
 {
     volume_unref(dose->mask); /* that of a SERA file; the plan's wins */
-    dose->mask = take_volume(job);
+    dose->mask = take_volume(reading);
     if (dose->n_components > 0 &&
         memcmp(dose->mask->grid.size, dose->components[0].values->grid.size, sizeof dose->mask->grid.size) != 0)
-        report_add(&loading->plan->report, REPORT_NOTE, "dose.mask-grid", job->path,
+        report_add(&loading->plan->report, REPORT_NOTE, "dose.mask-grid", reading->path,
                    "The mask of the dose \"%s\" lies on another grid; it is looked up by position.", dose->id);
 }
 
@@ -223,25 +208,25 @@ static void add_dose(struct loading *loading, size_t index)
     struct dose *dose = NULL;
     size_t before = plan->n_doses;
     bool is_grouped = false;
-    for (size_t i = 0; i < loading->n_jobs; i++) {
-        struct job *job = &loading->jobs[i];
-        if (job->kind != JOB_DOSE || job->index != index || is_grouped)
+    for (size_t i = 0; i < loading->n_readings; i++) {
+        struct part_reading *reading = &loading->readings[i];
+        if (reading->kind != PART_KIND_DOSE || reading->index != index || is_grouped)
             continue;
-        if (job->format == PART_DICOM && entry->n_components == 1) {
+        if (reading->format == PART_DICOM && entry->n_components == 1) {
             plan_dicom_add_doses(loading, index, entry);
             dose = plan->n_doses > before ? &plan->doses[before] : NULL;
             is_grouped = true;
             continue;
         }
         if (!dose)
-            dose = start_dose(loading, index, part_is_sera_dose(job->format));
+            dose = start_dose(loading, index, part_is_sera_dose(reading->format));
         if (!dose)
             return;
-        add_component(loading, dose, job);
+        add_component(loading, dose, reading);
     }
-    for (size_t i = 0; dose && i < loading->n_jobs; i++)
-        if (loading->jobs[i].kind == JOB_DOSE_MASK && loading->jobs[i].index == index)
-            add_dose_mask(loading, dose, &loading->jobs[i]);
+    for (size_t i = 0; dose && i < loading->n_readings; i++)
+        if (loading->readings[i].kind == PART_KIND_DOSE_MASK && loading->readings[i].index == index)
+            add_dose_mask(loading, dose, &loading->readings[i]);
 }
 
 static void add_doses(struct loading *loading)
@@ -249,7 +234,7 @@ static void add_doses(struct loading *loading)
     for (size_t i = 0; i < loading->file->n_doses; i++)
         add_dose(loading, i);
     if (loading->parts.is_all_dicom)
-        plan_dicom_add_doses(loading, JOB_OF_NO_ENTRY, NULL);
+        plan_dicom_add_doses(loading, PART_WITHOUT_ENTRY, NULL);
 }
 
 static bool apply_hierarchy(struct loading *loading, const struct region_builder *builder, struct error *err)
@@ -307,20 +292,20 @@ bool plan_assemble(struct loading *loading, struct error *err)
     struct region_builder builder;
     bool is_whole = true;
     uint64_t n_rois = 0;
-    for (size_t i = 0; i < loading->n_jobs; i++)
-        n_rois += loading->jobs[i].structs ? loading->jobs[i].structs->n_rois : 0;
+    for (size_t i = 0; i < loading->n_readings; i++)
+        n_rois += loading->readings[i].structs ? loading->readings[i].structs->n_rois : 0;
     loading_begin(loading, n_rois);
     region_builder_init(&builder, &plan->regions, &plan->report);
-    for (size_t i = 0; is_whole && i < loading->n_jobs; i++) {
-        struct job *job = &loading->jobs[i];
-        if (job->kind == JOB_IMAGE && !job->is_failed)
-            add_image(loading, job);
-        else if (job->kind == JOB_REGION && !job->is_failed)
-            is_whole = add_regions(loading, &builder, job, err);
+    for (size_t i = 0; is_whole && i < loading->n_readings; i++) {
+        struct part_reading *reading = &loading->readings[i];
+        if (reading->kind == PART_KIND_IMAGE && !reading->is_failed)
+            add_image(loading, reading);
+        else if (reading->kind == PART_KIND_REGION && !reading->is_failed)
+            is_whole = add_regions(loading, &builder, reading, err);
     }
-    for (size_t i = 0; i < loading->n_jobs; i++)
-        if (is_whole && loading->jobs[i].kind == JOB_IMAGE)
-            borrow_grid(loading, &loading->jobs[i]);
+    for (size_t i = 0; i < loading->n_readings; i++)
+        if (is_whole && loading->readings[i].kind == PART_KIND_IMAGE)
+            borrow_grid(loading, &loading->readings[i]);
     if (is_whole) {
         loading_phase(loading, "measuring regions", "", 95, 100);
         region_builder_order(&builder);

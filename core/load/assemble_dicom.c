@@ -1,4 +1,5 @@
-/* What DICOM gave, into the plan: structure sets on the image they were drawn on, beams of treatment plans. */
+#include "core/load/assemble_dicom.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +8,8 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 #include "core/formats/text.h"
-#include "core/load/loading.h"
+#include "core/load/dicom_parts.h"
+#include "core/load/plan_ids.h"
 
 /* ---- structure sets --------------------------------------------------------------------------------------------- */
 
@@ -35,17 +37,11 @@ static double overlap_mm3(const struct box3 *a, const struct box3 *b)
     return x >= 0 && y >= 0 && z >= 0 ? (x + 1) * (y + 1) * (z + 1) : 0; /* a contour on one slice has no thickness */
 }
 
-const struct dicom_stack *plan_dicom_stack_of(const struct loading *loading, size_t image)
-{
-    int stack = loading->image_stacks[image];
-    return stack < 0 ? NULL : &loading->parts.dicom->stacks[stack];
-}
-
 /* How many folders the file of an image and another file have in common. */
 static size_t folders_shared(const struct loading *loading, size_t image, const char *path)
 {
     const struct dicom_index *index = loading->parts.dicom;
-    const char *other = index->objects[plan_dicom_stack_of(loading, image)->objects[0]].path;
+    const char *other = index->objects[loading_stack_of(loading, image)->objects[0]].path;
     size_t n = 0;
     for (size_t i = 0; path[i] && path[i] == other[i]; i++)
         n += path[i] == '/';
@@ -60,13 +56,13 @@ static int choose_image(const struct loading *loading, const struct rtstruct *st
     const struct plan *plan = loading->plan;
     const char *frame = structs->n_rois > 0 ? structs->rois[0].frame_uid : "";
     for (size_t i = 0; i < plan->n_images; i++)
-        if (plan_dicom_stack_of(loading, i) && structs->series_uid[0] &&
-            strcmp(plan_dicom_stack_of(loading, i)->series, structs->series_uid) == 0)
+        if (loading_stack_of(loading, i) && structs->series_uid[0] &&
+            strcmp(loading_stack_of(loading, i)->series, structs->series_uid) == 0)
             return (int)i;
     int best = -1;
     for (size_t i = 0; i < plan->n_images; i++)
-        if (plan_dicom_stack_of(loading, i) && frame[0] &&
-            strcmp(plan_dicom_stack_of(loading, i)->frame_of_reference, frame) == 0 &&
+        if (loading_stack_of(loading, i) && frame[0] &&
+            strcmp(loading_stack_of(loading, i)->frame_of_reference, frame) == 0 &&
             (best < 0 || folders_shared(loading, i, where) > folders_shared(loading, (size_t)best, where)))
             best = (int)i;
     if (best >= 0) {
@@ -103,50 +99,51 @@ static bool is_wanted(const struct plan_file_region *entry, const struct rtstruc
     return !entry->name[0] || text_equal(entry->name, roi->name);
 }
 
-static bool fill_roi(struct loading *loading, struct region_builder *builder, const struct job *job,
+static bool fill_roi(struct loading *loading, struct region_builder *builder, const struct part_reading *reading,
                      const struct rtstruct_roi *roi, const struct contour_choice *choice,
                      const struct contour_options *options, struct error *err)
 {
-    const struct plan_file_region *entry = &loading->file->regions[job->index];
+    const struct plan_file_region *entry = &loading->file->regions[reading->index];
     struct contour_facts facts;
     const uint8_t *rgb = entry->has_color ? entry->rgb : roi->has_color ? roi->rgb : NULL;
     struct mask *mask = contour_fill(&roi->contours, &choice->grid, options, &facts, err);
     if (!mask) {
-        error_prefix(err, "%s: %s", job->path, roi->name);
+        error_prefix(err, "%s: %s", reading->path, roi->name);
         return false;
     }
-    rtstruct_report_fill(roi, choice, &facts, job->path, &loading->plan->report);
-    bool is_added = region_builder_add_bits(builder, mask, &choice->grid, roi->name, rgb, job->path, err);
+    rtstruct_report_fill(roi, choice, &facts, reading->path, &loading->plan->report);
+    bool is_added = region_builder_add_bits(builder, mask, &choice->grid, roi->name, rgb, reading->path, err);
     mask_destroy(mask);
     return is_added;
 }
 
-static bool fill_rois(struct loading *loading, struct region_builder *builder, const struct job *job,
+static bool fill_rois(struct loading *loading, struct region_builder *builder, const struct part_reading *reading,
                       const struct contour_choice *choices, const struct contour_options *options, struct error *err)
 {
-    const struct rtstruct *structs = job->structs;
-    const struct plan_file_region *entry = &loading->file->regions[job->index];
+    const struct rtstruct *structs = reading->structs;
+    const struct plan_file_region *entry = &loading->file->regions[reading->index];
     bool is_filled = true;
     for (size_t r = 0; is_filled && r < structs->n_rois; r++) {
         if (loading_is_cancelled(loading))
             return error_set(err, ERROR_CANCELLED, "loading was cancelled");
         loading_phase(loading, "filling contours of", structs->rois[r].name, 80, 95);
         if (is_wanted(entry, &structs->rois[r]))
-            is_filled = fill_roi(loading, builder, job, &structs->rois[r], &choices[r], options, err);
+            is_filled = fill_roi(loading, builder, reading, &structs->rois[r], &choices[r], options, err);
         loading_work(loading, 1);
     }
     return is_filled;
 }
 
-bool plan_dicom_add_regions(struct loading *loading, struct region_builder *builder, struct job *job, struct error *err)
+bool plan_dicom_add_regions(struct loading *loading, struct region_builder *builder, struct part_reading *reading,
+                            struct error *err)
 {
-    const struct rtstruct *structs = job->structs;
+    const struct rtstruct *structs = reading->structs;
     struct plan *plan = loading->plan;
     if (structs->n_rois == 0)
         return true;
-    int image = choose_image(loading, structs, job->path, &plan->report);
-    const struct dicom_stack *stack = image >= 0 ? plan_dicom_stack_of(loading, (size_t)image) : NULL;
-    rtstruct_check_frame(structs, stack ? stack->frame_of_reference : NULL, job->path, &plan->report);
+    int image = choose_image(loading, structs, reading->path, &plan->report);
+    const struct dicom_stack *stack = image >= 0 ? loading_stack_of(loading, (size_t)image) : NULL;
+    rtstruct_check_frame(structs, stack ? stack->frame_of_reference : NULL, reading->path, &plan->report);
     struct contour_set *sets = mem_new(structs->n_rois * sizeof *sets);
     struct contour_choice *choices = mem_new(structs->n_rois * sizeof *choices);
     for (size_t r = 0; r < structs->n_rois; r++)
@@ -155,14 +152,14 @@ bool plan_dicom_add_regions(struct loading *loading, struct region_builder *buil
     options.n_threads = parallel_cores();
     const struct grid *grid = image >= 0 ? &plan->images[image].volume->grid : NULL;
     options.spacing_mm = contour_usual_spacing_mm(sets, structs->n_rois, grid);
-    loading_phase(loading, "choosing grids for", job->path, 80, 95);
+    loading_phase(loading, "choosing grids for", reading->path, 80, 95);
     bool is_added = contour_choose_grids(sets, structs->n_rois, grid, &options, choices, err);
     if (!is_added)
-        error_prefix(err, "%s", job->path);
+        error_prefix(err, "%s", reading->path);
     if (is_added && image >= 0)
-        rtstruct_report_reach(structs, choices, loading->file->regions[job->index].name, plan->images[image].id,
-                              job->path, &plan->report);
-    is_added = is_added && fill_rois(loading, builder, job, choices, &options, err);
+        rtstruct_report_reach(structs, choices, loading->file->regions[reading->index].name, plan->images[image].id,
+                              reading->path, &plan->report);
+    is_added = is_added && fill_rois(loading, builder, reading, choices, &options, err);
     free(sets);
     free(choices);
     return is_added;
@@ -170,14 +167,15 @@ bool plan_dicom_add_regions(struct loading *loading, struct region_builder *buil
 
 /* ---- segmentations ---------------------------------------------------------------------------------------------- */
 
-void plan_dicom_check_segmentation(struct loading *loading, struct job *job)
+void plan_dicom_check_segmentation(struct loading *loading, struct part_reading *reading)
 {
     const struct plan *plan = loading->plan;
-    const struct plan_file_region *entry = &loading->file->regions[job->index];
-    const struct dicom_object *object = plan_dicom_object(loading->parts.dicom, DICOM_KIND_SEGMENTATION, job->path, 0);
+    const struct plan_file_region *entry = &loading->file->regions[reading->index];
+    const struct dicom_object *object =
+        plan_dicom_object(loading->parts.dicom, DICOM_KIND_SEGMENTATION, reading->path, 0);
     bool has_series = false, has_frame = false, has_image = false;
     for (size_t i = 0; i < plan->n_images; i++) {
-        const struct dicom_stack *stack = plan_dicom_stack_of(loading, i);
+        const struct dicom_stack *stack = loading_stack_of(loading, i);
         has_image |= stack != NULL;
         has_series |=
             stack && object && object->referenced_series[0] && strcmp(stack->series, object->referenced_series) == 0;
@@ -185,15 +183,15 @@ void plan_dicom_check_segmentation(struct loading *loading, struct job *job)
                      strcmp(stack->frame_of_reference, object->frame_of_reference) == 0;
     }
     if (has_image && object && object->frame_of_reference[0] && !has_frame)
-        report_add(&loading->plan->report, REPORT_WARNING, "region.frame-differs", job->path,
+        report_add(&loading->plan->report, REPORT_WARNING, "region.frame-differs", reading->path,
                    "The segments were drawn in another frame of reference "
                    "(0020,0052) than any image's and may be shifted against it.");
     else if (has_image && object && !has_series)
-        report_add(&loading->plan->report, REPORT_NOTE, "region.image-chosen", job->path,
+        report_add(&loading->plan->report, REPORT_NOTE, "region.image-chosen", reading->path,
                    "The series the segments were drawn on is not here.");
-    for (size_t i = 0; entry->has_color && i < job->layers->n; i++)
-        for (size_t n = 0; n < job->layers->names[i].n; n++) {
-            struct label_name *name = &job->layers->names[i].labels[n];
+    for (size_t i = 0; entry->has_color && i < reading->layers->n; i++)
+        for (size_t n = 0; n < reading->layers->names[i].n; n++) {
+            struct label_name *name = &reading->layers->names[i].labels[n];
             name->has_color = true;
             memcpy(name->rgb, entry->rgb, sizeof name->rgb);
         }
@@ -219,8 +217,8 @@ void plan_dicom_add_beams(struct loading *loading)
 {
     struct plan *plan = loading->plan;
     size_t n_left = 0;
-    for (size_t i = 0; i < loading->n_jobs; i++) {
-        const struct rtplan *from = loading->jobs[i].rtplan;
+    for (size_t i = 0; i < loading->n_readings; i++) {
+        const struct rtplan *from = loading->readings[i].rtplan;
         for (size_t b = 0; from && b < from->n_beams; b++) {
             const char *others[PLAN_MAX_BEAMS];
             if (plan->n_beams >= PLAN_MAX_BEAMS) {
@@ -233,7 +231,7 @@ void plan_dicom_add_beams(struct loading *loading)
             *beam = from->beams[b];
             double outside_mm = outside_images_mm(plan, beam->target_lps_mm);
             if (outside_mm > 0)
-                report_add(&plan->report, REPORT_WARNING, "beam.outside", loading->jobs[i].path,
+                report_add(&plan->report, REPORT_WARNING, "beam.outside", loading->readings[i].path,
                            "Beam \"%s\": its isocentre (%.4g, %.4g, %.4g mm) "
                            "lies %.4g mm outside every image.",
                            beam->name, beam->target_lps_mm.x, beam->target_lps_mm.y, beam->target_lps_mm.z, outside_mm);

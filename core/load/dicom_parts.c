@@ -6,6 +6,8 @@
 
 #include "core/base/mem.h"
 #include "core/formats/text.h"
+#include "core/load/part_format.h"
+#include "core/plan/plan.h"
 
 /* ---- finding ---------------------------------------------------------------------------------------------------- */
 

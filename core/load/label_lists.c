@@ -7,6 +7,8 @@
 #include "core/base/mem.h"
 #include "core/formats/text.h"
 #include "core/load/nrrd_parts.h"
+#include "core/load/part_format.h"
+#include "core/load/part_names.h"
 
 enum { LIST_MAX_BYTES = 16 << 20, LISTS_MAX_MIB = 64 /* all of a folder */, MOST_LISTS = PLAN_FILE_MAX_PARTS };
 

@@ -2,7 +2,8 @@
 /* Inside core/load: which map of a folder without a plan.json a list of label names belongs to. */
 #include <stdatomic.h>
 
-#include "core/load/parts.h"
+#include "core/formats/folder.h"
+#include "core/formats/plan_json.h"
 
 /* The lists of a folder: each labels.json, and each .json called after a grid beside it. They are read up to a sum of
  * bytes, which is reported when it is met. When cancel (may be NULL) turns true the rest is left out. */

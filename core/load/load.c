@@ -1,81 +1,21 @@
+#include "core/load/load.h"
+
 #include <pthread.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/base/clock.h"
-#include "core/base/mailbox.h"
-#include "core/base/mem.h"
-#include "core/base/queue.h"
-#include "core/load/cache.h"
+#include "core/load/assemble.h"
+#include "core/load/describe.h"
+#include "core/load/estimate.h"
 #include "core/load/loading.h"
+#include "core/load/part_list.h"
+#include "core/load/read_all.h"
 
 /* A plan is loaded on a thread of its own, and the caller waits. So the caller can turn its back within LOOK_EVERY_MS
  * whatever the thread is in the middle of; that ends its file or slice, finds that nobody waits any more, and cleans up
  * behind itself. */
 enum { LOOK_EVERY_MS = 20 };
-
-/* What is going on, and which part of the whole it is. */
-struct phase {
-    char words[96];
-    double low, high; /* percent */
-};
-
-bool loading_is_cancelled(const struct loading *loading)
-{
-    return atomic_load(&loading->is_given_up);
-}
-
-void loading_phase(struct loading *loading, const char *what, const char *name, double low, double high)
-{
-    struct phase *phase = mem_new(sizeof *phase);
-    *phase = (struct phase){ .low = low, .high = high };
-    snprintf(phase->words, sizeof phase->words, "%s%s%.80s", what, name[0] ? " " : "", name);
-    mailbox_put(loading->phases, phase);
-}
-
-void loading_begin(struct loading *loading, uint64_t work)
-{
-    atomic_store(&loading->work_done, 0);
-    atomic_store(&loading->work, work);
-}
-
-void loading_work(struct loading *loading, uint64_t work)
-{
-    atomic_fetch_add(&loading->work_done, work);
-}
-
-static void finish_job(struct job *job)
-{
-    volume_unref(job->volume);
-    sera_doses_finish(&job->doses);
-    if (job->layers)
-        nrrd_layers_finish(job->layers);
-    free(job->layers);
-    rtstruct_destroy(job->structs);
-    rtdose_finish(&job->rtdose);
-    rtplan_destroy(job->rtplan);
-    uvh_finish(&job->uvh);
-    label_names_finish(&job->names);
-    report_finish(&job->report);
-}
-
-static void loading_unref(struct loading *loading)
-{
-    if (atomic_fetch_sub(&loading->references, 1) > 1)
-        return;
-    for (size_t i = 0; i < loading->n_jobs; i++)
-        finish_job(&loading->jobs[i]);
-    free(loading->jobs);
-    free(loading->order);
-    plan_parts_finish(&loading->parts);
-    plan_destroy(loading->plan);
-    plan_sources_destroy(loading->sources);
-    folder_close(&loading->folder);
-    mailbox_destroy(loading->phases);
-    queue_destroy(loading->ended);
-    free(loading);
-}
 
 static void looked_at(void *context, size_t n_done, size_t n_all)
 {
@@ -100,16 +40,16 @@ static void cache_read(void *context, uint64_t n_bytes)
 static bool load_from_cache(struct loading *loading)
 {
     struct folder_tree tree;
-    if (!loading->options.cache_folder)
+    if (!loading->cache_folder)
         return false;
     if (!folder_walk(&loading->folder, "", NULL, &tree, NULL)) {
         folder_tree_finish(&tree);
         return false;
     }
     struct plan_sources *sources = plan_sources_create(&tree);
-    const struct plan_cache_reading reading = { loading->options.max_bytes, cache_begun, cache_read, loading,
+    const struct plan_cache_reading reading = { loading->max_bytes, cache_begun, cache_read, loading,
                                                 &loading->is_given_up };
-    bool is_read = sources && plan_cache_read(loading->options.cache_folder, sources, &reading, loading->plan);
+    bool is_read = sources && plan_cache_read(loading->cache_folder, sources, &reading, loading->plan);
     loading->plan->is_from_cache = is_read;
     loading->sources = sources;
     return is_read;
@@ -139,8 +79,8 @@ static bool load(struct loading *loading)
     const struct dicom_progress looking = { looked_at, loading, &loading->is_given_up, 0 };
     bool is_described = plan_describe(&loading->folder, &looking, &loading->parts, &plan->report, err);
     loading->file = loading->parts.file;
-    if (!is_described || !plan_make_jobs(loading, err) || !plan_check_estimate(loading, err) ||
-        !plan_run_jobs(loading, err) || !plan_assemble(loading, err) || !has_anything(plan, err))
+    if (!is_described || !plan_list_parts(loading, err) || !plan_check_estimate(loading, err) ||
+        !plan_read_parts(loading, err) || !plan_assemble(loading, err) || !has_anything(plan, err))
         return false;
     memcpy(plan->name, loading->file->name, sizeof plan->name);
     memcpy(plan->note, loading->file->note, sizeof plan->note);
@@ -161,17 +101,16 @@ static void *load_main(void *argument)
 static void start(struct loading *loading)
 {
     pthread_t thread;
-    atomic_store(&loading->references, 2);
     if (pthread_create(&thread, NULL, load_main, loading) == 0)
         pthread_detach(thread);
     else
         load_main(loading);
 }
 
-static void tell(struct loading *loading, struct phase *now, double *percent)
+static void tell(struct loading *loading, const struct plan_progress *progress, struct loading_phase *now,
+                 double *percent)
 {
-    const struct plan_progress *progress = &loading->options.progress;
-    struct phase *newest = mailbox_take(loading->phases);
+    struct loading_phase *newest = mailbox_take(loading->phases);
     if (newest)
         *now = *newest;
     free(newest);
@@ -182,13 +121,13 @@ static void tell(struct loading *loading, struct phase *now, double *percent)
         progress->step(progress->context, now->words, *percent);
 }
 
-static bool wait(struct loading *loading, struct error *err)
+static bool wait(struct loading *loading, const struct plan_progress *progress, struct error *err)
 {
-    const atomic_bool *cancel = loading->options.progress.cancel;
-    struct phase phase = { .words = "starting" };
+    const atomic_bool *cancel = progress->cancel;
+    struct loading_phase phase = { .words = "starting" };
     double percent = 0;
     while (!queue_take(loading->ended, LOOK_EVERY_MS)) {
-        tell(loading, &phase, &percent);
+        tell(loading, progress, &phase, &percent);
         if (cancel && atomic_load(cancel)) {
             atomic_store(&loading->is_given_up, true);
             return error_set(err, ERROR_CANCELLED, "loading was cancelled");
@@ -196,46 +135,33 @@ static bool wait(struct loading *loading, struct error *err)
     }
     if (!loading->is_whole && err)
         *err = loading->err;
-    if (loading->is_whole && loading->options.progress.step)
-        loading->options.progress.step(loading->options.progress.context, "loaded", 100);
+    if (loading->is_whole && progress->step)
+        progress->step(progress->context, "loaded", 100);
     return loading->is_whole;
-}
-
-static struct loading *loading_create(const char *folder, const char *id, const struct plan_load_options *options,
-                                      struct error *err)
-{
-    struct loading *loading = mem_new(sizeof *loading);
-    if (!folder_open(&loading->folder, folder, err)) {
-        free(loading);
-        return NULL;
-    }
-    if (options)
-        loading->options = *options;
-    loading->phases = mailbox_create(free);
-    loading->ended = queue_create(1, NULL);
-    loading->plan = plan_create(id);
-    return loading;
 }
 
 struct plan *plan_load(const char *folder, const char *id, const struct plan_load_options *options, struct error *err)
 {
+    static const struct plan_load_options none = { 0 };
     int64_t started_us = clock_now_us();
-    if (options && options->sources)
+    options = options ? options : &none;
+    if (options->sources)
         *options->sources = NULL;
-    const atomic_bool *cancel = options ? options->progress.cancel : NULL;
-    if (cancel && atomic_load(cancel)) {
+    if (options->progress.cancel && atomic_load(options->progress.cancel)) {
         error_set(err, ERROR_CANCELLED, "loading was cancelled");
         return NULL;
     }
-    struct loading *loading = loading_create(folder, id, options, err);
+    struct loading *loading = loading_create(folder, id, err);
     struct plan *plan = NULL;
     if (!loading)
         return NULL;
+    loading->max_bytes = options->max_bytes;
+    loading->cache_folder = options->cache_folder;
     start(loading);
-    if (wait(loading, err)) {
+    if (wait(loading, &options->progress, err)) {
         plan = loading->plan;
         loading->plan = NULL;
-        if (options && options->sources) {
+        if (options->sources) {
             *options->sources = loading->sources;
             loading->sources = NULL;
         }

@@ -1,3 +1,5 @@
+#include "core/load/recognise.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +12,9 @@
 #include "core/load/label_lists.h"
 #include "core/load/nifti_parts.h"
 #include "core/load/nrrd_parts.h"
+#include "core/load/part_format.h"
+#include "core/load/part_names.h"
+#include "core/plan/plan.h"
 
 /* A folder without a plan.json: its files, and those in the folders below, become parts by what they are called and
  * what they hold. */

@@ -4,7 +4,6 @@
 #include "core/formats/sera_qhd.h"
 #include "core/formats/sera_rst.h"
 #include "core/formats/sera_uvh.h"
-#include "core/load/parts.h"
 
 /* given_mm: of one unit of the header, as the plan says; 0: it does not.
  * errors of all: as folder_read and the formats; the text names the file */
@@ -20,16 +19,3 @@ NODISCARD bool plan_read_rst(const struct folder *folder, const char *path, stru
 /* path is the header; the table and the images of regions lie beside it. */
 NODISCARD bool plan_read_chd(const struct folder *folder, const char *path, struct sera_doses *doses,
                              struct report *report, struct error *err);
-
-/* What plan.json says of the dose's frame of reference; a file that says worse is believed. */
-void plan_dose_frame(struct dose *dose, const struct plan_file_dose *entry, const char *where, struct report *report);
-/* What a dose's numbers are in, and per what: as the plan says. is_sera: the format says cGy and a unit of the source.
- */
-void plan_dose_units(struct dose *dose, const struct plan_file_dose *entry, bool is_sera, struct report *report);
-/* Takes values. */
-void plan_add_component(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct volume *values,
-                        struct report *report);
-/* What the file holds of the quantity the plan asks for; for "total" everything in the file that no other component is
- * for. Takes it out of doses. */
-void plan_add_sera(struct dose *dose, const struct plan_file_dose *entry, size_t component, struct sera_doses *doses,
-                   struct report *report);

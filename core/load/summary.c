@@ -7,9 +7,12 @@
 #include "core/formats/sera_rst.h"
 #include "core/formats/sera_uvh.h"
 #include "core/formats/text.h"
+#include "core/load/describe.h"
 #include "core/load/dicom_parts.h"
 #include "core/load/nifti_parts.h"
 #include "core/load/nrrd_parts.h"
+#include "core/load/part_format.h"
+#include "core/load/part_names.h"
 
 enum { NAMES_MAX_BYTES = 16 << 20 };
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "core/formats/sera_pp.h"
+#include "core/load/part_format.h"
 
 static bool add_file(struct plan *plan, const struct folder *folder, const struct plan_file_tracks *entry,
                      struct error *err)

@@ -1,6 +1,8 @@
 #pragma once
 /* Inside core/load: the plan's particle tracks, and the beam they show when no other is given. */
-#include "core/load/parts.h"
+#include "core/formats/folder.h"
+#include "core/formats/plan_json.h"
+#include "core/plan/plan.h"
 
 /* After regions, images and beams: the unit of tracks is judged by the plan's box. What is in a format that is not read
  * is reported and left out. errors as pp_parse and folder_read */

@@ -1,34 +1,38 @@
-/* DICOM doses into the plan: those of one treatment plan together. */
+#include "core/load/assemble_dicom_doses.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/base/mem.h"
 #include "core/formats/text.h"
-#include "core/load/loading.h"
+#include "core/load/dicom_parts.h"
+#include "core/load/dose_entry.h"
+#include "core/load/plan_ids.h"
 
 static const struct rtplan *plan_of(const struct loading *loading, const char *uid)
 {
-    for (size_t i = 0; uid[0] && i < loading->n_jobs; i++)
-        if (loading->jobs[i].rtplan && strcmp(loading->jobs[i].rtplan->uid, uid) == 0)
-            return loading->jobs[i].rtplan;
+    for (size_t i = 0; uid[0] && i < loading->n_readings; i++)
+        if (loading->readings[i].rtplan && strcmp(loading->readings[i].rtplan->uid, uid) == 0)
+            return loading->readings[i].rtplan;
     return NULL;
 }
 
-static void check_frame(const struct loading *loading, struct job *job, struct report *report)
+static void check_frame(const struct loading *loading, struct part_reading *reading, struct report *report)
 {
     const struct dicom_stack *first = NULL;
     for (size_t i = 0; i < loading->plan->n_images; i++) {
-        const struct dicom_stack *stack = plan_dicom_stack_of(loading, i);
+        const struct dicom_stack *stack = loading_stack_of(loading, i);
         first = first ? first : stack;
-        if (stack && job->rtdose.frame_uid[0] && strcmp(stack->frame_of_reference, job->rtdose.frame_uid) == 0) {
-            job->rtdose.has_frame = true;
-            job->rtdose.frame = DOSE_FRAME_SAME;
+        if (stack && reading->rtdose.frame_uid[0] &&
+            strcmp(stack->frame_of_reference, reading->rtdose.frame_uid) == 0) {
+            reading->rtdose.has_frame = true;
+            reading->rtdose.frame = DOSE_FRAME_SAME;
             return;
         }
     }
     if (first)
-        rtdose_check_frame(&job->rtdose, first->frame_of_reference, job->path, report);
+        rtdose_check_frame(&reading->rtdose, first->frame_of_reference, reading->path, report);
 }
 
 static void add_group(struct loading *loading, struct rtdose *objects, size_t n, const struct plan_file_dose *entry,
@@ -72,19 +76,19 @@ static void add_group(struct loading *loading, struct rtdose *objects, size_t n,
 void plan_dicom_add_doses(struct loading *loading, size_t index, const struct plan_file_dose *entry)
 {
     struct rtdose *objects = mem_new(PLAN_DICOM_MAX_DOSES * sizeof *objects);
-    bool *is_taken = mem_new(loading->n_jobs + 1);
-    for (size_t first = 0; first < loading->n_jobs; first++) { /* those of one treatment plan together */
+    bool *is_taken = mem_new(loading->n_readings + 1);
+    for (size_t first = 0; first < loading->n_readings; first++) { /* those of one treatment plan together */
         const char *where = "";
         size_t n = 0;
-        for (size_t i = first; i < loading->n_jobs && n < PLAN_DICOM_MAX_DOSES; i++) {
-            struct job *job = &loading->jobs[i];
-            if (job->kind != JOB_DOSE || job->index != index || !job->rtdose.values || is_taken[i] ||
-                (n > 0 && strcmp(job->rtdose.plan_uid, objects[0].plan_uid) != 0))
+        for (size_t i = first; i < loading->n_readings && n < PLAN_DICOM_MAX_DOSES; i++) {
+            struct part_reading *reading = &loading->readings[i];
+            if (reading->kind != PART_KIND_DOSE || reading->index != index || !reading->rtdose.values || is_taken[i] ||
+                (n > 0 && strcmp(reading->rtdose.plan_uid, objects[0].plan_uid) != 0))
                 continue;
-            check_frame(loading, job, &loading->plan->report);
-            where = n == 0 ? job->path : where;
-            objects[n++] = job->rtdose;
-            job->rtdose.values = NULL;
+            check_frame(loading, reading, &loading->plan->report);
+            where = n == 0 ? reading->path : where;
+            objects[n++] = reading->rtdose;
+            reading->rtdose.values = NULL;
             is_taken[i] = true;
         }
         if (n > 0)
@@ -94,16 +98,16 @@ void plan_dicom_add_doses(struct loading *loading, size_t index, const struct pl
     free(is_taken);
 }
 
-void plan_dicom_add_component(struct loading *loading, struct dose *dose, struct job *job)
+void plan_dicom_add_component(struct loading *loading, struct dose *dose, struct part_reading *reading)
 {
-    struct volume *values = job->rtdose.values;
-    job->rtdose.values = NULL;
-    if (!dose->unit[0] && text_equal(job->rtdose.units, "GY"))
+    struct volume *values = reading->rtdose.values;
+    reading->rtdose.values = NULL;
+    if (!dose->unit[0] && text_equal(reading->rtdose.units, "GY"))
         snprintf(dose->unit, sizeof dose->unit, "Gy");
-    check_frame(loading, job, &loading->plan->report);
-    if (job->rtdose.has_frame) {
-        dose->frame = dose->has_frame && dose->frame > job->rtdose.frame ? dose->frame : job->rtdose.frame;
+    check_frame(loading, reading, &loading->plan->report);
+    if (reading->rtdose.has_frame) {
+        dose->frame = dose->has_frame && dose->frame > reading->rtdose.frame ? dose->frame : reading->rtdose.frame;
         dose->has_frame = true;
     }
-    plan_add_component(dose, &loading->file->doses[job->index], job->component, values, &loading->plan->report);
+    plan_add_component(dose, &loading->file->doses[reading->index], reading->component, values, &loading->plan->report);
 }

@@ -1,0 +1,23 @@
+#include "core/load/describe.h"
+
+#include "core/load/dicom_parts.h"
+#include "core/load/part_names.h"
+#include "core/load/recognise.h"
+
+bool plan_describe(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts,
+                   struct report *report, struct error *err)
+{
+    *parts = (struct plan_parts){ 0 };
+    if (folder_look(folder, "plan.json", NULL) == FOLDER_ABSENT)
+        return plan_recognise(folder, progress, parts, report, err);
+    struct bytes text;
+    if (!folder_read(folder, "plan.json", PLAN_FILE_MAX_BYTES, UINT64_MAX, &text, err))
+        return false;
+    parts->file = plan_file_parse(text.data, text.size, report, err);
+    bytes_free(&text);
+    if (!parts->file)
+        return false;
+    if (!parts->file->name[0])
+        plan_folder_name(folder->path, parts->file->name, sizeof parts->file->name);
+    return plan_dicom_scan_named(folder, parts, progress, report, err);
+}

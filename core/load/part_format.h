@@ -1,0 +1,24 @@
+#pragma once
+/* The format of a file in a plan's folder, told by its name and, for DICOM, by its first bytes. */
+#include "core/formats/folder.h"
+
+enum part_format {
+    PART_ABSENT, /* there is no such file */
+    PART_NIFTI,
+    PART_UVH,
+    PART_QSH, /* .qim with its .qhd */
+    PART_PP,
+    PART_DICOM,
+    PART_NRRD,
+    PART_SERA_RST,         /* dose on a mesh */
+    PART_SERA_DOSE,        /* .chd: dose on planes */
+    PART_SERA_CURVE,       /* .dose: dose over depth and radius along a beam */
+    PART_SERA_PREFERENCES, /* .rsc, .cmap, body_data.txt */
+    PART_UNKNOWN
+};
+
+/* The format by the ending of the name. A folder counts as DICOM. A file without a known ending counts as DICOM when
+ * its first bytes say so. */
+enum part_format part_format_of(const struct folder *folder, const char *name);
+bool part_is_sera_dose(enum part_format format);       /* a file that holds several quantities */
+const char *part_format_word(enum part_format format); /* "NIfTI", "DICOM", ... */

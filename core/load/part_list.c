@@ -1,0 +1,155 @@
+#include "core/load/part_list.h"
+
+#include "core/base/mem.h"
+#include "core/load/dicom_parts.h"
+#include "core/load/nifti_parts.h"
+
+static bool refuse_format(const char *path, enum part_format format, struct error *err)
+{
+    if (format == PART_ABSENT)
+        return error_set(err, ERROR_NOT_FOUND, "%s: there is no such file in the plan's folder", path);
+    if (format == PART_UNKNOWN)
+        return error_set(err, ERROR_UNSUPPORTED, "%s: the format is not one that this version reads", path);
+    return error_set(err, ERROR_UNSUPPORTED, "%s: %s is not read here by this version", path, part_format_word(format));
+}
+
+static struct part_reading *list_part(struct loading *loading, enum part_kind kind, size_t index, size_t component,
+                                      const char *path, enum part_format format)
+{
+    struct part_reading *reading = &loading->readings[loading->n_readings++];
+    reading->kind = kind;
+    reading->index = index;
+    reading->component = component;
+    reading->path = path;
+    reading->loading = loading;
+    reading->format = format;
+    char voxels[FOLDER_NAME_SIZE];
+    plan_nifti_voxels(&loading->folder, path, voxels);
+    folder_look(&loading->folder, voxels[0] ? voxels : path, &reading->bytes);
+    return reading;
+}
+
+/* A reading for each object of the kind at or below the path; returns how many. */
+static size_t list_dicom(struct loading *loading, enum part_kind kind, enum dicom_kind of, size_t index,
+                         size_t component, const char *path, size_t most)
+{
+    const struct dicom_object *object;
+    size_t n = 0;
+    for (; n < most && (object = plan_dicom_object(loading->parts.dicom, of, path, n)); n++)
+        list_part(loading, kind, index, component, object->path, PART_DICOM); /* whatever the file is called */
+    return n;
+}
+
+static bool refuse_dicom(const struct loading *loading, const char *path, const char *what, struct error *err)
+{
+    const struct dicom_object *other = plan_dicom_object(loading->parts.dicom, DICOM_KIND_OTHER, path, 0);
+    return error_set(err, ERROR_UNSUPPORTED, "%s: no DICOM %s that can be used%s%s", path, what, other ? ": " : "",
+                     other ? other->reason : "");
+}
+
+static bool list_image(struct loading *loading, size_t i, struct error *err)
+{
+    const char *path = loading->file->images[i].path;
+    enum part_format format = part_format_of(&loading->folder, path);
+    if (format != PART_NIFTI && format != PART_NRRD && format != PART_QSH && format != PART_DICOM)
+        return refuse_format(path, format, err);
+    struct part_reading *reading = list_part(loading, PART_KIND_IMAGE, i, 0, path, format);
+    if (format != PART_DICOM)
+        return true;
+    reading->stack = plan_dicom_stack(loading->parts.dicom, path);
+    if (reading->stack < 0)
+        return refuse_dicom(loading, path, "image series", err);
+    const struct dicom_stack *stack = &loading->parts.dicom->stacks[reading->stack];
+    reading->bytes = 0;
+    for (size_t at = 0; at < stack->n_objects; at++)
+        reading->bytes += loading->parts.dicom->objects[stack->objects[at]].n_bytes;
+    return true;
+}
+
+static bool list_regions(struct loading *loading, size_t i, struct error *err)
+{
+    const char *path = loading->file->regions[i].path;
+    enum part_format format = part_format_of(&loading->folder, path);
+    if (format == PART_DICOM)
+        return list_dicom(loading, PART_KIND_REGION, DICOM_KIND_STRUCT, i, 0, path, PLAN_FILE_MAX_PARTS) +
+                       list_dicom(loading, PART_KIND_REGION, DICOM_KIND_SEGMENTATION, i, 0, path, PLAN_FILE_MAX_PARTS) >
+                   0 ||
+               refuse_dicom(loading, path, "structure set or segmentation", err);
+    if (format != PART_NIFTI && format != PART_NRRD && format != PART_UVH)
+        return refuse_format(path, format, err);
+    list_part(loading, PART_KIND_REGION, i, 0, path, format);
+    return true;
+}
+
+/* A dose this version cannot read is left out, and said; images and regions are not. */
+static bool dose_is_readable(struct loading *loading, const struct plan_file_dose *dose, bool *is_readable,
+                             struct error *err)
+{
+    *is_readable = true;
+    for (size_t c = 0; c < dose->n_components; c++) {
+        const char *path = dose->components[c].path;
+        enum part_format format = part_format_of(&loading->folder, path);
+        if (format == PART_ABSENT)
+            return refuse_format(path, format, err);
+        if (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format) || format == PART_DICOM)
+            continue;
+        report_add(&loading->plan->report, REPORT_WARNING, "dose.unsupported", path,
+                   "The dose \"%s\" is in a format (%s) that this version does not read; the plan is shown without it.",
+                   dose->id, part_format_word(format));
+        *is_readable = false;
+        return true;
+    }
+    return true;
+}
+
+static bool list_dose(struct loading *loading, size_t i, struct error *err)
+{
+    const struct plan_file_dose *dose = &loading->file->doses[i];
+    bool is_readable;
+    if (!dose_is_readable(loading, dose, &is_readable, err))
+        return false;
+    for (size_t c = 0; is_readable && c < dose->n_components; c++) {
+        const char *path = dose->components[c].path;
+        size_t most = dose->n_components > 1 ? 1 : PLAN_DICOM_MAX_DOSES; /* a component is one object */
+        enum part_format format = part_format_of(&loading->folder, path);
+        if (format != PART_DICOM)
+            list_part(loading, PART_KIND_DOSE, i, c, path, format);
+        else if (list_dicom(loading, PART_KIND_DOSE, DICOM_KIND_DOSE, i, c, path, most) == 0)
+            return refuse_dicom(loading, path, "dose", err);
+    }
+    if (is_readable && dose->mask[0])
+        list_part(loading, PART_KIND_DOSE_MASK, i, 0, dose->mask, part_format_of(&loading->folder, dose->mask));
+    return true;
+}
+
+bool plan_list_parts(struct loading *loading, struct error *err)
+{
+    const struct plan_file *file = loading->file;
+    const struct plan_parts *parts = &loading->parts;
+    size_t n_objects = parts->dicom ? parts->dicom->n_objects : 0;
+    /* an entry of plan.json that names a folder may stand for many files, and two entries for the same */
+    size_t most = file->n_images + file->n_regions * (2 + n_objects) +
+                  file->n_doses * (DOSE_N_QUANTITIES + 1 + PLAN_DICOM_MAX_DOSES) + PLAN_DICOM_MAX_DOSES +
+                  (file->n_beam_files + 1) * PLAN_DICOM_MAX_PLANS;
+    bool is_made = true;
+    loading->readings = mem_array(most + 1, sizeof *loading->readings, UINT32_MAX, err);
+    if (!loading->readings)
+        return false;
+    for (size_t i = 0; is_made && i < file->n_images; i++)
+        is_made = list_image(loading, i, err);
+    for (size_t i = 0; is_made && i < file->n_regions; i++)
+        is_made = list_regions(loading, i, err);
+    for (size_t i = 0; is_made && i < file->n_doses; i++)
+        is_made = list_dose(loading, i, err);
+    for (size_t i = 0; is_made && i < file->n_beam_files; i++)
+        is_made = list_dicom(loading, PART_KIND_BEAMS, DICOM_KIND_PLAN, i, 0, file->beam_files[i].path,
+                             PLAN_DICOM_MAX_PLANS) > 0 ||
+                  refuse_dicom(loading, file->beam_files[i].path, "treatment plan", err);
+    if (is_made && parts->is_all_dicom) {
+        list_dicom(loading, PART_KIND_DOSE, DICOM_KIND_DOSE, PART_WITHOUT_ENTRY, 0, "", PLAN_DICOM_MAX_DOSES);
+        list_dicom(loading, PART_KIND_BEAMS, DICOM_KIND_PLAN, PART_WITHOUT_ENTRY, 0, "", PLAN_DICOM_MAX_PLANS);
+    }
+    for (size_t i = 0; i < loading->n_readings; i++)
+        loading->n_bytes += loading->readings[i].bytes;
+    return is_made;
+}

@@ -1,0 +1,56 @@
+#include "core/load/part_names.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "core/formats/text.h"
+
+const char *part_base_name(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    return slash ? slash + 1 : name;
+}
+
+bool part_is_spoken_of(const char *name, const char *const *words, size_t n_words)
+{
+    char low[FOLDER_NAME_SIZE];
+    size_t n = strlen(name);
+    n = n < sizeof low ? n : sizeof low - 1;
+    for (size_t i = 0; i < n; i++)
+        low[i] = name[i] >= 'A' && name[i] <= 'Z' ? (char)(name[i] - 'A' + 'a') : name[i];
+    low[n] = 0;
+    for (size_t i = 0; i < n_words; i++)
+        if (strstr(low, words[i]))
+            return true;
+    return false;
+}
+
+/* Length of name without the last ending. */
+static size_t stem_length(const char *name)
+{
+    const char *dot = strrchr(name, '.'), *slash = strrchr(name, '/');
+    return dot && (!slash || dot > slash) ? (size_t)(dot - name) : strlen(name);
+}
+
+bool part_find_data(const struct folder *folder, const char *header, const char *ending, char data[FOLDER_NAME_SIZE])
+{
+    static const char *const packings[] = { ".gz", ".sz", "" };
+    for (int i = 0; i < 3; i++) {
+        int n = snprintf(data, FOLDER_NAME_SIZE, "%.*s%s%s", (int)stem_length(header), header, ending, packings[i]);
+        if (n > 0 && n < FOLDER_NAME_SIZE && folder_look(folder, data, NULL) == FOLDER_FILE)
+            return true;
+    }
+    return false;
+}
+
+void plan_folder_name(const char *path, char *out, size_t size)
+{
+    size_t end = strlen(path), from;
+    while (end > 1 && path[end - 1] == '/')
+        end--;
+    for (from = end; from > 0 && path[from - 1] != '/'; from--) {
+    }
+    char name[256];
+    snprintf(name, sizeof name, "%.*s", (int)(end - from < 255 ? end - from : 255), path + from);
+    text_clean(name, out, size);
+}

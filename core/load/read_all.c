@@ -1,0 +1,104 @@
+#include "core/load/read_all.h"
+
+#include "core/base/mem.h"
+#include "core/base/parallel.h"
+#include "core/load/read_part.h"
+
+static void order_readings(struct loading *loading)
+{
+    loading->order = mem_new((loading->n_readings + 1) * sizeof *loading->order);
+    for (size_t i = 0; i < loading->n_readings; i++) {
+        size_t at = i;
+        for (; at > 0 && loading->readings[loading->order[at - 1]].bytes < loading->readings[i].bytes; at--)
+            loading->order[at] = loading->order[at - 1];
+        loading->order[at] = i;
+    }
+}
+
+/* Nobody said that this file belongs to the plan, so what is wrong with it need not keep the rest from being seen; it
+ * is said. */
+static bool may_be_left_out(const struct loading *loading, const struct part_reading *reading)
+{
+    return loading->parts.is_all_dicom && reading->format == PART_DICOM &&
+           (reading->err.code == ERROR_FORMAT || reading->err.code == ERROR_UNSUPPORTED ||
+            reading->err.code == ERROR_RANGE);
+}
+
+/* Takes failed readings out of the list. errors: the first one's, when nothing is left */
+static bool leave_out_failed(struct loading *loading, struct error *err)
+{
+    const struct error *first = NULL;
+    size_t n_read = 0;
+    for (size_t i = 0; i < loading->n_readings; i++) {
+        struct part_reading *reading = &loading->readings[i];
+        n_read += !reading->is_failed;
+        if (!reading->is_failed)
+            continue;
+        first = first ? first : &reading->err;
+        report_add(&loading->plan->report, REPORT_ERROR, "dicom.unreadable", reading->path, "Left out: %s",
+                   reading->err.text);
+    }
+    if (n_read == 0 && first && err)
+        *err = *first;
+    return n_read > 0 || !first;
+}
+
+/* A series is named as people know it, not by the first of its files. */
+static const char *name_of(const struct loading *loading, const struct part_reading *reading)
+{
+    if (reading->kind == PART_KIND_IMAGE && reading->format == PART_DICOM &&
+        loading->file->images[reading->index].name[0])
+        return loading->file->images[reading->index].name;
+    return reading->path;
+}
+
+static void work(void *context, int part, int n_parts)
+{
+    (void)n_parts;
+    struct loading *loading = context;
+    for (;;) {
+        size_t turn = atomic_fetch_add(&loading->next, 1);
+        if (turn >= loading->n_readings || loading_is_cancelled(loading))
+            return;
+        size_t at = loading->order[turn];
+        struct part_reading *reading = &loading->readings[at];
+        /* Once a part has failed only those before it matter: the first in the plan's order is the one reported. */
+        if (at > atomic_load(&loading->first_failed))
+            continue;
+        if (part == 0)
+            loading_phase(loading, "reading", name_of(loading, reading), 5, 80);
+        if (!plan_read_part(loading, reading))
+            reading->is_failed = true;
+        if (reading->is_failed && !may_be_left_out(loading, reading)) {
+            size_t before = atomic_load(&loading->first_failed);
+            while (at < before && !atomic_compare_exchange_weak(&loading->first_failed, &before, at)) {
+            }
+        }
+        loading_work(loading, reading->bytes - reading->bytes_told);
+    }
+}
+
+bool plan_read_parts(struct loading *loading, struct error *err)
+{
+    order_readings(loading);
+    atomic_init(&loading->next, 0);
+    atomic_init(&loading->first_failed, SIZE_MAX);
+    loading_begin(loading, loading->n_bytes);
+    int n_threads = parallel_cores();
+    if ((size_t)n_threads > loading->n_readings)
+        n_threads = (int)loading->n_readings;
+    parallel_run(n_threads, work, loading);
+    if (loading_is_cancelled(loading))
+        return error_set(err, ERROR_CANCELLED, "loading was cancelled");
+    size_t failed = atomic_load(&loading->first_failed);
+    if (failed != SIZE_MAX) {
+        if (err)
+            *err = loading->readings[failed].err;
+        return false;
+    }
+    if (!leave_out_failed(loading, err))
+        return false;
+    for (size_t i = 0; i < loading->n_readings; i++)
+        report_move(&loading->plan->report, &loading->readings[i].report);
+    return true;
+}

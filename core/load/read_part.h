@@ -1,0 +1,6 @@
+#pragma once
+/* Reads one listed file of a plan: the one place that chooses the reader by format and kind. */
+#include "core/load/loading.h"
+
+/* Fills the reading with what its file holds, its report, and err when it fails. Any thread; one call a reading. */
+NODISCARD bool plan_read_part(struct loading *loading, struct part_reading *reading);
