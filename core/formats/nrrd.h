@@ -3,7 +3,7 @@
  * .seg.nrrd: layers of labels with the segments' names and colours. Works on bytes in memory; opens nothing. source G.
  * Kindlmann, "Definition of NRRD File Format" (Teem); 3D Slicer's segmentation keys (Segment0_Name ...). Differs:
  * whatever would be guessed about left and right is reported; series of volumes are refused. */
-#include "core/formats/plan_json.h"
+#include "core/formats/plan_file.h"
 #include "core/formats/raw_voxels.h"
 
 enum {

@@ -6,12 +6,13 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "core/formats/plan_json_inner.h"
+#include "core/formats/plan_json_beams.h"
+#include "core/formats/plan_json_place.h"
 #include "core/formats/text.h"
 #include "core/volume/window.h"
 
 /* Of lengths, where a file does not say it, or not rightly; 0 when the plan does not either. */
-static bool get_unit(const struct place *place, const cJSON *object, double *mm)
+static bool get_unit(const struct json_place *place, const cJSON *object, double *mm)
 {
     char unit[16];
     if (!place_text(place, object, "unit", unit, sizeof unit))
@@ -23,7 +24,7 @@ static bool get_unit(const struct place *place, const cJSON *object, double *mm)
 }
 
 /* {"center": 40, "width": 400} */
-static bool get_window(const struct place *place, const cJSON *object, struct plan_file_image *image)
+static bool get_window(const struct json_place *place, const cJSON *object, struct plan_file_image *image)
 {
     const cJSON *window = cJSON_GetObjectItemCaseSensitive(object, "window");
     if (!window || cJSON_IsNull(window))
@@ -39,7 +40,7 @@ static bool get_window(const struct place *place, const cJSON *object, struct pl
     return true;
 }
 
-static bool parse_images(const struct place *top, const cJSON *root, struct plan_file *file)
+static bool parse_images(const struct json_place *top, const cJSON *root, struct plan_file *file)
 {
     static const char *const known[] = { "id",   "path",       "header", "modality", "name",
                                          "unit", "value_unit", "window", "inverted", NULL };
@@ -47,7 +48,7 @@ static bool parse_images(const struct place *top, const cJSON *root, struct plan
     if (!place_list(top, root, "images", PLAN_FILE_MAX_IMAGES, &list))
         return false;
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
-        struct place at = place_at(top, "images", (int)file->n_images);
+        struct json_place at = place_at(top, "images", (int)file->n_images);
         struct plan_file_image *image = &file->images[file->n_images++];
         place_note_keys(&at, entry, known);
         if (!place_text(&at, entry, "id", image->id, sizeof image->id) ||
@@ -62,7 +63,7 @@ static bool parse_images(const struct place *top, const cJSON *root, struct plan
     return true;
 }
 
-static bool parse_regions(const struct place *top, const cJSON *root, struct plan_file *file)
+static bool parse_regions(const struct json_place *top, const cJSON *root, struct plan_file *file)
 {
     static const char *const known[] = { "path", "names", "name", "color", "unit", NULL };
     const cJSON *list;
@@ -70,7 +71,7 @@ static bool parse_regions(const struct place *top, const cJSON *root, struct pla
         return false;
     file->regions = mem_new(((list ? (size_t)cJSON_GetArraySize(list) : 0) + 1) * sizeof *file->regions);
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
-        struct place at = place_at(top, "regions", (int)file->n_regions);
+        struct json_place at = place_at(top, "regions", (int)file->n_regions);
         struct plan_file_region *region = &file->regions[file->n_regions++];
         place_note_keys(&at, entry, known);
         if (!place_path(&at, entry, "path", true, region->path) ||
@@ -85,7 +86,7 @@ static bool parse_regions(const struct place *top, const cJSON *root, struct pla
     return true;
 }
 
-static bool parse_component(const struct place *at, const cJSON *entry, struct plan_file_dose *dose)
+static bool parse_component(const struct json_place *at, const cJSON *entry, struct plan_file_dose *dose)
 {
     struct plan_file_component *component = &dose->components[dose->n_components];
     char word[32];
@@ -124,7 +125,7 @@ static bool parse_component(const struct place *at, const cJSON *entry, struct p
     return true;
 }
 
-static bool parse_doses(const struct place *top, const cJSON *root, struct plan_file *file)
+static bool parse_doses(const struct json_place *top, const cJSON *root, struct plan_file *file)
 {
     static const char *const known[] = { "id",        "name", "path", "quantity", "per_ppm",    "boron_ppm",
                                          "reference", "unit", "per",  "mask",     "components", "frame_of_reference",
@@ -134,7 +135,7 @@ static bool parse_doses(const struct place *top, const cJSON *root, struct plan_
     if (!place_list(top, root, "doses", PLAN_FILE_MAX_DOSES, &list))
         return false;
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
-        struct place at = place_at(top, "doses", (int)file->n_doses);
+        struct json_place at = place_at(top, "doses", (int)file->n_doses);
         struct plan_file_dose *dose = &file->doses[file->n_doses++];
         place_note_keys(&at, entry, known);
         if (!place_text(&at, entry, "id", dose->id, sizeof dose->id) ||
@@ -158,7 +159,7 @@ static bool parse_doses(const struct place *top, const cJSON *root, struct plan_
         if (!components->child)
             return place_fail(&at, ERROR_FORMAT, "components", "is empty");
         for (const cJSON *component = components->child; component; component = component->next) {
-            struct place inside = place_at(&at, "components", (int)dose->n_components);
+            struct json_place inside = place_at(&at, "components", (int)dose->n_components);
             place_note_keys(&inside, component, known_inside);
             if (!parse_component(&inside, component, dose))
                 return false;
@@ -167,14 +168,14 @@ static bool parse_doses(const struct place *top, const cJSON *root, struct plan_
     return true;
 }
 
-static bool parse_tracks(const struct place *top, const cJSON *root, struct plan_file *file)
+static bool parse_tracks(const struct json_place *top, const cJSON *root, struct plan_file *file)
 {
     static const char *const known[] = { "path", "unit", NULL };
     const cJSON *list;
     if (!place_list(top, root, "tracks", PLAN_FILE_MAX_TRACKS, &list))
         return false;
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
-        struct place at = place_at(top, "tracks", (int)file->n_tracks);
+        struct json_place at = place_at(top, "tracks", (int)file->n_tracks);
         struct plan_file_tracks *tracks = &file->tracks[file->n_tracks++];
         place_note_keys(&at, entry, known);
         if (!place_path(&at, entry, "path", true, tracks->path) || !get_unit(&at, entry, &tracks->mm))
@@ -183,14 +184,14 @@ static bool parse_tracks(const struct place *top, const cJSON *root, struct plan
     return true;
 }
 
-static bool parse_curves(const struct place *top, const cJSON *root, struct plan_file *file)
+static bool parse_curves(const struct json_place *top, const cJSON *root, struct plan_file *file)
 {
     static const char *const known[] = { "id", "name", "path", "per", NULL };
     const cJSON *list;
     if (!place_list(top, root, "curves", PLAN_FILE_MAX_CURVES, &list))
         return false;
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
-        struct place at = place_at(top, "curves", (int)file->n_curves);
+        struct json_place at = place_at(top, "curves", (int)file->n_curves);
         struct plan_file_curve *curve = &file->curves[file->n_curves++];
         place_note_keys(&at, entry, known);
         if (!place_text(&at, entry, "id", curve->id, sizeof curve->id) ||
@@ -202,14 +203,14 @@ static bool parse_curves(const struct place *top, const cJSON *root, struct plan
     return true;
 }
 
-static bool parse_preferences(const struct place *top, const cJSON *root, struct plan_file *file)
+static bool parse_preferences(const struct json_place *top, const cJSON *root, struct plan_file *file)
 {
     static const char *const known[] = { "path", NULL };
     const cJSON *list;
     if (!place_list(top, root, "preferences", PLAN_FILE_MAX_PREFERENCES, &list))
         return false;
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
-        struct place at = place_at(top, "preferences", (int)file->n_preferences);
+        struct json_place at = place_at(top, "preferences", (int)file->n_preferences);
         place_note_keys(&at, entry, known);
         if (!place_path(&at, entry, "path", true, file->preferences[file->n_preferences++]))
             return false;
@@ -217,7 +218,7 @@ static bool parse_preferences(const struct place *top, const cJSON *root, struct
     return true;
 }
 
-static bool parse_hierarchy(const struct place *top, const cJSON *root, struct plan_file *file)
+static bool parse_hierarchy(const struct json_place *top, const cJSON *root, struct plan_file *file)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(root, "hierarchy");
     if (!item || cJSON_IsNull(item))
@@ -246,7 +247,7 @@ static bool parse_hierarchy(const struct place *top, const cJSON *root, struct p
     return true;
 }
 
-static bool parse_plan(const struct place *top, const cJSON *root, struct plan_file *file)
+static bool parse_plan(const struct json_place *top, const cJSON *root, struct plan_file *file)
 {
     static const char *const known[] = { "format",    "version", "name",  "note",   "phantom", "images",      "regions",
                                          "hierarchy", "doses",   "beams", "tracks", "curves",  "preferences", NULL };
@@ -279,7 +280,7 @@ struct plan_file *plan_file_parse(const uint8_t *data, size_t size, struct repor
     cJSON *root = place_document(data, size, "plan.json", err);
     if (!root)
         return NULL;
-    struct place top = { .file = "plan.json", .report = report, .err = err };
+    struct json_place top = { .file = "plan.json", .report = report, .err = err };
     struct plan_file *file = mem_new(sizeof *file);
     bool is_read = parse_plan(&top, root, file);
     cJSON_Delete(root);
@@ -288,13 +289,4 @@ struct plan_file *plan_file_parse(const uint8_t *data, size_t size, struct repor
         return NULL;
     }
     return file;
-}
-
-void plan_file_destroy(struct plan_file *file)
-{
-    if (!file)
-        return;
-    free(file->regions);
-    free(file->pairs);
-    free(file);
 }

@@ -1,135 +1,19 @@
 #pragma once
-/* plan.json and the lists of label names: what they say, checked and in plain structs. The only file of core that knows
- * JSON. Opens nothing: paths are checked for form alone. */
-#include "core/beam/beam.h"
-#include "core/dose/dose.h"
-#include "core/formats/folder.h"
-#include "core/region/region.h"
+/* Reads and writes plan.json and the lists of label names. Opens no file. */
+#include "core/formats/plan_file.h"
 #include "core/report/report.h"
-#include "core/volume/window.h"
-
-enum {
-    PLAN_FILE_MAX_BYTES = 4 << 20,
-    PLAN_FILE_MAX_IMAGES = 16,
-    PLAN_FILE_MAX_DOSES = 16,
-    PLAN_FILE_MAX_BEAMS = 64,
-    PLAN_FILE_MAX_CURVES = 16,
-    PLAN_FILE_MAX_PARTS = REGION_MAX, /* entries of "regions" */
-    PLAN_FILE_MAX_TRACKS = 16,
-    PLAN_FILE_MAX_PREFERENCES = 16,
-    PLAN_FILE_MAX_BEAM_FILES = 16,
-    PLAN_FILE_MAX_PAIRS = 1024, /* of the hierarchy */
-    PLAN_FILE_MAX_LABELS = 65536
-};
-
-struct plan_file_image {
-    char id[64];
-    char path[FOLDER_NAME_SIZE];
-    char header[FOLDER_NAME_SIZE]; /* "" none */
-    char modality[16];
-    char name[128];                     /* for people; "" none */
-    char value_unit[8];                 /* of its values, "HU"; "" none */
-    bool is_inverted;                   /* low values are meant to be white */
-    double window_center, window_width; /* a first window, within WINDOW_...; width 0: none */
-    double mm;                          /* of one unit of a SERA header, whatever that says; 0 when not given */
-};
-struct plan_file_region {
-    char path[FOLDER_NAME_SIZE];
-    char names[FOLDER_NAME_SIZE]; /* "" none */
-    char name[REGION_NAME_SIZE];  /* not "": the path is a mask */
-    bool has_color;
-    uint8_t rgb[3];
-    double mm; /* as of an image */
-};
-#define PLAN_FILE_MAX_PPM 1e6 /* all of it */
-struct plan_file_component {
-    enum dose_quantity quantity;
-    bool is_per_ppm, has_boron_ppm;
-    double boron_ppm; /* of a total, 0 to PLAN_FILE_MAX_PPM */
-    double reference; /* what counts as 100 %; 0: not given */
-    char path[FOLDER_NAME_SIZE];
-};
-struct plan_file_dose {
-    char id[64], name[64], unit[16], per[64];
-    bool has_frame;
-    enum dose_frame frame;
-    char mask[FOLDER_NAME_SIZE];
-    struct plan_file_component components[DOSE_N_QUANTITIES];
-    size_t n_components;
-};
-struct plan_file_beams {
-    char path[FOLDER_NAME_SIZE]; /* RTPLAN: all its beams */
-};
-struct plan_file_tracks {
-    char path[FOLDER_NAME_SIZE];
-    double mm; /* of one unit; 0 when not given */
-};
-struct plan_file_curve {
-    char id[64], name[128], per[64];
-    char path[FOLDER_NAME_SIZE];
-};
-/* inner lies directly inside outer */
-struct plan_file_pair {
-    char outer[REGION_NAME_SIZE], inner[REGION_NAME_SIZE];
-};
-
-struct plan_file {
-    char name[128], note[512];
-    bool is_phantom;
-    struct plan_file_image images[PLAN_FILE_MAX_IMAGES];
-    size_t n_images;
-    struct plan_file_region *regions;
-    size_t n_regions;
-    char hierarchy[FOLDER_NAME_SIZE]; /* a file; "" when pairs say it, or nothing does */
-    struct plan_file_pair *pairs;
-    size_t n_pairs;
-    struct plan_file_dose doses[PLAN_FILE_MAX_DOSES];
-    size_t n_doses;
-    struct beam beams[PLAN_FILE_MAX_BEAMS];
-    size_t n_beams;
-    struct plan_file_beams beam_files[PLAN_FILE_MAX_BEAM_FILES];
-    size_t n_beam_files;
-    struct plan_file_tracks tracks[PLAN_FILE_MAX_TRACKS];
-    size_t n_tracks;
-    struct plan_file_curve curves[PLAN_FILE_MAX_CURVES];
-    size_t n_curves;
-    char preferences[PLAN_FILE_MAX_PREFERENCES][FOLDER_NAME_SIZE];
-    size_t n_preferences;
-};
 
 /* Unknown keys are reported, not refused.
  *   errors  ERROR_FORMAT not JSON (with the line), not a plan, a value of the wrong type; ERROR_RANGE a path that
  * leaves the folder, a value out of range; ERROR_LIMIT too many entries; the text names the place,
  * "doses[1].components[0].path" */
 NODISCARD struct plan_file *plan_file_parse(const uint8_t *data, size_t size, struct report *report, struct error *err);
-void plan_file_destroy(struct plan_file *file);
 
-struct label_name {
-    uint16_t value;
-    bool has_color;
-    uint8_t rgb[3];
-    char name[REGION_NAME_SIZE];
-    char parent[REGION_NAME_SIZE]; /* "" none */
-    /* what beamroom convert writes, so that a plan comes back as it was */
-    char id[REGION_ID_SIZE]; /* "" none; an entry with an id is a region even without a voxel */
-    int place;               /* among all regions of the plan, from 1; 0 none */
-    double opacity;          /* above 0 to 1; 0 none */
-    bool has_tissue;
-    struct label_tissue {
-        double boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma; /* not-a-number: not given */
-    } tissue;
-};
-struct label_names {
-    struct label_name *labels;
-    size_t n;
-    char file[FOLDER_NAME_SIZE]; /* the label map that the list belongs to, beside the list; "" not said */
-};
 /* {"file": "tumour.nii.gz", "labels": [{"value": 1, "name": "scalp", "color": "#e0c0a0", "parent": "...", "id":
  * "scalp", "place": 1, "tissue": {"cbe_boron": 1.3}}]}; "file" may be left out; a colour may also be three numbers, of
  * 0..1 or 0..255. errors ERROR_FORMAT, ERROR_RANGE, ERROR_LIMIT */
 NODISCARD bool label_names_parse(const uint8_t *data, size_t size, const char *file, struct label_names *names,
                                  struct error *err);
-void label_names_finish(struct label_names *names);
 
 /* The documents that the two readers above read back to the same; "" and not-a-number are left out. The text is the
  * caller's: free. */

@@ -1,14 +1,15 @@
+#include "core/formats/plan_json_beams.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "core/formats/plan_json_delivery.h"
-#include "core/formats/plan_json_inner.h"
 
 /* A treatment plan may hold any number; a count is one that a double holds exactly. */
 #define MOST_NUMBER 1e300
 #define MOST_COUNT 9007199254740992.0
 
-static bool parse_numbers(const struct place *at, const cJSON *item, const char *key, int n, double *out)
+static bool parse_numbers(const struct json_place *at, const cJSON *item, const char *key, int n, double *out)
 {
     bool is_list = n > 1;
     for (int i = 0; i < n; i++)
@@ -28,7 +29,7 @@ static bool parse_numbers(const struct place *at, const cJSON *item, const char 
     return true;
 }
 
-static bool parse_count(const struct place *at, const cJSON *item, const char *key, int64_t *out)
+static bool parse_count(const struct json_place *at, const cJSON *item, const char *key, int64_t *out)
 {
     double value;
     *out = 0;
@@ -43,7 +44,7 @@ static bool parse_count(const struct place *at, const cJSON *item, const char *k
 }
 
 /* What a treatment plan says of a beam. Numbers that are absent are not-a-number. */
-static bool parse_delivery(const struct place *at, const cJSON *entry, struct beam *beam)
+static bool parse_delivery(const struct json_place *at, const cJSON *entry, struct beam *beam)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(entry, "delivery");
     struct beam_delivery *delivery = &beam->delivery;
@@ -77,7 +78,7 @@ static bool parse_delivery(const struct place *at, const cJSON *entry, struct be
            place_fail(at, ERROR_RANGE, "patient_position", "expected HFS, HFP, FFS, FFP, HFDR, HFDL, FFDR or FFDL");
 }
 
-static bool parse_beam_file(const struct place *at, const cJSON *entry, struct plan_file *file)
+static bool parse_beam_file(const struct json_place *at, const cJSON *entry, struct plan_file *file)
 {
     static const char *const known[] = { "path", NULL };
     place_note_keys(at, entry, known);
@@ -86,14 +87,14 @@ static bool parse_beam_file(const struct place *at, const cJSON *entry, struct p
     return place_path(at, entry, "path", true, file->beam_files[file->n_beam_files++].path);
 }
 
-bool plan_json_beams(const struct place *top, const cJSON *root, struct plan_file *file)
+bool plan_json_beams(const struct json_place *top, const cJSON *root, struct plan_file *file)
 {
     static const char *const known[] = { "id", "name", "entry_mm", "target_mm", "aperture_mm", "delivery", NULL };
     const cJSON *list;
     if (!place_list(top, root, "beams", PLAN_FILE_MAX_BEAMS, &list))
         return false;
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
-        struct place at = place_at(top, "beams", (int)(file->n_beams + file->n_beam_files));
+        struct json_place at = place_at(top, "beams", (int)(file->n_beams + file->n_beam_files));
         if (cJSON_HasObjectItem(entry, "path")) {
             if (!parse_beam_file(&at, entry, file))
                 return false;

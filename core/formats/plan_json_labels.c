@@ -3,10 +3,11 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
-#include "core/formats/plan_json_inner.h"
+#include "core/formats/plan_json.h"
+#include "core/formats/plan_json_place.h"
 #include "core/formats/text.h"
 
-static bool get_weight(const struct place *place, const cJSON *object, const char *key, double *out)
+static bool get_weight(const struct json_place *place, const cJSON *object, const char *key, double *out)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
     *out = NAN;
@@ -18,7 +19,7 @@ static bool get_weight(const struct place *place, const cJSON *object, const cha
     return true;
 }
 
-static bool get_tissue(const struct place *at, const cJSON *entry, struct label_name *label)
+static bool get_tissue(const struct json_place *at, const cJSON *entry, struct label_name *label)
 {
     struct label_tissue *tissue = &label->tissue;
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(entry, "tissue");
@@ -32,7 +33,7 @@ static bool get_tissue(const struct place *at, const cJSON *entry, struct label_
 }
 
 /* A whole number from 1 to most; 0 when the key is absent. */
-static bool get_whole(const struct place *at, const cJSON *entry, const char *key, int most, int *out)
+static bool get_whole(const struct json_place *at, const cJSON *entry, const char *key, int most, int *out)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(entry, key);
     *out = 0;
@@ -48,7 +49,7 @@ static bool get_whole(const struct place *at, const cJSON *entry, const char *ke
     return true;
 }
 
-static bool get_opacity(const struct place *at, const cJSON *entry, double *out)
+static bool get_opacity(const struct json_place *at, const cJSON *entry, double *out)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(entry, "opacity");
     *out = 0;
@@ -60,7 +61,7 @@ static bool get_opacity(const struct place *at, const cJSON *entry, double *out)
     return true;
 }
 
-static bool parse_label(const struct place *at, const cJSON *entry, struct label_name *label)
+static bool parse_label(const struct json_place *at, const cJSON *entry, struct label_name *label)
 {
     const cJSON *value = cJSON_GetObjectItemCaseSensitive(entry, "value");
     if (!cJSON_IsNumber(value) || value->valuedouble != floor(value->valuedouble) ||
@@ -81,7 +82,7 @@ bool label_names_parse(const uint8_t *data, size_t size, const char *name, struc
     cJSON *root = place_document(data, size, name, err);
     if (!root)
         return false;
-    struct place top = { .file = name, .err = err };
+    struct json_place top = { .file = name, .err = err };
     const cJSON *list;
     const cJSON *file = cJSON_GetObjectItemCaseSensitive(root, "file");
     if (cJSON_IsString(file))
@@ -92,17 +93,11 @@ bool label_names_parse(const uint8_t *data, size_t size, const char *name, struc
     if (is_read)
         names->labels = mem_new(((size_t)cJSON_GetArraySize(list) + 1) * sizeof *names->labels);
     for (const cJSON *entry = is_read ? list->child : NULL; is_read && entry; entry = entry->next) {
-        struct place at = place_at(&top, "labels", (int)names->n);
+        struct json_place at = place_at(&top, "labels", (int)names->n);
         is_read = parse_label(&at, entry, &names->labels[names->n++]);
     }
     cJSON_Delete(root);
     if (!is_read)
         label_names_finish(names);
     return is_read;
-}
-
-void label_names_finish(struct label_names *names)
-{
-    free(names->labels);
-    *names = (struct label_names){ 0 };
 }

@@ -1,19 +1,21 @@
+#include "core/formats/plan_json_place.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/formats/plan_json_inner.h"
+#include "core/beam/beam.h"
 #include "core/formats/text.h"
 
-struct place place_at(const struct place *up, const char *list, int index)
+struct json_place place_at(const struct json_place *up, const char *list, int index)
 {
-    struct place place = { .file = up->file, .report = up->report, .err = up->err };
+    struct json_place place = { .file = up->file, .report = up->report, .err = up->err };
     snprintf(place.path, sizeof place.path, "%.60s%s%.30s[%d]", up->path, up->path[0] ? "." : "", list, index);
     return place;
 }
 
-bool place_fail(const struct place *place, enum error_code code, const char *key, const char *what)
+bool place_fail(const struct json_place *place, enum error_code code, const char *key, const char *what)
 {
     return error_set(place->err, code, "%s: %s%s%s: %s", place->file, place->path, place->path[0] && key[0] ? "." : "",
                      key, what);
@@ -43,7 +45,7 @@ cJSON *place_document(const uint8_t *data, size_t size, const char *file, struct
 }
 
 /* A text, "" when it is absent. */
-bool place_text(const struct place *place, const cJSON *object, const char *key, char *out, size_t size)
+bool place_text(const struct json_place *place, const cJSON *object, const char *key, char *out, size_t size)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
     out[0] = 0;
@@ -56,7 +58,7 @@ bool place_text(const struct place *place, const cJSON *object, const char *key,
 }
 
 /* Cutting a path short would name another file, so a long one is refused. */
-bool place_path(const struct place *place, const cJSON *object, const char *key, bool is_required,
+bool place_path(const struct json_place *place, const cJSON *object, const char *key, bool is_required,
                 char out[FOLDER_NAME_SIZE])
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
@@ -78,7 +80,7 @@ bool place_path(const struct place *place, const cJSON *object, const char *key,
     return true;
 }
 
-bool place_bool(const struct place *place, const cJSON *object, const char *key, bool *out)
+bool place_bool(const struct json_place *place, const cJSON *object, const char *key, bool *out)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
     *out = false;
@@ -90,7 +92,7 @@ bool place_bool(const struct place *place, const cJSON *object, const char *key,
     return true;
 }
 
-bool place_point(const struct place *place, const cJSON *object, const char *key, struct vec3 *out)
+bool place_point(const struct json_place *place, const cJSON *object, const char *key, struct vec3 *out)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
     double v[3] = { 0 };
@@ -106,7 +108,7 @@ bool place_point(const struct place *place, const cJSON *object, const char *key
     return true;
 }
 
-bool place_list(const struct place *place, const cJSON *object, const char *key, size_t most, const cJSON **list)
+bool place_list(const struct json_place *place, const cJSON *object, const char *key, size_t most, const cJSON **list)
 {
     *list = cJSON_GetObjectItemCaseSensitive(object, key);
     if (!*list)
@@ -124,7 +126,7 @@ bool place_list(const struct place *place, const cJSON *object, const char *key,
     return true;
 }
 
-void place_note_keys(const struct place *place, const cJSON *object, const char *const *known)
+void place_note_keys(const struct json_place *place, const cJSON *object, const char *const *known)
 {
     for (const cJSON *item = object->child; item; item = item->next) {
         bool is_known = false;
@@ -140,7 +142,7 @@ void place_note_keys(const struct place *place, const cJSON *object, const char 
 }
 
 /* "#rrggbb" or three numbers. */
-bool place_color(const struct place *place, const cJSON *object, bool *has_color, uint8_t rgb[3])
+bool place_color(const struct json_place *place, const cJSON *object, bool *has_color, uint8_t rgb[3])
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, "color");
     *has_color = false;

@@ -1,5 +1,6 @@
 #include "core/load/describe.h"
 
+#include "core/formats/plan_json.h"
 #include "core/load/dicom_parts.h"
 #include "core/load/part_names.h"
 #include "core/load/recognise.h"

@@ -1,7 +1,8 @@
 #pragma once
 /* Applies an entry of plan.json's "doses" to a dose of the plan: unit, frame of reference, components. */
-#include "core/formats/plan_json.h"
+#include "core/formats/plan_file.h"
 #include "core/formats/sera_doses.h"
+#include "core/report/report.h"
 
 /* Sets the unit, and what the dose is per, from the entry. is_sera: the file is in cGy and per unit of its source,
  * whatever the entry says of the unit. */

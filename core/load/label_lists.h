@@ -3,7 +3,8 @@
 #include <stdatomic.h>
 
 #include "core/formats/folder.h"
-#include "core/formats/plan_json.h"
+#include "core/formats/plan_file.h"
+#include "core/report/report.h"
 
 /* The lists of a folder: each labels.json, and each .json called after a grid beside it. They are read up to a sum of
  * bytes, which is reported when it is met. When cancel (may be NULL) turns true the rest is left out. */

@@ -5,7 +5,7 @@
 #include "core/formats/dicom/dicom_rtstruct.h"
 #include "core/formats/dicom/dicom_series.h"
 #include "core/formats/nrrd.h"
-#include "core/formats/plan_json.h"
+#include "core/formats/plan_file.h"
 #include "core/formats/sera_doses.h"
 #include "core/formats/sera_uvh.h"
 #include "core/load/part_format.h"

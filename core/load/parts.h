@@ -1,7 +1,7 @@
 #pragma once
 /* The parts of a plan before any voxel is read: the entries of plan.json, or what its folder was recognised as. */
 #include "core/formats/dicom/dicom_index.h"
-#include "core/formats/plan_json.h"
+#include "core/formats/plan_file.h"
 
 struct plan_parts {
     struct plan_file *file;

@@ -1,6 +1,6 @@
 #pragma once
 /* Inside core/load: from what the files gave to the plan's set of regions. */
-#include "core/formats/plan_json.h"
+#include "core/formats/plan_file.h"
 #include "core/formats/sera_uvh.h"
 #include "core/plan/plan.h"
 #include "core/region/mask.h"

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/formats/plan_json.h"
 #include "core/formats/sera_chd.h"
 #include "core/formats/sera_rst.h"
 #include "core/formats/sera_uvh.h"

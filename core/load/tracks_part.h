@@ -1,7 +1,7 @@
 #pragma once
 /* Inside core/load: the plan's particle tracks, and the beam they show when no other is given. */
 #include "core/formats/folder.h"
-#include "core/formats/plan_json.h"
+#include "core/formats/plan_file.h"
 #include "core/plan/plan.h"
 
 /* After regions, images and beams: the unit of tracks is judged by the plan's box. What is in a format that is not read

@@ -8,8 +8,8 @@ static void plan_file(const uint8_t *data, size_t n)
     struct error err = { 0 };
     struct plan_file *file = plan_file_parse(data, n, &report, &err);
     if (file) {
-        REQUIRE(file->n_images <= PLAN_MAX_IMAGES && file->n_doses <= PLAN_MAX_DOSES &&
-                file->n_beams <= PLAN_MAX_BEAMS);
+        REQUIRE(file->n_images <= PLAN_FILE_MAX_IMAGES && file->n_doses <= PLAN_FILE_MAX_DOSES &&
+                file->n_beams <= PLAN_FILE_MAX_BEAMS);
         REQUIRE(file->n_regions <= PLAN_FILE_MAX_PARTS && file->n_tracks <= PLAN_FILE_MAX_TRACKS);
         /* no name that is let through leads out of the folder */
         for (size_t i = 0; i < file->n_images; i++)
