@@ -95,7 +95,7 @@ bool plan_json_beams(const struct json_place *top, const cJSON *root, struct pla
         return false;
     for (const cJSON *entry = list ? list->child : NULL; entry; entry = entry->next) {
         struct json_place at = place_at(top, "beams", (int)(file->n_beams + file->n_beam_files));
-        if (cJSON_HasObjectItem(entry, "path")) {
+        if (cJSON_GetObjectItemCaseSensitive(entry, "path")) {
             if (!parse_beam_file(&at, entry, file))
                 return false;
             continue;
