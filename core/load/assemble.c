@@ -1,3 +1,4 @@
+/* Builds the plan from the files that were read. */
 #include "core/load/assemble.h"
 
 #include <stdio.h>
@@ -9,14 +10,15 @@
 #include "core/formats/text.h"
 #include "core/load/assemble_dicom.h"
 #include "core/load/assemble_dicom_doses.h"
+#include "core/load/assemble_tracks.h"
 #include "core/load/curves_and_preferences.h"
 #include "core/load/dose_entry.h"
-#include "core/load/dose_in_body.h"
+#include "core/load/dose_maximum.h"
 #include "core/load/image_window.h"
 #include "core/load/part_names.h"
 #include "core/load/plan_ids.h"
 #include "core/load/region_builder.h"
-#include "core/load/tracks_part.h"
+#include "core/load/region_hierarchy.h"
 #include "core/plan/plan_bounds.h"
 
 /* Lists of the plan file are copied into the plan's without a check of their length. */
@@ -56,9 +58,8 @@ static bool holds_only_0_and_1(const struct volume *volume)
     return true;
 }
 
-/* A mask whose name did not say so: shown as the image it was taken for, and said, with what makes it a region: a name
- * that says so, where that is enough (a file of whole numbers), or a plan.json, which has to name the other files, too.
- */
+/* Reports an image that holds only 0 and 1, so it may be a mask. The sentence says how to make it a region: by a file
+ * name with _mask, which works for files of whole numbers, or by a plan.json, which must name the other files too. */
 static void note_mask(struct loading *loading, const struct part_reading *reading, const struct plan_image *image)
 {
     const char *base = part_base_name(reading->path);
@@ -107,15 +108,15 @@ static void add_image(struct loading *loading, struct part_reading *reading)
         image->window_center = entry->window_center;
         image->window_width = entry->window_width;
     } else if (reading->facts.n_windows > 0 &&
-               !text_equal(image->modality, "CT")) { /* a CT begins with one window whoever made it */
+               !text_equal(image->modality, "CT")) { /* every CT starts with the same window */
         image->window_center = reading->facts.windows[0].center;
         image->window_width = reading->facts.windows[0].width;
     }
     plan_image_window_limit(image);
 }
 
-/* An image whose header described another one: univels with exactly as many voxels along each axis are the same scan.
- */
+/* Replaces the grid of an image whose header describes another image by the grid of univels of the same size, which are
+ * made from the same scan. */
 static void borrow_grid(struct loading *loading, const struct part_reading *reading)
 {
     struct plan *plan = loading->plan;
@@ -159,7 +160,7 @@ static bool add_regions(struct loading *loading, struct region_builder *builder,
     return region_builder_add_labels(builder, volume, &reading->names, reading->path, err);
 }
 
-/* The dose of an entry of the plan file, still without components; NULL when the plan is full. */
+/* Adds the dose of an entry of the plan file, without components yet. NULL: the plan has no room for it. */
 static struct dose *start_dose(struct loading *loading, size_t index, bool is_sera)
 {
     struct plan *plan = loading->plan;
@@ -192,7 +193,7 @@ static void add_component(struct loading *loading, struct dose *dose, struct par
 
 static void add_dose_mask(struct loading *loading, struct dose *dose, struct part_reading *reading)
 {
-    volume_unref(dose->mask); /* that of a SERA file; the plan's wins */
+    volume_unref(dose->mask); /* a SERA file's own mask; the one that the plan names replaces it */
     dose->mask = take_volume(reading);
     if (dose->n_components > 0 &&
         memcmp(dose->mask->grid.size, dose->components[0].values->grid.size, sizeof dose->mask->grid.size) != 0)
@@ -200,7 +201,7 @@ static void add_dose_mask(struct loading *loading, struct dose *dose, struct par
                    "The mask of the dose \"%s\" lies on another grid; it is looked up by position.", dose->id);
 }
 
-/* What an entry of the plan file names; a file or folder of DICOM doses may give several. */
+/* Adds the dose of an entry of the plan file; a file or folder of DICOM doses may give several. */
 static void add_dose(struct loading *loading, size_t index)
 {
     struct plan *plan = loading->plan;

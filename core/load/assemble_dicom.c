@@ -1,3 +1,4 @@
+/* Adds DICOM structure sets, segmentations and the beams of treatment plans to a plan. */
 #include "core/load/assemble_dicom.h"
 
 #include <math.h>
@@ -34,10 +35,11 @@ static double overlap_mm3(const struct box3 *a, const struct box3 *b)
     double x = fmin(a->high.x, b->high.x) - fmax(a->low.x, b->low.x);
     double y = fmin(a->high.y, b->high.y) - fmax(a->low.y, b->low.y);
     double z = fmin(a->high.z, b->high.z) - fmax(a->low.z, b->low.z);
-    return x >= 0 && y >= 0 && z >= 0 ? (x + 1) * (y + 1) * (z + 1) : 0; /* a contour on one slice has no thickness */
+    return x >= 0 && y >= 0 && z >= 0 ? (x + 1) * (y + 1) * (z + 1)
+                                      : 0; /* plus 1 mm, as a contour on a single slice has no thickness */
 }
 
-/* How many folders the file of an image and another file have in common. */
+/* Number of leading folders that the path of an image's first file shares with another path. */
 static size_t folders_shared(const struct loading *loading, size_t image, const char *path)
 {
     const struct dicom_index *index = loading->parts.dicom;
@@ -48,8 +50,8 @@ static size_t folders_shared(const struct loading *loading, size_t image, const 
     return n;
 }
 
-/* The image of the series the set was drawn on, else the one of its frame of reference that lies nearest in the
- * folders, else the one it overlaps most; -1: none at all. */
+/* Chooses the image to fill contours on: the series the set was drawn on; else an image with the same frame of
+ * reference, the nearest by folders; else the image whose box overlaps the contours most. -1: none. */
 static int choose_image(const struct loading *loading, const struct rtstruct *structs, const char *where,
                         struct report *report)
 {
@@ -199,7 +201,7 @@ void plan_dicom_check_segmentation(struct loading *loading, struct part_reading 
 
 /* ---- beams ------------------------------------------------------------------------------------------------------ */
 
-/* How far a point lies outside the nearest image; 0 inside one, and without any. */
+/* Distance from a point to the nearest image's box; 0 inside one, and when there is no image. */
 static double outside_images_mm(const struct plan *plan, struct vec3 point)
 {
     double least = INFINITY;

@@ -1,3 +1,4 @@
+/* Adds DICOM doses (RTDOSE) to a plan. */
 #include "core/load/assemble_dicom_doses.h"
 
 #include <stdio.h>
@@ -40,7 +41,7 @@ static void add_group(struct loading *loading, struct rtdose *objects, size_t n,
 {
     struct plan *plan = loading->plan;
     struct dose *doses = mem_new(PLAN_MAX_DOSES * sizeof *doses);
-    union { /* the beams' names are only read */
+    union { /* rtdose_group takes a non-const context; rtplan_beam_name only reads it */
         const struct rtplan *plan;
         void *context;
     } of = { plan_of(loading, objects[0].plan_uid) };
@@ -77,7 +78,7 @@ void plan_dicom_add_doses(struct loading *loading, size_t index, const struct pl
 {
     struct rtdose *objects = mem_new(PLAN_DICOM_MAX_DOSES * sizeof *objects);
     bool *is_taken = mem_new(loading->n_readings + 1);
-    for (size_t first = 0; first < loading->n_readings; first++) { /* those of one treatment plan together */
+    for (size_t first = 0; first < loading->n_readings; first++) { /* doses of the same treatment plan go together */
         const char *where = "";
         size_t n = 0;
         for (size_t i = first; i < loading->n_readings && n < PLAN_DICOM_MAX_DOSES; i++) {

@@ -1,3 +1,4 @@
+/* Keeps an opened plan in one file, and reads it back. */
 #define _GNU_SOURCE
 #include "core/load/cache.h"
 
@@ -17,8 +18,9 @@
 #include "core/base/parallel.h"
 #include "core/load/cache_fields.h"
 
-/* The file: a start, the head (sources, fields of the plan, where each volume's voxels lie and a checksum for each
- * piece of them), then the voxels. Numbers are the machine's own; another machine's file is another version's. */
+/* Layout of the file: struct start; the head, which holds the sources, the plan's fields and a checksum for each piece
+ * of voxels; then the voxels of each volume, aligned. Numbers are in the machine's byte order; a file of another order
+ * is refused like one of another version. */
 enum { PIECE_BYTES = 8 << 20, ALIGNED = 4096 };
 #define MAX_BYTES ((uint64_t)PLAN_CACHE_MAX_MIB << 20)
 
@@ -74,7 +76,7 @@ static uint64_t aligned(uint64_t at)
     return (at + ALIGNED - 1) / ALIGNED * ALIGNED;
 }
 
-/* Writing: the files. Reading: whether they are these. */
+/* When writing: stores the list of files. When reading: compares it, and sets is_bad where a file differs. */
 static void fields_sources(struct fields *fields, const struct plan_sources *sources)
 {
     uint64_t n = sources->tree.n_files;
@@ -101,8 +103,8 @@ struct pieces {
     bool is_reading;
     struct volume *const *volumes;
     size_t n_volumes, n_pieces;
-    uint64_t *voxels_at; /* [n_volumes] in the file */
-    size_t *first;       /* [n_volumes] piece of each volume */
+    uint64_t *voxels_at; /* [n_volumes] offset in the file */
+    size_t *first;       /* [n_volumes] index of each volume's first piece */
     uint32_t *checks;    /* [n_pieces] */
     const struct plan_cache_reading *reading;
     atomic_size_t next;
@@ -120,7 +122,7 @@ static void count_pieces(struct pieces *pieces)
     pieces->checks = mem_new((pieces->n_pieces + 1) * sizeof *pieces->checks);
 }
 
-/* Where the voxels lie, behind a head of so many bytes. Returns the size of the file. */
+/* Computes where the voxels lie after a head of so many bytes. Returns the size of the file. */
 static uint64_t place_voxels(struct pieces *pieces, uint64_t head_bytes)
 {
     uint64_t at = aligned(sizeof(struct start) + head_bytes);
@@ -193,7 +195,7 @@ static bool move_pieces(struct pieces *pieces)
 
 /* ---- writing ---------------------------------------------------------------------------------------------------- */
 
-/* Of the limit on files this process may write, and of the disk, of which some is left to others. */
+/* True if a file of n_bytes is within the process's limit on file size and leaves PLAN_CACHE_LEAVES_MIB on the disk. */
 static bool has_room(int folder, uint64_t n_bytes)
 {
     struct rlimit limit;
@@ -206,7 +208,7 @@ static bool has_room(int folder, uint64_t n_bytes)
 
 static bool write_file(int fd, const struct plan *plan, const struct plan_sources *sources, uint64_t *n_bytes)
 {
-    union { /* fields_plan stores nothing when it writes */
+    union { /* fields_plan does not change the plan when it writes */
         const struct plan *frozen;
         struct plan *plan;
     } of = { plan };
@@ -270,7 +272,7 @@ bool plan_cache_store(const struct plan *plan, const struct plan_sources *source
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */
 
-/* The head, checked; the caller frees its data. */
+/* Reads the head and checks version and checksum. The caller frees head->data, also after a failure. */
 static bool read_head(int fd, uint64_t file_bytes, struct fields *head)
 {
     struct start start, expected;
@@ -300,7 +302,7 @@ static bool read_voxels(int fd, uint64_t file_bytes, struct fields *head, const 
     for (size_t v = 0; v < pieces.n_volumes; v++) {
         n_bytes += voxel_bytes(pieces.volumes[v]);
         if (n_bytes > file_bytes || (reading->max_bytes > 0 && n_bytes > reading->max_bytes))
-            return false; /* before anything of that size is allocated */
+            return false; /* checked before any voxels are allocated */
     }
     count_pieces(&pieces);
     bool is_read = head->size - head->at == pieces.n_pieces * sizeof *pieces.checks &&

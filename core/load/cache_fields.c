@@ -1,3 +1,4 @@
+/* Writes and reads the fields of a plan as bytes, without the voxels. */
 #include "core/load/cache_fields.h"
 
 #include <math.h>
@@ -24,7 +25,7 @@ void fields_bytes(struct fields *fields, void *value, size_t size)
         size_t capacity = 2 * fields->capacity + size + 4096;
         uint8_t *data = realloc(fields->data, capacity);
         if (!data)
-            abort(); /* the fields of a plan are small: as mem_new */
+            abort(); /* the fields of a plan are small; like mem_new */
         fields->data = data;
         fields->capacity = capacity;
     }
@@ -42,7 +43,7 @@ static void require(struct fields *fields, bool is_good)
     fields->is_bad |= !is_good;
 }
 
-/* The length and the letters; the rest is zero. */
+/* A length and that many bytes. Reading fills the rest of text with zeros. */
 void fields_text(struct fields *fields, char *text, size_t size)
 {
     uint64_t n = fields->is_reading ? 0 : strlen(text);
@@ -75,8 +76,8 @@ static void fields_size(struct fields *fields, size_t *value, size_t most)
         *value = fields->is_bad ? 0 : (size_t)wide;
 }
 
-/* A member of an enum of n values. A plan that is written is shared and frozen: nothing is stored into it, not even
- * what it was. */
+/* An enum with n values. Stores only when reading: a plan being written is shared and frozen, and even storing the same
+ * value would be a data race. */
 #define FIELDS_ENUM(fields, place, type, n) \
     do { \
         uint8_t byte_ = (uint8_t)(place); \
@@ -86,7 +87,7 @@ static void fields_size(struct fields *fields, size_t *value, size_t most)
             (place) = (type)((fields)->is_bad ? 0 : byte_); \
     } while (0)
 
-static void fields_number(struct fields *fields, double *value) /* or not-a-number */
+static void fields_number(struct fields *fields, double *value) /* not-a-number is allowed */
 {
     fields_bytes(fields, value, sizeof *value);
     require(fields, !isinf(*value));
@@ -117,7 +118,7 @@ static void fields_grid(struct fields *fields, struct grid *grid)
         require(fields, grid_init(grid, size, &map, NULL));
 }
 
-/* NULL is written, too. */
+/* A volume without its voxels; NULL is allowed. */
 static void fields_volume(struct fields *fields, struct volume **volume, bool is_label_layer)
 {
     bool is_there = *volume != NULL;
@@ -160,7 +161,7 @@ static void fields_images(struct fields *fields, struct plan *plan)
     }
 }
 
-/* Counts, boxes and centres are measured again, so they are not kept. */
+/* Counts, boxes and centres are not written: they are measured again after reading. */
 static void fields_region(struct fields *fields, struct region *region, const struct region_set *set)
 {
     uint64_t layer = region->layer, label = region->label;
@@ -324,7 +325,7 @@ static void fields_tracks(struct fields *fields, struct track_set *tracks)
     }
 }
 
-/* Rising numbers, as many as there are points along an axis of a curve. */
+/* The n points along an axis of a curve, strictly rising. */
 static void fields_axis(struct fields *fields, double **axis, size_t *n)
 {
     fields_size(fields, n, CURVE_MAX_POINTS);

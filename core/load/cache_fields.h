@@ -1,6 +1,6 @@
 #pragma once
-/* Inside core/load: the fields of a plan as bytes. One function says what they are, for writing and for reading, so the
- * two cannot differ; whoever adds a field to a struct of the plan adds it there and raises PLAN_CACHE_FORMAT. */
+/* Writes and reads the fields of a plan as bytes, for cache.c. The same functions write and read, so that the two
+ * cannot differ. Whoever adds a field to a struct of the plan adds it here and raises PLAN_CACHE_FORMAT. */
 #include "core/plan/plan.h"
 
 enum {
@@ -9,11 +9,11 @@ enum {
 };
 
 struct fields {
-    bool is_reading, is_bad; /* bad: cut short, or a value that no plan has */
+    bool is_reading, is_bad; /* is_bad: the bytes end early or hold a value that no plan has */
     uint8_t *data;           /* writing: grows; reading: borrowed */
     size_t size, at, capacity;
-    struct volume
-        *volumes[FIELDS_MAX_VOLUMES]; /* in order of their fields; borrowed from the plan; reading: without voxels */
+    struct volume *volumes[FIELDS_MAX_VOLUMES]; /* in the order of their fields; borrowed from the plan; when reading:
+                                                   without voxels */
     size_t n_volumes;
 };
 
@@ -21,7 +21,7 @@ void fields_bytes(struct fields *fields, void *value, size_t size);
 void fields_u64(struct fields *fields, uint64_t *value);
 void fields_text(struct fields *fields, char *text, size_t size);
 
-/* All of the plan but id, shapes, load_us and the voxels. Reading: volumes are created without voxels (voxels NULL),
- * and everything is checked: counts, indices, enums, numbers that must be finite. What was read stays in the plan when
- * it is bad: plan_destroy it. */
+/* Writes or reads everything of the plan but id, shapes, load_us and the voxels. Reading creates volumes with voxels
+ * NULL and checks counts, indices, enums and numbers that must be finite. After is_bad the plan holds what was read so
+ * far; the caller releases it. */
 void fields_plan(struct fields *fields, struct plan *plan);

@@ -1,3 +1,4 @@
+/* Adds reference curves, and the preferences of SERA's programs, to a plan. */
 #include "core/load/curves_and_preferences.h"
 
 #include <math.h>

@@ -1,11 +1,11 @@
 #pragma once
-/* Inside core/load: what goes with a plan and is not part of the patient: reference curves, and preferences of SERA's
- * programs. A file that cannot be read is left out and reported; the plan is whole without it. */
+/* Adds reference curves, and the preferences of SERA's programs, to a plan. A file that cannot be read is reported and
+ * left out, as nothing of the patient depends on it. */
 #include "core/formats/folder.h"
 #include "core/formats/plan_file.h"
 #include "core/plan/plan.h"
 
 void plan_add_curves(struct plan *plan, const struct folder *folder, const struct plan_file *file);
-/* Colours, opacities and tissue data go to regions that have none from their own file; levels and colour map are kept.
- */
+/* Gives colours, opacities and tissue data to regions that have none from their own file; keeps isodose levels and the
+ * colour map in plan->preferences. */
 void plan_add_preferences(struct plan *plan, const struct folder *folder, const struct plan_file *file);

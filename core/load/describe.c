@@ -1,3 +1,4 @@
+/* Finds the parts of a plan: from plan.json, or by recognising the folder's files. */
 #include "core/load/describe.h"
 
 #include "core/formats/plan_json.h"

@@ -1,3 +1,4 @@
+/* Finds the DICOM objects of a plan's folder and makes parts of them. */
 #include "core/load/dicom_parts.h"
 
 #include <stdio.h>
@@ -30,7 +31,7 @@ const struct dicom_object *plan_dicom_object(const struct dicom_index *index, en
 
 int plan_dicom_stack(const struct dicom_index *index, const char *path)
 {
-    for (size_t s = 0; index && s < index->n_stacks; s++) /* those with more slices come first */
+    for (size_t s = 0; index && s < index->n_stacks; s++) /* stacks are sorted, more slices first */
         for (size_t i = 0; i < index->stacks[s].n_objects; i++)
             if (plan_dicom_is_under(&index->objects[index->stacks[s].objects[i]], path))
                 return (int)s;
@@ -55,7 +56,7 @@ void plan_dicom_close(struct plan_dicom_file *opened)
     opened->file = NULL;
 }
 
-/* ---- what is told of the folder as a whole ---------------------------------------------------------------------- */
+/* ---- notes on the folder as a whole ----------------------------------------------------------------------------- */
 
 static int compare_texts(const void *a, const void *b)
 {
@@ -108,7 +109,7 @@ static void name_image(const struct dicom_stack *stack, struct plan_file_image *
              stack->description);
 }
 
-/* A CT goes before everything else: regions and doses are mostly made on it. */
+/* Puts CT series first: regions and doses are mostly made on them. */
 static void recognise_images(const struct dicom_index *index, struct plan_file *file, struct report *report)
 {
     struct plan_file_image *named = mem_new(PLAN_MAX_IMAGES * sizeof *named);

@@ -1,6 +1,5 @@
 #pragma once
-/* Inside core/load: what of a plan's folder is DICOM, and which image a structure set, a dose or a treatment plan
- * belongs to. */
+/* Finds the DICOM objects of a plan's folder, and opens one. */
 #include "core/formats/dicom/dicom_index.h"
 #include "core/load/parts.h"
 
@@ -10,25 +9,27 @@ enum {
     PLAN_DICOM_MAX_PLANS = 16              /* RTPLAN objects of a plan; further ones are reported */
 };
 
-/* Heads of the DICOM files that plan.json names (a file, or a folder and all below). Nothing to do when it names none.
- * errors as dicom_index_scan */
+/* Reads the headers of the DICOM files that plan.json names, each a file or a folder with all below it, into
+ * parts->dicom. Leaves it NULL when plan.json names none. errors as dicom_index_scan */
 NODISCARD bool plan_dicom_scan_named(const struct folder *folder, struct plan_parts *parts,
                                      const struct dicom_progress *progress, struct report *report, struct error *err);
-/* The same for a folder without plan.json, of whose files these may be DICOM; images and structure sets become parts of
- * the plan file: CT first, then those with more slices. */
+/* The same for a folder without plan.json; names are the files that may be DICOM. Images, structure sets and
+ * segmentations become entries of parts->file, images in this order: CT first, then by number of slices. */
 NODISCARD bool plan_dicom_recognise(const struct folder *folder, char *const *names, size_t n_names,
                                     struct plan_parts *parts, const struct dicom_progress *progress,
                                     struct report *report, struct error *err);
 
-/* The stack that a path means: the series of the file, else the stack with most slices below the folder. -1: none. */
+/* The stack with a slice at path, when path is a file; the stack with the most slices below path, when it is a folder.
+ * -1: none. */
 int plan_dicom_stack(const struct dicom_index *index, const char *path);
-/* Whether the object is the file, or lies below the folder. */
+/* True if the object's file is path or lies below it. */
 bool plan_dicom_is_under(const struct dicom_object *object, const char *path);
-/* The nth object of a kind at or below a path ("" everywhere), or NULL. */
+/* The nth object of a kind at or below path, from 0; "" is the whole folder. NULL: there are not so many. */
 const struct dicom_object *plan_dicom_object(const struct dicom_index *index, enum dicom_kind kind, const char *path,
                                              size_t nth);
 
-/* The bytes of a file, parsed; both are the caller's. errors as folder_read and dicom_file_parse */
+/* A DICOM file and its bytes, which it borrows; plan_dicom_close releases both. errors as folder_read and
+ * dicom_file_parse */
 struct plan_dicom_file {
     struct bytes bytes;
     struct dicom_file *file;

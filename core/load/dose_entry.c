@@ -1,3 +1,4 @@
+/* Applies an entry of plan.json's "doses" to a dose of the plan. */
 #include "core/load/dose_entry.h"
 
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* Estimates the memory that loading a plan will take, from headers alone. */
 #include "core/load/estimate.h"
 
 #include <stdlib.h>
@@ -12,12 +13,12 @@
 #include "core/load/nifti_parts.h"
 #include "core/load/nrrd_parts.h"
 
-/* kept stays with the plan; work is given back when the part is read. */
+/* Bytes for one file: kept stays with the plan, work is freed once the file is read. */
 struct need {
     uint64_t kept, work;
 };
 
-/* As raw_read chooses; a whole number of one byte in a file may need two with its sign. */
+/* Bytes per voxel in memory, as raw_read chooses the type; a signed byte becomes 16 bits. */
 static uint64_t bytes_kept(enum raw_type type, enum raw_use use)
 {
     switch (use) {
@@ -39,8 +40,9 @@ static struct need need_of_voxels(uint64_t n_voxels, enum raw_type type, enum ra
 {
     uint64_t raw = n_voxels * raw_type_bytes(type);
     if (use == RAW_IMAGE && is_taken && bytes_kept(type, use) == raw_type_bytes(type))
-        is_copied = false;                                              /* the unpacked voxels become the volume's */
-    uint64_t wide = use == RAW_LABELS && type != RAW_U8 ? n_voxels : 0; /* labels are read as 16 bits, then made 8 */
+        is_copied = false; /* the unpacked bytes become the volume's voxels */
+    uint64_t wide =
+        use == RAW_LABELS && type != RAW_U8 ? n_voxels : 0; /* labels are read as 16 bits, then narrowed to 8 */
     return (struct need){ n_voxels * bytes_kept(type, use), file_bytes + (is_copied ? raw : 0) + wide };
 }
 
@@ -125,7 +127,7 @@ static struct need need_of_chd(const struct folder *folder, const struct part_re
     return need;
 }
 
-/* Label layers of a structure set on the largest image: nested and overlapping regions mostly need three. */
+/* A structure set becomes label layers on the largest image; nested and overlapping regions mostly need three. */
 static struct need need_of_structs(const struct loading *loading, const struct part_reading *reading)
 {
     enum { USUAL_LAYERS = 3 };
@@ -138,18 +140,18 @@ static struct need need_of_structs(const struct loading *loading, const struct p
     return (struct need){ USUAL_LAYERS * voxels + 2 * reading->bytes, reading->bytes };
 }
 
-/* Segments that overlap lie on layers of their own; empty planes between frames take as much as others. */
+/* Segments that overlap need layers of their own; a plane without a frame takes as much as any other. */
 static struct need need_of_segments(const struct folder *folder, const struct part_reading *reading)
 {
     enum { USUAL_LAYERS = 3 };
     struct plan_dicom_file opened;
-    struct need need = { 8 * reading->bytes, 2 * reading->bytes }; /* a byte for each bit of the frames */
+    struct need need = { 8 * reading->bytes, 2 * reading->bytes }; /* frames are packed 8 voxels a byte */
     uint64_t n_voxels;
     size_t n_segments;
     if (!plan_dicom_open(folder, reading->path, &opened, NULL))
         return need;
     if (dicom_seg_measure(opened.file, &n_voxels,
-                          &n_segments)) /* work: the file, its elements, and a mask of one segment */
+                          &n_segments)) /* work: the file, its elements, a mask of one segment */
         need = (struct need){ n_voxels * (n_segments < USUAL_LAYERS ? n_segments : USUAL_LAYERS),
                               2 * reading->bytes + n_voxels / 8 };
     plan_dicom_close(&opened);
@@ -169,7 +171,7 @@ static struct need need_of(const struct loading *loading, const struct part_read
     case PART_SERA_RST: return need_of_rst(folder, reading);
     case PART_SERA_DOSE: return need_of_chd(folder, reading);
     case PART_DICOM: break;
-    default: return (struct need){ 4 * reading->bytes, reading->bytes }; /* a packed picture of 8 bits */
+    default: return (struct need){ 4 * reading->bytes, reading->bytes }; /* a compressed image of 8 bits */
     }
     if (reading->kind == PART_KIND_IMAGE)
         return (struct need){ loading->parts.dicom->stacks[reading->stack].n_bytes, 0 };
@@ -188,7 +190,7 @@ uint64_t plan_estimate(const struct loading *loading, const struct part_reading 
     *largest = NULL;
     for (size_t i = 0; work && i < loading->n_readings; i++) {
         struct need need = need_of(loading, &loading->readings[i]);
-        size_t at = n_work++; /* largest first */
+        size_t at = n_work++; /* sorted, largest first */
         for (; at > 0 && work[at - 1] < need.work; at--)
             work[at] = work[at - 1];
         work[at] = need.work;

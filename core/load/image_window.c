@@ -1,3 +1,4 @@
+/* Chooses the first grey-level window of an image. */
 #include "core/load/image_window.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 
 enum { N_BINS = 4096, N_SAMPLES = 1 << 19 };
 
-/* Value below which a share of the sampled voxels lies. */
+/* The value below which this share of the n sampled voxels lies. */
 static double percentile(const uint32_t *bins, uint64_t n, double low, double width, double share)
 {
     uint64_t below = 0;
@@ -29,7 +30,7 @@ static void window_from_values(struct plan_image *image)
     size_t n_voxels = grid_n_voxels(&volume->grid);
     size_t stride = n_voxels / N_SAMPLES + 1;
     if (stride % 2 == 0)
-        stride++; /* sides are mostly even: do not sample one column only */
+        stride++; /* sides are mostly even, and an even stride would sample a few columns only */
     double low = volume->low, width = (volume->high - volume->low) / N_BINS;
     uint32_t *bins = mem_new(N_BINS * sizeof *bins);
     uint64_t n = 0;

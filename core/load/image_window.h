@@ -1,8 +1,9 @@
 #pragma once
-/* Inside core/load: a first window for an image. */
+/* Chooses the first grey-level window of an image. */
 #include "core/plan/plan.h"
 
-/* CT: soft tissue. Else from the values: percentiles 0.1 and 99.9. The volume is measured. */
+/* CT: soft tissue, centre 40 HU, width 400 HU. Others: from percentile 0.1 to 99.9 of the values. The volume must be
+ * measured (low, high). */
 void plan_image_window(struct plan_image *image);
-/* Into what a scene can show: WINDOW_... */
+/* Clamps the window to what a scene can show, the limits in core/volume/window.h. */
 void plan_image_window_limit(struct plan_image *image);

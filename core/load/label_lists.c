@@ -1,3 +1,4 @@
+/* Finds the lists of label names in a folder without plan.json and the label map each belongs to. */
 #include "core/load/label_lists.h"
 
 #include <stdio.h>
@@ -11,11 +12,11 @@
 #include "core/load/part_format.h"
 #include "core/load/part_names.h"
 
-enum { LIST_MAX_BYTES = 16 << 20, LISTS_MAX_MIB = 64 /* all of a folder */, MOST_LISTS = PLAN_FILE_MAX_PARTS };
+enum { LIST_MAX_BYTES = 16 << 20, LISTS_MAX_MIB = 64 /* of all lists in a folder */, MOST_LISTS = PLAN_FILE_MAX_PARTS };
 
 struct name_list {
     char path[FOLDER_NAME_SIZE];
-    char map[FOLDER_NAME_SIZE]; /* what its "file" names, beside it; "" nothing */
+    char map[FOLDER_NAME_SIZE]; /* the label map that its "file" names, in the same folder; "" none */
 };
 
 struct name_lists {
@@ -52,7 +53,7 @@ static bool has_grid_beside(const struct folder *folder, const char *list)
     return false;
 }
 
-/* A list that cannot be read stays one without a map: reading the map it is called after says what is wrong with it. */
+/* A list that cannot be read is kept without a map. Reading the label map it is called after then reports the fault. */
 static void add_list(struct name_lists *lists, const struct folder *folder, const char *path)
 {
     struct name_list *list = &lists->lists[lists->n++];
@@ -64,7 +65,7 @@ static void add_list(struct name_lists *lists, const struct folder *folder, cons
     if (label_names_parse(bytes.data, bytes.size, path, &names, NULL) && names.file[0]) {
         int n = snprintf(list->map, sizeof list->map, "%.*s%s", folder_length(path), path, names.file);
         if (n >= (int)sizeof list->map)
-            snprintf(list->map, sizeof list->map, "%s", names.file); /* of no file here */
+            snprintf(list->map, sizeof list->map, "%s", names.file); /* too long for any file here: it matches none */
     }
     label_names_finish(&names);
     bytes_free(&bytes);
@@ -128,13 +129,13 @@ bool name_lists_name(const struct name_lists *lists, const char *map)
     return list_naming(lists, map) != NULL;
 }
 
-/* A region of the plan file, as far as names go. */
+/* A file of regions and the list of names it has of its own. */
 struct map {
     bool is_grid, names_itself;
     const struct name_list *own;
 };
 
-/* A list that names the map, or one called after it that does not name another. */
+/* The list whose "file" is the map; else the list called after the map, unless its "file" is another map. */
 static const struct name_list *own_list(const struct name_lists *lists, const char *map)
 {
     char path[FOLDER_NAME_SIZE];
@@ -157,9 +158,9 @@ static struct map look_at(const struct name_lists *lists, const struct folder *f
     return map;
 }
 
-/* The one map of the folder that a labels.json naming none can mean: the one it is called after; else the only one
- * without names of its own; else the only one of those that is not called a mask, which has no list of labels.
- * SIZE_MAX: there is none, or several. */
+/* The one map of the list's folder that a list without a "file" can mean: the map it is called after; else the only map
+ * without names of its own; else the only such map not called a mask, as masks have no list. SIZE_MAX: none or several.
+ */
 static size_t only_candidate(const struct plan_file *file, const struct map *maps, const struct name_list *list)
 {
     static const char *const words[] = { "mask" };
@@ -183,7 +184,7 @@ static size_t only_candidate(const struct plan_file *file, const struct map *map
     return n == 1 ? any : n_maps == 1 ? map : SIZE_MAX;
 }
 
-/* owner: the map that the list names; "" where nothing tells. */
+/* owner: the map that the list belongs to; "" when unknown. */
 static void note_elsewhere(struct report *report, const char *map, const char *list, const char *owner)
 {
     if (owner[0])

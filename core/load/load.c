@@ -1,3 +1,4 @@
+/* Opens a plan folder: runs the steps of loading on a thread of its own while the caller waits. */
 #include "core/load/load.h"
 
 #include <pthread.h>
@@ -12,9 +13,9 @@
 #include "core/load/part_list.h"
 #include "core/load/read_all.h"
 
-/* A plan is loaded on a thread of its own, and the caller waits. So the caller can turn its back within LOOK_EVERY_MS
- * whatever the thread is in the middle of; that ends its file or slice, finds that nobody waits any more, and cleans up
- * behind itself. */
+/* The caller waits and looks at the cancel flag every LOOK_EVERY_MS, so a cancelled plan_load returns that soon
+ * whatever the thread is doing. The thread goes on to the end of its file or slice, finds is_given_up set, and frees
+ * the rest. */
 enum { LOOK_EVERY_MS = 20 };
 
 static void looked_at(void *context, size_t n_done, size_t n_all)
@@ -36,7 +37,7 @@ static void cache_read(void *context, uint64_t n_bytes)
     loading_work(context, n_bytes);
 }
 
-/* The plan as it was when it was last opened, if no file has changed since. */
+/* Reads the plan from the cache if no file of the folder has changed since it was kept. */
 static bool load_from_cache(struct loading *loading)
 {
     struct folder_tree tree;
@@ -55,7 +56,7 @@ static bool load_from_cache(struct loading *loading)
     return is_read;
 }
 
-/* Parts that were all left out, each for a reason in the report: the gravest line says why nothing is shown. */
+/* False when every part was left out; the gravest line of the report becomes the reason. */
 static bool has_anything(const struct plan *plan, struct error *err)
 {
     const struct report_line *gravest = NULL;
@@ -92,12 +93,12 @@ static void *load_main(void *argument)
 {
     struct loading *loading = argument;
     loading->is_whole = load(loading);
-    (void)queue_try_put(loading->ended, loading); /* a letter to say so; it holds no reference */
+    (void)queue_try_put(loading->ended, loading); /* wakes the caller; the letter holds no reference */
     loading_unref(loading);
     return NULL;
 }
 
-/* Without a thread to be had the work is done here, and nobody hears how far it is. */
+/* Starts the thread. When no thread can be created the work is done here, without progress. */
 static void start(struct loading *loading)
 {
     pthread_t thread;
@@ -116,7 +117,7 @@ static void tell(struct loading *loading, const struct plan_progress *progress, 
     free(newest);
     double work = (double)atomic_load(&loading->work), done = (double)atomic_load(&loading->work_done);
     double reached = now->low + (now->high - now->low) * (work > 0 && done < work ? done / work : work > 0);
-    *percent = reached > *percent ? reached : *percent; /* it never falls, also while a phase begins */
+    *percent = reached > *percent ? reached : *percent; /* never falls, also when a phase begins */
     if (progress->step)
         progress->step(progress->context, now->words, *percent);
 }

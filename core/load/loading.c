@@ -1,3 +1,4 @@
+/* One plan while it is loaded: its life and its progress. */
 #include "core/load/loading.h"
 
 #include <stdio.h>

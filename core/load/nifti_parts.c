@@ -1,3 +1,4 @@
+/* Reads NIfTI files of a plan's folder, single or in pairs. */
 #include "core/load/nifti_parts.h"
 
 #include <stdio.h>
@@ -10,7 +11,7 @@ enum { HEAD_BYTES = 1 << 16 };
 
 static const char *const head_endings[] = { ".hdr", ".hdr.gz" }, *const voxel_endings[] = { ".img", ".img.gz" };
 
-/* Which of two endings a name has; -1: neither. */
+/* Index of the ending that name has; -1: neither. */
 static int ending_of(const char *name, const char *const endings[2])
 {
     return text_has_ending(name, endings[1]) ? 1 : text_has_ending(name, endings[0]) ? 0 : -1;
@@ -21,7 +22,7 @@ bool plan_nifti_is_pair(const char *name)
     return ending_of(name, head_endings) >= 0 || ending_of(name, voxel_endings) >= 0;
 }
 
-/* The file with the same stem and one of the endings; first the one packed like the named file. */
+/* Finds the file with the same stem and one of two endings; tries first the ending packed like the named file. */
 static bool find_other(const struct folder *folder, const char *name, size_t stem, const char *const endings[2],
                        int packing, char other[FOLDER_NAME_SIZE])
 {

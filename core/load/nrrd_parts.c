@@ -1,3 +1,4 @@
+/* Reads NRRD files of a plan's folder. */
 #include "core/load/nrrd_parts.h"
 
 #define DATA_FILE_MAX_BYTES (VOLUME_MAX_BYTES + NRRD_HEAD_BYTES)
@@ -14,7 +15,8 @@ bool plan_nrrd_peek(const struct folder *folder, const char *name, struct nrrd_h
                        error_set(err, ERROR_NOT_FOUND, "%s: its data file %s is not there", name, header->data_file));
 }
 
-/* The header, and the bytes of the file that holds the voxels: data_name, name itself or the file beside it. */
+/* Reads the header, and the bytes of the file that holds the voxels. data_name: that file, name itself or the detached
+ * one. */
 static bool read_parts(const struct folder *folder, const char *name, struct nrrd_header *header, struct bytes *data,
                        const char **data_name, struct report *report, struct error *err)
 {

@@ -1,9 +1,9 @@
 #pragma once
-/* Inside core/load: NRRD files of a plan's folder, with the data file a detached header names. */
+/* Reads NRRD files of a plan's folder, with the data file that a detached header names. */
 #include "core/formats/nrrd.h"
 
-/* errors of all: as folder_read and core/formats/nrrd.h; the text names the file. plan_nrrd_peek: the caller finishes
- * header, after a failure too. */
+/* errors of all: as folder_read and core/formats/nrrd.h; the text names the file. After plan_nrrd_peek the caller
+ * finishes header, also after a failure. */
 NODISCARD bool plan_nrrd_peek(const struct folder *folder, const char *name, struct nrrd_header *header,
                               struct error *err);
 NODISCARD struct volume *plan_nrrd_read(const struct folder *folder, const char *name, enum raw_use use,

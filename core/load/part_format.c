@@ -1,3 +1,4 @@
+/* Tells the format of a file in a plan's folder. */
 #include "core/load/part_format.h"
 
 #include "core/formats/dicom/dicom_index.h"
@@ -45,7 +46,7 @@ enum part_format part_format_of(const struct folder *folder, const char *name)
         return PART_ABSENT;
     if (kind == FOLDER_DIRECTORY)
         return PART_DICOM;
-    if (plan_nifti_is_pair(name)) /* slices are called .img, too */
+    if (plan_nifti_is_pair(name)) /* DICOM slices may end in .img, too */
         return is_dicom_file(folder, name) ? PART_DICOM : PART_NIFTI;
     for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
         if (text_has_ending(name, endings[i].ending))

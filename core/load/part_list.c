@@ -1,3 +1,4 @@
+/* Lists the files to read for a plan. */
 #include "core/load/part_list.h"
 
 #include "core/base/mem.h"
@@ -29,7 +30,7 @@ static struct part_reading *list_part(struct loading *loading, enum part_kind ki
     return reading;
 }
 
-/* A reading for each object of the kind at or below the path; returns how many. */
+/* Lists every object of the kind at or below the path; returns how many. */
 static size_t list_dicom(struct loading *loading, enum part_kind kind, enum dicom_kind of, size_t index,
                          size_t component, const char *path, size_t most)
 {
@@ -81,7 +82,8 @@ static bool list_regions(struct loading *loading, size_t i, struct error *err)
     return true;
 }
 
-/* A dose this version cannot read is left out, and said; images and regions are not. */
+/* Reports a dose in a format that is not read; the plan is shown without it. An image or regions in such a format are
+ * refused instead. */
 static bool dose_is_readable(struct loading *loading, const struct plan_file_dose *dose, bool *is_readable,
                              struct error *err)
 {
@@ -110,7 +112,7 @@ static bool list_dose(struct loading *loading, size_t i, struct error *err)
         return false;
     for (size_t c = 0; is_readable && c < dose->n_components; c++) {
         const char *path = dose->components[c].path;
-        size_t most = dose->n_components > 1 ? 1 : PLAN_DICOM_MAX_DOSES; /* a component is one object */
+        size_t most = dose->n_components > 1 ? 1 : PLAN_DICOM_MAX_DOSES; /* a component stands for one object */
         enum part_format format = part_format_of(&loading->folder, path);
         if (format != PART_DICOM)
             list_part(loading, PART_KIND_DOSE, i, c, path, format);
@@ -127,7 +129,7 @@ bool plan_list_parts(struct loading *loading, struct error *err)
     const struct plan_file *file = loading->file;
     const struct plan_parts *parts = &loading->parts;
     size_t n_objects = parts->dicom ? parts->dicom->n_objects : 0;
-    /* an entry of plan.json that names a folder may stand for many files, and two entries for the same */
+    /* upper bound: an entry that names a folder may stand for many files, and two entries may name the same files */
     size_t most = file->n_images + file->n_regions * (2 + n_objects) +
                   file->n_doses * (DOSE_N_QUANTITIES + 1 + PLAN_DICOM_MAX_DOSES) + PLAN_DICOM_MAX_DOSES +
                   (file->n_beam_files + 1) * PLAN_DICOM_MAX_PLANS;

@@ -1,3 +1,4 @@
+/* Works on names of files in a plan's folder. */
 #include "core/load/part_names.h"
 
 #include <stdio.h>
@@ -25,7 +26,7 @@ bool part_is_spoken_of(const char *name, const char *const *words, size_t n_word
     return false;
 }
 
-/* Length of name without the last ending. */
+/* Length of the name without its last ending. */
 static size_t stem_length(const char *name)
 {
     const char *dot = strrchr(name, '.'), *slash = strrchr(name, '/');

@@ -1,3 +1,4 @@
+/* Reads all listed files of a plan in several threads. */
 #include "core/load/read_all.h"
 
 #include "core/base/mem.h"
@@ -15,8 +16,8 @@ static void order_readings(struct loading *loading)
     }
 }
 
-/* Nobody said that this file belongs to the plan, so what is wrong with it need not keep the rest from being seen; it
- * is said. */
+/* True if the file can be reported and left out: it was recognised, not named by a plan.json, so its fault need not
+ * keep the rest from being shown. */
 static bool may_be_left_out(const struct loading *loading, const struct part_reading *reading)
 {
     return loading->parts.is_all_dicom && reading->format == PART_DICOM &&
@@ -24,7 +25,7 @@ static bool may_be_left_out(const struct loading *loading, const struct part_rea
             reading->err.code == ERROR_RANGE);
 }
 
-/* Takes failed readings out of the list. errors: the first one's, when nothing is left */
+/* Reports the failed readings. errors: the first one's, when all failed */
 static bool leave_out_failed(struct loading *loading, struct error *err)
 {
     const struct error *first = NULL;
@@ -43,7 +44,7 @@ static bool leave_out_failed(struct loading *loading, struct error *err)
     return n_read > 0 || !first;
 }
 
-/* A series is named as people know it, not by the first of its files. */
+/* The name shown for a reading: the series of a DICOM image, else the path. */
 static const char *name_of(const struct loading *loading, const struct part_reading *reading)
 {
     if (reading->kind == PART_KIND_IMAGE && reading->format == PART_DICOM &&
@@ -62,7 +63,7 @@ static void work(void *context, int part, int n_parts)
             return;
         size_t at = loading->order[turn];
         struct part_reading *reading = &loading->readings[at];
-        /* Once a part has failed only those before it matter: the first in the plan's order is the one reported. */
+        /* Once a part has failed only earlier parts matter: the error of the first in the plan's order is returned. */
         if (at > atomic_load(&loading->first_failed))
             continue;
         if (part == 0)

@@ -1,3 +1,4 @@
+/* Reads one listed file of a plan. */
 #include "core/load/read_part.h"
 
 #include <stdio.h>
@@ -44,7 +45,7 @@ static bool read_names(const struct folder *folder, const char *path, struct par
     return is_read;
 }
 
-/* A reader of DICOM tells how far it is; one call at a time. */
+/* Progress of dicom_series_read, which makes one call at a time. */
 static void slices_done(void *context, size_t n_done, size_t n_all)
 {
     struct part_reading *reading = context;
@@ -65,7 +66,7 @@ static bool read_series(struct loading *loading, struct part_reading *reading)
     return reading->volume != NULL;
 }
 
-/* A structure set, a segmentation, a dose or a treatment plan. */
+/* Reads a structure set, a segmentation, a dose or a treatment plan. */
 static bool read_rt_object(const struct loading *loading, struct part_reading *reading)
 {
     struct plan_dicom_file opened;

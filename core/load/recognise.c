@@ -1,3 +1,4 @@
+/* Finds the parts of a folder without plan.json by the names and headers of its files. */
 #include "core/load/recognise.h"
 
 #include <stdio.h>
@@ -16,16 +17,15 @@
 #include "core/load/part_names.h"
 #include "core/plan/plan.h"
 
-/* A folder without a plan.json: its files, and those in the folders below, become parts by what they are called and
- * what they hold. */
+/* The folder being recognised, and the parts found so far. */
 struct recognition {
     const struct folder *folder;
     struct plan_file *file;
     struct report *report;
-    char **dicom; /* names of files that may be DICOM, of the tree */
+    char **dicom; /* [n_dicom] names of files that may be DICOM; borrowed from the tree */
     size_t n_dicom;
     struct name_lists *lists;
-    struct error reason; /* why the first file that looked like a part is none */
+    struct error reason; /* why the first file that looked like a part was not used */
 };
 
 static bool nifti_is_whole(const struct folder *folder, const char *name)
@@ -43,7 +43,7 @@ static bool nrrd_is_whole(const struct folder *folder, const char *name, bool *h
     return is_read && header.type != RAW_F32 && header.type != RAW_F64;
 }
 
-/* A file whose voxels are whole numbers and whose name speaks of labels, or that names segments itself. */
+/* True for a grid of whole numbers whose name contains a word for labels, or that names its own segments. */
 static bool is_label_map(const struct folder *folder, const char *name, enum part_format format)
 {
     static const char *const words[] = { "label", "seg", "univel", "mask" };
@@ -125,8 +125,8 @@ static void add_dose(struct recognition *all, const char *name)
     dose->n_components = 1;
 }
 
-/* A grid whose header cannot be read is left out of a plan that nobody wrote down; why is kept for a folder with
- * nothing else. */
+/* Reports a grid whose header cannot be read; it is left out. The first reason is kept: it becomes the error when the
+ * folder holds nothing else. */
 static bool has_good_header(struct recognition *all, const char *name, enum part_format format)
 {
     struct error err = { 0 };
@@ -147,7 +147,8 @@ static bool has_good_header(struct recognition *all, const char *name, enum part
     return false;
 }
 
-/* A pair is taken once, by its header; where that is there packed and not, by the one that is not. */
+/* True if this file of a NIfTI pair must be passed over: a pair is taken once, by its header, and by the unpacked
+ * header where there are two. */
 static bool is_second_of_pair(const struct folder *folder, const char *name)
 {
     struct nifti_pair pair, other;
@@ -235,7 +236,7 @@ static void recognise_file(struct recognition *all, char *name)
     }
 }
 
-/* The first file that ought to be DICOM and could not be read. */
+/* The first line, from this index on, about a DICOM file that could not be read. */
 static const struct report_line *find_unreadable(const struct report *report, size_t from)
 {
     for (size_t i = from; report && i < report->n_lines; i++)
@@ -244,7 +245,7 @@ static const struct report_line *find_unreadable(const struct report *report, si
     return NULL;
 }
 
-/* Why nothing was recognised, as far as the names tell. unreadable: NULL when no DICOM file was. */
+/* Sets the error that says why nothing was recognised. unreadable: the line about a damaged DICOM file; NULL: none. */
 static void explain_nothing(const struct folder *folder, const struct folder_tree *tree,
                             const struct dicom_index *dicom, const struct report_line *unreadable, struct error *err)
 {
@@ -284,7 +285,7 @@ static void explain_nothing(const struct folder *folder, const struct folder_tre
     folder_free_names(names, n_names);
 }
 
-/* A plan of its own. */
+/* True if the folder has a plan.json, so it is a plan of its own. */
 static bool is_plan(const struct folder *folder, const char *name)
 {
     char inner[FOLDER_NAME_SIZE];
@@ -292,7 +293,7 @@ static bool is_plan(const struct folder *folder, const char *name)
     return n > 0 && n < (int)sizeof inner && folder_look(folder, inner, NULL) == FOLDER_FILE;
 }
 
-/* Everything in the tree, by names first; what may be DICOM is then looked at together. */
+/* Recognises all files of the tree: by name one after the other, then those that may be DICOM together. */
 static bool recognise_tree(const struct folder *folder, const struct folder_tree *tree,
                            const struct dicom_progress *progress, struct plan_parts *parts, struct error *reason,
                            struct report *report, struct error *err)

@@ -1,3 +1,4 @@
+/* Builds the plan's regions from the files that were read. */
 #include "core/load/region_builder.h"
 
 #include <math.h>
@@ -58,7 +59,7 @@ static bool is_free_id(const struct region_set *set, const char *id)
     return id[0] && strspn(id, "abcdefghijklmnopqrstuvwxyz0123456789-") == strlen(id) && !region_find(set, id);
 }
 
-/* What a list of names that we wrote says of a region beyond its name. */
+/* Takes colour, id, tissue data and place from an entry of a list of names. */
 static void take_names(struct region_builder *builder, struct region *region, const struct label_name *label)
 {
     struct region_set *set = builder->set;
@@ -90,7 +91,7 @@ void region_builder_order(struct region_builder *builder)
         int place = builder->places[i];
         size_t at = i;
         for (; at > 0 && (unsigned)(builder->places[at - 1] - 1) > (unsigned)(place - 1);
-             at--) { /* no place is the last */
+             at--) { /* place 0 sorts last */
             set->regions[at] = set->regions[at - 1];
             builder->places[at] = builder->places[at - 1];
         }
@@ -123,7 +124,7 @@ static void count_run(void *context, uint16_t label, uint32_t i, uint32_t j, uin
     ((uint64_t *)context)[label] += length;
 }
 
-/* Voxels of each label 1..65535. */
+/* Counts the voxels of each label, 1 to 65535. The caller frees the counts. */
 static uint64_t *count_labels(const struct volume *volume)
 {
     uint64_t *counts = mem_new(65536 * sizeof *counts);
@@ -131,7 +132,8 @@ static uint64_t *count_labels(const struct volume *volume)
     return counts;
 }
 
-/* The filling around the patient that univel models carry: by name, and it fills the corners of the grid. */
+/* True for the filling around the patient in univel models: its name, and at least four corners of the
+ * grid. */
 static bool is_surroundings(const struct volume *volume, const char *name, uint16_t label)
 {
     if (!text_equal(name, "buffer") && !text_equal(name, "void"))
@@ -150,7 +152,7 @@ static void note_surroundings(struct region_builder *builder, const char *name, 
                "\"%s\" fills the space around the patient and is not listed as a region.", name);
 }
 
-/* The only label of a file without names is what the file is called; else labels are called by their numbers. */
+/* Names a label that has no name: after the file when it is the only label, else by its number. */
 static void make_name(char name[REGION_NAME_SIZE], uint32_t label, bool is_only, const char *where)
 {
     const char *slash = strrchr(where, '/');
@@ -239,7 +241,7 @@ bool region_builder_add_univels(struct region_builder *builder, struct volume *u
     uint64_t *counts = count_labels(univels);
     bool *is_named = mem_new(65536);
     bool is_added = true;
-    is_named[1] = true; /* reserved for the buffer by convention, named or not */
+    is_named[1] = true; /* SERA reserves 1 for the buffer, named or not */
     for (size_t i = 0; is_added && i < uvh->n_bodies; i++) {
         const struct uvh_body *body = &uvh->bodies[i];
         is_named[body->uvval] = true;
@@ -290,7 +292,7 @@ static bool grids_are_equal(const struct grid *a, const struct grid *b)
     return true;
 }
 
-/* A mask being laid into a layer of others. */
+/* A mask being written into a layer that holds others. */
 struct laying {
     const struct volume *layer;
     uint8_t label;

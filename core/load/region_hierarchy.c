@@ -1,24 +1,25 @@
-/* The hierarchy as files give it: pairs of names, outer and inner, some of which may not be in this plan. */
+/* Gives regions their parents from pairs of names. */
+#include "core/load/region_hierarchy.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/base/mem.h"
 #include "core/formats/text.h"
-#include "core/load/region_builder.h"
 
-/* Names are nodes 0..n; an edge goes from the inner to the outer one. */
+/* A graph: names are the nodes, an edge leads from an inner to its outer name. */
 struct names {
     const char **name;
-    int *region; /* -1: not in this plan */
-    int *depth;  /* longest way up to a root; -1 not known yet, -2 being found */
+    int *region; /* index in the set; -1: no region of this plan */
+    int *depth;  /* edges on the longest way up to a root; -1: not known yet */
     size_t n;
     const struct plan_file_pair *pairs;
     size_t (*edges)[2]; /* [n_edges] inner, outer */
     size_t n_edges;
 };
 
-/* An id comes before a name: our own plan.json speaks of ids, and another region may be named like one. Files of others
- * know names. */
+/* is_by_id: tries ids before names. Our own plan.json uses ids, and another region may be named like an id; other files
+ * use names only. */
 static int find_region(const struct region_set *set, const char *name, bool is_by_id)
 {
     const struct region *known = is_by_id ? region_find(set, name) : NULL;
@@ -42,7 +43,7 @@ static size_t find_name(struct names *names, const struct region_set *set, const
     return at;
 }
 
-/* Whether there is a way up from a to b. marks: one byte a name, zeroed. */
+/* True if a way up leads from a to b. marks: one zeroed byte for each name. */
 static bool leads_to(const struct names *names, size_t a, size_t b, uint8_t *marks)
 {
     if (a == b)
@@ -67,7 +68,7 @@ static int find_depth(struct names *names, size_t at)
     return names->depth[at] = depth;
 }
 
-/* The deepest name above at that is a region of this plan. */
+/* Finds the deepest name above at that is a region of this plan. */
 static void find_parent(struct names *names, size_t at, uint8_t *marks, int *parent, int *depth)
 {
     for (size_t e = 0; e < names->n_edges; e++) {
@@ -125,7 +126,7 @@ void region_set_apply_pairs(struct region_set *set, const struct plan_file_pair 
         find_parent(&names, at, marks, &parent, &depth);
         if (parent < 0)
             continue;
-        if (is_above(set, names.region[at], parent)) { /* a region under two names, its name and its id */
+        if (is_above(set, names.region[at], parent)) { /* one region under two names: its name and its id */
             report_add(report, REPORT_WARNING, "hierarchy.cycle", where, "\"%s\" would lie inside itself; left out.",
                        names.name[at]);
             continue;

@@ -1,3 +1,4 @@
+/* Reads SERA's files of a plan's folder. */
 #include "core/load/sera_parts.h"
 
 #include <stdio.h>
@@ -9,7 +10,7 @@
 
 #define DATA_FILE_MAX_BYTES (VOLUME_MAX_BYTES + (1 << 20))
 
-/* A file as it lies there or as SERA packs it, at most limit bytes either way. */
+/* Reads a file that may be packed (gzip, or zlib in a .sz); at most limit bytes before and after unpacking. */
 static bool read_unpacked(const struct folder *folder, const char *name, uint64_t limit, struct bytes *bytes,
                           struct error *err)
 {

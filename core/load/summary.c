@@ -1,3 +1,4 @@
+/* Summarises a plan folder from names and headers alone. */
 #include "core/load/summary.h"
 
 #include <stdio.h>
@@ -35,7 +36,7 @@ static void count_bytes(const struct folder *folder, const char *name, struct pl
         summary->n_bytes += bytes;
 }
 
-/* Whether the file is there, of a kind we read here, and has a header that makes sense. */
+/* Checks that the files exist and that the header is valid. */
 static bool check_nifti(const struct folder *folder, const char *name, struct plan_summary *summary, struct error *err)
 {
     struct nifti_header header;
@@ -120,7 +121,7 @@ static size_t count_names(const struct folder *folder, const char *path)
     return n;
 }
 
-/* "CT, 100 slices" for a series; else how many images of the modality there are, with the first of them. */
+/* Adds "CT, 100 slices" for a DICOM series. For other images adds their number at the first of each modality. */
 static void add_image_part(struct plan_summary *summary, const struct plan_parts *parts, size_t index, int stack)
 {
     const struct plan_file *file = parts->file;
@@ -162,7 +163,7 @@ static bool check_images(const struct folder *folder, const struct plan_parts *p
     return is_good;
 }
 
-/* Regions with contours, and beams, as the sequences of the object say. */
+/* Number of items in a sequence of a DICOM object, or of items that have the inner sequence. */
 static size_t count_items(const struct folder *folder, const char *path, uint32_t sequence, uint32_t inner)
 {
     struct plan_dicom_file opened;
@@ -176,7 +177,7 @@ static size_t count_items(const struct folder *folder, const char *path, uint32_
     return n_filled;
 }
 
-/* Items of all objects of a kind at or below a path. */
+/* Number of such items in all objects of a kind at or below a path. */
 static size_t count_objects(const struct folder *folder, const struct dicom_index *index, enum dicom_kind kind,
                             const char *path, struct plan_summary *summary)
 {
@@ -243,7 +244,7 @@ static void count_doses(const struct folder *folder, const struct plan_parts *pa
         const struct plan_file_dose *dose = &file->doses[i];
         enum part_format first = part_format_of(folder, dose->components[0].path);
         bool is_read = true;
-        size_t n_more = 0; /* one file of SERA holds several */
+        size_t n_more = 0; /* a file of SERA holds several components */
         if (dose->n_components == 1 && first == PART_DICOM) {
             n_objects += count_objects(folder, parts->dicom, DICOM_KIND_DOSE, dose->components[0].path, summary);
             continue;
@@ -274,11 +275,11 @@ static size_t count_beams(const struct folder *folder, const struct plan_parts *
     return parts->is_all_dicom ? n + count_objects(folder, parts->dicom, DICOM_KIND_PLAN, "", summary) : n;
 }
 
-/* What lies in the files of image series, which are many. */
+/* Adds the bytes of the image series, which have many files. */
 static void count_series_bytes(const struct dicom_index *index, struct plan_summary *summary)
 {
     for (size_t s = 0; index && s < index->n_stacks; s++)
-        for (size_t i = 1; i < index->stacks[s].n_objects; i++) /* the first is counted as the part's path */
+        for (size_t i = 1; i < index->stacks[s].n_objects; i++) /* the first file is counted by the path of the part */
             summary->n_bytes += index->objects[index->stacks[s].objects[i]].n_bytes;
 }
 

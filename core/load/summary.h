@@ -1,5 +1,5 @@
 #pragma once
-/* What a plan folder holds, from names and headers alone: for the list of plans. */
+/* Summarises what a plan folder holds, from names and headers alone, for the list of plans. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -9,10 +9,10 @@ struct plan_summary {
     char note[512];
     bool is_phantom;
     bool is_readable;
-    char reason[240];   /* why not, when not readable */
+    char reason[240];   /* why is_readable is false */
     char parts[16][64]; /* "CT", "3 regions", "4 dose components", "1 beam", ... */
     size_t n_parts;
-    uint64_t n_bytes; /* of the files named */
+    uint64_t n_bytes; /* of all files that the parts name */
 };
-/* Never fails: what cannot be read is said in reason. */
+/* Never fails: a folder that cannot be read has is_readable false and a reason. */
 void plan_summarize(const char *folder, struct plan_summary *summary);

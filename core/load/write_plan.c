@@ -1,3 +1,4 @@
+/* Writes a plan as a plan folder of our own. */
 #include "core/load/write_plan.h"
 
 #include <dirent.h>
@@ -23,23 +24,23 @@ enum {
     MAX_FILES = PLAN_MAX_IMAGES + REGION_MAX_LAYERS + PLAN_MAX_DOSES * (DOSE_N_QUANTITIES + 1)
 };
 
-/* One file of voxels, written by any thread. */
+/* One file of voxels to write; written by one thread. */
 struct output {
     char name[FOLDER_NAME_SIZE];
     const struct volume *volume;
-    const bool *is_kept; /* of a label layer: which labels to write; NULL: all voxels as they are */
-    uint64_t n_cleared;  /* voxels of the others */
+    const bool *is_kept; /* [65536] labels of a label layer to write, others become 0; NULL: write all voxels */
+    uint64_t n_cleared;  /* voxels whose label became 0 */
     bool is_failed;
     struct error err;
 };
 
 struct writing {
     const struct plan *plan;
-    char folder[PATH_MAX]; /* where it is built */
+    char folder[PATH_MAX]; /* temporary folder where the plan is built */
     struct output *outputs;
     size_t n_outputs;
     atomic_size_t next;
-    atomic_bool is_failed; /* some output; the rest is not begun */
+    atomic_bool is_failed; /* one output failed; the others need not start */
     struct plan_file *file;
 };
 
@@ -47,7 +48,7 @@ static void join(char out[PATH_MAX], const char *folder, const char *name)
 {
     int n = snprintf(out, PATH_MAX, "%s/%s", folder, name);
     if (n < 0 || n >= PATH_MAX)
-        out[0] = 0; /* opening "" fails with a reason */
+        out[0] = 0; /* opening "" fails, with an error that is reported */
 }
 
 static struct output *add_output(struct writing *writing, const struct volume *volume, const char *name)
@@ -58,7 +59,7 @@ static struct output *add_output(struct writing *writing, const struct volume *v
     return output;
 }
 
-/* ---- what is to be written -------------------------------------------------------------------------------------- */
+/* ---- lists of files to write ------------------------------------------------------------------------------------ */
 
 static void list_images(struct writing *writing)
 {
@@ -136,7 +137,7 @@ static bool list_regions(struct writing *writing, bool (*is_kept)[65536], struct
     return true;
 }
 
-/* No id has a '_', so that no two doses' files are called the same. */
+/* Files are called id_quantity; ids have no '_', so no two are called the same. */
 static void list_doses(struct writing *writing)
 {
     const struct plan *plan = writing->plan;
@@ -167,9 +168,9 @@ static void list_doses(struct writing *writing)
     }
 }
 
-/* ---- writing it ------------------------------------------------------------------------------------------------- */
+/* ---- writing ---------------------------------------------------------------------------------------------------- */
 
-/* A copy of a label layer with the labels of no region cleared. */
+/* Copies a label layer; voxels whose label is not kept become 0. */
 static struct volume *copy_kept(const struct volume *layer, const bool *is_kept, uint64_t *n_cleared, struct error *err)
 {
     struct volume *copy = volume_create(&layer->grid, layer->type, err);
@@ -233,8 +234,8 @@ static bool write_plan_json(const struct writing *writing, struct error *err)
     char path[PATH_MAX];
     char *text = plan_file_text(writing->file);
     size_t n = strlen(text);
-    struct plan_file *again =
-        plan_file_parse((const uint8_t *)text, n, NULL, err); /* nobody is left with a plan that does not open */
+    struct plan_file *again = plan_file_parse((const uint8_t *)text, n, NULL,
+                                              err); /* read back: a plan.json that cannot be opened is not written */
     join(path, writing->folder, "plan.json");
     bool is_written = again && file_write(path, text, n, err);
     plan_file_destroy(again);
@@ -301,7 +302,7 @@ static bool make_inner_folders(const char *folder, const char *asked_for, struct
     return true;
 }
 
-/* Folders that nothing went into are not part of the plan. */
+/* Removes the folders that stayed empty. */
 static void remove_empty(const char *folder)
 {
     char path[PATH_MAX];
@@ -317,7 +318,7 @@ static void remove_files(const char *folder)
     char path[PATH_MAX];
     for (struct dirent *entry; directory && (entry = readdir(directory));) {
         join(path, folder, entry->d_name);
-        (void)unlink(path); /* fails for folders, which is what is wanted */
+        (void)unlink(path); /* fails for folders, which are removed later */
     }
     if (directory)
         closedir(directory);
@@ -335,7 +336,8 @@ static void remove_all(const char *folder)
     (void)rmdir(folder);
 }
 
-/* The folder it is built in is gone after a failure; its files are called by the one asked for. */
+/* Replaces the temporary folder in an error sentence by the folder that was asked for, as the first no longer exists.
+ */
 static void name_as_asked(const char *folder, const char *asked_for, struct error *err)
 {
     size_t n = strlen(folder);

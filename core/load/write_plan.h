@@ -1,16 +1,16 @@
 #pragma once
-/* A plan as a plan folder of ours: what opens as DICOM, NRRD or SERA's files becomes NIfTI, labels.json and plan.json.
- */
+/* Writes a plan as a plan folder of our own: NIfTI, labels.json and plan.json, whatever files it was opened from. */
 #include "core/plan/plan.h"
 
 /* Writes images/, regions/ (a label map for each layer, so that overlapping regions stay whole), doses/, curves/,
- * tracks.pp, preferences.rsc, colors.cmap and plan.json. All of it appears at once or not at all: it is built in a
- * folder beside and renamed. What was noticed on opening the plan is not part of its folder.
+ * tracks.pp, preferences.rsc, colors.cmap and plan.json. The folder appears whole or not at all: it is built beside its
+ * place and renamed. The report of opening the plan is not written. Opened again, the plan has the same values,
+ * matrices to 1e-7 mm, regions, ids, colours, doses, beams, tracks, curves and preferences. A voxel of a label layer
+ * that belongs to no region (SERA's filling around the patient) is written as 0.
  *
- *   folder  a new name in a folder that is there, or an empty folder
- *   lost    gets a line for whatever of the plan's voxels is not written; NULL: not wanted
- *   errors  ERROR_STATE the folder is there and holds something; ERROR_MEMORY; ERROR_IO; what the reader of plan.json
- * would refuse thread  any; uses all cores; equal plans give equal bytes exact   opened again, the plan has the same
- * values, matrices to 1e-7 mm, regions, ids, colours, doses, beams, tracks, curves and preferences. A voxel of a label
- * layer that belongs to no region (SERA's filling around the patient) is written as 0. */
+ *   folder  a new name in an existing folder, or an empty folder
+ *   lost    gets a line for each label layer with voxels that are written as 0; NULL: not wanted
+ *   errors  ERROR_STATE the folder exists and holds something; ERROR_MEMORY; ERROR_IO; those of plan_file_parse, when
+ *           the plan could not be opened again
+ *   thread  any; uses all cores; equal plans give equal bytes */
 NODISCARD bool plan_write(const struct plan *plan, const char *folder, struct report *lost, struct error *err);

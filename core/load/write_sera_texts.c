@@ -1,3 +1,4 @@
+/* Writes tracks, reference curves and preferences of a plan in SERA's formats. */
 #include "core/load/write_sera_texts.h"
 
 #include <limits.h>
@@ -8,7 +9,7 @@
 
 #include "core/base/file_write.h"
 
-/* A text that grows, then a file; lack of memory shows when it is closed. */
+/* A text in memory that becomes a file when it is closed; lack of memory is reported then. */
 struct sheet {
     FILE *out;
     char *text;
@@ -28,7 +29,7 @@ static bool sheet_close(struct sheet *sheet, const char *folder, const char *nam
     return is_written;
 }
 
-/* SERA's columns, in its axes (RL, PA, IS) = (L, -P, S); nine digits bring a float back as it was. */
+/* Writes SERA's columns, in its axes (RL, PA, IS) = (L, -P, S). Nine digits keep every float exactly. */
 static bool write_tracks(const struct track_set *tracks, const char *folder, struct plan_file *file, struct error *err)
 {
     static const int codes[TRACK_N_CLASSES][2] = {
@@ -53,7 +54,7 @@ static bool write_tracks(const struct track_set *tracks, const char *folder, str
     return sheet_close(&sheet, folder, entry->path, err);
 }
 
-/* Centimetres that times ten are the very millimetres, which were read from centimetres: a double nearby does it. */
+/* The centimetres that give exactly these millimetres when multiplied by ten: mm / 10 or a double next to it. */
 static double cm_of(double mm)
 {
     double cm = mm / 10;
@@ -67,8 +68,9 @@ static double cm_of(double mm)
     return cm;
 }
 
-/* A value that is none is printed as SERA's Fortran prints what does not fit; a point without any is all zeros, outside
- * the mesh. All values are as wide, so that no line is as long as one of SERA's own columns, which readers go by. */
+/* Prints not-a-number as SERA's Fortran prints a value too wide for its column, and a point without any value as zeros,
+ * which means outside the mesh. All values have the same width, so that no line is as long as one in SERA's own column
+ * layout, which readers recognise by length. */
 static void print_point(FILE *out, const struct dose_curve *curve, size_t point)
 {
     bool is_nothing = true;

@@ -1,4 +1,5 @@
-#include "core/load/tracks_part.h"
+/* Adds particle tracks to a plan. */
+#include "core/load/assemble_tracks.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -27,7 +28,8 @@ static struct vec3 point_of(const float p[3])
     return vec3((double)p[0], (double)p[1], (double)p[2]);
 }
 
-/* seraMC writes the beam line from the centre of the source plane to the target. */
+/* Takes the beam of a plan without beams from its tracks: seraMC writes the beam line as a track from the centre of the
+ * source plane to the target. */
 static void beam_from_tracks(struct plan *plan)
 {
     for (size_t i = 0; plan->n_beams == 0 && i < plan->tracks.n_segments; i++) {

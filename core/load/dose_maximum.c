@@ -1,4 +1,5 @@
-#include "core/load/dose_in_body.h"
+/* Finds the largest value of each dose inside the patient. */
+#include "core/load/dose_maximum.h"
 
 #include <math.h>
 
@@ -10,7 +11,7 @@ static bool is_in_region(const struct region_set *set, struct vec3 point_lps_mm)
             continue;
         uint16_t label = volume_label(set->layers[layer], at[0], at[1], at[2]);
         for (size_t r = 0; label != 0 && r < set->n_regions;
-             r++) /* a label without a region is the filling around the patient */
+             r++) /* a label that is no region is the filling around the patient */
             if (set->regions[r].layer == layer && set->regions[r].label == label)
                 return true;
     }
@@ -34,7 +35,7 @@ static void measure(const struct plan *plan, struct dose *dose, const struct dos
         for (uint32_t j = 0; j < size[1]; j++)
             for (uint32_t i = 0; i < size[0]; i++) {
                 double value = volume_value(values, i, j, k);
-                if (!(value > high)) /* first, for it is quick */
+                if (!(value > high)) /* tested first because it is quick */
                     continue;
                 struct vec3 point = affine_point(&values->grid.lps_mm_from_ijk, vec3(i, j, k));
                 if (is_in_region(&plan->regions, point) && is_valid(dose->mask, point))
