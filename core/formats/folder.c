@@ -1,3 +1,4 @@
+/* Opens, lists and reads files of a plan's folder without leaving it. */
 #define _GNU_SOURCE
 #include "core/formats/folder.h"
 
@@ -67,7 +68,7 @@ bool folder_check_name(const char *name, struct error *err)
     return true;
 }
 
-/* Without openat2, for a name with a link in it: resolve, compare, open what was resolved. */
+/* For a name with a symbolic link when openat2 is missing: resolves it, checks that it is inside, opens the result. */
 static int open_resolved(const struct folder *folder, const char *name)
 {
     char joined[sizeof folder->path + FOLDER_NAME_SIZE + 1];
@@ -87,8 +88,8 @@ static int open_resolved(const struct folder *folder, const char *name)
     return fd;
 }
 
-/* Where openat2 is missing or refused: one folder after the other, none of them a link. A name with a link in it is
- * resolved. */
+/* When openat2 is missing or refused: opens one folder after the other and follows no link; a name with a link is
+ * resolved first. */
 static int open_by_parts(const struct folder *folder, const char *name)
 {
     char part[FOLDER_NAME_SIZE];
@@ -112,7 +113,7 @@ static int open_by_parts(const struct folder *folder, const char *name)
     }
 }
 
-/* O_NONBLOCK: opening a named pipe somebody left in the folder must not hang. */
+/* O_NONBLOCK: opening a named pipe in the folder must not hang. */
 static int open_beneath(const struct folder *folder, const char *name)
 {
     struct open_how how = { .flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK,
@@ -205,7 +206,7 @@ bool folder_read(const struct folder *folder, const char *name, uint64_t limit, 
                   (unsigned long long)limit);
     } else {
         bytes->size = part.n_bytes < most ? (size_t)part.n_bytes : (size_t)most;
-        bytes->data = malloc(bytes->size + 1); /* one more, 0: text readers may look at the byte after the last */
+        bytes->data = malloc(bytes->size + 1); /* one more byte, 0: text readers may look at the byte after the last */
         if (!bytes->data) {
             error_set(err, ERROR_MEMORY, "%s: no memory for %zu bytes", name, bytes->size);
         } else {

@@ -1,3 +1,4 @@
+/* Lists all files below a folder of a plan. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <errno.h>
@@ -29,7 +30,7 @@ static bool add_file(struct walk *walk, const char *name, const struct stat *abo
         size_t capacity = walk->capacity ? 2 * walk->capacity : 256;
         struct folder_file *files = realloc(tree->files, capacity * sizeof *files);
         if (!files)
-            abort(); /* at most FOLDER_MAX_FILES: small, as mem_new */
+            abort(); /* small, as there are at most FOLDER_MAX_FILES; like mem_new */
         tree->files = files;
         walk->capacity = capacity;
     }
@@ -41,13 +42,13 @@ static bool add_file(struct walk *walk, const char *name, const struct stat *abo
     return true;
 }
 
-/* What a link leads to, when that lies inside the folder. */
+/* Finds what a link leads to; false when that lies outside the folder. */
 static bool look_behind_link(const struct folder *folder, const char *name, struct stat *about)
 {
     return folder_look(folder, name, NULL) == FOLDER_FILE && fstatat(folder->fd, name, about, 0) == 0;
 }
 
-/* Takes fd. false: enough files. */
+/* Lists one folder and those below it. Consumes fd. Returns false when FOLDER_MAX_FILES are reached. */
 static bool walk_into(struct walk *walk, int fd, const char *under, int depth)
 {
     bool goes_on = true;
@@ -90,7 +91,7 @@ bool folder_walk(const struct folder *folder, const char *under,
                  struct error *err)
 {
     *tree = (struct folder_tree){ 0 };
-    /* a folder below is opened as a file is: never through a link that leads out */
+    /* folder_look rejects a link that leads out of the folder */
     if (under[0] && folder_look(folder, under, NULL) != FOLDER_DIRECTORY)
         return error_set(err, ERROR_NOT_FOUND, "%s: there is no such folder in the plan's folder", under);
     int fd = openat(folder->fd, under[0] ? under : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);

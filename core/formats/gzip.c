@@ -1,3 +1,4 @@
+/* Unpacks gzip streams in memory. */
 #include "core/formats/gzip.h"
 
 #include <libdeflate.h>
@@ -32,7 +33,7 @@ static uInt at_most_int(size_t n)
 
 enum outcome { WHOLE, FULL, CUT, BROKEN, FOLLOWED, NO_MEMORY };
 
-/* How far a stream could be read: bytes of it, and bytes unpacked from it. reason: zlib's words when it is BROKEN. */
+/* How far a stream was read: bytes of it, and bytes unpacked from it. reason: zlib's message when it is BROKEN. */
 struct reading {
     enum outcome outcome;
     size_t in;
@@ -40,8 +41,8 @@ struct reading {
     const char *reason;
 };
 
-/* The slow way, piece by piece: the first capacity bytes into out, what follows them is checked and thrown away. FULL:
- * there are more than most bytes inside. zlib checks the sums and the lengths of all members that end within most. */
+/* Unpacks with zlib, piece by piece: writes the first capacity bytes to out, checks and discards the rest. FULL: more
+ * than most bytes inside. zlib checks checksum and length of every member that ends within most. */
 static struct reading inflate_slowly(const uint8_t *data, size_t size, uint8_t *out, size_t capacity, uint64_t most)
 {
     uint8_t scratch[SCRATCH_BYTES];
@@ -108,8 +109,8 @@ size_t gzip_head(const uint8_t *data, size_t size, uint8_t *out, size_t capacity
     return have;
 }
 
-/* The fast way: all members with their sums and lengths, into capacity bytes. FULL: there is more than that; BROKEN
- * also where a stream is cut, or followed by something else. */
+/* Unpacks all members with libdeflate into capacity bytes and checks their checksums and lengths. FULL: more than
+ * capacity inside. BROKEN: damaged, cut short, or followed by something else. */
 static enum outcome inflate_members(const uint8_t *data, size_t size, uint8_t *out, size_t capacity, size_t *n)
 {
     struct libdeflate_decompressor *decompressor = libdeflate_alloc_decompressor();
@@ -131,7 +132,7 @@ static enum outcome inflate_members(const uint8_t *data, size_t size, uint8_t *o
     return outcome == WHOLE && !gzip_is_padding(data + in, size - in) ? BROKEN : outcome;
 }
 
-/* zlib's words, where they are not plain. */
+/* Replaces a message of zlib that people would not understand. */
 static const char *plain_reason(const char *reason)
 {
     if (strcmp(reason, "incorrect data check") == 0)
@@ -141,7 +142,7 @@ static const char *plain_reason(const char *reason)
     return reason[0] ? reason : "no gzip stream";
 }
 
-/* The sentence for a reading that did not come to its end. */
+/* Sets the error for a stream that was not read to its end. */
 static bool refuse(const struct reading *reading, size_t size, const char *name, uint64_t most, struct error *err)
 {
     unsigned long long have = (unsigned long long)reading->have;
@@ -172,7 +173,7 @@ bool gzip_exact(const uint8_t *data, size_t size, const char *name, uint8_t *out
     *n_more = 0;
     if (inflate_members(data, size, out, n, &have) == WHOLE && have == n)
         return true;
-    /* more inside than asked for, or damaged: the slow way tells which */
+    /* more inside than n, or damaged: zlib finds out which */
     uint64_t most = (uint64_t)n + GZIP_MOST_MORE;
     struct reading reading = inflate_slowly(data, size, out, n, most);
     if (reading.outcome != WHOLE)

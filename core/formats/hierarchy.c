@@ -1,3 +1,4 @@
+/* Reads SERA's hierarchy of regions, body_containment.info. */
 #include "core/formats/hierarchy.h"
 
 #include "core/formats/text.h"

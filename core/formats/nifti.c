@@ -1,3 +1,4 @@
+/* Reads NIfTI voxels into a volume. */
 #include "core/formats/nifti.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* Reads NIfTI-1 and NIfTI-2 headers: data type, scaling, geometry. */
 #include <math.h>
 #include <nifti/nifti1.h>
 #include <stdio.h>
@@ -9,7 +10,7 @@
 
 enum { HEADER1_BYTES = 348, HEADER2_BYTES = 540 };
 
-/* What both versions say, in wide types. */
+/* The fields of either version, in types wide enough for both. */
 struct fields {
     int64_t dim[8];
     double pixdim[8];
@@ -198,7 +199,7 @@ static struct affine ras_from_quaternion(const struct fields *f)
 {
     double b = f->quatern[0], c = f->quatern[1], d = f->quatern[2];
     double rest = 1 - (b * b + c * c + d * d), a = 0;
-    if (rest < 1e-7) { /* half a turn: a is 0, and the others are made a unit */
+    if (rest < 1e-7) { /* half a turn: a is 0, and (b, c, d) is normalised */
         double length = sqrt(b * b + c * c + d * d);
         b /= length;
         c /= length;
@@ -242,7 +243,7 @@ static double largest_corner_distance(const struct affine *a, const struct affin
     return largest;
 }
 
-/* A quaternion longer than 1 is no rotation; a little over is rounding. */
+/* Refuses b, c, d longer than 1, which is no rotation; a little over 1 is rounding. */
 static bool check_quaternion(const struct fields *f, const char *name, struct error *err)
 {
     double square = f->quatern[0] * f->quatern[0] + f->quatern[1] * f->quatern[1] + f->quatern[2] * f->quatern[2];
@@ -252,7 +253,7 @@ static bool check_quaternion(const struct fields *f, const char *name, struct er
                      f->quatern[0], f->quatern[1], f->quatern[2], square);
 }
 
-/* Method 1 and 2 take 1 where the size of a voxel is missing. */
+/* Reports a missing size of a voxel; methods 1 and 2 then take 1. */
 static void note_spacing(const struct fields *f, const char *name, const uint32_t size[3], struct report *report)
 {
     for (int i = 0; i < 3; i++)
@@ -292,7 +293,7 @@ static bool get_geometry(const struct fields *f, const char *name, const uint32_
     switch (f->units & 7) {
     case NIFTI_UNITS_METER: mm = 1000; break;
     case NIFTI_UNITS_MICRON: mm = 0.001; break;
-    default: break; /* millimetres, or not said: millimetres */
+    default: break; /* millimetres, also when the unit is not given */
     }
     struct affine lps;
     for (int i = 0; i < 3; i++)

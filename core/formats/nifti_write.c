@@ -1,3 +1,4 @@
+/* Writes a volume as a NIfTI file. */
 #include "core/formats/nifti_write.h"
 
 #include <libdeflate.h>
@@ -11,9 +12,9 @@
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "voxels are written as they lie in memory, as little-endian");
 
 enum { GZIP_LEVEL = 1, CODE_SCANNER = 1, UNITS_MM = 2, HEADER_MOST = 544 };
-#define EXACT_MM 1e-7 /* a corner may move by so much before 32-bit numbers are too short */
+#define EXACT_MM 1e-7 /* a corner may move by so much through rounding to 32 bits; beyond it NIfTI-2 is written */
 
-/* Where the header's fields stand, in bytes, and how wide its numbers are. */
+/* Offsets of the header's fields and widths of its numbers, in bytes. */
 struct layout {
     uint32_t header_bytes, voxels_at, real_bytes;
     const char *magic;
@@ -29,7 +30,7 @@ static const struct layout nifti2 = {
 
 static void put_whole(uint8_t *header, int at, int bytes, int64_t value)
 {
-    memcpy(header + at, &value, (size_t)bytes); /* little-endian: the low bytes come first */
+    memcpy(header + at, &value, (size_t)bytes); /* little-endian: low bytes first */
 }
 
 static void put_real(uint8_t *header, const struct layout *layout, int first, int index, double value)
@@ -50,12 +51,12 @@ static int datatype_code(enum voxel_type type)
     return 0;
 }
 
-/* Rotation with columns x, y, z as a unit quaternion (a, b, c, d) with a >= 0. Each component is taken from the largest
- * of the four squares, so no division is by a small number. */
+/* Turns the rotation with columns x, y, z into a unit quaternion (a, b, c, d) with a >= 0. The largest of the four
+ * squares is the divisor, so no division is by a small number. */
 static void quaternion_from_axes(struct vec3 x, struct vec3 y, struct vec3 z, double q[4])
 {
     double squares[4] = { 1 + x.x + y.y + z.z, 1 + x.x - y.y - z.z, 1 - x.x + y.y - z.z,
-                          1 - x.x - y.y + z.z }; /* four times */
+                          1 - x.x - y.y + z.z }; /* four times the squares of a, b, c, d */
     int largest = 0;
     for (int i = 1; i < 4; i++)
         if (squares[i] > squares[largest])
@@ -93,14 +94,14 @@ static void put_geometry(uint8_t *header, const struct layout *layout, const str
     for (int row = 0; row < 3; row++)
         for (int column = 0; column < 4; column++)
             put_real(header, layout, layout->srow, 4 * row + column, rows[row][column]);
-    put_whole(header, layout->qform_code + layout->code_bytes, layout->code_bytes, CODE_SCANNER); /* of the sform */
+    put_whole(header, layout->qform_code + layout->code_bytes, layout->code_bytes, CODE_SCANNER); /* the sform's code */
 
     double handedness = vec3_dot(vec3_cross(axes[0], axes[1]), axes[2]) < 0 ? -1 : 1;
     put_real(header, layout, layout->pixdim, 0, handedness);
     bool is_orthogonal = fabs(vec3_dot(axes[0], axes[1])) < 1e-5 && fabs(vec3_dot(axes[1], axes[2])) < 1e-5 &&
                          fabs(vec3_dot(axes[2], axes[0])) < 1e-5;
     if (!is_orthogonal)
-        return; /* a sheared grid has no qform; readers fall back on the sform */
+        return; /* a sheared grid has no qform; readers use the sform */
     double q[4];
     quaternion_from_axes(axes[0], axes[1], vec3_scale(axes[2], handedness), q);
     double offsets[3] = { origin.x, origin.y, origin.z };
@@ -139,7 +140,7 @@ static double narrowed(double value)
     return (double)(float)value;
 }
 
-/* Whether 32-bit numbers hold where the voxels lie and what they are worth. */
+/* True if 32-bit numbers hold the geometry within EXACT_MM, and slope and offset exactly. */
 static bool is_narrow_enough(const struct volume *volume)
 {
     const struct affine *map = &volume->grid.lps_mm_from_ijk;

@@ -1,3 +1,4 @@
+/* Reads NRRD voxels into a volume, or label layers into several. */
 #include "core/formats/nrrd.h"
 
 #include <stdio.h>
@@ -14,7 +15,7 @@ void nrrd_header_finish(struct nrrd_header *header)
     header->n_segments = 0;
 }
 
-/* Where the bytes of the voxels, or of their gzip stream, begin in the file. */
+/* Finds the offset of the voxels, or of their gzip stream, in the file. */
 static bool find_start(const struct nrrd_header *header, const struct bytes *data, const char *name, size_t *start,
                        struct error *err)
 {
@@ -73,7 +74,7 @@ struct volume *nrrd_read(const struct nrrd_header *header, const struct bytes *d
     return volume;
 }
 
-/* Every n_layers-th value, from the first on. */
+/* Copies every n_layers-th value, from the first on: one layer of interleaved ones. */
 static void pick_layer(const struct nrrd_header *header, const uint8_t *from, uint8_t *to, size_t n)
 {
     size_t step = header->n_layers;

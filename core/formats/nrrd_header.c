@@ -1,3 +1,4 @@
+/* Reads NRRD headers: fields, axes, geometry. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,7 +34,7 @@ static const struct {
     const char *name;
     enum field field;
 } other_names[] = { { "datafile", DATA_FILE }, { "lineskip", LINE_SKIP }, { "byteskip", BYTE_SKIP } };
-/* Well formed and of no meaning to us. */
+/* Fields of the format that we do not need. */
 static const char *const passed_over[] = { "content",     "number",       "min",         "max",
                                            "old min",     "oldmin",       "old max",     "oldmax",
                                            "thicknesses", "axis mins",    "axismins",    "axis maxs",
@@ -41,7 +42,7 @@ static const char *const passed_over[] = { "content",     "number",       "min",
                                            "units",       "sample units", "sampleunits", "measurement frame",
                                            "block size",  "blocksize" };
 
-/* The value of a field, where it stands in the header; line 0, at "" when the field is not there. */
+/* The value of a field and its line in the header; line 0 and at "" when the field is absent. */
 struct value {
     const char *at;
     size_t n, line;
@@ -68,7 +69,7 @@ static bool refuse(const struct head *head, size_t line, enum error_code code, c
     return error_set(head->err, code, "%s: line %zu: %s", head->name, line, what);
 }
 
-/* A field whose value is not what it should be. */
+/* Sets the error for a field with a wrong value. */
 static bool refuse_value(const struct head *head, enum field field, enum error_code code, const char *expected)
 {
     const struct value *value = &head->values[field];
@@ -84,7 +85,7 @@ static bool refuse_value(const struct head *head, enum field field, enum error_c
 
 /* ---- lines ------------------------------------------------------------------------------------------------------ */
 
-/* The next line without its end; false at the end of the bytes. */
+/* Reads the next line without its end; false at the end of the header's bytes. */
 static bool next_line(struct head *head, struct value *line)
 {
     if (head->at >= head->end)
@@ -153,7 +154,7 @@ static bool take_line(struct head *head, const struct value *line, struct nrrd_h
         char text[NRRD_MAX_VALUE];
         copy(value.at + 1, value.n - 1, text, sizeof text);
         nrrd_segment_key(header, head->name, line->line, key, text, head->report);
-        return true; /* any other pair is somebody's own note */
+        return true; /* other pairs are free notes of the writing program */
     }
     while (value.n > 0 && is_blank(*value.at)) {
         value.at++;
@@ -189,8 +190,8 @@ static bool get_lines(struct head *head, struct nrrd_header *header, bool is_cut
 
 /* ---- words and numbers of a value ------------------------------------------------------------------------------- */
 
-/* The next word, parted by blanks or, within brackets, commas; "" at the end. A word too long is cut, and no number
- * then. */
+/* Reads the next word up to a separator: blanks, or commas within brackets; "" at the end. A word longer than WORD_SIZE
+ * is cut, and is then no number. */
 static void next_word(struct value *rest, const char *separators, char word[WORD_SIZE])
 {
     while (rest->n > 0 && strchr(separators, *rest->at)) {
@@ -205,7 +206,7 @@ static void next_word(struct value *rest, const char *separators, char word[WORD
     rest->n -= n;
 }
 
-/* "(1,0,0)" */
+/* Reads a vector, "(1,0,0)". */
 static bool next_vector(struct value *rest, struct vec3 *vector)
 {
     while (rest->n > 0 && is_blank(*rest->at)) {
@@ -253,7 +254,7 @@ static bool value_is(const struct head *head, enum field field, const char *word
     return value->line != 0 && text_equal(text, word);
 }
 
-/* ---- what the fields mean --------------------------------------------------------------------------------------- */
+/* ---- meaning of the fields -------------------------------------------------------------------------------------- */
 
 static bool get_type(const struct head *head, struct nrrd_header *header)
 {
@@ -329,8 +330,8 @@ struct axes {
     bool has_directions;
     struct vec3 directions[4];
     bool is_space[4];
-    char kinds[4][16]; /* "" not said */
-    int list;          /* the axis of layers; -1 none */
+    char kinds[4][16]; /* "" when not given */
+    int list;          /* index of the axis of layers; -1: none */
 };
 
 static bool get_sizes(const struct head *head, struct axes *axes)
@@ -410,8 +411,8 @@ static bool get_axes(const struct head *head, struct axes *axes)
     return true;
 }
 
-/* The patient's direction (LPS) of one axis of a space: "left", "L", ... false when it is none. which: 0 L-R, 1 P-A, 2
- * S-I. */
+/* The patient's direction (LPS) of an axis of a space by its word: "left", "L", ... which: 0 for L-R, 1 for P-A, 2 for
+ * S-I. Returns false for another word. */
 static bool get_direction(const char *word, size_t n, int *which, struct vec3 *direction)
 {
     static const char *const words[] = { "left", "right", "posterior", "anterior", "superior", "inferior" };
@@ -429,8 +430,8 @@ static bool get_direction(const char *word, size_t n, int *which, struct vec3 *d
     return false;
 }
 
-/* "left-posterior-superior" or "LPS", and the other orders: how the patient lies along the three axes of the file's
- * space. */
+/* Reads the file's space, "left-posterior-superior", "LPS" or any other order: the patient's direction along each of
+ * its three axes. */
 static bool get_space(const struct head *head, struct vec3 lps_from_space[3], bool *is_known)
 {
     static const char *const elsewhere[] = { "scanner-xyz", "3D-right-handed", "3D-left-handed" };
@@ -484,7 +485,7 @@ static double get_unit_mm(const struct head *head)
     return 1;
 }
 
-/* Spacings alone: along the axes of the space, from the origin on. */
+/* Directions of a header that gives spacings only: along the axes of the space. */
 static bool directions_from_spacings(const struct head *head, struct axes *axes)
 {
     struct value rest = head->values[SPACINGS];
@@ -503,7 +504,7 @@ static bool directions_from_spacings(const struct head *head, struct axes *axes)
     return true;
 }
 
-/* What the file leaves open about the place of its voxels in the patient. */
+/* Reports what the file does not say about its position in the patient. */
 static void note_assumed(const struct head *head, const struct axes *axes, bool is_known, bool has_origin)
 {
     const char *apart = axes->has_directions || head->values[SPACINGS].line != 0 ? "" : ", 1 mm apart";
@@ -555,7 +556,7 @@ static bool get_geometry(const struct head *head, struct axes *axes, struct grid
     return true;
 }
 
-/* Where the voxels are: behind the header, or in a file named relative to it. */
+/* Finds the voxels: after the header, or in a file named relative to it. */
 static bool get_place(const struct head *head, struct nrrd_header *header)
 {
     const struct value *value = &head->values[DATA_FILE];

@@ -1,3 +1,4 @@
+/* Reads the segments of a 3D Slicer .seg.nrrd header: names, colours, layers, labels. */
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +8,7 @@
 #include "core/formats/nrrd.h"
 #include "core/formats/text.h"
 
-/* A whole number of at most most; false for anything else. */
+/* Reads a whole number up to most; false for anything else. */
 static bool get_whole(const char *text, uint32_t most, uint32_t *out)
 {
     double value;
@@ -17,7 +18,7 @@ static bool get_whole(const char *text, uint32_t most, uint32_t *out)
     return true;
 }
 
-/* Values carry "\n" for a new line and "\\" for a backslash. */
+/* Replaces "\n" by a new line and "\\" by a backslash. */
 static void unescape(const char *in, char *out, size_t size)
 {
     size_t n = 0;
@@ -112,11 +113,12 @@ void nrrd_segments_check(struct nrrd_header *header, const char *name, struct re
 {
     for (size_t i = 0; i < header->n_segments; i++) {
         struct nrrd_segment *segment = &header->segments[i];
-        segment->is_present = segment->is_present && !segment->has_bad_label; /* nothing says which voxels are meant */
+        segment->is_present =
+            segment->is_present && !segment->has_bad_label; /* without a label nothing says which voxels are meant */
         if (!segment->is_present)
             continue;
         if (!segment->has_layer && header->n_layers > 1)
-            segment->layer = (uint32_t)i; /* as written before segments could share a layer */
+            segment->layer = (uint32_t)i; /* older files: a layer for each segment */
         if (!segment->name[0])
             snprintf(segment->name, sizeof segment->name, "segment %zu", i);
         if (segment->layer >= header->n_layers) {

@@ -1,3 +1,4 @@
+/* What plan.json and the lists of label names say, as plain structs. */
 #include "core/formats/plan_file.h"
 
 #include <stdlib.h>

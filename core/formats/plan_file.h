@@ -23,28 +23,28 @@ enum {
 struct plan_file_image {
     char id[64];
     char path[FOLDER_NAME_SIZE];
-    char header[FOLDER_NAME_SIZE]; /* "" none */
+    char header[FOLDER_NAME_SIZE]; /* the .qhd of a .qim; "" none */
     char modality[16];
     char name[128];                     /* for people; "" none */
-    char value_unit[8];                 /* of its values, "HU"; "" none */
-    bool is_inverted;                   /* low values are meant to be white */
-    double window_center, window_width; /* a first window, within WINDOW_...; width 0: none */
-    double mm;                          /* of one unit of a SERA header, whatever that says; 0 when not given */
+    char value_unit[8];                 /* unit of the voxels' values, "HU"; "" none */
+    bool is_inverted;                   /* low values are shown white */
+    double window_center, window_width; /* first window, within the limits of window.h; width 0: none */
+    double mm; /* length of one unit of a SERA header, instead of the header's own; 0: not given */
 };
 struct plan_file_region {
     char path[FOLDER_NAME_SIZE];
-    char names[FOLDER_NAME_SIZE]; /* "" none */
-    char name[REGION_NAME_SIZE];  /* not "": the path is a mask */
+    char names[FOLDER_NAME_SIZE]; /* list of label names; "" none */
+    char name[REGION_NAME_SIZE];  /* of a mask; "": the file holds labels, univels or contours */
     bool has_color;
     uint8_t rgb[3];
-    double mm; /* as of an image */
+    double mm; /* as in struct plan_file_image */
 };
-#define PLAN_FILE_MAX_PPM 1e6 /* all of it */
+#define PLAN_FILE_MAX_PPM 1e6 /* pure boron-10 */
 struct plan_file_component {
     enum dose_quantity quantity;
     bool is_per_ppm, has_boron_ppm;
-    double boron_ppm; /* of a total, 0 to PLAN_FILE_MAX_PPM */
-    double reference; /* what counts as 100 %; 0: not given */
+    double boron_ppm; /* boron-10 in blood that a total includes, 0 to PLAN_FILE_MAX_PPM */
+    double reference; /* the value that counts as 100 %; 0: not given */
     char path[FOLDER_NAME_SIZE];
 };
 struct plan_file_dose {
@@ -56,17 +56,17 @@ struct plan_file_dose {
     size_t n_components;
 };
 struct plan_file_beams {
-    char path[FOLDER_NAME_SIZE]; /* RTPLAN: all its beams */
+    char path[FOLDER_NAME_SIZE]; /* an RTPLAN, of which all beams are taken */
 };
 struct plan_file_tracks {
     char path[FOLDER_NAME_SIZE];
-    double mm; /* of one unit; 0 when not given */
+    double mm; /* length of one unit of the file; 0: not given */
 };
 struct plan_file_curve {
     char id[64], name[128], per[64];
     char path[FOLDER_NAME_SIZE];
 };
-/* inner lies directly inside outer */
+/* The region inner lies directly inside the region outer. */
 struct plan_file_pair {
     char outer[REGION_NAME_SIZE], inner[REGION_NAME_SIZE];
 };
@@ -78,7 +78,7 @@ struct plan_file {
     size_t n_images;
     struct plan_file_region *regions;
     size_t n_regions;
-    char hierarchy[FOLDER_NAME_SIZE]; /* a file; "" when pairs say it, or nothing does */
+    char hierarchy[FOLDER_NAME_SIZE]; /* a file; "" when pairs give the hierarchy, or nothing does */
     struct plan_file_pair *pairs;
     size_t n_pairs;
     struct plan_file_dose doses[PLAN_FILE_MAX_DOSES];
@@ -102,10 +102,10 @@ struct label_name {
     uint8_t rgb[3];
     char name[REGION_NAME_SIZE];
     char parent[REGION_NAME_SIZE]; /* "" none */
-    /* what beamroom convert writes, so that a plan comes back as it was */
+    /* written by `beamroom convert`, so that a converted plan is the same when opened again */
     char id[REGION_ID_SIZE]; /* "" none; an entry with an id is a region even without a voxel */
-    int place;               /* among all regions of the plan, from 1; 0 none */
-    double opacity;          /* above 0 to 1; 0 none */
+    int place;               /* position among all regions of the plan, from 1; 0: none */
+    double opacity;          /* above 0, up to 1; 0: none */
     bool has_tissue;
     struct label_tissue {
         double boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma; /* not-a-number: not given */
@@ -114,6 +114,6 @@ struct label_name {
 struct label_names {
     struct label_name *labels;
     size_t n;
-    char file[FOLDER_NAME_SIZE]; /* the label map that the list belongs to, beside the list; "" not said */
+    char file[FOLDER_NAME_SIZE]; /* name of the label map, in the same folder, that the list belongs to; "" not given */
 };
 void label_names_finish(struct label_names *names);

@@ -1,3 +1,4 @@
+/* Reads plan.json. */
 #include "core/formats/plan_json.h"
 
 #include <math.h>
@@ -11,7 +12,8 @@
 #include "core/formats/text.h"
 #include "core/volume/window.h"
 
-/* Of lengths, where a file does not say it, or not rightly; 0 when the plan does not either. */
+/* Reads "unit", the unit of lengths for a file that does not give it, or gives a wrong one. 0: the plan does not
+ * either. */
 static bool get_unit(const struct json_place *place, const cJSON *object, double *mm)
 {
     char unit[16];
@@ -23,7 +25,7 @@ static bool get_unit(const struct json_place *place, const cJSON *object, double
     return true;
 }
 
-/* {"center": 40, "width": 400} */
+/* Reads "window": {"center": 40, "width": 400}. */
 static bool get_window(const struct json_place *place, const cJSON *object, struct plan_file_image *image)
 {
     const cJSON *window = cJSON_GetObjectItemCaseSensitive(object, "window");

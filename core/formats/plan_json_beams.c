@@ -1,3 +1,4 @@
+/* Reads the "beams" of plan.json. */
 #include "core/formats/plan_json_beams.h"
 
 #include <math.h>
@@ -5,7 +6,7 @@
 
 #include "core/formats/plan_json_delivery.h"
 
-/* A treatment plan may hold any number; a count is one that a double holds exactly. */
+/* A number of a treatment plan has no limit of its own; a count must be exact as a double, up to 2^53. */
 #define MOST_NUMBER 1e300
 #define MOST_COUNT 9007199254740992.0
 
@@ -43,7 +44,7 @@ static bool parse_count(const struct json_place *at, const cJSON *item, const ch
     return true;
 }
 
-/* What a treatment plan says of a beam. Numbers that are absent are not-a-number. */
+/* Reads "delivery", the values of a treatment plan for a beam; absent numbers become not-a-number. */
 static bool parse_delivery(const struct json_place *at, const cJSON *entry, struct beam *beam)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(entry, "delivery");

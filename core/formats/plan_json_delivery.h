@@ -1,10 +1,10 @@
 #pragma once
-/* Inside core/formats: the numbers of a beam's delivery by their keys in plan.json, for the reader and the writer. */
+/* The keys of a beam's "delivery" in plan.json and the fields they stand for; the reader and the writer use it. */
 #include "core/beam/beam.h"
 
 struct delivery_number {
     const char *key;
-    size_t at; /* of a double in struct beam_delivery */
+    size_t at; /* offset of a double in struct beam_delivery */
 };
 static const struct delivery_number delivery_numbers[] = {
     { "gantry_deg", offsetof(struct beam_delivery, gantry_deg) },
@@ -21,7 +21,7 @@ static const struct delivery_number delivery_numbers[] = {
 };
 enum { N_DELIVERY_NUMBERS = sizeof delivery_numbers / sizeof delivery_numbers[0] };
 
-/* Two edges, or the three components of a direction. */
+/* Lists of two edges or of the three components of a direction. */
 static const struct delivery_list {
     const char *key;
     size_t at;

@@ -1,3 +1,4 @@
+/* Reads a list of label names. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +14,8 @@ static bool get_weight(const struct json_place *place, const cJSON *object, cons
     *out = NAN;
     if (!item || cJSON_IsNull(item))
         return true;
-    if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= 1e6)) /* as SERA's files */
+    if (!cJSON_IsNumber(item) ||
+        !(item->valuedouble >= 0 && item->valuedouble <= 1e6)) /* the limit for SERA's files, too */
         return place_fail(place, ERROR_RANGE, key, "expected a number from 0 to 1000000");
     *out = item->valuedouble;
     return true;
@@ -32,7 +34,7 @@ static bool get_tissue(const struct json_place *at, const cJSON *entry, struct l
            get_weight(at, item, "rbe_fast", &tissue->rbe_fast) && get_weight(at, item, "rbe_gamma", &tissue->rbe_gamma);
 }
 
-/* A whole number from 1 to most; 0 when the key is absent. */
+/* Reads a whole number from 1 to most; 0 when the key is absent. */
 static bool get_whole(const struct json_place *at, const cJSON *entry, const char *key, int most, int *out)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(entry, key);

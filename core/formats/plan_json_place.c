@@ -1,3 +1,4 @@
+/* Reads the values of JSON objects of a plan's folder. */
 #include "core/formats/plan_json_place.h"
 
 #include <math.h>
@@ -44,7 +45,6 @@ cJSON *place_document(const uint8_t *data, size_t size, const char *file, struct
     return root;
 }
 
-/* A text, "" when it is absent. */
 bool place_text(const struct json_place *place, const cJSON *object, const char *key, char *out, size_t size)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
@@ -57,7 +57,7 @@ bool place_text(const struct json_place *place, const cJSON *object, const char 
     return true;
 }
 
-/* Cutting a path short would name another file, so a long one is refused. */
+/* Refuses a path that is too long: cut short it would name another file. */
 bool place_path(const struct json_place *place, const cJSON *object, const char *key, bool is_required,
                 char out[FOLDER_NAME_SIZE])
 {
@@ -141,7 +141,6 @@ void place_note_keys(const struct json_place *place, const cJSON *object, const 
     }
 }
 
-/* "#rrggbb" or three numbers. */
 bool place_color(const struct json_place *place, const cJSON *object, bool *has_color, uint8_t rgb[3])
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, "color");

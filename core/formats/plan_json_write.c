@@ -1,3 +1,4 @@
+/* Writes plan.json and lists of label names. */
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -6,14 +7,14 @@
 #include "core/formats/plan_json.h"
 #include "core/formats/plan_json_delivery.h"
 
-/* A document is small, so lack of memory ends the program, as with mem_new. */
-static void add(cJSON *object, const char *key, cJSON *value) /* takes value */
+/* Documents are small, so lack of memory ends the program, like mem_new. */
+static void add(cJSON *object, const char *key, cJSON *value) /* consumes value */
 {
     if (!value || !cJSON_AddItemToObject(object, key, value))
         abort();
 }
 
-static cJSON *append(cJSON *list, cJSON *value) /* takes value */
+static cJSON *append(cJSON *list, cJSON *value) /* consumes value */
 {
     if (!value || !cJSON_AddItemToArray(list, value))
         abort();
@@ -33,7 +34,7 @@ static void add_text(cJSON *object, const char *key, const char *text)
         add(object, key, cJSON_CreateString(text));
 }
 
-/* As few digits as bring the very number back; cJSON's own printing may miss it by the last bit. */
+/* Prints the fewest digits that read back to the same double; cJSON's own printing may differ in the last bit. */
 static cJSON *exact_number(double value)
 {
     char text[32];
@@ -66,7 +67,7 @@ static void add_color(cJSON *object, const uint8_t rgb[3])
     add_text(object, "color", color);
 }
 
-static char *print(cJSON *root) /* takes root */
+static char *print(cJSON *root) /* consumes root */
 {
     char *text = cJSON_Print(root);
     if (!text)

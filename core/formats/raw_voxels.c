@@ -1,3 +1,4 @@
+/* Unpacks and converts the voxels of a file to a volume. */
 #include "core/formats/raw_voxels.h"
 
 #include <float.h>
@@ -47,7 +48,7 @@ static void swap_bytes(uint8_t *data, size_t n, uint32_t width)
     }
 }
 
-/* More voxels than the header speaks of: the header or the file is not what it was. */
+/* Reports bytes after the voxels: header and file do not belong together, or one was changed. */
 static void note_more(uint64_t n_more, const struct raw_place *place, const char *name, struct report *report)
 {
     if (n_more > 0)
@@ -70,7 +71,7 @@ bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpa
     if (!place->is_packed)
         note_more(file->size - end, place, name, report);
     if (!place->is_packed && !place->is_swapped && (uintptr_t)(file->data + place->data_at) % 8 == 0) {
-        unpacked->data = file->data + place->data_at; /* borrowed: only read from here on */
+        unpacked->data = file->data + place->data_at; /* borrowed, and only read from here on */
         return true;
     }
     size_t from = place->is_packed ? 0 : (size_t)place->data_at;
@@ -98,7 +99,7 @@ bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpa
     return true;
 }
 
-/* RUN(type) for the C type of a type. */
+/* Calls RUN(type) with the C type of a raw type. */
 #define WITH_TYPE(code, RUN) \
     switch (code) { \
     case RAW_U8: RUN(uint8_t); break; \
@@ -113,7 +114,7 @@ bool raw_unpack(const struct raw_place *place, const char *name, struct raw_unpa
     case RAW_F64: RUN(double); break; \
     }
 
-/* Smallest and largest stored value, and how many are not finite. */
+/* Smallest and largest stored value, and the number of values that are not finite. */
 struct span {
     double low, high;
     size_t n_not_finite;
@@ -192,13 +193,13 @@ static void convert(const struct raw_voxels *voxels, struct volume *volume)
     case VOXEL_U16: CONVERT_TO(in_type, uint16_t); break; \
     case VOXEL_F32: CONVERT_TO(in_type, float); break; \
     }
-    if (is_float(voxels->type)) { /* never to whole numbers */
+    if (is_float(voxels->type)) { /* floats are never converted to whole numbers */
         if (voxels->type == RAW_F32)
             CONVERT_TO(float, float);
         else {
             const double *in = voxels->data;
             float *out = volume->voxels;
-            for (size_t i = 0; i < n; i++) /* what a float cannot hold is not a number to us */
+            for (size_t i = 0; i < n; i++) /* a value beyond the range of a float becomes not-a-number */
                 out[i] = in[i] >= -(double)FLT_MAX && in[i] <= (double)FLT_MAX ? (float)in[i] : NAN;
         }
         return;
@@ -206,7 +207,7 @@ static void convert(const struct raw_voxels *voxels, struct volume *volume)
     WITH_TYPE(voxels->type, CONVERT)
 }
 
-/* Voxels that are in the file as the volume wants them, in memory of their own: not copied. */
+/* True if the volume can own the voxels as they are, without a copy. */
 static bool can_take(const struct raw_voxels *voxels, enum voxel_type type)
 {
     static const enum raw_type same[] = {
@@ -257,7 +258,7 @@ static bool refuse_label(const struct raw_voxels *voxels, size_t at, double valu
                      at % size[0], at / size[0] % size[1], at / size[0] / size[1], value);
 }
 
-/* Labels of any type into 16 bits. Scaled labels may miss the whole number by the rounding of the scale. */
+/* Converts labels of any type to 16 bits. Scaled labels may differ from a whole number by the rounding of the scale. */
 static bool labels_to_u16(const struct raw_voxels *voxels, uint16_t *out, uint16_t *highest, struct error *err)
 {
     size_t n = voxels->n;

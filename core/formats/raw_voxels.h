@@ -1,6 +1,6 @@
 #pragma once
-/* Voxels as a file holds them, in any scalar type, into a volume: an image, a label map or a mask. What the readers of
- * grids share; knows no file format. */
+/* Unpacks and converts the voxels of a file, in any scalar type, to a volume: an image, a label map or a mask. Shared
+ * by the readers of grids; knows no file format. */
 #include "core/formats/folder.h"
 #include "core/report/report.h"
 #include "core/volume/volume.h"
@@ -14,23 +14,24 @@ struct raw_voxels {
     enum raw_type type;
     const struct grid *grid;
     double slope, offset; /* value = stored * slope + offset */
-    const char *name;     /* for the sentences */
-    uint8_t **owned;      /* memory that holds data and may become the volume's: it is NULL then; NULL: there is none */
+    const char *name;     /* of the file, for error and report */
+    uint8_t **owned; /* memory that holds data; raw_read may give it to the volume and set it to NULL. NULL: data is
+                        borrowed */
 };
 
-/* Where the voxels lie in bytes from a file. */
+/* Where the voxels lie in the bytes of a file. */
 struct raw_place {
-    struct bytes file; /* from the gzip stream on when is_packed; borrowed */
+    struct bytes file; /* when is_packed: from the start of the gzip stream; borrowed */
     bool is_packed;
-    bool is_swapped;     /* the byte order is not this machine's */
-    uint64_t data_at;    /* where voxels begin, unpacked */
+    bool is_swapped;     /* the byte order is the other one than this machine's */
+    uint64_t data_at;    /* offset of the voxels, unpacked */
     uint64_t data_bytes; /* at most VOLUME_MAX_BYTES */
     uint32_t voxel_bytes;
 };
 
-/* The voxels themselves: data lies in the file's own bytes where these will do, else in owned, which the caller frees.
- * Bytes behind the voxels are reported. errors ERROR_FORMAT cut short or damaged, told before memory is taken where the
- * sizes tell it; ERROR_MEMORY */
+/* The unpacked voxels: data lies in the file's own bytes when they can be used as they are, else in owned, which the
+ * caller frees. raw_unpack reports bytes after the voxels.
+ * errors ERROR_FORMAT cut short or damaged, found before memory is allocated when the sizes show it; ERROR_MEMORY */
 struct raw_unpacked {
     uint8_t *data;
     uint8_t *owned;
@@ -39,12 +40,13 @@ NODISCARD bool raw_unpack(const struct raw_place *place, const char *name, struc
                           struct report *report, struct error *err);
 
 enum raw_use {
-    RAW_IMAGE,  /* values, in the smallest voxel type that holds them */
-    RAW_LABELS, /* whole numbers 0..65535, U8 or U16; errors ERROR_RANGE any other, with its place */
-    RAW_MASK    /* U8, 1 inside: half and more */
+    RAW_IMAGE,  /* values, in the smallest voxel type that holds all of them */
+    RAW_LABELS, /* whole numbers 0..65535, as U8 or U16; ERROR_RANGE for any other value, with its place */
+    RAW_MASK    /* U8, 1 where the value is 0.5 or more */
 };
 
-/*   returns  the volume, measured. One reference, the caller's; NULL on failure.
+/* Converts the voxels to a volume.
+ *   returns  the volume, measured. One reference, the caller's; NULL on failure.
  *   errors   ERROR_RANGE, ERROR_LIMIT, ERROR_MEMORY */
 NODISCARD struct volume *raw_read(const struct raw_voxels *voxels, enum raw_use use, struct report *report,
                                   struct error *err);

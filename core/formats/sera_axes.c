@@ -1,10 +1,11 @@
+/* Turns SERA's patient axes into patient LPS. */
 #include "core/formats/sera_axes.h"
 
 #include <math.h>
 
 #include "core/formats/text.h"
 
-/* Across, a patient and the couch fit into this; a whole-body scan is longer, but only along IS. */
+/* A patient with the couch is not wider, along RL or PA; a whole-body scan is longer along IS only. */
 static const double widest_patient_mm = 1000;
 static const double smallest_patient_mm = 40;
 

@@ -1,3 +1,4 @@
+/* Reads the header of SERA's dose contours, .chd. */
 #include "core/formats/sera_chd.h"
 
 #include <math.h>
@@ -8,7 +9,7 @@
 #include "core/base/mem.h"
 #include "core/formats/text.h"
 
-/* Half a patient and a couch are never wider, in cm. */
+/* Half the width of a patient with the couch is never more, in cm. */
 static const double widest_half_cm = 60;
 static const double narrowest_half_mm = 20;
 
@@ -21,7 +22,7 @@ struct parser {
     const char *name;
     struct chd *chd;
     double values[N_KEYS];
-    uint32_t seen; /* bit per key */
+    uint32_t seen; /* one bit for each key */
     double *z;     /* [CHD_MAX_SIDE] */
     bool *has_z;
     bool has_weight[CHD_N_COLUMNS];
@@ -51,7 +52,7 @@ static bool get_number(const struct parser *p, const char *key, const char *valu
     return (text_number(value, out) && fabs(*out) <= 1e30) || fail(p, key, value, "a number");
 }
 
-/* The number behind "z_value_" and its like; -1 when the key is another. */
+/* The number at the end of a key "z_value_3" or the like; -1 for another key. */
 static long key_index(const char *key, const char *stem)
 {
     size_t n = strlen(stem);
@@ -63,7 +64,7 @@ static long key_index(const char *key, const char *stem)
     return *end == 0 && index >= 0 && index < 100000 ? index : -1;
 }
 
-/* Both writers' names; a hydrogen dose is the fast neutrons'. */
+/* The quantity by seraMC's or seraPlan's name; the hydrogen dose is that of fast neutrons. */
 static bool quantity_of(const char *word, enum dose_quantity *quantity)
 {
     static const struct {
@@ -133,7 +134,7 @@ static bool set_indexed(struct parser *p, const char *key, const char *value, bo
             return true;
         }
         double number = 0;
-        if (!text_number(value, &number) || fabs(number) > 1e30) { /* a reference may be "***" */
+        if (!text_number(value, &number) || fabs(number) > 1e30) { /* a reference too wide for its column is "***" */
             report_add(p->report, REPORT_WARNING, "header.bad-number", p->name,
                        "Line %zu: %.20s is not a number; it is not known then.", p->text.line, key);
             return true;
@@ -280,7 +281,7 @@ static bool check_columns(struct parser *p)
     return true;
 }
 
-/* Programs that go by seraMC's order show such a file wrongly. */
+/* Reports columns in another order than seraMC's: programs that rely on that order show such a file wrongly. */
 static void note_order(const struct parser *p)
 {
     static const enum dose_quantity usual[CHD_N_COLUMNS] = { DOSE_TOTAL,

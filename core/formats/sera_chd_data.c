@@ -1,3 +1,4 @@
+/* Reads the table of points and the images of regions of SERA's dose contours. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,9 +9,9 @@
 #include "core/formats/sera_chd.h"
 #include "core/formats/sera_row.h"
 
-static const double lattice_share = 0.1;                 /* of a step: coordinates have four digits */
-static const double uneven_share = 0.01;                 /* of the spacing: less is rounding */
-static const double boron_per_thermal_cgy_cm2 = 7.3e-12; /* of 1 ppm */
+static const double lattice_share = 0.1; /* tolerance as a fraction of a step: coordinates have four digits */
+static const double uneven_share = 0.01; /* unevenness as a fraction of the spacing; less is rounding */
+static const double boron_per_thermal_cgy_cm2 = 7.3e-12; /* boron dose of 1 ppm per thermal fluence */
 static const double boron_share = 0.12;
 enum { N_REGIONS = 10000, ENOUGH_POINTS = 20, MOST_PLANES = 4096 };
 
@@ -18,7 +19,7 @@ struct table {
     const struct chd *chd;
     const char *name;
     float *values[CHD_N_COLUMNS]; /* [plane][row][column]; NULL: not kept */
-    uint16_t *regions;            /* of the points; UINT16_MAX: not read */
+    uint16_t *regions;            /* region of each point; UINT16_MAX: not read */
     size_t n_points, n_unprinted, n_unread, first_bad_line, n_nothing;
     struct error *err;
 };
@@ -51,7 +52,7 @@ static double step_of(const struct chd *chd, int axis)
     return (chd->high[axis] - chd->low[axis]) / ((axis == 0 ? chd->n_columns : chd->n_rows) - 1.0);
 }
 
-/* Which plane lies at z (in the header's unit); n_planes: none. */
+/* Index of the plane at z (in the header's unit); n_planes: none. */
 static uint32_t find_plane(const struct chd *chd, double z)
 {
     uint32_t low = 0, high = chd->n_planes - 1;
@@ -64,7 +65,7 @@ static uint32_t find_plane(const struct chd *chd, double z)
     }
     if (low > 0 && z - chd->planes[low - 1] < chd->planes[low] - z)
         low--;
-    /* four digits of a number up to some FOVs; half way to the next plane is another plane */
+    /* z has four digits and is up to some half widths; a point half way to the next plane belongs to none */
     double off = fabs(chd->planes[low] - z), most = 2e-3 * fmax(fabs(z), chd->half_width);
     for (int next = -1; next <= 1; next += 2)
         if ((next > 0 || low > 0) && (next < 0 || low + 1 < chd->n_planes))
@@ -72,7 +73,7 @@ static uint32_t find_plane(const struct chd *chd, double z)
     return off <= most ? low : chd->n_planes;
 }
 
-/* Index of the point at those coordinates; false when none lies there. */
+/* Finds the lattice point at these coordinates; false when there is none. */
 static bool find_point(const struct chd *chd, const double at[3], size_t *index)
 {
     uint32_t ij[2];
@@ -96,7 +97,7 @@ static bool put_row(struct table *table, const struct sera_row *row, size_t line
     table->n_unprinted += row->n_unprinted;
     table->n_unread += row->n_unread;
     if (isnan(row->at[0]) || isnan(row->at[1]) || isnan(row->at[2]))
-        return true; /* it could be anywhere; its place stays empty */
+        return true; /* its position is unknown; the lattice point it belongs to stays empty */
     if (!find_point(table->chd, row->at, &index))
         return error_set(table->err, ERROR_FORMAT,
                          "%s: line %zu: the point (%.4g, %.4g, %.4g) is not one of the header's columns, rows and "
@@ -156,7 +157,7 @@ static bool read_table(struct table *table, const struct bytes *text)
     return true;
 }
 
-/* ---- what the columns mean -------------------------------------------------------------------------------------- */
+/* ---- meaning of the columns ------------------------------------------------------------------------------------- */
 
 static int column_of(const struct chd *chd, enum dose_quantity quantity)
 {
@@ -166,7 +167,7 @@ static int column_of(const struct chd *chd, enum dose_quantity quantity)
     return -1;
 }
 
-/* Whether boron is, in each region, to the thermal fluence as 1 ppm makes it. */
+/* True if boron divided by the thermal fluence is in each region what 1 ppm gives, so boron is physical. */
 static bool boron_is_physical(const struct table *table, double factor, const char *name, struct report *report)
 {
     int boron = column_of(table->chd, DOSE_BORON), thermal = column_of(table->chd, DOSE_THERMAL_FLUENCE);
@@ -215,7 +216,7 @@ static bool has_other_weights(const struct chd *chd)
     return is_other;
 }
 
-/* What a column becomes and what makes it so; false: nothing that could be said. */
+/* Finds the quantity of a column and the factor that its values are multiplied with; false: it cannot be used. */
 static bool resolve(const struct table *table, int column, const char *name, enum dose_quantity *quantity,
                     double *factor, struct report *report)
 {
@@ -252,7 +253,7 @@ static bool resolve(const struct table *table, int column, const char *name, enu
 
 /* ---- planes ----------------------------------------------------------------------------------------------------- */
 
-/* Where the even planes of our grid lie between those of the file. */
+/* The evenly spaced planes of the grid among the planes of the file. */
 struct spacing {
     double first, step; /* in the header's unit */
     uint32_t n;
@@ -292,7 +293,7 @@ static bool find_spacing(const struct chd *chd, const char *name, struct spacing
     return true;
 }
 
-/* Even plane k lies at share t between the planes below and above. */
+/* Finds the planes of the file below and above the grid's plane k, and its share t of the way between them. */
 static void place(const struct chd *chd, const struct spacing *spacing, uint32_t k, uint32_t *below, uint32_t *above,
                   double *t)
 {
@@ -329,7 +330,8 @@ static void copy_planes(const struct chd *chd, const struct spacing *spacing, co
     }
 }
 
-/* A lattice whose index 0 lies at (first_x, first_y) parts of FOV; rows run up (toward anterior) or down. */
+/* Makes the grid of a lattice whose index 0 lies at (first_x, first_y), in fractions of the half width; rows run toward
+ * anterior or posterior. */
 static bool make_grid(const struct chd *chd, const struct spacing *spacing, const uint32_t size[2],
                       const double first[2], const double step[2], const char *name, struct grid *grid,
                       struct error *err)
@@ -347,7 +349,8 @@ static bool make_grid(const struct chd *chd, const struct spacing *spacing, cons
 
 /* ---- images of regions ------------------------------------------------------------------------------------------ */
 
-/* Square pictures over the whole field, row 0 anterior; bytes are a region's number times 255 / number of regions. */
+/* Images are square and cover the whole field, row 0 anterior; a byte is the region's number times 255 / number of
+ * regions. Finds their side. */
 static bool mask_side(const struct chd *chd, size_t n_bytes, uint32_t *side)
 {
     size_t n = n_bytes / chd->n_planes;
@@ -355,7 +358,7 @@ static bool mask_side(const struct chd *chd, size_t n_bytes, uint32_t *side)
     return n_bytes % chd->n_planes == 0 && *side >= 16 && *side <= CHD_MASK_MAX_SIDE && (size_t)*side * *side == n;
 }
 
-/* Share of the points whose picture shows another region than the table says. */
+/* Fraction of the points whose image shows another region than the table gives. */
 static double mask_disagreement(const struct table *table, const uint8_t *pixels, uint32_t side)
 {
     const struct chd *chd = table->chd;
@@ -423,7 +426,7 @@ static bool read_mask(const struct table *table, const struct chd_files *files, 
     return true;
 }
 
-/* ---- all of it -------------------------------------------------------------------------------------------------- */
+/* ---- the whole file --------------------------------------------------------------------------------------------- */
 
 static bool add_columns(const struct table *table, const struct chd_files *files, const struct spacing *spacing,
                         struct sera_doses *doses, struct report *report, struct error *err)

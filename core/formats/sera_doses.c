@@ -1,3 +1,4 @@
+/* The doses of one SERA dose file. */
 #include "core/formats/sera_doses.h"
 
 #include <assert.h>

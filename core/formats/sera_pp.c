@@ -1,3 +1,4 @@
+/* Reads seraMC's particle tracks, .pp. */
 #include "core/formats/sera_pp.h"
 
 #include <math.h>
@@ -10,7 +11,7 @@
 
 enum { N_FIELDS = 8 };
 
-/* What was noticed, told once at the end. */
+/* What was noticed, reported once at the end. */
 struct counts {
     size_t n_segments, n_bad, first_bad_line, n_zero_length, n_no_energy;
 };
@@ -66,7 +67,7 @@ static void put_point(float out[3], double rl, double pa, double is)
     out[2] = (float)lps.z;
 }
 
-/* As 32-bit numbers hold it. */
+/* True if the end points are equal once they are rounded to 32 bits. */
 static bool has_no_length(const struct track_segment *segment)
 {
     const float *a = segment->from_lps_mm, *b = segment->to_lps_mm;
@@ -132,8 +133,8 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Distance between the 5th and the 95th percentile of all end points along an axis: single far histories do not count.
- */
+/* Distance between the 5th and the 95th percentile of all end points along an axis, so that single far tracks do not
+ * count. */
 static double spread(const struct track_set *set, size_t first, int axis, float *room)
 {
     size_t n = 0;
@@ -160,7 +161,7 @@ double pp_unit_mm(const struct track_set *set, size_t first, double given_mm, co
     }
     free(room);
     double patient_mm = vec3_length(vec3_sub(patient_lps_mm->high, patient_lps_mm->low));
-    /* nearer in ratio: 10 x larger than the tracks' spread is cm, as large is mm; the border is the root of 10 */
+    /* a patient 10 times as large as the tracks' spread means cm, as large means mm; the border is the root of 10 */
     double likely_mm = sqrt(length) > 0 && patient_mm / sqrt(length) > sqrt(10.0) ? 10 : 1;
     if (given_mm > 0) {
         if (given_mm != likely_mm)

@@ -1,3 +1,4 @@
+/* Reads SERA's medical images, .qhd with .qim. */
 #include "core/formats/sera_qhd.h"
 
 #include <math.h>
@@ -10,8 +11,8 @@
 #include "core/formats/text.h"
 #include "core/formats/zlib_stream.h"
 
-static const double uneven_share = 0.01;  /* of the spacing: less is rounding */
-static const double refused_share = 0.25; /* more than this cannot be shown on an even grid */
+static const double uneven_share = 0.01;  /* unevenness as a fraction of the spacing; less is rounding */
+static const double refused_share = 0.25; /* more unevenness cannot be shown on an even grid */
 
 void qhd_finish(struct qhd *qhd)
 {
@@ -58,7 +59,7 @@ static bool get_step(const struct parser *p, const char *key, const char *value,
     return *out > 0 || fail(p, key, value, "a size above 0");
 }
 
-/* The number between the brackets of "Image Location[12]"; -1 when the key is another. */
+/* The number in the brackets of "Image Location[12]"; -1 for another key. */
 static long bracket_index(const char *key, const char *stem)
 {
     size_t n = strlen(stem);
@@ -107,7 +108,7 @@ static bool set_word(struct parser *p, const char *key, const char *value, bool 
         qhd->is_big = text_equal(value, "big endian");
         return qhd->is_big || text_equal(value, "little endian") || fail(p, key, value, "big endian or little endian");
     } else {
-        *is_known = text_equal(key, "Patient Name"); /* known, and never kept */
+        *is_known = text_equal(key, "Patient Name"); /* a known key whose value is never kept */
     }
     return true;
 }
@@ -196,7 +197,8 @@ bool qhd_parse(const uint8_t *data, size_t size, const char *name, struct qhd *q
     return true;
 }
 
-/* Where the slices lie: positions win over reference and spacing. step may be negative: positions fall. */
+/* Finds the first slice and the step: from the positions, else from reference location and spacing. step is negative
+ * when positions fall. */
 static bool place_slices(const struct qhd *qhd, uint32_t n_slices, const char *name, double *first, double *step,
                          struct report *report, struct error *err)
 {
@@ -229,7 +231,7 @@ static bool place_slices(const struct qhd *qhd, uint32_t n_slices, const char *n
     return true;
 }
 
-/* The header has no word on where the picture lies across its plane: SERA centres it on the axes. */
+/* Makes the grid. The header does not give the position of the image within its plane; SERA centres it on the axes. */
 static bool make_grid(const struct qhd *qhd, uint32_t n_slices, const char *name, struct grid *grid,
                       struct report *report, struct error *err)
 {

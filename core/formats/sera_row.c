@@ -1,3 +1,4 @@
+/* Reads one line of SERA's tables of points. */
 #include "core/formats/sera_row.h"
 
 #include <math.h>
@@ -29,7 +30,7 @@ bool sera_row_is_fixed(const char *line, size_t n, size_t n_values)
     return n == full || count_words(line, n) != N_BEFORE + n_values;
 }
 
-/* The i-th field without its blanks; false when the line ends before it. */
+/* Finds the i-th field without its blanks; false when the line ends before it. */
 static bool field(const char *line, size_t n, bool is_fixed, size_t i, size_t *from, size_t *to)
 {
     if (is_fixed) {

@@ -1,3 +1,4 @@
+/* Reads the preferences of SERA's programs, colour maps and tissue data. */
 #include "core/formats/sera_rsc.h"
 
 #include <math.h>
@@ -22,7 +23,7 @@ static void note_bad(struct parser *p)
         p->first_bad_line = p->text.line;
 }
 
-/* The numbers a value begins with. */
+/* Reads the numbers at the start of a value; returns how many. */
 static size_t numbers_of(const char *value, double *out, size_t most)
 {
     char copy[TEXT_LINE_SIZE], *rest = NULL;
@@ -36,7 +37,7 @@ static size_t numbers_of(const char *value, double *out, size_t most)
     return n;
 }
 
-/* X11 colours have sixteen bits. */
+/* Scales a colour to 8 bits. most: the largest component value, 65535 for X11 colours. */
 static bool get_color(const double v[3], double most, uint8_t rgb[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -96,7 +97,7 @@ static bool add_level(struct parser *p, double percent, const uint8_t rgb[3])
     return true;
 }
 
-/* The eight names SERA's own list of colours has. */
+/* The eight colour names of SERA. */
 static bool color_from_name(const char *word, uint8_t rgb[3])
 {
     static const char *const names[] = { "black", "red", "green", "yellow", "blue", "magenta", "cyan", "white" };

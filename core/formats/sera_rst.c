@@ -1,3 +1,4 @@
+/* Reads seraMC's restart file with the dose on its mesh, .rst. */
 #include "core/formats/sera_rst.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 
 enum { NUMBER_WIDTH = 15, NUMBERS_A_LINE = 6, LINES_BEFORE_ORIGIN = 8, LINES_A_SET = 9, LINES_A_SET_READ = 2 };
 
-/* Columns of the array, from 0. */
+/* Columns of the array, from 0, and their number in newer and older files. */
 enum { GAMMA_PRODUCTION = 4, COLUMNS_NOW = 14, COLUMNS_BEFORE = 12 };
 static const struct {
     enum dose_quantity quantity;
@@ -56,7 +57,7 @@ static bool need_line(struct lines *lines, struct line *line, const char *what)
                      lines->line, what);
 }
 
-/* One fixed field without its blanks; "" where the line is shorter. */
+/* Copies a fixed field without its blanks; "" when the line ends before it. */
 static void field(const struct line *line, size_t from, size_t width, char *out)
 {
     size_t to = from + width < line->n ? from + width : line->n;
@@ -97,8 +98,8 @@ static bool get_whole(const struct lines *lines, const struct line *line, size_t
     return number == (double)*out || refuse(lines, from, "a fraction", expected);
 }
 
-/* Where the four numbers of a line of histories stand: 3I8,E15.6, in which full counts touch; where somebody parted
- * them by hand the columns are off, and the blanks tell. */
+/* Finds the four numbers of a line of histories: columns 3I8,E15.6, where large counts touch; a line edited by hand has
+ * other columns, and its blanks separate the numbers. */
 static void place_histories(const struct line *line, size_t from[4], size_t width[4])
 {
     size_t n = 0, at = 0;
@@ -122,7 +123,7 @@ static void place_histories(const struct line *line, size_t from[4], size_t widt
     }
 }
 
-/* Two lines of a set are read, the other seven passed over. */
+/* Reads two of the nine lines of a set and skips the others. */
 static bool get_set(struct lines *lines, struct rst_set *set)
 {
     struct line line;
@@ -226,7 +227,7 @@ static size_t fields_of(const struct line *line)
     return (line->n + NUMBER_WIDTH - 1) / NUMBER_WIDTH;
 }
 
-/* Values a cell: the count says, nothing else does. */
+/* Finds the number of values per cell, which only the count of all values gives. */
 static bool count_columns(const struct bytes *text, const struct rst_header *header, const char *name,
                           size_t *n_columns, struct error *err)
 {
@@ -251,10 +252,10 @@ struct array {
     const struct rst_header *header;
     float *of_column[COLUMNS_BEFORE]; /* NULL: not kept */
     double sum_gamma_production;
-    size_t n_unprinted, n_unread, first_line; /* first_line of either; 0 none */
+    size_t n_unprinted, n_unread, first_line; /* first_line: with either; 0: none */
 };
 
-/* Not-a-number for what is none; counted. */
+/* Reads a value; a word that is no number becomes not-a-number and is counted. */
 static double read_value(struct array *array, const char *word, size_t line)
 {
     double value;
@@ -296,8 +297,8 @@ static void read_array(const struct bytes *text, const char *name, size_t n_colu
         }
 }
 
-/* To cGy: neutron columns are per source particle and cell; photons follow from what gammas the neutrons make and the
- * source has. */
+/* Scales to cGy: neutron columns are per source particle and cell; the gamma dose is scaled by the gammas that neutrons
+ * make and those of the source. */
 static void scale(const struct array *array, struct sera_doses *doses)
 {
     const struct rst_header *header = array->header;

@@ -1,25 +1,25 @@
 #pragma once
-/* SERA's restart file, .rst: the dose seraMC edited on its cubic mesh, text in fixed Fortran columns. Becomes the
- * physical dose components in cGy and fluences for one unit of the source; boron per 1 ppm of boron-10. Works on
- * unpacked text in memory. source   the layout and the absolute scale as seraMC 1C0 writes and seraPlan 1C0 applies
- * them */
+/* Reads seraMC's restart file, .rst: the dose on its cubic mesh, text in fixed Fortran columns. Gives the physical dose
+ * components in cGy and the fluences for one unit of the source; boron per 1 ppm of boron-10. Works on unpacked text in
+ * memory.
+ *   source   the layout as seraMC 1C0 writes it and the absolute scale as seraPlan 1C0 applies it */
 #include "core/formats/folder.h"
 #include "core/formats/sera_doses.h"
 #include "core/report/report.h"
 
 enum {
     RST_MAX_SETS = 99,
-    RST_MAX_CELLS = 128, /* along an edge; seraMC makes at most 120 */
+    RST_MAX_CELLS = 128, /* cells along an edge; seraMC makes at most 120 */
     RST_MAX_GROUPS = 1000,
     RST_HEAD_BYTES = 1 << 16 /* enough for any header */
 };
-#define RST_MAX_BYTES ((uint64_t)512 << 20) /* of the text: 128^3 cells of 14 values are 450 MB */
+#define RST_MAX_BYTES ((uint64_t)512 << 20) /* of the text; 128^3 cells of 14 values are 450 MB */
 
 struct rst_set {
     char directive;          /* N neutrons, F fast neutrons, G gammas, ... */
     uint32_t n_histories[3]; /* neutron, gamma, fast */
-    double strength;         /* particles of a unit of the source */
-    double gamma_fraction;   /* of them, gammas */
+    double strength;         /* particles per unit of the source */
+    double gamma_fraction;   /* fraction of them that are gammas */
 };
 
 struct rst_header {
@@ -28,17 +28,17 @@ struct rst_header {
     size_t n_sets;
     uint32_t n_cells; /* along each edge */
     double cell_cm;
-    struct grid grid;          /* i to the left, j to the anterior, k to the superior side */
-    size_t data_at, data_line; /* where the array begins */
+    struct grid grid;          /* i toward left, j toward anterior, k toward superior */
+    size_t data_at, data_line; /* offset and line where the array begins */
 };
 
-/* errors ERROR_FORMAT with the line, ERROR_LIMIT, ERROR_RANGE (geometry) */
+/* Reads the header. errors ERROR_FORMAT with the line, ERROR_LIMIT, ERROR_RANGE (geometry) */
 NODISCARD bool rst_parse_header(const uint8_t *text, size_t size, const char *name, struct rst_header *header,
                                 struct error *err);
 
 enum { RST_N_DOSES = 8 };
-/* Boron (per ppm), nitrogen, fast (hydrogen), gamma and other doses, then fast, epithermal and thermal fluence in
- * 1/cm2, in this order. Values that could not be printed ("***") or are no number become not-a-number and are reported.
+/* Reads boron (per ppm), nitrogen, fast (hydrogen), gamma and other doses, then fast, epithermal and thermal fluence in
+ * 1/cm2, in this order. Values too wide to be printed ("***") or no numbers become not-a-number and are reported.
  *   errors  as rst_parse_header, ERROR_MEMORY; doses is then empty */
 NODISCARD bool rst_read(const struct bytes *text, const char *name, struct sera_doses *doses, struct report *report,
                         struct error *err);

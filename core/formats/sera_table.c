@@ -1,3 +1,4 @@
+/* Reads SERA's table of doses over depth and radius, .dose. */
 #include "core/formats/sera_table.h"
 
 #include <math.h>
@@ -32,7 +33,7 @@ static bool fail(const struct parser *p, const char *found, const char *expected
                      expected);
 }
 
-/* The numbers in a line, behind the words that begin it. */
+/* Reads the numbers that follow these words at the start of a line; returns how many. */
 static size_t numbers_behind(const char *line, const char *words, double *out, size_t most)
 {
     char copy[TEXT_LINE_SIZE], *rest = NULL;
@@ -46,7 +47,7 @@ static size_t numbers_behind(const char *line, const char *words, double *out, s
     return n;
 }
 
-/* "Center Point x y z", "no. d,r points used n ...", then lines of words up to the first point. */
+/* Reads "Center Point x y z" and "no. d,r points used n ..."; skips lines of words up to the first point. */
 static bool read_heading(struct parser *p)
 {
     char line[TEXT_LINE_SIZE];
@@ -115,7 +116,7 @@ static bool put(struct parser *p, size_t point, const struct sera_row *row)
     return true;
 }
 
-/* text_line takes off the blanks in front, which columns need: the line as it stands in the file. */
+/* Length of the line as it is in the file: text_line removes leading blanks, which fixed columns need. */
 static size_t raw_line(const struct text *text, const char *from)
 {
     const char *to = text->at;
@@ -136,7 +137,7 @@ static bool read_points(struct parser *p)
             return error_set(p->err, ERROR_FORMAT, "%s: the file ends after %zu of %zu x %zu points", p->name, n,
                              p->n_side, p->n_side);
         if (line[0] == 0 || (n == 0 && ((line[0] >= 'a' && line[0] <= 'z') || line[0] == '(')))
-            continue; /* the columns' headings */
+            continue; /* headings of the columns */
         size_t length = raw_line(&p->text, from);
         if (n == 0)
             is_fixed = sera_row_is_fixed(from, length, N_VALUES);

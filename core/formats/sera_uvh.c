@@ -1,3 +1,4 @@
+/* Reads SERA univels, .uvh with .uv. */
 #include "core/formats/sera_uvh.h"
 
 #include <math.h>
@@ -17,7 +18,7 @@ void uvh_finish(struct uvh *uvh)
     *uvh = (struct uvh){ 0 };
 }
 
-/* Keys of the header proper, as bits of what was seen. */
+/* Keys of the header itself; each is a bit in parser.seen. */
 enum header_key {
     KEY_DIMENSIONALITY,
     KEY_ORIENTATION,
@@ -52,7 +53,7 @@ struct parser {
     struct uvh *uvh;
     struct sera_grid grid;
     char orientation[32];
-    uint32_t seen; /* bit per header_key */
+    uint32_t seen; /* one bit for each header_key */
     size_t n_unknown, n_bad;
     char unknown[64]; /* the first unknown key */
     struct report *report;
@@ -157,7 +158,7 @@ static bool set_uvval(const struct parser *p, struct uvh_body *body, const char 
     return true;
 }
 
-/* Keys of a body that mean nothing here are known all the same: a misspelt one should be noticed. */
+/* Keys of a body that are not used here. They are listed so that a misspelt key is still noticed. */
 static bool is_quiet_key(const char *key)
 {
     static const char *const quiet[] = { "regionnum",     "matname",       "mean_intensity", "nitrogen_DENS",
@@ -210,7 +211,7 @@ static bool set_body_value(struct parser *p, struct uvh_body *body, const char *
     return true;
 }
 
-/* After "begin: name", "fiducial: name" or "constraint: name"; body is NULL for the latter two. */
+/* Reads a block after "begin: name", "fiducial: name" or "constraint: name"; body is NULL for the last two. */
 static bool parse_block(struct parser *p, struct uvh_body *body)
 {
     char line[TEXT_LINE_SIZE], *key, *value;
@@ -263,7 +264,7 @@ static bool parse_v2(struct parser *p)
     return true;
 }
 
-/* Version 1.0 is ten numbers in a fixed order, centimetres, always axial; then triples of words. */
+/* Reads version 1.0: ten numbers in a fixed order, centimetres, always axial; then triples of words. */
 static bool parse_v1(struct parser *p)
 {
     static const char *const what[] = {

@@ -1,5 +1,5 @@
 #pragma once
-/* SERA univels: a text header .uvh (versions 2.0 and 1.0) and its bytes, .uv, .uv.gz or .uv.sz. Works on bytes in
+/* Reads SERA univels: a text header .uvh (versions 2.0 and 1.0) and its bytes, .uv, .uv.gz or .uv.sz. Works on bytes in
  * memory. */
 #include "core/formats/folder.h"
 #include "core/region/region.h"
@@ -12,7 +12,7 @@ struct uvh_body {
     int uvval; /* 0..255 */
     bool has_color;
     uint8_t rgb[3];
-    double boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma; /* not-a-number where not given */
+    double boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma; /* not-a-number: not given */
 };
 
 struct uvh {
@@ -22,15 +22,16 @@ struct uvh {
 };
 void uvh_finish(struct uvh *uvh);
 
-/*   errors  ERROR_FORMAT, ERROR_UNSUPPORTED (oblique), ERROR_RANGE, ERROR_LIMIT; line and key named */
+/* Reads the header.
+ *   errors  ERROR_FORMAT, ERROR_UNSUPPORTED (oblique), ERROR_RANGE, ERROR_LIMIT; the text names line and key */
 NODISCARD bool uvh_parse(const uint8_t *data, size_t size, const char *name, struct uvh *uvh, struct report *report,
                          struct error *err);
 
-/* With the millimetres of one unit as the plan gives them, whatever the header says; 0 is uvh_parse. */
+/* The same with the length of one unit as the plan gives it, instead of the header's; 0: the header's. */
 NODISCARD bool uvh_parse_in(const uint8_t *data, size_t size, const char *name, double given_mm, struct uvh *uvh,
                             struct report *report, struct error *err);
 
-/* The univels as a U8 volume. data may be gzip, or zlib when name ends with .sz. errors ERROR_FORMAT not as many bytes
- * as the header's univels; ERROR_MEMORY */
+/* Reads the univels as a U8 volume. data may be gzip, or zlib when name ends with .sz.
+ * errors ERROR_FORMAT another number of bytes than the header has univels; ERROR_MEMORY */
 NODISCARD struct volume *uvh_read_univels(const struct uvh *uvh, const struct bytes *data, const char *name,
                                           struct error *err);

@@ -1,3 +1,4 @@
+/* Reads the lines, keys and numbers of SERA's text files. */
 #include "core/formats/text.h"
 
 #include <errno.h>
@@ -115,7 +116,7 @@ bool text_has_ending(const char *name, const char *ending)
     return n > m && text_equal(name + n - m, ending);
 }
 
-/* Length of the valid UTF-8 sequence at c, 0 when there is none. */
+/* Length of the valid UTF-8 sequence at c; 0 when there is none. */
 static size_t utf8_length(const unsigned char *c)
 {
     if (c[0] < 0x80)

@@ -1,3 +1,4 @@
+/* Unpacks bare zlib streams, and files as SERA packs them. */
 #include "core/formats/zlib_stream.h"
 
 #include <stdio.h>
@@ -9,7 +10,7 @@
 
 enum { SMALLEST_STREAM = 8, FIRST_CAPACITY = 1 << 16 };
 
-/* Doubles the buffer up to most; false when it has reached that or there is no memory, told apart by capacity. */
+/* Doubles the buffer, up to most. Returns false when capacity is most already, or there is no memory. */
 static bool grow(struct bytes *out, uint64_t *capacity, uint64_t most)
 {
     if (*capacity >= most)
@@ -23,8 +24,8 @@ static bool grow(struct bytes *out, uint64_t *capacity, uint64_t most)
     return true;
 }
 
-/* Where the stream ended: at its end, at the end of the room, or broken. n_used: bytes of data that were read. zlib
- * compares the Adler-32 at the end with the bytes it unpacked. */
+/* Unpacks and returns zlib's code: the stream ended, the room ended, or the stream is damaged. n_used: bytes of data
+ * that were read. zlib compares the Adler-32 at the end. */
 static int inflate_into(z_stream *stream, const uint8_t *data, size_t size, struct bytes *out, uint64_t *capacity,
                         uint64_t most, size_t *n_used)
 {
@@ -59,7 +60,7 @@ bool zlib_all(const uint8_t *data, size_t size, const char *name, uint64_t limit
     if ((data[0] & 15) != 8 || ((unsigned)data[0] << 8 | data[1]) % 31 != 0)
         return error_set(err, ERROR_FORMAT, "%s: begins with %02x %02x, expected a zlib stream (78 01 or its like)",
                          name, data[0], data[1]);
-    /* one byte over the limit tells that there is more */
+    /* room for one byte beyond the limit shows that there is more */
     uint64_t most = (gzip_most(size) < limit ? gzip_most(size) : limit) + 1,
              capacity = FIRST_CAPACITY < most ? FIRST_CAPACITY : most;
     z_stream stream = { 0 };

@@ -1,3 +1,4 @@
+/* The report of what was noticed while loading a plan. */
 #include "core/report/report.h"
 
 #include <assert.h>

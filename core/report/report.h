@@ -1,17 +1,18 @@
 #pragma once
-/* Everything noticed while loading, in order: shown in the page and the API. */
+/* The report of what was noticed while loading a plan: lines with severity, code, sentence and place, in the order they
+ * were noticed. The page and the API show it. Not for several threads at once. */
 #include <stddef.h>
 
 #include "core/base/error.h"
 
 enum report_severity { REPORT_NOTE, REPORT_WARNING, REPORT_ERROR };
-enum { REPORT_MAX = 500 }; /* further lines are counted, not kept */
+enum { REPORT_MAX = 500 }; /* lines beyond are counted in n_dropped, not kept */
 
 struct report_line {
     enum report_severity severity;
-    char code[48]; /* stable, "image.size-differs" */
+    char code[48]; /* one of report_codes.h, "image.slices-differ"; stable, so programs may go by it */
     char sentence[400];
-    char where[200]; /* file relative to the plan folder, and the place in it; "" when it is about the whole plan */
+    char where[200]; /* the file, relative to the plan's folder; "" for the plan as a whole */
 };
 
 struct report {
@@ -19,10 +20,10 @@ struct report {
     size_t n_lines, n_dropped;
 };
 
-/* code must be in core/report/report_codes.h; report may be NULL. */
+/* Adds a line. code must be in report_codes.h; does nothing when report is NULL. */
 void report_add(struct report *report, enum report_severity severity, const char *code, const char *where,
                 const char *format, ...) PRINTF_LIKE(5, 6);
-/* Appends all lines of from and empties it. */
+/* Appends all lines of from to to, and empties from. */
 void report_move(struct report *to, struct report *from);
 bool report_code_is_known(const char *code);
 void report_finish(struct report *report);

@@ -1,6 +1,6 @@
 #pragma once
-/* Every code a report line may carry: X(code, what it means, what to do about it). The one list of them: report_add
- * refuses any other, and the reference page is made from it. */
+/* Every code a line of the report may carry: X(code, what it means, what to do about it). report_add accepts no other
+ * code, and the reference page is made from this list. */
 #define REPORT_CODES(X) \
     X("plan.recognised", "The folder has no plan.json; its parts were found by their file names.", \
       "Check the parts; write a plan.json to name them and to give units.") \
