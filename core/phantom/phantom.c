@@ -124,8 +124,8 @@ static bool write_contents(const char *folder, const struct phantom_options *opt
         return error_set(err, ERROR_IO, "%s/dose: cannot be created: %s", folder, strerror(errno));
     return write_grids(folder, options, err) && write_tracks(folder, options->seed, err) &&
            write_text(folder, "labels.json", phantom_labels_json(err), err) &&
-           write_text(folder, "README.txt", phantom_readme(options->size, options->seed, err), err) &&
-           write_text(folder, "plan.json", phantom_plan_json(options->seed, err), err);
+           write_text(folder, "README.txt", phantom_readme(options, err), err) &&
+           write_text(folder, "plan.json", phantom_plan_json(options, err), err);
 }
 
 /* ---- the folder itself ------------------------------------------------------------------------------------------ */

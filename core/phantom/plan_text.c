@@ -42,7 +42,7 @@ static void print_dose(FILE *out)
     fprintf(out, "      ] }\n  ],\n");
 }
 
-char *phantom_plan_json(uint64_t seed, struct error *err)
+char *phantom_plan_json(const struct phantom_options *options, struct error *err)
 {
     char *text = NULL;
     size_t n_bytes;
@@ -58,7 +58,7 @@ char *phantom_plan_json(uint64_t seed, struct error *err)
         "Ours: target, tumour, the dose off the axis (logistic edge, see README.txt), the tracks (random walk, not transport) and "
         "a dense ball on the left side of the scalp, in the image only, that tells left from right. Seed %" PRIu64
         ".\",\n",
-        seed);
+        options->seed);
     fprintf(out, "  \"images\": [ { \"id\": \"ct\", \"path\": \"ct.nii.gz\", \"modality\": \"CT\" } ],\n");
     fprintf(out, "  \"regions\": [ { \"path\": \"labels.nii.gz\", \"names\": \"labels.json\" } ],\n");
     print_hierarchy(out);
@@ -86,7 +86,7 @@ char *phantom_labels_json(struct error *err)
     return close_text(out, &text, err);
 }
 
-char *phantom_readme(const uint32_t size[3], uint64_t seed, struct error *err)
+char *phantom_readme(const struct phantom_options *options, struct error *err)
 {
     char *text = NULL;
     size_t n_bytes;
@@ -100,7 +100,7 @@ char *phantom_readme(const uint32_t size[3], uint64_t seed, struct error *err)
         "Source: J. T. Goorley, W. S. Kiger III, R. G. Zamenhof, Med. Phys. 29 (2002) 145: the modified Snyder head, a parallel\n"
         "disk beam from above (radius %g mm, 1e10 n/cm2/s; 10 %% thermal, 89 %% epithermal, 1 %% fast) and the dose on its axis.\n\n"
         "Ellipsoids (mm, patient: x to the left, y to the back, z up); each holds the next:\n",
-        size[0], size[1], size[2], seed, phantom_beam_radius_mm);
+        options->size[0], options->size[1], options->size[2], options->seed, phantom_beam_radius_mm);
     for (int label = PHANTOM_SCALP; label < PHANTOM_N_LABELS; label++) {
         const struct phantom_tissue *t = &phantom_tissues[label];
         fprintf(out, "  %d %-8s centre %3g %3g %3g   semi-axes %3g %3g %3g   %4g HU%s\n", label, t->name,

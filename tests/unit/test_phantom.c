@@ -320,7 +320,8 @@ static void the_plan_says_that_it_is_a_phantom_and_fits_the_plans_limits(void **
 {
     (void)state;
     struct error err = { 0 };
-    char *text = phantom_plan_json(UINT64_MAX, &err); /* the longest seed */
+    const struct phantom_options longest = { { 16, 16, 16 }, UINT64_MAX };
+    char *text = phantom_plan_json(&longest, &err);
     assert_non_null(text);
     assert_non_null(strstr(text, "\"phantom\": true"));
     assert_non_null(strstr(text, "\"name\": \"Phantom: "));
