@@ -6,18 +6,8 @@
  * therapy with comparison of analytical and voxel models, Med. Phys. 29 (2002) 145: the modified Snyder head, its beam
  * and the dose on the axis. Differs: target, tumour and marker are added, the dose off the axis is a stated formula
  *           (phantom_dose_at), and the tracks are a random walk that only looks like transport. */
-#include <stdint.h>
-
 #include "core/base/error.h"
-
-enum { PHANTOM_MIN_SIDE = 16, PHANTOM_MAX_SIDE = 1024 };
-#define PHANTOM_MAX_VOXELS ((uint64_t)1 << 27)
-
-struct phantom_options {
-    uint32_t size[3]; /* voxels of image and labels along L, P, S; the field of view stays the same */
-    uint64_t seed;    /* of the image's noise and the tracks; anatomy and dose do not depend on it */
-};
-extern const struct phantom_options phantom_defaults; /* 256 x 256 x 128, seed 1 */
+#include "core/phantom/phantom_options.h"
 
 /* Writes the plan folder: plan.json, README.txt, ct.nii.gz, labels.nii.gz, labels.json, dose/, tracks.pp. All of it
  * appears at once or not at all: it is built in a folder beside and renamed. Equal options give equal bytes.

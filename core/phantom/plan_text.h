@@ -1,7 +1,8 @@
 #pragma once
 /* The words of the phantom's folder: plan.json, labels.json and a README for people. Each is NUL-terminated and the
  * caller's to free(); NULL and ERROR_MEMORY on failure. */
-#include "core/phantom/phantom.h"
+#include "core/base/error.h"
+#include "core/phantom/phantom_options.h"
 
 NODISCARD char *phantom_plan_json(const struct phantom_options *options, struct error *err);
 NODISCARD char *phantom_labels_json(struct error *err);

@@ -9,7 +9,6 @@
 
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
-#include "core/region/outline_walk.h"
 
 enum { MAX_THREADS = 64, RIGHT = 0, UP = 1, LEFT = 2, DOWN = 3, INSIDE = 16 };
 

@@ -32,6 +32,15 @@ struct outline_set {
  * OUTLINE_MAX_POINTS, ERROR_MEMORY */
 NODISCARD struct outline_set *outline_stack(const struct mask *mask, int axis, enum outline_method method,
                                             int n_threads, struct error *err);
+/* The two choices that a method makes, each on its own: splines (core/surface/nurbs_shape.c) combine them anew. */
+struct outline_rule {
+    bool is_joined;  /* pixels that touch at a corner belong together */
+    bool is_between; /* points are the middles of sides, not the centres of pixels */
+};
+
+/* As outline_stack. */
+NODISCARD struct outline_set *outline_walk(const struct mask *mask, int axis, struct outline_rule rule, int n_threads,
+                                           struct error *err);
 /* One slice of them. errors as above, ERROR_RANGE index */
 NODISCARD struct outline_set *outline_slice(const struct mask *mask, int axis, uint32_t index,
                                             enum outline_method method, struct error *err);

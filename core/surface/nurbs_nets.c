@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "core/region/outline_walk.h"
+#include "core/region/outline.h"
 #include "core/surface/nurbs_pieces.h"
 
 enum { MIN_AROUND = 8 };

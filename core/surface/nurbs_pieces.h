@@ -6,7 +6,7 @@
  * most of, when that one says the same of it. So where a piece divides, the largest part goes on and the others begin
  * anew.
  *
- *   set      outlines between pixels (outline_walk.h), all slices across axis
+ *   set      outlines between pixels (outline_walk), all slices across axis
  *   returns  next[line], the line of the next slice that it goes on in, or UINT32_MAX; free()
  *   errors   ERROR_MEMORY */
 NODISCARD uint32_t *nurbs_pieces_link(const struct outline_set *set, int axis, struct error *err);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/surface/marching_cubes.h"
-#include "core/surface/smooth.h"
+#include "core/surface/smooth_options.h"
 
 /* x, y, z in the coordinates of the grid and one more, on any processor with registers of that width. */
 typedef float float4 __attribute__((vector_size(16)));

@@ -4,7 +4,6 @@
 
 #include "core/region/boundary.h"
 #include "core/region/outline.h"
-#include "core/region/outline_walk.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/made_mask.h"

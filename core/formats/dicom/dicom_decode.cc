@@ -2,6 +2,7 @@
 
 extern "C" {
 #include "core/formats/dicom/dicom_j2k.h"
+#include "core/formats/dicom/dicom_unpack.h"
 }
 #include <cstring>
 #include <memory>

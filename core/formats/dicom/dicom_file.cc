@@ -1,5 +1,7 @@
 // The shim over DCMTK: elements of a data set as plain C sees them. No exception leaves it.
 extern "C" {
+#include "core/formats/dicom/dicom_file.h"
+#include "core/formats/dicom/dicom_unpack.h"
 #include "core/formats/dicom/dicom_walk.h"
 }
 #include <algorithm>

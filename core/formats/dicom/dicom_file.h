@@ -2,29 +2,11 @@
 /* One DICOM file, parsed: elements, sequences, pixels. The only door to DCMTK: plain C outside, C++ behind
  * (dicom_file.cc). Knows tags and encodings, not what a CT or a plan is. Reads memory only; never a file, never the
  * network. thread  any number of files at once; one file, one thread at a time */
+#include "core/formats/dicom/dicom_basic.h"
 #include "core/formats/folder.h"
-
-/* "DICM" after the preamble, or a group 0002/0008 element where a file without preamble begins. Needs the first 140
- * bytes. */
-bool dicom_looks_like(const uint8_t *data, size_t size);
-
-#define DICOM_TAG(group, element) ((uint32_t)(group) << 16 | (uint32_t)(element))
-
-enum {
-    DICOM_MAX_FILE_MIB = 1024, /* larger files are refused */
-    DICOM_MAX_DEPTH = 16,      /* of sequences in sequences */
-    DICOM_MAX_SIDE = 4096,     /* rows, columns: as a volume's */
-    DICOM_UID_SIZE = 65
-};
 
 struct dicom_file;
 struct dicom_item; /* the data set or an item of a sequence; borrowed from its file */
-
-enum dicom_extent {
-    DICOM_START, /* as many whole elements as data holds: of a first look at a file */
-    DICOM_HEAD,  /* elements before the pixel data; data may end anywhere after them */
-    DICOM_WHOLE
-};
 
 /* Loads what the library under this takes from files of its own (the dictionary), registers decoders, silences it. Call
  * before the process gives up its rights to files; every other call does it when nobody has. Any thread. */
@@ -66,13 +48,6 @@ size_t dicom_bad_numbers(const struct dicom_item *item, bool is_deep, uint32_t b
 size_t dicom_n_items(const struct dicom_item *item, uint32_t tag); /* of a sequence; 0 when absent */
 const struct dicom_item *dicom_item_at(const struct dicom_item *item, uint32_t tag, size_t index);
 
-struct dicom_pixels {
-    uint32_t rows, columns, n_frames; /* each at least 1 */
-    uint32_t bits_allocated;          /* 8, 16 or 32 */
-    uint32_t bits_stored, high_bit;
-    bool is_signed, is_monochrome1;
-    uint32_t n_samples; /* 1; colour is refused */
-};
 /* What the image pixel module says, checked against what is there before anything is allocated.
  *   errors ERROR_FORMAT missing or contradicting, pixel data shorter than they say; ERROR_UNSUPPORTED colour, float
  * pixels, an encoding that cannot be decoded (named); ERROR_LIMIT a side over DICOM_MAX_SIDE */
@@ -82,12 +57,6 @@ NODISCARD bool dicom_pixels_look(const struct dicom_file *file, struct dicom_pix
  * ERROR_MEMORY */
 NODISCARD bool dicom_pixels_read(const struct dicom_file *file, uint32_t frame, void *out, struct error *err);
 
-/* What the codestream of the frame read last says of itself: JPEG 2000 alone, else n_bits is 0. */
-struct dicom_decoded {
-    bool is_lossy; /* by its transform; one without loss may still have been cut */
-    bool is_signed;
-    uint32_t n_bits; /* of a value */
-};
 struct dicom_decoded dicom_pixels_decoded(const struct dicom_file *file);
 
 /* Where native pixels lie in the file, for a reader that takes them from there into its own memory: frame after frame,
@@ -101,5 +70,3 @@ bool dicom_pixels_stored(const struct dicom_file *file, struct dicom_stored *sto
 /* Native pixels where they lie in memory, also of a deflated file: for pixels of one bit, which the calls above do not
  * read. NULL: none, or compressed. The file was parsed whole. */
 const uint8_t *dicom_pixels_bytes(const struct dicom_file *file, uint64_t *size, bool *is_swapped);
-/* Makes n stored values of this machine out of those of a file: byte order, place of the bits, sign. In place. */
-void dicom_pixels_unpack(const struct dicom_pixels *pixels, bool is_swapped, void *values, size_t n);

@@ -73,7 +73,8 @@ static const char *known_class(const char *sop_class, enum dicom_kind *kind)
     return NULL;
 }
 
-void dicom_class_name(const char *sop_class, char *out, size_t size)
+/* A name for people: "CT image", "structure set", ... by SOP class; "object of class 1.2.3" for an unknown class. */
+static void class_name(const char *sop_class, char *out, size_t size)
 {
     enum dicom_kind kind;
     const char *name = known_class(sop_class, &kind);
@@ -184,7 +185,7 @@ static void read_image(const struct dicom_file *file, uint64_t n_bytes, struct d
     if (!dicom_has(root, DICOM_TAG(0x7FE0, 0x0010)) && !dicom_has(root, DICOM_TAG(0x7FE0, 0x0008))) {
         char name[100];
         const char *word = dicom_uid_word(object->sop_class);
-        dicom_class_name(object->sop_class, name, sizeof name);
+        class_name(object->sop_class, name, sizeof name);
         snprintf(object->reason, sizeof object->reason, "it has no picture (%s)", word[0] ? word : name);
         return;
     }

@@ -1,6 +1,6 @@
 #pragma once
 /* Inside core/formats/dicom: the head of one file as an object of the index. */
-#include "core/formats/dicom/dicom_index.h"
+#include "core/formats/dicom/dicom_object.h"
 
 enum dicom_head_result {
     DICOM_HEAD_FOREIGN,   /* not DICOM */

@@ -1,7 +1,8 @@
 #pragma once
 /* One JPEG 2000 picture of one component to stored values. The only door to OpenJPEG. What the codestream's markers say
  * is compared with the image and with limits before the library sees a byte. */
-#include "core/formats/dicom/dicom_file.h"
+#include "core/base/error.h"
+#include "core/formats/dicom/dicom_basic.h"
 
 enum {
     J2K_MAX_TILES = 1024,     /* the library holds some kilobytes for each */

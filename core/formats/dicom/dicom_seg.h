@@ -7,8 +7,6 @@ enum {
     DICOM_SEG_MAX_SEGMENTS = REGION_MAX, /* more are refused */
     DICOM_SEG_MAX_FRAMES = 1 << 16       /* more are refused */
 };
-#define DICOM_SEG_MAX_VOXELS \
-    ((uint64_t)1 << 29) /* voxels of the grid; voxels x layers may be at most VOLUME_MAX_BYTES */
 
 /* Segments into layers of labels, as few as hold those that overlap. Frames may come in any order, and those without a
  * voxel be missing: planes between frames, and one at either end, are empty. A fractional segment holds the voxels of

@@ -4,8 +4,6 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
-#include "core/formats/dicom/dicom_seg.h"
-#include "core/formats/dicom/dicom_series.h"
 #include "core/formats/dicom/dicom_slices.h"
 #include "core/formats/dicom/dicom_stacks.h"
 #include "core/formats/dicom/dicom_tags.h"

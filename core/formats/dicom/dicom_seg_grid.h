@@ -4,6 +4,8 @@
 #include "core/report/report.h"
 #include "core/volume/volume.h"
 
+#define DICOM_SEG_MAX_VOXELS ((uint64_t)1 << 29) /* of the grid; voxels x layers may be at most VOLUME_MAX_BYTES */
+
 struct seg_frame {
     int64_t segment;
     uint32_t plane; /* of the grid */

@@ -10,6 +10,9 @@
 #include "core/base/parallel.h"
 #include "core/formats/dicom/dicom_slices.h"
 #include "core/formats/dicom/dicom_tags.h"
+#include "core/formats/dicom/dicom_unpack.h"
+
+_Static_assert((int)DICOM_MAX_SIDE == (int)VOLUME_MAX_SIDE, "a picture that is read fits into a volume");
 
 /* Slices whose JPEG 2000 codestream says something, and something else than their elements. */
 struct coded {
@@ -199,7 +202,7 @@ static bool read_slice(struct series *series, struct reader *reader, size_t at, 
         return false;
     if (!is_direct)
         convert(series, slice, reader->scratch, out);
-    dicom_cells_measure(series->type, out, series->plane_cells, reader->range);
+    dicom_cells_measure(voxel_size(series->type), series->type == VOXEL_I16, out, series->plane_cells, reader->range);
     return true;
 }
 

@@ -27,7 +27,6 @@ struct dicom_series_facts {
  *   errors   ERROR_FORMAT, ERROR_UNSUPPORTED (an encoding, named), ERROR_LIMIT, ERROR_MEMORY, ERROR_IO (a file changed
  * since), ERROR_CANCELLED source   DICOM PS3.3 C.7.6.2 (image plane), C.7.6.16 (multi-frame functional groups), C.11.1
  * (rescale) */
-#define DICOM_EVEN 0.05
 NODISCARD struct volume *dicom_series_read(const struct folder *folder, const struct dicom_index *index, size_t stack,
                                            const struct dicom_progress *progress, struct dicom_series_facts *facts,
                                            struct report *report, struct error *err);

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
-#include "core/formats/dicom/dicom_series.h"
 #include "core/formats/dicom/dicom_stacks.h"
 
 static int by_place(const void *a, const void *b)

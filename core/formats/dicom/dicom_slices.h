@@ -1,7 +1,11 @@
 #pragma once
 /* Inside core/formats/dicom: where the slices of a stack lie, and the grid that they make. Reads no pixels. */
-#include "core/formats/dicom/dicom_index.h"
+#include "core/formats/dicom/dicom_object.h"
+#include "core/report/report.h"
 #include "core/volume/volume.h"
+
+/* Share of the distance between slices by which a slice may miss an even place and still count as even. */
+#define DICOM_EVEN 0.05
 
 /* One slice: a picture, or a frame of one. */
 struct dicom_slice {
@@ -61,6 +65,3 @@ NODISCARD bool dicom_frames_find(const struct dicom_file *file, const char *path
 void dicom_slices_compare(const struct dicom_index *index, const struct dicom_stack *stack, struct report *report);
 /* Sorts by along_mm and drops what lies where another slice does; returns how many are left. */
 size_t dicom_slices_sort(struct dicom_slice *slices, size_t n, size_t *n_repeated);
-
-/* Smallest and largest of n cells of 8 bits unsigned or 16 bits, into range[2], which it widens. */
-void dicom_cells_measure(enum voxel_type type, const void *cells, size_t n, int32_t range[2]);

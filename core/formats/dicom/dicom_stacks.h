@@ -1,7 +1,8 @@
 #pragma once
 /* Inside core/formats/dicom: pictures put together to stacks that each make one volume. */
-#include "core/formats/dicom/dicom_index.h"
+#include "core/formats/dicom/dicom_object.h"
 #include "core/math/vec.h"
+#include "core/report/report.h"
 
 #define DICOM_SAME_PLACE_MM 1e-3
 

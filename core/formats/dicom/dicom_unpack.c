@@ -1,8 +1,5 @@
 /* Stored values out of the cells a file keeps them in. PS3.5 8.1.1. */
-#include "core/formats/dicom/dicom_file.h"
-#include "core/formats/dicom/dicom_slices.h"
-
-_Static_assert((int)DICOM_MAX_SIDE == (int)VOLUME_MAX_SIDE, "a picture that is read fits into a volume");
+#include "core/formats/dicom/dicom_unpack.h"
 
 static void swap16(uint16_t *values, size_t n)
 {
@@ -72,14 +69,14 @@ void dicom_pixels_unpack(const struct dicom_pixels *pixels, bool is_swapped, voi
         range[1] = most > range[1] ? most : range[1]; \
     } while (0)
 
-void dicom_cells_measure(enum voxel_type type, const void *cells, size_t n, int32_t range[2])
+void dicom_cells_measure(size_t cell_size, bool is_signed, const void *cells, size_t n, int32_t range[2])
 {
     if (n == 0)
         return;
-    if (type == VOXEL_U8)
+    if (cell_size == 1)
         WIDEN(uint8_t);
-    else if (type == VOXEL_I16)
+    else if (cell_size == 2 && is_signed)
         WIDEN(int16_t);
-    else if (type == VOXEL_U16)
+    else if (cell_size == 2)
         WIDEN(uint16_t);
 }

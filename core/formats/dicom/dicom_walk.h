@@ -3,7 +3,8 @@
  * Run before the library that reads values sees a byte: that one recurses without a limit and believes what lengths
  * say. Knows tags by number only. source  DICOM PS3.5 2023e sections 7 (data set), A (transfer syntaxes); PS3.10
  * section 7 (file header) */
-#include "core/formats/dicom/dicom_file.h"
+#include "core/base/error.h"
+#include "core/formats/dicom/dicom_basic.h"
 
 enum {
     DICOM_MAX_ELEMENTS = 1 << 19, /* in one file, items and end marks included: about a second of the library's time */
