@@ -1,4 +1,5 @@
-/* Slices of one series that say different things of their pixels: each is read as it says, and it is said. */
+/* Compares the slices of one series: slices may differ in sign, bits, unit or rescale. Each slice is read by its own
+ * elements; the differences are reported. */
 #include <stdio.h>
 #include <string.h>
 
@@ -54,8 +55,8 @@ static const struct dicom_image *image_of(const struct dicom_index *index, const
     return index->objects[stack->objects[i]].image;
 }
 
-/* The value more than half of the slices have, if there is one. R. S. Boyer, J S. Moore, MJRTY: A Fast Majority Vote
- * Algorithm, 1981. */
+/* The slice whose value more than half of the slices share, if there is one. Source: R. S. Boyer, J S. Moore, MJRTY: A
+ * Fast Majority Vote Algorithm, 1981. */
 static size_t usual_slice(const struct dicom_index *index, const struct dicom_stack *stack, enum trait trait)
 {
     size_t usual = 0, lead = 0;
@@ -72,7 +73,7 @@ void dicom_slices_compare(const struct dicom_index *index, const struct dicom_st
     for (int t = 0; t < N_TRAITS; t++) {
         enum trait trait = (enum trait)t;
         if ((trait == SLOPE || trait == OFFSET) && strcmp(stack->modality, "CT") != 0)
-            continue; /* PET and some MR scale each slice for itself */
+            continue; /* PET and some MR have a rescale per slice */
         const struct dicom_image *usual = image_of(index, stack, usual_slice(index, stack, trait));
         size_t n_others = 0, first = 0;
         for (size_t i = 0; i < stack->n_objects; i++)
@@ -83,7 +84,8 @@ void dicom_slices_compare(const struct dicom_index *index, const struct dicom_st
         if (n_others == 0)
             continue;
         char expected[32], found[32];
-        bool is_of_pet = trait == UNIT && strcmp(stack->modality, "PT") == 0; /* its unit comes from Units */
+        bool is_of_pet =
+            trait == UNIT && strcmp(stack->modality, "PT") == 0; /* PET gives its unit in Units, not in Rescale Type */
         uint32_t tag = is_of_pet ? TAG_UNITS : traits[t].tag;
         put_value(usual, trait, expected);
         put_value(image_of(index, stack, first), trait, found);

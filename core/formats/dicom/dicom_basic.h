@@ -1,6 +1,6 @@
 #pragma once
-/* What all files of core/formats/dicom build on: how a tag is written, the limits of one file, how much of a file is
- * read, what its pixels are. Knows no library. */
+/* Definitions shared by all files of core/formats/dicom: tags, the limits of one file, how much of a file is parsed,
+ * and the format of its pixels. Independent of DCMTK. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -9,14 +9,14 @@
 
 enum {
     DICOM_MAX_FILE_MIB = 1024, /* larger files are refused */
-    DICOM_MAX_DEPTH = 16,      /* of sequences in sequences */
-    DICOM_MAX_SIDE = 4096,     /* rows, columns: as a volume's */
+    DICOM_MAX_DEPTH = 16,      /* nesting depth of sequences */
+    DICOM_MAX_SIDE = 4096,     /* rows or columns of a frame; same as a volume's side */
     DICOM_UID_SIZE = 65
 };
 
 enum dicom_extent {
-    DICOM_START, /* as many whole elements as data holds: of a first look at a file */
-    DICOM_HEAD,  /* elements before the pixel data; data may end anywhere after them */
+    DICOM_START, /* first look at a file: as many whole elements as data holds */
+    DICOM_HEAD,  /* all elements before the pixel data; data may end anywhere after them */
     DICOM_WHOLE
 };
 
@@ -25,16 +25,16 @@ struct dicom_pixels {
     uint32_t bits_allocated;          /* 8, 16 or 32 */
     uint32_t bits_stored, high_bit;
     bool is_signed, is_monochrome1;
-    uint32_t n_samples; /* 1; colour is refused */
+    uint32_t n_samples; /* always 1; colour is refused */
 };
 
-/* What the codestream of the frame read last says of itself: JPEG 2000 alone, else n_bits is 0. */
+/* What the JPEG 2000 codestream of the last frame read says about its values. n_bits is 0 for every other encoding. */
 struct dicom_decoded {
-    bool is_lossy; /* by its transform; one without loss may still have been cut */
+    bool is_lossy; /* the codestream uses the irreversible transform; a reversible one may still have been truncated */
     bool is_signed;
-    uint32_t n_bits; /* of a value */
+    uint32_t n_bits; /* per value */
 };
 
-/* "DICM" after the preamble, or a group 0002/0008 element where a file without preamble begins. Needs the first 140
- * bytes. */
+/* Returns true for "DICM" after the 128-byte preamble, or for an element of group 0002 or 0008 at byte 0 (a file
+ * without preamble). Pass at least the first 140 bytes. */
 bool dicom_looks_like(const uint8_t *data, size_t size);

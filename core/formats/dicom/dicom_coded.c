@@ -1,3 +1,4 @@
+/* Counts and reports differences between JPEG 2000 codestreams and the elements of the same file. */
 #include "core/formats/dicom/dicom_coded.h"
 
 #include <string.h>

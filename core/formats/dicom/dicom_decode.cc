@@ -1,3 +1,4 @@
+// Decodes one compressed frame by DCMTK's decoders or dicom_j2k, after comparing its own header with the image.
 #include "core/formats/dicom/dicom_decode.hh"
 
 extern "C" {
@@ -57,8 +58,8 @@ uint32_t big16(const uint8_t *p)
     return uint32_t(p[0]) << 8 | p[1];
 }
 
-// A JPEG or JPEG-LS frame header says its own size: a decoder believes it, so it is compared with the image's first.
-// ITU-T T.81 B.1.1, B.2.2; T.87 C.2.2.
+// Compares the size in a JPEG or JPEG-LS frame header with the image's, because a decoder trusts it. Source: ITU-T T.81
+// B.1.1, B.2.2; T.87 C.2.2.
 bool jpeg_fits(const std::vector<uint8_t> &bytes, const dicom_pixels &pixels, const char *name, error *err)
 {
     size_t at = 2;
@@ -96,7 +97,7 @@ bool jpeg_fits(const std::vector<uint8_t> &bytes, const dicom_pixels &pixels, co
     return error_set(err, ERROR_FORMAT, "%s: a compressed frame ends before its JPEG frame header", name);
 }
 
-// PS3.5 annex G: 64 bytes say where each byte plane begins.
+// Checks the RLE header: 64 bytes with the start of each byte plane. Source: DICOM PS3.5 annex G.
 bool rle_fits(const std::vector<uint8_t> &bytes, const dicom_pixels &pixels, const char *name, error *err)
 {
     auto little32 = [&](size_t at) {
@@ -159,7 +160,7 @@ bool dicom_ends_picture(const uint8_t *bytes, size_t size)
     return size >= 2 && bytes[size - 2] == 0xFF && bytes[size - 1] == 0xD9;
 }
 
-// The decoder sees a data set made here of what was checked, and one frame: nothing else of the file.
+// DCMTK sees a data set made here from the checked values, and one frame: nothing else of the file.
 bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, const char *name,
                         const std::vector<dicom_fragment> &fragments, void *out, dicom_decoded *decoded, error *err)
 {
@@ -177,14 +178,14 @@ bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, 
         return false;
     if (bytes.size() % 2)
         bytes.push_back(0);
-    // CharLS looks at the byte behind the last one of a damaged frame: let it find the end mark there, again and again
+    // CharLS reads one byte beyond a damaged frame: let it find end markers there
     for (int i = 0; encoding->kind != stream::rle && i < 64; i++)
         bytes.push_back(i % 2 ? 0xD9 : 0xFF);
 
     DcmDataset image;
     describe(image, pixels);
     auto sequence = std::make_unique<DcmPixelSequence>(DCM_PixelSequenceTag);
-    for (int item = 0; item < 2; item++) { // the first is the table of offsets: none
+    for (int item = 0; item < 2; item++) { // the first item is an empty offset table
         auto fragment = std::make_unique<DcmPixelItem>(DCM_PixelItemTag);
         if (item == 1 && fragment->putUint8Array(bytes.data(), static_cast<unsigned long>(bytes.size())).bad())
             return error_set(err, ERROR_MEMORY, "%s: no memory for a compressed frame", name);

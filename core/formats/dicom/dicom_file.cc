@@ -1,4 +1,4 @@
-// The shim over DCMTK: elements of a data set as plain C sees them. No exception leaves it.
+// Wraps DCMTK in the plain C functions of dicom_file.h: elements, numbers, text, frames. No exception leaves it.
 extern "C" {
 #include "core/formats/dicom/dicom_file.h"
 #include "core/formats/dicom/dicom_unpack.h"
@@ -37,14 +37,14 @@ struct dicom_file {
     dicom_layout layout{};
     DcmDataset data_set;
     dicom_item root{};
-    std::unordered_map<const DcmObject *, std::vector<dicom_item>> sequences; // items of those asked for
-    std::string character_set;                                                // what converter converts from
-    std::unique_ptr<DcmSpecificCharacterSet> converter;                       // NULL: not a set we know
+    std::unordered_map<const DcmObject *, std::vector<dicom_item>> sequences; // items of the sequences read so far
+    std::string character_set;                                                // the character set that converter converts from
+    std::unique_ptr<DcmSpecificCharacterSet> converter;                       // NULL: an unknown set
     bool has_converter = false;
-    std::vector<dicom_fragment> fragments; // of compressed pixels, the table of offsets first
-    std::vector<size_t> first_fragments;   // of each frame
+    std::vector<dicom_fragment> fragments; // of compressed pixels, the offset table first
+    std::vector<size_t> first_fragments;   // number of each frame's first fragment
     bool has_frames = false;
-    dicom_decoded decoded{}; // of the frame read last
+    dicom_decoded decoded{}; // of the last frame read
     ~dicom_file()
     {
         free(layout.inflated);
@@ -102,7 +102,7 @@ values values_of(DcmElement &element)
     }
 }
 
-// The bytes of a text element where they lie.
+// The bytes of a text element in place.
 bool raw_text(DcmElement &element, const char **text, size_t *size)
 {
     if (values_of(element) == values::text) {
@@ -114,7 +114,7 @@ bool raw_text(DcmElement &element, const char **text, size_t *size)
         *size = length;
         return true;
     }
-    if (element.ident() == EVR_UN || element.ident() == EVR_OB) { // a kind the file does not say
+    if (element.ident() == EVR_UN || element.ident() == EVR_OB) { // VR unknown to the file
         Uint8 *found = nullptr;
         if (element.getUint8Array(found).bad() || !found)
             return false;
@@ -125,7 +125,7 @@ bool raw_text(DcmElement &element, const char **text, size_t *size)
     return false;
 }
 
-// The character set in force in an item: its own or that of what holds it.
+// The character set in force in an item: its own, else that of the item around it.
 std::string character_set_of(const dicom_item *item)
 {
     for (; item; item = item->parent) {
@@ -170,7 +170,7 @@ bool get_text(const dicom_item *item, uint32_t tag, bool is_one, size_t index, c
         number = all.back();
         return snprintf(out, size, "%.17g", number) > 0;
     }
-    std::string text(raw, std::min<size_t>(raw_size, 1 << 20)); // nobody asks for more than a description
+    std::string text(raw, std::min<size_t>(raw_size, 1 << 20)); // 1 MiB: more than any description needs
     if (!dicom_text_is_ascii(text.data(), text.size()))
         text = to_utf8(item, std::move(text));
     size_t from = 0;
@@ -266,7 +266,7 @@ void add_bad(bad_numbers &all, DcmElement &element, const std::string &inside, c
     bad.found[n] = 0;
 }
 
-// Value by value between backslashes. An element without a value is none that is bad.
+// Checks each value between backslashes. An element without a value is not bad.
 void check_numbers(bad_numbers &all, DcmElement &element, const std::string &inside)
 {
     const char *text;
@@ -290,7 +290,7 @@ void check_numbers(bad_numbers &all, DcmElement &element, const std::string &ins
     }
 }
 
-// Sequences are nested DICOM_MAX_DEPTH deep at most: the walk before saw to it.
+// Recursion is at most DICOM_MAX_DEPTH deep: the walk checked it.
 void find_bad_numbers(bad_numbers &all, DcmItem &item, const std::string &inside)
 {
     for (DcmObject *object = nullptr; (object = item.nextInContainer(object));) {
@@ -308,7 +308,7 @@ void find_bad_numbers(bad_numbers &all, DcmItem &item, const std::string &inside
     }
 }
 
-// Runs what may throw; what it throws becomes the answer given.
+// Runs `run`; an exception becomes the return value on_throw.
 template <typename F, typename R> R guarded(R on_throw, F run) noexcept
 {
     try {
@@ -334,10 +334,10 @@ void prepare()
     static std::once_flag once;
     std::call_once(once, [] {
         OFLog::configure(OFLogger::OFF_LOG_LEVEL);
-        dcmEnableUnknownVRConversion.set(OFTrue); // UN with a known tag is what the dictionary says
+        dcmEnableUnknownVRConversion.set(OFTrue); // read UN elements of known tags as the dictionary says
         dcmEnableAutomaticInputDataCorrection.set(OFTrue);
         dcmEnableVRCheckerForStringValues.set(OFFalse);
-        (void)dcmDataDict.isDictionaryLoaded(); // the first question loads it
+        (void)dcmDataDict.isDictionaryLoaded(); // the first call loads it
         dicom_decoders_register();
     });
 }
@@ -383,7 +383,7 @@ bool need_integer(const dicom_file *file, uint32_t tag, const char *what, int64_
     return true;
 }
 
-// What may be absent: then otherwise. What is there must be a whole number in its range.
+// Reads an optional element: otherwise if absent. A present one must be a whole number of at most `high`.
 bool optional_integer(const dicom_file *file, uint32_t tag, const char *what, uint32_t high, uint32_t otherwise,
                       uint32_t *out, error *err)
 {
@@ -456,7 +456,7 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
     return true;
 }
 
-// Bytes (OB) have no order; words (OW) do, also where two pixels of 8 bits share one.
+// Bytes (OB) have no byte order; words (OW) do, also where two pixels of 8 bits share one.
 bool is_swapped(const dicom_layout &layout)
 {
     return layout.is_big_endian && std::strcmp(layout.pixels_vr, "OB") != 0;
@@ -645,7 +645,7 @@ bool dicom_pixels_look(const struct dicom_file *file, struct dicom_pixels *pixel
 
 bool dicom_pixels_read(const struct dicom_file *file, uint32_t frame, void *out, struct error *err)
 {
-    // the fragments found are kept for the next frame: a file is read by one thread at a time
+    // caches the fragments for the next frame; one thread reads a file at a time
     return guarded_call(file->name.c_str(), err,
                         [&] { return read_frame(*const_cast<dicom_file *>(file), frame, out, err); });
 }

@@ -1,4 +1,4 @@
-// Which fragments of compressed pixels make a frame. PS3.5 A.4.
+// Finds which fragments of compressed pixels make a frame. Source: DICOM PS3.5 A.4.
 #include "core/formats/dicom/dicom_decode.hh"
 
 bool dicom_find_frames(const dicom_layout &layout, const char *name, uint32_t n_frames,
@@ -18,7 +18,7 @@ bool dicom_find_frames(const dicom_layout &layout, const char *name, uint32_t n_
         for (size_t i = 0; i < n_frames; i++)
             first_fragments.push_back(1 + i);
     } else if (fragments[0].size ==
-               0) { // no table of offsets: a fragment that begins a picture behind one that ends it
+               0) { // no offset table: a frame begins where a start marker follows an end marker
         for (size_t i = 1; i < n; i++) {
             const dicom_fragment &own = fragments[i], &before = fragments[i - 1];
             if (dicom_begins_picture(layout.transfer_syntax, layout.data + own.at, own.size) &&
@@ -31,7 +31,7 @@ bool dicom_find_frames(const dicom_layout &layout, const char *name, uint32_t n_
                 "%s: %zu fragments for %u frames, and no table of offsets says which are whose; %zu of them begin "
                 "a picture",
                 name, n - 1, n_frames, first_fragments.size());
-    } else { // by the table of offsets: positions from the first fragment's own tag
+    } else { // by the offset table: positions counted from the tag of the first fragment
         const dicom_fragment table = fragments[0];
         size_t base = fragments[1].at - 8, fragment = 1;
         for (size_t i = 0; i < n_frames && 4 * i + 4 <= table.size; i++) {

@@ -1,5 +1,5 @@
-/* Enhanced images: many frames in one file, each with groups of facts of its own beside those it shares. PS3.3
- * C.7.6.16. */
+/* Reads the geometry of multi-frame (enhanced) images: each frame has functional groups of its own beside the shared
+ * ones. Source: DICOM PS3.3 C.7.6.16. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "core/formats/dicom/dicom_stacks.h"
 #include "core/formats/dicom/dicom_tags.h"
 
-/* Item of a group: the frame's own, else the shared one, else NULL. */
+/* The item of a functional group: the frame's own, else the shared one, else NULL. */
 static const struct dicom_item *group_of(const struct dicom_item *frame, const struct dicom_item *shared, uint32_t tag)
 {
     const struct dicom_item *own = frame ? dicom_item_at(frame, tag, 0) : NULL;
@@ -25,7 +25,7 @@ static bool get_finite(const struct dicom_item *item, uint32_t tag, double *valu
     return true;
 }
 
-/* A number that may be absent: then value stays. false: it is there, and no number. */
+/* Reads an optional number; an absent one leaves value unchanged. Returns false if it is present but malformed. */
 static bool get_optional(const struct dicom_item *item, uint32_t tag, double *value)
 {
     return !item || dicom_numbers(item, tag, NULL, 0) == 0 || get_finite(item, tag, value, 1);

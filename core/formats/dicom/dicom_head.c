@@ -1,3 +1,4 @@
+/* Reads the head of one file: its kind, its identifiers, what it refers to and, for images, the geometry. */
 #include "core/formats/dicom/dicom_head.h"
 
 #include <float.h>
@@ -11,9 +12,10 @@
 
 #define CLASSES "1.2.840.10008.5.1.4.1.1."
 
-/* PS3.4 B.5. What is not here is an image if its pixels have a place in the patient. */
+/* SOP classes (DICOM PS3.4 B.5). An object of any other class is an image if its pixels have a position in the
+ * patient. */
 static const struct {
-    const char *uid; /* behind CLASSES */
+    const char *uid; /* part after CLASSES */
     enum dicom_kind kind;
     const char *name;
 } classes[] = {
@@ -73,7 +75,7 @@ static const char *known_class(const char *sop_class, enum dicom_kind *kind)
     return NULL;
 }
 
-/* A name for people: "CT image", "structure set", ... by SOP class; "object of class 1.2.3" for an unknown class. */
+/* A name for people by SOP class: "CT image", "structure set", ...; "object of class 1.2.3" for an unknown class. */
 static void class_name(const char *sop_class, char *out, size_t size)
 {
     enum dicom_kind kind;
@@ -96,8 +98,8 @@ static int64_t integer_or_none(const struct dicom_item *item, uint32_t tag)
     return dicom_integer(item, tag, &value) ? value : INT64_MIN;
 }
 
-/* n finite numbers, each at most high; false with the reason: not there ("it does not say ..."), or what is wrong with
- * them. */
+/* Reads n finite numbers, each of at most `high` in magnitude. On false, reason says that the element is absent ("it
+ * does not say ...") or what is wrong with it. */
 static bool read_all(const struct dicom_item *root, uint32_t tag, const char *name, const char *not_said, double high,
                      double *values, size_t n, char *reason, size_t size)
 {
@@ -111,8 +113,8 @@ static bool read_all(const struct dicom_item *root, uint32_t tag, const char *na
                                tag >> 16, tag & 0xFFFF, n, n == 1 ? "" : "s", high, found) < 0;
 }
 
-/* Position, orientation and spacing of a picture of its own; false with the reason when one is not there or cannot be.
- */
+/* Reads position, orientation and pixel spacing from the elements of a single-frame image. On false, reason says what
+ * is absent or malformed. */
 static bool read_place(const struct dicom_item *root, struct dicom_image *image, char *reason, size_t size)
 {
     double cosines[6];
@@ -131,7 +133,8 @@ static bool read_place(const struct dicom_item *root, struct dicom_image *image,
     return true;
 }
 
-/* Slope and intercept: absent ones are 1 and 0, those that are no numbers make all values wrong. */
+/* Reads rescale slope and intercept. Absent: 1 and 0. A malformed one is a failure, because it would make every value
+ * wrong. */
 static bool read_scale(const struct dicom_item *root, struct dicom_image *image, char *reason, size_t size)
 {
     image->slope = 1;
@@ -142,7 +145,7 @@ static bool read_scale(const struct dicom_item *root, struct dicom_image *image,
             read_all(root, TAG_OFFSET, "rescale intercept", "", DBL_MAX, &image->offset, 1, reason, size));
 }
 
-/* Optional elements: ignored when malformed. */
+/* Notes the first malformed optional element; such elements are ignored. */
 static void note_bad_number(const struct dicom_item *root, struct dicom_image *image)
 {
     static const uint32_t used[] = { TAG_THICKNESS, TAG_INSTANCE,     TAG_ACQUISITION,   TAG_ECHO_NUMBER, TAG_TEMPORAL,
@@ -175,7 +178,7 @@ static void read_image_facts(const struct dicom_item *root, struct dicom_image *
     image->is_lossy = dicom_text(root, TAG_LOSSY, lossy, sizeof lossy) && strcmp(lossy, "01") == 0;
 }
 
-/* An image, if all that is needed is there and can be read; else another object with the reason. */
+/* Makes object an IMAGE if everything needed is present and readable; else OTHER with the reason. */
 static void read_image(const struct dicom_file *file, uint64_t n_bytes, struct dicom_object *object)
 {
     const struct dicom_item *root = dicom_root(file);
@@ -190,7 +193,7 @@ static void read_image(const struct dicom_file *file, uint64_t n_bytes, struct d
         return;
     }
     if (!dicom_pixels_look(file, &image.pixels, &err)) {
-        const char *text = strstr(err.text, ": "); /* behind the name */
+        const char *text = strstr(err.text, ": "); /* skip the file name */
         snprintf(object->reason, sizeof object->reason, "%.159s", text ? text + 2 : err.text);
         return;
     }
@@ -238,7 +241,8 @@ static const struct dicom_item *first_item(const struct dicom_item *item, uint32
     return item ? dicom_item_at(item, tag, 0) : NULL;
 }
 
-/* What an RTSTRUCT, RTDOSE or RTPLAN refers to. PS3.3 C.8.8.5, C.8.8.3, C.8.8.9. */
+/* Reads the references of an RTSTRUCT, RTDOSE, RTPLAN or segmentation. Source: DICOM PS3.3 C.8.8.5, C.8.8.3,
+ * C.8.8.9. */
 static void read_references(const struct dicom_item *root, struct dicom_object *object)
 {
     const struct dicom_item *frame = first_item(root, DICOM_TAG(0x3006, 0x0010));
@@ -276,7 +280,7 @@ static void read_identity(const struct dicom_file *file, struct dicom_object *ob
     snprintf(object->transfer_syntax, sizeof object->transfer_syntax, "%s", dicom_transfer_syntax(file));
 }
 
-/* Files whose class is not said, or not one we know, are told by their modality. */
+/* Without a known SOP class the modality decides the kind. */
 static enum dicom_kind kind_of(const struct dicom_object *object, const char **name)
 {
     static const struct {
@@ -333,7 +337,7 @@ static enum dicom_head_result describe(const struct dicom_file *file, uint64_t n
 enum dicom_head_result dicom_head_read(const struct folder *folder, const char *path, struct dicom_object *object,
                                        struct bytes *scratch, struct error *err)
 {
-    /* Most heads end within the first bytes; private ones of some vendors, and tables of frames, are longer. */
+    /* Most heads end within the first step. Private elements of some vendors, and tables of frames, need more. */
     static const uint64_t steps[] = { 1 << 14, 1 << 18, 1 << 22, 1 << 26, (uint64_t)DICOM_MAX_FILE_MIB << 20 };
     *object = (struct dicom_object){ 0 };
     struct folder_part part;
@@ -350,14 +354,14 @@ enum dicom_head_result dicom_head_read(const struct folder *folder, const char *
             break;
         }
         dicom_file_destroy(file);
-        bool is_all = n == part.n_bytes; /* the second look at a whole file tells what is wrong with it */
+        bool is_all = n == part.n_bytes; /* only a second parse, of the whole file, tells what is wrong with it */
         file = dicom_file_parse(scratch->data, n, path, is_all && step > 0 ? DICOM_HEAD : DICOM_START, err);
         if (!file)
             break;
         const char *name;
         read_identity(file, object);
         object->n_bytes = part.n_bytes;
-        /* of a plan or a dose what it refers to stands far in front, and it is read whole later */
+        /* of a plan or dose the first step is enough: its references come early, and the whole file is read later */
         bool is_enough = !dicom_is_cut(file) || (step > 0 && kind_of(object, &name) != DICOM_KIND_IMAGE);
         if (is_enough) {
             result = describe(file, part.n_bytes, object);

@@ -1,3 +1,4 @@
+/* Scans files for DICOM on several threads; drops duplicates; reports what is unreadable or not used. */
 #include "core/formats/dicom/dicom_index.h"
 
 #include <pthread.h>
@@ -11,12 +12,12 @@
 #include "core/formats/dicom/dicom_stacks.h"
 #include "core/formats/text.h"
 
-/* A file to look at, and what came of it. */
+/* One file of the scan with its result. */
 struct looked {
-    char *path; /* moves into object */
+    char *path; /* moves into object on success */
     enum dicom_head_result result;
     struct dicom_object object;
-    char *why; /* BROKEN, or FOREIGN and named like DICOM */
+    char *why; /* error sentence: BROKEN, or FOREIGN with a name that ends in .dcm */
 };
 
 struct scan {
@@ -37,7 +38,7 @@ static void look_at(struct scan *scan, struct looked *file, struct bytes *scratc
     if (file->result == DICOM_HEAD_BROKEN)
         dicom_object_finish(&file->object);
     if (file->result == DICOM_HEAD_BROKEN || is_misnamed) {
-        size_t n = strlen(file->path); /* the line of the report names the file itself */
+        size_t n = strlen(file->path); /* drop the file name in front: the report line names the file itself */
         file->why = mem_copy_text(
             strncmp(err.text, file->path, n) == 0 && strncmp(err.text + n, ": ", 2) == 0 ? err.text + n + 2 : err.text);
     }
@@ -75,7 +76,7 @@ static int compare_looked(const void *a, const void *b)
     return strcmp(((const struct looked *)a)->path, ((const struct looked *)b)->path);
 }
 
-/* The files behind the names given: a file itself, of a folder what is in it. */
+/* Collects the files to look at: each name that is a file, and all files below each name that is a folder. */
 static bool list_files(const struct folder *folder, char *const *names, size_t n_names, struct scan *scan,
                        struct report *report, struct error *err)
 {
@@ -118,7 +119,7 @@ static bool list_files(const struct folder *folder, char *const *names, size_t n
         return true;
     qsort(scan->files, scan->n_files, sizeof *scan->files, compare_looked);
     size_t n = 1;
-    for (size_t i = 1; i < scan->n_files; i++) { /* a file that was named twice */
+    for (size_t i = 1; i < scan->n_files; i++) { /* drop files that were named twice */
         if (strcmp(scan->files[i].path, scan->files[n - 1].path) == 0)
             free(scan->files[i].path);
         else
@@ -128,9 +129,9 @@ static bool list_files(const struct folder *folder, char *const *names, size_t n
     return true;
 }
 
-enum { MOST_LINES = 20 }; /* of one kind; the others are counted */
+enum { MOST_LINES = 20 }; /* per kind of problem; further ones are counted */
 
-/* Moves what was read into the index; says what could not be. */
+/* Moves the objects that were read into the index; reports the files that could not be read. */
 static bool collect(struct scan *scan, struct dicom_index *index, struct report *report, struct error *err)
 {
     size_t n = 0, n_broken = 0, n_misnamed = 0, n_too_many = 0;
@@ -175,7 +176,8 @@ static int compare_instances(const void *a, const void *b)
     return order ? order : strcmp((*left)->path, (*right)->path);
 }
 
-/* The same object once more, and not another one that was given its number by mistake. */
+/* Returns true for a second copy of an object. Images that share a SOP Instance UID by mistake differ in instance
+ * number or position. */
 static bool is_copy(const struct dicom_object *a, const struct dicom_object *b)
 {
     if (!a->sop_instance[0] || strcmp(a->sop_instance, b->sop_instance) != 0 || a->kind != b->kind)
@@ -219,7 +221,7 @@ static bool drop_copies(struct dicom_index *index, struct report *report, struct
     return true;
 }
 
-/* One line for each reason: how many, and the first by name. */
+/* Reports one line per reason: how many objects, and the path of the first. */
 static void report_unused(const struct dicom_index *index, struct report *report)
 {
     enum { MOST_REASONS = 32 };
@@ -244,7 +246,8 @@ static void report_unused(const struct dicom_index *index, struct report *report
     }
     for (size_t r = 0; r < n_reasons; r++) {
         const char *reason = first[r]->reason;
-        bool is_damage = strncmp(reason, "it ", 3) != 0; /* what is wrong with a picture, not what it is */
+        bool is_damage =
+            strncmp(reason, "it ", 3) != 0; /* damage of an image; reasons starting with "it " only say what it is */
         bool is_usual = strcmp(reason, "it is a localizer") == 0;
         const char *code = is_damage ? "dicom.unreadable" : "dicom.not-used";
         enum report_severity severity = is_damage ? REPORT_ERROR : is_usual ? REPORT_NOTE : REPORT_WARNING;
@@ -259,7 +262,7 @@ static void report_unused(const struct dicom_index *index, struct report *report
                    n_more);
 }
 
-/* One line for each element that is no number in pictures that are used all the same. */
+/* Reports one line per tag: images that are used although an optional element is malformed. */
 static void report_bad_numbers(const struct dicom_index *index, struct report *report)
 {
     enum { MOST_TAGS = 16 };
@@ -273,7 +276,7 @@ static void report_bad_numbers(const struct dicom_index *index, struct report *r
         while (t < n_tags && first[t]->image->bad_tag != object->image->bad_tag)
             t++;
         if (t == MOST_TAGS)
-            continue; /* there are not as many kinds */
+            continue; /* cannot happen: fewer tags than MOST_TAGS are checked */
         if (t == n_tags) {
             first[n_tags] = object;
             count[n_tags++] = 0;

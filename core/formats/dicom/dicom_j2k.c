@@ -1,3 +1,4 @@
+/* Checks the markers of a JPEG 2000 codestream against the image and against limits, then decodes it with OpenJPEG. */
 #include "core/formats/dicom/dicom_j2k.h"
 
 #include <string.h>
@@ -44,7 +45,7 @@ static bool refuse(const struct scan *scan, enum error_code code, const char *wh
     return error_set(scan->err, code, "%s: a JPEG 2000 frame %s", scan->name, what);
 }
 
-/* T.800 A.5.1. */
+/* SIZ marker: size, tiles, components. T.800 A.5.1. */
 static bool read_size(struct scan *scan, const uint8_t *p, size_t n)
 {
     if (n < 41)
@@ -78,7 +79,7 @@ static bool read_size(struct scan *scan, const uint8_t *p, size_t n)
     return true;
 }
 
-/* T.800 A.6.1: into how many pieces the picture is cut, all tiles together, and how often they are visited. */
+/* COD marker: counts the code-blocks, precincts and packets of all tiles. T.800 A.6.1. */
 static bool read_coding(struct scan *scan, const uint8_t *p, size_t n)
 {
     if (!scan->has_size || n < 12)
@@ -93,12 +94,12 @@ static bool read_coding(struct scan *scan, const uint8_t *p, size_t n)
                       "has code-blocks of high throughput (part 15 of the standard), which are not read");
     scan->is_lossy |= p[11] == 0;
     uint64_t n_blocks = 0, n_precincts = 0;
-    for (uint32_t level = 0; level <= n_levels; level++) { /* p[12] is of the smallest resolution */
+    for (uint32_t level = 0; level <= n_levels; level++) { /* p[12] belongs to the lowest resolution */
         uint32_t down = n_levels - level < 31 ? n_levels - level : 31;
         uint64_t width = (scan->tile_width >> down) + 2,
-                 height = (scan->tile_height >> down) + 2; /* a little more: edges of tiles */
+                 height = (scan->tile_height >> down) + 2; /* rounded up: tile edges */
         uint32_t x = has_precincts ? p[12 + level] & 15u : 15, y = has_precincts ? p[12 + level] >> 4 : 15;
-        uint32_t half = level > 0; /* precincts of higher resolutions are cut over their subbands */
+        uint32_t half = level > 0; /* above the lowest resolution, precincts are divided over the subbands */
         uint32_t cut_x = x > half && x - half < block_x ? x - half : x > half ? block_x : 0;
         uint32_t cut_y = y > half && y - half < block_y ? y - half : y > half ? block_y : 0;
         n_precincts += ((width >> x) + 2) * ((height >> y) + 2);
@@ -132,7 +133,7 @@ static bool read_segment(struct scan *scan, uint32_t marker, const uint8_t *p, s
     }
 }
 
-/* Reads marker segments up to SOT, SOD or EOC. Returns that marker and sets `at` behind it; 0 on error. */
+/* Reads marker segments up to SOT, SOD or EOC. Returns that marker and sets `at` to the byte after it; 0 on error. */
 static uint32_t read_segments(struct scan *scan, size_t *at)
 {
     while (*at + 4 <= scan->size) {
@@ -160,7 +161,7 @@ static uint32_t read_segments(struct scan *scan, size_t *at)
     return 0;
 }
 
-/* All headers: of the picture and of each part of a tile. T.800 A.3, A.4.2. */
+/* Checks the main header and the header of every tile-part. T.800 A.3, A.4.2. */
 static bool scan_stream(struct scan *scan)
 {
     size_t at = 2;
@@ -179,12 +180,12 @@ static bool scan_stream(struct scan *scan)
         if (marker != SOD)
             return marker == 0 ? false : refuse(scan, ERROR_FORMAT, "has a tile without data (SOD)");
         if (length == 0)
-            return true; /* the last part: to the end */
+            return true; /* length 0: the last tile-part, up to the end */
         if (length > scan->size - begin || begin + length < at)
             return refuse(scan, ERROR_FORMAT, "has a tile that is longer than it is, or shorter than its head");
         at = begin + length;
         if (scan->size - at < 2)
-            return true; /* without an end mark; the library tells whether data is missing */
+            return true; /* no end marker: OpenJPEG reports missing data */
         marker = big16(scan->data + at);
         at += 2;
     }
@@ -193,7 +194,7 @@ static bool scan_stream(struct scan *scan)
                          : refuse(scan, ERROR_FORMAT, "has something other than a tile between its tiles");
 }
 
-/* The codestream within boxes, as some writers leave it. T.800 I.4. */
+/* Finds the codestream inside JP2 boxes, which some writers leave around it. T.800 I.4. */
 static void unwrap(const uint8_t **data, size_t *size)
 {
     static const uint8_t signature[] = { 0, 0, 0, 12, 'j', 'P', ' ', ' ' };

@@ -1,3 +1,4 @@
+/* Reports malformed numbers, and collects doubts about the values of one thing. */
 #include "core/formats/dicom/dicom_numbers.h"
 
 #include <stdarg.h>
@@ -46,7 +47,7 @@ bool dicom_number_within(const struct dicom_item *item, uint32_t tag, const char
 {
     double found;
     if (!dicom_number(item, tag, &found))
-        return false; /* absent, or no number, which dicom_numbers_report says */
+        return false; /* absent, or malformed, which dicom_numbers_report reports */
     if (!(found >= low && found <= high)) {
         dicom_doubt(doubts, "%s (%04X,%04X) is %g, expected %g to %g", name, tag >> 16, tag & 0xFFFF, found, low, high);
         return false;

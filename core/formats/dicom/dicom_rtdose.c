@@ -1,3 +1,4 @@
+/* Reads one RT Dose object: geometry, values, component, references. */
 #include "core/formats/dicom/dicom_rtdose.h"
 
 #include <stdio.h>
@@ -10,7 +11,7 @@
 
 #define RTDOSE_CLASS "1.2.840.10008.5.1.4.1.1.481.2"
 #define MOST_GY 1000.0
-#define EVEN_SHARE 0.02 /* of the distance: planes this near to even ones are even */
+#define EVEN_SHARE 0.02 /* share of the plane distance by which planes may miss even positions */
 
 enum {
     SOP_CLASS = DICOM_TAG(0x0008, 0x0016),
@@ -35,12 +36,12 @@ enum {
     REFERENCED_FRACTION_SEQUENCE = DICOM_TAG(0x300c, 0x0020)
 };
 
-/* Where the frames lie. */
+/* Positions of the frames. */
 struct planes {
-    struct vec3 row, column; /* unit: along a row, down a column */
+    struct vec3 row, column; /* unit vectors along a row and down a column */
     struct vec3 first_lps_mm, normal;
-    double row_mm, column_mm; /* from row to row, from column to column */
-    double *at_mm;            /* of each frame along the normal from the first; ascends or descends */
+    double row_mm, column_mm; /* distances between rows and between columns */
+    double *at_mm; /* of each frame along the normal, counted from the first frame; ascending or descending */
     size_t n;
 };
 
@@ -84,7 +85,7 @@ static bool read_frame(const struct reading *reading, struct planes *planes, str
     planes->column = vec3_normalize(column);
     planes->normal = vec3_normalize(vec3_cross(row, column));
     planes->first_lps_mm = vec3(at[0], at[1], at[2]);
-    planes->row_mm = spacing_mm[0]; /* the standard gives the distance of rows first */
+    planes->row_mm = spacing_mm[0]; /* PixelSpacing gives the row distance first */
     planes->column_mm = spacing_mm[1];
     return true;
 }
@@ -94,8 +95,8 @@ static bool is_axial(const struct planes *planes)
     return fabs(planes->normal.z) > 0.9999;
 }
 
-/* Both conventions of the standard (C.8.8.3.2): from the first plane along the normal; or, for axial planes, the z of
- * each. */
+/* Makes the offsets relative to the first frame. The standard (PS3.3 C.8.8.3.2) has two conventions: offsets from the
+ * first plane along the normal, or for axial planes the z of each plane. */
 static void make_relative(const struct reading *reading, struct planes *planes)
 {
     double first_mm = planes->at_mm[0], direction = 1;
@@ -184,7 +185,7 @@ static bool make_grid(const struct reading *reading, const struct planes *planes
     return false;
 }
 
-/* A single plane has no distance to another: its slice thickness, else as thick as its pixels are wide. */
+/* Thickness to show a single plane with: its slice thickness, else its column distance. */
 static double lone_thickness_mm(const struct reading *reading, const struct planes *planes)
 {
     double mm;
@@ -252,7 +253,7 @@ static bool read_scaled_frame(const struct dicom_file *file, const struct dicom_
     return true;
 }
 
-/* Linear between the two planes around each even one. */
+/* Interpolates linearly between the two planes around each even plane. */
 static struct volume *read_uneven(const struct dicom_file *file, const struct dicom_pixels *pixels,
                                   const struct planes *planes, const struct grid *grid, double step_mm, double scaling,
                                   struct dicom_coded *coded, struct error *err)
@@ -265,7 +266,7 @@ static struct volume *read_uneven(const struct dicom_file *file, const struct di
     bool is_read = volume && stored && low && high &&
                    read_scaled_frame(file, pixels, 0, scaling, stored, low, coded, err) &&
                    read_scaled_frame(file, pixels, 1, scaling, stored, high, coded, err);
-    uint32_t frame = 0; /* low is this one, high the next */
+    uint32_t frame = 0; /* buffers: low is plane `frame`, high the next */
     for (uint32_t k = 0; is_read && k < grid->size[2]; k++) {
         double along_mm = fabs(k * step_mm);
         while (is_read && frame + 2 < planes->n && fabs(planes->at_mm[frame + 1]) < along_mm) {

@@ -1,4 +1,4 @@
-/* Which objects are the components of one dose, and what doses are called. */
+/* Groups RT Dose objects into doses: which objects are components of one dose, and the names of doses. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +26,8 @@ static bool agree(const struct rtdose *a, const struct rtdose *b)
            memcmp(a->beams, b->beams, a->n_beams * sizeof *a->beams) == 0;
 }
 
-/* Words alone make a component only beside another: "photons" in the description of a plan is no gamma component. */
+/* A component suggested by words only counts if another object has a different one: "photons" in a plan's description
+ * is no gamma component. */
 static bool is_component(const struct grouping *grouping, const struct rtdose *object)
 {
     if (!object->is_component || object->is_stated)
@@ -65,7 +66,7 @@ static const char *per_of(const struct rtdose *object)
     return "";
 }
 
-/* Cuts at a whole character. */
+/* Copies text, truncated at a whole character. */
 static void put_text(char *out, size_t size, const char *text)
 {
     size_t n = strlen(text);
@@ -86,7 +87,7 @@ static bool is_taken(const struct grouping *grouping, const char *name)
     return false;
 }
 
-/* Description or comment, for a beam's dose with the beam; made unique with a number. */
+/* Names a dose by description or comment, for the dose of a beam also by the beam; a number makes it unique. */
 static void name_dose(const struct grouping *grouping, const struct rtdose *object, char id[64])
 {
     char base[200], name[300], numbered[64];
@@ -143,7 +144,7 @@ static void add_component(struct dose *dose, struct rtdose *object, enum dose_qu
     struct dose_component *component = &dose->components[dose->n_components++];
     *component = (struct dose_component){ .quantity = quantity, .values = object->values };
     object->values = NULL;
-    if (object->has_frame) { /* the worst of its components' */
+    if (object->has_frame) { /* the frame check that came out worst among its components */
         dose->frame = dose->has_frame && dose->frame > object->frame ? dose->frame : object->frame;
         dose->has_frame = true;
     }
@@ -168,11 +169,12 @@ static bool has_quantity(const struct dose *dose, enum dose_quantity quantity)
     return false;
 }
 
-/* The object and all that go with it; is_given says which were components before any was taken. */
+/* Makes one dose from an object and all objects that agree with it. is_given: which objects were components before any
+ * was consumed. */
 static void add_components(struct grouping *grouping, size_t first, const bool *is_given)
 {
     struct rtdose *object = &grouping->objects[first];
-    const struct rtdose like = *object; /* its values go into the dose */
+    const struct rtdose like = *object; /* a copy: its values move into the dose */
     struct dose *dose = new_dose(grouping, object);
     if (!dose)
         return;
@@ -242,7 +244,7 @@ size_t rtdose_group(struct rtdose *objects, size_t n_objects, rtdose_beam_name b
             add_components(&grouping, i, is_given);
         else if (objects[i].values)
             add_alone(&grouping, &objects[i]);
-        rtdose_finish(&objects[i]); /* what found no room */
+        rtdose_finish(&objects[i]); /* an object that found no room */
     }
     report_beams(&grouping, n_beam_doses, has_plan_dose);
     free(is_given);

@@ -1,4 +1,4 @@
-/* Which component of a BNCT dose the description of an RT Dose object names, and for how many ppm of boron-10. */
+/* Finds the component of a BNCT dose, and the ppm of boron-10, in the description of an RT Dose object. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/* "B-10 dose (15.5ppm)" gives b 10 dose 15.5 ppm. */
+/* Splits into letter groups and numbers, lower case: "B-10 dose (15.5ppm)" gives b 10 dose 15.5 ppm. */
 static void split_words(const char *text, struct words *words)
 {
     words->n = 0;
@@ -50,7 +50,7 @@ static bool has_word(const struct words *words, const char *word)
     return false;
 }
 
-/* One after the other, either way round: B-10, 10B. */
+/* Two neighbouring words in either order: B-10, 10B. */
 static bool has_pair(const struct words *words, const char *one, const char *other)
 {
     for (size_t i = 0; i + 1 < words->n; i++)
@@ -60,7 +60,8 @@ static bool has_pair(const struct words *words, const char *one, const char *oth
     return false;
 }
 
-/* A neutron dose without another word is taken as fast: what is not from boron or gamma. */
+/* Returns true if the words name exactly one component. A neutron dose without another word counts as fast: the part
+ * that comes from neither boron nor gammas. */
 static bool quantity_from_words(const struct words *words, enum dose_quantity *quantity)
 {
     bool is_neutron = has_word(words, "neutron") || has_word(words, "neutrons");
@@ -86,7 +87,7 @@ static bool quantity_from_words(const struct words *words, enum dose_quantity *q
     return n == 1;
 }
 
-/* The number right before "ppm". */
+/* The number directly before "ppm"; NaN if there is none. */
 static double ppm_from_words(const struct words *words)
 {
     double ppm;
@@ -96,7 +97,7 @@ static double ppm_from_words(const struct words *words)
     return NAN;
 }
 
-/* "BNCT:quantity;key=value;..." */
+/* Parses "BNCT:quantity;key=value;...". */
 static bool component_by_grammar(const char *text, enum dose_quantity *quantity, double *ppm)
 {
     if (strncmp(text, "BNCT:", 5) != 0)

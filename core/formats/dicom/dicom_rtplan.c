@@ -1,3 +1,4 @@
+/* Reads RT Plan objects: beams from control points and patient setups, doses and metersets from fraction groups. */
 #include "core/formats/dicom/dicom_rtplan.h"
 
 #include <stdio.h>
@@ -10,10 +11,10 @@
 #define RTPLAN_CLASS "1.2.840.10008.5.1.4.1.1.481.5"
 #define RTIONPLAN_CLASS "1.2.840.10008.5.1.4.1.1.481.8"
 #define ASSUMED_SAD_MM 1000.0
-#define NEAREST_MM 1e-3           /* distances below are none */
-#define FURTHEST_MM 1e5           /* sources beyond are no numbers of a treatment room */
-#define FURTHEST_ISOCENTRE_MM 1e4 /* nor are isocentres: as GRID_FARTHEST_MM */
-#define MOST_ENERGY 2000.0        /* MeV, or MeV a nucleon; kilovolts of an X-ray tube are far below, too */
+#define NEAREST_MM 1e-3           /* smallest distance accepted */
+#define FURTHEST_MM 1e5           /* largest distance accepted: no source in a treatment room is further away */
+#define FURTHEST_ISOCENTRE_MM 1e4 /* same for an isocentre coordinate; equals GRID_FARTHEST_MM */
+#define MOST_ENERGY 2000.0        /* MeV, or MeV per nucleon; X-ray tubes, in kV, are far below */
 #define MOST_DOSE_GY 1000.0
 #define MOST_METERSET 1e6
 #define MOST_FRACTIONS 1000
@@ -77,7 +78,7 @@ struct reading {
     struct opening *opening;
     const char *where;
     struct report *report;
-    struct dicom_doubts *doubts; /* of the beam being read */
+    struct dicom_doubts *doubts; /* doubts about the current beam */
 };
 
 /* ---- a beam ----------------------------------------------------------------------------------------------------- */
@@ -89,7 +90,7 @@ static bool left_out(const struct reading *reading, const struct beam *beam, con
     return false;
 }
 
-/* Of the setup the beam refers to; the only one there is when it refers to none. */
+/* Patient position of the setup that the beam refers to; without a reference, that of the only setup. */
 static enum patient_position position_of(const struct reading *reading, const struct dicom_item *beam_item,
                                          const struct beam *beam)
 {
@@ -155,7 +156,7 @@ static void read_words(const struct reading *reading, const struct dicom_item *i
     }
 }
 
-/* What the control points say as they go by; each inherits what it does not say from the one before. */
+/* The state of a beam as control points go by: a control point inherits every value it does not give. */
 struct course {
     struct beam_angles angles;
     double collimator_deg;
@@ -165,7 +166,7 @@ struct course {
     char direction[8];
 };
 
-/* One beyond a whole turn is taken without its whole turns, and said. false: there is none that is a number. */
+/* Reads an angle in degrees. More than a whole turn is reduced and reported. Returns false if there is no number. */
 static bool read_angle(const struct reading *reading, const struct dicom_item *item, uint32_t tag, const char *name,
                        double *deg)
 {
@@ -181,7 +182,7 @@ static bool read_angle(const struct reading *reading, const struct dicom_item *i
     return true;
 }
 
-/* false: none, or one that cannot be, and said so. */
+/* Reads the isocentre, patient LPS. Returns false if it is absent, or out of range, which is reported. */
 static bool read_isocentre(const struct reading *reading, const struct dicom_item *item, struct vec3 *isocentre)
 {
     double at[3];
@@ -203,7 +204,7 @@ static bool read_isocentre(const struct reading *reading, const struct dicom_ite
     return true;
 }
 
-/* From one control point to the next, by the direction the first of them gives. */
+/* Signed angle from one control point to the next, in the rotation direction given at the first of the two. */
 static double travelled_deg(double from_deg, double to_deg, const char *direction)
 {
     double clockwise = fmod(to_deg - from_deg, 360);
@@ -212,7 +213,7 @@ static double travelled_deg(double from_deg, double to_deg, const char *directio
         return clockwise;
     if (strcmp(direction, "CC") == 0)
         return clockwise > 0 ? clockwise - 360 : 0;
-    return clockwise > 180 ? clockwise - 360 : clockwise; /* no direction: the shorter way */
+    return clockwise > 180 ? clockwise - 360 : clockwise; /* no direction given: the shorter way */
 }
 
 static void read_control_point(const struct reading *reading, struct course *course, const struct dicom_item *item,
@@ -248,7 +249,7 @@ static void read_control_point(const struct reading *reading, struct course *cou
                     course->direction);
 }
 
-/* The collimator's axes in the patient, as the first control point has them. */
+/* Sets the collimator axes in the patient by the first control point. */
 static void place_collimator(struct beam_delivery *d, const struct course *course)
 {
     const struct beam_angles *angles = &course->angles;
@@ -281,7 +282,7 @@ static void report_course(const struct reading *reading, const struct beam *beam
             beam->name, d->gantry_deg, d->gantry_stop_deg, d->n_control_points);
 }
 
-/* false without err: left out. */
+/* Reads one beam. Returns false without setting err for a beam that is reported and left out. */
 static bool read_beam(const struct reading *reading, const struct dicom_item *item, size_t index, bool is_ion,
                       struct beam *beam, struct error *err)
 {
@@ -316,7 +317,7 @@ static bool read_beam(const struct reading *reading, const struct dicom_item *it
     if (!course.has_isocentre)
         return left_out(reading, beam, "has no isocentre, so nothing says where it is in the patient");
     beam->target_lps_mm = course.isocentre_lps_mm;
-    /* z of the collimator's system points to the source */
+    /* the z axis of the collimator system points to the source */
     beam->entry_lps_mm =
         vec3_add(beam->target_lps_mm, vec3_scale(vec3_cross(d->collimator_x_lps, d->collimator_y_lps), d->sad_mm));
     d->gantry_stop_deg = course.angles.gantry_deg;
@@ -373,7 +374,7 @@ static bool read_beams(const struct reading *reading, struct error *err)
     return true;
 }
 
-/* Dose and meterset of one beam of a fraction group. false: the plan has no beam of that number. */
+/* Reads dose and meterset of one beam in a fraction group. Returns false if the plan has no beam of that number. */
 static bool read_reference(const struct reading *reading, const struct dicom_item *item, int64_t number,
                            int64_t n_fractions)
 {
@@ -392,7 +393,7 @@ static bool read_reference(const struct reading *reading, const struct dicom_ite
     return is_known;
 }
 
-/* Whether the plan names a beam of that number, shown or not. */
+/* Returns true if the plan has a beam of that number, also one that is left out. */
 static bool has_beam_number(const struct reading *reading, int64_t number)
 {
     for (int kind = 0; kind < 2; kind++) {
@@ -409,7 +410,7 @@ static bool has_beam_number(const struct reading *reading, int64_t number)
     return false;
 }
 
-/* Meterset and dose of each beam, by fraction group; the first group that has the beam counts. */
+/* Reads meterset and dose of each beam from the fraction groups; the first group with the beam counts. */
 static void read_fractions(const struct reading *reading)
 {
     struct rtplan *plan = reading->plan;

@@ -1,3 +1,4 @@
+/* Computes the field opening from jaws, leaves, blocks and applicator, in the plane of the isocentre. */
 #include "core/formats/dicom/dicom_rtplan_opening.h"
 
 #include <stdio.h>
@@ -22,10 +23,11 @@ enum {
     ION_BLOCK_SEQUENCE = DICOM_TAG(0x300a, 0x0436)
 };
 enum { MOST_BLOCK_POINTS = 5000, LEAST_ROUND_POINTS = 12 };
-#define ROUND_SHARE 0.02 /* a block whose points are this near to a circle is one */
-#define WIDE_OPEN_MM 1e4 /* a side that nothing closes */
+#define ROUND_SHARE \
+    0.02 /* share of the radius by which the points of a block may miss a circle and still count as round */
+#define WIDE_OPEN_MM 1e4 /* coordinate of a side that no device limits */
 
-/* A side of a rectangle that may be open. */
+/* A rectangle; a side that no device limits is at WIDE_OPEN_MM. */
 struct rectangle {
     double x[2], y[2];
 };
@@ -52,14 +54,14 @@ static bool is_leaves(const struct opening_device *device)
     return strncmp(device->type, "MLC", 3) == 0;
 }
 
-/* Along which axis the jaws or leaves move: the last letter of "X", "ASYMY", "MLCX". */
+/* The direction of movement is the last letter of the type: "X", "ASYMY", "MLCX". */
 static bool moves_along_x(const struct opening_device *device)
 {
     size_t n = strlen(device->type);
     return n > 0 && device->type[n - 1] == 'X';
 }
 
-#define CLOSED_MM 1.0 /* closed leaves may be given a little across each other */
+#define CLOSED_MM 1.0 /* leaves that overlap by up to this count as closed */
 
 static bool are_within(const double *values, size_t n, double most, size_t *which)
 {
@@ -80,7 +82,7 @@ static bool is_known_type(const char *type)
     return false;
 }
 
-/* Boundaries of leaves: one more than pairs, each further than the one before. */
+/* Reads the n_pairs + 1 boundaries between leaves, which must increase. */
 static bool read_boundaries(struct opening *opening, struct opening_device *device, const struct dicom_item *item,
                             int64_t n_pairs)
 {
@@ -140,8 +142,8 @@ static bool add_device(struct opening *opening, const struct dicom_item *item, s
     return true;
 }
 
-/* Area, extents and, for a block whose points lie on a circle, the diameter. Coordinates are in the plane of the
- * isocentre. */
+/* Adds the outline of a block: area, extents and, if its points are on a circle, the diameter. xy in mm, in the plane
+ * of the isocentre. */
 static void add_block(struct opening *opening, const double *xy, size_t n)
 {
     double doubled = 0, sum_x = 0, sum_y = 0, radius = 0;
@@ -227,7 +229,7 @@ bool opening_init(struct opening *opening, const struct dicom_item *beam, struct
     return true;
 }
 
-/* The positions of one device at one control point; false: they cannot be used. */
+/* Checks the positions of one device at one control point. Returns false, with a doubt, if they cannot be used. */
 static bool check_positions(struct opening *opening, const struct opening_device *device, const double *mm, size_t n,
                             size_t number)
 {
@@ -279,7 +281,7 @@ void opening_move(struct opening *opening, const struct dicom_item *control_poin
     }
 }
 
-/* What the jaws leave; false when there are none for a direction. */
+/* The opening between the jaws; has_x and has_y are false for a direction without jaws. */
 static struct rectangle jaws_of(const struct opening *opening, bool *has_x, bool *has_y)
 {
     struct rectangle jaws = everything();
@@ -295,7 +297,7 @@ static struct rectangle jaws_of(const struct opening *opening, bool *has_x, bool
     return jaws;
 }
 
-/* What the leaves leave of the jaws' opening: its hull and its area. */
+/* The hull and the area of what the leaves leave open inside the jaws. */
 static struct rectangle open_between_leaves(const struct opening_device *device, const struct rectangle *jaws,
                                             double *mm2)
 {
@@ -317,7 +319,7 @@ static struct rectangle open_between_leaves(const struct opening_device *device,
     return hull;
 }
 
-/* As it stands: false when it is shut, or nothing says what it is. */
+/* The current opening. Returns false if it is closed, or if no device says what it is. */
 static bool opening_now(const struct opening *opening, struct rectangle *open, double *cm2)
 {
     bool has_x, has_y;

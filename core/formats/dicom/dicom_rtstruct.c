@@ -1,3 +1,4 @@
+/* Reads RT Structure Set objects: names, colours and contours, joined by ROI number. */
 #include "core/formats/dicom/dicom_rtstruct.h"
 
 #include <stdio.h>
@@ -35,10 +36,10 @@ enum {
     ROI_KIND = DICOM_TAG(0x3006, 0x00a4)
 };
 
-/* One ROI while it is read, with what is counted for the report. */
+/* One ROI while it is read, with counts for the report. */
 struct reading_roi {
     struct rtstruct_roi roi;
-    size_t n_points_alone, n_open; /* contours that enclose nothing */
+    size_t n_points_alone, n_open; /* contours of a single point, and open ones: they enclose nothing */
     size_t n_miscounted, n_uneven;
     bool is_unnamed;
 };
@@ -49,7 +50,7 @@ struct reading {
     struct report *report;
     struct reading_roi *rois;
     size_t n_rois;
-    double *values; /* of one contour */
+    double *values; /* the numbers of the current contour */
     size_t room;
     uint64_t n_points, n_contours;
 };
@@ -116,7 +117,7 @@ static void read_kinds(struct reading *reading)
     }
 }
 
-/* All numbers of one contour into reading->values. Returns how many; SIZE_MAX when there is no room. */
+/* Reads all numbers of one contour into reading->values. Returns how many; SIZE_MAX when there is no memory. */
 static size_t read_values(struct reading *reading, const struct dicom_item *item, struct error *err)
 {
     size_t n = dicom_numbers(item, CONTOUR_DATA, reading->values, reading->room);
@@ -244,7 +245,7 @@ static bool read_all_contours(struct reading *reading, struct error *err)
     return true;
 }
 
-/* Adds ", name" until the text is full. */
+/* Appends ", name" while there is room. */
 static void add_name(char *text, size_t size, const char *name)
 {
     size_t length = strlen(text), more = strlen(name) + 2;
@@ -303,7 +304,7 @@ static void find_references(struct rtstruct *set, const struct dicom_item *root,
         dicom_text(root, FRAME_UID, frame_uid, frame_size);
 }
 
-/* Moves what was read over. */
+/* Moves the regions that were read into the set. */
 static struct rtstruct *made_set(struct reading *reading, struct rtstruct *set, struct error *err)
 {
     set->rois = mem_array(reading->n_rois, sizeof *set->rois, UINT64_MAX, err);
@@ -334,7 +335,7 @@ struct rtstruct *rtstruct_read(const struct dicom_file *file, const char *where,
         error_set(err, ERROR_FORMAT, "%s: no Structure Set ROI Sequence (3006,0020)", where);
         return NULL;
     }
-    dicom_numbers_report(file, CONTOUR_DATA, where, report); /* of contours it is counted */
+    dicom_numbers_report(file, CONTOUR_DATA, where, report); /* contour data is counted separately */
     struct reading reading = { .file = file, .where = where, .report = report };
     reading.rois = mem_new(RTSTRUCT_MAX_ROIS * sizeof *reading.rois);
     struct rtstruct *set = mem_new(sizeof *set), *made = NULL;

@@ -1,3 +1,5 @@
+/* Reads DICOM Segmentation objects: segments, their frames, and the packing of overlapping segments into label
+ * layers. */
 #include "core/formats/dicom/dicom_seg.h"
 
 #include <math.h>
@@ -31,7 +33,7 @@ enum {
 
 struct segment {
     int64_t number;
-    struct label_name name; /* without its value */
+    struct label_name name; /* without its label value */
     size_t n_frames;
 };
 
@@ -44,13 +46,13 @@ struct reading {
     size_t n_segments;
     struct seg_grid grid;
     bool is_fractional;
-    uint32_t threshold;  /* fractional: least value inside */
-    const uint8_t *bits; /* binary: of all frames, one behind the other */
+    uint32_t threshold;  /* fractional: smallest value that counts as inside */
+    const uint8_t *bits; /* binary: the bits of all frames, without gaps between them */
     bool is_swapped;
     uint8_t *cells;             /* fractional: one frame */
-    struct dicom_pixels pixels; /* fractional */
+    struct dicom_pixels pixels; /* of a fractional segmentation */
     struct dicom_coded coded;
-    size_t n_repeated; /* frames of a segment where it has another one */
+    size_t n_repeated; /* frames at a plane where their segment already has one */
 };
 
 /* ---- segments --------------------------------------------------------------------------------------------------- */
@@ -71,8 +73,9 @@ void dicom_seg_color(const uint16_t lab[3], uint8_t rgb[3])
     double l = lab[0] / 65535.0 * 100, a = lab[1] / 65535.0 * 255 - 128, b = lab[2] / 65535.0 * 255 - 128,
            y = (l + 16) / 116;
     double xyz[3] = { 0.96422 * lab_inverse(y + a / 500), lab_inverse(y),
-                      0.82521 * lab_inverse(y - b / 200) };                       /* white D50 */
-    static const double from_xyz[3][3] = { { 3.1338561, -1.6168667, -0.4906146 }, /* D50 to D65 and to sRGB in one */
+                      0.82521 * lab_inverse(y - b / 200) }; /* white point D50 */
+    static const double from_xyz[3][3] = { { 3.1338561, -1.6168667,
+                                             -0.4906146 }, /* D50 to D65 and to linear sRGB in one matrix */
                                            { -0.9787684, 1.9161415, 0.0334540 },
                                            { 0.0719453, -0.2289914, 1.4052427 } };
     for (int i = 0; i < 3; i++) {
@@ -168,7 +171,7 @@ static bool look_at_bits(struct reading *reading, struct error *err)
     uint64_t needed = ((uint64_t)grid->rows * grid->columns * grid->n_frames + 7) / 8, size = 0;
     reading->bits = dicom_pixels_bytes(reading->file, &size, &reading->is_swapped);
     if (reading->is_swapped)
-        needed += needed % 2; /* the last byte lies in the upper half of a word */
+        needed += needed % 2; /* with words, the last byte may be in the upper half */
     if (!reading->bits)
         return error_set(err, ERROR_UNSUPPORTED,
                          "%s: its bits are compressed (%s), or not there; only plain ones are read", reading->where,
@@ -224,8 +227,8 @@ static bool read_pixels_module(struct reading *reading, struct error *err)
     return reading->is_fractional ? look_at_fractions(reading, err) : look_at_bits(reading, err);
 }
 
-/* A row of bits into a row of a mask. at: of its first pixel among all frames; the lowest bit of a byte is the first.
- * PS3.5 8.1.1. */
+/* Adds a row of n bits to a row of a mask. at: index of its first pixel among all frames; the lowest bit of a byte
+ * comes first (DICOM PS3.5 8.1.1). */
 static void add_bits(const struct reading *reading, uint64_t at, uint32_t n, uint64_t *row)
 {
     for (uint32_t i = 0; i < n;) {
@@ -268,8 +271,7 @@ static struct mask *read_mask(struct reading *reading, const struct segment *seg
 {
     const struct seg_grid *grid = &reading->grid;
     struct mask *mask = mask_create_empty(grid->grid.size, &grid->grid.lps_mm_from_ijk, err);
-    uint32_t low_k = grid->grid.size[2],
-             end_k = 0; /* the reach of the segment: nothing else of the mask is looked at */
+    uint32_t low_k = grid->grid.size[2], end_k = 0; /* extent of the segment; the rest of the mask is not looked at */
     bool *has_plane = mask ? mem_array(grid->grid.size[2], sizeof *has_plane, UINT32_MAX, err) : NULL,
          is_read = has_plane != NULL;
     for (uint32_t f = 0; is_read && f < grid->n_frames; f++) {
@@ -302,7 +304,7 @@ static bool add_name(struct label_names *names, const struct label_name *name, u
     return true;
 }
 
-/* Into the first layer where it overlaps nothing. */
+/* Adds the mask to the first layer that it does not overlap. */
 static bool add_mask(const struct reading *reading, const struct mask *mask, const struct label_name *name,
                      struct nrrd_layers *layers, struct error *err)
 {
@@ -360,7 +362,7 @@ static bool fill_layers(struct reading *reading, const char *only, struct nrrd_l
     return is_filled;
 }
 
-/* Counts each segment's frames; those of no segment are said, and not used. */
+/* Counts the frames of each segment; frames of unknown segments are reported and not used. */
 static void assign_frames(struct reading *reading)
 {
     size_t n_unknown = 0;

@@ -1,3 +1,4 @@
+/* Finds the grid that the frames of a segmentation span, and the plane of each frame. */
 #include "core/formats/dicom/dicom_seg_grid.h"
 
 #include <math.h>
@@ -12,13 +13,13 @@
 #define TAG_REFERENCED_SEGMENT DICOM_TAG(0x0062, 0x000B)
 enum {
     MARGIN = 1
-}; /* empty planes at either end: writers leave out empty frames, so the end of the frames cuts nothing */
-#define MOST_SHIFT 0.5 /* of a pixel, sideways against a straight line of planes */
+}; /* empty planes at either end: writers omit empty frames, so the outermost frames are not the border of the scan */
+#define MOST_SHIFT 0.5 /* in pixels: how far a plane may lie beside the straight line through the planes */
 
 struct placing {
     struct seg_grid *grid;
     const char *where;
-    struct dicom_slice *slices; /* of the frames that are used: their frame and place */
+    struct dicom_slice *slices; /* the frames used: number and position */
     size_t n_slices;
     struct dicom_frame_place first;
     struct vec3 axes[3];
@@ -84,7 +85,7 @@ static int by_place(const void *a, const void *b)
     return left < right ? -1 : left > right;
 }
 
-/* How far the worst frame lies from a plane of a whole number, in planes. */
+/* Largest distance of a frame from the nearest whole plane, in planes. */
 static double worst_place(const struct placing *placing, double pitch_mm)
 {
     double worst = 0;
@@ -95,7 +96,7 @@ static double worst_place(const struct placing *placing, double pitch_mm)
     return worst;
 }
 
-/* Says where the distance of planes is not the file's: with one plane nothing else tells how thick it is. */
+/* Reports a plane distance that is not the file's. With one plane, only the file can tell its thickness. */
 static void report_pitch(const struct placing *placing, size_t n_places, double pitch_mm, struct report *report)
 {
     const struct dicom_frame_place *first = &placing->first;
@@ -112,8 +113,8 @@ static void report_pitch(const struct placing *placing, size_t n_places, double 
                    first->thickness_mm, pitch_mm, pitch_mm);
 }
 
-/* Distance of planes and their number; false: uneven, or too many. Frames nearer than DICOM_SAME_PLACE_MM to the last
- * place share it. */
+/* Finds plane distance and number of planes; false if frames are uneven or the planes too many. A frame nearer than
+ * DICOM_SAME_PLACE_MM to the last plane found shares it. */
 static bool find_pitch(const struct placing *placing, double *pitch_mm, double *n_planes, struct report *report,
                        struct error *err)
 {
@@ -152,7 +153,8 @@ static bool find_pitch(const struct placing *placing, double *pitch_mm, double *
     return true;
 }
 
-/* Planes need not be stacked along their normal (a tilted gantry), but on a straight line. */
+/* Finds the vector from plane to plane. Planes need not be stacked along their normal (tilted gantry), but on a
+ * straight line. */
 static bool find_step(const struct placing *placing, double pitch_mm, struct vec3 *step, struct error *err)
 {
     const struct dicom_slice *slices = placing->slices;
@@ -176,7 +178,7 @@ static bool find_step(const struct placing *placing, double pitch_mm, struct vec
     return true;
 }
 
-/* Each frame's plane: the first place is plane MARGIN of a grid of n_planes between its margins. */
+/* Assigns each frame its plane: the first position is plane MARGIN; n_planes lie between the two margins. */
 static bool place_frames(struct placing *placing, double pitch_mm, double n_planes, struct error *err)
 {
     for (size_t i = 0; i < placing->n_slices; i++) {

@@ -1,5 +1,5 @@
 #pragma once
-/* Inside the reader of segmentations: where frames lie, and the grid they make. Reads no pixels. */
+/* Inside the segmentation reader: the positions of the frames, and the grid they span. Reads no pixels. */
 #include "core/formats/dicom/dicom_file.h"
 #include "core/report/report.h"
 #include "core/volume/volume.h"
@@ -8,19 +8,21 @@
 
 struct seg_frame {
     int64_t segment;
-    uint32_t plane; /* of the grid */
+    uint32_t plane; /* index in the grid */
     bool is_used;
 };
 
 struct seg_grid {
-    uint32_t rows, columns, n_frames; /* filled by the caller */
-    struct seg_frame *frames;         /* n_frames of them; freed by the caller, after a failure too */
+    uint32_t rows, columns, n_frames; /* set by the caller */
+    struct seg_frame *frames;         /* n_frames; the caller frees it, also after a failure */
     struct grid grid;
 };
 
-/* Planes at the distance the file gives (0018,0088) where all frames fit to it, else at the smallest distance of two
- * frames. One empty plane lies before the first frame and one behind the last. Frames of another orientation or pixel
- * size than the first are left out, and said so. errors ERROR_FORMAT, ERROR_UNSUPPORTED frames on uneven planes or not
- * behind each other, ERROR_LIMIT, ERROR_RANGE, ERROR_MEMORY */
+/* Finds the plane distance: that of the file (0018,0088) if all frames fit to it, else the smallest distance between
+ * two frames. The grid has one empty plane before the first frame and one after the last. Frames with another
+ * orientation or pixel size than the first are left out and reported.
+ *
+ *   errors  ERROR_UNSUPPORTED frames at uneven distances, or not on a straight line; ERROR_FORMAT; ERROR_LIMIT;
+ *           ERROR_RANGE; ERROR_MEMORY */
 NODISCARD bool seg_grid_find(struct seg_grid *grid, const struct dicom_item *root, const char *where,
                              struct report *report, struct error *err);

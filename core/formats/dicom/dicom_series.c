@@ -1,3 +1,4 @@
+/* Reads the slices of a stack into one volume: voxel type, rescale, interpolation, and the report. */
 #include "core/formats/dicom/dicom_series.h"
 
 #include <math.h>
@@ -14,13 +15,13 @@
 
 _Static_assert((int)DICOM_MAX_SIDE == (int)VOLUME_MAX_SIDE, "a picture that is read fits into a volume");
 
-/* Slices whose JPEG 2000 codestream says something, and something else than their elements. */
+/* Counts slices whose JPEG 2000 codestream contradicts their elements. */
 struct coded {
     size_t n_unsaid, n_other_sign, n_other_bits;
-    uint32_t n_bits; /* in the last codestream with other bits */
+    uint32_t n_bits; /* number of bits in the last codestream that differs */
 };
 
-/* One stack being read. */
+/* A stack while it is read. */
 struct series {
     const struct folder *folder;
     const struct dicom_index *index;
@@ -30,16 +31,16 @@ struct series {
     size_t n_slices;
     struct dicom_plane plane;
     enum voxel_type type;
-    bool is_uniform; /* all slices have one type and scale: cells are kept as stored */
+    bool is_uniform; /* all slices share one type and rescale, so cells are kept as stored */
     size_t plane_cells;
-    uint8_t *cells;     /* of all slices, [n_slices][plane_cells] of type */
-    struct bytes whole; /* of the one file that holds all frames, when it must be decoded */
-    int32_t range[2];   /* of integer cells */
+    uint8_t *cells;     /* cells of all slices, [n_slices][plane_cells] of type */
+    struct bytes whole; /* the multi-frame file, when its frames must be decoded from memory */
+    int32_t range[2];   /* smallest and largest integer cell */
     size_t n_done;
     struct coded coded;
     atomic_size_t next;
     atomic_bool is_failed;
-    pthread_mutex_t lock; /* of n_done, range, coded and the error */
+    pthread_mutex_t lock; /* guards n_done, range, coded and the error */
     struct error error;
 };
 
@@ -50,10 +51,10 @@ static const struct dicom_object *object_of(const struct series *series, const s
 
 /* What a thread keeps from one slice to the next. */
 struct reader {
-    struct dicom_file *file; /* decoded from */
-    size_t object;           /* that file is of; SIZE_MAX: none */
-    struct bytes bytes;      /* it was parsed from, unless the series holds them */
-    uint8_t *scratch;        /* one plane as stored */
+    struct dicom_file *file; /* the file that slices are decoded from */
+    size_t object;           /* index of file's object; SIZE_MAX: none */
+    struct bytes bytes;      /* the bytes of file, unless series->whole holds them */
+    uint8_t *scratch;        /* one plane of stored values */
     struct coded coded;
     int32_t range[2];
 };
@@ -122,7 +123,7 @@ static void report_coded(const struct series *series, struct report *report)
                    pixels->bits_stored, coded->n_other_bits, series->n_slices, coded->n_bits);
 }
 
-/* The stored values of a slice: straight from their place in the file, or decoded. */
+/* Reads the stored values of a slice: native ones straight from the file, compressed ones by decoding. */
 static bool read_stored(struct series *series, struct reader *reader, const struct dicom_slice *slice, void *out,
                         struct error *err)
 {
@@ -171,7 +172,7 @@ static void convert(const struct series *series, const struct dicom_slice *slice
 {
     const struct dicom_pixels *pixels = &object_of(series, slice)->image->pixels;
     double slope = series->is_uniform ? 1 : slice->slope, offset = series->is_uniform ? 0 : slice->offset;
-    if (series->type == VOXEL_I16) { /* signed bytes */
+    if (series->type == VOXEL_I16) { /* 8 bits signed */
         int16_t *to = out;
         for (size_t i = 0; i < series->plane_cells; i++)
             to[i] = ((const int8_t *)stored)[i];
@@ -248,7 +249,7 @@ static void read_part(void *context, int part, int n_parts)
     free(reader.scratch);
 }
 
-/* Slices of a stack of files: all of it is in the index. */
+/* Fills the slices of a stack of single-frame files, from the index alone. */
 static void slices_of_files(struct series *series)
 {
     for (size_t i = 0; i < series->stack->n_objects; i++) {
@@ -272,7 +273,7 @@ static void slices_of_files(struct series *series)
         series->slices[i].along_mm = vec3_dot(normal, series->slices[i].position_lps_mm);
 }
 
-/* Opens the head of one object; NULL on failure. bytes: what it stands in, freed by the caller after the file. */
+/* Opens the head of one object; NULL on failure. bytes holds the file's bytes; the caller frees it after the file. */
 static struct dicom_file *open_head(const struct series *series, size_t object, struct bytes *bytes, struct error *err)
 {
     const struct dicom_object *about = &series->index->objects[object];
@@ -304,7 +305,7 @@ static void read_facts(const struct series *series, const struct dicom_file *fil
     *facts = (struct dicom_series_facts){ 0 };
     if (!dicom_text(root, TAG_RESCALE_TYPE, facts->unit, sizeof facts->unit))
         (void)dicom_text(root, TAG_UNITS, facts->unit, sizeof facts->unit);
-    if (strcmp(facts->unit, "US") == 0) /* the standard's word for unspecified */
+    if (strcmp(facts->unit, "US") == 0) /* "US" is the standard's word for unspecified */
         facts->unit[0] = 0;
     if (!facts->unit[0] && strcmp(series->stack->modality, "CT") == 0)
         snprintf(facts->unit, sizeof facts->unit, "HU");
@@ -315,7 +316,7 @@ static void read_facts(const struct series *series, const struct dicom_file *fil
         facts_from(dicom_item_at(shared, TAG_FRAME_WINDOWS, 0), facts);
 }
 
-/* Slices and facts, from the index or from the head of the one file that holds the frames. */
+/* Fills slices and facts from the index, or from the head of a multi-frame file. */
 static bool find_slices(struct series *series, struct dicom_series_facts *facts, struct report *report,
                         struct error *err)
 {
@@ -340,13 +341,13 @@ static bool find_slices(struct series *series, struct dicom_series_facts *facts,
         read_facts(series, file, facts);
     dicom_file_destroy(file);
     if (is_found && !first->image->has_place && !first->image->has_stored)
-        series->whole = bytes; /* the frames are decoded from it */
+        series->whole = bytes; /* kept: frames are decoded from it */
     else
         bytes_free(&bytes);
     return is_found;
 }
 
-/* Scales that cannot be: a slope of nothing makes all values one. */
+/* Reports impossible rescales: a slope of 0 makes all values equal. */
 static void check_scales(struct series *series, struct report *report)
 {
     size_t n = 0;
@@ -365,7 +366,7 @@ static void check_scales(struct series *series, struct report *report)
                    n, series->n_slices);
 }
 
-/* The type that holds all slices, and whether they share one scale. */
+/* Chooses a voxel type that holds all slices, and finds out whether they share one rescale. */
 static void choose_type(struct series *series, struct dicom_series_facts *facts, struct report *report)
 {
     const struct dicom_slice *first = &series->slices[0];

@@ -1,3 +1,4 @@
+/* Lays the slices of a stack out on an even grid, and interpolates where slices are uneven or missing. */
 #include "core/formats/dicom/dicom_slices.h"
 
 #include <math.h>
@@ -33,8 +34,8 @@ static int by_value(const void *a, const void *b)
     return left < right ? -1 : left > right;
 }
 
-/* The smallest usual distance: a quarter of all distances are no larger. A few slices that lie closer do not count, and
- * with thin slices here and thick ones there it is the thin ones'. */
+/* The smallest usual distance: the first quartile of all distances. It ignores a few slices that are closer than usual;
+ * in a stack of thin and thick slices it is the distance of the thin ones. */
 static double usual_distance(const struct dicom_slice *slices, size_t n, double *least, double *most, struct error *err)
 {
     double *distances = mem_array(n - 1, sizeof *distances, UINT32_MAX, err);
@@ -50,7 +51,7 @@ static double usual_distance(const struct dicom_slice *slices, size_t n, double 
     return usual;
 }
 
-/* Largest distance of a slice from its place in a row of even ones, in pitches. */
+/* Largest distance of a slice from its even position, as a share of the pitch. */
 static double worst_unevenness(const struct dicom_slice *slices, size_t n, double pitch_mm)
 {
     double worst = 0;
@@ -59,7 +60,7 @@ static double worst_unevenness(const struct dicom_slice *slices, size_t n, doubl
     return worst;
 }
 
-/* How far the first pixels lie from the straight line between those of the outermost slices. */
+/* Largest distance of a slice's first pixel from the straight line between those of the outermost slices. */
 static double worst_shift_mm(const struct dicom_slice *slices, size_t n, struct vec3 per_mm)
 {
     double worst = 0;
@@ -71,8 +72,7 @@ static double worst_shift_mm(const struct dicom_slice *slices, size_t n, struct 
     return worst;
 }
 
-/* Each plane of an even row from the slices around it; counts those that no slice lies in, and slices that lie between
- * planes. */
+/* Sets each plane from the slices around it. Counts planes without a slice, and slices between planes. */
 static void interpolate(const struct dicom_slice *slices, size_t n, double pitch_mm,
                         struct dicom_layout_of_slices *layout, size_t *n_made, size_t *n_between)
 {
@@ -103,7 +103,7 @@ static void interpolate(const struct dicom_slice *slices, size_t n, double pitch
     }
 }
 
-/* Where slices are missing, for the report: "at 12.0, 14.0, ... mm". */
+/* Lists where slices are missing, for the report: "at 12.0, 14.0, ... mm". */
 static void list_gaps(const struct dicom_layout_of_slices *layout, const struct dicom_slice *slices, double pitch_mm,
                       char *out, size_t size)
 {
@@ -119,7 +119,7 @@ static void list_gaps(const struct dicom_layout_of_slices *layout, const struct 
     }
 }
 
-/* Slices at uneven places, or with some missing: even planes of the smallest usual distance. */
+/* Lays out slices that are uneven, or some missing: even planes at the smallest usual distance. */
 static bool lay_out_uneven(const struct dicom_slice *slices, size_t n, const char *where, double *pitch_mm,
                            struct dicom_layout_of_slices *layout, struct report *report, struct error *err)
 {

@@ -1,67 +1,73 @@
 #pragma once
-/* Inside core/formats/dicom: where the slices of a stack lie, and the grid that they make. Reads no pixels. */
+/* Inside core/formats/dicom: the positions of the slices of a stack, and the grid they form. Reads no pixels. */
 #include "core/formats/dicom/dicom_object.h"
 #include "core/report/report.h"
 #include "core/volume/volume.h"
 
-/* Share of the distance between slices by which a slice may miss an even place and still count as even. */
+/* Share of the slice distance by which a slice may miss its even position and still count as even. */
 #define DICOM_EVEN 0.05
 
-/* One slice: a picture, or a frame of one. */
+/* One slice: a single-frame image, or one frame of a multi-frame image. */
 struct dicom_slice {
     size_t object; /* in index->objects */
     uint32_t frame;
     struct vec3 position_lps_mm;
-    double along_mm; /* along the normal */
+    double along_mm; /* position along the slice normal */
     double slope, offset;
 };
 
-/* What all slices of a stack have in common. */
+/* Geometry shared by all slices of a stack. */
 struct dicom_plane {
-    double row[3], column[3]; /* as given */
+    double row[3], column[3]; /* direction cosines, as in the file */
     double spacing_mm[2];     /* between rows, between columns */
-    double thickness_mm;      /* 0: not said */
+    double thickness_mm;      /* slice thickness; 0: not given */
     uint32_t rows, columns;
 };
 
-/* How slices become planes of a grid: even slices one each, others interpolated. */
+/* The slices from which one plane of the grid is made: one slice, or two that are interpolated. */
 struct dicom_plane_source {
-    uint32_t a, b; /* slices; b == a for one that is taken as it is */
-    double weight; /* of b */
+    uint32_t a, b; /* slice numbers; b == a for a plane that is a slice */
+    double weight; /* weight of b, 0 to 1 */
 };
 struct dicom_layout_of_slices {
     struct grid grid;
-    struct dicom_plane_source *planes; /* grid.size[2] of them; freed by the caller */
+    struct dicom_plane_source *planes; /* grid.size[2] planes; the caller frees it */
     bool is_exact;                     /* plane k is slice k */
 };
 
-/* slices: sorted by along_mm, each at a place of its own; n >= 1. where: for the report.
- * errors ERROR_FORMAT directions that span no plane, ERROR_UNSUPPORTED slices that do not lie on a line, ERROR_LIMIT,
- * ERROR_RANGE, ERROR_MEMORY */
+/* Chooses the grid: even slices become one plane each, uneven or missing ones are interpolated.
+ *
+ *   slices  sorted by along_mm, no two at the same position; n >= 1
+ *   where   for the report
+ *   errors  ERROR_FORMAT directions that span no plane; ERROR_UNSUPPORTED slices that are not on a straight line;
+ *           ERROR_LIMIT; ERROR_RANGE; ERROR_MEMORY */
 NODISCARD bool dicom_slices_lay_out(const struct dicom_slice *slices, size_t n, const struct dicom_plane *plane,
                                     const char *where, struct dicom_layout_of_slices *layout, struct report *report,
                                     struct error *err);
 
-/* Where a frame of a file with many lies, by its own groups and those that all share. */
+/* Geometry of one frame of a multi-frame file, from its own and the shared functional groups. */
 struct dicom_frame_place {
     double position_mm[3], cosines[6];
     double spacing_mm[2];            /* between rows, between columns */
-    double thickness_mm, between_mm; /* 0: not said; between: of neighbouring slices */
+    double thickness_mm, between_mm; /* 0: not given; between_mm: Spacing Between Slices */
 };
-/* Place and scale of a frame; false when it does not say where it lies or how large its pixels are, or a number there
- * is none. */
+/* Reads geometry and rescale of a frame. Returns false if position, orientation or pixel size is absent or malformed,
+ * or another number is malformed. */
 bool dicom_frame_read(const struct dicom_item *frame, const struct dicom_item *shared, struct dicom_frame_place *place,
                       struct dicom_slice *slice);
-bool dicom_frames_fit(const struct dicom_frame_place *a,
-                      const struct dicom_frame_place *b); /* orientation and pixel size */
+/* Returns true if orientation and pixel size are equal. */
+bool dicom_frames_fit(const struct dicom_frame_place *a, const struct dicom_frame_place *b);
 
-/* The slices of a file with many frames: place and scale of each from its functional groups. Frames of another
- * orientation, size or time than the first are left out, and said so. Takes the head of the file. n       of slices
- * found; at most n_frames errors  ERROR_FORMAT */
+/* Lists the slices of a multi-frame file: geometry and rescale of each frame from its functional groups. Frames with
+ * another orientation, size or time than the first are left out and reported.
+ *
+ *   file    parsed at least to DICOM_HEAD
+ *   n       number of slices found; at most n_frames
+ *   errors  ERROR_FORMAT */
 NODISCARD bool dicom_frames_find(const struct dicom_file *file, const char *path, size_t object, uint32_t n_frames,
                                  struct dicom_slice *slices, size_t *n, struct dicom_plane *plane,
                                  struct report *report, struct error *err);
-/* Says what the pictures of a stack contradict each other in: sign, bits, unit; of a CT also the scale. */
+/* Reports contradictions between the images of a stack: sign, bits, unit; for a CT also the rescale. */
 void dicom_slices_compare(const struct dicom_index *index, const struct dicom_stack *stack, struct report *report);
-/* Sorts by along_mm and drops what lies where another slice does; returns how many are left. */
+/* Sorts by along_mm and drops every slice at the position of another; returns how many remain. */
 size_t dicom_slices_sort(struct dicom_slice *slices, size_t n, size_t *n_repeated);

@@ -1,3 +1,5 @@
+/* Groups the images of a series into stacks: by size, spacing and orientation, and by what distinguishes images at the
+ * same position (echo, time, ...). */
 #include "core/formats/dicom/dicom_stacks.h"
 
 #include <math.h>
@@ -26,11 +28,11 @@ bool dicom_axes(const double row[3], const double column[3], struct vec3 axes[3]
     return true;
 }
 
-/* One picture on its way into a stack. */
+/* One image of a stack under construction. */
 struct member {
     size_t object;
     const struct dicom_image *image;
-    double along_mm; /* position along the normal */
+    double along_mm; /* position along the slice normal */
 };
 
 struct group {
@@ -44,7 +46,7 @@ static void group_add(struct group *group, struct member member)
         group->room = group->room ? 2 * group->room : 64;
         group->members = realloc(group->members, group->room * sizeof *group->members);
         if (!group->members)
-            abort(); /* as mem_new: 32 bytes for each object that has some hundred already */
+            abort(); /* abort as mem_new does: 32 bytes per object, which already has some hundred */
     }
     group->members[group->n++] = member;
 }
@@ -57,7 +59,7 @@ static bool are_close(const double *a, const double *b, size_t n, double toleran
     return true;
 }
 
-/* Whether two pictures of one series can lie in one grid. */
+/* Returns true if two images of one series fit on one grid. */
 static bool fit_together(const struct dicom_image *a, const struct dicom_image *b)
 {
     return a->has_place && b->has_place && a->pixels.rows == b->pixels.rows && a->pixels.columns == b->pixels.columns &&
@@ -75,7 +77,7 @@ static int by_place(const void *a, const void *b)
     return left->object < right->object ? -1 : 1;
 }
 
-/* Sorts; within one place by number. Returns how many lie where another one does. */
+/* Sorts by position, at equal positions by number. Returns how many images share the position of another. */
 static size_t sort_by_place(struct group *group)
 {
     if (group->n > 1)
@@ -86,7 +88,7 @@ static size_t sort_by_place(struct group *group)
     return n_repeated;
 }
 
-/* What may set pictures of one place apart, as a text for the stack's name. */
+/* The elements that may distinguish images at the same position; their values go into the stack's name. */
 enum trait {
     TRAIT_ECHO,
     TRAIT_ECHO_TIME,
@@ -131,7 +133,7 @@ static void trait_of(const struct dicom_image *image, enum trait trait, char out
     }
 }
 
-enum { MOST_PARTS = 64 }; /* of one group */
+enum { MOST_PARTS = 64 }; /* parts of one group */
 
 struct parts {
     struct group groups[MOST_PARTS];
@@ -146,7 +148,7 @@ static void parts_finish(struct parts *parts)
     parts->n = 0;
 }
 
-/* By one trait: several parts, in none of which a place is taken twice. */
+/* Splits by one trait: into several parts, in none of which two images share a position. */
 static bool part_by_trait(const struct group *group, enum trait trait, struct parts *parts)
 {
     for (size_t i = 0; i < group->n; i++) {
@@ -171,7 +173,8 @@ static bool part_by_trait(const struct group *group, enum trait trait, struct pa
     return true;
 }
 
-/* By order: every place is taken the same number of times, so the first of each make one part, the second another. */
+/* Splits by sequence: if every position is used equally often, the first images of all positions make one part, the
+ * second ones another. */
 static bool part_by_order(const struct group *group, struct parts *parts)
 {
     size_t times = 0;
@@ -241,7 +244,7 @@ static void add_stack(struct dicom_index *index, const struct group *group, cons
     stack->n_bytes = bytes_of(group);
 }
 
-/* One group to stacks: one, or several where places are taken more than once. */
+/* Turns one group into stacks: one, or several where images share positions. */
 static void close_group(struct dicom_index *index, struct group *group, const char *apart, size_t *n_left_out,
                         struct report *report)
 {
@@ -298,7 +301,7 @@ struct grouping {
     size_t n;
 };
 
-/* The group of the same series that the picture fits into, or a new one; NULL when there are too many. */
+/* The group of the same series that the image fits into, or a new one; NULL if there are too many. */
 static struct group *group_for(struct grouping *all, const struct dicom_index *index, size_t object)
 {
     const struct dicom_object *one = &index->objects[object];
@@ -313,7 +316,7 @@ static struct group *group_for(struct grouping *all, const struct dicom_index *i
     return all->n < DICOM_MAX_STACKS ? &all->groups[all->n++] : NULL;
 }
 
-/* What sets pictures of one series apart, for the report. */
+/* Names what distinguishes images of one series, for the report. */
 static void name_difference(const struct dicom_object *a, const struct dicom_object *b, char out[240])
 {
     const struct dicom_image *found = a->image, *expected = b->image;
@@ -339,7 +342,7 @@ static void name_difference(const struct dicom_object *a, const struct dicom_obj
         snprintf(out, 240, "(0008,0060), modality: found %s, expected %s", a->modality, b->modality);
 }
 
-/* A few pictures that do not fit to the many others of their series: one of them may be damaged, and it is missing
+/* Reports a few images that do not fit to the many others of their series: they may be damaged, and are missing
  * there. */
 static void report_stray(const struct grouping *all, const struct dicom_index *index, size_t group,
                          struct report *report)
@@ -360,7 +363,7 @@ static void report_stray(const struct grouping *all, const struct dicom_index *i
                few->n, few->n + most->n, stray->description, difference);
 }
 
-/* "2 of 3": which group of its series this is, so that their names differ; "" when it is alone. */
+/* Which group of its series this is: "2 of 3", so that names differ; "" if it is the only one. */
 static void name_group(const struct grouping *all, const struct dicom_index *index, size_t group, char out[80])
 {
     const char *series = index->objects[all->groups[group].members[0].object].series;

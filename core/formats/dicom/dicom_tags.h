@@ -1,5 +1,5 @@
 #pragma once
-/* Inside core/formats/dicom: the tags of pictures by name. PS3.6. */
+/* Inside core/formats/dicom: names for the tags of images. Source: DICOM PS3.6. */
 #include "core/formats/dicom/dicom_file.h"
 
 #define TAG_IMAGE_TYPE DICOM_TAG(0x0008, 0x0008)

@@ -1,3 +1,4 @@
+// Converts text of any DICOM character set to UTF-8, and decimal strings to numbers.
 #include "core/formats/dicom/dicom_text.hh"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ bool dicom_text_is_ascii(const char *text, size_t size)
 
 namespace {
 
-// Length of the character at p, 0 when it is not UTF-8. RFC 3629, table 3-7 of the Unicode standard.
+// Length of the UTF-8 character at p; 0 if it is not UTF-8. Source: RFC 3629, table 3-7 of the Unicode standard.
 size_t utf8_length(const unsigned char *p, size_t left)
 {
     if (p[0] < 0x80)
@@ -58,8 +59,8 @@ std::string from_latin1(const std::string &text)
     return out;
 }
 
-// Escape sequences of Japanese sets (ISO-IR 6, 14, 87, 159), which DCMTK over the C library's iconv does not know by
-// their own names.
+// Converts the escape sequences of Japanese sets (ISO-IR 6, 14, 87, 159), which DCMTK over the C library's iconv does
+// not know by their own names.
 bool from_iso2022(const std::string &text, std::string &out)
 {
     iconv_t converter = iconv_open("UTF-8", "ISO-2022-JP-2");
@@ -124,8 +125,9 @@ bool dicom_text_put(const std::string &text, char *out, size_t size)
 
 namespace {
 
-// "-123.45" and its like, up to 15 digits: digits and the power of ten are exact, and so is their quotient when it is
-// rounded once. W. D. Clinger, How to Read Floating Point Numbers Accurately, PLDI 1990. false: something else.
+// Converts "-123.45" and the like, up to 15 digits: the digits and the power of ten are exact, so their quotient is
+// rounded once and correct. Returns false for any other form. Source: W. D. Clinger, How to Read Floating Point Numbers
+// Accurately, PLDI 1990.
 bool short_decimal(const char *from, const char *end, double *value)
 {
     static const double tens[] = { 1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15 };
@@ -152,7 +154,8 @@ bool short_decimal(const char *from, const char *end, double *value)
     return true;
 }
 
-// Decimal strings as people write them: blanks around, a leading plus; else not-a-number. Knows no locale.
+// Parses a decimal string as people write them: blanks around it, a leading plus. Malformed: NaN. Independent of the
+// locale.
 double number_from(const char *from, const char *end)
 {
     while (from < end && is_padding(*from))
@@ -165,7 +168,7 @@ double number_from(const char *from, const char *end)
     if (short_decimal(from, end, &value))
         return value;
     auto [stop, error] = std::from_chars(from, end, value);
-    bool is_digits = from < end && (*from == '-' || *from == '.' || (*from >= '0' && *from <= '9')); // not "inf", "nan"
+    bool is_digits = from < end && (*from == '-' || *from == '.' || (*from >= '0' && *from <= '9')); // excludes "inf" and "nan"
     if (stop != end || !is_digits || error != std::errc() || !std::isfinite(value))
         return std::numeric_limits<double>::quiet_NaN();
     return value;

@@ -1,5 +1,5 @@
 #pragma once
-// Values of text elements: characters to UTF-8, digits to numbers. Knows no elements.
+// Converts the values of text elements: characters to UTF-8, digits to numbers. Knows no elements.
 #include <cstddef>
 #include <string>
 
@@ -7,12 +7,15 @@
 
 #include <dcmtk/dcmdata/dcspchrs.h>
 
-// Neither a byte above 127 nor an escape sequence: the same in every character set.
+// Returns true if text has no byte above 127 and no escape sequence, so that it is the same in every character set.
 bool dicom_text_is_ascii(const char *text, size_t size);
-// What cannot be converted by what the file says (converter; nullptr: it says nothing that is known) is taken for UTF-8 when it is that,
-// else for Latin-1: files without a word on their characters are common, and a readable name is better than none.
+// Converts to UTF-8 by the file's character set (converter; nullptr: none, or an unknown one). Text that cannot be
+// converted is taken as UTF-8 if it is valid UTF-8, else as Latin-1: files without a character set are common, and a
+// readable name is better than none.
 std::string dicom_text_to_utf8(DcmSpecificCharacterSet *converter, std::string text);
-// Without padding, control characters as blanks, cut at a whole character; false when nothing is left.
+// Copies text without padding, with control characters as blanks, truncated at a whole character; false if nothing is
+// left.
 bool dicom_text_put(const std::string &text, char *out, size_t size);
-// Numbers between backslashes; fills at most most of them and returns how many there are. What is no number becomes not-a-number.
+// Parses numbers separated by backslashes; a malformed one becomes NaN. Stores at most `most` and returns how many
+// there are.
 size_t dicom_text_numbers(const char *text, size_t size, double *out, size_t most);

@@ -1,4 +1,5 @@
-/* Stored values out of the cells a file keeps them in. PS3.5 8.1.1. */
+/* Turns pixel cells as stored in a file into stored values. Compiled with -O3: these loops must vectorize. Source:
+ * DICOM PS3.5 8.1.1. */
 #include "core/formats/dicom/dicom_unpack.h"
 
 static void swap16(uint16_t *values, size_t n)
@@ -7,7 +8,7 @@ static void swap16(uint16_t *values, size_t n)
         values[i] = (uint16_t)(values[i] << 8 | values[i] >> 8);
 }
 
-/* two pixels of 8 bits in each word; the last of an odd number has none to change with */
+/* Swaps two pixels of 8 bits in each 16-bit word; the last of an odd number stays. */
 static void swap_pairs(uint8_t *values, size_t n)
 {
     for (size_t i = 0; i + 1 < n; i += 2) {
@@ -23,8 +24,7 @@ static void swap32(uint32_t *values, size_t n)
         values[i] = values[i] << 24 | (values[i] & 0xFF00) << 8 | (values[i] >> 8 & 0xFF00) | values[i] >> 24;
 }
 
-/* up, then down again: what lies above the value falls out, what lies below it too, and the sign is drawn over what is
- * left */
+/* Shifts up, then down again: drops the bits above and below the value, and extends its sign. */
 #define KEEP_BITS(signed_type, unsigned_type) \
     do { \
         unsigned_type *cells = values; \

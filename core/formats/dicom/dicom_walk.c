@@ -1,3 +1,5 @@
+/* Walks the elements of a DICOM file without a library: checks lengths, depth and order; finds the pixels and their
+ * fragments. */
 #include "core/formats/dicom/dicom_walk.h"
 
 #include <stdlib.h>
@@ -42,8 +44,8 @@ static bool is_vr(const uint8_t *p)
     return false;
 }
 
-/* Whether the length that follows a value representation has 32 bits. Of those that are not known the newer ones all
- * do; two characters that are no letters stand in old files, with 16 bits. */
+/* Returns true if the length after a value representation (VR) has 32 bits. Unknown VRs of two letters are newer ones,
+ * all with 32 bits; other characters stand in old files, with 16 bits. */
 static bool has_long_length(const uint8_t *vr)
 {
     static const char shorts[] = "AEASATCSDADSDTFDFLISLOLTPNSHSLSSSTTMUIULUS";
@@ -64,9 +66,9 @@ bool dicom_looks_like(const uint8_t *data, size_t size)
         if (group != 0x0002 && group != 0x0008)
             continue;
         if (is_vr(data + 4) &&
-            element <= 0x0100) /* the first of its group: a group length, a version, a character set, a type */
+            element <= 0x0100) /* the first element of its group: a group length, a version, a character set, a type */
             return true;
-        if (order == 0 && group == 0x0008 && element <= 0x0018 && get32(data + 4, false) <= 128) /* implicit */
+        if (order == 0 && group == 0x0008 && element <= 0x0018 && get32(data + 4, false) <= 128) /* implicit VR */
             return true;
     }
     return false;
@@ -74,7 +76,7 @@ bool dicom_looks_like(const uint8_t *data, size_t size)
 
 struct element {
     uint32_t tag, length;
-    uint8_t vr[2]; /* 0, 0 when implicit or an item */
+    uint8_t vr[2]; /* 0, 0 for implicit VR and for items */
     size_t at, value_at;
 };
 
@@ -85,7 +87,7 @@ struct walk {
     enum dicom_extent extent;
     struct error *err;
     size_t n_elements, n_disorder;
-    bool is_cut; /* the failure was only that the data ends */
+    bool is_cut; /* the only failure was that data ends */
 };
 
 static bool cut_short(struct walk *walk, size_t at, const char *what)
@@ -125,13 +127,13 @@ static bool wrong_element(struct walk *walk, const struct element *element, cons
                      element->tag >> 16, element->tag & 0xFFFF, what);
 }
 
-/* What is open around an element: the data set, a sequence (of items) or an item (of elements). */
+/* A container around an element: the data set, a sequence (of items) or an item (of elements). */
 struct level {
     size_t end;         /* nothing inside may reach beyond */
-    bool is_open_ended; /* an end mark closes it */
+    bool is_open_ended; /* undefined length: an end marker closes it */
     bool is_sequence, is_implicit, is_big_endian;
-    bool is_fragments; /* a sequence whose items hold bytes */
-    uint32_t last_tag; /* of the elements so far */
+    bool is_fragments; /* a sequence whose items hold bytes: encapsulated pixels */
+    uint32_t last_tag; /* largest tag of the elements so far */
 };
 
 static bool begins_with_item(const struct walk *walk, const struct element *element)
@@ -145,8 +147,8 @@ static bool vr_is(const struct element *element, const char *vr)
     return element->vr[0] == (uint8_t)vr[0] && element->vr[1] == (uint8_t)vr[1];
 }
 
-/* What an element opens, if it is a sequence. What stands as bytes of an unknown kind (UN, or no VR at all) and begins
- * with an item is read as a sequence by the library where its dictionary says so: its depth counts. */
+/* Returns true if the element opens a sequence. DCMTK also reads a value of unknown VR (UN, or none) as a sequence if
+ * it begins with an item and the dictionary says so; its depth counts too. */
 static bool opens_level(const struct walk *walk, const struct element *element, const struct level *inside,
                         struct level *opened)
 {
@@ -165,8 +167,7 @@ static bool opens_level(const struct walk *walk, const struct element *element, 
     return false;
 }
 
-/* One step through the data set: past an element or into it. depth counts the open levels but for the data set itself.
- */
+/* One step through the data set: past an element or into it. depth counts open levels without the data set itself. */
 static bool step(struct walk *walk, struct level *levels, int *depth, size_t *at)
 {
     struct level *inside = &levels[*depth];
@@ -226,7 +227,7 @@ static bool step(struct walk *walk, struct level *levels, int *depth, size_t *at
     return true;
 }
 
-/* Leaves what ends here. An item that ends beyond its sequence was refused when it was opened. */
+/* Closes the levels that end here. An item longer than its sequence was refused when it was opened. */
 static void close_levels(const struct level *levels, int *depth, size_t at)
 {
     while (*depth > 0 && !levels[*depth].is_open_ended && levels[*depth].end == at)
@@ -261,7 +262,7 @@ static bool walk_elements(struct walk *walk, struct dicom_layout *layout)
                 uint32_t tag = get_tag(walk->data + at, layout->is_big_endian);
                 if (tag == TAG_PIXELS || tag == TAG_FLOAT_PIXELS || tag == TAG_DOUBLE_PIXELS)
                     return look_at_pixels(walk, &levels[0], at, layout);
-                if (tag >> 16 == 0 || (tag == 0xFFFFFFFF)) /* filling behind the last element */
+                if (tag >> 16 == 0 || (tag == 0xFFFFFFFF)) /* padding after the last element */
                     return at > layout->begin ? true
                                               : error_set(walk->err, ERROR_FORMAT,
                                                           "%s: byte %zu: no element of a data set", walk->name, at);
@@ -275,7 +276,8 @@ static bool walk_elements(struct walk *walk, struct dicom_layout *layout)
     return true;
 }
 
-/* Inflates as much as there is, up to the limit; a stream that is cut is no error here, the walk tells. RFC 1951. */
+/* Inflates (RFC 1951) as much as there is, up to the limit. A truncated stream is no error here: the walk reports
+ * it. */
 static bool inflate_data_set(struct walk *walk, size_t from, struct dicom_layout *layout)
 {
     size_t limit = walk->extent == DICOM_START ? (size_t)1 << 20 : (size_t)DICOM_MAX_INFLATED_MIB << 20;
@@ -313,7 +315,7 @@ static bool inflate_data_set(struct walk *walk, size_t from, struct dicom_layout
     return true;
 }
 
-/* The group 0002, always explicit and little-endian; finds the transfer syntax and where the data set begins. */
+/* Walks group 0002 (always explicit, little-endian); finds the transfer syntax and the start of the data set. */
 static bool walk_header(struct walk *walk, size_t at, struct dicom_layout *layout)
 {
     while (walk->size - at >= 8 && get16(walk->data + at, false) == 0x0002) {
@@ -342,8 +344,8 @@ static bool walk_header(struct walk *walk, size_t at, struct dicom_layout *layou
     return true;
 }
 
-/* What the first element shows counts more than what the header says: files that contradict themselves are read by
- * every viewer. */
+/* Takes the encoding from the first element rather than from the header: every viewer reads files that contradict
+ * themselves. */
 static void look_at_encoding(const struct walk *walk, struct dicom_layout *layout)
 {
     const uint8_t *p = walk->data + layout->begin;
@@ -356,7 +358,7 @@ static void look_at_encoding(const struct walk *walk, struct dicom_layout *layou
     if (!layout->is_implicit && (little == 0x0008 || big == 0x0008))
         layout->is_big_endian = big == 0x0008;
     else if (layout->is_implicit)
-        layout->is_big_endian = false; /* there is no such encoding */
+        layout->is_big_endian = false; /* implicit big-endian does not exist */
 }
 
 bool dicom_walk(const uint8_t *data, size_t size, const char *name, enum dicom_extent extent,
