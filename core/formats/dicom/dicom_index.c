@@ -13,7 +13,7 @@
 #include "core/formats/text.h"
 
 /* One file of the scan with its result. */
-struct looked {
+struct scanned_file {
     char *path; /* moves into object on success */
     enum dicom_head_result result;
     struct dicom_object object;
@@ -23,14 +23,14 @@ struct looked {
 struct scan {
     const struct folder *folder;
     const struct dicom_progress *progress;
-    struct looked *files;
+    struct scanned_file *files;
     size_t n_files;
     atomic_size_t next, n_done, n_kept;
     atomic_bool is_cancelled;
     pthread_mutex_t step_lock;
 };
 
-static void look_at(struct scan *scan, struct looked *file, struct bytes *scratch)
+static void scan_file(struct scan *scan, struct scanned_file *file, struct bytes *scratch)
 {
     struct error err = { 0 };
     file->result = dicom_head_read(scan->folder, file->path, &file->object, scratch, &err);
@@ -60,7 +60,7 @@ static void scan_part(void *context, int part, int n_parts)
             atomic_store(&scan->is_cancelled, true);
         if (atomic_load(&scan->is_cancelled))
             break;
-        look_at(scan, &scan->files[i], &scratch);
+        scan_file(scan, &scan->files[i], &scratch);
         size_t n_done = atomic_fetch_add(&scan->n_done, 1) + 1;
         if (scan->progress->step && (n_done % 32 == 0 || n_done == scan->n_files)) {
             pthread_mutex_lock(&scan->step_lock);
@@ -71,9 +71,9 @@ static void scan_part(void *context, int part, int n_parts)
     free(scratch.data);
 }
 
-static int compare_looked(const void *a, const void *b)
+static int compare_paths(const void *a, const void *b)
 {
-    return strcmp(((const struct looked *)a)->path, ((const struct looked *)b)->path);
+    return strcmp(((const struct scanned_file *)a)->path, ((const struct scanned_file *)b)->path);
 }
 
 /* Collects the files to look at: each name that is a file, and all files below each name that is a folder. */
@@ -102,7 +102,7 @@ static bool list_files(const struct folder *folder, char *const *names, size_t n
         size_t n = is_file ? 1 : tree.n_files;
         if (scan->n_files + n > room) {
             room = 2 * (scan->n_files + n);
-            struct looked *larger = realloc(scan->files, room * sizeof *larger);
+            struct scanned_file *larger = realloc(scan->files, room * sizeof *larger);
             if (!larger) {
                 folder_tree_finish(&tree);
                 return error_set(err, ERROR_MEMORY, "no memory for the names of %zu files", room);
@@ -110,14 +110,14 @@ static bool list_files(const struct folder *folder, char *const *names, size_t n
             scan->files = larger;
         }
         for (size_t f = 0; f < n; f++) {
-            struct looked *file = &scan->files[scan->n_files++];
-            *file = (struct looked){ .path = mem_copy_text(is_file ? names[i] : tree.files[f].name) };
+            struct scanned_file *file = &scan->files[scan->n_files++];
+            *file = (struct scanned_file){ .path = mem_copy_text(is_file ? names[i] : tree.files[f].name) };
         }
         folder_tree_finish(&tree);
     }
     if (scan->n_files == 0)
         return true;
-    qsort(scan->files, scan->n_files, sizeof *scan->files, compare_looked);
+    qsort(scan->files, scan->n_files, sizeof *scan->files, compare_paths);
     size_t n = 1;
     for (size_t i = 1; i < scan->n_files; i++) { /* drop files that were named twice */
         if (strcmp(scan->files[i].path, scan->files[n - 1].path) == 0)
@@ -142,7 +142,7 @@ static bool collect(struct scan *scan, struct dicom_index *index, struct report 
         return false;
     index->n_files = scan->n_files;
     for (size_t i = 0; i < scan->n_files; i++) {
-        struct looked *file = &scan->files[i];
+        struct scanned_file *file = &scan->files[i];
         if (file->result == DICOM_HEAD_READ) {
             struct dicom_object *object = &index->objects[index->n_objects++];
             *object = file->object;

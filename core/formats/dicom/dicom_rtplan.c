@@ -157,7 +157,7 @@ static void read_words(const struct reading *reading, const struct dicom_item *i
 }
 
 /* The state of a beam as control points go by: a control point inherits every value it does not give. */
-struct course {
+struct beam_state {
     struct beam_angles angles;
     double collimator_deg;
     struct vec3 isocentre_lps_mm;
@@ -216,61 +216,61 @@ static double travelled_deg(double from_deg, double to_deg, const char *directio
     return clockwise > 180 ? clockwise - 360 : clockwise; /* no direction given: the shorter way */
 }
 
-static void read_control_point(const struct reading *reading, struct course *course, const struct dicom_item *item,
+static void read_control_point(const struct reading *reading, struct beam_state *state, const struct dicom_item *item,
                                bool is_first, struct beam_delivery *d)
 {
-    double gantry_before = course->angles.gantry_deg, couch_before = course->angles.couch_deg, pitch = 0;
+    double gantry_before = state->angles.gantry_deg, couch_before = state->angles.couch_deg, pitch = 0;
     struct vec3 isocentre;
-    course->has_gantry |= read_angle(reading, item, GANTRY_ANGLE, "gantry angle", &course->angles.gantry_deg);
-    (void)read_angle(reading, item, SUPPORT_ANGLE, "patient support angle", &course->angles.couch_deg);
-    (void)read_angle(reading, item, ECCENTRIC_ANGLE, "table top eccentric angle", &course->angles.eccentric_deg);
-    (void)read_angle(reading, item, PITCH_ANGLE, "table top pitch angle", &course->angles.pitch_deg);
-    (void)read_angle(reading, item, ROLL_ANGLE, "table top roll angle", &course->angles.roll_deg);
-    (void)read_angle(reading, item, COLLIMATOR_ANGLE, "beam limiting device angle", &course->collimator_deg);
-    course->has_gantry_pitch |= dicom_number(item, GANTRY_PITCH_ANGLE, &pitch) && fabs(pitch) > 0.01;
+    state->has_gantry |= read_angle(reading, item, GANTRY_ANGLE, "gantry angle", &state->angles.gantry_deg);
+    (void)read_angle(reading, item, SUPPORT_ANGLE, "patient support angle", &state->angles.couch_deg);
+    (void)read_angle(reading, item, ECCENTRIC_ANGLE, "table top eccentric angle", &state->angles.eccentric_deg);
+    (void)read_angle(reading, item, PITCH_ANGLE, "table top pitch angle", &state->angles.pitch_deg);
+    (void)read_angle(reading, item, ROLL_ANGLE, "table top roll angle", &state->angles.roll_deg);
+    (void)read_angle(reading, item, COLLIMATOR_ANGLE, "beam limiting device angle", &state->collimator_deg);
+    state->has_gantry_pitch |= dicom_number(item, GANTRY_PITCH_ANGLE, &pitch) && fabs(pitch) > 0.01;
     if (read_isocentre(reading, item, &isocentre)) {
-        if (!course->has_isocentre)
-            course->isocentre_lps_mm = isocentre;
-        course->moves_isocentre |= vec3_length(vec3_sub(isocentre, course->isocentre_lps_mm)) > 0.1;
-        course->has_isocentre = true;
+        if (!state->has_isocentre)
+            state->isocentre_lps_mm = isocentre;
+        state->moves_isocentre |= vec3_length(vec3_sub(isocentre, state->isocentre_lps_mm)) > 0.1;
+        state->has_isocentre = true;
     }
     if (is_first) {
         (void)dicom_number_within(item, BEAM_ENERGY, "nominal beam energy", 0, MOST_ENERGY, &d->energy_mev,
                                   reading->doubts);
         (void)read_distance(reading, item, SURFACE_DISTANCE, "source to surface distance", &d->ssd_mm);
     } else {
-        d->gantry_travel_deg += travelled_deg(gantry_before, course->angles.gantry_deg, course->direction);
-        course->moves_couch |= fabs(course->angles.couch_deg - couch_before) > 0.1;
+        d->gantry_travel_deg += travelled_deg(gantry_before, state->angles.gantry_deg, state->direction);
+        state->moves_couch |= fabs(state->angles.couch_deg - couch_before) > 0.1;
     }
-    if (dicom_text(item, GANTRY_DIRECTION, course->direction, sizeof course->direction) &&
-        strcmp(course->direction, "CW") != 0 && strcmp(course->direction, "CC") != 0 &&
-        strcmp(course->direction, "NONE") != 0)
+    if (dicom_text(item, GANTRY_DIRECTION, state->direction, sizeof state->direction) &&
+        strcmp(state->direction, "CW") != 0 && strcmp(state->direction, "CC") != 0 &&
+        strcmp(state->direction, "NONE") != 0)
         dicom_doubt(reading->doubts, "gantry rotation direction (300A,011F) is \"%s\", expected CW, CC or NONE",
-                    course->direction);
+                    state->direction);
 }
 
 /* Sets the collimator axes in the patient by the first control point. */
-static void place_collimator(struct beam_delivery *d, const struct course *course)
+static void place_collimator(struct beam_delivery *d, const struct beam_state *state)
 {
-    const struct beam_angles *angles = &course->angles;
-    double turn = course->collimator_deg * MATH_PI / 180;
+    const struct beam_angles *angles = &state->angles;
+    double turn = state->collimator_deg * MATH_PI / 180;
     d->gantry_deg = d->gantry_stop_deg = angles->gantry_deg;
     d->couch_deg = angles->couch_deg;
-    d->collimator_deg = course->collimator_deg;
+    d->collimator_deg = state->collimator_deg;
     d->collimator_x_lps = beam_patient_from_gantry(vec3(cos(turn), sin(turn), 0), angles, d->patient_position);
     d->collimator_y_lps = beam_patient_from_gantry(vec3(-sin(turn), cos(turn), 0), angles, d->patient_position);
 }
 
-static void report_course(const struct reading *reading, const struct beam *beam, const struct course *course)
+static void report_state(const struct reading *reading, const struct beam *beam, const struct beam_state *state)
 {
-    if (!course->has_gantry)
+    if (!state->has_gantry)
         report_add(reading->report, REPORT_WARNING, "beam.angle-assumed", reading->where,
                    "Beam \"%s\": the plan does not give the gantry's angle; 0 was taken.", beam->name);
-    if (course->moves_isocentre || course->moves_couch)
+    if (state->moves_isocentre || state->moves_couch)
         report_add(reading->report, REPORT_NOTE, "beam.moves", reading->where,
                    "Beam \"%s\": %s moves during the beam; it is shown as it starts.", beam->name,
-                   course->moves_isocentre ? "the isocentre" : "the table");
-    if (course->has_gantry_pitch)
+                   state->moves_isocentre ? "the isocentre" : "the table");
+    if (state->has_gantry_pitch)
         report_add(reading->report, REPORT_WARNING, "beam.pitch", reading->where,
                    "Beam \"%s\": the gantry is pitched, which is not regarded; its direction is wrong by that angle.",
                    beam->name);
@@ -288,7 +288,7 @@ static bool read_beam(const struct reading *reading, const struct dicom_item *it
 {
     uint32_t sequence = is_ion ? ION_CONTROL_POINT_SEQUENCE : CONTROL_POINT_SEQUENCE;
     struct beam_delivery *d = &beam->delivery;
-    struct course course = { 0 };
+    struct beam_state state = { 0 };
     char type[17];
     *beam = (struct beam){ .has_delivery = true, .aperture_mm = NAN };
     fill_unknown(d);
@@ -308,19 +308,19 @@ static bool read_beam(const struct reading *reading, const struct dicom_item *it
     d->patient_position = position_of(reading, item, beam);
     for (size_t i = 0; i < d->n_control_points; i++) {
         const struct dicom_item *point = dicom_item_at(item, sequence, i);
-        read_control_point(reading, &course, point, i == 0, d);
+        read_control_point(reading, &state, point, i == 0, d);
         opening_move(reading->opening, point, i + 1);
         opening_measure(reading->opening, i == 0, d);
         if (i == 0)
-            place_collimator(d, &course);
+            place_collimator(d, &state);
     }
-    if (!course.has_isocentre)
+    if (!state.has_isocentre)
         return left_out(reading, beam, "has no isocentre, so nothing says where it is in the patient");
-    beam->target_lps_mm = course.isocentre_lps_mm;
+    beam->target_lps_mm = state.isocentre_lps_mm;
     /* the z axis of the collimator system points to the source */
     beam->entry_lps_mm =
         vec3_add(beam->target_lps_mm, vec3_scale(vec3_cross(d->collimator_x_lps, d->collimator_y_lps), d->sad_mm));
-    d->gantry_stop_deg = course.angles.gantry_deg;
+    d->gantry_stop_deg = state.angles.gantry_deg;
     double diameter_mm = opening_diameter_mm(reading->opening, d);
     beam->aperture_mm = diameter_mm > 0 && diameter_mm <= BEAM_MAX_APERTURE_MM ? diameter_mm : NAN;
     int64_t n_said;
@@ -328,7 +328,7 @@ static bool read_beam(const struct reading *reading, const struct dicom_item *it
         report_add(reading->report, REPORT_WARNING, "beam.control-points", reading->where,
                    "Beam \"%s\" says %lld control points and has %zu; those it has were taken.", beam->name,
                    (long long)n_said, d->n_control_points);
-    report_course(reading, beam, &course);
+    report_state(reading, beam, &state);
     return true;
 }
 
