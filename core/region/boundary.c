@@ -1,3 +1,4 @@
+/* Computes border voxels by bit operations on rows of the mask and their neighbours. */
 #include "core/region/boundary.h"
 
 #include "core/base/parallel.h"

@@ -1,3 +1,4 @@
+/* Fills the voxels enclosed by the contours of one region: planes, then raster, then facts. */
 #include <stdlib.h>
 
 #include "core/base/mem.h"
@@ -13,10 +14,10 @@ void contour_set_finish(struct contour_set *set)
     *set = (struct contour_set){ 0 };
 }
 
-/* Whether a contour has a point beyond the outer faces of the grid, by more than rounding. */
+/* Returns true if a point of the contour is beyond the outer faces of the grid by more than rounding. */
 static bool is_outside(const struct contour *contour, const struct grid *grid)
 {
-    const double most = 1e-3; /* of a voxel */
+    const double most = 1e-3; /* in voxels */
     for (size_t i = 0; i < contour->n_points; i++) {
         const double *p = contour->points_lps_mm + 3 * i;
         struct vec3 at = affine_point(&grid->ijk_from_lps_mm, vec3(p[0], p[1], p[2]));

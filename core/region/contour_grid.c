@@ -1,3 +1,5 @@
+/* Chooses the label grid of each contour set: accuracy of the volume, subdivision of the image's grid, grids shared by
+ * several sets. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,14 +10,14 @@
 #define LARGE_CM3 1.0
 #define LARGE_ACCURACY 0.01
 #define SMALL_ACCURACY 0.05
-#define PLANE_GRID_MM 1.0 /* in the plane, where there is no image */
+#define PLANE_GRID_MM 1.0 /* in-plane voxel size without an image */
 enum { MOST_SEARCH_ROWS = 4000000, SHARED_VOXELS = 8 << 20 };
 
 /* What is known of one set while grids are chosen. */
 struct candidate {
-    uint32_t low[3], high[3]; /* voxels of the base grid around it, one more on each side; low <= index < high */
-    size_t n_voxels;          /* of the grid cropped to it, where it does not lie on the image's own */
-    bool is_outside;          /* contours leave the base */
+    uint32_t low[3], high[3]; /* box around it in voxels of the base grid, one more on each side; low <= index < high */
+    size_t n_voxels;          /* voxels of the grid cropped to it, unless it is on the image's own grid */
+    bool is_outside;          /* its contours leave the base grid */
 };
 
 static double accuracy_of(double cm3)
@@ -60,7 +62,7 @@ double contour_usual_spacing_mm(const struct contour_set *sets, size_t n_sets, c
 
 /* ---- a grid from the planes ------------------------------------------------------------------------------------- */
 
-/* The set whose planes the grid lies in: the one with most of them. */
+/* Finds the planes that the grid is aligned to: those of the set with most planes. */
 static bool leading_planes(const struct contour_set *sets, size_t n_sets, double spacing_mm, struct vec3 *normal,
                            double *at_mm, struct error *err)
 {
@@ -111,7 +113,8 @@ static bool grid_from_planes(struct grid *grid, const struct contour_set *sets, 
     double first[3], n[3];
     for (;;) {
         for (int a = 0; a < 3; a++) {
-            double base = a == 2 ? at_mm : 0; /* slices lie in planes, rows and columns on whole steps */
+            /* slice positions are those of the planes; rows and columns are at multiples of the step */
+            double base = a == 2 ? at_mm : 0;
             first[a] = base + step_mm[a] * (floor((low[a] - base) / step_mm[a]) - 1);
             n[a] = ceil((high[a] - first[a]) / step_mm[a]) + 2;
         }
@@ -137,7 +140,8 @@ static bool grid_from_planes(struct grid *grid, const struct contour_set *sets, 
 
 /* ---- subdivision ------------------------------------------------------------------------------------------------ */
 
-/* Whole voxels of the base grid become subdivision of them along each axis; low and high in voxels of the base. */
+/* Divides each voxel of a box of the base grid into subdivision parts along each axis; low and high in voxels of
+ * base. */
 static bool fine_grid(struct grid *grid, const struct grid *base, const uint32_t subdivision[3], const uint32_t low[3],
                       const uint32_t high[3], struct error *err)
 {
@@ -153,7 +157,7 @@ static bool fine_grid(struct grid *grid, const struct grid *base, const uint32_t
     return grid_init(grid, size, &map, err);
 }
 
-/* Voxels of the base around all slabs. */
+/* Finds the box around all slabs, in voxels of the base grid. */
 static void find_box(struct candidate *candidate, const struct contour_planes *planes, const struct grid *base)
 {
     struct box3 box = box3_empty();
@@ -180,8 +184,7 @@ static void find_box(struct candidate *candidate, const struct contour_planes *p
     }
 }
 
-/* Volume of the slabs as far as the base's slices reach along the normal, so that what the scan cuts off is not missed.
- */
+/* Volume of the slabs within the base's slices along the normal: what the scan cuts off must not count as missing. */
 static double volume_within_cm3(const struct contour_planes *planes, const double *areas_mm2, const struct grid *base)
 {
     double low_mm = INFINITY, high_mm = -INFINITY;
@@ -199,7 +202,7 @@ static double volume_within_cm3(const struct contour_planes *planes, const doubl
     return mm3 / 1000;
 }
 
-/* Volume on a grid against the polygons'. */
+/* Relative error of the volume on a grid against the polygon volume. */
 static bool error_on(const struct contour_raster *raster, const struct grid *grid,
                      const struct contour_options *options, double cm3, double *volume_error, struct error *err)
 {
@@ -224,7 +227,7 @@ static int by_cost(const void *a, const void *b)
     return one->in_plane < other->in_plane ? -1 : one->in_plane > other->in_plane;
 }
 
-/* Finer and finer until the volume is right; the best there was otherwise. */
+/* Refines until the volume is accurate; else keeps the best grid tried. */
 static bool subdivide(struct contour_choice *choice, struct candidate *candidate, const struct contour_raster *raster,
                       struct vec3 normal, const struct grid *base, const struct contour_options *options, double cm3,
                       struct error *err)
@@ -268,7 +271,8 @@ static bool subdivide(struct contour_choice *choice, struct candidate *candidate
     return true;
 }
 
-/* On a base that is the image, or continues it (is_beyond): there a set always has a grid of its own, cropped to it. */
+/* Chooses the grid of one set. base is the image's grid or, with is_beyond, its continuation; on a continuation a set
+ * always gets a cropped grid of its own. */
 static bool choose_one(struct contour_choice *choice, struct candidate *candidate, const struct contour_set *set,
                        const struct grid *base, bool is_beyond, const struct contour_options *options,
                        struct error *err)
@@ -305,18 +309,18 @@ static bool choose_one(struct contour_choice *choice, struct candidate *candidat
 
 struct group {
     uint32_t subdivision[3], low[3], high[3];
-    uint64_t own_voxels; /* of its members' own grids together */
+    uint64_t own_voxels; /* sum over the cropped grids of its members */
 };
 
 static uint64_t fine_voxels(const uint32_t subdivision[3], const uint32_t low[3], const uint32_t high[3])
 {
     uint64_t n = 1;
     for (int a = 0; a < 3; a++)
-        n *= (uint64_t)(high[a] - low[a]) * subdivision[a]; /* each at most 16 * 4096 */
+        n *= (uint64_t)(high[a] - low[a]) * subdivision[a]; /* each factor is at most 16 * 4096 */
     return n;
 }
 
-/* Whether a grid around both is not much more than the two alone. */
+/* Returns true if one grid around both takes not much more than the two alone. */
 static bool may_join(const struct group *group, const struct contour_choice *choice, const struct candidate *candidate,
                      uint64_t most_voxels, struct group *joined)
 {
@@ -334,7 +338,8 @@ static bool may_join(const struct group *group, const struct contour_choice *cho
     return n <= most_voxels && (n <= SHARED_VOXELS || n <= 2 * joined->own_voxels);
 }
 
-/* Cropped grids on one base: the image, or with is_beyond its continuation; their groups follow the first n_groups. */
+/* Lets sets share cropped grids on one base: the image, or with is_beyond its continuation. Their groups are numbered
+ * from n_groups on. */
 static bool share_grids(struct contour_choice *choices, const struct candidate *candidates, size_t n,
                         const struct grid *base, bool is_beyond, uint64_t most_voxels, uint32_t *n_groups_before,
                         struct error *err)
@@ -372,8 +377,8 @@ static bool share_grids(struct contour_choice *choices, const struct candidate *
     return is_made;
 }
 
-/* choose_one for a set that may be beyond a limit of contour_fill. On the image contour_fill then says so of this set
- * alone; beyond it the choice on the image stays. */
+/* Same as choose_one for a set that may exceed a limit of contour_fill. On the image, contour_fill reports the limit
+ * for this set later; on the continuation, the choice made on the image stays. */
 static bool choose_or_leave(struct contour_choice *choice, struct candidate *candidate, const struct contour_set *set,
                             const struct grid *base, bool is_beyond, const struct contour_options *options,
                             struct error *err)
@@ -397,8 +402,8 @@ static bool choose_or_leave(struct contour_choice *choice, struct candidate *can
     return is_chosen;
 }
 
-/* Sets that leave the image, on a grid that continues it; those too far away or too intricate for it stay on the
- * image's. */
+/* Chooses grids that continue the image for sets that leave it. Sets that are too far away or too intricate stay on the
+ * image's grid. */
 static bool choose_beyond(const struct contour_set *sets, size_t n_sets, const struct grid *image,
                           const struct contour_options *options, struct contour_choice *choices,
                           struct candidate *candidates, uint32_t *n_groups, struct error *err)

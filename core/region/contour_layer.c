@@ -1,9 +1,10 @@
+/* Adds masks to label layers, run by run. */
 #include "core/region/contour_layer.h"
 
 #include <assert.h>
 #include <string.h>
 
-/* Calls run for every run of set bits; stops when it returns false. */
+/* Calls run for every run of set bits until it returns false. */
 static bool each_run(const struct mask *mask, bool (*run)(void *context, size_t at, uint32_t length), void *context)
 {
     size_t n_rows = (size_t)mask->size[1] * mask->size[2];
@@ -18,7 +19,7 @@ static bool each_run(const struct mask *mask, bool (*run)(void *context, size_t 
             }
             i += (uint32_t)__builtin_ctzll(word);
             uint32_t from = i;
-            while (i < mask->size[0]) { /* to the next bit that is not set */
+            while (i < mask->size[0]) { /* to the end of the run */
                 uint64_t clear = ~bits[i / 64] >> i % 64;
                 i = clear ? i + (uint32_t)__builtin_ctzll(clear) : (i / 64 + 1) * 64;
                 if (clear)

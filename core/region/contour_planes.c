@@ -1,3 +1,4 @@
+/* Sorts the contours of a region into parallel planes: common normal, plane positions, slabs; counts bad contours. */
 #include "core/region/contour_planes.h"
 
 #include <stdlib.h>
@@ -5,22 +6,22 @@
 
 #include "core/base/mem.h"
 
-#define SAME_PLANE_MM 0.05 /* rounding of the files' decimals; closer planes are one */
+#define SAME_PLANE_MM 0.05 /* rounding of decimals in files; closer planes are one plane */
 #define FLAT_MM 0.01
-#define THIN_MM 1e-4                         /* a contour that stays this near to a line has no area */
-#define MOST_TILT_COSINE 0.99619469809174555 /* 5 degrees */
-#define SNAP_COSINE 0.9999984769132877       /* a tenth of a degree */
+#define THIN_MM 1e-4                         /* a contour within this distance of a line has no area */
+#define MOST_TILT_COSINE 0.99619469809174555 /* cosine of 5 degrees */
+#define SNAP_COSINE 0.9999984769132877       /* cosine of 0.1 degree */
 #define GAP_FACTOR 1.5
 enum { FEW_PLANES = 4 };
 
 enum verdict { GOOD, NOT_FINITE, DEGENERATE, NOT_PARALLEL };
 
-/* One contour on the way into its plane. */
+/* One contour while it is sorted into its plane. */
 struct entry {
     double at_mm;
     uint64_t hash;
     size_t index;
-    struct vec3 area; /* vector area, mm2: along the normal, as long as the area */
+    struct vec3 area; /* vector area, mm2: direction of the normal, length of the area */
     struct vec3 normal;
     enum verdict verdict;
 };
@@ -39,7 +40,7 @@ static bool is_in_reach(const struct contour *contour)
     return true;
 }
 
-/* FNV-1a over the points' bytes. */
+/* FNV-1a hash of the points' bytes. */
 static uint64_t hash_of(const struct contour *contour)
 {
     const uint8_t *bytes = (const uint8_t *)contour->points_lps_mm;
@@ -49,9 +50,8 @@ static uint64_t hash_of(const struct contour *contour)
     return hash;
 }
 
-/* The normal of the triangle of the first point, the one furthest from it, and the one furthest from their line: what a
- * contour has whose two halves turn opposite ways and whose vector area is therefore nothing. The zero vector for one
- * that is thin. */
+/* Normal of the triangle of the first point, the point furthest from it, and the point furthest from their line. For
+ * contours whose two halves turn opposite ways, so that their vector area is 0. Zero vector for a thin contour. */
 static struct vec3 normal_of_spread(const struct contour *contour)
 {
     struct vec3 first = point_at(contour, 0), along = vec3(0, 0, 0), normal = vec3(0, 0, 0);
@@ -117,7 +117,7 @@ static struct vec3 snapped(struct vec3 normal, const struct grid *likely)
     return normal;
 }
 
-/* Of the largest contour, then the mean over all that are nearly parallel to it. */
+/* Normal of the largest contour, then the mean over all contours nearly parallel to it. */
 static struct vec3 common_normal(const struct entry *entries, size_t n, const struct grid *likely)
 {
     const struct entry *largest = NULL;
@@ -133,7 +133,7 @@ static struct vec3 common_normal(const struct entry *entries, size_t n, const st
             sum = vec3_add(sum, vec3_scale(entries[i].area, cosine < 0 ? -1 : 1));
     }
     struct vec3 normal = vec3_length(sum) > 0 ? vec3_normalize(sum) : largest->normal;
-    /* one sign for either way round, so that planes come in the same order */
+    /* same sign for either winding, so that planes come in the same sequence */
     double most = fmax(fabs(normal.x), fmax(fabs(normal.y), fabs(normal.z)));
     double sign = fabs(normal.z) == most ? normal.z : fabs(normal.y) == most ? normal.y : normal.x;
     return snapped(sign < 0 ? vec3_scale(normal, -1) : normal, likely);
@@ -161,7 +161,7 @@ static int by_value(const void *a, const void *b)
     return one < other ? -1 : one > other;
 }
 
-/* Distance along the normal and what is said about it; entries that stay come first. Returns how many. */
+/* Computes positions along the normal and counts bad contours; entries that stay come first. Returns how many stay. */
 static size_t place(struct contour_planes *planes, struct entry *entries, const struct contour_set *set)
 {
     size_t n_good = 0;
@@ -230,7 +230,7 @@ static bool make_planes(struct contour_planes *planes, struct entry *entries, si
     return true;
 }
 
-/* The usual distance of neighbouring planes: the lower median, so that one gap among three planes does not become the
+/* Usual distance of neighbouring planes: the lower median, so that one gap among three planes does not become the
  * rule. */
 static bool find_spacing(struct contour_planes *planes, double spacing_mm, const struct grid *likely, struct error *err)
 {

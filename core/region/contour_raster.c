@@ -1,3 +1,4 @@
+/* Intersects contour edges with the rows of a grid: even-odd areas of planes, and the bits of enclosed voxels. */
 #include "core/region/contour_raster.h"
 
 #include <stdlib.h>
@@ -6,15 +7,16 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 
-/* Centres are tested this far off, so that the noise of the last digits does not decide on which side of an edge they
- * are. */
+/* Offset of the tested points from voxel centres, so that rounding noise does not decide on which side of an edge a
+ * centre is. */
 #define NUDGE_MM 1e-6
 enum { AREA_LINES = 256, MOST_EXACT_EDGES = 4096, MOST_BUCKETS = 8192, MOST_THREADS = 64 };
 
-/* u runs along the rows of voxels as they look within a plane, v across them, d from plane to plane. */
+/* Raster coordinates: u along the rows of voxels projected into a plane, v across them in the plane, d from plane to
+ * plane. */
 struct edge {
-    double v_low, v_high;  /* low < high: edges along a row are never met */
-    double u_low, u_width; /* from the lower end, so that the same u comes out whichever way the edge was drawn */
+    double v_low, v_high;  /* low < high: edges parallel to a row are dropped */
+    double u_low, u_width; /* u at the lower end, so that the direction in which an edge was drawn does not matter */
 };
 
 static double edge_u(const struct edge *edge, double v)
@@ -22,20 +24,20 @@ static double edge_u(const struct edge *edge, double v)
     return edge->u_low + edge->u_width * ((v - edge->v_low) / (edge->v_high - edge->v_low));
 }
 
-/* The edges of a plane, and which of them may be met at a given v: those of one bucket. */
+/* The edges of a plane, sorted into buckets of v: the edges of one bucket are those that may cross a given v. */
 struct layer {
     struct edge *edges;
     size_t n_edges;
     double v_low, v_high, buckets_per_mm;
     uint32_t n_buckets;
-    size_t *starts; /* [n_buckets + 1] into which */
+    size_t *starts; /* [n_buckets + 1] start of each bucket in its list */
     uint32_t *which;
 };
 
 struct contour_raster {
     const struct contour_planes *planes;
     struct vec3 u_lps, v_lps;
-    struct layer *layers; /* one a plane */
+    struct layer *layers; /* one per plane */
 };
 
 static void layer_edges(struct layer *layer, const struct contour_raster *raster, const struct contour *contour)
@@ -62,7 +64,8 @@ static void layer_edges(struct layer *layer, const struct contour_raster *raster
 static uint32_t bucket_of(const struct layer *layer, double v)
 {
     double at = (v - layer->v_low) * layer->buckets_per_mm;
-    return !(at > 0) ? 0 : at >= layer->n_buckets ? layer->n_buckets - 1 : (uint32_t)at; /* no height: not-a-number */
+    /* a layer without height gives NaN */
+    return !(at > 0) ? 0 : at >= layer->n_buckets ? layer->n_buckets - 1 : (uint32_t)at;
 }
 
 static bool layer_sort(struct layer *layer, double row_mm, struct error *err)
@@ -72,7 +75,8 @@ static bool layer_sort(struct layer *layer, double row_mm, struct error *err)
         return true;
     double wanted = fmin(fmax(ceil(height_mm / row_mm), 1), MOST_BUCKETS);
     layer->n_buckets = (uint32_t)wanted;
-    for (size_t n_entries;; layer->n_buckets = (layer->n_buckets + 1) / 2) { /* many long edges: fewer buckets */
+    /* halve the buckets while long edges fill too many of them */
+    for (size_t n_entries;; layer->n_buckets = (layer->n_buckets + 1) / 2) {
         layer->buckets_per_mm = layer->n_buckets / height_mm;
         n_entries = 0;
         for (size_t i = 0; i < layer->n_edges; i++)
@@ -91,7 +95,7 @@ static bool layer_sort(struct layer *layer, double row_mm, struct error *err)
     layer->which = mem_array(layer->starts[layer->n_buckets + 1], sizeof *layer->which, UINT64_MAX, err);
     if (!layer->which)
         return false;
-    /* starts[b + 1] moves from the start of bucket b to its end, which is the start of the next */
+    /* starts[b + 1] moves from the start of bucket b to its end, which is the start of bucket b + 1 */
     for (size_t i = 0; i < layer->n_edges; i++)
         for (uint32_t b = bucket_of(layer, layer->edges[i].v_low); b <= bucket_of(layer, layer->edges[i].v_high); b++)
             layer->which[layer->starts[b + 1]++] = (uint32_t)i;
@@ -120,7 +124,8 @@ struct contour_raster *contour_raster_create(const struct contour_planes *planes
     struct contour_raster *raster = mem_new(sizeof *raster);
     raster->planes = planes;
     struct vec3 u = vec3(0, 0, 0);
-    for (int axis = 0; axis < 2 && vec3_length(u) <= 1e-6; axis++) { /* the second where rows run along the normal */
+    /* the second axis where rows run along the normal */
+    for (int axis = 0; axis < 2 && vec3_length(u) <= 1e-6; axis++) {
         struct vec3 column = vec3_normalize(columns[axis]);
         u = vec3_sub(column, vec3_scale(planes->normal_lps, vec3_dot(planes->normal_lps, column)));
     }
@@ -174,7 +179,7 @@ static void sort_values(double *values, size_t n)
     }
 }
 
-/* Length of a line across the plane that lies inside, by even-odd. */
+/* Length of the part of the line v that is inside (even-odd). */
 static double inside_mm(const struct layer *layer, double v, double *crossings, uint64_t *n_met)
 {
     uint32_t bucket = bucket_of(layer, v);
@@ -184,7 +189,7 @@ static double inside_mm(const struct layer *layer, double v, double *crossings, 
         if (edge->v_low <= v && v < edge->v_high)
             crossings[n++] = edge_u(edge, v);
     }
-    *n_met += layer->starts[bucket + 1] - layer->starts[bucket] + n * (n > 32 ? 16 : 1); /* sorting counts as well */
+    *n_met += layer->starts[bucket + 1] - layer->starts[bucket] + n * (n > 32 ? 16 : 1); /* count the sorting too */
     sort_values(crossings, n);
     double sum = 0;
     for (size_t i = 0; i + 1 < n; i += 2)
@@ -192,8 +197,8 @@ static double inside_mm(const struct layer *layer, double v, double *crossings, 
     return sum;
 }
 
-/* Heights between which the length inside changes evenly: those of all points, and evenly spread ones for where edges
- * cross. Ascending; returns how many. */
+/* Values of v between which inside_mm is linear: those of all points, and evenly spaced ones because edges may cross.
+ * Ascending; returns how many. */
 static size_t area_heights(const struct layer *layer, double *heights)
 {
     size_t n = 0;
@@ -238,7 +243,7 @@ bool contour_raster_areas(const struct contour_raster *raster, double *areas_mm2
 
 /* ---- voxels ----------------------------------------------------------------------------------------------------- */
 
-/* Where the voxels of a grid are in the raster's directions: at (i, j, k) u is at.u + i step[0].u + ... */
+/* A voxel position in raster coordinates: at (i, j, k), u is at.u + i step[0].u + ... */
 struct place {
     double u, v, d;
 };
@@ -247,11 +252,11 @@ struct filling {
     const struct contour_raster *raster;
     const struct grid *grid;
     struct place origin, step[3];
-    bool is_aligned; /* a slice of the grid lies in one plane and slices are straight above each other */
+    bool is_aligned; /* each slice of the grid is in one plane, and slices are stacked along the normal */
     uint64_t *bits;
     uint32_t words;
     uint64_t most;
-    uint64_t n_voxels[MOST_THREADS], n_met[MOST_THREADS]; /* of each thread */
+    uint64_t n_voxels[MOST_THREADS], n_met[MOST_THREADS]; /* per thread */
 };
 
 static struct place place_of(const struct contour_raster *raster, struct vec3 v)
@@ -260,7 +265,7 @@ static struct place place_of(const struct contour_raster *raster, struct vec3 v)
                            vec3_dot(raster->planes->normal_lps, v) };
 }
 
-/* A step that over the whole grid leads nowhere is none: what is meant to be aligned is. */
+/* Replaces a step by 0 if it moves nothing over the whole grid, so that grids meant to be aligned are. */
 static double without_noise(double step_mm, uint32_t n)
 {
     return fabs(step_mm) * n < NUDGE_MM ? 0 : step_mm;
@@ -298,21 +303,21 @@ static size_t plane_after(const struct contour_planes *planes, double d)
     return low;
 }
 
-/* The first index in 0 .. n whose value from + index * step is at least to (step > 0). */
+/* The first index in 0..n with from + index * step >= to; step > 0. */
 static uint32_t first_index(double from, double step, double to, uint32_t n)
 {
     double at = ceil((to - from) / step);
     return at <= 0 ? 0 : at >= n ? n : (uint32_t)at;
 }
 
-/* The run of a row inside a slab: from <= index < end. */
+/* The part of a row inside a slab: from <= index < end. */
 static void run_in_slab(const struct contour_plane *plane, double d, double step, uint32_t n, uint32_t *from,
                         uint32_t *end)
 {
     if (step > 0) {
         *from = first_index(d, step, plane->low_mm, n);
         *end = first_index(d, step, plane->high_mm, n);
-    } else if (step < 0) { /* low <= d + i step < high as floor((high - d) / step) < i <= floor((low - d) / step) */
+    } else if (step < 0) { /* low <= d + i step < high means floor((high - d) / step) < i <= floor((low - d) / step) */
         double after = floor((plane->high_mm - d) / step) + 1, last = floor((plane->low_mm - d) / step) + 1;
         *from = after <= 0 ? 0 : after >= n ? n : (uint32_t)after;
         *end = last <= 0 ? 0 : last >= n ? n : (uint32_t)last;
@@ -323,7 +328,7 @@ static void run_in_slab(const struct contour_plane *plane, double d, double step
     }
 }
 
-/* Flips what lies behind each crossing: a bit at its first index, then the running parity of the bits. Adds the run to
+/* Toggles a bit at the first index after each crossing, then takes the running parity of the bits. Adds the result to
  * the row. */
 static uint64_t fill_run(const struct layer *layer, const struct place *start, double u_step, uint32_t from,
                          uint32_t end, uint64_t *row, uint64_t *n_met)
@@ -407,7 +412,7 @@ static void fill_slices(void *context, int part, int n_parts)
                 n_slice_voxels +=
                     fill_row(filling, &start, slice ? slice + (size_t)j * filling->words : NULL, &n_slice_met);
             }
-            /* what was filled before the slab begins is not what its slices look like */
+            /* a slice filled before the slab begins does not show what the slices of the slab look like */
             bool is_in_slab = plane < planes->n_planes && row_start(filling, 0, k).d >= planes->planes[plane].low_mm;
             last_plane = is_in_slab ? plane : SIZE_MAX;
         }

@@ -1,3 +1,4 @@
+/* Continues the image's voxel lattice around contours that leave the image. */
 #include "core/region/contour_reach.h"
 
 #include <stdlib.h>
@@ -6,21 +7,22 @@
 #include "core/base/mem.h"
 
 #define ALIGNED_COSINE \
-    (1 - 1e-9)         /* contour planes parallel to the grid's own; near ones were snapped (contour_planes_init) */
-#define SAME_STEP 1e-3 /* of a slice: spacing and place of planes that are the image's slices */
-#define LEAST_IN_PLANE 64.0 /* voxels of a slice: coarser is no picture any more, then slices are joined */
-#define OUTSIDE_VOXELS 1e-3 /* rounding */
+    (1 - 1e-9)              /* contour planes count as parallel to the grid's; nearly parallel ones were snapped by \
+                               contour_planes_init */
+#define SAME_STEP 1e-3      /* in slices: tolerance for planes being the image's slices */
+#define LEAST_IN_PLANE 64.0 /* in voxels of the image: coarsest in-plane step; after that, slices are joined */
+#define OUTSIDE_VOXELS 1e-3 /* tolerance for rounding */
 
-/* Where one set lies, in voxels of the image. */
+/* Extent of one set, in voxels of the image. */
 struct extent {
     double low[3], high[3];
     bool is_known;
 };
 
-/* How the lattice runs along each index axis of the image: index = first + step * whole number. */
+/* The lattice along each index axis of the image: index = first + step * whole number. */
 struct lattice {
     double first[3], step[3];
-    int along; /* axis along the contours' normal */
+    int along; /* the index axis along the contours' normal */
 };
 
 static struct extent extent_of(const struct contour_planes *planes, const struct grid *image)
@@ -62,7 +64,7 @@ static bool is_in_reach(const struct extent *extent, const struct grid *image)
     return true;
 }
 
-/* The slab of the outermost planes lies outside the contours' points. */
+/* Extends by the slabs of the outermost planes, which reach beyond the contours' points. */
 static void add_slabs(struct extent *extent, const struct contour_planes *planes, const struct grid *image)
 {
     double thickest_mm = 0;
@@ -76,7 +78,7 @@ static void add_slabs(struct extent *extent, const struct contour_planes *planes
     }
 }
 
-/* Slices on the planes of this set, unless those lie on the image's slices or are not parallel to any of its axes'
+/* Puts slices on the planes of this set, unless they are the image's slices already or are not parallel to the image's
  * planes. */
 static void fit_planes(struct lattice *lattice, const struct contour_planes *planes, const struct grid *image)
 {
@@ -92,7 +94,7 @@ static void fit_planes(struct lattice *lattice, const struct contour_planes *pla
     struct vec3 own = vec3_normalize(vec3_cross(columns[(a + 1) % 3], columns[(a + 2) % 3]));
     if (fabs(vec3_dot(own, planes->normal_lps)) < ALIGNED_COSINE)
         return;
-    double pitch_mm = vec3_dot(columns[a], planes->normal_lps); /* negative where the index falls along the normal */
+    double pitch_mm = vec3_dot(columns[a], planes->normal_lps); /* negative if the index decreases along the normal */
     double step = planes->facts.spacing_mm / fabs(pitch_mm);
     double first = (planes->planes[0].at_mm - vec3_dot(planes->normal_lps, image->lps_mm_from_ijk.origin)) / pitch_mm;
     if (fabs(step - 1) <= SAME_STEP && fabs(first - floor(first + 0.5)) <= SAME_STEP)
@@ -101,7 +103,7 @@ static void fit_planes(struct lattice *lattice, const struct contour_planes *pla
     lattice->step[a] = step;
 }
 
-/* Whole steps of the lattice around an extent, one more on each side. */
+/* The whole lattice steps around an extent, one more on each side. */
 static void whole_steps(const struct lattice *lattice, const struct extent *extent, double first[3], double n[3])
 {
     for (int a = 0; a < 3; a++) {
@@ -110,7 +112,7 @@ static void whole_steps(const struct lattice *lattice, const struct extent *exte
     }
 }
 
-/* Doubles steps until the whole fits into a grid and the part around each set into most_voxels. */
+/* Doubles steps until the lattice fits into a grid and the part around each set into most_voxels. */
 static void coarsen(struct lattice *lattice, const struct extent *extents, const bool *is_marked, size_t n_sets,
                     const struct extent *all, double most_voxels)
 {
@@ -190,7 +192,7 @@ bool contour_reach_grid(const struct contour_set *sets, bool *is_marked, size_t 
     }
     *has_grid = is_sorted && all.is_known;
     if (*has_grid && all.low[lattice.along] >= -0.5 && all.high[lattice.along] <= image->size[lattice.along] - 0.5) {
-        lattice.first[lattice.along] = 0; /* the image has slices everywhere: the grid continues them */
+        lattice.first[lattice.along] = 0; /* the image has slices all along: continue them */
         lattice.step[lattice.along] = 1;
     }
     if (*has_grid) {

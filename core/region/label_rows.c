@@ -1,3 +1,4 @@
+/* Finds runs and faces in label rows by comparing whole words. */
 #include "core/region/label_rows.h"
 
 #include <string.h>
@@ -22,7 +23,7 @@ static inline uint64_t load_word(const void *at)
             i++; \
         return i; \
     } \
-    /* Pairs (row[i], other[i]); along the row itself when other is row + 1. */ \
+    /* Counts the pairs (row[i], other[i]); pairs along the row itself if other is row + 1. */ \
     static void row_faces_##type(const type *row, const type *other, uint32_t n, const uint16_t *slot, size_t n_slots, \
                                  uint64_t *faces) \
     { \

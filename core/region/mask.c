@@ -1,3 +1,4 @@
+/* Creates masks, from labels and from regions. */
 #include "core/region/mask.h"
 
 #include <stdlib.h>
@@ -137,7 +138,7 @@ struct mask *mask_from_region(const struct region_set *set, size_t region, int n
     struct mask *mask = NULL;
     bool good = labels != NULL;
     for (size_t step = 0; good && step <= set->n_layers; step++) {
-        size_t layer = step == 0 ? own_layer : step - 1; /* own layer first, as it sets the grid */
+        size_t layer = step == 0 ? own_layer : step - 1; /* the region's own layer first, because it sets the grid */
         if ((step > 0 && layer == own_layer) || !grid_is_same(&set->layers[layer]->grid, &set->layers[own_layer]->grid))
             continue;
         size_t n = 0;

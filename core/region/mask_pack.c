@@ -1,3 +1,4 @@
+/* Converts label rows to bits: portable and AVX2 loops, chosen at run time. */
 #include "core/region/mask_pack.h"
 
 #include <string.h>
@@ -59,16 +60,17 @@ const struct mask_packer mask_packer_portable = { pack_u8_portable, pack_u16_por
 #if defined(__x86_64__)
 #define AVX2 __attribute__((target("avx2")))
 
-/* Rows lie one behind the other, so what is far ahead is wanted soon. The address may lie beyond the labels: a prefetch
- * reads nothing. */
+/* Prefetch distance in bytes: rows follow each other, so labels far ahead are needed soon. The address may be past the
+ * end of the labels, because a prefetch does not read. */
 enum { AHEAD = 4096 };
 AVX2 static inline void prefetch(const void *at)
 {
     _mm_prefetch((const char *)((uintptr_t)at + AHEAD), _MM_HINT_T0);
 }
 
-/* Any set of bytes in one go: the low half of a byte looks up, in the table its highest bit selects, which high halves
- * are in the set (PSHUFB gives 0 where the index has bit 7, so the other table drops out by itself). */
+/* Tests 32 bytes against any set of labels: the low half of a byte is looked up in the table that its highest bit
+ * selects; the entry says which high halves are in the set. PSHUFB gives 0 where the index has bit 7, so the other
+ * table contributes nothing. */
 AVX2 static inline uint32_t test_32_u8(__m256i low_table, __m256i high_table, __m256i labels)
 {
     const __m256i bit_of_half = _mm256_set1_epi64x((long long)0x8040201008040201u);
@@ -106,7 +108,7 @@ AVX2 static inline uint32_t test_32_u16(const struct label_test *test, const uin
     __m256i a = _mm256_loadu_si256((const __m256i *)labels), b = _mm256_loadu_si256((const __m256i *)(labels + 16));
     __m256i in_a = _mm256_setzero_si256(), in_b = in_a;
     for (size_t run = 0; run < test->n_runs; run++) {
-        /* unsigned (label - first) <= length - 1, as a saturated difference of 0 */
+        /* unsigned (label - first) <= length - 1, tested as a saturated difference of 0 */
         __m256i first = _mm256_set1_epi16((short)test->first[run]),
                 length = _mm256_set1_epi16((short)test->length_less_1[run]);
         in_a = _mm256_or_si256(in_a, _mm256_cmpeq_epi16(_mm256_subs_epu16(_mm256_sub_epi16(a, first), length),
@@ -114,7 +116,7 @@ AVX2 static inline uint32_t test_32_u16(const struct label_test *test, const uin
         in_b = _mm256_or_si256(in_b, _mm256_cmpeq_epi16(_mm256_subs_epu16(_mm256_sub_epi16(b, first), length),
                                                         _mm256_setzero_si256()));
     }
-    /* packs within halves of 128 bits: put the quarters back in order */
+    /* packing works within halves of 128 bits: restore the sequence of the quarters */
     return (uint32_t)_mm256_movemask_epi8(_mm256_permute4x64_epi64(_mm256_packs_epi16(in_a, in_b), 0xd8));
 }
 

@@ -1,15 +1,15 @@
-/* Coarser masks that hold together.
+/* Reduces a mask to a coarser one of the same topology.
  *
  *   1. count the voxels of every block
- *   2. start from all blocks that hold any: what was closed or hung together does so still
- *   3. go through the blocks that are less than half full, the emptiest first, and take away each that lies at the old
- * outside with a neighbour at least as full on its other side, unless that would open a hole, cut something in two or
- * join two cavities
+ *   2. start with all blocks that hold any voxel: everything closed or connected is so still
+ *   3. visit the blocks that are less than half full, emptiest first; remove a block that is at the original outside
+ *      and has a neighbour at least as full on its other side, unless that would open a hole, cut a piece in two or
+ *      join two cavities
  *
- * Inside voxels hang together by faces and outside ones also by edges and corners, as in the surfaces (cube_cases.h). A
- * voxel can be taken away without consequences when, among its 26 neighbours, the inside ones that it touches by a face
- * hang together by faces within the 18 that share a face or an edge with it, and the outside ones hang together (G.
- * Bertrand, Simple points, topological numbers and geodesic neighborhoods in cubic grids, 1994). */
+ * Inside voxels are connected by faces, outside voxels also by edges and corners, as in the surfaces (cube_cases.h). A
+ * voxel can be removed without changing the topology if, among its 26 neighbours, the inside voxels that share a face
+ * with it are connected by faces within the 18 that share a face or an edge with it, and the outside voxels are
+ * connected (G. Bertrand, Simple points, topological numbers and geodesic neighborhoods in cubic grids, 1994). */
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,7 +27,7 @@ struct reduce_job {
     const struct mask *from;
     struct mask *to;
     uint32_t factors[3];
-    uint16_t *counts; /* [k][j][i] of blocks: voxels inside; 0 where nobody wrote */
+    uint16_t *counts; /* [k][j][i] of blocks: number of inside voxels; 0 where nothing was written */
 };
 
 static uint32_t part_of_block(uint32_t size, uint32_t block, uint32_t factor)
@@ -38,7 +38,7 @@ static uint32_t part_of_block(uint32_t size, uint32_t block, uint32_t factor)
 
 /* ---- counting --------------------------------------------------------------------------------------------------- */
 
-/* Which of the n voxels of a row from `first` on are inside; 1 <= n <= 64, so they lie in at most two words. */
+/* Bits of the n voxels of a row from `first` on; 1 <= n <= 64, so they are in at most two words. */
 static uint64_t bits_at(const uint64_t *row, uint32_t first, uint32_t n)
 {
     uint32_t word = first / 64, shift = first % 64;
@@ -48,12 +48,12 @@ static uint64_t bits_at(const uint64_t *row, uint32_t first, uint32_t n)
     return bits & ~(uint64_t)0 >> (64 - n);
 }
 
-/* The rows of voxels that a row of blocks covers. */
+/* The rows of voxels covered by a row of blocks. */
 struct block_row {
     const uint64_t *first;
-    size_t next_j, next_k; /* words from a row to the next along j and k */
+    size_t next_j, next_k; /* distance in words of the next row along j and of the next slice */
     uint32_t n_j, n_k;
-    uint64_t any[MAX_WORDS], all[MAX_WORDS]; /* of these rows: inside in one of them, in each of them */
+    uint64_t any[MAX_WORDS], all[MAX_WORDS]; /* over these rows: bits set in at least one, bits set in every one */
 };
 
 static void block_row_init(struct block_row *rows, const struct mask *from, const uint32_t factors[3], uint32_t j,
@@ -77,7 +77,8 @@ static void block_row_init(struct block_row *rows, const struct mask *from, cons
     }
 }
 
-/* Voxels inside in the block of n_i voxels from `first` on. Most blocks are empty or full and need no counting. */
+/* Counts the inside voxels of the block of n_i columns from `first` on. Most blocks are empty or full and need no
+ * counting. */
 static uint32_t count_block(const struct block_row *rows, uint32_t first, uint32_t n_i)
 {
     if (!bits_at(rows->any, first, n_i))
@@ -92,7 +93,7 @@ static uint32_t count_block(const struct block_row *rows, uint32_t first, uint32
     return n;
 }
 
-/* A row of blocks; 64 voxels at a time, as most of a row is empty or full. What is empty is so already. */
+/* Reduces a row of blocks, 64 voxels at a time, because most words are empty or full. Empty ones need no write. */
 static void count_row(const struct reduce_job *job, const struct block_row *rows, uint64_t *bits, uint16_t *counts)
 {
     uint32_t n_blocks = job->to->size[0], n_voxels = job->from->size[0], factor = job->factors[0], n;
@@ -129,7 +130,7 @@ static void count_part(void *context, int part, int n_parts)
 
 /* ---- what can be taken away ------------------------------------------------------------------------------------- */
 
-/* The 27 voxels of a neighbourhood, bit (dx + 1) + 3 (dy + 1) + 9 (dz + 1); the middle is bit 13. */
+/* The 27 voxels of a neighbourhood: bit (dx + 1) + 3 (dy + 1) + 9 (dz + 1); the middle is bit 13. */
 enum { MIDDLE = 1 << 13, ALL_27 = (1 << 27) - 1 };
 #define FACES ((1u << 4) | (1u << 10) | (1u << 12) | (1u << 14) | (1u << 16) | (1u << 22))
 #define CORNERS ((1u << 0) | (1u << 2) | (1u << 6) | (1u << 8) | (1u << 18) | (1u << 20) | (1u << 24) | (1u << 26))
@@ -149,7 +150,7 @@ static uint32_t neighbourhood(const struct mask *mask, uint32_t i, uint32_t j, u
     return found;
 }
 
-/* Columns of the neighbourhood, so that a step along x does not go over its edge. */
+/* Columns of the neighbourhood, to mask out a step along x over its edge. */
 #define LEFT 0x1249249u /* dx = -1 */
 #define RIGHT (LEFT << 2)
 
@@ -159,7 +160,7 @@ static uint32_t grow_x(uint32_t set)
 }
 static uint32_t y_steps(uint32_t set)
 {
-    const uint32_t low = 0x1c0e07u, high = low << 6; /* dy = -1, dy = 1 */
+    const uint32_t low = 0x1c0e07u, high = low << 6; /* planes dy = -1 and dy = 1 */
     return (set & ~high) << 3 | (set & ~low) >> 3;
 }
 static uint32_t z_steps(uint32_t set)
@@ -191,13 +192,13 @@ static bool can_go(uint32_t neighbours)
     uint32_t inside = neighbours & ~(uint32_t)(MIDDLE | CORNERS), touching = neighbours & FACES;
     uint32_t outside = ~neighbours & ALL_27 & ~(uint32_t)MIDDLE;
     if (!touching || !outside)
-        return false; /* alone, or at no border */
+        return false; /* a single voxel, or one not at the border */
     return (touching & ~spread(touching & (0 - touching), inside, grow_by_faces)) == 0 &&
            spread(outside & (0 - outside), outside, grow_by_all) == outside;
 }
 
-/* Whether it lies at the outside there was at first, with a neighbour behind it that is at least as full and still
- * there. */
+/* Returns true if the block is at the original outside and has, on the opposite side, a neighbour that is at least as
+ * full and still there. */
 static bool is_skin(const struct reduce_job *job, uint32_t neighbours, const uint32_t at[3])
 {
     static const uint32_t bit_of[3] = { 1, 3, 9 };
@@ -225,11 +226,11 @@ static uint32_t block_size(const struct reduce_job *job, const uint32_t at[3])
 
 struct thinning {
     struct reduce_job *job;
-    size_t first[MAX_COUNT + 2]; /* by how full: how many; then where the next goes */
+    size_t first[MAX_COUNT + 2]; /* by count: first how many blocks, then the position of the next one */
     uint32_t (*places)[3];
 };
 
-/* Calls found for each block that is not empty and less than half full, in the order of memory. */
+/* Calls found for each block that is less than half full and not empty, in memory order. */
 static void each_thin(struct thinning *thinning,
                       void (*found)(struct thinning *thinning, uint16_t count, const uint32_t at[3]))
 {
@@ -260,7 +261,7 @@ static void place_thin(struct thinning *thinning, uint16_t count, const uint32_t
     memcpy(thinning->places[thinning->first[count]++], at, sizeof *thinning->places);
 }
 
-/* By how full they are; equals in the order of memory. */
+/* Visits blocks by ascending count, equal counts in memory order. */
 static bool thin_out(struct reduce_job *job, struct error *err)
 {
     struct thinning thinning = { .job = job };
@@ -297,7 +298,7 @@ struct mask *mask_reduce(const struct mask *mask, const uint32_t factors[3], int
             return NULL;
         }
         size[axis] = (mask->size[axis] + factor - 1) / factor;
-        /* the centre of a block of f voxels lies (f - 1) / 2 voxels behind the centre of its first */
+        /* the centre of a block of f voxels is (f - 1) / 2 voxels after the centre of its first voxel */
         map.origin = vec3_add(map.origin, vec3_scale(map.columns[axis], (factor - 1) / 2.0));
         map.columns[axis] = vec3_scale(map.columns[axis], factor);
     }

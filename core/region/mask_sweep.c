@@ -1,3 +1,4 @@
+/* Sweeps the label layers once and sets the bits of all requested masks. */
 #include "core/region/mask_sweep.h"
 
 #include <stdlib.h>
@@ -9,15 +10,15 @@
 enum { MAX_THREADS = 64, N_LABELS = 65536 };
 enum { NOWHERE, ELSEWHERE, FIRST_ROW };
 
-/* The masks that hold a label: `n` numbers from members[from] on. */
+/* The masks that contain a label: n mask numbers from members[from] on. */
 struct holders {
     uint32_t from, n;
 };
 
-/* Where a thread has set bits of a mask. */
+/* The extent of the bits a thread has set in a mask. */
 struct reach {
-    uint32_t low_j, end_j, low_k, end_k; /* all 0: nowhere */
-    uint64_t row;                        /* the last; NOWHERE; ELSEWHERE: in a layer before */
+    uint32_t low_j, end_j, low_k, end_k; /* all 0: none */
+    uint64_t row;                        /* the last row touched; NOWHERE: none; ELSEWHERE: in an earlier layer */
 };
 
 struct sweep {
@@ -25,9 +26,9 @@ struct sweep {
     const struct mask_wish *wishes;
     size_t n;
     struct mask **masks;
-    uint64_t **bits; /* [n], of the masks */
+    uint64_t **bits; /* [n] bits of the masks */
     const struct volume *layer;
-    struct holders *holders; /* [N_LABELS], of the layer */
+    struct holders *holders; /* [N_LABELS] of the current layer */
     uint32_t *members;
     struct reach *reaches; /* [n_threads][n] */
 };
@@ -39,7 +40,7 @@ static const struct volume *layer_of(const struct sweep *sweep, size_t wish)
     return sweep->set->layers[sweep->set->regions[sweep->wishes[wish].region].layer];
 }
 
-/* Calls note for every label of the layer that a mask holds. */
+/* Calls note for every label of the layer and every mask that contains it. */
 static void each_label(const struct sweep *sweep, size_t layer, size_t *inside,
                        void (*note)(const struct sweep *sweep, uint16_t label, uint32_t mask))
 {
@@ -68,14 +69,15 @@ static void add_holder(const struct sweep *sweep, uint16_t label, uint32_t mask)
     sweep->members[holders->from + holders->n++] = mask;
 }
 
-/* False: nobody holds anything of the layer, or there is no memory. */
+/* Lists, for each label of the layer, the masks that contain it. Returns false if no mask contains any, or there is no
+ * memory. */
 static bool find_holders(struct sweep *sweep, size_t layer, size_t *inside, struct error *err)
 {
     uint64_t n = 0;
     memset(sweep->holders, 0, N_LABELS * sizeof *sweep->holders);
     each_label(sweep, layer, inside, count_holder);
     for (size_t label = 0; label < N_LABELS; label++) {
-        sweep->holders[label].from = (uint32_t)n; /* at most REGION_MAX wishes of as many regions */
+        sweep->holders[label].from = (uint32_t)n; /* fits: at most REGION_MAX wishes of REGION_MAX regions each */
         n += sweep->holders[label].n;
         sweep->holders[label].n = 0;
     }
@@ -90,7 +92,7 @@ static bool find_holders(struct sweep *sweep, size_t layer, size_t *inside, stru
 /* ---- the sweep -------------------------------------------------------------------------------------------------- */
 
 struct place {
-    size_t word; /* of the masks */
+    size_t word; /* index of the word in each mask */
     uint32_t j, k;
 };
 
@@ -114,7 +116,7 @@ static inline void set_bits(const struct sweep *sweep, uint16_t label, struct re
     }
 }
 
-/* Of up to 64 labels: most words are all of one, others a few runs. */
+/* Sweeps up to 64 labels: most words hold a single label, the rest a few runs. */
 #define DEFINE_WORD(type) \
     static inline void sweep_word_##type(const struct sweep *sweep, const type *labels, uint32_t n, \
                                          struct reach *reaches, struct place place) \
@@ -128,7 +130,7 @@ static inline void set_bits(const struct sweep *sweep, uint16_t label, struct re
                 return; \
             } \
         } \
-        uint64_t changes = 0; /* the bit of a label unlike the one before it */ \
+        uint64_t changes = 0; /* bit i is set if label i differs from label i - 1 */ \
         for (uint32_t i = 1; i < n; i++) \
             changes |= (uint64_t)(labels[i] != labels[i - 1]) << i; \
         uint64_t all = n == 64 ? ~(uint64_t)0 : ((uint64_t)1 << n) - 1; \
@@ -178,7 +180,7 @@ static bool check(const struct region_set *set, const struct mask_wish *wishes, 
     return true;
 }
 
-/* What a mask holds lies where any thread has set bits. */
+/* The mask's extent is the union of the extents of all threads. */
 static void join_reaches(struct mask *mask, const struct reach *reaches, size_t stride, int n_threads)
 {
     struct reach all = { 0 };
@@ -201,7 +203,7 @@ static void join_reaches(struct mask *mask, const struct reach *reaches, size_t 
 
 static bool sweep_layers(struct sweep *sweep, int n_threads, struct error *err)
 {
-    size_t *inside = mem_new((sweep->set->n_regions + 1) * sizeof *inside); /* REGION_MAX at most */
+    size_t *inside = mem_new((sweep->set->n_regions + 1) * sizeof *inside); /* at most REGION_MAX entries */
     sweep->holders = mem_array(N_LABELS, sizeof *sweep->holders, UINT64_MAX, err);
     sweep->reaches = mem_array(sweep->n * (size_t)n_threads, sizeof *sweep->reaches, UINT64_MAX, err);
     bool is_good = sweep->holders && sweep->reaches;

@@ -1,6 +1,8 @@
-/* A side is a border pixel and the direction, 0..3 counter-clockwise from right, in which it has an outside neighbour.
- * Walking with the pixel to the left and that neighbour to the right means walking a quarter turn counter-clockwise
- * from that direction. */
+/* Follows the sides of border pixels around the pieces of each slice.
+ *
+ * A side is a border pixel and a direction, 0..3 counter-clockwise from right, in which it has an outside neighbour. A
+ * step along the side keeps the pixel to the left and that neighbour to the right, so it goes a quarter turn
+ * counter-clockwise from the side's direction. */
 #include "core/region/outline.h"
 
 #include <stdatomic.h>
@@ -12,7 +14,7 @@
 
 enum { MAX_THREADS = 64, RIGHT = 0, UP = 1, LEFT = 2, DOWN = 3, INSIDE = 16 };
 
-/* What the slices across an axis look like: pixel (x, y) is voxel index x along axes[0], y along axes[1]. */
+/* Geometry of the slices across an axis: pixel (x, y) has voxel index x along axes[0] and y along axes[1]. */
 struct view {
     const struct mask *mask;
     int axes[2], across;
@@ -20,24 +22,25 @@ struct view {
     struct outline_rule rule;
 };
 
-/* Grows by doubling. */
+/* Growing array; doubles its room. */
 struct numbers {
     uint32_t *at;
     size_t n, room;
 };
 
-/* One slice's lines, numbered from 0. */
+/* The lines of one slice; points and lines are numbered from 0. */
 struct lines {
-    struct numbers halves; /* x, y of each point, in half pixels, plus 1 so that none is negative */
+    struct numbers halves; /* x, y of each point in half pixels, plus 1 so that none is negative */
     struct numbers walk, line;
 };
 
-/* What a thread keeps from slice to slice. */
+/* Buffers of a thread, reused from slice to slice. */
 struct sheet {
-    uint8_t *pixels; /* [size[1] + 2][size[0] + 2], a margin of outside around: INSIDE, and bit d for side d walked */
+    uint8_t *pixels; /* [size[1] + 2][size[0] + 2], with a margin of outside: INSIDE, and bit d for a side of direction
+                        d that was visited */
     uint32_t
-        *numbers; /* [size[1]][size[0]] 1 + number of the pixel's point, or 0; NULL when points are between pixels */
-    ptrdiff_t step[4]; /* to the neighbour in each direction */
+        *numbers; /* [size[1]][size[0]] 1 + index of the pixel's point, or 0; NULL when points are between pixels */
+    ptrdiff_t step[4]; /* offset of the neighbour in each direction */
     ptrdiff_t width;
 };
 
@@ -46,7 +49,7 @@ struct job {
     uint32_t first_slice, n_slices;
     struct lines *lines; /* [n_slices] */
     atomic_uint next;
-    atomic_size_t n_walk; /* of all slices so far, so that noise is refused before it fills the memory */
+    atomic_size_t n_walk; /* total of all slices so far, so that noise is refused before it fills the memory */
     struct error errors[MAX_THREADS];
 };
 
@@ -106,7 +109,7 @@ static void sheet_finish(struct sheet *sheet)
     free(sheet->numbers);
 }
 
-/* Pixels of slice `index`; false when all are outside. */
+/* Reads the pixels of slice `index`; returns false if all are outside. */
 static bool sheet_fill(struct sheet *sheet, const struct view *view, uint32_t index)
 {
     const struct mask *mask = view->mask;
@@ -114,7 +117,7 @@ static bool sheet_fill(struct sheet *sheet, const struct view *view, uint32_t in
     memset(sheet->pixels, 0, (size_t)sheet->width * (view->size[1] + 2));
     for (uint32_t y = 0; y < view->size[1]; y++) {
         uint8_t *out = sheet->pixels + (y + 1) * (size_t)sheet->width + 1;
-        if (view->across == 0) { /* a column of bits: each pixel is in a row of its own */
+        if (view->across == 0) { /* rows of pixels run across the words: each pixel is a bit of another row */
             const uint64_t *bits = mask->bits + (size_t)y * mask->size[1] * mask->words + index / 64;
             for (uint32_t x = 0; x < view->size[0]; x++)
                 out[x] = bits[(size_t)x * mask->words] >> index % 64 & 1 ? INSIDE : 0;
@@ -132,24 +135,25 @@ static bool sheet_fill(struct sheet *sheet, const struct view *view, uint32_t in
 /* ---- walking ---------------------------------------------------------------------------------------------------- */
 
 struct side {
-    size_t pixel; /* in sheet->pixels */
+    size_t pixel; /* index in sheet->pixels */
     int direction;
 };
 
 static struct side side_after(const struct sheet *sheet, struct side side, bool is_joined)
 {
     int ahead = (side.direction + 1) & 3;
-    size_t inner = side.pixel + (size_t)sheet->step[ahead]; /* the pixel ahead on the left, and the one on the right */
+    /* inner: the pixel ahead on the left; outer: ahead on the right */
+    size_t inner = side.pixel + (size_t)sheet->step[ahead];
     size_t outer = inner + (size_t)sheet->step[side.direction];
     bool has_inner = sheet->pixels[inner] & INSIDE, has_outer = sheet->pixels[outer] & INSIDE;
     if (has_outer && (has_inner || is_joined))
-        return (struct side){ outer, (side.direction + 3) & 3 }; /* round a hollow corner */
+        return (struct side){ outer, (side.direction + 3) & 3 }; /* around a concave corner */
     if (has_inner)
         return (struct side){ inner, side.direction };
-    return (struct side){ side.pixel, ahead }; /* round a corner that sticks out */
+    return (struct side){ side.pixel, ahead }; /* around a convex corner */
 }
 
-/* The number of the side's point, which is made on first sight. */
+/* Finds the index of the side's point; adds the point at its first occurrence. */
 static bool point_of(struct sheet *sheet, const struct view *view, struct side side, struct lines *lines,
                      uint32_t *number, struct error *err)
 {
@@ -185,11 +189,12 @@ static bool walk_line(struct sheet *sheet, const struct view *view, struct side 
         side = side_after(sheet, side, view->rule.is_joined);
     } while (side.pixel != start.pixel || side.direction != start.direction);
     if (lines->walk.n > first + 1 && lines->walk.at[lines->walk.n - 1] == lines->walk.at[first])
-        lines->walk.n--; /* the pixel it began in the middle of */
+        lines->walk.n--; /* the walk came back to the point where it began */
     return true;
 }
 
-/* A closed line goes to the right somewhere, along the lower side of a pixel: so looking for those finds all lines. */
+/* Every closed line goes to the right somewhere, below a pixel: starting at each unvisited lower side finds all
+ * lines. */
 static bool walk_slice(struct job *job, struct sheet *sheet, struct lines *lines, struct error *err)
 {
     const struct view *view = &job->view;
@@ -208,7 +213,7 @@ static bool walk_slice(struct job *job, struct sheet *sheet, struct lines *lines
                 return false;
         }
     }
-    for (size_t at = 0; sheet->numbers && at < lines->halves.n; at += 2) /* clean for the next slice */
+    for (size_t at = 0; sheet->numbers && at < lines->halves.n; at += 2) /* reset for the next slice */
         sheet->numbers[(size_t)(lines->halves.at[at + 1] / 2) * view->size[0] + lines->halves.at[at] / 2] = 0;
     return true;
 }

@@ -1,3 +1,4 @@
+/* Region ids, names and palette; counts, boxes and centres of label layers. */
 #include "core/region/region.h"
 
 #include <math.h>
@@ -61,10 +62,10 @@ static void tally_run(void *context, uint16_t label, uint32_t i, uint32_t j, uin
         tally->high[0] = last > tally->high[0] ? last : tally->high[0];
         tally->low[1] = j < tally->low[1] ? j : tally->low[1];
         tally->high[1] = j > tally->high[1] ? j : tally->high[1];
-        tally->high[2] = k; /* k never falls */
+        tally->high[2] = k; /* k never decreases */
     }
     tally->n += length;
-    tally->sum[0] += ((uint64_t)i + last) * length / 2; /* (i + last) * length is even */
+    tally->sum[0] += ((uint64_t)i + last) * length / 2; /* (i + last) * length is always even */
     tally->sum[1] += (uint64_t)j * length;
     tally->sum[2] += (uint64_t)k * length;
 }
@@ -134,7 +135,7 @@ void region_set_finish(struct region_set *set)
 
 void region_palette(size_t index, uint8_t rgb[3])
 {
-    /* Hues far apart first; lightness alternates, so neighbours in the list also differ in grey. */
+    /* Distant hues first; lightness alternates, so that neighbours in the list also differ in grey. */
     static const uint8_t palette[][3] = {
         { 226, 190, 164 }, { 120, 160, 214 }, { 222, 110, 96 }, { 134, 196, 140 }, { 176, 140, 210 }, { 236, 204, 96 },
         { 84, 150, 160 },  { 240, 166, 176 }, { 150, 118, 84 }, { 168, 214, 232 }, { 196, 96, 150 },  { 190, 206, 92 },

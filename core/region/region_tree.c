@@ -1,4 +1,4 @@
-/* Deriving what lies inside what. */
+/* Derives the hierarchy of regions from containment. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,10 +6,10 @@
 #include "core/region/label_rows.h"
 #include "core/region/region.h"
 
-enum { SAMPLES = 4096 };                 /* voxels of a region looked up in the other layers */
-static const double touch_share = 0.95;  /* of A's outward faces that must touch B or what lies inside B */
-static const double carry_share = 0.99;  /* of A's voxels that must carry B, across layers */
-static const double border_share = 0.25; /* most of A's faces that may lie on the outside of the grid */
+enum { SAMPLES = 4096 };                 /* sampled voxels per region, looked up in the other layers */
+static const double touch_share = 0.95;  /* share of A's outward faces that must touch B or a region inside B */
+static const double carry_share = 0.99;  /* share of A's sampled voxels that must have B's label, across layers */
+static const double border_share = 0.25; /* largest share of A's faces on the outside of the grid */
 
 struct box_facts {
     struct box3 box;
@@ -42,7 +42,7 @@ static bool lies_inside(const struct region_set *set, size_t a, size_t b)
     return false;
 }
 
-/* Gives a the parent b when that is better than what it has: the smaller box wins. Never a cycle. */
+/* Makes b the parent of a if its box is smaller than that of a's parent so far. Never makes a cycle. */
 static bool offer_parent(struct region_set *set, const struct box_facts *facts, size_t a, size_t b)
 {
     if (a == b || lies_inside(set, b, a))
@@ -62,11 +62,11 @@ static bool box_holds(const struct region *outer, const struct region *inner)
     return true;
 }
 
-/* One layer: faces are counted once; then regions find parents from the inside outward, until nothing changes: only
- * when what lies inside A is known can A's outward faces be told from its inward ones. */
+/* Faces within one layer. They are counted once; then regions find parents from the inside outward until nothing
+ * changes, because A's outward faces can only be told from its inward ones once it is known what lies inside A. */
 struct layer_faces {
     size_t n;         /* regions of this layer; slot n is everything else */
-    size_t *regions;  /* [n] their indices in the set */
+    size_t *regions;  /* [n] indices in the region set */
     uint64_t *faces;  /* [n + 1][n + 1] */
     uint64_t *border; /* [n + 1] */
 };
