@@ -5,7 +5,7 @@
 
 enum { MAX_THREADS = 64 };
 
-struct job {
+struct border_job {
     const struct mask *mask;
     struct mask *border;
     bool is_open_at_edge;
@@ -16,7 +16,7 @@ static const uint64_t *row_at(const struct mask *mask, size_t j, size_t k)
     return mask->bits + (k * mask->size[1] + j) * mask->words;
 }
 
-static void border_row(const struct job *job, size_t j, size_t k)
+static void border_row(const struct border_job *job, size_t j, size_t k)
 {
     const struct mask *mask = job->mask;
     const uint64_t *row = row_at(mask, j, k), beyond = job->is_open_at_edge ? ~(uint64_t)0 : 0;
@@ -41,7 +41,7 @@ static void border_row(const struct job *job, size_t j, size_t k)
 
 static void border_part(void *context, int part, int n_parts)
 {
-    const struct job *job = context;
+    const struct border_job *job = context;
     size_t n = (size_t)job->mask->size[1] * job->mask->size[2];
     size_t end = n * (size_t)(part + 1) / (size_t)n_parts;
     for (size_t row = n * (size_t)part / (size_t)n_parts; row < end; row++)
@@ -50,7 +50,7 @@ static void border_part(void *context, int part, int n_parts)
 
 struct mask *mask_boundary(const struct mask *mask, bool is_open_at_edge, int n_threads, struct error *err)
 {
-    struct job job = { mask, mask_create(mask->size, &mask->lps_mm_from_ijk, err), is_open_at_edge };
+    struct border_job job = { mask, mask_create(mask->size, &mask->lps_mm_from_ijk, err), is_open_at_edge };
     if (!job.border)
         return NULL;
     int n = n_threads > 0 ? n_threads : parallel_cores();

@@ -25,7 +25,7 @@ static double edge_u(const struct edge *edge, double v)
 }
 
 /* The edges of a plane, sorted into buckets of v: the edges of one bucket are those that may cross a given v. */
-struct layer {
+struct plane_edges {
     struct edge *edges;
     size_t n_edges;
     double v_low, v_high, buckets_per_mm;
@@ -37,10 +37,10 @@ struct layer {
 struct contour_raster {
     const struct contour_planes *planes;
     struct vec3 u_lps, v_lps;
-    struct layer *layers; /* one per plane */
+    struct plane_edges *layers; /* one per plane */
 };
 
-static void layer_edges(struct layer *layer, const struct contour_raster *raster, const struct contour *contour)
+static void layer_edges(struct plane_edges *layer, const struct contour_raster *raster, const struct contour *contour)
 {
     const double *p = contour->points_lps_mm + 3 * (contour->n_points - 1);
     struct vec3 last = vec3(p[0], p[1], p[2]);
@@ -61,14 +61,14 @@ static void layer_edges(struct layer *layer, const struct contour_raster *raster
     }
 }
 
-static uint32_t bucket_of(const struct layer *layer, double v)
+static uint32_t bucket_of(const struct plane_edges *layer, double v)
 {
     double at = (v - layer->v_low) * layer->buckets_per_mm;
     /* a layer without height gives NaN */
     return !(at > 0) ? 0 : at >= layer->n_buckets ? layer->n_buckets - 1 : (uint32_t)at;
 }
 
-static bool layer_sort(struct layer *layer, double row_mm, struct error *err)
+static bool layer_sort(struct plane_edges *layer, double row_mm, struct error *err)
 {
     double height_mm = layer->v_high - layer->v_low;
     if (layer->n_edges == 0)
@@ -102,13 +102,13 @@ static bool layer_sort(struct layer *layer, double row_mm, struct error *err)
     return true;
 }
 
-static bool layer_init(struct layer *layer, const struct contour_raster *raster, const struct contour_plane *plane,
-                       double row_mm, struct error *err)
+static bool layer_init(struct plane_edges *layer, const struct contour_raster *raster,
+                       const struct contour_plane *plane, double row_mm, struct error *err)
 {
     size_t n_points = 0;
     for (size_t i = plane->first; i < plane->end; i++)
         n_points += raster->planes->contours[i]->n_points;
-    *layer = (struct layer){ .v_low = INFINITY, .v_high = -INFINITY };
+    *layer = (struct plane_edges){ .v_low = INFINITY, .v_high = -INFINITY };
     layer->edges = mem_array(n_points, sizeof *layer->edges, UINT64_MAX, err);
     if (!layer->edges)
         return false;
@@ -180,7 +180,7 @@ static void sort_values(double *values, size_t n)
 }
 
 /* Length of the part of the line v that is inside (even-odd). */
-static double inside_mm(const struct layer *layer, double v, double *crossings, uint64_t *n_met)
+static double inside_mm(const struct plane_edges *layer, double v, double *crossings, uint64_t *n_met)
 {
     uint32_t bucket = bucket_of(layer, v);
     size_t n = 0;
@@ -199,7 +199,7 @@ static double inside_mm(const struct layer *layer, double v, double *crossings, 
 
 /* Values of v between which inside_mm is linear: those of all points, and evenly spaced ones because edges may cross.
  * Ascending; returns how many. */
-static size_t area_heights(const struct layer *layer, double *heights)
+static size_t area_heights(const struct plane_edges *layer, double *heights)
 {
     size_t n = 0;
     for (size_t line = 0; line <= AREA_LINES; line++)
@@ -221,7 +221,7 @@ bool contour_raster_areas(const struct contour_raster *raster, double *areas_mm2
     double *heights = mem_array(2 * MOST_EXACT_EDGES + AREA_LINES + 1, sizeof *heights, UINT64_MAX, err);
     uint64_t n_met = 0;
     for (size_t i = 0; crossings && heights && i < n_planes; i++) {
-        const struct layer *layer = &raster->layers[i];
+        const struct plane_edges *layer = &raster->layers[i];
         size_t n = layer->n_edges > 0 ? area_heights(layer, heights) : 0;
         areas_mm2[i] = 0;
         for (size_t line = 1; line < n && n_met <= CONTOUR_MAX_MEETINGS; line++) {
@@ -244,14 +244,14 @@ bool contour_raster_areas(const struct contour_raster *raster, double *areas_mm2
 /* ---- voxels ----------------------------------------------------------------------------------------------------- */
 
 /* A voxel position in raster coordinates: at (i, j, k), u is at.u + i step[0].u + ... */
-struct place {
+struct raster_point {
     double u, v, d;
 };
 
 struct filling {
     const struct contour_raster *raster;
     const struct grid *grid;
-    struct place origin, step[3];
+    struct raster_point origin, step[3];
     bool is_aligned; /* each slice of the grid is in one plane, and slices are stacked along the normal */
     uint64_t *bits;
     uint32_t words;
@@ -259,10 +259,10 @@ struct filling {
     uint64_t n_voxels[MOST_THREADS], n_met[MOST_THREADS]; /* per thread */
 };
 
-static struct place place_of(const struct contour_raster *raster, struct vec3 v)
+static struct raster_point place_of(const struct contour_raster *raster, struct vec3 v)
 {
-    return (struct place){ vec3_dot(raster->u_lps, v), vec3_dot(raster->v_lps, v),
-                           vec3_dot(raster->planes->normal_lps, v) };
+    return (struct raster_point){ vec3_dot(raster->u_lps, v), vec3_dot(raster->v_lps, v),
+                                  vec3_dot(raster->planes->normal_lps, v) };
 }
 
 /* Replaces a step by 0 if it moves nothing over the whole grid, so that grids meant to be aligned are. */
@@ -279,7 +279,7 @@ static void filling_init(struct filling *filling, const struct contour_raster *r
     filling->origin.v += NUDGE_MM;
     filling->origin.d += NUDGE_MM;
     for (int axis = 0; axis < 3; axis++) {
-        struct place *step = &filling->step[axis];
+        struct raster_point *step = &filling->step[axis];
         *step = place_of(raster, grid->lps_mm_from_ijk.columns[axis]);
         step->u = without_noise(step->u, grid->size[axis]);
         step->v = axis == 0 ? 0 : without_noise(step->v, grid->size[axis]);
@@ -330,8 +330,8 @@ static void run_in_slab(const struct contour_plane *plane, double d, double step
 
 /* Toggles a bit at the first index after each crossing, then takes the running parity of the bits. Adds the result to
  * the row. */
-static uint64_t fill_run(const struct layer *layer, const struct place *start, double u_step, uint32_t from,
-                         uint32_t end, uint64_t *row, uint64_t *n_met)
+static uint64_t fill_run(const struct plane_edges *layer, const struct raster_point *start, double u_step,
+                         uint32_t from, uint32_t end, uint64_t *row, uint64_t *n_met)
 {
     if (layer->n_edges == 0 || from >= end || start->v < layer->v_low || start->v >= layer->v_high)
         return 0;
@@ -366,7 +366,8 @@ static uint64_t fill_run(const struct layer *layer, const struct place *start, d
     return n;
 }
 
-static uint64_t fill_row(const struct filling *filling, const struct place *start, uint64_t *row, uint64_t *n_met)
+static uint64_t fill_row(const struct filling *filling, const struct raster_point *start, uint64_t *row,
+                         uint64_t *n_met)
 {
     const struct contour_planes *planes = filling->raster->planes;
     uint32_t n = filling->grid->size[0];
@@ -381,10 +382,11 @@ static uint64_t fill_row(const struct filling *filling, const struct place *star
     return n_voxels;
 }
 
-static struct place row_start(const struct filling *filling, uint32_t j, uint32_t k)
+static struct raster_point row_start(const struct filling *filling, uint32_t j, uint32_t k)
 {
-    const struct place *o = &filling->origin, *sj = &filling->step[1], *sk = &filling->step[2];
-    return (struct place){ o->u + j * sj->u + k * sk->u, o->v + j * sj->v + k * sk->v, o->d + j * sj->d + k * sk->d };
+    const struct raster_point *o = &filling->origin, *sj = &filling->step[1], *sk = &filling->step[2];
+    return (struct raster_point){ o->u + j * sj->u + k * sk->u, o->v + j * sj->v + k * sk->v,
+                                  o->d + j * sj->d + k * sk->d };
 }
 
 static void fill_slices(void *context, int part, int n_parts)
@@ -408,7 +410,7 @@ static void fill_slices(void *context, int part, int n_parts)
         } else {
             n_slice_voxels = n_slice_met = 0;
             for (uint32_t j = 0; j < size[1] && n_met + n_slice_met <= filling->most; j++) {
-                struct place start = row_start(filling, j, k);
+                struct raster_point start = row_start(filling, j, k);
                 n_slice_voxels +=
                     fill_row(filling, &start, slice ? slice + (size_t)j * filling->words : NULL, &n_slice_met);
             }

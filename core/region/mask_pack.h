@@ -9,10 +9,9 @@ enum { LABEL_MAX_RUNS = 8 };
 
 /* The labels that count as inside. */
 struct label_test {
-    uint8_t has[65536]; /* 1 for an inside label, else 0 */
-    uint8_t nibbles[2]
-                   [16]; /* labels below 256: bit l / 16 % 8 of nibbles[l / 128][l % 16] is set for an inside label */
-    size_t n_runs;       /* runs of consecutive labels, ascending; 0 if there are more than LABEL_MAX_RUNS */
+    uint8_t has[65536];     /* 1 for an inside label, else 0 */
+    uint8_t nibbles[2][16]; /* labels below 256: bit l / 16 % 8 of nibbles[l / 128][l % 16] is set if inside */
+    size_t n_runs;          /* runs of consecutive labels, ascending; 0 if there are more than LABEL_MAX_RUNS */
     uint16_t first[LABEL_MAX_RUNS], length_less_1[LABEL_MAX_RUNS];
 };
 

@@ -91,13 +91,13 @@ static bool find_holders(struct sweep *sweep, size_t layer, size_t *inside, stru
 
 /* ---- the sweep -------------------------------------------------------------------------------------------------- */
 
-struct place {
+struct word_position {
     size_t word; /* index of the word in each mask */
     uint32_t j, k;
 };
 
-static inline void set_bits(const struct sweep *sweep, uint16_t label, struct reach *reaches, struct place place,
-                            uint64_t bits)
+static inline void set_bits(const struct sweep *sweep, uint16_t label, struct reach *reaches,
+                            struct word_position place, uint64_t bits)
 {
     const struct holders *holders = &sweep->holders[label];
     uint64_t row = ((uint64_t)place.k << 32 | place.j) + FIRST_ROW;
@@ -119,7 +119,7 @@ static inline void set_bits(const struct sweep *sweep, uint16_t label, struct re
 /* Sweeps up to 64 labels: most words hold a single label, the rest a few runs. */
 #define DEFINE_WORD(type) \
     static inline void sweep_word_##type(const struct sweep *sweep, const type *labels, uint32_t n, \
-                                         struct reach *reaches, struct place place) \
+                                         struct reach *reaches, struct word_position place) \
     { \
         type first = labels[0], other = 0; \
         if (n == 64) { \
@@ -153,7 +153,7 @@ static void sweep_part(void *context, int part, int n_parts)
     size_t n_rows = (size_t)size[1] * size[2], words = (size[0] + 63) / 64;
     size_t end = n_rows * (size_t)(part + 1) / (size_t)n_parts;
     for (size_t row = n_rows * (size_t)part / (size_t)n_parts; row < end; row++) {
-        struct place place = { row * words, (uint32_t)(row % size[1]), (uint32_t)(row / size[1]) };
+        struct word_position place = { row * words, (uint32_t)(row % size[1]), (uint32_t)(row / size[1]) };
         for (uint32_t i = 0; i < size[0]; i += 64, place.word++) {
             uint32_t n = size[0] - i < 64 ? size[0] - i : 64;
             if (sweep->layer->type == VOXEL_U8)

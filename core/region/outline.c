@@ -15,7 +15,7 @@
 enum { MAX_THREADS = 64, RIGHT = 0, UP = 1, LEFT = 2, DOWN = 3, INSIDE = 16 };
 
 /* Geometry of the slices across an axis: pixel (x, y) has voxel index x along axes[0] and y along axes[1]. */
-struct view {
+struct slicing {
     const struct mask *mask;
     int axes[2], across;
     uint32_t size[2];
@@ -35,7 +35,7 @@ struct lines {
 };
 
 /* Buffers of a thread, reused from slice to slice. */
-struct sheet {
+struct slice_buffer {
     uint8_t *pixels; /* [size[1] + 2][size[0] + 2], with a margin of outside: INSIDE, and bit d for a side of direction
                         d that was visited */
     uint32_t
@@ -44,8 +44,8 @@ struct sheet {
     ptrdiff_t width;
 };
 
-struct job {
-    struct view view;
+struct outline_job {
+    struct slicing slicing;
     uint32_t first_slice, n_slices;
     struct lines *lines; /* [n_slices] */
     atomic_uint next;
@@ -82,52 +82,56 @@ static void lines_finish(struct lines *lines)
 
 /* ---- the pixels of a slice -------------------------------------------------------------------------------------- */
 
-static bool view_init(struct view *view, const struct mask *mask, int axis, struct outline_rule rule, struct error *err)
+static bool slicing_init(struct slicing *slicing, const struct mask *mask, int axis, struct outline_rule rule,
+                         struct error *err)
 {
     if (axis < 0 || axis > 2)
         return error_set(err, ERROR_RANGE, "outlines across axis %d: expected 0, 1 or 2", axis);
-    *view =
-        (struct view){ .mask = mask, .axes = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 }, .across = axis, .rule = rule };
+    *slicing = (struct slicing){
+        .mask = mask, .axes = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 }, .across = axis, .rule = rule
+    };
     for (int side = 0; side < 2; side++)
-        view->size[side] = mask->size[view->axes[side]];
+        slicing->size[side] = mask->size[slicing->axes[side]];
     return true;
 }
 
-static bool sheet_init(struct sheet *sheet, const struct view *view, struct error *err)
+static bool buffer_init(struct slice_buffer *buffer, const struct slicing *slicing, struct error *err)
 {
-    size_t width = (size_t)view->size[0] + 2, height = (size_t)view->size[1] + 2;
-    *sheet = (struct sheet){ .step = { 1, (ptrdiff_t)width, -1, -(ptrdiff_t)width }, .width = (ptrdiff_t)width };
-    sheet->pixels = mem_array(width * height, 1, UINT64_MAX, err);
-    if (sheet->pixels && !view->rule.is_between)
-        sheet->numbers = mem_array((size_t)view->size[0] * view->size[1], sizeof *sheet->numbers, UINT64_MAX, err);
-    return sheet->pixels && (view->rule.is_between || sheet->numbers);
+    size_t width = (size_t)slicing->size[0] + 2, height = (size_t)slicing->size[1] + 2;
+    *buffer =
+        (struct slice_buffer){ .step = { 1, (ptrdiff_t)width, -1, -(ptrdiff_t)width }, .width = (ptrdiff_t)width };
+    buffer->pixels = mem_array(width * height, 1, UINT64_MAX, err);
+    if (buffer->pixels && !slicing->rule.is_between)
+        buffer->numbers =
+            mem_array((size_t)slicing->size[0] * slicing->size[1], sizeof *buffer->numbers, UINT64_MAX, err);
+    return buffer->pixels && (slicing->rule.is_between || buffer->numbers);
 }
 
-static void sheet_finish(struct sheet *sheet)
+static void buffer_finish(struct slice_buffer *buffer)
 {
-    free(sheet->pixels);
-    free(sheet->numbers);
+    free(buffer->pixels);
+    free(buffer->numbers);
 }
 
 /* Reads the pixels of slice `index`; returns false if all are outside. */
-static bool sheet_fill(struct sheet *sheet, const struct view *view, uint32_t index)
+static bool buffer_fill(struct slice_buffer *buffer, const struct slicing *slicing, uint32_t index)
 {
-    const struct mask *mask = view->mask;
+    const struct mask *mask = slicing->mask;
     bool has_any = false;
-    memset(sheet->pixels, 0, (size_t)sheet->width * (view->size[1] + 2));
-    for (uint32_t y = 0; y < view->size[1]; y++) {
-        uint8_t *out = sheet->pixels + (y + 1) * (size_t)sheet->width + 1;
-        if (view->across == 0) { /* rows of pixels run across the words: each pixel is a bit of another row */
+    memset(buffer->pixels, 0, (size_t)buffer->width * (slicing->size[1] + 2));
+    for (uint32_t y = 0; y < slicing->size[1]; y++) {
+        uint8_t *out = buffer->pixels + (y + 1) * (size_t)buffer->width + 1;
+        if (slicing->across == 0) { /* rows of pixels run across the words: each pixel is a bit of another row */
             const uint64_t *bits = mask->bits + (size_t)y * mask->size[1] * mask->words + index / 64;
-            for (uint32_t x = 0; x < view->size[0]; x++)
+            for (uint32_t x = 0; x < slicing->size[0]; x++)
                 out[x] = bits[(size_t)x * mask->words] >> index % 64 & 1 ? INSIDE : 0;
         } else {
-            size_t row = view->across == 1 ? (size_t)y * mask->size[1] + index : (size_t)index * mask->size[1] + y;
+            size_t row = slicing->across == 1 ? (size_t)y * mask->size[1] + index : (size_t)index * mask->size[1] + y;
             for (uint32_t w = 0; w < mask->words; w++)
                 for (uint64_t left = mask->bits[row * mask->words + w]; left; left &= left - 1)
                     out[64 * w + (uint32_t)__builtin_ctzll(left)] = INSIDE;
         }
-        has_any = has_any || memchr(out, INSIDE, view->size[0]);
+        has_any = has_any || memchr(out, INSIDE, slicing->size[0]);
     }
     return has_any;
 }
@@ -135,17 +139,17 @@ static bool sheet_fill(struct sheet *sheet, const struct view *view, uint32_t in
 /* ---- walking ---------------------------------------------------------------------------------------------------- */
 
 struct side {
-    size_t pixel; /* index in sheet->pixels */
+    size_t pixel; /* index in buffer->pixels */
     int direction;
 };
 
-static struct side side_after(const struct sheet *sheet, struct side side, bool is_joined)
+static struct side side_after(const struct slice_buffer *buffer, struct side side, bool is_joined)
 {
     int ahead = (side.direction + 1) & 3;
     /* inner: the pixel ahead on the left; outer: ahead on the right */
-    size_t inner = side.pixel + (size_t)sheet->step[ahead];
-    size_t outer = inner + (size_t)sheet->step[side.direction];
-    bool has_inner = sheet->pixels[inner] & INSIDE, has_outer = sheet->pixels[outer] & INSIDE;
+    size_t inner = side.pixel + (size_t)buffer->step[ahead];
+    size_t outer = inner + (size_t)buffer->step[side.direction];
+    bool has_inner = buffer->pixels[inner] & INSIDE, has_outer = buffer->pixels[outer] & INSIDE;
     if (has_outer && (has_inner || is_joined))
         return (struct side){ outer, (side.direction + 3) & 3 }; /* around a concave corner */
     if (has_inner)
@@ -154,13 +158,13 @@ static struct side side_after(const struct sheet *sheet, struct side side, bool 
 }
 
 /* Finds the index of the side's point; adds the point at its first occurrence. */
-static bool point_of(struct sheet *sheet, const struct view *view, struct side side, struct lines *lines,
+static bool point_of(struct slice_buffer *buffer, const struct slicing *slicing, struct side side, struct lines *lines,
                      uint32_t *number, struct error *err)
 {
     static const int right[4] = { 1, 0, -1, 0 }, up[4] = { 0, 1, 0, -1 };
-    uint32_t x = (uint32_t)(side.pixel % (size_t)sheet->width) - 1,
-             y = (uint32_t)(side.pixel / (size_t)sheet->width) - 1;
-    uint32_t *known = sheet->numbers ? &sheet->numbers[(size_t)y * view->size[0] + x] : NULL;
+    uint32_t x = (uint32_t)(side.pixel % (size_t)buffer->width) - 1,
+             y = (uint32_t)(side.pixel / (size_t)buffer->width) - 1;
+    uint32_t *known = buffer->numbers ? &buffer->numbers[(size_t)y * slicing->size[0] + x] : NULL;
     *number = known && *known ? *known - 1 : (uint32_t)(lines->halves.n / 2);
     if (known && *known)
         return true;
@@ -171,8 +175,8 @@ static bool point_of(struct sheet *sheet, const struct view *view, struct side s
            numbers_add(&lines->halves, (uint32_t)((int)(2 * y) + off_y + 1), err);
 }
 
-static bool walk_line(struct sheet *sheet, const struct view *view, struct side start, struct lines *lines,
-                      struct error *err)
+static bool walk_line(struct slice_buffer *buffer, const struct slicing *slicing, struct side start,
+                      struct lines *lines, struct error *err)
 {
     size_t first = lines->walk.n;
     if (!numbers_add(&lines->line, (uint32_t)first, err))
@@ -180,13 +184,13 @@ static bool walk_line(struct sheet *sheet, const struct view *view, struct side 
     struct side side = start;
     do {
         uint32_t number;
-        sheet->pixels[side.pixel] |= (uint8_t)(1 << side.direction);
-        if (!point_of(sheet, view, side, lines, &number, err))
+        buffer->pixels[side.pixel] |= (uint8_t)(1 << side.direction);
+        if (!point_of(buffer, slicing, side, lines, &number, err))
             return false;
         if ((lines->walk.n == first || lines->walk.at[lines->walk.n - 1] != number) &&
             !numbers_add(&lines->walk, number, err))
             return false;
-        side = side_after(sheet, side, view->rule.is_joined);
+        side = side_after(buffer, side, slicing->rule.is_joined);
     } while (side.pixel != start.pixel || side.direction != start.direction);
     if (lines->walk.n > first + 1 && lines->walk.at[lines->walk.n - 1] == lines->walk.at[first])
         lines->walk.n--; /* the walk came back to the point where it began */
@@ -195,44 +199,44 @@ static bool walk_line(struct sheet *sheet, const struct view *view, struct side 
 
 /* Every closed line goes to the right somewhere, below a pixel: starting at each unvisited lower side finds all
  * lines. */
-static bool walk_slice(struct job *job, struct sheet *sheet, struct lines *lines, struct error *err)
+static bool walk_slice(struct outline_job *job, struct slice_buffer *buffer, struct lines *lines, struct error *err)
 {
-    const struct view *view = &job->view;
-    for (uint32_t y = 0; y < view->size[1]; y++) {
-        size_t row = (y + 1) * (size_t)sheet->width + 1;
-        for (uint32_t x = 0; x < view->size[0]; x++) {
+    const struct slicing *slicing = &job->slicing;
+    for (uint32_t y = 0; y < slicing->size[1]; y++) {
+        size_t row = (y + 1) * (size_t)buffer->width + 1;
+        for (uint32_t x = 0; x < slicing->size[0]; x++) {
             size_t at = row + x;
-            if ((sheet->pixels[at] & (INSIDE | 1 << DOWN)) != INSIDE ||
-                (sheet->pixels[at - (size_t)sheet->width] & INSIDE))
+            if ((buffer->pixels[at] & (INSIDE | 1 << DOWN)) != INSIDE ||
+                (buffer->pixels[at - (size_t)buffer->width] & INSIDE))
                 continue;
             size_t before = lines->walk.n;
-            if (!walk_line(sheet, view, (struct side){ at, DOWN }, lines, err))
+            if (!walk_line(buffer, slicing, (struct side){ at, DOWN }, lines, err))
                 return false;
             size_t n = lines->walk.n - before;
             if (!within_limit(atomic_fetch_add(&job->n_walk, n) + n, err))
                 return false;
         }
     }
-    for (size_t at = 0; sheet->numbers && at < lines->halves.n; at += 2) /* reset for the next slice */
-        sheet->numbers[(size_t)(lines->halves.at[at + 1] / 2) * view->size[0] + lines->halves.at[at] / 2] = 0;
+    for (size_t at = 0; buffer->numbers && at < lines->halves.n; at += 2) /* reset for the next slice */
+        buffer->numbers[(size_t)(lines->halves.at[at + 1] / 2) * slicing->size[0] + lines->halves.at[at] / 2] = 0;
     return true;
 }
 
 static void walk_part(void *context, int part, int n_parts)
 {
     (void)n_parts;
-    struct job *job = context;
-    struct sheet sheet;
-    bool good = sheet_init(&sheet, &job->view, &job->errors[part]);
+    struct outline_job *job = context;
+    struct slice_buffer buffer;
+    bool good = buffer_init(&buffer, &job->slicing, &job->errors[part]);
     for (uint32_t at; good && (at = atomic_fetch_add(&job->next, 1)) < job->n_slices;)
-        if (sheet_fill(&sheet, &job->view, job->first_slice + at))
-            good = walk_slice(job, &sheet, &job->lines[at], &job->errors[part]);
-    sheet_finish(&sheet);
+        if (buffer_fill(&buffer, &job->slicing, job->first_slice + at))
+            good = walk_slice(job, &buffer, &job->lines[at], &job->errors[part]);
+    buffer_finish(&buffer);
 }
 
 /* ---- the slices together ---------------------------------------------------------------------------------------- */
 
-static struct outline_set *set_create(const struct job *job, struct error *err)
+static struct outline_set *set_create(const struct outline_job *job, struct error *err)
 {
     uint64_t n_points = 0, n_walk = 0, n_lines = 0;
     for (uint32_t at = 0; at < job->n_slices; at++) {
@@ -254,7 +258,7 @@ static struct outline_set *set_create(const struct job *job, struct error *err)
     return set;
 }
 
-static struct outline_set *set_join(const struct job *job, struct error *err)
+static struct outline_set *set_join(const struct outline_job *job, struct error *err)
 {
     struct outline_set *set = set_create(job, err);
     if (!set)
@@ -270,8 +274,8 @@ static struct outline_set *set_join(const struct job *job, struct error *err)
         for (size_t p = 0; p < lines->halves.n; p += 2, points++) {
             float *ijk = set->points_ijk + 3 * (size_t)points;
             for (int side = 0; side < 2; side++)
-                ijk[job->view.axes[side]] = ((float)lines->halves.at[p + (size_t)side] - 1) / 2;
-            ijk[job->view.across] = (float)(job->first_slice + at);
+                ijk[job->slicing.axes[side]] = ((float)lines->halves.at[p + (size_t)side] - 1) / 2;
+            ijk[job->slicing.across] = (float)(job->first_slice + at);
         }
     }
     set->line[line] = walk;
@@ -282,9 +286,9 @@ static struct outline_set *set_join(const struct job *job, struct error *err)
 static struct outline_set *outline_slices(const struct mask *mask, int axis, struct outline_rule rule, uint32_t first,
                                           uint32_t n, int n_threads, struct error *err)
 {
-    struct job job = { .first_slice = first, .n_slices = n };
+    struct outline_job job = { .first_slice = first, .n_slices = n };
     struct outline_set *set = NULL;
-    if (!view_init(&job.view, mask, axis, rule, err))
+    if (!slicing_init(&job.slicing, mask, axis, rule, err))
         return NULL;
     job.lines = mem_array(n, sizeof *job.lines, UINT64_MAX, err);
     if (!job.lines)
