@@ -9,7 +9,7 @@
 /* Border voxels on the mask's own grid.
  *
  *   is_open_at_edge  voxels beyond the grid count as inside, so there is no border where the scan cuts a region, as in
- *                    SERA
+ *                    Sera3d
  *   errors           ERROR_MEMORY
  *   thread           any */
 NODISCARD struct mask *mask_boundary(const struct mask *mask, bool is_open_at_edge, int n_threads, struct error *err);

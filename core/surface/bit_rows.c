@@ -1,3 +1,4 @@
+/* Running totals and vertex positions for extraction on bit rows. */
 #include "core/surface/bit_rows.h"
 
 uint64_t rows_number(uint32_t *counts, size_t n)

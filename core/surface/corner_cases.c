@@ -1,9 +1,11 @@
-/* The part of the region within a cell is the convex hull of the cell's inside corners; what is drawn is the boundary
- * of all hulls together. A side of a hull that lies in a face of its cell is no boundary: the cell behind that face has
- * the same inside corners on it, so its hull goes on there. Unless that hull is flat and ends in the face; then it is
- * the flat one's cell that draws the side, towards its own inner space. A hull that is flat within the cell is drawn on
- * both sides. So every edge is run through as often one way as the other: the whole is closed, and where it is two
- * sheets back to back, they are the same triangles. Fewer than three corners have no area and give nothing. */
+/* Generates the triangles of the 8-cell algorithm for each case of a cell.
+ *
+ * Within a cell, the region is the convex hull of the cell's inside corners; the surface is the boundary of all hulls
+ * together. A side of a hull on a face of its cell is no boundary, because the cell behind that face has the same
+ * inside corners there and its hull continues. The exception: if that hull is flat and lies in the face, its cell draws
+ * the side, towards its own interior. A hull that is flat within the cell is drawn on both sides. So every edge is used
+ * equally often in both directions: the surface is closed, and where it is two sheets back to back, they are the same
+ * triangles. Fewer than three corners have no area and give no triangle. */
 #include "core/surface/corner_cases.h"
 
 #include <assert.h>
@@ -20,7 +22,7 @@ static int along(const int direction[3], int corner)
            direction[2] * coordinate(corner, 2);
 }
 
-/* Positive when a, b, c are counter-clockwise seen against the direction. */
+/* Positive if a, b, c are counter-clockwise as seen against the direction. */
 static int turn(const int direction[3], int a, int b, int c)
 {
     int u[3], v[3], sum = 0;
@@ -46,7 +48,7 @@ static void add_triangle(struct corner_case *out, const int direction[3], int a,
     out->used = (uint8_t)(out->used | 1 << a | 1 << b | 1 << c);
 }
 
-/* The side of the hull that faces a direction: the corners that lie farthest along it, when they are three or four. */
+/* Adds the side of the hull that faces a direction: the corners farthest along it, if they are three or four. */
 static void add_side(struct corner_case *out, int inside, const int direction[3])
 {
     int farthest = -3, side[8], n = 0;
@@ -60,7 +62,7 @@ static void add_side(struct corner_case *out, int inside, const int direction[3]
     bool faces_out = is_axis && farthest == (direction[0] + direction[1] + direction[2] > 0 ? 1 : 0);
     if (n < 3 || faces_out)
         return;
-    /* four are a rectangle whose first and last are opposite: the two cells at a face cut it along the same diagonal */
+    /* four corners are a rectangle with opposite first and last: both cells at a face cut it along the same diagonal */
     add_triangle(out, direction, side[0], side[1], side[n - 1]);
     if (n == 4)
         add_triangle(out, direction, side[0], side[2], side[3]);
@@ -71,10 +73,10 @@ void corner_cases_make(struct corner_case cases[256], bool is_mirrored)
     memset(cases, 0, 256 * sizeof *cases);
     for (int inside = 0; inside < 256; inside++) {
         struct corner_case *out = &cases[inside];
-        /* a plane through three corners of a cube lies square to an axis, a diagonal of a face or one of the cube */
+        /* a plane through three corners of a cube is perpendicular to an axis, a face diagonal or a space diagonal */
         for (int way = 0; way < 27; way++) {
             const int direction[3] = { way % 3 - 1, way / 3 % 3 - 1, way / 9 - 1 };
-            if (way != 13) /* no direction at all */
+            if (way != 13) /* 13: the zero vector */
                 add_side(out, inside, direction);
         }
         for (int t = 0; is_mirrored && t < out->n_triangles; t++) {

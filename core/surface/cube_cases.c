@@ -1,9 +1,10 @@
+/* Generates the marching cubes case table. */
 #include "core/surface/cube_cases.h"
 
 #include <assert.h>
 #include <string.h>
 
-/* Corners of each face, counter-clockwise seen from outside the cell. */
+/* Corners of each face, counter-clockwise as seen from outside the cell. */
 static const uint8_t faces[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 },
                                      { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
 
@@ -18,7 +19,7 @@ static int edge_between(int a, int b)
     }
 }
 
-/* faces_of[edge]: bit f set when the edge lies on face f */
+/* faces_of[edge]: bit f is set if the edge is on face f */
 static void find_faces(uint8_t faces_of[CUBE_EDGES])
 {
     memset(faces_of, 0, CUBE_EDGES);
@@ -29,10 +30,9 @@ static void find_faces(uint8_t faces_of[CUBE_EDGES])
         }
 }
 
-/* On every face, walking round it counter-clockwise, the line goes from where the walk enters the inside to where it
- * next leaves it. So at an ambiguous face, two inside corners across a diagonal, each is cut off alone; the cell on the
- * other side of the face walks the other way round the same runs of corners and so draws the same lines: no crack can
- * open between the two. */
+/* Going counter-clockwise around each face, a line leads from where the inside is entered to where it is next left. So
+ * on an ambiguous face (two inside corners across a diagonal) each inside corner is cut off alone. The cell on the
+ * other side goes the opposite way around the same corners and draws the same lines, so no crack can open. */
 void cube_case_links(int inside, int8_t next[CUBE_EDGES])
 {
     memset(next, -1, CUBE_EDGES);
@@ -49,9 +49,9 @@ void cube_case_links(int inside, int8_t next[CUBE_EDGES])
         }
 }
 
-/* Cuts loop[first..last] (a polygon closed by the side last-first) into triangles none of whose inner sides lies on a
- * face of the cell: there it could coincide with one of the neighbour's, and an edge would have four triangles. Depth
- * first over the third corner of the triangle on the closing side; false when there is no such cut. */
+/* Cuts the polygon loop[first..last] (closed by the side last-first) into triangles with no inner side on a face of the
+ * cell: such a side could coincide with one of the neighbour's, and the edge would have four triangles. Depth-first
+ * search over the third corner of the triangle on the closing side; false if there is no such cut. */
 static bool cut_loop(const uint8_t *loop, int first, int last, const uint8_t faces_of[CUBE_EDGES],
                      struct cube_case *out)
 {
@@ -88,7 +88,7 @@ void cube_cases_make(struct cube_case cases[256], bool is_mirrored)
         for (int start = 0; start < CUBE_EDGES; start++) {
             uint8_t loop[CUBE_EDGES];
             int length = 0;
-            for (int e = start; next[e] >= 0;) { /* takes the loop apart as it goes, so each is walked once */
+            for (int e = start; next[e] >= 0;) { /* clears the loop on the way, so each is followed once */
                 int8_t following = next[e];
                 next[e] = -1;
                 loop[length++] = (uint8_t)e;

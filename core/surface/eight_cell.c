@@ -1,14 +1,14 @@
 /* The 8-cell algorithm on bit rows: triangles between the centres of inside voxels.
  *
- * A cell is named by its lowest corner and runs from -1, where a region that touches the border is closed, to the last
- * voxel. Its case says which triangles it has and which of its corners they use; a voxel that any cell uses is a
- * vertex, numbered in the order of the voxels.
+ * A cell is named by its lowest corner. Cells run from -1, so that a region at the border is closed, to the last voxel.
+ * The case of a cell gives its triangles and the corners they use; a voxel used by any cell is a vertex. Vertices are
+ * numbered in voxel sequence.
  *
- *   1. mark the used voxels, slice by slice of voxels, and count the triangles of every row of cells
- *   2. running totals: where each row's vertices and triangles begin
- *   3. every row writes its own; a vertex's number is the row's first plus the marks before it
+ *   1. mark the used voxels, one slice of voxels at a time, and count the triangles of every row of cells
+ *   2. running totals: the first vertex and triangle of each row
+ *   3. every row writes its own; the number of a vertex is the row's first plus the marks before it in the row
  *
- * Threads take slices as they come; what a slice holds and where it goes does not depend on who takes it. */
+ * Threads take slices as they become free; contents and position of a slice do not depend on the thread. */
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -25,15 +25,15 @@ struct job {
     const struct mask *mask;
     const struct corner_case *cases;
     bool close_at_border;
-    uint64_t *used;           /* like the mask's bits: voxels that are vertices */
-    uint32_t *first_vertex;   /* [k][j], and one more at the end; first the count of each row */
+    uint64_t *used;           /* in the layout of the mask's bits: voxels that are vertices */
+    uint32_t *first_vertex;   /* [k][j], and one more at the end; counts of the rows, then running totals */
     uint32_t *first_triangle; /* [z][y] of cells, z and y from -1 on, and one more at the end */
     struct mesh *mesh;
-    atomic_uint next; /* slice nobody has taken */
+    atomic_uint next; /* next slice to take */
 };
 
-/* The four rows of voxels around a row of cells, at (y, z) (y + 1, z) (y, z + 1) (y + 1, z + 1); NULL beyond the grid.
- */
+/* The four rows of voxels around a row of cells, at (y, z), (y + 1, z), (y, z + 1), (y + 1, z + 1); NULL beyond the
+ * grid. */
 struct rows {
     const uint64_t *bits[4];
 };
@@ -62,7 +62,7 @@ static inline uint64_t word_of(const uint64_t *row, int64_t w, uint32_t words)
     return row && w >= 0 && w < words ? row[w] : 0;
 }
 
-/* 64 cells of a row from x = 64 w on: the voxels at x and those at x + 1 of each of its four rows, and which cells may
+/* 64 cells of a row from x = 64 w on: the voxels at x and at x + 1 of each of its four rows, and the cells that may
  * have triangles. Word -1 holds one cell, in its last bit. */
 struct cells {
     uint64_t low[4], high[4];
@@ -84,7 +84,7 @@ static inline struct cells cells_at(const struct job *job, const struct rows *ro
     cells.active = any & ~all;
     if (!job->close_at_border && w == (job->mask->size[0] - 1) / 64)
         cells.active &=
-            ((uint64_t)1 << (job->mask->size[0] - 1) % 64) - 1; /* not the cells at or beyond the last voxel */
+            ((uint64_t)1 << (job->mask->size[0] - 1) % 64) - 1; /* without the cells at or beyond the last voxel */
     return cells;
 }
 
@@ -96,7 +96,7 @@ static inline const struct corner_case *case_of(const struct job *job, const str
     return &job->cases[inside];
 }
 
-/* Whether there are cells at (y, z): all around the grid when it is closed, else only between voxels. */
+/* Returns true if there are cells at (y, z): all around a closed grid, else only between voxels. */
 static bool has_cells(const struct job *job, int64_t y, int64_t z)
 {
     return job->close_at_border || (is_in(job->mask, y, z) && is_in(job->mask, y + 1, z + 1));
@@ -109,7 +109,7 @@ static int64_t first_word(const struct job *job)
 
 /* ---- marking and counting --------------------------------------------------------------------------------------- */
 
-/* Marks voxels x and x + 1 of a row where the two bits of pair say so. */
+/* Marks voxel x for bit 0 of pair, voxel x + 1 for bit 1. */
 static inline void mark(uint64_t *row, int64_t x, unsigned pair)
 {
     if (pair & 1)
@@ -118,7 +118,7 @@ static inline void mark(uint64_t *row, int64_t x, unsigned pair)
         row[(x + 1) / 64] |= (uint64_t)1 << (x + 1) % 64;
 }
 
-/* Marks what a row of cells uses of its lower (side 0) or upper slice; gives its number of triangles. */
+/* Marks the voxels that a row of cells uses in its lower (side 0) or upper slice; returns its number of triangles. */
 static uint32_t mark_row(struct job *job, int64_t y, int64_t z, int side)
 {
     const struct mask *mask = job->mask;
@@ -136,7 +136,7 @@ static uint32_t mark_row(struct job *job, int64_t y, int64_t z, int side)
             unsigned used = cube->used >> 4 * side & 15u;
             n += cube->n_triangles;
             for (int step = 0; used && step < 2; step++)
-                if (used >> 2 * step & 3) /* only inside corners are used, so the row is there */
+                if (used >> 2 * step & 3) /* only inside corners are used, so the row exists */
                     mark(marked[step], 64 * w + bit, used >> 2 * step & 3);
         }
     }
@@ -148,8 +148,8 @@ static size_t cell_row(const struct mask *mask, int64_t y, int64_t z)
     return (size_t)(z + 1) * (mask->size[1] + 1) + (size_t)(y + 1);
 }
 
-/* A thread marks within one slice of voxels only, from the cells below and above it; the cells above are counted too.
- */
+/* A thread marks voxels of one slice at a time, from the cells below and above it; it counts the triangles of the cells
+ * above. */
 static void count_part(void *context, int part, int n_parts)
 {
     (void)part;
@@ -187,7 +187,7 @@ static void write_triangles(const struct job *job, int64_t y, int64_t z)
     const struct mask *mask = job->mask;
     struct rows rows = rows_at(mask, y, z);
     const uint64_t *used[4] = { NULL };
-    uint32_t number[4] = { 0 }; /* of the first vertex of the word in each row */
+    uint32_t number[4] = { 0 }; /* number of the first vertex of the word, in each row */
     for (int r = 0; r < 4; r++)
         if (rows.bits[r]) {
             size_t row = row_number(mask, y + (r & 1), z + (r >> 1));

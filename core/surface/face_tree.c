@@ -1,5 +1,5 @@
-/* Faces that look the same way are kept apart: of a block of voxels, the faces that look along z lie in a few planes,
- * and so they have a near bound even where the voxels are a hundred times as high as wide. */
+/* Builds and searches the tree of border faces. Each block keeps a bit per direction of its faces: the faces along z of
+ * a block are in a few planes, which gives a tight bound even where voxels are a hundred times higher than wide. */
 #include "core/surface/face_tree.h"
 
 #include <stdlib.h>
@@ -7,20 +7,20 @@
 #include "core/base/mem.h"
 
 enum { MAX_LEVELS = 3 * 16 + 1, LEAF_SHIFT = 3, N_WAYS = 6 };
-/* Index steps by which bounds are lowered, so that rounding never hides the nearest face. */
+/* Index steps subtracted from bounds, so that rounding never hides the nearest face. */
 static const double slack = 1e-9;
 
-/* Blocks of 2^shift voxels along each axis; size counts blocks. */
+/* One level: blocks of 2^shift voxels along each axis; size counts blocks. */
 struct level {
     uint32_t shift[3], size[3];
-    uint8_t *ways; /* [k][j][i]: bit 2 * axis + (side > 0) where a voxel of the block has such a face */
+    uint8_t *ways; /* [k][j][i]: bit 2 * axis + (side > 0) is set if a voxel of the block has such a face */
 };
 
 struct face_tree {
     const struct mask *mask;
-    bool is_square; /* the grid's axes are */
+    bool is_square; /* the grid's axes are perpendicular */
     double spacing_mm[3];
-    double reach[3]; /* index steps that 1 mm can go along each axis, whatever its direction */
+    double reach[3]; /* largest number of index steps along each axis within 1 mm, in any direction */
     struct level levels[MAX_LEVELS];
     int n_levels;
 };
@@ -47,7 +47,7 @@ bool face_tree_has_face(const struct face_tree *tree, const int64_t ijk[3], int 
     return !row || n[0] < 0 || n[0] >= tree->mask->size[0] || !(row[n[0] / 64] >> n[0] % 64 & 1);
 }
 
-/* To the points m + s u, |s| <= 1/2; offset = p - m. */
+/* Squared distance to the segment m + s u, |s| <= 1/2; offset = p - m. */
 static double edge_distance_2(struct vec3 offset, struct vec3 u)
 {
     double s = vec3_dot(offset, u) / vec3_dot(u, u);
@@ -56,7 +56,7 @@ static double edge_distance_2(struct vec3 offset, struct vec3 u)
     return vec3_dot(left, left);
 }
 
-/* To the points m + s u + t v, |s|, |t| <= 1/2. */
+/* Squared distance to the parallelogram m + s u + t v, |s|, |t| <= 1/2. */
 static double parallelogram_distance_2(struct vec3 offset, struct vec3 u, struct vec3 v)
 {
     double uu = vec3_dot(u, u), vv = vec3_dot(v, v), uv = vec3_dot(u, v), ou = vec3_dot(offset, u),
@@ -93,8 +93,8 @@ double face_tree_face_distance_2(const struct face_tree *tree, const double from
 
 /* ---- making the tree -------------------------------------------------------------------------------------------- */
 
-/* Of 64 voxels of a row, those with a face on that side; rows: of the neighbours along y and z, NULL beyond the grid.
- */
+/* Of 64 voxels of a row, those with a face on that side. rows: the neighbouring rows along y and z, NULL beyond the
+ * grid. */
 static uint64_t faces_of_word(const struct mask *mask, int64_t w, int64_t j, int64_t k, int way)
 {
     const uint64_t *row = row_at(mask, j, k);
@@ -150,7 +150,7 @@ static bool make_level(const struct mask *mask, struct level *level, struct erro
     return level->ways != NULL;
 }
 
-/* A leaf has 8 voxels of a row, and as many rows as make it no longer along y and z than along x. */
+/* A leaf has 8 voxels along x, and along y and z as many as make it no longer than along x. */
 static void shape_leaves(struct face_tree *tree)
 {
     uint32_t *shift = tree->levels[0].shift;
@@ -161,8 +161,8 @@ static void shape_leaves(struct face_tree *tree)
             shift[axis]++;
 }
 
-/* Doubles blocks along the axes where they are shortest, so that they become as long as wide. False: there is one block
- * alone. */
+/* Doubles blocks along their shortest axes, so that they become roughly cubic. Returns false if only one block is
+ * left. */
 static bool shape_next(const struct face_tree *tree, const struct level *level, struct level *next)
 {
     double shortest = INFINITY;
@@ -235,7 +235,7 @@ struct search {
     uint64_t n_asked;
 };
 
-/* No face of this way of voxels first..last is nearer. */
+/* Lower bound of the squared distance to the faces of this direction of voxels first..last. */
 static double bound_2(const struct search *search, const int64_t first[3], const int64_t last[3])
 {
     const struct face_tree *tree = search->tree;
@@ -290,7 +290,7 @@ struct child {
     double bound_2;
 };
 
-/* The blocks of the level below that have such faces, nearest first. */
+/* Lists the blocks one level below that have such faces, nearest first. */
 static int find_children(const struct search *search, int level, const uint32_t block[3], struct child children[8])
 {
     const struct face_tree *tree = search->tree;

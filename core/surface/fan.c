@@ -1,6 +1,6 @@
-/* The neighbour fan (see shape_parts.h). First each voxel's fan is found; then each voxel collects the triangles whose
- * lowest corner it is, from its own fan and its neighbours', as a set of bits, so that one which several fans have is
- * there once. */
+/* The neighbour fan (see shape_parts.h). First the fan of each voxel is found. Then each voxel collects, from its own
+ * fan and its neighbours', the triangles whose lowest corner it is; they are kept as a bit set, so that a triangle of
+ * several fans is kept once. */
 #include <stdlib.h>
 
 #include "core/base/mem.h"
@@ -12,18 +12,18 @@
 enum { AROUND = 27, MIDDLE = 13, AFTER = 13, MAX_FAN = 26, MAX_VOXELS = 5000000 };
 
 struct fan {
-    uint8_t from[MAX_FAN], to[MAX_FAN]; /* of each triangle the two neighbours, 0..26 as in shape_border_around */
+    uint8_t from[MAX_FAN], to[MAX_FAN]; /* the two neighbours of each triangle, 0..26 as in shape_border_around */
     uint8_t n;
 };
 
 struct job {
     const struct shape_border *border;
     struct fan *fans;           /* [border->n] */
-    struct vec3 offset[AROUND]; /* to each neighbour, mm */
+    struct vec3 offset[AROUND]; /* vector to each neighbour, mm */
     uint32_t near[AROUND];      /* bit b: neighbours a and b are neighbours of each other */
-    uint32_t *first; /* [border->n] triangle of those that each voxel is the lowest corner of; first their count */
-    /* [border->n], triangles whose lowest corner each voxel is: bit b - 14 of with[a - 14] for its neighbours a < b.
-     * Neighbours are numbered as voxels are ordered, so those that come after a voxel are 14 to 26. */
+    uint32_t *first; /* [border->n] first triangle with this voxel as lowest corner; counts before the running totals */
+    /* [border->n] triangles with this voxel as lowest corner: bit b - 14 of with[a - 14] for neighbours a < b.
+     * Neighbours are numbered in voxel sequence, so those after a voxel are 14 to 26. */
     uint16_t (*with)[AFTER];
     struct mesh *mesh;
 };
@@ -44,7 +44,7 @@ static bool are_neighbours(int a, int b)
 
 /* ---- one voxel's fan -------------------------------------------------------------------------------------------- */
 
-/* What the fan turns around when no side is more outward than another: the grid's axis along which it has the fewest
+/* Axis of the fan where the border has no outward normal: the grid axis along which the voxel has the fewest
  * neighbours. */
 static struct vec3 thin_axis(const struct job *job, uint32_t around)
 {
@@ -62,22 +62,21 @@ static struct vec3 thin_axis(const struct job *job, uint32_t around)
     return vec3_normalize(vec3_cross(columns[(best + 1) % 3], columns[(best + 2) % 3]));
 }
 
-/* Grows with the angle from right, counter-clockwise, by half a turn to the direction opposite: what an angle is needed
- * for here, without its cost. What differs by no more than ROUNDING is the same angle: neighbours that stand one above
- * the other. */
+/* A monotonic replacement for the angle, counter-clockwise from right, in units of FULL_TURN per turn; cheaper than
+ * atan2. Differences up to ROUNDING count as the same angle (neighbours above each other). */
 enum { FULL_TURN = 1 << 16, ROUNDING = 2 };
 
 static int32_t turn_of(struct vec3 offset, struct vec3 right_way, struct vec3 up_way)
 {
     double right = vec3_dot(offset, right_way), up = vec3_dot(offset, up_way), sum = fabs(right) + fabs(up);
-    double part = sum > 1e-5 * vec3_length(offset) ? right / sum : 1; /* straight above: as good as any */
+    double part = sum > 1e-5 * vec3_length(offset) ? right / sum : 1; /* directly above: any angle will do */
     up = part < 1 ? up : 0;
     double quarters = up >= 0 ? 1 - part : 3 + part;
     int32_t turn = (int32_t)(quarters * (FULL_TURN / 4) + 0.5);
     return turn < FULL_TURN - ROUNDING ? turn : 0;
 }
 
-/* Where angles are counted from: the first neighbour that does not lie straight above or below. */
+/* Direction of angle 0: the first neighbour that is not directly above or below along the normal. */
 static struct vec3 first_way(const struct job *job, uint32_t around, struct vec3 normal)
 {
     for (int at = 0; at < AROUND; at++) {
@@ -88,7 +87,7 @@ static struct vec3 first_way(const struct job *job, uint32_t around, struct vec3
     return vec3(0, 0, 0);
 }
 
-/* Neighbours that are border voxels, by their angle around the normal; equal angles by their number. */
+/* Sorts the neighbours that are border voxels by angle around the normal; equal angles by number. */
 static int order_around(const struct job *job, uint32_t around, struct vec3 normal, uint8_t order[MAX_FAN],
                         int32_t turns[MAX_FAN])
 {
@@ -140,7 +139,7 @@ static void fan_part(void *context, int part, int n_parts)
 
 /* ---- all of them ------------------------------------------------------------------------------------------------ */
 
-/* Adds the triangle of neighbours a and b. */
+/* Adds the triangle with neighbours a and b. */
 static void add_triangle(uint16_t with[AFTER], int a, int b)
 {
     int low = a < b ? a : b, high = a < b ? b : a;
@@ -153,7 +152,7 @@ static size_t number_of(const struct shape_border *border, const uint16_t *ijk, 
                                ijk[2] + step_of(neighbour, 2));
 }
 
-/* From the voxel's own fan, and from those of its neighbours that come after it. */
+/* Collects triangles from the voxel's own fan and from the fans of the neighbours after it. */
 static void gather(const struct job *job, size_t number, uint16_t with[AFTER])
 {
     const struct shape_border *border = job->border;
@@ -164,12 +163,13 @@ static void gather(const struct job *job, size_t number, uint16_t with[AFTER])
         if (own->from[t] > MIDDLE && own->to[t] > MIDDLE)
             add_triangle(with, own->from[t], own->to[t]);
     for (uint32_t left = around >> (MIDDLE + 1) << (MIDDLE + 1); left; left &= left - 1) {
-        int other = __builtin_ctz(left), me = AROUND - 1 - other; /* as seen from there */
+        int other = __builtin_ctz(left), me = AROUND - 1 - other; /* me: this voxel, as a neighbour of the other */
         const struct fan *fan = &job->fans[number_of(border, ijk, other)];
         for (int t = 0; t < fan->n; t++) {
             if (fan->from[t] != me && fan->to[t] != me)
                 continue;
-            int third = (fan->from[t] == me ? fan->to[t] : fan->from[t]) + other - MIDDLE; /* as seen from here */
+            /* the third corner, as a neighbour of this voxel */
+            int third = (fan->from[t] == me ? fan->to[t] : fan->from[t]) + other - MIDDLE;
             if (third > MIDDLE)
                 add_triangle(with, other, third);
         }
@@ -218,7 +218,7 @@ static void write_part(void *context, int part, int n_parts)
     size_t end = job->border->n * (size_t)(part + 1) / (size_t)n_parts;
     for (size_t at = job->border->n * (size_t)part / (size_t)n_parts; at < end; at++) {
         const uint16_t *ijk = job->border->ijk + 3 * at, *with = job->with[at];
-        uint32_t number[AFTER] = { 0 }; /* of the neighbours that are corners */
+        uint32_t number[AFTER] = { 0 }; /* numbers of the neighbours that are corners */
         uint16_t corners = 0;
         struct vec3 p = centre_of(job->border, (uint32_t)at);
         uint32_t *out = job->mesh->indices + 3 * (size_t)job->first[at];

@@ -1,16 +1,16 @@
 /* Marching cubes on bit rows.
  *
- * The part of the mask that holds anything is first copied into a grid of its own with one empty layer around it, so
- * nothing below has to think of borders. Its rows are cut so that a 64-bit word holds 63 cells: the 64th bit repeats
- * the first voxel of the next word, and a word needs no neighbour. A row "owns" the crossed grid edges that start at
- * its voxels: along x within it, along y to the next row, along z to the same row of the next slice; each crossed edge
- * is one vertex.
+ * The bounding box of the mask is first copied into a working grid with one empty layer around it, so that nothing
+ * below handles borders. Rows are cut so that a 64-bit word holds 63 cells: its 64th bit repeats the first voxel of the
+ * next word, and no word needs its neighbour. A row "owns" the crossed grid edges that start at its voxels: along x
+ * within the row, along y to the next row, along z to the same row of the next slice. Each crossed edge is one vertex.
  *
- *   1. count, row by row, vertices along x, y, z and triangles     2. running totals: where each row's part begins
- *   3. every row writes its vertices and the triangles of its cells where they belong
+ *   1. count vertices along x, y, z and triangles, row by row
+ *   2. running totals: where each row's part begins
+ *   3. every row writes its vertices and the triangles of its cells to their final place
  *
- * Walking a row of cells from left to right meets the crossed edges around it in the order in which their rows numbered
- * them (a crossed edge makes every cell around it active), so eight running numbers give the vertex of any edge: no
+ * Going along a row of cells meets the crossed edges around it in the sequence in which their rows numbered them (a
+ * crossed edge makes every cell around it active). So eight running numbers give the vertex of any edge, without a
  * table of vertices. */
 #include "core/surface/marching_cubes.h"
 
@@ -39,7 +39,7 @@ struct job {
     struct marching_rows grid; /* the working grid, its rows and the mesh */
     const struct mask *mask;
     enum marching_cubes_code code;
-    struct extent extents[MAX_THREADS]; /* one a part */
+    struct extent extents[MAX_THREADS]; /* one per part */
     struct marching_graph *graph;       /* NULL: not wanted */
 };
 
@@ -115,7 +115,7 @@ static void place_working_grid(struct job *job, const struct extent *extent, boo
     job->grid.words = cells ? (cells + CELLS_A_WORD - 1) / CELLS_A_WORD : 1;
 }
 
-/* 64 bits of a row from any bit on, -1 included; what lies beyond the row is 0. */
+/* 64 bits of a row from bit `at` on, -1 allowed; bits beyond the row are 0. */
 static inline uint64_t bits_from(const uint64_t *row, uint32_t words, int32_t at)
 {
     if (at < 0)
@@ -135,7 +135,7 @@ static void copy_rows(void *context, int part, int n_parts)
             int32_t j = job->grid.start[1] + (int32_t)y, k = job->grid.start[2] + (int32_t)z;
             uint64_t *to = job->grid.bits + ((size_t)z * job->grid.size[1] + y) * job->grid.words;
             if (j < 0 || k < 0 || (uint32_t)j >= mask->size[1] || (uint32_t)k >= mask->size[2]) {
-                memset(to, 0, job->grid.words * sizeof *to); /* an empty row in front or behind */
+                memset(to, 0, job->grid.words * sizeof *to); /* an empty row before or after */
                 continue;
             }
             const uint64_t *from = mask->bits + ((size_t)k * mask->size[1] + (uint32_t)j) * mask->words;
@@ -212,7 +212,8 @@ static void write_triangles(const struct marching_rows *grid, const struct row *
             uint32_t following[8];
             for (int e = 0; e < 8; e++)
                 following[e] = vertex[e] + cube->is_crossed[e];
-            memcpy(vertex + 8, following + 4, 4 * sizeof *vertex); /* the face x = 1 is the next cell's x = 0 */
+            /* edges 8..11 on the face x = 1 are edges 4..7 of the next cell */
+            memcpy(vertex + 8, following + 4, 4 * sizeof *vertex);
             for (int corner = 0; corner < 3 * cube->n_triangles; corner++)
                 *out++ = vertex[cube->edges[corner]];
             memcpy(vertex, following, sizeof following);
@@ -221,8 +222,8 @@ static void write_triangles(const struct marching_rows *grid, const struct row *
 }
 
 #if defined(__x86_64__)
-/* The same with the running numbers in one register; all five triangles that a cell could have are written, the next
- * cell's over what is too much. `end` is where this thread's triangles end: the last few must not reach beyond. */
+/* The same with the running numbers in one register. Always writes the five triangles that a cell can have; the next
+ * cell overwrites the surplus. `end`: end of this thread's triangles, which the last writes must not cross. */
 FAST static void write_triangles_avx2(const struct marching_rows *grid, const struct row *row,
                                       const struct around *rows, const uint32_t *end)
 {
@@ -263,7 +264,7 @@ INLINED void write_rows(const struct marching_rows *grid, size_t from, size_t en
     for (size_t at = from; at < end; at++) {
         const struct row *row = &grid->rows[at];
         if (row[1].x == row->x && row[1].triangles == row->triangles)
-            continue; /* nothing of its own between its beginning and the next row's */
+            continue; /* the row owns nothing */
         uint32_t y = (uint32_t)(at % grid->size[1]), z = (uint32_t)(at / grid->size[1]);
         struct around rows = rows_around(grid, y, z);
         if (has_positions)
@@ -324,7 +325,7 @@ static void count_part(void *context, int part, int n_parts)
         count_slices_fast(&job->grid, from, end);
 }
 
-/* First row at or behind this share of the triangles: parts with equal work, however the region lies in the grid. */
+/* First row at or after this share of the triangles, so that parts have equal work wherever the region is. */
 static size_t row_at_share(const struct job *job, size_t n_rows, int part, int n_parts)
 {
     if (part == n_parts)
@@ -430,7 +431,7 @@ struct mesh *marching_cubes_run(enum marching_cubes_code code, const struct mask
     }
     place_working_grid(&job, &extent, options->close_at_border);
     size_t n_rows = (size_t)grid->size[1] * grid->size[2];
-    /* one array for both: fewer and larger pages */
+    /* bits and rows in one array: fewer and larger pages */
     grid->bits = mem_large_array(n_rows + 1, grid->words * sizeof *grid->bits + sizeof *grid->rows, UINT64_MAX, err);
     if (grid->bits) {
         grid->rows = (struct row *)(grid->bits + n_rows * grid->words);

@@ -1,5 +1,5 @@
-/* Marching cubes of a field: the field's inside is a mask, and what marching cubes makes of that has the right
- * triangles; then every vertex is moved along its edge. */
+/* Marching cubes on a field: the voxels at or above the iso value form a mask, whose surface has the right triangles;
+ * then every vertex is moved along its edge. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -37,7 +37,7 @@ static void mask_part(void *context, int part, int n_parts)
     }
 }
 
-/* Not-a-number beyond the grid. */
+/* The field's value at an index; NaN beyond the grid. */
 static double value_at(const struct volume *field, const int32_t at[3])
 {
     for (int axis = 0; axis < 3; axis++)
@@ -48,7 +48,7 @@ static double value_at(const struct volume *field, const int32_t at[3])
 
 static double crossing(double low, double high, double iso)
 {
-    double share = (iso - low) / (high - low); /* one is at least iso, the other below: not 0 / 0 */
+    double share = (iso - low) / (high - low); /* one end is at least iso, the other below, so never 0 / 0 */
     return isfinite(low) && isfinite(high) ? fmin(fmax(share, 0), 1) : 0.5;
 }
 
@@ -61,7 +61,7 @@ static void move_part(void *context, int part, int n_parts)
         int32_t low[3], high[3];
         double at[3];
         for (int axis = 0; axis < 3; axis++) {
-            int32_t place = point->at2[axis] >> 1; /* along the edge the lower end */
+            int32_t place = point->at2[axis] >> 1; /* the lower end of the edge */
             at[axis] = place;
             low[axis] = high[axis] = place + job->graph->start[axis];
         }

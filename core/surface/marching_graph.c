@@ -1,6 +1,6 @@
-/* The graph of a marching-cubes surface. Walking round the loops of a cell's case goes from crossed edge to crossed
- * edge over the faces of the cell. The cell on the other side of a face goes the other way over it, so when each of the
- * four cells around a crossed edge notes where its loop goes next, all four links of the vertex are there, each written
+/* Builds the graph of a marching cubes surface. The loops of a cell's case lead from crossed edge to crossed edge over
+ * the faces of the cell. The cell on the other side of a face follows the loop in the opposite direction. So when each
+ * of the four cells around a crossed edge writes the next edge of its loop, the vertex has all four links, each written
  * once. */
 #include <pthread.h>
 #include <stdbool.h>
@@ -9,8 +9,8 @@
 #include "core/surface/marching_cubes.h"
 #include "core/surface/marching_rows.h"
 
-/* Of a case: its crossed edges, and for each the next in its loop and which of the four cells around it this cell is.
- */
+/* For a case: its crossed edges, the next edge of each in its loop, and which of the four cells around the edge this
+ * cell is. */
 struct steps {
     uint8_t n;
     struct {
@@ -20,7 +20,7 @@ struct steps {
 static struct steps steps_of[256];
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 
-/* Where write_links has the vertex of an edge. */
+/* Position of an edge's vertex in write_links. */
 static uint8_t place_of(uint8_t edge)
 {
     return edge < 8 ? edge : (uint8_t)(edge + 4);
@@ -34,9 +34,9 @@ static void make_steps(void)
         cube_case_links(inside, next);
         for (uint8_t edge = 0; edge < CUBE_EDGES; edge++)
             if (next[edge] >= 0) {
-                /* where in the cell the edge lies along the two other axes, first the one that follows its own: for an
-                 * edge along x its number says so, for others its last bit (z for y, y for z) and whether it is on the
-                 * far face of x */
+                /* position of the edge along the two other axes, first the axis after its own: an edge along x has it
+                 * in its number, other edges in their last bit (z for y, y for z) and in whether they are on the far
+                 * face of x */
                 unsigned last = edge & 1, far = edge >= 8;
                 bool is_z = edge >= 4 && (edge & 2);
                 unsigned slot = edge < 4 ? edge : is_z ? far | last << 1 : last | far << 1;
@@ -55,7 +55,7 @@ INLINED void write_links(const struct marching_rows *grid, const struct row *row
     typedef uint8_t eight_bytes __attribute__((vector_size(8)));
     const uint32_t first[8] = FIRST_VERTICES(grid, row);
     union {
-        eight of[2]; /* edges 0 to 7 of the cell; of the next one, whose 4 to 7 are this one's 8 to 11 */
+        eight of[2]; /* edges 0..7 of the cell, and of the next cell, whose edges 4..7 are this cell's 8..11 */
         uint32_t number[16];
     } vertex;
     memcpy(&vertex.of[1], first, sizeof first);

@@ -1,5 +1,5 @@
 #pragma once
-/* Inside of marching cubes: the working grid and what its rows own. See marching_cubes.c. */
+/* Inside marching cubes: the working grid, and which crossed edges and cells each row owns. See marching_cubes.c. */
 #include "core/region/mask.h"
 #include "core/surface/cube_cases.h"
 #include "core/surface/mesh.h"
@@ -7,7 +7,7 @@
 enum { CELLS_A_WORD = 63, MAX_MASK_WORDS = VOLUME_MAX_SIDE / 64 };
 #define LOW_63 (~(uint64_t)0 >> 1)
 
-/* Of one row. First how many, then (after the running totals) the number of its first. */
+/* Of one row: counts, after the running totals the number of the row's first. */
 struct row {
     uint32_t x, y, z; /* vertices on edges along x, y, z, numbered in this order */
     uint32_t triangles;
@@ -16,21 +16,21 @@ struct row {
 struct marching_rows {
     const struct cube_case *cases;
     struct affine lps_mm_from_ijk; /* of the mask */
-    int32_t start[3];              /* mask index of its voxel 0; -1 when an empty layer was put in front */
-    uint32_t size[3];              /* voxels */
-    uint32_t words;                /* in a row */
-    uint64_t *bits;                /* [z][y][words]; owns the rows' memory too */
-    struct row *rows;              /* [z][y], and one more at the end */
+    int32_t start[3]; /* mask index of the working grid's voxel 0; -1 when an empty layer was added in front */
+    uint32_t size[3]; /* in voxels */
+    uint32_t words;   /* 64-bit words per row */
+    uint64_t *bits;   /* [z][y][words]; the rows are in the same allocation */
+    struct row *rows; /* [z][y], and one more at the end */
     struct mesh *mesh;
 };
 
-/* Inlined into a version for any processor and one for processors with AVX2 and bit counting. */
+/* Marks code that is compiled twice: portably, and for AVX2 and bit counting. */
 #define INLINED static inline __attribute__((always_inline))
 #if defined(__x86_64__)
 #define FAST __attribute__((target("avx2,popcnt,bmi,bmi2")))
 #endif
 
-/* A row with its neighbours; at the end of an axis the row stands in for the missing neighbour, so nothing is crossed
+/* A row with its neighbours. At the end of an axis the row replaces its missing neighbour, so that no edge is crossed
  * there. */
 struct around {
     const uint64_t *here, *next_y, *next_z, *next_yz;
@@ -47,8 +47,8 @@ INLINED struct around rows_around(const struct marching_rows *grid, uint32_t y, 
 
 /* What one word of a row owns. */
 struct crossings {
-    uint64_t x, y, z; /* crossed edges, by the voxel they start at */
-    uint64_t active;  /* cells that hold triangles */
+    uint64_t x, y, z; /* crossed edges by the voxel they start at */
+    uint64_t active;  /* cells with triangles */
 };
 
 INLINED struct crossings find_crossings(const struct marching_rows *grid, const struct around *rows, uint32_t w)
@@ -56,7 +56,7 @@ INLINED struct crossings find_crossings(const struct marching_rows *grid, const 
     bool is_last = w + 1 == grid->words;
     uint32_t n_cells = is_last ? grid->size[0] - 1 - CELLS_A_WORD * w : CELLS_A_WORD;
     uint64_t cells = n_cells ? LOW_63 >> (CELLS_A_WORD - n_cells) : 0;
-    uint64_t voxels = is_last ? ~(uint64_t)0 : LOW_63; /* elsewhere the 64th belongs to the next word */
+    uint64_t voxels = is_last ? ~(uint64_t)0 : LOW_63; /* else the 64th bit belongs to the next word */
     uint64_t here = rows->here[w], next_y = rows->next_y[w], next_z = rows->next_z[w], next_yz = rows->next_yz[w];
     uint64_t any = here | next_y | next_z | next_yz, all = here & next_y & next_z & next_yz;
     return (struct crossings){
@@ -67,7 +67,7 @@ INLINED struct crossings find_crossings(const struct marching_rows *grid, const 
     };
 }
 
-/* Nothing crossed and no cell active: by far the most words. */
+/* Returns true if no edge is crossed and no cell active, as for most words. */
 INLINED bool is_uniform(const struct around *rows, uint32_t w)
 {
     uint64_t here = rows->here[w], next_y = rows->next_y[w], next_z = rows->next_z[w], next_yz = rows->next_yz[w];
@@ -80,7 +80,7 @@ INLINED uint32_t case_at(const struct around *rows, uint32_t w, int bit)
                       (rows->next_z[w] >> bit & 3) << 4 | (rows->next_yz[w] >> bit & 3) << 6);
 }
 
-/* The vertex that each edge of a row's first cell has, if it is crossed: edges 0..7 as in cube_cases.h. */
+/* Initial running numbers of a row: the vertex that each of edges 0..7 (cube_cases.h) of its first cell would have. */
 #define FIRST_VERTICES(grid, row) \
     { \
         (row)->x, (row)[1].x, (row)[(grid)->size[1]].x, (row)[(grid)->size[1] + 1].x, (row)->y, \

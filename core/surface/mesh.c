@@ -1,3 +1,4 @@
+/* Creates and measures triangle meshes: volume, open edges, Euler number. */
 #include "core/surface/mesh.h"
 
 #include <limits.h>
@@ -7,7 +8,7 @@
 
 #include "core/base/mem.h"
 
-/* Indices are 32 bits wide; the largest of them is left free so that a count fits too. */
+/* Indices have 32 bits; the largest value is not used, so that the count fits too. */
 #define MESH_MAX_VERTICES ((uint64_t)UINT32_MAX)
 #define MESH_MAX_BYTES ((uint64_t)16 << 30)
 
@@ -23,7 +24,7 @@ struct mesh *mesh_create(size_t n_vertices, size_t n_triangles, struct error *er
     mesh->n_vertices = n_vertices;
     mesh->n_triangles = n_triangles;
     mesh->bounds_lps_mm = box3_empty();
-    /* one float more: vector code may load four of the last vertex */
+    /* one float more: vector code loads four floats of the last vertex */
     mesh->positions_lps_mm = mem_large_array(3 * n_vertices + 1, sizeof(float), MESH_MAX_BYTES, err);
     mesh->indices =
         mesh->positions_lps_mm ? mem_large_array(n_triangles, 3 * sizeof(uint32_t), MESH_MAX_BYTES, err) : NULL;
@@ -63,7 +64,8 @@ void mesh_measure_bounds(struct mesh *mesh)
     mesh->bounds_lps_mm = box3_empty();
     if (mesh->n_vertices == 0)
         return;
-    enum { FOUR = 12 }; /* four vertices at a time: whole vectors for the compiler, each lane always the same axis */
+    /* four vertices at a time, so that the compiler uses whole vectors and each lane keeps its axis */
+    enum { FOUR = 12 };
     const float *p = mesh->positions_lps_mm;
     float low[FOUR], high[FOUR];
     for (size_t lane = 0; lane < FOUR; lane++)
@@ -99,7 +101,7 @@ double mesh_volume_mm3(const struct mesh *mesh)
 {
     if (mesh->n_triangles == 0)
         return 0;
-    /* Tetrahedra from a point on the mesh: far from the origin those from the origin would cancel badly. */
+    /* tetrahedra from a vertex of the mesh: from a far origin they would cancel badly */
     struct vec3 apex = position(mesh, mesh->indices[0]);
     double six_times = 0;
     for (size_t t = 0; t < mesh->n_triangles; t++) {
@@ -115,12 +117,12 @@ double mesh_volume_mm3(const struct mesh *mesh)
 /* ---- edges ------------------------------------------------------------------------------------------------------ */
 
 struct edge_counts {
-    size_t edges; /* distinct, without direction */
-    size_t open;  /* directed edges whose edge is not used exactly once each way */
+    size_t edges; /* distinct edges, without direction */
+    size_t open;  /* directed edges without exactly one opposite */
     size_t used_vertices;
 };
 
-/* One directed edge, kept with its lower vertex: the other end, and 1 in the lowest bit when it runs downwards. */
+/* A directed edge, stored at its lower vertex: the other end, with 1 in the lowest bit if it points down. */
 typedef uint64_t half_edge;
 
 static int compare_half_edges(const void *a, const void *b)
@@ -160,7 +162,8 @@ static bool count_edges(const struct mesh *mesh, struct edge_counts *counts)
 {
     *counts = (struct edge_counts){ 0 };
     size_t n_half = 3 * mesh->n_triangles;
-    /* first[v] .. first[v + 1]: the half edges kept with vertex v; built by counting, so no sort of everything */
+    /* first[v] .. first[v + 1] are the half edges of vertex v; built by counting, because sorting all would be
+     * slower */
     size_t *first = mem_array(mesh->n_vertices + 2, sizeof *first, UINT64_MAX, NULL);
     half_edge *half = mem_array(n_half, sizeof *half, UINT64_MAX, NULL);
     bool *used = mem_array(mesh->n_vertices, sizeof *used, UINT64_MAX, NULL);

@@ -1,3 +1,4 @@
+/* Writes binary STL, binary PLY and GLB files into memory. */
 #include "core/surface/mesh_export.h"
 
 #include <assert.h>
@@ -36,7 +37,7 @@ const char *mesh_format_word(enum mesh_format format)
     return words[format];
 }
 
-/* ---- bytes, little-endian on any machine ------------------------------------------------------------------------ */
+/* ---- bytes, little-endian on any machine */
 
 static uint8_t *put_u32(uint8_t *at, uint32_t value)
 {
@@ -62,7 +63,7 @@ static uint8_t *put_indices(uint8_t *at, const uint32_t *indices, size_t n)
     return at;
 }
 
-/* Room for a file of n bytes, once it is known to fit. NULL with err. */
+/* Allocates n bytes after checking the limit. NULL with err. */
 static uint8_t *make_room(enum mesh_format format, uint64_t n, uint64_t max_bytes, struct error *err)
 {
     if (n <= max_bytes && n <= SIZE_MAX)
@@ -75,7 +76,7 @@ static uint8_t *make_room(enum mesh_format format, uint64_t n, uint64_t max_byte
 /* ---- heads that are text ---------------------------------------------------------------------------------------- */
 
 struct text {
-    char bytes[4096]; /* all fields together, each byte escaped, leave room */
+    char bytes[4096]; /* enough for all fields with every byte escaped */
     size_t n;
 };
 
@@ -90,7 +91,7 @@ static void add(struct text *text, const char *format, ...)
     text->n += (size_t)n;
 }
 
-/* One line's worth: a control character would end the comment it stands in. */
+/* Adds a field without control characters, which would end the comment line. */
 static void add_line_field(struct text *text, const char *field)
 {
     for (size_t i = 0; i < FIELD_BYTES && field[i]; i++) {
@@ -99,7 +100,7 @@ static void add_line_field(struct text *text, const char *field)
     }
 }
 
-/* "name":"field" with JSON's escapes */
+/* Adds "name":"field" with JSON escapes. */
 static void add_json_field(struct text *text, const char *name, const char *field)
 {
     add(text, "\"%s\":\"", name);
@@ -139,7 +140,7 @@ static uint8_t *export_stl(const struct mesh *mesh, const struct mesh_export_abo
     uint8_t *bytes = make_room(MESH_STL, n, max_bytes, err);
     if (!bytes)
         return NULL;
-    struct text title = { .n = 0 }; /* must not begin with "solid": readers would take it for text */
+    struct text title = { .n = 0 }; /* must not begin with "solid", or readers take the file for text */
     add(&title, "Beamroom mm LPS ");
     add_line_field(&title, about->region_id);
     memset(bytes, 0, STL_TITLE);
@@ -151,7 +152,7 @@ static uint8_t *export_stl(const struct mesh *mesh, const struct mesh_export_abo
             memcpy(corners + 3 * c, mesh->positions_lps_mm + 3 * (size_t)mesh->indices[3 * t + c], POINT);
         triangle_normal(corners, normal);
         at = put_floats(put_floats(at, normal, 3), corners, 9);
-        *at++ = 0; /* no attributes */
+        *at++ = 0; /* attribute byte count */
         *at++ = 0;
     }
     *n_bytes = (size_t)n;
@@ -211,8 +212,8 @@ static uint8_t *export_ply(const struct mesh *mesh, const struct mesh_export_abo
 
 /* ---- GLB -------------------------------------------------------------------------------------------------------- */
 
-/* The smallest and largest coordinates; a reader may refuse bounds that are not met to the last bit, and nine digits
- * keep them. */
+/* Adds the smallest and largest coordinates. Readers may refuse bounds that are not exact; nine digits keep a float
+ * exactly. */
 static void add_bounds(struct text *json, const struct mesh *mesh)
 {
     float low[3], high[3];
@@ -273,7 +274,7 @@ static void write_glb_json(const struct mesh *mesh, const struct mesh_export_abo
     add(json, "],\"buffers\":[{\"byteLength\":%llu}]}",
         (unsigned long long)(n_indices + (has_normals ? 2 : 1) * n_points));
     while (json->n % 4)
-        add(json, " "); /* chunks end at a multiple of four */
+        add(json, " "); /* chunks end at a multiple of four bytes */
 }
 
 static uint8_t *export_glb(const struct mesh *mesh, const struct mesh_export_about *about, uint64_t max_bytes,

@@ -1,8 +1,8 @@
-/* Vertex normals of any mesh, on several threads and always the same to the last bit.
+/* Computes vertex normals of any mesh on several threads, with the same bytes for any number of them.
  *
- * Each thread owns a range of vertices and adds up, in the order of the triangles, what reaches that range. So every
- * sum has one owner and one order, whatever the number of threads. A triangle near a border between ranges is looked at
- * twice; blocks of triangles that stay clear of a range (most, as meshes from grids are ordered) are skipped whole. */
+ * Each thread owns a range of vertices and adds, in triangle sequence, what triangles contribute to that range. So
+ * every sum has one owner and one sequence of additions. A triangle near a border between ranges is visited twice;
+ * blocks of triangles without a vertex in a range are skipped (most of them, because meshes from grids are ordered). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,29 +14,28 @@
 enum { BLOCK = 1024 }; /* triangles */
 
 struct block {
-    uint32_t low, high; /* vertices its triangles use, inclusive */
+    uint32_t low, high; /* smallest and largest vertex used by its triangles */
 };
 
-/* Four floats at once on any processor that has such registers; x, y, z and one that is carried along and never read.
- */
+/* Four floats in one register: x, y, z and one that is carried along and never read. */
 typedef float float4 __attribute__((vector_size(16)));
 
 struct job {
     struct mesh *mesh;
-    float4 *sums; /* one a vertex */
+    float4 *sums; /* one per vertex */
     struct block *blocks;
     size_t n_blocks;
 };
 
 static size_t share(size_t n, int part, int n_parts)
 {
-    return n * (size_t)part / (size_t)n_parts; /* n is below 2^34, a part below 2^7 */
+    return n * (size_t)part / (size_t)n_parts; /* no overflow: n is below 2^34, a part below 2^7 */
 }
 
 static void measure_blocks(void *context, int part, int n_parts)
 {
     const struct job *job = context;
-    if (n_parts == 1) { /* the one range holds them all */
+    if (n_parts == 1) { /* a single range holds all vertices */
         for (size_t b = 0; b < job->n_blocks; b++)
             job->blocks[b] = (struct block){ 0, 0 };
         return;
@@ -46,7 +45,7 @@ static void measure_blocks(void *context, int part, int n_parts)
         size_t last = (b + 1) * BLOCK < job->mesh->n_triangles ? (b + 1) * BLOCK : job->mesh->n_triangles;
         struct block corner[3] = { { UINT32_MAX, 0 },
                                    { UINT32_MAX, 0 },
-                                   { UINT32_MAX, 0 } }; /* three chains that do not wait */
+                                   { UINT32_MAX, 0 } }; /* three independent chains of comparisons */
         for (size_t at = 3 * b * BLOCK; at < 3 * last; at += 3)
             for (size_t c = 0; c < 3; c++) {
                 uint32_t vertex = job->mesh->indices[at + c];
@@ -73,7 +72,7 @@ static inline float4 turn(float4 v) /* y, z, x */
     return __builtin_shufflevector(v, v, 1, 2, 0, 3);
 }
 
-/* The cross product of two sides: along the normal, twice the area long. mesh_create leaves room behind the last
+/* Cross product of two sides: direction of the normal, length twice the area. mesh_create leaves room after the last
  * vertex. */
 static inline float4 triangle_normal(const float *positions, const uint32_t v[3])
 {
@@ -82,7 +81,7 @@ static inline float4 triangle_normal(const float *positions, const uint32_t v[3]
     return turn(u * turn(w) - turn(u) * w);
 }
 
-/* Adds the triangles of a block to the sums of the vertices from..end. */
+/* Adds the triangles of a block to the sums of vertices from..end. */
 static void add_block(const struct job *job, size_t block, size_t from, size_t end)
 {
     const struct mesh *mesh = job->mesh;
@@ -111,7 +110,7 @@ static void make_normals(void *context, int part, int n_parts)
         if (length > 0)
             n /= length;
         else
-            n = (float4){ 0, 0, 1, 0 }; /* unused, or its triangles cancel: any direction, but a unit one */
+            n = (float4){ 0, 0, 1, 0 }; /* unused vertex, or contributions that cancel: any unit vector */
         memcpy(job->mesh->normals + 3 * vertex, &n, 3 * sizeof(float));
     }
 }

@@ -1,11 +1,11 @@
+/* Evaluates B-spline basis functions and points of a tube. */
 #include "core/surface/nurbs.h"
 
 #include <assert.h>
 
 void nurbs_basis(const double *knots, size_t span, int order, double t, double values[NURBS_MAX_ORDER])
 {
-    /* From order 1, where the span's own function is 1, upwards: each function of an order is a blend of two of the
-     * order below. */
+    /* from order 1, whose function is 1 on its span, upwards: a function of order n is a blend of two of order n - 1 */
     double before[NURBS_MAX_ORDER], after[NURBS_MAX_ORDER]; /* t - knot, knot - t */
     values[0] = 1;
     for (int k = 1; k < order; k++) {
@@ -26,7 +26,7 @@ double nurbs_tube_v_end(const struct nurbs_tube *tube)
     return (double)tube->n_rows - tube->order_along + 1;
 }
 
-/* The basis at a place, and the first control point it is for. */
+/* The basis functions at a parameter, and the first control point they belong to. */
 struct place {
     double values[NURBS_MAX_ORDER];
     size_t first;

@@ -1,3 +1,4 @@
+/* Samples outlines into rows of control points, by traces or by degree bins. */
 #include "core/surface/nurbs_nets.h"
 
 #include <stdio.h>
@@ -15,10 +16,10 @@ struct work {
     const struct mask *mask;
     struct outline_set *set;
     int axis;
-    struct vec3 across; /* half a slice, mm */
+    struct vec3 across; /* half the vector from slice to slice, mm */
     size_t bins;
-    struct vec3 *line; /* [longest] scratch: points of one outline, mm */
-    double *along;     /* [longest + 1] and the length of the outline up to each */
+    struct vec3 *line; /* [longest] scratch: the points of one outline, mm */
+    double *along;     /* [longest + 1] and the length of the outline up to each point */
 };
 
 static size_t line_length(const struct work *work, uint32_t line)
@@ -39,7 +40,7 @@ static size_t load_line(const struct work *work, uint32_t line)
 
 /* ---- traces ----------------------------------------------------------------------------------------------------- */
 
-/* n points evenly spaced along a line. */
+/* Samples n points, evenly spaced, along a line. */
 static void sample_line(const struct work *work, uint32_t line, size_t n, struct vec3 *out)
 {
     size_t n_line = load_line(work, line), at = 0;
@@ -56,8 +57,8 @@ static void sample_line(const struct work *work, uint32_t line, size_t n, struct
     }
 }
 
-/* Begins the row where it lies closest to the row below: of all n ways the one with the least sum of squared distances.
- */
+/* Rotates the row to start where it is closest to the row below: of all n rotations, the one with the least sum of
+ * squared distances. */
 static void align(const struct vec3 *below, struct vec3 *row, size_t n, struct vec3 *scratch)
 {
     size_t best = 0;
@@ -78,7 +79,7 @@ static void align(const struct vec3 *below, struct vec3 *row, size_t n, struct v
         row[at] = scratch[(at + best) % n];
 }
 
-/* The ends stand once more, half a slice further out. */
+/* Repeats the first and last row half a slice further out. */
 static void put_ends(const struct work *work, const struct nurbs_net *net)
 {
     size_t n = net->n_around, last = (net->n_rows - 1) * n;
@@ -100,7 +101,7 @@ static void fill_by_traces(const struct work *work, uint32_t line, const uint32_
     put_ends(work, net);
 }
 
-/* How many rows and points around the net that begins with a line has. */
+/* Rows and points around of the net that begins with a line. */
 static struct nurbs_net net_size(const struct work *work, uint32_t line, const uint32_t *next)
 {
     struct nurbs_net net = { .n_rows = 2, .n_around = MIN_AROUND };
@@ -126,7 +127,8 @@ static bool make_by_traces(const struct work *work, struct nurbs_nets *nets, str
 {
     const struct outline_set *set = work->set;
     uint32_t *next = nurbs_pieces_link(set, work->axis, err);
-    bool *goes_on = next ? mem_array(set->n_lines, sizeof *goes_on, UINT64_MAX, err) : NULL; /* from the slice below */
+    /* [n_lines] the line continues one from the slice below */
+    bool *goes_on = next ? mem_array(set->n_lines, sizeof *goes_on, UINT64_MAX, err) : NULL;
     bool good = goes_on != NULL;
     uint64_t n_points = 0;
     size_t n_nets = 0;
@@ -156,7 +158,7 @@ static bool make_by_traces(const struct work *work, struct nurbs_nets *nets, str
 
 /* ---- degree bins ------------------------------------------------------------------------------------------------ */
 
-/* A slice's name in a sentence. */
+/* The position of a slice along S, mm, for the error sentence. */
 static double slice_s_mm(const struct work *work, uint32_t slice)
 {
     struct vec3 middle =
@@ -173,7 +175,7 @@ static bool refuse(const struct work *work, uint32_t slice, struct error *err, c
                      slice_s_mm(work, slice), why);
 }
 
-/* The slice's one outline. */
+/* The only outline of a slice; fails if there are several. */
 static bool one_line(const struct work *work, uint32_t slice, uint32_t *line, struct error *err)
 {
     const struct outline_set *set = work->set;
@@ -191,7 +193,7 @@ static bool one_line(const struct work *work, uint32_t slice, uint32_t *line, st
     return n_holes == 0 || refuse(work, slice, err, why);
 }
 
-/* Axes within a slice: right and up are square to one another and 1 mm long, counter-clockwise as the outlines are. */
+/* Axes within a slice: right and up are perpendicular, 1 mm long, and counter-clockwise like the outlines. */
 struct plane {
     struct vec3 middle, right, up;
 };
@@ -203,7 +205,7 @@ static struct plane plane_of(const struct work *work, size_t n_line)
     struct plane plane = { work->line[0], vec3_normalize(u), vec3_normalize(vec3_cross(normal, u)) };
     struct vec3 sum = vec3(0, 0, 0);
     double twice = 0;
-    for (size_t at = 0; at < n_line; at++) { /* triangles from the first point */
+    for (size_t at = 0; at < n_line; at++) { /* fan of triangles from the first point */
         struct vec3 a = vec3_sub(work->line[at], work->line[0]),
                     b = vec3_sub(work->line[(at + 1) % n_line], work->line[0]);
         double area = vec3_dot(vec3_cross(a, b), vec3_normalize(normal));
@@ -228,7 +230,8 @@ static bool is_star(const struct work *work, size_t n_line, const struct plane *
 {
     double allowed = NURBS_MAX_BACK_DEG * MATH_PI / 180, angle = 0, farthest = 0, back = 0;
     allowed = allowed > 2 * MATH_PI / (double)work->bins ? allowed : 2 * MATH_PI / (double)work->bins;
-    for (size_t at = 0; at < 2 * n_line; at++) { /* twice around: the first point may be within a turn back */
+    /* twice around, because the first point may be within a stretch that goes back */
+    for (size_t at = 0; at < 2 * n_line; at++) {
         angle += turn(plane, work->line[at % n_line], work->line[(at + 1) % n_line]);
         farthest = angle > farthest ? angle : farthest;
         back = farthest - angle > back ? farthest - angle : back;
@@ -241,7 +244,7 @@ static bool is_star(const struct work *work, size_t n_line, const struct plane *
     return back <= allowed || refuse(work, slice, err, why);
 }
 
-/* Where the ray at an angle from the middle leaves the outline for the last time. */
+/* The outermost crossing of the outline with the ray from the middle at an angle. */
 static struct vec3 crossing_at(const struct work *work, size_t n_line, const struct plane *plane, double angle)
 {
     double c = cos(angle), s = sin(angle), farthest = 0;
@@ -250,7 +253,7 @@ static struct vec3 crossing_at(const struct work *work, size_t n_line, const str
                     b = vec3_sub(work->line[(at + 1) % n_line], plane->middle);
         double ax = vec3_dot(a, plane->right), ay = vec3_dot(a, plane->up), bx = vec3_dot(b, plane->right),
                by = vec3_dot(b, plane->up);
-        double off_a = c * ay - s * ax, off_b = c * by - s * bx; /* to the left of the ray */
+        double off_a = c * ay - s * ax, off_b = c * by - s * bx; /* distances to the left of the ray */
         if ((off_a <= 0) == (off_b <= 0))
             continue;
         double part = off_a / (off_a - off_b), out = (1 - part) * (c * ax + s * ay) + part * (c * bx + s * by);

@@ -1,3 +1,4 @@
+/* Finds, for each outline of a slice, the outline of the next slice that continues it, by counting shared pixels. */
 #include "core/surface/nurbs_pieces.h"
 
 #include <stdlib.h>
@@ -5,7 +6,7 @@
 
 #include "core/base/mem.h"
 
-/* Pixels first .. end - 1 of a row lie inside a line and inside no other line within it. */
+/* Pixels first .. end - 1 of a row are inside a line and inside no other line nested in it. */
 struct run {
     int32_t row, first, end;
     uint32_t line;
@@ -16,14 +17,14 @@ struct runs {
     size_t n;
 };
 
-/* A line crosses a row between two pixels. */
+/* Crossing of a line and a row, between two pixels. */
 struct crossing {
     int32_t row, pixel; /* the pixel to the right of it */
     uint32_t line;
 };
 
 struct shared {
-    uint32_t low, high; /* lines of this slice and of the next */
+    uint32_t low, high; /* a line of this slice and one of the next */
     uint64_t n_pixels;
 };
 
@@ -55,13 +56,14 @@ static size_t find_crossings(const struct outline_set *set, uint32_t slice, int 
     for (uint32_t line = set->slice[slice]; line < set->slice[slice + 1]; line++)
         for (uint32_t at = set->line[line]; at < set->line[line + 1]; at++) {
             const float *p = set->points_ijk + 3 * (size_t)set->walk[at];
-            if (p[v] == floorf(p[v])) /* else the point is between two rows */
+            if (p[v] == floorf(p[v])) /* otherwise the point is between two rows */
                 out[n++] = (struct crossing){ (int32_t)p[v], (int32_t)ceilf(p[u]), line };
         }
     return n;
 }
 
-/* Lines lie inside one another and never cross, so along a row the one that was entered last is left first. */
+/* Makes the runs of all lines of a slice. Lines are nested and never cross, so along a row the line entered last is
+ * left first. */
 static bool runs_make(const struct outline_set *set, uint32_t slice, int axis, struct runs *runs, struct error *err)
 {
     size_t n_points = set->line[set->slice[slice + 1]] - set->line[set->slice[slice]];
@@ -95,12 +97,12 @@ static int compare_shared(const void *a, const void *b)
     return x->low != y->low ? (x->low < y->low ? -1 : 1) : x->high < y->high ? -1 : x->high > y->high;
 }
 
-/* Every pair of runs of the same kind that have pixels in common, pairs of lines together; free(). */
+/* Lists every pair of runs of the same kind that share pixels, sorted by pair of lines; the caller frees it. */
 static struct shared *find_shared(const struct runs *low, const struct runs *high, const bool *is_hole, size_t *n,
                                   struct error *err)
 {
-    struct shared *shared =
-        mem_array(low->n + high->n, sizeof *shared, UINT64_MAX, err); /* two sorted lists of runs: no more overlaps */
+    /* sufficient: two sorted lists of runs have no more overlaps */
+    struct shared *shared = mem_array(low->n + high->n, sizeof *shared, UINT64_MAX, err);
     if (!shared)
         return NULL;
     *n = 0;
@@ -133,7 +135,7 @@ struct best {
 static void consider(struct best *best, uint32_t line, uint64_t n_pixels)
 {
     if (n_pixels > best->n_pixels)
-        *best = (struct best){ line, n_pixels }; /* of equals the first */
+        *best = (struct best){ line, n_pixels }; /* the first of equals is kept */
 }
 
 uint32_t *nurbs_pieces_link(const struct outline_set *set, int axis, struct error *err)
@@ -142,7 +144,7 @@ uint32_t *nurbs_pieces_link(const struct outline_set *set, int axis, struct erro
     uint32_t *next = mem_array(set->n_lines, sizeof *next, UINT64_MAX, err);
     bool *is_hole = next ? mem_array(set->n_lines, sizeof *is_hole, UINT64_MAX, err) : NULL;
     struct best *up =
-        is_hole ? mem_array(set->n_lines, sizeof *up, UINT64_MAX, err) : NULL; /* of each line in the next slice */
+        is_hole ? mem_array(set->n_lines, sizeof *up, UINT64_MAX, err) : NULL; /* of each line, in the next slice */
     struct best *down = up ? mem_array(set->n_lines, sizeof *down, UINT64_MAX, err) : NULL;
     bool good = down != NULL;
     for (uint32_t line = 0; good && line < set->n_lines; line++)

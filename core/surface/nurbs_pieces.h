@@ -1,13 +1,13 @@
 #pragma once
-/* Which outline of a slice goes on in which of the next: what a tube is stacked from. Knows nothing of splines. */
+/* Links the outlines of neighbouring slices that a tube is stacked from. Knows nothing of splines. */
 #include "core/region/outline.h"
 
-/* Pieces of a region, and holes in them, by outline: each goes on in the outline of its kind whose pixels it shares
- * most of, when that one says the same of it. So where a piece divides, the largest part goes on and the others begin
- * anew.
+/* Links pieces, and holes, outline by outline: each continues in the outline of its kind with which it shares most
+ * pixels, provided that outline shares most with it too. So where a piece divides, the largest part continues and the
+ * others begin anew.
  *
  *   set      outlines between pixels (outline_walk), all slices across axis
- *   returns  next[line], the line of the next slice that it goes on in, or UINT32_MAX; free()
+ *   returns  next[line]: the line of the next slice that continues it, or UINT32_MAX; the caller frees it
  *   errors   ERROR_MEMORY */
 NODISCARD uint32_t *nurbs_pieces_link(const struct outline_set *set, int axis, struct error *err);
 

@@ -1,4 +1,4 @@
-/* Spline surfaces as meshes: every net a grid of points that is closed around, with a flat fan at each end. */
+/* Meshes spline surfaces: each net gives a grid of points, closed around, with a flat fan of triangles at each end. */
 #include <stdlib.h>
 
 #include "core/base/mem.h"
@@ -8,17 +8,17 @@
 #include "core/surface/shape_make.h"
 #include "core/surface/shape_parts.h"
 
-/* A net's part of the mesh. */
+/* The part of the mesh that one net gives. */
 struct patch {
     struct nurbs_tube tube;
-    size_t n_around, n_rows; /* of mesh vertices; behind them the middles of the two ends */
+    size_t n_around, n_rows; /* of mesh vertices; after them come the centres of the two ends */
     size_t first_vertex, first_triangle;
 };
 
 struct job {
     struct patch *patches;
     size_t n_patches;
-    bool is_mirrored; /* around and along turn the other way than in space */
+    bool is_mirrored; /* the directions around and along have the opposite handedness in space */
     struct mesh *mesh;
 };
 
@@ -32,7 +32,7 @@ static size_t patch_triangles(const struct patch *patch)
     return 2 * patch->n_around * (patch->n_rows - 1) + 2 * patch->n_around;
 }
 
-/* Sets the sizes for so many steps from one control point to the next; returns all triangles. */
+/* Sets the sizes of all patches for a number of steps between control points; returns the total of triangles. */
 static uint64_t size_patches(struct job *job, size_t steps)
 {
     uint64_t n_vertices = 0, n_triangles = 0;
@@ -81,7 +81,7 @@ static uint32_t *put_triangle(const struct job *job, uint32_t *out, size_t a, si
     return out;
 }
 
-/* The triangles between a row and the next, and those of an end. */
+/* Writes the triangles between a row and the next, or those of an end. */
 static void write_triangles(const struct job *job, const struct patch *patch, size_t row)
 {
     size_t n = patch->n_around, low = patch->first_vertex + row * n, end = patch->first_vertex + patch_vertices(patch);
@@ -102,7 +102,7 @@ static void write_triangles(const struct job *job, const struct patch *patch, si
         out = put_triangle(job, out, end - 1, low + a, low + (a + 1) % n);
 }
 
-/* Rows are dealt out in turn, over all patches. */
+/* Threads take rows in turn, over all patches. */
 static void write_part(void *context, int part, int n_parts)
 {
     const struct job *job = context;
@@ -119,7 +119,7 @@ static void write_part(void *context, int part, int n_parts)
 
 static bool make_mesh(struct job *job, int order, int n_threads, struct error *err)
 {
-    size_t steps = order == 2 ? 1 : (size_t)order; /* straight lines need none in between */
+    size_t steps = order == 2 ? 1 : (size_t)order; /* straight lines need no points in between */
     uint64_t n_triangles;
     while ((n_triangles = size_patches(job, steps)) > NURBS_FINE_TRIANGLES && steps > 1)
         steps--;
@@ -135,8 +135,8 @@ static bool make_mesh(struct job *job, int order, int n_threads, struct error *e
     return true;
 }
 
-/* Outlines turn counter-clockwise in the axes across the stack, in ascending order; whether they also do so in space,
- * seen against the direction of the stack, is a question of both. */
+/* Outlines turn counter-clockwise in the axes across the stack, in ascending order. Whether they also do so in space,
+ * seen against the stacking direction, depends on that order and on the handedness of the grid. */
 static bool is_mirrored(const struct mask *mask)
 {
     struct grid grid;

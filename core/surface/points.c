@@ -1,4 +1,4 @@
-/* A point for every border voxel, with the way it faces and the light that falls on it from one fixed side. */
+/* Makes a point for every border voxel, with the direction it faces and its shade under one fixed light. */
 #include <stdlib.h>
 
 #include "core/base/mem.h"
@@ -9,7 +9,7 @@
 static uint8_t shade_of(struct vec3 normal, struct vec3 light)
 {
     double facing = (1 + vec3_dot(normal, light)) /
-                    2; /* 0 away from the light .. 1 towards it; a point that faces no way lies between */
+                    2; /* 0 away from the light .. 1 towards it; 0.5 for a point without a direction */
     return (uint8_t)(255 * (SHAPE_LIGHT_AMBIENT + (1 - SHAPE_LIGHT_AMBIENT) * facing) + 0.5);
 }
 

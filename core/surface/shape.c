@@ -1,3 +1,4 @@
+/* Words, keys and lifetime of shapes. */
 #include "core/surface/shape.h"
 
 #include <stdatomic.h>

@@ -1,3 +1,4 @@
+/* Numbers the border voxels of a mask and estimates the direction each faces from its 26 neighbours. */
 #include "core/surface/shape_border.h"
 
 #include <stdlib.h>
@@ -8,9 +9,9 @@
 
 struct job {
     struct shape_border *border;
-    struct vec3 of_row[9][8]; /* by row of three neighbours and which are inside: sum of directions to the others, in
-                                 index steps */
-    struct vec3 covector[3];  /* a gradient per index step as one per mm */
+    struct vec3 of_row[9][8]; /* by row of three neighbours and inside bits: sum of the directions to the outside ones,
+                                 in index steps */
+    struct vec3 covector[3];  /* converts a gradient per index step to one per mm */
 };
 
 size_t shape_border_number(const struct shape_border *border, int64_t i, int64_t j, int64_t k)
@@ -44,9 +45,9 @@ uint32_t shape_border_around(const struct mask *mask, uint32_t i, uint32_t j, ui
     return around;
 }
 
-/* Steps of equal length in each of the 26 directions (S. W. Zucker, R. A. Hummel, A three-dimensional edge operator,
- * IEEE Trans. PAMI 3, 1981). A gradient per step becomes one per mm with the inverse transpose of the map, so that a
- * slope counts as what it is in space where slices are far apart. */
+/* Prepares unit steps in each of the 26 directions (S. W. Zucker, R. A. Hummel, A three-dimensional edge operator, IEEE
+ * Trans. PAMI 3, 1981). The inverse transpose of the map converts a gradient per step to one per mm, so that slopes are
+ * right in space also where slices are far apart. */
 static void prepare(struct job *job)
 {
     for (int row = 0; row < 9; row++)
@@ -69,7 +70,7 @@ static struct vec3 normal_at(const struct job *job, uint32_t i, uint32_t j, uint
     struct vec3 sum = vec3(0, 0, 0);
     for (int row = 0; row < 9; row++)
         sum = vec3_add(sum, job->of_row[row][around >> 3 * row & 7]);
-    if (vec3_dot(sum, sum) < 1e-12) /* opposite sides cancel but for rounding */
+    if (vec3_dot(sum, sum) < 1e-12) /* opposite sides cancel except for rounding */
         return vec3(0, 0, 0);
     struct vec3 normal = vec3_add(vec3_scale(job->covector[0], sum.x),
                                   vec3_add(vec3_scale(job->covector[1], sum.y), vec3_scale(job->covector[2], sum.z)));

@@ -1,6 +1,6 @@
-/* Around each position, inside voxels within a radius are asked for their faces; the radius grows until it holds the
- * nearest one. Where that is many voxels away, as it is along slices that are thick, the tree of faces is asked
- * instead. */
+/* Measures the distance of positions to the border faces of a mask. Looks at the inside voxels within a radius of each
+ * position; the radius grows until it contains the nearest face. Where that would be many voxels, as with thick slices,
+ * the tree of faces is searched instead. */
 #include "core/surface/shape_distance.h"
 
 #include <stdatomic.h>
@@ -11,9 +11,11 @@
 #include "core/region/boundary.h"
 #include "core/surface/face_tree.h"
 
-/* Boxes of voxels are looked through up to this many rows: above, the tree was quicker on the plans it was tried on. */
+/* Boxes of up to this many voxel rows are searched directly: above, the tree was faster on the plans it was measured
+ * on. */
 enum { MAX_ROWS = 256 };
-enum { MAX_THREADS = 64, BLOCK = 1024 }; /* positions whose sum is taken together, so that threads do not change it */
+/* BLOCK: positions whose sum is formed together, so that the result does not depend on the threads. */
+enum { MAX_THREADS = 64, BLOCK = 1024 };
 
 struct block {
     double sum, max;
@@ -22,11 +24,11 @@ struct block {
 };
 
 struct job {
-    const struct mask *mask, *border; /* border: inside voxels that have a face */
+    const struct mask *mask, *border; /* border: inside voxels with a face */
     struct face_tree *faces;
     struct affine ijk_from_lps_mm;
-    double reach[3]; /* index steps that 1 mm can go along each axis, whatever its direction */
-    double start_mm; /* first radius */
+    double reach[3]; /* largest number of index steps along each axis within 1 mm, in any direction */
+    double start_mm; /* first search radius */
     const float *positions_lps_mm;
     size_t n_positions, n_blocks;
     struct block *blocks;
@@ -38,7 +40,8 @@ static double square(double x)
     return x * x;
 }
 
-/* The least square of the distance to the faces of one voxel; d is the position less the voxel, in index steps. */
+/* Least squared distance to the faces of one voxel, or `least` if smaller; d is the position minus the voxel, in index
+ * steps. */
 static double voxel_distance_2(const struct job *job, const int64_t ijk[3], const double d[3], double least,
                                uint64_t *n_asked)
 {
@@ -53,7 +56,7 @@ static double voxel_distance_2(const struct job *job, const int64_t ijk[3], cons
     return least;
 }
 
-/* Rows of voxels, and eights of those along a row, that reach to within a radius, at most. */
+/* Upper bound on the rows of voxels, in pieces of eight voxels, that reach to within a radius. */
 static double n_rows_within(const struct job *job, double radius_mm)
 {
     double n = 1 + 2 * radius_mm * job->reach[0] / 8;
@@ -62,7 +65,7 @@ static double n_rows_within(const struct job *job, double radius_mm)
     return n;
 }
 
-/* Index range of voxels that reach to within `steps` of x; false when none of the grid does. */
+/* Index range of the voxels that reach to within `steps` of x; false if there are none in the grid. */
 static bool range_of(double x, double steps, uint32_t size, int64_t *first, int64_t *last)
 {
     double low = ceil(x - steps - 0.5), high = floor(x + steps + 0.5);
@@ -73,7 +76,7 @@ static bool range_of(double x, double steps, uint32_t size, int64_t *first, int6
     return true;
 }
 
-/* Exact when the answer is at most the radius; INFINITY when nothing was met. */
+/* Squared distance within a radius. Exact if the result is at most the radius; INFINITY if no face was found. */
 static double search_2(const struct job *job, const double x[3], double radius_mm, uint64_t *n_asked)
 {
     int64_t first[3], last[3];
@@ -101,8 +104,7 @@ static double search_2(const struct job *job, const double x[3], double radius_m
     return least;
 }
 
-/* Small boxes of voxels are looked through, in ever larger ones until one holds the nearest face; then the tree is
- * quicker. */
+/* Searches ever larger boxes of voxels until one contains the nearest face, and the tree once boxes get large. */
 static double distance_mm(const struct job *job, struct vec3 position, uint64_t *n_asked)
 {
     struct vec3 at = affine_point(&job->ijk_from_lps_mm, position);
@@ -113,7 +115,7 @@ static double distance_mm(const struct job *job, struct vec3 position, uint64_t 
             return least;
     }
     if (isfinite(least) &&
-        n_rows_within(job, least) <= MAX_ROWS) /* there is one this near: nothing beyond it matters */
+        n_rows_within(job, least) <= MAX_ROWS) /* a face this near was found: nothing beyond it matters */
         return sqrt(search_2(job, x, least * (1 + 1e-9), n_asked));
     return sqrt(face_tree_nearest_2(job->faces, x, least * least * (1 + 1e-9), n_asked));
 }

@@ -1,3 +1,4 @@
+/* Makes the shape of a region for a key, and measures its bounds and memory. */
 #include "core/surface/shape_make.h"
 
 #include <assert.h>
@@ -32,7 +33,7 @@ static void add_positions(struct box3 *box, const float *positions_lps_mm, size_
         box3_add(box, vec3((double)positions_lps_mm[0], (double)positions_lps_mm[1], (double)positions_lps_mm[2]));
 }
 
-/* What voxels around the points reach. */
+/* Extends a box of voxel centres to the voxels' faces. */
 static void grow_by_voxel(struct box3 *box, const struct vec3 edges[3])
 {
     struct vec3 half = vec3(0, 0, 0);

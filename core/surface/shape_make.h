@@ -1,25 +1,30 @@
 #pragma once
-/* From a region to what it is drawn as: one file a representation. Knows nothing of plans, scenes or GL; keeps nothing.
+/* Makes the shape of a region: one file per representation. Knows nothing of plans, scenes or GL; keeps nothing.
  *
- *   outline  on every slice across the index axis nearest patient S; stacked lines of 3-D. A pixel alone is drawn as a
- * small diamond. points   a point a border voxel; solid is the same points. Without has_inner_boundary only the outer
- * boundary. univels  the faces between inside and outside voxels, two triangles each, corners shared. Closed; where
- * voxels touch along an edge alone, that edge has four triangles. Encloses exactly the voxels. nurbs    spline surfaces
- * through samples of the outlines (nurbs_nets.h), as a mesh fan      triangles between border voxels that are
- * neighbours (shape_parts.h) surface  surface_make with surface_defaults
+ *   outline  on every slice across the index axis nearest patient S; in 3-D a stack of lines. A single pixel is drawn
+ *            as a small diamond.
+ *   points   one point per border voxel; solid has the same points. Without has_inner_boundary only the outer border.
+ *   univels  the faces between inside and outside voxels, two triangles each, with shared corners. Closed; an edge
+ *            along which two voxels touch only there has four triangles. Encloses exactly the voxels.
+ *   nurbs    spline surfaces through samples of the outlines (nurbs_nets.h), as a mesh
+ *   fan      triangles between neighbouring border voxels (shape_parts.h)
+ *   surface  surface_make with surface_defaults
  *
- * All but points and solid with has_inner_boundary take a region with everything inside it (mask_from_region). What
- * lies beyond the grid counts as outside. Meshes have vertex normals. */
+ * All but points and solid with has_inner_boundary use the region with everything inside it (mask_from_region).
+ * Everything beyond the grid is outside. Meshes have vertex normals. */
 #include "core/region/mask.h"
 #include "core/surface/shape.h"
 
 enum { SHAPE_MAX_TRIANGLES = 40000000, SHAPE_MAX_POINTS = 10000000, SHAPE_MAX_SEGMENTS = 40000000 };
 
-/*   key      normalised
+/* Makes a shape in patient LPS, mm.
+ *
+ *   key      normalised
  *   returns  one reference, the caller's; equal input gives equal bytes for any n_threads (0: all cores)
- *   errors   ERROR_RANGE        no such region, or it has no voxel; nurbs_order or nurbs_bins out of range
- *            ERROR_UNSUPPORTED  nurbs by degree bins: the region has a shape that they cannot show; the text says on
- * which slice and why ERROR_LIMIT        more than the limits above ERROR_MEMORY thread   any */
+ *   errors   ERROR_RANGE no such region, or it has no voxel; nurbs_order or nurbs_bins out of range; ERROR_UNSUPPORTED
+ *            nurbs by degree bins cannot show the region: the text says on which slice and why; ERROR_LIMIT more than
+ *            the limits above; ERROR_MEMORY
+ *   thread   any */
 NODISCARD struct shape *shape_make(const struct shape_key *key, const struct region_set *set, size_t region,
                                    int n_threads, struct error *err);
 /* The same from the mask of the region: mask_from_region_own with has_inner_boundary, else mask_from_region. */

@@ -1,4 +1,4 @@
-/* Outlines of all slices, as line segments in space. */
+/* Makes line segments in space from the outlines of all slices. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,7 +6,7 @@
 #include "core/surface/shape_make.h"
 #include "core/surface/shape_parts.h"
 
-/* Half the width of the mark for a pixel alone, in pixels: its line has no length to be drawn. */
+/* Half the width, in pixels, of the mark for a single pixel, whose line has no length. */
 #define MARK_HALF 0.25
 
 static bool is_alone(const struct outline_set *set, size_t line)
@@ -49,7 +49,7 @@ static void put_vertex(struct line_set *lines, size_t at, const struct affine *m
     lines->positions_lps_mm[3 * at + 2] = (float)p.z;
 }
 
-/* A diamond around a point: four vertices from `vertex` on. */
+/* Writes a diamond around a point: four vertices from `vertex` on. */
 static void put_mark(struct line_set *lines, size_t vertex, const struct affine *map, const float *ijk, int axis)
 {
     int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;

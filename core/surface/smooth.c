@@ -1,20 +1,20 @@
-/* Constrained smoothing of a marching-cubes surface. See surface_smooth in surface.h for what it promises.
+/* Constrained smoothing of a marching cubes surface. surface.h says what surface_smooth promises.
  *
  *   1. marching cubes with the graph of its vertices: four links each (marching_cubes.h)
- *   2. two low-pass filters on the graph take the stairs away: where each vertex would go if nothing held it. The
- * strong one also takes long, flat stairs, but would pull small things together
- *   3. each vertex goes along its own grid edge to where that edge meets the filtered surface: the strongly filtered
- * one, the more gently filtered one the less the strong one stays on the edges thereabouts
+ *   2. two low-pass filters on the graph remove the voxel steps: they give the position of each vertex without
+ *      constraints. The strong filter also removes long, flat steps, but would shrink small structures
+ *   3. each vertex moves along its own grid edge to where the edge meets the filtered surface: the strongly filtered
+ *      one, or more of the gently filtered one where the strong one leaves the edges nearby
  *   4. each closed piece is moved along its normals until it encloses the volume of its univels (smooth_volume.c)
  *   5. no vertex leaves the part of its edge that max_shift allows
  *
- * A filter is a polynomial in A, the mean over a vertex' four links, put together from Chebyshev polynomials T_n(A) (G.
+ * A filter is a polynomial in A, the mean over a vertex' four links, as a sum of Chebyshev polynomials T_n(A) (G.
  * Taubin, T. Zhang, G. Golub, Optimal Surface Smoothing as Filter Design, ECCV 1996). A is symmetric with eigenvalues
- * within [-1, 1], so nothing grows. What is kept are displacements e_n from the start p, T_n(A) p = p + e_n, as small
- * numbers keep their digits: e_0 = 0, e_1 = A p - p, e_(n+1) = 2 (A e_n + e_1) - e_(n-1).
+ * in [-1, 1], so nothing grows. Stored are the displacements e_n from the start p, T_n(A) p = p + e_n, because small
+ * numbers keep more digits: e_0 = 0, e_1 = A p - p, e_(n+1) = 2 (A e_n + e_1) - e_(n-1).
  *
- * Every pass reads what the pass before wrote and writes each vertex once, so threads cannot change a byte. The filters
- * work in the coordinates of the grid: they only take means, which do not ask how long an axis is. */
+ * Every pass reads the result of the pass before and writes each vertex once, so threads cannot change a byte. The
+ * filters work in grid coordinates: they only take means, which are independent of the lengths of the axes. */
 #include "core/surface/smooth.h"
 
 #include <assert.h>
@@ -33,50 +33,50 @@ enum {
     MAX_PASSES_TO_EDGES = 4 + CAUTIOUS_ROUNDS + EVEN_ROUNDS
 };
 
-/* Found on tilted ellipsoids with slices of 1 to 5.5 times the pixel, against the exact normals. */
+/* Found on tilted ellipsoids with slice distances of 1 to 5.5 pixels, by comparison with the exact normals. */
 const struct smooth_options smooth_defaults = { 24, 0.035, 0.15, 0.5 - SURFACE_SMOOTH_MARGIN, 8 };
 
-/* The strong filter is trusted where it wants a shift up to the first, not at all from the second on. */
+/* The strong filter is fully trusted up to the first shift (in edge lengths), and not at all from the second on. */
 static const float trusted_shift = 0.5f, distrusted_shift = 0.8f;
 
-/* Cosines of the angle, 26 and 60 degrees, between normals of the two filtered surfaces. */
+/* Cosines of the angles between the normals of the two filtered surfaces: 26 and 60 degrees. */
 static const float agreeing = 0.9f, disagreeing = 0.5f;
 
 /* ---- passes over the vertices ----------------------------------------------------------------------------------- */
 
-/* Of the recurrence that are added up at once, as they are all there: the less often goes what they are added to to
- * memory and back. */
+/* Terms of the recurrence added to the sums in one pass, while they are at hand: the sums travel to memory and back
+ * less often. */
 enum { MAX_TERMS = 3 };
 
-/* What is done to every vertex from what the pass before left of it and of those it is linked to. */
+/* One pass: computes something for every vertex from the result of the pass before, at the vertex and at its links. */
 struct pass {
     void (*take)(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end);
-    /* of a step of the recurrence */
+    /* for a step of the recurrence */
     const float4 *now; /* e_(n-1) */
-    float4 *next;      /* holds e_(n-2), gets e_n */
-    int n_terms;       /* so many of them, the last e_n, are added to what the filters give */
+    float4 *next;      /* holds e_(n-2), receives e_n */
+    int n_terms;       /* number of terms, the last one e_n, that are added to the sums of the filters */
     bool has_gentle;
     float strong[MAX_TERMS], gentle[MAX_TERMS]; /* weights of e_n, e_(n-1), e_(n-2) */
-    /* of one that spreads trust */
+    /* for a pass that spreads trust */
     const float *trust;
     float *next_trust;
 };
 
-/* Vertices are in the order of slices and linked within three neighbouring ones. So a pass can follow the one before it
- * slice by slice, and what both touch is still in the cache: BLOCK passes are taken in one go through the slices. What
- * a pass writes over in a slice, those before it have read for the slices around it. */
+/* Vertices are in slice sequence and linked within three neighbouring slices. So a pass can follow the one before it
+ * slice by slice while both find their data in the cache: BLOCK passes go through the slices together. When a pass
+ * overwrites a slice, the passes before it have finished reading it. */
 enum { BLOCK = 6 };
 
 struct passes {
     const struct smooth_job *job;
-    const struct pass *pass, *end; /* that are taken now */
-    size_t *begin;                 /* first vertex of each slice, and one more at the end */
+    const struct pass *pass, *end; /* the passes of the current block */
+    size_t *begin;                 /* [n_slices + 1] first vertex of each slice */
     int32_t n_slices;
-    int32_t tiles[MAX_THREADS + 1]; /* slices where the threads' shares begin */
+    int32_t tiles[MAX_THREADS + 1]; /* first slice of each thread's share */
     int n_tiles;
 };
 
-/* The slices from..end of the first pass; every further one begins and ends `begins` and `ends` slices later. */
+/* Runs the passes over slices from..end; each further pass begins and ends `begins` and `ends` slices later. */
 static void take_tile(const struct passes *passes, int32_t from, int32_t end, int begins, int ends)
 {
     int32_t n = (int32_t)(passes->end - passes->pass);
@@ -88,14 +88,14 @@ static void take_tile(const struct passes *passes, int32_t from, int32_t end, in
         }
 }
 
-/* A thread goes as far as it can without the slices of others: at each pass one slice less at either end. */
+/* First a thread goes as far as it can without the slices of others: each pass covers one slice less at either end. */
 static void take_own(void *context, int part, int n_parts)
 {
     const struct passes *passes = context;
     take_tile(passes, passes->tiles[part], passes->tiles[part + 1], part > 0, part + 1 < n_parts ? -1 : 0);
 }
 
-/* Then what is left between two threads' slices: at each pass one slice more at either end. */
+/* Then the gaps between two threads' slices are filled: each pass covers one slice more at either end. */
 static void take_between(void *context, int part, int n_parts)
 {
     const struct passes *passes = context;
@@ -111,7 +111,7 @@ static void take_share(void *context, int part, int n_parts)
     passes->pass->take(passes->job, passes->pass, from, end);
 }
 
-/* Slices for each thread, with about as many vertices; false when they are too few for what take_own leaves to
+/* Divides the slices into shares with about equally many vertices; false if shares would be too thin for take_own and
  * take_between. */
 static bool share_slices(struct passes *passes)
 {
@@ -165,8 +165,7 @@ static bool take_passes(const struct smooth_job *job, const struct pass *all, si
 
 /* ---- the filters ------------------------------------------------------------------------------------------------ */
 
-typedef uint16_t short4
-    __attribute__((vector_size(8))); /* the numbers of a marching_point: at2 and one of no meaning */
+typedef uint16_t short4 __attribute__((vector_size(8))); /* at2 of a marching_point, and one unused lane */
 
 static inline short4 load_point(const struct marching_point *point)
 {
@@ -183,7 +182,7 @@ static void first_step(const struct smooth_job *job, const struct pass *pass, si
         const uint32_t *link = job->graph->links[v];
         short4 sum = load_point(&points[link[0]]) + load_point(&points[link[1]]) + load_point(&points[link[2]]) +
                      load_point(&points[link[3]]);
-        signed4 eighths = (signed4)(sum - load_point(&points[v]) * 4); /* links are near: a few */
+        signed4 eighths = (signed4)(sum - load_point(&points[v]) * 4); /* fits 16 bits: links are near */
         float4 away = __builtin_convertvector(eighths, float4) * 0.125f;
         job->before[v] = (float4){ 0, 0, 0, 0 };
         job->first[v] = job->now[v] = away;
@@ -233,8 +232,8 @@ static void next_step(const struct smooth_job *job, const struct pass *pass, siz
         next_steps(job, pass, from, end, 3, false);
 }
 
-/* Of the Chebyshev polynomials for a step from 1 to 0 at the frequency `band` of 1 - A, times a Hamming window. They
- * add up to 1, so that what is flat stays where it is. */
+/* Weights of the Chebyshev polynomials for a step from 1 to 0 at the frequency `band` of 1 - A, times a Hamming window.
+ * Their sum is 1, so that flat surfaces stay in place. */
 static void make_weights(double band, int n_steps, double weights[SMOOTH_MAX_STEPS + 1])
 {
     double edge = acos(1 - band), total = 0;
@@ -247,11 +246,11 @@ static void make_weights(double band, int n_steps, double weights[SMOOTH_MAX_STE
         weights[n] /= total;
 }
 
-/* The steps of both filters; passes has room for SMOOTH_MAX_STEPS. */
+/* Lists the passes of both filters; passes has room for SMOOTH_MAX_STEPS. */
 static size_t plan_filters(const struct smooth_job *job, struct pass *passes)
 {
     const struct smooth_options *options = &job->options;
-    int n_gentle = options->n_steps / 2 > 0 ? options->n_steps / 2 : 1; /* all it takes for the wider band */
+    int n_gentle = options->n_steps / 2 > 0 ? options->n_steps / 2 : 1; /* enough for the wider band */
     double strong[SMOOTH_MAX_STEPS + 1], gentle[SMOOTH_MAX_STEPS + 1];
     make_weights(options->strong_band, options->n_steps, strong);
     make_weights(options->gentle_band, n_gentle, gentle);
@@ -282,16 +281,16 @@ static float dot(float4 a, float4 b)
     return product[0] + product[1] + product[2];
 }
 
-/* Across the two lines through a vertex, from where their ends are; of no length in particular, outward times the
- * vertex' outward. */
+/* Perpendicular to the two lines through a vertex, from the positions of their ends; of any length; points outward
+ * times the vertex' outward. */
 static float4 normal_of(const float4 ends[4])
 {
     float4 u = ends[3] - ends[0], w = ends[2] - ends[1];
     return smooth_turn(u * smooth_turn(w) - smooth_turn(u) * w);
 }
 
-/* Where the edge meets the plane through the displaced vertex. An edge nearly within that plane meets it anywhere:
- * there the vertex' own way along the edge counts. */
+/* Shift to where the edge meets the plane through the displaced vertex. An edge nearly parallel to that plane could
+ * meet it anywhere, so there the displacement along the edge counts. */
 static float shift_along_edge(float4 normal, float4 displacement, int axis)
 {
     float along = normal[axis], flat = 0.01f * dot(normal, normal);
@@ -307,7 +306,7 @@ static void go_gently(const struct smooth_job *job, const struct pass *pass, siz
         job->first[v] = smooth_start(&job->graph->points[v]) + job->gentle[v];
 }
 
-/* How far the strong filter is to be trusted at each vertex, 0 to 1. */
+/* Trust in the strong filter at each vertex, 0 to 1. */
 static void judge(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
     const float4 *at = job->first;
@@ -320,7 +319,7 @@ static void judge(const struct smooth_job *job, const struct pass *pass, size_t 
     }
 }
 
-/* Whoever has a neighbour that distrusts it does so too. */
+/* Lowers the trust of a vertex to the lowest of its links. */
 static void be_cautious(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
     const float *trust = pass->trust;
@@ -333,7 +332,7 @@ static void be_cautious(const struct smooth_job *job, const struct pass *pass, s
     }
 }
 
-/* So that no step of trust becomes a step of the surface. */
+/* Averages trust, so that a step of trust does not become a step of the surface. */
 static void even_out(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
     const float *trust = pass->trust;
@@ -344,7 +343,7 @@ static void even_out(const struct smooth_job *job, const struct pass *pass, size
     }
 }
 
-/* Where the vertices go by both filters, and by the strong one for the normals. */
+/* Blends the filters into the shift of each vertex; the strong filter gives the normals. */
 static void go(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
     for (size_t v = from; v < end; v++) {
@@ -358,7 +357,7 @@ static void go(const struct smooth_job *job, const struct pass *pass, size_t fro
     }
 }
 
-/* A normal of unit length in patient space; 0 when it has no direction. */
+/* Unit normal in patient space; 0 if it has no direction. */
 static float4 in_lps(const struct smooth_job *job, float4 normal)
 {
     float4 lps =
@@ -367,15 +366,15 @@ static float4 in_lps(const struct smooth_job *job, float4 normal)
     return square > 0 ? lps / sqrtf(square) : lps;
 }
 
-/* What light falls on: the strongly filtered surface, as if nothing held it back, but the less the more it turns away
- * from the one that is there. */
+/* Writes the normal for illumination: that of the strongly filtered surface without constraints, but less of it the
+ * more it deviates from the constrained surface. */
 static void write_normal(const struct smooth_job *job, size_t v, float4 own, float4 strong)
 {
     float agreement = dot(own, strong), share = (agreement - disagreeing) / (agreeing - disagreeing);
     share = share < 0 ? 0 : share > 1 ? 1 : share;
     float4 shown = share * strong + (1 - share) * own;
     float square = dot(shown, shown);
-    if (!(square > 0)) { /* no direction: the edge's own */
+    if (!(square > 0)) { /* no direction: take the edge's own */
         shown = job->lps_of_normal[job->graph->points[v].axis] * (float)job->graph->points[v].outward;
         square = dot(shown, shown);
     }
@@ -399,17 +398,17 @@ static void settle(const struct smooth_job *job, const struct pass *pass, size_t
                 normal_of((float4[4]){ at[link[0]], at[link[1]], at[link[2]], at[link[3]] }) * (float)point->outward;
             write_normal(job, v, in_lps(job, normal), in_lps(job, strong));
         }
-        normal /= job->edge_mm; /* of the grid's coordinates to of mm */
+        normal /= job->edge_mm; /* from grid coordinates to mm */
         float square = dot(normal, normal);
         job->lean[v] = square > 0 ? fabsf(normal[point->axis]) / sqrtf(square) : 1;
     }
 }
 
-/* passes has room for MAX_PASSES_TO_EDGES. */
+/* Lists the passes; passes has room for MAX_PASSES_TO_EDGES. */
 static size_t plan_way_to_edges(const struct smooth_job *job, struct pass *passes)
 {
     size_t n = 0;
-    float *trust = job->shift, *next_trust = job->lean; /* not written before all is settled */
+    float *trust = job->shift, *next_trust = job->lean; /* free until the last pass */
     passes[n++] = (struct pass){ .take = go_gently };
     passes[n++] = (struct pass){ .take = judge, .next_trust = trust };
     for (int round = 0; round < CAUTIOUS_ROUNDS + EVEN_ROUNDS; round++) {
@@ -474,8 +473,8 @@ static bool smooth(struct smooth_job *job, struct error *err)
     return is_good;
 }
 
-/* A normal is square to what lies in the surface, so it is mapped by the grid's reciprocal axes: each square to the two
- * others. */
+/* A normal is perpendicular to the surface, so it is mapped by the reciprocal axes of the grid: each perpendicular to
+ * the two others. */
 static void reciprocals_of(const struct affine *map, float4 axes[3])
 {
     double determinant = affine_determinant(map);
@@ -489,7 +488,7 @@ static void reciprocals_of(const struct affine *map, float4 axes[3])
 static int threads_for(size_t n_vertices, int n_threads)
 {
     size_t n = n_threads > 0 ? (size_t)n_threads : (size_t)parallel_cores();
-    size_t worth = n_vertices / VERTICES_A_THREAD + 1; /* fewer vertices are done before a thread has started */
+    size_t worth = n_vertices / VERTICES_A_THREAD + 1; /* with fewer vertices a thread does not pay for its start */
     n = n < worth ? n : worth;
     return n < MAX_THREADS ? (int)n : MAX_THREADS;
 }
@@ -517,7 +516,7 @@ struct mesh *smooth_with(const struct smooth_options *smoothing, const struct ma
     };
     reciprocals_of(map, job.lps_of_normal);
     if (!options->close_at_border)
-        job.options.n_volume_steps = 0; /* what is open encloses nothing */
+        job.options.n_volume_steps = 0; /* an open surface encloses no volume */
     bool is_smooth = smooth(&job, err);
     marching_graph_finish(&graph);
     if (!is_smooth) {

@@ -1,5 +1,5 @@
 #pragma once
-/* Inside of surface_smooth, for its tests: how strongly. */
+/* Inside surface_smooth, for its tests: smoothing with given options. */
 #include "core/surface/smooth_options.h"
 #include "core/surface/surface.h"
 

@@ -1,4 +1,4 @@
-/* The volume of a smoothed surface, piece by piece. A piece is what hangs together of the surface: one closed sheet. */
+/* Corrects the volume of a smoothed surface, piece by piece. A piece is a connected component: one closed sheet. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,12 +7,12 @@
 #include "core/surface/smooth_job.h"
 
 enum { CHUNK = 32768, MAX_PIECES_SPLIT = 64, PATIENCE = 4 };
-static const double tolerance = 1e-3; /* of a piece's volume */
+static const double tolerance = 1e-3; /* relative to a piece's volume */
 
 struct piece {
-    double wanted, volume, before; /* univels within: to be, now, at the step before */
+    double wanted, volume, before; /* in univels: target, current, at the step before */
     double area_mm2;
-    double swelling_mm; /* of this step */
+    double swelling_mm; /* of the current step */
     bool is_settled;
 };
 
@@ -35,7 +35,7 @@ static uint32_t root_of(uint32_t *up, uint32_t v)
     return v;
 }
 
-/* The lowest number is the root, so pieces are numbered in the order of their first vertices. */
+/* Union-find with the lowest number as root, so that pieces are numbered by their first vertices. */
 static void find_pieces(struct volume_job *job)
 {
     uint32_t *up = job->piece_of;
@@ -44,7 +44,7 @@ static void find_pieces(struct volume_job *job)
         uint32_t root = up[v] = v;
         for (int i = 0; i < 4; i++) {
             if (link[i] >= v || up[link[i]] == root)
-                continue; /* seen from there; known */
+                continue; /* the link was seen from its other end */
             uint32_t other = root_of(up, link[i]);
             if (other < root) {
                 up[root] = other;
@@ -55,19 +55,19 @@ static void find_pieces(struct volume_job *job)
         }
     }
     job->n_pieces = 0;
-    for (uint32_t v = 0; v < job->smooth->n; v++) /* a root comes before what hangs on it */
+    for (uint32_t v = 0; v < job->smooth->n; v++) /* a root comes before the vertices attached to it */
         up[v] = up[v] == v ? job->n_pieces++ : up[up[v]];
 }
 
-/* The univels within each piece: along a row of the grid, what lies between where it is entered and where it is left.
- * And its area: a crossed edge stands for one face of a univel, seen aslant. */
+/* Counts the univels within each piece: along a grid row, those between where the piece is entered and left. Also
+ * estimates its area: a crossed edge stands for one face of a univel, seen at an angle. */
 static void measure_wanted(struct volume_job *job)
 {
     const struct smooth_job *smooth = job->smooth;
     float4 edge = smooth->edge_mm;
     const float faces_mm2[3] = { edge[1] * edge[2], edge[2] * edge[0], edge[0] * edge[1] };
     for (size_t v = 0, end; v < smooth->n;
-         v = end) { /* a run of vertices of one piece at a time: its sums stay at hand */
+         v = end) { /* a run of vertices of one piece at a time, so that its sums stay in registers */
         uint32_t number = job->piece_of[v];
         struct piece *piece = &job->pieces[number];
         double wanted = piece->wanted, area_mm2 = piece->area_mm2;
@@ -97,7 +97,8 @@ static void place_all(void *context, int part, int n_parts)
         place(job, v);
 }
 
-/* In a right-handed grid the volume of the prism along x between a triangle and x = 0, positive where it faces x. */
+/* In a right-handed grid: volume of the prism along x between a triangle and x = 0, positive if the triangle faces
+ * x. */
 static inline double prism(const float4 *at, const uint32_t v[3])
 {
     float4 a = at[v[0]], u = at[v[1]] - a, w = at[v[2]] - a;
@@ -132,7 +133,7 @@ static void measure_chunks(void *context, int part, int n_parts)
         measure_chunk(job, chunk);
 }
 
-/* Of the pieces that are not settled. Chunks are added in their order, so that threads do not matter. */
+/* Measures the pieces that are not settled. Chunks are added in ascending sequence, so that threads do not matter. */
 static void measure_volumes(struct volume_job *job)
 {
     double sign = job->smooth->is_mirrored ? -1 : 1;
@@ -145,8 +146,8 @@ static void measure_volumes(struct volume_job *job)
             job->pieces[p].volume += sign * job->sums[chunk * job->n_pieces + p];
 }
 
-/* How far each piece is to swell: at first what its area says, then what the volume's answer to the last step says.
- * False: none. */
+/* Plans the offset of each piece: at first from its area, then from the effect of the last step on the volume. Returns
+ * false if no piece is left. */
 static bool plan_swelling(struct volume_job *job, int step)
 {
     bool is_needed = false;
@@ -157,12 +158,13 @@ static bool plan_swelling(struct volume_job *job, int step)
         double missing = piece->wanted - piece->volume, univels_a_mm = piece->area_mm2 / job->smooth->univel_mm3;
         if (step > 0 && piece->swelling_mm != 0) {
             double seen = (piece->volume - piece->before) / piece->swelling_mm;
-            double least = 0.2 * univels_a_mm; /* much less is seen where the ends of the edges hold the surface */
+            /* the effect is much smaller where the ends of the edges hold the surface */
+            double least = 0.2 * univels_a_mm;
             univels_a_mm = seen > least ? seen : least;
         }
         bool is_off = fabs(missing) > tolerance * fabs(piece->wanted) && univels_a_mm > 0;
         if (step >= PATIENCE && fabs(piece->volume - piece->before) < 0.02 * fabs(missing))
-            is_off = false; /* the edges end here; before, vertices may have been beyond the ends, coming back */
+            is_off = false; /* the edges end here; before, vertices may have been beyond the ends and on the way back */
         piece->before = piece->volume;
         piece->swelling_mm = is_off ? missing / univels_a_mm : 0;
         piece->is_settled = !is_off;
@@ -181,8 +183,7 @@ static void swell(void *context, int part, int n_parts)
             continue;
         const struct marching_point *point = &smooth->graph->points[v];
         float lean = smooth->lean[v], mm = (float)job->pieces[job->piece_of[v]].swelling_mm;
-        /* as far along the edge as moves the surface by mm, but not without end where edge and surface are nearly
-         * parallel */
+        /* moves the surface by mm, but by a bounded distance along an edge that is nearly parallel to it */
         smooth->shift[v] += (float)point->outward * mm * lean / ((lean * lean + 0.1f) * smooth->edge_mm[point->axis]);
         place(job, v);
     }
@@ -199,7 +200,7 @@ bool smooth_keep_volume(struct smooth_job *smooth, struct error *err)
     job.pieces = mem_array(job.n_pieces, sizeof *job.pieces, UINT64_MAX, err);
     job.chunk_size = job.n_pieces <= MAX_PIECES_SPLIT
                          ? CHUNK
-                         : smooth->mesh->n_triangles + 1; /* many pieces: all of it by one thread */
+                         : smooth->mesh->n_triangles + 1; /* many pieces: one thread does it all */
     job.n_chunks = (smooth->mesh->n_triangles + job.chunk_size - 1) / job.chunk_size;
     if (job.pieces)
         job.sums = mem_array(job.n_chunks * job.n_pieces, sizeof *job.sums, UINT64_MAX, err);

@@ -1,3 +1,4 @@
+/* Chooses the extraction algorithm, and names it. */
 #include "core/surface/surface.h"
 
 #include <string.h>

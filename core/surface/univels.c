@@ -1,11 +1,12 @@
-/* The faces between inside and outside voxels, on bit rows: what a Monte Carlo code tracks through.
+/* The faces between inside and outside voxels as a mesh, on bit rows: the geometry that a Monte Carlo code tracks
+ * through.
  *
- * Corner (i, j, k) is the one at index i - 0.5, j - 0.5, k - 0.5; it is a vertex when the eight voxels around it are
- * not all alike, and then it is on a face. Corners are numbered in order, so are the faces of a voxel's row.
+ * Corner (i, j, k) is at index i - 0.5, j - 0.5, k - 0.5. It is a vertex if the eight voxels around it are not all
+ * alike; then it is on a face. Corners are numbered in sequence, and so are the faces of a row of voxels.
  *
- *   1. mark the corners that are vertices, row by row of corners, and count the faces of every row of voxels
+ *   1. mark the corners that are vertices, one row of corners at a time, and count the faces of every row of voxels
  *   2. running totals
- *   3. every row writes its own; a corner's number is its row's first plus the marks before it */
+ *   3. every row writes its own; the number of a corner is its row's first plus the marks before it */
 #include <stdatomic.h>
 #include <stdlib.h>
 
@@ -17,18 +18,19 @@
 
 enum { FACES = 6 };
 
-/* Corners of each face, counter-clockwise seen from outside: bit 0 of a corner's number is x, bit 1 y, bit 2 z. Faces
- * in the order -x +x -y +y -z +z. */
+/* Corners of each face, counter-clockwise as seen from outside: bit 0 of a corner's number is x, bit 1 y, bit 2 z.
+ * Faces in the sequence -x +x -y +y -z +z. */
 static const uint8_t face_corners[FACES][4] = {
     { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 },
 };
 
 struct job {
     const struct mask *mask;
-    uint32_t corner_words;  /* 64-bit words in a row of size[0] + 1 corners */
-    uint64_t *used;         /* [size[2] + 1][size[1] + 1][corner_words] */
-    uint32_t *first_vertex; /* [size[2] + 1][size[1] + 1], and one more at the end; first the count of each row */
-    uint32_t *first_face;   /* [size[2]][size[1]], and one more at the end */
+    uint32_t corner_words; /* 64-bit words per row of size[0] + 1 corners */
+    uint64_t *used;        /* [size[2] + 1][size[1] + 1][corner_words] */
+    uint32_t *
+        first_vertex; /* [size[2] + 1][size[1] + 1], and one more at the end; counts of the rows, then running totals */
+    uint32_t *first_face; /* [size[2]][size[1]], and one more at the end */
     bool is_mirrored;
     struct mesh *mesh;
     atomic_uint next;
@@ -71,7 +73,7 @@ static uint32_t mark_corners(const struct job *job, uint32_t j, uint32_t k)
     return n;
 }
 
-/* The voxels of word w of a row that have a face each way. */
+/* The voxels of word w of a row that have a face in each direction. */
 static void faces_of_word(const struct job *job, const uint64_t *row, const uint64_t *beside[4], uint32_t w,
                           uint64_t faces[FACES])
 {
@@ -143,7 +145,7 @@ static uint32_t *write_face(uint32_t *out, const uint32_t vertices[8], int face,
 static void write_faces(const struct job *job, uint32_t j, uint32_t k)
 {
     const uint64_t *row = row_at(job->mask, j, k), *beside[4], *used[4];
-    uint32_t number[4]; /* of the first vertex of the word in each row of corners */
+    uint32_t number[4]; /* number of the first vertex of the word, in each row of corners */
     uint64_t faces[FACES];
     uint32_t *out = job->mesh->indices + 6 * (size_t)job->first_face[(size_t)k * job->mask->size[1] + j];
     rows_beside(job->mask, j, k, beside);
@@ -158,7 +160,7 @@ static void write_faces(const struct job *job, uint32_t j, uint32_t k)
             int bit = __builtin_ctzll(left);
             uint32_t vertices[8];
             for (int r = 0; r < 4;
-                 r++) { /* the next corner's number follows when this one is a vertex; unused ones are never read */
+                 r++) { /* increases after a corner that is a vertex; numbers of unused corners are never read */
                 vertices[2 * r] = number[r] + (uint32_t)__builtin_popcountll(used[r][w] & (((uint64_t)1 << bit) - 1));
                 vertices[2 * r + 1] = vertices[2 * r] + (uint32_t)(used[r][w] >> bit & 1);
             }
@@ -199,7 +201,7 @@ static bool extract(struct job *job, int n_threads, struct error *err)
     atomic_store(&job->next, 0);
     parallel_run(n_threads, count_part, job);
     uint64_t vertices = rows_number(job->first_vertex, n_corner_rows), faces = rows_number(job->first_face, n_rows);
-    if (2 * faces > SHAPE_MAX_TRIANGLES) /* so their corners fit 32 bits as well */
+    if (2 * faces > SHAPE_MAX_TRIANGLES) /* so their corners fit 32 bits too */
         return error_set(err, ERROR_LIMIT, "univels with %llu triangles: at most %d are allowed",
                          (unsigned long long)(2 * faces), SHAPE_MAX_TRIANGLES);
     job->mesh = mesh_create((size_t)vertices, (size_t)(2 * faces), err);
