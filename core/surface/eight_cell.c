@@ -21,7 +21,7 @@
 
 enum { MAX_THREADS = 64 };
 
-struct job {
+struct eight_cell_job {
     const struct mask *mask;
     const struct corner_case *cases;
     bool close_at_border;
@@ -69,7 +69,7 @@ struct cells {
     uint64_t active;
 };
 
-static inline struct cells cells_at(const struct job *job, const struct rows *rows, int64_t w)
+static inline struct cells cells_at(const struct eight_cell_job *job, const struct rows *rows, int64_t w)
 {
     uint32_t words = job->mask->words;
     struct cells cells = { .active = 0 };
@@ -88,7 +88,7 @@ static inline struct cells cells_at(const struct job *job, const struct rows *ro
     return cells;
 }
 
-static inline const struct corner_case *case_of(const struct job *job, const struct cells *cells, int bit)
+static inline const struct corner_case *case_of(const struct eight_cell_job *job, const struct cells *cells, int bit)
 {
     unsigned inside = 0;
     for (unsigned r = 0; r < 4; r++)
@@ -97,12 +97,12 @@ static inline const struct corner_case *case_of(const struct job *job, const str
 }
 
 /* Returns true if there are cells at (y, z): all around a closed grid, else only between voxels. */
-static bool has_cells(const struct job *job, int64_t y, int64_t z)
+static bool has_cells(const struct eight_cell_job *job, int64_t y, int64_t z)
 {
     return job->close_at_border || (is_in(job->mask, y, z) && is_in(job->mask, y + 1, z + 1));
 }
 
-static int64_t first_word(const struct job *job)
+static int64_t first_word(const struct eight_cell_job *job)
 {
     return job->close_at_border ? -1 : 0;
 }
@@ -119,7 +119,7 @@ static inline void mark(uint64_t *row, int64_t x, unsigned pair)
 }
 
 /* Marks the voxels that a row of cells uses in its lower (side 0) or upper slice; returns its number of triangles. */
-static uint32_t mark_row(struct job *job, int64_t y, int64_t z, int side)
+static uint32_t mark_row(struct eight_cell_job *job, int64_t y, int64_t z, int side)
 {
     const struct mask *mask = job->mask;
     struct rows rows = rows_at(mask, y, z);
@@ -154,7 +154,7 @@ static void count_part(void *context, int part, int n_parts)
 {
     (void)part;
     (void)n_parts;
-    struct job *job = context;
+    struct eight_cell_job *job = context;
     const struct mask *mask = job->mask;
     for (int64_t z; (z = (int64_t)atomic_fetch_add(&job->next, 1) - 1) < mask->size[2];) {
         for (int64_t y = -1; y < mask->size[1]; y++) {
@@ -174,7 +174,7 @@ static void count_part(void *context, int part, int n_parts)
 
 /* ---- writing ---------------------------------------------------------------------------------------------------- */
 
-static void write_vertices(const struct job *job, int64_t j, int64_t k)
+static void write_vertices(const struct eight_cell_job *job, int64_t j, int64_t k)
 {
     const struct mask *mask = job->mask;
     size_t row = row_number(mask, j, k);
@@ -182,7 +182,7 @@ static void write_vertices(const struct job *job, int64_t j, int64_t k)
                        vec3(0, (double)j, (double)k), job->mesh->positions_lps_mm + 3 * (size_t)job->first_vertex[row]);
 }
 
-static void write_triangles(const struct job *job, int64_t y, int64_t z)
+static void write_triangles(const struct eight_cell_job *job, int64_t y, int64_t z)
 {
     const struct mask *mask = job->mask;
     struct rows rows = rows_at(mask, y, z);
@@ -220,7 +220,7 @@ static void write_part(void *context, int part, int n_parts)
 {
     (void)part;
     (void)n_parts;
-    struct job *job = context;
+    struct eight_cell_job *job = context;
     const struct mask *mask = job->mask;
     for (int64_t z; (z = (int64_t)atomic_fetch_add(&job->next, 1) - 1) < mask->size[2];)
         for (int64_t y = -1; y < mask->size[1]; y++) {
@@ -243,7 +243,7 @@ static void make_cases(void)
     corner_cases_make(cases[1], true);
 }
 
-static bool extract(struct job *job, const struct surface_options *options, int n_threads, struct error *err)
+static bool extract(struct eight_cell_job *job, const struct surface_options *options, int n_threads, struct error *err)
 {
     const uint32_t *size = job->mask->size;
     size_t n_rows = (size_t)size[1] * size[2], n_cell_rows = ((size_t)size[1] + 1) * ((size_t)size[2] + 1);
@@ -279,7 +279,7 @@ struct mesh *surface_eight_cell(const struct mask *mask, const struct surface_op
         return NULL;
     }
     int n_threads = options->n_threads > 0 ? options->n_threads : parallel_cores();
-    struct job job = {
+    struct eight_cell_job job = {
         .mask = mask,
         .cases = cases[affine_determinant(&mask->lps_mm_from_ijk) < 0],
         .close_at_border = options->close_at_border,

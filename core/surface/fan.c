@@ -16,7 +16,7 @@ struct fan {
     uint8_t n;
 };
 
-struct job {
+struct fan_job {
     const struct shape_border *border;
     struct fan *fans;           /* [border->n] */
     struct vec3 offset[AROUND]; /* vector to each neighbour, mm */
@@ -46,7 +46,7 @@ static bool are_neighbours(int a, int b)
 
 /* Axis of the fan where the border has no outward normal: the grid axis along which the voxel has the fewest
  * neighbours. */
-static struct vec3 thin_axis(const struct job *job, uint32_t around)
+static struct vec3 thin_axis(const struct fan_job *job, uint32_t around)
 {
     int best = 0, fewest = AROUND;
     for (int axis = 0; axis < 3; axis++) {
@@ -77,7 +77,7 @@ static int32_t turn_of(struct vec3 offset, struct vec3 right_way, struct vec3 up
 }
 
 /* Direction of angle 0: the first neighbour that is not directly above or below along the normal. */
-static struct vec3 first_way(const struct job *job, uint32_t around, struct vec3 normal)
+static struct vec3 first_way(const struct fan_job *job, uint32_t around, struct vec3 normal)
 {
     for (int at = 0; at < AROUND; at++) {
         struct vec3 offset = job->offset[at], flat = vec3_sub(offset, vec3_scale(normal, vec3_dot(offset, normal)));
@@ -88,7 +88,7 @@ static struct vec3 first_way(const struct job *job, uint32_t around, struct vec3
 }
 
 /* Sorts the neighbours that are border voxels by angle around the normal; equal angles by number. */
-static int order_around(const struct job *job, uint32_t around, struct vec3 normal, uint8_t order[MAX_FAN],
+static int order_around(const struct fan_job *job, uint32_t around, struct vec3 normal, uint8_t order[MAX_FAN],
                         int32_t turns[MAX_FAN])
 {
     struct vec3 right = first_way(job, around, normal), up = vec3_cross(normal, right);
@@ -108,7 +108,7 @@ static int order_around(const struct job *job, uint32_t around, struct vec3 norm
     return n;
 }
 
-static void make_fan(const struct job *job, size_t number, struct fan *fan)
+static void make_fan(const struct fan_job *job, size_t number, struct fan *fan)
 {
     const struct shape_border *border = job->border;
     const uint16_t *ijk = border->ijk + 3 * number;
@@ -131,7 +131,7 @@ static void make_fan(const struct job *job, size_t number, struct fan *fan)
 
 static void fan_part(void *context, int part, int n_parts)
 {
-    struct job *job = context;
+    struct fan_job *job = context;
     size_t end = job->border->n * (size_t)(part + 1) / (size_t)n_parts;
     for (size_t at = job->border->n * (size_t)part / (size_t)n_parts; at < end; at++)
         make_fan(job, at, &job->fans[at]);
@@ -153,7 +153,7 @@ static size_t number_of(const struct shape_border *border, const uint16_t *ijk, 
 }
 
 /* Collects triangles from the voxel's own fan and from the fans of the neighbours after it. */
-static void gather(const struct job *job, size_t number, uint16_t with[AFTER])
+static void gather(const struct fan_job *job, size_t number, uint16_t with[AFTER])
 {
     const struct shape_border *border = job->border;
     const uint16_t *ijk = border->ijk + 3 * number;
@@ -178,7 +178,7 @@ static void gather(const struct job *job, size_t number, uint16_t with[AFTER])
 
 static void count_part(void *context, int part, int n_parts)
 {
-    struct job *job = context;
+    struct fan_job *job = context;
     size_t end = job->border->n * (size_t)(part + 1) / (size_t)n_parts;
     for (size_t at = job->border->n * (size_t)part / (size_t)n_parts; at < end; at++) {
         gather(job, at, job->with[at]);
@@ -214,7 +214,7 @@ static void write_triangle(const struct shape_border *border, const uint32_t v[3
 
 static void write_part(void *context, int part, int n_parts)
 {
-    struct job *job = context;
+    struct fan_job *job = context;
     size_t end = job->border->n * (size_t)(part + 1) / (size_t)n_parts;
     for (size_t at = job->border->n * (size_t)part / (size_t)n_parts; at < end; at++) {
         const uint16_t *ijk = job->border->ijk + 3 * at, *with = job->with[at];
@@ -235,7 +235,7 @@ static void write_part(void *context, int part, int n_parts)
     }
 }
 
-static bool make_mesh(struct job *job, int n_threads, struct error *err)
+static bool make_mesh(struct fan_job *job, int n_threads, struct error *err)
 {
     size_t n = job->border->n;
     uint64_t total = 0;
@@ -263,7 +263,7 @@ static bool make_mesh(struct job *job, int n_threads, struct error *err)
 struct mesh *shape_fan(const struct mask *mask, int n_threads, struct error *err)
 {
     struct shape_border *border = shape_border_create(mask, MAX_VOXELS, n_threads, err);
-    struct job job = { .border = border };
+    struct fan_job job = { .border = border };
     job.fans = border ? mem_large_array(border->n, sizeof *job.fans, UINT64_MAX, err) : NULL;
     if (job.fans) {
         for (int at = 0; at < AROUND; at++) {

@@ -35,7 +35,7 @@ struct extent {
     uint32_t low[3], high[3]; /* inclusive */
 };
 
-struct job {
+struct marching_job {
     struct marching_rows grid; /* the working grid, its rows and the mesh */
     const struct mask *mask;
     enum marching_cubes_code code;
@@ -53,7 +53,7 @@ static void range_of(uint32_t n, int part, int n_parts, uint32_t *from, uint32_t
 
 static void measure_extent(void *context, int part, int n_parts)
 {
-    struct job *job = context;
+    struct marching_job *job = context;
     const struct mask *mask = job->mask;
     struct extent extent = { .is_empty = true };
     uint64_t columns[MAX_MASK_WORDS] = { 0 };
@@ -102,7 +102,7 @@ static struct extent join_extents(const struct extent *extents, int n)
     return all;
 }
 
-static void place_working_grid(struct job *job, const struct extent *extent, bool close_at_border)
+static void place_working_grid(struct marching_job *job, const struct extent *extent, bool close_at_border)
 {
     for (int axis = 0; axis < 3; axis++) {
         uint32_t last = job->mask->size[axis] - 1;
@@ -127,7 +127,7 @@ static inline uint64_t bits_from(const uint64_t *row, uint32_t words, int32_t at
 
 static void copy_rows(void *context, int part, int n_parts)
 {
-    struct job *job = context;
+    struct marching_job *job = context;
     const struct mask *mask = job->mask;
     uint32_t z, end;
     for (range_of(job->grid.size[2], part, n_parts, &z, &end); z < end; z++)
@@ -316,7 +316,7 @@ static bool has_fast(void)
 
 static void count_part(void *context, int part, int n_parts)
 {
-    struct job *job = context;
+    struct marching_job *job = context;
     uint32_t from, end;
     range_of(job->grid.size[2], part, n_parts, &from, &end);
     if (job->code == MARCHING_CUBES_PORTABLE)
@@ -326,7 +326,7 @@ static void count_part(void *context, int part, int n_parts)
 }
 
 /* First row at or after this share of the triangles, so that parts have equal work wherever the region is. */
-static size_t row_at_share(const struct job *job, size_t n_rows, int part, int n_parts)
+static size_t row_at_share(const struct marching_job *job, size_t n_rows, int part, int n_parts)
 {
     if (part == n_parts)
         return n_rows;
@@ -344,7 +344,7 @@ static size_t row_at_share(const struct job *job, size_t n_rows, int part, int n
 
 static void write_part(void *context, int part, int n_parts)
 {
-    const struct job *job = context;
+    const struct marching_job *job = context;
     size_t n_rows = (size_t)job->grid.size[1] * job->grid.size[2];
     size_t from = row_at_share(job, n_rows, part, n_parts), end = row_at_share(job, n_rows, part + 1, n_parts);
     bool has_positions = !job->graph || !job->graph->has_no_positions;
@@ -356,7 +356,7 @@ static void write_part(void *context, int part, int n_parts)
         marching_graph_write(job->code, &job->grid, job->graph, from, end);
 }
 
-static bool number_rows(struct job *job, const struct surface_options *options, struct error *err)
+static bool number_rows(struct marching_job *job, const struct surface_options *options, struct error *err)
 {
     size_t n_rows = (size_t)job->grid.size[1] * job->grid.size[2];
     uint64_t vertices = 0, triangles = 0;
@@ -384,7 +384,7 @@ static void make_cases(void)
     cube_cases_make(cases[1], true);
 }
 
-static bool make_graph(const struct job *job, bool is_closed, struct marching_graph *graph, struct error *err)
+static bool make_graph(const struct marching_job *job, bool is_closed, struct marching_graph *graph, struct error *err)
 {
     size_t n = job->grid.mesh->n_vertices;
     graph->points = mem_large_array(n, sizeof *graph->points, UINT64_MAX, err);
@@ -414,7 +414,7 @@ struct mesh *marching_cubes_run(enum marching_cubes_code code, const struct mask
     pthread_once(&cases_once, make_cases);
     int n_parts = options->n_threads > 0 ? options->n_threads : parallel_cores();
     n_parts = n_parts < MAX_THREADS ? n_parts : MAX_THREADS;
-    struct job job = {
+    struct marching_job job = {
         .mask = mask,
         .grid = { .cases = cases[affine_determinant(&mask->lps_mm_from_ijk) < 0],
                   .lps_mm_from_ijk = mask->lps_mm_from_ijk },

@@ -8,7 +8,7 @@
 
 enum { MAX_THREADS = 64 };
 
-struct job {
+struct field_job {
     const struct volume *field;
     double iso;
     struct mask *mask;
@@ -23,7 +23,7 @@ static size_t share(size_t n, int part, int n_parts)
 
 static void mask_part(void *context, int part, int n_parts)
 {
-    struct job *job = context;
+    struct field_job *job = context;
     const uint32_t *size = job->mask->size;
     size_t n_rows = (size_t)size[1] * size[2], end = share(n_rows, part + 1, n_parts);
     for (size_t row = share(n_rows, part, n_parts); row < end; row++) {
@@ -54,7 +54,7 @@ static double crossing(double low, double high, double iso)
 
 static void move_part(void *context, int part, int n_parts)
 {
-    struct job *job = context;
+    struct field_job *job = context;
     size_t n = job->mesh->n_vertices, end = share(n, part + 1, n_parts);
     for (size_t v = share(n, part, n_parts); v < end; v++) {
         const struct marching_point *point = &job->graph->points[v];
@@ -79,7 +79,7 @@ struct mesh *surface_marching_cubes_field(const struct volume *field, double iso
                                           struct error *err)
 {
     struct marching_graph graph = { .has_no_links = true };
-    struct job job = { .field = field, .iso = iso, .graph = &graph };
+    struct field_job job = { .field = field, .iso = iso, .graph = &graph };
     int n_threads = options->n_threads > 0 ? options->n_threads : parallel_cores();
     n_threads = n_threads < MAX_THREADS ? n_threads : MAX_THREADS;
     if (!isfinite(iso)) {

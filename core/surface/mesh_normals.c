@@ -20,7 +20,7 @@ struct block {
 /* Four floats in one register: x, y, z and one that is carried along and never read. */
 typedef float float4 __attribute__((vector_size(16)));
 
-struct job {
+struct normals_job {
     struct mesh *mesh;
     float4 *sums; /* one per vertex */
     struct block *blocks;
@@ -34,7 +34,7 @@ static size_t share(size_t n, int part, int n_parts)
 
 static void measure_blocks(void *context, int part, int n_parts)
 {
-    const struct job *job = context;
+    const struct normals_job *job = context;
     if (n_parts == 1) { /* a single range holds all vertices */
         for (size_t b = 0; b < job->n_blocks; b++)
             job->blocks[b] = (struct block){ 0, 0 };
@@ -82,7 +82,7 @@ static inline float4 triangle_normal(const float *positions, const uint32_t v[3]
 }
 
 /* Adds the triangles of a block to the sums of vertices from..end. */
-static void add_block(const struct job *job, size_t block, size_t from, size_t end)
+static void add_block(const struct normals_job *job, size_t block, size_t from, size_t end)
 {
     const struct mesh *mesh = job->mesh;
     bool all_mine = job->blocks[block].low >= from && job->blocks[block].high < end;
@@ -98,7 +98,7 @@ static void add_block(const struct job *job, size_t block, size_t from, size_t e
 
 static void make_normals(void *context, int part, int n_parts)
 {
-    const struct job *job = context;
+    const struct normals_job *job = context;
     size_t from = share(job->mesh->n_vertices, part, n_parts), end = share(job->mesh->n_vertices, part + 1, n_parts);
     memset(job->sums + from, 0, (end - from) * sizeof *job->sums);
     for (size_t b = 0; b < job->n_blocks; b++)
@@ -117,7 +117,7 @@ static void make_normals(void *context, int part, int n_parts)
 
 bool mesh_make_normals(struct mesh *mesh, int n_threads, struct error *err)
 {
-    struct job job = { .mesh = mesh, .n_blocks = (mesh->n_triangles + BLOCK - 1) / BLOCK };
+    struct normals_job job = { .mesh = mesh, .n_blocks = (mesh->n_triangles + BLOCK - 1) / BLOCK };
     float *normals = mem_large_array(mesh->n_vertices, 3 * sizeof(float), UINT64_MAX, err);
     job.sums = normals ? mem_large_array(mesh->n_vertices + 1, sizeof *job.sums, UINT64_MAX, err) : NULL;
     job.blocks = job.sums ? mem_array(job.n_blocks, sizeof *job.blocks, UINT64_MAX, err) : NULL;

@@ -27,7 +27,7 @@ double nurbs_tube_v_end(const struct nurbs_tube *tube)
 }
 
 /* The basis functions at a parameter, and the first control point they belong to. */
-struct place {
+struct nurbs_basis_at {
     double values[NURBS_MAX_ORDER];
     size_t first;
 };
@@ -37,9 +37,9 @@ static size_t whole_part(double t, size_t end)
     return t >= (double)end ? end - 1 : t > 0 ? (size_t)t : 0;
 }
 
-static struct place place_around(const struct nurbs_tube *tube, double u)
+static struct nurbs_basis_at place_around(const struct nurbs_tube *tube, double u)
 {
-    struct place place;
+    struct nurbs_basis_at place;
     double knots[2 * NURBS_MAX_ORDER];
     size_t span = whole_part(u, tube->n_around), order = (size_t)tube->order;
     for (size_t k = 0; k < 2 * order; k++)
@@ -49,9 +49,9 @@ static struct place place_around(const struct nurbs_tube *tube, double u)
     return place;
 }
 
-static struct place place_along(const struct nurbs_tube *tube, double v)
+static struct nurbs_basis_at place_along(const struct nurbs_tube *tube, double v)
 {
-    struct place place;
+    struct nurbs_basis_at place;
     double knots[2 * NURBS_MAX_ORDER], v_end = nurbs_tube_v_end(tube);
     size_t span = whole_part(v, tube->n_rows - (size_t)tube->order_along + 1), order = (size_t)tube->order_along;
     for (size_t k = 0; k < 2 * order; k++) {
@@ -68,7 +68,7 @@ struct vec3 nurbs_tube_point(const struct nurbs_tube *tube, double u, double v)
     assert(tube->order >= NURBS_MIN_ORDER && tube->order <= NURBS_MAX_ORDER && tube->n_around >= (size_t)tube->order);
     assert(tube->order_along >= NURBS_MIN_ORDER && tube->order_along <= NURBS_MAX_ORDER &&
            tube->n_rows >= (size_t)tube->order_along);
-    struct place around = place_around(tube, u), along = place_along(tube, v);
+    struct nurbs_basis_at around = place_around(tube, u), along = place_along(tube, v);
     struct vec3 sum = vec3(0, 0, 0);
     double weight = 0;
     for (int b = 0; b < tube->order_along; b++)

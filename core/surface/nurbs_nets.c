@@ -12,7 +12,7 @@
 enum { MIN_AROUND = 8 };
 #define MAX_CONTROL_POINTS ((uint64_t)1 << 26)
 
-struct work {
+struct net_job {
     const struct mask *mask;
     struct outline_set *set;
     int axis;
@@ -22,18 +22,18 @@ struct work {
     double *along;     /* [longest + 1] and the length of the outline up to each point */
 };
 
-static size_t line_length(const struct work *work, uint32_t line)
+static size_t line_length(const struct net_job *job, uint32_t line)
 {
-    return work->set->line[line + 1] - work->set->line[line];
+    return job->set->line[line + 1] - job->set->line[line];
 }
 
-static size_t load_line(const struct work *work, uint32_t line)
+static size_t load_line(const struct net_job *job, uint32_t line)
 {
-    const uint32_t *walk = work->set->walk + work->set->line[line];
-    size_t n = line_length(work, line);
+    const uint32_t *walk = job->set->walk + job->set->line[line];
+    size_t n = line_length(job, line);
     for (size_t at = 0; at < n; at++) {
-        const float *p = work->set->points_ijk + 3 * (size_t)walk[at];
-        work->line[at] = affine_point(&work->mask->lps_mm_from_ijk, vec3((double)p[0], (double)p[1], (double)p[2]));
+        const float *p = job->set->points_ijk + 3 * (size_t)walk[at];
+        job->line[at] = affine_point(&job->mask->lps_mm_from_ijk, vec3((double)p[0], (double)p[1], (double)p[2]));
     }
     return n;
 }
@@ -41,18 +41,18 @@ static size_t load_line(const struct work *work, uint32_t line)
 /* ---- traces ----------------------------------------------------------------------------------------------------- */
 
 /* Samples n points, evenly spaced, along a line. */
-static void sample_line(const struct work *work, uint32_t line, size_t n, struct vec3 *out)
+static void sample_line(const struct net_job *job, uint32_t line, size_t n, struct vec3 *out)
 {
-    size_t n_line = load_line(work, line), at = 0;
-    work->along[0] = 0;
+    size_t n_line = load_line(job, line), at = 0;
+    job->along[0] = 0;
     for (size_t p = 0; p < n_line; p++)
-        work->along[p + 1] = work->along[p] + vec3_length(vec3_sub(work->line[(p + 1) % n_line], work->line[p]));
+        job->along[p + 1] = job->along[p] + vec3_length(vec3_sub(job->line[(p + 1) % n_line], job->line[p]));
     for (size_t s = 0; s < n; s++) {
-        double want = work->along[n_line] * (double)s / (double)n;
-        while (at + 1 < n_line && work->along[at + 1] <= want)
+        double want = job->along[n_line] * (double)s / (double)n;
+        while (at + 1 < n_line && job->along[at + 1] <= want)
             at++;
-        double part = (want - work->along[at]) / (work->along[at + 1] - work->along[at]);
-        struct vec3 from = work->line[at], to = work->line[(at + 1) % n_line];
+        double part = (want - job->along[at]) / (job->along[at + 1] - job->along[at]);
+        struct vec3 from = job->line[at], to = job->line[(at + 1) % n_line];
         out[s] = vec3_add(from, vec3_scale(vec3_sub(to, from), part));
     }
 }
@@ -80,36 +80,36 @@ static void align(const struct vec3 *below, struct vec3 *row, size_t n, struct v
 }
 
 /* Repeats the first and last row half a slice further out. */
-static void put_ends(const struct work *work, const struct nurbs_net *net)
+static void put_ends(const struct net_job *job, const struct nurbs_net *net)
 {
     size_t n = net->n_around, last = (net->n_rows - 1) * n;
     for (size_t at = 0; at < n; at++) {
-        net->points[at] = vec3_sub(net->points[n + at], work->across);
-        net->points[last + at] = vec3_add(net->points[last - n + at], work->across);
+        net->points[at] = vec3_sub(net->points[n + at], job->across);
+        net->points[last + at] = vec3_add(net->points[last - n + at], job->across);
     }
 }
 
-static void fill_by_traces(const struct work *work, uint32_t line, const uint32_t *next, const struct nurbs_net *net)
+static void fill_by_traces(const struct net_job *job, uint32_t line, const uint32_t *next, const struct nurbs_net *net)
 {
     struct vec3 scratch[NURBS_MAX_BINS];
     struct vec3 *row = net->points + net->n_around;
     for (size_t at = 0; line != UINT32_MAX; at++, row += net->n_around, line = next[line]) {
-        sample_line(work, line, net->n_around, row);
+        sample_line(job, line, net->n_around, row);
         if (at > 0)
             align(row - net->n_around, row, net->n_around, scratch);
     }
-    put_ends(work, net);
+    put_ends(job, net);
 }
 
 /* Rows and points around of the net that begins with a line. */
-static struct nurbs_net net_size(const struct work *work, uint32_t line, const uint32_t *next)
+static struct nurbs_net net_size(const struct net_job *job, uint32_t line, const uint32_t *next)
 {
     struct nurbs_net net = { .n_rows = 2, .n_around = MIN_AROUND };
     for (; line != UINT32_MAX; line = next[line], net.n_rows++)
-        if (line_length(work, line) > net.n_around)
-            net.n_around = line_length(work, line);
-    if (net.n_around > work->bins)
-        net.n_around = work->bins;
+        if (line_length(job, line) > net.n_around)
+            net.n_around = line_length(job, line);
+    if (net.n_around > job->bins)
+        net.n_around = job->bins;
     return net;
 }
 
@@ -123,10 +123,10 @@ static bool allot(struct nurbs_nets *nets, size_t n_nets, uint64_t n_points, str
     return nets->store != NULL;
 }
 
-static bool make_by_traces(const struct work *work, struct nurbs_nets *nets, struct error *err)
+static bool make_by_traces(const struct net_job *job, struct nurbs_nets *nets, struct error *err)
 {
-    const struct outline_set *set = work->set;
-    uint32_t *next = nurbs_pieces_link(set, work->axis, err);
+    const struct outline_set *set = job->set;
+    uint32_t *next = nurbs_pieces_link(set, job->axis, err);
     /* [n_lines] the line continues one from the slice below */
     bool *goes_on = next ? mem_array(set->n_lines, sizeof *goes_on, UINT64_MAX, err) : NULL;
     bool good = goes_on != NULL;
@@ -137,7 +137,7 @@ static bool make_by_traces(const struct work *work, struct nurbs_nets *nets, str
             goes_on[next[line]] = true;
     for (uint32_t line = 0; good && line < set->n_lines; line++)
         if (!goes_on[line]) {
-            struct nurbs_net net = net_size(work, line, next);
+            struct nurbs_net net = net_size(job, line, next);
             n_points += net.n_rows * net.n_around;
             n_nets++;
         }
@@ -146,10 +146,10 @@ static bool make_by_traces(const struct work *work, struct nurbs_nets *nets, str
     for (uint32_t line = 0; good && line < set->n_lines; line++)
         if (!goes_on[line]) {
             struct nurbs_net *net = &nets->nets[nets->n_nets++];
-            *net = net_size(work, line, next);
+            *net = net_size(job, line, next);
             net->points = store;
             store += net->n_rows * net->n_around;
-            fill_by_traces(work, line, next, net);
+            fill_by_traces(job, line, next, net);
         }
     free(next);
     free(goes_on);
@@ -159,38 +159,38 @@ static bool make_by_traces(const struct work *work, struct nurbs_nets *nets, str
 /* ---- degree bins ------------------------------------------------------------------------------------------------ */
 
 /* The position of a slice along S, mm, for the error sentence. */
-static double slice_s_mm(const struct work *work, uint32_t slice)
+static double slice_s_mm(const struct net_job *job, uint32_t slice)
 {
     struct vec3 middle =
-        vec3((work->mask->size[0] - 1) / 2.0, (work->mask->size[1] - 1) / 2.0, (work->mask->size[2] - 1) / 2.0);
+        vec3((job->mask->size[0] - 1) / 2.0, (job->mask->size[1] - 1) / 2.0, (job->mask->size[2] - 1) / 2.0);
     double *axis[3] = { &middle.x, &middle.y, &middle.z };
-    *axis[work->axis] = slice;
-    return affine_point(&work->mask->lps_mm_from_ijk, middle).z;
+    *axis[job->axis] = slice;
+    return affine_point(&job->mask->lps_mm_from_ijk, middle).z;
 }
 
-static bool refuse(const struct work *work, uint32_t slice, struct error *err, const char *why)
+static bool refuse(const struct net_job *job, uint32_t slice, struct error *err, const char *why)
 {
     return error_set(err, ERROR_UNSUPPORTED,
                      "degree bins cannot show this region: slice %u (S %.1f mm) %s; sample the traces instead", slice,
-                     slice_s_mm(work, slice), why);
+                     slice_s_mm(job, slice), why);
 }
 
 /* The only outline of a slice; fails if there are several. */
-static bool one_line(const struct work *work, uint32_t slice, uint32_t *line, struct error *err)
+static bool one_line(const struct net_job *job, uint32_t slice, uint32_t *line, struct error *err)
 {
-    const struct outline_set *set = work->set;
+    const struct outline_set *set = job->set;
     uint32_t n_pieces = 0, n_holes = 0;
     for (uint32_t l = set->slice[slice]; l < set->slice[slice + 1]; l++)
-        *(nurbs_pieces_twice_area(set, l, work->axis) < 0 ? &n_holes : &n_pieces) += 1;
+        *(nurbs_pieces_twice_area(set, l, job->axis) < 0 ? &n_holes : &n_pieces) += 1;
     *line = set->slice[slice];
     char why[64];
     if (n_pieces == 0)
-        return refuse(work, slice, err, "has none of it, but slices on both sides have");
+        return refuse(job, slice, err, "has none of it, but slices on both sides have");
     snprintf(why, sizeof why, "has %u pieces of it", n_pieces);
     if (n_pieces > 1)
-        return refuse(work, slice, err, why);
+        return refuse(job, slice, err, why);
     snprintf(why, sizeof why, "has %u hole%s in it", n_holes, n_holes == 1 ? "" : "s");
-    return n_holes == 0 || refuse(work, slice, err, why);
+    return n_holes == 0 || refuse(job, slice, err, why);
 }
 
 /* Axes within a slice: right and up are perpendicular, 1 mm long, and counter-clockwise like the outlines. */
@@ -198,21 +198,20 @@ struct plane {
     struct vec3 middle, right, up;
 };
 
-static struct plane plane_of(const struct work *work, size_t n_line)
+static struct plane plane_of(const struct net_job *job, size_t n_line)
 {
-    const struct vec3 *columns = work->mask->lps_mm_from_ijk.columns;
-    struct vec3 u = columns[work->axis == 0 ? 1 : 0], v = columns[work->axis == 2 ? 1 : 2], normal = vec3_cross(u, v);
-    struct plane plane = { work->line[0], vec3_normalize(u), vec3_normalize(vec3_cross(normal, u)) };
+    const struct vec3 *columns = job->mask->lps_mm_from_ijk.columns;
+    struct vec3 u = columns[job->axis == 0 ? 1 : 0], v = columns[job->axis == 2 ? 1 : 2], normal = vec3_cross(u, v);
+    struct plane plane = { job->line[0], vec3_normalize(u), vec3_normalize(vec3_cross(normal, u)) };
     struct vec3 sum = vec3(0, 0, 0);
     double twice = 0;
     for (size_t at = 0; at < n_line; at++) { /* fan of triangles from the first point */
-        struct vec3 a = vec3_sub(work->line[at], work->line[0]),
-                    b = vec3_sub(work->line[(at + 1) % n_line], work->line[0]);
+        struct vec3 a = vec3_sub(job->line[at], job->line[0]), b = vec3_sub(job->line[(at + 1) % n_line], job->line[0]);
         double area = vec3_dot(vec3_cross(a, b), vec3_normalize(normal));
         sum = vec3_add(sum, vec3_scale(vec3_add(a, b), area / 3));
         twice += area;
     }
-    plane.middle = vec3_add(work->line[0], vec3_scale(sum, 1 / twice));
+    plane.middle = vec3_add(job->line[0], vec3_scale(sum, 1 / twice));
     return plane;
 }
 
@@ -225,32 +224,32 @@ static double turn(const struct plane *plane, struct vec3 from, struct vec3 to)
     return atan2(ax * by - ay * bx, ax * bx + ay * by);
 }
 
-static bool is_star(const struct work *work, size_t n_line, const struct plane *plane, uint32_t slice,
+static bool is_star(const struct net_job *job, size_t n_line, const struct plane *plane, uint32_t slice,
                     struct error *err)
 {
     double allowed = NURBS_MAX_BACK_DEG * MATH_PI / 180, angle = 0, farthest = 0, back = 0;
-    allowed = allowed > 2 * MATH_PI / (double)work->bins ? allowed : 2 * MATH_PI / (double)work->bins;
+    allowed = allowed > 2 * MATH_PI / (double)job->bins ? allowed : 2 * MATH_PI / (double)job->bins;
     /* twice around, because the first point may be within a stretch that goes back */
     for (size_t at = 0; at < 2 * n_line; at++) {
-        angle += turn(plane, work->line[at % n_line], work->line[(at + 1) % n_line]);
+        angle += turn(plane, job->line[at % n_line], job->line[(at + 1) % n_line]);
         farthest = angle > farthest ? angle : farthest;
         back = farthest - angle > back ? farthest - angle : back;
     }
     char why[96];
     if (!(fabs(angle - 4 * MATH_PI) < 0.1))
-        return refuse(work, slice, err, "is so hollow that its middle lies outside it");
+        return refuse(job, slice, err, "is so hollow that its middle lies outside it");
     snprintf(why, sizeof why, "is hollow: around the middle its outline goes back by %.0f degrees",
              back * 180 / MATH_PI);
-    return back <= allowed || refuse(work, slice, err, why);
+    return back <= allowed || refuse(job, slice, err, why);
 }
 
 /* The outermost crossing of the outline with the ray from the middle at an angle. */
-static struct vec3 crossing_at(const struct work *work, size_t n_line, const struct plane *plane, double angle)
+static struct vec3 crossing_at(const struct net_job *job, size_t n_line, const struct plane *plane, double angle)
 {
     double c = cos(angle), s = sin(angle), farthest = 0;
     for (size_t at = 0; at < n_line; at++) {
-        struct vec3 a = vec3_sub(work->line[at], plane->middle),
-                    b = vec3_sub(work->line[(at + 1) % n_line], plane->middle);
+        struct vec3 a = vec3_sub(job->line[at], plane->middle),
+                    b = vec3_sub(job->line[(at + 1) % n_line], plane->middle);
         double ax = vec3_dot(a, plane->right), ay = vec3_dot(a, plane->up), bx = vec3_dot(b, plane->right),
                by = vec3_dot(b, plane->up);
         double off_a = c * ay - s * ax, off_b = c * by - s * bx; /* distances to the left of the ray */
@@ -263,55 +262,55 @@ static struct vec3 crossing_at(const struct work *work, size_t n_line, const str
                     vec3_add(vec3_scale(plane->right, farthest * c), vec3_scale(plane->up, farthest * s)));
 }
 
-static void fill_row_by_bins(const struct work *work, size_t n_line, const struct plane *plane, struct vec3 *row)
+static void fill_row_by_bins(const struct net_job *job, size_t n_line, const struct plane *plane, struct vec3 *row)
 {
     double farthest[NURBS_MAX_BINS];
-    for (size_t b = 0; b < work->bins; b++)
+    for (size_t b = 0; b < job->bins; b++)
         farthest[b] = -1;
     for (size_t at = 0; at < n_line; at++) {
-        struct vec3 d = vec3_sub(work->line[at], plane->middle);
+        struct vec3 d = vec3_sub(job->line[at], plane->middle);
         double angle = atan2(vec3_dot(d, plane->up), vec3_dot(d, plane->right));
         double share = (angle < 0 ? angle + 2 * MATH_PI : angle) / (2 * MATH_PI);
-        size_t bin = (size_t)(share * (double)work->bins) % work->bins;
+        size_t bin = (size_t)(share * (double)job->bins) % job->bins;
         if (vec3_length(d) > farthest[bin]) {
             farthest[bin] = vec3_length(d);
-            row[bin] = work->line[at];
+            row[bin] = job->line[at];
         }
     }
-    for (size_t b = 0; b < work->bins; b++)
+    for (size_t b = 0; b < job->bins; b++)
         if (farthest[b] < 0)
-            row[b] = crossing_at(work, n_line, plane, 2 * MATH_PI * ((double)b + 0.5) / (double)work->bins);
+            row[b] = crossing_at(job, n_line, plane, 2 * MATH_PI * ((double)b + 0.5) / (double)job->bins);
 }
 
-static bool make_by_bins(const struct work *work, struct nurbs_nets *nets, struct error *err)
+static bool make_by_bins(const struct net_job *job, struct nurbs_nets *nets, struct error *err)
 {
-    const struct outline_set *set = work->set;
+    const struct outline_set *set = job->set;
     uint32_t first = 0, end = (uint32_t)set->n_slices;
     while (set->slice[first] == set->slice[first + 1])
         first++;
     while (set->slice[end] == set->slice[end - 1])
         end--;
-    if (!allot(nets, 1, (uint64_t)(end - first + 2) * work->bins, err))
+    if (!allot(nets, 1, (uint64_t)(end - first + 2) * job->bins, err))
         return false;
     nets->n_nets = 1;
-    nets->nets[0] = (struct nurbs_net){ nets->store, work->bins, end - first + 2 };
+    nets->nets[0] = (struct nurbs_net){ nets->store, job->bins, end - first + 2 };
     for (uint32_t slice = first; slice < end; slice++) {
         uint32_t line;
-        if (!one_line(work, slice, &line, err))
+        if (!one_line(job, slice, &line, err))
             return false;
-        size_t n_line = load_line(work, line);
-        struct plane plane = plane_of(work, n_line);
-        if (!is_star(work, n_line, &plane, slice, err))
+        size_t n_line = load_line(job, line);
+        struct plane plane = plane_of(job, n_line);
+        if (!is_star(job, n_line, &plane, slice, err))
             return false;
-        fill_row_by_bins(work, n_line, &plane, nets->store + (size_t)(slice - first + 1) * work->bins);
+        fill_row_by_bins(job, n_line, &plane, nets->store + (size_t)(slice - first + 1) * job->bins);
     }
-    put_ends(work, &nets->nets[0]);
+    put_ends(job, &nets->nets[0]);
     return true;
 }
 
 /* ---- either ----------------------------------------------------------------------------------------------------- */
 
-static bool work_init(struct work *work, const struct mask *mask, int bins, int n_threads, struct error *err)
+static bool work_init(struct net_job *job, const struct mask *mask, int bins, int n_threads, struct error *err)
 {
     struct grid grid;
     if (bins < NURBS_MIN_BINS || bins > NURBS_MAX_BINS)
@@ -319,32 +318,32 @@ static bool work_init(struct work *work, const struct mask *mask, int bins, int 
                          NURBS_MAX_BINS);
     if (!grid_init(&grid, mask->size, &mask->lps_mm_from_ijk, err))
         return false;
-    *work = (struct work){ .mask = mask, .axis = grid_index_axis(&grid, 2, NULL), .bins = (size_t)bins };
-    work->across = vec3_scale(mask->lps_mm_from_ijk.columns[work->axis], 0.5);
-    work->set =
-        outline_walk(mask, work->axis, (struct outline_rule){ .is_joined = true, .is_between = true }, n_threads, err);
-    if (!work->set)
+    *job = (struct net_job){ .mask = mask, .axis = grid_index_axis(&grid, 2, NULL), .bins = (size_t)bins };
+    job->across = vec3_scale(mask->lps_mm_from_ijk.columns[job->axis], 0.5);
+    job->set =
+        outline_walk(mask, job->axis, (struct outline_rule){ .is_joined = true, .is_between = true }, n_threads, err);
+    if (!job->set)
         return false;
     size_t longest = 0;
-    for (uint32_t line = 0; line < work->set->n_lines; line++)
-        longest = line_length(work, line) > longest ? line_length(work, line) : longest;
-    work->line = mem_array(longest, sizeof *work->line, UINT64_MAX, err);
-    work->along = work->line ? mem_array(longest + 1, sizeof *work->along, UINT64_MAX, err) : NULL;
-    return work->along != NULL;
+    for (uint32_t line = 0; line < job->set->n_lines; line++)
+        longest = line_length(job, line) > longest ? line_length(job, line) : longest;
+    job->line = mem_array(longest, sizeof *job->line, UINT64_MAX, err);
+    job->along = job->line ? mem_array(longest + 1, sizeof *job->along, UINT64_MAX, err) : NULL;
+    return job->along != NULL;
 }
 
 bool nurbs_nets_make(const struct mask *mask, enum nurbs_sampling sampling, int bins, int n_threads,
                      struct nurbs_nets *nets, struct error *err)
 {
-    struct work work = { .set = NULL };
+    struct net_job job = { .set = NULL };
     *nets = (struct nurbs_nets){ NULL, 0, NULL };
-    bool good = work_init(&work, mask, bins, n_threads, err);
-    if (good && work.set->n_lines == 0)
+    bool good = work_init(&job, mask, bins, n_threads, err);
+    if (good && job.set->n_lines == 0)
         good = error_set(err, ERROR_RANGE, "a spline around a region without a voxel");
-    good = good && (sampling == NURBS_TRACES ? make_by_traces(&work, nets, err) : make_by_bins(&work, nets, err));
-    outline_set_destroy(work.set);
-    free(work.line);
-    free(work.along);
+    good = good && (sampling == NURBS_TRACES ? make_by_traces(&job, nets, err) : make_by_bins(&job, nets, err));
+    outline_set_destroy(job.set);
+    free(job.line);
+    free(job.along);
     if (!good)
         nurbs_nets_finish(nets);
     return good;

@@ -15,7 +15,7 @@ struct patch {
     size_t first_vertex, first_triangle;
 };
 
-struct job {
+struct nurbs_job {
     struct patch *patches;
     size_t n_patches;
     bool is_mirrored; /* the directions around and along have the opposite handedness in space */
@@ -33,7 +33,7 @@ static size_t patch_triangles(const struct patch *patch)
 }
 
 /* Sets the sizes of all patches for a number of steps between control points; returns the total of triangles. */
-static uint64_t size_patches(struct job *job, size_t steps)
+static uint64_t size_patches(struct nurbs_job *job, size_t steps)
 {
     uint64_t n_vertices = 0, n_triangles = 0;
     for (size_t p = 0; p < job->n_patches; p++) {
@@ -57,7 +57,7 @@ static void put(float *at, struct vec3 p)
     at[2] = (float)p.z;
 }
 
-static void write_row(const struct job *job, const struct patch *patch, size_t row)
+static void write_row(const struct nurbs_job *job, const struct patch *patch, size_t row)
 {
     double v = nurbs_tube_v_end(&patch->tube) * (double)row / (double)(patch->n_rows - 1);
     float *out = job->mesh->positions_lps_mm + 3 * (patch->first_vertex + row * patch->n_around);
@@ -73,7 +73,7 @@ static void write_row(const struct job *job, const struct patch *patch, size_t r
             vec3_scale(sum, 1 / (double)patch->n_around));
 }
 
-static uint32_t *put_triangle(const struct job *job, uint32_t *out, size_t a, size_t b, size_t c)
+static uint32_t *put_triangle(const struct nurbs_job *job, uint32_t *out, size_t a, size_t b, size_t c)
 {
     *out++ = (uint32_t)a;
     *out++ = (uint32_t)(job->is_mirrored ? c : b);
@@ -82,7 +82,7 @@ static uint32_t *put_triangle(const struct job *job, uint32_t *out, size_t a, si
 }
 
 /* Writes the triangles between a row and the next, or those of an end. */
-static void write_triangles(const struct job *job, const struct patch *patch, size_t row)
+static void write_triangles(const struct nurbs_job *job, const struct patch *patch, size_t row)
 {
     size_t n = patch->n_around, low = patch->first_vertex + row * n, end = patch->first_vertex + patch_vertices(patch);
     bool is_last = row + 1 == patch->n_rows;
@@ -105,7 +105,7 @@ static void write_triangles(const struct job *job, const struct patch *patch, si
 /* Threads take rows in turn, over all patches. */
 static void write_part(void *context, int part, int n_parts)
 {
-    const struct job *job = context;
+    const struct nurbs_job *job = context;
     size_t turn = 0;
     for (size_t p = 0; p < job->n_patches; p++)
         for (size_t row = 0; row < job->patches[p].n_rows; row++)
@@ -117,7 +117,7 @@ static void write_part(void *context, int part, int n_parts)
 
 /* ---- the whole -------------------------------------------------------------------------------------------------- */
 
-static bool make_mesh(struct job *job, int order, int n_threads, struct error *err)
+static bool make_mesh(struct nurbs_job *job, int order, int n_threads, struct error *err)
 {
     size_t steps = order == 2 ? 1 : (size_t)order; /* straight lines need no points in between */
     uint64_t n_triangles;
@@ -156,7 +156,7 @@ struct mesh *shape_nurbs(const struct mask *mask, const struct shape_key *key, i
     struct nurbs_nets nets;
     if (!nurbs_nets_make(mask, key->nurbs_sampling, key->nurbs_bins, n_threads, &nets, err))
         return NULL;
-    struct job job = { .n_patches = nets.n_nets, .is_mirrored = is_mirrored(mask) };
+    struct nurbs_job job = { .n_patches = nets.n_nets, .is_mirrored = is_mirrored(mask) };
     job.patches = mem_array(nets.n_nets, sizeof *job.patches, UINT64_MAX, err);
     for (size_t p = 0; job.patches && p < nets.n_nets; p++) {
         const struct nurbs_net *net = &nets.nets[p];

@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/region/boundary.h"
 
-struct job {
+struct border_job {
     struct shape_border *border;
     struct vec3 of_row[9][8]; /* by row of three neighbours and inside bits: sum of the directions to the outside ones,
                                  in index steps */
@@ -48,7 +48,7 @@ uint32_t shape_border_around(const struct mask *mask, uint32_t i, uint32_t j, ui
 /* Prepares unit steps in each of the 26 directions (S. W. Zucker, R. A. Hummel, A three-dimensional edge operator, IEEE
  * Trans. PAMI 3, 1981). The inverse transpose of the map converts a gradient per step to one per mm, so that slopes are
  * right in space also where slices are far apart. */
-static void prepare(struct job *job)
+static void prepare(struct border_job *job)
 {
     for (int row = 0; row < 9; row++)
         for (int inside = 0; inside < 8; inside++) {
@@ -64,7 +64,7 @@ static void prepare(struct job *job)
         job->covector[axis] = vec3_scale(vec3_cross(c[(axis + 1) % 3], c[(axis + 2) % 3]), sign);
 }
 
-static struct vec3 normal_at(const struct job *job, uint32_t i, uint32_t j, uint32_t k)
+static struct vec3 normal_at(const struct border_job *job, uint32_t i, uint32_t j, uint32_t k)
 {
     uint32_t around = shape_border_around(job->border->mask, i, j, k);
     struct vec3 sum = vec3(0, 0, 0);
@@ -79,7 +79,7 @@ static struct vec3 normal_at(const struct job *job, uint32_t i, uint32_t j, uint
 
 static void fill_part(void *context, int part, int n_parts)
 {
-    const struct job *job = context;
+    const struct border_job *job = context;
     const struct shape_border *border = job->border;
     const struct mask *mask = border->border;
     size_t n_rows = (size_t)mask->size[1] * mask->size[2], end = n_rows * (size_t)(part + 1) / (size_t)n_parts;
@@ -131,7 +131,7 @@ struct shape_border *shape_border_create(const struct mask *mask, size_t max_vox
         shape_border_destroy(border);
         return NULL;
     }
-    struct job job = { .border = border };
+    struct border_job job = { .border = border };
     prepare(&job);
     parallel_run(n_threads, fill_part, &job);
     return border;

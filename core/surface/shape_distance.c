@@ -23,7 +23,7 @@ struct block {
     bool is_finite;
 };
 
-struct job {
+struct distance_job {
     const struct mask *mask, *border; /* border: inside voxels with a face */
     struct face_tree *faces;
     struct affine ijk_from_lps_mm;
@@ -42,7 +42,7 @@ static double square(double x)
 
 /* Least squared distance to the faces of one voxel, or `least` if smaller; d is the position minus the voxel, in index
  * steps. */
-static double voxel_distance_2(const struct job *job, const int64_t ijk[3], const double d[3], double least,
+static double voxel_distance_2(const struct distance_job *job, const int64_t ijk[3], const double d[3], double least,
                                uint64_t *n_asked)
 {
     for (int axis = 0; axis < 3; axis++)
@@ -57,7 +57,7 @@ static double voxel_distance_2(const struct job *job, const int64_t ijk[3], cons
 }
 
 /* Upper bound on the rows of voxels, in pieces of eight voxels, that reach to within a radius. */
-static double n_rows_within(const struct job *job, double radius_mm)
+static double n_rows_within(const struct distance_job *job, double radius_mm)
 {
     double n = 1 + 2 * radius_mm * job->reach[0] / 8;
     for (int axis = 1; axis < 3; axis++)
@@ -77,7 +77,7 @@ static bool range_of(double x, double steps, uint32_t size, int64_t *first, int6
 }
 
 /* Squared distance within a radius. Exact if the result is at most the radius; INFINITY if no face was found. */
-static double search_2(const struct job *job, const double x[3], double radius_mm, uint64_t *n_asked)
+static double search_2(const struct distance_job *job, const double x[3], double radius_mm, uint64_t *n_asked)
 {
     int64_t first[3], last[3];
     double least = INFINITY;
@@ -105,7 +105,7 @@ static double search_2(const struct job *job, const double x[3], double radius_m
 }
 
 /* Searches ever larger boxes of voxels until one contains the nearest face, and the tree once boxes get large. */
-static double distance_mm(const struct job *job, struct vec3 position, uint64_t *n_asked)
+static double distance_mm(const struct distance_job *job, struct vec3 position, uint64_t *n_asked)
 {
     struct vec3 at = affine_point(&job->ijk_from_lps_mm, position);
     double x[3] = { at.x, at.y, at.z }, least = INFINITY;
@@ -124,7 +124,7 @@ static void measure_part(void *context, int part, int n_parts)
 {
     (void)part;
     (void)n_parts;
-    struct job *job = context;
+    struct distance_job *job = context;
     for (size_t b; (b = atomic_fetch_add(&job->next, 1)) < job->n_blocks;) {
         struct block block = { .is_finite = true };
         size_t end = (b + 1) * BLOCK < job->n_positions ? (b + 1) * BLOCK : job->n_positions;
@@ -140,7 +140,7 @@ static void measure_part(void *context, int part, int n_parts)
     }
 }
 
-static void prepare(struct job *job)
+static void prepare(struct distance_job *job)
 {
     const struct affine *back = &job->ijk_from_lps_mm;
     job->start_mm = INFINITY;
@@ -151,7 +151,7 @@ static void prepare(struct job *job)
     job->reach[2] = sqrt(square(back->columns[0].z) + square(back->columns[1].z) + square(back->columns[2].z));
 }
 
-static bool join(const struct job *job, struct shape_distance *distance, struct error *err)
+static bool join(const struct distance_job *job, struct shape_distance *distance, struct error *err)
 {
     double sum = 0, max = 0;
     uint64_t n_asked = 0;
@@ -170,7 +170,7 @@ static bool join(const struct job *job, struct shape_distance *distance, struct 
 bool shape_distance(const struct mask *mask, const float *positions_lps_mm, size_t n_positions, int n_threads,
                     struct shape_distance *distance, struct error *err)
 {
-    struct job job = {
+    struct distance_job job = {
         .mask = mask,
         .positions_lps_mm = positions_lps_mm,
         .n_positions = n_positions,

@@ -24,7 +24,7 @@ static const uint8_t face_corners[FACES][4] = {
     { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 },
 };
 
-struct job {
+struct univels_job {
     const struct mask *mask;
     uint32_t corner_words; /* 64-bit words per row of size[0] + 1 corners */
     uint64_t *used;        /* [size[2] + 1][size[1] + 1][corner_words] */
@@ -43,14 +43,14 @@ static const uint64_t *row_at(const struct mask *mask, int64_t j, int64_t k)
     return mask->bits + ((size_t)k * mask->size[1] + (size_t)j) * mask->words;
 }
 
-static size_t corner_row(const struct job *job, size_t j, size_t k)
+static size_t corner_row(const struct univels_job *job, size_t j, size_t k)
 {
     return k * (job->mask->size[1] + 1) + j;
 }
 
 /* ---- marking and counting --------------------------------------------------------------------------------------- */
 
-static uint32_t mark_corners(const struct job *job, uint32_t j, uint32_t k)
+static uint32_t mark_corners(const struct univels_job *job, uint32_t j, uint32_t k)
 {
     const uint64_t *rows[4];
     uint32_t n = 0, words = job->mask->words;
@@ -74,7 +74,7 @@ static uint32_t mark_corners(const struct job *job, uint32_t j, uint32_t k)
 }
 
 /* The voxels of word w of a row that have a face in each direction. */
-static void faces_of_word(const struct job *job, const uint64_t *row, const uint64_t *beside[4], uint32_t w,
+static void faces_of_word(const struct univels_job *job, const uint64_t *row, const uint64_t *beside[4], uint32_t w,
                           uint64_t faces[FACES])
 {
     uint64_t here = row[w];
@@ -92,7 +92,7 @@ static void rows_beside(const struct mask *mask, uint32_t j, uint32_t k, const u
     beside[3] = row_at(mask, j, (int64_t)k + 1);
 }
 
-static uint32_t count_faces(const struct job *job, uint32_t j, uint32_t k)
+static uint32_t count_faces(const struct univels_job *job, uint32_t j, uint32_t k)
 {
     const uint64_t *row = row_at(job->mask, j, k), *beside[4];
     uint64_t faces[FACES];
@@ -110,7 +110,7 @@ static void count_part(void *context, int part, int n_parts)
 {
     (void)part;
     (void)n_parts;
-    struct job *job = context;
+    struct univels_job *job = context;
     const uint32_t *size = job->mask->size;
     for (uint32_t k; (k = atomic_fetch_add(&job->next, 1)) <= size[2];)
         for (uint32_t j = 0; j <= size[1]; j++) {
@@ -122,7 +122,7 @@ static void count_part(void *context, int part, int n_parts)
 
 /* ---- writing ---------------------------------------------------------------------------------------------------- */
 
-static void write_corners(const struct job *job, uint32_t j, uint32_t k)
+static void write_corners(const struct univels_job *job, uint32_t j, uint32_t k)
 {
     size_t row = corner_row(job, j, k);
     row_write_vertices(job->used + row * job->corner_words, job->corner_words, &job->mask->lps_mm_from_ijk,
@@ -142,7 +142,7 @@ static uint32_t *write_face(uint32_t *out, const uint32_t vertices[8], int face,
     return out;
 }
 
-static void write_faces(const struct job *job, uint32_t j, uint32_t k)
+static void write_faces(const struct univels_job *job, uint32_t j, uint32_t k)
 {
     const uint64_t *row = row_at(job->mask, j, k), *beside[4], *used[4];
     uint32_t number[4]; /* number of the first vertex of the word, in each row of corners */
@@ -177,7 +177,7 @@ static void write_part(void *context, int part, int n_parts)
 {
     (void)part;
     (void)n_parts;
-    struct job *job = context;
+    struct univels_job *job = context;
     const uint32_t *size = job->mask->size;
     for (uint32_t k; (k = atomic_fetch_add(&job->next, 1)) <= size[2];)
         for (uint32_t j = 0; j <= size[1]; j++) {
@@ -189,7 +189,7 @@ static void write_part(void *context, int part, int n_parts)
 
 /* ---- the whole -------------------------------------------------------------------------------------------------- */
 
-static bool extract(struct job *job, int n_threads, struct error *err)
+static bool extract(struct univels_job *job, int n_threads, struct error *err)
 {
     const uint32_t *size = job->mask->size;
     size_t n_corner_rows = ((size_t)size[1] + 1) * ((size_t)size[2] + 1), n_rows = (size_t)size[1] * size[2];
@@ -215,7 +215,7 @@ static bool extract(struct job *job, int n_threads, struct error *err)
 
 struct mesh *shape_univels(const struct mask *mask, int n_threads, struct error *err)
 {
-    struct job job = {
+    struct univels_job job = {
         .mask = mask,
         .corner_words = mask->size[0] / 64 + 1,
         .is_mirrored = affine_determinant(&mask->lps_mm_from_ijk) < 0,
