@@ -1,3 +1,4 @@
+/* Patient positions, and the rotation from gantry coordinates to patient axes. */
 #include "core/beam/beam.h"
 
 #include <string.h>
@@ -30,7 +31,7 @@ static double sine(double deg)
     return sin(deg * MATH_PI / 180);
 }
 
-/* By the right-hand rule. */
+/* Rotates by the right-hand rule. */
 static struct vec3 about_x(struct vec3 p, double deg)
 {
     return vec3(p.x, p.y * cosine(deg) - p.z * sine(deg), p.y * sine(deg) + p.z * cosine(deg));
@@ -46,8 +47,8 @@ static struct vec3 about_z(struct vec3 p, double deg)
     return vec3(p.x * cosine(deg) - p.y * sine(deg), p.x * sine(deg) + p.y * cosine(deg), p.z);
 }
 
-/* Where the patient's left, back and head point on the table: +x to the right of who stands at its foot and looks to
- * the gantry, +y to the gantry, +z up. The left is always head x front. */
+/* Directions of the patient's left, back and head in table coordinates: +x to the right of a person at the foot of the
+ * table who looks to the gantry, +y to the gantry, +z up. Always left = head x front. */
 static void patient_axes(enum patient_position position, struct vec3 *left, struct vec3 *back, struct vec3 *head)
 {
     bool is_feet_first =
@@ -56,7 +57,7 @@ static void patient_axes(enum patient_position position, struct vec3 *left, stru
     switch (position) {
     case PATIENT_HFP:
     case PATIENT_FFP: *back = vec3(0, 0, 1); break;
-    case PATIENT_HFDR: /* on the right side, the front turns to the left of who looks */
+    case PATIENT_HFDR: /* lying on the right side, the front is to the left of that person */
     case PATIENT_FFDL: *back = vec3(1, 0, 0); break;
     case PATIENT_HFDL:
     case PATIENT_FFDR: *back = vec3(-1, 0, 0); break;

@@ -1,3 +1,4 @@
+/* Interpolates reference curves. */
 #include "core/dose/curve.h"
 
 #include <math.h>
@@ -12,7 +13,7 @@ void dose_curve_finish(struct dose_curve *curve)
     *curve = (struct dose_curve){ 0 };
 }
 
-/* The point at or below x, and the share of the way to the next. */
+/* Finds the last point at or below x, and the fraction of the way to the next point. */
 static bool find(const double *points, size_t n, double x, size_t *below, double *t)
 {
     if (n == 0 || !(x >= points[0] && x <= points[n - 1]))

@@ -1,3 +1,4 @@
+/* Words and units of dose quantities. */
 #include "core/dose/dose.h"
 
 #include <stdio.h>

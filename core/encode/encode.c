@@ -1,3 +1,4 @@
+/* Compresses images with libjpeg-turbo (JPEG) and libspng (PNG). */
 #include "core/encode/encode.h"
 
 #include <spng.h>
@@ -6,11 +7,11 @@
 
 #include "core/base/mem.h"
 
-/* Up to here the fast transform is not visibly worse than the exact one; above, quality is what was asked for. */
+/* Up to this quality the fast DCT is not visibly worse than the exact one; above, exactness is what was asked for. */
 enum { FAST_TRANSFORM_MAX_QUALITY = 85, PNG_COMPRESSION_LEVEL = 1 };
 
-/* Memory for the largest JPEG there can be is taken at once up to here: 6 bytes a pixel. Above, it grows with the JPEG,
- * which is a tenth of that. */
+/* Up to this size, memory for the largest possible JPEG is allocated at once: 6 bytes per pixel. Above, it grows with
+ * the JPEG, which is about a tenth of that. */
 enum { AT_ONCE_MAX_PX = 4000000 };
 
 struct encoder {
@@ -19,7 +20,8 @@ struct encoder {
 
 struct encoder *encoder_create(void)
 {
-    return mem_new(sizeof(struct encoder)); /* the compressor is made when first needed, where failure can be told */
+    /* the compressor is created at first use, where a failure can be reported */
+    return mem_new(sizeof(struct encoder));
 }
 
 void encoder_destroy(struct encoder *encoder)

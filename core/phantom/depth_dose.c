@@ -1,3 +1,4 @@
+/* Interpolates the published table of dose on the beam axis and extends it off the axis. */
 #include "core/phantom/depth_dose.h"
 
 #include "core/phantom/head.h"
@@ -7,8 +8,8 @@ const double phantom_source_z_lps_mm = 150;
 
 const double phantom_depths_mm[PHANTOM_N_DEPTHS] = { 2, 10, 18, 22, 26, 30, 38, 50, 70, 90, 110, 130 };
 
-/* Goorley, Kiger and Zamenhof 2002, modified Snyder head. Their "thermal" column is mostly nitrogen's and stands for
- * it. */
+/* Source: Goorley, Kiger and Zamenhof 2002, modified Snyder head. The paper's "thermal" column is mostly from nitrogen
+ * and is used for it. */
 const struct phantom_component phantom_components[PHANTOM_N_COMPONENTS] = {
     { DOSE_BORON,
       true,
@@ -30,14 +31,14 @@ const struct phantom_component phantom_components[PHANTOM_N_COMPONENTS] = {
 
 enum { CELL_MM = 4 };
 
-/* Logarithm of the table and its slopes at the depths. */
+/* Logarithms of the table and their slopes at the depths. */
 struct curve {
     double log_dose[PHANTOM_N_DEPTHS], slope[PHANTOM_N_DEPTHS];
 };
 
-/* Slopes that keep the cubic monotone wherever the table is: at a turn 0, else the harmonic mean of the two sides
- * weighted by the intervals (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300); at the ends the
- * secant. */
+/* Slopes for a cubic that is monotone wherever the table is: 0 at an extremum, else the harmonic mean of the slopes on
+ * both sides weighted by the intervals (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300); at the
+ * ends the secant. */
 static void curve_init(struct curve *curve, const double table[PHANTOM_N_DEPTHS])
 {
     const double *x = phantom_depths_mm;
@@ -104,8 +105,8 @@ double phantom_dose_at(const struct phantom_component *component, struct vec3 po
 
 bool phantom_dose_grid(struct grid *grid, struct error *err)
 {
-    /* odd numbers of cells across, so that one column lies on the axis; the topmost cell is the second above the scalp
-     */
+    /* an odd number of cells across, so that one column is on the axis; the topmost cell is the second one above the
+     * scalp */
     const uint32_t size[3] = { 41, 57, 49 };
     double top_mm = phantom_tissues[PHANTOM_SCALP].shape.semi_axes_mm.z;
     struct affine map = { { { CELL_MM, 0, 0 }, { 0, CELL_MM, 0 }, { 0, 0, CELL_MM } },

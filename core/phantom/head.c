@@ -1,9 +1,10 @@
+/* The phantom's tissues as ellipsoids, and its image and labels. */
 #include "core/phantom/head.h"
 
 #include "core/base/parallel.h"
 
-/* Scalp, cranium and brain: Goorley, Kiger and Zamenhof 2002, in millimetres; x = L, y = P, z = S, one origin for all.
- * Target and tumour are ours: to the patient's left and behind, so that a flipped picture shows at once. */
+/* Scalp, cranium and brain: Goorley, Kiger and Zamenhof 2002, in mm; x = L, y = P, z = S, common origin. Target and
+ * tumour are our own: to the patient's left and posterior, so that a mirrored picture is noticed at once. */
 const struct phantom_tissue phantom_tissues[PHANTOM_N_LABELS] = {
     [PHANTOM_AIR] = { "air", "#000000", { { 0, 0, 0 }, { 0, 0, 0 } }, -1000 },
     [PHANTOM_SCALP] = { "scalp", "#e0bca0", { { 0, 0, 0 }, { 73, 103, 88 } }, 60 },
@@ -19,7 +20,7 @@ const double phantom_marker_hounsfield = 2000;
 static const double field_of_view_mm[3] = { 256, 256, 204.8 };
 static const double noise_hounsfield = 5; /* standard deviation, inside the body */
 
-/* Squared distance from the centre in units of the semi-axes: at most 1 inside. */
+/* Squared distance from the centre in units of the semi-axes; at most 1 inside. */
 static double ellipsoid_level(const struct ellipsoid *shape, struct vec3 p)
 {
     struct vec3 d = vec3_sub(p, shape->centre_lps_mm);
@@ -69,7 +70,7 @@ uint64_t phantom_mix(uint64_t value)
     return value ^ (value >> 31);
 }
 
-/* Sum of four uniform numbers: nearly normal, mean 0, standard deviation 1, never beyond 3.5. */
+/* Sum of four uniform numbers: approximately normal, mean 0, standard deviation 1, never beyond 3.5. */
 static double noise(uint64_t seed, uint64_t voxel)
 {
     uint64_t bits = phantom_mix(seed ^ (voxel * 0xd1342543de82ef95u));

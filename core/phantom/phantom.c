@@ -1,3 +1,5 @@
+/* Writes the phantom's folder: fills volumes, compresses them side by side, then renames the finished folder into
+ * place. */
 #include "core/phantom/phantom.h"
 
 #include <dirent.h>
@@ -20,7 +22,7 @@
 
 const struct phantom_options phantom_defaults = { { 256, 256, 128 }, 1 };
 
-/* Everything a phantom's folder holds; a folder with anything else in it is not ours to replace. */
+/* All files of a phantom's folder; a folder with any other file is not ours to replace. */
 static const char *const files[] = { "plan.json",         "README.txt",           "labels.json",
                                      "ct.nii.gz",         "labels.nii.gz",        "tracks.pp",
                                      "dose/boron.nii.gz", "dose/nitrogen.nii.gz", "dose/fast.nii.gz",
@@ -35,7 +37,7 @@ static bool join(char path[PATH_MAX], const char *folder, const char *name)
 
 /* ---- what goes into the folder ---------------------------------------------------------------------------------- */
 
-/* The volumes are compressed side by side; each part has its own error, the first one is told. */
+/* Volumes are compressed in parallel; each part has its own error, and the first one is reported. */
 enum { N_VOLUMES = 3 + PHANTOM_N_COMPONENTS };
 struct volume_job {
     char path[PATH_MAX];
@@ -100,7 +102,7 @@ static bool write_grids(const char *folder, const struct phantom_options *option
     return is_written;
 }
 
-static bool write_text(const char *folder, const char *name, char *text, struct error *err) /* takes text */
+static bool write_text(const char *folder, const char *name, char *text, struct error *err) /* consumes text */
 {
     char path[PATH_MAX];
     bool is_written = text &&
@@ -149,7 +151,7 @@ static bool is_ours(const char *name)
     return strcmp(name, "dose") == 0;
 }
 
-/* Counts the entries of folder/below ("" or "dose"); false when one is not a phantom's. */
+/* Counts the entries of folder/below ("" or "dose"); false if one is not a phantom's file. */
 static bool look_through(const char *folder, const char *below, size_t *n_entries, struct error *err)
 {
     char path[PATH_MAX];
@@ -174,7 +176,7 @@ static bool look_through(const char *folder, const char *below, size_t *n_entrie
     return is_clean;
 }
 
-/* Whether a phantom may go to folder; *is_filled: there is one already. */
+/* Checks that a phantom may be written to folder. is_filled: a phantom is already there. */
 static bool check_folder(const char *folder, bool replace, bool *is_filled, struct error *err)
 {
     struct stat what;
@@ -196,7 +198,7 @@ static bool check_folder(const char *folder, bool replace, bool *is_filled, stru
     return true;
 }
 
-/* Puts the finished folder in its place. */
+/* Renames the finished folder to its place. */
 static bool move_into_place(const char *partial, const char *folder, bool is_filled, struct error *err)
 {
     char old[PATH_MAX];

@@ -1,3 +1,4 @@
+/* Writes plan.json, labels.json and the README of the phantom. */
 #include "core/phantom/plan_text.h"
 
 #include <inttypes.h>

@@ -1,6 +1,6 @@
 #pragma once
-/* The words of the phantom's folder: plan.json, labels.json and a README for people. Each is NUL-terminated and the
- * caller's to free(); NULL and ERROR_MEMORY on failure. */
+/* The text files of the phantom's folder: plan.json, labels.json and a README for people. Each function returns a
+ * NUL-terminated text, freed by the caller; NULL and ERROR_MEMORY on failure. */
 #include "core/base/error.h"
 #include "core/phantom/phantom_options.h"
 

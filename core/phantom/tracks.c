@@ -1,3 +1,4 @@
+/* Makes the phantom's particle tracks by a random walk. */
 #include "core/phantom/tracks.h"
 
 #include <stdio.h>
@@ -7,13 +8,13 @@
 #include "core/phantom/depth_dose.h"
 #include "core/phantom/head.h"
 
-/* Made up, but in proportion: mean free paths in soft tissue by energy class (high, medium, low); the gammas' follow
- * from attenuation in water at about 2.2, 1 and 0.5 MeV. */
+/* Made-up values in plausible proportion: mean free paths in soft tissue by energy class (high, medium, low); those of
+ * gammas follow from attenuation in water at about 2.2, 1 and 0.5 MeV. */
 static const double neutron_path_mm[3] = { 35, 18, 10 };
 static const double gamma_path_mm[3] = { 210, 140, 100 };
-static const double capture_chance = 0.20;                /* of a low neutron, per collision */
+static const double capture_chance = 0.20;                /* of a low-energy neutron, per collision */
 static const double slow_down_chance[2] = { 0.55, 0.35 }; /* high to medium, medium to low, per collision */
-static const double beyond_head_mm = 40;                  /* how far what leaves is drawn */
+static const double beyond_head_mm = 40;                  /* length drawn outside the head for particles that leave */
 static const double lost_mm = 10;
 enum { MAX_COLLISIONS = 40, HIGH = 0, MEDIUM = 1, LOW = 2 };
 
@@ -39,7 +40,7 @@ static struct vec3 draw_direction(struct walk *walk)
     return vec3(r * cos(angle), r * sin(angle), z);
 }
 
-/* false when there is no room for more */
+/* false when the segments are full */
 static bool add_segment(struct walk *walk, struct vec3 from, struct vec3 to, enum track_class class)
 {
     if (walk->n_segments >= walk->n_limit)
@@ -55,12 +56,12 @@ static bool is_in_head(struct vec3 p)
     return phantom_label_at(p) != PHANTOM_AIR;
 }
 
-/* One free flight; moves *at. false when the particle has left the head or there is no room. */
+/* One free flight; moves *at. Returns false when the particle has left the head or the segments are full. */
 static bool fly(struct walk *walk, struct vec3 *at, struct vec3 direction, double path_mm, int class)
 {
     struct vec3 to = vec3_add(*at, vec3_scale(direction, path_mm));
     bool stays = is_in_head(to);
-    if (!stays) { /* drawn to a little beyond the surface: its distance by halving, the head is convex */
+    if (!stays) { /* draw to a little beyond the surface; bisection finds it, because the head is convex */
         double inside_mm = 0, outside_mm = path_mm;
         for (int i = 0; i < 30; i++) {
             double middle_mm = (inside_mm + outside_mm) / 2;
@@ -89,19 +90,19 @@ static void walk_neutron(struct walk *walk, int energy)
     double radius_mm = phantom_beam_radius_mm * sqrt(draw(walk)), angle = 2 * MATH_PI * draw(walk);
     struct vec3 start = vec3(radius_mm * cos(angle), radius_mm * sin(angle), phantom_source_z_lps_mm);
     struct vec3 at = start;
-    double top_mm = phantom_scalp_top_mm(at.x, at.y); /* and the bottom at its negative: the head is symmetric */
+    double top_mm = phantom_scalp_top_mm(at.x, at.y); /* the bottom is the negative of the top: the head is symmetric */
     at.z = fmax(top_mm - draw_path(walk, neutron_path_mm[energy]), -top_mm - beyond_head_mm);
     if (!add_segment(walk, start, at, (enum track_class)(TRACK_NEUTRON_HIGH + energy)) || !is_in_head(at))
         return;
     struct vec3 direction = vec3(0, 0, -1);
     for (int i = 0; i < MAX_COLLISIONS; i++) {
         if (energy == LOW && draw(walk) < capture_chance) {
-            walk_gamma(walk, at, draw(walk) < 0.6 ? HIGH : MEDIUM); /* hydrogen's 2.2 MeV, or boron's 0.48 MeV */
+            walk_gamma(walk, at, draw(walk) < 0.6 ? HIGH : MEDIUM); /* 2.2 MeV from hydrogen, or 0.48 MeV from boron */
             return;
         }
         if (energy < LOW && draw(walk) < slow_down_chance[energy])
             energy++;
-        /* the faster, the more it keeps its direction */
+        /* the higher the energy, the more of the direction is kept */
         double keep = energy == HIGH ? 1.5 : energy == MEDIUM ? 0.6 : 0.1;
         direction = vec3_normalize(vec3_add(vec3_scale(direction, keep), draw_direction(walk)));
         if (!fly(walk, &at, direction, draw_path(walk, neutron_path_mm[energy]), TRACK_NEUTRON_HIGH + energy))
@@ -109,7 +110,7 @@ static void walk_neutron(struct walk *walk, int energy)
     }
 }
 
-/* A short stroke outward from a point of the scalp. */
+/* A short segment outward from a point of the scalp. */
 static void add_lost(struct walk *walk)
 {
     struct vec3 unit = draw_direction(walk), axes = phantom_tissues[PHANTOM_SCALP].shape.semi_axes_mm;
@@ -123,8 +124,7 @@ size_t phantom_make_tracks(uint64_t seed, struct track_segment segments[PHANTOM_
     struct walk walk = { phantom_mix(seed ^ 0x747261636b73u), 0, segments, 0, PHANTOM_MAX_TRACKS - PHANTOM_N_LOST };
     add_segment(&walk, vec3(0, 0, phantom_source_z_lps_mm), phantom_tissues[PHANTOM_BRAIN].shape.centre_lps_mm,
                 TRACK_BEAM_LINE);
-    /* the paper's beam is 1 % fast, 89 % epithermal, 10 % thermal; fast ones are shown more often so that they are seen
-     */
+    /* the paper's beam is 1 % fast, 89 % epithermal, 10 % thermal; fast ones are made more often, to be visible */
     for (int history = 0; walk.n_segments < walk.n_limit; history++)
         walk_neutron(&walk, history % 10 == 0 ? LOW : history % 5 == 2 ? HIGH : MEDIUM);
     walk.n_limit = PHANTOM_MAX_TRACKS;

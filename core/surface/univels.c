@@ -26,11 +26,10 @@ static const uint8_t face_corners[FACES][4] = {
 
 struct univels_job {
     const struct mask *mask;
-    uint32_t corner_words; /* 64-bit words per row of size[0] + 1 corners */
-    uint64_t *used;        /* [size[2] + 1][size[1] + 1][corner_words] */
-    uint32_t *
-        first_vertex; /* [size[2] + 1][size[1] + 1], and one more at the end; counts of the rows, then running totals */
-    uint32_t *first_face; /* [size[2]][size[1]], and one more at the end */
+    uint32_t corner_words;  /* 64-bit words per row of size[0] + 1 corners */
+    uint64_t *used;         /* [size[2] + 1][size[1] + 1][corner_words] */
+    uint32_t *first_vertex; /* [size[2] + 1][size[1] + 1], and one more: counts of the rows, then running totals */
+    uint32_t *first_face;   /* [size[2]][size[1]], and one more at the end */
     bool is_mirrored;
     struct mesh *mesh;
     atomic_uint next;

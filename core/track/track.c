@@ -1,3 +1,4 @@
+/* Words of track classes. */
 #include "core/track/track.h"
 
 #include <stdlib.h>

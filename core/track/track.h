@@ -1,11 +1,11 @@
 #pragma once
-/* Particle tracks as straight segments with a class. */
+/* Particle tracks as straight segments with a class. Knows no file. */
 #include <stddef.h>
 #include <stdint.h>
 
 #include "core/math/vec.h"
 
-/* Seven particle classes and the beam's own line. */
+/* Seven particle classes, and the line of the beam itself. */
 enum track_class {
     TRACK_NEUTRON_HIGH,
     TRACK_NEUTRON_MEDIUM,
@@ -23,8 +23,8 @@ enum { TRACK_MAX_SEGMENTS = 2000000 };
 
 struct track_segment {
     float from_lps_mm[3], to_lps_mm[3];
-    uint8_t class; /* enum track_class; SERA's gammas have no energy code and are read as gamma-high, said so in the
-                      report */
+    uint8_t class; /* enum track_class; SERA's gammas have no energy code and are read as gamma-high, which the report
+                      says */
 };
 
 struct track_set {

@@ -1,3 +1,4 @@
+/* Grids and their maps; creates, shares, measures and samples volumes. */
 #include "core/volume/volume.h"
 
 #include <math.h>

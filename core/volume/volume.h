@@ -1,6 +1,6 @@
 #pragma once
-/* A voxel grid and its values: an image, a label layer or a dose component. Frozen once published.
- * Knows nothing of files, regions or doses. */
+/* A voxel grid with its values: an image, a label layer or a dose component. Frozen once published. Knows nothing of
+ * files, regions or doses. Any thread. */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -10,31 +10,31 @@
 enum { VOLUME_MAX_SIDE = 4096 };
 #define VOLUME_MAX_BYTES ((uint64_t)4 << 30)
 
-/* No voxel is further from the origin along any axis, as a scene's slices (proto/scene.json): no treatment room is as
- * large. */
+/* Limit on the distance of a voxel from the origin along any axis, equal to the limit of a scene's slices
+ * (proto/scene.json): no treatment room is larger. */
 #define GRID_FARTHEST_MM 10000.0
 
 struct grid {
-    uint32_t size[3]; /* voxels along i, j, k; each 1..VOLUME_MAX_SIDE */
+    uint32_t size[3]; /* number of voxels along i, j, k; each 1..VOLUME_MAX_SIDE */
     struct affine
-        lps_mm_from_ijk; /* voxel centres at whole indices; any orientation, either handedness, never singular */
-    struct affine ijk_from_lps_mm; /* its inverse; grid_init keeps the two in step */
+        lps_mm_from_ijk; /* voxel centres are at whole indices; any orientation, either handedness, never singular */
+    struct affine ijk_from_lps_mm; /* the inverse; grid_init keeps both consistent */
 };
 
-/* errors ERROR_RANGE a side out of range, a singular or not finite matrix (spacings outside 1e-4..1e4 mm included), a
- * voxel beyond GRID_FARTHEST_MM */
+/* Sets size and map. Errors: ERROR_RANGE a side out of range, a matrix that is singular or not finite or has spacings
+ * outside 1e-4..1e4 mm, a voxel beyond GRID_FARTHEST_MM. */
 NODISCARD bool grid_init(struct grid *grid, const uint32_t size[3], const struct affine *lps_mm_from_ijk,
                          struct error *err);
 size_t grid_n_voxels(const struct grid *grid);
 double grid_voxel_mm3(const struct grid *grid);
-bool grid_is_same(const struct grid *a,
-                  const struct grid *b); /* corners of the one lie within a hundredth of a voxel of the other's */
+/* True if the corners of both are within 0.01 voxel of each other. */
+bool grid_is_same(const struct grid *a, const struct grid *b);
 struct vec3 grid_spacing_mm(const struct grid *grid);    /* lengths of the three columns */
-struct box3 grid_bounds_lps_mm(const struct grid *grid); /* outer faces of the outermost voxels */
-/* Index axis (0, 1, 2) most nearly along the patient axis (0 = L, 1 = P, 2 = S). A permutation: axes are dealt out by
- * the largest remaining cosine. sign, if given, is +1 or -1: whether the index grows with the axis. */
+struct box3 grid_bounds_lps_mm(const struct grid *grid); /* to the outer faces of the outermost voxels */
+/* Index axis (0, 1, 2) nearest to a patient axis (0 = L, 1 = P, 2 = S). The three form a permutation, assigned by
+ * largest remaining cosine. sign, unless NULL, is +1 if the index grows along the patient axis, else -1. */
 int grid_index_axis(const struct grid *grid, int patient_axis, int *sign);
-/* Which side of the patient each index grows toward, as three letters of L R, P A, S I; "LPS" for a standard axial
+/* The patient side towards which each index grows, as three letters of L R, P A, S I; "LPS" for a standard axial
  * scan. */
 void grid_letters(const struct grid *grid, char letters[4]);
 
@@ -46,28 +46,28 @@ struct volume {
     enum voxel_type type;
     void *voxels;         /* [k][j][i], i fastest; raw values */
     double slope, offset; /* value = raw * slope + offset */
-    double low,
-        high; /* smallest and largest finite value; set by volume_measure, 0 and 0 before or when there is none */
+    double low, high; /* smallest and largest finite value, set by volume_measure; 0 and 0 before that, and without a
+                         finite value */
     _Atomic int references;
 };
 
-/* Zeroed voxels, slope 1, offset 0. One reference, the caller's. errors ERROR_RANGE, ERROR_LIMIT (VOLUME_MAX_BYTES),
- * ERROR_MEMORY */
+/* Creates a volume with all voxels 0, slope 1, offset 0. One reference, the caller's. Errors: ERROR_RANGE, ERROR_LIMIT
+ * (VOLUME_MAX_BYTES), ERROR_MEMORY. */
 NODISCARD struct volume *volume_create(const struct grid *grid, enum voxel_type type, struct error *err);
-/* The same with voxels that hold anything: for a caller who fills them all. Large ones come on huge pages where there
- * are any. */
+/* The same with uninitialized voxels, for a caller who writes them all. Large volumes use huge pages where
+ * available. */
 NODISCARD struct volume *volume_create_unset(const struct grid *grid, enum voxel_type type, struct error *err);
-/* The same with voxels that are there already, from malloc; takes them. */
+/* The same with voxels allocated by malloc; takes them over. */
 struct volume *volume_take(const struct grid *grid, enum voxel_type type, void *voxels);
 struct volume *volume_ref(const struct volume *volume);
 void volume_unref(const struct volume *volume);
 
-void volume_measure(struct volume *volume); /* before publishing */
+void volume_measure(struct volume *volume); /* sets low and high; call before publishing */
 double volume_value(const struct volume *volume, uint32_t i, uint32_t j, uint32_t k);
-/* Raw label at an index; 0 outside or where a float is not a label. */
+/* Raw label at an index; 0 outside the grid, and for a float that is no label. */
 uint16_t volume_label(const struct volume *volume, uint32_t i, uint32_t j, uint32_t k);
-/* Index of the voxel that holds a patient point; false outside the grid's outer faces. */
+/* Finds the voxel that contains a patient point; false outside the grid's outer faces. */
 bool volume_voxel_at(const struct volume *volume, struct vec3 point_lps_mm, uint32_t ijk[3]);
-/* Tri-linear between voxel centres, clamped to the outermost centres; false outside the outer faces or at a value that
- * is not finite. */
+/* Trilinear value between voxel centres, clamped to the outermost centres. Returns false outside the outer faces, or if
+ * a value is not finite. */
 bool volume_sample(const struct volume *volume, struct vec3 point_lps_mm, double *value);

@@ -1,6 +1,6 @@
 #pragma once
-/* Windows a scene can have (proto/scene.json): center and width in the image's own values, from neutrons per source
- * particle to becquerels. A wider window of a file is cut to them. */
-#define WINDOW_CENTER_FARTHEST 1e12 /* center lies within plus or minus this */
+/* Limits of a display window in a scene (proto/scene.json). Center and width are in the image's own values, which range
+ * from neutrons per source particle to becquerels. A wider window from a file is clamped to them. */
+#define WINDOW_CENTER_FARTHEST 1e12 /* center is within plus or minus this */
 #define WINDOW_NARROWEST 1e-15
 #define WINDOW_WIDEST 2e12

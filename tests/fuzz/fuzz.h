@@ -1,6 +1,6 @@
 #pragma once
-/* What every fuzz target includes. A target checks more than that nothing breaks: what a door lets in must come out of
- * it again unchanged, and what it refuses must come with a sentence. */
+/* Included by every fuzz target. Besides crashes, a target checks that accepted input can be written again unchanged,
+ * and that refused input comes with an error sentence. */
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>

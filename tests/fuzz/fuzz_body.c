@@ -1,5 +1,5 @@
-/* Where a chunked body ends, and a client's address behind a proxy. The end does not depend on how the bytes are cut.
- */
+/* HTTP bodies: the end of a chunked body, which must not depend on how the bytes are split; and the client's address
+ * behind a proxy. */
 #include "server/http/address.h"
 #include "server/http/body.h"
 #include "tests/fuzz/fuzz.h"

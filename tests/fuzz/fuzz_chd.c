@@ -1,4 +1,4 @@
-/* SERA's dose contours: header, table and pictures in one input, parted by form feeds. */
+/* SERA's dose contours: header, table and pictures in one input, separated by form feeds. */
 #include <math.h>
 
 #include "core/formats/sera_chd.h"

@@ -1,4 +1,4 @@
-/* One DICOM file: as bytes, by each extent and every way to ask; and as the only file of a folder, scanned and read as
+/* One DICOM file: parsed to each extent and asked for everything; and as the only file of a folder, scanned and read as
  * a series. */
 #include <stdio.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include "core/formats/dicom/dicom_series.h"
 #include "tests/fuzz/fuzz.h"
 
-enum { MOST_PIXELS = 1 << 20 }; /* decoded; what is larger only takes longer */
+enum { MOST_PIXELS = 1 << 20 }; /* larger frames are not decoded: they only take longer */
 
 static void ask(const struct dicom_item *item, int depth)
 {
@@ -49,7 +49,7 @@ static void look_at_pixels(const struct dicom_file *file)
     size_t n = (size_t)pixels.rows * pixels.columns * (pixels.bits_allocated / 8);
     if (n > MOST_PIXELS)
         return;
-    void *out = malloc(n); /* exactly as large: one more is seen */
+    void *out = malloc(n); /* allocated exactly, so that one byte more is detected */
     for (uint32_t f = 0; out && f < pixels.n_frames && f < 3; f++)
         REQUIRE(dicom_pixels_read(file, f, out, &err) || err.text[0]);
     free(out);

@@ -1,5 +1,6 @@
-/* RT objects, segmentations, and contours: the first byte says which. A DICOM file is read as all four kinds and its
- * regions are filled, on an image that may not hold them, too; else the bytes are points, contours and a grid. */
+/* RT objects, segmentations and contours, chosen by the first byte. A DICOM file is read as all four kinds, and its
+ * regions are filled, also on an image that may not contain them. Other input gives points, contours and a grid
+ * directly. */
 #include "core/formats/dicom/dicom_rtdose.h"
 #include "core/formats/dicom/dicom_rtplan.h"
 #include "core/formats/dicom/dicom_rtstruct.h"

@@ -1,4 +1,4 @@
-/* Merge patches on scene and view, from WebSocket and HTTP bodies: first byte odd patches the view instead of the
+/* Merge patches on scene and view, from WebSocket and HTTP bodies. An odd first byte patches the view instead of the
  * scene. */
 #include "server/wire/document.h"
 #include "tests/fuzz/fuzz.h"
@@ -11,7 +11,7 @@ static cJSON *plan_of_scenes(void)
     return json_read(text, strlen(text), NULL);
 }
 
-/* What a renderer would give for a plan with three regions. */
+/* Defaults that a renderer could give for a plan with three regions. */
 static cJSON *plan_defaults(void)
 {
     struct scene scene = scene_default;

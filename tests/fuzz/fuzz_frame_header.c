@@ -1,4 +1,4 @@
-/* The header in front of every picture (proto/frame.md), as a reader outside would get it. */
+/* The header of a frame (proto/frame.md), as a reader outside the project receives it. */
 #include "server/wire/frame_header.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -16,7 +16,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     REQUIRE(header.width_px > 0 && header.height_px > 0);
     REQUIRE(header.scale_percent >= 10 && header.scale_percent <= 100);
 
-    /* written again it is what came, but for the length, which says what we write */
+    /* written again it must be the same, except for the length, which is the length we write */
     uint8_t bytes[FRAME_HEADER_BYTES];
     frame_header_write(&header, bytes);
     REQUIRE(memcmp(bytes, data, 6) == 0);

@@ -1,5 +1,5 @@
-/* The head of a first request. What is refused has a sentence; a beginning is waited for, or refused as the whole is.
- */
+/* The head of a connection's first request. A refusal needs a sentence; an incomplete head must be waited for, or be
+ * refused like the whole. */
 #include "server/http/head.h"
 #include "server/wire/fields.h"
 #include "tests/fuzz/fuzz.h"

@@ -1,4 +1,4 @@
-/* SERA's file that says what lies inside what. */
+/* SERA's hierarchy file: which body lies inside which. */
 #include "core/formats/hierarchy.h"
 #include "tests/fuzz/fuzz.h"
 

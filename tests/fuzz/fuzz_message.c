@@ -1,4 +1,4 @@
-/* The WebSocket's text messages. What is accepted must survive writing and reading again. */
+/* Text messages of the WebSocket. An accepted message must survive writing and reading again. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,7 +15,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
         char *text = message_write(&message);
         if (message_read(text, strlen(text), from_client, &again, &problem))
             message_finish(&again);
-        else if (problem.type != PROBLEM_TOO_LARGE) /* written with every field it may grow past the limit */
+        else if (problem.type != PROBLEM_TOO_LARGE) /* written with every field, it may exceed the size limit */
             abort();
         free(text);
         message_finish(&message);

@@ -1,5 +1,5 @@
-/* NIfTI-1 and -2, packed or not: the first byte says what it is read for, and 8 and more that header and voxels are two
- * files. */
+/* NIfTI-1 and NIfTI-2, compressed or not. The first byte says what the file is read as; from 8 on, header and voxels
+ * are two files. */
 #include "core/formats/nifti.h"
 #include "tests/fuzz/fuzz.h"
 

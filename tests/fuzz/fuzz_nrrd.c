@@ -1,4 +1,5 @@
-/* NRRD: the first byte says what it is read for; a header that names a data file is given the same bytes once more. */
+/* NRRD. The first byte says what the file is read as; a header that names a data file gets the same bytes as that
+ * file. */
 #include "core/formats/nrrd.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -1,9 +1,9 @@
-/* The stream between daemon and renderer, which a hostile plan may have taken over: the first byte says in what pieces
- * it arrives, its lowest bit which way. */
+/* The packet stream between daemon and renderer, which a hostile plan may have taken over. The first byte says in what
+ * pieces it arrives, and its lowest bit in which direction. */
 #include "server/wire/packet.h"
 #include "tests/fuzz/fuzz.h"
 
-/* Whatever came whole comes out of packet_write unchanged. */
+/* A complete packet must come out of packet_write unchanged. */
 static void check(const struct packet *packet)
 {
     REQUIRE(packet->json);
@@ -12,7 +12,7 @@ static void check(const struct packet *packet)
     struct error err = { 0 };
     struct packet_frame frame;
     uint8_t *bytes = packet_write(packet->json, packet->blob, packet->n_blob, &n_bytes, &err);
-    /* numbers may be longer than they came: then it is too large, and nothing else */
+    /* numbers may be written longer than they came; then the packet may be too large, and nothing else may be wrong */
     REQUIRE(bytes ? n_bytes >= PACKET_HEAD_BYTES + packet->n_blob : err.code == ERROR_LIMIT);
     REQUIRE(!bytes || packet->n_blob == 0 ||
             memcmp(bytes + n_bytes - packet->n_blob, packet->blob, packet->n_blob) == 0);

@@ -1,4 +1,4 @@
-/* plan.json and the lists of label names: first byte odd reads names. */
+/* plan.json; with an odd first byte, the lists of label names. */
 #include "core/formats/plan_json.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -11,7 +11,7 @@ static void plan_file(const uint8_t *data, size_t n)
         REQUIRE(file->n_images <= PLAN_FILE_MAX_IMAGES && file->n_doses <= PLAN_FILE_MAX_DOSES &&
                 file->n_beams <= PLAN_FILE_MAX_BEAMS);
         REQUIRE(file->n_regions <= PLAN_FILE_MAX_PARTS && file->n_tracks <= PLAN_FILE_MAX_TRACKS);
-        /* no name that is let through leads out of the folder */
+        /* no accepted path leads out of the folder */
         for (size_t i = 0; i < file->n_images; i++)
             REQUIRE(folder_check_name(file->images[i].path, &err));
         for (size_t i = 0; i < file->n_regions; i++)

@@ -1,6 +1,6 @@
-/* A whole plan, read and put together: a folder with a small file of every kind, and a plan.json that names any of them
- * in any place, any number of times. First byte even: the rest is the plan.json; odd: pairs of bytes name entries, the
- * list and its options, then the file. */
+/* A whole plan, read and assembled: a folder with a small file of every kind, and a plan.json that names any of them
+ * anywhere, any number of times. Even first byte: the rest is the plan.json. Odd: pairs of bytes choose entries, first
+ * the list and its options, then the file. */
 #include "core/formats/plan_json.h"
 #include "core/load/load.h"
 #include "core/load/summary.h"
@@ -12,7 +12,7 @@
 
 enum { N_DOSES = PLAN_MAX_DOSES, MOST_ENTRIES = 80, TEXT_SIZE = 1 << 16 };
 
-/* Seeds of other targets, without the bytes that speak to the target alone. */
+/* Seeds of other targets, without the leading bytes that only control the target. */
 static const struct {
     const char *name, *seed;
     size_t skip;
@@ -33,7 +33,7 @@ static const struct {
               { "rt/dose.dcm", "dicom_rt/dose", 1 },
               { "rt/plan.dcm", "dicom_rt/plan", 1 },
               { "rt/structures.dcm", "dicom_rt/structures", 1 } };
-/* What an entry may name: those, what lies beside them, folders, and nothing. */
+/* Paths that an entry may name: those files, missing ones, folders, and the empty path. */
 static const char *const paths[] = {
     "labels.nii", "mask.nii",    "image.nii.gz", "layers.seg.nrrd",   "image.nrrd",   "head.uvh", "mr.qhd",
     "mr.qim",     "run.rst",     "line.dose",    "tracks.pp",         "colors.cmap",  "head.rsc", "tree.info",
@@ -118,7 +118,7 @@ static void put_entry(struct text *text, enum list list, unsigned options, const
     }
 }
 
-/* Lists of entries from pairs of bytes; plan.json has each list once. */
+/* Makes lists of entries from pairs of bytes; plan.json has each list once. */
 static void put_plan(struct text *text, const uint8_t *pairs, size_t n)
 {
     static const char *const names[N_LISTS] = {

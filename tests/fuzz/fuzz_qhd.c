@@ -1,4 +1,4 @@
-/* SERA's image header; the first two bytes, low one first, say how many bytes of pixels come with it. */
+/* SERA's image header. The first two bytes (little-endian) give the number of pixel bytes that come with it. */
 #include "core/formats/sera_qhd.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -18,13 +18,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     REQUIRE(qhd.pixel_bytes == 1 || qhd.pixel_bytes == 2);
     REQUIRE(qhd.n_locations <= QHD_MAX_LOCATIONS);
 
-    pixels.data = malloc(pixels.size + 1); /* not one byte is needed for none */
+    pixels.data = malloc(pixels.size + 1); /* malloc(0) may be NULL */
     REQUIRE(pixels.data);
     memset(pixels.data, 7, pixels.size);
     bool is_doubtful = false;
     struct volume *volume = qhd_read_pixels(&qhd, &pixels, "fuzz.qhd", "fuzz.qim", &is_doubtful, &report, &err);
     if (volume) {
-        /* the number of bytes is believed */
+        /* the number of bytes must match the header */
         REQUIRE(grid_n_voxels(&volume->grid) * qhd.pixel_bytes == pixels.size);
         volume_unref(volume);
     } else {

@@ -1,5 +1,5 @@
-/* A room with two browsers: each line of the input is a message or an event. Whatever they say, no more than two frames
- * are unshown, sequences count up, the scene's revision never goes back, and no clock is asked for in the past. */
+/* A room with two browsers: each line of the input is a message or an event. Invariants: at most two frames
+ * unacknowledged, sequence numbers count up, the scene's revision never decreases, no timer is set in the past. */
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/room/room.h"
@@ -87,7 +87,7 @@ static void answer(struct room *room, bool has_failed, int64_t now_us)
     room_picture_came(room, request, picture, now_us);
 }
 
-/* What the page counts as shown must be what the room takes: only whole and true acknowledgements. */
+/* Counts an acknowledgement as the room must: only if that frame was sent and none after it is acknowledged yet. */
 static void follow_acknowledgement(struct page *page, const char *text, size_t n)
 {
     cJSON *json = json_read(text, n, NULL);
@@ -118,7 +118,7 @@ static void plan_ready(struct room *room, int64_t now_us)
 static void take_line(struct room *room, const char *line, size_t n, int64_t *now_us)
 {
     switch (line[0]) {
-    case '{': /* from the first page; with a space in front, from the second */
+    case '{': /* a message of the first page; with a blank in front, of the second */
     case ' ': {
         struct page *page = &pages[line[0] == ' '];
         if (page->is_closed)
@@ -148,7 +148,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
                                               send_frame, close_connection, NULL };
     struct room *room = room_create("7q4k-m2wz", "head", &callbacks, NULL);
     int64_t now_us = 1000000;
-    log_start("fuzz", LOG_ERROR); /* pictures that fail are the everyday here */
+    log_start("fuzz", LOG_ERROR); /* failing pictures are normal here */
     memset(pages, 0, sizeof pages);
     n_asked = n_answered = 0;
     plan_ready(room, now_us);

@@ -1,4 +1,4 @@
-/* SERA's preferences; the first byte chooses the kind of file. */
+/* SERA's preference files; the first byte chooses the kind. */
 #include <math.h>
 
 #include "core/formats/sera_rsc.h"

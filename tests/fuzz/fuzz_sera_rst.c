@@ -1,4 +1,4 @@
-/* SERA's dose files, unpacked text. */
+/* SERA's dose files (.rst), as uncompressed text. */
 #include <math.h>
 
 #include "core/formats/sera_rst.h"

@@ -1,4 +1,4 @@
-/* Bare zlib streams, and a file of SERA's that may be packed either way. */
+/* Bare zlib streams, and files of SERA that may be compressed or not. */
 #include "core/formats/zlib_stream.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     bool is_read = zlib_all(data, n, "fuzz.sz", LIMIT, &out, &err);
     REQUIRE(is_read ? out.size <= LIMIT && out.data[out.size] == 0
                     : !out.data && err.code != ERROR_NONE && err.text[0] != '\0');
-    if (is_read && out.size > 0) { /* exactly as much is enough, one byte less is not */
+    if (is_read && out.size > 0) { /* a limit of exactly the size is enough, one byte less is not */
         REQUIRE(zlib_all(data, n, "fuzz.sz", out.size, &again, &err) && again.size == out.size);
         bytes_free(&again);
         REQUIRE(!zlib_all(data, n, "fuzz.sz", out.size - 1, &again, &err) && err.code == ERROR_LIMIT);

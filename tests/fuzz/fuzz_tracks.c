@@ -1,4 +1,4 @@
-/* seraMC's particle tracks. */
+/* Particle tracks of seraMC. */
 #include <math.h>
 
 #include "core/formats/sera_pp.h"
@@ -10,7 +10,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     struct report report = { 0 };
     struct error err = { 0 };
     if (pp_parse(data, n, "fuzz.pp", &set, &report, &err)) {
-        REQUIRE(set.n_segments <= TRACK_MAX_SEGMENTS); /* none when all are of no length: said in the report */
+        REQUIRE(set.n_segments <= TRACK_MAX_SEGMENTS); /* 0 if all segments have zero length, which the report says */
         struct box3 patient = { { -80, -100, -60 }, { 80, 100, 120 } };
         double mm = pp_unit_mm(&set, 0, 0, &patient, "fuzz.pp", &report);
         REQUIRE(isfinite(mm) && mm > 0);

@@ -1,4 +1,4 @@
-/* An archive somebody sent: everything is read and checked, nothing is written. */
+/* An uploaded archive: everything is read and checked, nothing is written. */
 #define _GNU_SOURCE
 #include <sys/mman.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-/* SERA's univel header, both versions; the univels themselves are as many bytes as it asks for. */
+/* SERA's univel header, both versions; the univels are as many bytes as the header requires. */
 #include "core/formats/sera_uvh.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -1,17 +1,17 @@
-/* What a WebSocket client sends. Read in one piece and byte by byte it gives the same events; messages keep to their
- * limits, texts are UTF-8 by another reading, and nothing comes after the end. */
+/* Bytes from a WebSocket client. Parsed in one piece and byte by byte they must give the same events; messages stay
+ * within their limits, texts are UTF-8 by an independent check, and no event follows the end. */
 #include "server/ws/parser.h"
 #include "tests/fuzz/fuzz.h"
 
 enum { LIMIT = 300, MOST_EVENTS = 4096 };
 
-struct told { /* an event, and its bytes in short */
+struct told { /* an event and a digest of its bytes */
     enum ws_event_type type;
     size_t n;
     unsigned code, sum;
 };
 
-/* RFC 3629, read by decoding: shortest form, no surrogates, at most U+10FFFF. */
+/* UTF-8 check by RFC 3629, by decoding: shortest form, no surrogates, at most U+10FFFF. */
 static bool is_utf8(const uint8_t *bytes, size_t n)
 {
     for (size_t i = 0; i < n;) {
