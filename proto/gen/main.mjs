@@ -9,6 +9,7 @@
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { checkedDocuments, checkedMessages } from './check.mjs';
 import { sceneHeader, sceneSource } from './scene_c.mjs';
 import { wireHeader, wireSource } from './wire_c.mjs';
 import { wireScript } from './wire_js.mjs';
@@ -20,8 +21,8 @@ import { reportCodes } from './report_codes.mjs';
 
 const proto = join(dirname(fileURLToPath(import.meta.url)), '..');
 const read = (name) => JSON.parse(readFileSync(join(proto, name), 'utf8'));
-const scene = read('scene.json');
-const messages = read('messages.json');
+const scene = checkedDocuments(read('scene.json'));
+const messages = checkedMessages(read('messages.json'));
 const problems = read('problems.json');
 const shaders = readShaders(join(proto, '../core/render/gl/shaders'));
 const api = openapi(read('http.json'), scene, '1');

@@ -3,7 +3,7 @@ export const upper = (text) => text.replace(/[^a-z0-9]+/gi, '_').toUpperCase();
 export const lower = (text) => text.replace(/[^a-z0-9]+/gi, '_').toLowerCase();
 export const notice = '/* Generated from proto/; change it there. */\n';
 
-/** C declaration of one field inside a struct; prefix is that of enums and objects of the file the field is in. */
+/** C declaration of a field in a struct. prefix begins the names of the enums and objects of the field's description. */
 export function declaration(field, prefix) {
   const has = field.nullable && field.type !== 'json' ? `    bool has_${field.name};\n` : '';
   const about = ` /* ${field.about} */`;
@@ -16,9 +16,10 @@ export function declaration(field, prefix) {
     case 'color': return line(`uint32_t ${field.name}_rgb`); // 0xrrggbb
     case 'id': return line(`char ${field.name}[64]`);
     case 'text': return line(`char ${field.name}[${textBytes(field)}]`);
-    case 'vec3': return line(`struct vec3 ${field.name}`);
+    case 'vec3': case 'direction': return line(`struct vec3 ${field.name}`);
     case 'size': return line(`int ${field.name}[2]`);
     case 'object': return line(`struct ${prefix}_${field.object} ${field.name}`);
+    case 'list': return `    size_t n_${field.name};\n    struct ${prefix}_${field.object} *${field.name};${about}\n`;
     case 'map': return `    size_t n_${field.name};\n    struct ${prefix}_${field.object}_entry *${field.name};${about}\n`;
     case 'patch': return line(`char *${field.name}_json`); // owned text, NULL: none
     case 'json': return line(`cJSON *${field.name}`);
@@ -38,10 +39,10 @@ export function initializer(field, prefix, objects) {
     case 'enum': return value === undefined ? '0' : `${upper(prefix)}_${upper(field.enum)}_${upper(value)}`;
     case 'color': return `0x${value.slice(1)}`;
     case 'id': case 'text': return JSON.stringify(value ?? '');
-    case 'vec3': return '{ 0, 0, 0 }';
+    case 'vec3': case 'direction': return `{ ${(value ?? [0, 0, 0]).join(', ')} }`;
     case 'size': return `{ ${value[0]}, ${value[1]} }`;
     case 'object': return objectInitializer(objects[field.object], prefix, objects);
-    case 'map': case 'patch': case 'json': return 'NULL';
+    case 'list': case 'map': case 'patch': case 'json': return 'NULL';
     default: throw new Error(field.type);
   }
 }

@@ -1,12 +1,17 @@
-// reference.html: the same description for people.
+// reference.html: everything that proto/ describes, as a page for people.
 const escape = (text) => String(text).replace(/[&<>"]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' })[c]);
+
+const aThing = (word) => `${/^[aeiou]/.test(word) ? 'an' : 'a'} ${word}`;
 
 function typeWords(field, enums) {
   switch (field.type) {
     case 'enum': return enums[field.enum].values.map(([word]) => `<code>${escape(word)}</code>`).join(' or ');
     case 'object': return `<a href="#object-${field.object}">${field.object}</a>`;
-    case 'map': return `map from id to <a href="#object-${field.object}">${field.object}</a>, at most ${field.max_items}`;
+    case 'list': return `list of <a href="#object-${field.object}">${field.object}</a>, at most ${field.max_items}; a patch replaces it whole`;
+    case 'map': return `map from ${field.names ? `the id of ${aThing(field.names)} of the plan` : 'id'} to <a href="#object-${field.object}">${field.object}</a>, at most ${field.max_items}`;
+    case 'id': return field.names ? `id of ${aThing(field.names)} of the plan` : 'id';
     case 'vec3': return `three numbers${field.unit ? ` (${field.unit})` : ''}, patient LPS`;
+    case 'direction': return 'three numbers, patient LPS: a direction, of any length but 0';
     case 'size': return 'width and height in pixels';
     case 'patch': return 'merge patch';
     case 'json': return 'object';

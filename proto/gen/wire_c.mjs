@@ -1,7 +1,19 @@
-// wire_gen.h and wire_gen.c: field tables for server/wire/fields.c, and the message structs.
+// Field tables for server/wire/fields.h: of documents (scene and view), and of messages with their structs (wire_gen.h
+// and wire_gen.c).
+import { namesSomething } from './check.mjs';
 import { declaration, enumDeclaration, lower, member, notice, objectInitializer, textBytes, upper } from './names.mjs';
 
 const structOf = (message) => `message_${lower(message.name)}`;
+
+/** Declarations of the tables of a checked description of documents. */
+export function tablesHeader(description, prefix) {
+  let text = '';
+  for (const name of Object.keys(description.enums)) text += `extern const struct field_words ${prefix}_${name}_words;\n`;
+  for (const name of Object.keys(description.references)) text += `extern const struct field_reference ${prefix}_${name}_reference;\n`;
+  for (const name of Object.keys(description.objects)) text += `extern const struct field_object ${prefix}_${name}_object;\n`;
+  for (const name of Object.keys(description.documents)) text += `extern const struct field_object ${name}_object;\n`;
+  return text;
+}
 
 export function wireHeader(scene, messages) {
   let text = `#pragma once\n${notice}#include <stdint.h>\n\n#include "scene.h"\n#include "server/wire/fields.h"\n\n`;
@@ -10,10 +22,7 @@ export function wireHeader(scene, messages) {
     text += enumDeclaration(name, description, 'wire');
     text += `extern const struct field_words wire_${name}_words;\n\n`;
   }
-  for (const name of Object.keys(scene.enums)) text += `extern const struct field_words scene_${name}_words;\n`;
-  for (const name of Object.keys(scene.objects)) text += `extern const struct field_object scene_${name}_object;\n`;
-  for (const name of Object.keys(scene.documents)) text += `extern const struct field_object ${name}_object;\n`;
-  text += '\n';
+  text += `${tablesHeader(scene, 'scene')}\n`;
   for (const message of messages.messages)
     text += `/* ${message.from}: ${message.about} */\nstruct ${structOf(message)} {\n${message.fields.map((f) => declaration(f, 'wire')).join('')}};\n\n`;
   text += `enum message_type {\n${messages.messages.map((m) => `    MESSAGE_${upper(m.name)},`).join('\n')}\n    MESSAGE_N_TYPES\n};\n\n`;
@@ -23,7 +32,7 @@ export function wireHeader(scene, messages) {
   return text;
 }
 
-const typeNames = { bool: 'BOOL', number: 'NUMBER', integer: 'INTEGER', enum: 'ENUM', color: 'COLOR', id: 'ID', text: 'TEXT', vec3: 'VEC3', size: 'SIZE', object: 'OBJECT', map: 'MAP', patch: 'PATCH', json: 'JSON' };
+const typeNames = { bool: 'BOOL', number: 'NUMBER', integer: 'INTEGER', enum: 'ENUM', color: 'COLOR', id: 'ID', text: 'TEXT', vec3: 'VEC3', direction: 'DIRECTION', size: 'SIZE', object: 'OBJECT', list: 'LIST', map: 'MAP', patch: 'PATCH', json: 'JSON' };
 
 function fieldRow(f, structName, prefix) {
   const parts = [`.name = "${f.name}"`, `.type = FIELD_${typeNames[f.type]}`, `.offset = offsetof(struct ${structName}, ${member(f)})`];
@@ -33,7 +42,10 @@ function fieldRow(f, structName, prefix) {
   if (f.min !== undefined) parts.push(`.min = ${f.min}`);
   if (f.max !== undefined) parts.push(`.max = ${f.max}`);
   if (f.type === 'enum') parts.push(`.words = &${prefix}_${f.enum}_words`);
-  if (f.type === 'object' || f.type === 'map') parts.push(`.object = &${prefix}_${f.object}_object`);
+  if (f.object) parts.push(`.object = &${prefix}_${f.object}_object`);
+  if (f.names) parts.push(`.names = &${prefix}_${f.names}_reference`);
+  if (f.type === 'list')
+    parts.push(`.max_items = ${f.max_items}`, `.count_offset = offsetof(struct ${structName}, n_${f.name})`, `.entry_size = sizeof(struct ${prefix}_${f.object})`);
   if (f.type === 'map')
     parts.push(`.max_items = ${f.max_items}`, `.count_offset = offsetof(struct ${structName}, n_${f.name})`,
       `.entry_size = sizeof(struct ${prefix}_${f.object}_entry)`, `.value_offset = offsetof(struct ${prefix}_${f.object}_entry, value)`);
@@ -41,10 +53,10 @@ function fieldRow(f, structName, prefix) {
   return `    { ${parts.join(', ')} },`;
 }
 
-function table(tableName, structName, description, prefix, defaults) {
+function table(tableName, structName, description, prefix, defaults, objects) {
   const rows = description.fields.map((f) => fieldRow(f, structName, prefix)).join('\n');
   return `static const struct field ${tableName}_fields[] = {\n${rows}\n};\n` +
-    `const struct field_object ${tableName}_object = { "${description.name ?? tableName}", ${tableName}_fields, ${description.fields.length}, sizeof(struct ${structName}), &${defaults} };\n\n`;
+    `const struct field_object ${tableName}_object = { "${description.name ?? tableName}", ${tableName}_fields, ${description.fields.length}, sizeof(struct ${structName}), &${defaults}, ${namesSomething(description, objects)} };\n\n`;
 }
 
 function words(name, description, prefix) {
@@ -53,16 +65,24 @@ function words(name, description, prefix) {
     `const struct field_words ${prefix}_${name}_words = { ${prefix}_${name}_list, ${description.values.length} };\n\n`;
 }
 
+/** Definitions of the tables of a checked description of documents. */
+export function tablesSource(description, prefix) {
+  let text = '';
+  for (const [name, words_] of Object.entries(description.enums)) text += words(name, words_, prefix);
+  for (const [name, { list }] of Object.entries(description.references)) text += `const struct field_reference ${prefix}_${name}_reference = { "${name}", "${list}" };\n\n`;
+  for (const [name, object] of Object.entries(description.objects)) text += table(`${prefix}_${name}`, `${prefix}_${name}`, object, prefix, `${prefix}_${name}_default`, description.objects);
+  for (const [name, document] of Object.entries(description.documents)) text += table(name, name, document, prefix, `${name}_default`, description.objects);
+  return text;
+}
+
 export function wireSource(scene, messages) {
   let text = `${notice}#include "wire_gen.h"\n\n#include <stddef.h>\n\n`;
-  for (const [name, description] of Object.entries(scene.enums)) text += words(name, description, 'scene');
   for (const [name, description] of Object.entries(messages.enums)) text += words(name, description, 'wire');
-  for (const [name, object] of Object.entries(scene.objects)) text += table(`scene_${name}`, `scene_${name}`, object, 'scene', `scene_${name}_default`);
-  for (const [name, document] of Object.entries(scene.documents)) text += table(name, name, document, 'scene', `${name}_default`);
+  text += tablesSource(scene, 'scene');
   for (const message of messages.messages) {
     const name = structOf(message);
     text += `static const struct ${name} ${name}_default = ${objectInitializer(message, 'wire', {})};\n`;
-    text += table(name, name, message, 'wire', `${name}_default`).replace(/^const struct field_object/m, 'static const struct field_object');
+    text += table(name, name, message, 'wire', `${name}_default`, {}).replace(/^const struct field_object/m, 'static const struct field_object');
   }
   const rows = messages.messages.map((m) => `    [MESSAGE_${upper(m.name)}] = { "${m.name}", ${m.from === 'client'}, offsetof(struct message, ${lower(m.name)}), &${structOf(m)}_object },`);
   return text + `const struct message_description message_descriptions[MESSAGE_N_TYPES] = {\n${rows.join('\n')}\n};\n`;

@@ -1,10 +1,14 @@
-// wire.js: the description as data; web/js/wire/check.js reads it.
+// wire.js: the descriptions as data for the page; web/js/wire/check.js reads them.
+const wordsOf = (enums) => Object.fromEntries(Object.entries(enums).map(([name, { values }]) => [name, values.map(([word]) => word)]));
+
+/** Words of enums and fields of objects, of a checked description of documents. */
+export function tables({ enums, objects, documents }) {
+  return { enums: wordsOf(enums), objects: Object.fromEntries(Object.entries({ ...objects, ...documents }).map(([name, { fields }]) => [name, fields])) };
+}
+
 export function wireScript(scene, messages) {
-  const enums = {};
-  for (const group of [scene.enums, messages.enums])
-    for (const [name, description] of Object.entries(group)) enums[name] = description.values.map(([word]) => word);
-  const objects = {};
-  for (const group of [scene.objects, scene.documents]) for (const [name, object] of Object.entries(group)) objects[name] = object.fields;
+  const { enums, objects } = tables(scene);
+  Object.assign(enums, wordsOf(messages.enums));
   const table = {};
   for (const message of messages.messages) table[message.name] = { from: message.from, fields: message.fields };
   return '// Generated from proto/; change it there.\n' +

@@ -8,6 +8,7 @@
 
 #include "core/base/mem.h"
 #include "server/room/parts.h"
+#include "server/wire/json_merge.h"
 #include "server/wire/message.h"
 
 static const char room_is_closed[] = "the room is closed";
@@ -69,7 +70,7 @@ static void renew_scene(struct room *room)
 {
     cJSON *scene = room->scene ? scene_document_renew(room->plan, room->defaults, room->scene)
                                : cJSON_Duplicate(room->defaults, true);
-    if (!room->scene || !cJSON_Compare(scene, room->scene, true))
+    if (!room->scene || !json_equal(scene, room->scene))
         room->revision++;
     cJSON_Delete(room->scene);
     room->scene = scene;
@@ -136,7 +137,7 @@ static bool apply_patch(struct room *room, const cJSON *patch, struct member *by
     cJSON *scene = scene_document_patch(room->plan, room->defaults, room->scene, patch, problem);
     if (!scene)
         return false;
-    bool has_changed = !cJSON_Compare(scene, room->scene, true);
+    bool has_changed = !json_equal(scene, room->scene);
     cJSON_Delete(room->scene);
     room->scene = scene;
     if (has_changed) {

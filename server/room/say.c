@@ -6,6 +6,7 @@
 #include "server/room/parts.h"
 #include "server/wire/document.h"
 #include "server/wire/message.h"
+#include "server/wire/patch.h"
 
 static void copy_text(char *to, size_t size, const char *from)
 {
@@ -87,7 +88,7 @@ void say_plan(struct room *room)
 
 void say_scene(struct room *room, const cJSON *patch, struct member *by, uint32_t input, bool to_all)
 {
-    cJSON *copy = document_told_patch(room->scene, patch);
+    cJSON *copy = patch_told(room->scene, patch);
     struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->revision, .patch = copy } };
     if (by)
         copy_text(message.scene.by, sizeof message.scene.by, by->id);

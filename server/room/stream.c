@@ -8,6 +8,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/room/parts.h"
+#include "server/wire/json_merge.h"
 
 enum { STILL_QUALITY = 92 };
 static const int64_t still_after_us = ROOM_STILL_AFTER_MS * INT64_C(1000);
@@ -101,7 +102,7 @@ void stream_destroy(struct room *room, struct stream *stream)
 
 bool stream_set_view(struct room *room, struct stream *stream, cJSON *view)
 {
-    if (cJSON_Compare(stream->view, view, true)) {
+    if (json_equal(stream->view, view)) {
         cJSON_Delete(view);
         return false;
     }

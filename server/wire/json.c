@@ -125,26 +125,6 @@ char *json_write(const cJSON *json)
     return text;
 }
 
-cJSON *json_merge(const cJSON *target, const cJSON *patch)
-{
-    if (!cJSON_IsObject(patch))
-        return cJSON_Duplicate(patch, true);
-    cJSON *merged = cJSON_IsObject(target) ? cJSON_Duplicate(target, true) : cJSON_CreateObject();
-    for (const cJSON *item = patch->child; item; item = item->next) {
-        cJSON *old = cJSON_GetObjectItemCaseSensitive(merged, item->string);
-        if (cJSON_IsNull(item)) {
-            cJSON_DeleteItemFromObjectCaseSensitive(merged, item->string);
-            continue;
-        }
-        cJSON *value = json_merge(old, item);
-        if (old)
-            cJSON_ReplaceItemInObjectCaseSensitive(merged, item->string, value);
-        else
-            cJSON_AddItemToObject(merged, item->string, value);
-    }
-    return merged;
-}
-
 const char *json_text(const cJSON *object, const char *name)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);

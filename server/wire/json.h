@@ -17,9 +17,6 @@ NODISCARD char *json_write(const cJSON *json);
 /* The same; NULL when there is no memory. For documents whose size others decide. */
 NODISCARD char *json_print(const cJSON *json);
 
-/* RFC 7396: target (may be NULL) with patch applied, as a new document. Neither argument changes. */
-NODISCARD cJSON *json_merge(const cJSON *target, const cJSON *patch);
-
 const char *json_text(const cJSON *object, const char *name);               /* NULL when absent or no string */
 double json_number(const cJSON *object, const char *name, double fallback); /* fallback when absent or no number */
 bool json_flag(const cJSON *object, const char *name, bool fallback);

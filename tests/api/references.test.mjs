@@ -8,13 +8,13 @@ import { Client } from './ws_client.mjs';
 const proto = JSON.parse(readFileSync(new URL('../../proto/scene.json', import.meta.url), 'utf8'));
 let daemon, url, api, plan;
 
-/** Every field of the scene that holds an id, and every map by ids: the patch that puts an id there, and where it stands. */
+/** Every field of the scene that names something of the plan: the patch that puts an unknown id there, and where it stands. */
 function references(fields = proto.documents.scene.fields, path = []) {
   return fields.flatMap((field) => {
     const at = [...path, field.name];
     const patch = (value) => at.reduceRight((inner, name) => ({ [name]: inner }), value);
-    if (field.type === 'id') return [{ pointer: `/${at.join('/')}`, patch: patch('nowhere') }];
-    if (field.type === 'map') return [{ pointer: `/${at.join('/')}/nowhere`, patch: patch({ nowhere: {} }) }];
+    if (field.names && field.type === 'id') return [{ pointer: `/${at.join('/')}`, patch: patch('nowhere') }];
+    if (field.names && field.type === 'map') return [{ pointer: `/${at.join('/')}/nowhere`, patch: patch({ nowhere: {} }) }];
     return field.type === 'object' ? references(proto.objects[field.object].fields, at) : [];
   });
 }
@@ -24,7 +24,7 @@ function assertRefused({ status, json }, pointer) {
   assert.equal(json.type, '/problems/validation');
   assert.equal(json.pointer, pointer);
   assert.equal(json.code, 'unknown-id');
-  assert.match(json.detail, /the plan has no (region|image|dose) "nowhere"/);
+  assert.match(json.detail, /the plan has no (region|image|dose|beam) "nowhere"/);
 }
 
 before(async () => {

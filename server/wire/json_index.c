@@ -1,0 +1,87 @@
+#include "server/wire/json_index.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+
+struct json_index_entry {
+    const char *name; /* borrowed */
+    cJSON *item;
+};
+
+enum { MAX_WALKS = 8 }; /* from about so many walks on, sorting pays */
+
+void json_index_init(struct json_index *index, const cJSON *object)
+{
+    bool is_object = cJSON_IsObject(object);
+    *index = (struct json_index){ .parent = is_object ? object : NULL, .next = is_object ? object->child : NULL };
+}
+
+void json_index_init_ids(struct json_index *index, const cJSON *list)
+{
+    bool is_list = cJSON_IsArray(list);
+    *index =
+        (struct json_index){ .parent = is_list ? list : NULL, .next = is_list ? list->child : NULL, .is_of_ids = true };
+}
+
+static const char *name_of(const struct json_index *index, const cJSON *item)
+{
+    return index->is_of_ids ? json_text(item, "id") : item->string;
+}
+
+static int compare(const void *a, const void *b)
+{
+    return strcmp(((const struct json_index_entry *)a)->name, ((const struct json_index_entry *)b)->name);
+}
+
+static void sort(struct json_index *index)
+{
+    size_t n = (size_t)cJSON_GetArraySize(index->parent);
+    index->entries = mem_new((n ? n : 1) * sizeof *index->entries);
+    for (cJSON *item = index->parent->child; item; item = item->next) {
+        const char *name = name_of(index, item);
+        if (name)
+            index->entries[index->n_entries++] = (struct json_index_entry){ name, item };
+    }
+    qsort(index->entries, index->n_entries, sizeof *index->entries, compare);
+}
+
+static cJSON *walk(struct json_index *index, const char *name)
+{
+    index->n_walks++;
+    for (cJSON *item = index->parent->child; item; item = item->next) {
+        const char *item_name = name_of(index, item);
+        if (item_name && strcmp(item_name, name) == 0)
+            return item;
+    }
+    return NULL;
+}
+
+static cJSON *search(struct json_index *index, const char *name)
+{
+    if (!index->entries)
+        sort(index);
+    struct json_index_entry key = { name, NULL };
+    struct json_index_entry *entry = bsearch(&key, index->entries, index->n_entries, sizeof key, compare);
+    return entry ? entry->item : NULL;
+}
+
+cJSON *json_index_find(struct json_index *index, const char *name)
+{
+    if (!index->parent)
+        return NULL;
+    cJSON *found = index->next;
+    const char *found_name = found ? name_of(index, found) : NULL;
+    if (!found_name || strcmp(found_name, name) != 0)
+        found = index->entries || index->n_walks >= MAX_WALKS ? search(index, name) : walk(index, name);
+    if (found)
+        index->next = found->next;
+    return found;
+}
+
+void json_index_finish(struct json_index *index)
+{
+    free(index->entries);
+    *index = (struct json_index){ 0 };
+}

@@ -1,0 +1,182 @@
+#include "server/wire/json_merge.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "server/wire/json_index.h"
+
+/* One member of a patch. */
+struct change {
+    const cJSON *item;
+    size_t position;      /* in the patch */
+    struct change *first; /* the first with the same name; of that one: */
+    bool is_found;        /* its name was looked up in the target */
+    cJSON *member;        /* of the target under that name by now, NULL: none */
+};
+
+enum { MAX_PAIRS = 8 }; /* up to so many members, equal names are found by comparing each with each */
+
+static int compare_names(const void *a, const void *b)
+{
+    const struct change *x = *(struct change *const *)a, *y = *(struct change *const *)b;
+    int order = strcmp(x->item->string, y->item->string);
+    return order ? order : (x->position > y->position) - (x->position < y->position);
+}
+
+static void find_first_of_few(struct change *changes, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        changes[i].first = &changes[i];
+        for (size_t before = 0; before < i; before++)
+            if (strcmp(changes[before].item->string, changes[i].item->string) == 0) {
+                changes[i].first = &changes[before];
+                break;
+            }
+    }
+}
+
+static void find_first(struct change *changes, size_t n)
+{
+    struct change **sorted = mem_new(n * sizeof *sorted);
+    for (size_t i = 0; i < n; i++)
+        sorted[i] = &changes[i];
+    qsort(sorted, n, sizeof *sorted, compare_names);
+    for (size_t i = 0; i < n; i++) {
+        bool is_same = i > 0 && strcmp(sorted[i - 1]->item->string, sorted[i]->item->string) == 0;
+        sorted[i]->first = is_same ? sorted[i - 1]->first : sorted[i];
+    }
+    free(sorted);
+}
+
+static void merge_into(cJSON *target, const cJSON *patch);
+
+static cJSON *must(cJSON *json)
+{
+    if (!json)
+        abort(); /* no memory: as mem_new */
+    return json;
+}
+
+/* A new value as a patch gives it. */
+static cJSON *value_of(const cJSON *patch)
+{
+    if (!cJSON_IsObject(patch))
+        return must(cJSON_Duplicate(patch, true));
+    cJSON *value = must(cJSON_CreateObject());
+    merge_into(value, patch);
+    return value;
+}
+
+/* Puts value in the place of member and gives it member's name. Takes both. */
+static void replace(cJSON *target, cJSON *member, cJSON *value)
+{
+    if (!(value->type & cJSON_StringIsConst))
+        cJSON_free(value->string);
+    value->string = member->string;
+    value->type = (value->type & 0xff) | (member->type & cJSON_StringIsConst);
+    member->string = NULL;
+    cJSON_ReplaceItemViaPointer(target, member, value);
+}
+
+/* Returns the member that was taken out of target, NULL: none. */
+static cJSON *apply_change(cJSON *target, struct json_index *members, struct change *change)
+{
+    struct change *first = change->first;
+    const cJSON *item = change->item;
+    if (!first->is_found)
+        first->member = json_index_find(members, item->string);
+    first->is_found = true;
+    cJSON *member = first->member, *removed = NULL;
+    if (cJSON_IsNull(item)) {
+        first->member = NULL;
+        removed = member ? cJSON_DetachItemViaPointer(target, member) : NULL;
+    } else if (!member) {
+        first->member = value_of(item);
+        cJSON_AddItemToObject(target, item->string, first->member);
+    } else if (cJSON_IsObject(member) && cJSON_IsObject(item)) {
+        merge_into(member, item);
+    } else {
+        first->member = value_of(item);
+        replace(target, member, first->member);
+    }
+    return removed;
+}
+
+/* Both are objects; target changes. */
+static void merge_into(cJSON *target, const cJSON *patch)
+{
+    size_t n = (size_t)cJSON_GetArraySize(patch), at = 0;
+    struct change few[MAX_PAIRS], *changes = n <= MAX_PAIRS ? few : mem_new(n * sizeof *changes);
+    struct json_index members;
+    cJSON *removed = NULL; /* freed at the end: the index still holds their names */
+    json_index_init(&members, target);
+    for (const cJSON *item = patch->child; item; item = item->next, at++)
+        changes[at] = (struct change){ .item = item, .position = at };
+    if (n <= MAX_PAIRS)
+        find_first_of_few(changes, n);
+    else
+        find_first(changes, n);
+    for (size_t i = 0; i < n; i++) {
+        cJSON *one = apply_change(target, &members, &changes[i]);
+        if (one) {
+            one->next = removed;
+            removed = one;
+        }
+    }
+    json_index_finish(&members);
+    cJSON_Delete(removed); /* with those behind it */
+    if (changes != few)
+        free(changes);
+}
+
+cJSON *json_merge(const cJSON *target, const cJSON *patch)
+{
+    if (!cJSON_IsObject(patch) || !cJSON_IsObject(target))
+        return value_of(patch);
+    cJSON *merged = must(cJSON_Duplicate(target, true));
+    merge_into(merged, patch);
+    return merged;
+}
+
+static bool members_are_equal(const cJSON *a, const cJSON *b)
+{
+    if (cJSON_GetArraySize(a) != cJSON_GetArraySize(b))
+        return false;
+    struct json_index index;
+    bool is_equal = true;
+    json_index_init(&index, b);
+    for (const cJSON *item = a->child; item && is_equal; item = item->next)
+        is_equal = json_equal(item, json_index_find(&index, item->string));
+    json_index_finish(&index);
+    return is_equal;
+}
+
+static bool elements_are_equal(const cJSON *a, const cJSON *b)
+{
+    const cJSON *x = a->child, *y = b->child;
+    for (; x && y; x = x->next, y = y->next)
+        if (!json_equal(x, y))
+            return false;
+    return !x && !y;
+}
+
+bool json_equal(const cJSON *a, const cJSON *b)
+{
+    if (!a || !b || (a->type & 0xff) != (b->type & 0xff))
+        return false;
+    switch (a->type & 0xff) {
+    case cJSON_False:
+    case cJSON_True:
+    case cJSON_NULL: return true;
+    case cJSON_Number:
+        return fabs(a->valuedouble - b->valuedouble) <= fmax(fabs(a->valuedouble), fabs(b->valuedouble)) * DBL_EPSILON;
+    case cJSON_String:
+    case cJSON_Raw: return strcmp(a->valuestring, b->valuestring) == 0;
+    case cJSON_Array: return elements_are_equal(a, b);
+    case cJSON_Object: return members_are_equal(a, b);
+    default: return false;
+    }
+}

@@ -1,0 +1,19 @@
+#pragma once
+/* Merge patches on a document that a field table describes: applied, checked against table and plan, completed. What
+ * proto/scene.json says of a field is all that is known here of it. In time that grows with the document: it runs on
+ * the net thread. */
+#include "server/wire/fields.h"
+
+/* current with patch applied, as a new, complete document; NULL with problem, current untouched. The fields are checked
+ * by object's table, and every id that names something by plan, the document of the plan (plan_document.h): what the
+ * plan does not have is a validation problem at its field. What the patch leaves out or sets to null, and current does
+ * not have, gets its value from defaults, a complete document, else the table's default. */
+NODISCARD cJSON *patch_apply(const struct field_object *object, const cJSON *plan, const cJSON *defaults,
+                             const cJSON *current, const cJSON *patch, struct problem *problem);
+/* current for a plan that was loaded again and may have changed: what names something the plan lost is left out, and if
+ * the rest does not pass the checks, the result is a copy of defaults. Never NULL. */
+NODISCARD cJSON *patch_renew(const struct field_object *object, const cJSON *plan, const cJSON *defaults,
+                             const cJSON *current);
+/* The patch for those who keep a copy of document, after patch was applied to it: where patch has null, the value that
+ * document has there now. */
+NODISCARD cJSON *patch_told(const cJSON *document, const cJSON *patch);
