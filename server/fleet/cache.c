@@ -1,3 +1,5 @@
+/* The thread that measures what renderers write to data/cache, removes the least used, and ends renderers beyond the
+ * quota. */
 #define _GNU_SOURCE
 #include "server/fleet/cache.h"
 

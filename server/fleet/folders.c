@@ -1,3 +1,4 @@
+/* Lists plan folders: which folder is a plan, its name, its fingerprint, and ids made from names. */
 #include "server/fleet/folders.h"
 
 #include <dirent.h>

@@ -1,3 +1,4 @@
+/* The thread that lists plan folders whenever it is asked to. */
 #include "server/fleet/lister.h"
 
 #include <pthread.h>
@@ -19,8 +20,8 @@ struct lister {
     lister_function function;
     void (*wake)(void *context);
     void *context;
-    struct queue *asked; /* at most one letter, this lister itself: list again */
-    struct queue *ended; /* the same: the thread ends */
+    struct queue *requested; /* at most one letter, this lister itself: list again */
+    struct queue *ended;     /* the same: the thread ends */
     struct mailbox *lists;
     atomic_int state;      /* who may still call wake */
     atomic_int references; /* the owner's and the thread's */
@@ -39,7 +40,7 @@ static void unref(struct lister *lister)
     for (size_t i = 0; i < lister->n_folders; i++)
         free(lister->folders[i]);
     free(lister->folders);
-    queue_destroy(lister->asked);
+    queue_destroy(lister->requested);
     queue_destroy(lister->ended);
     mailbox_destroy(lister->lists);
     free(lister);
@@ -59,7 +60,7 @@ static bool tell(struct lister *lister)
 static void *work(void *argument)
 {
     struct lister *lister = argument;
-    while (queue_take(lister->asked, -1)) {
+    while (queue_take(lister->requested, -1)) {
         struct folder_list *list = mem_new(sizeof *list);
         lister->function((const char *const *)lister->folders, lister->n_folders, list);
         mailbox_put(lister->lists, list);
@@ -81,7 +82,7 @@ struct lister *lister_create(const char *const *folders, size_t n_folders, liste
     lister->function = function;
     lister->wake = wake;
     lister->context = context;
-    lister->asked = queue_create(1, NULL);
+    lister->requested = queue_create(1, NULL);
     lister->ended = queue_create(1, NULL);
     lister->lists = mailbox_create(drop_list);
     atomic_init(&lister->state, IN_USE);
@@ -99,8 +100,8 @@ void lister_destroy(struct lister *lister)
 {
     if (!lister)
         return;
-    (void)queue_try_take(lister->asked);
-    queue_close(lister->asked);
+    (void)queue_try_take(lister->requested);
+    queue_close(lister->requested);
     bool has_ended = queue_take(lister->ended, LISTER_LEAVE_MS) != NULL;
     int state = IN_USE;
     if (!has_ended && atomic_compare_exchange_strong(&lister->state, &state, LEFT_BEHIND)) {
@@ -112,9 +113,9 @@ void lister_destroy(struct lister *lister)
     unref(lister);
 }
 
-void lister_ask(struct lister *lister)
+void lister_request(struct lister *lister)
 {
-    (void)queue_try_put(lister->asked, lister); /* full: one more follows already */
+    (void)queue_try_put(lister->requested, lister); /* full: one more follows already */
 }
 
 bool lister_take(struct lister *lister, struct folder_list *list)

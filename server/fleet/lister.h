@@ -14,7 +14,7 @@ struct lister;
 NODISCARD struct lister *lister_create(const char *const *folders, size_t n_folders, lister_function function,
                                        void (*wake)(void *context), void *context, struct error *err);
 void lister_destroy(struct lister *lister);
-/* Lists again; asked several times while a listing runs, one more follows. Never waits. */
-void lister_ask(struct lister *lister);
+/* Lists again; called several times while a listing runs, one more follows. Never waits. */
+void lister_request(struct lister *lister);
 /* The newest list: folder_list_finish is the caller's; false when there is none since the last call. */
 NODISCARD bool lister_take(struct lister *lister, struct folder_list *list);

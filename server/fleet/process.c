@@ -1,8 +1,8 @@
+/* Reads from, writes to, limits and ends one child process; on the watch's thread. */
 #include "server/fleet/process.h"
 
 #include <errno.h>
 #include <signal.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,17 +13,11 @@
 #include "core/base/mem.h"
 
 enum {
-    READ_ROUND = 4 << 20, /* bytes read of one process before the others have their turn */
+    READ_ROUND = 4 << 20, /* bytes read from one process before it is the next one's turn */
     MEMORY_EVERY_US = 1000000,
-    STOP_GRACE_US = 1000000, /* to end by itself after its socket closed */
-    DRAIN_US = 500000,       /* for what is still in the socket after the end */
-    JSON_WEIGHT = 16         /* a parsed document takes about so many times its text */
-};
-
-/* What of a renderer's words lies unhandled on the other side; shared by the process and its events. */
-struct watch_lane {
-    _Atomic uint64_t unhandled;
-    atomic_int references;
+    STOP_GRACE_US = 1000000, /* to end by itself after its socket was closed */
+    DRAIN_US = 500000,       /* to read what is left in the socket after the end */
+    JSON_WEIGHT = 16         /* a parsed JSON document takes about this many times the bytes of its text */
 };
 
 struct chunk {
@@ -34,71 +28,49 @@ struct chunk {
 
 struct process {
     uint64_t number;
-    bool is_program, is_teller;
+    bool is_program, has_progress;
     int limit_ms;
     struct child child;
-    struct process_news news;
+    struct process_events events;
     struct packet_reader *reader;
-    struct watch_lane *lane;
+    struct event_backlog *backlog;
     struct chunk *outgoing, **last;
     size_t n_outgoing;
     char *output;
     size_t n_output;
     uint64_t n_since_packet;
     int64_t heard_us, kill_at_us, limit_at_us, memory_at_us, drain_until_us;
-    int64_t pinged_us; /* when the ping was sent that is not answered yet; 0: none is on its way */
+    int64_t pinged_us; /* when the unanswered ping was sent; 0: there is none */
     bool has_ended, is_stopping, is_awaited;
     int status;
     char reason[240];
 };
 
-static void lane_drop(struct watch_lane *lane, uint64_t weight)
-{
-    atomic_fetch_sub(&lane->unhandled, weight);
-    if (atomic_fetch_sub(&lane->references, 1) == 1)
-        free(lane);
-}
-
-void watch_event_destroy(struct watch_event *event)
-{
-    if (!event)
-        return;
-    if (event->lane)
-        lane_drop(event->lane, event->memory_bytes);
-    packet_finish(&event->packet);
-    free(event->output);
-    free(event);
-}
-
 static struct watch_event *event_new(const struct process *process, enum watch_event_type type)
 {
-    struct watch_event *event = mem_new(sizeof *event);
-    event->type = type;
-    event->number = process->number;
-    return event;
+    return watch_event_create(type, process->number);
 }
 
-static void give(struct process *process, struct watch_event *event)
+static void put_event(struct process *process, struct watch_event *event)
 {
-    process->news.event(process->news.context, event);
+    process->events.put(process->events.context, event);
 }
 
-struct process *process_create(uint64_t number, char *const argv[], int limit_ms, bool is_teller,
-                               const struct process_news *news, int64_t now_us)
+struct process *process_create(uint64_t number, char *const argv[], int limit_ms, bool has_progress,
+                               const struct process_events *events, int64_t now_us)
 {
     struct process *process = mem_new(sizeof *process);
     process->number = number;
     process->is_program = limit_ms > 0;
-    process->is_teller = is_teller;
+    process->has_progress = has_progress;
     process->limit_ms = limit_ms;
-    process->news = *news;
+    process->events = *events;
     process->last = &process->outgoing;
     process->heard_us = now_us;
     process->memory_at_us = now_us;
     process->limit_at_us = limit_ms > 0 ? now_us + (int64_t)limit_ms * 1000 : INT64_MAX;
     process->kill_at_us = INT64_MAX;
-    process->lane = mem_new(sizeof *process->lane);
-    atomic_init(&process->lane->references, 1);
+    process->backlog = event_backlog_create();
     if (!process->is_program)
         process->reader = packet_reader_create(PACKET_TO_DAEMON);
     struct error err = { 0 };
@@ -110,7 +82,7 @@ struct process *process_create(uint64_t number, char *const argv[], int limit_ms
     }
     struct watch_event *event = event_new(process, WATCH_STARTED);
     event->pid = process->child.pid;
-    give(process, event);
+    put_event(process, event);
     return process;
 }
 
@@ -142,7 +114,7 @@ void process_destroy(struct process *process)
     if (process->child.pid_file >= 0)
         close(process->child.pid_file);
     packet_reader_destroy(process->reader);
-    lane_drop(process->lane, 0);
+    event_backlog_unref(process->backlog);
     free(process->output);
     free(process);
 }
@@ -179,7 +151,7 @@ void process_send(struct process *process, uint8_t *bytes, size_t n_bytes, int64
         free(bytes);
         return;
     }
-    if (n_bytes > WATCH_MAX_OUTGOING || process->n_outgoing > WATCH_MAX_OUTGOING - n_bytes) {
+    if (n_bytes > PROCESS_MAX_OUTGOING || process->n_outgoing > PROCESS_MAX_OUTGOING - n_bytes) {
         free(bytes);
         process_stop(process, true, "did not read what it was sent", now_us);
         return;
@@ -204,7 +176,7 @@ bool process_is_awaited(const struct process *process)
 
 bool process_is_throttled(const struct process *process)
 {
-    return atomic_load(&process->lane->unhandled) >= WATCH_MAX_UNHANDLED;
+    return event_backlog_bytes(process->backlog) >= PROCESS_MAX_BACKLOG;
 }
 
 size_t process_poll(const struct process *process, struct pollfd polled[2])
@@ -229,7 +201,7 @@ static void write_out(struct process *process)
         if (n < 0 && errno == EINTR)
             continue;
         if (n < 0)
-            return; /* full: poll tells; closed: reading finds out */
+            return; /* full: poll wakes us; closed: reading notices */
         chunk->n_sent += (size_t)n;
         if (chunk->n_sent < chunk->n_bytes)
             continue;
@@ -242,7 +214,7 @@ static void write_out(struct process *process)
     }
 }
 
-static void is_broken(struct process *process, const char *how, int64_t now_us)
+static void stop_broken(struct process *process, const char *how, int64_t now_us)
 {
     char reason[240];
     (void)snprintf(reason, sizeof reason, "was ended because it said something that is no packet: %.160s", how);
@@ -256,34 +228,31 @@ static void take_packets(struct process *process, int64_t now_us)
     int got;
     while (process->child.channel >= 0 && (got = packet_reader_take(process->reader, &packet, &err)) != 0) {
         if (got < 0) {
-            is_broken(process, err.text, now_us);
+            stop_broken(process, err.text, now_us);
             return;
         }
-        uint64_t text = process->n_since_packet > packet.n_blob ? process->n_since_packet - packet.n_blob : 0;
+        uint64_t n_text = process->n_since_packet > packet.n_blob ? process->n_since_packet - packet.n_blob : 0;
         process->n_since_packet = 0;
-        const char *type = json_text(packet.json, "type"); /* one of the known ones: the reader has seen to that */
-        if (strcmp(type, "pong") == 0) {                   /* its answer to our ping: that it speaks is all we wanted */
+        const char *type = json_text(packet.json, "type"); /* a known type: the reader checked it */
+        if (strcmp(type, "pong") == 0) {                   /* the answer to a ping: heard_us is all that counts */
             packet_finish(&packet);
             continue;
         }
         struct watch_event *event = event_new(process, WATCH_PACKET);
         event->packet = packet;
-        event->memory_bytes = 1024 + packet.n_blob + JSON_WEIGHT * text;
-        event->lane = process->lane;
-        atomic_fetch_add(&process->lane->references, 1);
-        atomic_fetch_add(&process->lane->unhandled, event->memory_bytes);
-        give(process, event);
+        event_backlog_add(process->backlog, event, 1024 + packet.n_blob + JSON_WEIGHT * n_text);
+        put_event(process, event);
     }
 }
 
-/* False: nothing more to read now. */
+/* Returns false when there is nothing more to read now. */
 static bool read_packets(struct process *process, size_t *n_read, int64_t now_us)
 {
     size_t room = 0;
     struct error err = { 0 };
     uint8_t *space = packet_reader_space(process->reader, &room, &err);
     if (!space) {
-        is_broken(process, err.text, now_us);
+        stop_broken(process, err.text, now_us);
         return false;
     }
     ssize_t n = recv(process->child.channel, space, room, 0);
@@ -306,7 +275,7 @@ static bool read_packets(struct process *process, size_t *n_read, int64_t now_us
     return process->child.channel >= 0 && !process_is_throttled(process);
 }
 
-/* A teller's whole lines go out at once, one event each. */
+/* Reports the whole lines printed so far, one event each. */
 static void take_lines(struct process *process, int64_t now_us)
 {
     size_t begin = 0;
@@ -316,11 +285,8 @@ static void take_lines(struct process *process, int64_t now_us)
         event->output = mem_new(n + 1);
         memcpy(event->output, process->output + begin, n);
         event->n_output = n;
-        event->memory_bytes = 1024 + JSON_WEIGHT * n;
-        event->lane = process->lane;
-        atomic_fetch_add(&process->lane->references, 1);
-        atomic_fetch_add(&process->lane->unhandled, event->memory_bytes);
-        give(process, event);
+        event_backlog_add(process->backlog, event, 1024 + JSON_WEIGHT * n);
+        put_event(process, event);
         begin += n + 1;
     }
     if (begin == 0)
@@ -333,12 +299,13 @@ static void take_lines(struct process *process, int64_t now_us)
 static bool read_output(struct process *process, size_t *n_read, int64_t now_us)
 {
     if (!process->output)
-        process->output = mem_new(WATCH_MAX_OUTPUT + 1);
-    if (process->n_output == WATCH_MAX_OUTPUT) {
+        process->output = mem_new(PROCESS_MAX_OUTPUT + 1);
+    if (process->n_output == PROCESS_MAX_OUTPUT) {
         process_stop(process, true, "printed more than it may", now_us);
         return false;
     }
-    ssize_t n = read(process->child.channel, process->output + process->n_output, WATCH_MAX_OUTPUT - process->n_output);
+    ssize_t n =
+        read(process->child.channel, process->output + process->n_output, PROCESS_MAX_OUTPUT - process->n_output);
     if (n < 0 && errno == EINTR)
         return true;
     if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
@@ -348,7 +315,7 @@ static bool read_output(struct process *process, size_t *n_read, int64_t now_us)
         return false;
     }
     process->n_output += (size_t)n;
-    if (process->is_teller)
+    if (process->has_progress)
         take_lines(process, now_us);
     *n_read += (size_t)n;
     return true;
@@ -362,7 +329,7 @@ static void read_in(struct process *process, int64_t now_us)
             return;
 }
 
-static void see_end(struct process *process, int64_t now_us)
+static void check_end(struct process *process, int64_t now_us)
 {
     int status;
     if (process->has_ended || waitpid(process->child.pid, &status, WNOHANG) != process->child.pid)
@@ -372,7 +339,7 @@ static void see_end(struct process *process, int64_t now_us)
     process->drain_until_us = now_us + DRAIN_US;
 }
 
-static void tell_memory(struct process *process, int64_t now_us)
+static void report_memory(struct process *process, int64_t now_us)
 {
     if (process->has_ended || process->is_program || now_us < process->memory_at_us)
         return;
@@ -393,13 +360,13 @@ static void tell_memory(struct process *process, int64_t now_us)
         struct watch_event *event = event_new(process, WATCH_MEMORY);
         event->memory_bytes = resident;
         event->own_bytes = own;
-        give(process, event);
+        put_event(process, event);
     }
     fclose(file);
 }
 
-/* Whether its main thread is stopped, or asleep: then it is no lack of processor or disk that keeps it from reading. */
-static bool stands_still(const struct process *process)
+/* True if its main thread is stopped or asleep: then it is not waiting for a processor or a disk. */
+static bool is_stopped_or_asleep(const struct process *process)
 {
     char path[64], text[256];
     (void)snprintf(path, sizeof path, "/proc/%ld/stat", (long)process->child.pid);
@@ -425,29 +392,29 @@ static void send_ping(struct process *process, int64_t now_us)
         process_send(process, bytes, n, now_us);
 }
 
-static void keep_silence(struct process *process, const struct watch_options *options, int64_t now_us)
+static void check_silence(struct process *process, const struct silence_limits *limits, int64_t now_us)
 {
-    if (process_is_throttled(process)) { /* it is we who do not listen */
+    if (process_is_throttled(process)) { /* we do not read from it */
         process->heard_us = now_us;
         process->pinged_us = 0;
         return;
     }
-    int64_t ping_ms = process->is_awaited ? options->awaited_ping_ms : options->ping_ms;
+    int64_t ping_ms = process->is_awaited ? limits->awaited_ping_ms : limits->ping_ms;
     if (!process->pinged_us) {
         if ((now_us - process->heard_us) / 1000 >= ping_ms)
             send_ping(process, now_us);
         return;
     }
     int64_t silent_ms = (now_us - process->pinged_us) / 1000;
-    bool is_due = process->is_awaited && silent_ms >= options->awaited_silent_ms && stands_still(process);
-    if (silent_ms >= options->silent_ms || is_due) {
+    bool is_due = process->is_awaited && silent_ms >= limits->awaited_silent_ms && is_stopped_or_asleep(process);
+    if (silent_ms >= limits->silent_ms || is_due) {
         char reason[80];
         (void)snprintf(reason, sizeof reason, "did not answer for %.1f s", (double)(now_us - process->heard_us) / 1e6);
         process_stop(process, true, reason, now_us);
     }
 }
 
-static void keep_times(struct process *process, const struct watch_options *options, int64_t now_us)
+static void check_limits(struct process *process, const struct silence_limits *limits, int64_t now_us)
 {
     if (process->has_ended)
         return;
@@ -461,10 +428,10 @@ static void keep_times(struct process *process, const struct watch_options *opti
     }
     if (process->is_program || process->is_stopping || process->child.channel < 0)
         return;
-    keep_silence(process, options, now_us);
+    check_silence(process, limits, now_us);
 }
 
-static void tell_end(struct process *process)
+static void report_end(struct process *process)
 {
     struct watch_event *event = event_new(process, WATCH_ENDED);
     event->is_exit = process->child.pid > 0 && WIFEXITED(process->status);
@@ -472,22 +439,22 @@ static void tell_end(struct process *process)
     event->signal = process->child.pid > 0 && WIFSIGNALED(process->status) ? WTERMSIG(process->status) : 0;
     memcpy(event->reason, process->reason, sizeof event->reason);
     if (process->output)
-        process->output[process->n_output] = 0; /* of a teller: lines that have gone out stood there */
+        process->output[process->n_output] = 0; /* with progress: older lines stood there */
     event->output = process->output;
     event->n_output = process->n_output;
     process->output = NULL;
-    give(process, event);
+    put_event(process, event);
 }
 
-bool process_step(struct process *process, const struct watch_options *options, int64_t now_us)
+bool process_step(struct process *process, const struct silence_limits *limits, int64_t now_us)
 {
     write_out(process);
     read_in(process, now_us);
-    see_end(process, now_us);
-    tell_memory(process, now_us);
-    keep_times(process, options, now_us);
+    check_end(process, now_us);
+    report_memory(process, now_us);
+    check_limits(process, limits, now_us);
     if (!process->has_ended || (process->child.channel >= 0 && now_us < process->drain_until_us))
         return false;
-    tell_end(process);
+    report_end(process);
     return true;
 }

@@ -1,3 +1,4 @@
+/* The thread that removes folder trees, one after another. */
 #include "server/fleet/remover.h"
 
 #include <errno.h>

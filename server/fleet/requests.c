@@ -1,10 +1,26 @@
+/* The list of requests to renderers: sent, answered, failed, timed out. */
+#include "server/fleet/requests.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "server/fleet/parts.h"
+#include "server/fleet/watch.h"
+
+struct request {
+    struct request *next;
+    uint64_t number;
+    struct plan_entry *plan; /* NULL when it failed */
+    bool is_render, is_sent, is_failed;
+    struct problem problem; /* when failed */
+    uint8_t *bytes;         /* the packet, until it is sent */
+    size_t n_bytes;
+    int64_t until_us; /* fleet_now_us; then it fails */
+    fleet_reply reply;
+    void *context;
+};
 
 static bool is_render(const cJSON *packet)
 {
@@ -12,7 +28,7 @@ static bool is_render(const cJSON *packet)
     return type && strcmp(type, "render") == 0;
 }
 
-/* The packet with our id in it. The document is not copied, only looked at. errors as packet_write */
+/* The packet with our id in it, written. The document is not copied. errors as packet_write */
 static uint8_t *write_with_id(const cJSON *packet, uint64_t id, size_t *n_bytes, struct error *err)
 {
     cJSON *whole = cJSON_CreateObject();
@@ -25,138 +41,74 @@ static uint8_t *write_with_id(const cJSON *packet, uint64_t id, size_t *n_bytes,
     return bytes;
 }
 
-static struct fleet_ask *ask_new(struct fleet *fleet, fleet_reply reply, void *context)
+static struct request *request_new(struct fleet *fleet, fleet_reply reply, void *context)
 {
-    struct fleet_ask *ask = mem_new(sizeof *ask);
-    ask->number = fleet_number(fleet);
-    ask->reply = reply;
-    ask->context = context;
-    ask->until_us = fleet_now_us(fleet) + (int64_t)fleet->times.request * 1000;
-    struct fleet_ask **end = &fleet->asks;
+    struct request *request = mem_new(sizeof *request);
+    request->number = fleet_next_number(fleet);
+    request->reply = reply;
+    request->context = context;
+    request->until_us = fleet_now_us(fleet) + (int64_t)fleet->times.request * 1000;
+    struct request **end = &fleet->requests;
     while (*end)
         end = &(*end)->next;
-    *end = ask;
-    fleet->n_asks++;
-    return ask;
+    *end = request;
+    fleet->n_requests++;
+    return request;
 }
 
-static void unlink_ask(struct fleet *fleet, struct fleet_ask *ask)
+static void request_unlink(struct fleet *fleet, struct request *request)
 {
-    for (struct fleet_ask **at = &fleet->asks; *at; at = &(*at)->next)
-        if (*at == ask) {
-            *at = ask->next;
-            fleet->n_asks--;
+    for (struct request **at = &fleet->requests; *at; at = &(*at)->next)
+        if (*at == request) {
+            *at = request->next;
+            fleet->n_requests--;
             return;
         }
 }
 
-static void drop_bytes(struct fleet *fleet, struct fleet_ask *ask)
+static void drop_bytes(struct fleet *fleet, struct request *request)
 {
-    if (ask->bytes)
-        fleet->n_waiting_bytes -= ask->n_bytes;
-    free(ask->bytes);
-    ask->bytes = NULL;
+    if (request->bytes)
+        fleet->n_waiting_bytes -= request->n_bytes;
+    free(request->bytes);
+    request->bytes = NULL;
 }
 
-static void free_ask(struct fleet *fleet, struct fleet_ask *ask)
+static void request_destroy(struct fleet *fleet, struct request *request)
 {
-    drop_bytes(fleet, ask);
-    free(ask);
+    drop_bytes(fleet, request);
+    free(request);
 }
 
-static void fail(struct fleet *fleet, struct fleet_ask *ask, const struct problem *problem)
+static void request_fail(struct fleet *fleet, struct request *request, const struct problem *problem)
 {
-    if (ask->is_failed)
+    if (request->is_failed)
         return;
-    drop_bytes(fleet, ask);
-    ask->is_failed = true;
-    ask->problem = *problem;
-    ask->plan = NULL;
+    drop_bytes(fleet, request);
+    request->is_failed = true;
+    request->problem = *problem;
+    request->plan = NULL;
 }
 
-/* ---- what a renderer is owed ------------------------------------------------------------------------------------ */
-
-/* A scene, or that a room is gone, that found the orders to the watch full: sent before anything else is. */
-struct fleet_owed {
-    struct fleet_owed *next;
-    uint64_t process; /* another one is told the room's scene anew */
-    char room[64];
-    uint8_t *bytes;
-    size_t n_bytes;
-};
-
-static void free_owed(struct fleet_owed *owed)
+static bool send_room_updates(struct fleet *fleet, struct plan_entry *plan)
 {
-    free(owed->bytes);
-    free(owed);
+    return room_updates_send(&plan->room_updates, fleet->watch, plan->process);
 }
 
-void owed_forget(struct plan_entry *plan)
-{
-    while (plan->owed) {
-        struct fleet_owed *next = plan->owed->next;
-        free_owed(plan->owed);
-        plan->owed = next;
-    }
-}
-
-/* The last word on a room counts: it takes the place of an earlier one. Takes bytes. */
-static void owe(struct plan_entry *plan, const char *room, uint8_t *bytes, size_t n_bytes)
-{
-    struct fleet_owed **at = &plan->owed;
-    while (*at && strcmp((*at)->room, room) != 0)
-        at = &(*at)->next;
-    if (!*at)
-        *at = mem_new(sizeof **at);
-    struct fleet_owed *owed = *at;
-    free(owed->bytes);
-    (void)snprintf(owed->room, sizeof owed->room, "%s", room);
-    owed->process = plan->process;
-    owed->bytes = bytes;
-    owed->n_bytes = n_bytes;
-}
-
-/* True: nothing is owed any more. */
-static bool send_owed(struct fleet *fleet, struct plan_entry *plan)
-{
-    while (plan->owed) {
-        struct fleet_owed *owed = plan->owed;
-        if (owed->process == plan->process && plan->process) {
-            uint8_t *copy = malloc(owed->n_bytes); /* the watch takes it, whether it can send or not */
-            if (!copy)
-                return false;
-            memcpy(copy, owed->bytes, owed->n_bytes);
-            if (!watch_send(fleet->watch, plan->process, copy, owed->n_bytes))
-                return false;
-        }
-        plan->owed = owed->next;
-        free_owed(owed);
-    }
-    return true;
-}
-
-void owed_send(struct fleet *fleet)
-{
-    for (size_t i = 0; i < fleet->n_plans; i++)
-        (void)send_owed(fleet, fleet->plans[i]);
-}
-
-/* ---- requests --------------------------------------------------------------------------------------------------- */
-
-static void send_ask(struct fleet *fleet, struct fleet_ask *ask)
+static void request_send(struct fleet *fleet, struct request *request)
 {
     struct problem problem;
-    ask->is_sent = true;
-    if (send_owed(fleet, ask->plan)) { /* a picture never overtakes the scene it is of */
-        uint8_t *bytes = ask->bytes;
-        ask->bytes = NULL;
-        fleet->n_waiting_bytes -= ask->n_bytes;
-        if (watch_send(fleet->watch, ask->plan->process, bytes, ask->n_bytes))
+    request->is_sent = true;
+    if (send_room_updates(fleet, request->plan)) { /* a picture never overtakes the scene it shows */
+        uint8_t *bytes = request->bytes;
+        request->bytes = NULL;
+        fleet->n_waiting_bytes -= request->n_bytes;
+        if (watch_send(fleet->watch, request->plan->process, bytes, request->n_bytes))
             return;
     }
     problem_set(&problem, PROBLEM_BUSY, "", "", "too much is waiting to be told to renderers");
     problem.retry_after_ms = 500;
-    fail(fleet, ask, &problem);
+    request_fail(fleet, request, &problem);
 }
 
 static bool may_wait(const struct plan_entry *plan, struct problem *problem)
@@ -177,11 +129,11 @@ static bool may_wait(const struct plan_entry *plan, struct problem *problem)
 
 uint64_t fleet_request(struct fleet *fleet, const char *plan_id, const cJSON *packet, fleet_reply reply, void *context)
 {
-    bool is_full = fleet->n_asks >= FLEET_MAX_REQUESTS;
-    struct fleet_ask *ask = ask_new(fleet, reply, context);
+    bool is_full = fleet->n_requests >= FLEET_MAX_REQUESTS;
+    struct request *request = request_new(fleet, reply, context);
     struct plan_entry *plan = plan_entry_find(fleet, plan_id);
     struct problem problem = { 0 };
-    uint64_t number = ask->number;
+    uint64_t number = request->number;
     if (!plan) {
         (void)fleet_no_plan(fleet, plan_id, &problem);
     } else if (is_full) {
@@ -189,35 +141,35 @@ uint64_t fleet_request(struct fleet *fleet, const char *plan_id, const cJSON *pa
         problem.retry_after_ms = 1000;
     } else if (may_wait(plan, &problem)) {
         struct error err = { 0 };
-        ask->is_render = is_render(packet);
-        ask->bytes = write_with_id(packet, number, &ask->n_bytes, &err);
-        fleet->n_waiting_bytes += ask->n_bytes;
+        request->is_render = is_render(packet);
+        request->bytes = write_with_id(packet, number, &request->n_bytes, &err);
+        fleet->n_waiting_bytes += request->n_bytes;
         plan->used_us = fleet_now_us(fleet);
-        if (!ask->bytes)
+        if (!request->bytes)
             problem_from_error(&problem, &err);
         else if (plan->state != FLEET_READY && fleet->n_waiting_bytes > FLEET_MAX_WAITING_BYTES) {
             problem_set(&problem, PROBLEM_BUSY, "", "", "requests of more than %d MiB wait for plans to be read",
                         FLEET_MAX_WAITING_BYTES >> 20);
             problem.retry_after_ms = 1000;
         } else {
-            ask->plan = plan;
+            request->plan = plan;
         }
-        if (ask->plan && plan->state == FLEET_READY)
-            send_ask(fleet, ask);
+        if (request->plan && plan->state == FLEET_READY)
+            request_send(fleet, request);
     }
-    if (!ask->plan) {
-        fail(fleet, ask, &problem);
+    if (!request->plan) {
+        request_fail(fleet, request, &problem);
         fleet->options.wake(fleet->options.context);
     }
     return number;
 }
 
-void fleet_forget_request(struct fleet *fleet, uint64_t request)
+void fleet_forget_request(struct fleet *fleet, uint64_t number)
 {
-    for (struct fleet_ask *ask = fleet->asks; ask; ask = ask->next)
-        if (ask->number == request) {
-            unlink_ask(fleet, ask);
-            free_ask(fleet, ask);
+    for (struct request *request = fleet->requests; request; request = request->next)
+        if (request->number == number) {
+            request_unlink(fleet, request);
+            request_destroy(fleet, request);
             return;
         }
 }
@@ -235,97 +187,106 @@ bool fleet_tell(struct fleet *fleet, const char *plan_id, const cJSON *packet)
         log_error("plan %s: its renderer is not told: %s", plan->id, err.text);
         return false;
     }
-    if (!room) /* only that a picture is no longer wanted: when that is lost, one is drawn in vain */
+    if (!room) /* a "drop": when it is lost, one picture is drawn in vain */
         return watch_send(fleet->watch, plan->process, bytes, n_bytes);
-    owe(plan, room, bytes, n_bytes);
-    (void)send_owed(fleet, plan); /* full: later */
+    room_updates_put(&plan->room_updates, plan->process, room, bytes, n_bytes);
+    (void)send_room_updates(fleet, plan); /* what finds no room is sent by requests_send_room_updates */
     return true;
 }
 
-void asks_send_waiting(struct fleet *fleet, struct plan_entry *plan)
+void requests_send_room_updates(struct fleet *fleet)
 {
-    for (struct fleet_ask *ask = fleet->asks; ask; ask = ask->next)
-        if (ask->plan == plan && !ask->is_sent && !ask->is_failed)
-            send_ask(fleet, ask);
+    for (size_t i = 0; i < fleet->n_plans; i++)
+        (void)send_room_updates(fleet, fleet->plans[i]);
 }
 
-void asks_fail(struct fleet *fleet, const struct plan_entry *plan, bool only_sent, const struct problem *problem)
+void requests_send_waiting(struct fleet *fleet, struct plan_entry *plan)
 {
-    for (struct fleet_ask *ask = fleet->asks; ask; ask = ask->next)
-        if ((!plan || ask->plan == plan) && (ask->is_sent || !only_sent))
-            fail(fleet, ask, problem);
+    for (struct request *request = fleet->requests; request; request = request->next)
+        if (request->plan == plan && !request->is_sent && !request->is_failed)
+            request_send(fleet, request);
 }
 
-void asks_deliver_failed(struct fleet *fleet)
+void requests_fail(struct fleet *fleet, const struct plan_entry *plan, bool only_sent, const struct problem *problem)
 {
-    /* a reply may ask anew or forget others: look from the start each time, and only at those that had failed by now */
+    for (struct request *request = fleet->requests; request; request = request->next)
+        if ((!plan || request->plan == plan) && (request->is_sent || !only_sent))
+            request_fail(fleet, request, problem);
+}
+
+void requests_deliver_failed(struct fleet *fleet)
+{
+    /* A reply may make or forget requests: start from the front after each, and leave those made meanwhile for the next
+     * call. */
     uint64_t last = fleet->last_number;
-    for (struct fleet_ask *ask = fleet->asks; ask;) {
-        if (!ask->is_failed || ask->number > last) {
-            ask = ask->next;
+    for (struct request *request = fleet->requests; request;) {
+        if (!request->is_failed || request->number > last) {
+            request = request->next;
             continue;
         }
-        unlink_ask(fleet, ask);
-        ask->reply(ask->context, NULL, &ask->problem);
-        free_ask(fleet, ask);
-        ask = fleet->asks;
+        request_unlink(fleet, request);
+        request->reply(request->context, NULL, &request->problem);
+        request_destroy(fleet, request);
+        request = fleet->requests;
     }
 }
 
 /* When the present process last drew a picture; when it became ready, if it has drawn none. */
 static int64_t last_drew_us(const struct plan_entry *plan)
 {
-    return plan->drew_us > plan->ready_us ? plan->drew_us : plan->ready_us;
+    return plan->last_picture_us > plan->ready_us ? plan->last_picture_us : plan->ready_us;
 }
 
-void asks_keep_time(struct fleet *fleet, int64_t now_us)
+void requests_check_time(struct fleet *fleet, int64_t now_us)
 {
     struct problem problem;
     problem_set(&problem, PROBLEM_TIMEOUT, "", "", "no answer within %d s", fleet->times.request / 1000);
-    for (struct fleet_ask *ask = fleet->asks; ask; ask = ask->next) {
-        if (ask->is_failed || now_us < ask->until_us)
+    for (struct request *request = fleet->requests; request; request = request->next) {
+        if (request->is_failed || now_us < request->until_us)
             continue;
-        /* Its main thread answers pings, so only this shows that drawing is stuck. One that finishes other pictures
-         * meanwhile is not stuck: too much was asked of it. Nor is one that has been ready for less than the time of a
-         * request. */
-        if (ask->is_render && ask->is_sent && now_us - last_drew_us(ask->plan) >= (int64_t)fleet->times.request * 1000)
-            plan_entry_kill(fleet, ask->plan, "did not finish a picture in time");
-        fail(fleet, ask, &problem);
+        /* The renderer's main thread answers pings even when its render thread is stuck, so only a late picture shows
+         * that. A renderer that finishes other pictures meanwhile has too much to do, but is not stuck; nor is one that
+         * has been ready for less than the time of a request. */
+        if (request->is_render && request->is_sent &&
+            now_us - last_drew_us(request->plan) >= (int64_t)fleet->times.request * 1000)
+            plan_entry_kill(fleet, request->plan, "did not finish a picture in time");
+        request_fail(fleet, request, &problem);
     }
 }
 
-bool asks_has_any(const struct fleet *fleet, const struct plan_entry *plan)
+bool requests_has_any(const struct fleet *fleet, const struct plan_entry *plan)
 {
-    for (const struct fleet_ask *ask = fleet->asks; ask; ask = ask->next)
-        if (ask->plan == plan)
+    for (const struct request *request = fleet->requests; request; request = request->next)
+        if (request->plan == plan)
             return true;
     return false;
 }
 
-bool asks_has_sent(const struct fleet *fleet, const struct plan_entry *plan)
+bool requests_has_sent(const struct fleet *fleet, const struct plan_entry *plan)
 {
-    for (const struct fleet_ask *ask = fleet->asks; ask; ask = ask->next)
-        if (ask->plan == plan && ask->is_sent)
+    for (const struct request *request = fleet->requests; request; request = request->next)
+        if (request->plan == plan && request->is_sent)
             return true;
     return false;
 }
 
-static void plan_entry_drew(struct fleet *fleet, struct plan_entry *plan)
+static void picture_came(struct fleet *fleet, struct plan_entry *plan)
 {
     plan->has_drawn = true;
-    plan->drew_us = fleet_now_us(fleet);
+    plan->last_picture_us = fleet_now_us(fleet);
 }
 
-bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packet *packet)
+bool requests_answer(struct fleet *fleet, struct plan_entry *plan, struct packet *packet)
 {
     double id = json_number(packet->json, "id", -1);
-    struct fleet_ask *ask = fleet->asks;
-    while (ask && !(ask->plan == plan && ask->is_sent && !ask->is_failed && (double)ask->number == id))
-        ask = ask->next;
+    struct request *request = fleet->requests;
+    while (request &&
+           !(request->plan == plan && request->is_sent && !request->is_failed && (double)request->number == id))
+        request = request->next;
     const char *type = json_text(packet->json, "type");
-    if (!ask) { /* asked once, and forgotten since */
+    if (!request) { /* forgotten since it was sent */
         if (id >= 0 && type && strcmp(type, "frame") == 0)
-            plan_entry_drew(fleet, plan);
+            picture_came(fleet, plan);
         return id >= 0;
     }
     struct problem problem = { 0 };
@@ -334,18 +295,28 @@ bool asks_take_answer(struct fleet *fleet, struct plan_entry *plan, struct packe
     if (is_problem) {
         if (!problem_from_json(cJSON_GetObjectItemCaseSensitive(packet->json, "problem"), &problem))
             return false;
-    } else if (strcmp(type, ask->is_render ? "frame" : "answer") != 0 ||
-               (ask->is_render && !packet_frame_read(packet, &frame)) ||
-               (!ask->is_render && !cJSON_GetObjectItemCaseSensitive(packet->json, "body"))) {
+    } else if (strcmp(type, request->is_render ? "frame" : "answer") != 0 ||
+               (request->is_render && !packet_frame_read(packet, &frame)) ||
+               (!request->is_render && !cJSON_GetObjectItemCaseSensitive(packet->json, "body"))) {
         return false;
     }
-    unlink_ask(fleet, ask);
+    request_unlink(fleet, request);
     plan->used_us = fleet_now_us(fleet);
-    if (ask->is_render && !is_problem)
-        plan_entry_drew(fleet, plan);
-    else if (ask->is_render)
-        plan->drew_us = plan->used_us; /* it refused the picture: it is not stuck */
-    ask->reply(ask->context, is_problem ? NULL : packet, is_problem ? &problem : NULL);
-    free_ask(fleet, ask);
+    if (request->is_render && !is_problem)
+        picture_came(fleet, plan);
+    else if (request->is_render)
+        plan->last_picture_us = plan->used_us; /* it refused the picture, so it is not stuck */
+    request->reply(request->context, is_problem ? NULL : packet, is_problem ? &problem : NULL);
+    request_destroy(fleet, request);
     return true;
+}
+
+void requests_destroy(struct fleet *fleet)
+{
+    while (fleet->requests) {
+        struct request *next = fleet->requests->next;
+        free(fleet->requests->bytes);
+        free(fleet->requests);
+        fleet->requests = next;
+    }
 }

@@ -1,3 +1,4 @@
+/* Monotonic time without the stretches in which the thread did not run. */
 #include "server/fleet/run_clock.h"
 
 #include "core/base/clock.h"

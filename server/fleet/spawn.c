@@ -1,3 +1,4 @@
+/* Starts a child process by posix_spawn with a socket or a pipe, a cut-down environment and nothing else open. */
 #define _GNU_SOURCE
 #include "server/fleet/spawn.h"
 

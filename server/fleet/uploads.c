@@ -1,7 +1,8 @@
-/* Archives to plans: an archive in data/uploads is unpacked beside itself by a confined program, looked at like any
- * plan folder, and moved to data/plans, where the list finds it. What is no plan, was cancelled or is taken out again
- * is removed. */
+/* The steps of each upload: unpack the archive beside itself, scan it, move it to data/plans, wait until it is listed;
+ * and removing what it leaves when it fails or is cancelled. */
 #define _GNU_SOURCE
+#include "server/fleet/uploads.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -19,10 +20,12 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/path.h"
-#include "server/fleet/parts.h"
+#include "server/fleet/data_folders.h"
+#include "server/fleet/plan_scan.h"
+#include "server/fleet/watch.h"
 
 enum {
-    MAX_WRAPPING = 8,         /* folders that hold nothing but one folder, from the archive's top down */
+    MAX_WRAPPING = 8,         /* nested folders that hold nothing but one folder, from the archive's top down */
     MAX_SAME_NAME = 999,      /* plans of one name; folder_make_id leaves room for the number */
     LIST_WITHIN_US = 30000000 /* how long the list may take to find a new plan */
 };
@@ -32,9 +35,9 @@ static const uint64_t default_max_unpacked_bytes = UINT64_C(8) << 30;
 enum stage {
     STAGE_WAITING,
     STAGE_UNPACKING, /* process unpacks */
-    STAGE_LOOKING,   /* process looks at root */
+    STAGE_SCANNING,  /* process scans root */
     STAGE_LISTING,   /* moved to data/plans; the list does not know it yet */
-    STAGE_OVER       /* ended; while process is there, it is being ended and what it made is still there */
+    STAGE_ENDED      /* ended; while process != 0 it is being killed, and its files are removed when it has ended */
 };
 
 struct upload {
@@ -42,89 +45,15 @@ struct upload {
     uint64_t number, process; /* process: 0 none */
     enum fleet_upload_state state;
     enum stage stage;
-    char *archive, *folder; /* what is removed in the end */
-    char *root;             /* of the plan: folder, or the only folder inside; once moved: in data/plans */
+    char *archive, *folder; /* both are removed in the end */
+    char *root;             /* the plan's folder: folder, or the only folder inside; once adopted: in data/plans */
     char base_id[PLAN_ID_SIZE], plan_id[PLAN_ID_SIZE];
     double percent;
-    bool has_said_end; /* the unpacker: done or a problem */
+    bool has_reported_end; /* the program that unpacks printed "done" or a problem */
     struct problem problem;
     uint64_t n_bytes, n_files;
     int64_t began_us, list_until_us;
 };
-
-/* ---- the folders ------------------------------------------------------------------------------------------------ */
-
-static char *path_in(const char *folder, const char *name)
-{
-    size_t n = strlen(folder) + strlen(name) + 2;
-    char *path = mem_new(n);
-    (void)snprintf(path, n, "%s/%s", folder, name);
-    return path;
-}
-
-/* Moves a file or folder to a name of its own in data/uploads and has it removed. errno when it could not be moved. */
-static bool throw_away(struct fleet *fleet, const char *path)
-{
-    char name[96];
-    (void)snprintf(name, sizeof name, "trash-%lld-%d-%llu", (long long)clock_now_us(), (int)getpid(),
-                   (unsigned long long)++fleet->n_trash);
-    char *trash = path_in(fleet->uploads_home, name);
-    if (rename(path, trash) != 0) {
-        free(trash);
-        return false;
-    }
-    remover_put(fleet->remover, trash);
-    return true;
-}
-
-static char *make_home(const struct fleet *fleet, const char *name, struct error *err)
-{
-    char *path = path_in(fleet->data_folder, name), *real = NULL;
-    if (mkdir(path, 0700) != 0 && errno != EEXIST)
-        error_set(err, ERROR_IO, "%s cannot be made: %s", path, strerror(errno));
-    else if (!(real = path_resolve(path)))
-        error_set(err, ERROR_IO, "%s: %s", path, strerror(errno));
-    else if (strlen(real) > PATH_MAX / 2) {
-        error_set(err, ERROR_LIMIT, "the data folder's path is too long");
-        free(real);
-        real = NULL;
-    }
-    free(path);
-    return real;
-}
-
-static bool clear_leftovers(struct fleet *fleet, struct error *err)
-{
-    DIR *folder = opendir(fleet->uploads_home);
-    if (!folder)
-        return error_set(err, ERROR_IO, "%s: %s", fleet->uploads_home, strerror(errno));
-    char **names =
-        mem_new(REMOVER_MAX_WAITING * sizeof *names); /* moved only after the listing, which must not see them again */
-    size_t n = 0;
-    for (const struct dirent *entry; n < REMOVER_MAX_WAITING && (entry = readdir(folder));)
-        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
-            names[n++] = mem_copy_text(entry->d_name);
-    closedir(folder);
-    for (size_t i = 0; i < n; i++) {
-        char *path = path_in(fleet->uploads_home, names[i]);
-        if (!throw_away(fleet, path))
-            log_warn("a leftover in %s cannot be moved: %s", fleet->uploads_home, strerror(errno));
-        free(path);
-        free(names[i]);
-    }
-    free(names);
-    if (n > 0)
-        log_info("%zu leftovers of uploads are removed", n);
-    return true;
-}
-
-bool uploads_begin(struct fleet *fleet, struct error *err)
-{
-    fleet->plans_home = make_home(fleet, "plans", err);
-    fleet->uploads_home = fleet->plans_home ? make_home(fleet, "uploads", err) : NULL;
-    fleet->remover = fleet->uploads_home ? remover_create(err) : NULL;
-    return fleet->remover && clear_leftovers(fleet, err);
-}
 
 static void upload_free(struct upload *upload)
 {
@@ -134,46 +63,37 @@ static void upload_free(struct upload *upload)
     free(upload);
 }
 
-void uploads_end(struct fleet *fleet)
+void uploads_destroy(struct fleet *fleet)
 {
-    remover_destroy(fleet->remover);
     while (fleet->uploads) {
         struct upload *next = fleet->uploads->next;
         upload_free(fleet->uploads);
         fleet->uploads = next;
     }
-    free(fleet->plans_home);
-    free(fleet->uploads_home);
-}
-
-bool uploads_owns(const struct fleet *fleet, const char *folder)
-{
-    size_t n = strlen(fleet->plans_home);
-    return strncmp(folder, fleet->plans_home, n) == 0 && folder[n] == '/';
 }
 
 /* ---- one upload ------------------------------------------------------------------------------------------------- */
 
-static bool is_over(const struct upload *upload)
+static bool has_ended(const struct upload *upload)
 {
-    return upload->stage == STAGE_OVER;
+    return upload->stage == STAGE_ENDED;
 }
 
 static void clean(struct fleet *fleet, const struct upload *upload)
 {
-    if (!throw_away(fleet, upload->archive) && errno != ENOENT)
+    if (!data_throw_away(fleet, upload->archive) && errno != ENOENT)
         log_warn("upload %llu: its archive cannot be removed: %s", (unsigned long long)upload->number, strerror(errno));
-    if (!throw_away(fleet, upload->folder) && errno != ENOENT)
+    if (!data_throw_away(fleet, upload->folder) && errno != ENOENT)
         log_warn("upload %llu: its folder cannot be removed: %s", (unsigned long long)upload->number, strerror(errno));
 }
 
 static void end(struct fleet *fleet, struct upload *upload, enum fleet_upload_state state)
 {
     upload->state = state;
-    upload->stage = STAGE_OVER;
+    upload->stage = STAGE_ENDED;
     if (upload->process)
         watch_stop(fleet->watch, upload->process, true,
-                   "is no longer wanted"); /* its end cleans up: it may still write */
+                   "is no longer wanted"); /* it may still write: what it made is removed after its end */
     else
         clean(fleet, upload);
     fleet->options.wake(fleet->options.context);
@@ -205,15 +125,16 @@ static void start_unpacking(struct fleet *fleet, struct upload *upload)
     };
     upload->state = UPLOAD_RUNNING;
     upload->stage = STAGE_UNPACKING;
-    upload->process = fleet_number(fleet);
-    if (!watch_start_teller(fleet->watch, upload->process, fleet_arguments(words), fleet->times.unpack)) {
+    upload->process = fleet_next_number(fleet);
+    if (!watch_start_with_progress(fleet->watch, upload->process, fleet_arguments(words), fleet->times.unpack)) {
         upload->process = 0;
         problem_set(&problem, PROBLEM_BUSY, "", "", "too much is waiting to be told to renderers");
         fail(fleet, upload, &problem);
     }
 }
 
-/* The only thing in a folder, when that is a folder; what archivers of other systems add does not count. */
+/* True if a folder holds nothing but one folder. Ignores names that begin with a dot, and __MACOSX, which archivers
+ * add. */
 static bool find_only_folder(const char *path, char name[NAME_MAX + 1])
 {
     DIR *folder = opendir(path);
@@ -233,18 +154,18 @@ static bool find_only_folder(const char *path, char name[NAME_MAX + 1])
     return n == 1 && is_folder;
 }
 
-static void start_looking(struct fleet *fleet, struct upload *upload)
+static void start_scan(struct fleet *fleet, struct upload *upload)
 {
     char name[NAME_MAX + 1];
     struct problem problem;
     upload->root = mem_copy_text(upload->folder);
     for (int i = 0; i < MAX_WRAPPING && find_only_folder(upload->root, name); i++) {
-        char *inner = path_in(upload->root, name);
+        char *inner = path_inside(upload->root, name);
         free(upload->root);
         upload->root = inner;
     }
-    upload->stage = STAGE_LOOKING;
-    upload->process = fleet_number(fleet);
+    upload->stage = STAGE_SCANNING;
+    upload->process = fleet_next_number(fleet);
     char **arguments = fleet_arguments((const char *const[]){ fleet->renderer_path, "--scan", upload->root, NULL });
     if (watch_start_program(fleet->watch, upload->process, arguments, fleet->times.scan))
         return;
@@ -253,8 +174,8 @@ static void start_looking(struct fleet *fleet, struct upload *upload)
     fail(fleet, upload, &problem);
 }
 
-/* Moves the root to a folder of its own in data/plans. errno when that fails. */
-static bool move_home(struct fleet *fleet, struct upload *upload)
+/* Moves the root to a folder of its own in data/plans. Returns false with errno. */
+static bool move_to_plans(struct fleet *fleet, struct upload *upload)
 {
     for (int i = 1; i <= MAX_SAME_NAME; i++) {
         char id[PLAN_ID_SIZE];
@@ -264,8 +185,8 @@ static bool move_home(struct fleet *fleet, struct upload *upload)
             (void)snprintf(id, sizeof id, "%.52s-%d", upload->base_id, i);
         if (plan_entry_find(fleet, id))
             continue;
-        char *home = path_in(fleet->plans_home, id);
-        if (mkdir(home, 0700) == 0) { /* nobody else has it, and a folder may replace an empty one */
+        char *home = path_inside(fleet->plans_home, id);
+        if (mkdir(home, 0700) == 0) { /* the name is ours now; rename may replace an empty folder */
             if (rename(upload->root, home) == 0) {
                 free(upload->root);
                 upload->root = home;
@@ -283,10 +204,10 @@ static bool move_home(struct fleet *fleet, struct upload *upload)
     return false;
 }
 
-static void take_home(struct fleet *fleet, struct upload *upload)
+static void adopt(struct fleet *fleet, struct upload *upload)
 {
     struct problem problem;
-    if (chmod(upload->root, 0700) == 0 && move_home(fleet, upload)) {
+    if (chmod(upload->root, 0700) == 0 && move_to_plans(fleet, upload)) {
         upload->stage = STAGE_LISTING;
         upload->list_until_us = fleet_now_us(fleet) + LIST_WITHIN_US;
         clean(fleet, upload);
@@ -298,8 +219,8 @@ static void take_home(struct fleet *fleet, struct upload *upload)
     fail(fleet, upload, &problem);
 }
 
-/* The plan that came of it: in its folder, or, of a collection, inside. */
-static const struct plan_entry *find_made(const struct fleet *fleet, const struct upload *upload)
+/* The listed plan that the upload became: its root, or for a collection a folder inside; NULL: not listed yet. */
+static const struct plan_entry *find_plan(const struct fleet *fleet, const struct upload *upload)
 {
     const struct plan_entry *made = plan_entry_in_folder(fleet, upload->root);
     size_t n = strlen(upload->root);
@@ -311,32 +232,32 @@ static const struct plan_entry *find_made(const struct fleet *fleet, const struc
     return made;
 }
 
-static void look_for_it(struct fleet *fleet, struct upload *upload, int64_t now_us)
+static void check_listed(struct fleet *fleet, struct upload *upload, int64_t now_us)
 {
-    const struct plan_entry *plan = find_made(fleet, upload);
+    const struct plan_entry *plan = find_plan(fleet, upload);
     struct problem problem;
     if (plan && (plan->wants_scan || plan->scan))
-        return; /* done means that its parts are known */
+        return; /* "done" promises that the plan's parts are known */
     if (plan) {
         (void)snprintf(upload->plan_id, sizeof upload->plan_id, "%s", plan->id);
         upload->state = UPLOAD_DONE;
-        upload->stage = STAGE_OVER;
+        upload->stage = STAGE_ENDED;
         log_info("upload %llu: plan %s: %llu files, %llu bytes in %lld ms", (unsigned long long)upload->number,
                  plan->id, (unsigned long long)upload->n_files, (unsigned long long)upload->n_bytes,
                  (long long)((now_us - upload->began_us) / 1000));
     } else if (fleet->is_listing) {
-        return; /* however slow the disks of the other plans are */
+        return; /* the listing may take long: other plan folders may lie on slow disks */
     } else if (now_us > upload->list_until_us) {
         problem_set(&problem, PROBLEM_LIMIT, "", "", "the list of plans has no place for it: at most %d are listed",
                     FLEET_MAX_PLANS);
-        (void)throw_away(fleet, upload->root);
+        (void)data_throw_away(fleet, upload->root);
         fail(fleet, upload, &problem);
     } else {
         fleet_rescan(fleet);
     }
 }
 
-/* ---- what its processes say ------------------------------------------------------------------------------------- */
+/* ---- lines and ends of its processes ---------------------------------------------------------------------------- */
 
 static uint64_t count_of(const cJSON *json, const char *name)
 {
@@ -344,21 +265,21 @@ static uint64_t count_of(const cJSON *json, const char *name)
     return value >= 0 && value < 9e15 ? (uint64_t)value : 0;
 }
 
-static void take_line(struct upload *upload, const char *text, size_t n)
+static void progress_line(struct upload *upload, const char *text, size_t n)
 {
     struct problem problem;
     cJSON *json = json_read(text, n, &problem);
-    const cJSON *said = cJSON_GetObjectItemCaseSensitive(json, "problem");
+    const cJSON *reported = cJSON_GetObjectItemCaseSensitive(json, "problem");
     double percent = json_number(json, "percent", NAN);
     if (percent >= upload->percent && percent <= 100)
         upload->percent = percent;
-    if (said) {
-        (void)problem_from_json(said, &upload->problem);
-        upload->has_said_end = true;
+    if (reported) {
+        (void)problem_from_json(reported, &upload->problem);
+        upload->has_reported_end = true;
     } else if (json_flag(json, "done", false)) {
         upload->n_files = count_of(json, "n_files");
         upload->n_bytes = count_of(json, "n_bytes");
-        upload->has_said_end = true;
+        upload->has_reported_end = true;
     }
     cJSON_Delete(json);
 }
@@ -366,8 +287,8 @@ static void take_line(struct upload *upload, const char *text, size_t n)
 static void unpacking_ended(struct fleet *fleet, struct upload *upload, const struct watch_event *event)
 {
     struct problem problem = upload->problem;
-    if (event->is_exit && event->status == 0 && upload->has_said_end && problem.type == PROBLEM_NONE) {
-        start_looking(fleet, upload);
+    if (event->is_exit && event->status == 0 && upload->has_reported_end && problem.type == PROBLEM_NONE) {
+        start_scan(fleet, upload);
         return;
     }
     if (problem.type == PROBLEM_NONE && event->reason[0])
@@ -381,25 +302,25 @@ static void unpacking_ended(struct fleet *fleet, struct upload *upload, const st
     fail(fleet, upload, &problem);
 }
 
-static void looking_ended(struct fleet *fleet, struct upload *upload, const struct watch_event *event)
+static void scan_ended(struct fleet *fleet, struct upload *upload, const struct watch_event *event)
 {
     char reason[240] = "";
-    cJSON *json = plans_scan_document(event, reason);
-    const char *said = json_text(json, "reason");
+    cJSON *json = plan_scan_summary(event, reason);
+    const char *given = json_text(json, "reason");
     if (json_flag(json, "readable", false)) {
-        take_home(fleet, upload);
+        adopt(fleet, upload);
     } else {
         struct problem problem;
         problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "%.250s",
-                    said && said[0] ? said
-                    : reason[0]     ? reason
-                                    : "there is no plan in the archive");
+                    given && given[0] ? given
+                    : reason[0]       ? reason
+                                      : "there is no plan in the archive");
         fail(fleet, upload, &problem);
     }
     cJSON_Delete(json);
 }
 
-bool uploads_take_event(struct fleet *fleet, const struct watch_event *event)
+bool uploads_event(struct fleet *fleet, const struct watch_event *event)
 {
     struct upload *upload = fleet->uploads;
     while (upload && !(upload->process && upload->process == event->number))
@@ -408,30 +329,30 @@ bool uploads_take_event(struct fleet *fleet, const struct watch_event *event)
         return false;
     if (event->type == WATCH_LINE) {
         if (upload->stage == STAGE_UNPACKING)
-            take_line(upload, event->output, event->n_output);
+            progress_line(upload, event->output, event->n_output);
         return true;
     }
     upload->process = 0;
     switch (upload->stage) {
     case STAGE_UNPACKING: unpacking_ended(fleet, upload, event); break;
-    case STAGE_LOOKING: looking_ended(fleet, upload, event); break;
-    case STAGE_OVER: clean(fleet, upload); break;
+    case STAGE_SCANNING: scan_ended(fleet, upload, event); break;
+    case STAGE_ENDED: clean(fleet, upload); break;
     case STAGE_WAITING:
     case STAGE_LISTING: break;
     }
     return true;
 }
 
-void uploads_go_on(struct fleet *fleet)
+void uploads_tick(struct fleet *fleet)
 {
     int64_t now_us = fleet_now_us(fleet);
     for (;;) {
-        struct upload *oldest = NULL; /* that waits */
+        struct upload *oldest = NULL; /* of those that wait */
         int n_unpacking = 0;
         for (struct upload *upload = fleet->uploads; upload; upload = upload->next) {
-            n_unpacking += upload->stage == STAGE_UNPACKING || upload->stage == STAGE_LOOKING;
+            n_unpacking += upload->stage == STAGE_UNPACKING || upload->stage == STAGE_SCANNING;
             if (upload->stage == STAGE_WAITING)
-                oldest = upload; /* the newest comes first */
+                oldest = upload; /* the list begins with the newest */
         }
         if (!oldest || n_unpacking >= FLEET_MAX_UNPACKING)
             break;
@@ -439,17 +360,17 @@ void uploads_go_on(struct fleet *fleet)
     }
     for (struct upload *upload = fleet->uploads; upload; upload = upload->next)
         if (upload->stage == STAGE_LISTING)
-            look_for_it(fleet, upload, now_us);
+            check_listed(fleet, upload, now_us);
 }
 
-/* ---- for others ------------------------------------------------------------------------------------------------- */
+/* ---- fleet.h ---------------------------------------------------------------------------------------------------- */
 
 static void forget_old(struct fleet *fleet)
 {
     size_t n = 0;
     for (struct upload **at = &fleet->uploads; *at;) {
         struct upload *upload = *at;
-        if (++n > FLEET_KEPT_UPLOADS && is_over(upload) && !upload->process) {
+        if (++n > FLEET_KEPT_UPLOADS && has_ended(upload) && !upload->process) {
             *at = upload->next;
             upload_free(upload);
         } else {
@@ -458,8 +379,8 @@ static void forget_old(struct fleet *fleet)
     }
 }
 
-/* "Head.tar.gz" is called "Head". Without a name the plan is called after the day: what an archive is called on
- * somebody's disk is often a patient's name, and an id is in addresses, lists and logs. */
+/* The plan's id before numbering: "Head.tar.gz" gives "head"; without a name, the day. The archive's own file name is
+ * not used: it is often a patient's name, and an id stands in addresses, lists and logs. */
 static void make_base_id(const char *name, char id[PLAN_ID_SIZE])
 {
     time_t now = time(NULL);
@@ -484,9 +405,9 @@ uint64_t fleet_upload(struct fleet *fleet, const char *archive, const char *name
 {
     int n_going_on = 0;
     for (const struct upload *upload = fleet->uploads; upload; upload = upload->next)
-        n_going_on += !is_over(upload) || upload->process;
+        n_going_on += !has_ended(upload) || upload->process;
     if (n_going_on >= FLEET_MAX_UPLOADS) {
-        (void)throw_away(fleet, archive);
+        (void)data_throw_away(fleet, archive);
         problem_set(problem, PROBLEM_LIMIT, "", "",
                     "%d archives are waiting to be unpacked already; at most so many may wait", FLEET_MAX_UPLOADS);
         problem->retry_after_ms = 10000;
@@ -494,7 +415,7 @@ uint64_t fleet_upload(struct fleet *fleet, const char *archive, const char *name
     }
     forget_old(fleet);
     struct upload *upload = mem_new(sizeof *upload);
-    upload->number = fleet_number(fleet);
+    upload->number = fleet_next_number(fleet);
     upload->archive = mem_copy_text(archive);
     size_t n = strlen(archive), n_ending = strlen(".part");
     upload->folder = mem_new(n + n_ending);
@@ -505,7 +426,7 @@ uint64_t fleet_upload(struct fleet *fleet, const char *archive, const char *name
     upload->began_us = fleet_now_us(fleet);
     upload->next = fleet->uploads;
     fleet->uploads = upload;
-    uploads_go_on(fleet);
+    uploads_tick(fleet);
     return upload->number;
 }
 
@@ -534,43 +455,12 @@ bool fleet_upload_find(const struct fleet *fleet, uint64_t number, struct fleet_
 void fleet_upload_cancel(struct fleet *fleet, uint64_t number)
 {
     struct upload *upload = find(fleet, number);
-    if (!upload || is_over(upload))
+    if (!upload || has_ended(upload))
         return;
-    if (upload->stage == STAGE_LISTING && !throw_away(fleet, upload->root))
+    if (upload->stage == STAGE_LISTING && !data_throw_away(fleet, upload->root))
         log_warn("upload %llu: its plan cannot be removed: %s", (unsigned long long)number, strerror(errno));
     if (upload->stage == STAGE_LISTING)
         fleet_rescan(fleet);
     log_info("upload %llu: cancelled", (unsigned long long)number);
     end(fleet, upload, UPLOAD_CANCELLED);
-}
-
-bool fleet_remove_plan(struct fleet *fleet, const char *plan_id, struct problem *problem)
-{
-    struct plan_entry *plan = plan_entry_find(fleet, plan_id);
-    if (!plan)
-        return fleet_no_plan(fleet, plan_id, problem);
-    if (!uploads_owns(fleet, plan->folder))
-        return problem_set(problem, PROBLEM_FORBIDDEN, "", "",
-                           "the plan lies in a folder that the server does not own: only uploaded plans are deleted");
-    if (!throw_away(fleet, plan->folder) && errno != ENOENT)
-        return problem_set(problem, PROBLEM_STORAGE, "", "", "the plan's folder cannot be moved away: %s",
-                           strerror(errno));
-    /* of a collection: the folder around it, once it is empty */
-    char *around = mem_copy_text(plan->folder);
-    *strrchr(around, '/') = 0;
-    if (uploads_owns(fleet, around))
-        (void)rmdir(around);
-    free(around);
-    if (plan->process)
-        watch_stop(fleet->watch, plan->process, true,
-                   "draws a plan that is deleted"); /* at once: it may be writing to its cache */
-    plan_entry_close(fleet, plan, "it is deleted");
-    char cache[PATH_MAX];
-    (void)snprintf(cache, sizeof cache, "%s/cache/%s", fleet->data_folder, plan->id);
-    if (!throw_away(fleet, cache) && errno != ENOENT)
-        log_warn("plan %s: its cache cannot be removed: %s", plan->id, strerror(errno));
-    plan->is_removed = true;
-    fleet->list_has_changed = true;
-    fleet_rescan(fleet);
-    return true;
 }

@@ -1,3 +1,4 @@
+/* The thread that carries out orders, polls all child processes and puts their events into the queue. */
 #include "server/fleet/watch.h"
 
 #include <assert.h>
@@ -19,11 +20,11 @@ enum {
     MAX_PROCESSES = 256,
     ORDER_CAPACITY = 8192,
     EVENT_CAPACITY = 8192,
-    BUSY_POLL_MS = 20,     /* while something waits for the other side */
+    BUSY_POLL_MS = 20,     /* while an event or a throttled process waits for the net thread */
     AWAITED_POLL_MS = 100, /* while an answer is awaited */
     CALM_POLL_MS = 250,    /* while there are processes: pings, memory, limits */
-    LONGEST_STEP_MS = 500, /* between two looks at the processes; what is more, the thread did not run */
-    BLIND_POLL_MS = 50,    /* where the kernel tells no ends */
+    LONGEST_STEP_MS = 500, /* between two steps; of a longer time the rest does not count, the thread did not run */
+    BLIND_POLL_MS = 50,    /* where the kernel has no pidfd to poll */
     STOP_ALL_US = 2000000
 };
 
@@ -34,14 +35,14 @@ struct order {
     uint64_t number;
     char **argv;
     int limit_ms;
-    bool is_teller;
+    bool has_progress;
     uint8_t *bytes;
     size_t n_bytes;
-    bool is_hung, is_awaited;
+    bool at_once, is_awaited;
     char reason[240];
 };
 
-struct held_event { /* given while the event queue was full */
+struct held_event { /* put while the event queue was full */
     struct held_event *next;
     struct watch_event *event;
 };
@@ -50,10 +51,10 @@ struct watch {
     struct watch_options options;
     pthread_t thread;
     struct queue *orders, *events;
-    int bell; /* rung after an order */
-    /* the thread's own */
+    int wake_fd; /* eventfd: written after each order */
+    /* only for the thread */
     struct process *processes[MAX_PROCESSES];
-    size_t n_processes, next; /* next: whose turn it is */
+    size_t n_processes, next; /* next: index of the process that is stepped next */
     struct held_event *held, **last_held;
     bool is_quitting;
     int64_t quit_at_us;
@@ -82,14 +83,14 @@ static void event_drop(void *event)
     watch_event_destroy(event);
 }
 
-static bool give_order(struct watch *watch, struct order *order)
+static bool put_order(struct watch *watch, struct order *order)
 {
     if (!queue_try_put(watch->orders, order)) {
         order_destroy(order);
         return false;
     }
     uint64_t one = 1;
-    ssize_t n = write(watch->bell, &one, sizeof one);
+    ssize_t n = write(watch->wake_fd, &one, sizeof one);
     assert(n == sizeof one || errno == EAGAIN);
     return true;
 }
@@ -106,7 +107,7 @@ bool watch_start_renderer(struct watch *watch, uint64_t number, char **argv)
 {
     struct order *order = order_new(ORDER_START, number);
     order->argv = argv;
-    return give_order(watch, order);
+    return put_order(watch, order);
 }
 
 bool watch_start_program(struct watch *watch, uint64_t number, char **argv, int limit_ms)
@@ -114,16 +115,16 @@ bool watch_start_program(struct watch *watch, uint64_t number, char **argv, int 
     struct order *order = order_new(ORDER_START, number);
     order->argv = argv;
     order->limit_ms = limit_ms > 0 ? limit_ms : 1;
-    return give_order(watch, order);
+    return put_order(watch, order);
 }
 
-bool watch_start_teller(struct watch *watch, uint64_t number, char **argv, int silent_ms)
+bool watch_start_with_progress(struct watch *watch, uint64_t number, char **argv, int silent_ms)
 {
     struct order *order = order_new(ORDER_START, number);
     order->argv = argv;
     order->limit_ms = silent_ms > 0 ? silent_ms : 1;
-    order->is_teller = true;
-    return give_order(watch, order);
+    order->has_progress = true;
+    return put_order(watch, order);
 }
 
 bool watch_send(struct watch *watch, uint64_t number, uint8_t *bytes, size_t n_bytes)
@@ -131,18 +132,18 @@ bool watch_send(struct watch *watch, uint64_t number, uint8_t *bytes, size_t n_b
     struct order *order = order_new(ORDER_SEND, number);
     order->bytes = bytes;
     order->n_bytes = n_bytes;
-    return give_order(watch, order);
+    return put_order(watch, order);
 }
 
-void watch_stop(struct watch *watch, uint64_t number, bool is_hung, const char *reason)
+void watch_stop(struct watch *watch, uint64_t number, bool at_once, const char *reason)
 {
     struct order *order = order_new(ORDER_STOP, number);
-    order->is_hung = is_hung;
+    order->at_once = at_once;
     (void)snprintf(order->reason, sizeof order->reason, "%s", reason);
-    while (!give_order(watch, order)) { /* must not be lost; the thread empties its queue within milliseconds */
+    while (!put_order(watch, order)) { /* must not be lost; the thread empties the queue within milliseconds */
         poll(NULL, 0, 1);
         order = order_new(ORDER_STOP, number);
-        order->is_hung = is_hung;
+        order->at_once = at_once;
         (void)snprintf(order->reason, sizeof order->reason, "%s", reason);
     }
 }
@@ -151,7 +152,7 @@ bool watch_await(struct watch *watch, uint64_t number, bool is_awaited)
 {
     struct order *order = order_new(ORDER_AWAIT, number);
     order->is_awaited = is_awaited;
-    return give_order(watch, order);
+    return put_order(watch, order);
 }
 
 struct watch_event *watch_take(struct watch *watch)
@@ -176,7 +177,7 @@ static void flush_held(struct watch *watch)
         watch->options.wake(watch->options.context);
 }
 
-static void give_event(void *context, struct watch_event *event)
+static void put_event(void *context, struct watch_event *event)
 {
     struct watch *watch = context;
     if (!watch->held && queue_try_put(watch->events, event)) {
@@ -199,20 +200,18 @@ static struct process *find(struct watch *watch, uint64_t number)
 
 static void start(struct watch *watch, const struct order *order, int64_t now_us)
 {
-    struct process_news news = { give_event, watch };
+    const struct process_events events = { put_event, watch };
     if (watch->n_processes == MAX_PROCESSES || watch->is_quitting) {
-        struct watch_event *event = mem_new(sizeof *event);
-        event->type = WATCH_ENDED;
-        event->number = order->number;
+        struct watch_event *event = watch_event_create(WATCH_ENDED, order->number);
         (void)snprintf(event->reason, sizeof event->reason, "too many processes");
-        give_event(watch, event);
+        put_event(watch, event);
         return;
     }
     watch->processes[watch->n_processes++] =
-        process_create(order->number, order->argv, order->limit_ms, order->is_teller, &news, now_us);
+        process_create(order->number, order->argv, order->limit_ms, order->has_progress, &events, now_us);
 }
 
-static void obey(struct watch *watch, struct order *order, int64_t now_us)
+static void carry_out(struct watch *watch, struct order *order, int64_t now_us)
 {
     struct process *process = find(watch, order->number);
     switch (order->type) {
@@ -225,7 +224,7 @@ static void obey(struct watch *watch, struct order *order, int64_t now_us)
         break;
     case ORDER_STOP:
         if (process)
-            process_stop(process, order->is_hung, order->reason, now_us);
+            process_stop(process, order->at_once, order->reason, now_us);
         break;
     case ORDER_AWAIT:
         if (process)
@@ -260,24 +259,25 @@ static int poll_ms(const struct watch *watch)
 static void wait_for_something(struct watch *watch)
 {
     struct pollfd polled[1 + 2 * MAX_PROCESSES];
-    polled[0] = (struct pollfd){ .fd = watch->bell, .events = POLLIN };
+    polled[0] = (struct pollfd){ .fd = watch->wake_fd, .events = POLLIN };
     size_t n = 1;
     for (size_t i = 0; i < watch->n_processes && !watch->held; i++)
         n += process_poll(watch->processes[i], polled + n);
     (void)poll(polled, (nfds_t)n, poll_ms(watch));
-    uint64_t rung;
-    if (read(watch->bell, &rung, sizeof rung) < 0)
+    uint64_t count;
+    if (read(watch->wake_fd, &count, sizeof count) < 0)
         return; /* nothing was ordered */
 }
 
-/* Each process has its turn: one that fills the queue, and so ends a round, must not keep the others from theirs. */
+/* Round robin that goes on where the last round stopped: a process that fills the event queue, which ends the round,
+ * must not starve the others. */
 static void step_next(struct watch *watch, int64_t now_us)
 {
     watch->next = watch->next < watch->n_processes ? watch->next : 0;
     struct process *process = watch->processes[watch->next];
     if (watch->is_quitting && now_us >= watch->quit_at_us)
         process_stop(process, true, "", now_us);
-    if (process_step(process, &watch->options, now_us)) {
+    if (process_step(process, &watch->options.silence, now_us)) {
         process_destroy(process);
         watch->processes[watch->next] = watch->processes[--watch->n_processes];
     } else {
@@ -293,7 +293,7 @@ static void *watch_main(void *argument)
         run_clock_step(&watch->clock, LONGEST_STEP_MS * 1000LL);
         int64_t now_us = run_clock_us(&watch->clock);
         for (struct order *order; (order = queue_try_take(watch->orders));)
-            obey(watch, order, now_us);
+            carry_out(watch, order, now_us);
         flush_held(watch);
         for (size_t n = watch->n_processes; n > 0 && (!watch->held || watch->is_quitting); n--)
             step_next(watch, now_us);
@@ -308,12 +308,12 @@ struct watch *watch_create(const struct watch_options *options, struct error *er
     watch->last_held = &watch->held;
     watch->orders = queue_create(options->max_orders > 0 ? (size_t)options->max_orders : ORDER_CAPACITY, order_destroy);
     watch->events = queue_create(EVENT_CAPACITY, event_drop);
-    watch->bell = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    int failed = watch->bell < 0 ? errno : pthread_create(&watch->thread, NULL, watch_main, watch);
+    watch->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    int failed = watch->wake_fd < 0 ? errno : pthread_create(&watch->thread, NULL, watch_main, watch);
     if (failed) {
         error_set(err, ERROR_IO, "the thread that watches renderers cannot be started: %s", strerror(failed));
-        if (watch->bell >= 0)
-            close(watch->bell);
+        if (watch->wake_fd >= 0)
+            close(watch->wake_fd);
         queue_destroy(watch->orders);
         queue_destroy(watch->events);
         free(watch);
@@ -326,7 +326,7 @@ void watch_destroy(struct watch *watch)
 {
     if (!watch)
         return;
-    while (!give_order(watch, order_new(ORDER_QUIT, 0)))
+    while (!put_order(watch, order_new(ORDER_QUIT, 0)))
         poll(NULL, 0, 1);
     pthread_join(watch->thread, NULL);
     while (watch->held) {
@@ -337,6 +337,6 @@ void watch_destroy(struct watch *watch)
     }
     queue_destroy(watch->orders);
     queue_destroy(watch->events);
-    close(watch->bell);
+    close(watch->wake_fd);
     free(watch);
 }

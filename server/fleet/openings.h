@@ -1,0 +1,9 @@
+#pragma once
+/* Which plans have a renderer: opening and closing a plan, holding it, and the limit of renderers that run at once
+ * (fleet_open, fleet_close, fleet_hold, fleet_release). Internal to server/fleet; net thread. */
+#include "server/fleet/plan_entry.h"
+
+/* Opens a plan that is held. Without a free slot it goes to FLEET_FAILED with a sentence, and tries again later. */
+void opening_of_held(struct fleet *fleet, struct plan_entry *plan);
+/* Tries again for a slot, and closes a plan that nobody used for idle_close_s. */
+void opening_tick(struct fleet *fleet, struct plan_entry *plan, int64_t now_us);

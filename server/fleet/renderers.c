@@ -1,0 +1,81 @@
+/* Starts a plan's renderer process with its arguments; closes and fails a plan. */
+#include "server/fleet/renderers.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <sys/stat.h>
+
+#include "core/base/clock.h"
+#include "core/base/log.h"
+#include "server/fleet/cache.h"
+#include "server/fleet/requests.h"
+#include "server/fleet/watch.h"
+
+bool renderer_start(struct fleet *fleet, struct plan_entry *plan)
+{
+    char cache[PATH_MAX], limit[32], file_limit[32];
+    (void)snprintf(cache, sizeof cache, "%s/cache/%s", fleet->data_folder, plan->id);
+    (void)snprintf(limit, sizeof limit, "%llu", (unsigned long long)fleet->options.max_renderer_bytes);
+    (void)mkdir(cache, 0700); /* without the folder the renderer works without a cache */
+    (void)snprintf(file_limit, sizeof file_limit, "%llu", (unsigned long long)cache_max_file(fleet->cache));
+    const char *words[20] = { fleet->renderer_path, "--socket-fd", "3",           "--plan-folder", plan->folder,
+                              "--plan-id",          plan->id,      "--cache",     cache,           "--max-file-bytes",
+                              file_limit,           "--gl",        fleet->gl_word };
+    size_t n = 13;
+    if (fleet->options.max_renderer_bytes > 0) {
+        words[n++] = "--max-bytes";
+        words[n++] = limit;
+    }
+    if (fleet->options.stub_renderer)
+        words[n++] = "--stub";
+    plan->process = fleet_next_number(fleet);
+    plan->restart_at_us = 0;
+    plan->problem = (struct problem){ 0 };
+    plan->is_killed = false;
+    plan->generation++;
+    plan->percent = 0;
+    plan->has_drawn = plan->is_awaited = false;
+    plan->ready_us = 0;
+    plan->started_us = clock_now_us();
+    plan->progressed_us = fleet_now_us(fleet);
+    cache_begin(fleet->cache, plan->id, plan->process);
+    if (watch_start_renderer(fleet->watch, plan->process, fleet_arguments(words)))
+        return true;
+    cache_end(fleet->cache, plan->process);
+    plan->process = 0;
+    return false;
+}
+
+static void stop_process(struct fleet *fleet, struct plan_entry *plan)
+{
+    if (plan->process)
+        watch_stop(fleet->watch, plan->process, false, "is no longer wanted");
+    plan_entry_lose(plan);
+    plan->restart_at_us = 0;
+}
+
+void renderer_close(struct fleet *fleet, struct plan_entry *plan, const char *why)
+{
+    struct problem problem;
+    problem_set(&problem, PROBLEM_CANCELLED, "", "", "the plan was closed: %s", why);
+    requests_fail(fleet, plan, false, &problem);
+    stop_process(fleet, plan);
+    plan->waits_for_slot = false;
+    plan->was_ready = false;
+    plan->phase[0] = 0;
+    plan->percent = 0;
+    plan_entry_forget_documents(plan);
+    plan_entry_change(fleet, plan, FLEET_CLOSED);
+    log_info("plan %s: closed: %s", plan->id, why);
+}
+
+void renderer_fail(struct fleet *fleet, struct plan_entry *plan, const struct problem *problem)
+{
+    stop_process(fleet, plan);
+    plan->failed_number = fleet->last_number;
+    plan->failed_opening = plan->opening;
+    plan->problem = plan->failure = *problem;
+    requests_fail(fleet, plan, false, problem);
+    plan_entry_change(fleet, plan, FLEET_FAILED);
+    log_warn("plan %s: %s", plan->id, problem->detail);
+}
