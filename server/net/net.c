@@ -1,3 +1,6 @@
+/* Creates and destroys the net thread; its tasks, its clock, its connections, and the life of rooms. */
+#include "server/net/net.h"
+
 #include <errno.h>
 #include <sched.h>
 #include <stdio.h>
@@ -9,13 +12,15 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "server/net/parts.h"
+#include "server/net/bridge.h"
+#include "server/net/net_state.h"
+#include "server/net/schedule.h"
 
 enum {
-    MAX_TASKS = 4096, /* waiting; who posts more waits */
+    MAX_TASKS = 4096, /* waiting; net_post of one more waits too */
     FLEET_TICK_US = 250000,
-    FAREWELL_US = 1000000,   /* at the end: for byes to get out */
-    RESTART_RETRY_MS = 2000, /* when pages come back after the daemon was stopped: a restart takes about that */
+    FAREWELL_US = 1000000,   /* at the end, for the byes to be sent */
+    RESTART_RETRY_MS = 2000, /* when pages reconnect after a stop: about the time of a restart */
 };
 
 struct task {
@@ -25,46 +30,26 @@ struct task {
 
 /* ---- time ------------------------------------------------------------------------------------------------------- */
 
-void net_plan_next_call(struct net *net)
+static void schedule_all(struct net *net)
 {
-    int64_t next_us = net->fleet_tick_us;
-    for (size_t i = 0; i < net->n_places; i++)
-        if (net->places[i]->wake_us < next_us)
-            next_us = net->places[i]->wake_us;
-    ws_wake_at(net->ws, next_us);
-}
-
-/* After anything that may have changed when the room wants to be called. */
-void net_touch(struct place *place)
-{
-    int64_t now_us = clock_now_us();
-    place->wake_us = room_tick(place->room, now_us);
-    if (room_n_connected(place->room))
-        place->empty_since_us = 0;
-    else if (place->empty_since_us == 0)
-        place->empty_since_us = now_us;
-}
-
-static void touch_all(struct net *net)
-{
-    for (size_t i = 0; i < net->n_places; i++)
-        net_touch(net->places[i]);
-    net_plan_next_call(net);
+    for (size_t i = 0; i < net->n_rooms; i++)
+        schedule_room(net->rooms[i]);
+    schedule_wake(net);
 }
 
 static void close_idle_rooms(struct net *net)
 {
     int64_t now_us = clock_now_us(), after_us = net->room_idle_close_s * INT64_C(1000000);
-    for (size_t i = net->n_places; net->room_idle_close_s > 0 && i-- > 0;) {
-        const struct place *place = net->places[i];
-        if (place->empty_since_us && now_us - place->empty_since_us >= after_us) {
+    for (size_t i = net->n_rooms; net->room_idle_close_s > 0 && i-- > 0;) {
+        const struct net_room *room = net->rooms[i];
+        if (room->empty_since_us && now_us - room->empty_since_us >= after_us) {
             log_info("room closed: nobody there for %d s", net->room_idle_close_s);
-            net_room_delete(net, room_id(place->room));
+            net_room_delete(net, room_id(room->room));
         }
     }
 }
 
-static void time_came(void *context)
+static void timer_fired(void *context)
 {
     struct net *net = context;
     int64_t now_us = clock_now_us();
@@ -73,19 +58,19 @@ static void time_came(void *context)
         fleet_tick(net->fleet);
         close_idle_rooms(net);
     }
-    for (size_t i = 0; i < net->n_places; i++)
-        if (net->places[i]->wake_us <= now_us)
-            net_touch(net->places[i]);
-    net_plan_next_call(net);
+    for (size_t i = 0; i < net->n_rooms; i++)
+        if (net->rooms[i]->wake_us <= now_us)
+            schedule_room(net->rooms[i]);
+    schedule_wake(net);
 }
 
 /* ---- connections ------------------------------------------------------------------------------------------------ */
 
-static struct place *place_of(struct net *net, const char *id)
+static struct net_room *find_room(struct net *net, const char *id)
 {
-    for (size_t i = 0; i < net->n_places; i++)
-        if (strcmp(room_id(net->places[i]->room), id) == 0)
-            return net->places[i];
+    for (size_t i = 0; i < net->n_rooms; i++)
+        if (strcmp(room_id(net->rooms[i]->room), id) == 0)
+            return net->rooms[i];
     return NULL;
 }
 
@@ -109,39 +94,39 @@ static void close_connection(void *context, void *connection)
 
 static bool has_room(void *context, const char *id)
 {
-    return place_of(context, id) != NULL;
+    return find_room(context, id) != NULL;
 }
 
-static void opened(void *context, struct ws_connection *connection, const char *id)
+static void connection_opened(void *context, struct ws_connection *connection, const char *id)
 {
     struct net *net = context;
     struct visitor *visitor = mem_new(sizeof *visitor);
-    *visitor = (struct visitor){ .next = net->visitors, .connection = connection, .place = place_of(net, id) };
+    *visitor = (struct visitor){ .next = net->visitors, .connection = connection, .room = find_room(net, id) };
     net->visitors = visitor;
     ws_set_owner(connection, visitor);
-    if (visitor->place)
+    if (visitor->room)
         bridge_enter(visitor);
     else
         ws_bye(connection, WS_CLOSE_NORMAL, "the room is closed", -1);
 }
 
-static void message_came(void *context, struct ws_connection *connection, enum ws_opcode kind, const char *text,
-                         size_t n)
+static void message_received(void *context, struct ws_connection *connection, enum ws_opcode kind, const char *text,
+                             size_t n)
 {
-    (void)kind; /* a text: binary ones are not taken */
-    struct place *place = ((struct visitor *)ws_owner(connection))->place;
-    if (!place)
+    (void)kind; /* always a text: ws refuses binary messages */
+    struct net_room *room = ((struct visitor *)ws_owner(connection))->room;
+    if (!room)
         return;
-    room_text_came(place->room, connection, text, n, clock_now_us());
-    net_touch(place);
-    net_plan_next_call(context);
+    room_text_came(room->room, connection, text, n, clock_now_us());
+    schedule_room(room);
+    schedule_wake(context);
 }
 
 static bool is_greeted(void *context, struct ws_connection *connection)
 {
     const struct visitor *visitor = ws_owner(connection);
     (void)context;
-    return visitor->place && room_has_member(visitor->place->room, connection);
+    return visitor->room && room_has_member(visitor->room->room, connection);
 }
 
 static void connection_closed(void *context, struct ws_connection *connection)
@@ -151,18 +136,18 @@ static void connection_closed(void *context, struct ws_connection *connection)
     while (*at != visitor)
         at = &(*at)->next;
     *at = visitor->next;
-    if (visitor->place) {
+    if (visitor->room) {
         bridge_leave(visitor);
-        room_connection_closed(visitor->place->room, connection, clock_now_us());
-        net_touch(visitor->place);
-        net_plan_next_call(net);
+        room_connection_closed(visitor->room->room, connection, clock_now_us());
+        schedule_room(visitor->room);
+        schedule_wake(net);
     }
     free(visitor);
 }
 
 /* ---- rooms ------------------------------------------------------------------------------------------------------ */
 
-/* 40 random bits as "7q4k-m2wz", without letters that are taken for another. */
+/* 40 random bits as "7q4k-m2wz". The letters i, l and o and the digit 1 are left out: they are misread. */
 static bool make_id(char id[16])
 {
     static const char letters[] = "abcdefghjkmnpqrstuvwxyz023456789";
@@ -186,9 +171,9 @@ struct room *net_room_create(struct net *net, const char *plan_id, struct proble
         problem_set(problem, PROBLEM_BUSY, "", "", "the server is stopping");
         return NULL;
     }
-    if (net->n_places >= (size_t)net->max_rooms) {
-        problem_set(problem, PROBLEM_LIMIT, "", "", "there are %zu rooms already, at most %d are allowed",
-                    net->n_places, net->max_rooms);
+    if (net->n_rooms >= (size_t)net->max_rooms) {
+        problem_set(problem, PROBLEM_LIMIT, "", "", "there are %zu rooms already, at most %d are allowed", net->n_rooms,
+                    net->max_rooms);
         return NULL;
     }
     if (!id_is_valid(plan_id)) {
@@ -201,69 +186,60 @@ struct room *net_room_create(struct net *net, const char *plan_id, struct proble
             problem_set(problem, PROBLEM_INTERNAL, "", "", "the system gave no random numbers");
             return NULL;
         }
-    while (place_of(net, id));
+    while (find_room(net, id));
     if (!fleet_open(net->fleet, plan_id, problem))
         return NULL;
     const struct room_callbacks callbacks = {
         bridge_render, bridge_forget, bridge_scene_changed, send_text, send_frame, close_connection, net
     };
-    struct place *place = mem_new(sizeof *place);
-    *place =
-        (struct place){ .net = net, .room = room_create(id, plan_id, &callbacks, &net->limits), .state = FLEET_CLOSED };
-    net->places[net->n_places++] = place;
-    bridge_tell_plan(place);
-    net_touch(place);
-    net_plan_next_call(net);
-    return place->room;
+    struct net_room *room = mem_new(sizeof *room);
+    *room = (struct net_room){ .net = net,
+                               .room = room_create(id, plan_id, &callbacks, &net->limits),
+                               .state = FLEET_CLOSED };
+    net->rooms[net->n_rooms++] = room;
+    bridge_report_plan(room);
+    schedule_room(room);
+    schedule_wake(net);
+    return room->room;
 }
 
 struct room *net_room_find(struct net *net, const char *id)
 {
-    struct place *place = place_of(net, id);
-    return place ? place->room : NULL;
+    struct net_room *room = find_room(net, id);
+    return room ? room->room : NULL;
 }
 
 void net_room_delete(struct net *net, const char *id)
 {
     size_t index = 0;
-    while (index < net->n_places && strcmp(room_id(net->places[index]->room), id) != 0)
+    while (index < net->n_rooms && strcmp(room_id(net->rooms[index]->room), id) != 0)
         index++;
-    if (index == net->n_places)
+    if (index == net->n_rooms)
         return;
-    struct place *place = net->places[index];
-    net->places[index] = net->places[--net->n_places];
-    while (place->asked) {
-        struct asked *asked = place->asked;
-        place->asked = asked->next;
-        fleet_forget_request(net->fleet, asked->fleet_request);
-        free(asked);
-    }
-    cJSON *packet = cJSON_CreateObject();
-    cJSON_AddStringToObject(packet, "type", "forget");
-    cJSON_AddStringToObject(packet, "room", room_id(place->room));
-    (void)fleet_tell(net->fleet, room_plan_id(place->room), packet);
-    cJSON_Delete(packet);
+    struct net_room *room = net->rooms[index];
+    net->rooms[index] = net->rooms[--net->n_rooms];
+    bridge_close_room(room);
     for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
-        if (visitor->place == place) {
-            if (!room_has_member(place->room, visitor->connection)) /* members hear it from the room */
+        if (visitor->room == room) {
+            if (!room_has_member(room->room, visitor->connection)) /* members get theirs from room_destroy */
                 ws_bye(visitor->connection, WS_CLOSE_NORMAL, "the room is closed", -1);
             bridge_leave(visitor);
-            visitor->place = NULL;
+            visitor->room = NULL;
         }
-    room_count(place->room, &net->closed);
-    room_destroy(place->room);
-    free(place);
-    net_plan_next_call(net);
+    room_count(room->room, &net->closed);
+    room_destroy(room->room);
+    free(room);
+    schedule_wake(net);
 }
 
 size_t net_n_rooms(const struct net *net)
 {
-    return net->n_places;
+    return net->n_rooms;
 }
 
 struct room *net_room_at(const struct net *net, size_t index)
 {
-    return index < net->n_places ? net->places[index]->room : NULL;
+    return index < net->n_rooms ? net->rooms[index]->room : NULL;
 }
 
 struct fleet *net_fleet(struct net *net)
@@ -279,8 +255,8 @@ void net_count(const struct net *net, struct net_counters *counters)
                                        .connections = ws.opened,
                                        .connections_refused = ws.refused,
                                        .n_connections = ws.n_connections };
-    for (size_t i = 0; i < net->n_places; i++)
-        room_count(net->places[i]->room, &counters->rooms);
+    for (size_t i = 0; i < net->n_rooms; i++)
+        room_count(net->rooms[i]->room, &counters->rooms);
 }
 
 /* ---- tasks and the thread --------------------------------------------------------------------------------------- */
@@ -300,18 +276,16 @@ static void woken(void *context)
     struct net *net = context;
     fleet_handle_events(net->fleet);
     if (run_tasks(net))
-        touch_all(net); /* a task may have changed any room */
+        schedule_all(net); /* a task may have changed any room */
 }
 
 void net_post(struct net *net, void (*run)(struct net *net, void *argument), void *argument)
 {
     struct task *task = mem_new(sizeof *task);
     *task = (struct task){ run, argument };
-    bool is_us = pthread_equal(pthread_self(), net->thread);
-    while (
-        !queue_try_put(net->tasks,
-                       task)) { /* thousands wait: so does who adds to them, but for the thread that works them off */
-        if (is_us)
+    bool is_net_thread = pthread_equal(pthread_self(), net->thread);
+    while (!queue_try_put(net->tasks, task)) { /* full: wait; the net thread itself makes room instead */
+        if (is_net_thread)
             run_tasks(net);
         else
             sched_yield();
@@ -371,19 +345,19 @@ static size_t n_connections(const struct net *net)
 static void *work(void *context)
 {
     struct net *net = context;
-    net_plan_next_call(net);
+    schedule_wake(net);
     while (!net_is_stopping(net))
         ws_serve(net->ws);
     run_tasks(net);
     for (struct visitor *visitor = net->visitors; visitor;
-         visitor = visitor->next) /* before the rooms say that they are closed */
+         visitor = visitor->next) /* before room_destroy says bye with another reason */
         ws_bye(visitor->connection, WS_CLOSE_GOING_AWAY, "the server is being stopped", RESTART_RETRY_MS);
-    while (net->n_places)
-        net_room_delete(net, room_id(net->places[0]->room));
+    while (net->n_rooms)
+        net_room_delete(net, room_id(net->rooms[0]->room));
     int64_t end_us = clock_now_us() + FAREWELL_US;
     while (n_connections(net) && clock_now_us() < end_us)
-        ws_serve(net->ws);     /* the fleet's time wakes it four times a second */
-    fleet_destroy(net->fleet); /* every reply that is owed comes now, and may post */
+        ws_serve(net->ws);     /* fleet_tick wakes it four times a second */
+    fleet_destroy(net->fleet); /* calls every outstanding reply, which may post tasks */
     net->fleet = NULL;
     run_tasks(net);
     return NULL;
@@ -395,11 +369,12 @@ struct net *net_create(const struct net_options *options, struct error *err)
     net->max_rooms = options->max_rooms > 0 ? options->max_rooms : 200;
     net->room_idle_close_s = options->room_idle_close_s;
     net->limits = options->room;
-    net->places = mem_array((size_t)net->max_rooms, sizeof net->places[0], 1 << 20, err);
+    net->rooms = mem_array((size_t)net->max_rooms, sizeof net->rooms[0], 1 << 20, err);
     net->tasks = queue_create(MAX_TASKS, free);
-    const struct ws_callbacks callbacks = { has_room,          opened, message_came, is_greeted,
-                                            connection_closed, woken,  time_came,    net };
-    net->ws = net->places ? ws_create(&callbacks, &ws_limits_default, options->allowed_origin, err) : NULL;
+    const struct ws_callbacks callbacks = {
+        has_room, connection_opened, message_received, is_greeted, connection_closed, woken, timer_fired, net
+    };
+    net->ws = net->rooms ? ws_create(&callbacks, &ws_limits_default, options->allowed_origin, err) : NULL;
     if (!net->ws)
         goto fail;
     struct fleet_options fleet = options->fleet;
@@ -418,7 +393,7 @@ fail:
     fleet_destroy(net->fleet);
     ws_destroy(net->ws);
     queue_destroy(net->tasks);
-    free(net->places);
+    free(net->rooms);
     free(net);
     return NULL;
 }
@@ -432,6 +407,6 @@ void net_destroy(struct net *net)
     (void)pthread_join(net->thread, NULL);
     ws_destroy(net->ws);
     queue_destroy(net->tasks);
-    free(net->places);
+    free(net->rooms);
     free(net);
 }

@@ -1,6 +1,6 @@
 #pragma once
 /* The net thread: libwebsockets' loop, rooms, the fleet. Everything about rooms and renderers happens on it; other
- * threads hand it tasks. The one place where room, fleet and ws meet. */
+ * threads hand it tasks. The only folder that uses room, fleet and ws. */
 #include <stdint.h>
 
 #include "server/fleet/fleet.h"
@@ -11,11 +11,11 @@ struct net;
 
 struct net_options {
     struct fleet_options fleet; /* wake, changed and context are the net's own */
-    int max_rooms;              /* 200 */
+    int max_rooms;              /* 0: 200 */
     int room_idle_close_s;      /* a room with nobody connected is closed after this; 0: never */
     struct room_limits room;
-    const char
-        *allowed_origin; /* further Origin allowed to open a WebSocket; the request's own Host always is. NULL: none */
+    /* a further Origin that may open a WebSocket, beside the request's own Host; NULL: none */
+    const char *allowed_origin;
 };
 
 /* Starts the thread. errors ERROR_IO, ERROR_MEMORY and those of fleet_create */
@@ -26,25 +26,25 @@ void net_destroy(struct net *net); /* says bye to every connection, stops render
  * with net_is_stopping true). */
 void net_post(struct net *net, void (*task)(struct net *net, void *argument), void *argument);
 bool net_is_stopping(const struct net *net);
-/* Whether the plan folders have been listed for the first time. Any thread. */
+/* True once the plan folders have been listed for the first time. Any thread. */
 bool net_plans_are_listed(const struct net *net);
 
-/* A socket that begins with this handshake of a WebSocket, not yet read from: takes it over. Any thread. ended: called
- * with context, once, when the connection is gone, also when it never became a WebSocket; on the net thread, at the
+/* Takes over a socket that starts with this WebSocket handshake; nothing of it has been read yet. Any thread. Calls
+ * ended(context) once when the connection is gone, also when it never became a WebSocket; on the net thread, at the
  * latest in net_destroy. */
 void net_adopt(struct net *net, int socket, const struct handshake *handshake, void (*ended)(void *context),
                void *context);
 
 /* On the net thread only: */
 struct fleet *net_fleet(struct net *net);
-struct room *net_room_create(struct net *net, const char *plan_id,
-                             struct problem *problem); /* opens the plan too; NULL with problem */
+/* Creates a room and opens its plan. NULL with problem. */
+struct room *net_room_create(struct net *net, const char *plan_id, struct problem *problem);
 struct room *net_room_find(struct net *net, const char *room_id);
 void net_room_delete(struct net *net, const char *room_id);
 size_t net_n_rooms(const struct net *net);
 struct room *net_room_at(const struct net *net, size_t index);
 struct net_counters {
-    struct room_counters rooms; /* of living and closed rooms */
+    struct room_counters rooms; /* sum over open and closed rooms */
     uint64_t connections, connections_refused;
     size_t n_connections;
 };
