@@ -114,7 +114,7 @@ void api_metrics(struct api *api, struct call *call)
     add_metric(&text, "websocket_connections", "gauge", "Open WebSockets.", (double)n.n_connections);
     add_metric(&text, "websocket_connections_total", "counter", "WebSockets ever opened.", (double)n.connections);
     add_metric(&text, "websocket_refused_total", "counter", "WebSockets refused.", (double)n.connections_refused);
-    add_metric(&text, "renders_total", "counter", "Pictures asked for by rooms.", (double)n.rooms.renders_asked);
+    add_metric(&text, "renders_total", "counter", "Pictures asked for by rooms.", (double)n.rooms.pictures_requested);
     add_metric(&text, "frames_sent_total", "counter", "Frames sent to browsers.", (double)n.rooms.frames_sent);
     add_metric(&text, "frame_bytes_total", "counter", "Bytes of them.", (double)n.rooms.frame_bytes);
     add_metric(&text, "frames_skipped_total", "counter",

@@ -122,7 +122,7 @@ void bridge_render(void *context, struct room *room, const struct room_render *r
     cJSON_AddNumberToObject(packet, "quality", request->quality);
     cJSON_AddStringToObject(packet, "codec", "jpeg");
     cJSON_AddBoolToObject(packet, "full_color", request->full_color);
-    cJSON_AddStringToObject(packet, "detail", request->light ? "light" : "full");
+    cJSON_AddStringToObject(packet, "detail", request->coarse ? "light" : "full");
     cJSON_AddBoolToObject(packet, "still", request->is_still);
 
     struct picture_request *sent = mem_new(sizeof *sent);

@@ -1,4 +1,6 @@
-/* Members and their views. */
+/* Lets members in and out, and handles the messages about their views. */
+#include "server/room/member.h"
+
 #include <assert.h>
 #include <errno.h>
 #include <stdio.h>
@@ -7,7 +9,9 @@
 #include <sys/random.h>
 
 #include "core/base/mem.h"
-#include "server/room/parts.h"
+#include "server/room/member_list.h"
+#include "server/room/send.h"
+#include "server/room/stream.h"
 
 static const char replaced[] = "this member has come back on another connection";
 static const char room_is_full[] = "the room is full";
@@ -15,14 +19,6 @@ static const char old_page[] = "the page speaks another protocol version: reload
 enum { FULL_RETRY_MS = 30000 };
 
 /* ---- coming and going ------------------------------------------------------------------------------------------- */
-
-struct member *member_of(const struct room *room, const void *connection)
-{
-    for (int i = 0; i < room->n_members; i++)
-        if (connection && room->members[i]->connection == connection)
-            return room->members[i];
-    return NULL;
-}
 
 static void make_secret(char hex[2 * SECRET_BYTES + 1])
 {
@@ -32,12 +28,12 @@ static void make_secret(char hex[2 * SECRET_BYTES + 1])
         n = getrandom(bytes, sizeof bytes, 0);
     while (n < 0 && errno == EINTR);
     if (n != (ssize_t)sizeof bytes)
-        abort(); /* a secret that can be guessed is none */
+        abort(); /* without a random secret anybody could take over the member */
     for (int i = 0; i < SECRET_BYTES; i++)
         (void)snprintf(hex + 2 * i, 3, "%02x", bytes[i]);
 }
 
-/* In a time that says nothing about how much of it is right; its length is no secret. */
+/* Compares in constant time: the time does not reveal how many digits match. The length is public. */
 static bool secret_is(const struct member *member, const char *secret)
 {
     if (strlen(secret) != 2 * SECRET_BYTES)
@@ -53,22 +49,14 @@ static void view_leave(struct room *room, struct member_view *view)
     struct stream *stream = view->stream;
     view->stream = NULL;
     view->is_following = false;
-    view->has_news = false;
+    view->has_moved = false;
     view->n_waiting = 0;
     view->sent_number = 0;
     view->lag_least_us = view->lag_excess_us = 0;
-    if (stream && stream->is_shared) /* stays for those who come later */
+    if (stream && stream->is_shared) /* a shared stream stays for members who follow later */
         stream_left(room, stream);
     else if (stream)
         stream_destroy(room, stream);
-}
-
-static bool follows(const struct member *member)
-{
-    for (int i = 0; i < ROOM_MAX_VIEWS; i++)
-        if (member->views[i].is_following)
-            return true;
-    return false;
 }
 
 static void view_close(struct room *room, struct member_view *view)
@@ -83,7 +71,7 @@ static void close_views(struct room *room, struct member *member)
 {
     for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
         view_close(room, &member->views[i]);
-        member->views[i] = (struct member_view){ 0 }; /* a new connection counts its frames anew */
+        member->views[i] = (struct member_view){ 0 }; /* frames are counted from 1 on each connection */
     }
     member->connection = NULL;
 }
@@ -120,7 +108,7 @@ int64_t members_forget(struct room *room)
         }
     }
     if (has_changed)
-        say_members(room);
+        send_members(room);
     return again_us;
 }
 
@@ -128,7 +116,7 @@ void member_disconnected(struct room *room, struct member *member)
 {
     close_views(room, member);
     member->away_us = room->now_us;
-    say_members(room);
+    send_members(room);
 }
 
 static bool name_is_taken(const struct room *room, const char *name)
@@ -139,7 +127,7 @@ static bool name_is_taken(const struct room *room, const char *name)
     return false;
 }
 
-/* Makes room for one more by forgetting who is away longest; false when all are here. */
+/* Makes room for one more member by dropping the one away longest. Returns false when all are connected. */
 static bool make_place(struct room *room)
 {
     if (room->n_members < room->max_members)
@@ -170,7 +158,7 @@ static struct member *member_create(struct room *room, const char *name)
 bool member_hello(struct room *room, void *connection, const struct message_hello *hello)
 {
     if (hello->protocol != WIRE_PROTOCOL) {
-        say_bye(room, connection, -1, old_page);
+        send_bye(room, connection, -1, old_page);
         return false;
     }
     struct member *member = NULL;
@@ -178,53 +166,33 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
         if (strcmp(room->members[i]->id, hello->member) == 0 && secret_is(room->members[i], hello->secret))
             member = room->members[i];
     if (member) {
-        void *old = member->connection; /* half-open: the page knows before we do */
+        void *old = member->connection; /* half-open: the page notices a lost connection before the server does */
         close_views(room, member);
         if (old)
-            say_bye(room, old, -1, replaced);
+            send_bye(room, old, -1, replaced);
         if (hello->name[0])
             (void)snprintf(member->name, sizeof member->name, "%s", hello->name);
     } else if (make_place(room)) {
         member = member_create(room, hello->name);
     } else {
-        say_bye(room, connection, FULL_RETRY_MS, room_is_full);
+        send_bye(room, connection, FULL_RETRY_MS, room_is_full);
         return false;
     }
     member->connection = connection;
-    say_welcome(room, member);
-    say_renderer(room, member);
-    say_members(room);
+    send_welcome(room, member);
+    send_renderer_state(room, member);
+    send_members(room);
     return true;
-}
-
-static bool is_blank(const char *text)
-{
-    return text[strspn(text, " ")] == 0;
-}
-
-cJSON *room_members(const struct room *room)
-{
-    cJSON *list = cJSON_CreateArray();
-    for (int i = 0; i < room->n_members; i++) {
-        const struct member *member = room->members[i];
-        cJSON *item = cJSON_CreateObject();
-        cJSON_AddStringToObject(item, "id", member->id);
-        cJSON_AddStringToObject(item, "name", is_blank(member->name) ? member->id : member->name);
-        cJSON_AddBoolToObject(item, "connected", member->connection != NULL);
-        cJSON_AddBoolToObject(item, "following", follows(member));
-        cJSON_AddItemToArray(list, item);
-    }
-    return list;
 }
 
 /* ---- views ------------------------------------------------------------------------------------------------------ */
 
-void view_input(struct member_view *view, uint32_t input)
+void view_add_input(struct member_view *view, uint32_t input)
 {
     if (!view->stream || input == 0)
         return;
     if (view->n_waiting ==
-        MAX_WAITING_INPUTS) /* the older of the two is then reported with the newer, never too early */
+        MAX_WAITING_INPUTS) /* full: the older input is reported with the newer one, later but never too early */
         view->n_waiting--;
     view->waiting[view->n_waiting].version = view->stream->version;
     view->waiting[view->n_waiting].input = input;
@@ -239,7 +207,7 @@ static void view_join(struct room *room, struct member_view *view, struct stream
     view->stream = stream;
     view->is_following = is_following;
     view->was_open = true;
-    view_input(view, input);
+    view_add_input(view, input);
 }
 
 static void read_size(const cJSON *document, int size_px[2])
@@ -254,7 +222,7 @@ static void write_size(cJSON *document, const int size_px[2])
     cJSON_ReplaceItemInObjectCaseSensitive(document, "size_px", cJSON_CreateIntArray(size_px, 2));
 }
 
-/* The shared view of the document's kind; made from the document (taken) when there is none yet. */
+/* The shared stream of the document's kind. Takes document, and makes the stream from it when there is none yet. */
 static struct stream *shared_stream(struct room *room, struct member *member, cJSON *document)
 {
     struct stream *stream = room->shared[view_kind(document)];
@@ -267,13 +235,13 @@ static struct stream *shared_stream(struct room *room, struct member *member, cJ
     return stream;
 }
 
-/* Says the new state of following to its member, and to all who look at the list of members when that changed. */
-static void tell_following(struct room *room, struct member *member, int index, bool followed)
+/* Sends the view to its member, and the list of members to all when the member began or ceased to follow. */
+static void send_following(struct room *room, struct member *member, int index, bool followed)
 {
     const struct member_view *view = &member->views[index];
-    say_view(room, member, index, view->is_following ? view->stream->mover : "");
-    if (followed != follows(member))
-        say_members(room);
+    send_view(room, member, index, view->is_following ? view->stream->mover : "");
+    if (followed != member_follows(member))
+        send_members(room);
 }
 
 static struct member_view *open_view(struct member *member, int64_t number, struct problem *problem)
@@ -296,41 +264,40 @@ bool member_view_open(struct room *room, struct member *member, const struct mes
         cJSON_Delete(document);
         return false;
     }
-    bool followed = follows(member);
+    bool followed = member_follows(member);
     read_size(document, view->size_px);
     struct stream *stream = open->follow ? shared_stream(room, member, document) : stream_create(room, document, false);
     view_join(room, view, stream, open->follow, (uint32_t)open->input);
     if (open->follow)
-        tell_following(room, member, (int)open->view - 1, followed);
-    else if (followed != follows(member))
-        say_members(room);
-    stream_send(room, member, view); /* what is there is seen at once */
-    stream_say_refusal(room, member, view);
+        send_following(room, member, (int)open->view - 1, followed);
+    else if (followed != member_follows(member))
+        send_members(room);
+    stream_send_picture(room, member, view); /* a picture that is there already is sent at once */
+    stream_send_refusal(room, member, view);
     return true;
 }
 
-static void tell_followers(struct room *room, struct stream *stream, const struct member_view *mover_view,
-                           const char *by)
+static void note_mover(struct room *room, struct stream *stream, const struct member_view *mover_view, const char *by)
 {
     for (int m = 0; m < room->n_members; m++)
         for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
             struct member_view *view = &room->members[m]->views[v];
             if (view->stream != stream || view == mover_view)
                 continue;
-            view->has_news = true;
-            (void)snprintf(view->news_by, sizeof view->news_by, "%s", by);
+            view->has_moved = true;
+            (void)snprintf(view->moved_by, sizeof view->moved_by, "%s", by);
         }
 }
 
-static bool is_here(const struct room *room, const char *id)
+static bool is_present(const struct room *room, const char *id)
 {
     for (int i = 0; i < room->n_members; i++)
         if (strcmp(room->members[i]->id, id) == 0)
-            return room->members[i]->connection && follows(room->members[i]);
+            return room->members[i]->connection && member_follows(room->members[i]);
     return false;
 }
 
-/* A window that was made larger does not take the lead from who presents. */
+/* A page whose window was resized does not take the lead from the presenter. */
 static bool only_resizes(const cJSON *patch)
 {
     return patch->child && !patch->child->next && strcmp(patch->child->string, "size_px") == 0;
@@ -354,24 +321,24 @@ bool member_view_patch(struct room *room, struct member *member, const struct me
         read_size(document, view->size_px);
     if (view->is_following) {
         write_size(document, view->size_px);
-        if (view_kind(document) != stream->kind) { /* another kind: its shared view */
+        if (view_kind(document) != stream->kind) { /* another kind has a shared view of its own */
             view_join(room, view, shared_stream(room, member, document), true, (uint32_t)patch->input);
-            say_view(room, member, (int)patch->view - 1, view->stream->mover);
-            stream_send(room, member, view);
-            stream_say_refusal(room, member, view);
+            send_view(room, member, (int)patch->view - 1, view->stream->mover);
+            stream_send_picture(room, member, view);
+            stream_send_refusal(room, member, view);
             return true;
         }
-        if (only_resizes(patch->patch) && strcmp(stream->mover, member->id) != 0 && is_here(room, stream->mover)) {
+        if (only_resizes(patch->patch) && strcmp(stream->mover, member->id) != 0 && is_present(room, stream->mover)) {
             cJSON_Delete(document);
         } else if (stream_set_view(room, stream, document)) {
             (void)snprintf(stream->mover, sizeof stream->mover, "%s", member->id);
-            tell_followers(room, stream, view, member->id);
+            note_mover(room, stream, view, member->id);
         }
     } else {
         (void)stream_set_view(room, stream, document);
     }
-    view_input(view, (uint32_t)patch->input);
-    stream_send(room, member, view);
+    view_add_input(view, (uint32_t)patch->input);
+    stream_send_picture(room, member, view);
     return true;
 }
 
@@ -382,9 +349,9 @@ bool member_view_follow(struct room *room, struct member *member, const struct m
     struct member_view *view = open_view(member, follow->view, problem);
     if (!view)
         return false;
-    bool followed = follows(member);
+    bool followed = member_follows(member);
     if (follow->follow == view->is_following) {
-        view_input(view, (uint32_t)follow->input);
+        view_add_input(view, (uint32_t)follow->input);
     } else {
         cJSON *document = cJSON_Duplicate(view->stream->view, true);
         struct stream *stream;
@@ -396,9 +363,9 @@ bool member_view_follow(struct room *room, struct member *member, const struct m
         }
         view_join(room, view, stream, follow->follow, (uint32_t)follow->input);
     }
-    tell_following(room, member, (int)follow->view - 1, followed);
-    stream_send(room, member, view);
-    stream_say_refusal(room, member, view);
+    send_following(room, member, (int)follow->view - 1, followed);
+    stream_send_picture(room, member, view);
+    stream_send_refusal(room, member, view);
     return true;
 }
 
@@ -407,10 +374,10 @@ bool member_view_close(struct room *room, struct member *member, const struct me
     struct member_view *view = open_view(member, message->view_close.view, problem);
     if (!view)
         return false;
-    bool followed = follows(member);
+    bool followed = member_follows(member);
     view_close(room, view);
-    if (followed != follows(member))
-        say_members(room);
+    if (followed != member_follows(member))
+        send_members(room);
     return true;
 }
 
@@ -419,15 +386,15 @@ bool member_frame_shown(struct room *room, struct member *member, const struct m
 {
     struct member_view *view = &member->views[message->frame_shown.view - 1];
     uint32_t sequence = (uint32_t)message->frame_shown.sequence;
-    if (!view->was_open) /* one that was closed may still be answered for */
+    if (!view->was_open) /* a view that was closed may still be acknowledged */
         return open_view(member, message->frame_shown.view, problem) != NULL;
     if (sequence > view->sent_sequence)
         return problem_set(problem, PROBLEM_VALIDATION, "/sequence", "range",
                            "frame %u of view %d was never sent, the newest is %u", sequence,
                            (int)message->frame_shown.view, view->sent_sequence);
     if (sequence <= view->shown_sequence)
-        return true; /* already known */
+        return true; /* acknowledged before */
     stream_acknowledged(room, view, sequence);
-    stream_send(room, member, view);
+    stream_send_picture(room, member, view);
     return true;
 }

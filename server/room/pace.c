@@ -1,3 +1,4 @@
+/* The ladder of scales and qualities, and the smoothed measurements that choose the step. */
 #include "server/room/pace.h"
 
 static const struct {
@@ -5,7 +6,7 @@ static const struct {
 } ladder[] = { { 100, 80 }, { 75, 78 }, { 60, 75 }, { 50, 65 } };
 enum { N_STEPS = sizeof ladder / sizeof ladder[0], LEAST_DRAWN = 3 };
 
-/* New values count for a third: three pictures decide, one outlier does not. */
+/* A new value weighs one third, so that three pictures decide and one outlier does not. */
 static double smooth(double old, double value, bool is_first)
 {
     return is_first ? value : old + (value - old) / 3;
@@ -20,7 +21,7 @@ struct pace_choice pace_choose(const struct pace *pace)
 {
     return (struct pace_choice){ .scale_percent = ladder[pace->step].scale_percent,
                                  .quality = ladder[pace->step].quality,
-                                 .light = pace->is_software || pace->step == N_STEPS - 1 };
+                                 .coarse = pace->is_software || pace->step == N_STEPS - 1 };
 }
 
 static void step_to(struct pace *pace, int step)
@@ -34,15 +35,16 @@ static void step_to(struct pace *pace, int step)
 void pace_drawn(struct pace *pace, int64_t render_us, int64_t encode_us, int64_t turnaround_us, int n_outstanding,
                 int64_t now_us)
 {
-    /* Others share the renderer: what counts is also how long we waited, per picture outstanding. */
+    /* Other streams share the renderer, so the waiting time per outstanding picture counts too ... */
     double cost = (double)(render_us + encode_us),
            waited = (double)turnaround_us / (n_outstanding > 1 ? n_outstanding : 1);
-    /* alone, the time also holds the way to the renderer and back, which no step makes shorter */
+    /* ... but not for a single request: its time holds the way to the renderer and back, which no step makes shorter */
     if (n_outstanding > 1 && waited > cost)
         cost = waited;
     pace->cost_us = smooth(pace->cost_us, cost, pace->n_drawn == 0);
     pace->render_us = smooth(pace->render_us, (double)render_us, pace->n_drawn == 0);
-    bool has_pause = now_us - pace->drawn_us > PACE_UP_AFTER_US / 2; /* stillness says nothing about speed */
+    bool has_pause =
+        now_us - pace->drawn_us > PACE_UP_AFTER_US / 2; /* time without pictures says nothing about speed */
     pace->drawn_us = now_us;
     pace->n_drawn++;
 
@@ -55,7 +57,7 @@ void pace_drawn(struct pace *pace, int64_t render_us, int64_t encode_us, int64_t
     if (pace->n_drawn < LEAST_DRAWN)
         return;
     if ((pace->cost_us > PACE_SLOW_US || pace->lag_us > PACE_LAG_US) && pace->step < N_STEPS - 1) {
-        /* a step up that does not hold must not be tried every second: that would be seen as flicker */
+        /* repeated every second, a step up that does not hold would be visible as flicker */
         if (pace->stepped_up_us && now_us - pace->stepped_up_us < 3 * PACE_UP_AFTER_US)
             pace->up_after_us = pace->up_after_us > PACE_UP_AT_MOST_US / 2 ? PACE_UP_AT_MOST_US : 2 * pace->up_after_us;
         step_to(pace, pace->step + 1);
@@ -67,6 +69,6 @@ void pace_drawn(struct pace *pace, int64_t render_us, int64_t encode_us, int64_t
 
 void pace_lagged(struct pace *pace, int64_t excess_us)
 {
-    /* one late answer, however late (a tab that was in the background), says nothing: it takes two */
+    /* a single late acknowledgement, from a tab in the background, must not count: it is cut so that two are needed */
     pace->lag_us = smooth(pace->lag_us, (double)(excess_us < 2 * PACE_LAG_US ? excess_us : 2 * PACE_LAG_US), false);
 }

@@ -1,3 +1,4 @@
+/* Creates and destroys a room; takes the renderer's states, members' messages and patches of the scene. */
 #include "server/room/room.h"
 
 #include <assert.h>
@@ -7,7 +8,10 @@
 #include <time.h>
 
 #include "core/base/mem.h"
-#include "server/room/parts.h"
+#include "server/room/member.h"
+#include "server/room/member_list.h"
+#include "server/room/send.h"
+#include "server/room/stream.h"
 #include "server/wire/json_merge.h"
 #include "server/wire/message.h"
 
@@ -27,7 +31,7 @@ struct room *room_create(const char *id, const char *plan_id, const struct room_
     room->max_members = limits && limits->max_members > 0 && limits->max_members < ROOM_MAX_MEMBERS
                             ? limits->max_members
                             : ROOM_MAX_MEMBERS;
-    room->created_at_s = (int64_t)time(NULL); /* for people; nothing is paced by it */
+    room->created_at_s = (int64_t)time(NULL); /* wall clock, only to be displayed */
     return room;
 }
 
@@ -44,7 +48,7 @@ void room_destroy(struct room *room)
         return;
     for (int i = 0; i < room->n_members; i++)
         if (room->members[i]->connection)
-            say_bye(room, room->members[i]->connection, -1, room_is_closed);
+            send_bye(room, room->members[i]->connection, -1, room_is_closed);
     members_free(room);
     while (room->streams)
         stream_destroy(room, room->streams);
@@ -65,7 +69,7 @@ const char *room_plan_id(const struct room *room)
 
 /* ---- the renderer ----------------------------------------------------------------------------------------------- */
 
-/* The scene goes on after a restart; a plan that was changed on disk meanwhile may have lost ids that it names. */
+/* Keeps the scene over a restart, without ids that the plan does not have any more: it may have changed on disk. */
 static void renew_scene(struct room *room)
 {
     cJSON *scene = room->scene ? scene_document_renew(room->plan, room->defaults, room->scene)
@@ -101,11 +105,11 @@ void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
     set_state(room, WIRE_RENDERER_STATE_READY, NULL, 0, NULL);
     streams_forget_requests(room);
     streams_changed(room, true);
-    say_plan(room);
+    send_plan(room);
     streams_remove_bad_overrides(room);
-    say_renderer(room, NULL);
+    send_renderer_state(room, NULL);
     room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
-    (void)streams_pump(room);
+    (void)streams_request_due(room);
 }
 
 void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent,
@@ -119,8 +123,8 @@ void room_renderer_state(struct room *room, enum wire_renderer_state state, cons
         streams_forget_requests(room);
         streams_changed(room, false);
     }
-    say_renderer(room, NULL);
-    (void)streams_pump(room);
+    send_renderer_state(room, NULL);
+    (void)streams_request_due(room);
 }
 
 /* ---- messages --------------------------------------------------------------------------------------------------- */
@@ -146,11 +150,11 @@ static bool apply_patch(struct room *room, const cJSON *patch, struct member *by
         room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
     }
     for (int i = 0; by && i < ROOM_MAX_VIEWS; i++) {
-        view_input(&by->views[i], input);
-        stream_send(room, by, &by->views[i]);
+        view_add_input(&by->views[i], input);
+        stream_send_picture(room, by, &by->views[i]);
     }
-    say_scene(room, patch, by, input,
-              has_changed); /* what changed nothing only its sender hears: it waits for the answer */
+    send_scene_patch(room, patch, by, input,
+                     has_changed); /* a patch that changed nothing is answered to its sender only */
     return true;
 }
 
@@ -165,7 +169,7 @@ static bool handle_ping(struct room *room, struct member *member, const struct m
 {
     (void)problem;
     struct message pong = { .type = MESSAGE_PONG, .pong = { message->ping.time_ms } };
-    say(room, member, &pong);
+    send_to_member(room, member, &pong);
     return true;
 }
 
@@ -177,7 +181,7 @@ static bool handle_second_hello(struct room *room, struct member *member, const 
     return problem_set(problem, PROBLEM_VALIDATION, "/type", "duplicate", "hello was said already, as %s", member->id);
 }
 
-/* From message to handler. A handler returns false with a problem when nothing of the message was applied. */
+/* From message to handler. A handler returns false with a problem when it applied nothing of the message. */
 static const struct {
     enum message_type type;
     bool (*handle)(struct room *room, struct member *member, const struct message *message, struct problem *problem);
@@ -194,7 +198,7 @@ static void whole_number(const cJSON *json, const char *name, double most, int64
     *value = number >= 0 && number <= most ? (int64_t)number : 0;
 }
 
-/* Says what was wrong, and with what: as far as the refused text can be read. */
+/* Answers with the problem; type, view and input of the refused text are repeated as far as it can be parsed. */
 static void refuse(struct room *room, void *connection, const char *text, size_t n, const struct problem *problem)
 {
     char to[41] = "";
@@ -207,7 +211,7 @@ static void refuse(struct room *room, void *connection, const char *text, size_t
     whole_number(json, "view", ROOM_MAX_VIEWS, &view);
     whole_number(json, "input", UINT32_MAX, &input);
     cJSON_Delete(json);
-    say_problem(room, connection, to, view, input, problem);
+    send_problem(room, connection, to, view, input, problem);
 }
 
 void room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us)
@@ -215,11 +219,11 @@ void room_text_came(struct room *room, void *connection, const char *text, size_
     struct message message;
     struct problem problem = { 0 };
     room->now_us = now_us;
-    struct member *member = member_of(room, connection);
+    struct member *member = member_of_connection(room, connection);
     if (!message_read(text, n, true, &message, &problem)) {
         refuse(room, connection, text, n, &problem);
         if (!member)
-            say_bye(room, connection, -1, hello_first);
+            send_bye(room, connection, -1, hello_first);
         return;
     }
     if (!member && message.type == MESSAGE_HELLO) {
@@ -227,51 +231,34 @@ void room_text_came(struct room *room, void *connection, const char *text, size_
     } else if (!member) {
         problem_set(&problem, PROBLEM_VALIDATION, "/type", "required", "%s", hello_first);
         refuse(room, connection, text, n, &problem);
-        say_bye(room, connection, -1, hello_first);
+        send_bye(room, connection, -1, hello_first);
     } else {
         for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; i++)
             if (handlers[i].type == message.type && !handlers[i].handle(room, member, &message, &problem))
                 refuse(room, connection, text, n, &problem);
     }
     message_finish(&message);
-    (void)streams_pump(room);
+    (void)streams_request_due(room);
 }
 
 void room_connection_closed(struct room *room, void *connection, int64_t now_us)
 {
     room->now_us = now_us;
-    struct member *member = member_of(room, connection);
+    struct member *member = member_of_connection(room, connection);
     if (member)
         member_disconnected(room, member);
 }
 
 bool room_has_member(const struct room *room, void *connection)
 {
-    return member_of(room, connection) != NULL;
+    return member_of_connection(room, connection) != NULL;
 }
 
 int64_t room_tick(struct room *room, int64_t now_us)
 {
     room->now_us = now_us;
-    int64_t members_us = members_forget(room), streams_us = streams_pump(room);
+    int64_t members_us = members_forget(room), streams_us = streams_request_due(room);
     return members_us < streams_us ? members_us : streams_us;
-}
-
-/* ---- pictures --------------------------------------------------------------------------------------------------- */
-
-struct room_picture *room_picture_hold(struct room_picture *picture)
-{
-    picture->references++;
-    return picture;
-}
-
-void room_picture_drop(struct room_picture *picture)
-{
-    if (!picture || --picture->references > 0)
-        return;
-    free(picture->bytes);
-    cJSON_Delete(picture->missing);
-    free(picture);
 }
 
 /* ---- for HTTP --------------------------------------------------------------------------------------------------- */
@@ -293,7 +280,7 @@ bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, str
     room->now_us = now_us;
     if (!apply_patch(room, patch, NULL, 0, problem))
         return false;
-    (void)streams_pump(room);
+    (void)streams_request_due(room);
     return true;
 }
 
@@ -324,7 +311,7 @@ size_t room_n_connected(const struct room *room)
 
 void room_count(const struct room *room, struct room_counters *sum)
 {
-    sum->renders_asked += room->counters.renders_asked;
+    sum->pictures_requested += room->counters.pictures_requested;
     sum->frames_sent += room->counters.frames_sent;
     sum->frame_bytes += room->counters.frame_bytes;
     sum->frames_skipped += room->counters.frames_skipped;

@@ -1,6 +1,6 @@
 #pragma once
-/* Rooms: members, views, the shared scene, who sees what and when a picture is asked for. Pure logic: no sockets, no
- * clock of its own (now_us is handed in), no renderer: it asks through callbacks. One thread. */
+/* Rooms: members, their views, the shared scene; who sees what, and when a picture is requested. No sockets, no
+ * renderer (callbacks), no clock of its own (now_us is passed in). One thread. */
 #include <stdint.h>
 
 #include "server/wire/document.h"
@@ -16,7 +16,7 @@ enum {
 
 struct room;
 
-/* One picture wanted. A stream is what one render serves: the own view of a member, or the shared view of a kind for
+/* A request for one picture. A stream is served by one render: a member's own view, or the shared view of one kind for
  * all who follow it. The room never has more than two requests of a stream outstanding. */
 struct room_render {
     uint64_t request;   /* never the same twice; comes back with the picture */
@@ -24,11 +24,11 @@ struct room_render {
     const cJSON *scene; /* complete scene to show when the view has an override, else NULL: the room's */
     uint32_t scene_revision;
     int scale_percent, quality;
-    bool is_still, full_color, light;
-    const char *member; /* id of the member whose own view it is; NULL: a shared view */
+    bool is_still, full_color, coarse; /* coarse: coarse surfaces are good enough */
+    const char *member;                /* id of the member whose own view it is; NULL: a shared view */
 };
 
-/* A picture that came. Shared: one render, one encode, sent to all who follow. */
+/* A picture that was drawn; reference-counted, as all followers are sent the same. */
 struct room_picture {
     struct frame_header header; /* view, sequence, input_id, flags SHARED are filled per member by the room */
     uint8_t *bytes;
@@ -38,18 +38,18 @@ struct room_picture {
 };
 
 struct room_callbacks {
-    /* ask for a picture; answered by room_picture_came or room_picture_failed with the same request, later */
+    /* requests a picture; answered later by room_picture_came or room_picture_failed with the same request number */
     void (*render)(void *context, struct room *room, const struct room_render *request);
-    /* nobody waits for this picture any more: it need not be drawn, and is not answered */
+    /* the picture is no longer wanted: it need not be drawn, and is not answered */
     void (*forget)(void *context, struct room *room, uint64_t request);
-    /* the room's scene changed (or the renderer is new): make it known to the renderer before the next render */
+    /* the room's scene changed, or the renderer is new: it must have the scene before the next render */
     void (*scene_changed)(void *context, struct room *room, const cJSON *scene, uint32_t revision);
     /* a text message for one connection; text is borrowed */
     void (*send_text)(void *context, void *connection, const char *text);
-    /* a frame for one connection: header filled for it; picture must be held (room_picture_hold) if kept */
+    /* a frame for one connection, with its header; keeping the picture takes room_picture_hold */
     void (*send_frame)(void *context, void *connection, const struct frame_header *header,
                        struct room_picture *picture);
-    /* no more will be sent: close once what was sent is out; room_connection_closed may follow but need not */
+    /* close when all that was sent has gone out; room_connection_closed may follow but need not */
     void (*close)(void *context, void *connection);
     void *context;
 };
@@ -58,18 +58,18 @@ struct room_limits {
     int max_members; /* at most ROOM_MAX_MEMBERS */
 };
 
-/* plan_document and default_scene come later (room_plan_ready). id: URL-safe, random, not guessable. */
+/* id: URL-safe, random, not guessable. The plan and its default scene come with room_plan_ready. */
 struct room *room_create(const char *id, const char *plan_id, const struct room_callbacks *callbacks,
                          const struct room_limits *limits);
 void room_destroy(struct room *room); /* says bye to every connection first */
 const char *room_id(const struct room *room);
 const char *room_plan_id(const struct room *room);
 
-/* The renderer's state: a member hears it; pictures are asked for only while ready. Each new renderer process tells
- * room_plan_ready; coming back to ready asks for everything anew, and what the old one still owed is forgotten. Until
- * the first one is ready the scene cannot be changed; while another is being started it can, checked by the plan as it
- * was. Ids that the plan does not have (any more) are then taken out of the scene, and overrides with such ids out of
- * their views, whose members are told. */
+/* The renderer's state, sent on to all members. Pictures are requested only while it is ready. Each new renderer
+ * process is reported by room_plan_ready: all pictures are requested anew, requests to the old process are forgotten.
+ * Before the first one is ready the scene cannot be changed; while another one starts it can, checked against the plan
+ * as it was. room_plan_ready then removes ids that the plan does not have any more from the scene, and overrides with
+ * such ids from their views, whose members are told. */
 void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl,
                      bool is_software, int64_t now_us);
 void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent,
@@ -78,23 +78,23 @@ void room_renderer_state(struct room *room, enum wire_renderer_state state, cons
 /* Connections: opaque pointers of the caller's. A connection becomes a member with hello. */
 void room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us);
 void room_connection_closed(struct room *room, void *connection, int64_t now_us);
-bool room_has_member(const struct room *room, void *connection); /* said hello */
+bool room_has_member(const struct room *room, void *connection); /* it has said hello */
 
-/* A picture nobody waits for any more (of a renderer that was restarted, of a view that was closed) is dropped. */
+/* Answers to render. A picture that is no longer wanted (the renderer was restarted, the view closed) is dropped. */
 void room_picture_came(struct room *room, uint64_t request, struct room_picture *picture,
-                       int64_t now_us); /* takes the reference */
+                       int64_t now_us); /* takes picture */
 void room_picture_failed(struct room *room, uint64_t request, const struct problem *problem, int64_t now_us);
 struct room_picture *room_picture_hold(struct room_picture *picture);
 void room_picture_drop(struct room_picture *picture);
 
-/* Time-driven work: stills, forgetting members. Returns when it wants to be called again (INT64_MAX: not before
- * something happens). */
+/* Time-driven work: stills, dropping members that are away. Returns when it is due again; INT64_MAX: only after another
+ * call. */
 int64_t room_tick(struct room *room, int64_t now_us);
 
 /* The shared scene, for HTTP: NULL before the plan is ready. */
 const cJSON *room_scene(const struct room *room, uint32_t *revision);
-/* The scene with the override of a view, which need not be one of the room's; room_scene is not NULL. NULL with
- * problem. */
+/* The scene with the override of this view document, which need not belong to a view of the room. room_scene must not
+ * be NULL. Returns the caller's document, or NULL with problem. */
 NODISCARD cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct problem *problem);
 NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, struct problem *problem);
 /* {id, plan, revision, members: [...], created_at...}: what GET /rooms/{id} gives. */
@@ -104,6 +104,6 @@ size_t room_n_connected(const struct room *room);
 
 /* Counters for /metrics. */
 struct room_counters {
-    uint64_t renders_asked, frames_sent, frame_bytes, frames_skipped, messages_refused, stills_sent;
+    uint64_t pictures_requested, frames_sent, frame_bytes, frames_skipped, messages_refused, stills_sent;
 };
 void room_count(const struct room *room, struct room_counters *sum); /* adds to sum */

@@ -1,13 +1,13 @@
-/* Streams: when a picture is asked for, how good, and who gets it. The rules are in design.md 6:
- * nothing is asked for while nobody could be sent it; what is asked for shows the newest state; a picture older than
- * the newest one is never sent; moving pictures are followed by a still. */
+/* Requests pictures for streams, sends them to the viewers, and gives up on those that cannot be drawn. */
+#include "server/room/stream.h"
+
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "server/room/parts.h"
+#include "server/room/send.h"
 #include "server/wire/json_merge.h"
 
 enum { STILL_QUALITY = 92 };
@@ -33,9 +33,8 @@ static bool has_override(const cJSON *view)
 bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem)
 {
     if (!room->scene || !has_override(view))
-        return true; /* before the plan is known it cannot be said; looked at again when it is
-                        (streams_remove_bad_overrides) */
-    cJSON *shown = room_scene_for_view(room, view, problem);
+        return true; /* not known before the plan is; checked then by streams_remove_bad_overrides */
+    cJSON *shown = scene_document_for_view(room->plan, room->defaults, room->scene, view, problem);
     cJSON_Delete(shown);
     return shown != NULL;
 }
@@ -45,13 +44,19 @@ static void start_pace(struct room *room, struct stream *stream)
     pace_start(&stream->pace, room->is_software);
 }
 
+static void stream_changed(struct room *room, struct stream *stream)
+{
+    stream->version++;
+    stream->changed_us = room->now_us;
+}
+
 struct stream *stream_create(struct room *room, cJSON *view, bool is_shared)
 {
     struct stream *stream = mem_new(sizeof *stream);
     stream->view = view;
     stream->kind = view_kind(view);
     stream->is_shared = is_shared;
-    stream->scene_is_old = true;
+    stream->scene_is_stale = true;
     stream->next = room->streams;
     room->streams = stream;
     if (is_shared)
@@ -81,8 +86,8 @@ void stream_left(struct room *room, struct stream *stream)
                 return;
     if (!forget_requests(room, stream))
         return;
-    stream->asked_version = stream->latest_version; /* who comes next wants them again */
-    stream->still_asked_version = stream->latest_is_still ? stream->latest_version : 0;
+    stream->requested_version = stream->latest_version; /* the next viewer needs them requested again */
+    stream->still_requested_version = stream->latest_is_still ? stream->latest_version : 0;
 }
 
 void stream_destroy(struct room *room, struct stream *stream)
@@ -108,8 +113,8 @@ bool stream_set_view(struct room *room, struct stream *stream, cJSON *view)
     }
     cJSON_Delete(stream->view);
     stream->view = view;
-    stream->scene_is_old = true;
-    if (stream->kind != view_kind(view)) { /* own views only: a shared one stays what it is */
+    stream->scene_is_stale = true;
+    if (stream->kind != view_kind(view)) { /* own views only: a shared stream keeps its kind */
         assert(!stream->is_shared);
         stream->kind = view_kind(view);
         start_pace(room, stream);
@@ -118,16 +123,10 @@ bool stream_set_view(struct room *room, struct stream *stream, cJSON *view)
     return true;
 }
 
-void stream_changed(struct room *room, struct stream *stream)
-{
-    stream->version++;
-    stream->changed_us = room->now_us;
-}
-
 void streams_changed(struct room *room, bool scene_is_new)
 {
     for (struct stream *stream = room->streams; stream; stream = stream->next) {
-        stream->scene_is_old = stream->scene_is_old || scene_is_new;
+        stream->scene_is_stale = stream->scene_is_stale || scene_is_new;
         stream_changed(room, stream);
     }
 }
@@ -136,22 +135,22 @@ void streams_forget_requests(struct room *room)
 {
     for (struct stream *stream = room->streams; stream; stream = stream->next) {
         memset(stream->requests, 0, sizeof stream->requests);
-        stream->asked_version = stream->still_asked_version = 0;
+        stream->requested_version = stream->still_requested_version = 0;
         stream->refused_version = 0;
         stream->retry_us = 0;
         stream->n_failed = 0;
     }
 }
 
-static void tell_override_is_gone(struct room *room, const struct stream *stream, const struct problem *problem)
+static void report_removed_override(struct room *room, const struct stream *stream, const struct problem *problem)
 {
     for (int m = 0; m < room->n_members; m++)
         for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
             struct member *member = room->members[m];
             if (member->views[v].stream != stream || !member->connection)
                 continue;
-            say_view(room, member, v, stream->mover);
-            say_problem(room, member->connection, message_descriptions[MESSAGE_VIEW_OPEN].name, v + 1, 0, problem);
+            send_view(room, member, v, stream->mover);
+            send_problem(room, member->connection, message_descriptions[MESSAGE_VIEW_OPEN].name, v + 1, 0, problem);
         }
 }
 
@@ -162,9 +161,9 @@ void streams_remove_bad_overrides(struct room *room)
         if (override_is_valid(room, stream->view, &problem))
             continue;
         cJSON_DeleteItemFromObjectCaseSensitive(stream->view, "override");
-        stream->scene_is_old = true;
+        stream->scene_is_stale = true;
         stream_changed(room, stream);
-        tell_override_is_gone(room, stream, &problem);
+        report_removed_override(room, stream, &problem);
     }
 }
 
@@ -174,7 +173,7 @@ void streams_restart_pace(struct room *room)
         start_pace(room, stream);
 }
 
-/* ---- asking ----------------------------------------------------------------------------------------------------- */
+/* ---- requests --------------------------------------------------------------------------------------------------- */
 
 static int n_outstanding(const struct stream *stream)
 {
@@ -192,7 +191,7 @@ static uint32_t n_unshown(const struct member_view *view)
     return view->sent_sequence - view->shown_sequence;
 }
 
-/* Is there somebody who could be sent one more picture than those that are already being made? */
+/* True if any viewer of the stream still has credit beyond the requests in flight. */
 static bool has_credit(const struct room *room, const struct stream *stream)
 {
     uint32_t coming = (uint32_t)n_outstanding(stream);
@@ -207,20 +206,20 @@ static bool has_credit(const struct room *room, const struct stream *stream)
 
 static void make_scene(struct room *room, struct stream *stream)
 {
-    if (!stream->scene_is_old)
+    if (!stream->scene_is_stale)
         return;
     cJSON_Delete(stream->scene);
     stream->scene = NULL;
-    stream->scene_is_old = false;
+    stream->scene_is_stale = false;
     if (!has_override(stream->view))
         return;
     struct problem problem = { 0 };
-    stream->scene = room_scene_for_view(room, stream->view, &problem);
-    if (!stream->scene) /* it was checked when it was set, and when the plan was loaded */
+    stream->scene = scene_document_for_view(room->plan, room->defaults, room->scene, stream->view, &problem);
+    if (!stream->scene) /* a bug: overrides are checked when they are set and when a plan is loaded */
         log_error("room %s: a view's override does not apply: %s", room->id, problem.detail);
 }
 
-/* Id of the member whose own view it is; NULL: it is shared, or nobody looks any more. */
+/* Id of the member whose own view it is; NULL: shared, or without a viewer. */
 static const char *owner_of(const struct room *room, const struct stream *stream)
 {
     for (int m = 0; m < room->n_members && !stream->is_shared; m++)
@@ -230,18 +229,18 @@ static const char *owner_of(const struct room *room, const struct stream *stream
     return NULL;
 }
 
-static void ask(struct room *room, struct stream *stream, bool is_still)
+static void request_picture(struct room *room, struct stream *stream, bool is_still)
 {
     make_scene(room, stream);
     struct request *request = stream->requests[0].number ? &stream->requests[1] : &stream->requests[0];
     *request = (struct request){ .number = ++room->n_requests,
                                  .version = stream->version,
-                                 .asked_us = room->now_us,
+                                 .requested_us = room->now_us,
                                  .is_still = is_still,
                                  .n_outstanding = n_outstanding(stream) + 1 };
-    stream->asked_version = stream->version;
+    stream->requested_version = stream->version;
     if (is_still)
-        stream->still_asked_version = stream->version;
+        stream->still_requested_version = stream->version;
     struct pace_choice choice = { .scale_percent = 100, .quality = STILL_QUALITY };
     if (!is_still)
         choice = pace_choose(&stream->pace);
@@ -253,20 +252,20 @@ static void ask(struct room *room, struct stream *stream, bool is_still)
                                   .quality = choice.quality,
                                   .is_still = is_still,
                                   .full_color = is_still,
-                                  .light = choice.light,
+                                  .coarse = choice.coarse,
                                   .member = owner_of(room, stream) };
-    room->counters.renders_asked++;
+    room->counters.pictures_requested++;
     room->callbacks.render(room->callbacks.context, room, &render);
 }
 
-/* Asks for what is due of one stream; when to come again. What waits for credit or for a picture needs no time: its
- * coming is an event. */
-static int64_t pump(struct room *room, struct stream *stream)
+/* Requests the pictures of one stream that are due; returns when to call again, INT64_MAX when only credit or a picture
+ * can change that: each comes as an event. */
+static int64_t request_due(struct room *room, struct stream *stream)
 {
     const int64_t still_due_us = stream->changed_us + still_after_us;
     for (;;) {
-        bool wants_still = stream->still_asked_version < stream->version,
-             wants_moving = stream->asked_version < stream->version;
+        bool wants_still = stream->still_requested_version < stream->version,
+             wants_moving = stream->requested_version < stream->version;
         if ((!wants_still && !wants_moving) || !has_credit(room, stream))
             return INT64_MAX;
         if (room->now_us < stream->retry_us)
@@ -274,30 +273,30 @@ static int64_t pump(struct room *room, struct stream *stream)
         if (n_outstanding(stream) >= 2)
             return INT64_MAX;
         if (wants_still && room->now_us >= still_due_us && !still_is_outstanding(stream)) {
-            ask(room, stream, true);
+            request_picture(room, stream, true);
             continue;
         }
         if (wants_moving) {
-            /* The second request only when the first is drawn and being compressed: made now, it would wait and show an
-             * older state. */
+            /* The second request is made when the first is drawn and being compressed. Made earlier it would wait and
+             * show an older state. */
             const struct request *other = stream->requests[0].number ? &stream->requests[0] : &stream->requests[1];
-            int64_t worth_us = other->asked_us + (int64_t)stream->pace.render_us;
+            int64_t worth_us = other->requested_us + (int64_t)stream->pace.render_us;
             if (other->number && !other->is_still && room->now_us < worth_us)
                 return worth_us;
-            ask(room, stream, false);
+            request_picture(room, stream, false);
             continue;
         }
         return room->now_us < still_due_us ? still_due_us : INT64_MAX;
     }
 }
 
-int64_t streams_pump(struct room *room)
+int64_t streams_request_due(struct room *room)
 {
     int64_t again_us = INT64_MAX;
     if (room->state != WIRE_RENDERER_STATE_READY || !room->scene)
         return again_us;
     for (struct stream *stream = room->streams; stream; stream = stream->next) {
-        int64_t us = pump(room, stream);
+        int64_t us = request_due(room, stream);
         again_us = us < again_us ? us : again_us;
     }
     return again_us;
@@ -305,8 +304,8 @@ int64_t streams_pump(struct room *room)
 
 /* ---- sending ---------------------------------------------------------------------------------------------------- */
 
-/* Inputs that a picture of this version shows have been seen once it is sent. */
-static void take_inputs(struct member_view *view, uint64_t version)
+/* A picture of this version is sent: its header reports the newest input it shows, those up to it wait no longer. */
+static void mark_inputs_shown(struct member_view *view, uint64_t version)
 {
     int n = 0;
     while (n < view->n_waiting && view->waiting[n].version <= version)
@@ -315,13 +314,14 @@ static void take_inputs(struct member_view *view, uint64_t version)
     memmove(view->waiting, view->waiting + n, (size_t)view->n_waiting * sizeof view->waiting[0]);
 }
 
-/* An input that changed nothing: the picture that is there shows it already, and goes out once more to say so. */
+/* True if the latest picture shows an input not yet reported, one that changed nothing: the picture is sent once more
+ * to report it. */
 static bool shows_waiting_input(const struct stream *stream, const struct member_view *view)
 {
     return view->n_waiting > 0 && view->waiting[0].version <= stream->latest_version;
 }
 
-void stream_send(struct room *room, struct member *member, struct member_view *view)
+void stream_send_picture(struct room *room, struct member *member, struct member_view *view)
 {
     struct stream *stream = view->stream;
     if (!stream || !stream->latest || n_unshown(view) >= ROOM_MAX_UNSHOWN || !member->connection)
@@ -329,16 +329,16 @@ void stream_send(struct room *room, struct member *member, struct member_view *v
     if (view->sent_number == stream->latest_number && !shows_waiting_input(stream, view))
         return;
     int index = (int)(view - member->views);
-    if (view->has_news) {
-        view->has_news = false;
-        say_view(room, member, index, view->news_by);
+    if (view->has_moved) {
+        view->has_moved = false;
+        send_view(room, member, index, view->moved_by);
     }
     if (!cJSON_Compare(view->missing, stream->latest->missing, true) && (view->missing || stream->latest->missing)) {
         cJSON_Delete(view->missing);
         view->missing = cJSON_Duplicate(stream->latest->missing, true);
-        say_missing(room, member, index, view->missing);
+        send_missing(room, member, index, view->missing);
     }
-    take_inputs(view, stream->latest_version);
+    mark_inputs_shown(view, stream->latest_version);
     view->sent_number = stream->latest_number;
     view->sent_sequence++;
     view->sent[view->sent_sequence % ROOM_MAX_UNSHOWN].sent_us = room->now_us;
@@ -363,12 +363,12 @@ static void send_to_subscribers(struct room *room, struct stream *stream)
             if (view->stream != stream)
                 continue;
             if (n_unshown(view) >= ROOM_MAX_UNSHOWN)
-                room->counters.frames_skipped++; /* it gets the newest when its credit returns */
-            stream_send(room, room->members[m], view);
+                room->counters.frames_skipped++; /* it gets the newest picture when its credit returns */
+            stream_send_picture(room, room->members[m], view);
         }
 }
 
-/* The best link among those who look decides: one slow member must not make the picture worse for others. */
+/* The viewer with the best link decides: one slow member must not make the picture worse for others. */
 static void measure_lag(struct room *room, struct stream *stream)
 {
     int64_t least = INT64_MAX;
@@ -388,19 +388,19 @@ void stream_acknowledged(struct room *room, struct member_view *view, uint32_t s
     bool was_still = view->sent[sequence % ROOM_MAX_UNSHOWN].is_still;
     view->shown_sequence = sequence;
     if (was_still || !view->stream)
-        return; /* a still is larger: its time says nothing about the link */
+        return; /* a still is larger than the pictures that pace the link */
     int64_t lag_us = room->now_us - sent_us + 1;
     if (view->lag_least_us == 0 || lag_us < view->lag_least_us)
         view->lag_least_us = lag_us;
     else
-        view->lag_least_us += (lag_us - view->lag_least_us) / 256; /* links change */
+        view->lag_least_us += (lag_us - view->lag_least_us) / 256; /* follows a link that became slower */
     view->lag_excess_us = lag_us - view->lag_least_us;
     measure_lag(room, view->stream);
 }
 
 /* ---- answers ---------------------------------------------------------------------------------------------------- */
 
-static struct stream *take_request(struct room *room, uint64_t number, struct request *request)
+static struct stream *remove_request(struct room *room, uint64_t number, struct request *request)
 {
     for (struct stream *stream = room->streams; stream && number; stream = stream->next)
         for (int i = 0; i < 2; i++)
@@ -412,7 +412,7 @@ static struct stream *take_request(struct room *room, uint64_t number, struct re
     return NULL;
 }
 
-/* Newer state first; of one state, the still is the last word. */
+/* A newer version replaces an older one; of one version, a still replaces a moving picture. */
 static bool is_newer(const struct stream *stream, const struct request *request)
 {
     if (request->version != stream->latest_version)
@@ -430,7 +430,7 @@ void room_picture_came(struct room *room, uint64_t number, struct room_picture *
 {
     struct request request;
     room->now_us = now_us;
-    struct stream *stream = take_request(room, number, &request);
+    struct stream *stream = remove_request(room, number, &request);
     if (!stream) {
         room_picture_drop(picture);
         return;
@@ -438,9 +438,9 @@ void room_picture_came(struct room *room, uint64_t number, struct room_picture *
     stream->n_failed = 0;
     stream->retry_us = 0;
     if (!request.is_still && !still_is_outstanding(stream))
-        pace_drawn(&stream->pace, picture->header.render_us, picture->header.encode_us, now_us - request.asked_us,
+        pace_drawn(&stream->pace, picture->header.render_us, picture->header.encode_us, now_us - request.requested_us,
                    request.n_outstanding, now_us);
-    /* a still that was overtaken while it was drawn would only stand before the moving picture that is about to come */
+    /* the viewer moved on while the still was drawn: it would only delay the moving picture that is coming */
     bool is_overtaken = request.is_still && newer_is_coming(stream, request.version);
     if (is_newer(stream, &request) && !is_overtaken) {
         room_picture_drop(stream->latest);
@@ -452,7 +452,7 @@ void room_picture_came(struct room *room, uint64_t number, struct room_picture *
     } else {
         room_picture_drop(picture);
     }
-    (void)streams_pump(room);
+    (void)streams_request_due(room);
 }
 
 static bool is_refused(const struct stream *stream)
@@ -460,55 +460,55 @@ static bool is_refused(const struct stream *stream)
     return stream->refused_version > 0 && stream->refused_version == stream->version;
 }
 
-void stream_say_refusal(struct room *room, struct member *member, const struct member_view *view)
+void stream_send_refusal(struct room *room, struct member *member, const struct member_view *view)
 {
     if (is_refused(view->stream) && member->connection)
-        say_problem(room, member->connection, "", view - member->views + 1, 0, &view->stream->refusal);
+        send_problem(room, member->connection, "", view - member->views + 1, 0, &view->stream->refusal);
 }
 
-/* A failure that will be no better the next time: a field that does not fit, a picture too large for the memory, or a
- * written limit; a limit of how much may wait says when to come again. */
+/* True for failures that a second try would repeat: an invalid field, a picture too large for the memory, a fixed
+ * limit. A limit on how much may wait is not fixed: it has a retry_after_ms. */
 static bool is_final(const struct problem *problem)
 {
     return problem && (problem->type == PROBLEM_VALIDATION || problem->type == PROBLEM_MEMORY ||
                        (problem->type == PROBLEM_LIMIT && problem->retry_after_ms == 0));
 }
 
-/* Those who look are told, and it is not asked for again until something changes. */
-static void give_up(struct room *room, struct stream *stream, uint64_t version, const struct problem *problem)
+/* Sends the problem to the viewers, and requests no more until the version changes. */
+static void refuse_version(struct room *room, struct stream *stream, uint64_t version, const struct problem *problem)
 {
-    if (stream->still_asked_version < version)
-        stream->still_asked_version = version;
+    if (stream->still_requested_version < version)
+        stream->still_requested_version = version;
     if (stream->refused_version >= version)
-        return; /* they were told, of this version or of a newer one */
+        return; /* the viewers were sent it, for this version or a newer one */
     stream->refused_version = version;
     stream->refusal = *problem;
     for (int m = 0; m < room->n_members; m++)
         for (int v = 0; v < ROOM_MAX_VIEWS; v++)
             if (room->members[m]->views[v].stream == stream && room->members[m]->connection)
-                say_problem(room, room->members[m]->connection, "", v + 1, 0, problem);
+                send_problem(room, room->members[m]->connection, "", v + 1, 0, problem);
 }
 
 void room_picture_failed(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us)
 {
     struct request request;
     room->now_us = now_us;
-    struct stream *stream = take_request(room, number, &request);
+    struct stream *stream = remove_request(room, number, &request);
     if (!stream)
         return;
     log_warn("room %s: a picture failed: %s", room->id, problem ? problem->detail : "no reason given");
     if (is_final(problem)) {
-        give_up(room, stream, request.version, problem);
+        refuse_version(room, stream, request.version, problem);
         return;
     }
-    /* Ask again, but not at once: what fails every time must not keep the renderer busy. */
+    /* Request again, but not at once: a picture that fails every time must not keep the renderer busy. */
     int64_t wait_us = RETRY_US << (stream->n_failed < 6 ? stream->n_failed : 6);
     stream->n_failed++;
     stream->retry_us = now_us + (wait_us < RETRY_AT_MOST_US ? wait_us : RETRY_AT_MOST_US);
-    if (request.is_still && stream->still_asked_version == request.version)
-        stream->still_asked_version = 0;
+    if (request.is_still && stream->still_requested_version == request.version)
+        stream->still_requested_version = 0;
     bool other_will_do = (stream->requests[0].number && stream->requests[0].version >= request.version) ||
                          (stream->requests[1].number && stream->requests[1].version >= request.version);
-    if (stream->asked_version == request.version && !other_will_do && stream->latest_version < request.version)
-        stream->asked_version = 0;
+    if (stream->requested_version == request.version && !other_will_do && stream->latest_version < request.version)
+        stream->requested_version = 0;
 }

@@ -72,7 +72,7 @@ static void a_still_follows_150_ms_after_the_last_change(void **state)
     assert_non_null(still);
     assert_true(still->is_still);
     assert_true(still->full_color);
-    assert_false(still->light);
+    assert_false(still->coarse);
     assert_int_equal(still->scale_percent, 100);
     assert_int_equal(still->quality, 92);
     assert_close(camera_x(still), 5, 0);

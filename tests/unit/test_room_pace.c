@@ -27,7 +27,7 @@ static void software_starts_whole_but_with_light_surfaces(void **state)
     fake_join(&fake, &ann, false);
     assert_int_equal(fake_newest(&fake)->scale_percent, 100);
     assert_int_equal(fake_newest(&fake)->quality, 80);
-    assert_true(fake_newest(&fake)->light);
+    assert_true(fake_newest(&fake)->coarse);
     assert_false(fake_newest(&fake)->full_color);
 }
 
@@ -38,7 +38,7 @@ static void a_graphics_card_starts_at_full_size_and_detail(void **state)
     fake_join(&fake, &ann, false);
     assert_int_equal(fake_newest(&fake)->scale_percent, 100);
     assert_int_equal(fake_newest(&fake)->quality, 80);
-    assert_false(fake_newest(&fake)->light);
+    assert_false(fake_newest(&fake)->coarse);
 }
 
 /* moves for a while; returns the scale asked for last */

@@ -1,9 +1,11 @@
-/* Messages to connections. */
+/* Fills in and sends each message from a room to its members. */
+#include "server/room/send.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/room/parts.h"
+#include "server/room/member_list.h"
 #include "server/wire/document.h"
 #include "server/wire/message.h"
 #include "server/wire/patch.h"
@@ -13,31 +15,31 @@ static void copy_text(char *to, size_t size, const char *from)
     (void)snprintf(to, size, "%s", from ? from : "");
 }
 
-void say_to(struct room *room, void *connection, const struct message *message)
+void send_to_connection(struct room *room, void *connection, const struct message *message)
 {
     char *text = message_write(message);
     room->callbacks.send_text(room->callbacks.context, connection, text);
     free(text);
 }
 
-void say(struct room *room, struct member *member, const struct message *message)
+void send_to_member(struct room *room, struct member *member, const struct message *message)
 {
     if (member->connection)
-        say_to(room, member->connection, message);
+        send_to_connection(room, member->connection, message);
 }
 
-void say_to_all(struct room *room, const struct message *message)
+void send_to_all(struct room *room, const struct message *message)
 {
-    char *text = message_write(message); /* once, for all */
+    char *text = message_write(message); /* written once for all */
     for (int i = 0; i < room->n_members; i++)
         if (room->members[i]->connection)
             room->callbacks.send_text(room->callbacks.context, room->members[i]->connection, text);
     free(text);
 }
 
-/* The documents in these messages are borrowed: message_finish is not called on them. */
+/* Where the documents in a message are borrowed, message_finish is not called on it. */
 
-void say_welcome(struct room *room, struct member *member)
+void send_welcome(struct room *room, struct member *member)
 {
     struct message message = { .type = MESSAGE_WELCOME };
     struct message_welcome *welcome = &message.welcome;
@@ -51,17 +53,17 @@ void say_welcome(struct room *room, struct member *member)
     welcome->scene = room->scene;
     welcome->revision = room->revision;
     copy_text(welcome->gl, sizeof welcome->gl, room->gl);
-    say(room, member, &message);
+    send_to_member(room, member, &message);
 }
 
-void say_members(struct room *room)
+void send_members(struct room *room)
 {
     struct message message = { .type = MESSAGE_MEMBERS, .members = { room_members(room) } };
-    say_to_all(room, &message);
+    send_to_all(room, &message);
     message_finish(&message);
 }
 
-void say_renderer(struct room *room, struct member *member)
+void send_renderer_state(struct room *room, struct member *member)
 {
     struct message message = { .type = MESSAGE_RENDERER };
     message.renderer.state = room->state;
@@ -70,23 +72,23 @@ void say_renderer(struct room *room, struct member *member)
     if (room->problem.type != PROBLEM_NONE)
         message.renderer.problem = problem_to_json(&room->problem);
     if (member)
-        say(room, member, &message);
+        send_to_member(room, member, &message);
     else
-        say_to_all(room, &message);
+        send_to_all(room, &message);
     message_finish(&message);
 }
 
-void say_plan(struct room *room)
+void send_plan(struct room *room)
 {
     struct message message = { .type = MESSAGE_PLAN };
     message.plan.plan = room->plan;
     message.plan.scene = room->scene;
     message.plan.revision = room->revision;
     copy_text(message.plan.gl, sizeof message.plan.gl, room->gl);
-    say_to_all(room, &message);
+    send_to_all(room, &message);
 }
 
-void say_scene(struct room *room, const cJSON *patch, struct member *by, uint32_t input, bool to_all)
+void send_scene_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input, bool to_all)
 {
     cJSON *copy = patch_told(room->scene, patch);
     struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->revision, .patch = copy } };
@@ -99,14 +101,14 @@ void say_scene(struct room *room, const cJSON *patch, struct member *by, uint32_
             room->callbacks.send_text(room->callbacks.context, member->connection, text);
     }
     free(text);
-    if (by) { /* the input number is only for the one who sent it */
+    if (by) { /* the input number is only for its sender */
         message.scene.input = input;
-        say(room, by, &message);
+        send_to_member(room, by, &message);
     }
     message_finish(&message);
 }
 
-void say_view(struct room *room, struct member *member, int index, const char *by)
+void send_view(struct room *room, struct member *member, int index, const char *by)
 {
     const struct member_view *view = &member->views[index];
     struct message message = { .type = MESSAGE_VIEW };
@@ -114,23 +116,23 @@ void say_view(struct room *room, struct member *member, int index, const char *b
     message.view.document = view->stream->view;
     message.view.follow = view->is_following;
     copy_text(message.view.by, sizeof message.view.by, by);
-    say(room, member, &message);
+    send_to_member(room, member, &message);
 }
 
-void say_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,
-                 const struct problem *problem)
+void send_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,
+                  const struct problem *problem)
 {
     struct message message = { .type = MESSAGE_PROBLEM };
     copy_text(message.problem.to, sizeof message.problem.to, to);
     message.problem.view = view;
     message.problem.input = input;
     message.problem.problem = problem_to_json(problem);
-    say_to(room, connection, &message);
+    send_to_connection(room, connection, &message);
     message_finish(&message);
     room->counters.messages_refused++;
 }
 
-void say_missing(struct room *room, struct member *member, int index, const cJSON *missing)
+void send_missing(struct room *room, struct member *member, int index, const cJSON *missing)
 {
     struct message message = { .type = MESSAGE_MISSING };
     cJSON *nothing = cJSON_CreateArray();
@@ -138,14 +140,14 @@ void say_missing(struct room *room, struct member *member, int index, const cJSO
     message.missing.view = index + 1;
     message.missing.n = (int64_t)json_number(missing, "n", 0);
     message.missing.regions = regions ? regions : nothing;
-    say(room, member, &message);
+    send_to_member(room, member, &message);
     cJSON_Delete(nothing);
 }
 
-void say_bye(struct room *room, void *connection, int retry_ms, const char *reason)
+void send_bye(struct room *room, void *connection, int retry_ms, const char *reason)
 {
     struct message message = { .type = MESSAGE_BYE, .bye = { .has_retry_ms = retry_ms >= 0, .retry_ms = retry_ms } };
     copy_text(message.bye.reason, sizeof message.bye.reason, reason);
-    say_to(room, connection, &message);
+    send_to_connection(room, connection, &message);
     room->callbacks.close(room->callbacks.context, connection);
 }

@@ -1,0 +1,40 @@
+/* Finds members and lists them as JSON. */
+#include "server/room/member_list.h"
+
+#include <string.h>
+
+struct member *member_of_connection(const struct room *room, const void *connection)
+{
+    for (int i = 0; i < room->n_members; i++)
+        if (connection && room->members[i]->connection == connection)
+            return room->members[i];
+    return NULL;
+}
+
+bool member_follows(const struct member *member)
+{
+    for (int i = 0; i < ROOM_MAX_VIEWS; i++)
+        if (member->views[i].is_following)
+            return true;
+    return false;
+}
+
+static bool is_blank(const char *text)
+{
+    return text[strspn(text, " ")] == 0;
+}
+
+cJSON *room_members(const struct room *room)
+{
+    cJSON *list = cJSON_CreateArray();
+    for (int i = 0; i < room->n_members; i++) {
+        const struct member *member = room->members[i];
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddStringToObject(item, "id", member->id);
+        cJSON_AddStringToObject(item, "name", is_blank(member->name) ? member->id : member->name);
+        cJSON_AddBoolToObject(item, "connected", member->connection != NULL);
+        cJSON_AddBoolToObject(item, "following", member_follows(member));
+        cJSON_AddItemToArray(list, item);
+    }
+    return list;
+}

@@ -1,0 +1,100 @@
+#pragma once
+/* The state of a room, its members, their views, and the streams that serve them; shared by the files of server/room.
+ * Internal to server/room; one thread. */
+#include "server/room/pace.h"
+#include "server/room/room.h"
+
+enum {
+    N_KINDS = SCENE_KIND_SAGITTAL + 1,
+    MAX_WAITING_INPUTS =
+        32, /* inputs of one view that no sent picture shows yet; beyond these, inputs are reported together */
+    SECRET_BYTES = 16,
+    RETRY_US = 100000, /* pause after a failed picture; doubled each time */
+    RETRY_AT_MOST_US = 4000000,
+};
+
+struct request {      /* for one picture, outstanding */
+    uint64_t number;  /* 0: free */
+    uint64_t version; /* of the stream, when it was requested */
+    int64_t requested_us;
+    bool is_still;
+    int n_outstanding; /* requests of the stream then, this one included */
+};
+
+struct stream {
+    struct stream *next;
+    cJSON *view;         /* the view document */
+    cJSON *scene;        /* the scene with the view's override; NULL: the room's scene */
+    bool scene_is_stale; /* scene is made anew before the next request */
+    bool is_shared;
+    int kind;
+    char mover[64];   /* shared: id of the member who moved it last */
+    uint64_t version; /* counts changes of what the picture shows */
+    uint64_t requested_version,
+        still_requested_version; /* newest version requested, of either kind, and as a still; 0: none */
+    uint64_t refused_version;    /* newest version that cannot be drawn; 0: none */
+    struct problem refusal;      /* why it cannot */
+    int64_t changed_us;          /* when version last went up */
+    int64_t retry_us;            /* nothing is requested before */
+    int n_failed;                /* pictures that failed in a row */
+    struct request requests[2];
+    struct room_picture *latest;
+    uint64_t latest_number, latest_version; /* latest's request, and the version it shows; 0: none */
+    bool latest_is_still;
+    struct pace pace;
+};
+
+struct member_view {       /* a pane of a member; its number is its index + 1 */
+    struct stream *stream; /* NULL: closed */
+    bool is_following, was_open;
+    int size_px[2]; /* this member's own; a shared view has the size of the member who moved it last */
+    uint32_t sent_sequence, shown_sequence; /* they differ by at most ROOM_MAX_UNSHOWN */
+    struct {
+        int64_t sent_us;
+        bool is_still;
+    } sent[ROOM_MAX_UNSHOWN]; /* by sequence % ROOM_MAX_UNSHOWN */
+    uint64_t sent_number;     /* request number of the newest picture sent */
+    int64_t lag_least_us,
+        lag_excess_us; /* time from sending to acknowledgement: the least seen, and the newest beyond it; 0: none yet */
+    struct {
+        uint64_t version; /* a picture of at least this version shows it */
+        uint32_t input;
+    } waiting[MAX_WAITING_INPUTS];
+    int n_waiting;
+    uint32_t input; /* newest input that a sent picture shows */
+    cJSON *missing; /* what the newest picture sent leaves out, as last sent to the member; NULL: nothing */
+    bool has_moved; /* another member moved the shared view: the view message goes out before the next frame */
+    char moved_by[64];
+};
+
+struct member {
+    char id[64], name[161], secret[2 * SECRET_BYTES + 1];
+    void *connection; /* NULL: away */
+    int64_t away_us;  /* when the connection was lost */
+    struct member_view views[ROOM_MAX_VIEWS];
+};
+
+struct room {
+    char id[64], plan_id[64];
+    struct room_callbacks callbacks;
+    int max_members;
+    int64_t now_us; /* as last passed in */
+    int64_t created_at_s;
+
+    enum wire_renderer_state state;
+    char phase[160];
+    double percent;
+    struct problem problem;         /* when failed */
+    cJSON *plan, *defaults, *scene; /* NULL before the plan is ready */
+    uint32_t revision;
+    char gl[200];
+    bool is_software;
+
+    struct member *members[ROOM_MAX_MEMBERS];
+    int n_members;
+    uint32_t n_named; /* members ever made, for ids */
+    struct stream *streams;
+    struct stream *shared[N_KINDS];
+    uint64_t n_requests;
+    struct room_counters counters;
+};

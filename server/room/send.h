@@ -1,0 +1,26 @@
+#pragma once
+/* The messages that a room sends to its members, one function each. A member without a connection is sent nothing.
+ * Internal to server/room. */
+#include "server/room/room_state.h"
+#include "server/wire/message.h"
+
+void send_to_member(struct room *room, struct member *member, const struct message *message);
+void send_to_connection(struct room *room, void *connection, const struct message *message);
+void send_to_all(struct room *room, const struct message *message);
+
+void send_welcome(struct room *room, struct member *member);
+void send_members(struct room *room);                               /* to all */
+void send_renderer_state(struct room *room, struct member *member); /* member NULL: to all */
+void send_plan(struct room *room);                                  /* to all */
+/* The accepted patch; by: who made it, or NULL; input: the maker's number. to_all false: only to the maker. */
+void send_scene_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input, bool to_all);
+/* The document of one of the member's views; by: id of the member who moved it, "" for none. */
+void send_view(struct room *room, struct member *member, int index, const char *by);
+/* to: type of the refused message, "" when it was none; view, input: of that message, 0 when it had none. Counts as a
+ * refused message. */
+void send_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,
+                  const struct problem *problem);
+/* What the pictures of this view leave out; missing NULL: nothing. */
+void send_missing(struct room *room, struct member *member, int index, const cJSON *missing);
+/* Sends bye and closes the connection; retry_ms < 0: the page is not to come back. */
+void send_bye(struct room *room, void *connection, int retry_ms, const char *reason);

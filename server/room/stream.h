@@ -1,0 +1,33 @@
+#pragma once
+/* Streams: one per own view of a member, one per kind for all who follow. When a picture of a stream is requested, how
+ * good, and to whom it is sent. Internal to server/room.
+ *   - Nothing is requested while no viewer could be sent it; what is requested shows the newest state.
+ *   - A picture older than the newest one is never sent.
+ *   - Moving pictures are followed by a still. */
+#include "server/room/room_state.h"
+
+/* Takes view, a complete and checked document. */
+struct stream *stream_create(struct room *room, cJSON *view, bool is_shared);
+void stream_destroy(struct room *room, struct stream *stream);
+/* A view of a shared stream was closed: without any other viewer its requests are forgotten. */
+void stream_left(struct room *room, struct stream *stream);
+/* Takes view. Returns true when it differs from the present one. */
+bool stream_set_view(struct room *room, struct stream *stream, cJSON *view);
+/* Raises the version of every stream; scene_is_new: overrides are applied anew. */
+void streams_changed(struct room *room, bool scene_is_new);
+/* Forgets outstanding requests without a word to the renderer: it is gone. */
+void streams_forget_requests(struct room *room);
+void streams_restart_pace(struct room *room);
+/* Sends the latest picture to the view, if it is new there and the view has credit. */
+void stream_send_picture(struct room *room, struct member *member, struct member_view *view);
+/* Sends the problem to a member who opened a view of a stream that cannot be drawn. */
+void stream_send_refusal(struct room *room, struct member *member, const struct member_view *view);
+void stream_acknowledged(struct room *room, struct member_view *view, uint32_t sequence);
+/* Requests the pictures that are due; returns when to call again. */
+int64_t streams_request_due(struct room *room);
+/* True if the view's override fits the plan, or the plan is not known yet. */
+bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem);
+/* After a plan was loaded: removes overrides that do not fit it from their views, and tells their members. */
+void streams_remove_bad_overrides(struct room *room);
+/* enum scene_kind of a view document. */
+int view_kind(const cJSON *view);
