@@ -1,5 +1,8 @@
+/* The render thread, which owns all requests until they are drawn, and the encode threads. Threads share nothing but
+ * queues: what other threads want of the render thread comes as messages through its inbox. */
 #include "core/pipeline/pipeline.h"
 
+#include <assert.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -7,129 +10,161 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
+#include "core/base/queue.h"
 #include "core/pipeline/turns.h"
 
 /* Small pictures are compressed by one thread and large ones by another, so that a large one, which takes ten times as
- * long, holds up none. PNG takes as long as a large JPEG. */
-enum { LANE_SMALL, LANE_LARGE, N_LANES, SMALL_MAX_PX = 2500000 };
-/* Drawn pictures of a lane that may wait for its thread: one being compressed, one ready; more would only add delay. */
+ * long, holds up none. A PNG takes as long as a large JPEG. */
+enum { ENCODE_SMALL, ENCODE_LARGE, N_ENCODE_THREADS, SMALL_MAX_PX = 2500000 };
+/* Drawn pictures that may wait for an encode thread. While it compresses one more, these keep it busy; further ones
+ * would only add delay. */
 enum { MAX_DRAWN = 2 };
-/* A picture that is being drawn is left for another after so long: for a moving one, which somebody waits for with a
- * hand on the mouse, or for a still, which can wait longer. */
+/* How long a picture is drawn before it is left for another request that waits: shorter for a moving picture, which
+ * somebody follows with a hand on the mouse, than for a still. */
 enum { SLICE_MOVING_US = 20000, SLICE_STILL_US = 100000 };
 /* Stacks count to a process's memory in full. */
 enum { ENCODE_STACK_BYTES = 512 << 10 };
-/* Plans to forget that may wait beside the pictures. */
-enum { MAX_FORGET = 16, MAX_BEGUN = 32, MAX_JOBS = PIPELINE_MAX_WAITING + MAX_BEGUN + MAX_FORGET };
+enum { MAX_BEGUN = 32, MAX_PICTURES = PIPELINE_MAX_WAITING + MAX_BEGUN };
+/* Messages that may wait. Encode threads send at most two for each picture they hold; so half of the room for drops
+ * leaves room for every other message. */
+enum { MAX_MESSAGES = 512, MAX_MESSAGES_BEFORE_DROP = 256 };
 
-/* What travels down the pipeline: a request to draw, or a plan to forget. */
-struct job {
+/* A request on its way through the pipeline. Owned by the render thread, then by an encode thread. */
+struct picture {
     struct pipeline_request request;
-    const struct plan *forget; /* not NULL: no request */
     struct turns_item turn;
-    struct render_picture *picture; /* begun */
-    struct image *image;
+    struct render_picture *render; /* begun and not done; else NULL */
+    struct image *image;           /* drawn and not compressed; else NULL */
     struct pipeline_frame frame;
-    bool is_counted; /* among those begun, with its image's memory */
+    bool is_counted; /* in n_begun or with an encode thread, and with its image in n_image_bytes */
     bool is_dropped;
     bool needs_all; /* there was no memory for it beside others */
 };
 
-struct lane {
+enum message_kind {
+    MESSAGE_REQUEST, /* picture is to be drawn */
+    MESSAGE_DROP,    /* id is no longer wanted */
+    MESSAGE_TAKEN,   /* an encode thread has taken a drawn picture: there is room for another */
+    MESSAGE_ENCODED  /* a picture is compressed: its image is freed, its source is to be charged */
+};
+
+struct message {
+    enum message_kind kind;
+    struct picture *picture; /* REQUEST: owned */
+    uint64_t id;             /* DROP */
+    uint64_t source;         /* ENCODED */
+    uint64_t n_image_bytes;  /* ENCODED */
+    int64_t cost_us;         /* ENCODED */
+};
+
+struct encode_thread {
     struct pipeline *pipeline;
     pthread_t thread;
-    struct job *drawn[MAX_DRAWN];
-    size_t n_drawn;
+    struct queue *drawn; /* of struct picture */
 };
 
 struct pipeline {
     struct pipeline_callbacks callbacks;
     enum render_back_end back_end;
     bool is_stub;
-    struct turns *turns;
     pthread_t render_thread;
-    pthread_mutex_t mutex;
-    pthread_cond_t changed;
-    /* all of the rest is guarded by mutex, but for the atomic ones */
-    struct job *jobs[MAX_JOBS]; /* not drawn yet, oldest first */
-    size_t n_jobs, n_requests, n_begun;
-    struct job *current; /* of jobs: being drawn on, since */
+    struct encode_thread encode_threads[N_ENCODE_THREADS];
+    struct queue *inbox;     /* of struct message, to the render thread */
+    atomic_size_t n_waiting; /* requests that are not begun */
+    atomic_bool is_called;   /* a message should be read before drawing goes on */
+    atomic_bool is_stopping;
+    /* the rest belongs to the render thread */
+    struct turns *turns;
+    struct picture *pictures[MAX_PICTURES]; /* not drawn yet, oldest first */
+    size_t n_pictures, n_begun;
+    struct picture *current; /* of pictures: being drawn since current_us; NULL: none */
     int64_t current_us;
-    struct lane lanes[N_LANES];
-    uint64_t n_image_bytes; /* of pictures begun and not delivered */
-    uint64_t n_asked_to_forget, n_forgotten;
-    bool is_stopping, is_drained; /* is_drained: nothing more comes to the lanes */
-    atomic_llong leave_at_us;     /* the picture being drawn is left from then on */
+    int64_t leave_at_us; /* the current picture is left from then on; read by the back end's threads while it draws */
+    uint64_t n_image_bytes; /* of pictures begun and not compressed */
 };
 
-static void job_destroy(struct job *job)
+static void picture_destroy(struct picture *picture)
 {
-    if (!job)
+    if (!picture)
         return;
-    snapshot_unref(job->request.snapshot);
-    image_destroy(job->image);
-    free(job->frame.picture.bytes);
-    free(job);
+    snapshot_unref(picture->request.snapshot);
+    image_destroy(picture->image);
+    free(picture->frame.picture.bytes);
+    free(picture);
 }
 
-/* ---- which picture is next; under the mutex --------------------------------------------------------------------- */
-
-static struct lane *lane_of(struct pipeline *pipeline, const struct job *job)
+static void drop_picture(void *picture)
 {
-    const struct render_options *options = &job->request.render;
+    picture_destroy(picture);
+}
+
+static void drop_message(void *item)
+{
+    struct message *message = item;
+    picture_destroy(message->picture);
+    free(message);
+}
+
+/* Takes what message owns when it returns true. Any thread. */
+static bool send(struct pipeline *pipeline, const struct message *message)
+{
+    struct message *copy = mem_new(sizeof *copy);
+    *copy = *message;
+    if (queue_try_put(pipeline->inbox, copy))
+        return true;
+    free(copy);
+    return false;
+}
+
+/* ---- which picture is next -------------------------------------------------------------------------------------- */
+
+static struct encode_thread *encode_thread_of(struct pipeline *pipeline, const struct picture *picture)
+{
+    const struct render_options *options = &picture->request.render;
     bool is_large =
-        job->request.encode.codec == ENCODE_PNG || (int64_t)options->width_px * options->height_px > SMALL_MAX_PX;
-    return &pipeline->lanes[is_large ? LANE_LARGE : LANE_SMALL];
+        picture->request.encode.codec == ENCODE_PNG || (int64_t)options->width_px * options->height_px > SMALL_MAX_PX;
+    return &pipeline->encode_threads[is_large ? ENCODE_LARGE : ENCODE_SMALL];
 }
 
-static uint64_t image_bytes(const struct job *job)
+static uint64_t image_bytes(const struct picture *picture)
 {
-    const struct render_options *options = &job->request.render;
+    const struct render_options *options = &picture->request.render;
     return options->width_px > 0 && options->height_px > 0
                ? (uint64_t)options->width_px * (uint64_t)options->height_px * 4
                : 0;
 }
 
-static void remove_job(struct pipeline *pipeline, size_t at)
+/* A picture is held while its encode thread has enough drawn ones, while there is no memory for it, and while another
+ * one that needs all memory waits for it. */
+static bool is_held(struct pipeline *pipeline, const struct picture *picture, bool another_needs_all)
 {
-    pipeline->n_requests -= !pipeline->jobs[at]->forget;
-    pipeline->n_jobs--;
-    memmove(pipeline->jobs + at, pipeline->jobs + at + 1, (pipeline->n_jobs - at) * sizeof pipeline->jobs[0]);
-}
-
-/* Pictures are held while their lane is full, while there is no memory for them, and while one that needs all of it
- * waits for the others. */
-static bool is_held(struct pipeline *pipeline, const struct job *job, bool somebody_needs_all)
-{
-    if (lane_of(pipeline, job)->n_drawn >= MAX_DRAWN)
+    if (queue_length(encode_thread_of(pipeline, picture)->drawn) >= MAX_DRAWN)
         return true;
-    if (job->turn.is_begun)
+    if (picture->turn.is_begun)
         return false;
     if (pipeline->n_image_bytes > 0 &&
-        (somebody_needs_all || pipeline->n_image_bytes + image_bytes(job) > PIPELINE_MAX_IMAGE_BYTES))
+        (another_needs_all || pipeline->n_image_bytes + image_bytes(picture) > PIPELINE_MAX_IMAGE_BYTES))
         return true;
-    return pipeline->n_begun >= MAX_BEGUN || (somebody_needs_all && !job->needs_all);
+    return pipeline->n_begun >= MAX_BEGUN || (another_needs_all && !picture->needs_all);
 }
 
-/* What stands behind a plan to forget stays behind it. SIZE_MAX: nothing can be done now. */
-static size_t choose(struct pipeline *pipeline)
+/* NULL: all are held, or there is none. */
+static struct picture *choose(struct pipeline *pipeline)
 {
-    struct turns_item *items[MAX_JOBS];
-    size_t n = 0;
-    bool somebody_needs_all = false;
-    if (pipeline->n_jobs > 0 && pipeline->jobs[0]->forget)
-        return 0;
-    for (; n < pipeline->n_jobs && !pipeline->jobs[n]->forget; n++)
-        somebody_needs_all = somebody_needs_all || (pipeline->jobs[n]->needs_all && !pipeline->jobs[n]->turn.is_begun);
-    for (size_t i = 0; i < n; i++) {
-        items[i] = &pipeline->jobs[i]->turn;
-        items[i]->is_held = is_held(pipeline, pipeline->jobs[i], somebody_needs_all);
+    struct turns_item *items[MAX_PICTURES];
+    bool one_needs_all = false;
+    for (size_t i = 0; i < pipeline->n_pictures; i++)
+        one_needs_all = one_needs_all || (pipeline->pictures[i]->needs_all && !pipeline->pictures[i]->turn.is_begun);
+    for (size_t i = 0; i < pipeline->n_pictures; i++) {
+        items[i] = &pipeline->pictures[i]->turn;
+        items[i]->is_held = is_held(pipeline, pipeline->pictures[i], one_needs_all);
     }
-    return turns_choose(pipeline->turns, items, n);
+    size_t at = turns_choose(pipeline->turns, items, pipeline->n_pictures);
+    return at == SIZE_MAX ? NULL : pipeline->pictures[at];
 }
 
-/* When the picture that is being drawn is to be left for another that waits. */
-static int64_t leave_for_us(const struct pipeline *pipeline, const struct job *other)
+/* When the current picture is to be left for another one that waits. */
+static int64_t leave_for_us(const struct pipeline *pipeline, const struct picture *other)
 {
     if (other == pipeline->current || other->turn.is_held ||
         !turns_may_interrupt(&pipeline->current->turn, &other->turn))
@@ -137,149 +172,191 @@ static int64_t leave_for_us(const struct pipeline *pipeline, const struct job *o
     return pipeline->current_us + (other->turn.is_still ? SLICE_STILL_US : SLICE_MOVING_US);
 }
 
-static void start_slice(struct pipeline *pipeline, struct job *job)
+static void start_slice(struct pipeline *pipeline, struct picture *picture)
 {
-    int64_t least_us = INT64_MAX;
-    if (!job->is_counted) {
-        job->is_counted = true;
+    if (!picture->is_counted) {
+        picture->is_counted = true;
         pipeline->n_begun++;
-        pipeline->n_image_bytes += image_bytes(job);
+        pipeline->n_image_bytes += image_bytes(picture);
+        atomic_fetch_sub(&pipeline->n_waiting, 1);
     }
-    pipeline->current = job;
+    pipeline->current = picture;
     pipeline->current_us = clock_now_us();
-    for (size_t i = 0; i < pipeline->n_jobs && !pipeline->jobs[i]->forget; i++) {
-        int64_t at_us = leave_for_us(pipeline, pipeline->jobs[i]);
-        least_us = at_us < least_us ? at_us : least_us;
+    pipeline->leave_at_us = INT64_MAX;
+    for (size_t i = 0; i < pipeline->n_pictures; i++) {
+        int64_t at_us = leave_for_us(pipeline, pipeline->pictures[i]);
+        pipeline->leave_at_us = at_us < pipeline->leave_at_us ? at_us : pipeline->leave_at_us;
     }
-    atomic_store(&pipeline->leave_at_us, least_us);
 }
 
-static void forget_image(struct pipeline *pipeline, struct job *job)
+static void remove_picture(struct pipeline *pipeline, const struct picture *picture)
 {
-    if (job->is_counted)
-        pipeline->n_image_bytes -= image_bytes(job);
-    job->is_counted = false;
+    size_t at = 0;
+    while (pipeline->pictures[at] != picture)
+        at++;
+    pipeline->n_pictures--;
+    memmove(pipeline->pictures + at, pipeline->pictures + at + 1,
+            (pipeline->n_pictures - at) * sizeof pipeline->pictures[0]);
 }
 
-/* ---- the render thread ------------------------------------------------------------------------------------------ */
+/* ---- messages to the render thread ------------------------------------------------------------------------------ */
 
-static struct image *draw_stub(const struct job *job, struct camera *camera, struct error *err)
+static void take_request(struct pipeline *pipeline, struct picture *picture)
 {
-    struct image *image = image_create(job->request.render.width_px, job->request.render.height_px, err);
-    camera_resolve(job->request.snapshot, camera);
+    assert(pipeline->n_pictures < MAX_PICTURES); /* pipeline_submit lets no more in */
+    pipeline->pictures[pipeline->n_pictures++] = picture;
+    picture->turn.is_held = is_held(pipeline, picture, false);
+    int64_t at_us = pipeline->current ? leave_for_us(pipeline, picture) : INT64_MAX;
+    if (at_us < pipeline->leave_at_us)
+        pipeline->leave_at_us = at_us;
+}
+
+static void take_message(struct pipeline *pipeline, struct message *message)
+{
+    switch (message->kind) {
+    case MESSAGE_REQUEST:
+        take_request(pipeline, message->picture);
+        message->picture = NULL;
+        break;
+    case MESSAGE_DROP:
+        for (size_t i = 0; i < pipeline->n_pictures; i++)
+            if (pipeline->pictures[i]->request.id == message->id)
+                pipeline->pictures[i]->is_dropped = true;
+        break;
+    case MESSAGE_TAKEN: break; /* only wakes */
+    case MESSAGE_ENCODED:
+        turns_charge(pipeline->turns, message->source, message->cost_us);
+        pipeline->n_image_bytes -= message->n_image_bytes;
+        break;
+    }
+    drop_message(message);
+}
+
+static void read_messages(struct pipeline *pipeline)
+{
+    atomic_store(&pipeline->is_called, false); /* before looking: what comes later calls again */
+    for (struct message *message; (message = queue_try_take(pipeline->inbox));)
+        take_message(pipeline, message);
+}
+
+/* ---- drawing ---------------------------------------------------------------------------------------------------- */
+
+static struct image *draw_stub(const struct picture *picture, struct camera *camera, struct error *err)
+{
+    struct image *image = image_create(picture->request.render.width_px, picture->request.render.height_px, err);
+    camera_resolve(picture->request.snapshot, camera);
     if (image)
         for (size_t i = 0, n = (size_t)image->width_px * (size_t)image->height_px * 4; i < n; i++)
             image->rgba[i] = i % 4 == 3 ? 255 : 128;
     return image;
 }
 
+static bool is_time_to_leave(const struct pipeline *pipeline)
+{
+    return atomic_load(&pipeline->is_stopping) ||
+           (pipeline->leave_at_us != INT64_MAX && clock_now_us() >= pipeline->leave_at_us);
+}
+
+/* Any thread of the back end. */
 static bool pause_is_due(void *context)
 {
     const struct pipeline *pipeline = context;
-    long long at_us = atomic_load(&pipeline->leave_at_us);
-    return at_us != INT64_MAX && clock_now_us() >= at_us;
+    return atomic_load(&pipeline->is_called) || is_time_to_leave(pipeline);
 }
 
-/* Returns false when there is more to draw. */
-static bool draw(struct pipeline *pipeline, struct renderer *renderer, const struct error *why_none, struct job *job)
+/* Draws on until it is done or a pause is due. Returns false when there is more to draw. */
+static bool draw(struct pipeline *pipeline, struct renderer *renderer, const struct error *why_none,
+                 struct picture *picture)
 {
-    struct pipeline_frame *frame = &job->frame;
-    const struct render_options *options = &job->request.render;
-    frame->id = job->request.id;
+    struct pipeline_frame *frame = &picture->frame;
+    const struct render_options *options = &picture->request.render;
+    frame->id = picture->request.id;
     frame->is_still = options->is_still;
     frame->width_px = options->width_px;
     frame->height_px = options->height_px;
     if (pipeline->is_stub || !renderer) {
         if (pipeline->is_stub)
-            job->image = draw_stub(job, &frame->camera, &frame->error);
+            picture->image = draw_stub(picture, &frame->camera, &frame->error);
         else
             frame->error = *why_none;
         return true;
     }
     const struct render_pause pause = { pause_is_due, pipeline };
-    if (!job->picture)
-        job->picture = render_begin(renderer, job->request.snapshot, options);
-    if (render_go_on(job->picture, &pause, &frame->error) == RENDER_PAUSED)
+    if (!picture->render)
+        picture->render = render_begin(renderer, picture->request.snapshot, options);
+    if (render_go_on(picture->render, &pause, &frame->error) == RENDER_PAUSED)
         return false;
     if (frame->error.code == ERROR_MEMORY)
         error_prefix(&frame->error, "a picture of %d x %d pixels", options->width_px, options->height_px);
-    job->image = render_end(job->picture, &frame->camera, &frame->timing);
-    job->picture = NULL;
+    picture->image = render_end(picture->render, &frame->camera, &frame->timing);
+    picture->render = NULL;
     return true;
 }
 
-/* Ends a picture that is not wanted any more, or that is to be begun anew. */
-static void give_up(struct job *job)
+/* Ends a picture that is no longer wanted, or that is to be begun anew. */
+static void give_up(struct picture *picture)
 {
-    if (job->picture)
-        image_destroy(render_end(job->picture, &job->frame.camera, &job->frame.timing));
-    job->picture = NULL;
+    if (picture->render)
+        image_destroy(render_end(picture->render, &picture->frame.camera, &picture->frame.timing));
+    picture->render = NULL;
 }
 
-/* Under the mutex. */
 static void remove_dropped(struct pipeline *pipeline)
 {
-    for (size_t i = 0; i < pipeline->n_jobs;) {
-        struct job *job = pipeline->jobs[i];
-        if (!job->is_dropped) {
+    for (size_t i = 0; i < pipeline->n_pictures;) {
+        struct picture *picture = pipeline->pictures[i];
+        if (!picture->is_dropped) {
             i++;
             continue;
         }
-        give_up(job);
-        pipeline->n_begun -= job->is_counted;
-        forget_image(pipeline, job);
-        remove_job(pipeline, i);
-        job_destroy(job);
+        give_up(picture);
+        if (picture->is_counted) {
+            pipeline->n_begun--;
+            pipeline->n_image_bytes -= image_bytes(picture);
+        } else {
+            atomic_fetch_sub(&pipeline->n_waiting, 1);
+        }
+        remove_picture(pipeline, picture);
+        picture_destroy(picture);
     }
 }
 
-/* Under the mutex. Without memory for it beside others, a picture is tried once more when they are done. */
-static void pass_on(struct pipeline *pipeline, struct job *job)
+/* Hands a drawn picture to its encode thread. One without memory beside others is tried once more when they are done.
+ */
+static void pass_on(struct pipeline *pipeline, struct picture *picture)
 {
-    size_t at = 0;
-    bool has_others = pipeline->n_image_bytes > image_bytes(job);
+    bool has_others = pipeline->n_image_bytes > image_bytes(picture);
     pipeline->n_begun--;
-    if (job->frame.error.code == ERROR_MEMORY && has_others && !job->needs_all) {
-        forget_image(pipeline, job);
-        job->needs_all = true;
-        job->turn.is_begun = false;
-        job->frame.error = (struct error){ 0 };
+    if (picture->frame.error.code == ERROR_MEMORY && has_others && !picture->needs_all) {
+        pipeline->n_image_bytes -= image_bytes(picture);
+        atomic_fetch_add(&pipeline->n_waiting, 1);
+        picture->is_counted = false;
+        picture->needs_all = true;
+        picture->turn.is_begun = false;
+        picture->frame.error = (struct error){ 0 };
         return;
     }
-    while (pipeline->jobs[at] != job)
-        at++;
-    remove_job(pipeline, at);
-    struct lane *lane = lane_of(pipeline, job);
-    lane->drawn[lane->n_drawn++] = job; /* it has room: else the picture was held */
-    pthread_cond_broadcast(&pipeline->changed);
+    remove_picture(pipeline, picture);
+    bool has_room = queue_try_put(encode_thread_of(pipeline, picture)->drawn, picture);
+    assert(has_room); /* else the picture was held */
+    (void)has_room;
 }
 
-/* Under the mutex, which it leaves. */
+/* Draws on one picture until it is done, dropped, or left for another. */
 static void draw_slice(struct pipeline *pipeline, struct renderer *renderer, const struct error *why_none,
-                       struct job *job)
+                       struct picture *picture)
 {
-    start_slice(pipeline, job);
-    pthread_mutex_unlock(&pipeline->mutex);
-    bool is_done = draw(pipeline, renderer, why_none, job);
-    pthread_mutex_lock(&pipeline->mutex);
-    turns_charge(pipeline->turns, job->turn.source, clock_now_us() - pipeline->current_us);
+    bool is_done = false, goes_on = true;
+    start_slice(pipeline, picture);
+    while (!is_done && goes_on) {
+        is_done = draw(pipeline, renderer, why_none, picture);
+        read_messages(pipeline);
+        goes_on = !picture->is_dropped && !is_time_to_leave(pipeline);
+    }
+    turns_charge(pipeline->turns, picture->turn.source, clock_now_us() - pipeline->current_us);
     pipeline->current = NULL;
     if (is_done)
-        pass_on(pipeline, job);
-}
-
-/* Under the mutex, which it leaves. No picture is begun then: what came before is drawn, what came later waits. */
-static void forget(struct pipeline *pipeline, struct renderer *renderer)
-{
-    struct job *job = pipeline->jobs[0];
-    remove_job(pipeline, 0);
-    pthread_mutex_unlock(&pipeline->mutex);
-    if (renderer)
-        renderer_forget(renderer, job->forget);
-    job_destroy(job);
-    pthread_mutex_lock(&pipeline->mutex);
-    pipeline->n_forgotten++;
-    pthread_cond_broadcast(&pipeline->changed);
+        pass_on(pipeline, picture);
 }
 
 static struct renderer *start_renderer(struct pipeline *pipeline, struct error *err)
@@ -298,67 +375,41 @@ static void *render_main(void *argument)
     struct pipeline *pipeline = argument;
     struct error err = { 0 };
     struct renderer *renderer = start_renderer(pipeline, &err);
-    pthread_mutex_lock(&pipeline->mutex);
-    while (!pipeline->is_stopping) {
+    while (!atomic_load(&pipeline->is_stopping)) {
+        read_messages(pipeline);
         remove_dropped(pipeline);
-        size_t at = choose(pipeline);
-        if (at == SIZE_MAX)
-            pthread_cond_wait(&pipeline->changed, &pipeline->mutex);
-        else if (pipeline->jobs[at]->forget)
-            forget(pipeline, renderer);
-        else
-            draw_slice(pipeline, renderer, &err, pipeline->jobs[at]);
+        struct picture *picture = choose(pipeline);
+        struct message *message = picture ? NULL : queue_take(pipeline->inbox, -1);
+        if (picture)
+            draw_slice(pipeline, renderer, &err, picture);
+        else if (message)
+            take_message(pipeline, message);
     }
-    for (size_t i = 0; i < pipeline->n_jobs; i++) {
-        give_up(pipeline->jobs[i]);
-        job_destroy(pipeline->jobs[i]);
+    for (size_t i = 0; i < pipeline->n_pictures; i++) {
+        give_up(pipeline->pictures[i]);
+        picture_destroy(pipeline->pictures[i]);
     }
-    pipeline->n_jobs = 0;
-    pipeline->is_drained = true;
-    pthread_cond_broadcast(&pipeline->changed);
-    pthread_mutex_unlock(&pipeline->mutex);
     renderer_destroy(renderer);
     return NULL;
 }
 
 /* ---- the encode threads ----------------------------------------------------------------------------------------- */
 
-/* NULL: nothing more comes. */
-static struct job *take_drawn(struct lane *lane, bool *is_wanted)
+static void encode(struct pipeline *pipeline, struct encoder *encoder, struct picture *picture)
 {
-    struct pipeline *pipeline = lane->pipeline;
-    struct job *job = NULL;
-    pthread_mutex_lock(&pipeline->mutex);
-    while (lane->n_drawn == 0 && !pipeline->is_drained)
-        pthread_cond_wait(&pipeline->changed, &pipeline->mutex);
-    if (lane->n_drawn > 0) {
-        job = lane->drawn[0];
-        lane->n_drawn--;
-        memmove(lane->drawn, lane->drawn + 1, lane->n_drawn * sizeof lane->drawn[0]);
-        pthread_cond_broadcast(&pipeline->changed);
-    }
-    *is_wanted = !pipeline->is_stopping;
-    pthread_mutex_unlock(&pipeline->mutex);
-    return job;
-}
-
-static void deliver(struct pipeline *pipeline, struct encoder *encoder, struct job *job)
-{
-    struct pipeline_frame *frame = &job->frame;
-    if (job->image) {
+    struct pipeline_frame *frame = &picture->frame;
+    if (picture->image) {
         int64_t start_us = clock_now_us();
-        (void)!encode_image(encoder, job->image, &job->request.encode, &frame->picture, &frame->error);
+        (void)!encode_image(encoder, picture->image, &picture->request.encode, &frame->picture, &frame->error);
         frame->encode_us = clock_now_us() - start_us;
     }
-    image_destroy(job->image);
-    job->image = NULL;
-    pthread_mutex_lock(&pipeline->mutex);
-    turns_charge(pipeline->turns, job->turn.source, frame->encode_us);
-    forget_image(pipeline, job);
-    pthread_cond_broadcast(&pipeline->changed);
-    bool is_wanted = !pipeline->is_stopping;
-    pthread_mutex_unlock(&pipeline->mutex);
-    if (!is_wanted)
+    image_destroy(picture->image);
+    picture->image = NULL;
+    (void)send(pipeline, &(struct message){ .kind = MESSAGE_ENCODED,
+                                            .source = picture->turn.source,
+                                            .n_image_bytes = image_bytes(picture),
+                                            .cost_us = frame->encode_us });
+    if (atomic_load(&pipeline->is_stopping))
         return;
     pipeline->callbacks.deliver(pipeline->callbacks.context, frame);
     frame->picture = (struct encoded){ 0 }; /* the receiver's now */
@@ -366,13 +417,14 @@ static void deliver(struct pipeline *pipeline, struct encoder *encoder, struct j
 
 static void *encode_main(void *argument)
 {
-    struct lane *lane = argument;
+    struct encode_thread *thread = argument;
+    struct pipeline *pipeline = thread->pipeline;
     struct encoder *encoder = encoder_create();
-    bool is_wanted;
-    for (struct job *job; (job = take_drawn(lane, &is_wanted));) {
-        if (is_wanted)
-            deliver(lane->pipeline, encoder, job);
-        job_destroy(job);
+    for (struct picture *picture; (picture = queue_take(thread->drawn, -1));) {
+        (void)send(pipeline, &(struct message){ .kind = MESSAGE_TAKEN });
+        if (!atomic_load(&pipeline->is_stopping))
+            encode(pipeline, encoder, picture);
+        picture_destroy(picture);
     }
     encoder_destroy(encoder);
     return NULL;
@@ -380,21 +432,20 @@ static void *encode_main(void *argument)
 
 /* ---- from outside ----------------------------------------------------------------------------------------------- */
 
-static void stop(struct pipeline *pipeline, int n_lanes, bool has_render_thread)
+static void stop(struct pipeline *pipeline, int n_encode_threads, bool has_render_thread)
 {
-    pthread_mutex_lock(&pipeline->mutex);
-    pipeline->is_stopping = true;
-    pipeline->is_drained = !has_render_thread;
-    atomic_store(&pipeline->leave_at_us, 0);
-    pthread_cond_broadcast(&pipeline->changed);
-    pthread_mutex_unlock(&pipeline->mutex);
+    atomic_store(&pipeline->is_stopping, true);
+    queue_close(pipeline->inbox);
     if (has_render_thread)
         pthread_join(pipeline->render_thread, NULL);
-    for (int i = 0; i < n_lanes; i++)
-        pthread_join(pipeline->lanes[i].thread, NULL);
+    for (int i = 0; i < N_ENCODE_THREADS; i++)
+        queue_close(pipeline->encode_threads[i].drawn);
+    for (int i = 0; i < n_encode_threads; i++)
+        pthread_join(pipeline->encode_threads[i].thread, NULL);
+    for (int i = 0; i < N_ENCODE_THREADS; i++)
+        queue_destroy(pipeline->encode_threads[i].drawn);
+    queue_destroy(pipeline->inbox);
     turns_destroy(pipeline->turns);
-    pthread_cond_destroy(&pipeline->changed);
-    pthread_mutex_destroy(&pipeline->mutex);
     free(pipeline);
 }
 
@@ -406,16 +457,17 @@ struct pipeline *pipeline_create(enum render_back_end back_end, bool stub, const
     pipeline->back_end = back_end;
     pipeline->is_stub = stub;
     pipeline->turns = turns_create();
-    atomic_init(&pipeline->leave_at_us, INT64_MAX);
-    pthread_mutex_init(&pipeline->mutex, NULL);
-    pthread_cond_init(&pipeline->changed, NULL);
-    int failed = 0, n_lanes = 0;
+    pipeline->inbox = queue_create(MAX_MESSAGES, drop_message);
+    for (int i = 0; i < N_ENCODE_THREADS; i++)
+        pipeline->encode_threads[i] =
+            (struct encode_thread){ .pipeline = pipeline, .drawn = queue_create(MAX_DRAWN, drop_picture) };
+    int failed = 0, n_started = 0;
     pthread_attr_t small;
     pthread_attr_init(&small);
     pthread_attr_setstacksize(&small, ENCODE_STACK_BYTES);
-    for (; n_lanes < N_LANES && !failed; n_lanes += !failed) {
-        pipeline->lanes[n_lanes].pipeline = pipeline;
-        failed = pthread_create(&pipeline->lanes[n_lanes].thread, &small, encode_main, &pipeline->lanes[n_lanes]);
+    for (; n_started < N_ENCODE_THREADS && !failed; n_started += !failed) {
+        struct encode_thread *thread = &pipeline->encode_threads[n_started];
+        failed = pthread_create(&thread->thread, &small, encode_main, thread);
     }
     pthread_attr_destroy(&small);
     if (!failed)
@@ -423,65 +475,35 @@ struct pipeline *pipeline_create(enum render_back_end back_end, bool stub, const
     if (!failed)
         return pipeline;
     error_set(err, ERROR_MEMORY, "cannot start a thread for drawing: %s", strerror(failed));
-    stop(pipeline, n_lanes, false);
+    stop(pipeline, n_started, false);
     return NULL;
 }
 
 bool pipeline_submit(struct pipeline *pipeline, const struct pipeline_request *request, struct error *err)
 {
-    struct job *job = mem_new(sizeof *job);
-    job->request = *request;
-    job->turn = (struct turns_item){ .source = request->source, .is_still = request->render.is_still };
-    pthread_mutex_lock(&pipeline->mutex);
-    bool fits = !pipeline->is_stopping && pipeline->n_requests - pipeline->n_begun < PIPELINE_MAX_WAITING;
-    if (fits) {
-        pipeline->jobs[pipeline->n_jobs++] = job;
-        pipeline->n_requests++;
-        job->turn.is_held = is_held(pipeline, job, false);
-        int64_t leave_us = pipeline->current ? leave_for_us(pipeline, job) : INT64_MAX;
-        if (leave_us < atomic_load(&pipeline->leave_at_us))
-            atomic_store(&pipeline->leave_at_us, leave_us);
-        pthread_cond_broadcast(&pipeline->changed);
-    }
-    pthread_mutex_unlock(&pipeline->mutex);
-    if (fits)
+    struct picture *picture = mem_new(sizeof *picture);
+    picture->request = *request;
+    picture->turn = (struct turns_item){ .source = request->source, .is_still = request->render.is_still };
+    if (atomic_fetch_add(&pipeline->n_waiting, 1) < PIPELINE_MAX_WAITING &&
+        send(pipeline, &(struct message){ .kind = MESSAGE_REQUEST, .picture = picture })) {
+        atomic_store(&pipeline->is_called, true);
         return true;
-    job_destroy(job);
+    }
+    atomic_fetch_sub(&pipeline->n_waiting, 1);
+    picture_destroy(picture);
     return error_set(err, ERROR_LIMIT, "%d pictures are waiting to be drawn already", PIPELINE_MAX_WAITING);
 }
 
 void pipeline_drop(struct pipeline *pipeline, uint64_t id)
 {
-    pthread_mutex_lock(&pipeline->mutex);
-    for (size_t i = 0; i < pipeline->n_jobs; i++) {
-        struct job *job = pipeline->jobs[i];
-        if (job->forget || job->request.id != id)
-            continue;
-        job->is_dropped = true;
-        if (job == pipeline->current)
-            atomic_store(&pipeline->leave_at_us, 0);
-    }
-    pthread_cond_broadcast(&pipeline->changed);
-    pthread_mutex_unlock(&pipeline->mutex);
-}
-
-void pipeline_forget(struct pipeline *pipeline, const struct plan *plan)
-{
-    struct job *job = mem_new(sizeof *job);
-    job->forget = plan;
-    pthread_mutex_lock(&pipeline->mutex);
-    while (pipeline->n_jobs - pipeline->n_requests >= MAX_FORGET) /* of other callers: let the render thread go on */
-        pthread_cond_wait(&pipeline->changed, &pipeline->mutex);
-    pipeline->jobs[pipeline->n_jobs++] = job;
-    pthread_cond_broadcast(&pipeline->changed);
-    uint64_t turn = ++pipeline->n_asked_to_forget;
-    while (pipeline->n_forgotten < turn)
-        pthread_cond_wait(&pipeline->changed, &pipeline->mutex);
-    pthread_mutex_unlock(&pipeline->mutex);
+    if (queue_length(pipeline->inbox) >= MAX_MESSAGES_BEFORE_DROP)
+        return; /* the picture is drawn all the same */
+    if (send(pipeline, &(struct message){ .kind = MESSAGE_DROP, .id = id }))
+        atomic_store(&pipeline->is_called, true);
 }
 
 void pipeline_destroy(struct pipeline *pipeline)
 {
     if (pipeline)
-        stop(pipeline, N_LANES, true);
+        stop(pipeline, N_ENCODE_THREADS, true);
 }

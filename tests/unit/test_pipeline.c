@@ -357,26 +357,6 @@ static void it_can_be_destroyed_in_any_state(void **state)
     pipeline_destroy(NULL);
 }
 
-static void a_forgotten_plan_may_be_destroyed_at_once(void **state)
-{
-    (void)state;
-    struct receiver receiver;
-    receiver_init(&receiver);
-    struct plan *plan = small_plan(), *next = small_plan();
-    struct pipeline *pipeline = start(&receiver);
-    struct error err = { 0 };
-    for (uint64_t id = 0; id < 8; id++)
-        assert_true(submit(pipeline, plan, id, 64, &err));
-    pipeline_forget(pipeline, plan);
-    plan_and_derived_destroy(plan); /* what was asked before is drawn, or at least no longer needs the plan */
-    assert_true(submit(pipeline, next, 8, 64, &err));
-    wait_for(&receiver, 9);
-    assert_int_equal(receiver.ids[8], 8);
-    pipeline_destroy(pipeline);
-    plan_and_derived_destroy(next);
-    receiver_finish(&receiver);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -388,7 +368,6 @@ int main(void)
         cmocka_unit_test(large_pictures_of_one_source_do_not_hold_up_small_ones_of_another),
         cmocka_unit_test(a_picture_that_is_dropped_while_it_is_drawn_is_drawn_no_further),
         cmocka_unit_test(it_can_be_destroyed_in_any_state),
-        cmocka_unit_test(a_forgotten_plan_may_be_destroyed_at_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

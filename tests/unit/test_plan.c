@@ -170,6 +170,7 @@ static void many_threads_get_the_same_surfaces(void **state)
     make_folder_of_boxes(folder, "labels.nii");
     folder_put_text(folder, "plan.json", PLAN("\"regions\":[{\"path\":\"labels.nii\"}]"));
     struct batch batch = { .plan = plan_of_folder(folder, &err) };
+    (void)derived_of(batch.plan); /* before there are threads */
     parallel_run(4, ask_for_all, &batch);
     for (size_t r = 0; r < 3; r++)
         for (int detail = 0; detail < 2; detail++)
