@@ -10,6 +10,11 @@
 #include "core/derive/region_shape.h"
 #include "core/surface/shape_distance.h"
 
+bool shape_want_equal(const struct shape_want *a, const struct shape_want *b)
+{
+    return subject_equal(a->subject, b->subject) && a->detail == b->detail && shape_key_equal(&a->key, &b->key);
+}
+
 /* The recipe of a wanted shape; false: there is none. */
 static bool find_recipe(struct derive *derive, const struct shape_want *want, struct region_shape_recipe *recipe,
                         struct error *err)

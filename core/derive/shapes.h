@@ -14,6 +14,8 @@ struct shape_want {
     enum surface_detail detail; /* of a surface; other representations have their full shape only */
 };
 
+bool shape_want_equal(const struct shape_want *a, const struct shape_want *b); /* of normalised keys */
+
 /* The shape of a region, built on first use and kept (derive_get); triangles of a surface have vertex normals. By
  * SURFACE_EIGHT_CELL there may be no triangle.
  *

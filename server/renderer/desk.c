@@ -24,7 +24,7 @@ void note_destroy(struct note *note)
     free(note->frame.picture.bytes);
     cJSON_Delete(note->body);
     free(note->blob);
-    preparation_destroy(note->preparation);
+    waiting_request_destroy(note->waiting);
     free(note);
 }
 

@@ -3,10 +3,19 @@
 #include <stdatomic.h>
 
 #include "core/pipeline/pipeline.h"
-#include "core/pipeline/prepare.h"
+#include "core/pipeline/waiting_request.h"
 #include "server/wire/json.h"
 
-enum note_type { NOTE_GL, NOTE_PROGRESS, NOTE_LOADED, NOTE_FAILED, NOTE_BUILT, NOTE_FRAME, NOTE_ANSWER, NOTE_PREPARED };
+enum note_type {
+    NOTE_GL,
+    NOTE_PROGRESS,
+    NOTE_LOADED,
+    NOTE_FAILED,
+    NOTE_BUILT,
+    NOTE_FRAME,
+    NOTE_ANSWER,
+    NOTE_SHAPES_BUILT
+};
 
 struct note {
     enum note_type type;
@@ -22,7 +31,7 @@ struct note {
     uint8_t *blob; /* answer: bytes beside the body, the receiver's; NULL when there are none */
     size_t n_blob;
     struct problem problem;
-    struct preparation *preparation; /* prepared: the receiver's; its shapes are built */
+    struct waiting_request *waiting; /* SHAPES_BUILT: the receiver's */
 };
 
 struct desk;

@@ -19,7 +19,7 @@ enum {
     BUILD_AHEAD_US = 300000,  /* after that a first picture goes ahead with what is there */
     WORTH_KEEPING_US = 50000, /* opening took longer */
     MAX_QUESTIONS = 256,
-    MAX_PREPARATIONS = 2 * PIPELINE_MAX_WAITING
+    MAX_WAITING_REQUESTS = 2 * PIPELINE_MAX_WAITING
 };
 
 struct loader {
@@ -27,11 +27,11 @@ struct loader {
     uint64_t max_bytes;
     struct desk *desk;
     atomic_bool cancel;
-    pthread_t load_thread, quick_thread, prepare_thread;
-    struct queue *slow, *quick; /* questions: surfaces, on the load thread; points, on their own */
-    struct queue *preparations; /* pictures that wait for shapes, on a thread of their own */
-    const struct plan *plan;    /* the load thread's; the quick one gets it with its first question */
-    struct derive *derived;     /* of the plan */
+    pthread_t load_thread, quick_thread, shapes_thread;
+    struct queue *slow, *quick;     /* questions: surfaces, on the load thread; points, on their own */
+    struct queue *waiting_requests; /* pictures that wait for shapes, on a thread of their own */
+    const struct plan *plan;        /* the load thread's; the quick one gets it with its first question */
+    struct derive *derived;         /* of the plan */
     int64_t told_us;
 };
 
@@ -183,37 +183,37 @@ static void *quick_main(void *argument)
     return NULL;
 }
 
-static void *prepare_main(void *argument)
+static void *shapes_main(void *argument)
 {
     struct loader *loader = argument;
-    for (struct preparation *preparation; (preparation = queue_take(loader->preparations, -1));) {
+    for (struct waiting_request *waiting; (waiting = queue_take(loader->waiting_requests, -1));) {
         if (atomic_load(&loader->cancel)) {
-            preparation_destroy(preparation);
+            waiting_request_destroy(waiting);
             continue;
         }
-        preparation_build(preparation, &loader->cancel);
-        desk_put(loader->desk, &(struct note){ .type = NOTE_PREPARED, .preparation = preparation });
+        waiting_request_build_shapes(waiting, &loader->cancel);
+        desk_put(loader->desk, &(struct note){ .type = NOTE_SHAPES_BUILT, .waiting = waiting });
     }
     return NULL;
 }
 
-static void drop_preparation(void *item)
+static void drop_waiting(void *item)
 {
-    preparation_destroy(item);
+    waiting_request_destroy(item);
 }
 
 static void stop(struct loader *loader, int n_started)
 {
-    const pthread_t threads[] = { loader->load_thread, loader->quick_thread, loader->prepare_thread };
+    const pthread_t threads[] = { loader->load_thread, loader->quick_thread, loader->shapes_thread };
     atomic_store(&loader->cancel, true);
     queue_close(loader->slow);
     queue_close(loader->quick);
-    queue_close(loader->preparations);
+    queue_close(loader->waiting_requests);
     for (int i = 0; i < n_started; i++)
         pthread_join(threads[i], NULL);
     queue_destroy(loader->slow);
     queue_destroy(loader->quick);
-    queue_destroy(loader->preparations);
+    queue_destroy(loader->waiting_requests);
     free(loader->folder);
     free(loader->plan_id);
     free(loader->cache_folder);
@@ -231,12 +231,12 @@ struct loader *loader_create(const struct loader_options *options, struct desk *
     atomic_init(&loader->cancel, false);
     loader->slow = queue_create(MAX_QUESTIONS, question_drop);
     loader->quick = queue_create(MAX_QUESTIONS, question_drop);
-    loader->preparations = queue_create(MAX_PREPARATIONS, drop_preparation);
+    loader->waiting_requests = queue_create(MAX_WAITING_REQUESTS, drop_waiting);
     int n_started = 0, failed = pthread_create(&loader->load_thread, NULL, load_main, loader);
     if (!failed && ++n_started)
         failed = pthread_create(&loader->quick_thread, NULL, quick_main, loader);
     if (!failed && ++n_started)
-        failed = pthread_create(&loader->prepare_thread, NULL, prepare_main, loader);
+        failed = pthread_create(&loader->shapes_thread, NULL, shapes_main, loader);
     if (!failed)
         return loader;
     error_set(err, ERROR_IO, "a thread cannot be started: %s", strerror(failed));
@@ -244,9 +244,9 @@ struct loader *loader_create(const struct loader_options *options, struct desk *
     return NULL;
 }
 
-bool loader_prepare(struct loader *loader, struct preparation *preparation)
+bool loader_build_shapes(struct loader *loader, struct waiting_request *waiting)
 {
-    return queue_try_put(loader->preparations, preparation);
+    return queue_try_put(loader->waiting_requests, waiting);
 }
 
 bool loader_ask(struct loader *loader, const struct question *question)

@@ -25,8 +25,8 @@ struct loader_options {
 NODISCARD struct loader *loader_create(const struct loader_options *options, struct desk *desk, struct error *err);
 /* After LOADED. Answered by a note with the same id. Takes what question owns. False: too many wait. */
 NODISCARD bool loader_ask(struct loader *loader, const struct question *question);
-/* Before a picture: builds its shapes, then a note PREPARED. Takes preparation when it returns true. False: too many
+/* Before a picture: builds its shapes, then a note SHAPES_BUILT. Takes waiting when it returns true. False: too many
  * wait. */
-NODISCARD bool loader_prepare(struct loader *loader, struct preparation *preparation);
+NODISCARD bool loader_build_shapes(struct loader *loader, struct waiting_request *waiting);
 /* Cancels reading, drops what waits, joins. The plan must outlive it. */
 void loader_destroy(struct loader *loader);

@@ -275,11 +275,11 @@ static void take_note(struct session *session, struct note *note)
     case NOTE_FAILED: say_failed(session, &note->error); break;
     case NOTE_BUILT: session->is_built = true; break;
     case NOTE_FRAME: pictures_take_frame(session, &note->frame); break;
-    case NOTE_PREPARED:
-        if (note->preparation->is_built)
-            prepared_add(session->prepared, note->preparation);
-        pictures_submit(session, note->preparation);
-        note->preparation = NULL;
+    case NOTE_SHAPES_BUILT:
+        if (note->waiting->is_built)
+            built_shapes_add(session->built_shapes, note->waiting);
+        pictures_submit(session, note->waiting);
+        note->waiting = NULL;
         break;
     case NOTE_ANSWER:
         if (note->body) {

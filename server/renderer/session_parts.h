@@ -34,7 +34,7 @@ struct session {
     size_t n_rooms, room_capacity; /* at most SCENE_MAX_ROOMS */
     cJSON *default_scene;
     struct drawing drawings[MAX_DRAWINGS];
-    struct prepared *prepared;
+    struct built_shapes *built_shapes;
     bool is_built, has_gl, is_ready;
     struct problem gl_problem; /* when GL did not start */
     int64_t began_us;
@@ -67,6 +67,6 @@ NODISCARD struct snapshot *pictures_read_snapshot(struct session *session, uint6
 void pictures_warm_up(struct session *session);
 void pictures_draw(struct session *session, uint64_t id, const cJSON *json);
 void pictures_drop(struct session *session, uint64_t id);
-/* The shapes of a picture are built: hands it to the render thread. Takes preparation. */
-void pictures_submit(struct session *session, struct preparation *preparation);
+/* The shapes of a picture are built: hands it to the render thread. Takes waiting. */
+void pictures_submit(struct session *session, struct waiting_request *waiting);
 void pictures_take_frame(struct session *session, const struct pipeline_frame *frame);

@@ -153,14 +153,14 @@ void pictures_drop(struct session *session, uint64_t id)
     pipeline_drop(session->pipeline, id);
 }
 
-void pictures_submit(struct session *session, struct preparation *preparation)
+void pictures_submit(struct session *session, struct waiting_request *waiting)
 {
     struct error err = { 0 };
-    struct pipeline_request request = preparation->request;
+    struct pipeline_request request = waiting->request;
     struct drawing *drawing = find_drawing(session, request.id);
     if (drawing)
         snapshot_ref(request.snapshot);
-    preparation_destroy(preparation);
+    waiting_request_destroy(waiting);
     if (!drawing || pipeline_submit(session->pipeline, &request, &err)) /* none: dropped meanwhile */
         return;
     drawing_end(drawing);
@@ -231,10 +231,10 @@ void pictures_draw(struct session *session, uint64_t id, const cJSON *json)
     drawing->snapshot = snapshot_ref(snapshot);
     drawing->detail = request.render.detail;
     atomic_store(&drawing->id, id);
-    struct preparation *preparation = preparation_create(&request);
-    preparation->wanted = &drawing->id;
-    if (prepared_has_all(session->prepared, preparation) || !loader_prepare(session->loader, preparation))
-        pictures_submit(session, preparation);
+    struct waiting_request *waiting = waiting_request_create(&request);
+    waiting->wanted = &drawing->id;
+    if (built_shapes_has_all(session->built_shapes, waiting) || !loader_build_shapes(session->loader, waiting))
+        pictures_submit(session, waiting);
 }
 
 void pictures_warm_up(struct session *session)
@@ -314,12 +314,12 @@ void pictures_begin(struct session *session)
 {
     for (size_t i = 0; i < MAX_DRAWINGS; i++)
         atomic_init(&session->drawings[i].id, NO_DRAWING);
-    session->prepared = prepared_create();
+    session->built_shapes = built_shapes_create();
 }
 
 void pictures_end(struct session *session)
 {
-    prepared_destroy(session->prepared);
+    built_shapes_destroy(session->built_shapes);
     for (size_t i = 0; i < MAX_DRAWINGS; i++)
         snapshot_unref(session->drawings[i].snapshot);
     for (size_t i = 0; i < session->n_rooms; i++)

@@ -1,5 +1,5 @@
-/* Which shapes a picture waits for, and that they are there when it no longer does. */
-#include "core/pipeline/prepare.h"
+/* Which shapes a request waits for, and that they are built when it no longer waits. */
+#include "core/pipeline/waiting_request.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"
 #include "tests/made_plan.h"
@@ -19,7 +19,7 @@ static struct plan *make_plan(void)
     return made_plan(&grid, nested_label, nested, 3);
 }
 
-struct asked {
+struct picture {
     enum scene_kind kind;
     enum scene_representation representation;
     double opacity;      /* of the outer one */
@@ -27,31 +27,31 @@ struct asked {
     enum surface_detail detail;
 };
 
-static struct preparation *prepare(struct plan *plan, const struct asked *asked)
+static struct waiting_request *request_of(struct plan *plan, const struct picture *picture)
 {
     struct scene scene;
     struct view view = view_default;
     struct error err = { 0 };
     char field[128];
     scene_for_plan(plan, &scene);
-    view.kind = asked->kind;
+    view.kind = picture->kind;
     for (size_t i = 0; i < scene.n_regions; i++) {
-        scene.regions[i].value.representation = asked->representation;
-        scene.regions[i].value.opacity = i == 0 ? asked->opacity : 1;
+        scene.regions[i].value.representation = picture->representation;
+        scene.regions[i].value.opacity = i == 0 ? picture->opacity : 1;
     }
-    scene.check.visible = asked->checked != NULL;
-    snprintf(scene.check.region, sizeof scene.check.region, "%s", asked->checked ? asked->checked : "");
+    scene.check.visible = picture->checked != NULL;
+    snprintf(scene.check.region, sizeof scene.check.region, "%s", picture->checked ? picture->checked : "");
     struct pipeline_request request = { .snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err),
-                                        .render = { 64, 64, asked->detail, false } };
+                                        .render = { 64, 64, picture->detail, false } };
     assert_string_equal(err.text, "");
-    return preparation_create(&request);
+    return waiting_request_create(&request);
 }
 
 static void a_picture_wants_the_shapes_that_can_be_seen(void **state)
 {
     (void)state;
     static const struct {
-        struct asked asked;
+        struct picture picture;
         size_t n;
         size_t first;
         enum region_representation representation;
@@ -95,14 +95,14 @@ static void a_picture_wants_the_shapes_that_can_be_seen(void **state)
     };
     struct plan *plan = make_plan();
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct preparation *preparation = prepare(plan, &cases[i].asked);
-        assert_int_equal(preparation->n_wants, cases[i].n);
+        struct waiting_request *waiting = request_of(plan, &cases[i].picture);
+        assert_int_equal(waiting->n_wants, cases[i].n);
         if (cases[i].n > 0) {
-            assert_int_equal(preparation->wants[0].subject.index, cases[i].first);
-            assert_int_equal(preparation->wants[0].key.representation, cases[i].representation);
-            assert_int_equal(preparation->wants[0].detail, cases[i].detail);
+            assert_int_equal(waiting->wants[0].subject.index, cases[i].first);
+            assert_int_equal(waiting->wants[0].key.representation, cases[i].representation);
+            assert_int_equal(waiting->wants[0].detail, cases[i].detail);
         }
-        preparation_destroy(preparation);
+        waiting_request_destroy(waiting);
     }
     plan_and_derived_destroy(plan);
 }
@@ -110,45 +110,46 @@ static void a_picture_wants_the_shapes_that_can_be_seen(void **state)
 static void what_was_built_once_is_not_waited_for_again(void **state)
 {
     (void)state;
-    static const struct asked solid = { SCENE_KIND_3D, SCENE_REPRESENTATION_SOLID, 0.5, NULL, SURFACE_FULL },
-                              points = { SCENE_KIND_3D, SCENE_REPRESENTATION_POINTS, 0.5, NULL, SURFACE_FULL };
+    static const struct picture solid = { SCENE_KIND_3D, SCENE_REPRESENTATION_SOLID, 0.5, NULL, SURFACE_FULL },
+                                points = { SCENE_KIND_3D, SCENE_REPRESENTATION_POINTS, 0.5, NULL, SURFACE_FULL };
     struct plan *plan = make_plan();
-    struct prepared *prepared = prepared_create();
-    struct preparation *first = prepare(plan, &solid), *again = prepare(plan, &solid), *other = prepare(plan, &points);
+    struct built_shapes *built_shapes = built_shapes_create();
+    struct waiting_request *first = request_of(plan, &solid), *again = request_of(plan, &solid),
+                           *other = request_of(plan, &points);
     struct once_cache_usage usage;
-    assert_false(prepared_has_all(prepared, first));
+    assert_false(built_shapes_has_all(built_shapes, first));
     atomic_bool cancel = false;
-    preparation_build(first, &cancel);
+    waiting_request_build_shapes(first, &cancel);
     assert_true(first->is_built);
     derive_usage(derived_of(plan), &usage);
     assert_int_equal(usage.n_results, 3);
-    prepared_add(prepared, first);
-    assert_true(prepared_has_all(prepared, again));
-    assert_false(prepared_has_all(prepared, other));
-    preparation_destroy(first);
-    preparation_destroy(again);
-    preparation_destroy(other);
-    prepared_destroy(prepared);
+    built_shapes_add(built_shapes, first);
+    assert_true(built_shapes_has_all(built_shapes, again));
+    assert_false(built_shapes_has_all(built_shapes, other));
+    waiting_request_destroy(first);
+    waiting_request_destroy(again);
+    waiting_request_destroy(other);
+    built_shapes_destroy(built_shapes);
     plan_and_derived_destroy(plan);
 }
 
 static void what_is_not_wanted_any_more_is_not_built(void **state)
 {
     (void)state;
-    static const struct asked solid = { SCENE_KIND_3D, SCENE_REPRESENTATION_SOLID, 0.5, NULL, SURFACE_FULL };
+    static const struct picture solid = { SCENE_KIND_3D, SCENE_REPRESENTATION_SOLID, 0.5, NULL, SURFACE_FULL };
     struct plan *plan = make_plan();
     struct once_cache_usage usage;
     for (int way = 0; way < 3; way++) {
         _Atomic uint64_t wanted = way == 0 ? 77 : 5; /* its slot serves another picture now */
         atomic_bool cancel = way == 1;
-        struct preparation *preparation = prepare(plan, &solid);
-        preparation->request.id = 5;
-        preparation->wanted = &wanted;
-        preparation_build(preparation, &cancel);
+        struct waiting_request *waiting = request_of(plan, &solid);
+        waiting->request.id = 5;
+        waiting->wanted = &wanted;
+        waiting_request_build_shapes(waiting, &cancel);
         derive_usage(derived_of(plan), &usage);
         assert_int_equal(usage.n_results, way == 2 ? 3 : 0);
-        assert_int_equal(preparation->is_built, way == 2);
-        preparation_destroy(preparation);
+        assert_int_equal(waiting->is_built, way == 2);
+        waiting_request_destroy(waiting);
     }
     plan_and_derived_destroy(plan);
 }
