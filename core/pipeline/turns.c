@@ -1,3 +1,4 @@
+/* Fair turns; see the header. */
 #include "core/pipeline/turns.h"
 
 #include <assert.h>
@@ -5,21 +6,21 @@
 
 #include "core/base/mem.h"
 
-/* Sources that are remembered. One that is forgotten counts as new: it saves nothing by that, as a newcomer is no
- * better off than those who wait. */
+/* Sources that are remembered. A forgotten one counts as new, which gains it nothing: a new source starts with at most
+ * TURNS_CREDIT_US of advantage. */
 enum { MAX_SOURCES = 512 };
 
 struct source {
     uint64_t id;
     int64_t used_us;
-    bool is_active; /* something of it waits */
-    size_t item;    /* the one of it that is next; SIZE_MAX: all are held */
+    bool is_active; /* it has a request */
+    size_t item;    /* its request that is next; SIZE_MAX: all are held */
 };
 
 struct turns {
     struct source sources[MAX_SOURCES];
     size_t n;
-    int64_t floor_us; /* what the least served of those who wait has used; never falls */
+    int64_t floor_us; /* the least time that an active source has used; never falls */
 };
 
 struct turns *turns_create(void)
@@ -32,7 +33,7 @@ void turns_destroy(struct turns *turns)
     free(turns);
 }
 
-/* A place for a source that is not known: a free one, or that of the inactive source that has used least. */
+/* Adds a new source, in place of the inactive source that has used least if all places are taken. */
 static struct source *add_source(struct turns *turns, uint64_t id)
 {
     struct source *place = NULL;
@@ -42,7 +43,7 @@ static struct source *add_source(struct turns *turns, uint64_t id)
         for (struct source *other = turns->sources; other < turns->sources + turns->n; other++)
             if (!other->is_active && (!place || other->used_us < place->used_us))
                 place = other;
-    assert(place); /* fewer pictures wait than sources are remembered */
+    assert(place); /* fewer requests wait than sources are remembered */
     *place = (struct source){ .id = id, .used_us = turns->floor_us - TURNS_CREDIT_US };
     return place;
 }
@@ -61,7 +62,7 @@ static struct source *find_source(struct turns *turns, uint64_t id)
     return source ? source : add_source(turns, id);
 }
 
-/* Within a source: see the header. */
+/* Of two requests of one source: true if the newer goes first. */
 static bool goes_before(const struct turns_item *item, const struct turns_item *older)
 {
     return older->is_still && !item->is_still && older->n_overtaken < TURNS_MAX_OVERTAKING;
@@ -80,7 +81,7 @@ static void activate(struct turns *turns, struct turns_item *const *items, size_
         turns->sources[i].is_active = false;
         turns->sources[i].item = SIZE_MAX;
     }
-    for (size_t i = 0; i < n; i++) { /* before one is added: a source with a picture here keeps its place */
+    for (size_t i = 0; i < n; i++) { /* before a source is added: one with a request keeps its place */
         struct source *source = known_source(turns, items[i]->source);
         if (!source || source->is_active)
             continue;
@@ -91,7 +92,7 @@ static void activate(struct turns *turns, struct turns_item *const *items, size_
     for (size_t i = 0; i < n; i++) {
         struct source *source = find_source(turns, items[i]->source);
         if (!source->is_active)
-            source->item = SIZE_MAX; /* new, or forgotten and known again */
+            source->item = SIZE_MAX; /* added just now */
         source->is_active = true;
         if (!items[i]->is_held && (source->item == SIZE_MAX || goes_before(items[i], items[source->item])))
             source->item = i;

@@ -1,3 +1,4 @@
+/* An empty plan, and its end. */
 #include "core/plan/plan.h"
 
 #include <stdio.h>

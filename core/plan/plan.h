@@ -25,17 +25,17 @@ struct plan_image {
     char modality[16]; /* "CT", "MR", ...; "" unknown */
     char unit[8];      /* "HU" for CT, "" else */
     struct volume *volume;
-    double window_center, window_width; /* a first window that suits the values; within the limits above */
-    bool is_inverted; /* low values are meant to be white (DICOM's MONOCHROME1); the values are as in the file */
+    double window_center, window_width; /* the window shown first; within the limits of core/volume/window.h */
+    bool is_inverted; /* low values are shown white (DICOM's MONOCHROME1); the voxels are as in the file */
 };
 
-/* How the program the plan comes from showed doses; nothing here is the patient's. */
+/* How the planning program showed doses: preferences of its user, not data of the patient. */
 struct plan_level {
     double percent;
     uint8_t rgb[3];
 };
 struct plan_preferences {
-    struct plan_level levels[PLAN_MAX_LEVELS]; /* isodose levels, in the file's order */
+    struct plan_level levels[PLAN_MAX_LEVELS]; /* isodose levels in the file's order */
     size_t n_levels;
     uint8_t colors[PLAN_MAX_COLORS][3]; /* a colour map, lowest first */
     size_t n_colors;
@@ -58,25 +58,28 @@ struct plan {
     struct report report;
     struct box3 bounds_lps_mm; /* of all regions, else of all images and doses, else around the beams' targets */
     int64_t load_us;
-    bool is_from_cache; /* the folder's files were not read this time */
+    bool is_from_cache; /* read from the cache instead of the folder's files */
 };
 
-/* An empty plan of this id, to be filled: by core/load, or by a test. */
+/* An empty plan with this id, for core/load or a test to fill. */
 struct plan *plan_create(const char *id);
+/* After every store (core/derive) of the plan is destroyed. */
 void plan_destroy(struct plan *plan);
 
-/* What lies at a patient point. */
+/* Everything at a patient point. A region, image or dose is named by its index in the plan. */
 struct probe_dose {
     size_t dose, component;
     double value; /* in the dose's unit */
 };
 struct plan_probe {
     struct vec3 point_lps_mm;
-    size_t regions[32]; /* every region that holds the point, innermost first */
+    size_t regions[32]; /* the regions that hold the point, innermost first; further ones are left out */
     size_t n_regions;
-    bool has_image[PLAN_MAX_IMAGES];
+    bool has_image[PLAN_MAX_IMAGES]; /* the point lies within the image; by image */
     double image_value[PLAN_MAX_IMAGES];
     struct probe_dose doses[PLAN_MAX_DOSES * DOSE_N_QUANTITIES];
     size_t n_doses;
 };
+/* Images and doses are interpolated linearly; a dose with a mask has no value where the mask is 0. Fills nothing but
+ * the point if it is not finite. Any thread. */
 void plan_probe(const struct plan *plan, struct vec3 point_lps_mm, struct plan_probe *probe);

@@ -1,3 +1,4 @@
+/* The bounds of a plan: the boxes of its regions, images, doses, beams. */
 #include "core/plan/plan_bounds.h"
 
 static void add_box(struct box3 *bounds, const struct box3 *box)
@@ -37,7 +38,7 @@ static void check_part(struct plan *plan, const struct box3 *regions, const stru
                    "The %s \"%s\" and the regions do not overlap anywhere.", what, id);
 }
 
-/* A treatment plan alone: room for a patient around what its beams aim at. */
+/* For a plan without grids: room for a patient around the targets of its beams. */
 static struct box3 box_of_beams(const struct plan *plan)
 {
     static const double half_mm = 150;

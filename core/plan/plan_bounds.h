@@ -1,6 +1,6 @@
 #pragma once
-/* Inside core/plan: where the parts of a plan lie. */
+/* The bounds of a plan from its parts; for core/load. */
 #include "core/plan/plan.h"
 
-/* Fills bounds_lps_mm from what was loaded, and reports parts that lie apart from the regions. */
+/* Fills bounds_lps_mm from the parts of the plan, and reports an image or a dose that overlaps no region. */
 void plan_measure_bounds(struct plan *plan);

@@ -1,3 +1,4 @@
+/* Regions, image values and doses at a patient point. */
 #include <string.h>
 
 #include "core/plan/plan.h"
@@ -12,7 +13,7 @@ static bool is_listed(const struct plan_probe *probe, size_t region)
     return false;
 }
 
-/* The regions whose voxel holds the point, and those they lie in. */
+/* The regions whose label the voxel at the point carries, and their ancestors. */
 static void find_regions(const struct plan *plan, struct plan_probe *probe)
 {
     const struct region_set *set = &plan->regions;
@@ -30,7 +31,7 @@ static void find_regions(const struct plan *plan, struct plan_probe *probe)
             if (!is_listed(probe, (size_t)up) && probe->n_regions < MOST_REGIONS)
                 probe->regions[probe->n_regions++] = (size_t)up;
     }
-    for (size_t i = 1; i < probe->n_regions; i++) { /* innermost first; equal depths keep their order */
+    for (size_t i = 1; i < probe->n_regions; i++) { /* insertion sort, innermost first, stable */
         size_t region = probe->regions[i], at = i;
         for (; at > 0 && region_depth(set, probe->regions[at - 1]) < region_depth(set, region); at--)
             probe->regions[at] = probe->regions[at - 1];
@@ -38,7 +39,7 @@ static void find_regions(const struct plan *plan, struct plan_probe *probe)
     }
 }
 
-/* A mask says of the voxel that holds the point whether the dose is valid there. */
+/* False where the dose's mask is 0, or does not reach. */
 static bool dose_is_valid(const struct dose *dose, struct vec3 point_lps_mm)
 {
     uint32_t at[3];

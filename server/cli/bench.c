@@ -14,7 +14,7 @@
 
 enum { MAX_PLANS = 8, DEFAULT_REPEATS = 5, MAX_REPEATS = 100 };
 
-struct bench_job {
+struct bench_arguments {
     char **folders;
     int n_folders, n_repeats;
     const char *out; /* NULL: standard output */
@@ -34,8 +34,8 @@ static void print_help(void)
         MAX_REPEATS, DEFAULT_REPEATS);
 }
 
-/* false with *code when there is nothing to measure */
-static bool parse_arguments(int argc, char **argv, struct bench_job *job, int *code)
+/* False when there is nothing to measure; *code is then the exit code. */
+static bool parse_arguments(int argc, char **argv, struct bench_arguments *arguments, int *code)
 {
     static const struct option long_options[] = {
         { "thesis", no_argument, NULL, 't' },       { "output", required_argument, NULL, 'o' },
@@ -45,20 +45,20 @@ static bool parse_arguments(int argc, char **argv, struct bench_job *job, int *c
     bool is_thesis = false;
     char *end;
     *code = EXIT_USAGE;
-    *job = (struct bench_job){ .n_repeats = DEFAULT_REPEATS, .back_end = RENDER_AUTO };
+    *arguments = (struct bench_arguments){ .n_repeats = DEFAULT_REPEATS, .back_end = RENDER_AUTO };
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
         switch (option) {
         case 't': is_thesis = true; break;
-        case 'o': job->out = optarg; break;
+        case 'o': arguments->out = optarg; break;
         case 'r':
-            job->n_repeats = (int)strtol(optarg, &end, 10);
-            if (*end || job->n_repeats < 1 || job->n_repeats > MAX_REPEATS)
+            arguments->n_repeats = (int)strtol(optarg, &end, 10);
+            if (*end || arguments->n_repeats < 1 || arguments->n_repeats > MAX_REPEATS)
                 return command_usage_error("bench", "--repeat '%s' is not a number from 1 to %d", optarg, MAX_REPEATS),
                        false;
             break;
         case 'g':
-            if (!render_back_end_from_word(optarg, &job->back_end))
+            if (!render_back_end_from_word(optarg, &arguments->back_end))
                 return command_usage_error("bench",
                                            "--gl '%s' is not auto, egl-device, egl-surfaceless, osmesa or soft",
                                            optarg),
@@ -78,49 +78,49 @@ static bool parse_arguments(int argc, char **argv, struct bench_job *job, int *c
         return command_usage_error("bench", "1 to %d folders of plans are needed, %d are given", MAX_PLANS,
                                    argc - optind),
                false;
-    job->folders = argv + optind;
-    job->n_folders = argc - optind;
+    arguments->folders = argv + optind;
+    arguments->n_folders = argc - optind;
     return true;
 }
 
-static bool write_page(const struct bench_job *job, const struct bench_machine *machine, const struct bench_plan *plans,
-                       struct error *err)
+static bool write_page(const struct bench_arguments *arguments, const struct bench_machine *machine,
+                       const struct bench_plan *plans, struct error *err)
 {
-    char *page = bench_page(machine, plans, (size_t)job->n_folders);
+    char *page = bench_page(machine, plans, (size_t)arguments->n_folders);
     if (!page)
         return error_set(err, ERROR_MEMORY, "no memory for the page");
-    bool is_written =
-        job->out ? file_write(job->out, (const uint8_t *)page, strlen(page), err) : fputs(page, stdout) >= 0;
+    bool is_written = arguments->out ? file_write(arguments->out, (const uint8_t *)page, strlen(page), err)
+                                     : fputs(page, stdout) >= 0;
     free(page);
     return is_written;
 }
 
 int command_bench(int argc, char **argv)
 {
-    struct bench_job job;
+    struct bench_arguments arguments;
     struct error err = { 0 };
     int code;
-    if (!parse_arguments(argc, argv, &job, &code))
+    if (!parse_arguments(argc, argv, &arguments, &code))
         return code;
-    struct renderer *renderer = renderer_create(job.back_end, &err);
+    struct renderer *renderer = renderer_create(arguments.back_end, &err);
     if (!renderer)
         return command_refused("bench", &err);
     struct bench_machine machine;
     bench_machine_look(&machine, renderer_facts(renderer));
     struct bench_plan plans[MAX_PLANS] = { { .name = "" } };
     bool is_measured = true;
-    for (int i = 0; is_measured && i < job.n_folders; i++) {
-        struct plan *plan = command_open_plan("bench", job.folders[i]);
+    for (int i = 0; is_measured && i < arguments.n_folders; i++) {
+        struct plan *plan = command_open_plan("bench", arguments.folders[i]);
         struct derive *derived = plan ? derive_create(plan) : NULL;
-        is_measured = plan && bench_measure(derived, renderer, job.n_repeats, &plans[i], &err);
+        is_measured = plan && bench_measure(derived, renderer, arguments.n_repeats, &plans[i], &err);
         if (plan)
             renderer_forget(renderer, plan);
         derive_destroy(derived);
         plan_destroy(plan);
     }
     if (is_measured)
-        is_measured = write_page(&job, &machine, plans, &err);
-    for (int i = 0; i < job.n_folders; i++)
+        is_measured = write_page(&arguments, &machine, plans, &err);
+    for (int i = 0; i < arguments.n_folders; i++)
         bench_plan_finish(&plans[i]);
     renderer_destroy(renderer);
     if (is_measured)

@@ -1,13 +1,13 @@
-/* The page that sets our figures beside the thesis's. */
+/* The Markdown page of `beamroom bench --thesis`: our figures beside those of the thesis. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "server/cli/bench_thesis.h"
 
-/* Table 1 of the thesis: "4mm data set with a single region, the scalp", Sun Ultra 10, 300 MHz, Creator3D. Beside it
- * what Sera3d's own functions give on the sample head that SERA comes with, on one core of a present-day processor
- * without graphics card. */
+/* Table 1 of the thesis: "4mm data set with a single region, the scalp", Sun Ultra 10, 300 MHz, Creator3D. The sample
+ * columns: Sera3d's own functions on the sample head that SERA comes with, on one core of a present-day processor
+ * without a graphics card. */
 static const struct {
     const char *method, *polygons, *seconds, *fps, *sample_polygons, *sample_seconds, *sample_fps;
 } thesis[3] = {
@@ -27,7 +27,7 @@ static void put_count(FILE *out, size_t n)
     }
 }
 
-/* Three figures that count; a dash for what is not known. */
+/* Three significant figures; a dash for not-a-number. */
 static void put_number(FILE *out, double value)
 {
     if (!isfinite(value)) {
@@ -38,7 +38,7 @@ static void put_number(FILE *out, double value)
     fprintf(out, "%.*f", size >= 100 || size == 0 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : size >= 0.1 ? 3 : 4, value);
 }
 
-/* Names come from files: nothing in them may end a cell. */
+/* Replaces what would end a table cell: names come from files. */
 static void put_name(FILE *out, const char *name)
 {
     for (const char *c = name; *c; c++)

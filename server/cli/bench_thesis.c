@@ -1,4 +1,4 @@
-/* Measures what `beamroom bench --thesis` prints. */
+/* The measurements of `beamroom bench --thesis`. */
 #include "server/cli/bench_thesis.h"
 
 #include <math.h>
@@ -83,7 +83,7 @@ static const enum scene_representation scene_representations[REPRESENTATION_N] =
     [REPRESENTATION_FAN] = SCENE_REPRESENTATION_FAN,
 };
 
-/* A region alone (-1: none) as the key says, slices off. */
+/* A scene that shows one region alone (-1: none) in the representation of the key, without slices. */
 static void set_scene(const struct plan *plan, int region, const struct shape_key *key, struct scene *scene)
 {
     static const enum scene_algorithm algorithms[SURFACE_N_ALGORITHMS] = { [SURFACE_MARCHING_CUBES] =
@@ -115,7 +115,7 @@ static void set_scene(const struct plan *plan, int region, const struct shape_ke
         false;
 }
 
-/* Takes the scene. The picture from a camera turned by so many degrees around the patient's long axis. */
+/* A snapshot from the home camera turned by turn_deg around the patient's long axis. Takes the scene. */
 static struct snapshot *turned(struct derive *derived, struct scene *scene, double turn_deg, struct error *err)
 {
     struct view view = view_default;
@@ -130,7 +130,7 @@ static struct snapshot *turned(struct derive *derived, struct scene *scene, doub
     return snapshot_create(derived, scene, &view, 0, field, err);
 }
 
-/* Median of n pictures, each 7 degrees further; the first, which uploads, is not counted. */
+/* Median time of n pictures, each turned 7 degrees further. One more before them, which uploads, is not counted. */
 static bool time_pictures(struct derive *derived, struct renderer *renderer, int region, const struct shape_key *key,
                           bool is_faceted, bool has_slice, int n, double *median_ms, struct error *err)
 {
@@ -158,7 +158,8 @@ static bool time_pictures(struct derive *derived, struct renderer *renderer, int
 
 /* ---- shapes ----------------------------------------------------------------------------------------------------- */
 
-/* From the region's univels to the shape, each time anew. A shape that cannot be made is a row with the reason. */
+/* Times the way from the region's univels to its shape, n_repeats times, then pictures of it. A shape that is refused
+ * gives a row with the reason. */
 static bool measure(struct derive *derived, struct renderer *renderer, size_t region, const struct method *method,
                     int n_repeats, struct bench_row *row, struct error *err)
 {
@@ -167,7 +168,7 @@ static bool measure(struct derive *derived, struct renderer *renderer, size_t re
     const struct shape_want want = { subject_region(region), method->key, SURFACE_FULL };
     *row = (struct bench_row){ .method = method->name, .draw_ms = NAN, .made_ms = NAN };
     (void)snprintf(row->region, sizeof row->region, "%s", plan->regions.regions[region].name);
-    derive_set_budget(derived, 0); /* nothing is kept, so each is made anew */
+    derive_set_budget(derived, 0); /* nothing is kept, so each shape is built again */
     for (int i = 0; i < n_repeats; i++) {
         struct error refusal = { 0 };
         struct shape *shape = derive_shape(derived, &want, &row->facts, &refusal);
@@ -190,7 +191,7 @@ static bool measure(struct derive *derived, struct renderer *renderer, size_t re
     return is_drawn;
 }
 
-/* Region to triangles with the normals that the row of the table needs. */
+/* Times the way from region to triangles, with the normals that the row of the table needs. */
 static bool measure_table1(struct derive *derived, struct renderer *renderer, size_t region, int n_repeats,
                            struct bench_row rows[3], struct error *err)
 {
@@ -236,7 +237,7 @@ bool bench_measure(struct derive *derived, struct renderer *renderer, int n_repe
              has_scalp = largest != SIZE_MAX && strcmp(plan->regions.regions[largest].id, "scalp") == 0;
         if (largest == SIZE_MAX || is_scalp ||
             (!has_scalp && plan->regions.regions[r].n_voxels > plan->regions.regions[largest].n_voxels))
-            largest = r; /* the thesis's region, where the plan has it */
+            largest = r; /* the scalp, the region of the thesis, if the plan has it */
         for (size_t m = 0; m < N_METHODS; m++)
             if (!measure(derived, renderer, r, &methods[m], n_repeats, &result->rows[result->n_rows++], err))
                 return false;

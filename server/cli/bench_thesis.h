@@ -1,5 +1,6 @@
 #pragma once
-/* Every way of showing every region of a plan, measured, and set beside what the thesis on Sera3d measured. */
+/* `beamroom bench --thesis`: measures every way of showing every region of a plan, and writes the figures beside those
+ * of the thesis on Sera3d. */
 #include "core/derive/shapes.h"
 #include "core/render/render.h"
 
@@ -12,7 +13,7 @@ struct bench_row {
     struct shape_facts facts;
     double made_ms;    /* median */
     double draw_ms;    /* median, the region alone, full detail, turning; not-a-number when it was not drawn */
-    char refusal[240]; /* not "": why there is no such shape */
+    char refusal[240]; /* why there is no such shape; "": there is one */
 };
 
 struct bench_plan {
@@ -20,10 +21,10 @@ struct bench_plan {
     bool is_phantom;
     struct bench_row *rows; /* [n_rows] */
     size_t n_rows;
-    /* the thesis's Table 1, on the plan's largest region */
+    /* Table 1 of the thesis, on the plan's scalp, else on its largest region */
     char scalp[REGION_NAME_SIZE];
     struct bench_row table1[3]; /* 8-cell with face normals, 8-cell with vertex normals, marching cubes */
-    double slice_fps;           /* Table 2: one slice inlaid; not-a-number without an image */
+    double slice_fps;           /* Table 2: pictures a second with one slice; not-a-number without an image */
 };
 
 struct bench_machine {
@@ -32,7 +33,8 @@ struct bench_machine {
 };
 void bench_machine_look(struct bench_machine *machine, const struct render_facts *facts);
 
-/* Measures the plan that derived is of. n_repeats builds and 5 n_repeats pictures of each. errors those of rendering */
+/* Measures the plan that derived is of: each shape is built n_repeats times and drawn 5 n_repeats times.
+ * errors those of rendering */
 NODISCARD bool bench_measure(struct derive *derived, struct renderer *renderer, int n_repeats,
                              struct bench_plan *result, struct error *err);
 void bench_plan_finish(struct bench_plan *result);

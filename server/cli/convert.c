@@ -25,7 +25,7 @@ static void print_help(void)
         stdout);
 }
 
-/* Of what is said on opening: what the folder holds and the plan does not. */
+/* True if the line reports something that the folder holds and the plan does not. */
 static bool is_about_loss(const struct report_line *line)
 {
     static const char *const codes[] = { "plan.ignored-file",

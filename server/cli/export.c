@@ -15,7 +15,7 @@
 
 #define FILE_MAX_BYTES ((uint64_t)8 << 30)
 
-struct export_job {
+struct export_arguments {
     const char *folder, *region, *out;
     struct shape_query shape;
 };
@@ -37,7 +37,7 @@ static void print_help(void)
         "a GLB's node turns them to metres, top up, as glTF wants. The file names plan and region by id, and nobody else.\n");
 }
 
-/* NULL with err, which lists the regions there are. */
+/* The region of an id. NULL on failure: err lists the ids that the plan has. */
 static const struct region *find_region(const struct plan *plan, const char *id, struct error *err)
 {
     const struct region *region = region_find(&plan->regions, id);
@@ -56,13 +56,13 @@ static const struct region *find_region(const struct plan *plan, const char *id,
     return NULL;
 }
 
-static bool export_region(const struct plan *plan, const struct export_job *job, struct error *err)
+static bool export_region(const struct plan *plan, const struct export_arguments *arguments, struct error *err)
 {
-    const struct region *region = find_region(plan, job->region, err);
+    const struct region *region = find_region(plan, arguments->region, err);
     if (!region)
         return false;
     struct shape_facts facts;
-    const struct shape_query *query = &job->shape;
+    const struct shape_query *query = &arguments->shape;
     const struct shape_want want = { subject_region((size_t)(region - plan->regions.regions)), query->key,
                                      SURFACE_FULL };
     struct derive *derived = derive_create(plan);
@@ -80,17 +80,17 @@ static bool export_region(const struct plan *plan, const struct export_job *job,
     uint8_t *bytes = shape ? mesh_export(shape->mesh, query->format, &about, FILE_MAX_BYTES, &n_bytes, err) : NULL;
     shape_unref(shape);
     derive_destroy(derived);
-    bool is_written = bytes && file_write(job->out, bytes, n_bytes, err);
+    bool is_written = bytes && file_write(arguments->out, bytes, n_bytes, err);
     free(bytes);
     if (is_written) {
-        text_print(stdout, job->out, 0);
+        text_print(stdout, arguments->out, 0);
         printf(": %zu triangles, %zu vertices, %.2f cm2, %.3f cm3, %zu bytes\n", facts.n_triangles, facts.n_vertices,
                facts.area_mm2 / 100, facts.volume_mm3 / 1000, n_bytes);
     }
     return is_written;
 }
 
-/* The ending that says the format; NULL: none. */
+/* The format that the ending of the path names; NULL: none. */
 static const char *format_of_path(const char *path)
 {
     static const char *const words[] = { "stl", "ply", "glb" };
@@ -101,8 +101,9 @@ static const char *format_of_path(const char *path)
     return NULL;
 }
 
-/* false with *code when there is nothing to write. What decides the shape is read as the API reads it. */
-static bool parse_arguments(int argc, char **argv, struct export_job *job, cJSON *words, int *code)
+/* False when there is nothing to write; *code is then the exit code. The options of the shape are read by the same
+ * function as those of the API. */
+static bool parse_arguments(int argc, char **argv, struct export_arguments *arguments, cJSON *words, int *code)
 {
     static const struct option long_options[] = { { "output", required_argument, NULL, 'o' },
                                                   { "as", required_argument, NULL, 'r' },
@@ -117,7 +118,7 @@ static bool parse_arguments(int argc, char **argv, struct export_job *job, cJSON
     opterr = 0;
     for (int option, at = -1; (option = getopt_long(argc, argv, "ho:", long_options, &at)) != -1;) {
         switch (option) {
-        case 'o': job->out = optarg; break;
+        case 'o': arguments->out = optarg; break;
         case 'h':
             print_help();
             *code = EXIT_DONE;
@@ -132,33 +133,33 @@ static bool parse_arguments(int argc, char **argv, struct export_job *job, cJSON
     if (argc - optind != 2)
         return command_usage_error("export", "one folder and one region are needed, %d words are given", argc - optind),
                false;
-    if (!job->out)
+    if (!arguments->out)
         return command_usage_error("export", "where to write is needed: -o OUT.stl, OUT.ply or OUT.glb"), false;
-    if (!format_of_path(job->out))
-        return command_usage_error("export", "-o '%s' does not end in .stl, .ply or .glb", job->out), false;
-    cJSON_AddStringToObject(words, "format", format_of_path(job->out));
+    if (!format_of_path(arguments->out))
+        return command_usage_error("export", "-o '%s' does not end in .stl, .ply or .glb", arguments->out), false;
+    cJSON_AddStringToObject(words, "format", format_of_path(arguments->out));
     struct problem problem;
-    if (!shape_query_read(words, &job->shape, &problem))
+    if (!shape_query_read(words, &arguments->shape, &problem))
         return command_usage_error("export", "--%s", problem.detail), false;
-    job->folder = argv[optind];
-    job->region = argv[optind + 1];
+    arguments->folder = argv[optind];
+    arguments->region = argv[optind + 1];
     return true;
 }
 
 int command_export(int argc, char **argv)
 {
-    struct export_job job = { 0 };
+    struct export_arguments arguments = { 0 };
     struct error err = { 0 };
     int code;
     cJSON *words = cJSON_CreateObject();
-    bool is_understood = parse_arguments(argc, argv, &job, words, &code);
+    bool is_understood = parse_arguments(argc, argv, &arguments, words, &code);
     cJSON_Delete(words);
     if (!is_understood)
         return code;
-    struct plan *plan = command_open_plan("export", job.folder);
+    struct plan *plan = command_open_plan("export", arguments.folder);
     if (!plan)
         return EXIT_REFUSED;
-    code = export_region(plan, &job, &err) ? EXIT_DONE : command_refused("export", &err);
+    code = export_region(plan, &arguments, &err) ? EXIT_DONE : command_refused("export", &err);
     plan_destroy(plan);
     return code;
 }

@@ -44,7 +44,7 @@ static void print_images(const struct plan *plan)
         printf("  ");
         text_print(stdout, image->id, ID_LETTERS);
         if (strlen(image->id) > ID_LETTERS)
-            printf("\n%*s", 2 + ID_LETTERS, ""); /* the columns go on below */
+            printf("\n%*s", 2 + ID_LETTERS, ""); /* the columns go on in the next line */
         printf(" ");
         text_print(stdout, image->modality, 4);
         print_grid(&image->volume->grid);
@@ -67,7 +67,7 @@ static void print_region(const struct region_set *set, size_t index)
     printf("%s%s\n", region->n_voxels == 0 ? "  empty" : "", region->touches_edge ? "  cut" : "");
 }
 
-/* Each region under the one it lies in; siblings in file order. */
+/* Prints each region below its parent; siblings in file order. */
 static void print_regions_in(const struct region_set *set, int parent)
 {
     for (size_t i = 0; i < set->n_regions; i++)
@@ -143,7 +143,7 @@ static void print_if_given(const char *what, double value, const char *unit)
         printf("  %s %.5g %s", what, value, unit);
 }
 
-/* What a treatment plan says of the beam, in one or two lines. */
+/* Prints the treatment machine's settings of a beam, in one or two lines. */
 static void print_delivery(const struct beam *beam)
 {
     const struct beam_delivery *d = &beam->delivery;

@@ -25,7 +25,7 @@ static void print_help(void)
         phantom_defaults.size[2], phantom_defaults.seed);
 }
 
-/* Digits only, and no more than fits: strtoull alone would take "-1" and blanks. */
+/* A number of digits alone that fits: strtoull would also read "-1" and blanks. */
 static bool parse_number(const char **at, uint64_t highest, uint64_t *number)
 {
     if (**at < '0' || **at > '9')

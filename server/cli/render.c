@@ -20,11 +20,11 @@
 
 enum { DOCUMENT_MAX_BYTES = 1 << 20, DEFAULT_QUALITY = 92 };
 
-struct render_job {
+struct render_arguments {
     const char *folder, *out, *scene_path, *view_path;
     enum encode_codec codec;
     enum render_back_end back_end;
-    int size_px[2]; /* 0: the view's */
+    int size_px[2]; /* 0: that of the view */
     int quality;
 };
 
@@ -47,7 +47,8 @@ static void print_help(void)
 
 /* ---- what to draw ----------------------------------------------------------------------------------------------- */
 
-/* "FILE: /the/field is 3, expected 0 to 1": a detail that starts with the field's place needs it only once. */
+/* err becomes "FILE: /the/field is 3, expected 0 to 1". A detail that starts with the name of the field gets the whole
+ * pointer in its place. */
 static bool refuse_problem(const char *path, const struct problem *problem, struct error *err)
 {
     const char *detail = problem->detail;
@@ -82,7 +83,7 @@ static cJSON *read_document(const char *path, struct error *err)
     return json;
 }
 
-/* The plan's first scene with the file's patch. NULL with err. */
+/* The scene that a new room of the plan starts with, patched by the file. NULL with err. */
 static cJSON *make_scene(const cJSON *document, const cJSON *defaults, const char *path, struct error *err)
 {
     struct problem problem = { 0 };
@@ -120,8 +121,9 @@ static cJSON *make_view(const char *path, const int size_px[2], struct error *er
     return sized;
 }
 
-/* Scene and view of the job as a snapshot. NULL with err. */
-static struct snapshot *make_snapshot(struct derive *derived, const struct render_job *job, struct error *err)
+/* The snapshot of the scene and view that the arguments name. NULL with err. */
+static struct snapshot *make_snapshot(struct derive *derived, const struct render_arguments *arguments,
+                                      struct error *err)
 {
     const struct plan *plan = derive_plan(derived);
     struct scene scene = { 0 };
@@ -134,11 +136,11 @@ static struct snapshot *make_snapshot(struct derive *derived, const struct rende
     cJSON *document = plan_document(plan), *defaults = scene_write(&scene);
     cJSON *scene_json = NULL, *shown_json = NULL, *view_json = NULL;
     scene_finish(&scene);
-    if (!(scene_json = make_scene(document, defaults, job->scene_path, err)) ||
-        !(view_json = make_view(job->view_path, job->size_px, err)))
+    if (!(scene_json = make_scene(document, defaults, arguments->scene_path, err)) ||
+        !(view_json = make_view(arguments->view_path, arguments->size_px, err)))
         goto done;
     if (!(shown_json = scene_document_for_view(document, defaults, scene_json, view_json, &problem))) {
-        refuse_problem(job->view_path ? job->view_path : "view", &problem, err);
+        refuse_problem(arguments->view_path ? arguments->view_path : "view", &problem, err);
         goto done;
     }
     if (!scene_read(shown_json, &scene, &problem)) {
@@ -164,13 +166,13 @@ done:
 
 /* ---- the picture ------------------------------------------------------------------------------------------------ */
 
-static bool write_picture(const struct image *image, const struct render_job *job, struct error *err)
+static bool write_picture(const struct image *image, const struct render_arguments *arguments, struct error *err)
 {
-    const struct encode_options options = { job->codec, job->quality, true };
+    const struct encode_options options = { arguments->codec, arguments->quality, true };
     struct encoded encoded = { 0 };
     struct encoder *encoder = encoder_create();
     bool is_written = encode_image(encoder, image, &options, &encoded, err) &&
-                      file_write(job->out, encoded.bytes, encoded.n_bytes, err);
+                      file_write(arguments->out, encoded.bytes, encoded.n_bytes, err);
     free(encoded.bytes);
     encoder_destroy(encoder);
     return is_written;
@@ -189,14 +191,14 @@ static void print_missing(const struct snapshot *snapshot)
         fprintf(stderr, "beamroom render: not in the picture: %zu more regions\n", n - VISIBLE_MAX_MISSING);
 }
 
-static bool draw(struct derive *derived, const struct render_job *job, struct error *err)
+static bool draw(struct derive *derived, const struct render_arguments *arguments, struct error *err)
 {
-    struct snapshot *snapshot = make_snapshot(derived, job, err);
+    struct snapshot *snapshot = make_snapshot(derived, arguments, err);
     if (!snapshot)
         return false;
     bool is_drawn = false;
     struct image *image = NULL;
-    struct renderer *renderer = renderer_create(job->back_end, err);
+    struct renderer *renderer = renderer_create(arguments->back_end, err);
     if (renderer) {
         const struct render_options options = { snapshot->view.size_px[0], snapshot->view.size_px[1], SURFACE_FULL,
                                                 true };
@@ -204,9 +206,9 @@ static bool draw(struct derive *derived, const struct render_job *job, struct er
         struct render_timing timing = { 0 };
         int64_t start_us = clock_now_us();
         image = render_snapshot(renderer, snapshot, &options, &camera, &timing, err);
-        is_drawn = image && write_picture(image, job, err);
+        is_drawn = image && write_picture(image, arguments, err);
         if (is_drawn) {
-            text_print(stdout, job->out, 0);
+            text_print(stdout, arguments->out, 0);
             printf(": %d x %d, %zu triangles, %.0f ms, %s\n", image->width_px, image->height_px, timing.n_triangles,
                    (double)(clock_now_us() - start_us) / 1000,
                    render_back_end_word(renderer_facts(renderer)->back_end));
@@ -255,8 +257,8 @@ static bool codec_from_path(const char *path, enum encode_codec *codec)
     return *codec == ENCODE_PNG || strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0;
 }
 
-/* false with *code when there is nothing to draw */
-static bool parse_arguments(int argc, char **argv, struct render_job *job, int *code)
+/* False when there is nothing to draw; *code is then the exit code. */
+static bool parse_arguments(int argc, char **argv, struct render_arguments *arguments, int *code)
 {
     static const struct option long_options[] = {
         { "output", required_argument, NULL, 'o' }, { "scene", required_argument, NULL, 's' },
@@ -268,24 +270,24 @@ static bool parse_arguments(int argc, char **argv, struct render_job *job, int *
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
         switch (option) {
-        case 'o': job->out = optarg; break;
-        case 's': job->scene_path = optarg; break;
-        case 'v': job->view_path = optarg; break;
+        case 'o': arguments->out = optarg; break;
+        case 's': arguments->scene_path = optarg; break;
+        case 'v': arguments->view_path = optarg; break;
         case 'z':
-            if (!parse_size(optarg, job->size_px))
+            if (!parse_size(optarg, arguments->size_px))
                 return command_usage_error("render", "--size '%s' is not of the form 1024x768, each 16 to 4096",
                                            optarg),
                        false;
             break;
         case 'g':
-            if (!render_back_end_from_word(optarg, &job->back_end))
+            if (!render_back_end_from_word(optarg, &arguments->back_end))
                 return command_usage_error("render",
                                            "--gl '%s' is not auto, egl-device, egl-surfaceless, osmesa or soft",
                                            optarg),
                        false;
             break;
         case 'q':
-            if (!parse_quality(optarg, &job->quality))
+            if (!parse_quality(optarg, &arguments->quality))
                 return command_usage_error("render", "--quality '%s' is not 1 to 100", optarg), false;
             break;
         case 'h':
@@ -298,26 +300,26 @@ static bool parse_arguments(int argc, char **argv, struct render_job *job, int *
     }
     if (argc - optind != 1)
         return command_usage_error("render", "one folder is needed, %d are given", argc - optind), false;
-    if (!job->out)
+    if (!arguments->out)
         return command_usage_error("render", "where to write is needed: -o OUT.png or -o OUT.jpg"), false;
-    if (!codec_from_path(job->out, &job->codec))
-        return command_usage_error("render", "-o '%s' does not end in .png, .jpg or .jpeg", job->out), false;
-    job->folder = argv[optind];
+    if (!codec_from_path(arguments->out, &arguments->codec))
+        return command_usage_error("render", "-o '%s' does not end in .png, .jpg or .jpeg", arguments->out), false;
+    arguments->folder = argv[optind];
     return true;
 }
 
 int command_render(int argc, char **argv)
 {
-    struct render_job job = { .back_end = RENDER_AUTO, .quality = DEFAULT_QUALITY };
+    struct render_arguments arguments = { .back_end = RENDER_AUTO, .quality = DEFAULT_QUALITY };
     struct error err = { 0 };
     int code;
-    if (!parse_arguments(argc, argv, &job, &code))
+    if (!parse_arguments(argc, argv, &arguments, &code))
         return code;
-    struct plan *plan = command_open_plan("render", job.folder);
+    struct plan *plan = command_open_plan("render", arguments.folder);
     if (!plan)
         return EXIT_REFUSED;
     struct derive *derived = derive_create(plan);
-    code = draw(derived, &job, &err) ? EXIT_DONE : command_refused("render", &err);
+    code = draw(derived, &arguments, &err) ? EXIT_DONE : command_refused("render", &err);
     derive_destroy(derived);
     plan_destroy(plan);
     return code;

@@ -1,8 +1,10 @@
+/* Text for a terminal, letter by letter. */
 #include "server/cli/text.h"
 
 #include <string.h>
 
-/* Bytes of the letter at text, and what to print for it: itself, or "?". */
+/* Returns the bytes of the UTF-8 letter at text; *shown is the letter, or "?" for a control character or broken UTF-8.
+ */
 static size_t letter(const unsigned char *text, const char **shown)
 {
     static const unsigned char lead_low[5] = { 0, 0, 0xc2, 0xe0, 0xf0 }, lead_high[5] = { 0, 0x7f, 0xdf, 0xef, 0xf4 };
@@ -16,7 +18,7 @@ static size_t letter(const unsigned char *text, const char **shown)
             if ((text[i] & 0xc0) != 0x80)
                 return 1;
         if (n == 2 && text[0] == 0xc2 && text[1] < 0xa0)
-            return 2; /* the second block of control characters */
+            return 2; /* control characters U+0080 to U+009F */
         *shown = (const char *)text;
         return n;
     }

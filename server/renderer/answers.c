@@ -1,3 +1,4 @@
+/* Answers to questions about a plan, as JSON bodies of the web API. */
 #include "server/renderer/answers.h"
 
 #include <math.h>
@@ -32,7 +33,7 @@ static uint8_t *shape_file(const struct plan *plan, struct subject subject, cons
     return mesh_export(shape->mesh, query->format, &about, PACKET_MAX_BLOB, n_bytes, err);
 }
 
-/* What decides the shape, in the words of the query. */
+/* The fields of the query that decide the shape. */
 static void add_key(cJSON *json, const struct shape_query *query)
 {
     const struct shape_key *key = &query->key;

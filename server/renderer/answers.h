@@ -1,5 +1,5 @@
 #pragma once
-/* Numbers about a plan as JSON bodies of the web API. Pure functions; any thread. */
+/* Answers to questions about a plan and a scene, as JSON bodies of the web API; the caller frees them. Any thread. */
 #include "core/derive/subject.h"
 #include "core/load/summary.h"
 #include "core/render/render.h"

@@ -1,3 +1,5 @@
+/* Three threads of one plan: one loads it and then answers slow questions, one answers quick questions, one builds the
+ * shapes that requests wait for. */
 #include "server/renderer/loader.h"
 
 #include <pthread.h>
@@ -16,8 +18,8 @@
 
 enum {
     PROGRESS_EVERY_US = 50000,
-    BUILD_AHEAD_US = 300000,  /* after that a first picture goes ahead with what is there */
-    WORTH_KEEPING_US = 50000, /* opening took longer */
+    BUILD_AHEAD_US = 300000,  /* after that a first picture is drawn, whatever is built */
+    WORTH_KEEPING_US = 50000, /* a plan that took longer to open is kept in the cache */
     MAX_QUESTIONS = 256,
     MAX_WAITING_REQUESTS = 2 * PIPELINE_MAX_WAITING
 };
@@ -28,8 +30,8 @@ struct loader {
     struct desk *desk;
     atomic_bool cancel;
     pthread_t load_thread, quick_thread, shapes_thread;
-    struct queue *slow, *quick;     /* questions: surfaces, on the load thread; points, on their own */
-    struct queue *waiting_requests; /* pictures that wait for shapes, on a thread of their own */
+    struct queue *slow, *quick;     /* questions about shapes, for the load thread; about points, for the quick one */
+    struct queue *waiting_requests; /* for the shapes thread */
     const struct plan *plan;        /* the load thread's; the quick one gets it with its first question */
     struct derive *derived;         /* of the plan */
     int64_t told_us;
@@ -55,7 +57,7 @@ static void tell(struct loader *loader, const char *phase, double percent)
 
 static void step(void *context, const char *phase, double percent)
 {
-    tell(context, phase, percent * 0.9); /* the rest is for surfaces */
+    tell(context, phase, percent * 0.9); /* the last tenth is for building surfaces */
 }
 
 static void answer(struct loader *loader, struct question *question)
@@ -73,8 +75,8 @@ static void answer(struct loader *loader, struct question *question)
     question_drop(question);
 }
 
-/* What a new room shows: its regions, in file order, and by which algorithm. Other shapes are built when they are asked
- * for. */
+/* The regions that a new room shows as surfaces, in file order, and the algorithm of these. Returns how many. Other
+ * shapes are built on demand. */
 static size_t visible_regions(const struct plan *plan, struct subject *subjects, enum surface_algorithm *algorithm)
 {
     struct scene scene;
@@ -96,10 +98,10 @@ struct building {
     struct loader *loader;
     int64_t began_us;
     size_t n, n_begun; /* surfaces */
-    bool is_told;      /* that a first picture may be drawn */
+    bool is_told;      /* BUILT was sent: a first picture may be drawn */
 };
 
-/* Before each surface. Questions go before what is built after BUILT was said. */
+/* Called before each surface. After BUILT, questions are answered before the next surface is built. */
 static bool look_around(void *context)
 {
     struct building *building = context;
@@ -115,7 +117,7 @@ static bool look_around(void *context)
     return !atomic_load(&loader->cancel);
 }
 
-/* Light surfaces first: they are what a picture that moves needs. */
+/* Coarse surfaces first: pictures that move need them. */
 static void build_ahead(struct loader *loader)
 {
     struct subject *subjects = mem_new((loader->plan->regions.n_regions + 1) * sizeof *subjects);
@@ -129,7 +131,7 @@ static void build_ahead(struct loader *loader)
     free(subjects);
 }
 
-/* A plan that took its time is kept for the next opening; without that it is read again. */
+/* Stores a plan that took long to open in the cache. A failure only means that the next opening reads the folder. */
 static void keep(const struct loader *loader, const struct plan *plan, const struct plan_sources *sources)
 {
     struct error err = { 0 };
@@ -178,7 +180,7 @@ static void *quick_main(void *argument)
         if (atomic_load(&loader->cancel))
             question_drop(question);
         else
-            answer(loader, question); /* set before LOADED was said, and questions come after that */
+            answer(loader, question); /* the plan is set before LOADED is sent, and questions come later */
     }
     return NULL;
 }

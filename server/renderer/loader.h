@@ -1,5 +1,5 @@
 #pragma once
-/* The threads that read the plan, build surfaces ahead, and answer questions that need no picture. */
+/* The threads of a renderer that load the plan, build shapes ahead, and answer questions about plan and scene. */
 #include "server/renderer/desk.h"
 #include "server/wire/shape_query.h"
 
@@ -28,5 +28,6 @@ NODISCARD bool loader_ask(struct loader *loader, const struct question *question
 /* Before a picture: builds its shapes, then a note SHAPES_BUILT. Takes waiting when it returns true. False: too many
  * wait. */
 NODISCARD bool loader_build_shapes(struct loader *loader, struct waiting_request *waiting);
-/* Cancels reading, drops what waits, joins. The plan must outlive it. */
+/* Cancels loading, drops questions and requests that wait, joins the threads. Before the plan and its store are
+ * destroyed, which belong to the receiver of LOADED. */
 void loader_destroy(struct loader *loader);
