@@ -199,21 +199,43 @@ static void what_is_dropped_while_it_waits_is_not_drawn(void **state)
     (void)state;
     struct receiver receiver;
     receiver_init(&receiver);
-    receiver.hold_ms = 50;
+    receiver.is_closed = true;
     struct plan *plan = small_plan();
     struct pipeline *pipeline = start(&receiver);
     struct error err = { 0 };
-    /* while the first is delivered at most five others are drawn: two drawn, one on the way to them, one with the
-     * encoder */
+    /* until the receiver is opened at most three are drawn: one with the encode thread, two that wait for it */
     for (uint64_t id = 1; id <= 20; id++)
         assert_true(submit(pipeline, plan, id, 64, &err));
     for (uint64_t id = 10; id <= 19; id++)
         pipeline_drop(pipeline, id);
-    pipeline_drop(pipeline, 1000); /* never asked for */
+    pipeline_drop(pipeline, 1000); /* never submitted */
+    open_receiver(&receiver);
     wait_for(&receiver, 10);
     for (size_t i = 0; i < 9; i++)
         assert_int_equal(receiver.ids[i], i + 1);
     assert_int_equal(receiver.ids[9], 20);
+    pipeline_destroy(pipeline);
+    plan_and_derived_destroy(plan);
+    receiver_finish(&receiver);
+}
+
+/* More drops than messages fit in the inbox: those that find no room do nothing, and no request is lost. */
+static void any_number_of_drops_blocks_nobody_and_loses_no_request(void **state)
+{
+    (void)state;
+    struct receiver receiver;
+    receiver_init(&receiver);
+    struct plan *plan = small_plan();
+    struct pipeline *pipeline = start(&receiver);
+    struct error err = { 0 };
+    for (uint64_t id = 1; id <= 40; id++) {
+        for (uint64_t unknown = 1000; unknown < 1500; unknown++)
+            pipeline_drop(pipeline, unknown);
+        assert_true(submit(pipeline, plan, id, 64, &err));
+    }
+    wait_for(&receiver, 40);
+    for (size_t i = 0; i < 40; i++)
+        assert_int_equal(receiver.ids[i], i + 1);
     pipeline_destroy(pipeline);
     plan_and_derived_destroy(plan);
     receiver_finish(&receiver);
@@ -363,6 +385,7 @@ int main(void)
         cmocka_unit_test(frames_come_back_in_order_and_none_is_lost),
         cmocka_unit_test(moving_pictures_overtake_stills_but_not_for_ever),
         cmocka_unit_test(what_is_dropped_while_it_waits_is_not_drawn),
+        cmocka_unit_test(any_number_of_drops_blocks_nobody_and_loses_no_request),
         cmocka_unit_test(a_picture_that_cannot_be_drawn_comes_back_as_an_error),
         cmocka_unit_test(more_than_the_limit_is_refused_and_never_blocks),
         cmocka_unit_test(large_pictures_of_one_source_do_not_hold_up_small_ones_of_another),
