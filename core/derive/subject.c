@@ -23,6 +23,9 @@ bool subject_exists(const struct plan *plan, struct subject subject)
     switch (subject.kind) {
     case SUBJECT_PLAN: return true;
     case SUBJECT_REGION: return subject.index < plan->regions.n_regions;
+    case SUBJECT_IMAGE: return subject.index < plan->n_images;
+    case SUBJECT_LABEL_LAYER: return subject.index < plan->regions.n_layers;
+    case SUBJECT_DOSE: return subject.index < plan->n_doses;
     }
     return false;
 }
@@ -32,6 +35,9 @@ const char *subject_id(const struct plan *plan, struct subject subject)
     switch (subject.kind) {
     case SUBJECT_PLAN: return plan->id;
     case SUBJECT_REGION: return plan->regions.regions[subject.index].id;
+    case SUBJECT_IMAGE: return plan->images[subject.index].id;
+    case SUBJECT_DOSE: return plan->doses[subject.index].id;
+    case SUBJECT_LABEL_LAYER: break; /* has none */
     }
     return "";
 }

@@ -5,7 +5,10 @@
 
 enum subject_kind {
     SUBJECT_PLAN, /* all of it: what is derived of no single part */
-    SUBJECT_REGION
+    SUBJECT_REGION,
+    SUBJECT_IMAGE,       /* index: of the plan's images */
+    SUBJECT_LABEL_LAYER, /* index: of the layers of its regions */
+    SUBJECT_DOSE         /* index: of its doses */
 };
 
 struct subject {

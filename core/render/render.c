@@ -1,3 +1,4 @@
+/* A snapshot to an image: the draw list, the back end that executes it, the overlay. */
 #include "core/render/render.h"
 
 #include <assert.h>
@@ -11,6 +12,7 @@
 #include "core/base/mem.h"
 #include "core/render/gl/renderer.h"
 #include "core/render/soft/soft.h"
+#include "core/render/visible/draw_list.h"
 #include "core/render/visible/overlay.h"
 
 /* Either of the two implementations; the other is NULL. */
@@ -18,6 +20,7 @@ struct renderer {
     pthread_t thread;
     struct gl_renderer *gl;
     struct soft_renderer *soft;
+    struct draw_cache *cache; /* of the back end's drawables */
     struct overlay *overlay;
 };
 
@@ -87,7 +90,6 @@ struct renderer *renderer_create(enum render_back_end back_end, struct error *er
 {
     struct renderer *renderer = mem_new(sizeof *renderer);
     renderer->thread = pthread_self();
-    renderer->overlay = overlay_create();
     if (back_end == RENDER_AUTO)
         renderer->gl = create_hardware();
     else if (back_end != RENDER_SOFT) {
@@ -97,11 +99,14 @@ struct renderer *renderer_create(enum render_back_end back_end, struct error *er
     }
     if (!renderer->gl && (back_end == RENDER_AUTO || back_end == RENDER_SOFT))
         renderer->soft = soft_renderer_create();
-    if (renderer->gl || renderer->soft)
-        return renderer;
-    overlay_destroy(renderer->overlay);
-    free(renderer);
-    return NULL;
+    if (!renderer->gl && !renderer->soft) {
+        free(renderer);
+        return NULL;
+    }
+    struct drawable_maker maker = renderer->gl ? gl_renderer_maker(renderer->gl) : soft_renderer_maker();
+    renderer->cache = draw_cache_create(&maker);
+    renderer->overlay = overlay_create();
+    return renderer;
 }
 
 void renderer_destroy(struct renderer *renderer)
@@ -109,10 +114,18 @@ void renderer_destroy(struct renderer *renderer)
     if (!renderer)
         return;
     assert_thread(renderer);
+    draw_cache_destroy(renderer->cache); /* while the back end is there */
     gl_renderer_destroy(renderer->gl);
     soft_renderer_destroy(renderer->soft);
     overlay_destroy(renderer->overlay);
     free(renderer);
+}
+
+void renderer_tune(struct renderer *renderer, int n_threads, bool is_portable)
+{
+    assert_thread(renderer);
+    if (renderer->soft)
+        soft_renderer_tune(renderer->soft, n_threads, is_portable);
 }
 
 const struct render_facts *renderer_facts(const struct renderer *renderer)
@@ -124,17 +137,18 @@ void renderer_forget(struct renderer *renderer, const struct plan *plan)
 {
     assert_thread(renderer);
     overlay_forget(renderer->overlay, plan);
-    if (renderer->gl)
-        gl_renderer_forget(renderer->gl, plan);
-    else
-        soft_renderer_forget(renderer->soft, plan);
+    draw_cache_forget(renderer->cache, plan);
+    if (renderer->soft)
+        soft_renderer_forget(renderer->soft);
 }
 
 /* ---- pictures --------------------------------------------------------------------------------------------------- */
 
 struct render_picture {
     struct renderer *renderer;
-    const struct snapshot *snapshot;
+    struct draw_scope scope;
+    struct render_options options;
+    struct draw_list *list; /* NULL: nothing is drawn yet */
     struct gl_picture *gl;
     struct soft_frame *soft;
     struct camera camera;
@@ -149,13 +163,27 @@ struct render_picture *render_begin(struct renderer *renderer, const struct snap
     assert_thread(renderer);
     struct render_picture *picture = mem_new(sizeof *picture);
     picture->renderer = renderer;
-    picture->snapshot = snapshot;
+    picture->options = *options;
+    picture->scope = (struct draw_scope){ snapshot, &picture->camera, options->detail, renderer->cache };
     camera_resolve(snapshot, &picture->camera);
-    if (renderer->gl)
-        picture->gl = gl_picture_begin(renderer->gl, snapshot, options, &picture->camera);
-    else
-        picture->soft = soft_picture_begin(renderer->soft, snapshot, options, &picture->camera);
     return picture;
+}
+
+static bool make_list(struct render_picture *picture, struct error *err)
+{
+    struct renderer *renderer = picture->renderer;
+    int64_t start_us = clock_now_us();
+    picture->list = draw_list_create(&picture->scope, &picture->options, err);
+    picture->timing.draw_us += clock_now_us() - start_us;
+    if (!picture->list)
+        return false;
+    picture->timing.n_triangles = picture->list->n_triangles;
+    picture->timing.is_light = picture->list->is_coarse;
+    if (renderer->gl)
+        picture->gl = gl_picture_begin(renderer->gl, &picture->scope, picture->list, &picture->options);
+    else
+        picture->soft = soft_picture_begin(renderer->soft, &picture->scope, picture->list, &picture->options);
+    return true;
 }
 
 static struct image *end_back_end(struct render_picture *picture)
@@ -171,6 +199,8 @@ static struct image *end_back_end(struct render_picture *picture)
 enum render_state render_go_on(struct render_picture *picture, const struct render_pause *pause, struct error *err)
 {
     assert_thread(picture->renderer);
+    if (!picture->list && !make_list(picture, err))
+        return RENDER_FAILED;
     if (!picture->image) {
         enum render_state state = picture->gl ? gl_picture_go_on(picture->gl, pause, &picture->timing, err)
                                               : soft_picture_go_on(picture->soft, pause, &picture->timing, err);
@@ -182,7 +212,7 @@ enum render_state render_go_on(struct render_picture *picture, const struct rend
     }
     int64_t start_us = clock_now_us();
     struct check_counts check;
-    if (!overlay_draw(picture->renderer->overlay, picture->snapshot, &picture->camera, picture->image, &check, err))
+    if (!overlay_draw(picture->renderer->overlay, &picture->scope, picture->list, picture->image, &check, err))
         return RENDER_FAILED;
     picture->timing.n_added_px = check.n_added;
     picture->timing.n_left_out_px = check.n_left_out;
@@ -202,6 +232,7 @@ struct image *render_end(struct render_picture *picture, struct camera *camera, 
     }
     *camera = picture->camera;
     *timing = picture->timing;
+    draw_list_destroy(picture->list);
     free(picture);
     return image;
 }

@@ -16,6 +16,9 @@ struct renderer;
 NODISCARD struct renderer *renderer_create(enum render_back_end back_end, struct error *err);
 void renderer_destroy(struct renderer *renderer);
 const struct render_facts *renderer_facts(const struct renderer *renderer);
+/* For tests and benches of the software rasteriser: how many threads draw (1..64), and whether instructions of newer
+ * processors are left out. Other back ends ignore it. */
+void renderer_tune(struct renderer *renderer, int n_threads, bool is_portable);
 
 /* The picture, RGBA, opaque, row 0 at the top. Uploads meshes and images on first use and keeps them until
  * renderer_forget. errors ERROR_GL, ERROR_MEMORY, ERROR_RANGE */

@@ -1,6 +1,5 @@
 /* What the software rasteriser promises beyond what every back end must: the same picture as OpenGL's, the same bytes
  * whatever the processor and however many threads, no cracks, and the near plane where it should be. */
-#include "core/render/soft/soft.h"
 #include "tests/render/shots.h"
 
 static const struct vec3 origin = { 0, 0, 0 };
@@ -57,18 +56,7 @@ struct shot {
     enum scene_representation representation;
 };
 
-/* On a rasteriser alone, which may be told its number of threads. */
-static struct image *draw_on(struct soft_renderer *soft, const struct snapshot *snapshot,
-                             const struct render_options *options, const struct camera *camera,
-                             struct render_timing *timing, struct error *err)
-{
-    struct soft_frame *frame = soft_picture_begin(soft, snapshot, options, camera);
-    assert_int_equal(soft_picture_go_on(frame, NULL, timing, err), RENDER_DONE);
-    return soft_picture_end(frame);
-}
-
-static struct image *take(struct soft_renderer *soft, struct renderer *other, struct plan *plan,
-                          const struct shot *shot, int width, int height)
+static struct image *take(struct renderer *renderer, struct plan *plan, const struct shot *shot, int width, int height)
 {
     struct scene scene;
     struct view view = view_default;
@@ -97,9 +85,7 @@ static struct image *take(struct soft_renderer *soft, struct renderer *other, st
     }
     struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
     assert_string_equal(err.text, "");
-    camera_resolve(snapshot, &camera);
-    struct image *image = other ? render_snapshot(other, snapshot, &options, &camera, &timing, &err)
-                                : draw_on(soft, snapshot, &options, &camera, &timing, &err);
+    struct image *image = render_snapshot(renderer, snapshot, &options, &camera, &timing, &err);
     assert_string_equal(err.text, "");
     assert_non_null(image);
     snapshot_unref(snapshot);
@@ -187,17 +173,16 @@ static void pictures_are_the_same_as_with_opengl(void **state)
         skip();
     static const enum voxel_type types[] = { VOXEL_I16, VOXEL_F32 };
     for (int type = 0; type < 2; type++) {
-        struct soft_renderer *soft = soft_renderer_create();
+        struct renderer *soft = renderer_create(RENDER_SOFT, NULL);
         struct plan *plan = make_head(types[type]);
         for (size_t i = 0; i < N_SHOTS; i++) {
-            struct image *a = take(soft, NULL, plan, &shots[i], WIDTH, HEIGHT),
-                         *b = take(NULL, gl, plan, &shots[i], WIDTH, HEIGHT);
+            struct image *a = take(soft, plan, &shots[i], WIDTH, HEIGHT), *b = take(gl, plan, &shots[i], WIDTH, HEIGHT);
             expect_like(a, b, shots[i].name);
             image_destroy(a);
             image_destroy(b);
         }
         renderer_forget(gl, plan);
-        soft_renderer_destroy(soft);
+        renderer_destroy(soft);
         plan_and_derived_destroy(plan);
     }
     renderer_destroy(gl);
@@ -216,15 +201,15 @@ static void threads_and_processors_make_no_difference(void **state)
     for (size_t i = 0; i < N_SHOTS; i++) {
         struct image *first = NULL;
         for (size_t way = 0; way < sizeof ways / sizeof ways[0]; way++) {
-            struct soft_renderer *soft = soft_renderer_create();
-            soft_renderer_tune(soft, ways[way].n_threads, ways[way].is_portable);
-            struct image *image = take(soft, NULL, plan, &shots[i], WIDTH, HEIGHT);
+            struct renderer *soft = renderer_create(RENDER_SOFT, NULL);
+            renderer_tune(soft, ways[way].n_threads, ways[way].is_portable);
+            struct image *image = take(soft, plan, &shots[i], WIDTH, HEIGHT);
             if (first) {
                 assert_memory_equal(first->rgba, image->rgba, (size_t)WIDTH * HEIGHT * 4);
                 image_destroy(image);
             } else
                 first = image;
-            soft_renderer_destroy(soft);
+            renderer_destroy(soft);
         }
         image_destroy(first);
     }
@@ -236,18 +221,18 @@ static void pictures_of_other_sizes_leave_nothing_behind(void **state)
     (void)state;
     static const int sizes[][2] = { { 64, 48 }, { IMAGE_MAX_SIDE_PX, 17 }, { 1, 1 }, { 9, 200 }, { 500, 333 } };
     struct plan *plan = make_head(VOXEL_U8);
-    struct soft_renderer *used = soft_renderer_create();
+    struct renderer *used = renderer_create(RENDER_SOFT, NULL);
     for (int round = 0; round < 2; round++)
         for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-            struct soft_renderer *fresh = soft_renderer_create();
-            struct image *a = take(used, NULL, plan, &shots[i], sizes[i][0], sizes[i][1]);
-            struct image *b = take(fresh, NULL, plan, &shots[i], sizes[i][0], sizes[i][1]);
+            struct renderer *fresh = renderer_create(RENDER_SOFT, NULL);
+            struct image *a = take(used, plan, &shots[i], sizes[i][0], sizes[i][1]);
+            struct image *b = take(fresh, plan, &shots[i], sizes[i][0], sizes[i][1]);
             assert_memory_equal(a->rgba, b->rgba, (size_t)sizes[i][0] * (size_t)sizes[i][1] * 4);
             image_destroy(a);
             image_destroy(b);
-            soft_renderer_destroy(fresh);
+            renderer_destroy(fresh);
         }
-    soft_renderer_destroy(used);
+    renderer_destroy(used);
     plan_and_derived_destroy(plan);
 }
 

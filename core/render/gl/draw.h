@@ -1,35 +1,31 @@
 #pragma once
-/* The passes that make up a picture. Every one leaves blending and culling off. */
-#include "core/render/gl/cache.h"
+/* The draws of a list by OpenGL, into the bound framebuffer. Every function leaves blending and culling off. */
 #include "core/render/gl/program.h"
 #include "core/render/gl/target.h"
-#include "core/render/visible/back_end.h"
-#include "core/render/visible/visible.h"
+#include "core/render/gl/upload.h"
+#include "core/render/visible/draw.h"
 
+/* What a band of a picture is drawn with. */
 struct gl_frame {
     const struct gl *gl;
     const struct gl_programs *programs;
-    struct gl_cache *cache;
+    struct draw_cache *cache;
     const struct gl_target *target;
     struct gl_layers *layers;
-    GLuint no_vertices;            /* vertex array of passes without vertices */
+    GLuint no_vertices;            /* vertex array of programs that read no vertices */
     GLuint polygon_array, polygon; /* vertex array and buffer of slices */
     GLuint palette;                /* texture, label to colour */
-    uint8_t (*colors)[4];          /* [VISIBLE_N_LABELS], what is uploaded to it */
-    const struct snapshot *snapshot;
+    const struct plan *plan;
+    const struct draw_list *list;
     const struct camera *camera;
-    enum surface_detail detail;
-    float clip_from_lps[16]; /* of the part of the picture being drawn, upside down */
-    struct render_timing *timing;
+    int view_width_px;       /* of the full picture, in which sizes of lines and points are told */
+    float clip_from_lps[16]; /* of the band, upside down */
 };
 
-/* The regions' shapes: opaque ones front to back, */
-NODISCARD bool gl_draw_opaque_shapes(const struct gl_frame *frame, struct error *err);
-/* translucent ones, each with its nearest sheet only: each sample in its own order or whole regions, as the scene says.
- * More than GL_LAYERS_MAX of them are taken in groups of as many, in the order of visible_shapes. */
-NODISCARD bool gl_draw_translucent_shapes(const struct gl_frame *frame, struct error *err);
-
-/* The image on the slices that are visible in space. */
-NODISCARD bool gl_draw_slices_in_space(const struct gl_frame *frame, struct error *err);
-/* A slice pane: the image; without one the regions' cross-sections in flat colour. */
-NODISCARD bool gl_draw_pane(const struct gl_frame *frame, struct error *err);
+/* errors ERROR_GL and those of draw_cache_grid, in all of them */
+NODISCARD bool gl_draw_shapes(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err);
+NODISCARD bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct error *err);
+NODISCARD bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struct error *err);
+/* Shapes whose depth rule is DRAW_DEPTH_LAYER. More than GL_LAYERS_MAX are composed in groups of as many. Leaves the
+ * target's framebuffer bound. errors ERROR_MEMORY too */
+NODISCARD bool gl_draw_layers(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err);

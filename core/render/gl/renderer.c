@@ -1,3 +1,6 @@
+/* The OpenGL back end: start and stop, pictures in bands. */
+#include "core/render/gl/renderer.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +9,7 @@
 #include "core/base/mem.h"
 #include "core/render/gl/context.h"
 #include "core/render/gl/draw.h"
-#include "core/render/gl/renderer.h"
+#include "core/render/gl/drawables.h"
 #include "core/render/visible/visible.h"
 
 /* How many samples are drawn at a time: larger stills are drawn in bands. */
@@ -19,10 +22,8 @@ struct gl_renderer {
     struct gl_programs programs;
     struct gl_target target;
     struct gl_layers layers;
-    struct gl_cache *cache;
     GLuint no_vertices, polygon_array, polygon, palette;
-    uint8_t colors[VISIBLE_N_LABELS][4]; /* of the palette */
-    uint8_t *samples;                    /* a band of a still picture as it is read back */
+    uint8_t *samples; /* a band of a still picture as it is read back */
     size_t n_samples_bytes;
 };
 
@@ -118,7 +119,6 @@ static bool start(struct gl_renderer *renderer, enum render_back_end back_end, e
     if (!gl_programs_create(&renderer->gl, &renderer->programs, err))
         return false;
     make_polygon(renderer);
-    renderer->cache = gl_cache_create();
     return draw_test_pixel(renderer, err);
 }
 
@@ -137,7 +137,6 @@ void gl_renderer_destroy(struct gl_renderer *renderer)
         return;
     if (renderer->context.context) {
         const struct gl *gl = &renderer->gl;
-        gl_cache_destroy(gl, renderer->cache);
         gl_target_destroy(gl, &renderer->target);
         gl_layers_destroy(gl, &renderer->layers);
         gl_programs_destroy(gl, &renderer->programs);
@@ -156,9 +155,9 @@ const struct render_facts *gl_renderer_facts(const struct gl_renderer *renderer)
     return &renderer->facts;
 }
 
-void gl_renderer_forget(struct gl_renderer *renderer, const struct plan *plan)
+struct drawable_maker gl_renderer_maker(struct gl_renderer *renderer)
 {
-    gl_cache_forget(&renderer->gl, renderer->cache, plan);
+    return gl_drawable_maker(&renderer->gl);
 }
 
 /* ---- a picture -------------------------------------------------------------------------------------------------- */
@@ -177,7 +176,28 @@ static void band_matrix(const struct camera *camera, int first, int n, int rows,
     }
 }
 
-static bool draw_passes(const struct gl_frame *frame, struct error *err)
+/* How many draws from `first` on are of its kind and depth rule, one after the other. */
+static size_t n_alike(const struct draw_list *list, size_t first)
+{
+    const struct draw *draws = list->draws;
+    size_t end = first;
+    while (end < list->n_in_image && draws[end].kind == draws[first].kind && draws[end].depth == draws[first].depth)
+        end++;
+    return end - first;
+}
+
+static bool draw_alike(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err)
+{
+    if (draws->kind == DRAW_SHAPE)
+        return gl_draw_shapes(frame, draws, n, err);
+    for (size_t i = 0; i < n; i++)
+        if (!(draws->kind == DRAW_IMAGE ? gl_draw_image : gl_draw_labels)(frame, &draws[i], err))
+            return false;
+    return true;
+}
+
+/* The draws of the list in their order. */
+static bool draw_all(const struct gl_frame *frame, struct error *err)
 {
     const struct gl *gl = frame->gl;
     gl->BindFramebuffer(GL_FRAMEBUFFER, frame->target->framebuffer);
@@ -185,10 +205,19 @@ static bool draw_passes(const struct gl_frame *frame, struct error *err)
     gl->ClearColor((float)visible_background[0] / 255.0f, (float)visible_background[1] / 255.0f,
                    (float)visible_background[2] / 255.0f, 1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    if (snapshot_is_pane(frame->snapshot))
-        return gl_draw_pane(frame, err);
-    return gl_draw_opaque_shapes(frame, err) && gl_draw_slices_in_space(frame, err) &&
-           gl_draw_translucent_shapes(frame, err);
+    const struct draw_list *list = frame->list;
+    bool is_good = true;
+    for (size_t i = 0, n; is_good && i < list->n_in_image; i += n) {
+        const struct draw *draw = &list->draws[i];
+        if (draw->depth == DRAW_DEPTH_NONE)
+            gl->Disable(GL_DEPTH_TEST);
+        else
+            gl->Enable(GL_DEPTH_TEST);
+        n = draw->depth == DRAW_DEPTH_LAYER ? draw_list_n_layers(list, i) : n_alike(list, i);
+        is_good =
+            draw->depth == DRAW_DEPTH_LAYER ? gl_draw_layers(frame, draw, n, err) : draw_alike(frame, draw, n, err);
+    }
+    return is_good;
 }
 
 /* Mean of 2 x 2 samples, rounded. */
@@ -232,20 +261,20 @@ static bool read_band(struct gl_renderer *renderer, struct image *image, int fir
 }
 
 static bool draw_band(struct gl_renderer *renderer, struct gl_frame *frame, struct image *image, int first, int n,
-                      int samples, struct error *err)
+                      struct render_timing *timing, struct error *err)
 {
     int64_t start_us = clock_now_us();
+    int samples = frame->list->samples;
     if (!gl_target_resize(&renderer->gl, &renderer->target, image->width_px * samples, n * samples, err))
         return false;
     band_matrix(frame->camera, first, n, image->height_px, frame->clip_from_lps);
-    frame->timing->n_triangles = 0; /* of the picture, not of every band again */
-    if (!draw_passes(frame, err))
+    if (!draw_all(frame, err))
         return false;
     renderer->gl.Finish();
     int64_t drawn_us = clock_now_us();
-    frame->timing->draw_us += drawn_us - start_us;
+    timing->draw_us += drawn_us - start_us;
     bool is_good = read_band(renderer, image, first, n, samples, err);
-    frame->timing->read_us += clock_now_us() - drawn_us;
+    timing->read_us += clock_now_us() - drawn_us;
     return is_good;
 }
 
@@ -255,28 +284,27 @@ struct gl_picture {
     struct render_options options;
     struct image *image;
     int next_row, band; /* in pixels of the picture */
-    int samples;
 };
 
-struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct snapshot *snapshot,
-                                    const struct render_options *options, const struct camera *camera)
+struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct draw_scope *scope,
+                                    const struct draw_list *list, const struct render_options *options)
 {
     struct gl_picture *picture = mem_new(sizeof *picture);
     picture->renderer = renderer;
     picture->options = *options;
     picture->frame = (struct gl_frame){ .gl = &renderer->gl,
                                         .programs = &renderer->programs,
-                                        .cache = renderer->cache,
+                                        .cache = scope->cache,
                                         .target = &renderer->target,
                                         .layers = &renderer->layers,
                                         .no_vertices = renderer->no_vertices,
                                         .polygon_array = renderer->polygon_array,
                                         .polygon = renderer->polygon,
                                         .palette = renderer->palette,
-                                        .colors = renderer->colors,
-                                        .snapshot = snapshot,
-                                        .camera = camera,
-                                        .detail = options->detail };
+                                        .plan = scope->snapshot->plan,
+                                        .list = list,
+                                        .camera = scope->camera,
+                                        .view_width_px = (int)scope->snapshot->view.size_px[0] };
     return picture;
 }
 
@@ -290,12 +318,9 @@ static bool prepare(struct gl_picture *picture, struct error *err)
     picture->image = image_create(options->width_px, options->height_px, err);
     if (!picture->image)
         return false;
-    gl_cache_trim(&picture->renderer->gl, picture->renderer->cache);
-    picture->samples =
-        visible_samples(picture->frame.snapshot, picture->frame.camera, options->width_px, options->is_still);
-    int row = options->width_px * picture->samples * picture->samples, band = MAX_BAND_SAMPLES / row;
-    int n_layers = (int)visible_n_translucent(picture->frame.snapshot);
-    n_layers = n_layers < GL_LAYERS_MAX ? n_layers : GL_LAYERS_MAX;
+    const struct draw_list *list = picture->frame.list;
+    int row = options->width_px * list->samples * list->samples, band = MAX_BAND_SAMPLES / row;
+    int n_layers = list->n_layers_planned < GL_LAYERS_MAX ? (int)list->n_layers_planned : GL_LAYERS_MAX;
     if (n_layers > 0 && band > GL_LAYERS_MAX_SAMPLES / n_layers / row)
         band = GL_LAYERS_MAX_SAMPLES / n_layers / row; /* 8 rows at the very least */
     picture->band = band;
@@ -305,12 +330,11 @@ static bool prepare(struct gl_picture *picture, struct error *err)
 enum render_state gl_picture_go_on(struct gl_picture *picture, const struct render_pause *pause,
                                    struct render_timing *timing, struct error *err)
 {
-    picture->frame.timing = timing;
     if (!picture->image && !prepare(picture, err))
         return RENDER_FAILED;
     do {
         int left = picture->image->height_px - picture->next_row, n = left < picture->band ? left : picture->band;
-        if (!draw_band(picture->renderer, &picture->frame, picture->image, picture->next_row, n, picture->samples, err))
+        if (!draw_band(picture->renderer, &picture->frame, picture->image, picture->next_row, n, timing, err))
             return RENDER_FAILED;
         picture->next_row += n;
     } while (picture->next_row < picture->image->height_px && !(pause && pause->is_due(pause->context)));

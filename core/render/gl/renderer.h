@@ -1,6 +1,7 @@
 #pragma once
 /* The OpenGL implementation of render.h, for render.c alone. */
 #include "core/render/visible/back_end.h"
+#include "core/render/visible/draw.h"
 
 struct gl_renderer;
 
@@ -10,12 +11,13 @@ NODISCARD struct gl_renderer *gl_renderer_create(enum render_back_end back_end, 
                                                  struct error *err);
 void gl_renderer_destroy(struct gl_renderer *renderer);
 const struct render_facts *gl_renderer_facts(const struct gl_renderer *renderer);
-/* The parts of render_begin, render_go_on and render_end. snapshot and camera, which is the snapshot's, resolved,
- * outlive the picture; timing: zeroed before the first time. */
+/* How it makes drawables, for the cache that its pictures' lists are made from. The cache is destroyed first. */
+struct drawable_maker gl_renderer_maker(struct gl_renderer *renderer);
+/* The parts of render_begin, render_go_on and render_end: executes a list of the scope, both borrowed until the end.
+ * timing: zeroed before the first time. errors ERROR_GL, ERROR_MEMORY, ERROR_LIMIT, ERROR_RANGE the size */
 struct gl_picture;
-struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct snapshot *snapshot,
-                                    const struct render_options *options, const struct camera *camera);
+struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct draw_scope *scope,
+                                    const struct draw_list *list, const struct render_options *options);
 NODISCARD enum render_state gl_picture_go_on(struct gl_picture *picture, const struct render_pause *pause,
                                              struct render_timing *timing, struct error *err);
 NODISCARD struct image *gl_picture_end(struct gl_picture *picture); /* NULL: not done */
-void gl_renderer_forget(struct gl_renderer *renderer, const struct plan *plan);

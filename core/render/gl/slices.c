@@ -1,5 +1,5 @@
+/* Images and label layers on planes by OpenGL: a polygon where the plane cuts the grid. */
 #include "core/render/gl/draw.h"
-#include "core/render/visible/visible.h"
 
 /* A plane cuts a grid's box in at most six corners; each half-space adds at most one to the rectangle we start from. */
 enum { MAX_CORNERS = 10 };
@@ -67,35 +67,29 @@ static void draw_polygon(const struct gl_frame *frame, const struct grid *grid, 
     gl->DrawArrays(GL_TRIANGLE_FAN, 0, polygon->n);
 }
 
-/* ---- images ----------------------------------------------------------------------------------------------------- */
-
-static bool draw_image_slice(const struct gl_frame *frame, const struct plane *plane, struct error *err)
+bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct error *err)
 {
     const struct gl *gl = frame->gl;
-    const struct snapshot *snapshot = frame->snapshot;
-    const struct plan *plan = snapshot->plan;
-    const struct scene_image_style *style = &snapshot->scene.image;
+    const struct draw_image *image = &draw->image;
     const struct gl_program *program = &frame->programs->image;
-    const struct grid *grid = &plan->images[snapshot->image].volume->grid;
-    struct polygon polygon = slice_polygon(grid, plane);
+    const struct grid *grid = &frame->plan->images[draw->subject.index].volume->grid;
+    struct polygon polygon = slice_polygon(grid, &draw->plane);
     if (polygon.n < 3)
         return true;
-    const struct gl_grid *image = gl_cache_image(gl, frame->cache, plan, (size_t)snapshot->image, err);
-    if (!image)
+    const struct gl_grid *texels =
+        (const struct gl_grid *)draw_cache_grid(frame->cache, frame->plan, draw->subject, err);
+    if (!texels)
         return false;
-    double low = style->window.center - style->window.width / 2;
-    GLint filter = style->interpolation == SCENE_INTERPOLATION_NEAREST ? GL_NEAREST : GL_LINEAR;
+    GLint filter = image->is_linear ? GL_LINEAR : GL_NEAREST;
     gl->UseProgram(program->name);
     gl->UniformMatrix4fv(program->clip_from_lps, 1, GL_FALSE, frame->clip_from_lps);
-    gl->Uniform2f(program->grey, (float)(image->value_per_unit / style->window.width),
-                  (float)((image->value_at_zero - low) / style->window.width));
-    bool is_low_white = snapshot_is_low_white(snapshot);
-    gl->Uniform2f(program->ends, is_low_white ? 1 : 0, is_low_white ? 0 : 1);
-    bool is_culled = !snapshot_is_pane(snapshot);
-    gl->Uniform1f(program->cull, is_culled ? (float)((style->cull_below - low) / style->window.width) : -INFINITY);
+    gl->Uniform2f(program->grey, (float)(texels->value_per_unit / image->width),
+                  (float)((texels->value_at_zero - image->low) / image->width));
+    gl->Uniform2f(program->ends, image->is_low_white ? 1 : 0, image->is_low_white ? 0 : 1);
+    gl->Uniform1f(program->cull, (float)image->cull);
     gl->Uniform1i(program->source, 0);
     gl->ActiveTexture(GL_TEXTURE0);
-    gl->BindTexture(GL_TEXTURE_3D, image->texture);
+    gl->BindTexture(GL_TEXTURE_3D, texels->texture);
     gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, filter);
     gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, filter);
     draw_polygon(frame, grid, &polygon);
@@ -103,30 +97,16 @@ static bool draw_image_slice(const struct gl_frame *frame, const struct plane *p
     return gl_check(gl, "drawing a slice", err);
 }
 
-bool gl_draw_slices_in_space(const struct gl_frame *frame, struct error *err)
-{
-    const struct snapshot *snapshot = frame->snapshot;
-    if (snapshot->image < 0)
-        return true;
-    frame->gl->Enable(GL_DEPTH_TEST);
-    for (size_t i = 0; i < snapshot->n_slices; i++)
-        if (!draw_image_slice(frame, &snapshot->slices[i], err))
-            return false;
-    return true;
-}
-
-/* ---- labels ----------------------------------------------------------------------------------------------------- */
-
-static bool draw_label_slice(const struct gl_frame *frame, size_t layer, struct error *err)
+bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struct error *err)
 {
     const struct gl *gl = frame->gl;
-    const struct snapshot *snapshot = frame->snapshot;
     const struct gl_program *program = &frame->programs->labels;
-    const struct grid *grid = &snapshot->plan->regions.layers[layer]->grid;
-    struct polygon polygon = slice_polygon(grid, &snapshot->pane);
-    if (polygon.n < 3 || visible_palette(snapshot, layer, frame->colors) == 0)
+    const struct grid *grid = &frame->plan->regions.layers[draw->subject.index]->grid;
+    struct polygon polygon = slice_polygon(grid, &draw->plane);
+    if (polygon.n < 3)
         return true;
-    const struct gl_grid *labels = gl_cache_layer(gl, frame->cache, snapshot->plan, layer, err);
+    const struct gl_grid *labels =
+        (const struct gl_grid *)draw_cache_grid(frame->cache, frame->plan, draw->subject, err);
     if (!labels)
         return false;
     gl->UseProgram(program->name);
@@ -137,25 +117,10 @@ static bool draw_label_slice(const struct gl_frame *frame, size_t layer, struct 
     gl->ActiveTexture(GL_TEXTURE1);
     gl->BindTexture(GL_TEXTURE_2D, frame->palette);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 256, 256, 0, GL_RGBA, GL_UNSIGNED_BYTE, frame->colors);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 256, 256, 0, GL_RGBA, GL_UNSIGNED_BYTE, draw->palette);
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_3D, labels->texture);
     draw_polygon(frame, grid, &polygon);
     gl->BindTexture(GL_TEXTURE_3D, 0);
     return gl_check(gl, "drawing a cross-section", err);
-}
-
-bool gl_draw_pane(const struct gl_frame *frame, struct error *err)
-{
-    const struct snapshot *snapshot = frame->snapshot;
-    const struct region_set *set = &snapshot->plan->regions;
-    frame->gl->Disable(GL_DEPTH_TEST);
-    if (snapshot->image >= 0)
-        return draw_image_slice(frame, &snapshot->pane, err);
-    size_t layers[REGION_MAX_LAYERS];
-    visible_layers(set, layers);
-    for (size_t i = 0; i < set->n_layers; i++)
-        if (!draw_label_slice(frame, layers[i], err))
-            return false;
-    return true;
 }

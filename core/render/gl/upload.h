@@ -1,8 +1,28 @@
 #pragma once
-/* A shape to the graphics card, for cache.c. */
-#include "core/render/gl/cache.h"
+/* Shapes and grids on the graphics card: what is there of each, and how it gets there. */
+#include "core/render/gl/table.h"
+#include "core/render/visible/draw_cache.h"
 
-/* n_passes: of shading_normals. Adds what it takes to *n_bytes. On failure what was made is the caller's to delete.
- * errors ERROR_GL, ERROR_MEMORY, ERROR_LIMIT */
+struct gl_shape {
+    struct drawable base;
+    enum shape_kind kind;
+    bool is_faceted; /* whatever the scene says */
+    GLuint vertex_array, vertices, indices;
+    GLsizei n;                  /* indices of triangles; segments or points, each an instance of four corners */
+    struct vec3 edge_lps_mm[3]; /* points: of the voxel they stand for */
+};
+
+struct gl_grid {
+    struct drawable base;
+    GLuint texture;
+    double value_per_unit, value_at_zero; /* images: value = texture * value_per_unit + value_at_zero */
+};
+
+/* n_passes: of shading_normals. Adds the memory it takes to out->base.n_bytes. On failure the caller deletes what was
+ * made. errors ERROR_GL, ERROR_MEMORY */
 NODISCARD bool gl_upload_shape(const struct gl *gl, const struct shape *shape, int n_passes, struct gl_shape *out,
-                               uint64_t *n_bytes, struct error *err);
+                               struct error *err);
+/* On failure nothing is left to delete. errors ERROR_GL, ERROR_MEMORY, ERROR_LIMIT more than the driver takes,
+ * ERROR_UNSUPPORTED labels of real numbers */
+NODISCARD bool gl_upload_grid(const struct gl *gl, const struct volume *volume, bool is_labels, struct gl_grid *out,
+                              struct error *err);

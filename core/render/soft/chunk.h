@@ -2,7 +2,7 @@
 /* A chunk: up to SOFT_CHUNK_PRIMITIVES triangles, lines or points of one shape, and the triangles and rectangles that
  * are kept of them: what faces the viewer and holds a sample. Clips at the near plane. Knows no kind of shape. */
 #include "core/base/error.h"
-#include "core/render/soft/cache.h"
+#include "core/render/soft/drawables.h"
 #include "core/render/visible/visible.h"
 
 enum { SOFT_CHUNK_PRIMITIVES = 4096 };
@@ -11,7 +11,6 @@ enum { SOFT_CHUNK_PRIMITIVES = 4096 };
 struct soft_item {
     const struct soft_shape *shape;
     struct soft_lighting lighting;
-    bool is_opaque;
     struct visible_look look;
     struct visible_cue cue; /* lines */
     double size;            /* look.size_px in sub-samples */

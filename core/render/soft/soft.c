@@ -1,3 +1,4 @@
+/* The software rasteriser: start and stop, and a picture drawn in bands by several threads. */
 #include "core/render/soft/soft.h"
 
 #include <assert.h>
@@ -42,7 +43,6 @@ struct soft_renderer {
     struct render_facts facts;
     const struct soft_kernels *kernels;
     int n_threads;
-    struct soft_cache *cache;
     struct soft_frame *frames; /* pictures that are begun */
     uint64_t n_uses;
     /* kept from picture to picture */
@@ -67,7 +67,6 @@ static void learn_facts(struct soft_renderer *renderer)
 struct soft_renderer *soft_renderer_create(void)
 {
     struct soft_renderer *renderer = mem_new(sizeof *renderer);
-    renderer->cache = soft_cache_create();
     soft_renderer_tune(renderer, parallel_cores(), false);
     return renderer;
 }
@@ -103,7 +102,6 @@ void soft_renderer_destroy(struct soft_renderer *renderer)
         return;
     assert(!renderer->frames);
     drop_buffers(renderer);
-    soft_cache_destroy(renderer->cache);
     free(renderer);
 }
 
@@ -112,10 +110,14 @@ const struct render_facts *soft_renderer_facts(const struct soft_renderer *rende
     return &renderer->facts;
 }
 
-void soft_renderer_forget(struct soft_renderer *renderer, const struct plan *plan)
+struct drawable_maker soft_renderer_maker(void)
+{
+    return soft_drawable_maker();
+}
+
+void soft_renderer_forget(struct soft_renderer *renderer)
 {
     assert(!renderer->frames);
-    soft_cache_forget(renderer->cache, plan);
     drop_buffers(renderer);
 }
 
@@ -131,11 +133,11 @@ static bool make_scratch(struct soft_frame *frame, struct scratch *scratch, stru
         if (!scratch->band)
             return false;
     }
-    if (frame->n_translucent == 0)
+    if (frame->n_layers == 0)
         return true;
-    size_t rows = LAYER_BYTES / (row * frame->n_translucent * 2 * sizeof(uint32_t));
+    size_t rows = LAYER_BYTES / (row * frame->n_layers * 2 * sizeof(uint32_t));
     rows = rows < 1 ? 1 : rows > SOFT_BAND_ROWS ? SOFT_BAND_ROWS : rows;
-    size_t n_layers = row * rows * frame->n_translucent;
+    size_t n_layers = row * rows * frame->n_layers;
     frame->layer_rows = (int)rows;
     if (scratch->n_layers < n_layers) {
         free(scratch->layers);
@@ -266,15 +268,14 @@ static void draw_item(const struct soft_frame *frame, const struct soft_item *it
     }
 }
 
-/* Each region's nearest sheet into a layer of its own, a few rows at a time, then all of them over the picture. */
-static void draw_translucent(const struct soft_frame *frame, const struct scratch *scratch,
-                             const struct soft_band *band, int index)
+/* The nearest sheet of each item into a layer of its own, a few rows at a time, then all of them over the picture. */
+static void draw_layers(const struct soft_frame *frame, const struct soft_item *items, size_t n,
+                        const struct scratch *scratch, const struct soft_band *band, int index)
 {
     struct soft_layer layers[SOFT_MAX_LAYERS];
-    const struct soft_item *items = frame->items + (frame->n_items - frame->n_translucent);
-    size_t n = frame->n_translucent, n_layer = (size_t)band->stride * (size_t)frame->layer_rows;
-    bool is_exact = frame->snapshot->scene.surface.translucent_order == SCENE_TRANSLUCENT_ORDER_EXACT;
-    for (int row = 0; n > 0 && row < band->n_rows; row += frame->layer_rows) {
+    size_t n_layer = (size_t)band->stride * (size_t)frame->layer_rows;
+    bool is_exact = frame->list->is_order_exact;
+    for (int row = 0; row < band->n_rows; row += frame->layer_rows) {
         struct soft_band part = *band;
         part.first_row += row;
         part.n_rows = band->n_rows - row < frame->layer_rows ? band->n_rows - row : frame->layer_rows;
@@ -303,13 +304,35 @@ static void clear(const struct soft_band *band)
 static void write_rows(const struct soft_frame *frame, const struct soft_band *band)
 {
     size_t width_px = (size_t)frame->image->width_px;
-    for (int y = 0; y < band->n_rows; y += frame->samples) {
+    for (int y = 0; y < band->n_rows; y += frame->list->samples) {
         const uint32_t *from = band->color + (size_t)y * (size_t)band->stride;
-        uint8_t *to = frame->image->rgba + (size_t)((band->first_row + y) / frame->samples) * width_px * 4;
-        if (frame->samples == 2)
+        uint8_t *to = frame->image->rgba + (size_t)((band->first_row + y) / frame->list->samples) * width_px * 4;
+        if (frame->list->samples == 2)
             frame->renderer->kernels->halve(from, from + band->stride, (int)width_px, (uint32_t *)(void *)to);
         else
             memcpy(to, from, width_px * 4);
+    }
+}
+
+/* The draws of the list in their order, as far as they lie in a band. */
+static void draw_all(const struct soft_frame *frame, const struct scratch *scratch, const struct soft_band *band,
+                     int index)
+{
+    const struct draw_list *list = frame->list;
+    const struct soft_item *item = frame->items;
+    const struct soft_plane *plane = frame->planes;
+    for (size_t i = 0, n; i < list->n_in_image; i += n) {
+        n = draw_list_n_layers(list, i);
+        if (n > 0) {
+            draw_layers(frame, item, n, scratch, band, index);
+            item += n;
+            continue;
+        }
+        n = 1;
+        if (list->draws[i].kind == DRAW_SHAPE)
+            draw_item(frame, item++, band, index, (int[2]){ 0, 0 });
+        else
+            soft_plane_draw(plane++, frame->renderer->kernels, band);
     }
 }
 
@@ -337,11 +360,7 @@ static void draw_bands(void *context, int part, int n_parts)
                                   (float *)(void *)scratch->band,
                                   scratch->band + scratch->n_band };
         clear(&band);
-        for (size_t i = 0; i < frame->n_items - frame->n_translucent; i++)
-            draw_item(frame, &frame->items[i], &band, (int)piece, (int[2]){ 0, 0 });
-        for (size_t i = 0; i < frame->n_planes; i++)
-            soft_plane_draw(&frame->planes[i], renderer->kernels, &band);
-        draw_translucent(frame, scratch, &band, (int)piece);
+        draw_all(frame, scratch, &band, (int)piece);
         write_rows(frame, &band);
     }
 }
@@ -360,17 +379,15 @@ static size_t n_primitives(const struct soft_frame *frame)
     return n;
 }
 
-static bool collect(struct soft_frame *frame, struct render_timing *timing, struct error *err)
+static bool prepare(struct soft_frame *frame, struct error *err)
 {
     frame->image = image_create(frame->options.width_px, frame->options.height_px, err);
     if (!frame->image)
         return false;
-    frame->samples = visible_samples(frame->snapshot, frame->camera, frame->options.width_px, frame->options.is_still);
-    frame->width = frame->options.width_px * frame->samples;
-    frame->height = frame->options.height_px * frame->samples;
+    frame->width = frame->options.width_px * frame->list->samples;
+    frame->height = frame->options.height_px * frame->list->samples;
     frame->n_bands = (frame->height + SOFT_BAND_ROWS - 1) / SOFT_BAND_ROWS;
-    return (snapshot_is_pane(frame->snapshot) || soft_collect_shapes(frame, timing, err)) &&
-           soft_collect_planes(frame, err);
+    return soft_frame_prepare(frame, err);
 }
 
 static bool sort(struct soft_frame *frame, struct error *err)
@@ -391,9 +408,9 @@ static bool sort(struct soft_frame *frame, struct error *err)
     return true;
 }
 
-static bool draw(struct soft_frame *frame, struct render_timing *timing, struct error *err)
+static bool draw(struct soft_frame *frame, struct error *err)
 {
-    if ((!frame->image && !collect(frame, timing, err)) || !sort(frame, err) || !make_scratches(frame, err))
+    if ((!frame->image && !prepare(frame, err)) || !sort(frame, err) || !make_scratches(frame, err))
         return false;
     parallel_run(frame->renderer->n_threads, draw_bands, frame);
     return true;
@@ -401,18 +418,13 @@ static bool draw(struct soft_frame *frame, struct render_timing *timing, struct 
 
 /* ---- pictures --------------------------------------------------------------------------------------------------- */
 
-struct soft_frame *soft_picture_begin(struct soft_renderer *renderer, const struct snapshot *snapshot,
-                                      const struct render_options *options, const struct camera *camera)
+struct soft_frame *soft_picture_begin(struct soft_renderer *renderer, const struct draw_scope *scope,
+                                      const struct draw_list *list, const struct render_options *options)
 {
     struct soft_frame *frame = mem_new(sizeof *frame);
-    uint64_t oldest = UINT64_MAX;
-    for (const struct soft_frame *other = renderer->frames; other; other = other->next_frame)
-        oldest = other->number < oldest ? other->number : oldest;
-    frame->number = soft_cache_trim(renderer->cache, oldest);
     frame->renderer = renderer;
-    frame->cache = renderer->cache;
-    frame->snapshot = snapshot;
-    frame->camera = camera;
+    frame->scope = scope;
+    frame->list = list;
     frame->options = *options;
     frame->next_frame = renderer->frames;
     renderer->frames = frame;
@@ -424,7 +436,7 @@ enum render_state soft_picture_go_on(struct soft_frame *frame, const struct rend
 {
     int64_t start_us = clock_now_us();
     frame->pause = pause;
-    bool is_good = draw(frame, timing, err);
+    bool is_good = draw(frame, err);
     timing->draw_us += clock_now_us() - start_us;
     if (!is_good)
         return RENDER_FAILED;
@@ -447,7 +459,7 @@ struct image *soft_picture_end(struct soft_frame *frame)
         image = NULL;
     }
     free(frame->items);
-    free(frame->palettes);
+    free(frame->planes);
     free(frame);
     return image;
 }

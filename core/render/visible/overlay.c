@@ -1,3 +1,4 @@
+/* The lines over a finished picture: made where planes cut regions and grids, kept, painted. */
 #include "core/render/visible/overlay.h"
 
 #include <math.h>
@@ -7,11 +8,10 @@
 #include "core/render/visible/check.h"
 #include "core/render/visible/cut.h"
 #include "core/render/visible/paint.h"
-#include "core/render/visible/visible.h"
 
 /* Kept at most: three panes of all regions a plan can have, if their lines are not too many. */
 enum { MAX_ENTRIES = 3 * REGION_MAX + 512, MAX_LINES = 2 << 20 }; /* 48 bytes each */
-static const uint32_t grid_rgb = 0xf4f6f8, univel_rgb = 0xffffff;
+static const uint32_t univel_rgb = 0xffffff;
 
 enum lines_of { LINES_OF_OUTLINE, LINES_OF_BORDER, LINES_OF_SHAPE };
 
@@ -141,112 +141,70 @@ static const struct entry *lines_of(struct overlay *overlay, struct derive *deri
 
 /* ---- painting --------------------------------------------------------------------------------------------------- */
 
-struct job {
+/* The picture that is painted over. */
+struct target {
     struct overlay *overlay;
-    const struct snapshot *snapshot;
-    const struct camera *camera;
+    const struct draw_scope *scope;
     struct image *image;
     struct paint *paint;
     double scale; /* pixels of this picture to one of the full one */
+    struct check_counts *check;
 };
 
-static struct paint_point project(const struct job *job, const double p[3])
+static struct paint_point project(const struct target *target, const double p[3])
 {
-    struct vec3 clip = mat4_project(&job->camera->clip_from_lps_mm, vec3(p[0], p[1], p[2]));
-    return (struct paint_point){ (clip.x + 1) / 2 * job->image->width_px, (1 - clip.y) / 2 * job->image->height_px };
+    struct vec3 clip = mat4_project(&target->scope->camera->clip_from_lps_mm, vec3(p[0], p[1], p[2]));
+    return (struct paint_point){ (clip.x + 1) / 2 * target->image->width_px,
+                                 (1 - clip.y) / 2 * target->image->height_px };
 }
 
-static void paint_lines(const struct job *job, const struct cut_lines *lines, double width_px, uint32_t rgb)
+static void paint_lines(const struct target *target, const struct cut_lines *lines, double width_px, uint32_t rgb)
 {
     for (size_t i = 0; i < lines->n; i++)
-        paint_line(job->paint, project(job, lines->ends_lps_mm[i][0]), project(job, lines->ends_lps_mm[i][1]),
-                   fmax(1, width_px * job->scale));
-    paint_flush(job->paint, rgb, 1);
+        paint_line(target->paint, project(target, lines->ends_lps_mm[i][0]), project(target, lines->ends_lps_mm[i][1]),
+                   fmax(1, width_px * target->scale));
+    paint_flush(target->paint, rgb, 1);
 }
 
-static bool paint_outline(const struct job *job, size_t region, struct error *err)
+static bool paint_outline(const struct target *target, const struct draw *draw, struct error *err)
 {
-    const struct snapshot *snapshot = job->snapshot;
-    const struct scene_outline_style *style = &snapshot->scene.outline;
-    struct entry wanted = { .plan = snapshot->plan,
-                            .region = region,
-                            .what = LINES_OF_OUTLINE,
-                            .plane = snapshot->pane,
-                            .method = style->method == SCENE_OUTLINE_METHOD_TRACED ? OUTLINE_TRACED
-                                                                                   : OUTLINE_MARCHING_SQUARES };
-    const struct entry *found = lines_of(job->overlay, snapshot->derived, &wanted, err);
+    const struct entry wanted = { .plan = target->scope->snapshot->plan,
+                                  .region = draw->subject.index,
+                                  .what = LINES_OF_OUTLINE,
+                                  .plane = draw->plane,
+                                  .method = draw->lines.method };
+    const struct entry *found = lines_of(target->overlay, target->scope->snapshot->derived, &wanted, err);
     if (found)
-        paint_lines(job, &found->lines, style->width_px, snapshot->styles[region].color_rgb);
+        paint_lines(target, &found->lines, draw->lines.width_px, draw->color_rgb);
     return found != NULL;
 }
 
-static bool paint_check(const struct job *job, size_t region, struct check_counts *check, struct error *err)
+static bool paint_check(const struct target *target, const struct draw *draw, struct error *err)
 {
-    const struct snapshot *snapshot = job->snapshot;
-    struct entry wanted = {
-        .plan = snapshot->plan, .region = region, .what = LINES_OF_SHAPE, .key = visible_checked_key(snapshot, region)
-    };
-    const struct grid *grid = &snapshot->plan->regions.layers[snapshot->plan->regions.regions[region].layer]->grid;
-    struct vec3 spacing = grid_spacing_mm(grid);
+    const struct plan *plan = target->scope->snapshot->plan;
+    struct derive *derived = target->scope->snapshot->derived;
+    size_t region = draw->subject.index;
+    struct vec3 spacing = grid_spacing_mm(&plan->regions.layers[plan->regions.regions[region].layer]->grid);
     /* never along faces of voxels */
-    wanted.plane = plane_moved(&snapshot->pane, CHECK_NUDGE * fmin(fmin(spacing.x, spacing.y), spacing.z));
-    const struct entry *surface = lines_of(job->overlay, snapshot->derived, &wanted, err);
+    struct plane plane = plane_moved(&draw->plane, CHECK_NUDGE * fmin(fmin(spacing.x, spacing.y), spacing.z));
+    const struct entry wanted = {
+        .plan = plan, .region = region, .what = LINES_OF_SHAPE, .plane = plane, .key = draw->lines.key
+    };
+    const struct entry border = { .plan = plan, .region = region, .what = LINES_OF_BORDER, .plane = plane };
+    const struct entry *surface = lines_of(target->overlay, derived, &wanted, err);
     struct cut_region cut;
-    if (!surface || !cut_region_init(&cut, &snapshot->plan->regions, region, err))
+    if (!surface || !cut_region_init(&cut, &plan->regions, region, err))
         return false;
     bool is_good = surface->is_open || surface->is_absent ||
-                   check_paint(&cut, &surface->lines, job->camera, &wanted.plane, job->image, job->scale, check, err);
+                   check_paint(&cut, &surface->lines, target->scope->camera, &plane, target->image, target->scale,
+                               target->check, err);
     cut_region_finish(&cut);
-    struct entry border = { .plan = snapshot->plan, .region = region, .what = LINES_OF_BORDER, .plane = wanted.plane };
-    const struct entry *univels = is_good ? lines_of(job->overlay, snapshot->derived, &border, err) : NULL;
+    const struct entry *univels = is_good ? lines_of(target->overlay, derived, &border, err) : NULL;
     if (!univels)
         return false;
-    paint_lines(job, &univels->lines, 1, univel_rgb);
-    paint_lines(job, &surface->lines, snapshot->scene.outline.width_px, snapshot->styles[region].color_rgb);
+    paint_lines(target, &univels->lines, 1, univel_rgb);
+    paint_lines(target, &surface->lines, draw->lines.width_px, draw->color_rgb);
     return true;
-}
-
-struct ranked {
-    size_t region;
-    int order, depth;
-    uint64_t n_voxels;
-};
-
-/* What is on top comes last: the higher order, the inner, the smaller. */
-static int compare_ranks(const void *left, const void *right)
-{
-    const struct ranked *a = left, *b = right;
-    if (a->order != b->order)
-        return a->order < b->order ? -1 : 1;
-    if (a->depth != b->depth)
-        return a->depth < b->depth ? -1 : 1;
-    if (a->n_voxels != b->n_voxels)
-        return a->n_voxels > b->n_voxels ? -1 : 1;
-    return a->region < b->region ? -1 : 1;
-}
-
-static bool paint_regions(const struct job *job, struct check_counts *check, struct error *err)
-{
-    const struct snapshot *snapshot = job->snapshot;
-    const struct region_set *set = &snapshot->plan->regions;
-    struct ranked *ranks = mem_array(set->n_regions, sizeof *ranks, UINT64_MAX, err);
-    size_t n = 0;
-    bool is_good = ranks != NULL;
-    for (size_t i = 0; is_good && i < set->n_regions; i++)
-        if (snapshot->styles[i].visible && snapshot->styles[i].opacity > 0 && set->regions[i].n_voxels > 0)
-            ranks[n++] =
-                (struct ranked){ i, (int)snapshot->styles[i].order, region_depth(set, i), set->regions[i].n_voxels };
-    if (is_good)
-        qsort(ranks, n, sizeof *ranks, compare_ranks);
-    for (size_t i = 0; is_good && i < n; i++) {
-        size_t region = ranks[i].region;
-        if (visible_is_checked(snapshot, region))
-            is_good = paint_check(job, region, check, err);
-        else if (snapshot->scene.outline.on_slices)
-            is_good = paint_outline(job, region, err);
-    }
-    free(ranks);
-    return is_good;
 }
 
 /* ---- the dose's grid -------------------------------------------------------------------------------------------- */
@@ -266,7 +224,7 @@ static bool cut_before_eye(const struct camera *camera, double a[3], double b[3]
     return true;
 }
 
-static void paint_box(const struct job *job, const struct grid *grid)
+static void add_box(const struct target *target, const struct grid *grid, double width_px)
 {
     struct vec3 corners[8];
     cut_grid_corners(grid, corners);
@@ -274,49 +232,62 @@ static void paint_box(const struct job *job, const struct grid *grid)
         for (int axis = 1; axis < 8; axis *= 2) {
             const struct vec3 *p = &corners[corner & ~axis], *q = &corners[corner | axis];
             double a[3] = { p->x, p->y, p->z }, b[3] = { q->x, q->y, q->z };
-            if (!(corner & axis) && cut_before_eye(job->camera, a, b))
-                paint_line(job->paint, project(job, a), project(job, b), fmax(1, 1.5 * job->scale));
+            if (!(corner & axis) && cut_before_eye(target->scope->camera, a, b))
+                paint_line(target->paint, project(target, a), project(target, b), width_px);
         }
 }
 
 /* Components of a dose may have grids of their own. */
-static bool paint_dose_grid(const struct job *job, struct error *err)
+static bool paint_dose_grid(const struct target *target, const struct draw *draw, struct error *err)
 {
-    const struct dose *dose = &job->snapshot->plan->doses[job->snapshot->dose];
+    const struct dose *dose = &target->scope->snapshot->plan->doses[draw->subject.index];
+    double width_px = fmax(1, draw->lines.width_px * target->scale);
     bool is_good = true;
     for (size_t i = 0; is_good && i < dose->n_components; i++) {
         const struct grid *grid = &dose->components[i].values->grid;
-        if (!snapshot_is_pane(job->snapshot)) {
-            paint_box(job, grid);
+        if (draw->kind == DRAW_GRID_BOX) {
+            add_box(target, grid, width_px);
             continue;
         }
         struct cut_lines lines = { 0 };
-        is_good = cut_grid(grid, &job->snapshot->pane, &lines, err);
+        is_good = cut_grid(grid, &draw->plane, &lines, err);
         for (size_t l = 0; l < lines.n; l++)
-            paint_line(job->paint, project(job, lines.ends_lps_mm[l][0]), project(job, lines.ends_lps_mm[l][1]),
-                       fmax(1, 1.5 * job->scale));
+            paint_line(target->paint, project(target, lines.ends_lps_mm[l][0]),
+                       project(target, lines.ends_lps_mm[l][1]), width_px);
         cut_lines_finish(&lines);
     }
-    paint_flush(job->paint, grid_rgb, 1);
+    paint_flush(target->paint, draw->color_rgb, 1);
     return is_good;
 }
 
-bool overlay_draw(struct overlay *overlay, const struct snapshot *snapshot, const struct camera *camera,
+static bool paint_draw(const struct target *target, const struct draw *draw, struct error *err)
+{
+    switch (draw->kind) {
+    case DRAW_OUTLINE: return paint_outline(target, draw, err);
+    case DRAW_CHECK: return paint_check(target, draw, err);
+    case DRAW_GRID_CUT:
+    case DRAW_GRID_BOX: return paint_dose_grid(target, draw, err);
+    case DRAW_SHAPE:
+    case DRAW_IMAGE:
+    case DRAW_LABELS: break; /* a back end's */
+    }
+    return true;
+}
+
+bool overlay_draw(struct overlay *overlay, const struct draw_scope *scope, const struct draw_list *list,
                   struct image *image, struct check_counts *check, struct error *err)
 {
-    struct check_counts unwanted;
-    bool has_lines = snapshot_is_pane(snapshot) && (snapshot->scene.outline.on_slices || snapshot->scene.check.visible);
-    bool has_grid = snapshot->scene.dose.grid && snapshot->dose >= 0;
-    check = check ? check : &unwanted;
     *check = (struct check_counts){ 0, 0 };
-    if (!has_lines && !has_grid)
+    if (list->n_in_image == list->n)
         return true;
-    struct job job = {
-        overlay, snapshot, camera, image, paint_create(image, err), (double)image->width_px / snapshot->view.size_px[0]
+    struct target target = {
+        overlay, scope, image, paint_create(image, err), (double)image->width_px / scope->snapshot->view.size_px[0],
+        check
     };
-    bool is_good =
-        job.paint && (!has_lines || paint_regions(&job, check, err)) && (!has_grid || paint_dose_grid(&job, err));
-    paint_destroy(job.paint);
+    bool is_good = target.paint != NULL;
+    for (size_t i = list->n_in_image; is_good && i < list->n; i++)
+        is_good = paint_draw(&target, &list->draws[i], err);
+    paint_destroy(target.paint);
     trim(overlay);
     return is_good;
 }

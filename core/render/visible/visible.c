@@ -23,6 +23,11 @@ struct shape_key visible_surface_key(const struct snapshot *snapshot)
     return key;
 }
 
+enum outline_method visible_outline_method(const struct snapshot *snapshot)
+{
+    return snapshot->scene.outline.method == SCENE_OUTLINE_METHOD_TRACED ? OUTLINE_TRACED : OUTLINE_MARCHING_SQUARES;
+}
+
 struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t region)
 {
     static const enum region_representation representations[] = {
@@ -38,7 +43,7 @@ struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t regio
     struct shape_key key = {
         .representation = representations[snapshot->styles[region].representation],
         .algorithm = visible_surface_key(snapshot).algorithm,
-        .outline = scene->outline.method == SCENE_OUTLINE_METHOD_TRACED ? OUTLINE_TRACED : OUTLINE_MARCHING_SQUARES,
+        .outline = visible_outline_method(snapshot),
         .has_inner_boundary = scene->points.inner_boundary,
         .nurbs_order = (int)scene->nurbs.order,
         .nurbs_sampling = scene->nurbs.sampling == SCENE_NURBS_SAMPLING_TRACES ? NURBS_TRACES : NURBS_DEGREE_BINS,
@@ -85,31 +90,7 @@ struct visible_cue visible_depth_cue(const struct camera *camera, const struct b
     return (struct visible_cue){ slope * f.x, slope * f.y, slope * f.z, 1 - slope * vec3_dot(f, nearest) };
 }
 
-static double nearest_mm(const struct camera *camera, const struct box3 *box)
-{
-    if (camera->is_parallel) {
-        struct vec3 f = camera->forward;
-        struct vec3 corner = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y,
-                                  f.z > 0 ? box->low.z : box->high.z);
-        return vec3_dot(vec3_sub(corner, camera->eye_lps_mm), f);
-    }
-    struct vec3 e = camera->eye_lps_mm;
-    struct vec3 p = vec3(fmin(fmax(e.x, box->low.x), box->high.x), fmin(fmax(e.y, box->low.y), box->high.y),
-                         fmin(fmax(e.z, box->low.z), box->high.z));
-    return vec3_length(vec3_sub(p, e));
-}
-
-/* Nearest depth of a box along the line of sight: beyond near, nothing of it is cut away. */
-static bool is_wholly_ahead(const struct camera *camera, const struct box3 *box)
-{
-    struct vec3 f = camera->forward;
-    struct vec3 corner = vec3(f.x > 0 ? box->low.x : box->high.x, f.y > 0 ? box->low.y : box->high.y,
-                              f.z > 0 ? box->low.z : box->high.z);
-    return vec3_dot(vec3_sub(corner, camera->eye_lps_mm), f) > camera->near_mm;
-}
-
-/* Whether a box lies beyond one side of what is drawn. */
-static bool is_out_of_sight(const struct mat4 *clip_from_lps_mm, const struct box3 *box)
+bool visible_is_out_of_sight(const struct mat4 *clip_from_lps_mm, const struct box3 *box)
 {
     const double *m = clip_from_lps_mm->m;
     int n_beyond[6] = { 0 };
@@ -130,21 +111,21 @@ static bool is_out_of_sight(const struct mat4 *clip_from_lps_mm, const struct bo
     return false;
 }
 
-static bool is_shown(const struct snapshot *snapshot, size_t region)
+bool visible_is_shown(const struct snapshot *snapshot, size_t region)
 {
     return snapshot->styles[region].visible && snapshot->styles[region].opacity > 0;
 }
 
-static bool is_drawn(const struct snapshot *snapshot, size_t region)
+bool visible_is_drawn(const struct snapshot *snapshot, size_t region)
 {
-    return is_shown(snapshot, region) && snapshot->plan->regions.regions[region].n_voxels > 0;
+    return visible_is_shown(snapshot, region) && snapshot->plan->regions.regions[region].n_voxels > 0;
 }
 
 size_t visible_n_translucent(const struct snapshot *snapshot)
 {
     size_t n = 0;
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++)
-        n += is_drawn(snapshot, i) && snapshot->styles[i].opacity < 1;
+        n += visible_is_drawn(snapshot, i) && snapshot->styles[i].opacity < 1;
     return n;
 }
 
@@ -156,48 +137,19 @@ static bool can_enclose(const struct snapshot *snapshot, size_t outer, size_t in
            (a == b || (a == SCENE_REPRESENTATION_UNIVELS && b == SCENE_REPRESENTATION_SURFACE));
 }
 
-/* A region inside an opaque one, in the same label layer, cannot be seen: the outer surface is closed and encloses it.
- * Unless the eye is within the outer one's box, or the near plane cuts it open. False on failure. */
-static bool find_hidden(const struct snapshot *snapshot, const struct camera *camera, size_t region,
-                        visible_bounds *bounds, void *context, bool *is_hidden, struct error *err)
+bool visible_hides(const struct snapshot *snapshot, size_t outer, size_t region)
 {
     const struct region *regions = snapshot->plan->regions.regions;
-    *is_hidden = false;
-    for (int outer = regions[region].parent; outer >= 0 && !*is_hidden; outer = regions[outer].parent) {
-        if (!is_drawn(snapshot, (size_t)outer) || snapshot->styles[outer].opacity < 1 ||
-            regions[outer].layer != regions[region].layer || !can_enclose(snapshot, (size_t)outer, region))
-            continue;
-        const struct box3 *box = bounds(context, (size_t)outer, err);
-        if (!box)
-            return false;
-        *is_hidden = !box3_is_empty(box) && is_wholly_ahead(camera, box);
-    }
-    return true;
+    return visible_is_drawn(snapshot, outer) && snapshot->styles[outer].opacity >= 1 &&
+           regions[outer].layer == regions[region].layer && can_enclose(snapshot, outer, region);
 }
 
-/* As visible_shapes says. What encloses another is never farther away, so at equal distances the inner one comes first.
- */
-static int compare_back_to_front(const void *left, const void *right)
-{
-    const struct visible_shape *a = left, *b = right;
-    if (a->order != b->order)
-        return a->order < b->order ? -1 : 1;
-    if (a->distance_mm != b->distance_mm)
-        return a->distance_mm > b->distance_mm ? -1 : 1;
-    if (a->depth != b->depth)
-        return a->depth > b->depth ? -1 : 1;
-    if (a->n_voxels != b->n_voxels)
-        return a->n_voxels < b->n_voxels ? -1 : 1;
-    return a->style < b->style ? -1 : a->style > b->style;
-}
-
-/* As find_hidden, as far as it can be told without shapes. */
+/* True unless some region hides it; where its shape and the camera decide, true. */
 static bool may_be_seen(const struct snapshot *snapshot, size_t region)
 {
     const struct region *regions = snapshot->plan->regions.regions;
     for (int outer = regions[region].parent; outer >= 0; outer = regions[outer].parent)
-        if (is_drawn(snapshot, (size_t)outer) && snapshot->styles[outer].opacity >= 1 &&
-            regions[outer].layer == regions[region].layer && can_enclose(snapshot, (size_t)outer, region))
+        if (visible_hides(snapshot, (size_t)outer, region))
             return false;
     return true;
 }
@@ -213,7 +165,7 @@ struct shape_key visible_checked_key(const struct snapshot *snapshot, size_t reg
 bool visible_is_checked(const struct snapshot *snapshot, size_t region)
 {
     const struct scene_check_style *check = &snapshot->scene.check;
-    return check->visible && is_drawn(snapshot, region) &&
+    return check->visible && visible_is_drawn(snapshot, region) &&
            (check->region[0] == 0 || strcmp(check->region, snapshot->plan->regions.regions[region].id) == 0);
 }
 
@@ -235,7 +187,7 @@ size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail
     bool is_in_space = !snapshot_is_pane(snapshot);
     size_t n = 0;
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++)
-        if (is_in_space ? is_drawn(snapshot, i) && may_be_seen(snapshot, i) : visible_is_checked(snapshot, i))
+        if (is_in_space ? visible_is_drawn(snapshot, i) && may_be_seen(snapshot, i) : visible_is_checked(snapshot, i))
             wants[n++] = want_of(snapshot, i, detail);
     return n;
 }
@@ -246,7 +198,7 @@ size_t visible_missing(const struct snapshot *snapshot, enum surface_detail deta
     bool is_in_space = !snapshot_is_pane(snapshot);
     size_t n = 0;
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
-        if (!(is_in_space ? is_drawn(snapshot, i) : visible_is_checked(snapshot, i)))
+        if (!(is_in_space ? visible_is_drawn(snapshot, i) : visible_is_checked(snapshot, i)))
             continue;
         struct shape_want want = want_of(snapshot, i, detail);
         struct error why = { 0 };
@@ -257,86 +209,6 @@ size_t visible_missing(const struct snapshot *snapshot, enum surface_detail deta
         n++;
     }
     return n;
-}
-
-struct visible_shape *visible_shapes(const struct snapshot *snapshot, const struct camera *camera,
-                                     const struct mat4 *clip_from_lps_mm, bool is_opaque, visible_bounds *bounds,
-                                     void *context, size_t *n, struct error *err)
-{
-    const struct region_set *set = &snapshot->plan->regions;
-    struct visible_shape *shapes = mem_array(set->n_regions, sizeof *shapes, UINT64_MAX, err);
-    *n = 0;
-    for (size_t i = 0; shapes && i < set->n_regions; i++) {
-        bool is_hidden = false;
-        if (!is_drawn(snapshot, i) || (snapshot->styles[i].opacity >= 1) != is_opaque)
-            continue;
-        bool is_good = find_hidden(snapshot, camera, i, bounds, context, &is_hidden, err);
-        if (is_good && is_hidden)
-            continue;
-        const struct box3 *box = is_good ? bounds(context, i, err) : NULL;
-        if (!box) {
-            free(shapes);
-            return NULL;
-        }
-        if (!box3_is_empty(box) && !is_out_of_sight(clip_from_lps_mm, box))
-            shapes[(*n)++] = (struct visible_shape){ i,
-                                                     &snapshot->styles[i],
-                                                     nearest_mm(camera, box),
-                                                     (int)snapshot->styles[i].order,
-                                                     region_depth(set, i),
-                                                     set->regions[i].n_voxels };
-    }
-    if (shapes)
-        qsort(shapes, *n, sizeof *shapes, compare_back_to_front);
-    return shapes;
-}
-
-/* ---- cross-sections --------------------------------------------------------------------------------------------- */
-
-size_t visible_palette(const struct snapshot *snapshot, size_t layer, uint8_t (*colors)[4])
-{
-    const struct region_set *set = &snapshot->plan->regions;
-    size_t n = 0;
-    memset(colors, 0, VISIBLE_N_LABELS * sizeof *colors);
-    for (size_t i = 0; i < set->n_regions; i++) {
-        int shown = (int)i;
-        while (shown >= 0 && !is_shown(snapshot, (size_t)shown))
-            shown = set->regions[shown].parent;
-        if (set->regions[i].layer != layer || shown < 0)
-            continue;
-        uint32_t rgb = snapshot->styles[shown].color_rgb;
-        uint8_t *color = colors[set->regions[i].label];
-        color[0] = (uint8_t)(rgb >> 16);
-        color[1] = (uint8_t)(rgb >> 8);
-        color[2] = (uint8_t)rgb;
-        color[3] = 255;
-        n++;
-    }
-    return n;
-}
-
-static int outermost_depth(const struct region_set *set, size_t layer)
-{
-    int depth = INT32_MAX;
-    for (size_t i = 0; i < set->n_regions; i++)
-        if (set->regions[i].layer == layer && region_depth(set, i) < depth)
-            depth = region_depth(set, i);
-    return depth;
-}
-
-void visible_layers(const struct region_set *set, size_t layers[REGION_MAX_LAYERS])
-{
-    int depths[REGION_MAX_LAYERS];
-    for (size_t layer = 0; layer < set->n_layers; layer++) { /* insertion sort, stable */
-        int depth = outermost_depth(set, layer);
-        size_t at = layer;
-        for (; at > 0 && depths[at - 1] > depth; at--) {
-            depths[at] = depths[at - 1];
-            layers[at] = layers[at - 1];
-        }
-        depths[at] = depth;
-        layers[at] = layer;
-    }
 }
 
 int visible_samples(const struct snapshot *snapshot, const struct camera *camera, int width_px, bool is_still)

@@ -1,8 +1,23 @@
 #pragma once
-/* What of a snapshot is drawn, and in which order: the same for every back end. Knows no pixels and no GL. */
+/* What a scene wants its regions drawn as: which are shown, as which shapes, how they look. The same for every back
+ * end. Their order is draw_list.h's. Knows no pixels and no GL. */
 #include "core/derive/shapes.h"
 #include "core/scene/snapshot.h"
 
+/* True if the scene shows a region: visible and not wholly clear. */
+bool visible_is_shown(const struct snapshot *snapshot, size_t region);
+/* True if it is shown and has a voxel. */
+bool visible_is_drawn(const struct snapshot *snapshot, size_t region);
+/* True if the opaque closed surface of `outer`, a region around `region`, has that of `region` within it, so that this
+ * cannot be seen from outside. */
+bool visible_hides(const struct snapshot *snapshot, size_t outer, size_t region);
+/* True if a box lies beyond one side of what the matrix shows. */
+bool visible_is_out_of_sight(const struct mat4 *clip_from_lps_mm, const struct box3 *box);
+/* How many translucent regions a picture can have at most, wherever its camera is. */
+size_t visible_n_translucent(const struct snapshot *snapshot);
+
+/* The method that the scene traces outlines by. */
+enum outline_method visible_outline_method(const struct snapshot *snapshot);
 /* What the scene wants a region drawn as; normalised. */
 struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t region);
 
@@ -43,26 +58,6 @@ struct visible_look visible_look(const struct snapshot *snapshot, size_t region,
 /* Passes of shading_normals that suit a shape. */
 int visible_shading_passes(const struct shape_key *key, uint32_t reduction);
 
-/* One shape to draw. */
-struct visible_shape {
-    size_t region;
-    const struct scene_region_style *style;
-    double distance_mm; /* from the eye to the nearest point of its box */
-    int order;          /* the style's */
-    int depth;          /* in the hierarchy */
-    uint64_t n_voxels;
-};
-
-/* The box around a region's shape, borrowed for this picture; NULL with err when there is no shape to be had. Empty
- * when the shape is, or when the region cannot be shown in this way: then there is nothing to draw. */
-typedef const struct box3 *visible_bounds(void *context, size_t region, struct error *err);
-
-/* The shapes that are wanted and can be seen: by the styles' order, then back to front (opaque ones are drawn from the
- * last one on). What lies outside clip_from_lps_mm's box is left out, and so is what an opaque closed surface encloses.
- * free(); NULL on failure. errors ERROR_MEMORY, and those of bounds */
-NODISCARD struct visible_shape *visible_shapes(const struct snapshot *snapshot, const struct camera *camera,
-                                               const struct mat4 *clip_from_lps_mm, bool is_opaque,
-                                               visible_bounds *bounds, void *context, size_t *n, struct error *err);
 /* Lines grow darker away from the viewer, so that near and far ones can be told apart: what their colour is times,
  * clamp(w + xyz . p, VISIBLE_DARKEST, 1), for a shape in this box. */
 struct visible_cue {
@@ -73,19 +68,11 @@ struct visible_cue visible_depth_cue(const struct camera *camera, const struct b
 /* Lines lie so much nearer (depth 0 near .. 1 far) than they do: on a slice through them they can be seen. */
 #define VISIBLE_LINE_DEPTH 2e-4
 
-/* In exact order a surface counts as so much nearer for each one before it in visible_shapes' order (depth 0 near .. 1
- * far), so that surfaces that coincide keep one order all over. */
+/* In exact order a translucent surface counts as so much nearer for each one before it in the draw list (depth 0 near
+ * .. 1 far), so that surfaces that coincide keep one order all over. */
 #define VISIBLE_RANK_DEPTH 5e-7
 
-/* How many of them there can be at most. */
-size_t visible_n_translucent(const struct snapshot *snapshot);
-
 enum { VISIBLE_N_LABELS = 65536 };
-/* Label to colour, RGBA, for a label layer's cross-section: of the region itself or, when that is hidden, of the
- * innermost visible one around it; alpha 0 where there is nothing to see. Returns how many labels have a colour. */
-size_t visible_palette(const struct snapshot *snapshot, size_t layer, uint8_t (*colors)[4]);
-/* Label layers from the lowest to the uppermost: those that hold outer regions lie under those that hold inner ones. */
-void visible_layers(const struct region_set *set, size_t layers[REGION_MAX_LAYERS]);
 
 /* Samples along a side of a pixel: stills take several, but a slice pane whose voxels are larger than its pixels has
  * nothing to gain. width_px is the picture's. */

@@ -1,3 +1,4 @@
+/* A shape to the graphics card: triangles with their normals, lines and points as instances. */
 #include "core/render/gl/upload.h"
 
 #include <stdlib.h>
@@ -29,10 +30,10 @@ static void pack(const float *position, const float *normal, struct vertex *vert
     vertex->normal[3] = 0;
 }
 
-static void send(const struct gl *gl, GLenum kind, const void *bytes, size_t n, uint64_t *n_bytes)
+static void send(const struct gl *gl, GLenum kind, const void *bytes, size_t n, struct gl_shape *out)
 {
     gl->BufferData(kind, (GLsizeiptr)n, bytes, GL_STATIC_DRAW);
-    *n_bytes += n;
+    out->base.n_bytes += n;
 }
 
 /* What the vertex shaders call attribute `place`. divisor 1: of an instance. */
@@ -45,7 +46,7 @@ static void attribute(const struct gl *gl, GLuint place, GLint n, GLenum type, s
 }
 
 static bool send_triangles(const struct gl *gl, const struct mesh *mesh, int n_passes, struct gl_shape *out,
-                           uint64_t *n_bytes, struct error *err)
+                           struct error *err)
 {
     float *smooth = n_passes > 0 ? shading_normals(mesh, n_passes, err) : NULL;
     struct vertex *vertices =
@@ -56,19 +57,17 @@ static bool send_triangles(const struct gl *gl, const struct mesh *mesh, int n_p
     if (!vertices)
         return false;
     out->n = (GLsizei)(3 * mesh->n_triangles);
-    out->n_triangles = mesh->n_triangles;
     gl->GenBuffers(1, &out->indices);
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, out->indices);
-    send(gl, GL_ELEMENT_ARRAY_BUFFER, mesh->indices, 3 * mesh->n_triangles * sizeof(uint32_t), n_bytes);
-    send(gl, GL_ARRAY_BUFFER, vertices, mesh->n_vertices * sizeof *vertices, n_bytes);
+    send(gl, GL_ELEMENT_ARRAY_BUFFER, mesh->indices, 3 * mesh->n_triangles * sizeof(uint32_t), out);
+    send(gl, GL_ARRAY_BUFFER, vertices, mesh->n_vertices * sizeof *vertices, out);
     attribute(gl, 0, 3, GL_FLOAT, sizeof *vertices, offsetof(struct vertex, position_lps_mm), 0);
     attribute(gl, 1, 3, GL_SHORT, sizeof *vertices, offsetof(struct vertex, normal), 0);
     free(vertices);
     return true;
 }
 
-static bool send_lines(const struct gl *gl, const struct line_set *lines, struct gl_shape *out, uint64_t *n_bytes,
-                       struct error *err)
+static bool send_lines(const struct gl *gl, const struct line_set *lines, struct gl_shape *out, struct error *err)
 {
     struct segment *segments = mem_array(lines->n_segments, sizeof *segments, UINT64_MAX, err);
     if (!segments)
@@ -78,15 +77,14 @@ static bool send_lines(const struct gl *gl, const struct line_set *lines, struct
             memcpy(segments[i].ends_lps_mm[end], &lines->positions_lps_mm[3 * (size_t)lines->indices[2 * i + end]],
                    3 * sizeof(float));
     out->n = (GLsizei)lines->n_segments;
-    send(gl, GL_ARRAY_BUFFER, segments, lines->n_segments * sizeof *segments, n_bytes);
+    send(gl, GL_ARRAY_BUFFER, segments, lines->n_segments * sizeof *segments, out);
     for (GLuint end = 0; end < 2; end++)
         attribute(gl, end, 3, GL_FLOAT, sizeof *segments, end * sizeof segments->ends_lps_mm[0], 1);
     free(segments);
     return true;
 }
 
-static bool send_points(const struct gl *gl, const struct point_set *set, struct gl_shape *out, uint64_t *n_bytes,
-                        struct error *err)
+static bool send_points(const struct gl *gl, const struct point_set *set, struct gl_shape *out, struct error *err)
 {
     struct point *points = mem_array(set->n_points, sizeof *points, UINT64_MAX, err);
     if (!points)
@@ -97,12 +95,7 @@ static bool send_points(const struct gl *gl, const struct point_set *set, struct
     }
     out->n = (GLsizei)set->n_points;
     memcpy(out->edge_lps_mm, set->edge_lps_mm, sizeof out->edge_lps_mm);
-    for (int i = 0; i < 3 && set->n_points > 0; i++) { /* around the voxels, not their centres */
-        struct vec3 e = set->edge_lps_mm[i], half = vec3(fabs(e.x) / 2, fabs(e.y) / 2, fabs(e.z) / 2);
-        out->bounds_lps_mm.low = vec3_sub(out->bounds_lps_mm.low, half);
-        out->bounds_lps_mm.high = vec3_add(out->bounds_lps_mm.high, half);
-    }
-    send(gl, GL_ARRAY_BUFFER, points, set->n_points * sizeof *points, n_bytes);
+    send(gl, GL_ARRAY_BUFFER, points, set->n_points * sizeof *points, out);
     attribute(gl, 0, 3, GL_FLOAT, sizeof *points, offsetof(struct point, vertex.position_lps_mm), 1);
     attribute(gl, 1, 3, GL_SHORT, sizeof *points, offsetof(struct point, vertex.normal), 1);
     attribute(gl, 2, 1, GL_UNSIGNED_BYTE, sizeof *points, offsetof(struct point, shade), 1);
@@ -118,24 +111,20 @@ static size_t n_primitives(const struct shape *shape)
 }
 
 bool gl_upload_shape(const struct gl *gl, const struct shape *shape, int n_passes, struct gl_shape *out,
-                     uint64_t *n_bytes, struct error *err)
+                     struct error *err)
 {
-    size_t n = n_primitives(shape);
-    if (n > (size_t)INT32_MAX / 3)
-        return error_set(err, ERROR_LIMIT, "%zu triangles, lines or points: at most %d can be drawn", n, INT32_MAX / 3);
     out->kind = shape->kind;
     out->is_faceted = shape->is_faceted;
-    out->bounds_lps_mm = shape->bounds_lps_mm;
     gl->GenVertexArrays(1, &out->vertex_array);
     gl->GenBuffers(1, &out->vertices);
     gl->BindVertexArray(out->vertex_array);
     gl->BindBuffer(GL_ARRAY_BUFFER, out->vertices);
-    bool is_good = shape->kind == SHAPE_TRIANGLES ? send_triangles(gl, shape->mesh, n_passes, out, n_bytes, err)
-                   : shape->kind == SHAPE_LINES   ? send_lines(gl, shape->lines, out, n_bytes, err)
-                                                  : send_points(gl, shape->points, out, n_bytes, err);
+    bool is_good = shape->kind == SHAPE_TRIANGLES ? send_triangles(gl, shape->mesh, n_passes, out, err)
+                   : shape->kind == SHAPE_LINES   ? send_lines(gl, shape->lines, out, err)
+                                                  : send_points(gl, shape->points, out, err);
     gl->BindVertexArray(0);
     if (!is_good || !gl_check(gl, "uploading a shape", err)) {
-        error_prefix(err, "%zu triangles, lines or points", n);
+        error_prefix(err, "%zu triangles, lines or points", n_primitives(shape));
         return false;
     }
     return true;

@@ -1,0 +1,58 @@
+#pragma once
+/* What a back end makes of shapes and grids to draw them, kept from picture to picture: within a budget of memory the
+ * least recently used is dropped first, nothing while a picture uses it, nothing outlives its plan. One policy for all
+ * back ends, which only make and free their own kind of drawable. */
+#include "core/derive/shapes.h"
+#include "core/scene/snapshot.h"
+
+/* The first member of everything that a back end makes. */
+struct drawable {
+    uint64_t n_bytes; /* memory that dropping it frees; 0: kept as long as its plan */
+    /* of shapes, filled by the cache */
+    struct box3 bounds_lps_mm; /* empty: nothing to draw, and the back end made nothing */
+    size_t n_triangles;
+    bool is_coarse; /* of reduced detail */
+};
+
+/* A back end's way to make and free. make_* give NULL on failure; shape and volume are borrowed. */
+struct drawable_maker {
+    /* n_passes: of shading_normals, for triangles. */
+    struct drawable *(*make_shape)(void *context, const struct shape *shape, int n_passes, struct error *err);
+    void (*destroy_shape)(void *context, struct drawable *drawable);
+    struct drawable *(*make_grid)(void *context, const struct volume *volume, bool is_labels, struct error *err);
+    void (*destroy_grid)(void *context, struct drawable *drawable);
+    void *context;
+};
+
+#define DRAW_CACHE_BYTES ((uint64_t)512 << 20) /* of what no begun picture uses */
+
+struct draw_cache;
+
+struct draw_cache *draw_cache_create(const struct drawable_maker *maker);
+void draw_cache_destroy(struct draw_cache *cache);
+/* No picture is begun. */
+void draw_cache_forget(struct draw_cache *cache, const struct plan *plan);
+
+/* A picture that is begun; in the caller's storage. Drawables asked for since stay until it ends. */
+struct draw_cache_use {
+    struct draw_cache *cache; /* NULL: none */
+    uint64_t picture;         /* counted from 1 */
+    struct draw_cache_use *next;
+};
+/* Drops first what exceeds the budget. */
+void draw_cache_begin(struct draw_cache *cache, struct draw_cache_use *use);
+void draw_cache_end(struct draw_cache_use *use);
+
+/* Gives the shape of a want and by how much its detail is reduced (1: not). One reference, the caller's; NULL on
+ * failure. A failure that derive_is_refusal counts as "cannot be shown". */
+typedef struct shape *draw_shape_source(struct derive *derived, const struct shape_want *want, uint32_t *reduction,
+                                        struct error *err);
+
+/* The drawable of a shape, borrowed until the picture ends. Empty bounds: the subject cannot be shown in this way,
+ * which is logged once. errors  those of source and of make_shape, ERROR_LIMIT more primitives than can be drawn */
+NODISCARD const struct drawable *draw_cache_shape(struct draw_cache *cache, struct derive *derived,
+                                                  const struct shape_want *want, draw_shape_source *source,
+                                                  struct error *err);
+/* The drawable of the plan's image or label layer, borrowed until the plan is forgotten. errors those of make_grid */
+NODISCARD const struct drawable *draw_cache_grid(struct draw_cache *cache, const struct plan *plan,
+                                                 struct subject subject, struct error *err);

@@ -1,0 +1,55 @@
+/* From a snapshot to the draw list of its picture. */
+#include "core/render/visible/draw_list.h"
+
+#include <stdlib.h>
+
+#include "core/base/mem.h"
+#include "core/render/visible/draw_overlay.h"
+#include "core/render/visible/draw_planes.h"
+#include "core/render/visible/draw_regions.h"
+
+static bool draw_opaque_regions(struct draw_list *list, const struct draw_scope *scope, struct error *err)
+{
+    return snapshot_is_pane(scope->snapshot) || draw_regions(list, scope, true, err);
+}
+
+static bool draw_translucent_regions(struct draw_list *list, const struct draw_scope *scope, struct error *err)
+{
+    return snapshot_is_pane(scope->snapshot) || draw_regions(list, scope, false, err);
+}
+
+/* What fills the list, in the order of drawing. */
+typedef bool fill(struct draw_list *list, const struct draw_scope *scope, struct error *err);
+static fill *const fills[] = {
+    draw_opaque_regions,
+    draw_planes,
+    draw_translucent_regions,
+    draw_overlay,
+};
+
+struct draw_list *draw_list_create(const struct draw_scope *scope, const struct render_options *options,
+                                   struct error *err)
+{
+    const struct snapshot *snapshot = scope->snapshot;
+    struct draw_list *list = mem_new(sizeof *list);
+    list->samples = visible_samples(snapshot, scope->camera, options->width_px, options->is_still);
+    list->is_order_exact = snapshot->scene.surface.translucent_order == SCENE_TRANSLUCENT_ORDER_EXACT;
+    list->n_layers_planned = visible_n_translucent(snapshot);
+    draw_cache_begin(scope->cache, &list->use);
+    for (size_t i = 0; i < sizeof fills / sizeof fills[0]; i++)
+        if (!fills[i](list, scope, err)) {
+            draw_list_destroy(list);
+            return NULL;
+        }
+    return list;
+}
+
+void draw_list_destroy(struct draw_list *list)
+{
+    if (!list)
+        return;
+    draw_cache_end(&list->use);
+    free(list->draws);
+    free(list->palettes);
+    free(list);
+}

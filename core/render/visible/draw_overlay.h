@@ -1,0 +1,7 @@
+#pragma once
+/* The lines over a finished picture as draws: on slice panes outlines and the check of a segmentation, on all pictures
+ * the grids of a dose. */
+#include "core/render/visible/draw.h"
+
+/* Appends them, what is on top last. errors ERROR_MEMORY */
+NODISCARD bool draw_overlay(struct draw_list *list, const struct draw_scope *scope, struct error *err);
