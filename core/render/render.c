@@ -178,7 +178,7 @@ static bool make_list(struct render_picture *picture, struct error *err)
     if (!picture->list)
         return false;
     picture->timing.n_triangles = picture->list->n_triangles;
-    picture->timing.is_light = picture->list->is_coarse;
+    picture->timing.is_coarse = picture->list->is_coarse;
     if (renderer->gl)
         picture->gl = gl_picture_begin(renderer->gl, &picture->scope, picture->list, &picture->options);
     else

@@ -299,7 +299,7 @@ void pictures_take_frame(struct session *session, const struct pipeline_frame *f
     cJSON_AddNumberToObject(json, "encode_us", (double)frame->encode_us);
     cJSON_AddNumberToObject(json, "pixels_per_mm", frame->camera.pixels_per_mm);
     cJSON_AddItemToObject(json, "clip_from_lps_mm", cJSON_CreateDoubleArray(frame->camera.clip_from_lps_mm.m, 16));
-    cJSON_AddBoolToObject(json, "is_light", frame->timing.is_light);
+    cJSON_AddBoolToObject(json, "is_light", frame->timing.is_coarse);
     cJSON_AddNumberToObject(json, "n_triangles", (double)frame->timing.n_triangles);
     cJSON *missing = missing_of(drawing);
     if (missing)

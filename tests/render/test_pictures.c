@@ -416,21 +416,21 @@ static double large_box_label(struct vec3 p)
     return fabs(p.x) < 65 && fabs(p.y) < 65 && fabs(p.z) < 65 ? 1 : 0;
 }
 
-static void light_surfaces_are_marked_and_lighter(void **state)
+static void coarse_surfaces_are_marked_and_have_fewer_triangles(void **state)
 {
     (void)state;
     struct grid grid = made_cube_grid(134);
     struct plan *plan = made_plan(&grid, large_box_label, ball, 1); /* 6 x 130 x 130 squares: 200 000 triangles */
-    struct render_timing full, light;
+    struct render_timing full, coarse;
     struct view view = shots_view_from(origin, from_front, up, 2);
     image_destroy(
         shots_take(plan, shots_scene(plan), view, &(struct render_options){ 400, 300, SURFACE_FULL, false }, &full));
-    image_destroy(
-        shots_take(plan, shots_scene(plan), view, &(struct render_options){ 400, 300, SURFACE_COARSE, false }, &light));
-    assert_false(full.is_light);
-    assert_true(light.is_light);
+    image_destroy(shots_take(plan, shots_scene(plan), view, &(struct render_options){ 400, 300, SURFACE_COARSE, false },
+                             &coarse));
+    assert_false(full.is_coarse);
+    assert_true(coarse.is_coarse);
     assert_true(full.n_triangles > 6 * 128 * 128 * 2);
-    assert_true(light.n_triangles <= COARSE_MAX_TRIANGLES);
+    assert_true(coarse.n_triangles <= COARSE_MAX_TRIANGLES);
     shots_forget(plan);
 }
 
@@ -532,7 +532,7 @@ int main(void)
         cmocka_unit_test(a_slice_in_space_leaves_out_what_is_below_the_threshold),
         cmocka_unit_test(a_grid_beyond_the_drivers_limit_is_refused_with_its_size),
         cmocka_unit_test(stills_have_smooth_edges),
-        cmocka_unit_test(light_surfaces_are_marked_and_lighter),
+        cmocka_unit_test(coarse_surfaces_are_marked_and_have_fewer_triangles),
         cmocka_unit_test(the_scene_says_how_regions_become_surfaces),
         cmocka_unit_test(equal_snapshots_give_equal_bytes),
         cmocka_unit_test(large_stills_have_no_seam_between_bands),

@@ -17,7 +17,7 @@ enum render_back_end {
 struct render_facts {
     enum render_back_end back_end;
     char vendor[96], renderer[160], version[96];
-    bool is_software; /* llvmpipe or the like: prefer light meshes and smaller moving pictures */
+    bool is_software; /* llvmpipe or the like: prefer coarse meshes and smaller moving pictures */
     int max_samples;
 };
 
@@ -30,7 +30,7 @@ struct render_options {
 struct render_timing {
     int64_t draw_us, read_us;
     size_t n_triangles;
-    bool is_light; /* some surface drawn was a reduced one */
+    bool is_coarse; /* some surface drawn was of reduced detail */
     size_t n_added_px,
         n_left_out_px; /* the check of a segmentation: what a surface encloses beyond the univels, what it leaves out */
 };
