@@ -65,6 +65,12 @@ $(GEN_STAMP): $(PROTO)
 	$(Q)$(NODE) proto/gen/main.mjs $(GEN)
 	$(Q)touch $@
 $(GEN)/%.c $(GEN)/%.h: $(GEN_STAMP) ;
+# a description of the tests' own, through the same generator
+TRIAL_STAMP := $(GEN)/.trial_stamp
+$(TRIAL_STAMP): $(wildcard tests/gen/*) $(PROTO)
+	$(Q)$(NODE) tests/gen/main.mjs $(GEN)
+	$(Q)touch $@
+$(GEN)/trial.c $(GEN)/trial_gen.c: $(TRIAL_STAMP) ;
 
 # ---- objects and programs ---------------------------------------------------------------------------------------------
 # core: everything but the main()s; wire: JSON edge shared by daemon, renderer and command line; server: the daemon's own.
@@ -153,6 +159,8 @@ $(1)-programs: $$($(1)_BIN)
 endef
 $(eval $(call c_programs,unit,test,-lcmocka))
 $(B)/unit/test_renderer: | $(B)/beamroom-render
+$(B)/obj/tests/unit/test_fields.o: | $(TRIAL_STAMP)
+$(B)/unit/test_fields: $(call obj,$(GEN)/trial.c $(GEN)/trial_gen.c)
 $(B)/unit/test_confine $(B)/unit/test_dicom_file: $(call obj,server/renderer/confine.c server/renderer/seccomp.c)
 $(eval $(call c_programs,render,test,-lcmocka))
 $(eval $(call c_programs,bench,bench,))
@@ -173,7 +181,7 @@ RUNNER := $(if $(findstring thread,$(SAN)),$(shell setarch -R true 2>/dev/null &
 # Programs run side by side, but for pictures, whose back ends use all cores themselves. The thread sanitizer is slow: its programs
 # are those that start threads of their own, or the first of those that read plans by the same ones.
 ONE_THREAD := sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pixels dicom_oracle dicom_hostile dicom_rtdose dicom_rtplan \
-    dicom_rtstruct nifti nifti_oracle nrrd unpack document message frame plan_document shape_query head ws_parser ws_conformance convert convert_edges plan_real
+    dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame plan_document shape_query head ws_parser ws_conformance convert convert_edges plan_real
 UNIT_RUN = $(if $(findstring thread,$(SAN)),$(filter-out $(ONE_THREAD:%=$(B)/unit/test_%),$(unit_BIN)),$(unit_BIN))
 PARALLEL := $(shell nproc)
 .PHONY: test-unit test-render test-api test-web test-install test test-deep lint

@@ -37,9 +37,10 @@ function checkDefault(field, enums, where) {
   if (field.type === 'direction') need(value.some((number) => number !== 0), where, 'the default has no length');
 }
 
-function checkField(field, { enums, objects, references, known }, where) {
+function checkField(field, { enums, references, known, isMessage }, where) {
   need(/^[a-z][a-z0-9_]*$/.test(field.name ?? ''), where, 'a name is a-z, 0-9 and _');
   need(types.includes(field.type), where, `unknown type ${field.type}`);
+  need(field.type !== 'json' || isMessage, where, 'only a message has JSON that is not described');
   need(typeof field.about === 'string' && field.about !== '', where, 'needs a sentence "about"');
   if (['number', 'integer', 'vec3', 'direction', 'size'].includes(field.type))
     need(Number.isFinite(field.min) && Number.isFinite(field.max) && field.min <= field.max, where, 'needs min and max');
@@ -47,7 +48,10 @@ function checkField(field, { enums, objects, references, known }, where) {
   if (field.type === 'enum') need(enums[field.enum], where, `unknown enum ${field.enum}`);
   if (['object', 'list', 'map'].includes(field.type)) need(known.has(field.object), where, `${field.object} is not an object that is described above`);
   if (['list', 'map'].includes(field.type)) need(Number.isInteger(field.max_items) && field.max_items > 0, where, 'needs max_items');
-  if (field.nullable) need(simpleTypes.includes(field.type), where, `a ${field.type} cannot be null`);
+  if (field.nullable) {
+    need([...simpleTypes, 'object', 'plane'].includes(field.type), where, `a ${field.type} cannot be null`);
+    need(field.default === undefined, where, 'is null by default, so it has no other default');
+  }
   if (field.names !== undefined) {
     need(Object.hasOwn(references, field.names), where, `names "${field.names}", which is not among the references`);
     need(field.type === 'id' || field.type === 'map', where, 'only an id and the keys of a map can name something');
@@ -79,11 +83,11 @@ export function checkedDocuments({ enums = {}, objects = {}, references = {}, ..
   const hasPlanes = groups.some(({ fields }) => fields.some(({ type }) => type === 'plane'));
   need(!hasPlanes || !objects.plane, 'plane', 'is the object of the fields of type "plane"');
   for (const [name, object] of Object.entries(objects)) {
-    checkFields(object.fields, { enums, objects, references, known }, name);
+    checkFields(object.fields, { enums, references, known }, name);
     known.add(name);
   }
   for (const [name, document] of Object.entries(description.documents)) {
-    checkFields(document.fields, { enums, objects, references, known }, name);
+    checkFields(document.fields, { enums, references, known }, name);
     // a view is checked without a plan, but for its override, which is a patch on the scene
     need(document.of_plan || !namesSomething(document, objects), name, 'names something of the plan: only a document "of_plan" may');
   }
@@ -91,6 +95,10 @@ export function checkedDocuments({ enums = {}, objects = {}, references = {}, ..
   const documents = mapValues(description.documents, (document) => ({ ...document, fields: withPlanes(document.fields) }));
   for (const [name, document] of Object.entries(documents))
     need(depthOf(document.fields, all) + documentDepth <= maxDepth, name, `objects in it are more than ${maxDepth - documentDepth} deep`);
+  for (const [name, { fields }] of Object.entries({ ...all, ...documents }))
+    for (const field of fields)
+      need(field.type !== 'object' || field.nullable || !all[field.object].fields.some(({ required }) => required), `${name}.${field.name}`,
+        `${field.object} has a required field, so it cannot be left out: make it nullable, or the entry of a list or map`);
   const used = new Set(reachable(Object.values(documents).flatMap(({ fields }) => fields), all));
   for (const name of Object.keys(all)) need(used.has(name), name, 'no document has this object');
   return { ...description, enums, references, objects: all, documents };
@@ -108,6 +116,6 @@ export function namesSomething(object, objects) {
 /** A description of messages (messages.json), checked. */
 export function checkedMessages(description) {
   for (const message of description.messages)
-    checkFields(message.fields, { enums: description.enums, objects: {}, references: {}, known: new Set() }, message.name);
+    checkFields(message.fields, { enums: description.enums, references: {}, known: new Set(), isMessage: true }, message.name);
   return description;
 }

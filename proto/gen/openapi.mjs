@@ -13,7 +13,7 @@ function schemaOf(field, objects) {
     case 'text': return nullable({ type: 'string', maxLength: field.max });
     case 'vec3': case 'direction': return nullable({ type: 'array', items: { type: 'number', ...range }, minItems: 3, maxItems: 3 });
     case 'size': return nullable({ type: 'array', items: { type: 'integer', ...range }, minItems: 2, maxItems: 2, default: field.default });
-    case 'object': return { $ref: `#/components/schemas/${field.object}` };
+    case 'object': return field.nullable ? nullable({ $ref: `#/components/schemas/${field.object}` }) : { $ref: `#/components/schemas/${field.object}` };
     case 'list': return { type: 'array', items: { $ref: `#/components/schemas/${field.object}` }, maxItems: field.max_items, ...about };
     case 'map': return { type: 'object', additionalProperties: { $ref: `#/components/schemas/${field.object}` }, maxProperties: field.max_items, ...about };
     default: return { type: 'object', ...about };

@@ -14,6 +14,7 @@
 #include "server/room/stream.h"
 #include "server/wire/json_merge.h"
 #include "server/wire/message.h"
+#include "server/wire/patch.h"
 
 static const char room_is_closed[] = "the room is closed";
 static const char hello_first[] = "the first message must be hello";
@@ -142,6 +143,7 @@ static bool apply_patch(struct room *room, const cJSON *patch, struct member *by
     if (!scene)
         return false;
     bool has_changed = !json_equal(scene, room->scene);
+    cJSON *told = patch_told(room->scene, scene, patch);
     cJSON_Delete(room->scene);
     room->scene = scene;
     if (has_changed) {
@@ -153,7 +155,7 @@ static bool apply_patch(struct room *room, const cJSON *patch, struct member *by
         view_add_input(&by->views[i], input);
         stream_send_picture(room, by, &by->views[i]);
     }
-    send_scene_patch(room, patch, by, input,
+    send_scene_patch(room, told, by, input,
                      has_changed); /* a patch that changed nothing is answered to its sender only */
     return true;
 }

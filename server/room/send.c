@@ -8,7 +8,6 @@
 #include "server/room/member_list.h"
 #include "server/wire/document.h"
 #include "server/wire/message.h"
-#include "server/wire/patch.h"
 
 static void copy_text(char *to, size_t size, const char *from)
 {
@@ -88,10 +87,9 @@ void send_plan(struct room *room)
     send_to_all(room, &message);
 }
 
-void send_scene_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input, bool to_all)
+void send_scene_patch(struct room *room, cJSON *patch, struct member *by, uint32_t input, bool to_all)
 {
-    cJSON *copy = patch_told(room->scene, patch);
-    struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->revision, .patch = copy } };
+    struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->revision, .patch = patch } };
     if (by)
         copy_text(message.scene.by, sizeof message.scene.by, by->id);
     char *text = message_write(&message);

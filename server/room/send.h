@@ -12,8 +12,9 @@ void send_welcome(struct room *room, struct member *member);
 void send_members(struct room *room);                               /* to all */
 void send_renderer_state(struct room *room, struct member *member); /* member NULL: to all */
 void send_plan(struct room *room);                                  /* to all */
-/* The accepted patch; by: who made it, or NULL; input: the maker's number. to_all false: only to the maker. */
-void send_scene_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input, bool to_all);
+/* The accepted patch; by: who made it, or NULL; input: the maker's number. to_all false: only to the maker.
+ * Consumes patch. */
+void send_scene_patch(struct room *room, cJSON *patch, struct member *by, uint32_t input, bool to_all);
 /* The document of one of the member's views; by: id of the member who moved it, "" for none. */
 void send_view(struct room *room, struct member *member, int index, const char *by);
 /* to: type of the refused message, "" when it was none; view, input: of that message, 0 when it had none. Counts as a

@@ -43,6 +43,14 @@ static cJSON *complete_map(const struct field *field, const cJSON *defaults, cJS
     return complete;
 }
 
+/* Takes json, which is a list of objects. */
+static cJSON *complete_list(const struct field *field, cJSON *json)
+{
+    cJSON *element;
+    cJSON_ArrayForEach(element, json)(void) complete_object(field->object, NULL, element);
+    return json;
+}
+
 /* The value of a field; NULL: it is left out. Takes given; given and fallback may be NULL. */
 static cJSON *complete_field(const struct field_object *object, const struct field *field, const cJSON *fallback,
                              cJSON *given)
@@ -52,13 +60,16 @@ static cJSON *complete_field(const struct field_object *object, const struct fie
         return complete_object(field->object, fallback, given);
     if (is_given && field->type == FIELD_MAP)
         return complete_map(field, fallback, given);
+    if (is_given && field->type == FIELD_LIST)
+        return complete_list(field, given);
     if (is_given)
         return given;
     cJSON_Delete(given);
     return fallback ? must(cJSON_Duplicate(fallback, true)) : field_write_default(object, field);
 }
 
-/* Takes json, an object with fields of the table alone; puts them in the table's order. */
+/* Takes json, an object with fields of the table alone, and returns it with all of them in the table's order. defaults
+ * may be NULL or no object: the table's then. */
 static cJSON *complete_object(const struct field_object *object, const cJSON *defaults, cJSON *json)
 {
     for (size_t i = 0; i < object->n_fields; i++) {
@@ -109,17 +120,40 @@ cJSON *patch_renew(const struct field_object *object, const cJSON *plan, const c
     return renewed ? renewed : must(cJSON_Duplicate(defaults, true));
 }
 
-cJSON *patch_told(const cJSON *document, const cJSON *patch)
+/* The patch that turns before into after, with every member of after; after itself where one is no object. */
+static cJSON *difference(const cJSON *before, const cJSON *after)
 {
-    if (cJSON_IsNull(patch) && document)
-        return must(cJSON_Duplicate(document, true));
-    if (!cJSON_IsObject(patch))
-        return must(cJSON_Duplicate(patch, true));
+    if (!cJSON_IsObject(before) || !cJSON_IsObject(after))
+        return must(cJSON_Duplicate(after, true));
     cJSON *told = must(cJSON_CreateObject());
-    struct json_index members;
-    json_index_init(&members, document);
-    for (const cJSON *item = patch->child; item; item = item->next)
-        cJSON_AddItemToObject(told, item->string, patch_told(json_index_find(&members, item->string), item));
-    json_index_finish(&members);
+    struct json_index olds, news;
+    json_index_init(&olds, before);
+    json_index_init(&news, after);
+    for (const cJSON *item = after->child; item; item = item->next)
+        cJSON_AddItemToObject(told, item->string, difference(json_index_find(&olds, item->string), item));
+    for (const cJSON *item = before->child; item; item = item->next)
+        if (!json_index_find(&news, item->string))
+            cJSON_AddNullToObject(told, item->string);
+    json_index_finish(&olds);
+    json_index_finish(&news);
+    return told;
+}
+
+cJSON *patch_told(const cJSON *before, const cJSON *after, const cJSON *patch)
+{
+    if (!after)
+        return must(cJSON_CreateNull());
+    if (!cJSON_IsObject(before) || !cJSON_IsObject(after) || !cJSON_IsObject(patch))
+        return difference(before, after);
+    cJSON *told = must(cJSON_CreateObject());
+    struct json_index olds, news;
+    json_index_init(&olds, before);
+    json_index_init(&news, after);
+    for (const cJSON *item = patch->child; item; item = item->next) {
+        const cJSON *old = json_index_find(&olds, item->string), *new = json_index_find(&news, item->string);
+        cJSON_AddItemToObject(told, item->string, patch_told(old, new, item));
+    }
+    json_index_finish(&olds);
+    json_index_finish(&news);
     return told;
 }

@@ -69,7 +69,7 @@ static cJSON *handled(const struct made_plan *made, cJSON *scene, const char *te
     cJSON *next = must(scene_document_patch(made->plan, made->defaults, scene, patch, &problem));
     if (json_equal(next, scene))
         abort(); /* every patch here changes something */
-    cJSON *told = patch_told(next, patch);
+    cJSON *told = patch_told(scene, next, patch);
     free(json_write(told));
     cJSON_Delete(told);
     cJSON_Delete(patch);

@@ -99,7 +99,7 @@ static void who_keeps_a_copy_is_told_what_null_became(void **state)
     cJSON *patch =
         parse("{\"regions\":{\"brain\":null,\"tumor\":{\"opacity\":0.5}},\"image\":{\"window\":{\"width\":null}}}");
     cJSON *two = patch_scene(defaults, one, patch, NULL);
-    cJSON *told = patch_told(two, patch);
+    cJSON *told = patch_told(one, two, patch);
     cJSON *copy = json_merge(one, told); /* by RFC 7396 alone, as the page does it: null would take the field away */
     assert_true(cJSON_Compare(copy, two, true));
     assert_true(cJSON_Compare(at(told, "regions.brain"), at(defaults, "regions.brain"), true));
@@ -297,7 +297,7 @@ static double patch_s(int n_regions, int first, int last)
         for (int i = 0; i < 4; i++) {
             cJSON *next = scene_document_patch(plan, scene, scene, patch, NULL);
             assert_false(json_equal(next, scene));
-            cJSON *told = patch_told(next, patch);
+            cJSON *told = patch_told(scene, next, patch);
             assert_non_null(told);
             cJSON_Delete(told);
             cJSON_Delete(next);

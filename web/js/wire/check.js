@@ -1,8 +1,10 @@
-// Checks messages against the tables made from proto/: what passes has every field, with its default when it was left out.
-// The server refuses the same messages with the same codes.
+// Checks messages and documents against the tables generated from proto/ and fills in the defaults of fields that are
+// left out. The server refuses the same messages with the same codes.
 import { enums, messages, objects } from '../../gen/wire.js';
 import { isObject } from './merge.js';
 
+const protoTables = { enums, objects };
+const leastDirection = 1e-9; // a shorter vector has no direction
 const idPattern = /^[a-z0-9-]{1,63}$/;
 const colorPattern = /^#[0-9a-f]{6}$/i;
 
@@ -31,6 +33,10 @@ function checkRange(value, field, pointer) {
   if (!(value >= low && value <= high)) throw new WireError('range', pointer, `${value} is not in ${low} to ${high}`);
 }
 
+function checkCount(n, field, pointer) {
+  if (n > field.max_items) throw new WireError('count', pointer, `more than ${field.max_items} entries`);
+}
+
 function checkList(value, length, field, pointer) {
   const whole = field.type === 'size';
   const words = `a list of ${length} ${whole ? 'whole ' : ''}numbers`;
@@ -42,15 +48,19 @@ function checkList(value, length, field, pointer) {
   return value;
 }
 
+/** The object behind a field of type object, list or map. */
+const readInner = (value, field, pointer, tables) => readObject(tables.objects[field.object], value, pointer, tables);
+
 const controlPattern = /[\x00-\x1f\x7f]/;
+/** By type of field: the checked value, or a WireError. tables: words of enums and fields of objects. */
 const readers = {
   bool: (value, field, pointer) => (need(typeof value === 'boolean', value, 'true or false', pointer), value),
   number: (value, field, pointer) => (need(Number.isFinite(value), value, 'a number', pointer), checkRange(value, field, pointer), value),
   integer: (value, field, pointer) =>
     (need(Number.isInteger(value), value, 'a whole number', pointer), checkRange(value, field, pointer), value),
-  enum: (value, field, pointer) => {
+  enum: (value, field, pointer, tables) => {
     need(typeof value === 'string', value, 'a word', pointer);
-    const words = enums[field.enum];
+    const words = tables.enums[field.enum];
     if (!words.includes(value)) throw new WireError('enum', pointer, `found "${value.slice(0, 40)}", expected one of ${words.join(', ')}`);
     return value;
   },
@@ -71,29 +81,42 @@ const readers = {
     return value;
   },
   vec3: (value, field, pointer) => checkList(value, 3, field, pointer),
+  direction: (value, field, pointer) => {
+    checkList(value, 3, field, pointer);
+    if (!(Math.hypot(...value) > leastDirection)) throw new WireError('range', pointer, 'no length, expected a direction');
+    return value;
+  },
   size: (value, field, pointer) => checkList(value, 2, field, pointer),
   json: (value, field, pointer) => (need(typeof value === 'object', value, 'an object', pointer), value),
   patch: (value, field, pointer) => (need(isObject(value), value, 'an object', pointer), value),
-  object: (value, field, pointer) => readObject(objects[field.object], value, pointer),
-  map: (value, field, pointer) => {
+  object: readInner,
+  list: (value, field, pointer, tables) => {
+    need(Array.isArray(value), value, 'a list', pointer);
+    checkCount(value.length, field, pointer);
+    return value.map((item, index) => readInner(item, field, `${pointer}/${index}`, tables));
+  },
+  map: (value, field, pointer, tables) => {
     need(isObject(value), value, 'an object', pointer);
     const entries = Object.entries(value);
-    if (entries.length > field.max_items) throw new WireError('count', pointer, `more than ${field.max_items} entries`);
+    checkCount(entries.length, field, pointer);
     return Object.fromEntries(entries.map(([name, item]) => {
       const at = `${pointer}/${escapePointer(name)}`;
       if (!isId(name)) throw new WireError('pattern', at, 'expected an id of 1 to 63 of a-z, 0-9 and -');
-      return [name, readObject(objects[field.object], item, at)];
+      return [name, readInner(item, field, at, tables)];
     }));
   },
 };
 
-function fallback(field) {
-  if (field.type === 'object') return readObject(objects[field.object], {}, '');
+function fallback(field, tables) {
+  if (field.nullable) return null;
+  if (field.type === 'object') return readInner({}, field, '', tables);
+  if (field.type === 'list') return [];
   if (field.type === 'map' || field.type === 'patch') return {};
   return field.default ?? null;
 }
 
-function readObject(fields, value, pointer, skip) {
+/** skip: a member that is not a field ("type" of a message). */
+function readObject(fields, value, pointer, tables, skip) {
   need(isObject(value), value, 'an object', pointer);
   for (const name of Object.keys(value))
     if (name !== skip && !fields.some((field) => field.name === name))
@@ -104,13 +127,13 @@ function readObject(fields, value, pointer, skip) {
     const given = Object.hasOwn(value, field.name) ? value[field.name] : undefined;
     const isAbsent = given === undefined || given === null; // null means the default
     if (isAbsent && field.required) throw new WireError('required', at, 'missing');
-    result[field.name] = isAbsent ? fallback(field) : readers[field.type](given, field, at);
+    result[field.name] = isAbsent ? fallback(field, tables) : readers[field.type](given, field, at, tables);
   }
   return result;
 }
 
-/** A whole scene or view, checked, with defaults. @param {'scene'|'view'} kind */
-export const readDocument = (kind, value) => readObject(objects[kind], value, '');
+/** A whole scene or view, checked, with defaults. @param {'scene'|'view'} kind @param tables other than those of proto/ */
+export const readDocument = (kind, value, tables = protoTables) => readObject(tables.objects[kind], value, '', tables);
 
 /**
  * A message, checked, with defaults, with its name in type.
@@ -123,7 +146,7 @@ export function readMessage(value, from) {
   need(typeof type === 'string', type, 'the name of a message', '/type');
   const description = Object.hasOwn(messages, type) ? messages[type] : undefined;
   if (!description || description.from !== from) throw new WireError('enum', '/type', `no message of the ${from} is called "${type.slice(0, 40)}"`);
-  return { type, ...readObject(description.fields, value, '', 'type') };
+  return { type, ...readObject(description.fields, value, '', protoTables, 'type') };
 }
 
 /** The same for what the server sends: a newer server's further fields are passed over. Unknown messages give null. */
