@@ -109,7 +109,7 @@ function reachable(fields, objects) {
 }
 
 /** Whether a field of the object, or of an object in it, names something of the plan. */
-export function namesSomething(object, objects) {
+function namesSomething(object, objects) {
   return object.fields.some((field) => field.names !== undefined || (field.object !== undefined && namesSomething(objects[field.object], objects)));
 }
 

@@ -27,7 +27,7 @@ function rows(fields, enums) {
   }).join('\n');
 }
 
-const tableOf = (fields, enums) => `<table><thead><tr><th>Field</th><th>Type</th><th>Range</th><th>Default</th><th>Meaning</th></tr></thead><tbody>\n${rows(fields, enums)}\n</tbody></table>\n`;
+export const tableOf = (fields, enums) => `<table><thead><tr><th>Field</th><th>Type</th><th>Range</th><th>Default</th><th>Meaning</th></tr></thead><tbody>\n${rows(fields, enums)}\n</tbody></table>\n`;
 
 export function referencePage(scene, messages, problems, codes) {
   const enums = { ...scene.enums, ...messages.enums };

@@ -1,6 +1,5 @@
 // Field tables for server/wire/fields.h: of documents (scene and view), and of messages with their structs (wire_gen.h
 // and wire_gen.c).
-import { namesSomething } from './check.mjs';
 import { declaration, enumDeclaration, lower, member, notice, objectInitializer, textBytes, upper } from './names.mjs';
 
 const structOf = (message) => `message_${lower(message.name)}`;
@@ -53,10 +52,10 @@ function fieldRow(f, structName, prefix) {
   return `    { ${parts.join(', ')} },`;
 }
 
-function table(tableName, structName, description, prefix, defaults, objects) {
+function table(tableName, structName, description, prefix, defaults) {
   const rows = description.fields.map((f) => fieldRow(f, structName, prefix)).join('\n');
   return `static const struct field ${tableName}_fields[] = {\n${rows}\n};\n` +
-    `const struct field_object ${tableName}_object = { "${description.name ?? tableName}", ${tableName}_fields, ${description.fields.length}, sizeof(struct ${structName}), &${defaults}, ${namesSomething(description, objects)} };\n\n`;
+    `const struct field_object ${tableName}_object = { "${description.name ?? tableName}", ${tableName}_fields, ${description.fields.length}, sizeof(struct ${structName}), &${defaults} };\n\n`;
 }
 
 function words(name, description, prefix) {
@@ -70,8 +69,8 @@ export function tablesSource(description, prefix) {
   let text = '';
   for (const [name, words_] of Object.entries(description.enums)) text += words(name, words_, prefix);
   for (const [name, { list }] of Object.entries(description.references)) text += `const struct field_reference ${prefix}_${name}_reference = { "${name}", "${list}" };\n\n`;
-  for (const [name, object] of Object.entries(description.objects)) text += table(`${prefix}_${name}`, `${prefix}_${name}`, object, prefix, `${prefix}_${name}_default`, description.objects);
-  for (const [name, document] of Object.entries(description.documents)) text += table(name, name, document, prefix, `${name}_default`, description.objects);
+  for (const [name, object] of Object.entries(description.objects)) text += table(`${prefix}_${name}`, `${prefix}_${name}`, object, prefix, `${prefix}_${name}_default`);
+  for (const [name, document] of Object.entries(description.documents)) text += table(name, name, document, prefix, `${name}_default`);
   return text;
 }
 
@@ -82,7 +81,7 @@ export function wireSource(scene, messages) {
   for (const message of messages.messages) {
     const name = structOf(message);
     text += `static const struct ${name} ${name}_default = ${objectInitializer(message, 'wire', {})};\n`;
-    text += table(name, name, message, 'wire', `${name}_default`, {}).replace(/^const struct field_object/m, 'static const struct field_object');
+    text += table(name, name, message, 'wire', `${name}_default`).replace(/^const struct field_object/m, 'static const struct field_object');
   }
   const rows = messages.messages.map((m) => `    [MESSAGE_${upper(m.name)}] = { "${m.name}", ${m.from === 'client'}, offsetof(struct message, ${lower(m.name)}), &${structOf(m)}_object },`);
   return text + `const struct message_description message_descriptions[MESSAGE_N_TYPES] = {\n${rows.join('\n')}\n};\n`;

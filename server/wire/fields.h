@@ -62,7 +62,6 @@ struct field_object {
     size_t n_fields; /* at most 64 */
     size_t size;     /* of the struct */
     const void *defaults;
-    bool has_references; /* a field of it, or of an object in it, names something of the plan */
 };
 
 /* Fills out (object->size bytes); fields that are absent or null get their defaults. Refuses unknown and duplicate

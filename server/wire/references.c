@@ -48,34 +48,58 @@ static bool refuse(struct search *search, const struct field *field, const struc
                        field->names->word, id);
 }
 
+/* Whether a field of the object, or of an object in it, names something: elements of lists and maps need no look else.
+ */
+static bool names_something(const struct field_object *object)
+{
+    for (size_t i = 0; i < object->n_fields; i++)
+        if (object->fields[i].names || (object->fields[i].object && names_something(object->fields[i].object)))
+            return true;
+    return false;
+}
+
 static bool check_object(struct search *search, const struct field_object *object, const cJSON *json,
                          const struct json_pointer *at);
+
+static bool check_list(struct search *search, const struct field *field, const cJSON *json,
+                       const struct json_pointer *at)
+{
+    size_t index = 0;
+    if (!names_something(field->object))
+        return true;
+    for (const cJSON *item = json->child; item; item = item->next) {
+        struct json_pointer element = { at, NULL, index++ };
+        if (!check_object(search, field->object, item, &element))
+            return false;
+    }
+    return true;
+}
+
+static bool check_map(struct search *search, const struct field *field, const cJSON *json,
+                      const struct json_pointer *at)
+{
+    bool goes_on = names_something(field->object);
+    if (!field->names && !goes_on)
+        return true;
+    for (const cJSON *item = json->child; item; item = item->next) {
+        struct json_pointer member = { at, item->string, 0 };
+        if (is_unknown(search, field, item->string))
+            return refuse(search, field, &member, item->string);
+        if (goes_on && !check_object(search, field->object, item, &member))
+            return false;
+    }
+    return true;
+}
 
 static bool check_field(struct search *search, const struct field *field, const cJSON *json,
                         const struct json_pointer *at)
 {
-    size_t index = 0;
+    const char *id = cJSON_GetStringValue(json);
     switch (field->type) {
-    case FIELD_ID:
-        return !is_unknown(search, field, cJSON_GetStringValue(json)) ||
-               refuse(search, field, at, cJSON_GetStringValue(json));
+    case FIELD_ID: return !is_unknown(search, field, id) || refuse(search, field, at, id);
     case FIELD_OBJECT: return check_object(search, field->object, json, at);
-    case FIELD_LIST:
-        for (const cJSON *item = json->child; item && field->object->has_references; item = item->next) {
-            struct json_pointer element = { at, NULL, index++ };
-            if (!check_object(search, field->object, item, &element))
-                return false;
-        }
-        return true;
-    case FIELD_MAP:
-        for (const cJSON *item = json->child; item; item = item->next) {
-            struct json_pointer member = { at, item->string, 0 };
-            if (is_unknown(search, field, item->string))
-                return refuse(search, field, &member, item->string);
-            if (!check_object(search, field->object, item, &member))
-                return false;
-        }
-        return true;
+    case FIELD_LIST: return check_list(search, field, json, at);
+    case FIELD_MAP: return check_map(search, field, json, at);
     default: return true;
     }
 }
@@ -83,7 +107,7 @@ static bool check_field(struct search *search, const struct field *field, const 
 static bool check_object(struct search *search, const struct field_object *object, const cJSON *json,
                          const struct json_pointer *at)
 {
-    for (size_t i = 0; i < object->n_fields && object->has_references; i++) {
+    for (size_t i = 0; i < object->n_fields; i++) {
         const struct field *field = &object->fields[i];
         const cJSON *value = cJSON_GetObjectItemCaseSensitive(json, field->name);
         if (!value || cJSON_IsNull(value))
@@ -128,7 +152,7 @@ static bool remove_in_field(struct search *search, const struct field *field, cJ
 static bool remove_in_object(struct search *search, const struct field_object *object, cJSON *json)
 {
     bool is_whole = true;
-    for (size_t i = 0; i < object->n_fields && object->has_references; i++) {
+    for (size_t i = 0; i < object->n_fields; i++) {
         const struct field *field = &object->fields[i];
         cJSON *value = cJSON_GetObjectItemCaseSensitive(json, field->name);
         if (!value || remove_in_field(search, field, value))
