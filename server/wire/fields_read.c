@@ -314,26 +314,30 @@ static bool read_field(const struct field *field, const cJSON *json, const struc
     return false;
 }
 
-static const struct field *find_field(const struct field_object *object, const char *name, size_t *index)
+/* Index of the field of this name; n_fields: there is none. Documents mostly have their fields in the table's order, so
+ * the search begins at start. */
+static size_t find_field(const struct field_object *object, const char *name, size_t start)
 {
-    for (size_t i = 0; i < object->n_fields; i++)
-        if (strcmp(object->fields[i].name, name) == 0) {
-            *index = i;
-            return &object->fields[i];
-        }
-    return NULL;
+    for (size_t n = 0; n < object->n_fields; n++) {
+        size_t i = (start + n) % object->n_fields;
+        if (strcmp(object->fields[i].name, name) == 0)
+            return i;
+    }
+    return object->n_fields;
 }
 
+/* seen: a bit for each field that was read. next: the field that is expected. */
 static bool read_member(const struct field_object *object, const cJSON *item, const struct json_pointer *where,
-                        uint64_t *seen, char *base, struct problem *problem)
+                        uint64_t *seen, size_t *next, char *base, struct problem *problem)
 {
-    size_t index = 0;
-    const struct field *field = find_field(object, item->string, &index);
-    if (!field)
+    size_t index = find_field(object, item->string, *next);
+    if (index == object->n_fields)
         return refuse(where, "unknown-field", problem, "is not a field of %s", object->name);
     if (*seen >> index & 1)
         return refuse(where, "duplicate", problem, "stands twice");
+    const struct field *field = &object->fields[index];
     *seen |= (uint64_t)1 << index;
+    *next = index + 1;
     if (cJSON_IsNull(item))
         return !field->is_required || refuse(where, "required", problem, "must not be null");
     if (!read_field(field, item, where, base, problem))
@@ -349,12 +353,13 @@ static bool read_members(const struct field_object *object, const cJSON *json, c
                          const struct json_pointer *where, char *base, struct problem *problem)
 {
     uint64_t seen = 0;
+    size_t next = 0;
     assert(object->n_fields <= 64);
     for (const cJSON *item = json->child; item; item = item->next) {
         struct json_pointer member = { where, item->string, 0 };
         if (skip && strcmp(item->string, skip) == 0)
             continue;
-        if (!read_member(object, item, &member, &seen, base, problem))
+        if (!read_member(object, item, &member, &seen, &next, base, problem))
             return false;
     }
     for (size_t i = 0; i < object->n_fields; i++)

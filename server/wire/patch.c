@@ -1,6 +1,7 @@
 #include "server/wire/patch.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/base/mem.h"
 #include "server/wire/json_index.h"
@@ -68,11 +69,23 @@ static cJSON *complete_field(const struct field_object *object, const struct fie
     return fallback ? must(cJSON_Duplicate(fallback, true)) : field_write_default(object, field);
 }
 
+/* Whether json has every field in the table's order, and none of them can be incomplete itself. */
+static bool is_complete(const struct field_object *object, const cJSON *json)
+{
+    const cJSON *item = json->child;
+    for (size_t i = 0; i < object->n_fields; i++, item = item->next)
+        if (object->fields[i].object || !item || cJSON_IsNull(item) ||
+            strcmp(item->string, object->fields[i].name) != 0)
+            return false;
+    return true;
+}
+
 /* Takes json, an object with fields of the table alone, and returns it with all of them in the table's order. defaults
  * may be NULL or no object: the table's then. */
 static cJSON *complete_object(const struct field_object *object, const cJSON *defaults, cJSON *json)
 {
-    for (size_t i = 0; i < object->n_fields; i++) {
+    size_t n = is_complete(object, json) ? 0 : object->n_fields;
+    for (size_t i = 0; i < n; i++) {
         const struct field *field = &object->fields[i];
         cJSON *given = cJSON_GetObjectItemCaseSensitive(json, field->name);
         const cJSON *fallback = cJSON_GetObjectItemCaseSensitive(defaults, field->name);
