@@ -3,7 +3,9 @@
 #include <string.h>
 
 #include "core/base/clock.h"
-#include "server/http/api_inner.h"
+#include "server/http/api_handlers.h"
+#include "server/http/api_pictures.h"
+#include "server/http/api_queries.h"
 #include "server/http/etag.h"
 
 /* The call's first id as a room; NULL: answered with not-found. */
@@ -190,7 +192,7 @@ void api_room_snapshot(struct api *api, struct call *call)
         return;
     }
     if (!plan.default_scene) { /* closed while nobody was in the room: loaded for this picture */
-        api_ask(api, call, plan_id, api_new_query("ready"), snapshot_when_ready);
+        api_when_ready(api, call, plan_id, snapshot_when_ready);
         return;
     }
     cJSON *view = api_view_parameter(call);
@@ -198,7 +200,7 @@ void api_room_snapshot(struct api *api, struct call *call)
         return;
     cJSON *shown = room_scene_for_view(room, view, &problem);
     if (shown) {
-        api_render(api, call, plan_id, shown, &revision, view, call_query(call, "format"), quality);
+        api_picture_request(api, call, plan_id, shown, &revision, view, call_query(call, "format"), quality);
     } else {
         problem_below(&problem, "/view");
         call_answer_problem(call, &problem);

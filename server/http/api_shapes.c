@@ -4,7 +4,8 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "server/http/api_inner.h"
+#include "server/http/api_handlers.h"
+#include "server/http/api_queries.h"
 #include "server/wire/document.h"
 #include "server/wire/shape_query.h"
 
@@ -17,7 +18,7 @@ static const char *media_type(enum mesh_format format)
 }
 
 /* One call under way. */
-struct shape_wish {
+struct shape_call {
     char plan_id[64], region[64];
     struct shape_query query;
     cJSON *body;   /* the figures, while pictures are timed */
@@ -26,37 +27,37 @@ struct shape_wish {
     int n_drawn; /* -1: the first, which is not counted, is still to come */
 };
 
-static void wish_destroy(struct api *api, struct shape_wish *wish)
+static void shape_call_destroy(struct api *api, struct shape_call *request)
 {
-    api->n_files -= wish->query.is_file;
-    api->n_timings -= !wish->query.is_file && wish->query.n_frames > 0;
-    cJSON_Delete(wish->body);
-    cJSON_Delete(wish->render);
-    free(wish);
+    api->n_files -= request->query.is_file;
+    api->n_timings -= !request->query.is_file && request->query.n_frames > 0;
+    cJSON_Delete(request->body);
+    cJSON_Delete(request->render);
+    free(request);
 }
 
-static void refuse(struct call *call, struct shape_wish *wish, const struct problem *problem)
+static void refuse(struct call *call, struct shape_call *request, const struct problem *problem)
 {
-    wish_destroy(call->api, wish);
+    shape_call_destroy(call->api, request);
     call_answer_problem(call, problem);
 }
 
-static void file_came(struct call *call, struct shape_wish *wish, struct packet *answer)
+static void file_came(struct call *call, struct shape_call *request, struct packet *answer)
 {
     struct problem broken;
     if (!answer->blob) {
         problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no surface");
-        refuse(call, wish, &broken);
+        refuse(call, request, &broken);
         return;
     }
     char disposition[192]; /* ids need no quoting */
-    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%.63s-%.63s.%s\"", wish->plan_id,
-                   wish->region, mesh_format_word(wish->query.format));
+    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%.63s-%.63s.%s\"", request->plan_id,
+                   request->region, mesh_format_word(request->query.format));
     call_add_header(call, "Content-Disposition", disposition);
     uint8_t *bytes = answer->blob;
     answer->blob = NULL;
-    const char *type = media_type(wish->query.format);
-    wish_destroy(call->api, wish);
+    const char *type = media_type(request->query.format);
+    shape_call_destroy(call->api, request);
     call_answer_bytes(call, 200, type, bytes, answer->n_blob);
 }
 
@@ -70,41 +71,41 @@ static int compare_numbers(const void *a, const void *b)
 
 static void picture_came(void *context, struct packet *answer, const struct problem *problem);
 
-static void ask_picture(struct call *call, struct shape_wish *wish)
+static void request_picture(struct call *call, struct shape_call *request)
 {
     const struct api *api = call->api;
-    (void)fleet_request(net_fleet(api->net), wish->plan_id, wish->render, picture_came, call);
+    (void)fleet_request(net_fleet(api->net), request->plan_id, request->render, picture_came, call);
 }
 
 static void picture_came(void *context, struct packet *answer, const struct problem *problem)
 {
     struct call *call = context;
-    struct shape_wish *wish = call->context;
+    struct shape_call *request = call->context;
     if (problem) {
-        refuse(call, wish, problem);
+        refuse(call, request, problem);
         return;
     }
-    if (wish->n_drawn >= 0)
-        wish->draw_ms[wish->n_drawn] = json_number(answer->json, "render_us", 0) / 1000;
-    if (++wish->n_drawn < wish->query.n_frames) {
-        ask_picture(call, wish);
+    if (request->n_drawn >= 0)
+        request->draw_ms[request->n_drawn] = json_number(answer->json, "render_us", 0) / 1000;
+    if (++request->n_drawn < request->query.n_frames) {
+        request_picture(call, request);
         return;
     }
-    qsort(wish->draw_ms, (size_t)wish->n_drawn, sizeof wish->draw_ms[0], compare_numbers);
-    double median_ms = wish->draw_ms[wish->n_drawn / 2];
-    cJSON *body = wish->body;
-    wish->body = NULL;
+    qsort(request->draw_ms, (size_t)request->n_drawn, sizeof request->draw_ms[0], compare_numbers);
+    double median_ms = request->draw_ms[request->n_drawn / 2];
+    cJSON *body = request->body;
+    request->body = NULL;
     cJSON_AddNumberToObject(body, "draw_ms", median_ms);
     if (median_ms > 0)
         cJSON_AddNumberToObject(body, "frames_per_second", 1000 / median_ms);
-    wish_destroy(call->api, wish);
+    shape_call_destroy(call->api, request);
     call_answer_json(call, 200, body);
 }
 
 /* The region alone in the plan's own scene, at full detail, as while it moves. */
-static cJSON *timed_picture(const struct fleet_plan *plan, const struct shape_wish *wish, struct problem *problem)
+static cJSON *timed_picture(const struct fleet_plan *plan, const struct shape_call *request, struct problem *problem)
 {
-    cJSON *patch = shape_query_scene(&wish->query, wish->region, plan->default_scene);
+    cJSON *patch = shape_query_scene(&request->query, request->region, plan->default_scene);
     cJSON *scene = scene_document_patch(plan->document, plan->default_scene, plan->default_scene, patch, problem);
     cJSON_Delete(patch);
     cJSON *size = cJSON_CreateObject();
@@ -130,35 +131,35 @@ static void shape_came(void *context, struct packet *answer, const struct proble
 {
     struct call *call = context;
     const struct api *api = call->api;
-    struct shape_wish *wish = call->context;
+    struct shape_call *request = call->context;
     struct fleet_plan plan;
     struct problem broken;
     if (problem) {
-        refuse(call, wish, problem);
+        refuse(call, request, problem);
         return;
     }
-    if (wish->query.is_file) {
-        file_came(call, wish, answer);
+    if (request->query.is_file) {
+        file_came(call, request, answer);
         return;
     }
-    if (wish->query.n_frames == 0) {
-        wish_destroy(call->api, wish);
-        api_query_came(call, answer, NULL);
+    if (request->query.n_frames == 0) {
+        shape_call_destroy(call->api, request);
+        api_query_answer(call, answer, NULL);
         return;
     }
-    wish->body = cJSON_DetachItemFromObjectCaseSensitive(answer->json, "body");
-    if (!wish->body)
+    request->body = cJSON_DetachItemFromObjectCaseSensitive(answer->json, "body");
+    if (!request->body)
         problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no body");
-    else if (!fleet_plan_find(net_fleet(api->net), wish->plan_id, &plan) || !plan.document || !plan.default_scene)
+    else if (!fleet_plan_find(net_fleet(api->net), request->plan_id, &plan) || !plan.document || !plan.default_scene)
         problem_set(&broken, PROBLEM_BUSY, "", "", "the plan was closed meanwhile");
     else
-        wish->render = timed_picture(&plan, wish, &broken);
-    if (!wish->render) {
-        refuse(call, wish, &broken);
+        request->render = timed_picture(&plan, request, &broken);
+    if (!request->render) {
+        refuse(call, request, &broken);
         return;
     }
-    wish->n_drawn = -1;
-    ask_picture(call, wish);
+    request->n_drawn = -1;
+    request_picture(call, request);
 }
 
 /* Both hold much for long. */
@@ -184,7 +185,7 @@ void api_plan_surface(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    cJSON *query = api_new_query("surface");
+    cJSON *query = api_query_create("surface");
     cJSON_AddStringToObject(query, "region", call->ids[1]);
     for (const char *const *name = shape_query_names; *name; name++)
         if (call_query(call, *name))
@@ -194,12 +195,12 @@ void api_plan_surface(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    struct shape_wish *wish = mem_new(sizeof *wish);
-    (void)snprintf(wish->plan_id, sizeof wish->plan_id, "%s", call->ids[0]);
-    (void)snprintf(wish->region, sizeof wish->region, "%s", call->ids[1]);
-    wish->query = shape;
+    struct shape_call *request = mem_new(sizeof *request);
+    (void)snprintf(request->plan_id, sizeof request->plan_id, "%s", call->ids[0]);
+    (void)snprintf(request->region, sizeof request->region, "%s", call->ids[1]);
+    request->query = shape;
     api->n_files += shape.is_file;
     api->n_timings += !shape.is_file && shape.n_frames > 0;
-    call->context = wish;
-    api_ask(api, call, wish->plan_id, query, shape_came);
+    call->context = request;
+    api_query_send(api, call, request->plan_id, query, shape_came);
 }

@@ -6,7 +6,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
-#include "server/http/api_inner.h"
+#include "server/http/api_handlers.h"
 
 extern const unsigned char openapi_json[]; /* generated from proto/http.json */
 extern const size_t openapi_json_bytes;

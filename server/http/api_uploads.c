@@ -1,11 +1,11 @@
-/* Plans that come as archives, and go again. */
-#include <stdio.h>
+/* Uploading an archive as a plan, and deleting an uploaded plan. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "core/base/log.h"
-#include "server/http/api_inner.h"
+#include "server/http/api_handlers.h"
+#include "server/http/api_jobs.h"
 
 /* The body is in a file by now: server/http/intake.h. */
 void api_plan_upload(struct api *api, struct call *call)
@@ -25,32 +25,10 @@ void api_plan_upload(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    struct api_job *job = api_job_new(api, "upload");
+    struct api_job *job = api_job_create(api, "upload");
     job->upload = number;
     log_info("upload %llu: %llu bytes", (unsigned long long)number, (unsigned long long)call->n_upload);
     api_job_answer(api, call, job);
-}
-
-void api_update_upload(struct api *api, struct api_job *job)
-{
-    struct fleet_upload upload;
-    if (!fleet_upload_find(net_fleet(api->net), job->upload, &upload)) {
-        job->state = JOB_FAILED;
-        problem_set(&job->problem, PROBLEM_NOT_FOUND, "", "", "the upload is forgotten");
-        return;
-    }
-    static const int states[] = { [UPLOAD_QUEUED] = JOB_QUEUED,
-                                  [UPLOAD_RUNNING] = JOB_RUNNING,
-                                  [UPLOAD_DONE] = JOB_DONE,
-                                  [UPLOAD_FAILED] = JOB_FAILED,
-                                  [UPLOAD_CANCELLED] = JOB_CANCELLED };
-    job->state = (enum api_job_state)states[upload.state];
-    (void)snprintf(job->phase, sizeof job->phase, "%s", upload.phase);
-    job->percent = upload.percent;
-    if (upload.plan_id)
-        (void)snprintf(job->plan_id, sizeof job->plan_id, "%s", upload.plan_id);
-    if (upload.problem)
-        job->problem = *upload.problem;
 }
 
 void api_plan_delete(struct api *api, struct call *call)

@@ -1,7 +1,6 @@
 #define _GNU_SOURCE
-/* The HTTP thread and its set of links. The thread takes connections over from the acceptor, counts them, tells each
- * link what epoll reports of its sockets, lets the library run, ends the links whose time is over, and frees a link
- * once both of its sides have ended. */
+/* The HTTP thread: takes connections from the acceptor, passes epoll's events to the links, runs the library, ends
+ * links that are late, and frees a link when both of its sides have ended. */
 #include <errno.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -17,93 +16,20 @@
 #include "core/base/mem.h"
 #include "core/base/queue.h"
 #include "server/http/head.h"
-#include "server/http/relay_inner.h"
+#include "server/http/relay_count.h"
+#include "server/http/relay_link.h"
 #include "server/wire/refusal.h"
 
 enum { TICK_MS = 500 };
 
-struct handed { /* a connection on its way from the acceptor */
+struct new_connection { /* a connection from the acceptor that the thread has not taken yet */
     int socket;
     struct address peer, client;
 };
 
-static char wake_tag, server_tag; /* their addresses mark events that are no link's */
-
-/* ---- counting --------------------------------------------------------------------------------------------------- */
-
-static size_t count_address(const struct relay *relay, const struct address *counted)
-{
-    size_t n = 0;
-    for (const struct relay_link *link = relay->links; link; link = link->next)
-        n += link->is_counted && address_is_equal(&link->counted, counted);
-    return n;
-}
-
-void relay_uncount(struct relay_link *link)
-{
-    link->relay->n_counted -= link->is_counted;
-    link->is_counted = false;
-}
-
-/* One whose request waits inside the library keeps its place there, and a descriptor: it counts, or one client could
- * ask and go for ever. */
-void relay_uncount_ended(struct relay_link *link)
-{
-    if (link->server < 0)
-        relay_uncount(link);
-}
-
-bool relay_count(struct relay_link *link, const struct address *client, struct problem *problem)
-{
-    struct relay *relay = link->relay;
-    struct address counted = address_counted(client);
-    if (link->is_counted && address_is_equal(&link->counted, &counted))
-        return true;
-    size_t n_before = count_address(relay, &counted), n_all = relay->n_counted - link->is_counted;
-    if (n_all >= RELAY_MAX_CONNECTIONS || n_before >= RELAY_MAX_PER_ADDRESS) {
-        problem_set(problem, PROBLEM_LIMIT, "", "", "too many connections: at most %d in all, %d from one address",
-                    RELAY_MAX_CONNECTIONS, RELAY_MAX_PER_ADDRESS);
-        problem->retry_after_ms = RELAY_RETRY_MS;
-        return false;
-    }
-    relay->n_counted += !link->is_counted;
-    link->is_counted = true;
-    link->counted = counted;
-    return true;
-}
-
-/* A flood of connections must not become one of lines. */
-void relay_log_refusal(struct relay *relay)
-{
-    int64_t now_us = clock_now_us();
-    relay->n_refused++;
-    if (relay->logged_us && now_us - relay->logged_us < 10000000)
-        return;
-    log_warn("http: too many connections: %zu refused", relay->n_refused);
-    relay->logged_us = now_us;
-    relay->n_refused = 0;
-}
+static char wake_tag, server_tag; /* their addresses mark the events of wake_fd and of the library */
 
 /* ---- the set of links ------------------------------------------------------------------------------------------- */
-
-void relay_touch(struct relay_link *link)
-{
-    if (link->is_touched)
-        return;
-    link->is_touched = true;
-    link->next_touched = link->relay->touched;
-    link->relay->touched = link;
-}
-
-void relay_end_oldest_lingering(struct relay *relay)
-{
-    struct relay_link *oldest = NULL;
-    for (struct relay_link *link = relay->links; link; link = link->next)
-        if (link->state == LINK_LINGER)
-            oldest = link; /* new links stand in front */
-    if (oldest)
-        relay_link_die(oldest);
-}
 
 struct relay_link *relay_find(struct relay *relay, int socket)
 {
@@ -117,30 +43,30 @@ struct relay_link *relay_find(struct relay *relay, int socket)
 
 /* ---- the thread ------------------------------------------------------------------------------------------------- */
 
-static void take_over(struct relay *relay, const struct handed *handed)
+static void add_link(struct relay *relay, const struct new_connection *connection)
 {
     struct problem problem;
     struct relay_link *link = mem_new(sizeof *link);
     int on = 1;
     *link = (struct relay_link){ .next = relay->links,
                                  .relay = relay,
-                                 .client = handed->socket,
+                                 .client = connection->socket,
                                  .inner = -1,
                                  .server = -1,
-                                 .peer = handed->peer,
+                                 .peer = connection->peer,
                                  .client_readable = true };
     link->head_us = link->moved_us = clock_now_us();
     body_begin(&link->body, false, 0);
     if (relay->links)
         relay->links->previous = link;
     relay->links = link;
-    (void)setsockopt(handed->socket, IPPROTO_TCP, TCP_NODELAY, &on,
-                     sizeof on); /* answers come in as few pieces as we can */
+    (void)setsockopt(connection->socket, IPPROTO_TCP, TCP_NODELAY, &on,
+                     sizeof on); /* answers are written in few large pieces */
     struct epoll_event event = { .events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET,
                                  .data.u64 = (uint64_t)(uintptr_t)link };
-    if (epoll_ctl(relay->epoll, EPOLL_CTL_ADD, handed->socket, &event) != 0) {
+    if (epoll_ctl(relay->epoll, EPOLL_CTL_ADD, connection->socket, &event) != 0) {
         relay_link_die(link);
-    } else if (!relay_count(link, &handed->client, &problem)) {
+    } else if (!relay_count(link, &connection->client, &problem)) {
         (void)refusal_drain(link->client, HEAD_MAX_BYTES);
         relay_log_refusal(relay);
         relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
@@ -149,20 +75,19 @@ static void take_over(struct relay *relay, const struct handed *handed)
     }
 }
 
-static void take_queued(struct relay *relay)
+static void add_queued(struct relay *relay)
 {
-    for (struct handed *handed; (handed = queue_try_take(relay->queue)); free(handed))
-        take_over(relay, handed);
+    for (struct new_connection *connection; (connection = queue_try_take(relay->queue)); free(connection))
+        add_link(relay, connection);
 }
 
-/* Once for each event of epoll: the link of an event may have died by an event before it, and is freed after all of
- * them. */
+/* One event of epoll. Its link may have died by an earlier event of the same round; links are freed after the round. */
 static void handle_event(struct relay *relay, const struct epoll_event *event)
 {
     if (event->data.u64 == (uint64_t)(uintptr_t)&wake_tag) {
         uint64_t n;
-        if (read(relay->wake, &n, sizeof n) == sizeof n)
-            take_queued(relay);
+        if (read(relay->wake_fd, &n, sizeof n) == sizeof n)
+            add_queued(relay);
         while (atomic_load(&relay->is_to_hang))
             (void)pause();
         atomic_bool *pinged = atomic_exchange(&relay->pinged, NULL);
@@ -180,7 +105,7 @@ static void handle_event(struct relay *relay, const struct epoll_event *event)
         link->inner_hung_up = link->inner_hung_up || (event->events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR));
     } else {
         if (event->events & (EPOLLHUP | EPOLLERR)) {
-            relay_link_die(link); /* both ways are closed: nobody takes an answer */
+            relay_link_die(link); /* both directions are closed */
             return;
         }
         link->client_readable = link->client_readable || (event->events & (EPOLLIN | EPOLLRDHUP));
@@ -191,7 +116,7 @@ static void handle_event(struct relay *relay, const struct epoll_event *event)
 static void handle_touched(struct relay *relay)
 {
     struct relay_link *link = relay->touched, *next;
-    relay->touched = NULL; /* what is touched from here on waits for the next round */
+    relay->touched = NULL; /* links touched from here on are advanced in the next round */
     for (; link; link = next) {
         next = link->next_touched;
         link->is_touched = false;
@@ -199,7 +124,7 @@ static void handle_touched(struct relay *relay)
     }
 }
 
-/* True once in each window that is over with too few bytes; the next one has begun then. */
+/* True when a window has ended with too few bytes. Begins the next one. */
 static bool is_window_missed(struct relay_link *link, int64_t now_us)
 {
     if (now_us - link->window_us < RELAY_WINDOW_MS * INT64_C(1000))
@@ -209,11 +134,11 @@ static bool is_window_missed(struct relay_link *link, int64_t now_us)
     return is_missed;
 }
 
-static void look_at_answer(struct relay_link *link, int64_t now_us)
+static void check_answer(struct relay_link *link, int64_t now_us)
 {
     int64_t still_us = now_us - link->moved_us;
     struct problem problem;
-    if (link->n_out == 0) { /* the client has taken all there is: it waits for the library */
+    if (link->n_out == 0) { /* the client has taken all bytes and waits for the library */
         relay_link_begin_window(link);
         if (still_us > RELAY_ANSWER_MS * INT64_C(1000)) {
             problem_set(&problem, PROBLEM_TIMEOUT, "", "", "no answer within %d s", RELAY_ANSWER_MS / 1000);
@@ -222,12 +147,11 @@ static void look_at_answer(struct relay_link *link, int64_t now_us)
     } else if (still_us > RELAY_IDLE_MS * INT64_C(1000) || is_window_missed(link, now_us)) {
         relay_link_die(link);
     } else {
-        relay_touch(
-            link); /* epoll tells of room only once much has been taken; a slow client's progress is looked for here */
+        relay_touch(link); /* epoll reports room only when much was taken: send again to see a slow client's progress */
     }
 }
 
-static void look_at_times(struct relay *relay, int64_t now_us)
+static void check_times(struct relay *relay, int64_t now_us)
 {
     struct problem problem;
     for (struct relay_link *link = relay->links; link; link = link->next) {
@@ -251,10 +175,11 @@ static void look_at_times(struct relay *relay, int64_t now_us)
                 relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
             }
             break;
-        case LINK_ANSWER: look_at_answer(link, now_us); break;
+        case LINK_ANSWER: check_answer(link, now_us); break;
         case LINK_LINGER: is_late = still_ms > RELAY_LINGER_SILENT_MS; break;
         case LINK_DEAD:
-            if (!link->is_started) { /* the library had no memory for it and closed its end without a word */
+            if (!link->is_started) { /* the library had no memory for the connection and closed its end without a report
+                                      */
                 link->server = -1;
                 relay_uncount(link);
                 relay->has_dead = true;
@@ -266,7 +191,7 @@ static void look_at_times(struct relay *relay, int64_t now_us)
     }
 }
 
-/* Frees the links that are over on both sides. */
+/* Frees the links whose both sides have ended. */
 static void free_dead(struct relay *relay)
 {
     struct relay_link *next;
@@ -304,24 +229,24 @@ static void *work(void *argument)
         int64_t now_us = clock_now_us();
         if (now_us - tick_us >= TICK_MS * INT64_C(1000)) {
             tick_us = now_us;
-            look_at_times(relay, now_us);
+            check_times(relay, now_us);
         }
         free_dead(relay);
     }
-    (void)relay->server.run(relay->server.context); /* answers that came while it was stopped */
+    (void)relay->server.run(relay->server.context); /* answers that came meanwhile */
     for (struct relay_link *link = relay->links; link; link = link->next)
         if (link->state == LINK_ANSWER) {
             link->inner_readable = true;
-            relay_link_pump(link);
+            relay_link_pass_answer(link);
         }
     return NULL;
 }
 
-static void drop_handed(void *item)
+static void connection_drop(void *item)
 {
-    struct handed *handed = item;
-    (void)close(handed->socket);
-    free(handed);
+    struct new_connection *connection = item;
+    (void)close(connection->socket);
+    free(connection);
 }
 
 static bool watch(struct relay *relay, int fd, void *tag)
@@ -337,10 +262,10 @@ struct relay *relay_create(const struct relay_options *options, struct error *er
     atomic_init(&relay->is_stopping, false);
     atomic_init(&relay->is_to_hang, false);
     atomic_init(&relay->pinged, NULL);
-    relay->queue = queue_create(RELAY_MAX_QUEUED, drop_handed);
+    relay->queue = queue_create(RELAY_MAX_QUEUED, connection_drop);
     relay->epoll = epoll_create1(EPOLL_CLOEXEC);
-    relay->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    if (relay->epoll < 0 || !watch(relay, relay->wake, &wake_tag)) {
+    relay->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (relay->epoll < 0 || !watch(relay, relay->wake_fd, &wake_tag)) {
         error_set(err, ERROR_IO, "the HTTP thread has no descriptors: %s", strerror(errno));
         relay_destroy(relay);
         return NULL;
@@ -360,8 +285,8 @@ bool relay_serve(struct relay *relay, const struct relay_server *server, struct 
 void relay_wake(struct relay *relay)
 {
     uint64_t one = 1;
-    if (write(relay->wake, &one, sizeof one) != sizeof one)
-        log_debug("http: the thread is woken already"); /* the counter is full: it will see all there is */
+    if (write(relay->wake_fd, &one, sizeof one) != sizeof one)
+        log_debug("http: the thread is woken already"); /* the counter is full: the thread is about to run */
 }
 
 void relay_stop(struct relay *relay)
@@ -385,7 +310,7 @@ void relay_destroy(struct relay *relay)
         return;
     relay_stop(relay);
     relay_close_fd(&relay->epoll);
-    relay_close_fd(&relay->wake);
+    relay_close_fd(&relay->wake_fd);
     queue_destroy(relay->queue);
     for (struct relay_link *link = relay->links, *next; link; link = next) {
         next = link->next;
@@ -396,9 +321,9 @@ void relay_destroy(struct relay *relay)
 
 void relay_add(struct relay *relay, int socket, const struct address *peer, const struct address *client)
 {
-    struct handed *handed = mem_new(sizeof *handed);
-    *handed = (struct handed){ socket, *peer, *client };
-    if (queue_try_put(relay->queue, handed)) {
+    struct new_connection *connection = mem_new(sizeof *connection);
+    *connection = (struct new_connection){ socket, *peer, *client };
+    if (queue_try_put(relay->queue, connection)) {
         relay_wake(relay);
         return;
     }
@@ -408,7 +333,7 @@ void relay_add(struct relay *relay, int socket, const struct address *peer, cons
     problem.retry_after_ms = RELAY_RETRY_MS;
     (void)refusal_drain(socket, HEAD_MAX_BYTES);
     refusal_send(socket, &problem);
-    drop_handed(handed);
+    connection_drop(connection);
 }
 
 void relay_ping(struct relay *relay, atomic_bool *beat)

@@ -1,7 +1,9 @@
 #define _GNU_SOURCE
-/* One link: one client's connection. It reads and checks a request's head, passes head and body to the library, passes
- * the answer back, and only then looks at the next request. A refused client may still be sending: its bytes are read
- * for a while after the answer, so that the answer reaches it. */
+/* Advances one link: receives and checks a request, passes it to the library and the answer back, and ends the link. A
+ * refused client may still be sending: its bytes are read for a while after the answer, because closing a socket with
+ * unread bytes takes the answer back. */
+#include "server/http/relay_link.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,14 +12,13 @@
 
 #include "core/base/clock.h"
 #include "server/http/head.h"
-#include "server/http/relay_inner.h"
+#include "server/http/relay_count.h"
 #include "server/wire/refusal.h"
 
 enum {
-    IN_SIZE = 64 << 10,  /* of a client's bytes at once: at least a head */
-    DROP_SIZE = 1 << 20, /* of a refused body at once */
-    N_CONTINUE =
-        25, /* bytes of "HTTP/1.1 100 Continue" with its empty line, the one answer that may come before the answer */
+    IN_SIZE = 64 << 10,  /* bytes from a client held at once: at least a whole head */
+    DROP_SIZE = 1 << 20, /* bytes of a refused request dropped before other links have their turn */
+    N_CONTINUE = 25,     /* bytes of "HTTP/1.1 100 Continue" and its empty line, which may precede the answer */
 };
 
 /* ---- ends ------------------------------------------------------------------------------------------------------- */
@@ -30,7 +31,7 @@ static void drop_bytes(struct relay_link *link)
     link->n_in = link->n_forward = link->n_out = link->out_at = 0;
 }
 
-/* The client's side is over. What the library still has of it meets a closed end. */
+/* Closes the client's side. A request still in the library meets a closed socket. */
 void relay_link_die(struct relay_link *link)
 {
     if (link->state == LINK_LINGER)
@@ -44,8 +45,17 @@ void relay_link_die(struct relay_link *link)
     relay_unwatch_and_close(link->relay, &link->inner);
 }
 
-/* The answer is out: a socket that is closed with bytes unread takes the answer back, so what still comes is read for a
- * while. */
+void relay_end_oldest_lingering(struct relay *relay)
+{
+    struct relay_link *oldest = NULL;
+    for (struct relay_link *link = relay->links; link; link = link->next)
+        if (link->state == LINK_LINGER)
+            oldest = link; /* new links are put in front */
+    if (oldest)
+        relay_link_die(oldest);
+}
+
+/* The answer was sent: closes our direction and drops what the client still sends. */
 static void linger(struct relay_link *link, uint64_t max_dropped)
 {
     relay_uncount_ended(link);
@@ -81,18 +91,18 @@ void relay_link_begin_window(struct relay_link *link)
 
 /* ---- the answer ------------------------------------------------------------------------------------------------- */
 
-static bool is_for_later(void)
+static bool would_block(void)
 {
     return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
 }
 
-void relay_link_pump(struct relay_link *link)
+void relay_link_pass_answer(struct relay_link *link)
 {
     struct relay *relay = link->relay;
     for (;;) {
         if (link->n_out > 0) {
             ssize_t n = send(link->client, link->out + link->out_at, link->n_out, MSG_NOSIGNAL | MSG_DONTWAIT);
-            if (n < 0 && is_for_later())
+            if (n < 0 && would_block())
                 return;
             if (n < 0) {
                 relay_link_die(link);
@@ -111,7 +121,7 @@ void relay_link_pump(struct relay_link *link)
         if (!link->inner_readable || link->inner < 0)
             return;
         ssize_t n = recv(link->inner, relay->bytes, sizeof relay->bytes, MSG_DONTWAIT);
-        if (n < 0 && is_for_later()) {
+        if (n < 0 && would_block()) {
             link->inner_readable = false;
             return;
         }
@@ -124,7 +134,7 @@ void relay_link_pump(struct relay_link *link)
         link->n_answered += (uint64_t)n;
         link->moved_us = clock_now_us();
         ssize_t n_sent = send(link->client, relay->bytes, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT);
-        if (n_sent < 0 && !is_for_later()) {
+        if (n_sent < 0 && !would_block()) {
             relay_link_die(link);
             return;
         }
@@ -144,7 +154,7 @@ void relay_link_pump(struct relay_link *link)
 
 /* ---- the request ------------------------------------------------------------------------------------------------ */
 
-/* More of the client's bytes. False: there are none now. */
+/* Receives more of the client's bytes. Returns false when there are none now. */
 static bool read_client(struct relay_link *link)
 {
     if (!link->client_readable || link->n_in == IN_SIZE)
@@ -161,7 +171,7 @@ static bool read_client(struct relay_link *link)
             free(link->in);
             link->in = NULL;
         }
-        if (n < 0 && is_for_later())
+        if (n < 0 && would_block())
             return false;
         if (n < 0)
             relay_link_die(link);
@@ -184,7 +194,7 @@ static bool watch_inner(struct relay_link *link, int how)
     return epoll_ctl(link->relay->epoll, how, link->inner, &event) == 0;
 }
 
-/* Opens the way to the library, for the first request. */
+/* Makes the pair of sockets to the library, before the first request. */
 static bool open_server(struct relay_link *link)
 {
     int ends[2];
@@ -204,7 +214,7 @@ static bool open_server(struct relay_link *link)
     return false;
 }
 
-/* True when the state has changed. */
+/* Receives and checks a head. Returns true when the state has changed. */
 static bool step_head(struct relay_link *link)
 {
     struct relay *relay = link->relay;
@@ -221,7 +231,7 @@ static bool step_head(struct relay_link *link)
     if (kind == HEAD_INCOMPLETE && !link->client_ended)
         return false;
     if (kind == HEAD_INCOMPLETE && link->n_in == 0) {
-        relay_link_die(link); /* ended between two requests */
+        relay_link_die(link); /* closed between two requests */
         return true;
     }
     link->n_answered = 0;
@@ -252,7 +262,7 @@ static bool step_head(struct relay_link *link)
     return true;
 }
 
-/* True when the state has changed. */
+/* Passes head and body on. Returns true when the state has changed. */
 static bool step_body(struct relay_link *link)
 {
     struct problem problem;
@@ -266,14 +276,14 @@ static bool step_body(struct relay_link *link)
         link->n_forward += n_taken;
         if (link->n_forward > 0) {
             ssize_t n = send(link->inner, link->in, link->n_forward, MSG_NOSIGNAL | MSG_DONTWAIT);
-            if (n < 0 && is_for_later()) {
+            if (n < 0 && would_block()) {
                 if (!link->inner_wants_room) {
                     link->inner_wants_room = true;
-                    (void)watch_inner(link, EPOLL_CTL_MOD); /* tells at once when there is room by now */
+                    (void)watch_inner(link, EPOLL_CTL_MOD); /* reports at once when there is room already */
                 }
                 return false;
             }
-            if (n < 0) { /* the library has answered before the end, and wants no more */
+            if (n < 0) { /* the library answered early and reads no more */
                 link->state = LINK_ANSWER;
                 relay_link_begin_window(link);
                 return true;
@@ -296,7 +306,7 @@ static bool step_body(struct relay_link *link)
         }
         if (link->n_forward > 0)
             continue;
-        if (link->client_ended) { /* in the middle of a body: nobody is there for the answer */
+        if (link->client_ended) { /* in the middle of a body: there is no one to answer */
             relay_link_die(link);
             return true;
         }
@@ -305,7 +315,7 @@ static bool step_body(struct relay_link *link)
     }
 }
 
-/* The library has closed its end: this answer was the last. */
+/* The library closed its end: this answer was the last. */
 static void finish(struct relay_link *link)
 {
     char byte;
@@ -317,7 +327,7 @@ static void finish(struct relay_link *link)
         relay_link_die(link);
 }
 
-/* True when the state has changed. */
+/* Waits for the end of the answer. Returns true when the state has changed. */
 static bool step_answer(struct relay_link *link)
 {
     if (link->n_out > 0 || link->inner_readable)
@@ -339,7 +349,7 @@ static void step_linger(struct relay_link *link)
     size_t n_now = 0;
     while (link->client_readable) {
         ssize_t n = recv(link->client, link->relay->bytes, sizeof link->relay->bytes, MSG_DONTWAIT);
-        if (n < 0 && is_for_later()) {
+        if (n < 0 && would_block()) {
             link->client_readable = false;
             return;
         }
@@ -352,7 +362,7 @@ static void step_linger(struct relay_link *link)
             relay_link_die(link);
             return;
         }
-        if (n_now >= DROP_SIZE) { /* others wait */
+        if (n_now >= DROP_SIZE) { /* other links have their turn */
             relay_touch(link);
             return;
         }
@@ -369,10 +379,10 @@ void relay_link_advance(struct relay_link *link)
             continue;
         }
         if (link->state != LINK_LINGER)
-            relay_link_pump(link);
+            relay_link_pass_answer(link);
         switch (link->state) {
         case LINK_HEAD:
-            if (link->inner_ended) /* the library gave the connection up between two requests */
+            if (link->inner_ended) /* the library closed the connection between two requests */
                 finish(link);
             else
                 has_changed = step_head(link);

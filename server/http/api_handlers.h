@@ -1,0 +1,33 @@
+#pragma once
+/* The handler of every route of the API; api.c's table names them. Each answers its call now or later, exactly once.
+ * Internal to server/http; net thread. */
+#include "server/http/api_state.h"
+
+void api_healthz(struct api *api, struct call *call);
+void api_readyz(struct api *api, struct call *call);
+void api_metrics(struct api *api, struct call *call);
+void api_version(struct api *api, struct call *call);
+void api_openapi(struct api *api, struct call *call);
+
+void api_plans(struct api *api, struct call *call);
+void api_plan(struct api *api, struct call *call);
+void api_plan_upload(struct api *api, struct call *call);
+void api_plan_delete(struct api *api, struct call *call);
+void api_plan_open(struct api *api, struct call *call);
+void api_plan_close(struct api *api, struct call *call);
+void api_job(struct api *api, struct call *call);
+void api_job_cancel(struct api *api, struct call *call);
+void api_plan_render(struct api *api, struct call *call);
+void api_plan_surface(struct api *api, struct call *call);
+void api_plan_probe(struct api *api, struct call *call);
+void api_plan_pick(struct api *api, struct call *call);
+
+void api_rooms(struct api *api, struct call *call);
+void api_room_new(struct api *api, struct call *call);
+void api_room(struct api *api, struct call *call);
+void api_room_delete(struct api *api, struct call *call);
+void api_room_scene(struct api *api, struct call *call);
+void api_room_scene_patch(struct api *api, struct call *call);
+void api_room_members(struct api *api, struct call *call);
+void api_room_snapshot(struct api *api, struct call *call);
+void api_room_ws(struct api *api, struct call *call);

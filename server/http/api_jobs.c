@@ -1,0 +1,156 @@
+/* Keeps the jobs, brings them up to date, and answers calls about them. */
+#include "server/http/api_jobs.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "server/http/api_handlers.h"
+
+static void update_upload(struct api *api, struct api_job *job)
+{
+    struct fleet_upload upload;
+    if (!fleet_upload_find(net_fleet(api->net), job->upload, &upload)) {
+        job->state = JOB_FAILED;
+        problem_set(&job->problem, PROBLEM_NOT_FOUND, "", "", "the upload is forgotten");
+        return;
+    }
+    static const int states[] = { [UPLOAD_QUEUED] = JOB_QUEUED,
+                                  [UPLOAD_RUNNING] = JOB_RUNNING,
+                                  [UPLOAD_DONE] = JOB_DONE,
+                                  [UPLOAD_FAILED] = JOB_FAILED,
+                                  [UPLOAD_CANCELLED] = JOB_CANCELLED };
+    job->state = (enum api_job_state)states[upload.state];
+    (void)snprintf(job->phase, sizeof job->phase, "%s", upload.phase);
+    job->percent = upload.percent;
+    if (upload.plan_id)
+        (void)snprintf(job->plan_id, sizeof job->plan_id, "%s", upload.plan_id);
+    if (upload.problem)
+        job->problem = *upload.problem;
+}
+
+static cJSON *job_document(const struct api_job *job)
+{
+    static const char *const words[] = { "queued", "running", "done", "failed", "cancelled" };
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "id", job->id);
+    cJSON_AddStringToObject(json, "kind", job->kind);
+    cJSON_AddItemToObject(json, "plan", job->plan_id[0] ? cJSON_CreateString(job->plan_id) : cJSON_CreateNull());
+    cJSON_AddStringToObject(json, "state", words[job->state]);
+    cJSON_AddStringToObject(json, "phase", job->phase);
+    cJSON_AddNumberToObject(json, "percent", job->percent);
+    if (job->state == JOB_FAILED)
+        cJSON_AddItemToObject(json, "problem", problem_to_json(&job->problem));
+    else
+        cJSON_AddNullToObject(json, "problem");
+    return json;
+}
+
+static void update_job(struct api *api, struct api_job *job)
+{
+    struct fleet_plan plan;
+    if (job->state != JOB_RUNNING && job->state != JOB_QUEUED)
+        return;
+    if (job->upload) {
+        update_upload(api, job);
+        return;
+    }
+    if (!fleet_plan_find(net_fleet(api->net), job->plan_id, &plan)) {
+        job->state = JOB_FAILED;
+        problem_set(&job->problem, PROBLEM_NOT_FOUND, "", "", "the plan is gone");
+        return;
+    }
+    if (plan.ready_opening == job->opening) { /* also when it has been closed since */
+        job->state = JOB_DONE;
+        job->phase[0] = 0;
+        job->percent = 100;
+        return;
+    }
+    if (plan.failed_opening == job->opening) { /* also when it has been opened again since */
+        job->state = job->is_cancel_requested ? JOB_CANCELLED : JOB_FAILED;
+        job->problem = *plan.failure;
+        return;
+    }
+    if (plan.opening != job->opening) { /* closed before it was ready, and opened again since */
+        job->state = JOB_CANCELLED;
+        return;
+    }
+    switch (plan.state) {
+    case FLEET_STARTING:
+    case FLEET_LOADING:
+    case FLEET_RESTARTING:
+        (void)snprintf(job->phase, sizeof job->phase, "%s", plan.phase ? plan.phase : "");
+        job->percent = plan.percent;
+        break;
+    case FLEET_READY: break; /* done, above */
+    case FLEET_CLOSED: job->state = JOB_CANCELLED; break;
+    case FLEET_UNREADABLE:
+    case FLEET_FAILED:
+        job->state = job->is_cancel_requested ? JOB_CANCELLED : JOB_FAILED;
+        if (plan.problem)
+            job->problem = *plan.problem;
+        break;
+    }
+}
+
+void api_jobs_update(struct api *api)
+{
+    size_t first = api->n_jobs > API_MAX_JOBS ? api->n_jobs - API_MAX_JOBS : 0;
+    for (size_t n = first; n < api->n_jobs; n++)
+        update_job(api, &api->jobs[n % API_MAX_JOBS]);
+}
+
+struct api_job *api_job_create(struct api *api, const char *kind)
+{
+    struct api_job *job = &api->jobs[api->n_jobs % API_MAX_JOBS];
+    memset(job, 0, sizeof *job);
+    api->n_jobs++;
+    (void)snprintf(job->id, sizeof job->id, "%s-%zu", kind, api->n_jobs);
+    job->kind = kind;
+    job->state = JOB_RUNNING;
+    return job;
+}
+
+void api_job_answer(struct api *api, struct call *call, struct api_job *job)
+{
+    char location[80];
+    update_job(api, job);
+    (void)snprintf(location, sizeof location, "/api/v1/jobs/%s", job->id);
+    call_add_header(call, "Location", location);
+    call_answer_json(call, 202, job_document(job));
+}
+
+static struct api_job *find_job(struct api *api, struct call *call)
+{
+    size_t first = api->n_jobs > API_MAX_JOBS ? api->n_jobs - API_MAX_JOBS : 0;
+    for (size_t n = first; n < api->n_jobs; n++)
+        if (strcmp(api->jobs[n % API_MAX_JOBS].id, call->ids[0]) == 0)
+            return &api->jobs[n % API_MAX_JOBS];
+    struct problem problem;
+    problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no job \"%.63s\"; the last %d are kept", call->ids[0],
+                API_MAX_JOBS);
+    call_answer_problem(call, &problem);
+    return NULL;
+}
+
+void api_job(struct api *api, struct call *call)
+{
+    struct api_job *job = find_job(api, call);
+    if (job)
+        call_answer_json(call, 200, job_document(job));
+}
+
+void api_job_cancel(struct api *api, struct call *call)
+{
+    struct api_job *job = find_job(api, call);
+    if (!job)
+        return;
+    if (job->upload) {
+        fleet_upload_cancel(net_fleet(api->net), job->upload);
+        update_job(api, job);
+    } else if (job->state == JOB_RUNNING) {
+        job->is_cancel_requested = true;
+        fleet_close(net_fleet(api->net), job->plan_id);
+        update_job(api, job);
+    }
+    call_answer_json(call, 200, job_document(job));
+}

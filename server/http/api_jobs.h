@@ -1,0 +1,11 @@
+#pragma once
+/* Jobs: what takes longer than a call (opening a plan, an upload), its progress and its end. Internal to server/http;
+ * net thread. */
+#include "server/http/api_state.h"
+
+/* Brings the states of running jobs up to date with their plans and uploads. */
+void api_jobs_update(struct api *api);
+/* Makes a job; the oldest is forgotten. kind: "open" or "upload". */
+struct api_job *api_job_create(struct api *api, const char *kind);
+/* Answers the call with 202, the job, and its address. */
+void api_job_answer(struct api *api, struct call *call, struct api_job *job);

@@ -1,0 +1,146 @@
+/* Requests pictures for calls, within a limit per plan, and answers with their bytes. */
+#include "server/http/api_pictures.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "server/wire/missing.h"
+
+struct api_picture {
+    struct api_picture *next;
+    struct call *call;
+    char plan_id[64];
+    double n_pixels;
+    bool has_revision; /* of a room's scene */
+};
+
+static double pixels_of(const cJSON *view)
+{
+    const cJSON *size = cJSON_GetObjectItemCaseSensitive(view, "size_px");
+    return cJSON_GetNumberValue(cJSON_GetArrayItem(size, 0)) * cJSON_GetNumberValue(cJSON_GetArrayItem(size, 1));
+}
+
+/* Scripts and rooms share a plan's renderer: how much a script may put before the others has an end. */
+static bool start_picture(struct api *api, struct call *call, const char *plan_id, const cJSON *view, bool has_revision)
+{
+    size_t n = 0;
+    double n_pixels = pixels_of(view), n_before = 0;
+    for (const struct api_picture *picture = api->pictures; picture; picture = picture->next)
+        if (strcmp(picture->plan_id, plan_id) == 0) {
+            n++;
+            n_before += picture->n_pixels;
+        }
+    if (n >= API_MAX_PICTURES || (n > 0 && n_before + n_pixels > API_MAX_PIXELS)) {
+        struct problem problem;
+        problem_set(&problem, PROBLEM_BUSY, "", "",
+                    "%zu pictures of this plan are being made already, of %.0f million pixels", n, n_before / 1e6);
+        problem.retry_after_ms = 1000;
+        call_answer_problem(call, &problem);
+        return false;
+    }
+    struct api_picture *picture = mem_new(sizeof *picture);
+    picture->next = api->pictures;
+    picture->call = call;
+    picture->n_pixels = n_pixels;
+    picture->has_revision = has_revision;
+    (void)snprintf(picture->plan_id, sizeof picture->plan_id, "%s", plan_id);
+    api->pictures = picture;
+    return true;
+}
+
+/* Whether it was of a room's scene. */
+static bool end_picture(struct api *api, const struct call *call)
+{
+    for (struct api_picture **at = &api->pictures; *at; at = &(*at)->next)
+        if ((*at)->call == call) {
+            struct api_picture *picture = *at;
+            bool has_revision = picture->has_revision;
+            *at = picture->next;
+            free(picture);
+            return has_revision;
+        }
+    return false;
+}
+
+static void picture_came(void *context, struct packet *answer, const struct problem *problem)
+{
+    struct call *call = context;
+    struct problem broken;
+    bool has_revision = end_picture(call->api, call);
+    if (problem) {
+        call_answer_problem(call, problem);
+        return;
+    }
+    if (!answer->blob || answer->n_blob < 4) {
+        problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no picture");
+        call_answer_problem(call, &broken);
+        return;
+    }
+    char timing[96], revision[24];
+    (void)snprintf(timing, sizeof timing, "render;dur=%.1f, encode;dur=%.1f",
+                   json_number(answer->json, "render_us", 0) / 1000, json_number(answer->json, "encode_us", 0) / 1000);
+    (void)snprintf(revision, sizeof revision, "%.0f", json_number(answer->json, "scene_revision", 0));
+    call_add_header(call, "Server-Timing", timing);
+    if (has_revision)
+        call_add_header(call, "Beamroom-Revision", revision);
+    cJSON *missing = missing_read(answer->json);
+    char words[MISSING_MAX_REGIONS * 66 + 32];
+    missing_words(missing, words, sizeof words);
+    if (missing)
+        call_add_header(call, "Beamroom-Missing", words);
+    cJSON_Delete(missing);
+    uint8_t *bytes = answer->blob;
+    answer->blob = NULL;
+    call_answer_bytes(call, 200, bytes[0] == 0xff ? "image/jpeg" : "image/png", bytes, answer->n_blob);
+}
+
+void api_picture_request(struct api *api, struct call *call, const char *plan_id, const cJSON *scene,
+                         const uint32_t *revision, const cJSON *view, const char *format, double quality)
+{
+    struct problem problem;
+    bool is_jpeg = format && strcmp(format, "jpeg") == 0;
+    if (format && !is_jpeg && strcmp(format, "png") != 0) {
+        problem_set(&problem, PROBLEM_VALIDATION, "/format", "enum", "format is \"%.20s\", expected png or jpeg",
+                    format);
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (!(quality >= 1 && quality <= 100) || quality != (int)quality) {
+        problem_set(&problem, PROBLEM_VALIDATION, "/quality", "range",
+                    "quality is %g, expected a whole number from 1 to 100", quality);
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (!start_picture(api, call, plan_id, view, revision != NULL))
+        return;
+    cJSON *packet = cJSON_CreateObject();
+    cJSON_AddStringToObject(packet, "type", "render");
+    cJSON_AddItemToObject(packet, "scene", cJSON_Duplicate(scene, true));
+    if (revision)
+        cJSON_AddNumberToObject(packet, "scene_revision", *revision);
+    cJSON_AddItemToObject(packet, "view", cJSON_Duplicate(view, true));
+    cJSON_AddNumberToObject(packet, "scale_percent", 100);
+    cJSON_AddNumberToObject(packet, "quality", quality);
+    cJSON_AddStringToObject(packet, "codec", is_jpeg ? "jpeg" : "png");
+    cJSON_AddBoolToObject(packet, "full_color", true);
+    cJSON_AddStringToObject(packet, "detail", "full");
+    cJSON_AddBoolToObject(packet, "still", true);
+    (void)fleet_request(net_fleet(api->net), plan_id, packet, picture_came, call);
+    cJSON_Delete(packet);
+}
+
+cJSON *api_view_parameter(struct call *call)
+{
+    struct problem problem;
+    const char *text = call_query(call, "view");
+    cJSON *patch = text ? json_read(text, strlen(text), &problem) : cJSON_CreateObject();
+    cJSON *view = patch ? view_document_patch(NULL, patch, &problem) : NULL;
+    cJSON_Delete(patch);
+    if (!view) {
+        problem_below(&problem, "/view");
+        call_answer_problem(call, &problem);
+    }
+    return view;
+}

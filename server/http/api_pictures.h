@@ -1,0 +1,16 @@
+#pragma once
+/* Pictures for a call: limits per plan, the request to the renderer, and the answer with bytes and headers. Internal to
+ * server/http; net thread. */
+#include "server/http/api_state.h"
+
+/* Requests a picture from the plan's renderer and answers the call with its bytes.
+ *
+ *   scene, view  complete documents, borrowed
+ *   revision     of the room whose scene it is, for the header Beamroom-Revision; NULL: no room's
+ *   format       "png", "jpeg" or NULL for png; others are refused
+ *   quality      of a JPEG, 1 to 100 */
+void api_picture_request(struct api *api, struct call *call, const char *plan_id, const cJSON *scene,
+                         const uint32_t *revision, const cJSON *view, const char *format, double quality);
+/* The call's parameter "view" as a complete document; the default view when it was not given. NULL: the call was
+ * answered with a problem. */
+NODISCARD cJSON *api_view_parameter(struct call *call);

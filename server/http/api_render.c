@@ -1,0 +1,109 @@
+/* POST /plans/{plan}/render: a picture of a plan without a room. The request patches the plan's default scene, which is
+ * known only once the plan is loaded: so the plan is opened first. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "server/http/api_handlers.h"
+#include "server/http/api_pictures.h"
+#include "server/http/api_queries.h"
+
+struct render_call {
+    char plan_id[64];
+    cJSON *body; /* checked: only known members */
+};
+
+static void render_call_destroy(struct render_call *request)
+{
+    cJSON_Delete(request->body);
+    free(request);
+}
+
+static bool check_body(const cJSON *body, struct problem *problem)
+{
+    static const char *const known[] = { "scene", "view", "format", "quality" };
+    const cJSON *item;
+    cJSON_ArrayForEach(item, body)
+    {
+        bool is_known = false;
+        for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+            is_known = is_known || strcmp(item->string, known[i]) == 0;
+        char pointer[64];
+        (void)snprintf(pointer, sizeof pointer, "/%.60s", item->string);
+        if (!is_known)
+            return problem_set(problem, PROBLEM_VALIDATION, pointer, "unknown-field",
+                               "%.60s is not a field of a render request", item->string);
+        bool right = strcmp(item->string, "format") == 0    ? cJSON_IsString(item)
+                     : strcmp(item->string, "quality") == 0 ? cJSON_IsNumber(item)
+                                                            : cJSON_IsObject(item);
+        if (!right)
+            return problem_set(problem, PROBLEM_VALIDATION, pointer, "type", "%.60s has the wrong type", item->string);
+    }
+    return true;
+}
+
+static void render_when_ready(void *context, struct packet *answer, const struct problem *not_ready)
+{
+    struct call *call = context;
+    struct api *api = call->api;
+    struct render_call *request = call->context;
+    struct problem problem;
+    struct fleet_plan plan;
+    (void)answer;
+    if (not_ready) {
+        render_call_destroy(request);
+        call_answer_problem(call, not_ready);
+        return;
+    }
+    cJSON *scene = NULL, *view = NULL, *shown = NULL, *nothing = cJSON_CreateObject();
+    if (!fleet_plan_find(net_fleet(api->net), request->plan_id, &plan) || !plan.document || !plan.default_scene) {
+        problem_set(&problem, PROBLEM_BUSY, "", "", "the plan was closed meanwhile");
+        goto refuse;
+    }
+    const cJSON *scene_patch = cJSON_GetObjectItemCaseSensitive(request->body, "scene");
+    const cJSON *view_patch = cJSON_GetObjectItemCaseSensitive(request->body, "view");
+    scene = scene_document_patch(plan.document, plan.default_scene, plan.default_scene,
+                                 scene_patch ? scene_patch : nothing, &problem);
+    if (!scene) {
+        problem_below(&problem, "/scene");
+        goto refuse;
+    }
+    view = view_document_patch(NULL, view_patch ? view_patch : nothing, &problem);
+    shown = view ? scene_document_for_view(plan.document, plan.default_scene, scene, view, &problem) : NULL;
+    if (!shown) {
+        problem_below(&problem, "/view");
+        goto refuse;
+    }
+    api_picture_request(api, call, request->plan_id, shown, NULL, view, json_text(request->body, "format"),
+                        json_number(request->body, "quality", 92));
+    goto done;
+refuse:
+    call_answer_problem(call, &problem);
+done:
+    cJSON_Delete(nothing);
+    cJSON_Delete(scene);
+    cJSON_Delete(view);
+    cJSON_Delete(shown);
+    render_call_destroy(request);
+}
+
+void api_plan_render(struct api *api, struct call *call)
+{
+    static const char *const media_types[] = { "application/json", NULL };
+    struct fleet_plan plan;
+    struct problem problem;
+    cJSON *body;
+    if (!api_find_plan(api, call, &plan) || !call_read_object(call, media_types, &body))
+        return;
+    if (!check_body(body, &problem)) {
+        cJSON_Delete(body);
+        call_answer_problem(call, &problem);
+        return;
+    }
+    struct render_call *request = mem_new(sizeof *request);
+    (void)snprintf(request->plan_id, sizeof request->plan_id, "%s", call->ids[0]);
+    request->body = body;
+    call->context = request;
+    api_when_ready(api, call, call->ids[0], render_when_ready);
+}

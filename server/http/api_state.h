@@ -1,0 +1,38 @@
+#pragma once
+/* The API's state: its jobs, and how many pictures, files and timings are under way. Internal to server/http; net
+ * thread, but for the counters of calls. */
+#include "server/http/api.h"
+
+enum {
+    API_MAX_JOBS = 500,        /* kept; the oldest is forgotten */
+    API_MAX_PICTURES = 32,     /* requested by calls of one plan's renderer and not yet answered; then 503 */
+    API_MAX_PIXELS = 32 << 20, /* of these together; a single picture may be larger */
+    API_MAX_FILES = 4,         /* surfaces requested as files, of all plans: each may have PACKET_MAX_BLOB bytes */
+    API_MAX_TIMINGS = 2        /* shapes being timed, of all plans */
+};
+
+enum api_job_state { JOB_QUEUED, JOB_RUNNING, JOB_DONE, JOB_FAILED, JOB_CANCELLED };
+
+struct api_job {
+    char id[40], plan_id[64]; /* plan_id: "" until an upload is done */
+    const char *kind;         /* "open", "upload" */
+    uint64_t upload;          /* the fleet's number of the upload; 0: the job opens a plan */
+    uint32_t opening;         /* which opening of the plan: opening of struct fleet_plan */
+    enum api_job_state state;
+    char phase[200];
+    double percent;
+    struct problem problem; /* why it failed */
+    bool is_cancel_requested;
+};
+
+struct api {
+    struct net *net;
+    uint64_t max_upload_bytes;
+    int64_t started_us;
+    struct api_job jobs[API_MAX_JOBS];
+    struct api_picture *pictures; /* requested and not yet answered */
+    size_t n_files, n_timings;    /* under way */
+    size_t n_jobs;                /* ever made; job n is at index n % API_MAX_JOBS */
+    _Atomic uint64_t n_calls[6],
+        n_calls_us; /* by status / 100, and time spent; counted by the HTTP thread, read by /metrics */
+};

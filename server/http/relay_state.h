@@ -1,0 +1,80 @@
+#pragma once
+/* The state of the relay and of its links (one link per client connection). Internal to server/http; the relay's
+ * thread, or after it has ended. */
+#include <pthread.h>
+#include <stdatomic.h>
+#include <sys/epoll.h>
+#include <unistd.h>
+
+#include "server/http/body.h"
+#include "server/http/relay.h"
+
+enum { RELAY_OUT_SIZE = 256 << 10 }; /* bytes of an answer passed on at once */
+
+enum link_state {
+    LINK_HEAD,   /* the head is being received; none of it was passed to the library */
+    LINK_BODY,   /* head and body are being passed on */
+    LINK_ANSWER, /* the whole request was passed on; the client is not read from */
+    LINK_LINGER, /* the last answer was sent; bytes that still come are dropped */
+    LINK_DEAD    /* freed when the library has closed its end */
+};
+
+struct relay_link {
+    struct relay_link *next, *previous;
+    struct relay_link *next_touched;
+    struct relay *relay;
+    enum link_state state;
+    int client, inner, server; /* sockets: the client's, our end and the library's end of the pair; -1: closed */
+    struct address peer, counted;
+    bool is_counted, is_touched;
+    bool is_started;       /* the library took the connection: it will report its end */
+    bool inner_wants_room; /* epoll reports when the library has read bytes */
+    bool client_readable, client_ended, inner_readable, inner_hung_up, inner_ended;
+    bool is_request_ended, is_refused;
+    struct problem problem; /* is_refused */
+    uint64_t max_dropped, n_dropped;
+    char *in;               /* bytes from the client, not passed on; NULL: none */
+    size_t n_in, n_forward; /* bytes in `in`; of them those that are checked and to be passed on */
+    struct body body;
+    char *out; /* bytes of an answer that the client has not taken; NULL: none */
+    size_t n_out, out_at;
+    uint64_t n_answered;       /* bytes of the answer to the present request */
+    int64_t head_us, moved_us; /* when the head's first byte came; when the last byte moved either way */
+    int64_t window_us;         /* begin of the window in which window_bytes of body or answer were passed on */
+    uint64_t window_bytes;
+};
+
+struct relay {
+    struct relay_options options;
+    struct relay_server server;
+    struct queue *queue;
+    int epoll, wake_fd; /* wake_fd: eventfd, written to wake the thread */
+    pthread_t thread;
+    bool has_thread;
+    atomic_bool is_stopping, is_to_hang;
+    _Atomic(atomic_bool *) pinged;
+    struct relay_link *links, *touched;
+    size_t n_counted, n_lingering;
+    bool has_dead;    /* some link may be freed */
+    size_t n_refused; /* refused connections since the last line in the log */
+    int64_t logged_us;
+    char bytes[RELAY_OUT_SIZE];
+};
+
+/* Ends epoll's watch before closing: a child process that is being started holds a copy of every descriptor for a
+ * moment, so a descriptor that was only closed would go on raising events, with the address of a freed link. */
+static inline void relay_unwatch_and_close(const struct relay *relay, int *fd)
+{
+    if (*fd >= 0) {
+        (void)epoll_ctl(relay->epoll, EPOLL_CTL_DEL, *fd, NULL); /* fails for a descriptor that was never watched */
+        (void)close(*fd);
+    }
+    *fd = -1;
+}
+
+static inline void relay_close_fd(int *fd)
+{
+    if (*fd >= 0)
+        (void)close(*fd);
+    *fd = -1;
+}
