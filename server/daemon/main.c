@@ -253,7 +253,7 @@ static bool serve(const struct options *options, struct error *err)
     }
     acceptor_stop(acceptor);
     if (http)
-        http_stop_asking(http);
+        http_stop_posting(http);
     net_destroy(net);
     http_destroy(http);
     acceptor_destroy(acceptor);

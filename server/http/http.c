@@ -1,8 +1,8 @@
+/* The HTTP side of the API: libmicrohttpd behind the relay, its requests, and the answers of the net thread. */
 #include "server/http/http.h"
 
 #include <ctype.h>
 #include <microhttpd.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +11,7 @@
 #include <sys/un.h>
 
 #include "core/base/clock.h"
+#include "core/base/gate.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
@@ -36,10 +37,9 @@ struct http {
     struct MHD_Daemon *daemon;
     struct queue *answered; /* requests whose answer is there; their connections are resumed on the HTTP thread, as the
                                library expects */
-    pthread_mutex_t asking; /* held while a task is posted: after http_stop_asking none is */
+    struct gate *posting;   /* passed by each net_post; closed by http_stop_posting */
     size_t max_archive_dropped; /* bytes of an archive beyond the limit that are read: a sender who streams hears why it
                                    was refused */
-    bool is_stopping;
 };
 
 /* A request: the call, and where it stands. */
@@ -252,16 +252,14 @@ static bool add_body(struct request *request, const char *bytes, size_t n)
     return true;
 }
 
-/* Hands the request to the net thread; the connection sleeps until the answer is there. */
-static void ask(struct http *http, struct request *request)
+/* Posts the request to the net thread; the connection sleeps until the answer is there. */
+static void post_request(struct http *http, struct request *request)
 {
-    pthread_mutex_lock(&http->asking);
-    bool is_stopping = http->is_stopping;
     MHD_suspend_connection(request->connection);
-    if (!is_stopping)
+    if (gate_enter(http->posting)) {
         net_post(http->net, run_call, request);
-    pthread_mutex_unlock(&http->asking);
-    if (is_stopping) {
+        gate_leave(http->posting);
+    } else {
         struct problem problem;
         problem_set(&problem, PROBLEM_BUSY, "", "", "the server is being stopped");
         call_answer_problem(request->call, &problem);
@@ -297,7 +295,7 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
             return send_file(connection, file);
         finish_archive(request);
         request->is_posted = true;
-        ask(http, request);
+        post_request(http, request);
     }
     return MHD_YES;
 }
@@ -362,7 +360,7 @@ struct http *http_create(struct net *net, const struct http_options *options, st
     http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes
                                                                                      : HTTP_MIN_ARCHIVE_DROPPED;
     http->intake = intake_create(options->upload_folder, options->max_upload_bytes, options->disk_reserve_bytes);
-    pthread_mutex_init(&http->asking, NULL);
+    http->posting = gate_create();
     http->answered = queue_create(MAX_ANSWERED, NULL);
     if (options->web_folder) {
         http->files = files_create(options->web_folder, err);
@@ -400,11 +398,9 @@ fail:
     return NULL;
 }
 
-void http_stop_asking(struct http *http)
+void http_stop_posting(struct http *http)
 {
-    pthread_mutex_lock(&http->asking);
-    http->is_stopping = true;
-    pthread_mutex_unlock(&http->asking);
+    gate_close(http->posting);
 }
 
 void http_destroy(struct http *http)
@@ -416,7 +412,7 @@ void http_destroy(struct http *http)
     if (http->daemon)
         MHD_stop_daemon(http->daemon);
     relay_destroy(http->relay);
-    pthread_mutex_destroy(&http->asking);
+    gate_destroy(http->posting);
     files_destroy(http->files);
     intake_destroy(http->intake);
     queue_destroy(http->answered);

@@ -26,9 +26,10 @@ struct http_options {
 
 /* errors ERROR_IO, ERROR_LIMIT, ERROR_NOT_FOUND. net outlives it. */
 NODISCARD struct http *http_create(struct net *net, const struct http_options *options, struct error *err);
-/* Stopping: http_stop_asking (from then on the API answers 503 by itself), net_destroy (which answers what was asked),
+/* Stopping, in this order: http_stop_posting (from then on calls are answered with 503), net_destroy (which answers the
+ * calls it has),
  * http_destroy. */
-void http_stop_asking(struct http *http);
+void http_stop_posting(struct http *http);
 void http_destroy(struct http *http);
 /* Takes an accepted socket with a whole head in it, nothing read from it yet; answers 429 and closes it when there are
  * too many. client: whom it is counted for. The acceptor's thread. */

@@ -1,4 +1,8 @@
+#include <pthread.h>
+#include <stdatomic.h>
+
 #include "core/base/error.h"
+#include "core/base/gate.h"
 #include "core/base/image.h"
 #include "core/base/mailbox.h"
 #include "core/base/mem.h"
@@ -76,6 +80,36 @@ static void a_queue_keeps_order_refuses_when_full_and_drains_when_closed(void **
     queue_destroy(queue);
 }
 
+struct closing {
+    struct gate *gate;
+    atomic_bool is_done;
+};
+
+static void *close_gate(void *context)
+{
+    struct closing *closing = context;
+    gate_close(closing->gate);
+    atomic_store(&closing->is_done, true);
+    return NULL;
+}
+
+static void closing_a_gate_waits_for_those_inside_and_lets_nobody_in(void **state)
+{
+    (void)state;
+    struct closing closing = { .gate = gate_create() };
+    pthread_t thread;
+    assert_true(gate_enter(closing.gate));
+    assert_int_equal(pthread_create(&thread, NULL, close_gate, &closing), 0);
+    while (gate_enter(closing.gate)) /* until the thread has closed it */
+        gate_leave(closing.gate);
+    assert_false(atomic_load(&closing.is_done));
+    gate_leave(closing.gate);
+    pthread_join(thread, NULL);
+    assert_true(atomic_load(&closing.is_done));
+    assert_false(gate_enter(closing.gate));
+    gate_destroy(closing.gate);
+}
+
 static void count_part(void *context, int part, int n_parts)
 {
     int *seen = context;
@@ -99,6 +133,7 @@ int main(void)
         cmocka_unit_test(sizes_from_outside_are_checked_before_memory_is_asked_for),
         cmocka_unit_test(a_mailbox_keeps_only_the_newest_letter),
         cmocka_unit_test(a_queue_keeps_order_refuses_when_full_and_drains_when_closed),
+        cmocka_unit_test(closing_a_gate_waits_for_those_inside_and_lets_nobody_in),
         cmocka_unit_test(parallel_work_runs_each_part_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
