@@ -21,6 +21,7 @@
 #include "server/fleet/renderer_events.h"
 #include "server/fleet/requests.h"
 #include "server/fleet/restarts.h"
+#include "server/fleet/upload_root.h"
 #include "server/fleet/uploads.h"
 #include "server/fleet/watch.h"
 
@@ -247,6 +248,7 @@ static void set_times(struct fleet *fleet)
 static void fleet_free(struct fleet *fleet)
 {
     lister_destroy(fleet->lister);
+    root_finder_destroy(fleet->root_finder);
     cache_destroy(fleet->cache); /* its thread gives orders to the watch */
     watch_destroy(fleet->watch);
     data_folders_destroy(fleet);
@@ -313,7 +315,8 @@ struct fleet *fleet_create(const struct fleet_options *options, struct error *er
                                             .context = options->context };
     fleet->watch = watch_create(&watching, err);
     fleet->cache = fleet->watch ? make_cache(fleet, err) : NULL;
-    if (!fleet->cache)
+    fleet->root_finder = fleet->cache ? root_finder_create(options->wake, options->context, err) : NULL;
+    if (!fleet->root_finder)
         goto fail;
     fleet->lister = lister_create((const char *const *)fleet->plan_folders, options->n_plan_folders + 1,
                                   options->list_folders ? options->list_folders : folders_list, options->wake,

@@ -12,6 +12,7 @@ struct cache;
 struct lister;
 struct remover;
 struct request;
+struct root_finder;
 struct upload;
 struct watch;
 
@@ -87,6 +88,7 @@ struct fleet {
     struct run_clock clock; /* stepped by fleet_tick */
     struct remover *remover;
     struct cache *cache;
+    struct root_finder *root_finder;
     struct upload *uploads;          /* newest first */
     char *plans_home, *uploads_home; /* data/plans, data/uploads; absolute, links resolved */
     uint64_t n_trash;

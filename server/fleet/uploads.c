@@ -1,11 +1,9 @@
-/* The steps of each upload: unpack the archive beside itself, scan it, move it to data/plans, wait until it is listed;
+/* The steps of each upload: unpack the archive beside itself, find its root, scan it, move it to data/plans, wait until it is listed;
  * and removing what it leaves when it fails or is cancelled. */
 #define _GNU_SOURCE
 #include "server/fleet/uploads.h"
 
-#include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -22,10 +20,10 @@
 #include "core/base/path.h"
 #include "server/fleet/data_folders.h"
 #include "server/fleet/plan_scan.h"
+#include "server/fleet/upload_root.h"
 #include "server/fleet/watch.h"
 
 enum {
-    MAX_WRAPPING = 8,         /* nested folders that hold nothing but one folder, from the archive's top down */
     MAX_SAME_NAME = 999,      /* plans of one name; folder_make_id leaves room for the number */
     LIST_WITHIN_US = 30000000 /* how long the list may take to find a new plan */
 };
@@ -35,6 +33,7 @@ static const uint64_t default_max_unpacked_bytes = UINT64_C(8) << 30;
 enum stage {
     STAGE_WAITING,
     STAGE_UNPACKING, /* process unpacks */
+    STAGE_FINDING,   /* the root finder looks for root */
     STAGE_SCANNING,  /* process scans root */
     STAGE_LISTING,   /* moved to data/plans; the list does not know it yet */
     STAGE_ENDED      /* ended; while process != 0 it is being killed, and its files are removed when it has ended */
@@ -133,37 +132,19 @@ static void start_unpacking(struct fleet *fleet, struct upload *upload)
     }
 }
 
-/* True if a folder holds nothing but one folder. Ignores names that begin with a dot, and __MACOSX, which archivers
- * add. */
-static bool find_only_folder(const char *path, char name[NAME_MAX + 1])
+static void start_finding(struct fleet *fleet, struct upload *upload)
 {
-    DIR *folder = opendir(path);
-    size_t n = 0;
-    bool is_folder = false;
-    if (!folder)
-        return false;
-    for (const struct dirent *entry; n < 2 && (entry = readdir(folder));) {
-        struct stat facts;
-        if (entry->d_name[0] == '.' || strcmp(entry->d_name, "__MACOSX") == 0)
-            continue;
-        n++;
-        is_folder = fstatat(dirfd(folder), entry->d_name, &facts, AT_SYMLINK_NOFOLLOW) == 0 && S_ISDIR(facts.st_mode);
-        (void)snprintf(name, NAME_MAX + 1, "%s", entry->d_name);
-    }
-    closedir(folder);
-    return n == 1 && is_folder;
+    struct problem problem;
+    upload->stage = STAGE_FINDING;
+    if (root_finder_find(fleet->root_finder, upload->number, upload->folder))
+        return;
+    problem_set(&problem, PROBLEM_BUSY, "", "", "too many archives are being looked into");
+    fail(fleet, upload, &problem);
 }
 
 static void start_scan(struct fleet *fleet, struct upload *upload)
 {
-    char name[NAME_MAX + 1];
     struct problem problem;
-    upload->root = mem_copy_text(upload->folder);
-    for (int i = 0; i < MAX_WRAPPING && find_only_folder(upload->root, name); i++) {
-        char *inner = path_inside(upload->root, name);
-        free(upload->root);
-        upload->root = inner;
-    }
     upload->stage = STAGE_SCANNING;
     upload->process = fleet_next_number(fleet);
     char **arguments = fleet_arguments((const char *const[]){ fleet->renderer_path, "--scan", upload->root, NULL });
@@ -288,7 +269,7 @@ static void unpacking_ended(struct fleet *fleet, struct upload *upload, const st
 {
     struct problem problem = upload->problem;
     if (event->is_exit && event->status == 0 && upload->has_reported_end && problem.type == PROBLEM_NONE) {
-        start_scan(fleet, upload);
+        start_finding(fleet, upload);
         return;
     }
     if (problem.type == PROBLEM_NONE && event->reason[0])
@@ -338,19 +319,44 @@ bool uploads_event(struct fleet *fleet, const struct watch_event *event)
     case STAGE_SCANNING: scan_ended(fleet, upload, event); break;
     case STAGE_ENDED: clean(fleet, upload); break;
     case STAGE_WAITING:
+    case STAGE_FINDING:
     case STAGE_LISTING: break;
     }
     return true;
 }
 
+static struct upload *find(const struct fleet *fleet, uint64_t number)
+{
+    struct upload *upload = fleet->uploads;
+    while (upload && upload->number != number)
+        upload = upload->next;
+    return upload;
+}
+
+/* Scans the folders that the root finder has found, but those of uploads that were cancelled meanwhile. */
+static void scan_found(struct fleet *fleet)
+{
+    uint64_t number;
+    for (char *root; (root = root_finder_take(fleet->root_finder, &number));) {
+        struct upload *upload = find(fleet, number);
+        if (!upload || upload->stage != STAGE_FINDING) {
+            free(root);
+            continue;
+        }
+        upload->root = root;
+        start_scan(fleet, upload);
+    }
+}
+
 void uploads_tick(struct fleet *fleet)
 {
     int64_t now_us = fleet_now_us(fleet);
+    scan_found(fleet);
     for (;;) {
         struct upload *oldest = NULL; /* of those that wait */
         int n_unpacking = 0;
         for (struct upload *upload = fleet->uploads; upload; upload = upload->next) {
-            n_unpacking += upload->stage == STAGE_UNPACKING || upload->stage == STAGE_SCANNING;
+            n_unpacking += upload->stage >= STAGE_UNPACKING && upload->stage <= STAGE_SCANNING;
             if (upload->stage == STAGE_WAITING)
                 oldest = upload; /* the list begins with the newest */
         }
@@ -430,17 +436,10 @@ uint64_t fleet_upload(struct fleet *fleet, const char *archive, const char *name
     return upload->number;
 }
 
-static struct upload *find(const struct fleet *fleet, uint64_t number)
-{
-    struct upload *upload = fleet->uploads;
-    while (upload && upload->number != number)
-        upload = upload->next;
-    return upload;
-}
-
 bool fleet_upload_find(const struct fleet *fleet, uint64_t number, struct fleet_upload *out)
 {
-    static const char *const phases[] = { "waiting for its turn", "unpacking", "looking at it", "looking at it", "" };
+    static const char *const phases[] = { "waiting for its turn", "unpacking",     "looking at it",
+                                          "looking at it",        "looking at it", "" };
     const struct upload *upload = find(fleet, number);
     if (!upload)
         return false;
