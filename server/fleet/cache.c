@@ -22,44 +22,44 @@
 enum {
     MAX_WAITING = 4096,
     ID_SIZE = 64,
-    /* one emptying, which a renderer that makes files meanwhile must not make endless; what is left waits for the next
-       look */
+    /* limits of one emptying: a renderer that goes on making files must not make it endless. The rest waits for the
+       next look. */
     MAX_ROUNDS = 64,
     MAX_REMOVED = 2 * CACHE_MAX_FILES
 };
 
 static const uint64_t default_max_bytes = UINT64_C(16) << 30, slack_bytes = UINT64_C(64) << 20;
 
-struct word { /* what the net thread says */
+struct use { /* a process begins or ends to use a plan's folder; from the net thread */
     char id[ID_SIZE];
     uint64_t process;
     bool is_begin;
 };
 
-struct entry { /* a plan's folder */
+struct entry { /* one plan's folder */
     char id[ID_SIZE];
-    uint64_t process; /* that uses it; 0: none */
+    uint64_t process; /* that uses the folder; 0: none */
     uint64_t n_bytes, n_files;
     int64_t used_ns; /* since 1970 */
-    bool is_ended;   /* its process was told to end; the folder is emptied when it has */
-    bool was_blamed; /* ended once since the disk became short of space */
-    bool was_tried;  /* emptied in this look already */
-    bool has_rest;   /* nobody uses it, and its emptying stopped at a limit: the next look goes on */
+    bool is_ended;   /* its process was ended by us; the folder is emptied after the end */
+    bool was_blamed; /* its process was ended since the disk became short of space */
+    bool was_tried;  /* was emptied in this look already */
+    bool has_rest;   /* emptying it stopped at a limit: the next look goes on */
 };
 
 struct cache {
     struct cache_options options;
     pthread_t thread;
-    struct queue *words;
-    /* the thread's own */
-    int file; /* of the folder */
+    struct queue *uses;
+    /* only for the thread */
+    int file; /* descriptor of data/cache */
     struct entry *entries;
     size_t n_entries, room;
 };
 
 /* ---- one folder ------------------------------------------------------------------------------------------------- */
 
-/* The daemon lacks something: that says nothing about the renderer. */
+/* True when the daemon itself lacks descriptors or memory: the renderer is not to blame. */
 static bool is_own_lack(int reason)
 {
     return reason == EMFILE || reason == ENFILE || reason == ENOMEM;
@@ -70,8 +70,8 @@ static int open_inner(int folder, const char *name)
     return openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
 }
 
-/* Adds what lies in the folder; consumes it. What cannot be seen counts as too much. False: the daemon lacks what it
- * takes to look. */
+/* Adds the sizes of all entries below folder; consumes the descriptor. What cannot be read counts as too much. Returns
+ * false when the daemon lacks the means to look. */
 static bool measure(int folder, int depth, struct entry *entry)
 {
     bool is_measured = true;
@@ -103,7 +103,7 @@ static bool measure(int folder, int depth, struct entry *entry)
     return is_measured;
 }
 
-/* Keeps what was measured before when the daemon cannot look now. */
+/* Measures the folder anew. Keeps the old figures when the daemon cannot look now. */
 static void look_at(const struct cache *cache, struct entry *entry)
 {
     struct entry found = { .n_bytes = 0 };
@@ -116,12 +116,12 @@ static void look_at(const struct cache *cache, struct entry *entry)
 
 struct removing {
     int top;
-    unsigned long n_seen, n_done;   /* in one round: things that were there; removed or moved */
-    unsigned long n_moved, n_tried; /* of all rounds */
+    unsigned long n_seen, n_done;   /* in one round: entries found; entries removed or moved */
+    unsigned long n_moved, n_tried; /* in all rounds */
 };
 
-/* A folder whose mode may have been changed. The name may become a link at any time: the mode is changed by what was
- * opened. */
+/* Opens a folder whose mode the renderer may have changed. Another process may put a link in its place at any time, so
+ * the mode is changed through the opened descriptor. */
 static int open_for_removal(int folder, const char *name)
 {
     char path[40];
@@ -135,7 +135,7 @@ static int open_for_removal(int folder, const char *name)
     return inner;
 }
 
-/* Files go, folders inside move to the top: however deep it was, it becomes flat. */
+/* Removes files and moves inner folders to the top: a tree of any depth becomes flat. */
 static void flatten(struct removing *removing, int folder)
 {
     int copy = openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -154,7 +154,7 @@ static void flatten(struct removing *removing, int folder)
             (void)snprintf(moved, sizeof moved, "gone-%lu", ++removing->n_moved);
             removing->n_done += renameat(folder, name->d_name, removing->top, moved) == 0;
         } else {
-            int inner = open_for_removal(folder, name->d_name); /* not empty */
+            int inner = open_for_removal(folder, name->d_name); /* a folder that is not empty */
             if (inner < 0)
                 continue;
             flatten(removing, inner);
@@ -166,7 +166,7 @@ static void flatten(struct removing *removing, int folder)
         closedir(names);
 }
 
-/* The folder itself stays: a renderer that is about to start has found it there. */
+/* Removes the contents. The folder itself stays: a renderer may be about to start in it. */
 static void empty(const struct cache *cache, struct entry *entry)
 {
     struct removing removing = { .top = open_inner(cache->file, entry->id) };
@@ -174,7 +174,7 @@ static void empty(const struct cache *cache, struct entry *entry)
     if (removing.top < 0)
         return;
     for (int round = 0; round < MAX_ROUNDS && removing.n_tried < MAX_REMOVED;
-         round++) { /* until one sees nothing, or gets no further */
+         round++) { /* until a round finds nothing or removes nothing */
         removing.n_seen = removing.n_done = 0;
         flatten(&removing, removing.top);
         if (removing.n_done == 0)
@@ -192,7 +192,7 @@ static void empty(const struct cache *cache, struct entry *entry)
 static int64_t now_ns(void)
 {
     struct timespec now;
-    (void)clock_gettime(CLOCK_REALTIME, &now); /* it is compared with times of files */
+    (void)clock_gettime(CLOCK_REALTIME, &now); /* wall clock: compared with times of files */
     return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
@@ -215,7 +215,7 @@ static struct entry *entry_of(struct cache *cache, const char *id)
     return entry;
 }
 
-/* What earlier daemons left. */
+/* Lists the folders that earlier daemons left. */
 static void list(struct cache *cache)
 {
     int copy = openat(cache->file, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -235,7 +235,7 @@ static void list(struct cache *cache)
         closedir(names);
 }
 
-/* Those of running renderers come last: what is removed there is made again only by the next. */
+/* Folders of running renderers come last: a renderer writes its kept plan only once. */
 static struct entry *least_used(struct cache *cache, bool with_running)
 {
     struct entry *least = NULL;
@@ -264,7 +264,7 @@ static void end_process(struct cache *cache, struct entry *entry, const char *re
     cache->options.end(cache->options.context, entry->process, reason);
 }
 
-/* Once in a look. A renderer that fills its cache as fast as it is emptied is ended. */
+/* At most once per look and folder. A renderer that fills its cache as fast as it is emptied is ended. */
 static void remove_one(struct cache *cache, struct entry *entry, const char *why)
 {
     log_info("the cache of plan %s is removed (%llu MiB): %s", entry->id, (unsigned long long)(entry->n_bytes >> 20),
@@ -277,7 +277,7 @@ static void remove_one(struct cache *cache, struct entry *entry, const char *why
     if (entry->process)
         end_process(cache, entry, "was ended because its cache cannot be emptied while it runs");
     else if (!entry->has_rest)
-        entry->n_bytes = 0; /* it cannot be removed, and is not tried for ever */
+        entry->n_bytes = 0; /* it cannot be removed: count it as empty, or it would be tried for ever */
 }
 
 static bool is_short_of_space(const struct cache *cache)
@@ -286,8 +286,8 @@ static bool is_short_of_space(const struct cache *cache)
     return fstatvfs(cache->file, &disk) == 0 && (uint64_t)disk.f_bavail * disk.f_frsize < cache->options.reserve_bytes;
 }
 
-/* A file that was removed and is still open takes space nobody sees: then the renderers end, the newest first, each
- * once, until there is space again. */
+/* Removes caches until the disk has space again. If that is not enough, ends renderers, the newest first, one per look
+ * and each once: a removed file that a renderer holds open still takes space that no measuring finds. */
 static void free_space(struct cache *cache)
 {
     struct entry *blamed = NULL;
@@ -340,19 +340,20 @@ static struct entry *entry_used_by(struct cache *cache, uint64_t process)
     return NULL;
 }
 
-static void take_word(struct cache *cache, const struct word *word)
+static void note_use(struct cache *cache, const struct use *use)
 {
-    struct entry *entry = word->is_begin ? entry_of(cache, word->id) : entry_used_by(cache, word->process);
+    struct entry *entry = use->is_begin ? entry_of(cache, use->id) : entry_used_by(cache, use->process);
     if (!entry)
         return;
-    if (word->is_begin && entry->is_ended)
-        empty(cache, entry); /* the end of the process before was not heard of yet */
-    entry->process = word->is_begin ? word->process : 0;
+    if (use->is_begin && entry->is_ended)
+        empty(cache, entry); /* the end of the earlier process has not been reported yet */
+    entry->process = use->is_begin ? use->process : 0;
     entry->used_ns = now_ns();
-    (void)utimensat(cache->file, entry->id, NULL, AT_SYMLINK_NOFOLLOW); /* for the next daemon */
-    if (!word->is_begin && entry->is_ended)
+    (void)utimensat(cache->file, entry->id, NULL,
+                    AT_SYMLINK_NOFOLLOW); /* the time of the folder tells the next daemon when it was used */
+    if (!use->is_begin && entry->is_ended)
         empty(cache, entry);
-    else if (!word->is_begin)
+    else if (!use->is_begin)
         look_at(cache, entry);
     entry->is_ended = false;
 }
@@ -370,11 +371,11 @@ static void *work(void *argument)
     struct cache *cache = argument;
     list(cache);
     for (int wait_ms = 0;; wait_ms = is_any_left(cache) ? CACHE_LOOK_MS : -1) {
-        for (struct word *word = queue_take(cache->words, wait_ms); word; word = queue_try_take(cache->words)) {
-            bool is_last = word->process == 0;
+        for (struct use *use = queue_take(cache->uses, wait_ms); use; use = queue_try_take(cache->uses)) {
+            bool is_last = use->process == 0;
             if (!is_last)
-                take_word(cache, word);
-            free(word);
+                note_use(cache, use);
+            free(use);
             if (is_last)
                 return NULL;
         }
@@ -388,7 +389,7 @@ struct cache *cache_create(const struct cache_options *options, struct error *er
     cache->options = *options;
     if (cache->options.max_bytes == 0)
         cache->options.max_bytes = default_max_bytes;
-    cache->words = queue_create(MAX_WAITING, free);
+    cache->uses = queue_create(MAX_WAITING, free);
     cache->file = open(options->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     int failed = cache->file < 0 ? errno : pthread_create(&cache->thread, NULL, work, cache);
     if (!failed)
@@ -396,19 +397,19 @@ struct cache *cache_create(const struct cache_options *options, struct error *er
     error_set(err, ERROR_IO, "the cache folder %.120s cannot be watched: %s", options->folder, strerror(failed));
     if (cache->file >= 0)
         close(cache->file);
-    queue_destroy(cache->words);
+    queue_destroy(cache->uses);
     free(cache);
     return NULL;
 }
 
-static void say(struct cache *cache, const char *id, uint64_t process, bool is_begin)
+static void put_use(struct cache *cache, const char *id, uint64_t process, bool is_begin)
 {
-    struct word *word = mem_new(sizeof *word);
-    *word = (struct word){ .process = process, .is_begin = is_begin };
-    (void)snprintf(word->id, sizeof word->id, "%s", id);
-    if (queue_try_put(cache->words, word))
+    struct use *use = mem_new(sizeof *use);
+    *use = (struct use){ .process = process, .is_begin = is_begin };
+    (void)snprintf(use->id, sizeof use->id, "%s", id);
+    if (queue_try_put(cache->uses, use))
         return;
-    free(word); /* thousands wait while it removes something large */
+    free(use); /* the queue is full: the thread is removing something large */
     log_warn("%s%s",
              is_begin ? "a cache is not watched until its plan is opened again: "
                       : "the end of a renderer was not seen by the watch on caches",
@@ -419,11 +420,11 @@ void cache_destroy(struct cache *cache)
 {
     if (!cache)
         return;
-    struct word *last = mem_new(sizeof *last);
-    while (!queue_try_put(cache->words, last))
+    struct use *last = mem_new(sizeof *last);
+    while (!queue_try_put(cache->uses, last))
         (void)usleep(1000);
     pthread_join(cache->thread, NULL);
-    queue_destroy(cache->words);
+    queue_destroy(cache->uses);
     close(cache->file);
     free(cache->entries);
     free(cache);
@@ -437,9 +438,9 @@ uint64_t cache_max_file(const struct cache *cache)
 
 void cache_begin(struct cache *cache, const char *plan_id, uint64_t process)
 {
-    say(cache, plan_id, process, true);
+    put_use(cache, plan_id, process, true);
 }
 void cache_end(struct cache *cache, uint64_t process)
 {
-    say(cache, "", process, false);
+    put_use(cache, "", process, false);
 }

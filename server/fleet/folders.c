@@ -13,7 +13,7 @@
 #include "core/base/mem.h"
 #include "core/base/path.h"
 
-/* FNV-1a, so that equal contents in any order of listing give equal sums when added up. */
+/* FNV-1a. The hashes of entries are added up, so that the order of listing does not matter. */
 static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t n)
 {
     for (const unsigned char *p = bytes; n > 0; n--)
@@ -103,7 +103,7 @@ static bool join(char path[PATH_MAX], const char *folder, const char *name)
     return n > 0 && n < PATH_MAX;
 }
 
-/* A collection: plans inside a subfolder that is none itself. True when there were any. */
+/* A collection: a subfolder that is no plan but holds plans. Returns true when it holds any. */
 static bool add_inner(struct folder_list *list, const char *path, const char *name, const struct looked_at *seen)
 {
     bool has_any = false;
@@ -137,7 +137,7 @@ static void list_one(const char *given, struct folder_list *list)
             struct looked_at inside = { 0 };
             if (!join(path, real, seen.subfolders[i]))
                 continue;
-            /* one that cannot be read is listed all the same: looking at it says why */
+            /* an unreadable folder is listed too: its scan says why */
             bool is_read = look_at(path, true, &inside);
             if (!is_read || inside.has_plan_json || !add_inner(list, path, seen.subfolders[i], &inside))
                 add(list, path, seen.subfolders[i], inside.fingerprint);
@@ -169,7 +169,7 @@ void folder_list_finish(struct folder_list *list)
 void folder_make_id(const char *name, char id[64])
 {
     size_t n = 0;
-    for (; *name && n < 59; name++) { /* room for -999 */
+    for (; *name && n < 59; name++) { /* leaves room for a number, "-999" */
         char c = *name >= 'A' && *name <= 'Z' ? (char)(*name - 'A' + 'a') : *name;
         bool is_plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
         if (is_plain)

@@ -20,10 +20,10 @@ struct lister {
     lister_function function;
     void (*wake)(void *context);
     void *context;
-    struct queue *requested; /* at most one letter, this lister itself: list again */
-    struct queue *ended;     /* the same: the thread ends */
+    struct queue *requested; /* holds at most one item, the lister: list again */
+    struct queue *ended;     /* the same, put when the thread ends */
     struct mailbox *lists;
-    atomic_int state;      /* who may still call wake */
+    atomic_int state; /* WAKING: the thread is inside wake; LEFT_BEHIND: the owner is gone, wake must not be called */
     atomic_int references; /* the owner's and the thread's */
 };
 
@@ -46,7 +46,7 @@ static void unref(struct lister *lister)
     free(lister);
 }
 
-/* False: the owner has gone. */
+/* Calls wake. Returns false when the owner is gone. */
 static bool tell(struct lister *lister)
 {
     int state = IN_USE;
@@ -115,7 +115,7 @@ void lister_destroy(struct lister *lister)
 
 void lister_request(struct lister *lister)
 {
-    (void)queue_try_put(lister->requested, lister); /* full: one more follows already */
+    (void)queue_try_put(lister->requested, lister); /* full: one more listing is due already */
 }
 
 bool lister_take(struct lister *lister, struct folder_list *list)

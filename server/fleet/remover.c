@@ -14,7 +14,7 @@
 #include "core/base/mem.h"
 #include "core/base/queue.h"
 
-enum { TRIES = 5, PAUSE_MS = 200 /* a process that was killed may still finish a write */ };
+enum { TRIES = 5, PAUSE_MS = 200 /* a killed process may still finish a write */ };
 
 struct remover {
     pthread_t thread;
@@ -22,7 +22,7 @@ struct remover {
     atomic_bool is_stopping;
 };
 
-/* 0 when nothing is left, else the first reason. */
+/* Returns 0 when nothing is left, else the first errno. */
 static int remove_tree(const struct remover *remover, char *path)
 {
     char *const roots[] = { path, NULL };
@@ -32,7 +32,7 @@ static int remove_tree(const struct remover *remover, char *path)
         return errno;
     for (const FTSENT *entry; !atomic_load(&remover->is_stopping) && (entry = fts_read(tree));) {
         if (entry->fts_info == FTS_D)
-            continue; /* it comes again, as FTS_DP, when it is empty */
+            continue; /* it is visited again as FTS_DP when it is empty */
         int gone = entry->fts_info == FTS_DP || entry->fts_info == FTS_DNR ? rmdir(entry->fts_accpath)
                                                                            : unlink(entry->fts_accpath);
         if (gone != 0 && errno != ENOENT && !failed)

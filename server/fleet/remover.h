@@ -1,13 +1,13 @@
 #pragma once
-/* Removes folders with all that is in them, on a thread of its own: a plan may have ten thousand files. Knows nothing
- * of plans. */
+/* Removes folders with all their contents, on a thread of its own: a plan may have ten thousand files. Knows nothing of
+ * plans. */
 #include "core/base/error.h"
 
 enum { REMOVER_MAX_WAITING = 4096 };
 
 struct remover;
 NODISCARD struct remover *remover_create(struct error *err);
-/* Ends soon: what is not removed by then stays where it is. */
+/* Stops at the next file: what is not removed by then stays. */
 void remover_destroy(struct remover *remover);
-/* Takes path: a file, or a folder that nobody else looks into any more. Links are removed, not followed. Any thread. */
+/* Takes path, a file or folder that nobody else uses. Links are removed, not followed. Any thread; never waits. */
 void remover_put(struct remover *remover, char *path);

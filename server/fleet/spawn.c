@@ -16,7 +16,7 @@ extern char **environ;
 
 enum { CHILD_SOCKET = 3 };
 
-/* What a child may know of our environment; a prefix ends in '_'. Tokens and proxies stay with us. */
+/* Environment variables that a child inherits; a prefix ends in '_'. Others may hold secrets. */
 static const char *const passed_names[] = {
     "PATH=",
     "LANG=",

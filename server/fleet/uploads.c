@@ -1,5 +1,5 @@
-/* The steps of each upload: unpack the archive beside itself, find its root, scan it, move it to data/plans, wait until it is listed;
- * and removing what it leaves when it fails or is cancelled. */
+/* The steps of each upload: unpack the archive beside itself, find its root, scan it, move it to data/plans, wait until
+ * it is listed; and removing what it leaves when it fails or is cancelled. */
 #define _GNU_SOURCE
 #include "server/fleet/uploads.h"
 
