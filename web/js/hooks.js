@@ -1,4 +1,4 @@
-// For tests and measurements: window.beamroom. Only reads; the page itself never uses it.
+// Measurements for tests and benchmarks: window.beamroom. It changes nothing, and the page itself does not use it.
 //   beamroom.stats()   {input_to_paint_ms: [...], frames, fps: {view: n}, headers: {view: FrameHeader}, badges: {view: word}}
 //   beamroom.clear()   forgets the measured times
 
@@ -23,7 +23,7 @@ export class Hooks {
     this.#frames = 0;
   }
 
-  /** A picture was drawn and answers these inputs. The time is taken once the browser has painted it. */
+  /** Records that a picture was drawn that answers these inputs, at the time when the browser has painted it. */
   painted(header, answered) {
     this.#frames += 1;
     if (!answered.length) return;
@@ -34,7 +34,7 @@ export class Hooks {
       this.#times.splice(0, this.#times.length - capacity);
       port1.close();
     };
-    port2.postMessage(0); // comes after the paint of this animation frame
+    port2.postMessage(0); // arrives after this animation frame has been painted
   }
 
   #stats() {

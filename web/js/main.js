@@ -1,4 +1,4 @@
-// Starts the page: hands the real browser to the modules and shows the page the address names.
+// Starts the page: gives the browser's socket, clock and decoder to the modules and shows the page that the address names.
 import { Connection } from './net/connection.js';
 import { makeApi } from './net/api.js';
 import { sendPlan } from './net/upload.js';
@@ -19,7 +19,7 @@ const enter = (room) => { location.hash = `#/rooms/${room}`; };
 
 const send = ({ publicName, ...task }) => sendPlan({ ...task, url: api.uploadUrl(publicName), makeRequest: () => new XMLHttpRequest() });
 
-/** The same member again after a reload of this tab. */
+/** The member that this tab was in the room before a reload. */
 function remembered(room) {
   try {
     return JSON.parse(sessionStorage.getItem(`room ${room}`)) ?? {};
@@ -45,7 +45,7 @@ let leave = () => {};
 
 function route() {
   const [, place, id] = location.hash.split('/');
-  if (location.hash.startsWith('#picture-')) return; // the skip link
+  if (location.hash.startsWith('#picture-')) return; // the skip link's target, not a page
   leave();
   const host = document.querySelector('#page');
   leave = place === 'rooms' && isId(id)

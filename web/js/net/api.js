@@ -1,6 +1,6 @@
-// The HTTP interface of design.md 5, as far as the page uses it. Every failure is a Problem with a sentence.
+// Calls of the HTTP API (proto/http.json) that the page uses. Every failure is a Problem with a sentence.
 
-/** An RFC 9457 problem, or a failure that never reached the server. */
+/** An RFC 9457 problem, or a request that did not reach the server. */
 export class Problem extends Error {
   /** @param {{type?: string, status?: number, detail?: string, title?: string}} problem */
   constructor(problem) {

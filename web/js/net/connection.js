@@ -1,21 +1,21 @@
-// One room's WebSocket: hello first, checked messages in and out, back again after a loss.
+// The WebSocket of a room: sends hello, checks messages in both directions, connects again after a loss.
 import { maxClientBytes, protocol } from '../../gen/wire.js';
 import { readMessage, readNews } from '../wire/check.js';
 import { readFrame } from '../wire/frame.js';
 
 const backoffMs = [500, 1000, 2000, 4000];
 const pingMs = 2000;
-const silenceMs = 10000; // no pong for this long: the way is gone though nobody closed it
+const silenceMs = 10000; // without a pong for so long the connection counts as lost
 
-// As CustomEvent, which not every node we test with has.
-class News extends Event {
+// Like CustomEvent, which older versions of node do not have.
+class ConnectionEvent extends Event {
   constructor(type, detail) {
     super(type);
     this.detail = detail;
   }
 }
 
-/** News of a connection: "message" and "frame" carry what came in detail; "up", "lost" {retryMs}, "ended" {reason}. */
+/** Dispatches "message" and "frame" with what was received as detail, "up", "lost" {retryMs} and "ended" {reason}. */
 export class Connection extends EventTarget {
   #url;
   #makeSocket;
@@ -25,7 +25,7 @@ export class Connection extends EventTarget {
   #isWelcome = false;
   #isGone;
   #failures = 0;
-  #askedWaitMs = 0; // by the last bye
+  #serverWaitMs = 0; // wait that the last bye asked for
   #retryTimer = 0;
   #pingTimer = 0;
   #heardAt = 0;
@@ -33,11 +33,11 @@ export class Connection extends EventTarget {
 
   /**
    * @param {string} url
-   * @param {object} world what is handed in, so that tests hand in fakes
+   * @param {object} world passed in, so that tests can use fakes
    * @param {(url: string) => WebSocket} world.makeSocket
    * @param {{now: () => number, setTimeout: Function, clearTimeout: Function}} world.clock
-   * @param {() => Promise<boolean>} [world.isGone] whether the room is no longer there; asked when a socket could not be opened
-   * @param {{name?: string, member?: string, secret?: string}} identity who to be (again)
+   * @param {() => Promise<boolean>} [world.isGone] whether the room no longer exists; called when a socket could not be opened
+   * @param {{name?: string, member?: string, secret?: string}} identity name for a new member, or member and secret to come back as
    */
   constructor(url, { makeSocket, clock, isGone = async () => false }, identity = {}) {
     super();
@@ -72,16 +72,16 @@ export class Connection extends EventTarget {
     socket.addEventListener('close', () => this.#lose(socket, wasOpen));
   }
 
-  /** Sends a message of proto/messages.json; false when there is no connection. */
+  /** Sends a message of proto/messages.json; returns false without a connection. */
   send(message) {
     if (!this.#isWelcome) return false;
     return this.#write(readMessage(message, 'client'));
   }
 
-  /** Tries at once instead of at the end of the wait. */
+  /** Connects at once instead of at the end of the wait. */
   retryNow() {
     this.#failures = 0;
-    this.#askedWaitMs = 0;
+    this.#serverWaitMs = 0;
     this.open();
   }
 
@@ -109,7 +109,7 @@ export class Connection extends EventTarget {
       const message = readNews(JSON.parse(data));
       if (message) this.#take(message);
     } catch (error) {
-      // Something from the server that we cannot read is passed over, but never silently.
+      // A message of the server that cannot be read is ignored, but never silently.
       console.warn(`beamroom: passed over what the server sent: ${error.message}`);
     }
   }
@@ -124,7 +124,7 @@ export class Connection extends EventTarget {
     }
     if (message.type === 'bye') {
       if (message.retry_ms === null) this.#isEnded = true;
-      else this.#askedWaitMs = message.retry_ms;
+      else this.#serverWaitMs = message.retry_ms;
     }
     this.#tell('message', message);
     if (this.#isEnded) this.#tell('ended', { reason: message.reason });
@@ -145,15 +145,15 @@ export class Connection extends EventTarget {
     this.#isWelcome = false;
     this.#clock.clearTimeout(this.#pingTimer);
     if (this.#isEnded) return;
-    const retryMs = Math.max(this.#askedWaitMs, backoffMs[Math.min(this.#failures, backoffMs.length - 1)]);
+    const retryMs = Math.max(this.#serverWaitMs, backoffMs[Math.min(this.#failures, backoffMs.length - 1)]);
     this.#failures += 1;
-    this.#askedWaitMs = 0;
+    this.#serverWaitMs = 0;
     this.#retryTimer = this.#clock.setTimeout(() => this.open(), retryMs);
     this.#tell('lost', { retryMs });
     if (!wasOpen) void this.#endIfGone();
   }
 
-  /** A browser does not tell a page why a WebSocket was refused. */
+  /** Ends when the room is gone. Asks over HTTP, as a browser does not tell a page why a WebSocket was refused. */
   async #endIfGone() {
     if (!(await this.#isGone()) || this.#isEnded) return;
     this.close();
@@ -161,6 +161,6 @@ export class Connection extends EventTarget {
   }
 
   #tell(type, detail) {
-    this.dispatchEvent(new News(type, detail));
+    this.dispatchEvent(new ConnectionEvent(type, detail));
   }
 }

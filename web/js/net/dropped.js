@@ -1,4 +1,4 @@
-// What was dropped on the page or chosen in its dialog, folders opened, as files with their paths.
+// Lists files with their paths from a drop on the page or a file dialog, including those in dropped folders.
 
 const mostFiles = 100000;
 
@@ -17,7 +17,7 @@ async function walk(entry, files) {
 
 /** @param {DataTransfer} data @returns {Promise<{path: string, file: File}[]>} in order of path */
 export async function filesOfDrop(data) {
-  // what comes from another program, as an archive out of a mail, is a file without an entry; both must be asked for before the first wait
+  // an item from another program, such as an archive in a mail, is a file without an entry; both must be read before the first await
   const dropped = [...data.items].filter((item) => item.kind === 'file').map((item) => ({ entry: item.webkitGetAsEntry?.(), file: item.getAsFile() }));
   const files = [];
   for (const { entry, file } of dropped) {
@@ -27,5 +27,5 @@ export async function filesOfDrop(data) {
   return files.sort((a, b) => (a.path < b.path ? -1 : 1));
 }
 
-/** @param {FileList} list of an input, with folders' paths where it was asked for a folder */
+/** @param {FileList} list of an input element; with the paths in the folder when a folder was chosen */
 export const filesOfInput = (list) => [...list].map((file) => ({ path: file.webkitRelativePath || file.name, file }));

@@ -1,4 +1,4 @@
-// Files to one tar, without reading them: headers are made here, contents stay what the browser holds (IEEE 1003.1, ustar and pax).
+// Makes a tar of files without reading them: the headers are written here, the contents stay the browser's blobs (IEEE 1003.1, ustar, pax).
 
 const block = 512;
 const encoder = new TextEncoder();
@@ -12,7 +12,7 @@ function header(name, size, seconds, type) {
   put(octal(0o644, 7), 100);
   put(octal(0, 7), 108);
   put(octal(0, 7), 116);
-  put(size < 2 ** 33 ? octal(size, 11) : octal(0, 11), 124); // larger ones stand in the pax record
+  put(size < 2 ** 33 ? octal(size, 11) : octal(0, 11), 124); // a larger size is in the pax record
   put(octal(seconds, 11), 136);
   put('        ', 148);
   put(type, 156);
@@ -23,7 +23,7 @@ function header(name, size, seconds, type) {
 
 const padding = (size) => new Uint8Array((block - (size % block)) % block);
 
-/** "27 path=…\n", its own length included. */
+/** A pax record, "27 path=…\n"; the number is the length of the whole record. */
 function record(key, value) {
   const rest = encoder.encode(` ${key}=${value}\n`).length;
   let length = rest + 1;
@@ -56,7 +56,7 @@ export function tarOf(files) {
 
 const archive = /\.(zip|tar|tgz|txz|tbz2?|tzst|tar\.(gz|xz|bz2|zst))$/i;
 
-/** What is sent for what was chosen: an archive as it is, everything else as a tar of it. */
+/** The body to upload for chosen files: a single archive as it is, everything else as a tar. */
 export function bodyOf(files) {
   const [only] = files;
   if (files.length === 1 && archive.test(only.path)) {

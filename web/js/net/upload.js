@@ -1,4 +1,4 @@
-// One plan on its way to the server. XMLHttpRequest, because it alone tells how much has been sent.
+// Uploads a plan. By XMLHttpRequest, as only that reports how much has been sent.
 import { Problem } from './api.js';
 
 /**

@@ -1,4 +1,4 @@
-// The banner: which plan, who is here, how to invite, help.
+// The banner of a room: name of the plan, members, invitation, help.
 import { html, nothing } from '../../lib/lit-html.js';
 import { icon } from './icons.js';
 import { initials } from './pane.js';
@@ -9,7 +9,7 @@ async function copyLink(ui) {
   const field = document.querySelector('#invite-link');
   field.select();
   try {
-    // where the page is not served securely there is no clipboard: the selected link can be copied by hand
+    // a page not served securely has no clipboard; the link is selected and can be copied by hand
     await navigator.clipboard.writeText(location.href);
     ui.popover.value = '';
     ui.notify('ok', 'Link copied. Who has it can join this room.');

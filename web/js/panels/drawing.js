@@ -1,4 +1,4 @@
-// How outlines, points and splines are drawn, and the check of a segmentation: blocks of the inspector's View tab.
+// Parts of the inspector's View tab: how outlines, points and splines are drawn, and the check of a segmentation.
 import { html, nothing } from '../../lib/lit-html.js';
 import { checkbox, numberField, segment } from './fields.js';
 
@@ -36,7 +36,7 @@ function splines(nurbs, isDisabled, change) {
       <dt>Around a slice</dt><dd>${numberField('Control points around a slice', nurbs.bins, '', isDisabled, (value, event) => change({ nurbs: { bins: clamp(Math.round(value), 8, 360) } }, event))}</dd></dl></section>`;
 }
 
-/** The segmentation check: one region or all that are visible. */
+/** The check of a segmentation, for one region or for all visible ones. */
 function check(style, chosen, plan, isDisabled, change) {
   const checked = plan.regions.find((region) => region.id === style.region);
   const options = [['', 'All visible'], ...[...new Set([checked, chosen])].filter(Boolean).map((region) => [region.id, region.name])];

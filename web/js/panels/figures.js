@@ -1,4 +1,4 @@
-// The dialog that sets the ways of showing a region side by side, with the figures of each.
+// The dialog that compares the representations of a region by their figures.
 import { html, nothing } from '../../lib/lit-html.js';
 import { figuresCsv, volumeDifference } from '../state/shapes.js';
 import { number, signed } from './format.js';

@@ -1,4 +1,4 @@
-// What floats over the page: toasts and the list of keys.
+// Shown over the page: toasts, the list of keys, the notice that a room has ended.
 import { html, nothing } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { icon } from './icons.js';
@@ -9,7 +9,7 @@ export const toasts = ({ ui }) => html`${repeat(ui.toasts.value, (toast) => toas
   <div class="toast" role=${kind === 'err' ? 'alert' : 'status'}><span class=${kind}>${icon(signs[kind])}</span><span>${text}</span>
     <button class="icon-button small" aria-label="Dismiss" @click=${() => ui.dismiss(id)}>${icon('close', 12)}</button><i></i></div>`)}`;
 
-/** A room that will not come back: why, and the way out. What was seen last stays behind it. */
+/** The notice that a room has ended, with the reason and a link to the start page; the last pictures stay visible. */
 export const ended = ({ room }) => (room.link.value.state !== 'ended' ? nothing : html`<section class="card ended" role="alert">${icon('disconnected')}
   <div><b>You are no longer in this room</b><p>${room.link.value.reason ? `${room.link.value.reason[0].toUpperCase()}${room.link.value.reason.slice(1)}.` : 'The server gave no reason.'}</p></div>
   <a class="button" href="#/">All plans</a></section>`);

@@ -1,4 +1,4 @@
-// Numbers as people read them: a true minus, thin spaces between thousands, one space before a unit.
+// Formats numbers for people: a true minus, thin spaces between thousands, one space before a unit.
 
 const thin = '\u2009';
 const minus = '\u2212';
@@ -12,13 +12,13 @@ export function number(value, digits = 0) {
   return `${value < 0 && !isZero ? minus : ''}${grouped}${rest ? `.${rest}` : ''}`;
 }
 
-/** With its sign, unless it is none: "+0.31", "−0.04", "0.00". */
+/** With a sign unless it is zero: "+0.31", "−0.04", "0.00". */
 export function signed(value, digits) {
   const text = number(value, digits);
   return value > 0 && /[1-9]/.test(text) ? `+${text}` : text;
 }
 
-/** Three figures that count. */
+/** Three significant figures. */
 export function significant(value) {
   if (!Number.isFinite(value)) return '–';
   if (value === 0) return '0';
@@ -29,7 +29,7 @@ export function significant(value) {
 
 export const millimetres = (value) => `${number(value, 1)} mm`;
 
-/** "6.6 MB"; a dash where nothing was counted, as for a plan that cannot be read */
+/** "6.6 MB"; a dash for nothing, as of a plan that cannot be read. */
 export function bytes(n) {
   if (!Number.isFinite(n) || n <= 0) return '–';
   if (n < 1e3) return `${number(n)} B`;
@@ -37,7 +37,7 @@ export function bytes(n) {
   return n < 1e9 ? `${number(n / 1e6, 1)} MB` : `${number(n / 1e9, 1)} GB`;
 }
 
-/** "67.2 cm³": as many figures as a list needs */
+/** "67.2 cm³", with as many figures as a list needs. */
 export function volume(cm3) {
   if (cm3 > 0 && cm3 < 0.005) return '< 0.01 cm³';
   return `${number(cm3, cm3 < 9.995 ? 2 : cm3 < 99.95 ? 1 : 0)} cm³`;
@@ -47,10 +47,10 @@ export const seconds = (ms) => (ms < 1000 ? `${number(ms)} ms` : `${number(ms / 
 
 export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;
 
-/** "1/cm²" of a unit as files write it, "1/cm2" */
+/** "1/cm²" for a unit as files write it, "1/cm2". */
 export const unitText = (unit) => unit.replace(/\b([cm]?m)([23])\b/g, (_, metre, power) => `${metre}${power === '2' ? '²' : '³'}`);
 
-/** "C 40  W 400 HU", the way windows are written everywhere. */
+/** "C 40  W 400 HU", the form of a window everywhere on the page. */
 export const windowText = ({ center, width }, unit, isInverted = false) => {
   const digits = width < 10 ? 2 : 0;
   return `C ${number(center, digits)}  W ${number(width, digits)}${unit ? ` ${unit}` : ''}${isInverted ? '  low white' : ''}`;

@@ -1,4 +1,4 @@
-// Every icon: a 16 x 16 box, 1.5 px strokes in the colour of the text. One table.
+// The table of all icons: a 16 x 16 box, 1.5 px strokes in the colour of the text.
 import { html, svg } from '../../lib/lit-html.js';
 
 const paths = {
@@ -38,7 +38,7 @@ const paths = {
   circle: svg`<circle cx="8" cy="8" r="5.5"/>`,
   phase: svg`<circle cx="8" cy="8" r="5.5" stroke-opacity=".35"/><path d="M8 2.500A5.5 5.5 0 0 1 13.5 8"/>`,
   ready: svg`<circle cx="8" cy="8" r="5.8"/><circle cx="8" cy="8" r="2" fill="currentColor"/>`,
-  // fidelity badges: told apart by shape
+  // badges of fidelity, each with its own shape
   full: svg`<rect x="2.5" y="2.5" width="11" height="11" rx="2" fill="currentColor"/>`,
   live: svg`<circle cx="8" cy="8" r="6"/><circle cx="8" cy="8" r="2.5" fill="currentColor"/>`,
   reduced: svg`<circle cx="8" cy="8" r="6"/><path d="M2 8a6 6 0 0 0 12 0Z" fill="currentColor"/>`,

@@ -1,4 +1,4 @@
-// The inspector at the right: probe at the crosshair, how pictures are drawn, what loading noticed.
+// The inspector at the right: values at the crosshair, how pictures are drawn, the report of loading.
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
@@ -68,7 +68,7 @@ function doseTable(result, isOld) {
 
 const componentName = ({ quantity, per_ppm, boron_ppm: ppm }) => `${quantity[0].toUpperCase()}${quantity.slice(1).replaceAll('-', ' ')}${per_ppm ? ', per ppm' : ''}${Number.isFinite(ppm) ? `, boron at ${ppm} ppm` : ''}`;
 
-/** What is in a total cannot be taken out, so it is said beside it. */
+/** The boron that a total includes; it cannot be taken out, so it is shown beside the value. */
 function boronNote(rows) {
   const total = rows.find(({ boron_ppm: ppm }) => Number.isFinite(ppm));
   return total ? ` The ${total.quantity.replaceAll('-', ' ')} is with boron at ${total.boron_ppm} ppm in blood.` : '';
@@ -101,7 +101,7 @@ function viewTab(world) {
 
 const cullsNothing = -1e12; // proto/scene.json
 
-/** What slices in the 3-D view leave out, so that air hides nothing. */
+/** The threshold below which slices in the 3-D view are transparent, so that air hides nothing. */
 function cullRow(scene, image, isDisabled, change) {
   const { cull_below: value } = scene.image;
   const isOn = value > cullsNothing;

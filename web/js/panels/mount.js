@@ -1,9 +1,9 @@
-// Draws a template into an element, and again whenever a signal it read has changed.
+// Draws a template into an element, and draws it again whenever a signal that it read changes.
 import { nothing, render } from '../../lib/lit-html.js';
 import { Directive, directive } from '../../lib/directive.js';
 import { effect } from '../../lib/signals-core.js';
 
-/** @param {HTMLElement} host @param {() => unknown} draw @returns {() => void} stops and empties */
+/** @param {HTMLElement} host @param {() => unknown} draw @returns {() => void} stops, and empties the element */
 export function mount(host, draw) {
   const stop = effect(() => {
     render(draw(), host);
@@ -19,12 +19,12 @@ class Variables extends Directive {
     return nothing;
   }
 
-  // Through the object model, not a style attribute, which the content security policy forbids.
+  // By the object model: the content security policy forbids style attributes.
   update({ element }, [values]) {
     for (const [name, value] of Object.entries(values)) element.style.setProperty(name, value);
     return this.render();
   }
 }
 
-/** Sets CSS properties of the element it stands in: html`<i ${variables({ '--fill': '40%' })}>`. */
+/** Sets CSS properties of its element: html`<i ${variables({ '--fill': '40%' })}>`. */
 export const variables = directive(Variables);

@@ -1,4 +1,4 @@
-// One pane: header, follow bar, picture with what is drawn over it, slice slider.
+// One pane: header, follow bar, picture with its overlay, slice slider.
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
@@ -66,7 +66,7 @@ export class Pane {
     for (const stop of this.#stops) stop();
   }
 
-  /** Opens, resizes or closes the server's picture as the pane is shown and sized. */
+  /** Opens, resizes or closes the server's view when the pane is shown, resized or hidden. */
   #measure(body) {
     const { width, height } = body.getBoundingClientRect();
     this.#size.value = [width, height];
@@ -136,7 +136,7 @@ export class Pane {
       ${badge.why && this.#ui.popover.value === name ? html`<div class="popover badge-why" role="status"><b class=${badge.state}>${icon(badge.state, 12)} ${badge.text}</b><p>${badge.why}</p></div>` : nothing}</span>`;
   }
 
-  /** Somebody who left leads nobody: then the shared view is only where it was left. */
+  /** The member whose view is shown here; '' when that member has left, as the shared view then stays where it is. */
   get #leader() {
     const { isFollowing, movedBy } = this.#view;
     return isFollowing.value && this.#room.isHere(movedBy.value) ? movedBy.value : '';
@@ -169,7 +169,7 @@ export class Pane {
     const image = shownImage(plan, scene);
     return overlay({
       kind: view.kind, header, box, pane,
-      point: image || plan?.regions.length ? crosshair(scene) : null, // nothing to point at
+      point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
       pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
       topPx: view.isFollowing.value && !this.#leader ? 0 : parseInt(getComputedStyle(this.host).getPropertyValue('--follow'), 10),
       windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : plan?.regions.length ? 'No image: regions' : '',
@@ -198,7 +198,7 @@ export class Pane {
     return html`<div class="cover quiet"><p>No image and no region in this plan: nothing to ${this.#view.kind === '3d' ? 'draw' : 'cut through'}.</p></div>`;
   }
 
-  /** What the picture cannot say itself: the regions that are missing from it, and what the colours of the check mean. */
+  /** The legend: regions that are missing from the picture, and the colours of the segmentation check. */
   #legend() {
     const scene = this.#room.scene.value;
     const plan = this.#room.plan.value;
@@ -245,14 +245,14 @@ export class Pane {
   }
 
   #caption() {
-    // told when something has come to rest, not thirty times a second
+    // announced once the picture is still, not thirty times a second
     if (this.#view.painted.value?.is_still) this.#lastCaption = `${names[this.#view.kind]}, ${this.#where()}`;
     return this.#lastCaption;
   }
 
 }
 
-/** "Reviewer 1" gives R1, "Ada Lovelace" AL. */
+/** "R1" for "Reviewer 1", "AL" for "Ada Lovelace". */
 export function initials(name) {
   const words = name.trim().split(/\s+/);
   const letters = words.length > 1 ? words[0][0] + words.at(-1)[0] : words[0].slice(0, 2);

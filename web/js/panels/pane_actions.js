@@ -1,4 +1,4 @@
-// What hands do on a pane, turned into changes of camera, crosshair, slice and window.
+// Turns pointer and keyboard input on a pane into changes of camera, crosshair, slice and window.
 import * as cameras from '../view/camera.js';
 import { fromPicture } from '../view/vec.js';
 import { crosshair, crosshairPatch, shownImage, windowPresets } from '../state/plan.js';
@@ -24,7 +24,7 @@ export class PaneActions {
     this.#ui = ui;
     this.#api = api;
     this.#number = number;
-    this.box = { x: 0, y: 0, width: 1, height: 1 }; // where in the pane the picture is, CSS px
+    this.box = { x: 0, y: 0, width: 1, height: 1 }; // position and size of the picture in the pane, CSS px
   }
 
   get view() {
@@ -168,7 +168,7 @@ export class PaneActions {
     return cameras.planes[this.view.kind].axis;
   }
 
-  /** Moves by whole slices of the image; the picture itself stays. */
+  /** Moves by whole slices of the image; the camera stays. */
   stepSlice(steps, at) {
     const { plan, scene } = this.#room;
     if (!scene.value) return;
@@ -197,7 +197,7 @@ export class PaneActions {
 
   // ---- keys of the focused pane -------------------------------------------------------------------------------------------
 
-  /** @param {KeyboardEvent} event @returns {boolean} whether the key was ours */
+  /** @param {KeyboardEvent} event @returns {boolean} whether the key was used */
   key(event) {
     if (event.altKey || event.metaKey || event.ctrlKey) return false;
     const at = event.timeStamp;
@@ -233,7 +233,7 @@ export class PaneActions {
   }
 }
 
-/** Where in a pane a picture is drawn: as large as fits, its shape kept. */
+/** Position and size of a picture in a pane: as large as fits, aspect ratio kept. */
 export function fitBox([paneWidth, paneHeight], [width, height]) {
   const k = Math.min(paneWidth / width, paneHeight / height);
   const box = { width: width * k, height: height * k };

@@ -1,4 +1,4 @@
-// The region chosen in the tree: its figures, how it is shown, its shape as a file.
+// The region chosen in the tree: its figures, how it is shown, saving its shape as a file.
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
@@ -39,7 +39,7 @@ export function regionBlock(world, region) {
     ${region.voxels && isExportable(style.representation) && !isRefused(world, region, style.representation) ? downloads(world, region, style.representation) : nothing}</section>`;
 }
 
-/** What the server cannot build can be no file either. */
+/** True when the server cannot build the shape, so there is no file to save either. */
 function isRefused({ shaped, refused }, region, representation) {
   const { region: of, representation: as, error } = shaped.value;
   return Boolean(of === region.id && as === representation && error) || Boolean(refused.value[region.id]);
@@ -51,7 +51,7 @@ function downloads({ api, room }, region, representation) {
     download href=${api.surfaceUrl(room.planId.value, region.id, { format, ...query })} title=${`Download the surface of ${region.name} as ${about}`}>${format.toUpperCase()}</a>`)}</div>`;
 }
 
-/** The figures of the shape that is shown, as the server worked them out. */
+/** The server's figures of the shape that is shown. */
 function figures({ shaped }, region, representation) {
   const { region: of, representation: as, result, error } = shaped.value;
   if (of !== region.id || as !== representation || (!result && !error)) return html`<p class="note figures">Working out its figures …</p>`;

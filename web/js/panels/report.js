@@ -1,4 +1,4 @@
-// The lines of a load report, as the start page and the inspector show them.
+// The lines of a report, for the start page and the inspector.
 import { html, nothing } from '../../lib/lit-html.js';
 import { number } from './format.js';
 import { icon } from './icons.js';

@@ -1,4 +1,4 @@
-// The room page: the frame of panels round four panes, and what joins them to the room's state.
+// The room page: four panes with the panels around them, connected to the room's state.
 import { html } from '../../lib/lit-html.js';
 import { computed, effect, signal } from '../../lib/signals-core.js';
 import { Comparison } from '../state/comparison.js';
@@ -87,18 +87,18 @@ function describeTitle(room) {
   document.title = `${room.plan.value?.name ?? room.planId.value} – Beamroom`;
 }
 
-/** Asks what is at the crosshair whenever it has moved: the newest question wins. */
+/** Requests the values at the crosshair whenever it has moved; only the newest answer is used. */
 function probe(room, api, probed, clock) {
   let timer = 0;
-  let asking = null;
+  let pending = null;
   const place = computed(() => {
     const scene = room.scene.value;
     return scene && room.plan.value ? crosshair(scene).join(' ') : '';
   });
   const ask = async () => {
-    asking?.abort();
-    asking = new AbortController();
-    const { signal: aborted } = asking;
+    pending?.abort();
+    pending = new AbortController();
+    const { signal: aborted } = pending;
     try {
       const result = await api.probe(room.planId.value, place.peek().split(' ').map(Number), aborted);
       if (!aborted.aborted) probed.value = { result, error: '', isOld: false };
@@ -116,13 +116,13 @@ function probe(room, api, probed, clock) {
   return () => {
     stop();
     clock.clearTimeout(timer);
-    asking?.abort();
+    pending?.abort();
   };
 }
 
-/** Asks for the figures of the chosen region's shape, whenever another region or another shape is chosen. */
+/** Requests the figures of the chosen region's shape whenever another region or another shape is chosen. */
 function shape(room, ui, api, shaped) {
-  let asking = null;
+  let pending = null;
   const wanted = computed(() => {
     const scene = room.scene.value;
     const region = room.plan.value?.regions.find((other) => other.id === ui.region.value);
@@ -131,21 +131,21 @@ function shape(room, ui, api, shaped) {
     return isReady ? JSON.stringify([region.id, representation, shapeQuery(scene, representation)]) : '';
   });
   const stop = effect(() => {
-    asking?.abort();
+    pending?.abort();
     if (!wanted.value) return;
     const [region, representation, query] = JSON.parse(wanted.value);
-    const { signal: aborted } = asking = new AbortController();
+    const { signal: aborted } = pending = new AbortController();
     shaped.value = { region: '', representation: '', result: null, error: '' };
     const tell = (answer) => { if (!aborted.aborted) shaped.value = { region, representation, result: null, error: '', ...answer }; };
     api.surface(room.planId.peek(), region, query, aborted).then((result) => tell({ result }), (error) => tell({ error: error.message }));
   });
   return () => {
     stop();
-    asking?.abort();
+    pending?.abort();
   };
 }
 
-/** Finds out which regions are missing from the picture, whenever others are shown or they are shown in another way. */
+/** Finds the regions that cannot be drawn whenever other regions are shown, or in another way. */
 function refuse(room, refusals) {
   const questions = computed(() => (room.renderer.value.state === 'ready' ? JSON.stringify(inQuestion(room.plan.value, room.scene.value)) : ''));
   const stop = effect(() => {
@@ -157,7 +157,7 @@ function refuse(room, refusals) {
   };
 }
 
-/** Starts the comparison when its dialog opens, or another region is chosen meanwhile. */
+/** Starts the comparison when its dialog opens or, while it is open, another region is chosen. */
 function compare(room, ui, comparison) {
   const of = computed(() => (ui.popover.value === 'figures' ? ui.region.value : ''));
   const stop = effect(() => {
@@ -172,7 +172,7 @@ function compare(room, ui, comparison) {
   };
 }
 
-/** Folds what the window has no room for; unfolded again where it has. */
+/** Folds panels that do not fit into the window, and unfolds them when they do. */
 function adapt(ui) {
   return [['(min-width: 1400px)', ui.isTreeOpen], ['(min-width: 1200px)', ui.isInspectorOpen]].map(([query, isOpen]) => {
     const media = matchMedia(query);
@@ -183,7 +183,7 @@ function adapt(ui) {
   });
 }
 
-/** A dialog takes the focus, and gives it back to what opened it. */
+/** Moves the focus into a dialog that opens, and back afterwards to the element that opened it. */
 function moveFocus(host, ui) {
   let opener = null;
   const isDialog = computed(() => ['help', 'figures'].includes(ui.popover.value));
@@ -191,7 +191,7 @@ function moveFocus(host, ui) {
     const isOpen = isDialog.value;
     if (!isOpen && !opener) return;
     if (isOpen) opener = document.activeElement;
-    queueMicrotask(() => { // once it is drawn
+    queueMicrotask(() => { // after it is drawn
       const dialog = host.querySelector('[role="dialog"]');
       if (isOpen) return void dialog?.focus();
       if (document.activeElement === document.body) opener?.focus();

@@ -24,7 +24,7 @@ export function startPage(host, world) {
   const unmount = mount(host, () => page(state, uploads, world.enter));
   const unlisten = listenDrops(uploads);
   let newest = 0;
-  const unscroll = effect(() => { // what was just chosen stands at the top, wherever one was, and asks for its name
+  const unscroll = effect(() => { // scrolls to the top, where a newly chosen upload asks for its name
     const { key = 0 } = uploads.rows.value.at(-1) ?? {};
     if (key > newest) queueMicrotask(() => {
       host.querySelector('main').scrollTo(0, 0);
@@ -56,7 +56,7 @@ function join(state, enter) {
   const go = (event) => {
     event.preventDefault();
     const field = event.target.elements.room;
-    // a whole link does as well as the id in it
+    // a whole link is accepted as well as the id in it
     const id = field.value.trim().split('/').at(-1);
     field.setCustomValidity(isId(id) ? '' : 'A room is named by letters a to z, digits and -.');
     if (field.reportValidity()) enter(id);
@@ -78,7 +78,7 @@ function list(state, uploads) {
     ${plans && !shown.length ? html`<p class="empty">${plans.length ? 'No plan fits the search and the filter.' : 'No plans here. Drop one on this page; the server also looks in the folders given with --plans.'}</p>` : nothing}`;
 }
 
-/** Why the plan cannot be opened, as far as it is known. */
+/** Why the plan cannot be opened, if known. */
 const refusalOf = (state, plan) => state.refusals.value[plan.id] || (['failed', 'unreadable'].includes(plan.state) ? plan.reason : '');
 
 function row(state, plan) {

@@ -1,4 +1,4 @@
-// The strip at the foot of a room: how true and how fast the pictures are, where the crosshair is.
+// The status bar of a room: fidelity and speed of the pictures, position of the crosshair.
 import { html, nothing } from '../../lib/lit-html.js';
 import { worst } from '../state/fidelity.js';
 import { crosshair } from '../state/plan.js';

@@ -1,4 +1,4 @@
-// The tool strip: what the left button does, how the panes lie, reset and snapshot.
+// The tool bar: tool of the left button, layout of the panes, reset, snapshot.
 import { html } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { icon } from './icons.js';
@@ -15,7 +15,7 @@ const layouts = [
   ['single', 'single', 'One pane'],
 ];
 
-/** One tab stop for a row of buttons: arrows move inside. */
+/** Makes a row of buttons one tab stop, inside which the arrow keys move. */
 export function roving(event) {
   const by = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: 1, ArrowUp: -1 }[event.key];
   if (!by) return;

@@ -1,4 +1,4 @@
-// The left tree: what the plan holds, with eye, colour and opacity.
+// The tree at the left: parts of the plan, each with visibility, colour and opacity.
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
@@ -42,7 +42,7 @@ function regions(room, ui, plan, refused) {
   return section('Regions', note, html`<ul class="rows" @keydown=${walk}>${repeat(plan.regions, (region) => region.id, (region) => row(room, ui, plan, region, refused.value[region.id]))}</ul>`);
 }
 
-/** Up and down move between rows. */
+/** Moves between rows by the up and down keys. */
 function walk(event) {
   const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
   if (!by || event.target.type === 'range' || event.target.type === 'number') return;
@@ -80,7 +80,7 @@ function row(room, ui, plan, region, refusal) {
   </li>`;
 }
 
-/** Doses, whose grids can be shown over the picture. */
+/** The doses, each with a button that shows its grid over the picture. */
 function doses(room, ui, plan) {
   const scene = room.scene.value;
   if (!scene || !plan.doses.length) return nothing;

@@ -1,4 +1,4 @@
-// The place to drop a plan, and the plans on their way.
+// The area to drop a plan on, and the list of uploads.
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { repeat } from '../../lib/directives/repeat.js';
@@ -13,7 +13,7 @@ function take(uploads, files) {
   if (files.length) uploads.offer(bodyOf(files));
 }
 
-/** Dropping works anywhere on the page. @returns {() => void} */
+/** Accepts drops anywhere on the page. @returns {() => void} stops */
 export function listenDrops(uploads, target = globalThis) {
   const isFiles = (event) => event.dataTransfer?.types.includes('Files');
   const over = (event) => {
@@ -58,7 +58,7 @@ const words = ({ state, job, sent, bytes: size }) => {
   return job?.phase ? `${job.phase[0].toUpperCase()}${job.phase.slice(1)}` : 'Waiting';
 };
 
-/** What is chosen on this computer is often called after the patient, and what everybody sees is not: it is asked for. */
+/** Asks for the name that everybody will see, as local files are often called after the patient. */
 function asking(uploads, upload) {
   const submit = (event) => {
     event.preventDefault();

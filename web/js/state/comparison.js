@@ -1,10 +1,10 @@
-// The figures of every method for one region, asked for one after the other.
+// The figures of one region by every method, requested one after the other.
 import { methods } from './shapes.js';
 
-/** Asks for one method after the other; what a newer question replaces is dropped. */
+/** Requests the figures of one method after the other; starting again drops the answers of the run before. */
 export class Comparison {
   #api;
-  #asking = null;
+  #pending = null;
 
   /** @param {object} api @param {import('../../lib/signals-core.js').Signal} rows */
   constructor(api, rows) {
@@ -13,20 +13,20 @@ export class Comparison {
   }
 
   stop() {
-    this.#asking?.abort();
-    this.#asking = null;
+    this.#pending?.abort();
+    this.#pending = null;
   }
 
   async start(plan, region, scene) {
     this.stop();
-    const asking = new AbortController();
-    this.#asking = asking;
+    const pending = new AbortController();
+    this.#pending = pending;
     const rows = methods(scene).map((method) => ({ ...method, region: region.id }));
     this.rows.value = rows;
     for (const [i, { query }] of rows.entries()) {
-      const answer = await this.#api.surface(plan, region.id, { ...query, frames: '5' }, asking.signal)
+      const answer = await this.#api.surface(plan, region.id, { ...query, frames: '5' }, pending.signal)
         .then((result) => ({ result }), (error) => ({ error: error.message }));
-      if (asking.signal.aborted) return;
+      if (pending.signal.aborted) return;
       rows[i] = { ...rows[i], ...answer };
       this.rows.value = [...rows];
     }

@@ -1,4 +1,4 @@
-// How true the picture on the screen is: one of five states, each with its words. Pure functions.
+// The fidelity of the picture on the screen: one of five states, each with its words. Pure functions.
 
 const staleMs = 1000;
 /** Best to worst. */
@@ -17,8 +17,8 @@ function why(header) {
 /**
  * @param {object} facts
  * @param {{state: string, retryAt: number}} facts.link
- * @param {string} facts.renderer its state
- * @param {import('../wire/frame.js').FrameHeader|null} facts.header of what is painted
+ * @param {string} facts.renderer state of the renderer
+ * @param {import('../wire/frame.js').FrameHeader|null} facts.header of the picture on the screen
  * @param {number} facts.staleSince @param {number} facts.revision @param {number} facts.revisionAt
  * @param {number} facts.fps @param {number} facts.now
  * @returns {{state: string, text: string, why: string} | null} null before the first picture

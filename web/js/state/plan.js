@@ -1,8 +1,8 @@
-// The plan as the server describes it, put the way the panels need it. Read once, then never changed.
+// The plan as the panels need it, made from the server's description. Never changed afterwards.
 
 const axisNames = ['L', 'P', 'S'];
 
-/** Millimetres from one voxel to the next along each patient axis: of the grid axis that runs most along it. */
+/** Voxel spacing in mm along each patient axis, taken from the grid axis closest to it. */
 function spacingAlong(rows) {
   return axisNames.map((_, axis) => Math.max(...rows[axis].slice(0, 3).map(Math.abs)) || 1);
 }
@@ -23,7 +23,7 @@ function readImage(image) {
   };
 }
 
-/** Regions with what contains them before what they contain, in file order otherwise. */
+/** Regions in file order, but every region after the one that contains it. */
 function inOrder(regions) {
   const known = new Set(regions.map((region) => region.id));
   const rows = [];
@@ -77,19 +77,19 @@ export function reportSummary({ lines }) {
   return parts.join(', ') || 'no remarks';
 }
 
-/** The image the scene shows. */
+/** The image that the scene shows. */
 export function shownImage(plan, scene) {
   const id = scene?.image?.id;
   return plan?.images.find((image) => image.id === id) ?? plan?.images[0] ?? null;
 }
 
-/** Where the crosshair is: the three slices together. @returns {[number, number, number]} LPS mm */
+/** The crosshair: the point where the three slices meet. @returns {[number, number, number]} LPS mm */
 export function crosshair(scene) {
   const { sagittal, coronal, axial } = scene.image.slices;
   return [sagittal.position_mm, coronal.position_mm, axial.position_mm];
 }
 
-/** The patch that puts the crosshair there, within the plan. */
+/** The patch that moves the crosshair to a point, clamped to the plan. */
 export function crosshairPatch(plan, image, point) {
   const { low, high } = image?.bounds ?? plan.bounds;
   const position = point.map((value, axis) => Math.round(Math.min(Math.max(value, low[axis]), high[axis]) * 10) / 10);
@@ -97,13 +97,13 @@ export function crosshairPatch(plan, image, point) {
   return { image: { slices: { sagittal, coronal, axial } } };
 }
 
-/** Whether low values of the image are white: as the scene says, else as the image asks. */
+/** True if low values of the image are white: as the scene says, else as the image itself does. */
 export const isLowWhite = (image, scene) => (scene.image.low_values === 'own' ? image.isInverted : scene.image.low_values === 'white');
 
-/** Another image is shown as it asks. */
+/** The patch that shows another image with its own window and its own meaning of low values. */
 export const imagePatch = ({ id, window }) => ({ image: { id, window, low_values: 'own' } });
 
-/** Window presets by key; 5 is the image's full range. Hounsfield units only where the image has them. */
+/** Window presets by key; 5 is the image's full range. Presets in HU only for an image in HU. */
 export function windowPresets(image) {
   if (!image) return [];
   const full = { key: '5', name: 'Full range', center: (image.low + image.high) / 2, width: Math.max(image.high - image.low, 0.001) };
@@ -117,26 +117,26 @@ export function windowPresets(image) {
   ];
 }
 
-/** Hides all regions but one; when only that one is shown, shows all again. */
+/** The patch that hides all regions but one or, when only that one is shown, shows all again. */
 export function soloPatch(regions, scene, id) {
   const isAlone = regions.every((region) => Boolean(scene.regions[region.id]?.visible) === (region.id === id));
   return { regions: Object.fromEntries(regions.map((region) => [region.id, { visible: isAlone || region.id === id }])) };
 }
 
-/** "Gy per fraction, total" of a dose; what it cannot say it leaves out. */
+/** "Gy per fraction, total" for a dose; unknown parts are left out. */
 export function doseWords(dose) {
   const per = dose.per ? ` per ${dose.per.replace(/^per /, '')}` : '';
   const quantities = dose.components.map(({ quantity, per_ppm: perPpm, boron_ppm: ppm }) => (perPpm ? `${quantity} per ppm` : Number.isFinite(ppm) ? `${quantity} with boron at ${ppm} ppm` : quantity));
   return [`${dose.unit || 'no unit'}${per}`, ...quantities].join(', ');
 }
 
-/** A sentence where a dose may not lie where it is shown; '' where nothing says so. */
+/** A sentence when a dose may be shifted against the image; '' otherwise. */
 export function frameWords({ frame_of_reference: frame }) {
   if (frame === 'differs') return 'In another frame of reference than the image: the dose may be shifted against it.';
   return frame === 'unknown' ? 'Nothing says that dose and image share a frame of reference.' : '';
 }
 
-/** "gantry 90°, 120 mm" of a beam */
+/** "gantry 90°, 120 mm" for a beam. */
 export function beamWords(beam) {
   const { delivery: d } = beam;
   const gantry = d && d.gantry_deg !== null && `gantry ${d.gantry_deg}°${d.gantry_stop_deg !== null && d.gantry_stop_deg !== d.gantry_deg ? ` to ${d.gantry_stop_deg}°` : ''}`;

@@ -1,4 +1,4 @@
-// The start page's truth: which plans there are, which is being loaded, what loading noticed.
+// State of the start page: the plans, the jobs that load them, the report of the chosen plan.
 import { batch, computed, signal } from '../../lib/signals-core.js';
 import { readReport } from './plan.js';
 
@@ -11,7 +11,7 @@ export class PlansState {
   #enter;
   #timer = 0;
   #isStopped = false;
-  #asked = 0;
+  #newest = 0;
 
   /** @param {object} world {api, clock, enter: (room: string) => void} */
   constructor({ api, clock, enter }) {
@@ -24,11 +24,11 @@ export class PlansState {
     this.jobs = signal({}); // by plan: {id, state, phase, percent, problem, isOpening}
     this.refusals = signal({}); // by plan: a sentence
     this.chosen = signal('');
-    this.report = signal(null); // {plan, loadMs, lines, dropped} of the chosen plan, null when there is none
+    this.report = signal(null); // {plan, loadMs, lines, dropped} of the chosen plan; null without one
     this.filter = signal('all'); // all | ready | warnings
     this.search = signal('');
     this.isJoining = signal(false);
-    this.deleting = signal(''); // the plan whose deletion waits to be confirmed
+    this.deleting = signal(''); // the plan whose deletion the user has yet to confirm
     this.shown = computed(() => {
       const words = this.search.value.trim().toLowerCase();
       return (this.plans.value ?? []).filter((plan) => {
@@ -54,7 +54,7 @@ export class PlansState {
     this.#readReport();
   }
 
-  /** Loads the plan, then goes into a new room with it. */
+  /** Loads the plan, then enters a new room with it. */
   async open(id) {
     if (this.jobs.value[id]) return;
     this.choose(id);
@@ -79,13 +79,13 @@ export class PlansState {
     await this.#api.cancelJob(job.id).catch((error) => this.#refuse(id, error.message));
   }
 
-  /** A plan that was just uploaded. */
+  /** Shows a plan that was just uploaded. */
   async arrived(id) {
     await this.#list();
     if (!this.#isStopped) this.choose(id);
   }
 
-  /** Deletes an uploaded plan, everything of it. */
+  /** Deletes an uploaded plan with all its files. */
   async remove(id) {
     this.deleting.value = '';
     try {
@@ -97,7 +97,7 @@ export class PlansState {
     await this.#list();
   }
 
-  /** Follows a job to its end; null when it was cancelled. */
+  /** Waits for the end of a job; null when it was cancelled. */
   async #finish(id, job) {
     while (!this.#isStopped) {
       this.#setJob(id, job);
@@ -129,7 +129,7 @@ export class PlansState {
   async #readReport() {
     const id = this.chosen.value;
     const plan = this.plans.value?.find((other) => other.id === id);
-    const asked = ++this.#asked;
+    const request = ++this.#newest;
     if (plan?.state !== 'ready') {
       this.report.value = null;
       return;
@@ -137,9 +137,9 @@ export class PlansState {
     if (this.report.value?.plan === id) return;
     try {
       const document = await this.#api.plan(id);
-      if (asked === this.#asked) this.report.value = { plan: id, loadMs: document.load_ms ?? null, ...readReport(document.report) };
+      if (request === this.#newest) this.report.value = { plan: id, loadMs: document.load_ms ?? null, ...readReport(document.report) };
     } catch {
-      if (asked === this.#asked) this.report.value = null; // the list says why
+      if (request === this.#newest) this.report.value = null; // the list shows the reason
     }
   }
 

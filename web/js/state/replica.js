@@ -1,18 +1,18 @@
-// A document that lives on the server and is changed here at once: own changes show before the server has answered, and the
-// server's order wins in the end.
+// A local copy of a document on the server. Own changes show at once, before the server has answered; the server's order
+// of changes decides in the end.
 import { joinPatches, mergePatch } from '../wire/merge.js';
 
 export class Replica {
   #base;
-  #sent = []; // {input, patch}, oldest first: on the way, not yet answered
-  #queued = null; // one patch that waits for the next animation frame
+  #sent = []; // {input, patch}, oldest first: sent and not yet answered
+  #queued = null; // one patch, to be sent with the next animation frame
   #value;
 
   constructor(base = {}) {
     this.reset(base);
   }
 
-  /** What to show: the server's document with everything of ours that is under way. */
+  /** The document to show: the server's, with our own pending changes applied. */
   get value() {
     return this.#value;
   }
@@ -21,13 +21,13 @@ export class Replica {
     return this.#queued !== null || this.#sent.length > 0;
   }
 
-  /** Shows a change now; it waits to be sent. */
+  /** Applies a change at once and queues it for sending. */
   queue(patch) {
     this.#queued = this.#queued ? joinPatches(this.#queued, patch) : patch;
     this.#value = mergePatch(this.#value, patch);
   }
 
-  /** The change to send, from now on known by its input number; null when nothing waits. */
+  /** Takes the queued change for sending, under this input number; null when there is none. */
   take(input) {
     const patch = this.#queued;
     this.#queued = null;
@@ -35,20 +35,20 @@ export class Replica {
     return patch;
   }
 
-  /** The server accepted a patch, ours (then input is its number) or somebody else's. */
+  /** Applies a patch the server accepted: ours (input is its number) or another member's. */
   accept(patch, input = 0) {
     this.#base = mergePatch(this.#base, patch);
     this.#sent = this.#sent.filter((entry) => entry.input !== input);
     this.#rebase();
   }
 
-  /** The server tells the whole document; what is still under way will come after it. */
+  /** Takes the whole document from the server; pending changes of ours come after it. */
   replace(base) {
     this.#base = base;
     this.#rebase();
   }
 
-  /** A picture shows our changes up to input: they are in the server's document now. */
+  /** Drops pending changes up to input: a picture shows them, so the server's document has them. */
   settle(input) {
     const done = this.#sent.filter((entry) => entry.input <= input);
     if (done.length === 0) return;
@@ -57,13 +57,13 @@ export class Replica {
     this.#rebase();
   }
 
-  /** The server refused our change: the old value comes back. */
+  /** Drops a change the server refused: the old value shows again. */
   refuse(input) {
     this.#sent = this.#sent.filter((entry) => entry.input !== input);
     this.#rebase();
   }
 
-  /** A fresh start: nothing is under way. */
+  /** Starts from a document with nothing pending. */
   reset(base) {
     this.#base = base;
     this.#sent = [];

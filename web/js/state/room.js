@@ -1,4 +1,4 @@
-// A room: the only truth of the room page. Panels draw from its signals and call its methods; news come from the connection.
+// State of the room page. Panels draw from its signals and call its methods; the connection's messages change it.
 import { batch, computed, signal } from '../../lib/signals-core.js';
 import { readDocument } from '../wire/check.js';
 import { readPlan } from './plan.js';
@@ -20,10 +20,10 @@ export class RoomState {
 
   /**
    * @param {string} id
-   * @param {object} world handed in, so that tests hand in fakes
+   * @param {object} world passed in, so that tests can use fakes
    * @param {import('../net/connection.js').Connection} world.connection
    * @param {{now: () => number}} world.clock
-   * @param {(callback: () => void) => void} world.schedule before the next paint
+   * @param {(callback: () => void) => void} world.schedule calls back before the next paint
    * @param {(kind: 'ok'|'warn'|'err', text: string) => void} world.notify
    */
   constructor(id, { connection, clock, schedule, notify }) {
@@ -65,14 +65,14 @@ export class RoomState {
     return this.members.value.find((other) => other.id === member)?.name ?? 'another member';
   }
 
-  /** Whether this member is in the room now. */
+  /** True while this member is in the room. */
   isHere(member) {
     return this.members.value.some((other) => other.id === member && other.connected !== false);
   }
 
-  // ---- what the person does ---------------------------------------------------------------------------------------
+  // ---- actions of the user ----------------------------------------------------------------------------------------
 
-  /** Changes the scene for everybody. view: where it was done; at: when (event time), for measuring. */
+  /** Changes the scene for everybody. view: the pane it was done in; at: time of the input event, for measurements. */
   patchScene(patch, { view = 0, at = this.#clock.now() } = {}) {
     if (!this.canChange.value) return;
     this.#scene.queue(patch);
@@ -81,7 +81,7 @@ export class RoomState {
     this.#plan();
   }
 
-  /** Changes a picture; one that follows changes the shared one. */
+  /** Changes a view; a view that follows changes the shared one. */
   patchView(number, patch, { at = this.#clock.now() } = {}) {
     const view = this.view(number);
     if (this.link.value.state !== 'open') return;
@@ -90,14 +90,14 @@ export class RoomState {
     this.#plan();
   }
 
-  /** Shows a picture of this size; opened already: changes its size. */
+  /** Opens a view of this size, or changes the size of an open one. */
   showView(number, sizePx) {
     const view = this.view(number);
     if (view.isOpen.value) {
       const [width, height] = view.document.value.size_px ?? [];
       if (width === sizePx[0] && height === sizePx[1]) return;
       if (this.link.value.state === 'open') this.patchView(number, { size_px: sizePx });
-      else view.restart({ ...view.document.value, size_px: sizePx }); // opened with this size once there is a connection
+      else view.restart({ ...view.document.value, size_px: sizePx }); // opens with this size once connected
       return;
     }
     view.isOpen.value = true;
@@ -127,7 +127,7 @@ export class RoomState {
     this.#connection.send({ type: 'view.follow', view: number, follow: isFollowing, input });
   }
 
-  /** The picture with this header is painted, or cannot be: the server may go on. Returns the answered inputs. */
+  /** Acknowledges a picture that was painted or could not be, so that the server continues. Returns the answered inputs. */
   frameShown(header, isDrawn = true) {
     this.#connection.send({ type: 'frame.shown', view: header.view, sequence: header.sequence });
     if (!isDrawn) return [];
@@ -144,7 +144,7 @@ export class RoomState {
     this.#connection.retryNow();
   }
 
-  // ---- on the way out: at most one patch of a kind for each animation frame -----------------------------------------
+  // ---- sending: at most one patch of each kind per animation frame --------------------------------------------------
 
   #plan() {
     if (this.#isScheduled) return;
@@ -178,7 +178,7 @@ export class RoomState {
     if (this.#connection.send(message)) view.expect(input, this.#clock.now(), this.#clock.now());
   }
 
-  // ---- news ---------------------------------------------------------------------------------------------------------
+  // ---- messages of the server -----------------------------------------------------------------------------------------
 
   #take(message) {
     const handlers = {
@@ -246,7 +246,7 @@ export class RoomState {
   #viewChanged({ view: number, document, follow, by }) {
     const view = this.view(number);
     if (!view) return;
-    // The server's document is complete; one that is not is of no use to anybody.
+    // The server sends complete documents; an incomplete one throws here.
     view.replace(readDocument('view', document));
     view.isFollowing.value = follow;
     view.movedBy.value = follow && by !== this.member.value ? by : '';

@@ -1,6 +1,6 @@
-// The ways a region can be shown, and how to ask the server for the figures of each.
+// The representations of a region, and the queries for their figures.
 
-/** @type {[string, string, string][]} word, name, what it is */
+/** @type {[string, string, string][]} word, name, description */
 export const representations = [
   ['surface', 'Surface', 'Triangles, by the surface algorithm'],
   ['univels', 'Univels', 'Boxes of true size, as a Monte Carlo code sees them'],
@@ -17,7 +17,7 @@ export const algorithms = [
   ['eight-cell', '8-cell', 'Through the centres of the outermost univels'],
 ];
 
-/** What decides a region's shape in this scene: the query of the surface call. */
+/** The query of the surface call: everything in this scene that decides a region's shape. */
 export function shapeQuery(scene, representation) {
   switch (representation) {
     case 'surface': return { representation, algorithm: scene.surface.algorithm };
@@ -28,7 +28,7 @@ export function shapeQuery(scene, representation) {
   }
 }
 
-/** Shapes that can be saved for other programs. */
+/** True for representations that can be saved as a file for other programs. */
 export const isExportable = (representation) => ['surface', 'univels', 'nurbs', 'fan'].includes(representation);
 
 /** Every method worth comparing, with its query. @returns {{name: string, query: Record<string, string>}[]} */
@@ -52,14 +52,14 @@ export function methods(scene) {
   ];
 }
 
-/** "+0.31 %" of the univels' volume; a dash where the shape encloses none. */
+/** Difference to the univels' volume, "+0.31 %"; a dash for a shape that encloses no volume. */
 export function volumeDifference({ volume_mm3: volume, univel_volume_mm3: univels }) {
   return Number.isFinite(volume) && univels > 0 ? (100 * (volume - univels)) / univels : NaN;
 }
 
 const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
 
-/** The table of figures as text for a spreadsheet; units stand in the head. */
+/** The table of figures as CSV; units are in the heading. */
 export function figuresCsv(rows) {
   const columns = ['triangles', 'vertices', 'lines', 'points', 'ms', 'draw_ms', 'frames_per_second', 'area_mm2', 'volume_mm3', 'univel_volume_mm3', 'distance_mean_mm', 'distance_max_mm'];
   const head = ['region', 'method', ...columns, 'refused'].join(',');

@@ -1,4 +1,4 @@
-// What only this page knows: tools, layout, what is selected, what is unfolded. Lives and dies with the page.
+// State of this page alone: tool, layout, selection, unfolded panels. Nothing of it is stored or sent.
 import { computed, signal } from '../../lib/signals-core.js';
 
 const toastMs = 6000;
@@ -18,16 +18,16 @@ export class UiState {
     this.tab = signal('probe'); // probe | view | report
     this.isTreeOpen = signal(true);
     this.isInspectorOpen = signal(true);
-    this.popover = signal(''); // name of the one that is open
+    this.popover = signal(''); // name of the open popover
     this.toasts = signal([]);
-    this.now = signal(clock.now()); // moves a few times a second: ages on badges
+    this.now = signal(clock.now()); // updated a few times a second, for ages on badges
     this.visible = computed(() => {
       if (this.maximised.value) return [this.maximised.value];
       return this.layout.value === 'single' ? [this.active.value] : [1, 2, 3, 4];
     });
   }
 
-  /** @param {'ok'|'warn'|'err'} kind @param {string} topic a newer message on the same topic takes the place of an older one */
+  /** @param {'ok'|'warn'|'err'} kind @param {string} topic a newer message replaces an older one on the same topic */
   notify = (kind, text, topic = text) => {
     const toast = { id: this.#nextToast++, kind, text, topic };
     this.toasts.value = [...this.toasts.value.filter((other) => other.topic !== topic).slice(-2), toast];
@@ -47,7 +47,7 @@ export class UiState {
     this.maximised.value = this.maximised.value ? 0 : number;
   }
 
-  /** Leaves what is open, one thing a call: tool, popover, toast, full pane. */
+  /** Closes one thing per call: tool, popover, toast or maximised pane. */
   escape() {
     if (this.tool.value !== 'crosshair') this.tool.value = 'crosshair';
     else if (this.popover.value) this.popover.value = '';

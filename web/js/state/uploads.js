@@ -1,5 +1,5 @@
-// Plans on their way to the server: chosen, named, sent, unpacked, looked at, there; or why not. What a file or folder is called stays
-// here: it is often a patient's name, and everybody sees the names of plans.
+// Uploads of plans: chosen, named, sent, unpacked, scanned, listed; or the reason why not. The name of the chosen file or folder stays
+// in this page: it is often a patient's name, and everybody sees the names of plans.
 import { signal } from '../../lib/signals-core.js';
 
 const jobMs = 200;
@@ -15,16 +15,16 @@ export class UploadsState {
   #aborts = new Map();
   #tasks = new Map();
 
-  /** @param {object} world {api, clock, send: (task: object) => Promise<object>, arrived: (plan: string) => void, limit: () => number} limit in bytes; Infinity while it is not known */
+  /** @param {object} world {api, clock, send: (task: object) => Promise<object>, arrived: (plan: string) => void, limit: () => number} limit in bytes; Infinity while unknown */
   constructor({ api, clock, send, arrived, limit = () => Infinity }) {
     this.#api = api;
     this.#clock = clock;
     this.#send = send;
     this.limit = limit;
     this.arrived = arrived;
-    this.rows = signal([]); // {key, name, bytes, sent, job, error, state: asking | sending | working | failed}; name: for this page alone
+    this.rows = signal([]); // {key, name, bytes, sent, job, error, state: asking (for a name) | sending | working | failed}; name stays in this page
     this.isOver = signal(false); // something is being dragged over the page
-    this.error = signal(''); // of choosing, before anything was sent
+    this.error = signal(''); // an error in choosing, before anything was sent
   }
 
   stop() {
@@ -32,7 +32,7 @@ export class UploadsState {
     for (const abort of this.#aborts.values()) abort.abort();
   }
 
-  /** Waits for what everybody may call it: send(). @param {{name: string, body: Blob, type: string}} task @returns {number} its key */
+  /** Adds an upload that waits for the name everybody will see; send() starts it. @param {{name: string, body: Blob, type: string}} task @returns {number} its key */
   offer({ name, body, type }) {
     const key = this.#next++;
     this.#tasks.set(key, { body, type });
@@ -73,7 +73,7 @@ export class UploadsState {
     }
   }
 
-  /** Ends it, wherever it is. */
+  /** Cancels an upload in any state. */
   async cancel(key) {
     const row = this.rows.value.find((other) => other.key === key);
     if (!row) return;

@@ -1,4 +1,4 @@
-// One picture of a room as the page knows it: its document, what was painted, what still waits for an answer.
+// State of one view of a room: its document, the picture on the screen, inputs that wait for an answer.
 import { batch, signal } from '../../lib/signals-core.js';
 import { Replica } from './replica.js';
 
@@ -7,23 +7,23 @@ const fpsWindowMs = 1000;
 export class ViewState {
   #replica = new Replica();
   #paintedAt = [];
-  #hasChanged = false; // since refusal was told; messages overtake frames
-  #unanswered = []; // {input, at, sentAt}: at is when the person did it
+  #hasChanged = false; // since the last refusal; messages may overtake frames
+  #unanswered = []; // {input, at, sentAt}; at: time of the input event
 
-  /** @param {number} number as on the wire @param {'3d'|'axial'|'coronal'|'sagittal'} kind */
+  /** @param {number} number in messages and frames @param {'3d'|'axial'|'coronal'|'sagittal'} kind */
   constructor(number, kind) {
     this.number = number;
     this.kind = kind;
     this.document = signal({ kind });
     this.isOpen = signal(false);
     this.isFollowing = signal(true);
-    this.movedBy = signal(''); // the other member whose change is shown, '' for our own
-    this.leftAt = signal(0); // when following ended
+    this.movedBy = signal(''); // the other member whose change of the camera is shown; '' for our own
+    this.leftAt = signal(0); // time when following ended
     this.leftFrom = signal('');
-    this.missing = signal({ n: 0, reasons: {} }); // regions the picture leaves out because they cannot be drawn: how many, why by id
-    this.refusal = signal(''); // why there is no picture of the view as it is now, '' when there is
+    this.missing = signal({ n: 0, reasons: {} }); // regions missing from the picture because they cannot be drawn: number, and reason by id
+    this.refusal = signal(''); // why the view cannot be drawn as it is now; '' when it can
     this.painted = signal(null); // FrameHeader of the picture on the screen
-    this.staleSince = signal(0); // since when an answer is missing; 0: none is
+    this.staleSince = signal(0); // time since which an answer is missing; 0: none is
     this.fps = signal(0);
   }
 
@@ -31,7 +31,7 @@ export class ViewState {
     this.change();
     this.#replica.queue(patch);
     batch(() => {
-      if ('camera' in patch) this.movedBy.value = ''; // a new size alone is nobody's movement
+      if ('camera' in patch) this.movedBy.value = ''; // a change of the size alone is no movement
       this.document.value = this.#replica.value;
     });
   }
@@ -40,7 +40,7 @@ export class ViewState {
     return this.#replica.take(input);
   }
 
-  /** From now on a picture with this input is expected. */
+  /** Expects a picture that answers this input. */
   expect(input, at, sentAt) {
     this.#unanswered.push({ input, at, sentAt });
     if (!this.staleSince.value) this.staleSince.value = sentAt;
@@ -58,7 +58,7 @@ export class ViewState {
     this.document.value = this.#replica.value;
   }
 
-  /** After a lost connection: what was under way is lost, what is shown stays. */
+  /** Starts again after a lost connection: pending changes are lost, the picture stays. */
   restart(document) {
     this.#replica.reset(document);
     this.#unanswered = [];
@@ -70,18 +70,18 @@ export class ViewState {
     });
   }
 
-  /** The view as it is now cannot be drawn. Frames that are still on their way show what it was. */
+  /** Notes that the view cannot be drawn as it is now. Frames that still arrive show an older state. */
   refuseToDraw(reason) {
     this.#hasChanged = false;
     this.refusal.value = reason;
   }
 
-  /** The view or its scene is no longer as it was: it may be drawn again. */
+  /** Notes that view or scene has changed, so that it may be drawn again. */
   change() {
     this.#hasChanged = true;
   }
 
-  /** A picture is on the screen. Returns the answered inputs. */
+  /** Notes that a picture is on the screen. Returns the answered inputs. */
   paint(header, now) {
     this.#paintedAt = [...this.#paintedAt.filter((at) => now - at < fpsWindowMs), now];
     const answered = this.#unanswered.filter((entry) => entry.input <= header.input_id);

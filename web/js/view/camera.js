@@ -1,4 +1,4 @@
-// Cameras: a position, a target, an up direction, all in patient LPS mm. Pure functions that give new cameras.
+// Cameras: position, target and up direction in patient LPS mm. Pure functions that return new cameras.
 import { add, cross, dot, length, rotate, scale, subtract, unit } from './vec.js';
 
 const superior = [0, 0, 1];
@@ -9,14 +9,14 @@ const maxHeightMm = 10000;
 const degrees = Math.PI / 180;
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
-/** Where slice panes look from: the picture's right and up, in LPS, and the axis across the slice. */
+/** For each slice pane: right and up of the picture in LPS, and the axis across the slice. */
 export const planes = {
   axial: { right: [1, 0, 0], up: [0, -1, 0], axis: 2, letter: 'S' },
   coronal: { right: [1, 0, 0], up: [0, 0, 1], axis: 1, letter: 'P' },
   sagittal: { right: [0, 1, 0], up: [0, 0, 1], axis: 0, letter: 'L' },
 };
 
-/** From where one looks, and what is up then. */
+/** Directions to look from, with the up direction of each. */
 export const presets = {
   anterior: { from: [0, -1, 0], up: superior },
   posterior: { from: [0, 1, 0], up: superior },
@@ -26,18 +26,18 @@ export const presets = {
   inferior: { from: [0, 0, -1], up: [0, -1, 0] },
 };
 
-/** A document's camera, filled from the plan's home camera where it says nothing. */
+/** A document's camera, with missing fields from the plan's home camera. */
 export function completeCamera(camera, home) {
   const result = { projection: 'perspective', fov_deg: 30, height_mm: null, ...home };
   for (const [name, value] of Object.entries(camera ?? {})) if (value !== null && value !== undefined) result[name] = value;
-  // a height that is null means something: as much as perspective shows
+  // height null has a meaning: as much as perspective shows
   if (camera?.position_mm && camera.height_mm === null) result.height_mm = null;
   return result;
 }
 
 export const distance = (camera) => length(subtract(camera.position_mm, camera.target_mm));
 
-/** Unit right, up, forward of the picture. */
+/** Unit vectors right, up and forward of the picture. */
 export function axes(camera) {
   const forward = unit(subtract(camera.target_mm, camera.position_mm));
   const right = unit(cross(forward, camera.up));
@@ -60,7 +60,7 @@ export function roll(camera, angleDeg) {
   return { ...camera, up: unit(rotate(up, forward, angleDeg * degrees)) };
 }
 
-/** Patient mm for one pixel at the target; the opening angle and the height run across the smaller side. */
+/** Millimetres per pixel at the target; opening angle and height are those of the smaller side. */
 export function mmPerPixel(camera, [width, height]) {
   const across = camera.projection === 'parallel' && camera.height_mm ? camera.height_mm : heightAtTarget(camera);
   return across / Math.min(width, height);
@@ -68,7 +68,7 @@ export function mmPerPixel(camera, [width, height]) {
 
 export const heightAtTarget = (camera) => 2 * distance(camera) * Math.tan((camera.fov_deg * degrees) / 2);
 
-/** Moves what is under the pointer with it. */
+/** Moves the point under the pointer along with it. */
 export function pan(camera, dxPx, dyPx, sizePx) {
   const { right, up } = axes(camera);
   return shift(camera, right, up, dxPx, dyPx, mmPerPixel(camera, sizePx));
@@ -79,7 +79,7 @@ function shift(camera, right, up, dxPx, dyPx, mm) {
   return { ...camera, position_mm: add(camera.position_mm, move), target_mm: add(camera.target_mm, move) };
 }
 
-/** Nearer by a factor above 1. */
+/** Zooms in by a factor above 1, out by one below. */
 export function zoom(camera, factor) {
   const now = distance(camera);
   const next = clamp(now / factor, minDistanceMm, maxDistanceMm);
@@ -93,7 +93,7 @@ export function lookFrom(camera, name) {
   return { ...camera, position_mm: add(camera.target_mm, scale(from, distance(camera))), up: [...up] };
 }
 
-/** Parallel shows at the target what perspective showed there, and back. */
+/** Changes the projection so that the picture at the target keeps its size. */
 export function project(camera, projection) {
   if (projection === camera.projection) return camera;
   if (projection === 'parallel') return { ...camera, projection, height_mm: heightAtTarget(camera) };
@@ -119,7 +119,7 @@ export function zoomSlice(camera, kind, factor, [x, y], sizePx) {
   return { ...shift(camera, right, up, -x, -y, gainedMm), height_mm };
 }
 
-/** "perspective, 56° from anterior": how far the eye has turned about the patient's long axis. */
+/** "perspective, 56° from anterior": the angle of the eye about the patient's long axis. */
 export function describe(camera) {
   const { forward } = axes(camera);
   const elevation = Math.asin(clamp(-forward[2], -1, 1)) / degrees;

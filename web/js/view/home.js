@@ -1,4 +1,4 @@
-// The home camera of each kind of view: the whole plan from the front, slices whole. What the plan says itself comes first.
+// The home camera of each kind of view: the whole plan, or whole slices. A camera in the plan's description comes first.
 import { planes } from './camera.js';
 import { add, dot, scale, subtract, unit, cross } from './vec.js';
 
@@ -14,7 +14,7 @@ export function homeCamera(plan, kind) {
   const target_mm = scale(add(low, high), 0.5);
   const extent = subtract(high, low);
   if (kind === '3d') {
-    // far enough for the nearer corners of the box to lie within the opening angle
+    // far enough that the nearer corners of the box are within the opening angle
     const slope = Math.tan((fovDeg / 2) * (Math.PI / 180)) / margin;
     const distance = Math.max(extent[0], extent[2]) / 2 / slope + extent[1] / 2;
     return { position_mm: add(target_mm, [0, -distance, 0]), target_mm, up: [0, 0, 1], projection: 'perspective', fov_deg: fovDeg, height_mm: null };

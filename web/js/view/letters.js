@@ -1,10 +1,10 @@
-// Orientation letters: which way the patient lies at each edge of a picture.
+// Orientation letters: the patient's direction at each edge of a picture.
 import { pictureAxes, scale } from './vec.js';
 
 const names = [['L', 'R'], ['P', 'A'], ['S', 'I']];
-const secondFrom = 0.3; // cosine from which an oblique direction gets its second letter
+const secondFrom = 0.3; // cosine from which on an oblique direction gets a second letter
 
-/** "L", or "AR" for an oblique direction: dominant letter first. @param {number[]} direction unit, LPS */
+/** "L", or "AR" for an oblique direction, dominant letter first. @param {number[]} direction unit, LPS */
 export function letters(direction) {
   const parts = direction
     .map((cosine, axis) => ({ size: Math.abs(cosine), letter: names[axis][cosine >= 0 ? 0 : 1] }))
@@ -18,7 +18,7 @@ export function edgeLetters(matrix) {
   return { left: letters(scale(right, -1)), right: letters(right), top: letters(up), bottom: letters(scale(up, -1)) };
 }
 
-/** The ends of the patient's axes in the picture, for the figure in the corner: x right, y down, length at most 1. */
+/** End points of the patient's axes, for the figure in the corner: x right, y down, length at most 1. */
 export function axesFigure(matrix) {
   const { right, up, forward } = pictureAxes(matrix);
   return names.flatMap(([positive, negative], axis) => [

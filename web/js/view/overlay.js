@@ -1,4 +1,4 @@
-// What the page draws over a picture, from the matrix that came with it: letters, crosshair, axes figure, scale bar, window.
+// Draws over a picture, by the matrix that came with it: letters, crosshair, axes figure, scale bar, window.
 import { nothing, svg } from '../../lib/lit-html.js';
 import { axesFigure, edgeLetters } from './letters.js';
 import { barMm, toPicture } from './vec.js';
@@ -11,11 +11,11 @@ const figurePx = 24;
 /**
  * @param {object} what
  * @param {string} what.kind @param {import('../wire/frame.js').FrameHeader} what.header
- * @param {{x: number, y: number, width: number, height: number}} what.box the picture's place, CSS px
- * @param {number[]} what.pane its size, CSS px
+ * @param {{x: number, y: number, width: number, height: number}} what.box position and size of the picture, CSS px
+ * @param {number[]} what.pane size of the pane, CSS px
  * @param {number[]|null} what.point the crosshair, LPS mm
  * @param {number} what.pxPerMm CSS px; 0 in perspective
- * @param {string} what.windowText @param {number} what.topPx how much at the top something else covers
+ * @param {string} what.windowText @param {number} what.topPx height at the top that is covered, CSS px
  */
 export function overlay({ kind, header, box, pane: [width, height], point, pxPerMm, windowText, topPx }) {
   const matrix = header.clip_from_lps_mm;
@@ -62,7 +62,7 @@ function figure(matrix, width, height) {
   const x = width - 46;
   const y = height - 50;
   const ends = axesFigure(matrix);
-  // a letter that points away gives way to a nearer one in the same place
+  // a letter that points away is left out where a nearer one is
   const isFree = (end) => !end.isAway || ends.every((other) => other.isAway || Math.hypot(end.x - other.x, end.y - other.y) * figurePx > 11);
   return svg`<g class="figure">${ends.map((end) => svg`<g class=${end.isAway ? 'away' : 'near'}>
     <line x1=${x} y1=${y} x2=${x + end.x * figurePx} y2=${y + end.y * figurePx} />

@@ -1,4 +1,4 @@
-// Frames onto a canvas: one is being decoded, one waits, the newest wins, and what is told as shown has been drawn.
+// Paints frames on a canvas: one is being decoded, the newest other one waits; a frame is acknowledged after it was drawn.
 
 export class Painter {
   #canvas;
@@ -7,15 +7,15 @@ export class Painter {
   #schedule;
   #onPainted;
   #isDecoding = false;
-  #waiting = null; // {header, picture}: came while another is being decoded
-  #ready = null; // {header, bitmap}: decoded, to be drawn before the next paint
+  #waiting = null; // {header, picture}: received while another is being decoded
+  #ready = null; // {header, bitmap}: decoded, drawn before the next paint
   #isStopped = false;
 
   /**
    * @param {HTMLCanvasElement} canvas
    * @param {object} world
    * @param {(blob: Blob) => Promise<ImageBitmap>} world.decode
-   * @param {(callback: () => void) => void} world.schedule before the next paint
+   * @param {(callback: () => void) => void} world.schedule calls back before the next paint
    * @param {(header: import('../wire/frame.js').FrameHeader, isDrawn: boolean) => void} world.onPainted
    */
   constructor(canvas, { decode, schedule, onPainted }) {
@@ -49,7 +49,7 @@ export class Painter {
     }
     this.#isDecoding = false;
     if (this.#isStopped) return void bitmap?.close();
-    // A picture that cannot be decoded is acknowledged all the same, or the server would wait for ever.
+    // A picture that cannot be decoded is acknowledged, too; otherwise the server would wait for ever.
     if (bitmap) this.#show(header, bitmap);
     else this.#onPainted(header, false);
     const next = this.#waiting;

@@ -1,11 +1,11 @@
-// Reads mouse, pen and fingers on a picture and tells what they mean there: a drag of some kind, a tap, a wheel, a pinch.
+// Reads mouse, pen and touch on a picture and reports drags, taps, long presses, wheel steps and pinches.
 
-const slopPx = 4; // below this a press is a tap
+const slopPx = 4; // a press that moves less is a tap
 const doubleMs = 350;
 const longMs = 500;
 
 /**
- * @typedef {object} PointerHandlers each gets CSS pixels relative to the element, and at: when the person did it
+ * @typedef {object} PointerHandlers each gets CSS pixels relative to the element, and at: time of the input event
  * @property {(mode: 'primary'|'pan'|'zoom', at: {x: number, y: number}) => void} start
  * @property {(mode: string, move: {x: number, y: number, dx: number, dy: number, at: number}) => void} move
  * @property {(mode: string) => void} end
@@ -22,7 +22,7 @@ export class PointerReader {
   #mode = null;
   #start = null;
   #isDrag = false;
-  #isStartDue = false; // a finger's start waits: a second finger makes it none
+  #isStartDue = false; // the start of a touch drag waits, as a second finger makes it a pinch
   #lastTap = null;
   #longTimer = 0;
   #wheelRest = 0;
@@ -52,7 +52,7 @@ export class PointerReader {
   }
 
   #down(event) {
-    if (event.button === 1) event.preventDefault(); // no scroll mode of the browser
+    if (event.button === 1) event.preventDefault(); // stops the browser's automatic scrolling
     const point = this.#point(event);
     this.#fingers.set(event.pointerId, point);
     this.#element.setPointerCapture(event.pointerId);
@@ -81,7 +81,7 @@ export class PointerReader {
 
   #long(at) {
     if (this.#isDrag || this.#fingers.size !== 1) return;
-    this.#isDrag = true; // what follows is no tap
+    this.#isDrag = true; // the release is not a tap
     this.#isStartDue = false;
     this.#mode = 'held';
     this.#handlers.longPress({ x: this.#start.x, y: this.#start.y, at });
@@ -118,7 +118,7 @@ export class PointerReader {
     if (!this.#fingers.delete(event.pointerId)) return;
     clearTimeout(this.#longTimer);
     if (this.#fingers.size) {
-      this.#mode = 'held'; // one finger of two is left: it turns nothing
+      this.#mode = 'held'; // after a pinch the remaining finger does nothing
       return;
     }
     const point = this.#point(event);
@@ -141,7 +141,7 @@ export class PointerReader {
   #wheel(event) {
     event.preventDefault();
     const unit = event.deltaMode === 1 ? 40 : event.deltaMode === 2 ? 400 : 1;
-    // trackpads send many small deltas: whole steps only, the rest is kept
+    // trackpads send many small deltas: reports whole steps and keeps the rest
     this.#wheelRest += (event.deltaY * unit) / 100;
     const steps = event.ctrlKey ? this.#wheelRest : Math.trunc(this.#wheelRest);
     if (steps === 0) return;

@@ -1,4 +1,4 @@
-// Vectors of three numbers, and what a 4 x 4 column-major clip matrix does to them.
+// Vectors of three numbers, and projections by a 4 x 4 column-major clip matrix.
 
 export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 export const subtract = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -8,7 +8,7 @@ export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * 
 export const length = (a) => Math.hypot(...a);
 export const unit = (a) => scale(a, 1 / (length(a) || 1));
 
-/** Turns by the right hand about a unit axis (Rodrigues). */
+/** Rotates about a unit axis by the right-hand rule (Rodrigues). */
 export function rotate(vector, axis, angleRad) {
   const c = Math.cos(angleRad);
   const s = Math.sin(angleRad);
@@ -18,14 +18,14 @@ export function rotate(vector, axis, angleRad) {
 const row = (m, r) => [m[r], m[4 + r], m[8 + r]];
 const applyRow = (m, r, p) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
 
-/** A patient point in the picture: x right and y down, 0 to 1; null behind the eye. */
+/** Projects a patient point: x right, y down, 0 to 1; null behind the eye. */
 export function toPicture(matrix, point) {
   const w = applyRow(matrix, 3, point);
   if (!(w > 1e-9)) return null;
   return [(applyRow(matrix, 0, point) / w + 1) / 2, (1 - applyRow(matrix, 1, point) / w) / 2];
 }
 
-/** The picture's unit right, up and forward in patient space, from its clip matrix. */
+/** Unit vectors right, up and forward of a picture in patient space, from its clip matrix. */
 export function pictureAxes(matrix) {
   const w = row(matrix, 3);
   // perspective: w grows along the line of sight; parallel: w is 1 and clip z grows along it
@@ -33,7 +33,7 @@ export function pictureAxes(matrix) {
   return { right: unit(row(matrix, 0)), up: unit(row(matrix, 1)), forward: unit(forward) };
 }
 
-/** Parallel projection: the patient point at x, y (0 to 1, y down) in the plane of the picture through a known point. */
+/** Parallel projection: the patient point at x, y (0 to 1, y down) in the plane parallel to the picture through a given point. */
 export function fromPicture(matrix, [x, y], through) {
   const rows = [row(matrix, 0), row(matrix, 1)];
   const at = toPicture(matrix, through);
@@ -45,5 +45,5 @@ export function fromPicture(matrix, [x, y], through) {
 const barLengths = [1, 2, 5, 10, 20, 50, 100, 200];
 const longestBarPx = 110;
 
-/** The length of a scale bar: the longest round one that fits. */
+/** Length of a scale bar: the longest round length that fits. */
 export const barMm = (pxPerMm) => barLengths.filter((mm) => mm * pxPerMm <= longestBarPx).at(-1) ?? barLengths[0];
