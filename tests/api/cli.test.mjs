@@ -1,4 +1,4 @@
-// The program `beamroom` from outside: what it prints, what it refuses, its exit codes.
+// The program `beamroom`: its output, its refusals, its exit codes.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -84,7 +84,7 @@ describe('beamroom', () => {
   });
 });
 
-// The phantom's figures by hand: ellipsoids of Goorley, Kiger and Zamenhof 2002; voxels of 2.667 x 2.667 x 3.2 mm.
+// The phantom's figures, calculated by hand: ellipsoids of Goorley, Kiger and Zamenhof 2002; voxels of 2.667 x 2.667 x 3.2 mm.
 const ellipsoid = (a, b, c) => (4 / 3) * Math.PI * a * b * c / 1000; // cm3 from mm
 const brain = ellipsoid(60, 90, 65) - ellipsoid(20, 22, 18);
 
@@ -144,14 +144,14 @@ describe('beamroom info', () => {
     assert.deepEqual(Object.keys(info.home), ['3d', 'axial', 'coronal', 'sagittal']);
     assert.ok(info.home['3d'].position_mm[1] < -103 && info.home['3d'].up[2] === 1, 'from the front, the top up');
     const region = Object.fromEntries(info.regions.map((entry) => [entry.id, entry]));
-    near(region.brain.volume_cm3, brain, 0.01 * brain); // the border's voxels: 1 % at this size
+    near(region.brain.volume_cm3, brain, 0.01 * brain); // 1 %: border voxels at this size
     assert.equal(region.brain.color, '#d696a0');
     region.tumour.center_mm.forEach((value, axis) => near(value, [24, 24, 34][axis], 0.5)); // left, behind, above
     assert.equal(region.tumour.tissue.boron_ratio, null);
     assert.deepEqual(info.doses.map(({ id, unit, per, masked }) => [id, unit, per, masked]),
       [['goorley', 'Gy', 'minute at 1e10 n/cm2/s', true]]);
     const high = Object.fromEntries(info.doses[0].components.map((entry) => [entry.quantity, entry.high]));
-    near(high.gamma, 0.971, 1e-3); // the table's highest
+    near(high.gamma, 0.971, 1e-3); // the largest value of the table
     near(high.boron, 0.1016, 1e-6);
     assert.deepEqual(info.doses[0].components.map(({ per_ppm: perPpm }) => perPpm), [true, false, false, false]);
     assert.deepEqual(info.beams, [{ id: 'beam-1', entry_mm: [0, 0, 88], target_mm: [0, 0, 10], aperture_mm: 100, name: '', delivery: null }]);

@@ -1,4 +1,4 @@
-// Connections to the daemon: how many, from whom, what each request of one may look like, and that the daemon ends when it is told to.
+// Connections to the daemon: limits in all and per address, form of requests, stopping the daemon with connections open.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
@@ -13,7 +13,7 @@ import { Client } from './ws_client.mjs';
 const HOST = 'Host: localhost\r\n', FIRST = `GET /healthz HTTP/1.1\r\n${HOST}\r\n`;
 const statuses = (text) => [...text.matchAll(/HTTP\/1\.1 (\d{3}) [A-Z]/g)].map((found) => Number(found[1]));
 
-/** A connection that sends bytes; ended resolves with how it ended: 'end' by the server, the error's code, or 'open' after ms. */
+/** Opens a connection that sends bytes; ended resolves with how it ended: 'end' by the server, an error code, or 'open' after ms. */
 function open(url, bytes, { from = '127.0.0.1', ms = 15000 } = {}) {
   const { hostname, port } = new URL(url);
   const socket = connect({ host: hostname, port: Number(port), localAddress: from });
@@ -35,7 +35,7 @@ function open(url, bytes, { from = '127.0.0.1', ms = 15000 } = {}) {
   return connection;
 }
 
-/** n connections that stay open, some at a time, fewer than may wait with their heads; the status of each. make gives one. */
+/** Opens n connections by make and keeps them open, a few at a time, fewer than may wait for their request heads; the status of each. */
 async function openEach(n, make) {
   const all = [];
   while (all.length < n) {
@@ -47,14 +47,14 @@ async function openEach(n, make) {
   return { list, n: (status) => list.filter((one) => one === status).length, drop: () => { for (const c of all) c.socket.destroy(); } };
 }
 
-/** A daemon that has found its plan. */
+/** Starts a daemon and waits until it has found its plan. */
 async function startWithPlan(args = []) {
   const daemon = await startDaemon({ args: ['--stub', ...args] });
   await until(() => call(`${daemon.url}/api/v1/plans/phantom`), (answer) => answer.status === 200);
   return daemon;
 }
 
-/** All that comes back until the server closes; a server that does not is a failure. */
+/** Everything received until the server closes the connection; fails when it does not. */
 async function exchange(url, bytes, options) {
   const connection = open(url, bytes, options);
   assert.equal(await connection.ended, 'end', `how ${JSON.stringify(bytes.slice(0, 80))} ended, after ${connection.text.slice(0, 200)}`);
@@ -90,9 +90,9 @@ describe('a burst of connections', () => {
       await Promise.all(all.map((c) => Promise.race([c.ended, until(() => answered(c), Boolean, 60000)])));
       const silent = all.filter((c) => !answered(c));
       const n_ok = all.filter((c) => statuses(c.text)[0] === 200).length;
-      /* one that was closed before its head came has no answer: the system's own queue is as long as it is */
+      /* a connection that was closed before its head arrived gets no answer: the system's own queue is limited */
       assert.ok(silent.every((c) => c.socket.destroyed), `round ${round}: ${silent.length} of 2,000 were neither answered nor closed`);
-      assert.ok(n_ok >= 200, `round ${round}: ${n_ok} were served`); /* 64 from each address may wait with their heads at once */
+      assert.ok(n_ok >= 200, `round ${round}: ${n_ok} were served`); /* 64 of each address may wait for their heads at once */
       for (const c of all.filter((one) => statuses(one.text)[0] === 429)) assert.match(c.text, /application\/problem\+json[^]*Retry-After: \d/);
       for (const c of all) c.socket.destroy();
       await client.frame((f) => f.input > 0, n_frames + 1, 30000);
@@ -117,7 +117,7 @@ describe('WebSockets of one address', () => {
     const all = await openEach(230, () => open(daemon.url, handshake, { from: '127.0.2.1', ms: 60000 }));
     const took_ms = performance.now() - began;
     assert.equal(all.n(101) + all.n(429), 230);
-    if (took_ms < 4000) assert.equal(all.n(101), 200); /* who does not say hello within 5 s is closed, and counts no longer */
+    if (took_ms < 4000) assert.equal(all.n(101), 200); /* a connection without hello within 5 s is closed and no longer counted */
     const other = await openEach(1, () => open(daemon.url, handshake, { from: '127.0.2.2', ms: 30000 }));
     assert.deepEqual(other.list, [101]);
     all.drop();
@@ -195,7 +195,7 @@ describe('behind a proxy', () => {
   before(async () => { daemon = await startDaemon({ args: ['--stub', '--trusted-proxy', '127.0.3.0/24'] }); });
   after(() => daemon?.stop());
   const ask = (forwarded, from) => open(daemon.url, `GET /healthz HTTP/1.1\r\n${HOST}X-Forwarded-For: ${forwarded}\r\n\r\n`, { from, ms: 60000 });
-  /** Of 220 connections that are open together, those that were served. Connections of a test before may still be ending. */
+  /** Number of 220 simultaneous connections that were served. Connections of an earlier test may still be closing. */
   const served = (forwarded, from) => until(async () => {
     const all = await openEach(220, (i) => ask(forwarded(i), from));
     all.drop();
@@ -235,7 +235,7 @@ describe('a refused upload', () => {
 
 describe('connections that are gone while their requests wait', () => {
   test('count until the requests are over', async () => {
-    const daemon = await startDaemon({ args: ['--stub', '--hang', 'net'] }); /* no request to the API is ever answered */
+    const daemon = await startDaemon({ args: ['--stub', '--hang', 'net'] }); /* the API answers no request */
     const page = async (from) => {
       const connection = open(daemon.url, `GET /index.html HTTP/1.1\r\n${HOST}Connection: close\r\n\r\n`, { from });
       await connection.answered;
@@ -245,7 +245,7 @@ describe('connections that are gone while their requests wait', () => {
     try {
       const askAndGo = async () => {
         const some = Array.from({ length: 20 }, () => open(daemon.url, FIRST, { from: '127.0.6.1', ms: 60000 }));
-        await sleep(100); /* a request that did not arrive by then is not counted: others follow */
+        await sleep(100); /* a request that has not arrived by then is not counted; others follow */
         for (const c of some) c.socket.resetAndDestroy();
         return page('127.0.6.1');
       };
@@ -311,7 +311,7 @@ describe('a condition', () => {
 });
 
 describe('the process', () => {
-  /** A service manager's socket; the datagrams that came on it. */
+  /** A socket like a service manager's, and the datagrams it received. */
   async function startManager() {
     const folder = mkdtempSync(join(tmpdir(), 'beamroom-notify-')), path = join(folder, 'notify');
     const child = spawn('python3', ['-uc', 'import socket,sys\ns=socket.socket(socket.AF_UNIX,socket.SOCK_DGRAM)\ns.bind(sys.argv[1])\nprint("bound")\nwhile True: print(s.recv(4096).decode())', path]);
@@ -345,9 +345,9 @@ describe('the process', () => {
         await until(daemon.log, (log) => log.includes(`the ${thread} thread has not moved`));
         assert.match(daemon.log(), new RegExp(`the ${thread} thread has not moved`));
         await until(manager.lines, (lines) => lines.includes('READY=1'));
-        await sleep(800); /* what was told before may still be on its way */
+        await sleep(800); /* datagrams sent before may still arrive */
         const n = manager.lines().length;
-        await sleep(1600); /* twice what the manager waits */
+        await sleep(1600); /* twice the watchdog's time */
         assert.equal(manager.lines().length, n, 'nothing is told any more');
         const began = performance.now();
         assert.equal(await daemon.stop(), 1, 'ended by itself');

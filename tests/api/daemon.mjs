@@ -12,8 +12,8 @@ export const demo = process.env.BEAMROOM_DEMO ?? resolve('build/demo/plans');
 /** Real plans, when this machine has them; tests that need them skip otherwise. */
 export const realData = [process.env.BEAMROOM_DATA, '../shared/data'].filter(Boolean).map((p) => resolve(p)).find(existsSync);
 
-/** data: a state folder to use and to keep. cwd, folders: where it is started, and where its programs and its page then lie. env: variables
- *  beside our own.
+/** data: an existing state folder, kept afterwards. cwd: working folder of the daemon. folders: programs and page, as seen from there.
+ *  env: further environment variables.
  *  @returns {Promise<{url: string, data: string, child: import('node:child_process').ChildProcess, log: () => string, stop: () => Promise<number|null>}>} */
 export async function startDaemon({ plans = [demo], args = [], data: given, cwd, folders = { bin, web }, env = {} } = {}) {
   const data = given ?? mkdtempSync(join(tmpdir(), 'beamroom-test-'));
@@ -33,7 +33,7 @@ export async function startDaemon({ plans = [demo], args = [], data: given, cwd,
     child.kill('SIGTERM');
     let timer;
     const code = await Promise.race([ended, new Promise((late) => { timer = setTimeout(late, 60000, null); })]);
-    clearTimeout(timer); /* else the test run waits for it */
+    clearTimeout(timer); /* or the test run would wait for it */
     if (code === null) child.kill('SIGKILL');
     if (!given) rmSync(data, { recursive: true, force: true });
     return code;
@@ -43,7 +43,7 @@ export async function startDaemon({ plans = [demo], args = [], data: given, cwd,
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-/** Asks until the answer suits; the last answer is given when it never does, after a minute: machines may be slow and busy. */
+/** Asks until the answer suits. Returns the last answer after a minute at most, as machines may be slow and busy. */
 export async function until(ask, suits, ms = 60000) {
   const end = Date.now() + ms;
   for (;;) {
@@ -53,7 +53,7 @@ export async function until(ask, suits, ms = 60000) {
   }
 }
 
-/** fetch with JSON in and out; throws where the answer says it is JSON and is not, or has a name twice. */
+/** fetch with JSON in and out; throws when an answer of type JSON is none, or has a name twice in an object. */
 export async function call(url, method = 'GET', body, headers = {}) {
   const answer = await fetch(url, { method, headers: { ...(body !== undefined && { 'Content-Type': 'application/json' }), ...headers },
     body: body === undefined || typeof body === 'string' ? body : JSON.stringify(body) });
@@ -62,7 +62,7 @@ export async function call(url, method = 'GET', body, headers = {}) {
   return { status: answer.status, headers: answer.headers, type, text, json };
 }
 
-/** Loads a plan and waits for it. */
+/** Opens a plan and waits until its job has ended. */
 export async function openPlan(url, plan) {
   const opened = await call(`${url}/api/v1/plans/${plan}/open`, 'POST');
   if (opened.status !== 202) throw new Error(`open ${plan}: ${opened.text}`);

@@ -1,4 +1,4 @@
-// What has to be known of a dose's numbers stands beside them: the boron in a total, and another frame of reference than the image's.
+// Facts shown beside a dose's numbers: the boron in a total, and a frame of reference other than the image's.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -13,7 +13,7 @@ const phantom = realData && join(realData, 'dicomrt-oncentra-phantom');
 const skip = [head, phantom].every((plan) => plan && existsSync(plan)) ? false : 'no real plans on this machine';
 let folder, daemon;
 
-/** Another frame of reference (0020,0052) in every RTDOSE: its last digit is changed. */
+/** Gives every RTDOSE another frame of reference (0020,0052) by changing its last digit. */
 function shiftFrames(plan) {
   let n = 0;
   for (const name of readdirSync(plan, { recursive: true })) {

@@ -1,4 +1,4 @@
-// Who shares a renderer with whom: somebody who asks for a lot of large pictures does not take the renderer from somebody who turns a small one.
+// Sharing a renderer fairly: a member who requests many large pictures does not slow one who turns a small picture.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 import { call, openPlan, sleep, startDaemon, until } from './daemon.mjs';
@@ -29,13 +29,13 @@ async function join(room) {
 }
 const newRoom = async () => (await call(`${api}/rooms`, 'POST', { plan: 'phantom' })).json.id;
 
-/** The eye on a circle around the plan. */
+/** A camera on a circle around the plan. */
 function at(angle) {
   const [x, y, z] = home.target_mm, r = Math.hypot(home.position_mm[0] - x, home.position_mm[1] - y);
   return { camera: { ...home, position_mm: [x + r * Math.sin(angle), y - r * Math.cos(angle), z] } };
 }
 
-/** Turns a view of 640 x 480 until isOver; how many pictures came. */
+/** Turns a view of 640 x 480 until isOver; returns the number of pictures received. */
 async function orbit(room, isOver) {
   const client = await join(room);
   client.send({ type: 'view.open', view: 1, document: { size_px: [640, 480] } });
@@ -49,7 +49,7 @@ async function orbit(room, isOver) {
   return client.frames.length - from;
 }
 
-/* One large picture takes as long as some fifty small ones. In turns by time, dozens of small ones come in the time of a large one; in turns by
+/* One large picture takes as long as about fifty small ones. With turns by time, dozens of small ones are drawn in the time of a large one; with turns by
    number, one. */
 const atLeast = 4;
 
@@ -70,7 +70,7 @@ for (const where of ['the same room', 'another room']) {
     isOn = false;
     await moving;
     assert.ok(n >= atLeast * (greedy.frames.length - first), `${n} small pictures in the time of ${greedy.frames.length - first} large ones`);
-    assert.ok(greedy.frames.length - first >= 6); /* and it had its share too */
+    assert.ok(greedy.frames.length - first >= 6); /* and it got its share, too */
   });
 }
 
@@ -83,7 +83,7 @@ test('eight scripts that ask for pictures leave a member its share', async () =>
       const answer = await fetch(`${api}/plans/phantom/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body });
       await answer.arrayBuffer();
       if (answer.status === 200) n_drawn++;
-      else await sleep(50); /* busy: as many are being drawn as may be at once */
+      else await sleep(50); /* busy: the most pictures at once are being drawn */
     }
   });
   const n = await orbit(room, () => n_drawn - (first = first < 0 ? n_drawn : first) >= 10);

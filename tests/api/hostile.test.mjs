@@ -1,4 +1,4 @@
-// What strangers send: malformed requests, sockets that misbehave, plans that are damaged. The daemon answers or closes, and goes on.
+// Hostile input: malformed requests, misbehaving sockets, damaged plans. The daemon answers or closes the connection, and goes on.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -13,7 +13,7 @@ import { parseStrict } from './strict_json.mjs';
 
 let folder, daemon, url, api;
 
-/** A generator with a seed, so that a failure can be had again (mulberry32). */
+/** A random generator with a seed, so that a failure can be repeated (mulberry32). */
 function numbers(seed) {
   return (below) => {
     seed = (seed + 0x6d2b79f5) | 0;
@@ -23,7 +23,7 @@ function numbers(seed) {
   };
 }
 
-/** The ways a file gets damaged: header bits, any bits, cut short, empty; and what a gzip stream unpacks to. */
+/** Damages a file in one of several ways: header bits, any bits, cut short, empty; also inside a gzip stream. */
 function damage(bytes, way, random) {
   const flip = (b, n, below) => { for (let i = 0; i < n; i++) b[random(Math.min(below, b.length))] ^= 1 << random(8); return b; };
   switch (way) {
@@ -75,7 +75,7 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-/** Writes bytes to a connection of its own; what comes back until it is closed, or the answer has a head and more is not waited for. */
+/** Writes bytes to a new connection; returns what is received until it is closed, or with headOnly until a head is complete. */
 function exchange(bytes, { where = url, endsAtOnce = false, headOnly = false } = {}) {
   return new Promise((done) => {
     const { hostname, port } = new URL(where);
@@ -205,7 +205,7 @@ describe('a stranger on the line', () => {
     const answer = await exchange('POST /api/v1/rooms HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Type: application/json\r\nContent-Length: 2000000000\r\n\r\n');
     assert.equal(statusOf(answer), 413);
     assert.match(answer, /application\/problem\+json/);
-    assert.doesNotMatch(answer, / 100 | 408 /); /* neither told to go on nor waited for */
+    assert.doesNotMatch(answer, / 100 | 408 /); /* neither 100 Continue nor waiting for the body */
   });
 
   test('may name the server in the address, as a proxy does', async () => {
@@ -239,7 +239,7 @@ describe('a stranger on the line', () => {
     const ask = () => fetch(`${api}/plans/good/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
       body: '{"view":{"size_px":[2048,2048]}}' });
     let answers, refused = [];
-    for (let round = 0; round < 5 && !refused.length; round++) { /* where requests come more slowly than they are drawn none is refused */
+    for (let round = 0; round < 5 && !refused.length; round++) { /* none is refused when requests arrive more slowly than they are drawn */
       answers = await Promise.all(Array.from({ length: 30 }, ask));
       refused = answers.filter((answer) => answer.status === 503);
       assert.ok(answers.filter((answer) => answer.status === 200).length >= 8); /* 8 x 2048 x 2048 is 32 << 20 */
@@ -274,7 +274,7 @@ describe('a socket that misbehaves', () => {
     ['a reserved bit', 1002, (c) => c.writeRaw(Buffer.from([0xc1, 0x82, 0, 0, 0, 0, 0x7b, 0x7d]))],
     ['a close with a code that is not sent', 1002, (c) => c.write(8, Buffer.from([1005 >> 8, 1005 & 255]))],
     ['300 pings at once', 1008, (c) => { for (let i = 0; i < 300; i++) c.write(9, Buffer.alloc(0)); }],
-    ['64 MiB at once', 1008, (c) => { for (let i = 0; i < 1024; i++) c.write(1, Buffer.alloc(65536, ' ')); }, true], /* more than is allowed in 14 s, however slow the machine */
+    ['64 MiB at once', 1008, (c) => { for (let i = 0; i < 1024; i++) c.write(1, Buffer.alloc(65536, ' ')); }, true], /* more than the limit of 14 s, however slow the machine */
     ['text that is no UTF-8', 1007, (c) => c.write(1, Buffer.from([0x22, 0xff, 0xfe, 0x22]))],
     ['a surrogate in UTF-8', 1007, (c) => c.write(1, Buffer.from([0x22, 0xed, 0xa0, 0x80, 0x22]))],
     ['64 KiB and one byte', 1009, (c) => c.write(1, Buffer.alloc(65537, ' '))],
@@ -287,7 +287,7 @@ describe('a socket that misbehaves', () => {
       await client.message('welcome');
       act(client);
       await client.until(() => client.closeCode, 'the end');
-      if (sendsOn) assert.ok([code, 1006].includes(client.closeCode), `closed with ${client.closeCode}`); /* 1006: the rest of what it sent met a closed socket */
+      if (sendsOn) assert.ok([code, 1006].includes(client.closeCode), `closed with ${client.closeCode}`); /* 1006: the rest of its data reached a closed socket */
       else assert.equal(client.closeCode, code);
     });
 

@@ -1,4 +1,4 @@
-// Plans nobody looks at: they are let go, and come back for whoever enters their room. --stub: pictures are grey, everything else is real.
+// Plans without use: they are closed, and loaded again when somebody enters their room. --stub: grey pictures, everything else is real.
 import assert from 'node:assert/strict';
 import { chmodSync, cpSync, existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -54,7 +54,7 @@ describe('a plan with nobody in its rooms', () => {
     await picture(ann);
     ann.send({ type: 'scene.patch', input: 1, patch: { image: { window: { center: 77 } } } });
     const changed = await ann.message('scene');
-    await sleep(2500); // longer than the limit: somebody is there
+    await sleep(2500); // longer than the limit, but somebody is in the room
     assert.equal(await stateOf(api, 'head-1'), 'ready');
     ann.cut();
     assert.equal(await until(() => stateOf(api, 'head-1'), (state) => state === 'not-loaded'), 'not-loaded');
@@ -91,7 +91,7 @@ describe('a plan with nobody in its rooms', () => {
     await ready(ann);
     rooms.push(await newRoom('head-2'));
     await until(() => stateOf(api, 'head-2'), (state) => state === 'ready');
-    rooms.push(await newRoom('head-3')); // head-2 goes, though it has a room
+    rooms.push(await newRoom('head-3')); // head-2 is closed, though it has a room
     assert.equal(await stateOf(api, 'head-2'), 'not-loaded');
     assert.equal(await stateOf(api, 'head-1'), 'ready');
     const cas = await enter(rooms[2]);
@@ -101,7 +101,7 @@ describe('a plan with nobody in its rooms', () => {
     const told = await ben.message('renderer', (m) => m.state === 'failed');
     assert.equal(told.problem.type, '/problems/busy');
     ann.cut();
-    await ready(ben); // as soon as somebody has left
+    await ready(ben); // once somebody has left
     assert.equal(await stateOf(api, 'head-1'), 'not-loaded');
   }));
 });
@@ -110,7 +110,7 @@ describe('a job that opens a plan', () => {
   test('stays done when nobody asked before the plan was closed again', () => withDaemon(['--plan-idle-close', '1'], async ({ daemon, api }) => {
     const opened = await call(`${api}/plans/head-1/open`, 'POST');
     assert.equal(opened.status, 202);
-    await until(() => daemon.log(), (log) => /head-1: closed/.test(log)); // no request meanwhile
+    await until(() => daemon.log(), (log) => /head-1: closed/.test(log)); // without a request in between
     assert.match(daemon.log(), /head-1: closed: nobody used it/);
     const job = await call(`${api}/jobs/${opened.json.id}`);
     assert.equal(job.json.state, 'done');
@@ -160,7 +160,7 @@ test('a daemon that was stopped for a while finds its renderers alive', () => wi
   await ready(ann);
   await picture(ann);
   daemon.child.kill('SIGSTOP');
-  await sleep(12000); // longer than any renderer may be silent
+  await sleep(12000); // longer than a renderer may be silent
   daemon.child.kill('SIGCONT');
   ann.send({ type: 'view.patch', view: 1, input: 7, patch: { camera: { position_mm: [9, -900, 0], target_mm: [0, 0, 0], up: [0, 0, 1] } } });
   await ann.frame((f) => f.isStill && f.input === 7);

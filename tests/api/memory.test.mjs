@@ -1,10 +1,10 @@
-// Pictures that do not fit into the memory a renderer may take are refused with what they would have needed; the renderer goes on.
+// Pictures that need more memory than the renderer's limit are refused with the amount they need; the renderer goes on.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { call, openPlan, startDaemon, until } from './daemon.mjs';
 
 test('a picture too large for the memory of its renderer is refused with both sizes, and a smaller one is drawn', async () => {
-  /* what a process has before its first picture depends on the machine: the first limit under which a small one is drawn */
+  /* memory before the first picture depends on the machine: finds the lowest limit at which a small picture is drawn */
   for (let mib = 120; ; mib += 30) {
     assert.ok(mib < 2000, 'no small picture under any limit');
     const daemon = await startDaemon({ args: ['--gl', 'soft', '--max-renderer-mib', `${mib}`] });

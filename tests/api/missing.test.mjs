@@ -57,7 +57,7 @@ describe('a region that would take more triangles than the limit', { timeout: 24
       client.send({ type: 'view.open', view: 1, document: { size_px: [160, 120] }, follow: true, input: 1 });
       return client;
     };
-    // hidden at first: its smooth surface can be made, but that takes its time
+    // hidden at first: its smooth surface can be made, but slowly
     assert.equal((await until(() => call(`${api}/rooms/${room}/scene`, 'PATCH', { regions: { foam: { visible: false } } }, { 'If-Match': '*' }), (a) => a.status === 200)).status, 200);
     const ann = await join_();
     await ann.frame((f) => f.isStill);
@@ -71,9 +71,9 @@ describe('a region that would take more triangles than the limit', { timeout: 24
     assert.ok(!ann.messages.some((m) => m.type === 'problem'));
     const asked = async () => Number(/^beamroom_renders_total (\d+)/m.exec((await call(`${daemon.url}/metrics`)).text)[1]);
     const before = await asked();
-    await sleep(5000); // it used to be asked for again each 4 s
+    await sleep(5000); // it must not be requested again periodically
     assert.equal(await asked(), before);
-    const ben = await join_(); // who comes later is told as well
+    const ben = await join_(); // a later member is told, too
     assert.equal((await ben.message('missing')).n, 1);
     ann.send({ type: 'scene.patch', patch: { regions: { foam: { visible: false } } }, input: 3 });
     await ann.frame((f) => f.isStill && f.input === 3);

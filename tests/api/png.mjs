@@ -1,4 +1,4 @@
-// Reads 8-bit RGB and RGBA PNG files without interlacing: enough to look at pictures in tests (PNG specification, 3rd edition).
+// Reads 8-bit RGB and RGBA PNG files without interlacing: enough to check pictures in tests (PNG specification, 3rd edition).
 import { inflateSync } from 'node:zlib';
 
 export function readPng(bytes) {
@@ -36,7 +36,7 @@ export function readPng(bytes) {
   return { width, height, at: (x, y) => [...pixels.subarray(y * stride + x * channels, y * stride + x * channels + 3)] };
 }
 
-/** Centre of the pixels that suit, and how many. */
+/** Centre and number of the pixels that suit. */
 export function centreOf(picture, suits) {
   let n = 0, x = 0, y = 0;
   for (let row = 0; row < picture.height; row++)

@@ -1,4 +1,4 @@
-// What a daemon that is being stopped tells those who are connected, and who connects meanwhile.
+// Messages of a daemon that is being stopped to clients that are connected, or connect meanwhile.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { call, startDaemon, until } from './daemon.mjs';

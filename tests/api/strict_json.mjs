@@ -1,13 +1,13 @@
-// JSON as RFC 8259 wants it read by everybody alike: a name that stands twice in one object is an error. As a program: reads files.
+// Reads JSON strictly: a name twice in one object is an error, as readers differ on it (RFC 8259). As a program it checks files.
 import { readFileSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';
 
 const token = /[{}[\],:]|"(?:[^"\\]|\\.)*"|[^\s{}[\],:"]+/g;
 
-/** JSON.parse, but a SyntaxError for an object with the same name twice; it says where. */
+/** JSON.parse that throws a SyntaxError, with the place, for an object with the same name twice. */
 export function parseStrict(text) {
-  const value = JSON.parse(text); // the syntax; what follows only looks for names
-  const open = []; // {names, name} of each object around, {index} of each array
+  const value = JSON.parse(text); // checks the syntax; the rest only looks at names
+  const open = []; // {names, name} for each enclosing object, {index} for each array
   let last = '';
   for (const [word] of String(text).matchAll(token)) {
     const inner = open.at(-1);

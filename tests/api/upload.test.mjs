@@ -32,7 +32,7 @@ after(async () => {
 
 const waiting = (where = daemon) => readdirSync(join(where.data, 'uploads'));
 const uploaded = (where = daemon) => readdirSync(join(where.data, 'plans'));
-/** Nothing is on its way any more; what is left when it never comes to that. */
+/** Waits until no upload is in progress; returns the names of those left after the time limit. */
 const settled = (where = daemon) => until(() => waiting(where), (names) => names.length === 0, 5000);
 const idsOf = async (base = api) => (await call(`${base}/plans`)).json.plans.map((p) => p.id);
 
@@ -47,7 +47,7 @@ async function send(base, name, body, { type = 'application/octet-stream', heade
 
 const jobEnd = (base, job) => until(async () => (await call(`${base}/jobs/${job.id}`)).json, (j) => j.state !== 'running' && j.state !== 'queued');
 
-/** Headers and the first bytes of a body over a bare connection; the answer's text so far. */
+/** Sends headers and the first bytes of a body over a bare connection; text() is the answer so far. */
 function half(url, length, bytes = '', headers = '') {
   const { hostname, port } = new URL(url);
   const socket = connect(Number(port), hostname);
@@ -113,7 +113,7 @@ describe('an archive', () => {
     const days = [new Date().toISOString().slice(0, 10)];
     const jobs = [];
     for (const query of ['', '?name=', '']) jobs.push(await jobEnd(api, await post(query)));
-    days.push(new Date().toISOString().slice(0, 10)); /* midnight may lie between */
+    days.push(new Date().toISOString().slice(0, 10)); /* the date may have changed at midnight */
     const expected = days.flatMap((day) => ['', '-2', '-3'].map((more) => `upload-${day}${more}`));
     for (const { plan } of jobs) {
       assert.ok(expected.includes(plan), plan);
@@ -259,7 +259,7 @@ describe('an upload that does not come to its end', () => {
   });
 });
 
-/** A daemon whose unpacker says 12.5 % and then nothing for long. */
+/** A daemon whose unpacker reports 12.5 % and then nothing for a long time. */
 async function startSlow() {
   const stand = join(home, 'slow-render');
   writeFileSync(stand, `#!/bin/sh\nif [ "$1" = --unpack ]; then\n  echo $$ > ${home}/pid; echo x > "$4/half"\n  echo '{"percent": 12.5}'\n  sleep 60\n  exit 1\nfi\nexec ${bin}/beamroom-render "$@"\n`);
@@ -303,7 +303,7 @@ test('300 MB pass through without the memory growing and without others waiting'
   assert.equal(sent.status, 202);
   const job = await jobEnd(api, sent.json);
   most = Math.max(most, memory());
-  assert.equal(job.state, 'failed', JSON.stringify(job)); /* letters and zeros are no plan */
+  assert.equal(job.state, 'failed', JSON.stringify(job)); /* the content is no plan */
   assert.ok(most - before < 16 * 1024, `grew by ${most - before} KiB`);
   assert.ok(slowest < 5000, `a picture took ${slowest} ms meanwhile`);
   assert.deepEqual(await settled(), []);

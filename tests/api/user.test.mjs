@@ -1,4 +1,4 @@
-// Whose the daemon and its renderers are: started by root they are an ordinary user's, and without capabilities whoever's they are.
+// The user of the daemon and its renderers: when started by root an ordinary user; in any case without capabilities.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { chmodSync, cpSync, existsSync, lstatSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
@@ -10,7 +10,7 @@ import { bin, call, demo, openPlan, startDaemon, web } from './daemon.mjs';
 const isRoot = process.getuid() === 0;
 const idOf = (name) => { try { return Number(execFileSync('id', ['-u', name], { stdio: ['ignore', 'pipe', 'ignore'] })); } catch { return undefined; } };
 const expected = idOf('beamroom') ?? idOf('nobody');
-/** Whether everybody may enter every folder on the way. */
+/** True if every user may enter all folders of the path. */
 const isOpen = (path) => (statSync(path).mode & 0o001) !== 0 && (path === '/' || isOpen(dirname(path)));
 const needsRoot = { skip: !isRoot && 'only root can become another user' };
 const needsOpen = { skip: !isRoot ? 'only root can become another user' : ![bin, web, demo].every((path) => isOpen(resolve(path))) && 'the checkout lies where others may not go' };
@@ -22,7 +22,7 @@ function status(pid) {
   return { uids: field('Uid').split(/\s+/).map(Number), sets: ['CapPrm', 'CapEff', 'CapInh', 'CapAmb'].map((name) => BigInt(`0x${field(name)}`)),
     bounding: BigInt(`0x${field('CapBnd')}`), noNewPrivs: field('NoNewPrivs') };
 }
-function allRenderersOf(daemon) { // a process's children are listed by the thread that started them
+function allRenderersOf(daemon) { // children are listed under the thread that started them
   return readdirSync(`/proc/${daemon.child.pid}/task`).flatMap((task) => {
     try { return readFileSync(`/proc/${daemon.child.pid}/task/${task}/children`, 'utf8').trim().split(/\s+/).filter(Boolean); } catch { return []; }
   });

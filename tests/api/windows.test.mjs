@@ -1,4 +1,4 @@
-// Images whose values are nothing like Hounsfield units: a plan of them opens and is shown over its own range.
+// Images with values far from Hounsfield units: their plan opens, and each is shown over its own range.
 import assert from 'node:assert/strict';
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

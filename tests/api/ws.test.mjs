@@ -1,4 +1,4 @@
-// The WebSocket against the real daemon: what a page and several of them see. --stub: pictures are grey, everything else is real.
+// The WebSocket of the real daemon with one and several clients. --stub: grey pictures, everything else is real.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { after, afterEach, before, describe, test } from 'node:test';
@@ -13,7 +13,7 @@ before(async () => {
   api = `${daemon.url}/api/v1`;
   await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.some((p) => p.id === 'phantom' && p.parts.length));
 });
-afterEach(() => { for (const client of clients.splice(0)) client.cut(); }); // what nobody looks at is not drawn again
+afterEach(() => { for (const client of clients.splice(0)) client.cut(); }); // a view without a client is not drawn again
 after(async () => {
   if (daemon) assert.equal(await daemon.stop(), 0, daemon.log());
 });
@@ -28,7 +28,7 @@ async function connectTo(room, headers) {
   clients.push(client);
   return client;
 }
-/** Says hello and waits until the plan is there. */
+/** Sends hello and waits until the plan is ready. */
 async function join(room, hello = {}) {
   const client = await connectTo(room);
   assert.equal(client.status, 101);
@@ -40,7 +40,7 @@ async function join(room, hello = {}) {
 }
 const openView = (client, more = {}) => client.send({ type: 'view.open', view: 1, document: { size_px: [320, 240] }, ...more });
 const camera = (x) => ({ camera: { position_mm: [x, -900, 0], target_mm: [0, 0, 0], up: [0, 0, 1] } });
-/** Until the last picture is a still and no other follows. */
+/** Waits until the last picture is a still and no other follows. */
 const settled = async (client) => {
   for (let n = -1; n !== client.frames.length;) {
     await client.until(() => client.frames.at(-1)?.isStill, 'a still');
@@ -48,7 +48,7 @@ const settled = async (client) => {
     await sleep(600);
   }
 };
-/** Moves the camera 40 times, and on until `from` and ten more pictures have come; the last input. */
+/** Moves the camera at least 40 times, until ten pictures after `from` have arrived; returns the last input. */
 async function move(client, from, input = 0) {
   const end = Date.now() + 60000;
   for (let n = 0; n < 40 || (client.frames.length - from < 10 && Date.now() < end); n++) {
@@ -183,7 +183,7 @@ describe('pictures', () => {
     const last = await client.frame((f) => f.isStill && f.input === newest, from);
     const inputs = client.frames.slice(from).map((f) => f.input);
     assert.ok(inputs.every((input, i) => i === 0 || input >= inputs[i - 1]), inputs.join());
-    assert.ok(client.frames.slice(from).every((f, i, all) => i === 0 || f.sequence > all[i - 1].sequence)); // one may be replaced unsent
+    assert.ok(client.frames.slice(from).every((f, i, all) => i === 0 || f.sequence > all[i - 1].sequence)); // a picture may be replaced before it is sent
     assert.equal(client.frames.at(-1), last);
   });
   test('are not made while nothing changes', async () => {
@@ -238,7 +238,7 @@ describe('a room', () => {
     const seen = ben.frames.length;
     ben.resume();
     await settled(ben);
-    assert.ok(ben.frames.at(-1).picture.equals(ann.frames.at(-1).picture)); // the newest, and not forty in a row
+    assert.ok(ben.frames.at(-1).picture.equals(ann.frames.at(-1).picture)); // the newest picture, not forty one after the other
     assert.ok(ben.frames.length - seen <= 5, `${ben.frames.length - seen} frames`);
   });
   test('knows a member who comes back', async () => {

@@ -1,4 +1,4 @@
-// A small WebSocket client over a plain socket: Node 18 has none, and ours can also misbehave (fragments, bad masks, not reading).
+// A small WebSocket client over a plain socket: node 18 has none, and this one can also misbehave (fragments, bad masks, not reading).
 import { createHash, randomBytes } from 'node:crypto';
 import { connect } from 'node:net';
 import { parseStrict } from './strict_json.mjs';
@@ -27,7 +27,7 @@ export class Client {
   frames = [];
   /** Close code, once the server closed; 1006 without one. */
   closeCode = 0;
-  /** Acknowledge each frame when it comes, as the page does. */
+  /** Acknowledge each frame on arrival, as the page does. */
   shows = true;
 
   /** Resolves when the server has answered the handshake, also when it refused. */
@@ -91,7 +91,7 @@ export class Client {
 
   #news() { for (const look of [...this.#waiting]) look(); }
 
-  /** Waits until test() gives something true, and gives that. */
+  /** Waits until test() returns something true, and returns it. */
   until(test, what = 'something', ms = 60000) {
     return new Promise((done, failed) => {
       let timer;
@@ -112,7 +112,7 @@ export class Client {
     });
   }
 
-  /** The next message of a type that suits, also one that came already but not before `from`. */
+  /** The first message of this type, from index `from` on, that suits; waits for it when needed. */
   message(type, suits = () => true, from = 0, ms) {
     return this.until(() => this.messages.slice(from).find((m) => m.type === type && suits(m)), `message ${type}`, ms);
   }
@@ -135,7 +135,7 @@ export class Client {
 
   send(message) { this.write(TEXT, Buffer.from(typeof message === 'string' ? message : JSON.stringify(message))); }
 
-  /** One message in n fragments. */
+  /** Sends one message in n fragments. */
   sendInPieces(message, n) {
     const bytes = Buffer.from(JSON.stringify(message)), size = Math.ceil(bytes.length / n);
     for (let at = 0; at < bytes.length; at += size)
@@ -146,6 +146,6 @@ export class Client {
   /** Stops reading: what the server sends stays in the kernel's buffers. */
   pause() { this.#socket.pause(); }
   resume() { this.#socket.resume(); }
-  /** Cuts the line without a word. */
+  /** Closes the connection without a close frame. */
   cut() { this.#socket.destroy(); }
 }
