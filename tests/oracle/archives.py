@@ -1,6 +1,6 @@
-"""Archives of every kind for the tests of unpacking, made by Python's zipfile and tarfile: honest ones, and each thing that is refused.
+"""Archives of every kind for the tests of unpacking, made by Python's zipfile and tarfile: valid ones, and one for each reason of refusal.
 
-usage: archives.py FOLDER [seeds]      seeds: small ones alone, as the fuzz target starts from
+usage: archives.py FOLDER [seeds]      seeds: only small ones, as seeds of the fuzz target
 """
 import bz2
 import gzip
@@ -83,7 +83,7 @@ if len(sys.argv) > 2:
     put("tar-link", make_tar([("a", None, {"type": tarfile.SYMTYPE, "linkname": "b"})], tarfile.USTAR_FORMAT)[:1536])
     sys.exit(0)
 
-# ---- honest
+# ---- valid
 tar = make_tar(FILES)
 put("good.zip", make_zip(FILES))
 put("stored.zip", make_zip(FILES, zipfile.ZIP_STORED))
@@ -152,7 +152,7 @@ put("cut.tar", tar[:5000])
 put("cut-between.tar", make_tar({"a": b"x" * 512, "b": b"y"})[:1024])
 put("header.tar", tar[:100] + b"\xff" + tar[101:])
 flipped = bytearray(gzip.compress(tar, 0))
-flipped[3500] ^= 1  # within a file's data, stored: nothing but the check sum tells
+flipped[3500] ^= 1  # within a file's data, stored: only the checksum shows it
 put("crc.tar.gz", bytes(flipped))
 put("cut.tar.gz", gzip.compress(tar)[:-9])
 put("no-sum.tar.gz", gzip.compress(tar)[:-4])
@@ -194,7 +194,7 @@ local, entry = one[:at], one[at:at + 47]
 count = 200
 put("overlap.zip", local + entry * count + b"PK\5\6" + struct.pack("<HHHHIIH", 0, 0, count, count, 47 * count, len(local), 0))
 
-# ---- where an entry is that is refused, as Python's own readers see it: archive, name, number from 1, offset of a tar's entry or -1
+# ---- position of the refused entry, as Python's own readers see it: archive, name, number from 1, offset of a tar's entry or -1
 with open(os.path.join(folder, "places.txt"), "w") as places:
     for name in sorted(os.listdir(folder)):
         path = os.path.join(folder, name)

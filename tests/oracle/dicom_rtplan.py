@@ -1,4 +1,4 @@
-"""Beams of RTPLAN files as pydicom sees them: FILE...; one line a beam, fields separated by tabs; nan where the file is silent."""
+"""Beams of RTPLAN files as pydicom sees them: FILE...; one line per beam, fields separated by tabs; nan for a missing value."""
 import sys
 
 try:

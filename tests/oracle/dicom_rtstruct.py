@@ -1,4 +1,4 @@
-"""Regions of RTSTRUCT files as pydicom and numpy see them: FILE...; one line a region, fields separated by tabs."""
+"""Regions of RTSTRUCT files as pydicom and numpy see them: FILE...; one line per region, fields separated by tabs."""
 import sys
 
 try:

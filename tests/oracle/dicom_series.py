@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What pydicom and numpy make of a folder of DICOM slices: an answer that none of our code has touched.
+"""Reads a folder of DICOM slices with pydicom and numpy, independently of our code.
 
 usage: dicom_series.py FOLDER OUT      every image series below FOLDER, in the order of their UIDs, voxels to OUT.0, OUT.1, ...
 

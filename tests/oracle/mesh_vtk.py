@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What VTK reads from STL, PLY and GLB files: an answer that none of our code has touched.
+"""Reads STL, PLY and GLB files with VTK, independently of our code.
 
 usage: mesh_vtk.py FILE...     the ending says the format
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What nibabel reads from NIfTI files: an answer that none of our code has touched.
+"""Reads NIfTI files with nibabel, independently of our code.
 
 usage: nifti_values.py make FOLDER     writes files of every data type, byte order, version and many orientations, and reads them
        nifti_values.py pairs FOLDER    the same as pairs of .hdr and .img; the name of either stands in the line

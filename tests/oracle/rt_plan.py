@@ -1,4 +1,4 @@
-"""What pydicom and numpy make of a folder of DICOM-RT files: rt_plan.py FOLDER. Prints lines of tab-separated fields:
+"""Reads a folder of DICOM-RT files with pydicom and numpy: rt_plan.py FOLDER. Prints lines of tab-separated fields:
 dose, largest value, patient point (3), value there: twenty voxels of every dose that is not all zero
 beam, name, isocentre (3), gantry angle
 region, name, cm3: polygon areas times the distance of planes, for regions whose planes hold one contour each

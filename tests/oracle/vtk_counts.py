@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Triangle counts of vtkFlyingEdges3D on a mask of labels: an answer that none of our code has touched.
+"""Triangle counts of vtkFlyingEdges3D on a mask of labels, independently of our code.
 
 usage: vtk_counts.py FILE NX NY NZ LABELS...     FILE: bytes, [z][y][x], x fastest; LABELS: 3 or 3,4,5
 

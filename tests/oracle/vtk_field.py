@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Compares a surface of a field of floats with vtkFlyingEdges3D's: an answer that none of our code has touched.
+"""Compares a surface of a field of floats with vtkFlyingEdges3D's, independently of our code.
 
 usage: vtk_field.py FIELD VERTICES NX NY NZ ISO     FIELD: floats, [z][y][x]; VERTICES: floats, x y z, in voxels
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How far the normals of VTK's smoothed surface of an ellipsoid are off: an answer that none of our code has touched.
+"""Measures the error of the normals of a smoothed surface of an ellipsoid by VTK, independently of our code.
 
 usage: vtk_sinc.py FILE NX NY NZ  DX DY DZ  X0 Y0 Z0  RX RY RZ  TILT
 FILE: bytes, 0 or 1, [z][y][x]; spacing, place of the first voxel, radii in mm; tilted by TILT radians about x, then about y

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Marching squares by vtkContourFilter on the slices of a mask: an answer that none of our code has touched.
+"""Marching squares by vtkContourFilter on the slices of a mask, independently of our code.
 
 usage: vtk_squares.py FILE NX NY NZ     FILE: bytes 0 and 1, [z][y][x], x fastest
 
