@@ -302,3 +302,9 @@ void fake_turn(struct fake_room *room, struct fake_page *page, int degrees, unsi
         "\"up\":[0,0,1]}}}",
         input, degrees);
 }
+
+double fake_camera_x(const struct fake_request *request)
+{
+    const cJSON *camera = cJSON_GetObjectItem(request->view, "camera");
+    return cJSON_GetArrayItem(cJSON_GetObjectItem(camera, "position_mm"), 0)->valuedouble;
+}

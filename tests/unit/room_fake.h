@@ -62,3 +62,5 @@ cJSON *fake_heard(const struct fake_page *page, const char *type);
 size_t fake_n_heard(const struct fake_page *page, const char *type);
 /* Turns the camera of the page's first view. */
 void fake_turn(struct fake_room *room, struct fake_page *page, int degrees, unsigned input);
+/* x of the camera that a picture was requested with, in mm. */
+double fake_camera_x(const struct fake_request *request);
