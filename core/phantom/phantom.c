@@ -35,7 +35,7 @@ static bool join(char path[PATH_MAX], const char *folder, const char *name)
     return n > 0 && n < PATH_MAX;
 }
 
-/* ---- what goes into the folder ---------------------------------------------------------------------------------- */
+/* ---- files of the folder ---------------------------------------------------------------------------------------- */
 
 /* Volumes are compressed in parallel; each part has its own error, and the first one is reported. */
 enum { N_VOLUMES = 3 + PHANTOM_N_COMPONENTS };
@@ -130,7 +130,7 @@ static bool write_contents(const char *folder, const struct phantom_options *opt
            write_text(folder, "plan.json", phantom_plan_json(options, err), err);
 }
 
-/* ---- the folder itself ------------------------------------------------------------------------------------------ */
+/* ---- creating and replacing the folder -------------------------------------------------------------------------- */
 
 static void remove_phantom(const char *folder)
 {
@@ -152,7 +152,7 @@ static bool is_ours(const char *name)
 }
 
 /* Counts the entries of folder/below ("" or "dose"); false if one is not a phantom's file. */
-static bool look_through(const char *folder, const char *below, size_t *n_entries, struct error *err)
+static bool count_entries(const char *folder, const char *below, size_t *n_entries, struct error *err)
 {
     char path[PATH_MAX];
     if (!join(path, folder, below))
@@ -187,7 +187,8 @@ static bool check_folder(const char *folder, bool replace, bool *is_filled, stru
         return error_set(err, ERROR_STATE, "%s is there and is no folder", folder);
     size_t n_entries = 0;
     struct error reason = { 0 };
-    bool is_clean = look_through(folder, "", &n_entries, &reason) && look_through(folder, "dose", &n_entries, &reason);
+    bool is_clean =
+        count_entries(folder, "", &n_entries, &reason) && count_entries(folder, "dose", &n_entries, &reason);
     if (is_clean && n_entries == 0)
         return true;
     if (!replace)

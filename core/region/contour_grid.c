@@ -60,7 +60,7 @@ double contour_usual_spacing_mm(const struct contour_set *sets, size_t n_sets, c
     return best.n_planes > 0 ? best.mm : along_mm > 0 ? along_mm : 1;
 }
 
-/* ---- a grid from the planes ------------------------------------------------------------------------------------- */
+/* ---- grid without an image -------------------------------------------------------------------------------------- */
 
 /* Finds the planes that the grid is aligned to: those of the set with most planes. */
 static bool leading_planes(const struct contour_set *sets, size_t n_sets, double spacing_mm, struct vec3 *normal,
@@ -305,7 +305,7 @@ static bool choose_one(struct contour_choice *choice, struct candidate *candidat
     return is_chosen;
 }
 
-/* ---- sharing ---------------------------------------------------------------------------------------------------- */
+/* ---- grids shared by several sets ------------------------------------------------------------------------------- */
 
 struct group {
     uint32_t subdivision[3], low[3], high[3];

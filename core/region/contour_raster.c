@@ -156,7 +156,7 @@ void contour_raster_destroy(struct contour_raster *raster)
     free(raster);
 }
 
-/* ---- areas ------------------------------------------------------------------------------------------------------ */
+/* ---- areas of planes -------------------------------------------------------------------------------------------- */
 
 static int by_value(const void *a, const void *b)
 {
@@ -241,7 +241,7 @@ bool contour_raster_areas(const struct contour_raster *raster, double *areas_mm2
     return true;
 }
 
-/* ---- voxels ----------------------------------------------------------------------------------------------------- */
+/* ---- bits of voxels --------------------------------------------------------------------------------------------- */
 
 /* A voxel position in raster coordinates: at (i, j, k), u is at.u + i step[0].u + ... */
 struct raster_point {

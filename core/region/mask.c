@@ -123,7 +123,7 @@ struct mask *mask_from_labels(const struct volume *layer, const uint16_t *labels
     return job.mask;
 }
 
-/* ---- a region and what is inside it ----------------------------------------------------------------------------- */
+/* ---- regions to bits -------------------------------------------------------------------------------------------- */
 
 struct mask *mask_from_region(const struct region_set *set, size_t region, int n_threads, struct error *err)
 {

@@ -36,7 +36,7 @@ static uint32_t part_of_block(uint32_t size, uint32_t block, uint32_t factor)
     return left < factor ? left : factor;
 }
 
-/* ---- counting --------------------------------------------------------------------------------------------------- */
+/* ---- counting voxels per block ---------------------------------------------------------------------------------- */
 
 /* Bits of the n voxels of a row from `first` on; 1 <= n <= 64, so they are in at most two words. */
 static uint64_t bits_at(const uint64_t *row, uint32_t first, uint32_t n)
@@ -128,7 +128,7 @@ static void count_part(void *context, int part, int n_parts)
     }
 }
 
-/* ---- what can be taken away ------------------------------------------------------------------------------------- */
+/* ---- removing blocks -------------------------------------------------------------------------------------------- */
 
 /* The 27 voxels of a neighbourhood: bit (dx + 1) + 3 (dy + 1) + 9 (dz + 1); the middle is bit 13. */
 enum { MIDDLE = 1 << 13, ALL_27 = (1 << 27) - 1 };
@@ -284,7 +284,7 @@ static bool thin_out(struct reduce_job *job, struct error *err)
     return true;
 }
 
-/* ---- the whole -------------------------------------------------------------------------------------------------- */
+/* ---- mask_reduce ------------------------------------------------------------------------------------------------ */
 
 struct mask *mask_reduce(const struct mask *mask, const uint32_t factors[3], int n_threads, struct error *err)
 {

@@ -33,7 +33,7 @@ struct sweep {
     struct reach *reaches; /* [n_threads][n] */
 };
 
-/* ---- who holds which label of a layer --------------------------------------------------------------------------- */
+/* ---- masks by label of a layer ---------------------------------------------------------------------------------- */
 
 static const struct volume *layer_of(const struct sweep *sweep, size_t wish)
 {
@@ -89,7 +89,7 @@ static bool find_holders(struct sweep *sweep, size_t layer, size_t *inside, stru
     return sweep->members != NULL;
 }
 
-/* ---- the sweep -------------------------------------------------------------------------------------------------- */
+/* ---- sweeping the labels ---------------------------------------------------------------------------------------- */
 
 struct word_position {
     size_t word; /* index of the word in each mask */
@@ -165,7 +165,7 @@ static void sweep_part(void *context, int part, int n_parts)
     }
 }
 
-/* ---- the whole -------------------------------------------------------------------------------------------------- */
+/* ---- mask_sweep ------------------------------------------------------------------------------------------------- */
 
 static bool check(const struct region_set *set, const struct mask_wish *wishes, size_t n, struct error *err)
 {

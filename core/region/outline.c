@@ -136,7 +136,7 @@ static bool buffer_fill(struct slice_buffer *buffer, const struct slicing *slici
     return has_any;
 }
 
-/* ---- walking ---------------------------------------------------------------------------------------------------- */
+/* ---- following lines -------------------------------------------------------------------------------------------- */
 
 struct side {
     size_t pixel; /* index in buffer->pixels */
@@ -234,7 +234,7 @@ static void walk_part(void *context, int part, int n_parts)
     buffer_finish(&buffer);
 }
 
-/* ---- the slices together ---------------------------------------------------------------------------------------- */
+/* ---- joining the slices ----------------------------------------------------------------------------------------- */
 
 static struct outline_set *set_create(const struct outline_job *job, struct error *err)
 {
@@ -351,7 +351,7 @@ void outline_set_destroy(struct outline_set *set)
     free(set);
 }
 
-/* ---- any plane -------------------------------------------------------------------------------------------------- */
+/* ---- mask_cut --------------------------------------------------------------------------------------------------- */
 
 struct mask *mask_cut(const struct mask *mask, const struct affine *lps_mm_from_pixel, const uint32_t size[2],
                       struct error *err)

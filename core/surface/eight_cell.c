@@ -232,7 +232,7 @@ static void write_part(void *context, int part, int n_parts)
         }
 }
 
-/* ---- the whole -------------------------------------------------------------------------------------------------- */
+/* ---- surface_eight_cell ----------------------------------------------------------------------------------------- */
 
 static struct corner_case cases[2][256]; /* [is_mirrored] */
 static pthread_once_t cases_once = PTHREAD_ONCE_INIT;

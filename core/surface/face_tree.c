@@ -30,7 +30,7 @@ static double square(double x)
     return x * x;
 }
 
-/* ---- one face --------------------------------------------------------------------------------------------------- */
+/* ---- distance to one face --------------------------------------------------------------------------------------- */
 
 static const uint64_t *row_at(const struct mask *mask, int64_t j, int64_t k)
 {
@@ -91,7 +91,7 @@ double face_tree_face_distance_2(const struct face_tree *tree, const double from
                                     columns[b], columns[c]);
 }
 
-/* ---- making the tree -------------------------------------------------------------------------------------------- */
+/* ---- building the tree ------------------------------------------------------------------------------------------ */
 
 /* Of 64 voxels of a row, those with a face on that side. rows: the neighbouring rows along y and z, NULL beyond the
  * grid. */
@@ -225,14 +225,14 @@ void face_tree_destroy(struct face_tree *tree)
     free(tree);
 }
 
-/* ---- searching -------------------------------------------------------------------------------------------------- */
+/* ---- searching the tree ----------------------------------------------------------------------------------------- */
 
 struct search {
     const struct face_tree *tree;
     const double *at_ijk;
     int way, axis, side;
     double best_2;
-    uint64_t n_asked;
+    uint64_t n_measured;
 };
 
 /* Lower bound of the squared distance to the faces of this direction of voxels first..last. */
@@ -280,7 +280,7 @@ static void search_leaf(struct search *search, const uint32_t block[3])
                                                search->at_ijk[1] - (double)j, search->at_ijk[2] - (double)k };
                 double here = face_tree_face_distance_2(tree, from_voxel, search->axis, search->side);
                 search->best_2 = here < search->best_2 ? here : search->best_2;
-                search->n_asked++;
+                search->n_measured++;
             }
         }
 }
@@ -329,7 +329,7 @@ static void search_block(struct search *search, int level, const uint32_t block[
         search_block(search, level - 1, children[at].block);
 }
 
-double face_tree_nearest_2(const struct face_tree *tree, const double at_ijk[3], double known_2, uint64_t *n_asked)
+double face_tree_nearest_2(const struct face_tree *tree, const double at_ijk[3], double known_2, uint64_t *n_measured)
 {
     struct search search = { .tree = tree, .at_ijk = at_ijk, .best_2 = known_2 };
     for (int way = N_WAYS - 1; way >= 0; way--) {
@@ -339,6 +339,6 @@ double face_tree_nearest_2(const struct face_tree *tree, const double at_ijk[3],
         if (tree->levels[tree->n_levels - 1].ways[0] >> way & 1)
             search_block(&search, tree->n_levels - 1, (uint32_t[3]){ 0, 0, 0 });
     }
-    *n_asked += search.n_asked;
+    *n_measured += search.n_measured;
     return search.best_2;
 }

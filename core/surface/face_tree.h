@@ -21,6 +21,6 @@ double face_tree_face_distance_2(const struct face_tree *tree, const double from
  * mask.
  *
  *   known_2  squared distance to some face that is known already, or INFINITY
- *   n_asked  increased by the number of faces whose distance was computed
+ *   n_measured  increased by the number of faces whose distance was computed
  *   thread   any */
-double face_tree_nearest_2(const struct face_tree *tree, const double at_ijk[3], double known_2, uint64_t *n_asked);
+double face_tree_nearest_2(const struct face_tree *tree, const double at_ijk[3], double known_2, uint64_t *n_measured);

@@ -137,7 +137,7 @@ static void fan_part(void *context, int part, int n_parts)
         make_fan(job, at, &job->fans[at]);
 }
 
-/* ---- all of them ------------------------------------------------------------------------------------------------ */
+/* ---- triangles of all fans -------------------------------------------------------------------------------------- */
 
 /* Adds the triangle with neighbours a and b. */
 static void add_triangle(uint16_t with[AFTER], int a, int b)

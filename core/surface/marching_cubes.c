@@ -49,7 +49,7 @@ static void range_of(uint32_t n, int part, int n_parts, uint32_t *from, uint32_t
     *end = (uint32_t)((uint64_t)n * (uint64_t)(part + 1) / (uint64_t)n_parts);
 }
 
-/* ---- the part of the mask that holds anything ------------------------------------------------------------------- */
+/* ---- the working grid ------------------------------------------------------------------------------------------- */
 
 static void measure_extent(void *context, int part, int n_parts)
 {
@@ -312,7 +312,7 @@ static bool has_fast(void)
 }
 #endif
 
-/* ---- the whole -------------------------------------------------------------------------------------------------- */
+/* ---- marching_cubes_run ----------------------------------------------------------------------------------------- */
 
 static void count_part(void *context, int part, int n_parts)
 {

@@ -37,7 +37,7 @@ const char *mesh_format_word(enum mesh_format format)
     return words[format];
 }
 
-/* ---- bytes, little-endian on any machine */
+/* ---- bytes, little-endian on any machine ------------------------------------------------------------------------ */
 
 static uint8_t *put_u32(uint8_t *at, uint32_t value)
 {
@@ -73,7 +73,7 @@ static uint8_t *make_room(enum mesh_format format, uint64_t n, uint64_t max_byte
     return NULL;
 }
 
-/* ---- heads that are text ---------------------------------------------------------------------------------------- */
+/* ---- text headers ----------------------------------------------------------------------------------------------- */
 
 struct text {
     char bytes[4096]; /* enough for all fields with every byte escaped */

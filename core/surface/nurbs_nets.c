@@ -308,7 +308,7 @@ static bool make_by_bins(const struct net_job *job, struct nurbs_nets *nets, str
     return true;
 }
 
-/* ---- either ----------------------------------------------------------------------------------------------------- */
+/* ---- nurbs_nets_make -------------------------------------------------------------------------------------------- */
 
 static bool work_init(struct net_job *job, const struct mask *mask, int bins, int n_threads, struct error *err)
 {

@@ -41,7 +41,7 @@ double nurbs_pieces_twice_area(const struct outline_set *set, uint32_t line, int
     return twice;
 }
 
-/* ---- which pixels are whose ------------------------------------------------------------------------------------- */
+/* ---- runs of pixels by line ------------------------------------------------------------------------------------- */
 
 static int compare_crossings(const void *a, const void *b)
 {
@@ -89,7 +89,7 @@ static bool runs_make(const struct outline_set *set, uint32_t slice, int axis, s
     return runs->at != NULL;
 }
 
-/* ---- what two slices share -------------------------------------------------------------------------------------- */
+/* ---- pixels shared by two slices -------------------------------------------------------------------------------- */
 
 static int compare_shared(const void *a, const void *b)
 {

@@ -115,7 +115,7 @@ static void write_part(void *context, int part, int n_parts)
             }
 }
 
-/* ---- the whole -------------------------------------------------------------------------------------------------- */
+/* ---- shape_nurbs ------------------------------------------------------------------------------------------------ */
 
 static bool make_mesh(struct nurbs_job *job, int order, int n_threads, struct error *err)
 {

@@ -19,7 +19,7 @@ enum { MAX_THREADS = 64, BLOCK = 1024 };
 
 struct block {
     double sum, max;
-    uint64_t n_asked;
+    uint64_t n_measured;
     bool is_finite;
 };
 
@@ -43,7 +43,7 @@ static double square(double x)
 /* Least squared distance to the faces of one voxel, or `least` if smaller; d is the position minus the voxel, in index
  * steps. */
 static double voxel_distance_2(const struct distance_job *job, const int64_t ijk[3], const double d[3], double least,
-                               uint64_t *n_asked)
+                               uint64_t *n_measured)
 {
     for (int axis = 0; axis < 3; axis++)
         for (int side = -1; side <= 1; side += 2) {
@@ -51,7 +51,7 @@ static double voxel_distance_2(const struct distance_job *job, const int64_t ijk
                 continue;
             double here = face_tree_face_distance_2(job->faces, d, axis, side);
             least = here < least ? here : least;
-            ++*n_asked;
+            ++*n_measured;
         }
     return least;
 }
@@ -77,7 +77,7 @@ static bool range_of(double x, double steps, uint32_t size, int64_t *first, int6
 }
 
 /* Squared distance within a radius. Exact if the result is at most the radius; INFINITY if no face was found. */
-static double search_2(const struct distance_job *job, const double x[3], double radius_mm, uint64_t *n_asked)
+static double search_2(const struct distance_job *job, const double x[3], double radius_mm, uint64_t *n_measured)
 {
     int64_t first[3], last[3];
     double least = INFINITY;
@@ -97,7 +97,7 @@ static double search_2(const struct distance_job *job, const double x[3], double
                 for (; bits; bits &= bits - 1) {
                     int64_t ijk[3] = { 64 * w + __builtin_ctzll(bits), j, k };
                     double d[3] = { x[0] - (double)ijk[0], x[1] - (double)j, x[2] - (double)k };
-                    least = voxel_distance_2(job, ijk, d, least, n_asked);
+                    least = voxel_distance_2(job, ijk, d, least, n_measured);
                 }
             }
         }
@@ -105,19 +105,19 @@ static double search_2(const struct distance_job *job, const double x[3], double
 }
 
 /* Searches ever larger boxes of voxels until one contains the nearest face, and the tree once boxes get large. */
-static double distance_mm(const struct distance_job *job, struct vec3 position, uint64_t *n_asked)
+static double distance_mm(const struct distance_job *job, struct vec3 position, uint64_t *n_measured)
 {
     struct vec3 at = affine_point(&job->ijk_from_lps_mm, position);
     double x[3] = { at.x, at.y, at.z }, least = INFINITY;
     for (double radius = job->start_mm; !isfinite(least) && n_rows_within(job, radius) <= MAX_ROWS; radius *= 2) {
-        least = sqrt(search_2(job, x, radius, n_asked));
+        least = sqrt(search_2(job, x, radius, n_measured));
         if (least <= radius)
             return least;
     }
     if (isfinite(least) &&
         n_rows_within(job, least) <= MAX_ROWS) /* a face this near was found: nothing beyond it matters */
-        return sqrt(search_2(job, x, least * (1 + 1e-9), n_asked));
-    return sqrt(face_tree_nearest_2(job->faces, x, least * least * (1 + 1e-9), n_asked));
+        return sqrt(search_2(job, x, least * (1 + 1e-9), n_measured));
+    return sqrt(face_tree_nearest_2(job->faces, x, least * least * (1 + 1e-9), n_measured));
 }
 
 static void measure_part(void *context, int part, int n_parts)
@@ -132,7 +132,7 @@ static void measure_part(void *context, int part, int n_parts)
             const float *p = job->positions_lps_mm + 3 * at;
             struct vec3 position = vec3((double)p[0], (double)p[1], (double)p[2]);
             block.is_finite = vec3_is_finite(position);
-            double d = block.is_finite ? distance_mm(job, position, &block.n_asked) : 0;
+            double d = block.is_finite ? distance_mm(job, position, &block.n_measured) : 0;
             block.sum += d;
             block.max = d > block.max ? d : block.max;
         }
@@ -154,16 +154,16 @@ static void prepare(struct distance_job *job)
 static bool join(const struct distance_job *job, struct shape_distance *distance, struct error *err)
 {
     double sum = 0, max = 0;
-    uint64_t n_asked = 0;
+    uint64_t n_measured = 0;
     for (size_t b = 0; b < job->n_blocks; b++) {
         if (!job->blocks[b].is_finite)
             return error_set(err, ERROR_RANGE, "the distance of a position that is not finite");
         sum += job->blocks[b].sum;
-        n_asked += job->blocks[b].n_asked;
+        n_measured += job->blocks[b].n_measured;
         max = job->blocks[b].max > max ? job->blocks[b].max : max;
     }
     *distance = (struct shape_distance){ job->n_positions > 0 ? sum / (double)job->n_positions : 0, max,
-                                         job->n_positions, n_asked };
+                                         job->n_positions, n_measured };
     return true;
 }
 

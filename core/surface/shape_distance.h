@@ -5,7 +5,7 @@
 struct shape_distance {
     double mean_mm, max_mm; /* over all positions; 0 and 0 without positions */
     size_t n_positions;
-    uint64_t n_asked; /* faces whose distance was computed: a measure of cost */
+    uint64_t n_measured; /* faces whose distance was computed: a measure of cost */
 };
 
 /* Distance of each position to the exact border of the mask: the faces between inside and outside voxels, with

@@ -273,7 +273,7 @@ static size_t plan_filters(const struct smooth_job *job, struct pass *passes)
     return (size_t)options->n_steps;
 }
 
-/* ---- back to the edges ------------------------------------------------------------------------------------------ */
+/* ---- from filters to shifts along the edges --------------------------------------------------------------------- */
 
 static float dot(float4 a, float4 b)
 {
@@ -424,7 +424,7 @@ static size_t plan_way_to_edges(const struct smooth_job *job, struct pass *passe
     return n;
 }
 
-/* ---- the whole -------------------------------------------------------------------------------------------------- */
+/* ---- smooth_with ------------------------------------------------------------------------------------------------ */
 
 static void write_positions(void *context, int part, int n_parts)
 {

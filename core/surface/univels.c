@@ -186,7 +186,7 @@ static void write_part(void *context, int part, int n_parts)
         }
 }
 
-/* ---- the whole -------------------------------------------------------------------------------------------------- */
+/* ---- shape_univels ---------------------------------------------------------------------------------------------- */
 
 static bool extract(struct univels_job *job, int n_threads, struct error *err)
 {

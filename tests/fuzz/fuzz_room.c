@@ -5,14 +5,14 @@
 #include "server/room/room.h"
 #include "tests/fuzz/fuzz.h"
 
-enum { N_PAGES = 2, MAX_ASKED = 4096 };
+enum { N_PAGES = 2, MAX_REQUESTS = 4096 };
 
 static struct page {
     uint32_t sent[ROOM_MAX_VIEWS + 1], shown[ROOM_MAX_VIEWS + 1];
     bool is_closed;
 } pages[N_PAGES];
-static uint64_t asked[MAX_ASKED];
-static size_t n_asked, n_answered;
+static uint64_t requests[MAX_REQUESTS];
+static size_t n_requests, n_answered;
 
 static void render(void *context, struct room *room, const struct room_render *request)
 {
@@ -20,18 +20,18 @@ static void render(void *context, struct room *room, const struct room_render *r
     (void)room;
     REQUIRE(request->view != NULL && request->scale_percent >= 10 && request->scale_percent <= 100);
     REQUIRE(!request->is_still || (request->scale_percent == 100 && request->full_color && !request->light));
-    if (n_asked < MAX_ASKED)
-        asked[n_asked++] = request->request;
+    if (n_requests < MAX_REQUESTS)
+        requests[n_requests++] = request->request;
 }
 
 static void forget(void *context, struct room *room, uint64_t request)
 {
-    bool was_asked = false;
+    bool was_requested = false;
     (void)context;
     (void)room;
-    for (size_t i = 0; i < n_asked; i++)
-        was_asked = was_asked || asked[i] == request;
-    REQUIRE(was_asked || n_asked == MAX_ASKED);
+    for (size_t i = 0; i < n_requests; i++)
+        was_requested = was_requested || requests[i] == request;
+    REQUIRE(was_requested || n_requests == MAX_REQUESTS);
 }
 
 static void scene_changed(void *context, struct room *room, const cJSON *scene, uint32_t revision)
@@ -71,9 +71,9 @@ static void close_connection(void *context, void *connection)
 
 static void answer(struct room *room, bool has_failed, int64_t now_us)
 {
-    if (n_answered == n_asked)
+    if (n_answered == n_requests)
         return;
-    uint64_t request = asked[n_answered++];
+    uint64_t request = requests[n_answered++];
     if (has_failed) {
         struct problem problem = { .type = PROBLEM_RENDERER };
         room_picture_failed(room, request, &problem, now_us);
@@ -150,7 +150,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     int64_t now_us = 1000000;
     log_start("fuzz", LOG_ERROR); /* failing pictures are normal here */
     memset(pages, 0, sizeof pages);
-    n_asked = n_answered = 0;
+    n_requests = n_answered = 0;
     plan_ready(room, now_us);
     for (size_t at = 0, end; at < n; at = end + 1) {
         for (end = at; end < n && data[end] != '\n'; end++) {

@@ -5,7 +5,7 @@
 
 enum { LIMIT = 300, MOST_EVENTS = 4096 };
 
-struct told { /* an event and a digest of its bytes */
+struct event_digest { /* an event and a digest of its bytes */
     enum ws_event_type type;
     size_t n;
     unsigned code, sum;
@@ -57,11 +57,11 @@ static void check(const struct ws_event *event)
     }
 }
 
-static size_t read_all(const uint8_t *data, size_t n, size_t n_piece, struct told told[MOST_EVENTS])
+static size_t read_all(const uint8_t *data, size_t n, size_t n_piece, struct event_digest events[MOST_EVENTS])
 {
     struct ws_parser parser;
     struct ws_event event;
-    size_t n_told = 0;
+    size_t n_events = 0;
     bool has_ended = false;
     ws_parser_init(&parser, LIMIT, true);
     for (size_t at = 0; at < n;) {
@@ -74,19 +74,19 @@ static size_t read_all(const uint8_t *data, size_t n, size_t n_piece, struct tol
             continue;
         REQUIRE(!has_ended);
         has_ended = event.type == WS_EVENT_CLOSE || event.type == WS_EVENT_BROKEN;
-        struct told one = { event.type, event.n, event.code, 0 };
+        struct event_digest one = { event.type, event.n, event.code, 0 };
         for (size_t i = 0; i < event.n; i++)
             one.sum = one.sum * 31 + event.bytes[i];
-        if (n_told < MOST_EVENTS)
-            told[n_told++] = one;
+        if (n_events < MOST_EVENTS)
+            events[n_events++] = one;
     }
     ws_parser_finish(&parser);
-    return n_told;
+    return n_events;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
 {
-    static struct told whole[MOST_EVENTS], parts[MOST_EVENTS];
+    static struct event_digest whole[MOST_EVENTS], parts[MOST_EVENTS];
     size_t n_whole = read_all(data, n, n, whole), n_parts = read_all(data, n, 1, parts);
     REQUIRE(n_whole == n_parts);
     for (size_t i = 0; i < n_whole; i++)

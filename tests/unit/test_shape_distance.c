@@ -145,7 +145,7 @@ static void thick_slices_cost_no_more_than_cubes(void **state)
     assert_true(mesh->n_vertices > 100000);
     assert_close(distance.max_mm, 37.5,
                  1e-3); /* a voxel's centre in an end slice, at least 37.5 mm from the disc's rim */
-    assert_true(distance.n_asked < 300 * distance.n_positions);
+    assert_true(distance.n_measured < 300 * distance.n_positions);
     mesh_unref(mesh);
     mask_destroy(mask);
 }
@@ -155,7 +155,7 @@ static void a_position_far_from_the_region_costs_little_too(void **state)
     (void)state;
     struct mask *mask = random_mask(200, 150, 100, 2, 3, &maps[2]);
     float far[3] = { 4000, -9000, 5000 };
-    assert_true(measure(mask, far, 1, 1).n_asked < 2000);
+    assert_true(measure(mask, far, 1, 1).n_measured < 2000);
     mask_destroy(mask);
 }
 

@@ -318,7 +318,7 @@ static struct volume *read_values(const struct reading *reading, const struct di
     return read_uneven(file, pixels, planes, &grid, step_mm, scaling, coded, err);
 }
 
-/* ---- the object ------------------------------------------------------------------------------------------------- */
+/* ---- one object ------------------------------------------------------------------------------------------------- */
 
 static void add_beams(struct rtdose *dose, const struct dicom_item *item)
 {

@@ -81,7 +81,7 @@ struct reading {
     struct dicom_doubts *doubts; /* doubts about the current beam */
 };
 
-/* ---- a beam ----------------------------------------------------------------------------------------------------- */
+/* ---- one beam --------------------------------------------------------------------------------------------------- */
 
 static bool left_out(const struct reading *reading, const struct beam *beam, const char *why)
 {
@@ -332,7 +332,7 @@ static bool read_beam(const struct reading *reading, const struct dicom_item *it
     return true;
 }
 
-/* ---- the plan --------------------------------------------------------------------------------------------------- */
+/* ---- the whole plan --------------------------------------------------------------------------------------------- */
 
 static bool read_beams(const struct reading *reading, struct error *err)
 {

@@ -448,7 +448,7 @@ static void mix_planes(enum voxel_type type, const void *low, const void *high, 
     }
 }
 
-static void interpolate(const struct series *series, const struct dicom_layout_of_slices *layout, struct volume *volume)
+static void interpolate(const struct series *series, const struct dicom_slice_layout *layout, struct volume *volume)
 {
     size_t bytes = series->plane_cells * voxel_size(series->type);
     for (uint32_t k = 0; k < layout->grid.size[2]; k++) {
@@ -473,7 +473,7 @@ static void measure(const struct series *series, struct volume *volume)
     volume->high = fmax(a, b);
 }
 
-static struct volume *read_volume(struct series *series, const struct dicom_layout_of_slices *layout, struct error *err)
+static struct volume *read_volume(struct series *series, const struct dicom_slice_layout *layout, struct error *err)
 {
     struct volume *volume = volume_create_unset(&layout->grid, series->type, err);
     if (!volume)
@@ -509,7 +509,7 @@ struct volume *dicom_series_read(const struct folder *folder, const struct dicom
         .folder = folder, .index = index, .stack = &index->stacks[stack], .progress = progress ? progress : &quiet
     };
     pthread_mutex_init(&series.lock, NULL);
-    struct dicom_layout_of_slices layout = { 0 };
+    struct dicom_slice_layout layout = { 0 };
     struct volume *volume = NULL;
     series.plane_cells = (size_t)series.stack->rows * series.stack->columns;
     if (find_slices(&series, facts, report, err) &&

@@ -73,8 +73,8 @@ static double worst_shift_mm(const struct dicom_slice *slices, size_t n, struct 
 }
 
 /* Sets each plane from the slices around it. Counts planes without a slice, and slices between planes. */
-static void interpolate(const struct dicom_slice *slices, size_t n, double pitch_mm,
-                        struct dicom_layout_of_slices *layout, size_t *n_made, size_t *n_between)
+static void interpolate(const struct dicom_slice *slices, size_t n, double pitch_mm, struct dicom_slice_layout *layout,
+                        size_t *n_made, size_t *n_between)
 {
     uint32_t n_planes = layout->grid.size[2];
     size_t below = 0;
@@ -104,7 +104,7 @@ static void interpolate(const struct dicom_slice *slices, size_t n, double pitch
 }
 
 /* Lists where slices are missing, for the report: "at 12.0, 14.0, ... mm". */
-static void list_gaps(const struct dicom_layout_of_slices *layout, const struct dicom_slice *slices, double pitch_mm,
+static void list_gaps(const struct dicom_slice_layout *layout, const struct dicom_slice *slices, double pitch_mm,
                       char *out, size_t size)
 {
     size_t n = 0, at = 0;
@@ -121,7 +121,7 @@ static void list_gaps(const struct dicom_layout_of_slices *layout, const struct 
 
 /* Lays out slices that are uneven, or some missing: even planes at the smallest usual distance. */
 static bool lay_out_uneven(const struct dicom_slice *slices, size_t n, const char *where, double *pitch_mm,
-                           struct dicom_layout_of_slices *layout, struct report *report, struct error *err)
+                           struct dicom_slice_layout *layout, struct report *report, struct error *err)
 {
     double least = 0, most = 0, usual = usual_distance(slices, n, &least, &most, err);
     if (usual <= 0)
@@ -176,8 +176,8 @@ static void report_stacking(const struct dicom_slice *slices, size_t n, const st
 }
 
 static bool lay_out_many(const struct dicom_slice *slices, size_t n, const struct dicom_plane *plane,
-                         struct vec3 normal, const char *where, struct vec3 *step,
-                         struct dicom_layout_of_slices *layout, struct report *report, struct error *err)
+                         struct vec3 normal, const char *where, struct vec3 *step, struct dicom_slice_layout *layout,
+                         struct report *report, struct error *err)
 {
     double extent = slices[n - 1].along_mm - slices[0].along_mm;
     struct vec3 per_mm = vec3_scale(vec3_sub(slices[n - 1].position_lps_mm, slices[0].position_lps_mm), 1 / extent);
@@ -200,10 +200,10 @@ static bool lay_out_many(const struct dicom_slice *slices, size_t n, const struc
 }
 
 bool dicom_slices_lay_out(const struct dicom_slice *slices, size_t n, const struct dicom_plane *plane,
-                          const char *where, struct dicom_layout_of_slices *layout, struct report *report,
+                          const char *where, struct dicom_slice_layout *layout, struct report *report,
                           struct error *err)
 {
-    *layout = (struct dicom_layout_of_slices){ .grid.size = { plane->columns, plane->rows, 1 }, .is_exact = true };
+    *layout = (struct dicom_slice_layout){ .grid.size = { plane->columns, plane->rows, 1 }, .is_exact = true };
     struct vec3 axes[3], step;
     double off;
     if (!dicom_axes(plane->row, plane->column, axes, &off))

@@ -29,7 +29,7 @@ struct dicom_plane_source {
     uint32_t a, b; /* slice numbers; b == a for a plane that is a slice */
     double weight; /* weight of b, 0 to 1 */
 };
-struct dicom_layout_of_slices {
+struct dicom_slice_layout {
     struct grid grid;
     struct dicom_plane_source *planes; /* grid.size[2] planes; the caller frees it */
     bool is_exact;                     /* plane k is slice k */
@@ -42,7 +42,7 @@ struct dicom_layout_of_slices {
  *   errors  ERROR_FORMAT directions that span no plane; ERROR_UNSUPPORTED slices that are not on a straight line;
  *           ERROR_LIMIT; ERROR_RANGE; ERROR_MEMORY */
 NODISCARD bool dicom_slices_lay_out(const struct dicom_slice *slices, size_t n, const struct dicom_plane *plane,
-                                    const char *where, struct dicom_layout_of_slices *layout, struct report *report,
+                                    const char *where, struct dicom_slice_layout *layout, struct report *report,
                                     struct error *err);
 
 /* Geometry of one frame of a multi-frame file, from its own and the shared functional groups. */
