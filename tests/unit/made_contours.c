@@ -1,3 +1,4 @@
+/* Builds contour sets for tests, and decides by ray casting whether a point is enclosed. */
 #include "tests/unit/made_contours.h"
 
 #include "tests/check.h"

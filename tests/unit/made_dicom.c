@@ -1,3 +1,4 @@
+/* Writes DICOM files byte by byte. */
 #include "tests/unit/made_dicom.h"
 
 #include "tests/check.h"

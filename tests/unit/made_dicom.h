@@ -1,6 +1,6 @@
 #pragma once
-/* Small DICOM files, made byte by byte (PS3.5, PS3.10): for what no real file shows, and so that a test can say where
- * it lies. */
+/* Small DICOM files, written byte by byte (PS3.5, PS3.10): for cases that no real file has, and so that a test can use
+ * wrong values. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -17,20 +17,20 @@ struct made_dicom {
     bool is_implicit, is_big_endian;
 };
 
-/* Preamble and file header; transfer_syntax NULL: none at all, the data set stands alone (explicit). */
+/* Writes preamble and file header. transfer_syntax NULL: neither, the file is a bare data set (explicit). */
 void made_begin(struct made_dicom *made, const char *transfer_syntax);
 void made_finish(struct made_dicom *made); /* frees */
 void made_raw(struct made_dicom *made, const void *bytes, size_t n);
-/* The file, read whole; fails the test when it is refused. */
+/* Parses the file with DICOM_WHOLE; fails the test if it is refused. */
 struct dicom_file *made_parse(const struct made_dicom *made);
-/* Elements; values of text kinds are padded to an even length. */
+/* Write elements; text values are padded to an even length. */
 void made_element(struct made_dicom *made, uint32_t tag, const char *vr, const void *value, size_t n);
 void made_text(struct made_dicom *made, uint32_t tag, const char *vr, const char *text);
 void made_u16(struct made_dicom *made, uint32_t tag, uint16_t value);
 void made_u32(struct made_dicom *made, uint32_t tag, const char *vr, uint32_t value);
-/* The head of an element alone: its value follows by made_raw. */
+/* Writes tag, VR and length of an element; made_raw adds the value. */
 void made_head(struct made_dicom *made, uint32_t tag, const char *vr, uint32_t length);
-/* A sequence and its items, without lengths. */
+/* Begins and ends a sequence and its items, of undefined length. */
 void made_sequence(struct made_dicom *made, uint32_t tag);
 void made_sequence_end(struct made_dicom *made);
 void made_item(struct made_dicom *made);

@@ -1,3 +1,4 @@
+/* Writes the smallest RT Dose. */
 #include "tests/unit/made_dose.h"
 
 #include <stdio.h>

@@ -2,6 +2,6 @@
 /* The smallest RT Dose, for tests that need many of them. */
 #include "tests/unit/made_dicom.h"
 
-/* 2 x 2 x 1 voxels of 2 mm at the patient's origin, 0.5 to 2 Gy. Each number is another object of another treatment
- * plan, so no two of them are put together. The caller calls made_finish. */
+/* 2 x 2 x 1 voxels of 2 mm at the patient's origin, 0.5 to 2 Gy. Each number gives another object that refers to
+ * another treatment plan, so that no two of them become components of one dose. The caller calls made_finish. */
 void made_dose(struct made_dicom *made, int number);

@@ -1,3 +1,4 @@
+/* Encodes test images with OpenJPEG. */
 #include "tests/unit/made_j2k.h"
 
 #include <openjpeg-2.5/openjpeg.h>

@@ -1,5 +1,5 @@
 #pragma once
-/* JPEG 2000 codestreams of made-up values, by OpenJPEG's encoder. */
+/* JPEG 2000 codestreams of made-up values, encoded by OpenJPEG. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -7,7 +7,7 @@
 struct made_j2k {
     uint32_t columns, rows, bits;
     bool is_signed, is_lossy, is_boxed;
-    uint32_t tile; /* side; 0: one tile */
+    uint32_t tile; /* side of a tile; 0: one tile */
 };
-/* value(x, y) of each pixel. The bytes are the caller's: free. */
+/* Encodes value(x, y) for each pixel. The caller frees the bytes. */
 uint8_t *made_j2k_bytes(const struct made_j2k *like, int32_t (*value)(uint32_t x, uint32_t y), size_t *size);

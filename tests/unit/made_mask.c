@@ -1,3 +1,4 @@
+/* Masks for tests, and the Euler number of their surface by counting. */
 #include "tests/unit/made_mask.h"
 
 #include "core/base/mem.h"
@@ -86,7 +87,7 @@ void assert_same_bytes(const struct mesh *a, const struct mesh *b)
     assert_memory_equal(a->indices, b->indices, 3 * a->n_triangles * sizeof(uint32_t));
 }
 
-/* Groups of inside corners of a cell that hang together along its edges. */
+/* Number of groups of inside corners of a cell that are connected along its edges. */
 static int groups_of_corners(const bool inside[8])
 {
     int group[8], n = 0;
@@ -102,10 +103,10 @@ static int groups_of_corners(const bool inside[8])
     return n;
 }
 
-/* Euler number of the solid that the surface bounds, put together from its pieces in the cells: a cell holds as many
- * pieces as its inside corners form groups; where cells meet, the pieces on the faces were counted twice and are taken
- * off again, and so on down to grid edges (a piece each if an end is inside) and points. All pieces are contractible,
- * so each counts 1. A closed surface has twice the number of its solid. */
+/* Euler number of the solid that the surface bounds, summed over cells: a cell holds one piece per group of its inside
+ * corners; pieces on the faces between cells were counted twice and are subtracted, then those on grid edges (one piece
+ * if an end is inside) are added, and those at points subtracted. All pieces are contractible, so each counts 1. The
+ * Euler number of a closed surface is twice that of its solid. */
 long euler_of_surface(const struct mask *mask)
 {
     long euler = 0;

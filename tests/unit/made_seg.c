@@ -1,3 +1,4 @@
+/* Writes DICOM segmentations. */
 #include "tests/unit/made_seg.h"
 
 #include "tests/check.h"
@@ -76,7 +77,7 @@ static void put_pixels(struct made_dicom *made, const struct made_seg *seg)
         for (int y = 0; y < MADE_SEG_ROWS; y++)
             for (int x = 0; x < MADE_SEG_COLUMNS; x++, at++) {
                 bool is_set = made_seg_is_set(seg->frames[f].segment, seg->frames[f].z_mm, x, y);
-                cells[at] = is_set ? 100 + (uint8_t)x : 99 - (uint8_t)x; /* of 200: half is 100 */
+                cells[at] = is_set ? 100 + (uint8_t)x : 99 - (uint8_t)x; /* largest value 200: half is 100 */
                 bits[at / 8] |= (uint8_t)(is_set << at % 8);
             }
     for (size_t i = 0; seg->is_big_endian && i < (n + 7) / 8; i += 2) {
@@ -124,7 +125,7 @@ void made_seg_bytes(struct made_dicom *made, const struct made_seg *seg)
         made_item(made);
         made_u16(made, TAG(0x0062, 0x0004), (uint16_t)s);
         made_text(made, TAG(0x0062, 0x0005), "LO", label);
-        if (s == 1) { /* sRGB's red, by Lindblom's tables for white D50: L 54.29, a 80.81, b 69.89 */
+        if (s == 1) { /* sRGB red in CIELab for white D50, from Lindbloom's tables: L 54.29, a 80.81, b 69.89 */
             made_head(made, TAG(0x0062, 0x000D), "US", 6);
             made_words(made, (uint16_t[]){ 35579, 53665, 50858 }, 3);
         }

@@ -1,3 +1,4 @@
+/* Writes folders of slices and scans them. */
 #include "tests/unit/made_series.h"
 
 #include "tests/check.h"
@@ -108,7 +109,7 @@ void scanned_open(struct scanned *scanned)
 
 void scanned_finish(struct scanned *scanned)
 {
-    for (size_t i = 0; i < scanned->report.n_lines; i++) { /* a name of a person goes nowhere */
+    for (size_t i = 0; i < scanned->report.n_lines; i++) { /* the report never contains a person's name */
         assert_null(strstr(scanned->report.lines[i].sentence, "SECRET"));
         assert_null(strstr(scanned->report.lines[i].where, "SECRET"));
     }

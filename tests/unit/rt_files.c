@@ -1,3 +1,4 @@
+/* Unpacks, finds and parses DICOM-RT files. */
 #include "tests/unit/rt_files.h"
 
 #include <stdio.h>
@@ -84,7 +85,7 @@ bool rt_find(const char *folder, const char *beginning, size_t which, char *path
 void made_rt_begin(struct made_dicom *made, const char *sop_class, const char *modality, const char *charset)
 {
     *made = (struct made_dicom){ 0 };
-    made_begin(made, MADE_IMPLICIT); /* values may be longer than 64 KiB */
+    made_begin(made, MADE_IMPLICIT); /* implicit, because values may be longer than 64 KiB */
     if (charset)
         made_text(made, DICOM_TAG(0x0008, 0x0005), "CS", charset);
     made_text(made, DICOM_TAG(0x0008, 0x0016), "UI", sop_class);

@@ -1,3 +1,4 @@
+/* Reads SERA's sample head from the test data. */
 #include "tests/unit/sera_head.h"
 
 #include <zlib.h>

@@ -3,10 +3,10 @@
 #include "core/region/mask.h"
 #include "core/region/region.h"
 
-/* NULL, with a word on standard output, when the data is not here. */
+/* NULL, with a message on standard output, if the data is missing. */
 struct volume *sera_head_read(void);
-/* Regions 0 scalp, 1 brain, 2 tumor, one inside the other, as its body_containment.info says; takes layer. */
+/* Regions 0 scalp, 1 brain, 2 tumor, nested as in its body_containment.info; takes layer. */
 struct region_set *sera_head_regions(struct volume *layer);
-/* A region's own univels, or with those of what lies inside it; fails the test when it cannot be made. */
+/* A region's own univels, or also those of the regions inside it; fails the test if it fails. */
 struct mask *sera_head_mask(const struct region_set *set, size_t region, bool is_own);
 void sera_head_destroy(struct region_set *set);

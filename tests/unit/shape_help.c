@@ -1,3 +1,4 @@
+/* Grids, a ball and voxel tests for shapes. */
 #include "tests/unit/shape_help.h"
 
 #include <stdlib.h>

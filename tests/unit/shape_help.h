@@ -1,9 +1,9 @@
 #pragma once
-/* Grids, a ball and small questions for tests of shapes. */
+/* Grids, a ball and voxel tests for tests of shapes. */
 #include "core/surface/shape_parts.h"
 #include "tests/unit/made_mask.h"
 
-/* Grids as scanners make them: unit; slices far apart; left-handed; turned and tilted, with index axis 0 nearest S. */
+/* Grids as from scanners: unit; thick slices; left-handed; rotated and tilted, with index axis 0 nearest S. */
 enum { N_MAPS = 4 };
 extern const struct affine maps[N_MAPS];
 

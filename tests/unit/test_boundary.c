@@ -1,4 +1,4 @@
-/* The border of a mask, against a look at every voxel's six neighbours. */
+/* The border of a mask, compared with a test of every voxel's six neighbours. */
 #include <string.h>
 
 #include "core/region/boundary.h"
@@ -64,8 +64,8 @@ static void threads_do_not_matter(void **state)
     mask_destroy(mask);
 }
 
-/* A block of 6 x 6 x 6 around one of 4 x 4 x 4: the outer border is the shell of the large one, with the hierarchy;
- * alone the large one is nothing but a shell, and all of it is border. */
+/* A block of 6 x 6 x 6 around one of 4 x 4 x 4. With the hierarchy, the border is the shell of the outer block. Alone,
+ * the outer block is a shell, and all of it is border. */
 static void with_the_hierarchy_a_region_has_no_border_along_what_is_inside_it(void **state)
 {
     (void)state;
@@ -97,7 +97,7 @@ static void with_the_hierarchy_a_region_has_no_border_along_what_is_inside_it(vo
     volume_unref(set.layers[0]);
 }
 
-/* By the original's own six-neighbour test, with its hierarchy and without; and where the scan cuts the head counted or
+/* Sera3d's own six-neighbour counts, with and without its hierarchy, and with the cut of the scan counted as border or
  * not. */
 static void counts_equal_the_original_sera3d_on_its_own_head(void **state)
 {

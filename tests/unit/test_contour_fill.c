@@ -1,4 +1,4 @@
-/* Contours become voxels: against hand counts, formulas, and a slow test of every voxel. */
+/* Filling contours: against hand counts, formulas, and a slow test of every voxel. */
 
 #include "tests/check.h"
 #include "tests/unit/made_contours.h"
@@ -64,7 +64,8 @@ static void a_keyhole_is_a_hole(void **state)
     (void)state;
     struct grid grid = grid_make(60, 60, 1, 0.7, 0.7, 1, vec3(0, 0, 0));
     struct contour_set keyhole = { 0 }, pair = { 0 };
-    /* outer, down a channel of no width that is neither along a row nor a column, around the hole, and back up */
+    /* outer edge, then along a zero-width channel that is parallel to neither rows nor columns, around the hole, and
+     * back */
     const double xy[] = { 3, 3, 35, 4, 33, 36, 4, 34, 3, 3, 12.3, 13.1, 14, 24, 23, 22, 24, 12, 12.3, 13.1 };
     contours_add(&keyhole, xy, 10, 0);
     contours_add(&pair, xy, 4, 0);
@@ -89,8 +90,8 @@ static void a_circle_has_its_area(void **state)
     struct mask *mask = contours_fill(&set, &grid, &facts);
     double expected_cm3 = circle_mm2(20, 90) * 33 / 1000;
     assert_near(facts.polygon_cm3, expected_cm3, 1e-9);
-    assert_near(facts.filled_cm3, expected_cm3,
-                2e-3); /* 80 voxels across: a rim of 250 voxels, half a voxel each way at random */
+    /* 80 voxels across: a border of 250 voxels, each wrong by half a voxel at random */
+    assert_near(facts.filled_cm3, expected_cm3, 2e-3);
     assert_int_equal(facts.n_planes, 11);
     assert_close(facts.spacing_mm, 3, 1e-9);
     mask_destroy(mask);
@@ -129,8 +130,8 @@ static void a_figure_of_eight_fills_both_loops(void **state)
     (void)state;
     struct grid grid = grid_make(40, 20, 1, 1, 1, 1, vec3(0.5, 0.25, 0));
     struct contour_set set = { 0 };
-    contours_add(&set, (double[]){ 0, 0, 40, 20, 40, 0, 0, 20 }, 4,
-                 0); /* crosses itself in the middle; its two halves turn opposite ways */
+    /* crosses itself in the middle: its two halves turn opposite ways */
+    contours_add(&set, (double[]){ 0, 0, 40, 20, 40, 0, 0, 20 }, 4, 0);
     struct contour_facts facts;
     struct mask *mask = contours_fill(&set, &grid, &facts);
     assert_int_equal(facts.n_degenerate, 0);
@@ -145,10 +146,10 @@ static void a_figure_of_eight_fills_both_loops(void **state)
 static void planes_stand_for_slabs_whatever_the_slices(void **state)
 {
     (void)state;
-    /* planes every 5 mm from 0 to 20 stand for -2.5 .. 22.5; slices every 2 mm */
+    /* planes every 5 mm from 0 to 20 stand for -2.5..22.5; slices every 2 mm */
     struct grid grid = grid_make(20, 20, 30, 1, 1, 2, vec3(0, 0, -20));
     struct contour_set set = { 0 };
-    for (int i = 4; i >= 0; i--) /* in any order */
+    for (int i = 4; i >= 0; i--) /* in any sequence */
         contours_add_box(&set, 4.5, 4.5, 9.5 + i, 9.5, 5 * i);
     struct mask *mask = contours_fill(&set, &grid, NULL);
     for (uint32_t k = 0; k < 30; k++) {
@@ -187,7 +188,7 @@ static void two_lonely_planes_are_not_joined(void **state)
     contours_add_box(&set, 1.5, 1.5, 6.5, 6.5, 5);
     contours_add_box(&set, 1.5, 1.5, 6.5, 6.5, 30);
     struct contour_options options = contour_defaults;
-    options.spacing_mm = 3; /* what the other regions of the set have */
+    options.spacing_mm = 3; /* the spacing of the other regions of the set */
     struct contour_facts facts;
     struct error err = { 0 };
     struct mask *mask = contour_fill(&set, &grid, &options, &facts, &err);
@@ -211,7 +212,7 @@ static void slices_half_way_between_planes_are_filled_once(void **state)
     contour_set_finish(&set);
 }
 
-/* A tilted ring with a hole and an island beside it, on eight planes, as it lies in its own axes. */
+/* A tilted ring with a hole and an island beside it, on eight planes, in its own axes. */
 static struct contour_set made_ring(void)
 {
     struct contour_set set = { 0 };
@@ -314,7 +315,7 @@ static void what_cannot_be_filled_is_counted_and_left_out(void **state)
     struct grid grid = grid_make(40, 40, 10, 1, 1, 1, vec3(0, 0, 0));
     struct contour_set set = { 0 };
     contours_add_box(&set, 4.5, 4.5, 24.5, 24.5, 5);
-    contours_add_box(&set, 4.5, 4.5, 24.5, 24.5, 5); /* once more: still no hole */
+    contours_add_box(&set, 4.5, 4.5, 24.5, 24.5, 5); /* repeated: still no hole */
     contours_add(&set, (double[]){ 1, 1, 2, 2 }, 2, 5);
     contours_add(&set, (double[]){ 0 }, 0, 5);
     contours_add(&set, (double[]){ 1, 1, 2, 2, 3, 3, 9, 9 }, 4, 5);
@@ -368,7 +369,7 @@ static void what_lies_beyond_the_grid_is_cut_and_counted(void **state)
     contour_set_finish(&set);
 }
 
-/* n teeth between the left and the right, or between bottom and top. */
+/* A comb of n teeth from left to right, or from bottom to top. */
 static struct contour_set made_comb(size_t n, bool is_upright, double height)
 {
     double *xy = malloc(2 * n * sizeof *xy);
@@ -395,7 +396,7 @@ static void a_million_points_are_filled_or_refused_in_time(void **state)
         double start_s = cpu_s();
         struct mask *mask = contour_fill(&set, &grid, &contour_defaults, &facts, &err);
         assert_true(mask || err.code == ERROR_LIMIT);
-        assert_true(cpu_s() - start_s < 20); /* under sanitizers too; a second else */
+        assert_true(cpu_s() - start_s < 20); /* with sanitizers; without, it takes a second */
         mask_destroy(mask);
         contour_set_finish(&set);
     }

@@ -1,12 +1,12 @@
-/* Grids chosen so that regions keep their volume, and masks laid into shared layers. */
+/* Choosing grids on which regions keep their volume, and sharing label layers. */
 #include "core/region/contour_layer.h"
 #include "tests/check.h"
 #include "tests/unit/made_contours.h"
 #include "tests/unit/made_mask.h"
 
-static struct contour_options options; /* of the latest choose */
+static struct contour_options options; /* of the last call of choose */
 
-/* Volume by formula: the area on each plane times the spacing. */
+/* Compares with the volume by formula: the area on each plane times the spacing. */
 static void assert_holds(const struct contour_set *set, const struct contour_choice *choice, double cm3,
                          double accuracy)
 {
@@ -66,7 +66,7 @@ static void a_region_over_1_cm3_is_within_1_percent_whatever_the_image(void **st
                                               vec3(-43, -43.3, -70.4));
                 struct contour_set set = { 0 };
                 double cm3 = 0;
-                int n_planes = (int)(radius / spacing); /* a ball, and never less than two planes */
+                int n_planes = (int)(radius / spacing); /* a ball, at least two planes */
                 for (int i = -n_planes; i <= n_planes; i++) {
                     double z = spacing * i, across = sqrt(radius * radius - z * z * 0.98);
                     contours_add_circle(&set, 1.3, -2.2, across, 40, z);
@@ -117,7 +117,7 @@ static void voxels_of_a_finer_grid_divide_those_of_the_image(void **state)
     choose(&set, 1, &image, &choice);
     assert_int_equal(choice.group, 1);
     assert_true(choice.subdivision[2] > 1);
-    /* the outer corner of the fine grid is a corner of the image's voxels, and so is the opposite one */
+    /* the outer corners of the fine grid are corners of image voxels */
     const uint32_t *size = choice.grid.size;
     for (int corner = 0; corner < 2; corner++) {
         struct vec3 at = corner ? vec3(size[0] - 0.5, size[1] - 0.5, size[2] - 0.5) : vec3(-0.5, -0.5, -0.5);
@@ -140,7 +140,8 @@ static void regions_that_need_the_same_share_a_grid(void **state)
     (void)state;
     struct grid image = grid_make(200, 200, 50, 1, 1, 5, vec3(-100, -100, -125));
     struct contour_set sets[4] = { 0 };
-    for (int i = 0; i < 2; i++) /* 10 mm at 2.5 where the image has 5: two slices in the middle, or one or three */
+    /* 10 mm long with planes every 2.5 mm; slices every 5 mm: two in the middle, or one or three */
+    for (int i = 0; i < 2; i++)
         for (int k = 0; k < 3; k++)
             contours_add_box(&sets[i], -60.5 + 70 * i, -20.5, -30.5 + 70 * i, 9.5, 2.5 * k + 1);
     for (int k = 0; k < 20; k++)
@@ -180,7 +181,7 @@ static void contours_that_leave_the_image_keep_their_volume(void **state)
     for (int i = 0; i < 3; i++) {
         assert_true(choices[i].is_beyond);
         assert_true(choices[i].group > 0);
-        /* voxels of the image and of the grid are the same ones where both are */
+        /* voxels of the image and of the grid coincide where both exist */
         struct vec3 spacing = grid_spacing_mm(&choices[i].grid), origin = choices[i].grid.lps_mm_from_ijk.origin;
         assert_close(spacing.x, 1, 1e-9);
         assert_close(spacing.z, 3, 1e-9);
@@ -251,7 +252,7 @@ static void few_voxels_for_many_planes_are_enough_to_end(void **state)
     struct contour_choice choice;
     struct error err = { 0 };
     options = contour_defaults;
-    options.most_voxels = 20000; /* 13 for each plane */
+    options.most_voxels = 20000; /* 13 per plane */
     assert_true(contour_choose_grids(&set, 1, &image, &options, &choice, &err));
     assert_true(choice.is_beyond);
     assert_in_range(grid_n_voxels(&choice.grid), 1, 20000);
@@ -329,7 +330,7 @@ static void a_region_too_intricate_does_not_keep_the_others_out(void **state)
     contour_set_finish(&sets[1]);
 }
 
-/* Ten slices lie in the slabs: on the image 640 rows meet the edges of a plane, on its continuation 19000. */
+/* Ten slices are in the slabs: on the image 640 rows cross the edges of a plane, on its continuation 19000. */
 static void a_region_too_intricate_beyond_the_image_is_cut_to_it(void **state)
 {
     (void)state;
@@ -385,7 +386,7 @@ static void masks_share_a_layer_as_long_as_they_share_no_voxel(void **state)
     (void)state;
     struct grid grid = grid_make(130, 7, 3, 1, 1, 1, vec3(5, 6, 7));
     struct contour_set a = { 0 }, b = { 0 }, c = { 0 };
-    contours_add_box(&a, 7, 7, 134.6, 9.6, 8);   /* i 2..129, j 1..3: over both borders of words */
+    contours_add_box(&a, 7, 7, 134.6, 9.6, 8);   /* i 2..129, j 1..3: crosses two word borders */
     contours_add_box(&b, 5.5, 9.6, 70.5, 12, 8); /* below it */
     contours_add_box(&c, 69.5, 8.5, 70.5, 10.5, 8);
     struct mask *masks[] = { contours_fill(&a, &grid, NULL), contours_fill(&b, &grid, NULL),

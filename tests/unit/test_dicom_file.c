@@ -1,4 +1,4 @@
-/* The door to DICOM: elements, texts, numbers, sequences, and what is refused. Expected values: the bytes written here
+/* Parsing DICOM: elements, texts, numbers, sequences, and what is refused. Expected values: the bytes written here
  * (PS3.5). */
 #include "core/formats/dicom/dicom_file.h"
 
@@ -74,7 +74,7 @@ static void numbers_are_read_as_people_write_them_and_the_rest_is_not_a_number(v
     assert_close(v[2], 0, 0);
     assert_close(v[3], 1000, 0);
     assert_close(v[9], 12.25, 0);
-    /* what the compiler reads from the same digits: rounded once, as a decimal number should be */
+    /* as the compiler reads the same digits: decimal numbers are rounded once */
     assert_close(v[16], -.5, 0);
     assert_close(v[19], 0.1, 0);
     assert_close(v[20], 123456789012345.0, 0);
@@ -83,7 +83,7 @@ static void numbers_are_read_as_people_write_them_and_the_rest_is_not_a_number(v
     static const int bad[] = { 4, 5, 6, 7, 8, 10, 11, 12, 13, 14, 15, 17, 18 };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         assert_true(isnan(v[bad[i]]));
-    /* the count is of all, whatever is filled; one number may be asked for alone */
+    /* returns the number of all values, however many are stored; also when none are */
     assert_int_equal(dicom_numbers(dicom_root(file), DICOM_TAG(0x0020, 0x0032), v, 2), 23);
     assert_int_equal(dicom_numbers(dicom_root(file), DICOM_TAG(0x0020, 0x0032), NULL, 0), 23);
     dicom_file_destroy(file);
@@ -99,7 +99,7 @@ static void a_contour_of_100000_numbers_is_read_whole(void **state)
     for (int i = 0; i < N; i++)
         n += (size_t)snprintf(text + n, 13, "%s%.2f", i ? "\\" : "", i * 0.01 - 500);
     struct made_dicom made;
-    made_begin(&made, MADE_IMPLICIT); /* explicit cannot say the length of so long a DS */
+    made_begin(&made, MADE_IMPLICIT); /* implicit: an explicit DS cannot have such a length */
     made_text(&made, DICOM_TAG(0x3006, 0x0050), "DS", text);
     struct dicom_file *file = made_parse(&made);
     double *values = malloc(N * sizeof *values);
@@ -130,8 +130,8 @@ static void texts_come_out_as_utf8_whatever_the_character_set(void **state)
         { "\\ISO 2022 IR 87", "\x1B$B;3ED\x1B(B", "\xE5\xB1\xB1\xE7\x94\xB0" },
         { "\\ISO 2022 IR 149", "\x1B$)C\xB1\xE8\xC8\xF1", "\xEA\xB9\x80\xED\x9D\xAC" },
         { "GB18030", "\xCD\xF5", "\xE7\x8E\x8B" },
-        { "", "T\xC3\xBCr", "T\xC3\xBCr" }, /* says nothing, is UTF-8 */
-        { "", "T\xFCr", "T\xC3\xBCr" },     /* says nothing, is not */
+        { "", "T\xC3\xBCr", "T\xC3\xBCr" }, /* no character set, valid UTF-8 */
+        { "", "T\xFCr", "T\xC3\xBCr" },     /* no character set, not UTF-8 */
         { "NO SUCH SET", "T\xFCr", "T\xC3\xBCr" },
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -161,8 +161,8 @@ static void a_text_is_cut_at_a_whole_character_and_has_no_control_characters(voi
     char text[64], small[8];
     assert_true(dicom_text(dicom_root(file), DICOM_TAG(0x0008, 0x103E), text, sizeof text));
     assert_string_equal(text, "ab c\xC3\xA4\xC3\xA4");
-    assert_true(dicom_text(dicom_root(file), DICOM_TAG(0x0008, 0x103E), small,
-                           8)); /* room for 7 bytes: the second letter has 2 */
+    /* room for 7 bytes: the second letter needs 2 */
+    assert_true(dicom_text(dicom_root(file), DICOM_TAG(0x0008, 0x103E), small, 8));
     assert_string_equal(small, "ab c\xC3\xA4");
     assert_true(dicom_text_at(dicom_root(file), DICOM_TAG(0x0008, 0x0008), 1, text, sizeof text));
     assert_string_equal(text, "PRIMARY");
@@ -236,8 +236,8 @@ static void sequences_may_be_nested_16_deep_and_no_deeper(void **state)
     }
 }
 
-/* With their lengths given and as implicit or unknown (UN) bytes, the library below still enters them: they count as
- * well. */
+/* DCMTK also enters sequences with defined lengths, and those in implicit or unknown (UN) values: their depth
+ * counts. */
 static void nesting_in_bytes_of_a_known_length_counts(void **state)
 {
     (void)state;
@@ -263,7 +263,8 @@ static void nesting_in_bytes_of_a_known_length_counts(void **state)
     }
 }
 
-/* The library sorts each into place from the end of its list: ten thousand backwards are a hundred million steps. */
+/* DCMTK searches the place of each element from the end of its list: ten thousand in reverse are a hundred million
+ * steps. */
 static void a_few_elements_may_be_out_of_order_and_not_many(void **state)
 {
     (void)state;
@@ -342,7 +343,7 @@ static void every_beginning_of_a_file_is_read_or_refused_with_a_sentence(void **
         made_text(&made, DICOM_TAG(0x0008, 0x103E), "LO", "a longer text");
         size_t n_whole = 0;
         for (size_t n = 0; n < made.size; n++) {
-            uint8_t *copy = malloc(n + 1); /* its own block, so that a sanitizer sees a step beyond */
+            uint8_t *copy = malloc(n + 1); /* allocated exactly, so that a sanitizer detects a read beyond the end */
             memcpy(copy, made.data, n);
             struct error err = { 0 };
             struct dicom_file *file = dicom_file_parse(copy, n, "cut.dcm", DICOM_WHOLE, &err);
@@ -358,16 +359,16 @@ static void every_beginning_of_a_file_is_read_or_refused_with_a_sentence(void **
             dicom_file_destroy(file);
             free(copy);
         }
-        assert_int_equal(n_whole, 2); /* cut behind the first and behind the second element: nothing shows it */
+        assert_int_equal(n_whole, 2); /* a cut after the first or the second element cannot be detected */
         made_finish(&made);
     }
 }
 
-/* In a process that has given up its files: what the library needs of its own is found, before or after. */
+/* In a process without access to files: DCMTK finds the files it needs, loaded before or not. */
 static int read_confined(bool is_prepared)
 {
     struct made_dicom made;
-    made_begin(&made, MADE_IMPLICIT); /* kinds of values come from the dictionary */
+    made_begin(&made, MADE_IMPLICIT); /* implicit: VRs come from the dictionary */
     made_text(&made, DICOM_TAG(0x0008, 0x0005), "CS", "ISO_IR 100");
     made_text(&made, DICOM_TAG(0x0008, 0x103E), "LO", "r\xE9siduelle");
     made_u16(&made, DICOM_TAG(0x0028, 0x0010), 513);
@@ -405,7 +406,7 @@ static void a_confined_process_reads_dicom(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_confined_process_reads_dicom), /* first: the children begin without a dictionary */
+        cmocka_unit_test(a_confined_process_reads_dicom), /* first: its children start without a dictionary */
         cmocka_unit_test(each_encoding_gives_the_same_values),
         cmocka_unit_test(numbers_are_read_as_people_write_them_and_the_rest_is_not_a_number),
         cmocka_unit_test(a_contour_of_100000_numbers_is_read_whole),

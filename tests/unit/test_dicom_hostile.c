@@ -1,5 +1,5 @@
-/* Files made to break readers: each is read or refused with a sentence, within the written time and memory, in a
- * process of its own. */
+/* Files made to break readers: each is read, or refused with a sentence, within the written limits of time and memory,
+ * in a process of its own. */
 #define _GNU_SOURCE
 #include <ftw.h>
 #include <sys/resource.h>
@@ -25,7 +25,7 @@ enum { MOST_MS = 10000, MOST_MIB = 1024 }; /* the sanitizer's own memory and pac
 enum { MOST_MS = 1000, MOST_MIB = 256 };
 #endif
 
-/* Every element that readers of plans ask for, by every way to ask. */
+/* Reads every element that plan readers use, in every way. */
 static void ask_everything(const struct dicom_item *item, int depth)
 {
     static const uint32_t tags[] = {
@@ -58,14 +58,14 @@ static int parse_one(const struct folder *folder, const char *name)
         err = (struct error){ 0 };
         struct dicom_file *file = dicom_file_parse(bytes.data, bytes.size, name, (enum dicom_extent)extent, &err);
         if (!file && (err.code == ERROR_NONE || !strstr(err.text, name)))
-            return 2; /* refused without a sentence that names it */
+            return 2; /* refused without a sentence that names the file */
         if (!file)
             continue;
         ask_everything(dicom_root(file), 0);
         struct dicom_pixels pixels;
         if (dicom_pixels_look(file, &pixels, &err)) {
             size_t n = (size_t)pixels.rows * pixels.columns * pixels.bits_allocated / 8;
-            void *out = malloc(n); /* exactly: a sanitizer sees a byte too many */
+            void *out = malloc(n); /* allocated exactly: a sanitizer detects one byte too many */
             for (uint32_t f = 0; out && f < pixels.n_frames && f < 4; f++)
                 if (!dicom_pixels_read(file, f, out, &err) && !err.text[0])
                     return 2;
@@ -110,7 +110,7 @@ static int read_one(const char *path)
 
 static size_t n_read;
 
-/* In a process of its own, so that a crash, its time and its memory are this file's. */
+/* In a process of its own, so that a crash, time and memory belong to this file. */
 static void measure_one(const char *path)
 {
     int64_t began = clock_now_us();
@@ -127,7 +127,8 @@ static void measure_one(const char *path)
                  WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status));
     double cpu_ms = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1e3 +
                     (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec) / 1e3;
-    if (ms > MOST_MS && cpu_ms > MOST_MS) /* a busy machine is not the file's fault */
+    /* the CPU time must be too long as well: a busy machine is not the file's fault */
+    if (ms > MOST_MS && cpu_ms > MOST_MS)
         fail_msg("%s: %.0f ms; at most %d", path, ms, MOST_MS);
     if (usage.ru_maxrss / 1024 > MOST_MIB)
         fail_msg("%s: %ld MiB; at most %d", path, usage.ru_maxrss / 1024, MOST_MIB);
@@ -169,7 +170,7 @@ static uint32_t next_random(void)
     return (uint32_t)(random_state >> 33);
 }
 
-/* Copies of a real file, cut or with some bits the other way. */
+/* Copies of a real file, truncated or with flipped bits. */
 static void damage(const char *path, int n_copies)
 {
     FILE *file = fopen(path, "rb");
@@ -183,7 +184,7 @@ static void damage(const char *path, int n_copies)
     for (int i = 0; i < n_copies; i++) {
         size_t n = i % 2 ? size : next_random() % (size + 1);
         memcpy(copy, data, n);
-        /* the head is where lengths and kinds are */
+        /* lengths and kinds are in the head */
         for (int flip = 0; i % 2 && flip < 1 + i % 16; flip++)
             copy[next_random() % (flip % 4 ? (size < 4096 ? size : 4096) : size)] ^= (uint8_t)(1u << next_random() % 8);
         folder_put(made, "damaged", copy, n);

@@ -1,4 +1,4 @@
-/* What a folder holds as DICOM: kinds, references, stacks, copies, and files that are something else. */
+/* Scanning folders for DICOM: kinds, references, stacks, duplicates, and files that are not DICOM. */
 #include <sys/stat.h>
 
 #include "tests/check.h"
@@ -24,15 +24,15 @@ static void files_of_other_kinds_are_passed_over(void **state)
     folder_put(s.path, "empty.dcm", "", 0);
     folder_put(s.path, "notes.txt", "DICM is a word in this text", 27);
     folder_put(s.path, "zeros", zeros, sizeof zeros);
-    folder_put(s.path, "0800.bin", "\x08\x00\x05\x00\xFF\xFF\xFF\xFFxxxxxxxxxxxx",
-               20); /* like an element, but of no sane length */
+    /* like an element, but with an impossible length */
+    folder_put(s.path, "0800.bin", "\x08\x00\x05\x00\xFF\xFF\xFF\xFFxxxxxxxxxxxx", 20);
     folder_put(s.path, ".hidden", "DICM", 4);
     scanned_open(&s);
     assert_int_equal(s.index->n_files, 5);
     assert_int_equal(s.index->n_foreign, 4);
     assert_int_equal(s.index->n_objects, 1);
     assert_int_equal(s.index->n_stacks, 1);
-    assert_int_equal(s.report.n_lines, 1); /* only what says by its name that it is DICOM is worth a line */
+    assert_int_equal(s.report.n_lines, 1); /* only a file whose name says DICOM gets a report line */
     assert_string_equal(s.report.lines[0].where, "empty.dcm");
     assert_non_null(strstr(s.report.lines[0].sentence, "Named like DICOM"));
     assert_non_null(strstr(s.report.lines[0].sentence, "found an empty file"));
@@ -202,7 +202,7 @@ static void copies_are_used_once_and_slices_at_one_place_too(void **state)
         snprintf(name, sizeof name, "b%d", k); /* the same object under another name */
         made_slice_put(s.path, name, &slice);
     }
-    slice.number = 7; /* another object where the last one lies */
+    slice.number = 7; /* another object at the position of the last one */
     slice.base = 999;
     made_slice_put(s.path, "a7", &slice);
     scanned_open(&s);
@@ -356,7 +356,7 @@ static void pictures_that_cannot_be_used_say_why(void **state)
     slice.number = 6;
     slice.transfer_syntax = "1.2.840.10008.1.2.4.92"; /* part 2 of JPEG 2000 */
     made_slice_put(s.path, "length", &slice);
-    struct made_dicom made; /* pixels in fragments of an encoding that is not read */
+    struct made_dicom made; /* pixels in fragments of an unsupported encoding */
     made_slice_bytes(&made, &slice);
     made.size -= 12 + 12; /* without its pixels */
     made_head(&made, DICOM_TAG(0x7FE0, 0x0010), "OB", UINT32_MAX);
@@ -421,7 +421,7 @@ static void objects_that_are_not_read_are_warned_of_by_name_and_number(void **st
     put_unread(s.path, "shown", "1.2.840.10008.5.1.4.1.1.11.1", "PR", 6);
     put_unread(s.path, "capture", "1.2.840.10008.5.1.4.1.1.7", "OT", 7);
     put_unread(s.path, "waves", "1.2.840.10008.5.1.4.1.1.9.1.1", "ECG", 8);
-    struct made_slice slice = made_slice_defaults; /* values by a table: not applied, so not shown */
+    struct made_slice slice = made_slice_defaults; /* values by a lookup table: not applied, so not shown */
     struct made_dicom made;
     slice.color = "MONOCHROME2";
     made_slice_bytes(&made, &slice);
@@ -483,7 +483,7 @@ static void a_folder_of_unreadable_files_does_not_flood_the_report(void **state)
     assert_int_equal(s.report.n_lines, 21);
     assert_non_null(strstr(s.report.lines[20].sentence, "40 more files"));
     assert_string_equal(s.report.lines[1].where, "1");
-    assert_true(strncmp(s.report.lines[1].sentence, "byte ", 5) == 0); /* the file is named once */
+    assert_true(strncmp(s.report.lines[1].sentence, "byte ", 5) == 0); /* the report names the file once */
     scanned_finish(&s);
 }
 

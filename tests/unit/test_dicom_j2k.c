@@ -1,4 +1,4 @@
-/* JPEG 2000 pictures: made-up ones in every kind, damaged ones, and real ones whose answers are known. */
+/* JPEG 2000 images: made-up ones of every kind, damaged ones, and real ones with published values. */
 #include "core/formats/dicom/dicom_j2k.h"
 
 #include "tests/check.h"
@@ -88,12 +88,12 @@ static void a_picture_with_loss_is_near_and_says_so(void **state)
         for (uint32_t x = 0; x < like.columns; x++)
             sum += pow(out[y * like.columns + x] - wave(x, y), 2);
     assert_true(decoded.is_lossy);
-    assert_true(sqrt(sum / (like.rows * like.columns)) < 5); /* 1 % of the wave's height, at a quarter of the bytes */
+    assert_true(sqrt(sum / (like.rows * like.columns)) < 5); /* 1 % of the amplitude, at a quarter of the bytes */
     free(out);
     free(bytes);
 }
 
-/* A slice whose pixels are a codestream; sign and bits as the data set says. */
+/* Writes a slice whose pixels are a codestream; sign and bits as given to the data set. */
 static void put_slice(const char *folder, const char *name, int number, const struct made_j2k *like,
                       int32_t (*value)(uint32_t, uint32_t), bool says_signed, int says_bits)
 {
@@ -132,7 +132,7 @@ static void the_data_set_says_the_sign_and_the_codestream_the_bits(void **state)
     (void)state;
     const struct made_j2k plain = { 20, 10, 13, true, false, false, 0 },
                           other_sign = { 20, 10, 13, false, false, false, 0 };
-    for (int way = 0; way < 3; way++) { /* as it should be; codestream unsigned; other bits in the data set */
+    for (int way = 0; way < 3; way++) { /* correct; unsigned codestream; other bits in the data set */
         struct scanned s = { 0 };
         folder_make(s.path);
         for (int k = 1; k <= 2; k++)
@@ -171,7 +171,7 @@ static void loss_that_the_file_does_not_mention_is_said(void **state)
     scanned_finish(&s);
 }
 
-/* Everywhere else than asked for: the error names what is wrong. */
+/* The codestream must be refused, and the error must name what is wrong. */
 static void refuse_with(const uint8_t *bytes, size_t size, const struct dicom_pixels *pixels, enum error_code code,
                         const char *words)
 {
@@ -224,7 +224,7 @@ static void what_would_take_too_much_or_is_damaged_is_refused_by_name(void **sta
     bytes[cod + 1] = 0x5F;
     refuse_with(bytes, size, &pixels, ERROR_UNSUPPORTED, "POC");
     memcpy(bytes + cod, kept, 16);
-    memset(bytes + sot + 14, 0xFF, size - sot - 16); /* data that is none */
+    memset(bytes + sot + 14, 0xFF, size - sot - 16); /* invalid data */
     uint16_t out[200];
     struct dicom_decoded decoded;
     struct error err = { 0 };
@@ -233,7 +233,7 @@ static void what_would_take_too_much_or_is_damaged_is_refused_by_name(void **sta
     free(bytes);
 }
 
-/* Layers and precincts that the library would visit one by one, from a head of a hundred bytes. */
+/* Layers and precincts that OpenJPEG would visit one by one, from a header of a hundred bytes. */
 static void a_small_stream_that_asks_for_much_work_is_refused(void **state)
 {
     (void)state;
@@ -300,7 +300,7 @@ static void a_real_mr_is_the_one_it_was_made_of(void **state)
     free(expected);
 }
 
-/* The values that the authors of pydicom state for this file in their tests: stored as unsigned, meant as signed. */
+/* Values that pydicom's authors state for this file in their tests: stored as unsigned, meant as signed. */
 static void a_real_ct_whose_codestream_has_the_other_sign_has_its_published_values(void **state)
 {
     (void)state;
@@ -338,15 +338,15 @@ static void a_real_picture_with_loss_is_near_the_one_without(void **state)
     for (size_t i = 0; i < n; i++)
         sum += pow(values[i] - expected[i], 2);
     printf("root mean square difference: %.2f HU\n", sqrt(sum / (double)n));
-    assert_true(sqrt(sum / (double)n) < 30); /* of 4000 HU: compressed for looking at */
+    assert_true(sqrt(sum / (double)n) < 30); /* of 4000 HU: compressed for viewing */
     free(expected);
     dicom_file_destroy(file);
     free(data);
     free(values);
 }
 
-/* Two frames in 11 fragments without a table of offsets: each frame begins where a fragment begins with a picture's
- * mark. */
+/* Two frames in 11 fragments without an offset table: each frame begins where a fragment begins with an image's start
+ * marker. */
 static void frames_of_a_real_enhanced_ct_in_11_fragments_are_both_read(void **state)
 {
     (void)state;
@@ -360,7 +360,7 @@ static void frames_of_a_real_enhanced_ct_in_11_fragments_are_both_read(void **st
         norm[0] += values[i];
         norm[1] += values[n + i];
     }
-    assert_true(norm[0] > 0 && norm[1] > 0 && sum > 0); /* neighbours: alike, and not the same */
+    assert_true(norm[0] > 0 && norm[1] > 0 && sum > 0); /* neighbouring frames are similar, but not equal */
     assert_true(sum < 0.5 * (norm[0] + norm[1]));
     free(values);
 }

@@ -1,5 +1,5 @@
-/* Damaged numbers: every character of the numbers of a made-up plan, structure set, dose and CT is changed, one at a
- * time, and the report has to say so wherever what is read changes. */
+/* Damaged numbers: every character of the numbers in a made-up plan, structure set, dose and CT is changed, one at a
+ * time; wherever the result changes, the report must say so. */
 #include <ctype.h>
 
 #include "core/formats/dicom/dicom_rtdose.h"
@@ -21,7 +21,7 @@ struct number {
     size_t at, size; /* of the value */
 };
 
-/* Values of kind DS and IS of a file in explicit encoding: a tag, the two letters, a length. */
+/* Finds the DS and IS values of a file in explicit encoding: a tag, the two letters, a length. */
 static size_t find_numbers(const struct made_dicom *made, struct number *numbers, size_t most)
 {
     size_t n = 0;
@@ -140,7 +140,7 @@ static void make_plan(struct made_dicom *made)
 struct outcome {
     struct report report;
     bool is_refused;
-    uint64_t hash; /* of all that was read */
+    uint64_t hash; /* of everything that was read */
 };
 
 static void add(struct outcome *outcome, const void *data, size_t n)
@@ -320,7 +320,8 @@ struct kind {
     const char *name;
     void (*make)(struct made_dicom *made);
     struct outcome (*read)(const struct made_dicom *made);
-    uint32_t undecidable[24]; /* elements where another number of the same size is as good: nothing can tell */
+    uint32_t undecidable[24]; /* elements where another number of the same length is just as plausible: nothing can
+                                 detect the change */
 };
 
 static const struct kind kinds[] = {
@@ -339,7 +340,7 @@ static const struct kind kinds[] = {
     { "CT", make_ct, read_ct, { 0 } },
 };
 
-/* Lines that are not there for the whole file as well: how many of them warn. */
+/* Number of warnings that the undamaged file does not have. */
 static size_t n_warnings(const struct report *report)
 {
     size_t n = report->n_dropped;
@@ -356,8 +357,7 @@ static bool is_undecidable(const struct kind *kind, uint32_t tag)
     return false;
 }
 
-/* Puts another character everywhere; returns how many changes of what is read pass without a warning where they must
- * not. */
+/* Changes every character in turn; returns how many changes of the result have no warning although they must. */
 static size_t change_all(const struct kind *kind, char (*change)(char c), bool may_be_undecidable)
 {
     struct made_dicom made;
@@ -433,7 +433,7 @@ static void another_digit_is_said_where_anything_can_tell(void **state)
 
 /* ---- single values ---------------------------------------------------------------------------------------------- */
 
-/* The plan with one value in another's place, of the same length. */
+/* The plan with one value replaced by another of the same length. */
 static struct outcome plan_with(uint32_t tag, size_t nth, const char *value)
 {
     struct made_dicom made;
@@ -462,7 +462,7 @@ static void values_that_cannot_be_are_named_with_what_was_found_and_expected(voi
           0,
           "50\\-50",
           "beam.bad-value",
-          { "ASYMX", "(300A,011C)", "50 and -50" } }, /* jaws across each other */
+          { "ASYMX", "(300A,011C)", "50 and -50" } }, /* jaws that overlap */
         { TAG(0x300a, 0x011c),
           2,
           "-30\\-20.5\\-20\\-30\\30\\-90\\20\\30",

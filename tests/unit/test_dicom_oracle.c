@@ -1,4 +1,4 @@
-/* All real image series against what pydicom and numpy make of them: place and value of every voxel. */
+/* All real image series, compared with pydicom and numpy: position and value of every voxel. */
 #include "core/load/load.h"
 #include "core/plan/plan.h"
 #include "tests/check.h"
@@ -15,7 +15,7 @@ static const struct dicom_stack *stack_of(const struct dicom_index *index, const
     return NULL;
 }
 
-/* One line of the oracle against our volume of the same series. */
+/* Compares one line of the oracle with our volume of the same series. */
 static void compare_series(struct scanned *s, char *line, const char *values_path, double tolerance)
 {
     char *rest = line;
@@ -53,7 +53,7 @@ static void real_series_are_what_pydicom_and_numpy_make_of_them(void **state)
     static const struct {
         const char *archive;
         int n_series;
-        double tolerance; /* of a value: exact, or that of 32-bit numbers where slices have scales of their own */
+        double tolerance; /* of a value: 0, or that of 32-bit numbers where slices have different rescales */
     } sets[] = {
         { "dicom-head-phantom/S2010.tar.xz", 1, 0 }, { "dicom-mr-head/VS-SEG-001.tar.xz", 1, 0 },
         { "dicomrt-sts001/CT.tar.xz", 1, 0 },        { "dicomrt-sts001/MR_T1.tar.xz", 1, 0 },
@@ -103,7 +103,7 @@ static void real_series_are_what_pydicom_and_numpy_make_of_them(void **state)
     }
 }
 
-/* pydicom's pixel_array leaves MONOCHROME1 as it is stored, and so do we; the plan says that low values are to be
+/* pydicom's pixel_array leaves MONOCHROME1 values as stored, and so do we; the plan says that low values are to be
  * white. */
 static void an_inverted_series_has_the_values_that_pydicom_reads(void **state)
 {

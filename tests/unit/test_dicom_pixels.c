@@ -1,5 +1,5 @@
-/* Pixels of DICOM files, native and compressed. Expected values: the cells written here (PS3.5), pictures that other
- * programs encoded, and what eight encodings of one picture have in common. */
+/* Pixels of DICOM files, native and compressed. Expected values: the cells written here (PS3.5), images encoded by
+ * other programs, and the equality of eight encodings of one image. */
 #include <dirent.h>
 
 #include "core/formats/dicom/dicom_series.h"
@@ -80,7 +80,7 @@ static void two_pixels_of_8_bits_share_a_word_in_either_byte_order(void **state)
         made_image(&made, native[e], 8, 8, 7, false);
         made_head(&made, DICOM_TAG(0x7FE0, 0x0010), e == 2 ? "OB" : "OW", 6);
         if (e == 2)
-            made_raw(&made, "\x01\x02\x03\x04\x05\x06", 6); /* bytes have no order */
+            made_raw(&made, "\x01\x02\x03\x04\x05\x06", 6); /* bytes have no byte order */
         else
             made_words(&made, (uint16_t[]){ 0x0201, 0x0403, 0x0605 },
                        3); /* the first pixel is the low byte: PS3.5 8.1.1 */
@@ -162,7 +162,7 @@ static void the_lossless_encodings_of_one_picture_decode_to_the_same_pixels(void
         for (int i = 0; first && i < N; i++)
             worst = abs(values[i] - first[i]) > worst ? abs(values[i] - first[i]) : worst;
         if (strstr(entry->d_name, "1.2.4.51")) {
-            n_lossy++; /* may come first: nothing to compare with */
+            n_lossy++; /* the first one has nothing to compare with */
             free(values);
         } else {
             if (first && worst == 0)
@@ -181,8 +181,8 @@ static void the_lossless_encodings_of_one_picture_decode_to_the_same_pixels(void
     assert_int_equal(n_lossy, 1);
 }
 
-/* Two frames of 8 x 8 pixels in four fragments: each a JPEG-LS picture cut in two. table: whether it is said where they
- * begin; is_mute: the second picture has no mark that begins it. */
+/* Writes two frames of 8 x 8 pixels in four fragments: each a JPEG-LS image cut in two. has_table: with an offset
+ * table. is_mute: the second image has no start marker. */
 static void made_fragments(struct made_dicom *made, const uint8_t *picture, size_t n, bool has_table, bool is_mute)
 {
     size_t half = n / 2 / 2 * 2, rest = n - half;
@@ -214,13 +214,13 @@ static void frames_in_several_fragments_are_found_by_the_table_of_offsets_or_by_
 {
     (void)state;
     size_t size;
-    uint8_t *seed =
-        file_bytes("tests/fuzz/corpus/dicom/jpeg-ls", &size); /* stored values 10 y + x, by another program's encoder */
+    /* stored values 10 y + x, encoded by another program */
+    uint8_t *seed = file_bytes("tests/fuzz/corpus/dicom/jpeg-ls", &size);
     size_t at = size;
     while (at > 2 && !(seed[at - 2] == 0xFF && seed[at - 1] == 0xD8))
         at--;
     assert_true(at > 2);
-    size_t n = size - (at - 2) - 8; /* without the end mark of the sequence */
+    size_t n = size - (at - 2) - 8; /* without the sequence's end marker */
     enum { TABLE, MARKS, NEITHER, N_WAYS };
     for (int way = TABLE; way < N_WAYS; way++) {
         struct made_dicom made;
@@ -252,7 +252,7 @@ static void a_file_of_more_frames_than_slices_are_read_is_refused_before_memory_
     (void)state;
     struct made_dicom made;
     made_image(&made, MADE_EXPLICIT, 8, 8, 7, false);
-    struct made_dicom with = { 0 }; /* the same with a number of frames, in its place before the rows */
+    struct made_dicom with = { 0 }; /* the same with a number of frames, in front of the rows */
     static const uint8_t rows[] = { 0x28, 0x00, 0x10, 0x00 };
     size_t at = 0;
     while (memcmp(made.data + at, rows, sizeof rows) != 0)

@@ -1,4 +1,4 @@
-/* RT Doses: made ones for every convention, the real ones against the maxima their planning system gives and against
+/* RT Doses: made-up ones for every convention, real ones compared with the maxima of their planning system and with
  * pydicom. */
 #include "core/formats/dicom/dicom_rtdose.h"
 
@@ -14,14 +14,14 @@
 #define RTDOSE "1.2.840.10008.5.1.4.1.1.481.2"
 #define TAG DICOM_TAG
 
-/* A grid of 3 rows, 4 columns and some frames whose stored value is 100 k + 10 j + i (times 1000 for 32 bits). */
+/* A grid of 3 rows, 4 columns and some frames. The stored value is 100 k + 10 j + i (times 1000 for 32 bits). */
 struct made_dose {
     const char *position, *orientation, *spacing, *offsets, *scaling, *type, *summation, *description, *comment;
     uint32_t n_frames;
     int bits;
     bool is_zero;
     int beam;
-    const char *syntax; /* explicit; NULL: implicit little endian */
+    const char *syntax; /* transfer syntax, explicit; NULL: implicit little-endian */
 };
 static const struct made_dose plain = { .position = "10\\20\\30",
                                         .orientation = "1\\0\\0\\0\\1\\0",
@@ -147,7 +147,7 @@ static void values_lie_where_rows_columns_and_offsets_put_them(void **state)
     dose = read_good(&made, &report);
     assert_dose_at(&dose, 10, 20 + 2 * 2, 27, 0.5 * 120);
     rtdose_finish(&dose);
-    made.orientation = "-1\\0\\0\\0\\1\\0"; /* normal downwards: relative offsets go down, absolute ones stay */
+    made.orientation = "-1\\0\\0\\0\\1\\0"; /* normal downward: relative offsets descend, absolute ones do not change */
     made.offsets = "0\\3\\6";
     dose = read_good(&made, &report);
     assert_dose_at(&dose, 10 - 5 * 3, 20, 27, 0.5 * 103);
@@ -157,8 +157,8 @@ static void values_lie_where_rows_columns_and_offsets_put_them(void **state)
     assert_dose_at(&dose, 10 - 5 * 3, 20, 33, 0.5 * 103);
     rtdose_finish(&dose);
     made = plain;
-    made.orientation =
-        "0\\1\\0\\0\\0\\-1"; /* sagittal, the head up: columns to the back, rows down, frames to the right */
+    made.orientation = "0\\1\\0\\0\\0\\-1"; /* sagittal, head up: rows run posterior, columns inferior, frames to the
+                                               patient's right */
     dose = read_good(&made, &report);
     assert_dose_at(&dose, 10 - 3 * 2, 20 + 5 * 3, 30 - 2 * 1, 0.5 * 213);
     rtdose_finish(&dose);
@@ -353,7 +353,7 @@ static void a_word_alone_makes_no_component_and_beams_are_not_added(void **state
     report_finish(&report);
     made[0].description = "Boron";
     made[1].description = "Photons";
-    assert_int_equal(group(made, 2, doses, NULL), 1); /* two words for two things, same beam */
+    assert_int_equal(group(made, 2, doses, NULL), 1); /* words for two components, same beam */
     assert_int_equal(doses[0].n_components, 2);
     dose_finish(&doses[0]);
 }
@@ -439,7 +439,7 @@ static void cut_and_flipped_copies_of_real_files_are_read_or_refused(void **stat
         uint8_t *copy = malloc(size);
         assert_non_null(copy);
         for (size_t cut = 0; cut < 60;
-             cut++) { /* a buffer as long as what is left, so that reading past its end is seen */
+             cut++) { /* a buffer of exactly the remaining length, so that reading past its end is detected */
             size_t n = size * cut / 60;
             uint8_t *rest = malloc(n + 1);
             assert_non_null(rest);
@@ -477,11 +477,11 @@ static void put_fragment(struct made_dicom *made, const uint8_t *bytes, size_t n
     made_raw(made, bytes, n);
 }
 
-/* Two frames with different values, each in two fragments, without a table of offsets. */
+/* Two frames with different values, each in two fragments, without an offset table. */
 static void a_dose_in_jpeg_2000_keeps_its_frames_apart_and_says_loss_and_other_bits(void **state)
 {
     (void)state;
-    for (int way = 0; way < 3; way++) { /* as it should be; with loss; of other bits */
+    for (int way = 0; way < 3; way++) { /* correct; lossy; other bits */
         const struct made_j2k like = { 4, 3, way == 2 ? 12 : 16, false, way == 1, false, 0 };
         struct made_dose said = plain;
         struct made_dicom made = { 0 };

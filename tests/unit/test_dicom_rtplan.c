@@ -1,4 +1,4 @@
-/* RT Plans: where beams come from, by hand geometry for every way a patient can lie. */
+/* RT Plans: beam directions, by hand geometry for every patient position. */
 #include "core/formats/dicom/dicom_rtplan.h"
 #include "core/formats/dicom/dicom_rtplan_opening.h"
 
@@ -17,7 +17,7 @@ static void the_source_is_where_hand_geometry_puts_it(void **state)
         enum patient_position position;
         double gantry, couch, x, y, z;
     } cases[] = {
-        /* gantry at 0 is above the table, at 90 to the right of who stands at its foot and looks to the gantry */
+        /* gantry at 0 is above the table, at 90 to the right of a person at its foot who looks to the gantry */
         { PATIENT_HFS, 0, 0, 0, a, 0 },
         { PATIENT_HFS, 90, 0, l, 0, 0 },
         { PATIENT_HFS, 180, 0, 0, p, 0 },
@@ -50,8 +50,8 @@ static void the_source_is_where_hand_geometry_puts_it(void **state)
         { PATIENT_FFDL, 90, 0, 0, p, 0 },
         { PATIENT_FFDL, 180, 0, l, 0, 0 },
         { PATIENT_FFDL, 270, 0, 0, a, 0 },
-        /* the table turned by 90, against the clock seen from above: its far end, with head or feet, then points to the
-           left of who looks */
+        /* the table rotated by 90, counter-clockwise seen from above: its far end, with head or feet, points to that
+         * person's left */
         { PATIENT_HFS, 0, 90, 0, a, 0 },
         { PATIENT_HFS, 90, 90, 0, 0, i },
         { PATIENT_HFS, 270, 90, 0, 0, s },
@@ -75,17 +75,17 @@ static void the_source_is_where_hand_geometry_puts_it(void **state)
 static void oblique_angles_pitch_and_roll_go_the_right_way(void **state)
 {
     (void)state;
-    /* gantry at 30 leans to the patient's left: sin 30 left, cos 30 in front */
+    /* gantry at 30 leans to the patient's left: sin 30 left, cos 30 anterior */
     struct beam_angles angles = { .gantry_deg = 30 };
     assert_point(beam_patient_from_gantry(vec3(0, 0, 1000), &angles, PATIENT_HFS), 500, -866.0254038, 0, 1e-6);
-    /* the head lifted by 20 degrees comes nearer to a source above */
+    /* the head lifted by 20 degrees comes nearer to the source above */
     angles = (struct beam_angles){ .pitch_deg = 20 };
     assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, PATIENT_HFS), 0, -0.9396926208, 0.3420201433, 1e-9);
-    /* rolled about the axis towards the gantry by 20, the side that was to the right goes down: the source sees more of
-     * the other */
+    /* rolled by 20 about the axis towards the gantry, the right side goes down: the source sees more of the left
+     * side */
     angles = (struct beam_angles){ .roll_deg = 20 };
     assert_point(beam_patient_from_gantry(vec3(0, 0, 1), &angles, PATIENT_HFS), -0.3420201433, -0.9396926208, 0, 1e-9);
-    /* the x of the gantry goes with it: from the left at 0 to the back at 90 */
+    /* the gantry's x axis rotates with it: from the left at 0 to posterior at 90 */
     angles = (struct beam_angles){ .gantry_deg = 90 };
     assert_point(beam_patient_from_gantry(vec3(1, 0, 0), &angles, PATIENT_HFS), 0, 1, 0, 1e-12);
     assert_point(beam_patient_from_gantry(vec3(0, 1, 0), &angles, PATIENT_HFS), 0, 0, 1, 1e-12);
@@ -105,7 +105,7 @@ static void positions_have_words(void **state)
 /* ---- made plans ------------------------------------------------------------------------------------------------- */
 
 struct made_plan {
-    const char *position; /* of setup 2; NULL: no setups */
+    const char *position; /* patient position of setup 2; NULL: no setups */
     const char *radiation;
     const char *sad, *iso, *gantry;
     bool is_setup;
@@ -113,7 +113,7 @@ struct made_plan {
     void (*positions)(struct made_dicom *made, int point);
     int n_points;
     const char *gantries[4], *directions[4];
-    const char *collimator, *table; /* of the first point */
+    const char *collimator, *table; /* at the first control point */
 };
 
 static void put_plan(struct made_dicom *made, const struct made_plan *plan)
@@ -236,9 +236,9 @@ static void a_beam_that_cannot_be_placed_is_left_out(void **state)
     (void)state;
     const struct made_plan plans[] = {
         { .position = "HFS", .sad = "1000", .n_points = 1, .gantries = { "0" } },                /* no isocentre */
-        { .position = "HFS", .sad = "1000", .iso = "1\\2", .n_points = 1, .gantries = { "0" } }, /* two thirds of one */
-        { .position = "HFS", .sad = "1000", .iso = "1\\2\\x", .n_points = 1, .gantries = { "0" } },   /* no number */
-        { .position = "HFS", .sad = "1000", .iso = "1\\2\\1e9", .n_points = 1, .gantries = { "0" } }, /* in orbit */
+        { .position = "HFS", .sad = "1000", .iso = "1\\2", .n_points = 1, .gantries = { "0" } }, /* two coordinates */
+        { .position = "HFS", .sad = "1000", .iso = "1\\2\\x", .n_points = 1, .gantries = { "0" } },   /* malformed */
+        { .position = "HFS", .sad = "1000", .iso = "1\\2\\1e9", .n_points = 1, .gantries = { "0" } }, /* too far */
         { .position = "HFS", .sad = "1000", .iso = "1\\2\\3", .n_points = 0 }, /* no control point */
         { .position = "HFS", .sad = "1000", .iso = "1\\2\\3", .n_points = 1, .gantries = { "0" }, .is_setup = true },
     };
@@ -317,11 +317,11 @@ static void three_steps(struct made_dicom *made, int point)
     if (point == 0) {
         put_position(made, "X", "-30\\30");
         put_position(made, "ASYMY", "-15\\40");
-        put_position(made, "MLCX", "-50\\-5\\-10\\2\\50\\5\\10\\2"); /* the last pair is shut */
+        put_position(made, "MLCX", "-50\\-5\\-10\\2\\50\\5\\10\\2"); /* the last pair is closed */
     } else {
         put_position(made, "ASYMY", "-5\\12");
         put_position(made, "MLCX", "0\\0\\0\\20\\0\\0\\0\\25");
-        put_position(made, "MLCX", "1\\2\\3"); /* too few: not regarded */
+        put_position(made, "MLCX", "1\\2\\3"); /* too few values: ignored */
     }
     made_sequence_end(made);
 }
@@ -403,7 +403,7 @@ static void strange_devices(struct made_dicom *made)
     made_sequence_end(made);
 }
 
-/* How many lines have the code. */
+/* Number of report lines with the code. */
 static size_t n_lines_of(const struct report *report, const char *code)
 {
     size_t n = 0;
@@ -433,7 +433,7 @@ static void doubts_about_where_a_beam_is_come_before_those_about_its_opening(voi
     for (size_t i = 0; i < report.n_lines; i++)
         if (strcmp(report.lines[i].code, "beam.bad-value") == 0 && at < N)
             assert_non_null(strstr(report.lines[i].sentence, first[at++]));
-    /* of nine devices six, and two more gantry angles */
+    /* six of nine devices, and two more gantry angles */
     assert_non_null(strstr(report.lines[report.n_lines - 1].sentence, "8 more such values"));
     rtplan_destroy(plan);
     report_finish(&report);
@@ -479,10 +479,10 @@ static void the_opening_is_what_jaws_and_leaves_leave(void **state)
     const struct beam_delivery *d = &plan->beams[0].delivery;
     assert_memory_equal(d->jaws_x_mm, ((double[]){ -30, 30 }), sizeof d->jaws_x_mm);
     assert_memory_equal(d->jaws_y_mm, ((double[]){ -15, 40 }), sizeof d->jaws_y_mm);
-    /* first: leaves at y -20..-10 open -50..50, cut to x -30..30 and y -15..-10; y -10..0 open 10 wide, y 0..10 open 20
-     * wide */
+    /* first: leaves at y -20..-10 open -50..50, limited to x -30..30 and y -15..-10; y -10..0 open 10 wide, y 0..10
+     * open 20 wide */
     assert_close(d->opening_cm2, (60 * 5 + 10 * 10 + 20 * 10) / 100.0, 1e-12);
-    /* second: only the pair at y 10..20, cut to y 10..12, x 20..25; the hull over all is -30..30 by -15..12 */
+    /* second: only the pair at y 10..20, limited to y 10..12, x 20..25; the hull of both is -30..30 by -15..12 */
     assert_memory_equal(d->opening_x_mm, ((double[]){ -30, 30 }), sizeof d->opening_x_mm);
     assert_memory_equal(d->opening_y_mm, ((double[]){ -15, 12 }), sizeof d->opening_y_mm);
     assert_true(isnan(plan->beams[0].aperture_mm));
@@ -593,8 +593,7 @@ static void an_ion_plan_has_its_lines_and_says_what_is_not_read(void **state)
     assert_string_equal(err.text, "");
     assert_int_equal(plan->n_beams, 1);
     assert_point(plan->beams[0].target_lps_mm, 1, 2, 3, 0);
-    assert_point(plan->beams[0].entry_lps_mm, 2001, 2, 3,
-                 1e-9); /* the patient's left, for the position that is taken */
+    assert_point(plan->beams[0].entry_lps_mm, 2001, 2, 3, 1e-9); /* the patient's left, for the position assumed */
     assert_close(plan->beams[0].delivery.opening_cm2, 7 * 4.5, 1e-9);
     assert_non_null(strstr(report_said(&report, "beam.ion"), "An RT Ion Plan of 1 beams"));
     rtplan_destroy(plan);

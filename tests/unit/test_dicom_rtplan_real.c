@@ -1,4 +1,4 @@
-/* Real RT Plans, against pydicom and against what their own planning systems say of entry points and distances. */
+/* Real RT Plans, compared with pydicom and with the entry points and distances of their planning systems. */
 #include "core/formats/dicom/dicom_rtplan.h"
 
 #include "tests/check.h"
@@ -93,7 +93,7 @@ static bool compare_with_pydicom(const char *path, const struct rtplan *plan)
     return true;
 }
 
-/* The point in which the beam's axis meets the surface, by the distance the planning system gives. */
+/* The point where the beam axis enters the surface, by the planning system's distance. */
 static struct vec3 surface_point(const struct beam *beam)
 {
     struct vec3 along = vec3_normalize(vec3_sub(beam->target_lps_mm, beam->entry_lps_mm));
@@ -120,7 +120,7 @@ static void ten_square_fields_come_from_the_front(void **state)
     bool is_compared = compare_with_pydicom(path, plan);
     rtplan_destroy(plan);
     if (!is_compared)
-        skip(); /* no pydicom here; all before it held */
+        skip(); /* no pydicom: everything before it passed */
 }
 
 static void two_arcs_turn_from_the_left_and_from_the_right(void **state)
@@ -137,7 +137,7 @@ static void two_arcs_turn_from_the_left_and_from_the_right(void **state)
     assert_point(surface_point(&plan->beams[0]), 51, 0, 0, 1e-9); /* the file's own Surface Entry Points */
     assert_point(surface_point(&plan->beams[1]), -51, 0, 0, 1e-9);
     assert_close(plan->beams[0].delivery.gantry_travel_deg, 60, 1e-9);  /* clockwise from 90 to 150 */
-    assert_close(plan->beams[1].delivery.gantry_travel_deg, -60, 1e-9); /* against the clock from 270 to 210 */
+    assert_close(plan->beams[1].delivery.gantry_travel_deg, -60, 1e-9); /* counter-clockwise from 270 to 210 */
     assert_close(plan->target_dose_gy, 1, 0);
     assert_int_equal(plan->n_fractions, 2);
     assert_string_equal(plan->prescription, "Plan: RxA");
@@ -146,7 +146,7 @@ static void two_arcs_turn_from_the_left_and_from_the_right(void **state)
     report_finish(&report);
     rtplan_destroy(plan);
     if (!is_compared)
-        skip(); /* no pydicom here; all before it held */
+        skip(); /* no pydicom: everything before it passed */
 }
 
 static void the_oncentra_beams_meet_the_body_at_their_distances(void **state)
@@ -158,19 +158,18 @@ static void the_oncentra_beams_meet_the_body_at_their_distances(void **state)
     struct rtplan *plan = read_real(path, NULL);
     assert_int_equal(plan->n_beams, 3);
     assert_string_equal(plan->beams[2].delivery.radiation, "ELECTRON");
-    /* the body's outline at z = 0 is the square x -20..30, y -20..30 of the structure set; distances are given to 0.01
-     * mm */
+    /* the body's outline at z = 0 is the square x -20..30, y -20..30 of the structure set; distances have 2 decimals */
     assert_point(surface_point(&plan->beams[0]), 0.29, -20, 0, 0.011);
     assert_point(surface_point(&plan->beams[1]), 30, 0.59, 0, 0.011);
     assert_point(surface_point(&plan->beams[2]), 0.29, 30, 0, 0.011);
-    /* beam 2: gantry 90, collimator 90: x of the collimator runs to the head, y to the patient's front (gantry x points
-     * to the back) */
+    /* beam 2: gantry 90, collimator 90: the collimator's x axis runs superior, y anterior (gantry x points
+     * posterior) */
     assert_point(plan->beams[1].delivery.collimator_x_lps, 0, 0, 1, 1e-12);
     assert_point(plan->beams[1].delivery.collimator_y_lps, 0, -1, 0, 1e-12);
     bool is_compared = compare_with_pydicom(path, plan);
     rtplan_destroy(plan);
     if (!is_compared)
-        skip(); /* no pydicom here; all before it held */
+        skip(); /* no pydicom: everything before it passed */
 }
 
 int main(void)

@@ -1,4 +1,4 @@
-/* RT Structure Sets: made ones for every trap, real ones against pydicom, reference masks and plastimatch. */
+/* RT Structure Sets: made-up ones for every trap, real ones compared with pydicom, reference masks and plastimatch. */
 #include "core/formats/dicom/dicom_rtstruct.h"
 
 #include <unistd.h>
@@ -286,7 +286,7 @@ static struct rtstruct *read_real(const char *path, struct report *report)
     return set;
 }
 
-/* The next field of a line; the line's end is a tab too. */
+/* The next tab-separated field of a line. */
 static char *field(char **rest)
 {
     char *from = *rest, *tab = strchr(from, '\t');
@@ -324,14 +324,14 @@ static void compare_region(const struct rtstruct_roi *roi, char *rest)
     assert_int_equal(n_points, strtoul(field(&rest), NULL, 10));
     for (int axis = 0; axis < 3; axis++) {
         double expected = strtod(field(&rest), NULL);
-        assert_close(sum[axis], expected, 1e-6 * (double)n_points); /* sums of other orders */
+        assert_close(sum[axis], expected, 1e-6 * (double)n_points); /* summed in another sequence */
     }
     double expected_mm2 = strtod(field(&rest), NULL);
     assert_near(area_mm2, expected_mm2, 1e-9);
     assert_string_equal(roi->frame_uid[0] ? roi->frame_uid : "-", field(&rest));
 }
 
-/* Every region of a file as pydicom reads it. Returns how many; SIZE_MAX without pydicom. */
+/* Compares every region of a file with pydicom. Returns how many; SIZE_MAX without pydicom. */
 static size_t compare_with_pydicom(const char *path, const struct rtstruct *set)
 {
     static char out[1 << 16];
@@ -407,7 +407,7 @@ static void the_sarcoma_masks_come_out_voxel_for_voxel(void **state)
         assert_int_equal(mask_count(mask), sets[i].n_voxels);
         assert_near(facts.filled_cm3, facts.polygon_cm3, 0.01);
         assert_int_equal(facts.n_planes, 31);
-        struct contour_choice choice; /* so the image's own grid is the one taken */
+        struct contour_choice choice; /* chosen as the image's own grid */
         struct error err = { 0 };
         assert_true(
             contour_choose_grids(&set->rois[0].contours, 1, &reference->grid, &contour_defaults, &choice, &err));
@@ -418,7 +418,7 @@ static void the_sarcoma_masks_come_out_voxel_for_voxel(void **state)
         folder_remove(folder);
     }
     if (!is_compared)
-        skip(); /* no pydicom here; all else held */
+        skip(); /* no pydicom: everything else passed */
 }
 
 static void the_lung_phantom_has_3_regions_and_29_empty_ones(void **state)
@@ -441,7 +441,7 @@ static void the_lung_phantom_has_3_regions_and_29_empty_ones(void **state)
     rtstruct_destroy(set);
     folder_remove(folder);
     if (n_compared == SIZE_MAX)
-        skip(); /* no pydicom here; all else held */
+        skip(); /* no pydicom: everything else passed */
 }
 
 static void the_oncentra_phantom_has_7_regions(void **state)
@@ -460,10 +460,10 @@ static void the_oncentra_phantom_has_7_regions(void **state)
     assert_true(n_compared == 7 || n_compared == SIZE_MAX);
     rtstruct_destroy(set);
     if (n_compared == SIZE_MAX)
-        skip(); /* no pydicom here; all else held */
+        skip(); /* no pydicom: everything else passed */
 }
 
-/* plastimatch fills a structure set on its images, one NIfTI mask a region. */
+/* plastimatch fills a structure set on its images: one NIfTI mask per region. */
 static bool run_plastimatch(const char *folder, const char *structures, const char *out_folder)
 {
     static char out[1 << 18];
@@ -519,7 +519,7 @@ static void plastimatch_fills_the_lung_phantom_voxel_for_voxel(void **state)
         skip();
 }
 
-/* Its images alone: plastimatch refuses the portal images beside them. */
+/* Its images only: plastimatch refuses the portal images beside them. */
 static void plastimatch_fills_the_oncentra_phantom_alike(void **state)
 {
     (void)state;
@@ -534,8 +534,8 @@ static void plastimatch_fills_the_oncentra_phantom_alike(void **state)
     bool is_run = run_plastimatch(images, structures, out_folder);
     if (is_run) {
         struct rtstruct *set = read_real(structures, NULL);
-        compare_with_plastimatch(set, out_folder, 7,
-                                 0.99); /* edges of whole mm on voxels of 0.586 mm: a row more or less */
+        /* edges at whole mm on voxels of 0.586 mm: one row more or less */
+        compare_with_plastimatch(set, out_folder, 7, 0.99);
         rtstruct_destroy(set);
     }
     folder_remove(images);

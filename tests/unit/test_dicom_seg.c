@@ -1,5 +1,4 @@
-/* DICOM Segmentations: made-up ones whose voxels follow a rule, contradicting ones, and real ones with the answer
- * beside them. */
+/* DICOM Segmentations: made-up ones whose voxels follow a rule, contradictory ones, and real ones with a reference. */
 #include "core/formats/dicom/dicom_seg.h"
 
 #include "tests/check.h"
@@ -11,7 +10,8 @@
 
 #define TAG DICOM_TAG
 
-/* In no order; plane -2 of segment 1 is missing (empty), and planes 1 and 4 of segment 2; both overlap. */
+/* In random sequence; plane -2 of segment 1 is missing (empty), and planes 1 and 4 of segment 2; both segments
+ * overlap. */
 static const struct made_seg_frame frames[] = { { 2, -5 }, { 1, 4 }, { 1, -5 }, { 2, -2 }, { 1, 1 } };
 static const struct made_seg two_parts = { .frames = frames, .n_frames = 5, .n_segments = 3 };
 
@@ -43,7 +43,7 @@ static bool has_frame(const struct made_seg *seg, int segment, double z_mm)
     return false;
 }
 
-/* Every voxel by its place in the patient. */
+/* Compares every voxel by its patient position. */
 static void check_segment(const struct nrrd_layers *layers, const struct made_seg *seg, int segment)
 {
     char name[16];
@@ -64,7 +64,7 @@ static void check_segment(const struct nrrd_layers *layers, const struct made_se
 static void segments_have_the_voxels_of_their_frames_whatever_their_order(void **state)
 {
     (void)state;
-    for (int way = 0; way < 4; way++) { /* binary and fractional, with and without the distance of planes */
+    for (int way = 0; way < 4; way++) { /* binary and fractional, with and without a plane distance */
         struct made_seg seg = two_parts;
         struct made_dicom made;
         struct nrrd_layers layers;
@@ -121,7 +121,7 @@ static void segments_that_overlap_lie_on_layers_of_their_own(void **state)
     assert_int_equal(one, two);
     assert_int_not_equal(one, six);
     nrrd_layers_finish(&layers);
-    assert_true(read_seg(&made, "part 6", &layers, &report, &err)); /* one alone, by its name */
+    assert_true(read_seg(&made, "part 6", &layers, &report, &err)); /* a single one, by its label */
     assert_int_equal(layers.n, 1);
     assert_int_equal(layers.names[0].n, 1);
     nrrd_layers_finish(&layers);
@@ -152,7 +152,7 @@ static void segments_lie_where_the_directions_of_their_frames_say(void **state)
     }
 }
 
-/* 165 bits in 21 bytes: the last one lies in the upper half of the eleventh word. */
+/* 165 bits in 21 bytes: the last byte is the upper half of the eleventh word. */
 static void bits_in_big_endian_words_are_read_and_half_a_word_is_refused(void **state)
 {
     (void)state;
@@ -175,7 +175,7 @@ static void bits_in_big_endian_words_are_read_and_half_a_word_is_refused(void **
     made_finish(&made);
 }
 
-/* Neighbours nearer than a thousandth of a millimetre share a place, and each of them lies on a plane of the grid. */
+/* Frames closer than a thousandth of a millimetre share a position, and each is on a plane of the grid. */
 static void frames_nearly_at_one_place_stay_inside_the_grid(void **state)
 {
     (void)state;
@@ -259,7 +259,7 @@ static void colors_are_those_of_lindbloom_s_tables(void **state)
 {
     (void)state;
     static const struct {
-        double lab[3]; /* white D50 */
+        double lab[3]; /* white point D50 */
         int rgb[3];
     } colors[] = { { { 54.29, 80.81, 69.89 }, { 255, 0, 0 } },
                    { { 87.82, -79.29, 80.99 }, { 0, 255, 0 } },
@@ -274,7 +274,7 @@ static void colors_are_those_of_lindbloom_s_tables(void **state)
         uint8_t rgb[3];
         dicom_seg_color(stored, rgb);
         for (int c = 0; c < 3; c++)
-            assert_true(abs(rgb[c] - colors[i].rgb[c]) <= 1); /* two decimals of the tables */
+            assert_true(abs(rgb[c] - colors[i].rgb[c]) <= 1); /* the tables have two decimals */
     }
 }
 
@@ -307,9 +307,7 @@ static void what_contradicts_itself_is_refused_by_name(void **state)
         made_finish(&made);
         report_finish(&report);
     }
-    struct made_seg seg = { .frames = unknown,
-                            .n_frames = 2,
-                            .n_segments = 1 }; /* a frame of a segment that is not described */
+    struct made_seg seg = { .frames = unknown, .n_frames = 2, .n_segments = 1 }; /* a frame of an undefined segment */
     struct made_dicom made;
     struct nrrd_layers layers;
     struct report report = { 0 };
@@ -403,10 +401,9 @@ static void a_real_liver_is_the_one_of_its_nrrd_voxel_for_voxel(void **state)
     const struct region *region = region_of(plans[0], "liver");
     const struct volume *seg = plans[0]->regions.layers[region->layer], *nrrd = plans[1]->regions.layers[0];
     assert_int_equal(region->n_voxels, 107098);
-    assert_false(region->touches_edge); /* the writer left out frames without a voxel; nothing cuts the liver */
+    assert_false(region->touches_edge); /* the writer omitted empty frames; the scan does not cut the liver */
     struct affine first = seg->grid.lps_mm_from_ijk;
-    first.origin =
-        affine_point(&first, vec3(0, 0, 1)); /* one empty plane lies before the first frame, and one behind the last */
+    first.origin = affine_point(&first, vec3(0, 0, 1)); /* one empty plane before the first frame, one after the last */
     struct grid inner;
     assert_true(
         grid_init(&inner, (uint32_t[]){ seg->grid.size[0], seg->grid.size[1], seg->grid.size[2] - 2 }, &first, NULL));

@@ -1,4 +1,4 @@
-/* Series of slices as volumes: made-up slices with every trap that real ones set. */
+/* Series of slices as volumes: made-up slices with every trap of real ones. */
 #include <stdatomic.h>
 #include <unistd.h>
 
@@ -6,7 +6,7 @@
 #include "tests/unit/data_folder.h"
 #include "tests/unit/made_series.h"
 
-/* Slices at positions[] along z, the base value 100 z of each; names and numbers run against the positions. */
+/* Slices at z_mm[] with base value 100 z; names and instance numbers run against the positions. */
 static void put_row(const char *folder, const struct made_slice *like, const double *z_mm, int n)
 {
     for (int i = 0; i < n; i++) {
@@ -87,7 +87,7 @@ static void a_tilted_gantry_stays_a_shear(void **state)
     struct scanned s = { 0 };
     folder_make(s.path);
     struct made_slice slice =
-        made_slice_defaults; /* each slice 1 mm further back for 2 mm up: atan(1 / 2) = 26.57 degrees */
+        made_slice_defaults; /* each slice is shifted 1 mm posterior per 2 mm up: atan(1 / 2) = 26.57 degrees */
     for (int k = 0; k < 4; k++) {
         char name[16];
         memcpy(slice.position, (double[]){ 5, 1.0 * k, 2.0 * k }, sizeof slice.position);
@@ -116,7 +116,7 @@ static void missing_slices_are_interpolated_and_named(void **state)
     scanned_open(&s);
     struct volume *volume = scanned_read(&s, 0);
     assert_int_equal(volume->grid.size[2], 10);
-    for (uint32_t k = 0; k < 10; k++) /* the values grow evenly, so what lies between is known */
+    for (uint32_t k = 0; k < 10; k++) /* the values grow linearly, so interpolated ones are known */
         assert_close(volume_value(volume, 1, 1, k), 200.0 * k + 11, 0);
     check_point(volume, 0, 0, 9, 0, 0, 18);
     const struct report_line *line = scanned_said(&s, "image.slices-missing");
@@ -139,7 +139,8 @@ static void uneven_slices_are_brought_to_the_smallest_usual_distance(void **stat
     struct volume *volume = scanned_read(&s, 0);
     assert_int_equal(volume->grid.size[2], 9);
     for (uint32_t k = 0; k < 9; k++) {
-        assert_close(volume_value(volume, 0, 0, k), 100.0 * k, 0.5); /* whole numbers: half of one */
+        /* values are rounded to whole numbers: tolerance 0.5 */
+        assert_close(volume_value(volume, 0, 0, k), 100.0 * k, 0.5);
         check_point(volume, 0, 0, k, 0, 0, k);
     }
     const struct report_line *line = scanned_said(&s, "image.slices-resampled");
@@ -160,7 +161,7 @@ static void slices_a_little_off_their_places_are_taken_as_even_and_said_so(void 
     scanned_open(&s);
     struct volume *volume = scanned_read(&s, 0);
     assert_int_equal(volume->grid.size[2], 5);
-    assert_close(volume_value(volume, 0, 0, 1), 102, 0); /* its own value, not one between */
+    assert_close(volume_value(volume, 0, 0, 1), 102, 0); /* its own value, not an interpolated one */
     const struct report_line *line = scanned_said(&s, "image.locations-uneven");
     assert_non_null(line);
     assert_non_null(strstr(line->sentence, "up to 0.02 mm"));
@@ -177,7 +178,7 @@ static void a_slice_a_tenth_off_its_place_is_not_taken_as_even(void **state)
     scanned_open(&s);
     struct volume *volume = scanned_read(&s, 0);
     assert_int_equal(volume->grid.size[2], 5);
-    assert_close(volume_value(volume, 0, 0, 1), 100, 0.5); /* between those at 0 and 1.1 mm */
+    assert_close(volume_value(volume, 0, 0, 1), 100, 0.5); /* interpolated between those at 0 and 1.1 mm */
     assert_close(volume_value(volume, 0, 0, 2), 200, 0);
     assert_non_null(scanned_said(&s, "image.slices-resampled"));
     volume_unref(volume);
@@ -242,7 +243,7 @@ static void values_are_rescaled_whatever_their_bits_and_sign(void **state)
             assert_close(volume->low, 0.5 * cases[c].base - 7, 0);
             assert_close(volume->high, 0.5 * (cases[c].base + 12) - 7, 0);
             assert_non_null(scanned_said(&s, "image.single-slice"));
-            check_point(volume, 0, 0, 1, 0, 0, 3); /* as thick as it says */
+            check_point(volume, 0, 0, 1, 0, 0, 3); /* slice thickness of the file */
             volume_unref(volume);
             scanned_finish(&s);
         }
@@ -293,7 +294,7 @@ static void a_slope_of_nothing_is_not_believed(void **state)
     scanned_finish(&s);
 }
 
-/* MONOCHROME1 is about greys: the values are the file's. Of a mixture the larger part decides, and it is a warning. */
+/* MONOCHROME1 concerns display: the values are the file's. In a mixture the majority decides, with a warning. */
 static void inverted_pictures_keep_their_values_and_it_is_said(void **state)
 {
     (void)state;
@@ -372,9 +373,9 @@ static void thickness_is_not_taken_for_distance(void **state)
     scanned_finish(&s);
 }
 
-/* One file of four frames that lie in the order 2, 0, 3, 1; orientation and spacing shared, position and scale of each
- * its own. */
-/* is_packed: run lengths (PS3.5 annex G), a fragment a frame. */
+/* One file of four frames at positions in the sequence 2, 0, 3, 1; orientation and spacing shared, position and rescale
+ * per frame. */
+/* is_packed: RLE (PS3.5 annex G), one fragment per frame. */
 static void put_enhanced(const char *folder, bool has_all_places, bool is_packed)
 {
     static const int order[] = { 2, 0, 3, 1 };
@@ -397,8 +398,8 @@ static void put_enhanced(const char *folder, bool has_all_places, bool is_packed
     made_item(&made);
     made_sequence(&made, DICOM_TAG(0x0020, 0x9116));
     made_item(&made);
-    made_text(&made, DICOM_TAG(0x0020, 0x0037), "DS",
-              "0\\1\\0\\0\\0\\-1"); /* sagittal: rows to P, columns to I; the normal is R */
+    /* sagittal: rows run posterior, columns inferior; the normal is to the right */
+    made_text(&made, DICOM_TAG(0x0020, 0x0037), "DS", "0\\1\\0\\0\\0\\-1");
     made_item_end(&made);
     made_sequence_end(&made);
     made_sequence(&made, DICOM_TAG(0x0028, 0x9110));
@@ -433,7 +434,7 @@ static void put_enhanced(const char *folder, bool has_all_places, bool is_packed
         made_head(&made, DICOM_TAG(0xFFFE, 0xE000), "", 0);
     for (int f = 0; f < 4; f++) {
         uint16_t cells[2] = { (uint16_t)(100 * order[f]), (uint16_t)(100 * order[f] + 1) };
-        if (is_packed) { /* two planes, high bytes first, each one literal run of two and a byte of padding */
+        if (is_packed) { /* two byte planes, high bytes first, each one literal run of two and a padding byte */
             made_head(&made, DICOM_TAG(0xFFFE, 0xE000), "", 64 + 8);
             made_words(&made, (uint16_t[32]){ 2, 0, 64, 0, 68, 0 }, 32);
             made_raw(&made, (uint8_t[]){ 1, (uint8_t)(cells[0] >> 8), (uint8_t)(cells[1] >> 8), 128 }, 4);

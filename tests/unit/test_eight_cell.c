@@ -1,4 +1,4 @@
-/* The 8-cell algorithm: what its surfaces must be, found without its table. */
+/* The 8-cell algorithm: properties of its surfaces, checked without its table. */
 #include "core/surface/corner_cases.h"
 #include "core/surface/surface.h"
 #include "tests/check.h"
@@ -11,8 +11,8 @@ static struct mesh *extract(const struct mask *mask, int n_threads, bool close_a
 
 /* ---- the volume of a hull, by counting lattice points ----------------------------------------------------------- */
 
-/* Points with whole coordinates in `times` the hull of a cell's inside corners: on the inner side of every plane that
- * touches it. */
+/* Number of points with integer coordinates in `times` the hull of a cell's inside corners, found by testing every
+ * plane that touches the hull. */
 static int lattice_points(int inside, int times)
 {
     int n = 0;
@@ -33,8 +33,8 @@ static int lattice_points(int inside, int times)
     return n;
 }
 
-/* Their number grows as a polynomial whose leading coefficient is the volume (Ehrhart): the third difference is 6
- * volumes. */
+/* That number is a polynomial in `times` whose leading coefficient is the volume (Ehrhart), so its third difference is
+ * 6 volumes. */
 static double hull_volume(int inside)
 {
     if (!inside)
@@ -71,7 +71,7 @@ static int compare_numbers(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* Every edge is run through as often one way as the other, and every vertex is used. */
+/* Every edge is used equally often in both directions, and every vertex is used. */
 static void assert_closed(const struct mesh *mesh)
 {
     size_t n = 3 * mesh->n_triangles;
@@ -111,12 +111,12 @@ static void every_corner_case_is_closed_and_is_the_hull_of_its_corners(void **st
             assert_closed(mesh);
             assert_close(mesh_volume_mm3(mesh), hull_volume(inside), 1e-6);
             int n = __builtin_popcount((unsigned)inside);
-            assert_int_equal(mesh->n_vertices, n < 3 ? 0 : n); /* all corners of a cube are corners of their hull */
+            assert_int_equal(mesh->n_vertices, n < 3 ? 0 : n); /* all corners of a cube are vertices of their hull */
             if (hull_volume(inside) > 0) {
                 assert_int_equal(mesh_open_edges(mesh), 0);
-                assert_int_equal(mesh->n_triangles, 2 * n - 4); /* Euler: 2 faces, n corners, 3 sides a triangle */
+                assert_int_equal(mesh->n_triangles, 2 * n - 4); /* T triangles: n - 3 T / 2 + T = 2 (Euler) */
             } else {
-                assert_int_equal(mesh->n_triangles, n < 3 ? 0 : 2 * (n - 2)); /* both sides of a flat one */
+                assert_int_equal(mesh->n_triangles, n < 3 ? 0 : 2 * (n - 2)); /* both sides of a flat hull */
             }
             mesh_unref(mesh);
             mask_destroy(mask);
@@ -134,10 +134,10 @@ static void cells_with_fewer_than_three_inside_corners_or_none_outside_give_noth
             assert_int_equal(cases[inside].n_triangles, 0);
         assert_int_equal(cases[inside].used & ~inside, 0);
     }
-    assert_int_equal(cases[0x7f].n_triangles, 1); /* a corner off: the triangle across */
+    assert_int_equal(cases[0x7f].n_triangles, 1); /* one corner missing: the triangle across */
     assert_int_equal(cases[0x0f].n_triangles, 2); /* a wall */
-    assert_int_equal(cases[0x3f].n_triangles, 2); /* an edge off: the slope */
-    assert_int_equal(cases[0x69].n_triangles, 4); /* every other corner: a tetrahedron within */
+    assert_int_equal(cases[0x3f].n_triangles, 2); /* one edge missing: the slope */
+    assert_int_equal(cases[0x69].n_triangles, 4); /* every other corner: a tetrahedron inside */
 }
 
 static void the_surface_of_a_box_runs_through_its_outermost_centres(void **state)
@@ -179,11 +179,11 @@ static void a_plate_is_two_sheets_and_what_is_thinner_vanishes(void **state)
     assert_int_equal(closed->n_vertices, 70 * 4);
     assert_close(mesh_volume_mm3(closed), 0, 1e-9);
     assert_near(mesh_area_mm2(closed), 2 * 69 * 3, 1e-6);
-    assert_same_bytes(closed, open); /* cells beyond the border have at most two inside corners here */
+    assert_same_bytes(closed, open); /* cells beyond the border have at most two inside corners in this mask */
     struct error err = { 0 };
     assert_true(mesh_make_normals(closed, 2, &err));
     for (size_t v = 0; v < closed->n_vertices;
-         v++) /* the two sheets cancel each other, and still there is a direction */
+         v++) /* the two sheets' normals cancel, but the result is still a unit vector */
         assert_close(vec3_length(vec3((double)closed->normals[3 * v], (double)closed->normals[3 * v + 1],
                                       (double)closed->normals[3 * v + 2])),
                      1, 1e-5);
@@ -191,7 +191,7 @@ static void a_plate_is_two_sheets_and_what_is_thinner_vanishes(void **state)
     mesh_unref(open);
     mask_destroy(mask);
 
-    struct mask *rod = mask_make(9, 9, 9, &unit_map); /* a rod, a diagonal and a lone voxel */
+    struct mask *rod = mask_make(9, 9, 9, &unit_map); /* a rod, a diagonal and a single voxel */
     for (uint32_t i = 0; i < 9; i++)
         mask_put(rod, i, 1, 1);
     mask_put(rod, 4, 4, 4);
@@ -216,7 +216,7 @@ static void a_region_cut_by_the_scan_is_open_only_when_asked(void **state)
     struct mesh *closed = extract(mask, 2, true), *open = extract(mask, 2, false);
     assert_int_equal(mesh_open_edges(closed), 0);
     assert_int_equal(closed->n_triangles, 4 * (65 * 1 + 65 * 2 + 1 * 2));
-    assert_int_equal(open->n_triangles, 4 * 65 * 2); /* only the two long walls face cells that are there */
+    assert_int_equal(open->n_triangles, 4 * 65 * 2); /* only the two long walls face existing cells */
     assert_int_equal(mesh_open_edges(open), 2 * 2 * (65 + 2));
     mesh_unref(closed);
     mesh_unref(open);

@@ -1,13 +1,13 @@
-/* Pictures are decoded again by the libraries' own decoders: what a browser will do. */
+/* Images are decoded again by other decoders of the libraries, as a browser would. */
 #include <spng.h>
 #include <turbojpeg.h>
 
 #include "core/encode/encode.h"
 #include "tests/check.h"
 
-enum { WIDTH = 67, HEIGHT = 45 }; /* no multiple of a block, nor of two */
+enum { WIDTH = 67, HEIGHT = 45 }; /* not a multiple of a block, nor of two */
 
-/* A smooth picture, so that losses stay small: red along x, green along y, blue constant. */
+/* A smooth image, so that losses are small: gradients of red along x and green along y, constant blue. */
 static struct image *smooth_image(void)
 {
     struct error err = { 0 };
@@ -60,9 +60,9 @@ static void a_jpeg_shows_the_picture_again_the_same_way_up(void **state)
 {
     (void)state;
     struct image *image = smooth_image();
-    expect_jpeg(image, 95, true, 4);   /* a level or two of quantisation, and colour conversion */
-    expect_jpeg(image, 95, false, 8);  /* and colours of two by two pixels */
-    expect_jpeg(image, 80, false, 14); /* the fast transform */
+    expect_jpeg(image, 95, true, 4);   /* one or two levels of quantisation, and colour conversion */
+    expect_jpeg(image, 95, false, 8);  /* and colours of 2 x 2 pixels */
+    expect_jpeg(image, 80, false, 14); /* the fast DCT */
     image_destroy(image);
 }
 

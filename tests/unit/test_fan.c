@@ -1,4 +1,4 @@
-/* The neighbour fan: what its triangles join, and which way they face. */
+/* The neighbour fan: which voxels its triangles connect, and which way they face. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -72,8 +72,8 @@ static void fan_triangles_join_three_border_voxels_that_are_neighbours_each_once
         }
 }
 
-/* Around each voxel of a flat sheet lie eight neighbours; so of every four voxels in a square, each is left out of one
- * triangle. */
+/* In a flat sheet each voxel has eight neighbours, so each square of four voxels has four triangles, each without one
+ * of the corners. */
 static void a_flat_sheet_has_four_triangles_in_every_square_and_a_line_has_none(void **state)
 {
     (void)state;
@@ -104,8 +104,7 @@ static void a_flat_sheet_has_four_triangles_in_every_square_and_a_line_has_none(
     mask_destroy(line);
 }
 
-/* What the thesis could not: on the far side as on the near one, triangles face outward. Some stand square to the ball.
- */
+/* Triangles face outward on all sides, which the thesis could not achieve. Some are perpendicular to the ball. */
 static void a_balls_fan_faces_outward_all_around(void **state)
 {
     (void)state;
@@ -128,7 +127,7 @@ static void a_balls_fan_faces_outward_all_around(void **state)
     }
 }
 
-/* Neighbours one above the other stand at the same angle: no rounding may decide which comes first. */
+/* Neighbours directly above each other have the same angle: rounding must not decide their sequence. */
 static void turning_the_grid_in_space_changes_no_triangle(void **state)
 {
     (void)state;
@@ -148,7 +147,7 @@ static void turning_the_grid_in_space_changes_no_triangle(void **state)
             uint32_t a[3], b[3];
             memcpy(a, mesh->indices + 3 * t, sizeof a);
             memcpy(b, expected->indices + 3 * t, sizeof b);
-            qsort(a, 3, sizeof *a, compare_u32); /* where normals cancel, rounding may choose the way it winds */
+            qsort(a, 3, sizeof *a, compare_u32); /* where normals cancel, rounding may choose the winding */
             qsort(b, 3, sizeof *b, compare_u32);
             assert_memory_equal(a, b, sizeof a);
         }

@@ -1,3 +1,4 @@
+/* Marching cubes: closedness, topology, area and volume, against formulas and an independent Euler number. */
 #include "core/surface/marching_cubes.h"
 #include "core/surface/surface.h"
 #include "tests/check.h"
@@ -21,8 +22,8 @@ static void every_corner_case_is_closed_and_encloses_its_corners(void **state)
             struct mesh *mesh = extract(mask, 1, true);
             assert_int_equal(mesh_open_edges(mesh), 0);
             assert_int_equal(mesh_euler(mesh), euler_of_surface(mask));
-            /* every voxel keeps at least the octahedron around its centre, of 1/6, and the surface never leaves the box
-             */
+            /* every voxel keeps at least the octahedron around its centre (volume 1/6), and the surface never leaves
+             * the box */
             int n = __builtin_popcount((unsigned)inside);
             assert_true(mesh_volume_mm3(mesh) >= n / 6.0 - 1e-6);
             assert_true(mesh_volume_mm3(mesh) <= 8);
@@ -64,8 +65,8 @@ static void a_single_voxel_is_an_octahedron_that_faces_outward(void **state)
     }
 }
 
-/* A box of a x b x c voxels: all of it but its 12 edges, each cut by a wedge of 1/8 (half of half x half) of its cells,
- * and its 8 corners, where of the eighth cell only the tetrahedron of 1/48 is inside. */
+/* Volume of a box of a x b x c voxels: all but its 12 edges, each of whose cells loses a wedge of 1/8 (half of half x
+ * half), and its 8 corner cells, of which only a tetrahedron of 1/48 is inside. */
 static double box_volume(double a, double b, double c)
 {
     double inner = (a - 1) * (b - 1) * (c - 1);
@@ -91,7 +92,7 @@ static void the_volume_of_a_box_is_exact_also_where_the_scan_cuts_it(void **stat
             assert_int_equal(mesh_open_edges(mesh), 0);
             assert_int_equal(mesh_euler(mesh), 2);
             assert_near(mesh_volume_mm3(mesh), box_volume(n[0], n[1], n[2]), 1e-6);
-            assert_close(mesh->bounds_lps_mm.low.x, margin - 0.5, 1e-6); /* the outer faces of its outermost voxels */
+            assert_close(mesh->bounds_lps_mm.low.x, margin - 0.5, 1e-6); /* the outer faces of the outermost voxels */
             assert_close(mesh->bounds_lps_mm.high.x, margin + n[0] - 0.5, 1e-6);
             mesh_unref(mesh);
             mask_destroy(mask);
@@ -101,14 +102,14 @@ static void the_volume_of_a_box_is_exact_also_where_the_scan_cuts_it(void **stat
 static void a_region_cut_by_the_scan_is_open_only_when_asked(void **state)
 {
     (void)state;
-    struct mask *mask = mask_make(70, 5, 4, &unit_map); /* a slab across the grid: cut on four sides */
+    struct mask *mask = mask_make(70, 5, 4, &unit_map); /* a slab across the grid, cut on four sides */
     for (uint32_t k = 0; k < 4; k++)
         for (uint32_t i = 0; i < 70; i++)
             mask_put(mask, i, 2, k);
     struct mesh *closed = extract(mask, 2, true), *open = extract(mask, 2, false);
     assert_int_equal(mesh_open_edges(closed), 0);
     assert_int_equal(mesh_euler(closed), 2);
-    /* two sheets of 69 x 3 cells, each cell two triangles; open along 2 (69 + 3) cell sides each */
+    /* two sheets of 69 x 3 cells with two triangles each; each open along 2 (69 + 3) cell sides */
     assert_int_equal(open->n_triangles, 2 * 2 * 69 * 3);
     assert_int_equal(open->n_vertices, 2 * 70 * 4);
     assert_int_equal(mesh_open_edges(open), 2 * 2 * (69 + 3));
@@ -137,10 +138,10 @@ static void a_sphere_has_the_analytic_volume_and_nearly_the_area(void **state)
     struct mesh *mesh = extract(mask, 2, true);
     assert_int_equal(mesh_open_edges(mesh), 0);
     assert_int_equal(mesh_euler(mesh), 2);
-    assert_near(mesh_volume_mm3(mesh), 4.0 / 3.0 * MATH_PI * 20 * 20 * 20,
-                0.01); /* the lattice points of a ball: well within 1 % */
-    /* midpoints leave steps of whole voxels that do not vanish with more voxels: the area is too large, never too
-     * small, and by less than the 3 / 2 that bare voxel faces have */
+    /* number of lattice points in a ball: well within 1 % */
+    assert_near(mesh_volume_mm3(mesh), 4.0 / 3.0 * MATH_PI * 20 * 20 * 20, 0.01);
+    /* midpoints leave steps that do not vanish with more voxels: the area is too large, never too small, and by less
+     * than the factor 3 / 2 of bare voxel faces */
     double area = 4 * MATH_PI * 20 * 20;
     assert_true(mesh_area_mm2(mesh) > area && mesh_area_mm2(mesh) < 1.15 * area);
     struct box3 box = mesh->bounds_lps_mm;
@@ -153,7 +154,7 @@ static void a_sphere_has_the_analytic_volume_and_nearly_the_area(void **state)
 static void holes_pieces_and_tunnels_have_their_euler_number(void **state)
 {
     (void)state;
-    /* a torus 0; a hollow ball 4; a ball apart 2; a plate with two holes -2 */
+    /* a torus 0; a hollow ball 4; a separate ball 2; a plate with two holes -2 */
     struct mask *torus = mask_make(40, 40, 12, &unit_map), *hollow = mask_make(40, 40, 40, &unit_map);
     for (uint32_t k = 0; k < 12; k++)
         for (uint32_t j = 0; j < 40; j++)
@@ -185,7 +186,8 @@ static void holes_pieces_and_tunnels_have_their_euler_number(void **state)
         struct mesh *mesh = extract(shapes[s].mask, 3, true);
         assert_int_equal(mesh_open_edges(mesh), 0);
         assert_int_equal(mesh_euler(mesh), shapes[s].euler);
-        assert_int_equal(euler_of_surface(shapes[s].mask), shapes[s].euler); /* so that the count below is trusted */
+        /* so that the count below can be trusted */
+        assert_int_equal(euler_of_surface(shapes[s].mask), shapes[s].euler);
         mesh_unref(mesh);
         mask_destroy(shapes[s].mask);
     }
@@ -196,7 +198,7 @@ static void random_blocks_are_closed_and_equal_for_any_threads_and_code(void **s
     (void)state;
     static const uint32_t sides[] = { 1, 2, 5, 31, 62, 63, 64, 65, 127, 128, 130 };
     uint64_t seed = 20;
-    /* oblique and left-handed, to be sure that nothing depends on an upright grid */
+    /* oblique and left-handed: nothing may depend on an upright grid */
     struct affine map = { { { 0.8, 0.6, 0 }, { -1.2, 1.6, 0 }, { 0, 0, -3 } }, { 5, 6, 7 } };
     for (size_t s = 0; s < sizeof sides / sizeof *sides; s++)
         for (uint32_t percent = 5; percent < 100; percent += 30) {

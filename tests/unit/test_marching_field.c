@@ -1,4 +1,4 @@
-/* Surfaces of fields: against the exact sphere and against VTK. */
+/* Isosurfaces of fields, against the exact sphere and VTK. */
 #include <unistd.h>
 
 #include "core/surface/surface.h"
@@ -29,7 +29,7 @@ static struct mesh *extract(const struct volume *field, double iso, int n_thread
 static double from_middle(struct vec3 p)
 {
     return 100 - vec3_length(p);
-} /* linear along rays */
+} /* linear along rays from the centre */
 
 static void a_sphere_is_where_it_is_to_a_hundredth_of_a_voxel(void **state)
 {
@@ -44,12 +44,12 @@ static void a_sphere_is_where_it_is_to_a_hundredth_of_a_voxel(void **state)
         assert_int_equal(mesh_euler(mesh), 2);
         for (size_t v = 0; v < mesh->n_vertices; v++) {
             const float *p = mesh->positions_lps_mm + 3 * v;
-            /* linear along an edge of h mm the distance is short by at most h^2 / (8 r), here 0.029 for 2 mm */
+            /* linear interpolation along an edge of h mm is short by at most h^2 / (8 r), here 0.029 for 2 mm */
             assert_close(vec3_length(vec3((double)p[0], (double)p[1], (double)p[2])), 17.5, 0.03);
         }
         assert_near(mesh_volume_mm3(mesh), 4 / 3.0 * MATH_PI * pow(17.5, 3), 0.006);
-        assert_near(mesh_area_mm2(mesh), 4 * MATH_PI * 17.5 * 17.5,
-                    0.006); /* no stairs: with midpoints it is 9 % too large */
+        /* no voxel steps: with midpoints the area is 9 % too large */
+        assert_near(mesh_area_mm2(mesh), 4 * MATH_PI * 17.5 * 17.5, 0.006);
         mesh_unref(mesh);
         volume_unref(field);
     }
@@ -73,7 +73,7 @@ static void write_floats(char *path, const float *values, size_t n)
 static void triangles_and_vertices_equal_vtk_on_a_wavy_field(void **state)
 {
     (void)state;
-    struct volume *field = field_of(41, 37, 29, unit_map, waves); /* the voxel's index is its place */
+    struct volume *field = field_of(41, 37, 29, unit_map, waves); /* positions equal voxel indices */
     for (int i = 0; i < 3; i++) {
         const double levels[3] = { 0, 0.7, -1.3 };
         char field_path[] = "/tmp/beamroom-test-XXXXXX", vertex_path[] = "/tmp/beamroom-test-XXXXXX", level[32],
@@ -120,7 +120,7 @@ static void a_field_cut_by_its_grid_is_closed_half_a_voxel_behind_it(void **stat
     assert_close(closed->bounds_lps_mm.high.x, 7.5, 1e-6);
     assert_close(closed->bounds_lps_mm.high.y, 4.5, 1e-6);
     assert_true(mesh_open_edges(open) > 0);
-    assert_close(open->bounds_lps_mm.low.x, 2.75, 1e-6); /* a wall across the grid, flat */
+    assert_close(open->bounds_lps_mm.low.x, 2.75, 1e-6); /* a flat wall across the grid */
     assert_close(open->bounds_lps_mm.high.x, 2.75, 1e-6);
     assert_near(mesh_area_mm2(open), 4 * 3, 1e-6);
     mesh_unref(closed);
@@ -152,7 +152,7 @@ static void what_has_no_value_is_outside_and_its_edges_are_cut_in_the_middle(voi
 static double noise(struct vec3 p)
 {
     uint64_t seed = (uint64_t)(p.x + 512) << 40 ^ (uint64_t)(p.y + 512) << 20 ^ (uint64_t)(p.z + 512);
-    return next_random(&seed) % 9; /* often exactly the value asked for */
+    return next_random(&seed) % 9; /* often exactly the iso value */
 }
 
 static void noise_is_closed_and_equal_for_any_threads(void **state)

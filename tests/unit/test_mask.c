@@ -1,3 +1,4 @@
+/* Masks from labels and regions: against a test of every voxel; packed, swept and reduced. */
 #include "core/base/mem.h"
 #include "core/region/boundary.h"
 #include "core/region/mask.h"
@@ -18,7 +19,7 @@ static struct volume *random_layer(uint32_t nx, uint32_t ny, uint32_t nz, enum v
     return layer;
 }
 
-/* Of a row's words, also behind its end. */
+/* Bit of a row, also beyond its end. */
 static bool bit_at(const struct mask *mask, uint32_t i, uint32_t j, uint32_t k)
 {
     return mask->bits[((size_t)k * mask->size[1] + j) * mask->words + i / 64] >> i % 64 & 1;
@@ -39,7 +40,7 @@ static void assert_same_bits(const struct mask *a, const struct mask *b)
     assert_memory_equal(a->bits, b->bits, (size_t)a->words * a->size[1] * a->size[2] * sizeof *a->bits);
 }
 
-/* Every voxel by itself, and nothing set behind the end of a row. */
+/* Compares every voxel, and checks that no bit is set beyond the end of a row. */
 static void assert_holds(const struct mask *mask, const struct volume *layer, const uint16_t *labels, size_t n_labels)
 {
     uint64_t count = 0;
@@ -60,7 +61,7 @@ static void labels_become_bits_for_any_width_type_and_set(void **state)
 {
     (void)state;
     static const uint16_t one[] = { 3 }, some[] = { 200, 7, 8, 9, 7 }, with_zero[] = { 0, 255 };
-    uint16_t odd[40]; /* more runs than the vector code takes */
+    uint16_t odd[40]; /* more runs than the vector code handles */
     for (uint16_t i = 0; i < 40; i++)
         odd[i] = (uint16_t)(2 * i + 1);
     const struct {
@@ -112,7 +113,7 @@ static void vector_and_portable_packing_give_the_same_bits(void **state)
     (void)state;
     const struct mask_packer *best = mask_packer_best();
     if (best == &mask_packer_portable)
-        skip(); /* no AVX2 here: nothing to compare */
+        skip(); /* no AVX2: nothing to compare */
     struct label_test *test = mem_new(sizeof *test);
     uint64_t seed = 9, a[5], b[5];
     uint8_t bytes[300];
@@ -155,8 +156,8 @@ static void a_region_brings_its_descendants_on_the_same_grid(void **state)
     (void)state;
     struct affine other = unit_map;
     other.origin.x = 0.5;
-    /* regions: 0 head (label 1), 1 brain in it (2), 2 tumour in that (3), 3 a neighbour (4); on layer 1, same grid: 4 a
-     * vessel in the brain (1); on layer 2, half a voxel off: 5 a target in the brain (1) */
+    /* regions: 0 head (label 1), 1 brain inside it (2), 2 tumour inside that (3), 3 a neighbour (4); on layer 1, same
+     * grid: 4 a vessel in the brain (1); on layer 2, half a voxel shifted: 5 a target in the brain (1) */
     struct region regions[6] = { { .parent = -1, .label = 1 },
                                  { .parent = 0, .label = 2 },
                                  { .parent = 1, .label = 3 },
@@ -206,7 +207,7 @@ static void reducing_keeps_what_is_half_full_and_nothing_that_is_empty(void **st
                         for (uint32_t y = j * f; y < (j + 1) * f && y < 19; y++)
                             for (uint32_t x = i * f; x < (i + 1) * f && x < 131; x++, all++)
                                 inside += mask_has(mask, x, y, z);
-                    if (2 * inside >= all || inside == 0) /* between is what holds the shape together */
+                    if (2 * inside >= all || inside == 0) /* blocks in between are decided by topology */
                         assert_int_equal(mask_has(one, i, j, k), inside > 0);
                 }
         mask_destroy(one);
@@ -246,13 +247,13 @@ static void a_small_region_does_not_vanish_when_reduced(void **state)
     struct volume *layer = layer_make(40, 40, 40, VOXEL_U8, &unit_map);
     uint8_t *voxels = layer->voxels;
     voxels[0] = 1;
-    voxels[(20 * 40 + 20) * 40 + 20] = 1; /* two in one block of 4: 20 and 21 */
+    voxels[(20 * 40 + 20) * 40 + 20] = 1; /* two in one block of 4: indices 20 and 21 */
     voxels[(20 * 40 + 20) * 40 + 21] = 1;
     struct error err = { 0 };
     struct mask *mask = from_labels(layer, (uint16_t[]){ 1 }, 1, 1);
     for (int n_threads = 1; n_threads < 4; n_threads++) {
         struct mask *coarse = mask_reduce(mask, (uint32_t[]){ 4, 4, 4 }, n_threads, &err);
-        assert_int_equal(mask_count(coarse), 2); /* each piece */
+        assert_int_equal(mask_count(coarse), 2); /* one voxel for each piece */
         assert_true(mask_has(coarse, 0, 0, 0));
         assert_true(mask_has(coarse, 5, 5, 5));
         mask_destroy(coarse);
@@ -261,8 +262,8 @@ static void a_small_region_does_not_vanish_when_reduced(void **state)
     volume_unref(layer);
 }
 
-/* Regions 0 to 8 on four layers: nested, two with one label, one without a voxel; layer 2 lies on another grid, layer 3
- * has less in it. */
+/* Regions 0 to 8 on four layers: nested ones, two with one label, one without a voxel; layer 2 has another grid, layer
+ * 3 fewer labels. */
 static void one_sweep_gives_the_masks_that_are_made_one_by_one(void **state)
 {
     (void)state;
@@ -291,9 +292,9 @@ static void one_sweep_gives_the_masks_that_are_made_one_by_one(void **state)
             set.layers[2] = layer_make(size[0], size[1], size[2], VOXEL_U8, &other);
             set.layers[3] = layer_make(size[0], size[1], size[2], VOXEL_U16, &unit_map);
             memset(set.layers[2]->voxels, 2, grid_n_voxels(&set.layers[2]->grid)); /* whole words of one label */
-            memset(set.layers[1]->voxels, 0,
-                   (size_t)size[0] * size[1] * sizeof(uint16_t)); /* its masks begin with the second slice, */
-            ((uint16_t *)set.layers[3]->voxels)[0] = 3000;        /* but with a later layer's first */
+            /* the masks begin with the second slice, */
+            memset(set.layers[1]->voxels, 0, (size_t)size[0] * size[1] * sizeof(uint16_t));
+            ((uint16_t *)set.layers[3]->voxels)[0] = 3000; /* but with the first slice in a later layer */
             struct mask_wish wishes[2 * N];
             for (size_t w = 0; w < 2 * N; w++)
                 wishes[w] = (struct mask_wish){ w % N, w >= N };
@@ -307,8 +308,8 @@ static void one_sweep_gives_the_masks_that_are_made_one_by_one(void **state)
                     assert_same_bits(masks[w], alone);
                     assert_memory_equal(&masks[w]->lps_mm_from_ijk, &alone->lps_mm_from_ijk,
                                         sizeof alone->lps_mm_from_ijk);
-                    assert_int_equal(mask_count(masks[w]),
-                                     mask_count(alone)); /* nothing lies beyond the reach that is told */
+                    /* no bit lies outside the stated extent */
+                    assert_int_equal(mask_count(masks[w]), mask_count(alone));
                     mask_destroy(alone);
                     mask_destroy(masks[w]);
                 }

@@ -1,4 +1,4 @@
-/* Masks made coarser: what is thin must hold together. */
+/* Reducing masks: thin parts stay connected, topology is kept. */
 #include "tests/check.h"
 #include "tests/unit/made_mask.h"
 
@@ -12,8 +12,7 @@ static void put_in(struct mask *mask, bool is_inside(double x, double y, double 
                     mask_put(mask, i, j, k);
             }
 }
-static bool in_shell(double x, double y,
-                     double z) /* thick enough to be closed, voxels of 1 mm hanging together by faces */
+static bool in_shell(double x, double y, double z) /* shapes thick enough to be connected by faces at voxels of 1 mm */
 {
     double r = sqrt(x * x + y * y + z * z);
     return r < 27 && r >= 25.2;
@@ -33,7 +32,7 @@ static void thin_shapes_keep_their_shape_when_reduced(void **state)
     (void)state;
     static const struct {
         bool (*is_inside)(double, double, double);
-        long euler; /* of the surface: 2 a sphere */
+        long euler; /* Euler number of the surface: 2 for a sphere */
         uint32_t longest;
     } shapes[] = { { in_shell, 4, 7 }, { in_ring, 0, 8 }, { in_ball, 2, 8 } };
     struct affine map = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { -31.3, -30.8, -31.6 } };
@@ -46,8 +45,8 @@ static void thin_shapes_keep_their_shape_when_reduced(void **state)
             for (uint32_t along_z = 1; along_z <= f; along_z += f - 1) {
                 struct mask *coarse = mask_reduce(mask, (uint32_t[]){ f, f, along_z }, 2, &err);
                 assert_int_equal(euler_of_surface(coarse), shapes[s].euler);
-                /* and is no thicker than it must be: about one layer of blocks where it is thinner than that; a ball of
-                 * four blocks' radius is its volume to a share of the blocks at its border */
+                /* no thicker than necessary: about one layer of blocks where the shape is thinner than that; a ball
+                 * with a radius of four blocks has its volume up to a share of its border blocks */
                 double least = shapes[s].is_inside == in_ball ? 0.93 : 0.9,
                        most = shapes[s].is_inside == in_ball ? 1.07 : 0.9 + f;
                 double volume = (double)mask_count(coarse) * f * f * along_z / (double)mask_count(mask);
@@ -64,8 +63,9 @@ static void a_plate_keeps_its_extent_but_for_a_rim_of_one_block(void **state)
     (void)state;
     struct error err = { 0 };
     struct mask *mask = mask_make(64, 64, 12, &unit_map);
+    /* a quarter of every block it touches */
     for (uint32_t at = 0; at < 48 * 48; at++)
-        mask_put(mask, 8 + at % 48, 8 + at / 48, 5); /* a quarter of each block it is in */
+        mask_put(mask, 8 + at % 48, 8 + at / 48, 5);
     struct mask *coarse = mask_reduce(mask, (uint32_t[]){ 4, 4, 4 }, 1, &err);
     for (uint32_t j = 3; j <= 12; j++)
         for (uint32_t i = 3; i <= 12; i++)

@@ -1,7 +1,8 @@
+/* Measures of meshes: volume, area, open edges, Euler number, normals. */
 #include "core/surface/mesh.h"
 #include "tests/check.h"
 
-/* The corners of a box with its 12 triangles, counter-clockwise seen from outside. */
+/* The corners of a box with its 12 triangles, counter-clockwise as seen from outside. */
 static struct mesh *box_mesh(double x, double y, double z, struct vec3 at)
 {
     static const uint32_t triangles[12][3] = { { 0, 4, 6 }, { 0, 6, 2 }, { 1, 3, 7 }, { 1, 7, 5 },
@@ -52,9 +53,10 @@ static void a_missing_turned_doubled_or_degenerate_triangle_shows_as_open_edges(
     assert_int_equal(mesh_euler(mesh), 1);
     mesh->n_triangles = 12;
     swap_winding(mesh, 5);
-    assert_int_equal(mesh_open_edges(mesh), 6); /* three edges used twice one way and never the other */
+    assert_int_equal(mesh_open_edges(mesh), 6); /* three edges used twice in one direction and never in the other */
     swap_winding(mesh, 5);
-    memcpy(mesh->indices + 33, mesh->indices + 30, 3 * sizeof(uint32_t)); /* the last now doubles the one before */
+    /* the last triangle is now a copy of the one before */
+    memcpy(mesh->indices + 33, mesh->indices + 30, 3 * sizeof(uint32_t));
     assert_true(mesh_open_edges(mesh) > 0);
     mesh->indices[33] = mesh->indices[34] = mesh->indices[35] = 0;
     assert_true(mesh_open_edges(mesh) >= 3);
@@ -66,7 +68,7 @@ static void edges_are_counted_right_around_a_vertex_of_many_triangles(void **sta
     (void)state;
     enum { N = 500 }; /* two fans over one rim: a closed double cone */
     struct error err = { 0 };
-    struct mesh *mesh = mesh_create(N + 3, 2 * N, &err); /* and a vertex nobody uses */
+    struct mesh *mesh = mesh_create(N + 3, 2 * N, &err); /* and one unused vertex */
     memset(mesh->positions_lps_mm, 0, 3 * mesh->n_vertices * sizeof(float));
     for (uint32_t i = 0; i < N; i++) {
         uint32_t next = (i + 1) % N;
@@ -95,7 +97,7 @@ static void normals_are_area_weighted_unit_and_outward(void **state)
     struct error err = { 0 };
     struct mesh *mesh = box_mesh(2, 3, 4, vec3(-1, -1, -1));
     assert_true(mesh_make_normals(mesh, 1, &err));
-    /* corner 0 touches two triangles on each of its faces x = -1 (area 12), y = -1 (8) and z = -1 (6) */
+    /* vertex 0 is in two triangles on each of its faces x = -1 (area 12), y = -1 (8) and z = -1 (6) */
     double length = sqrt(12.0 * 12 + 8.0 * 8 + 6.0 * 6);
     assert_close((double)mesh->normals[0], -12 / length, 1e-6);
     assert_close((double)mesh->normals[1], -8 / length, 1e-6);
@@ -109,7 +111,7 @@ static void normals_are_area_weighted_unit_and_outward(void **state)
     mesh_unref(mesh);
 }
 
-/* A closed tube bent to a ring: any number of vertices, every one with a known outward direction. */
+/* A closed tube bent to a ring: any number of vertices, all with a known outward direction. */
 static struct mesh *torus_mesh(uint32_t n, uint32_t m)
 {
     struct error err = { 0 };
@@ -140,7 +142,7 @@ static void normals_are_the_same_bytes_for_any_threads(void **state)
     assert_near(mesh_volume_mm3(one), 2 * MATH_PI * MATH_PI * 10 * 9, 0.005);
     assert_true(mesh_make_normals(one, 1, &err));
     for (int n_threads = 2; n_threads < 9; n_threads++) {
-        assert_true(mesh_make_normals(more, n_threads, &err)); /* again over the last ones: those are dropped */
+        assert_true(mesh_make_normals(more, n_threads, &err)); /* made again: replaces the former normals */
         assert_memory_equal(one->normals, more->normals, 3 * one->n_vertices * sizeof(float));
     }
     for (uint32_t i = 0; i < N; i++)

@@ -1,4 +1,4 @@
-/* Surfaces as files: by the formats' specifications byte for byte, and as VTK reads them. */
+/* Mesh files: byte for byte by the formats' specifications, and as VTK reads them. */
 #include <unistd.h>
 
 #include "core/base/file_write.h"
@@ -131,8 +131,8 @@ static void ply_states_unit_space_and_origin_and_holds_points_normals_and_faces(
     mesh_unref(mesh);
 }
 
-/* GLB: head, JSON chunk, BIN chunk, each a multiple of four bytes, the lengths adding up (glTF 2.0, 4.4). Returns the
- * JSON, free(). */
+/* Checks a GLB: header, JSON chunk, BIN chunk, each a multiple of four bytes, lengths that add up (glTF 2.0, 4.4).
+ * Returns the JSON; free it. */
 static char *check_glb(const uint8_t *bytes, size_t n, uint32_t n_expected_data)
 {
     assert_memory_equal(bytes, "glTF", 4);
@@ -158,7 +158,7 @@ static void glb_holds_mm_lps_below_a_node_that_turns_them_to_metres_with_the_top
     uint8_t *bytes = export_of(mesh, MESH_GLB, &what, &n);
     char *json = check_glb(bytes, n, 4 * 12 + 4 * 12 + 4 * 12);
     const uint8_t *data = bytes + n - 144;
-    assert_close(float_at(data + 3 * 12 + 8), 12, 0); /* the geometry itself stays mm LPS */
+    assert_close(float_at(data + 3 * 12 + 8), 12, 0); /* the vertex positions stay in mm LPS */
     assert_int_equal(u32_at(data + 48 + 4), 2);       /* second index */
     for (const char *const *part =
              (const char *const[]){
@@ -166,7 +166,7 @@ static void glb_holds_mm_lps_below_a_node_that_turns_them_to_metres_with_the_top
                  "\"unit\":\"mm\"", "DICOM LPS",
                  "\"plan\":\"head-3\",\"region\":\"brain\",\"algorithm\":\"marching-cubes\",\"phantom\":true",
                  "\"NORMAL\":2", "\"buffers\":[{\"byteLength\":144}]",
-                 "\"baseColorFactor\":[1.0000,0.0000,0.5029,1]", /* sRGB 188 is half the light */
+                 "\"baseColorFactor\":[1.0000,0.0000,0.5029,1]", /* sRGB 188 is half the linear intensity */
                  NULL };
          *part; part++)
         if (!strstr(json, *part))
@@ -192,7 +192,7 @@ static void what_ids_hold_cannot_break_a_head(void **state)
     wild[sizeof wild - 1] = 0;
     const struct mesh_export_about worst = {
         wild, wild, wild, true, false, { 0 }
-    }; /* 63 bytes of each, six characters a byte */
+    }; /* 63 bytes each, six characters per byte */
     const struct mesh_export_about quotes = { "a\"b\\c\nend_header\n", "x", "y", false, false, { 0 } };
     size_t n;
     uint8_t *bytes = export_of(mesh, MESH_GLB, &worst, &n);
@@ -273,8 +273,7 @@ static void words_and_formats_name_each_other(void **state)
 
 /* ---- as VTK reads them ------------------------------------------------------------------------------------------ */
 
-/* An ellipsoid off the middle of a turned grid with unequal spacing, so that no two axes can be taken for each other.
- */
+/* An ellipsoid off the centre of a rotated grid with unequal spacing, so that no two axes can be confused. */
 static struct mesh *make_ellipsoid(enum surface_algorithm algorithm)
 {
     const double c = cos(0.3), s = sin(0.3);
@@ -337,7 +336,7 @@ static void assert_vtk_reads_the_same(enum surface_algorithm algorithm)
         assert_int_equal(values[0], n_triangles);
         assert_near(values[1], area * scale * scale, 1e-4);
         assert_near(values[2], volume * scale * scale * scale, 1e-4);
-        /* the box, for GLB as x left, y superior, z anterior */
+        /* the bounds; for GLB as x left, y superior, z anterior */
         double low[3] = { box.low.x, box.low.y, box.low.z }, high[3] = { box.high.x, box.high.y, box.high.z };
         if (is_glb) {
             low[1] = box.low.z, high[1] = box.high.z;

@@ -1,4 +1,4 @@
-/* Splines: what Cox and de Boor's functions must be, and surfaces through regions whose shape is known. */
+/* Splines: properties of Cox and de Boor's functions, and surfaces of regions with known shapes. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,8 +13,8 @@
 
 /* ---- the functions ---------------------------------------------------------------------------------------------- */
 
-/* With the means of order - 1 knots as control values, a spline is the straight line t (Greville's abscissae): so
- * every function has to be right, not only their sum. */
+/* With the means of order - 1 knots as control values (Greville abscissae), a spline is the straight line t: so every
+ * function has to be right, not only their sum. */
 static void basis_functions_are_shares_of_1_and_make_straight_lines(void **state)
 {
     (void)state;
@@ -58,9 +58,9 @@ static void fill_cylinder(struct vec3 points[N_ROWS * N_AROUND], double radius)
         }
 }
 
-/* A uniform spline through control points every 30 degrees on a circle: at knots the cubic is (1, 4, 1) / 6 of three
- * neighbours, the quadratic (1, 1) / 2 of two; halfway they are (1, 23, 23, 1) / 48 and (1, 6, 1) / 8; the linear one
- * is the chord. */
+/* A uniform spline through control points every 30 degrees on a circle. At knots the cubic is (1, 4, 1) / 6 of three
+ * neighbours, the quadratic (1, 1) / 2 of two; half-way they are (1, 23, 23, 1) / 48 and (1, 6, 1) / 8. The linear
+ * spline is the chord. */
 static void a_circle_of_control_points_is_missed_by_the_known_amount(void **state)
 {
     (void)state;
@@ -106,7 +106,7 @@ static void a_surface_begins_at_its_first_row_and_ends_at_its_last(void **state)
         }
 }
 
-/* What makes them rational: with the right weights a conic is met exactly. A quarter circle, along. */
+/* The meaning of rational: with the right weights a conic is exact. Here a quarter circle, along the tube. */
 static void weights_make_a_quarter_circle_exact(void **state)
 {
     (void)state;
@@ -128,7 +128,7 @@ static void weights_make_a_quarter_circle_exact(void **state)
 
 static const struct affine slices_3mm = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 3 } }, { 0, 0, 0 } };
 
-/* Voxels whose index is in a shape. */
+/* A mask of the voxels whose index is in a shape. */
 static struct mask *made(uint32_t nx, uint32_t ny, uint32_t nz, const struct affine *map,
                          bool (*is_in)(double x, double y, int z))
 {
@@ -187,8 +187,8 @@ static bool in_cylinder(double x, double y, int z)
     return hypot(x - 22.3, y - 21.6) <= 18;
 }
 
-/* Outlines of a digital disc lie within a pixel of its circle. 8 control points on it make a cubic that is (2 + cos 45)
- * / 3 of the radius at the knots; 72 one that is 0.999 of it. */
+/* Outlines of a digital disc are within a pixel of its circle. A cubic of 8 control points on it has (2 + cos 45) / 3
+ * of the radius at the knots, one of 72 points 0.999 of it. */
 static void a_cylinder_comes_out_as_far_inside_as_its_order_says(void **state)
 {
     (void)state;
@@ -215,7 +215,8 @@ static bool in_ellipsoid(double x, double y, int z)
     return pow((x - 24) / 20, 2) + pow((y - 18) / 14, 2) + pow((z - 9) / 8.0, 2) <= 1;
 }
 
-/* The thesis's figure of the three orders: the higher, the smoother, and the further from the data. */
+/* As in the thesis's figure of the three orders: the higher the order, the smoother the surface and the farther from
+ * the data. */
 static void the_higher_the_order_the_further_from_the_region(void **state)
 {
     (void)state;
@@ -225,8 +226,8 @@ static void the_higher_the_order_the_further_from_the_region(void **state)
         for (int order = 2; order <= 4; order++) {
             struct mesh *mesh = nurbs(mask, order, (enum nurbs_sampling)sampling, 24);
             mean[order] = mean_distance(mask, mesh);
-            assert_near(mesh_volume_mm3(mesh), voxels_mm3(mask),
-                        0.05); /* 24 chords take 1.1 % off, a cubic 2 %; the rest is the ends */
+            /* 24 chords lose 1.1 %, a cubic 2 %; the rest is lost at the ends */
+            assert_near(mesh_volume_mm3(mesh), voxels_mm3(mask), 0.05);
             assert_int_equal(mesh_euler(mesh), 2);
             mesh_unref(mesh);
         }
@@ -241,7 +242,7 @@ static bool in_spiked_disc(double x, double y, int z)
     return hypot(x - 12, y - 12) <= 8.2 || (y == 12 && x > 12 && x <= 30);
 }
 
-/* A bin keeps its farthest point, so the end of a spike is met; even steps along the outline pass it by. */
+/* A bin keeps its farthest point and so the end of a spike; evenly spaced samples miss it. */
 static void degree_bins_keep_the_end_of_a_spike(void **state)
 {
     (void)state;
@@ -276,7 +277,7 @@ static void a_hollow_region_is_refused_for_degree_bins_and_drawn_from_its_traces
     mask_destroy(mask);
 }
 
-/* A bay, not so deep that the middle is outside. */
+/* A bay, not deep enough to reach the middle. */
 static bool in_bay(double x, double y, int z)
 {
     (void)z;
@@ -344,7 +345,7 @@ static void a_region_that_divides_goes_on_in_its_largest_part(void **state)
 
 struct expected_net {
     size_t n_rows;
-    double radius; /* how far its control points lie from (16, 16) at most */
+    double radius; /* largest distance of its control points from (16, 16) */
 };
 
 static void assert_nets(const struct mask *mask, const struct expected_net *expected, size_t n)
@@ -363,7 +364,7 @@ static void assert_nets(const struct mask *mask, const struct expected_net *expe
     nurbs_nets_finish(&nets);
 }
 
-/* Two pieces that grow together: the larger goes on, the other ends. */
+/* Two pieces that merge: the larger continues, the other ends. */
 static void pieces_that_join_go_on_from_the_largest(void **state)
 {
     (void)state;
@@ -389,7 +390,8 @@ static bool in_thin_ring(double x, double y, int z)
     return r <= 14.2 && (z < 2 || r >= 12.2);
 }
 
-/* Below the hole lies more of the disc than below the ring; but a hole does not go on in a piece. */
+/* The area below the hole shares more pixels with the disc than the area below the ring; but a hole never continues a
+ * piece. */
 static void a_disc_goes_on_in_a_thin_ring_and_not_in_its_hole(void **state)
 {
     (void)state;
@@ -405,7 +407,7 @@ static bool in_target(double x, double y, int z)
     return r <= 3.2 || (r >= 7.2 && r <= 9.2) || r >= 13.2;
 }
 
-/* Rings within rings and a disc in the middle: each outline is stacked upon its own kind and size. */
+/* Nested rings with a disc in the middle: each outline is linked to its own kind and size. */
 static void rings_within_rings_are_told_apart(void **state)
 {
     (void)state;
@@ -420,7 +422,8 @@ static bool in_ring_side(double x, double y, int z)
     return (r >= 8.2 && r <= 14.2 && (z == 0 || (x > 17 && fabs(y - 16) < 4))) || (z == 0 && r <= 3.2);
 }
 
-/* Right of an island in a hole, the ring is still the ring: it goes on in a piece that lies there alone. */
+/* To the right of an island in a hole, the ring is still the same ring: it continues in a piece that lies only
+ * there. */
 static void a_ring_with_an_island_in_its_hole_goes_on_in_its_right_side(void **state)
 {
     (void)state;
@@ -447,7 +450,7 @@ static void a_missing_slice_is_refused_for_degree_bins_and_parts_two_pieces_from
     mask_destroy(mask);
 }
 
-/* The outline of one pixel is a diamond of half its area, and the slab is a slice thick. */
+/* The outline of one pixel is a diamond of half its area; the slab is one slice thick. */
 static void one_univel_is_a_small_spline(void **state)
 {
     (void)state;
@@ -506,7 +509,7 @@ static void noise_of_any_density_is_closed_and_finite_from_its_traces(void **sta
             struct mesh *mesh = nurbs(mask, order, NURBS_TRACES, 20);
             for (size_t at = 0; at < 3 * mesh->n_vertices; at++)
                 assert_true(isfinite(mesh->positions_lps_mm[at]));
-            /* a spline stays within the hull of its control points, those of the outlines and half a slice beyond */
+            /* a spline stays within the hull of its control points: the outlines, and half a slice beyond */
             assert_true(mesh->bounds_lps_mm.low.x >= -0.5 && mesh->bounds_lps_mm.high.x <= 22.5);
             assert_true(mesh->bounds_lps_mm.low.y >= -0.5 && mesh->bounds_lps_mm.high.y <= 18.5);
             assert_true(mesh->bounds_lps_mm.low.z >= -1.5 && mesh->bounds_lps_mm.high.z <= 22.5);
@@ -515,7 +518,7 @@ static void noise_of_any_density_is_closed_and_finite_from_its_traces(void **sta
         }
 }
 
-/* Slices across each index axis, both hands, oblique: the surface is never inside out. */
+/* Slices across each index axis, both handednesses, oblique: the surface is never inside out. */
 static void grids_of_any_orientation_give_the_same_volume(void **state)
 {
     (void)state;
@@ -539,7 +542,7 @@ static void grids_of_any_orientation_give_the_same_volume(void **state)
     }
 }
 
-/* Measured on a real head, where nobody chose the shape: a brain of one piece a slice, so both samplings show it. */
+/* A real head, whose shape was not chosen for this: its brain is one piece per slice, so both samplings can show it. */
 static void seras_brain_is_met_within_a_fraction_of_a_millimetre(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Outlines: those of small pictures written out by hand, and what must hold of any. */
+/* Outlines: small pictures with hand-written lines, and properties of any mask. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@
 
 enum { MAX_TEXT = 2000 };
 
-/* Rows of a picture, the lowest y first; '#' is inside. One slice. */
+/* One slice from rows of characters, lowest y first; '#' is inside. */
 static struct mask *art(const char *const *rows, uint32_t n_rows)
 {
     struct mask *mask = mask_make((uint32_t)strlen(rows[0]), n_rows, 1, &unit_map);
@@ -32,7 +32,7 @@ static struct outline_set *stack(const struct mask *mask, int axis, enum outline
     return set;
 }
 
-/* "x,y x,y ..." a line, lines apart by " / ". */
+/* Writes "x,y x,y ..." per line, lines separated by " / ". */
 static void write_lines(const struct outline_set *set, char *text)
 {
     size_t length = 0;
@@ -67,14 +67,13 @@ static void a_block_is_traced_counter_clockwise_through_its_border_pixels(void *
     assert_lines(ART("#####", "#####", "#####"), OUTLINE_TRACED, "0,0 1,0 2,0 3,0 4,0 4,1 4,2 3,2 2,2 1,2 0,2 0,1");
 }
 
-/* The case that stopped the first tracer of the thesis: it went to the end of a line of pixels and could not turn
- * round. */
+/* The case that stopped the thesis's first tracer: at the end of a line of pixels it could not turn back. */
 static void a_spike_one_pixel_wide_is_walked_out_and_back(void **state)
 {
     (void)state;
     assert_lines(ART("##...", "#####", "##..."), OUTLINE_TRACED, "0,0 1,0 2,1 3,1 4,1 3,1 2,1 1,2 0,2 0,1");
     assert_lines(ART("####"), OUTLINE_TRACED, "0,0 1,0 2,0 3,0 2,0 1,0");
-    assert_lines(ART("#...", ".#..", "..#."), OUTLINE_TRACED, "0,0 1,1 2,2 1,1"); /* pixels joined by corners */
+    assert_lines(ART("#...", ".#..", "..#."), OUTLINE_TRACED, "0,0 1,1 2,2 1,1"); /* pixels connected by corners */
 }
 
 static void a_sharp_corner_is_walked_round(void **state)
@@ -107,7 +106,7 @@ static void a_hole_has_a_line_the_other_way_round(void **state)
         "0,-0.5 1,-0.5 2,-0.5 2.5,0 2.5,1 2.5,2 2,2.5 1,2.5 0,2.5 -0.5,2 -0.5,1 -0.5,0 / 1,1.5 1.5,1 1,0.5 0.5,1");
 }
 
-/* The spike is as wide as a pixel here, so nothing is walked twice. */
+/* The spike is one pixel wide here, so no point is passed twice. */
 static void squares_go_round_a_spike_and_cut_corners_apart(void **state)
 {
     (void)state;
@@ -140,7 +139,7 @@ static bool next_mask(struct made *made)
     return true;
 }
 
-/* Voxel at (x, y) of a slice. */
+/* The pixel (x, y) of a slice. */
 static bool has_pixel(const struct mask *mask, int axis, int64_t slice, int64_t x, int64_t y)
 {
     int64_t ijk[3];
@@ -167,7 +166,7 @@ static void every_border_pixel_is_one_point_and_each_step_goes_to_a_neighbour(vo
             assert_int_equal(set->n_points, n);
             bool *seen = calloc(n, 1);
             for (size_t p = 0; p < n;
-                 p++) { /* different points, all inside: with their number, exactly the border pixels */
+                 p++) { /* different points, all inside, and as many as there are border pixels: so exactly those */
                 const float *at = set->points_ijk + 3 * p;
                 assert_true(mask_has(made.mask, (int64_t)at[0], (int64_t)at[1], (int64_t)at[2]));
                 for (size_t q = p > 40 ? p - 40 : 0; q < p; q++)
@@ -189,7 +188,7 @@ static void every_border_pixel_is_one_point_and_each_step_goes_to_a_neighbour(vo
         }
 }
 
-/* Twice the area that the lines of a slice enclose, holes taken off. */
+/* Twice the area enclosed by the lines of a slice, without the holes. */
 static double twice_area(const struct outline_set *set, uint32_t first, uint32_t end, int axis)
 {
     int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
@@ -204,8 +203,8 @@ static double twice_area(const struct outline_set *set, uint32_t first, uint32_t
     return twice;
 }
 
-/* What the cells between four pixels say: areas in eighths, and the Euler number in quarters (S. B. Gray, Local
- * properties of binary images in two dimensions, IEEE Trans. Computers C-20, 1971). */
+/* Counts over the cells between four pixels: area in eighths, Euler number in quarters (S. B. Gray, Local properties of
+ * binary images in two dimensions, IEEE Trans. Computers C-20, 1971). */
 static void count_cells(const struct mask *mask, int axis, int64_t slice, bool is_joined, long *eighths,
                         long *euler_quarters)
 {
@@ -265,14 +264,14 @@ static void sort_segment(struct segment *s, const float *a, const float *b)
     bool swap = a[0] > b[0] || (a[0] == b[0] && a[1] > b[1]);
     memcpy(s->from, swap ? b : a, sizeof s->from);
     memcpy(s->to, swap ? a : b, sizeof s->to);
-    for (int x = 0; x < 2; x++) { /* no -0 for memcmp */
+    for (int x = 0; x < 2; x++) { /* no -0, for memcmp */
         s->from[x] += 0.0f;
         s->to[x] += 0.0f;
     }
 }
 
-/* The surface cut at a slice of voxel centres: the same line for both cells at each face, so each segment is there four
- * times. */
+/* Section of the surface with a slice of voxel centres: both cells at a face give the same line, so each segment is
+ * there four times. */
 static void squares_are_the_sections_of_the_marching_cubes_surface(void **state)
 {
     (void)state;
@@ -307,7 +306,7 @@ static void squares_are_the_sections_of_the_marching_cubes_surface(void **state)
     mask_destroy(mask);
 }
 
-/* Counts and lengths by another program, slice by slice. */
+/* Counts and lengths by VTK, slice by slice. */
 static void squares_have_the_points_and_the_length_of_vtks(void **state)
 {
     (void)state;
@@ -400,7 +399,7 @@ static void an_empty_mask_has_no_line_and_a_wrong_axis_or_slice_is_refused(void 
     mask_destroy(mask);
 }
 
-/* A chequered block of pixels that all stand alone in one way of counting, 4 points each: more than may be. */
+/* A chequered block whose pixels are all separate by one rule, with 4 points each: more than the limit. */
 static void noise_is_refused_before_it_fills_the_memory(void **state)
 {
     (void)state;
@@ -421,7 +420,7 @@ static void noise_is_refused_before_it_fills_the_memory(void **state)
 static void a_cut_across_an_oblique_grid_shows_the_voxels_it_goes_through(void **state)
 {
     (void)state;
-    /* a grid of 1 x 2 x 3 mm turned by 30 degrees about S, asked on a plane across L */
+    /* a grid of 1 x 2 x 3 mm rotated by 30 degrees about S, cut by a plane across L */
     double c = cos(MATH_PI / 6), s = sin(MATH_PI / 6);
     struct affine map = { { { c, s, 0 }, { -2 * s, 2 * c, 0 }, { 0, 0, 3 } }, { 5, -7, 11 } };
     struct mask *mask = random_mask(40, 20, 12, 50, 3, &map);

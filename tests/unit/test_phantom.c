@@ -1,3 +1,4 @@
+/* The demo phantom: anatomy, dose and tracks against the paper and formulas; files against their formats. */
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -32,9 +33,9 @@ static void each_tissue_has_the_volume_of_its_ellipsoid(void **state)
     const uint8_t *label = labels->voxels;
     for (size_t at = 0; at < grid_n_voxels(&labels->grid); at++)
         n_of[label[at]]++;
-    /* semi-axes in mm: the paper's three, and ours. The error of counting voxel centres is under the surface's share of
-     * half a voxel over the square root of the voxels it crosses: 0.1 % for the head, 1 % for the tumour's 3400 voxels
-     */
+    /* semi-axes in mm: three from the paper, the others our own. Counting voxel centres is off by less than half a
+     * voxel's share of the surface over the square root of the number of voxels crossed: 0.1 % for the head, 1 % for
+     * the 3400 voxels of the tumour */
     const double axes_mm[PHANTOM_N_LABELS][3] = { { 0 },          { 73, 103, 88 }, { 68, 98, 83 },
                                                   { 60, 90, 65 }, { 20, 22, 18 },  { 11, 12, 10 } };
     const double share[PHANTOM_N_LABELS] = { 0, 0.001, 0.001, 0.001, 0.005, 0.01 };
@@ -50,7 +51,7 @@ static void each_tissue_has_the_volume_of_its_ellipsoid(void **state)
 static void the_tissues_lie_inside_one_another(void **state)
 {
     (void)state;
-    /* a point on an inner ellipsoid's surface, moved out a hair, is still inside the next one outward */
+    /* a point slightly outside an inner ellipsoid is still inside the next outer one */
     for (int inner = PHANTOM_CRANIUM; inner < PHANTOM_N_LABELS; inner++)
         for (int theta = 0; theta <= 36; theta++)
             for (int phi = 0; phi < 72; phi++) {
@@ -140,7 +141,7 @@ static double sample_on_axis(enum dose_quantity quantity, double depth_mm)
 static void the_dose_on_the_axis_is_the_published_one(void **state)
 {
     (void)state;
-    for (size_t i = 0; i < sizeof published / sizeof *published; i++) { /* float32 holds 6 parts in 1e8 */
+    for (size_t i = 0; i < sizeof published / sizeof *published; i++) { /* float32 is exact to 6 parts in 1e8 */
         assert_near(sample_on_axis(DOSE_NITROGEN, published[i].depth_mm), published[i].nitrogen, 2e-7);
         assert_near(sample_on_axis(DOSE_FAST, published[i].depth_mm), published[i].fast, 2e-7);
         assert_near(sample_on_axis(DOSE_GAMMA, published[i].depth_mm), published[i].gamma, 2e-7);
@@ -177,7 +178,7 @@ static void off_the_axis_the_dose_only_falls_and_halves_near_the_edge(void **sta
                 assert_true(value > 0 && value < last);
                 last = value;
             }
-            /* by the formula, at r = R: (1 + exp(-R/w)) / 2 of the axis */
+            /* by the formula at r = R: (1 + exp(-R/w)) / 2 of the value on the axis */
             double w = component->edge_mm + component->edge_per_depth * depth_mm;
             assert_near(phantom_dose(component, depth_mm, 50), on_axis * (1 + exp(-50 / w)) / 2, 1e-12);
         }
@@ -278,7 +279,7 @@ static void equal_seeds_give_equal_bytes(void **state)
     char a[512], b[512], path_a[600], path_b[600];
     struct error err = { 0 };
     assert_true(phantom_write(in_folder(a, "a"), &small, false, &err));
-    sleep(1); /* a time stamp in seconds would now differ */
+    sleep(1); /* a time stamp in seconds would differ now */
     assert_true(phantom_write(in_folder(b, "b"), &small, false, &err));
     const char *names[] = { "plan.json",        "README.txt",        "labels.json",       "ct.nii.gz",
                             "labels.nii.gz",    "tracks.pp",         "dose/boron.nii.gz", "dose/nitrogen.nii.gz",
@@ -348,7 +349,7 @@ static void a_folder_is_replaced_only_when_asked_and_only_when_it_is_a_phantom(v
     struct error err = { 0 };
     in_folder(path, "again");
     assert_int_equal(mkdir(path, 0777), 0);
-    assert_true(phantom_write(path, &small, false, &err)); /* an empty folder is free */
+    assert_true(phantom_write(path, &small, false, &err)); /* an empty folder may be used */
     assert_false(phantom_write(path, &small, false, &err));
     assert_int_equal(err.code, ERROR_STATE);
     assert_true(phantom_write(path, &small, true, &err));
@@ -361,7 +362,7 @@ static void a_folder_is_replaced_only_when_asked_and_only_when_it_is_a_phantom(v
     assert_int_equal(err.code, ERROR_STATE);
     assert_non_null(strstr(err.text, "dose/mine.txt"));
     assert_true(is_there(other));
-    size_t n; /* and the phantom that was there is whole */
+    size_t n; /* and the existing phantom is complete */
     snprintf(other, sizeof other, "%s/plan.json", path);
     free(file_bytes(other, &n));
     assert_true(n > 100);
@@ -395,7 +396,7 @@ static void a_phantom_that_cannot_be_written_leaves_nothing_behind(void **state)
     assert_int_equal(strlen(place), 4031);
 }
 
-/* The header's geometry by hand, for a grid that is oblique and left-handed. */
+/* The header's geometry computed by hand, for an oblique, left-handed grid. */
 static void an_oblique_left_handed_grid_keeps_its_geometry_in_the_header(void **state)
 {
     (void)state;
@@ -427,8 +428,8 @@ static void an_oblique_left_handed_grid_keeps_its_geometry_in_the_header(void **
     assert_close(pixdim[1], 1, 1e-6);
     assert_close(pixdim[2], 2, 1e-6);
     assert_close(pixdim[3], 3, 1e-6);
-    /* with the third axis turned round, a turn by 180 + 30 degrees about S: (a, b, c, d) = (cos 105, 0, 0, sin 105),
-     * which is told with a >= 0 as its negative */
+    /* with the third axis reversed, a rotation by 180 + 30 degrees about S: (a, b, c, d) = (cos 105, 0, 0, sin 105),
+     * written as its negative so that a >= 0 */
     assert_close(quaternion[0], 0, 1e-6);
     assert_close(quaternion[1], 0, 1e-6);
     assert_close(quaternion[2], -sin(105 * MATH_PI / 180), 1e-6);

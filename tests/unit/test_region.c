@@ -1,3 +1,4 @@
+/* Regions: ids, measures, and the hierarchy derived from containment. */
 #include "core/region/region.h"
 #include "tests/check.h"
 #include "tests/unit/made_mask.h"
@@ -33,7 +34,7 @@ static void put_box(struct volume *layer, const uint32_t low[3], const uint32_t 
 }
 #define BOX(layer, a, b, label) put_box(layer, (uint32_t[3]){ a, a, a }, (uint32_t[3]){ b, b, b }, label)
 
-/* Regions named by a letter each, one a label of the layer given. */
+/* Makes regions named a, b, c, ..., each with a label of a given layer. */
 static struct region_set set_make(struct volume **layers, size_t n_layers, const uint32_t *layer_of,
                                   const uint16_t *label_of, size_t n)
 {
@@ -118,8 +119,8 @@ static void shells_are_put_into_one_another(void **state)
     BOX(layer, 4, 15, 2);
     BOX(layer, 6, 13, 3);
     BOX(layer, 8, 9, 4);
-    put_box(layer, (uint32_t[3]){ 5, 5, 5 }, (uint32_t[3]){ 5, 6, 6 },
-            5); /* touches 2 and 3: inside 2 by its outer side */
+    /* touches 2 and 3: inside 2 by its outward faces */
+    put_box(layer, (uint32_t[3]){ 5, 5, 5 }, (uint32_t[3]){ 5, 6, 6 }, 5);
     struct region_set set = set_make(&layer, 1, (uint32_t[5]){ 0 }, (uint16_t[]){ 4, 3, 2, 1, 5 }, 5);
     region_set_derive_hierarchy(&set);
     assert_int_equal(set.hierarchy, HIERARCHY_DERIVED);
@@ -154,7 +155,7 @@ static void neighbours_and_half_buried_regions_have_no_parent(void **state)
     struct volume *layer = layer_make(20, 20, 20, VOXEL_U8, &map_2mm);
     put_box(layer, (uint32_t[3]){ 2, 2, 2 }, (uint32_t[3]){ 9, 17, 17 }, 1);
     put_box(layer, (uint32_t[3]){ 10, 2, 2 }, (uint32_t[3]){ 17, 17, 17 }, 2);
-    put_box(layer, (uint32_t[3]){ 4, 4, 16 }, (uint32_t[3]){ 7, 7, 19 }, 3); /* sticks out */
+    put_box(layer, (uint32_t[3]){ 4, 4, 16 }, (uint32_t[3]){ 7, 7, 19 }, 3); /* extends out of it */
     struct region_set set = set_make(&layer, 1, (uint32_t[3]){ 0 }, (uint16_t[]){ 1, 2, 3 }, 3);
     region_set_derive_hierarchy(&set);
     assert_int_equal(set.hierarchy, HIERARCHY_NONE);
@@ -169,7 +170,7 @@ static void a_region_in_a_notch_does_not_lie_inside(void **state)
     struct volume *layer = layer_make(20, 20, 20, VOXEL_U8, &map_2mm);
     BOX(layer, 2, 17, 1);
     put_box(layer, (uint32_t[3]){ 8, 8, 8 }, (uint32_t[3]){ 11, 11, 17 }, 0);
-    put_box(layer, (uint32_t[3]){ 8, 8, 8 }, (uint32_t[3]){ 11, 11, 11 }, 2); /* a cube, open to one of its six sides */
+    put_box(layer, (uint32_t[3]){ 8, 8, 8 }, (uint32_t[3]){ 11, 11, 11 }, 2); /* a cube, open on one of its six sides */
     struct region_set set = set_make(&layer, 1, (uint32_t[2]){ 0 }, (uint16_t[]){ 1, 2 }, 2);
     region_set_derive_hierarchy(&set);
     assert_int_equal(set.regions[1].parent, -1);

@@ -1,5 +1,4 @@
-/* What a region is drawn as besides surfaces and splines: univels, points, outlines, and all of them through the door.
- */
+/* Shapes other than surfaces and splines (univels, points, outlines), and every representation through shape_make. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,7 +37,7 @@ static int compare_u64(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* Every edge is used as often one way as the other: nowhere can one look in from the side. */
+/* Every edge is used equally often in both directions: the surface is closed. */
 static void assert_closed(const struct mesh *mesh)
 {
     size_t n = 3 * mesh->n_triangles;
@@ -72,7 +71,7 @@ static void univels_enclose_exactly_their_volume_with_every_face_between_inside_
                                 faces[1] += (size_t)!mask_has(mask, i, j - 1, k) + !mask_has(mask, i, j + 1, k);
                                 faces[2] += (size_t)!mask_has(mask, i, j, k - 1) + !mask_has(mask, i, j, k + 1);
                             }
-                size_t corners = 0; /* that eight voxels do not all agree about */
+                size_t corners = 0; /* corners whose eight voxels are not all alike */
                 for (int64_t k = 0; k <= mask->size[2]; k++)
                     for (int64_t j = 0; j <= mask->size[1]; j++)
                         for (int64_t i = 0; i <= mask->size[0]; i++) {
@@ -87,7 +86,7 @@ static void univels_enclose_exactly_their_volume_with_every_face_between_inside_
                     area += (double)faces[axis] *
                             vec3_length(vec3_cross(maps[m].columns[(axis + 1) % 3], maps[m].columns[(axis + 2) % 3]));
                 assert_int_equal(mesh->n_triangles, 2 * (faces[0] + faces[1] + faces[2]));
-                /* positions are floats of numbers up to 130 mm: 1e-5 mm */
+                /* positions are floats of up to 130 mm: 1e-5 mm */
                 assert_near(mesh_area_mm2(mesh), area, m == 0 ? 0 : 2e-5);
                 double volume = (double)mask_count(mask) * voxel_mm3(mask);
                 assert_close(mesh_volume_mm3(mesh), volume, m == 0 ? 0 : 1e-5 * area);
@@ -156,7 +155,8 @@ static void there_is_a_point_at_the_centre_of_every_border_voxel(void **state)
                 struct vec3 off = vec3_sub(affine_point(&maps[m], ijk), load_vec3(set->positions_lps_mm + 3 * at));
                 assert_true(vec3_length(off) < 1e-4);
                 assert_true(is_border(mask, (int64_t)ijk.x, (int64_t)ijk.y, (int64_t)ijk.z));
-                assert_true(ijk.z > before.z || ijk.y > before.y || ijk.x > before.x); /* in order, so no two alike */
+                /* ascending, so no two are equal */
+                assert_true(ijk.z > before.z || ijk.y > before.y || ijk.x > before.x);
                 before = ijk;
                 double length = vec3_length(load_vec3(set->normals + 3 * at));
                 assert_true(length == 0 || fabs(length - 1) < 1e-6);
@@ -187,8 +187,7 @@ static void points_face_the_way_that_leads_out_on_average(void **state)
     mask_destroy(mask);
 }
 
-/* The directions of 26 neighbours lie up to 55 degrees apart, so 27 is what an estimate from them may be off at worst.
- */
+/* The directions to 26 neighbours are up to 55 degrees apart, so an estimate from them may be off by 27 at worst. */
 static void points_on_a_ball_face_away_from_its_middle(void **state)
 {
     (void)state;
@@ -206,7 +205,7 @@ static void points_on_a_ball_face_away_from_its_middle(void **state)
         if (m == 0) {
             assert_true(worst < 27);
             assert_true(sum / (double)set->n_points < 10);
-        } else { /* on the treads of stairs that are wider than 26 neighbours reach there is no slope to be seen */
+        } else { /* on steps wider than the 26-neighbourhood no slope can be seen */
             assert_true(worst < 90);
         }
         made_points_finish(set);
@@ -252,7 +251,7 @@ static void a_point_is_lit_by_the_way_it_faces_and_one_that_faces_no_way_lies_be
         for (uint32_t j = 0; j < 5; j++)
             for (uint32_t i = 0; i < 5; i++)
                 mask_put(mask, i, j, k);
-    mask_put(mask, 2, 2, 6); /* alone */
+    mask_put(mask, 2, 2, 6); /* a single voxel */
     struct point_set *set = made_points(mask, 1);
     /* light from (0.4, -0.7, 0.6) / 1.00499: facing S, (1 + 0.59702) / 2 of the light; ambient 1/4 */
     size_t top = SIZE_MAX, alone = SIZE_MAX, front = SIZE_MAX, back = SIZE_MAX;
@@ -263,7 +262,7 @@ static void a_point_is_lit_by_the_way_it_faces_and_one_that_faces_no_way_lies_be
         front = p[0] == 2 && p[1] == 0 && p[2] == 1 ? at : front;
         back = p[0] == 2 && p[1] == 4 && p[2] == 1 ? at : back;
     }
-    assert_int_equal(set->shade[top], 216); /* 255 (0.25 + 0.75 x 0.79851) = 216.5 less the rounding of the normal's */
+    assert_int_equal(set->shade[top], 216); /* 255 (0.25 + 0.75 x 0.79851) = 216.5, minus the rounding of the normal */
     assert_int_equal(set->shade[alone], 159); /* 255 (0.25 + 0.375) = 159.4 */
     assert_int_equal(set->shade[front], 226); /* 255 (0.25 + 0.75 x 0.84826) = 226.0 */
     assert_int_equal(set->shade[back], 93);   /* 255 (0.25 + 0.75 x 0.15174) = 92.8 */
@@ -272,7 +271,7 @@ static void a_point_is_lit_by_the_way_it_faces_and_one_that_faces_no_way_lies_be
     mask_destroy(mask);
 }
 
-/* ---- all of them through the door ------------------------------------------------------------------------------- */
+/* ---- shape_make ------------------------------------------------------------------------------------------------- */
 
 static struct shape *make(const struct region_set *set, size_t region, struct shape_key key, int n_threads)
 {
@@ -298,8 +297,7 @@ static void a_ragged_region_has_every_shape_the_same_for_any_number_of_threads(v
     assert_non_null(mask);
     for (enum region_representation r = 0; r < REPRESENTATION_N; r++) {
         struct shape *one = make(&plan->regions, 0, key_of(r), 1);
-        struct box3 box =
-            one->bounds_lps_mm; /* within the univels, but where a spline or a surface is not drawn at all */
+        struct box3 box = one->bounds_lps_mm; /* within the univels, except where a spline or a surface draws nothing */
         assert_true(box.low.x >= -0.5 && box.low.y >= -0.5 && box.low.z >= -1.25);
         assert_true(box.high.x <= 47.5 && box.high.y <= 39.5 && box.high.z <= 58.75);
         assert_true(one->n_bytes > 1000);
@@ -325,7 +323,7 @@ static void a_ragged_region_has_every_shape_the_same_for_any_number_of_threads(v
             }
             shape_unref(more);
         }
-        if (r == REPRESENTATION_UNIVELS) { /* cut by the scan in three places, and closed there */
+        if (r == REPRESENTATION_UNIVELS) { /* cut by the scan on three sides, and closed there */
             assert_true(one->is_faceted);
             assert_closed(one->mesh);
             assert_true(mesh_volume_mm3(one->mesh) == 2.5 * (double)mask_count(mask));
@@ -359,7 +357,7 @@ static void inner_boundaries_are_points_too_when_asked_for(void **state)
     plan_destroy(plan);
 }
 
-/* A grid whose first index runs along S: outlines lie on the slices across that one, where they are in the patient. */
+/* A grid whose first index runs along S: outlines are on the slices across that axis. */
 static void outlines_lie_across_the_axis_nearest_s_and_a_lone_pixel_is_a_diamond(void **state)
 {
     (void)state;
@@ -371,7 +369,7 @@ static void outlines_lie_across_the_axis_nearest_s_and_a_lone_pixel_is_a_diamond
         assert_non_null(lines);
         assert_int_equal(lines->n_lines, 1);
         assert_int_equal(lines->n_segments, 4);
-        assert_int_equal(lines->n_vertices, method == 0 ? 5 : 4); /* traced: the pixel itself is one */
+        assert_int_equal(lines->n_vertices, method == 0 ? 5 : 4); /* a traced outline also has the pixel's own point */
         struct vec3 sum = vec3(0, 0, 0);
         for (size_t at = 0; at < 8; at++) {
             struct vec3 ijk = index_of(mask, load_vec3(lines->positions_lps_mm + 3 * (size_t)lines->indices[at]));
@@ -394,7 +392,7 @@ static void what_cannot_be_made_is_refused_with_a_reason(void **state)
     (void)state;
     struct plan *plan = ragged_plan();
     struct region *core = &plan->regions.regions[1];
-    core->label = 9; /* nobody has it */
+    core->label = 9; /* no voxel has it */
     for (enum region_representation r = 0; r < REPRESENTATION_N; r++) {
         struct shape_key key = key_of(r);
         struct error err = { 0 };

@@ -1,4 +1,4 @@
-/* Distances to a region's true border, against every face asked in another way. */
+/* Distances to a region's exact border, compared with the distance to every face computed another way. */
 #include "core/surface/shape_distance.h"
 #include "tests/check.h"
 #include "tests/unit/made_mask.h"
@@ -6,7 +6,7 @@
 static const struct affine maps[] = {
     { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { 0, 0, 0 } },
     { { { 1.5, 0, 0 }, { 0, -0.8, 0 }, { 0, 0, 5 } }, { 3, -2, 40 } },
-    { { { 0.3, 0.4, 2 }, { 1.2, -0.9, 0 }, { 0.72, 0.96, -0.3 } }, { 11, -12, 13 } }, /* turned, square */
+    { { { 0.3, 0.4, 2 }, { 1.2, -0.9, 0 }, { 0.72, 0.96, -0.3 } }, { 11, -12, 13 } }, /* rotated, perpendicular axes */
     { { { 1, 0, 0 }, { 0.2, 1.1, 0 }, { 0, 0.7, 2.4 } }, { -5, 1, 2 } },     /* sheared, as by a tilted gantry */
     { { { 0.5, 0, 0 }, { 0, 0.5, 0 }, { 0, 0, 75 } }, { -100, -50, -150 } }, /* thick slices */
     { { { 40, 0, 0 }, { 0, 0, 0.25 }, { 0, 8, 0.1 } }, { 1, 2, 3 } },        /* thick along a row, and sheared */
@@ -22,8 +22,8 @@ static struct shape_distance measure(const struct mask *mask, const float *posit
     return distance;
 }
 
-/* To a parallelogram, by descent: steps along one side and then the other, each to its nearest point, come ever closer,
- * and since the distance is convex they end at the nearest of all. */
+/* Distance to a parallelogram by alternating projection: steps along one side and then the other, each to its nearest
+ * point, converge because the distance is convex. */
 static double descend(struct vec3 p, struct vec3 corner, struct vec3 u, struct vec3 v)
 {
     double s = 0.5, t = 0.5;
@@ -68,7 +68,7 @@ static void distances_are_those_to_the_nearest_face_of_all(void **state)
             struct mask *mask = random_mask(9, 6, 5, percent, percent, &maps[m]);
             for (int n = 0; n < 60; n++) {
                 double at[3];
-                for (int axis = 0; axis < 3; axis++) /* from a grid's width before the grid to one behind it */
+                for (int axis = 0; axis < 3; axis++) /* from one grid width before the grid to one after it */
                     at[axis] = (next_random(&seed) % 30000 / 10000.0 - 1) * (double)mask->size[axis];
                 struct vec3 p = affine_point(&maps[m], vec3(at[0], at[1], at[2]));
                 float position[3] = { (float)p.x, (float)p.y, (float)p.z };
@@ -128,8 +128,8 @@ static void threads_do_not_matter_and_no_position_has_no_distance(void **state)
 }
 
 /* Three slices of a disc, 64 mm in radius and 75 mm apart: in the middle of an end slice the nearest face is 37.5 mm
- * above, which is 75 voxels along the other axes; some pi x 75^2 = 18000 faces are as near in voxels, at each of which
- * the former search looked. */
+ * above, which is 75 voxels along the other axes; some pi x 75^2 = 18000 faces are as near in voxels, all of which a
+ * search by voxels would look at. */
 static void thick_slices_cost_no_more_than_cubes(void **state)
 {
     (void)state;
@@ -143,8 +143,8 @@ static void thick_slices_cost_no_more_than_cubes(void **state)
     struct mesh *mesh = made_surface(SURFACE_EIGHT_CELL, mask, 2, true);
     struct shape_distance distance = measure(mask, mesh->positions_lps_mm, mesh->n_vertices, 0);
     assert_true(mesh->n_vertices > 100000);
-    assert_close(distance.max_mm, 37.5,
-                 1e-3); /* a voxel's centre in an end slice, at least 37.5 mm from the disc's rim */
+    /* the centre of a voxel in an end slice, at least 37.5 mm from the disc's rim */
+    assert_close(distance.max_mm, 37.5, 1e-3);
     assert_true(distance.n_measured < 300 * distance.n_positions);
     mesh_unref(mesh);
     mask_destroy(mask);

@@ -1,4 +1,4 @@
-/* The smooth surface: its bounds, its volume, and how smooth it is, against exact normals and against VTK's filter. */
+/* The smooth surface: bounds, volume and smoothness, against exact normals and VTK's filter. */
 #include "core/surface/smooth.h"
 #include "tests/check.h"
 #include "tests/unit/made_mask.h"
@@ -46,7 +46,7 @@ static struct mask *mask_of(const struct body *body)
     map.columns[0].x = body->spacing_mm[0];
     map.columns[1].y = body->spacing_mm[1];
     map.columns[2].z = body->spacing_mm[2];
-    /* the middle lies nowhere in particular between the univels */
+    /* the body's centre is at no special position between the univels */
     map.origin =
         vec3(-body->spacing_mm[0] * ((size[0] - 1) / 2.0 - 0.13), -body->spacing_mm[1] * ((size[1] - 1) / 2.0 + 0.21),
              -body->spacing_mm[2] * ((size[2] - 1) / 2.0 - 0.17));
@@ -65,10 +65,10 @@ static struct mask *mask_of(const struct body *body)
 
 struct deviation {
     double normal_deg, distance_mm; /* root mean squares over the area */
-    double shown_deg;               /* of the vertex normals, over the vertices */
+    double shown_deg;               /* root mean square error of the vertex normals */
 };
 
-/* Of each triangle's normal and middle from the ellipsoid's. */
+/* Deviation of the triangles' normals and centres from the ellipsoid's. */
 static struct deviation deviation_of(const struct mesh *mesh, const struct body *body)
 {
     double area = 0, angles = 0, distances = 0;
@@ -104,7 +104,7 @@ static struct deviation deviation_of(const struct mesh *mesh, const struct body 
     return (struct deviation){ sqrt(angles / area), sqrt(distances / area), sqrt(shown / (double)mesh->n_vertices) };
 }
 
-/* The same of VTK's discrete surface and its windowed sinc filter; false: there is no VTK here. */
+/* The same for VTK's discrete surface with its windowed sinc filter; false without VTK. */
 static bool deviation_of_vtk(const struct mask *mask, const struct body *body, struct deviation *deviation)
 {
     char path[] = "/tmp/beamroom-test-XXXXXX", words[16][32], out[256], *rest;
@@ -147,9 +147,8 @@ static bool deviation_of_vtk(const struct mask *mask, const struct body *body, s
 static void no_stair_steps_however_thick_the_slices(void **state)
 {
     (void)state;
-    /* most: of the root mean square deviation of normals, in degrees. Steps of a slice over a shallow slope are told
-     * from the slope itself only where they follow one another within some ten pixels; above the last slice nothing is
-     * known at all */
+    /* most: limit on the root mean square deviation of normals, in degrees. Slice steps on a shallow slope can be told
+     * from the slope only if they follow each other within some ten pixels; above the last slice nothing is known */
     static const struct {
         struct body body;
         double most_deg;
@@ -172,7 +171,7 @@ static void no_stair_steps_however_thick_the_slices(void **state)
                      cases[c].most_deg);
         assert_true(ours.distance_mm < plain.distance_mm / 1.9);
         has_vtk = has_vtk && deviation_of_vtk(mask, body, &vtk);
-        if (has_vtk) { /* 20 iterations, pass band 0.1: its defaults */
+        if (has_vtk) { /* 20 iterations, pass band 0.1: VTK's defaults */
             assert_true(ours.normal_deg < vtk.normal_deg / 2);
             assert_true(ours.distance_mm < vtk.distance_mm / 1.5);
         }
@@ -186,7 +185,7 @@ static void no_stair_steps_however_thick_the_slices(void **state)
 
 /* ---- bounds ----------------------------------------------------------------------------------------------------- */
 
-/* The same triangles as by marching cubes, and each vertex moved along one axis only, no further than allowed. */
+/* The same triangles as marching cubes, and each vertex moved along one axis only, at most as far as allowed. */
 static void assert_within_bounds(const struct mask *mask, const struct mesh *smooth, const struct mesh *cubes)
 {
     struct affine ijk_from_lps_mm;
@@ -200,13 +199,13 @@ static void assert_within_bounds(const struct mask *mask, const struct mesh *smo
         double place[3] = { at.x, at.y, at.z }, by[3] = { moved.x, moved.y, moved.z };
         for (int axis = 0; axis < 3; axis++) {
             bool is_own =
-                fabs(place[axis] - floor(place[axis]) - 0.5) < 0.01; /* a half: this edge runs along the axis */
+                fabs(place[axis] - floor(place[axis]) - 0.5) < 0.01; /* a half-integer: this edge runs along the axis */
             assert_true(fabs(by[axis]) <= (is_own ? 0.5 - SURFACE_SMOOTH_MARGIN : 0) + 1e-4); /* positions are floats */
         }
     }
 }
 
-/* How often a closed mesh winds around a point (A. Van Oosterom, J. Strackee, The Solid Angle of a Plane Triangle,
+/* Winding number of a closed mesh around a point (A. Van Oosterom, J. Strackee, The Solid Angle of a Plane Triangle,
  * 1983). */
 static double winding(const struct mesh *mesh, struct vec3 at)
 {
@@ -260,8 +259,8 @@ static void every_corner_case_is_closed_and_within_bounds(void **state)
             assert_int_equal(mesh_open_edges(mesh), 0);
             assert_int_equal(mesh_euler(mesh), euler_of_surface(mask));
             assert_within_bounds(mask, mesh, cubes);
-            assert_near(mesh_volume_mm3(mesh), 4 * __builtin_popcount((unsigned)inside),
-                        0.1); /* so small that edges end before all is made up */
+            /* so small that edges end before the whole volume is recovered */
+            assert_near(mesh_volume_mm3(mesh), 4 * __builtin_popcount((unsigned)inside), 0.1);
             mesh_unref(mesh);
             mesh_unref(cubes);
             mask_destroy(mask);
@@ -293,8 +292,7 @@ static void random_blocks_are_closed_within_bounds_and_equal_for_any_threads(voi
             }
             mask_destroy(mask);
         }
-    /* large enough that three threads are worth it; few pieces, then very many; and with fewer slices than threads can
-     * share */
+    /* large enough for three threads; few pieces, then very many; and fewer slices than threads can share */
     static const uint32_t sizes[][3] = { { 130, 70, 40 }, { 300, 200, 6 } };
     for (uint32_t each = 0; each < 4; each++) {
         uint32_t percent = each % 2 ? 53 : 3;
@@ -343,7 +341,7 @@ static void vertex_normals_are_unit_and_outward_also_on_mirrored_oblique_grids(v
 static void each_piece_keeps_the_volume_of_its_univels(void **state)
 {
     (void)state;
-    /* bodies from some ten univels across down to four: filters alone would shrink the small ones by half */
+    /* bodies from some ten univels across down to four: the filters alone would shrink the small ones by half */
     static const struct body bodies[] = {
         { { 1, 1, 4 }, { 60, 40, 30 }, 0.35 }, { { 1, 1, 4 }, { 20, 5, 12 }, 0.5 },
         { { 1, 1, 5.5 }, { 80, 80, 80 }, 0 },  { { 1, 1, 1 }, { 5, 5, 5 }, 0.4 },
@@ -378,7 +376,7 @@ static void a_hollow_and_a_lone_univel_beside_it_keep_theirs_too(void **state)
     struct mesh *hollow = extract(mask, 1, true), *full = extract(ball, 1, true);
     assert_int_equal(mesh_euler(hollow), 6);
     assert_near(mesh_volume_mm3(hollow), (double)mask_count(mask), 0.0015);
-    /* the same outside but for the cavity and the lone one: what they take and give is their univels */
+    /* equal on the outside: the cavity and the single univel change the volume by their own univels */
     assert_close(mesh_volume_mm3(full) - mesh_volume_mm3(hollow), (double)n_hollow - 1, 0.004 * (double)n_hollow);
     mesh_unref(hollow);
     mesh_unref(full);
@@ -397,9 +395,9 @@ static void a_plate_of_one_univel_keeps_its_two_sides(void **state)
     assert_int_equal(mesh_euler(mesh), 2);
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         struct vec3 p = vertex(mesh, v);
+        /* far from the rims nothing pulls; the loss at the rims is spread over all vertices */
         if (p.x > 14 && p.x < 16 && p.y > 14 && p.y < 16)
-            assert_close(fabs(p.z - 2), 0.5,
-                         0.1); /* far from the rims nothing pulls; what is lost there is made up by all */
+            assert_close(fabs(p.z - 2), 0.5, 0.1);
     }
     assert_int_equal(mesh_open_edges(open), 2 * 4 * 29);
     mesh_unref(mesh);

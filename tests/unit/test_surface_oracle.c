@@ -1,4 +1,4 @@
-/* Our marching cubes against VTK's on the same voxels, and both algorithms against the counts known for SERA's sample
+/* Marching cubes compared with VTK's on the same voxels, and both algorithms with the counts known for SERA's sample
  * head. */
 #include <fcntl.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include "tests/unit/sera_head.h"
 
 struct label_set {
-    const char *text; /* as the script takes it */
+    const char *text; /* in the script's syntax */
     uint16_t labels[4];
     size_t n;
 };
@@ -36,7 +36,7 @@ static size_t count_triangles(const struct volume *layer, const struct label_set
     return n;
 }
 
-/* Runs the script on the layer. Returns its exit status; what it printed goes to out. */
+/* Runs the script on the layer; returns its exit status, and its output in out. */
 static int run_vtk(const struct volume *layer, const struct label_set *sets, size_t n_sets, char *out, size_t out_size)
 {
     char path[] = "/tmp/beamroom-oracle-XXXXXX";
@@ -68,7 +68,7 @@ static void assert_equals_vtk(const struct volume *layer, const struct label_set
     int status = run_vtk(layer, sets, n_sets, out, sizeof out);
     if (status == ORACLE_MISSING) {
         print_message("no VTK for Python here\n");
-        volume_unref(layer); /* skip does not come back */
+        volume_unref(layer); /* skip does not return */
         skip();
     }
     assert_int_equal(status, 0);
@@ -94,7 +94,7 @@ static void triangle_counts_equal_vtk_on_a_noisy_phantom(void **state)
     for (uint32_t k = 0; k < 61; k++)
         for (uint32_t j = 0; j < 90; j++)
             for (uint32_t i = 0; i < 107; i++) {
-                /* nested ellipsoids, the outer one cut by the grid, with ragged edges: every ambiguous case turns up */
+                /* nested ellipsoids, the outer one cut by the grid, with ragged borders: every ambiguous case occurs */
                 double r = sqrt(pow((i - 50.0) / 52, 2) + pow((j - 45.0) / 47, 2) + pow((k - 25.0) / 30, 2));
                 r += (hash(i, j, k) % 1000 / 1000.0 - 0.5) * 0.12;
                 *voxels++ = r < 0.3 ? 3 : r < 0.7 ? 2 : r < 1 ? 1 : 0;
@@ -114,8 +114,8 @@ static struct volume *read_sera_head(void)
     return layer;
 }
 
-/* What the original Sera3d reports of its own head, open where the scan cuts it: its table joins a few ambiguous cells
- * otherwise, two triangles a cell. To the triangle they are VTK's, below. */
+/* Sera3d's counts for its own head, open where the scan cuts it. Its table connects a few ambiguous cells differently:
+ * two triangles per cell. Our counts equal VTK's to the triangle, see below. */
 static void seras_own_head_has_the_counts_and_volumes_it_should(void **state)
 {
     (void)state;
@@ -123,8 +123,8 @@ static void seras_own_head_has_the_counts_and_volumes_it_should(void **state)
     struct volume *layer = read_sera_head();
     for (size_t s = 0; s < 3; s++) {
         assert_near(count_triangles(layer, &sera_sets[s], false), original[s], 5e-5);
-        /* cutting every crossed edge in the middle takes from convex places what it gives to hollow ones, but for the
-         * curvature of the whole: within 1 % for bodies of some ten voxels and more */
+        /* cutting every crossed edge in the middle takes from convex places what it adds to concave ones, except for
+         * the overall curvature: within 1 % for bodies of some ten voxels and more */
         struct error err = { 0 };
         struct mask *mask = mask_from_labels(layer, sera_sets[s].labels, sera_sets[s].n, 2, &err);
         assert_non_null(mask);
@@ -136,7 +136,7 @@ static void seras_own_head_has_the_counts_and_volumes_it_should(void **state)
     volume_unref(layer);
 }
 
-/* The original Sera3d at full quality, which does not pad the block of data: open where the scan cuts the body. */
+/* Sera3d at full quality, which adds no empty layer around the data: open where the scan cuts the body. */
 static void eight_cell_counts_equal_the_original_sera3d_on_its_own_head(void **state)
 {
     (void)state;

@@ -1,3 +1,4 @@
+/* Grids and volumes: maps, axes, sampling, limits. */
 #include "core/volume/volume.h"
 #include "tests/check.h"
 
@@ -37,8 +38,8 @@ static void a_grid_says_toward_which_side_each_index_grows(void **state)
     char letters[4];
     struct grid grid = oblique_grid();
     grid_letters(&grid, letters);
-    assert_string_equal(letters, "LPI"); /* 30 degrees about S leave L and P the nearest; k goes down */
-    /* a sagittal scan: columns toward the back, rows down, slices toward the right */
+    assert_string_equal(letters, "LPI"); /* 30 degrees about S: L and P are still nearest; k goes down */
+    /* a sagittal scan: columns to posterior, rows down, slices to the right */
     struct affine map = { { { 0, 1, 0 }, { 0, 0, -1 }, { -3, 0, 0 } }, { 0, 0, 0 } };
     struct error err = { 0 };
     assert_true(grid_init(&grid, (uint32_t[3]){ 4, 4, 4 }, &map, &err));
@@ -68,10 +69,11 @@ static void sampling_is_linear_inside_and_refuses_outside(void **state)
     struct error err = { 0 };
     struct volume *volume = volume_create(&grid, VOXEL_I16, &err);
     int16_t *voxels = volume->voxels;
+    /* linear, so trilinear interpolation is exact */
     for (int k = 0, at = 0; k < 4; k++)
         for (int j = 0; j < 6; j++)
             for (int i = 0; i < 8; i++)
-                voxels[at++] = (int16_t)(i + 10 * j + 100 * k); /* linear, so tri-linear is exact */
+                voxels[at++] = (int16_t)(i + 10 * j + 100 * k);
     volume->slope = 2;
     volume->offset = -1000;
     volume_measure(volume);
