@@ -338,8 +338,8 @@ static bool may_join(const struct group *group, const struct contour_choice *cho
     return n <= most_voxels && (n <= SHARED_VOXELS || n <= 2 * joined->own_voxels);
 }
 
-/* Lets sets share cropped grids on one base: the image, or with is_beyond its continuation. Their groups are numbered
- * from n_groups on. */
+/* Lets sets share cropped grids on one base: the image, or with is_beyond its continuation. Their groups get the
+ * numbers after *n_groups_before, which is increased by how many they are. */
 static bool share_grids(struct contour_choice *choices, const struct candidate *candidates, size_t n,
                         const struct grid *base, bool is_beyond, uint64_t most_voxels, uint32_t *n_groups_before,
                         struct error *err)

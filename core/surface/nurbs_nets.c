@@ -175,7 +175,7 @@ static bool refuse(const struct net_job *job, uint32_t slice, struct error *err,
                      slice_s_mm(job, slice), why);
 }
 
-/* The only outline of a slice; fails if there are several. */
+/* Finds the only outline of a slice; refuses the region if the slice has no outline, a hole or a second piece. */
 static bool one_line(const struct net_job *job, uint32_t slice, uint32_t *line, struct error *err)
 {
     const struct outline_set *set = job->set;
@@ -310,7 +310,7 @@ static bool make_by_bins(const struct net_job *job, struct nurbs_nets *nets, str
 
 /* ---- nurbs_nets_make -------------------------------------------------------------------------------------------- */
 
-static bool work_init(struct net_job *job, const struct mask *mask, int bins, int n_threads, struct error *err)
+static bool net_job_init(struct net_job *job, const struct mask *mask, int bins, int n_threads, struct error *err)
 {
     struct grid grid;
     if (bins < NURBS_MIN_BINS || bins > NURBS_MAX_BINS)
@@ -337,7 +337,7 @@ bool nurbs_nets_make(const struct mask *mask, enum nurbs_sampling sampling, int 
 {
     struct net_job job = { .set = NULL };
     *nets = (struct nurbs_nets){ NULL, 0, NULL };
-    bool good = work_init(&job, mask, bins, n_threads, err);
+    bool good = net_job_init(&job, mask, bins, n_threads, err);
     if (good && job.set->n_lines == 0)
         good = error_set(err, ERROR_RANGE, "a spline around a region without a voxel");
     good = good && (sampling == NURBS_TRACES ? make_by_traces(&job, nets, err) : make_by_bins(&job, nets, err));

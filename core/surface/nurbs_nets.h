@@ -25,7 +25,7 @@ struct nurbs_nets {
  * region itself, not the centres of its border pixels.
  *
  *   traces       Every piece and every hole is a net of its own, stacked by nurbs_pieces_link. Points are evenly spaced
- *                in mm along the outline: `bins` of them, or as many as the net's longest outline has, but at least 8.
+ *                in mm along the outline: as many as the net's longest outline has, at least 8 and at most `bins`.
  *                Each row begins where it is closest to the row below. Where a piece divides, its largest part
  *                continues; the others begin there as pieces of their own.
  *   degree bins  In each of `bins` equal angles the outline point farthest from the middle (the centre of the outlined

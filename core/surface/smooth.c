@@ -343,7 +343,8 @@ static void even_out(const struct smooth_job *job, const struct pass *pass, size
     }
 }
 
-/* Blends the filters into the shift of each vertex; the strong filter gives the normals. */
+/* Blends the two filters into the displacement of each vertex, by its trust. Keeps the strongly filtered positions for
+ * the normals. */
 static void go(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
     for (size_t v = from; v < end; v++) {
@@ -367,7 +368,7 @@ static float4 in_lps(const struct smooth_job *job, float4 normal)
 }
 
 /* Writes the normal for illumination: that of the strongly filtered surface without constraints, but less of it the
- * more it deviates from the constrained surface. */
+ * more it deviates from that of the blended surface. */
 static void write_normal(const struct smooth_job *job, size_t v, float4 own, float4 strong)
 {
     float agreement = dot(own, strong), share = (agreement - disagreeing) / (agreeing - disagreeing);

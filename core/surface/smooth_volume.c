@@ -44,7 +44,7 @@ static void find_pieces(struct volume_job *job)
         uint32_t root = up[v] = v;
         for (int i = 0; i < 4; i++) {
             if (link[i] >= v || up[link[i]] == root)
-                continue; /* the link was seen from its other end */
+                continue; /* that vertex comes later and sees the link, or is in this piece already */
             uint32_t other = root_of(up, link[i]);
             if (other < root) {
                 up[root] = other;

@@ -28,7 +28,7 @@ struct opening {
 
 /* Reads devices, blocks and applicator of a beam. Set opening->doubts before.
  *
- *   errors  ERROR_LIMIT more than OPENING_MAX_LEAVES */
+ *   errors  ERROR_LIMIT more than OPENING_MAX_DEVICES or OPENING_MAX_LEAVES */
 NODISCARD bool opening_init(struct opening *opening, const struct dicom_item *beam, struct error *err);
 /* Applies the device positions of a control point; number counts from 1. */
 void opening_move(struct opening *opening, const struct dicom_item *control_point, size_t number);

@@ -46,7 +46,7 @@ static void group_add(struct group *group, struct member member)
         group->room = group->room ? 2 * group->room : 64;
         group->members = realloc(group->members, group->room * sizeof *group->members);
         if (!group->members)
-            abort(); /* abort as mem_new does: 32 bytes per object, which already has some hundred */
+            abort(); /* like mem_new: 32 bytes per object, which already has some hundred */
     }
     group->members[group->n++] = member;
 }
