@@ -187,7 +187,7 @@ static uint32_t spread(uint32_t seed, uint32_t within, uint32_t (*grow)(uint32_t
     return seed;
 }
 
-static bool can_go(uint32_t neighbours)
+static bool is_simple(uint32_t neighbours)
 {
     uint32_t inside = neighbours & ~(uint32_t)(MIDDLE | CORNERS), touching = neighbours & FACES;
     uint32_t outside = ~neighbours & ALL_27 & ~(uint32_t)MIDDLE;
@@ -199,7 +199,7 @@ static bool can_go(uint32_t neighbours)
 
 /* Returns true if the block is at the original outside and has, on the opposite side, a neighbour that is at least as
  * full and still there. */
-static bool is_skin(const struct reduce_job *job, uint32_t neighbours, const uint32_t at[3])
+static bool is_outermost(const struct reduce_job *job, uint32_t neighbours, const uint32_t at[3])
 {
     static const uint32_t bit_of[3] = { 1, 3, 9 };
     const uint32_t *size = job->to->size;
@@ -277,7 +277,7 @@ static bool thin_out(struct reduce_job *job, struct error *err)
         const uint32_t *place = thinning.places[at];
         size_t row = (size_t)place[2] * job->to->size[1] + place[1];
         uint32_t neighbours = neighbourhood(job->to, place[0], place[1], place[2]);
-        if (is_skin(job, neighbours, place) && can_go(neighbours))
+        if (is_outermost(job, neighbours, place) && is_simple(neighbours))
             job->to->bits[row * job->to->words + place[0] / 64] &= ~((uint64_t)1 << place[0] % 64);
     }
     free(thinning.places);

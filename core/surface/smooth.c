@@ -299,7 +299,7 @@ static float shift_along_edge(float4 normal, float4 displacement, int axis)
     return (along * dot(normal, displacement) + flat * displacement[axis]) / (along * along + flat);
 }
 
-static void go_gently(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void place_gently(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
     (void)pass;
     for (size_t v = from; v < end; v++)
@@ -307,7 +307,7 @@ static void go_gently(const struct smooth_job *job, const struct pass *pass, siz
 }
 
 /* Trust in the strong filter at each vertex, 0 to 1. */
-static void judge(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void rate_trust(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
     const float4 *at = job->first;
     for (size_t v = from; v < end; v++) {
@@ -320,7 +320,7 @@ static void judge(const struct smooth_job *job, const struct pass *pass, size_t 
 }
 
 /* Lowers the trust of a vertex to the lowest of its links. */
-static void be_cautious(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void lower_trust(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
     const float *trust = pass->trust;
     for (size_t v = from; v < end; v++) {
@@ -333,7 +333,7 @@ static void be_cautious(const struct smooth_job *job, const struct pass *pass, s
 }
 
 /* Averages trust, so that a step of trust does not become a step of the surface. */
-static void even_out(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void average_trust(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
     const float *trust = pass->trust;
     for (size_t v = from; v < end; v++) {
@@ -345,7 +345,7 @@ static void even_out(const struct smooth_job *job, const struct pass *pass, size
 
 /* Blends the two filters into the displacement of each vertex, by its trust. Keeps the strongly filtered positions for
  * the normals. */
-static void go(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void blend_filters(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
     for (size_t v = from; v < end; v++) {
         float trust = pass->trust[v];
@@ -383,7 +383,7 @@ static void write_normal(const struct smooth_job *job, size_t v, float4 own, flo
     memcpy(job->mesh->normals + 3 * v, &shown, 3 * sizeof(float));
 }
 
-static void settle(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void shift_to_edges(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
 {
     (void)pass;
     for (size_t v = from; v < end; v++) {
@@ -410,18 +410,18 @@ static size_t plan_way_to_edges(const struct smooth_job *job, struct pass *passe
 {
     size_t n = 0;
     float *trust = job->shift, *next_trust = job->lean; /* free until the last pass */
-    passes[n++] = (struct pass){ .take = go_gently };
-    passes[n++] = (struct pass){ .take = judge, .next_trust = trust };
+    passes[n++] = (struct pass){ .take = place_gently };
+    passes[n++] = (struct pass){ .take = rate_trust, .next_trust = trust };
     for (int round = 0; round < CAUTIOUS_ROUNDS + EVEN_ROUNDS; round++) {
-        passes[n++] = (struct pass){ .take = round < CAUTIOUS_ROUNDS ? be_cautious : even_out,
+        passes[n++] = (struct pass){ .take = round < CAUTIOUS_ROUNDS ? lower_trust : average_trust,
                                      .trust = trust,
                                      .next_trust = next_trust };
         float *written = next_trust;
         next_trust = trust;
         trust = written;
     }
-    passes[n++] = (struct pass){ .take = go, .trust = trust };
-    passes[n++] = (struct pass){ .take = settle };
+    passes[n++] = (struct pass){ .take = blend_filters, .trust = trust };
+    passes[n++] = (struct pass){ .take = shift_to_edges };
     return n;
 }
 

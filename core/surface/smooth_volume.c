@@ -12,7 +12,7 @@ static const double tolerance = 1e-3; /* relative to a piece's volume */
 struct piece {
     double wanted, volume, before; /* in univels: target, current, at the step before */
     double area_mm2;
-    double swelling_mm; /* of the current step */
+    double offset_mm; /* of the current step */
     bool is_settled;
 };
 
@@ -148,7 +148,7 @@ static void measure_volumes(struct volume_job *job)
 
 /* Plans the offset of each piece: at first from its area, then from the effect of the last step on the volume. Returns
  * false if no piece is left. */
-static bool plan_swelling(struct volume_job *job, int step)
+static bool plan_offsets(struct volume_job *job, int step)
 {
     bool is_needed = false;
     for (uint32_t p = 0; p < job->n_pieces; p++) {
@@ -156,8 +156,8 @@ static bool plan_swelling(struct volume_job *job, int step)
         if (piece->is_settled)
             continue;
         double missing = piece->wanted - piece->volume, univels_a_mm = piece->area_mm2 / job->smooth->univel_mm3;
-        if (step > 0 && piece->swelling_mm != 0) {
-            double seen = (piece->volume - piece->before) / piece->swelling_mm;
+        if (step > 0 && piece->offset_mm != 0) {
+            double seen = (piece->volume - piece->before) / piece->offset_mm;
             /* the effect is much smaller where the ends of the edges hold the surface */
             double least = 0.2 * univels_a_mm;
             univels_a_mm = seen > least ? seen : least;
@@ -166,14 +166,14 @@ static bool plan_swelling(struct volume_job *job, int step)
         if (step >= PATIENCE && fabs(piece->volume - piece->before) < 0.02 * fabs(missing))
             is_off = false; /* the edges end here; before, vertices may have been beyond the ends and on the way back */
         piece->before = piece->volume;
-        piece->swelling_mm = is_off ? missing / univels_a_mm : 0;
+        piece->offset_mm = is_off ? missing / univels_a_mm : 0;
         piece->is_settled = !is_off;
         is_needed |= is_off;
     }
     return is_needed;
 }
 
-static void swell(void *context, int part, int n_parts)
+static void offset_pieces(void *context, int part, int n_parts)
 {
     struct volume_job *job = context;
     struct smooth_job *smooth = job->smooth;
@@ -182,7 +182,7 @@ static void swell(void *context, int part, int n_parts)
         if (job->pieces[job->piece_of[v]].is_settled)
             continue;
         const struct marching_point *point = &smooth->graph->points[v];
-        float lean = smooth->lean[v], mm = (float)job->pieces[job->piece_of[v]].swelling_mm;
+        float lean = smooth->lean[v], mm = (float)job->pieces[job->piece_of[v]].offset_mm;
         /* moves the surface by mm, but by a bounded distance along an edge that is nearly parallel to it */
         smooth->shift[v] += (float)point->outward * mm * lean / ((lean * lean + 0.1f) * smooth->edge_mm[point->axis]);
         place(job, v);
@@ -210,9 +210,9 @@ bool smooth_keep_volume(struct smooth_job *smooth, struct error *err)
         parallel_run(smooth->n_threads, place_all, &job);
         for (int step = 0; step < smooth->options.n_volume_steps; step++) {
             measure_volumes(&job);
-            if (!plan_swelling(&job, step))
+            if (!plan_offsets(&job, step))
                 break;
-            parallel_run(smooth->n_threads, swell, &job);
+            parallel_run(smooth->n_threads, offset_pieces, &job);
         }
     }
     free(job.pieces);

@@ -621,7 +621,7 @@ static void many_leaves(struct made_dicom *made)
     made_sequence(made, TAG(0x300a, 0x00b6));
     made_item(made);
     made_text(made, TAG(0x300a, 0x00b8), "CS", "MLCX");
-    made_integer(made, TAG(0x300a, 0x00bc), RTPLAN_MAX_LEAVES + 1);
+    made_integer(made, TAG(0x300a, 0x00bc), OPENING_MAX_LEAVES + 1);
     made_item_end(made);
     made_sequence_end(made);
 }

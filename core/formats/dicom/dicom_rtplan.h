@@ -5,9 +5,8 @@
 #include "core/report/report.h"
 
 enum {
-    RTPLAN_MAX_BEAMS = 64,            /* further ones are reported and left out */
-    RTPLAN_MAX_CONTROL_POINTS = 5000, /* per beam; more are an error */
-    RTPLAN_MAX_LEAVES = 400           /* leaf positions of one device; more are an error */
+    RTPLAN_MAX_BEAMS = 64,           /* further ones are reported and left out */
+    RTPLAN_MAX_CONTROL_POINTS = 5000 /* per beam; more are an error */
 };
 
 struct rtplan {

@@ -4,7 +4,7 @@
 #include "core/beam/beam.h"
 #include "core/formats/dicom/dicom_numbers.h"
 
-enum { OPENING_MAX_DEVICES = 8, OPENING_MAX_LEAVES = 400 };
+enum { OPENING_MAX_DEVICES = 8, OPENING_MAX_LEAVES = 400 }; /* per beam; pairs per device; more are an error */
 #define OPENING_MOST_MM \
     500.0 /* largest distance of a jaw or leaf from the isocentre: treatment machines open to 200 mm and retract a \
              little further */
