@@ -38,8 +38,8 @@ struct dicom_file {
     DcmDataset data_set;
     dicom_item root{};
     std::unordered_map<const DcmObject *, std::vector<dicom_item>> sequences; // items of the sequences read so far
-    std::string character_set;                                                // the character set that converter converts from
-    std::unique_ptr<DcmSpecificCharacterSet> converter;                       // NULL: an unknown set
+    std::string character_set;                          // the character set that converter converts from
+    std::unique_ptr<DcmSpecificCharacterSet> converter; // NULL: an unknown set
     bool has_converter = false;
     std::vector<dicom_fragment> fragments; // of compressed pixels, the offset table first
     std::vector<size_t> first_fragments;   // number of each frame's first fragment

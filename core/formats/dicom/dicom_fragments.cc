@@ -17,8 +17,7 @@ bool dicom_find_frames(const dicom_layout &layout, const char *name, uint32_t n_
     if (n_frames == 1 || n - 1 == n_frames) {
         for (size_t i = 0; i < n_frames; i++)
             first_fragments.push_back(1 + i);
-    } else if (fragments[0].size ==
-               0) { // no offset table: a frame begins where a start marker follows an end marker
+    } else if (fragments[0].size == 0) { // no offset table: a frame begins where a start marker follows an end marker
         for (size_t i = 1; i < n; i++) {
             const dicom_fragment &own = fragments[i], &before = fragments[i - 1];
             if (dicom_begins_picture(layout.transfer_syntax, layout.data + own.at, own.size) &&

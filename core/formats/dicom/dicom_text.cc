@@ -168,7 +168,8 @@ double number_from(const char *from, const char *end)
     if (short_decimal(from, end, &value))
         return value;
     auto [stop, error] = std::from_chars(from, end, value);
-    bool is_digits = from < end && (*from == '-' || *from == '.' || (*from >= '0' && *from <= '9')); // excludes "inf" and "nan"
+    bool is_digits =
+        from < end && (*from == '-' || *from == '.' || (*from >= '0' && *from <= '9')); // excludes "inf" and "nan"
     if (stop != end || !is_digits || error != std::errc() || !std::isfinite(value))
         return std::numeric_limits<double>::quiet_NaN();
     return value;
