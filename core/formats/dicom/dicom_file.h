@@ -1,7 +1,7 @@
 #pragma once
-/* One parsed DICOM file: elements, sequences, pixels. The only access to DCMTK: this header is plain C, dicom_file.cc
- * behind it is C++. Knows tags and encodings, not what a CT or a plan is. Works on bytes in memory; opens no file and
- * no network connection.
+/* One parsed DICOM file: elements, sequences, pixels. The only access to DCMTK: this header is plain C; dicom_file.cc
+ * and dicom_pixels.cc behind it are C++. Knows tags and encodings, not what a CT or a plan is. Works on bytes in
+ * memory; opens no file and no network connection.
  *
  *   thread  any number of files at the same time; each file in one thread at a time */
 #include "core/formats/dicom/dicom_basic.h"
