@@ -164,12 +164,22 @@ $(B)/unit/test_fields: $(call obj,$(GEN)/trial.c $(GEN)/trial_gen.c)
 $(B)/unit/test_confine $(B)/unit/test_dicom_file: $(call obj,server/renderer/confine.c server/renderer/seccomp.c)
 $(eval $(call c_programs,render,test,-lcmocka))
 $(eval $(call c_programs,bench,bench,))
+$(eval $(call c_programs,faults,test,-lcmocka))
 $(eval $(call c_programs,fuzz,fuzz,-fsanitize=fuzzer))
 $(B)/fuzz/fuzz_plan_parts: $(call obj,$(addprefix tests/unit/,data_folder.c made_chd.c made_dicom.c made_dose.c))
 $(B)/fuzz/fuzz_plan_parts: private CORE_LIBS += -lcmocka
 $(B)/unit/test_unpack: | $(B)/beamroom-render
 $(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: $(call obj,$(UNPACK_SRC))
 $(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: private CORE_LIBS += $(UNPACK_LIBS)
+
+# Programs whose calls of the system fail on demand (tests/faults/faults.h): what they define takes the place of libc's for all
+# libraries too (-rdynamic), and mem_new is led through it.
+FAULTS_HELP := $(call obj,$(addprefix tests/unit/,data_folder.c made_chd.c made_dicom.c made_dose.c made_series.c oracle.c room_fake.c rt_files.c) $(UNPACK_SRC))
+$(faults_BIN): $(FAULTS_HELP)
+$(faults_BIN): private LDFLAGS += -rdynamic -Wl,--wrap=mem_new,--wrap=mem_copy_text
+$(faults_BIN): private CORE_LIBS += $(UNPACK_LIBS)
+# an exception passes through operator new; the sanitizer must not check what stands before it
+$(B)/obj/tests/faults/faults.o: private CFLAGS += -fexceptions -fno-sanitize=all -U_FORTIFY_SOURCE -fno-builtin $(if $(findstring address,$(SAN)),-DFAULTS_ADDRESS)
 
 # ---- suites; each ends with "name: N passed, N failed, N skipped" -----------------------------------------------------------
 export BEAMROOM_BIN := $(abspath $(B))

@@ -1,0 +1,184 @@
+/* Shapes of every representation, pictures of our own rasteriser and of GL, and their compression, while a call of the
+ * system fails. */
+#include "core/encode/encode.h"
+#include "core/render/render.h"
+#include "core/render/visible/visible.h"
+#include "tests/check.h"
+#include "tests/faults/walk.h"
+#include "tests/made_ragged.h"
+
+static double grey(struct vec3 lps_mm)
+{
+    return floor(10 * lps_mm.x + 3 * lps_mm.y + lps_mm.z);
+}
+
+static struct plan *make_plan(void)
+{
+    struct plan *plan = ragged_plan();
+    struct grid grid = ragged_grid();
+    made_plan_add_image(plan, &grid, VOXEL_I16, grey);
+    return plan;
+}
+
+static void add_shape(struct outcome *outcome, const struct shape *shape)
+{
+    outcome_add_number(outcome, shape->kind);
+    if (shape->mesh) {
+        outcome_add_number(outcome, (double)shape->mesh->n_triangles);
+        outcome_add(outcome, shape->mesh->positions_lps_mm, shape->mesh->n_vertices * 3 * sizeof(float));
+        outcome_add(outcome, shape->mesh->indices, shape->mesh->n_triangles * 3 * sizeof(uint32_t));
+    } else if (shape->lines) {
+        outcome_add(outcome, shape->lines->positions_lps_mm, shape->lines->n_vertices * 3 * sizeof(float));
+    } else {
+        outcome_add(outcome, shape->points->positions_lps_mm, shape->points->n_points * 3 * sizeof(float));
+    }
+}
+
+/* Twice: what failed once is not remembered as impossible. */
+struct shape_case {
+    struct shape_key key;
+    enum surface_detail detail;
+};
+
+static void build_shape(void *context, struct outcome *outcome)
+{
+    const struct shape_case *wanted = context;
+    struct error again = { 0 };
+    faults_pause();
+    struct plan *plan = make_plan();
+    faults_go_on();
+    struct surface_facts facts;
+    struct shape *shape = plan_shape(plan, 0, &wanted->key, wanted->detail, &facts, &outcome->err);
+    if (shape) {
+        outcome->is_done = true;
+        add_shape(outcome, shape);
+        shape_unref(shape);
+    } else {
+        faults_pause();
+        shape = plan_shape(plan, 0, &wanted->key, wanted->detail, &facts, &again);
+        if (!shape)
+            outcome->err = (struct error){ ERROR_NONE, "" }; /* a finding: it fails for ever */
+        shape_unref(shape);
+        faults_go_on();
+    }
+    plan_destroy(plan);
+}
+
+static void walk_shapes(void)
+{
+    for (int r = 0; r < REPRESENTATION_N; r++)
+        for (int a = 0; a < (r == REPRESENTATION_SURFACE ? SURFACE_N_ALGORITHMS : 1); a++)
+            for (int light = 0; light < (r == REPRESENTATION_SURFACE ? 2 : 1); light++) {
+                struct shape_case wanted = { { .representation = (enum region_representation)r,
+                                               .algorithm = (enum surface_algorithm)a,
+                                               .nurbs_order = 4,
+                                               .nurbs_bins = 32 },
+                                             light ? SURFACE_LIGHT : SURFACE_FULL };
+                char name[128];
+                snprintf(name, sizeof name, "a region as %s%s%s%s is built",
+                         region_representation_word((enum region_representation)r), r ? "" : " by ",
+                         r ? "" : surface_algorithm_word((enum surface_algorithm)a), light ? ", coarse," : "");
+                const struct walk walk = { .name = name,
+                                           .run = build_shape,
+                                           .context = &wanted,
+                                           .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
+                walk_run(&walk);
+            }
+}
+
+struct picture_case {
+    enum render_back_end back_end;
+    enum scene_kind kind;
+    enum scene_representation representation;
+    bool is_checked;
+};
+
+/* A picture that leaves a region out says which (visible_missing). */
+static void draw(void *context, struct outcome *outcome)
+{
+    const struct picture_case *wanted = context;
+    struct renderer *renderer = NULL;
+    struct encoder *encoder = NULL;
+    struct encoded jpeg = { 0 }, png = { 0 };
+    struct image *image = NULL;
+    struct camera camera;
+    struct render_timing timing;
+    char field[128];
+    faults_pause();
+    struct plan *plan = make_plan();
+    struct scene scene;
+    scene_for_plan(plan, &scene);
+    for (size_t i = 0; i < scene.n_regions; i++) {
+        scene.regions[i].value.representation = wanted->representation;
+        scene.regions[i].value.opacity = i == 0 ? 0.5 : 1;
+    }
+    struct view view = view_default;
+    view.kind = wanted->kind;
+    view.size_px[0] = 120;
+    view.size_px[1] = 90;
+    faults_go_on();
+    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &outcome->err);
+    if (!snapshot)
+        goto done;
+    renderer = renderer_create(wanted->back_end, &outcome->err);
+    if (!renderer)
+        goto done;
+    const struct render_options options = { 120, 90, SURFACE_FULL, true };
+    image = render_snapshot(renderer, snapshot, &options, &camera, &timing, &outcome->err);
+    if (!image)
+        goto done;
+    encoder = encoder_create();
+    const struct encode_options as_jpeg = { ENCODE_JPEG, 90, true }, as_png = { ENCODE_PNG, 0, false };
+    if (!encode_image(encoder, image, &as_jpeg, &jpeg, &outcome->err) ||
+        !encode_image(encoder, image, &as_png, &png, &outcome->err))
+        goto done;
+    outcome->is_done = true;
+    outcome_add(outcome, image->rgba, (size_t)image->width_px * (size_t)image->height_px * 4);
+    outcome_add(outcome, jpeg.bytes, jpeg.n_bytes);
+    outcome_add(outcome, png.bytes, png.n_bytes);
+done:
+    faults_pause();
+    if (outcome->is_done) {
+        struct visible_missing missing[VISIBLE_MAX_MISSING];
+        size_t n = visible_missing(snapshot, SURFACE_FULL, missing);
+        outcome->is_told = n > 0;
+        outcome_note(outcome, n > 0 ? missing[0].why.text : "");
+    }
+    faults_go_on();
+    free(jpeg.bytes);
+    free(png.bytes);
+    encoder_destroy(encoder);
+    image_destroy(image);
+    snapshot_unref(snapshot);
+    if (renderer)
+        renderer_forget(renderer, plan);
+    renderer_destroy(renderer);
+    plan_destroy(plan);
+}
+
+static void walk_pictures(void)
+{
+    for (int r = 0; r <= SCENE_REPRESENTATION_FAN; r++) {
+        struct picture_case wanted = { RENDER_SOFT, SCENE_KIND_3D, (enum scene_representation)r, false };
+        char name[128];
+        snprintf(name, sizeof name, "regions as %s are drawn and compressed",
+                 region_representation_word((enum region_representation)r));
+        const struct walk walk = {
+            .name = name, .run = draw, .context = &wanted, .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true }
+        };
+        walk_run(&walk);
+    }
+    struct picture_case slice = { RENDER_SOFT, SCENE_KIND_AXIAL, SCENE_REPRESENTATION_SURFACE, false };
+    const struct walk walk = { .name = "a slice is drawn and compressed",
+                               .run = draw,
+                               .context = &slice,
+                               .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
+    walk_run(&walk);
+}
+
+int main(void)
+{
+    walk_shapes();
+    walk_pictures();
+    return walks_end();
+}
