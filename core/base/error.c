@@ -3,8 +3,16 @@
 #include <stdio.h>
 #include <string.h>
 
+static _Thread_local size_t n_memory;
+
+size_t error_n_memory(void)
+{
+    return n_memory;
+}
+
 bool error_set(struct error *err, enum error_code code, const char *format, ...)
 {
+    n_memory += code == ERROR_MEMORY;
     if (!err)
         return false;
     err->code = code;

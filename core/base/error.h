@@ -3,6 +3,7 @@
  * This module knows nothing of what failed; it allocates nothing, so it can also report lack of memory. */
 #include <stdarg.h>
 #include <stdbool.h>
+#include <stddef.h>
 
 #define NODISCARD __attribute__((warn_unused_result))
 #define PRINTF_LIKE(format_at, args_at) __attribute__((format(printf, format_at, args_at)))
@@ -29,6 +30,10 @@ struct error {
 
 /* Fills err (NULL is allowed) and returns false: `return error_set(...);` is a whole failure. */
 bool error_set(struct error *err, enum error_code code, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* How often ERROR_MEMORY was set on this thread, also where err was NULL. It tells a caller that leaves out what cannot
+ * be read whether the file is bad or memory was short. */
+size_t error_n_memory(void);
 
 /* Adds context in front on the way up: "plan head-3: region 7: label 300 is not in the volume". */
 void error_prefix(struct error *err, const char *format, ...) PRINTF_LIKE(2, 3);

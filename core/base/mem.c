@@ -31,6 +31,19 @@ void *mem_new(size_t size)
     return p;
 }
 
+void *mem_counted(size_t size)
+{
+    void *p = malloc(size);
+    void *kept = p || size > MEM_COUNTED_SMALL_BYTES ? NULL : atomic_exchange(&reserve, NULL);
+    if (kept) {
+        free(kept);
+        p = malloc(size);
+    }
+    if (!p)
+        error_set(NULL, ERROR_MEMORY, "no memory for %zu bytes", size);
+    return p;
+}
+
 static bool array_bytes(size_t n, size_t size, uint64_t limit_bytes, uint64_t *bytes, struct error *err)
 {
     if (!__builtin_mul_overflow((uint64_t)n, (uint64_t)size, bytes) && *bytes <= limit_bytes)

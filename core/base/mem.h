@@ -22,5 +22,10 @@ NODISCARD void *mem_array(size_t n, size_t size, uint64_t limit_bytes, struct er
  * array can take longer than filling it. */
 NODISCARD void *mem_large_array(size_t n, size_t size, uint64_t limit_bytes, struct error *err);
 
+/* malloc for a library that does not say why a call of it failed (cJSON): a failure counts in error_n_memory. A small
+ * request is first met from the reserve, as by mem_new. */
+enum { MEM_COUNTED_SMALL_BYTES = 4096 };
+NODISCARD void *mem_counted(size_t size);
+
 /* Copy of a string; aborts when there is no memory. */
 NODISCARD char *mem_copy_text(const char *text);

@@ -16,6 +16,6 @@ NODISCARD bool label_names_parse(const uint8_t *data, size_t size, const char *f
                                  struct error *err);
 
 /* Write the documents that the two readers above read back to equal structs; "" and not-a-number are left out. The
- * caller frees the text. */
-NODISCARD char *plan_file_text(const struct plan_file *file);
-NODISCARD char *label_names_text(const struct label_names *names);
+ * caller frees the text. errors ERROR_MEMORY */
+NODISCARD char *plan_file_text(const struct plan_file *file, struct error *err);
+NODISCARD char *label_names_text(const struct label_names *names, struct error *err);

@@ -6,8 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/mem.h"
 #include "core/beam/beam.h"
 #include "core/formats/text.h"
+
+/* cJSON does not tell a text that is no JSON from a lack of memory. Before main: no other thread uses it yet. */
+__attribute__((constructor)) static void count_failures(void)
+{
+    cJSON_InitHooks(&(cJSON_Hooks){ mem_counted, free });
+}
 
 struct json_place place_at(const struct json_place *up, const char *list, int index)
 {
@@ -29,7 +36,12 @@ cJSON *place_document(const uint8_t *data, size_t size, const char *file, struct
         data += 3;
         size -= 3;
     }
+    size_t n_lacked = error_n_memory();
     cJSON *root = cJSON_ParseWithLengthOpts((const char *)data, size, &stopped, false);
+    if (!root && error_n_memory() != n_lacked) {
+        error_set(err, ERROR_MEMORY, "%s: no memory to read %zu bytes of JSON", file, size);
+        return NULL;
+    }
     if (!root) {
         size_t line = 1;
         for (const char *c = (const char *)data; stopped && c < stopped; c++)

@@ -7,25 +7,27 @@
 #include "core/formats/plan_json.h"
 #include "core/formats/plan_json_delivery.h"
 
-/* Documents are small, so lack of memory ends the program, like mem_new. */
-static void add(cJSON *object, const char *key, cJSON *value) /* consumes value */
+/* Without memory these return and go on with less: print() then gives no text (error_n_memory). */
+static bool add(cJSON *object, const char *key, cJSON *value) /* consumes value */
 {
-    if (!value || !cJSON_AddItemToObject(object, key, value))
-        abort();
+    bool is_added = value && cJSON_AddItemToObject(object, key, value);
+    if (!is_added)
+        cJSON_Delete(value);
+    return is_added;
 }
 
-static cJSON *append(cJSON *list, cJSON *value) /* consumes value */
+static cJSON *append(cJSON *list, cJSON *value) /* consumes value; NULL: it is not there */
 {
-    if (!value || !cJSON_AddItemToArray(list, value))
-        abort();
-    return value;
+    if (value && cJSON_AddItemToArray(list, value))
+        return value;
+    cJSON_Delete(value);
+    return NULL;
 }
 
 static cJSON *add_list(cJSON *object, const char *key)
 {
     cJSON *list = cJSON_CreateArray();
-    add(object, key, list);
-    return list;
+    return add(object, key, list) ? list : NULL;
 }
 
 static void add_text(cJSON *object, const char *key, const char *text)
@@ -67,13 +69,16 @@ static void add_color(cJSON *object, const uint8_t rgb[3])
     add_text(object, "color", color);
 }
 
-static char *print(cJSON *root) /* consumes root */
+/* Consumes root. n_lacked: error_n_memory() before it was begun. */
+static char *print(cJSON *root, size_t n_lacked, struct error *err)
 {
     char *text = cJSON_Print(root);
-    if (!text)
-        abort();
     cJSON_Delete(root);
-    return text;
+    if (text && error_n_memory() == n_lacked)
+        return text;
+    free(text);
+    error_set(err, ERROR_MEMORY, "no memory for the text of a plan");
+    return NULL;
 }
 
 static void add_images(cJSON *root, const struct plan_file *file)
@@ -93,7 +98,8 @@ static void add_images(cJSON *root, const struct plan_file *file)
         if (!(image->window_width > 0))
             continue;
         cJSON *window = cJSON_CreateObject();
-        add(entry, "window", window);
+        if (!add(entry, "window", window))
+            continue;
         add_number(window, "center", image->window_center);
         add_number(window, "width", image->window_width);
     }
@@ -119,7 +125,8 @@ static void add_hierarchy(cJSON *root, const struct plan_file *file)
     if (file->hierarchy[0] || file->n_pairs == 0)
         return;
     cJSON *tree = cJSON_CreateObject();
-    add(root, "hierarchy", tree);
+    if (!add(root, "hierarchy", tree))
+        return;
     for (size_t i = 0; i < file->n_pairs; i++) {
         cJSON *inside = cJSON_GetObjectItemCaseSensitive(tree, file->pairs[i].outer);
         append(inside ? inside : add_list(tree, file->pairs[i].outer), cJSON_CreateString(file->pairs[i].inner));
@@ -156,7 +163,8 @@ static void add_doses(cJSON *root, const struct plan_file *file)
 static void add_delivery(cJSON *beam, const struct beam_delivery *delivery)
 {
     cJSON *entry = cJSON_CreateObject();
-    add(beam, "delivery", entry);
+    if (!add(beam, "delivery", entry))
+        return;
     add_number(entry, "number", (double)delivery->number);
     add_text(entry, "radiation", delivery->radiation);
     add_text(entry, "machine", delivery->machine);
@@ -221,8 +229,9 @@ static void add_curves(cJSON *root, const struct plan_file *file)
     }
 }
 
-char *plan_file_text(const struct plan_file *file)
+char *plan_file_text(const struct plan_file *file, struct error *err)
 {
+    size_t n_lacked = error_n_memory();
     cJSON *root = cJSON_CreateObject();
     add(root, "format", cJSON_CreateString("beamroom-plan"));
     add(root, "version", cJSON_CreateNumber(1));
@@ -237,11 +246,12 @@ char *plan_file_text(const struct plan_file *file)
     add_beams(root, file);
     add_tracks(root, file);
     add_curves(root, file);
-    return print(root);
+    return print(root, n_lacked, err);
 }
 
-char *label_names_text(const struct label_names *names)
+char *label_names_text(const struct label_names *names, struct error *err)
 {
+    size_t n_lacked = error_n_memory();
     cJSON *root = cJSON_CreateObject(), *list = add_list(root, "labels");
     for (size_t i = 0; i < names->n; i++) {
         const struct label_name *label = &names->labels[i];
@@ -259,12 +269,13 @@ char *label_names_text(const struct label_names *names)
         if (!label->has_tissue)
             continue;
         cJSON *tissue = cJSON_CreateObject();
-        add(entry, "tissue", tissue);
+        if (!add(entry, "tissue", tissue))
+            continue;
         add_number(tissue, "boron_ratio", label->tissue.boron_ratio);
         add_number(tissue, "cbe_boron", label->tissue.cbe_boron);
         add_number(tissue, "rbe_nitrogen", label->tissue.rbe_nitrogen);
         add_number(tissue, "rbe_fast", label->tissue.rbe_fast);
         add_number(tissue, "rbe_gamma", label->tissue.rbe_gamma);
     }
-    return print(root);
+    return print(root, n_lacked, err);
 }

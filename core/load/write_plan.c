@@ -101,9 +101,9 @@ static bool write_names(const struct writing *writing, uint32_t layer, const cha
                                                region->rbe_fast, region->rbe_gamma };
         is_kept[region->label] = true;
     }
-    char *text = label_names_text(&names);
+    char *text = label_names_text(&names, err);
     join(path, writing->folder, name);
-    bool is_written = file_write(path, text, strlen(text), err);
+    bool is_written = text && file_write(path, text, strlen(text), err);
     free(text);
     label_names_finish(&names);
     return is_written;
@@ -232,7 +232,9 @@ static bool write_volumes(struct writing *writing, struct error *err)
 static bool write_plan_json(const struct writing *writing, struct error *err)
 {
     char path[PATH_MAX];
-    char *text = plan_file_text(writing->file);
+    char *text = plan_file_text(writing->file, err);
+    if (!text)
+        return false;
     size_t n = strlen(text);
     struct plan_file *again = plan_file_parse((const uint8_t *)text, n, NULL,
                                               err); /* read back: a plan.json that cannot be opened is not written */
