@@ -134,8 +134,12 @@ enum folder_kind folder_look(const struct folder *folder, const char *name, uint
     if (!folder_check_name(name, NULL))
         return FOLDER_OTHER;
     int fd = open_beneath(folder, name);
-    if (fd < 0)
-        return errno == ENOENT || errno == ENOTDIR ? FOLDER_ABSENT : FOLDER_OTHER;
+    if (fd < 0) {
+        int reason = errno;
+        if (reason == EMFILE || reason == ENFILE || reason == ENOMEM)
+            error_set(NULL, ERROR_MEMORY, "%s: %s", name, strerror(reason));
+        return reason == ENOENT || reason == ENOTDIR ? FOLDER_ABSENT : FOLDER_OTHER;
+    }
     struct stat about;
     enum folder_kind kind = FOLDER_OTHER;
     if (fstat(fd, &about) == 0) {
@@ -242,10 +246,16 @@ bool folder_list(const struct folder *folder, char ***names, size_t *n_names, st
         return false;
     }
     size_t n = 0;
-    for (struct dirent *entry; n < FOLDER_MAX_ENTRIES && (entry = readdir(directory));)
+    errno = 0;
+    for (struct dirent *entry; n < FOLDER_MAX_ENTRIES && (entry = readdir(directory)); errno = 0)
         if (entry->d_name[0] != '.' && folder_check_name(entry->d_name, NULL))
             list[n++] = mem_copy_text(entry->d_name);
+    int reason = errno;
     closedir(directory);
+    if (n < FOLDER_MAX_ENTRIES && reason) {
+        folder_free_names(list, n);
+        return error_set(err, ERROR_IO, "the plan's folder cannot be listed: %s", strerror(reason));
+    }
     qsort(list, n, sizeof *list, compare_names);
     *names = list;
     *n_names = n;

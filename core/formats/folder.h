@@ -34,7 +34,7 @@ NODISCARD bool folder_check_name(const char *name, struct error *err);
 
 enum folder_kind { FOLDER_ABSENT, FOLDER_FILE, FOLDER_DIRECTORY, FOLDER_OTHER };
 /* The kind of a name, and the size of a file. A link that leads out of the folder is FOLDER_OTHER. bytes may be NULL.
- */
+ * Without memory or descriptors FOLDER_OTHER, and error_n_memory counts it. */
 enum folder_kind folder_look(const struct folder *folder, const char *name, uint64_t *bytes);
 
 /* Reads the whole file, or only its first most bytes when it is longer.

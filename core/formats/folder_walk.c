@@ -17,7 +17,22 @@ struct walk {
     bool (*is_skipped)(const struct folder *folder, const char *name);
     struct folder_tree *tree;
     size_t capacity;
+    struct error *err; /* set when is_failed */
+    bool is_failed;    /* the system refused something: what is in the tree is not all there is */
 };
+
+static bool fail(struct walk *walk, enum error_code code, const char *under, const char *what)
+{
+    walk->is_failed = true;
+    return error_set(walk->err, code, "%s%s%s", under, under[0] ? ": " : "", what);
+}
+
+static bool fail_listing(struct walk *walk, const char *under, int reason)
+{
+    char what[128];
+    snprintf(what, sizeof what, "the folder cannot be listed: %s", strerror(reason));
+    return fail(walk, reason == ENOMEM ? ERROR_MEMORY : ERROR_IO, under, what);
+}
 
 static bool add_file(struct walk *walk, const char *name, const struct stat *about)
 {
@@ -30,7 +45,7 @@ static bool add_file(struct walk *walk, const char *name, const struct stat *abo
         size_t capacity = walk->capacity ? 2 * walk->capacity : 256;
         struct folder_file *files = realloc(tree->files, capacity * sizeof *files);
         if (!files)
-            abort(); /* small, as there are at most FOLDER_MAX_FILES; like mem_new */
+            return fail(walk, ERROR_MEMORY, "", "no memory for the names of the files");
         tree->files = files;
         walk->capacity = capacity;
     }
@@ -48,17 +63,31 @@ static bool look_behind_link(const struct folder *folder, const char *name, stru
     return folder_look(folder, name, NULL) == FOLDER_FILE && fstatat(folder->fd, name, about, 0) == 0;
 }
 
-/* Lists one folder and those below it. Consumes fd. Returns false when FOLDER_MAX_FILES are reached. */
+/* Folders that may not be entered, or are gone by now, are passed over. */
+static bool is_passed_over(int reason)
+{
+    return reason == EACCES || reason == EPERM || reason == ENOENT || reason == ENOTDIR || reason == ELOOP;
+}
+
+/* Lists one folder and those below it. Consumes fd; with fd < 0 errno says why the folder could not be opened.
+ * Returns false when FOLDER_MAX_FILES are reached, or on failure (is_failed). */
 static bool walk_into(struct walk *walk, int fd, const char *under, int depth)
 {
     bool goes_on = true;
     DIR *directory = fd < 0 ? NULL : fdopendir(fd);
     if (!directory) {
+        int reason = errno;
         if (fd >= 0)
             close(fd);
-        return true;
+        return (fd < 0 && is_passed_over(reason)) || fail_listing(walk, under, reason);
     }
-    for (struct dirent *entry; goes_on && (entry = readdir(directory));) {
+    while (goes_on) {
+        errno = 0;
+        struct dirent *entry = readdir(directory);
+        if (!entry && errno)
+            goes_on = fail_listing(walk, under, errno);
+        if (!entry)
+            break;
         char name[FOLDER_NAME_SIZE];
         struct stat about;
         int n = snprintf(name, sizeof name, "%s%s%s", under, under[0] ? "/" : "", entry->d_name);
@@ -97,8 +126,10 @@ bool folder_walk(const struct folder *folder, const char *under,
     int fd = openat(folder->fd, under[0] ? under : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (fd < 0)
         return error_set(err, ERROR_IO, "%s: the folder cannot be listed: %s", under, strerror(errno));
-    struct walk walk = { folder, is_skipped, tree, 0 };
+    struct walk walk = { .folder = folder, .is_skipped = is_skipped, .tree = tree, .err = err };
     walk_into(&walk, fd, under, 0);
+    if (walk.is_failed)
+        return false;
     if (tree->n_files > 1)
         qsort(tree->files, tree->n_files, sizeof *tree->files, compare_files);
     return true;

@@ -86,8 +86,10 @@ static struct reading inflate_slowly(const uint8_t *data, size_t size, uint8_t *
 size_t gzip_head(const uint8_t *data, size_t size, uint8_t *out, size_t capacity)
 {
     z_stream stream = { 0 };
-    if (inflateInit2(&stream, WINDOW_GZIP) != Z_OK)
+    if (inflateInit2(&stream, WINDOW_GZIP) != Z_OK) {
+        error_set(NULL, ERROR_MEMORY, "no memory to undo compression");
         return 0;
+    }
     size_t in = 0, have = 0;
     while (have < capacity && in < size) {
         stream.next_in = (Bytef *)(uintptr_t)(data + in);
@@ -101,6 +103,10 @@ size_t gzip_head(const uint8_t *data, size_t size, uint8_t *out, size_t capacity
         if (status == Z_STREAM_END) {
             if (!gzip_is(data + in, size - in) || inflateReset(&stream) != Z_OK)
                 break;
+        } else if (status == Z_MEM_ERROR) {
+            error_set(NULL, ERROR_MEMORY, "no memory to undo compression");
+            have = 0;
+            break;
         } else if (status != Z_OK || (in_before == stream.avail_in && out_before == stream.avail_out)) {
             break;
         }

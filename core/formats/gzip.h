@@ -12,7 +12,7 @@
 bool gzip_is(const uint8_t *data, size_t size);
 
 /* Unpacks the first bytes, up to capacity; data may be cut short. Returns how many; 0 when the stream is damaged from
- * the start. */
+ * the start, or without memory (error_n_memory). */
 size_t gzip_head(const uint8_t *data, size_t size, uint8_t *out, size_t capacity);
 
 /* Bytes that a stream may hold beyond those the caller asked for. */

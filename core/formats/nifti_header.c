@@ -368,7 +368,9 @@ bool nifti_peek(const struct bytes *file, const char *name, struct nifti_header 
     if (!gzip_is(file->data, file->size))
         return nifti_parse_header(file->data, file->size, name, header, report, err);
     uint8_t head[NIFTI_HEAD_BYTES];
-    size_t n = gzip_head(file->data, file->size, head, sizeof head);
+    size_t n_lacked = error_n_memory(), n = gzip_head(file->data, file->size, head, sizeof head);
+    if (n == 0 && error_n_memory() != n_lacked)
+        return error_set(err, ERROR_MEMORY, "%s: no memory to undo its compression", name);
     if (n == 0)
         return error_set(err, ERROR_FORMAT, "%s: the gzip stream is broken at its start", name);
     return nifti_parse_header(head, n, name, header, report, err);

@@ -28,29 +28,16 @@ struct recognition {
     struct error reason; /* why the first file that looked like a part was not used */
 };
 
-static bool nifti_is_whole(const struct folder *folder, const char *name)
-{
-    struct nifti_header header;
-    return plan_nifti_peek(folder, name, &header, NULL) && header.type != RAW_F32 && header.type != RAW_F64;
-}
-
-static bool nrrd_is_whole(const struct folder *folder, const char *name, bool *has_segments)
-{
-    struct nrrd_header header;
-    bool is_read = plan_nrrd_peek(folder, name, &header, NULL);
-    *has_segments = is_read && header.n_segments > 0;
-    nrrd_header_finish(&header);
-    return is_read && header.type != RAW_F32 && header.type != RAW_F64;
-}
+/* What a grid's header says of its values. */
+struct grid_facts {
+    bool is_whole, has_segments;
+};
 
 /* True for a grid of whole numbers whose name contains a word for labels, or that names its own segments. */
-static bool is_label_map(const struct folder *folder, const char *name, enum part_format format)
+static bool is_label_map(const char *name, const struct grid_facts *facts)
 {
     static const char *const words[] = { "label", "seg", "univel", "mask" };
-    bool has_segments = false;
-    if (!(format == PART_NIFTI ? nifti_is_whole(folder, name) : nrrd_is_whole(folder, name, &has_segments)))
-        return false;
-    return has_segments || part_is_spoken_of(name, words, sizeof words / sizeof words[0]);
+    return facts->is_whole && (facts->has_segments || part_is_spoken_of(name, words, sizeof words / sizeof words[0]));
 }
 
 static bool is_dose_map(const char *name)
@@ -127,7 +114,8 @@ static void add_dose(struct recognition *all, const char *name)
 
 /* Reports a grid whose header cannot be read; it is left out. The first reason is kept: it becomes the error when the
  * folder holds nothing else. */
-static bool has_good_header(struct recognition *all, const char *name, enum part_format format)
+static bool has_good_header(struct recognition *all, const char *name, enum part_format format,
+                            struct grid_facts *facts)
 {
     struct error err = { 0 };
     struct nifti_header nifti;
@@ -135,9 +123,11 @@ static bool has_good_header(struct recognition *all, const char *name, enum part
     bool is_good = false;
     if (format == PART_NRRD) {
         is_good = plan_nrrd_peek(all->folder, name, &nrrd, &err);
+        *facts = (struct grid_facts){ nrrd.type != RAW_F32 && nrrd.type != RAW_F64, nrrd.n_segments > 0 };
         nrrd_header_finish(&nrrd);
     } else {
         is_good = plan_nifti_peek(all->folder, name, &nifti, &err);
+        *facts = (struct grid_facts){ is_good && nifti.type != RAW_F32 && nifti.type != RAW_F64, false };
     }
     if (is_good)
         return true;
@@ -162,9 +152,10 @@ static bool is_second_of_pair(const struct folder *folder, const char *name)
 
 static void add_grid(struct recognition *all, const char *name, enum part_format format)
 {
-    if (is_second_of_pair(all->folder, name) || !has_good_header(all, name, format))
+    struct grid_facts facts;
+    if (is_second_of_pair(all->folder, name) || !has_good_header(all, name, format, &facts))
         return;
-    if (name_lists_name(all->lists, name) || is_label_map(all->folder, name, format)) {
+    if (name_lists_name(all->lists, name) || is_label_map(name, &facts)) {
         (void)add_region(all, name);
     } else if (is_dose_map(name)) {
         add_dose(all, name);
@@ -317,8 +308,10 @@ bool plan_recognise(const struct folder *folder, const struct dicom_progress *pr
 {
     struct folder_tree tree;
     struct error reason = { 0 };
-    if (!folder_walk(folder, "", is_plan, &tree, err))
+    if (!folder_walk(folder, "", is_plan, &tree, err)) {
+        folder_tree_finish(&tree);
         return false;
+    }
     struct plan_file *file = parts->file = mem_new(sizeof *file);
     parts->is_recognised = true;
     file->regions = mem_new(PLAN_FILE_MAX_PARTS * sizeof *file->regions);

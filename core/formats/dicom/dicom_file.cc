@@ -311,7 +311,8 @@ bool parse(dicom_file &file, const uint8_t *data, size_t size, dicom_extent exte
         OFCondition condition = file.data_set.read(stream, xfer, EGL_noChange);
         file.data_set.transferEnd();
         if (condition.bad())
-            return error_set(err, ERROR_FORMAT, "%s: byte %lld: the data set cannot be read: %.80s", name,
+            return error_set(err, condition == EC_MemoryExhausted ? ERROR_MEMORY : ERROR_FORMAT,
+                             "%s: byte %lld: the data set cannot be read: %.80s", name,
                              static_cast<long long>(layout.begin) + static_cast<long long>(stream.tell()),
                              condition.text());
     }

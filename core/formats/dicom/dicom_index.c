@@ -26,7 +26,7 @@ struct scan {
     struct scanned_file *files;
     size_t n_files;
     atomic_size_t next, n_done, n_kept;
-    atomic_bool is_cancelled;
+    atomic_bool is_cancelled, lacks_memory;
     pthread_mutex_t step_lock;
 };
 
@@ -34,6 +34,8 @@ static void scan_file(struct scan *scan, struct scanned_file *file, struct bytes
 {
     struct error err = { 0 };
     file->result = dicom_head_read(scan->folder, file->path, &file->object, scratch, &err);
+    if (file->result == DICOM_HEAD_BROKEN && err.code == ERROR_MEMORY) /* says nothing of the file */
+        atomic_store(&scan->lacks_memory, true);
     bool is_misnamed = file->result == DICOM_HEAD_FOREIGN && text_has_ending(file->path, ".dcm");
     if (file->result == DICOM_HEAD_BROKEN)
         dicom_object_finish(&file->object);
@@ -317,6 +319,10 @@ struct dicom_index *dicom_index_scan(const struct folder *folder, char *const *n
     parallel_run((size_t)n_threads < scan.n_files ? n_threads : (int)scan.n_files, scan_part, &scan);
     if (atomic_load(&scan.is_cancelled)) {
         error_set(err, ERROR_CANCELLED, "looking for DICOM was cancelled");
+        goto fail;
+    }
+    if (atomic_load(&scan.lacks_memory)) {
+        error_set(err, ERROR_MEMORY, "no memory to look at %zu files", scan.n_files);
         goto fail;
     }
     if (!collect(&scan, index, report, err) || !drop_copies(index, report, err))
