@@ -222,18 +222,20 @@ static bool write_file(int fd, const struct plan *plan, const struct plan_source
     fields_bytes(&head, fields.data, fields.size);
     uint64_t head_bytes = head.size + pieces.n_pieces * sizeof *pieces.checks;
     *n_bytes = place_voxels(&pieces, head_bytes);
-    bool is_written = !fields.is_bad && *n_bytes <= MAX_BYTES &&
+    bool is_written = !fields.is_bad && !head.is_bad && *n_bytes <= MAX_BYTES &&
                       head_bytes <= (uint64_t)PLAN_CACHE_MAX_HEAD_MIB << 20 && has_room(fd, *n_bytes) &&
                       move_pieces(&pieces);
     if (is_written) {
         fields_bytes(&head, pieces.checks, pieces.n_pieces * sizeof *pieces.checks);
         struct start start = make_start(&head);
-        is_written = transfer(fd, false, head.data, head.size, sizeof start) &&
+        is_written = !head.is_bad && transfer(fd, false, head.data, head.size, sizeof start) &&
                      transfer(fd, false, (uint8_t *)&start, sizeof start, 0) && ftruncate(fd, (off_t)*n_bytes) == 0;
     }
     finish_pieces(&pieces);
     free(fields.data);
     free(head.data);
+    if (fields.lacks_memory || head.lacks_memory)
+        errno = ENOMEM;
     return is_written;
 }
 
@@ -264,7 +266,8 @@ bool plan_cache_store(const struct plan *plan, const struct plan_sources *source
                       "%llu bytes are more than a file may have here, or than leave %d MiB on the disk",
                       (unsigned long long)n_bytes, PLAN_CACHE_LEAVES_MIB);
         else
-            error_set(err, ERROR_IO, "the opened plan cannot be kept: %s", strerror(reason));
+            error_set(err, reason == ENOMEM ? ERROR_MEMORY : ERROR_IO, "the opened plan cannot be kept: %s",
+                      strerror(reason));
     }
     close(folder);
     return is_written;

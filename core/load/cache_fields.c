@@ -21,11 +21,15 @@ void fields_bytes(struct fields *fields, void *value, size_t size)
         fields->at += size;
         return;
     }
+    if (fields->is_bad)
+        return;
     if (fields->capacity - fields->size < size) {
         size_t capacity = 2 * fields->capacity + size + 4096;
         uint8_t *data = realloc(fields->data, capacity);
-        if (!data)
-            abort(); /* the fields of a plan are small; like mem_new */
+        if (!data) {
+            fields->is_bad = fields->lacks_memory = true;
+            return;
+        }
         fields->data = data;
         fields->capacity = capacity;
     }

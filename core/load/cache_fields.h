@@ -9,7 +9,8 @@ enum {
 };
 
 struct fields {
-    bool is_reading, is_bad; /* is_bad: the bytes end early or hold a value that no plan has */
+    bool is_reading, is_bad; /* is_bad: the bytes end early or hold a value that no plan has; or lacks_memory */
+    bool lacks_memory;       /* writing: there was none for the bytes */
     uint8_t *data;           /* writing: grows; reading: borrowed */
     size_t size, at, capacity;
     struct volume *volumes[FIELDS_MAX_VOLUMES]; /* in the order of their fields; borrowed from the plan; when reading:
