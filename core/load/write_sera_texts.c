@@ -3,6 +3,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,13 +15,23 @@ struct sheet {
     FILE *out;
     char *text;
     size_t n_bytes;
+    bool is_cut; /* no memory for something that was printed: such a stream does not remember it itself */
 };
+
+static void print(struct sheet *sheet, const char *format, ...) PRINTF_LIKE(2, 3);
+static void print(struct sheet *sheet, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    sheet->is_cut = vfprintf(sheet->out, format, args) < 0 || sheet->is_cut;
+    va_end(args);
+}
 
 static bool sheet_close(struct sheet *sheet, const char *folder, const char *name, struct error *err)
 {
     char path[PATH_MAX];
-    bool is_whole = sheet->out && !ferror(sheet->out);
-    is_whole = sheet->out && fclose(sheet->out) == 0 && is_whole;
+    bool is_whole = sheet->out && !sheet->is_cut;
+    is_whole = sheet->out && fclose(sheet->out) == 0 && sheet->text && is_whole;
     int n = snprintf(path, sizeof path, "%s/%s", folder, name);
     bool is_written = is_whole && n > 0 && n < (int)sizeof path
                           ? file_write(path, sheet->text, sheet->n_bytes, err)
@@ -48,8 +59,8 @@ static bool write_tracks(const struct track_set *tracks, const char *folder, str
     for (size_t i = 0; sheet.out && i < tracks->n_segments; i++) {
         const struct track_segment *segment = &tracks->segments[i];
         const float *a = segment->from_lps_mm, *b = segment->to_lps_mm;
-        fprintf(sheet.out, "%.9g %.9g %.9g %.9g %.9g %.9g %d %d\n", (double)a[0], -(double)a[1], (double)a[2],
-                (double)b[0], -(double)b[1], (double)b[2], codes[segment->class][0], codes[segment->class][1]);
+        print(&sheet, "%.9g %.9g %.9g %.9g %.9g %.9g %d %d\n", (double)a[0], -(double)a[1], (double)a[2], (double)b[0],
+              -(double)b[1], (double)b[2], codes[segment->class][0], codes[segment->class][1]);
     }
     return sheet_close(&sheet, folder, entry->path, err);
 }
@@ -71,21 +82,21 @@ static double cm_of(double mm)
 /* Prints not-a-number as SERA's Fortran prints a value too wide for its column, and a point without any value as zeros,
  * which means outside the mesh. All values have the same width, so that no line is as long as one in SERA's own column
  * layout, which readers recognise by length. */
-static void print_point(FILE *out, const struct dose_curve *curve, size_t point)
+static void print_point(struct sheet *sheet, const struct dose_curve *curve, size_t point)
 {
     bool is_nothing = true;
     for (size_t c = 0; c < curve->n_columns; c++)
         is_nothing = is_nothing && isnan(curve->values[c][point]);
-    fprintf(out, "%.17g %.17g 0 0", cm_of(curve->depths_mm[point / curve->n_radii]),
-            cm_of(curve->radii_mm[point % curve->n_radii]));
+    print(sheet, "%.17g %.17g 0 0", cm_of(curve->depths_mm[point / curve->n_radii]),
+          cm_of(curve->radii_mm[point % curve->n_radii]));
     for (size_t c = 0; c < curve->n_columns; c++)
         if (is_nothing)
-            fprintf(out, " 0.00000000E+00");
+            print(sheet, " 0.00000000E+00");
         else if (isnan(curve->values[c][point]))
-            fprintf(out, " **************");
+            print(sheet, " **************");
         else
-            fprintf(out, " %.8E", (double)curve->values[c][point]);
-    fputc('\n', out);
+            print(sheet, " %.8E", (double)curve->values[c][point]);
+    print(sheet, "\n");
 }
 
 static bool write_curve(const struct dose_curve *curve, const char *folder, struct plan_file_curve *entry,
@@ -99,10 +110,10 @@ static bool write_curve(const struct dose_curve *curve, const char *folder, stru
     sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
     struct vec3 center = curve->center_lps_mm; /* the file's order is (PA, RL, IS), in cm */
     if (sheet.out)
-        fprintf(sheet.out, "Center Point %.17g %.17g %.17g\nno. d,r points used %zu\n", -cm_of(center.y),
-                cm_of(center.x), cm_of(center.z), curve->n_depths);
+        print(&sheet, "Center Point %.17g %.17g %.17g\nno. d,r points used %zu\n", -cm_of(center.y), cm_of(center.x),
+              cm_of(center.z), curve->n_depths);
     for (size_t point = 0; sheet.out && point < curve->n_depths * curve->n_radii; point++)
-        print_point(sheet.out, curve, point);
+        print_point(&sheet, curve, point);
     return sheet_close(&sheet, folder, entry->path, err);
 }
 
@@ -116,8 +127,8 @@ static bool write_preferences(const struct plan_preferences *preferences, const 
         sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
         for (size_t i = 0; sheet.out && i < preferences->n_levels; i++) {
             const struct plan_level *level = &preferences->levels[i];
-            fprintf(sheet.out, "contour_level: %.17g %d %d %d\n", level->percent, level->rgb[0] * TO_16_BITS,
-                    level->rgb[1] * TO_16_BITS, level->rgb[2] * TO_16_BITS);
+            print(&sheet, "contour_level: %.17g %d %d %d\n", level->percent, level->rgb[0] * TO_16_BITS,
+                  level->rgb[1] * TO_16_BITS, level->rgb[2] * TO_16_BITS);
         }
         char *name = file->preferences[file->n_preferences++];
         snprintf(name, FOLDER_NAME_SIZE, "preferences.rsc");
@@ -127,8 +138,8 @@ static bool write_preferences(const struct plan_preferences *preferences, const 
         struct sheet sheet = { 0 };
         sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
         for (size_t i = 0; sheet.out && i < preferences->n_colors; i++)
-            fprintf(sheet.out, "%d %d %d\n", preferences->colors[i][0], preferences->colors[i][1],
-                    preferences->colors[i][2]);
+            print(&sheet, "%d %d %d\n", preferences->colors[i][0], preferences->colors[i][1],
+                  preferences->colors[i][2]);
         char *name = file->preferences[file->n_preferences++];
         snprintf(name, FOLDER_NAME_SIZE, "colors.cmap");
         is_written = sheet_close(&sheet, folder, name, err);

@@ -11,7 +11,7 @@
 static char *close_text(FILE *out, char **text, struct error *err)
 {
     bool is_whole = out && !ferror(out);
-    if (out && fclose(out) == 0 && is_whole)
+    if (out && fclose(out) == 0 && is_whole && *text) /* closing may leave no text and say nothing */
         return *text;
     free(*text);
     *text = NULL;
