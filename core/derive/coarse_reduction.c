@@ -116,7 +116,7 @@ static size_t full_recipes(const struct search *search, struct region_shape_reci
 
 /* True if the full surfaces keep the limit. Halving the grid quarters the triangles, so the full surfaces are only
  * built when those at a reduction of 2 promise that. */
-static bool full_is_enough(const struct search *search, size_t n_at_two)
+static bool full_is_enough(struct search *search, size_t n_at_two)
 {
     if (n_at_two > COARSE_MAX_TRIANGLES / 3)
         return false;
@@ -125,8 +125,11 @@ static bool full_is_enough(const struct search *search, size_t n_at_two)
     bool is_built = true;
     region_shapes_build(search->derive, recipes, n_recipes, NULL, NULL);
     for (size_t i = 0; is_built && i < n_recipes; i++) {
-        struct region_shape *full = region_shape_get(search->derive, &recipes[i], NULL);
+        struct error err = { 0 };
+        struct region_shape *full = region_shape_get(search->derive, &recipes[i], &err);
         is_built = full != NULL;
+        if (!full && !derive_is_refusal(err.code)) /* memory may come back: nothing is decided for good without it */
+            atomic_store(&search->is_failed, true);
         if (full) {
             n += full->facts.n_triangles;
             derive_result_unref(&full->base);
