@@ -165,7 +165,30 @@ static void print_block(void *block)
     size_t n = __asan_get_alloc_stack(block, trace, MAX_STACK, &thread);
     backtrace_symbols_fd(trace, (int)n, STDOUT_FILENO);
 }
+
+/* The first caller that is neither libc nor this program's operator new: a library that loses blocks? */
+static bool is_lost_by_library(void *block)
+{
+    static const char *const names[] = { "libdcm", "libofstd", "liboflog", "libijg", "libturbojpeg", "libjpeg" };
+    void *trace[MAX_STACK];
+    int thread;
+    size_t n = __asan_get_alloc_stack(block, trace, MAX_STACK, &thread);
+    for (size_t i = 0; i < n && i < 6; i++) {
+        Dl_info about;
+        if (!dladdr(trace[i], &about) || !about.dli_fname)
+            continue;
+        for (size_t name = 0; name < sizeof names / sizeof names[0]; name++)
+            if (strstr(about.dli_fname, names[name]))
+                return true;
+    }
+    return false;
+}
 #else
+static bool is_lost_by_library(void *block)
+{
+    (void)block;
+    return false;
+}
 static void print_block(void *block)
 {
     printf("    %p (a build with SAN=address says where it was taken)\n", block);
@@ -174,11 +197,10 @@ static void print_block(void *block)
 
 size_t faults_n_kept_blocks(bool print)
 {
-    size_t n = atomic_load(&n_kept);
-    int n_printed = 0;
-    for (size_t at = 0; print && at < N_SLOTS && n_printed < MAX_PRINTED; at++)
-        if (slots[at] && slots[at] != GONE) {
-            printf("  not given back, block %d of %zu:\n", ++n_printed, n);
+    size_t n = 0;
+    for (size_t at = 0; atomic_load(&n_kept) && at < N_SLOTS; at++)
+        if (slots[at] && slots[at] != GONE && !is_lost_by_library(slots[at]) && n++ < MAX_PRINTED && print) {
+            printf("  not given back, block %zu:\n", n);
             fflush(stdout);
             print_block(slots[at]);
         }
