@@ -50,17 +50,19 @@ enum message_kind {
 
 struct message {
     enum message_kind kind;
-    struct picture *picture; /* REQUEST: owned */
-    uint64_t id;             /* DROP */
-    uint64_t source;         /* ENCODED */
-    uint64_t n_image_bytes;  /* ENCODED */
-    int64_t cost_us;         /* ENCODED */
+    struct picture *picture;  /* REQUEST: owned */
+    uint64_t id;              /* DROP */
+    struct encode_thread *by; /* TAKEN */
+    uint64_t source;          /* ENCODED */
+    uint64_t n_image_bytes;   /* ENCODED */
+    int64_t cost_us;          /* ENCODED */
 };
 
 struct encode_thread {
     struct pipeline *pipeline;
     pthread_t thread;
     struct queue *drawn; /* of struct picture */
+    size_t n_drawn;      /* the render thread's count of those; falls when it reads MESSAGE_TAKEN */
 };
 
 struct pipeline {
@@ -71,7 +73,10 @@ struct pipeline {
     struct encode_thread encode_threads[N_ENCODE_THREADS];
     struct queue *inbox;     /* of struct message, to the render thread */
     atomic_size_t n_waiting; /* requests that are not begun */
-    atomic_bool is_called;   /* a message should be read before drawing goes on */
+    atomic_bool is_called;   /* a message waits that may end the slice */
+    /* The picture that is drawn now, or was drawn last; see calls_for. */
+    _Atomic uint64_t drawn_id, drawn_source;
+    atomic_bool drawn_is_still;
     atomic_bool is_stopping;
     /* the rest belongs to the render thread */
     struct turns *turns;
@@ -138,7 +143,7 @@ static uint64_t image_bytes(const struct picture *picture)
  * one that needs all memory waits for it. */
 static bool is_held(struct pipeline *pipeline, const struct picture *picture, bool another_needs_all)
 {
-    if (queue_length(encode_thread_of(pipeline, picture)->drawn) >= MAX_DRAWN)
+    if (encode_thread_of(pipeline, picture)->n_drawn >= MAX_DRAWN)
         return true;
     if (picture->turn.is_begun)
         return false;
@@ -181,6 +186,9 @@ static void start_slice(struct pipeline *pipeline, struct picture *picture)
         atomic_fetch_sub(&pipeline->n_waiting, 1);
     }
     pipeline->current = picture;
+    atomic_store(&pipeline->drawn_id, picture->request.id);
+    atomic_store(&pipeline->drawn_source, picture->turn.source);
+    atomic_store(&pipeline->drawn_is_still, picture->turn.is_still);
     pipeline->current_us = clock_now_us();
     pipeline->leave_at_us = INT64_MAX;
     for (size_t i = 0; i < pipeline->n_pictures; i++) {
@@ -223,7 +231,7 @@ static void take_message(struct pipeline *pipeline, struct message *message)
             if (pipeline->pictures[i]->request.id == message->id)
                 pipeline->pictures[i]->is_dropped = true;
         break;
-    case MESSAGE_TAKEN: break; /* only wakes */
+    case MESSAGE_TAKEN: message->by->n_drawn--; break;
     case MESSAGE_ENCODED:
         turns_charge(pipeline->turns, message->source, message->cost_us);
         pipeline->n_image_bytes -= message->n_image_bytes;
@@ -337,7 +345,9 @@ static void pass_on(struct pipeline *pipeline, struct picture *picture)
         return;
     }
     remove_picture(pipeline, picture);
-    bool has_room = queue_try_put(encode_thread_of(pipeline, picture)->drawn, picture);
+    struct encode_thread *thread = encode_thread_of(pipeline, picture);
+    thread->n_drawn++;
+    bool has_room = queue_try_put(thread->drawn, picture);
     assert(has_room); /* else the picture was held */
     (void)has_room;
 }
@@ -346,12 +356,12 @@ static void pass_on(struct pipeline *pipeline, struct picture *picture)
 static void draw_slice(struct pipeline *pipeline, struct renderer *renderer, const struct error *why_none,
                        struct picture *picture)
 {
-    bool is_done = false, goes_on = true;
+    bool is_done = false;
     start_slice(pipeline, picture);
-    while (!is_done && goes_on) {
+    read_messages(pipeline); /* their senders may not have seen which picture is drawn */
+    while (!is_done && !picture->is_dropped && !is_time_to_leave(pipeline)) {
         is_done = draw(pipeline, renderer, why_none, picture);
         read_messages(pipeline);
-        goes_on = !picture->is_dropped && !is_time_to_leave(pipeline);
     }
     turns_charge(pipeline->turns, picture->turn.source, clock_now_us() - pipeline->current_us);
     pipeline->current = NULL;
@@ -421,7 +431,7 @@ static void *encode_main(void *argument)
     struct pipeline *pipeline = thread->pipeline;
     struct encoder *encoder = encoder_create();
     for (struct picture *picture; (picture = queue_take(thread->drawn, -1));) {
-        (void)send(pipeline, &(struct message){ .kind = MESSAGE_TAKEN });
+        (void)send(pipeline, &(struct message){ .kind = MESSAGE_TAKEN, .by = thread });
         if (!atomic_load(&pipeline->is_stopping))
             encode(pipeline, encoder, picture);
         picture_destroy(picture);
@@ -479,6 +489,15 @@ struct pipeline *pipeline_create(enum render_back_end back_end, bool stub, const
     return NULL;
 }
 
+/* Whether a request just sent may end the slice of the picture that is drawn: one of another source, or a moving
+ * picture while a still is drawn (turns_may_interrupt). If the render thread goes on to another picture meanwhile, it
+ * reads its messages after it has stored which. */
+static bool calls_for(struct pipeline *pipeline, const struct pipeline_request *request)
+{
+    return request->source != atomic_load(&pipeline->drawn_source) ||
+           (atomic_load(&pipeline->drawn_is_still) && !request->render.is_still);
+}
+
 bool pipeline_submit(struct pipeline *pipeline, const struct pipeline_request *request, struct error *err)
 {
     struct picture *picture = mem_new(sizeof *picture);
@@ -486,7 +505,8 @@ bool pipeline_submit(struct pipeline *pipeline, const struct pipeline_request *r
     picture->turn = (struct turns_item){ .source = request->source, .is_still = request->render.is_still };
     if (atomic_fetch_add(&pipeline->n_waiting, 1) < PIPELINE_MAX_WAITING &&
         send(pipeline, &(struct message){ .kind = MESSAGE_REQUEST, .picture = picture })) {
-        atomic_store(&pipeline->is_called, true);
+        if (calls_for(pipeline, request))
+            atomic_store(&pipeline->is_called, true);
         return true;
     }
     atomic_fetch_sub(&pipeline->n_waiting, 1);
@@ -498,7 +518,7 @@ void pipeline_drop(struct pipeline *pipeline, uint64_t id)
 {
     if (queue_length(pipeline->inbox) >= MAX_MESSAGES_BEFORE_DROP)
         return; /* the picture is drawn all the same */
-    if (send(pipeline, &(struct message){ .kind = MESSAGE_DROP, .id = id }))
+    if (send(pipeline, &(struct message){ .kind = MESSAGE_DROP, .id = id }) && id == atomic_load(&pipeline->drawn_id))
         atomic_store(&pipeline->is_called, true);
 }
 
