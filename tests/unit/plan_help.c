@@ -1,3 +1,4 @@
+/* Opening plans for tests, and asking for their parts. */
 #include "tests/unit/plan_help.h"
 
 #include "core/load/load.h"

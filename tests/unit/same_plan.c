@@ -1,3 +1,4 @@
+/* Compares two plans field by field. */
 #include "tests/unit/same_plan.h"
 
 #include "core/region/mask.h"

@@ -1,9 +1,9 @@
 /* Shapes as the store keeps them: by algorithm, detail and representation; within its budget; many at once. */
+#include "core/base/parallel.h"
 #include "core/derive/region_masks.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"
 #include "tests/made_plan.h"
-#include "tests/unit/data_folder.h"
 #include "tests/unit/plan_help.h"
 
 /* A box of 134^3 voxels, far from it one of 2^3, one of a single voxel. */
@@ -297,9 +297,111 @@ static void what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds
     plan_and_derived_destroy(plan);
 }
 
+/* Boxes of 5^3, 3^3 and 1 voxels of 10 mm, one inside the other. */
+static double nested_boxes_label(struct vec3 p)
+{
+    double d = fmax(fmax(fabs(p.x), fabs(p.y)), fabs(p.z));
+    return d < 5 ? 3 : d < 15 ? 2 : d < 25 ? 1 : 0;
+}
+static const struct made_region nested_boxes[] = { { "outer", -1, 0xff8040 },
+                                                   { "middle", 0, 0x40ff80 },
+                                                   { "inner", 1, 0x8040ff } };
+
+static struct plan *plan_of_nested_boxes(void)
+{
+    const uint32_t size[3] = { 9, 9, 9 };
+    struct affine map = made_affine(vec3(10, 0, 0), vec3(0, 10, 0), vec3(0, 0, 10), size, vec3(0, 0, 0));
+    struct grid grid = made_grid(9, 9, 9, map);
+    return made_plan(&grid, nested_boxes_label, nested_boxes, 3);
+}
+
+static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
+{
+    (void)state;
+    struct error err = { 0 };
+    struct plan *plan = plan_of_nested_boxes();
+    struct shape_facts facts, coarse;
+    struct mesh *first = surface_of(plan, 0, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err);
+    struct mesh *second = surface_of(plan, 0, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err);
+    struct mesh *moving = surface_of(plan, 0, SURFACE_MARCHING_CUBES, SURFACE_COARSE, &coarse, &err);
+    assert_ptr_equal(first, second);
+    assert_ptr_equal(first, moving); /* so few triangles that nothing is to be saved */
+    assert_int_equal(coarse.reduction, 1);
+    assert_int_equal(facts.n_univels, 125);
+    assert_close(facts.univel_volume_mm3, 125000, 1e-6);
+    /* through the outermost centres 4^3; on its faces 6 slabs of half a voxel; along its edges 12 prisms of 4 x 1/8; at
+     * its corners 8 tetrahedra of 1/48: 118.1667 voxels of 1000 mm3 */
+    assert_near(facts.volume_mm3, 118166.667, 1e-5);
+    assert_int_equal(mesh_open_edges(first), 0);
+    assert_non_null(first->normals);
+    mesh_unref(first);
+    mesh_unref(second);
+    mesh_unref(moving);
+    assert_null(surface_of(plan, 99, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err));
+    assert_int_equal(err.code, ERROR_RANGE);
+    plan_and_derived_destroy(plan);
+}
+
+struct batch {
+    struct plan *plan;
+    struct mesh *meshes[4][3][2];
+};
+
+static void ask_for_all(void *context, int part, int n_parts)
+{
+    (void)n_parts;
+    struct batch *batch = context;
+    for (size_t r = 0; r < 3; r++)
+        for (int detail = 0; detail < 2; detail++)
+            batch->meshes[part][r][detail] =
+                surface_of(batch->plan, r, SURFACE_MARCHING_CUBES, (enum surface_detail)detail, NULL, NULL);
+}
+
+static void many_threads_get_the_same_surfaces(void **state)
+{
+    (void)state;
+    struct batch batch = { .plan = plan_of_nested_boxes() };
+    (void)derived_of(batch.plan); /* before there are threads */
+    parallel_run(4, ask_for_all, &batch);
+    for (size_t r = 0; r < 3; r++)
+        for (int detail = 0; detail < 2; detail++)
+            for (int part = 0; part < 4; part++) {
+                assert_non_null(batch.meshes[part][r][detail]);
+                assert_ptr_equal(batch.meshes[part][r][detail], batch.meshes[0][r][detail]);
+                mesh_unref(batch.meshes[part][r][detail]);
+            }
+    plan_and_derived_destroy(batch.plan);
+}
+
+static void coarse_surfaces_of_a_whole_plan_stay_under_their_limit(void **state)
+{
+    (void)state;
+    struct plan *plan = plan_of_data("sera-head");
+    if (!plan)
+        skip();
+    size_t n_full = 0, n_coarse = 0;
+    for (size_t r = 0; r < plan->regions.n_regions; r++) {
+        struct shape_facts full, coarse;
+        mesh_unref(surface_of(plan, r, SURFACE_MARCHING_CUBES, SURFACE_FULL, &full, NULL));
+        mesh_unref(surface_of(plan, r, SURFACE_MARCHING_CUBES, SURFACE_COARSE, &coarse, NULL));
+        n_full += full.n_triangles;
+        n_coarse += coarse.n_triangles;
+        assert_int_equal(coarse.n_univels, full.n_univels);
+        assert_true(coarse.reduction > 1);
+        /* descendants lie inside: scalp holds brain and tumour */
+        assert_near(full.volume_mm3, full.univel_volume_mm3, 0.02);
+    }
+    assert_true(n_full > COARSE_MAX_TRIANGLES);
+    assert_true(n_coarse <= COARSE_MAX_TRIANGLES);
+    plan_and_derived_destroy(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(surfaces_are_built_once_and_hold_what_lies_inside),
+        cmocka_unit_test(many_threads_get_the_same_surfaces),
+        cmocka_unit_test(coarse_surfaces_of_a_whole_plan_stay_under_their_limit),
         cmocka_unit_test(surfaces_are_kept_by_algorithm),
         cmocka_unit_test(a_small_region_does_not_vanish_in_motion),
         cmocka_unit_test(what_was_not_used_for_longest_is_dropped_but_lives_on_with_who_holds_it),

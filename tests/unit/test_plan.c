@@ -1,13 +1,11 @@
-/* Whole plans, made here. */
+/* Plans opened from folders made here: hierarchy, layers, refusals, cancelling. */
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/base/parallel.h"
 #include "core/load/load.h"
 #include "core/load/summary.h"
 #include "core/plan/plan.h"
 #include "tests/check.h"
-#include "tests/derived_of.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/nifti_bytes.h"
 #include "tests/unit/plan_help.h"
@@ -89,7 +87,7 @@ static void a_plan_without_a_tree_gets_one_from_what_encloses_what(void **state)
     assert_int_equal(probe.n_regions, 0);
     plan_probe(plan, vec3(NAN, 0, 0), &probe);
     assert_int_equal(probe.n_regions, 0);
-    plan_and_derived_destroy(plan);
+    plan_destroy(plan);
     folder_remove(folder);
 }
 
@@ -111,99 +109,8 @@ static void a_tree_from_the_plan_wins_and_unknown_names_and_circles_are_reported
     assert_true(report_has(&plan->report, "hierarchy.cycle"));
     assert_true(report_has(&plan->report, "hierarchy.unknown-name"));
     assert_true(report_has(&plan->report, "region.unnamed"));
-    plan_and_derived_destroy(plan);
+    plan_destroy(plan);
     folder_remove(folder);
-}
-
-static void surfaces_are_built_once_and_hold_what_lies_inside(void **state)
-{
-    (void)state;
-    char folder[256];
-    struct error err;
-    make_folder_of_boxes(folder, "labels.nii");
-    folder_put_text(folder, "plan.json", PLAN("\"regions\":[{\"path\":\"labels.nii\"}]"));
-    struct plan *plan = plan_of_folder(folder, &err);
-    size_t skin = (size_t)(region_of(plan, "label-1") - plan->regions.regions);
-    struct shape_facts facts, coarse;
-    struct mesh *first = surface_of(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err);
-    struct mesh *second = surface_of(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_FULL, NULL, &err);
-    struct mesh *moving = surface_of(plan, skin, SURFACE_MARCHING_CUBES, SURFACE_COARSE, &coarse, &err);
-    assert_ptr_equal(first, second);
-    assert_ptr_equal(first, moving); /* so few triangles that nothing is to be saved */
-    assert_int_equal(coarse.reduction, 1);
-    assert_int_equal(facts.n_univels, 125);
-    assert_close(facts.univel_volume_mm3, 125000, 1e-6);
-    /* through the outermost centres 4^3; on its faces 6 slabs of half a voxel; along its edges 12 prisms of 4 x 1/8; at
-     * its corners 8 tetrahedra of 1/48: 118.1667 voxels of 1000 mm3 */
-    assert_near(facts.volume_mm3, 118166.667, 1e-5);
-    assert_int_equal(mesh_open_edges(first), 0);
-    assert_non_null(first->normals);
-    mesh_unref(first);
-    mesh_unref(second);
-    mesh_unref(moving);
-    assert_null(surface_of(plan, 99, SURFACE_MARCHING_CUBES, SURFACE_FULL, &facts, &err));
-    assert_int_equal(err.code, ERROR_RANGE);
-    plan_and_derived_destroy(plan);
-    folder_remove(folder);
-}
-
-struct batch {
-    struct plan *plan;
-    struct mesh *meshes[4][3][2];
-};
-
-static void ask_for_all(void *context, int part, int n_parts)
-{
-    (void)n_parts;
-    struct batch *batch = context;
-    for (size_t r = 0; r < 3; r++)
-        for (int detail = 0; detail < 2; detail++)
-            batch->meshes[part][r][detail] =
-                surface_of(batch->plan, r, SURFACE_MARCHING_CUBES, (enum surface_detail)detail, NULL, NULL);
-}
-
-static void many_threads_get_the_same_surfaces(void **state)
-{
-    (void)state;
-    char folder[256];
-    struct error err;
-    make_folder_of_boxes(folder, "labels.nii");
-    folder_put_text(folder, "plan.json", PLAN("\"regions\":[{\"path\":\"labels.nii\"}]"));
-    struct batch batch = { .plan = plan_of_folder(folder, &err) };
-    (void)derived_of(batch.plan); /* before there are threads */
-    parallel_run(4, ask_for_all, &batch);
-    for (size_t r = 0; r < 3; r++)
-        for (int detail = 0; detail < 2; detail++)
-            for (int part = 0; part < 4; part++) {
-                assert_non_null(batch.meshes[part][r][detail]);
-                assert_ptr_equal(batch.meshes[part][r][detail], batch.meshes[0][r][detail]);
-                mesh_unref(batch.meshes[part][r][detail]);
-            }
-    plan_and_derived_destroy(batch.plan);
-    folder_remove(folder);
-}
-
-static void coarse_surfaces_of_a_whole_plan_stay_under_their_limit(void **state)
-{
-    (void)state;
-    struct plan *plan = plan_of_data("sera-head");
-    if (!plan)
-        skip();
-    size_t n_full = 0, n_coarse = 0;
-    for (size_t r = 0; r < plan->regions.n_regions; r++) {
-        struct shape_facts full, coarse;
-        mesh_unref(surface_of(plan, r, SURFACE_MARCHING_CUBES, SURFACE_FULL, &full, NULL));
-        mesh_unref(surface_of(plan, r, SURFACE_MARCHING_CUBES, SURFACE_COARSE, &coarse, NULL));
-        n_full += full.n_triangles;
-        n_coarse += coarse.n_triangles;
-        assert_int_equal(coarse.n_univels, full.n_univels);
-        assert_true(coarse.reduction > 1);
-        /* descendants lie inside: scalp holds brain and tumour */
-        assert_near(full.volume_mm3, full.univel_volume_mm3, 0.02);
-    }
-    assert_true(n_full > COARSE_MAX_TRIANGLES);
-    assert_true(n_coarse <= COARSE_MAX_TRIANGLES);
-    plan_and_derived_destroy(plan);
 }
 
 /* A mask of one 4 x 1 x 1 row. */
@@ -241,7 +148,7 @@ static void masks_share_a_layer_until_they_overlap_or_their_grids_differ(void **
     assert_int_not_equal(region_of(plan, "b")->layer, region_of(plan, "c")->layer);
     assert_true(report_has(&plan->report, "region.empty"));
     assert_true(report_has(&plan->report, "region.renamed"));
-    plan_and_derived_destroy(plan);
+    plan_destroy(plan);
     folder_remove(folder);
 }
 
@@ -280,7 +187,7 @@ static void a_plan_never_leaves_its_folder(void **state)
     assert_int_equal(symlink("inside.nii", link), 0);
     struct plan *plan = plan_of_folder(folder, &err);
     assert_string_equal(err.text, "");
-    plan_and_derived_destroy(plan);
+    plan_destroy(plan);
     unlink(link);
     assert_int_equal(mkfifo(link, 0600), 0); /* a pipe must not hang the reader */
     assert_null(plan_of_folder(folder, &err));
@@ -376,7 +283,7 @@ static void a_dose_in_a_format_not_read_is_left_out_and_said(void **state)
     plan_probe(plan, vec3(0, 0, 0), &probe); /* the mask is 0 there: no dose, but an image */
     assert_int_equal(probe.n_doses, 0);
     assert_true(probe.has_image[0]);
-    plan_and_derived_destroy(plan);
+    plan_destroy(plan);
     struct plan_summary summary;
     plan_summarize(folder, &summary);
     assert_true(summary.is_readable);
@@ -398,7 +305,7 @@ static void an_image_beside_the_regions_is_reported(void **state)
                     PLAN("\"images\":[{\"path\":\"near.nii\"}],\"regions\":[{\"path\":\"mask.nii\",\"name\":\"x\"}]"));
     struct plan *plan = plan_of_folder(folder, &err);
     assert_false(report_has(&plan->report, "geometry.apart"));
-    plan_and_derived_destroy(plan);
+    plan_destroy(plan);
     put_row(folder, "mask.nii", (const uint8_t[4]){ 0, 0, 1, 1 }, 1);
     folder_put_text(
         folder, "plan.json",
@@ -406,7 +313,7 @@ static void an_image_beside_the_regions_is_reported(void **state)
     plan = plan_of_folder(folder, &err);
     assert_true(report_has(&plan->report, "geometry.apart"));
     assert_close(plan->bounds_lps_mm.high.x, -1.5, 1e-9); /* of the region alone: RAS x 1.5 .. 3.5 */
-    plan_and_derived_destroy(plan);
+    plan_destroy(plan);
     folder_remove(folder);
 }
 
@@ -428,9 +335,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plan_without_a_tree_gets_one_from_what_encloses_what),
         cmocka_unit_test(a_tree_from_the_plan_wins_and_unknown_names_and_circles_are_reported),
-        cmocka_unit_test(surfaces_are_built_once_and_hold_what_lies_inside),
-        cmocka_unit_test(many_threads_get_the_same_surfaces),
-        cmocka_unit_test(coarse_surfaces_of_a_whole_plan_stay_under_their_limit),
         cmocka_unit_test(masks_share_a_layer_until_they_overlap_or_their_grids_differ),
         cmocka_unit_test(a_plan_never_leaves_its_folder),
         cmocka_unit_test(a_plan_that_is_wrong_is_refused_with_the_place),

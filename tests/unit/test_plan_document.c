@@ -1,3 +1,4 @@
+/* The plan document: a plan as JSON for page and API. */
 #include "server/wire/plan_document.h"
 #include "tests/check.h"
 #include "tests/unit/made_mask.h"

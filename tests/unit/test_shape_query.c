@@ -1,3 +1,4 @@
+/* Queries for shapes: what is read, and what is refused with the field it names. */
 #include "server/wire/document.h"
 #include "server/wire/shape_query.h"
 #include "tests/check.h"
