@@ -8,7 +8,7 @@ struct shape_facts {
     double area_mm2, volume_mm3;    /* of triangles; volume: enclosed, not-a-number for a fan: its triangles overlap */
     double univel_volume_mm3;       /* of the mask the shape is made from, descendants included */
     uint64_t n_univels;
-    double distance_mean_mm, distance_max_mm; /* by shapes_measure_distance; not-a-number: not measured */
+    double distance_mean_mm, distance_max_mm; /* by derive_shape_distance; not-a-number: not measured */
     double build_ms;
     uint64_t n_bytes;   /* of memory */
     uint32_t reduction; /* univels merged into one along their shortest edge: 1 for a full shape, and for a coarse one

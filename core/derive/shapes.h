@@ -7,7 +7,7 @@
  * surfaces of the plan by the same algorithm stay together under COARSE_MAX_TRIANGLES, or the reduction is 8. */
 enum surface_detail { SURFACE_FULL, SURFACE_COARSE };
 
-/* A shape that is asked for. */
+/* A wanted shape: of what, as what, how fine. */
 struct shape_want {
     struct subject subject;
     struct shape_key key;       /* need not be normalised */
