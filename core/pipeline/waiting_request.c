@@ -51,14 +51,27 @@ void waiting_request_build_shapes(struct waiting_request *waiting, const atomic_
 
 /* ---- shapes built before ----------------------------------------------------------------------------------------- */
 
+enum { N_BUCKETS = 512, NO_SHAPE = UINT16_MAX };
+
 struct built_shapes {
     struct shape_want wants[MAX_BUILT_SHAPES];
+    uint16_t first[N_BUCKETS];       /* by the subject's hash: the newest want of the bucket, or NO_SHAPE */
+    uint16_t next[MAX_BUILT_SHAPES]; /* an older want of the same bucket, or NO_SHAPE */
     size_t n;
 };
 
+static void forget_all(struct built_shapes *built)
+{
+    built->n = 0;
+    for (size_t b = 0; b < N_BUCKETS; b++)
+        built->first[b] = NO_SHAPE;
+}
+
 struct built_shapes *built_shapes_create(void)
 {
-    return mem_new(sizeof(struct built_shapes));
+    struct built_shapes *built = mem_new(sizeof *built);
+    forget_all(built);
+    return built;
 }
 
 void built_shapes_destroy(struct built_shapes *built)
@@ -66,9 +79,14 @@ void built_shapes_destroy(struct built_shapes *built)
     free(built);
 }
 
+static size_t bucket_of(const struct shape_want *want)
+{
+    return subject_hash(want->subject) % N_BUCKETS;
+}
+
 static bool has(const struct built_shapes *built, const struct shape_want *want)
 {
-    for (size_t i = built->n; i-- > 0;) /* the newest first */
+    for (size_t i = built->first[bucket_of(want)]; i != NO_SHAPE; i = built->next[i])
         if (shape_want_equal(&built->wants[i], want))
             return true;
     return false;
@@ -85,10 +103,14 @@ bool built_shapes_has_all(const struct built_shapes *built, const struct waiting
 void built_shapes_add(struct built_shapes *built, const struct waiting_request *waiting)
 {
     for (size_t i = 0; i < waiting->n_wants; i++) {
-        if (has(built, &waiting->wants[i]))
+        const struct shape_want *want = &waiting->wants[i];
+        if (has(built, want))
             continue;
         if (built->n == MAX_BUILT_SHAPES)
-            built->n = 0;
-        built->wants[built->n++] = waiting->wants[i];
+            forget_all(built);
+        uint16_t *first = &built->first[bucket_of(want)];
+        built->wants[built->n] = *want;
+        built->next[built->n] = *first;
+        *first = (uint16_t)built->n++;
     }
 }

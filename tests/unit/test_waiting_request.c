@@ -154,12 +154,35 @@ static void what_is_not_wanted_any_more_is_not_built(void **state)
     plan_and_derived_destroy(plan);
 }
 
+static void the_set_of_built_shapes_tells_any_number_of_shapes_apart(void **state)
+{
+    (void)state;
+    struct built_shapes *built = built_shapes_create();
+    for (int bins = 0; bins < 3000; bins++) { /* 6000 shapes: more than the set holds */
+        struct shape_want wants[2];
+        for (size_t region = 0; region < 2; region++)
+            wants[region] = (struct shape_want){ subject_region(region),
+                                                 { .representation = REPRESENTATION_NURBS, .nurbs_bins = bins },
+                                                 SURFACE_FULL };
+        const struct waiting_request waiting = { .wants = wants, .n_wants = 2 },
+                                     first = { .wants = wants, .n_wants = 1 };
+        assert_false(built_shapes_has_all(built, &first));
+        built_shapes_add(built, &first);
+        assert_true(built_shapes_has_all(built, &first));
+        assert_false(built_shapes_has_all(built, &waiting)); /* only one of two */
+        built_shapes_add(built, &waiting);
+        assert_true(built_shapes_has_all(built, &waiting));
+    }
+    built_shapes_destroy(built);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_picture_wants_the_shapes_that_can_be_seen),
         cmocka_unit_test(what_was_built_once_is_not_waited_for_again),
         cmocka_unit_test(what_is_not_wanted_any_more_is_not_built),
+        cmocka_unit_test(the_set_of_built_shapes_tells_any_number_of_shapes_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
