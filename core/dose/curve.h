@@ -1,6 +1,6 @@
 #pragma once
 /* A reference curve: doses and fluences over depth along a beam and distance from its axis, computed in some phantom.
- * It has no position in the patient; pictures and sums of dose must never use it. */
+ * It has no position in the patient; pictures and sums of dose must never use it. Any thread. */
 #include "core/dose/dose.h"
 
 enum { CURVE_MAX_POINTS = 1000 }; /* limit for depths, and for radii */

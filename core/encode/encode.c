@@ -7,7 +7,8 @@
 
 #include "core/base/mem.h"
 
-/* Up to this quality the fast DCT is not visibly worse than the exact one; above, exactness is what was asked for. */
+/* Up to this quality the fast DCT is not visibly worse than the exact one; above it, fidelity counts more than speed.
+ */
 enum { FAST_TRANSFORM_MAX_QUALITY = 85, PNG_COMPRESSION_LEVEL = 1 };
 
 /* Up to this size, memory for the largest possible JPEG is allocated at once: 6 bytes per pixel. Above, it grows with

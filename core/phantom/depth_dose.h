@@ -1,5 +1,5 @@
 #pragma once
-/* The phantom's dose: the published table on the beam axis, and a stated formula off it. Knows no files. */
+/* The phantom's dose: the published table on the beam axis, and a stated formula off it. Knows no files. Any thread. */
 #include "core/dose/dose.h"
 
 enum { PHANTOM_N_DEPTHS = 12, PHANTOM_N_COMPONENTS = 4 };

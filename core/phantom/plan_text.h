@@ -1,6 +1,6 @@
 #pragma once
 /* The text files of the phantom's folder: plan.json, labels.json and a README for people. Each function returns a
- * NUL-terminated text, freed by the caller; NULL and ERROR_MEMORY on failure. */
+ * NUL-terminated text, freed by the caller; NULL and ERROR_MEMORY on failure. Any thread. */
 #include "core/base/error.h"
 #include "core/phantom/phantom_options.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 /* The phantom's particle tracks: a random walk that looks like transport but is not, in SERA's .pp text format. Knows
- * no files. */
+ * no files. Any thread. */
 #include "core/base/error.h"
 #include "core/track/track.h"
 

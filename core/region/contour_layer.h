@@ -1,5 +1,6 @@
 #pragma once
-/* Adds masks to label layers: several regions share a layer as long as they share no voxel. */
+/* Adds masks to label layers: several regions share a layer as long as they share no voxel. Any thread; the layer is
+ * the caller's alone. */
 #include "core/region/mask.h"
 
 /* Returns true if no voxel of the mask has a label yet. layer is U8 or U16, of the mask's size. */

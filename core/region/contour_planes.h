@@ -1,5 +1,6 @@
 #pragma once
-/* Inside of contour filling: sorts the contours of one region into parallel planes, and gives each plane its slab. */
+/* Inside of contour filling: sorts the contours of one region into parallel planes, and gives each plane its slab. Any
+ * thread. */
 #include "core/region/contour.h"
 
 struct contour_plane {

@@ -1,5 +1,5 @@
 #pragma once
-/* Inside of choosing grids: continues the image's lattice of voxels to where contours leave the image. */
+/* Inside of choosing grids: continues the image's lattice of voxels to where contours leave the image. Any thread. */
 #include "core/region/contour_planes.h"
 
 /* Returns true if the contours, without the thickness of their slabs, stay between the outer faces of the grid. */

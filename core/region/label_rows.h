@@ -1,6 +1,6 @@
 #pragma once
 /* Walks label layers by runs of equal labels. Skips whole words of equal voxels: most of a layer is the inside of a
- * region. */
+ * region. Any thread. */
 #include "core/volume/volume.h"
 
 /* Calls run for each run of equal labels other than 0. Rows come in ascending j, then k. layer is U8 or U16. */

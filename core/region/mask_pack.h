@@ -1,6 +1,6 @@
 #pragma once
-/* Inside of mask_from_labels: converts rows of labels to rows of bits, with AVX2 or portably. Knows nothing of
- * grids. */
+/* Inside of mask_from_labels: converts rows of labels to rows of bits, with AVX2 or portably. Knows nothing of grids.
+ * Any thread. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

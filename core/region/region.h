@@ -1,6 +1,6 @@
 #pragma once
 /* Regions as sets of voxels ("univels") on label layers, and their hierarchy (which region lies inside which). Knows
- * nothing of files, meshes or pictures. */
+ * nothing of files, meshes or pictures. A set is built by one thread and frozen once part of a plan. */
 #include <stddef.h>
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 /* Inside core/surface: helpers for extraction on bit rows, whatever the vertices are: running totals, and writing
- * vertices. */
+ * vertices. Any thread. */
 #include <stddef.h>
 #include <stdint.h>
 

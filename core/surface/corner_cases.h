@@ -1,6 +1,6 @@
 #pragma once
 /* Case table of the 8-cell algorithm: the 256 combinations of inside corners of a cell, with the triangles between
- * inside corners. Generated, not typed. Corners are numbered as in cube_cases.h. */
+ * inside corners. Generated, not typed. Corners are numbered as in cube_cases.h. Any thread. */
 #include <stdbool.h>
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 /* Case table of marching cubes: the 256 combinations of inside corners of a cell, with the triangles of each.
- * Generated, not typed.
+ * Generated, not typed. Any thread.
  *
  * Corners: bit 0 of a corner's number is x, bit 1 is y, bit 2 is z; bit c of a case says that corner c is inside.
  *   Edges: 0..3 along x, at (y, z) = (0,0) (1,0) (0,1) (1,1);

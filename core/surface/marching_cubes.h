@@ -1,5 +1,6 @@
 #pragma once
-/* Inside core/surface: marching cubes with additional results for tests and for other methods (smoothing, fields). */
+/* Inside core/surface: marching cubes with additional results for tests and for other methods (smoothing, fields). Any
+ * thread. */
 #include "core/surface/surface.h"
 
 /* Which compiled version runs: the best for this processor, or the portable one. Both give the same bytes. */

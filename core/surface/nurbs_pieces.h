@@ -1,5 +1,5 @@
 #pragma once
-/* Links the outlines of neighbouring slices that a tube is stacked from. Knows nothing of splines. */
+/* Links the outlines of neighbouring slices that a tube is stacked from. Knows nothing of splines. Any thread. */
 #include "core/region/outline.h"
 
 /* Links pieces, and holes, outline by outline: each continues in the outline of its kind with which it shares most

@@ -1,6 +1,6 @@
 #pragma once
 /* A shape: what a region is drawn as, in triangles, lines or points, patient LPS, mm. Frozen once published. Knows no
- * plan, scene or GL. */
+ * plan, scene or GL. Any thread. */
 #include "core/region/outline.h"
 #include "core/surface/mesh.h"
 #include "core/surface/surface.h"

@@ -1,5 +1,5 @@
 #pragma once
-/* Inside surface_smooth, for its tests: smoothing with given options. */
+/* Inside surface_smooth, for its tests: smoothing with given options. Any thread. */
 #include "core/surface/smooth_options.h"
 #include "core/surface/surface.h"
 

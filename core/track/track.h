@@ -1,5 +1,5 @@
 #pragma once
-/* Particle tracks as straight segments with a class. Knows no file. */
+/* Particle tracks as straight segments with a class. Knows no file. Any thread. */
 #include <stddef.h>
 #include <stdint.h>
 

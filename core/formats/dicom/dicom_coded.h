@@ -1,6 +1,6 @@
 #pragma once
 /* Inside core/formats/dicom: compares the values found in JPEG 2000 codestreams with the elements of the same file (RT
- * Dose, segmentation), and reports differences. */
+ * Dose, segmentation), and reports differences. Any thread; one struct per file being read. */
 #include "core/formats/dicom/dicom_file.h"
 #include "core/report/report.h"
 

@@ -1,5 +1,6 @@
 #pragma once
-/* Inside core/formats/dicom: reports malformed numbers and numbers out of range. */
+/* Inside core/formats/dicom: reports malformed numbers and numbers out of range. Any thread; report and doubts are the
+ * caller's alone. */
 #include "core/formats/dicom/dicom_file.h"
 #include "core/report/report.h"
 

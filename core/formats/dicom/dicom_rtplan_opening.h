@@ -1,6 +1,6 @@
 #pragma once
 /* Inside the RT Plan reader: the field opening left by jaws, leaves, blocks and applicator, in the plane of the
- * isocentre. */
+ * isocentre. Any thread; one struct opening per beam. */
 #include "core/beam/beam.h"
 #include "core/formats/dicom/dicom_numbers.h"
 

@@ -1,5 +1,6 @@
 #pragma once
-/* Inside core/formats/dicom: the positions of the slices of a stack, and the grid they form. Reads no pixels. */
+/* Inside core/formats/dicom: the positions of the slices of a stack, and the grid they form. Reads no pixels. Any
+ * thread. */
 #include "core/formats/dicom/dicom_object.h"
 #include "core/report/report.h"
 #include "core/volume/volume.h"

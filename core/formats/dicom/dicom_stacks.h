@@ -1,5 +1,6 @@
 #pragma once
-/* Inside core/formats/dicom: groups images into stacks that each form one volume. */
+/* Inside core/formats/dicom: groups images into stacks that each form one volume. Any thread; the index is not shared
+ * yet. */
 #include "core/formats/dicom/dicom_object.h"
 #include "core/math/vec.h"
 #include "core/report/report.h"

@@ -1,5 +1,5 @@
 #pragma once
-/* Inside core/formats/dicom: turns pixel cells as stored in a file into stored values of this machine. */
+/* Inside core/formats/dicom: turns pixel cells as stored in a file into stored values of this machine. Any thread. */
 #include "core/formats/dicom/dicom_basic.h"
 
 /* Converts n cells in place: byte order, position of the bits in the cell, sign. */
