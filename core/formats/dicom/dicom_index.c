@@ -1,7 +1,6 @@
 /* Scans files for DICOM on several threads; drops duplicates; reports what is unreadable or not used. */
 #include "core/formats/dicom/dicom_index.h"
 
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +26,7 @@ struct scan {
     size_t n_files;
     atomic_size_t next, n_done, n_kept;
     atomic_bool is_cancelled, lacks_memory;
-    pthread_mutex_t step_lock;
+    size_t n_reported; /* files reported to progress->step, by the calling thread alone */
 };
 
 static void scan_file(struct scan *scan, struct scanned_file *file, struct bytes *scratch)
@@ -51,11 +50,22 @@ static void scan_file(struct scan *scan, struct scanned_file *file, struct bytes
     }
 }
 
+/* Reports every 32nd file, and the last one, that is done since the last call. On the calling thread alone. */
+static void report_progress(struct scan *scan)
+{
+    enum { EVERY = 32 };
+    size_t n_done = atomic_load(&scan->n_done);
+    while (scan->n_reported + EVERY <= n_done || (n_done == scan->n_files && scan->n_reported < n_done)) {
+        scan->n_reported = scan->n_reported + EVERY < n_done ? scan->n_reported + EVERY : n_done;
+        if (scan->progress->step)
+            scan->progress->step(scan->progress->context, scan->n_reported, scan->n_files);
+    }
+}
+
 static void scan_part(void *context, int part, int n_parts)
 {
     struct scan *scan = context;
     struct bytes scratch = { 0 };
-    (void)part;
     (void)n_parts;
     for (size_t i; (i = atomic_fetch_add(&scan->next, 1)) < scan->n_files;) {
         if (scan->progress->cancel && atomic_load(scan->progress->cancel))
@@ -63,12 +73,9 @@ static void scan_part(void *context, int part, int n_parts)
         if (atomic_load(&scan->is_cancelled))
             break;
         scan_file(scan, &scan->files[i], &scratch);
-        size_t n_done = atomic_fetch_add(&scan->n_done, 1) + 1;
-        if (scan->progress->step && (n_done % 32 == 0 || n_done == scan->n_files)) {
-            pthread_mutex_lock(&scan->step_lock);
-            scan->progress->step(scan->progress->context, n_done, scan->n_files);
-            pthread_mutex_unlock(&scan->step_lock);
-        }
+        atomic_fetch_add(&scan->n_done, 1);
+        if (part == 0)
+            report_progress(scan);
     }
     free(scratch.data);
 }
@@ -302,7 +309,6 @@ static void scan_finish(struct scan *scan)
         dicom_object_finish(&scan->files[i].object);
     }
     free(scan->files);
-    pthread_mutex_destroy(&scan->step_lock);
 }
 
 struct dicom_index *dicom_index_scan(const struct folder *folder, char *const *names, size_t n_names,
@@ -310,13 +316,13 @@ struct dicom_index *dicom_index_scan(const struct folder *folder, char *const *n
 {
     static const struct dicom_progress quiet;
     struct scan scan = { .folder = folder, .progress = progress ? progress : &quiet };
-    pthread_mutex_init(&scan.step_lock, NULL);
     struct dicom_index *index = mem_new(sizeof *index);
     if (!list_files(folder, names, n_names, &scan, report, err))
         goto fail;
     int n_threads = scan.progress->n_threads > 0 ? scan.progress->n_threads : parallel_cores();
     n_threads = n_threads < 8 ? n_threads : 8;
     parallel_run((size_t)n_threads < scan.n_files ? n_threads : (int)scan.n_files, scan_part, &scan);
+    report_progress(&scan);
     if (atomic_load(&scan.is_cancelled)) {
         error_set(err, ERROR_CANCELLED, "looking for DICOM was cancelled");
         goto fail;

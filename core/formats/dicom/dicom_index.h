@@ -9,8 +9,8 @@
 #include "core/report/report.h"
 
 struct dicom_progress {
-    void (*step)(void *context, size_t n_done,
-                 size_t n_all); /* called from any thread, never twice at the same time; may be NULL */
+    /* called on the calling thread, n_done ascending; may be NULL */
+    void (*step)(void *context, size_t n_done, size_t n_all);
     void *context;
     const atomic_bool *cancel; /* may be NULL */
     int n_threads;             /* 0: one per core; at most 8 */

@@ -2,7 +2,6 @@
 #include "core/formats/dicom/dicom_series.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +20,18 @@ struct coded {
     uint32_t n_bits; /* number of bits in the last codestream that differs */
 };
 
+enum { MAX_THREADS = 8 };
+
+/* What a thread keeps from one slice to the next, and its results. */
+struct reader {
+    struct dicom_file *file; /* the file that slices are decoded from */
+    size_t object;           /* index of file's object; SIZE_MAX: none */
+    struct bytes bytes;      /* the bytes of file, unless series->whole holds them */
+    uint8_t *scratch;        /* one plane of stored values */
+    struct coded coded;
+    int32_t range[2];
+};
+
 /* A stack while it is read. */
 struct series {
     const struct folder *folder;
@@ -36,28 +47,18 @@ struct series {
     uint8_t *cells;     /* cells of all slices, [n_slices][plane_cells] of type */
     struct bytes whole; /* the multi-frame file, when its frames must be decoded from memory */
     int32_t range[2];   /* smallest and largest integer cell */
-    size_t n_done;
     struct coded coded;
-    atomic_size_t next;
+    atomic_size_t next, n_done;
+    size_t n_reported; /* slices reported to progress->step, by the calling thread alone */
     atomic_bool is_failed;
-    pthread_mutex_t lock; /* guards n_done, range, coded and the error */
-    struct error error;
+    struct error error;                 /* written by the thread that set is_failed */
+    struct reader readers[MAX_THREADS]; /* one per part */
 };
 
 static const struct dicom_object *object_of(const struct series *series, const struct dicom_slice *slice)
 {
     return &series->index->objects[slice->object];
 }
-
-/* What a thread keeps from one slice to the next. */
-struct reader {
-    struct dicom_file *file; /* the file that slices are decoded from */
-    size_t object;           /* index of file's object; SIZE_MAX: none */
-    struct bytes bytes;      /* the bytes of file, unless series->whole holds them */
-    uint8_t *scratch;        /* one plane of stored values */
-    struct coded coded;
-    int32_t range[2];
-};
 
 static bool open_file(struct series *series, struct reader *reader, size_t object, struct error *err)
 {
@@ -209,44 +210,58 @@ static bool read_slice(struct series *series, struct reader *reader, size_t at, 
 
 static void fail(struct series *series, const struct error *err)
 {
-    pthread_mutex_lock(&series->lock);
     if (!atomic_exchange(&series->is_failed, true))
         series->error = *err;
-    pthread_mutex_unlock(&series->lock);
+}
+
+/* Reports the slices done since the last call, one by one. On the calling thread alone. */
+static void report_progress(struct series *series)
+{
+    size_t n_done = atomic_load(&series->n_done);
+    while (series->n_reported < n_done) {
+        series->n_reported++;
+        if (series->progress->step)
+            series->progress->step(series->progress->context, series->n_reported, series->n_slices);
+    }
 }
 
 static void read_part(void *context, int part, int n_parts)
 {
     struct series *series = context;
-    struct reader reader = { .object = SIZE_MAX, .range = { INT32_MAX, INT32_MIN } };
-    (void)part;
+    struct reader *reader = &series->readers[part];
+    *reader = (struct reader){ .object = SIZE_MAX, .range = { INT32_MAX, INT32_MIN } };
     (void)n_parts;
     for (size_t i; (i = atomic_fetch_add(&series->next, 1)) < series->n_slices && !atomic_load(&series->is_failed);) {
         struct error err = { 0 };
         bool is_cancelled = series->progress->cancel && atomic_load(series->progress->cancel);
         if (is_cancelled)
             error_set(&err, ERROR_CANCELLED, "reading the series was cancelled");
-        if (is_cancelled || !read_slice(series, &reader, i, &err)) {
+        if (is_cancelled || !read_slice(series, reader, i, &err)) {
             fail(series, &err);
             break;
         }
-        pthread_mutex_lock(&series->lock);
-        series->n_done++;
-        if (series->progress->step)
-            series->progress->step(series->progress->context, series->n_done, series->n_slices);
-        pthread_mutex_unlock(&series->lock);
+        atomic_fetch_add(&series->n_done, 1);
+        if (part == 0)
+            report_progress(series);
     }
-    pthread_mutex_lock(&series->lock);
-    series->range[0] = reader.range[0] < series->range[0] ? reader.range[0] : series->range[0];
-    series->range[1] = reader.range[1] > series->range[1] ? reader.range[1] : series->range[1];
-    series->coded.n_unsaid += reader.coded.n_unsaid;
-    series->coded.n_other_sign += reader.coded.n_other_sign;
-    series->coded.n_other_bits += reader.coded.n_other_bits;
-    series->coded.n_bits = reader.coded.n_bits ? reader.coded.n_bits : series->coded.n_bits;
-    pthread_mutex_unlock(&series->lock);
-    dicom_file_destroy(reader.file);
-    bytes_free(&reader.bytes);
-    free(reader.scratch);
+    dicom_file_destroy(reader->file);
+    bytes_free(&reader->bytes);
+    free(reader->scratch);
+}
+
+static void join_results(struct series *series, int n_parts)
+{
+    series->range[0] = INT32_MAX;
+    series->range[1] = INT32_MIN;
+    for (int part = 0; part < n_parts; part++) {
+        const struct reader *reader = &series->readers[part];
+        series->range[0] = reader->range[0] < series->range[0] ? reader->range[0] : series->range[0];
+        series->range[1] = reader->range[1] > series->range[1] ? reader->range[1] : series->range[1];
+        series->coded.n_unsaid += reader->coded.n_unsaid;
+        series->coded.n_other_sign += reader->coded.n_other_sign;
+        series->coded.n_other_bits += reader->coded.n_other_bits;
+        series->coded.n_bits = reader->coded.n_bits ? reader->coded.n_bits : series->coded.n_bits;
+    }
 }
 
 /* Fills the slices of a stack of single-frame files, from the index alone. */
@@ -418,11 +433,12 @@ static void choose_type(struct series *series, struct dicom_series_facts *facts,
 
 static bool read_cells(struct series *series, struct error *err)
 {
-    series->range[0] = INT32_MAX;
-    series->range[1] = INT32_MIN;
     int n_threads = series->progress->n_threads > 0 ? series->progress->n_threads : parallel_cores();
-    n_threads = n_threads < 8 ? n_threads : 8;
-    parallel_run((size_t)n_threads < series->n_slices ? n_threads : (int)series->n_slices, read_part, series);
+    n_threads = n_threads < MAX_THREADS ? n_threads : MAX_THREADS;
+    n_threads = (size_t)n_threads < series->n_slices ? n_threads : (int)series->n_slices;
+    parallel_run(n_threads, read_part, series);
+    report_progress(series);
+    join_results(series, n_threads);
     if (!atomic_load(&series->is_failed))
         return true;
     if (err)
@@ -508,7 +524,6 @@ struct volume *dicom_series_read(const struct folder *folder, const struct dicom
     struct series series = {
         .folder = folder, .index = index, .stack = &index->stacks[stack], .progress = progress ? progress : &quiet
     };
-    pthread_mutex_init(&series.lock, NULL);
     struct dicom_slice_layout layout = { 0 };
     struct volume *volume = NULL;
     series.plane_cells = (size_t)series.stack->rows * series.stack->columns;
@@ -521,7 +536,6 @@ struct volume *dicom_series_read(const struct folder *folder, const struct dicom
         volume = read_volume(&series, &layout, err);
         report_coded(&series, report);
     }
-    pthread_mutex_destroy(&series.lock);
     free(layout.planes);
     free(series.slices);
     bytes_free(&series.whole);
