@@ -27,7 +27,7 @@ struct marching_graph {
 };
 void marching_graph_finish(struct marching_graph *graph);
 
-/* Extracts the surface of a mask. graph: NULL, or filled when a mesh is returned; the caller frees points and links.
+/* Extracts the surface of a mask. graph: NULL, or filled when a mesh is returned; marching_graph_finish frees it.
  * Errors: as surface_marching_cubes. */
 NODISCARD struct mesh *marching_cubes_run(enum marching_cubes_code code, const struct mask *mask,
                                           const struct surface_options *options, struct marching_graph *graph,
