@@ -4,8 +4,8 @@
  *   outline  on every slice across the index axis nearest patient S; in 3-D a stack of lines. A single pixel is drawn
  *            as a small diamond.
  *   points   one point per border voxel; solid has the same points. Without has_inner_boundary only the outer border.
- *   univels  the faces between inside and outside voxels, two triangles each, with shared corners. Closed; an edge
- *            along which two voxels touch only there has four triangles. Encloses exactly the voxels.
+ *   univels  the faces between inside and outside voxels, two triangles each, with shared corners. Closed; where two
+ *            voxels touch along an edge alone, that edge has four triangles. Encloses exactly the voxels.
  *   nurbs    spline surfaces through samples of the outlines (nurbs_nets.h), as a mesh
  *   fan      triangles between neighbouring border voxels (shape_parts.h)
  *   surface  surface_make with surface_defaults

@@ -8,9 +8,8 @@
 #include "core/formats/dicom/dicom_basic.h"
 
 enum {
-    DICOM_MAX_ELEMENTS = 1 << 19, /* per file, including items and end marks: DCMTK needs about a second for so many */
-    DICOM_MAX_DISORDER =
-        64, /* elements that follow one with a larger tag; DCMTK searches the place of each from the end */
+    DICOM_MAX_ELEMENTS = 1 << 19, /* per file, items and end markers too: DCMTK needs about a second for them */
+    DICOM_MAX_DISORDER = 64, /* elements after one with a larger tag: DCMTK searches the place of each from the end */
     DICOM_MAX_INFLATED_MIB = 128 /* size of a deflated data set after inflating */
 };
 
