@@ -8,9 +8,9 @@
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/made_contours.h"
+#include "tests/unit/made_rtplan.h"
 #include "tests/unit/made_series.h"
 #include "tests/unit/plan_help.h"
-#include "tests/unit/rt_files.h"
 
 #define TAG DICOM_TAG
 
@@ -48,24 +48,6 @@ static void begin(struct made_dicom *made, const char *sop_class, const char *mo
 
 /* ---- a plan ----------------------------------------------------------------------------------------------------- */
 
-static void put_device(struct made_dicom *made, const char *type, const char *pairs, const char *boundaries)
-{
-    made_item(made);
-    made_text(made, TAG(0x300a, 0x00b8), "CS", type);
-    made_text(made, TAG(0x300a, 0x00bc), "IS", pairs);
-    if (boundaries)
-        made_text(made, TAG(0x300a, 0x00be), "DS", boundaries);
-    made_item_end(made);
-}
-
-static void put_positions(struct made_dicom *made, const char *type, const char *positions)
-{
-    made_item(made);
-    made_text(made, TAG(0x300a, 0x00b8), "CS", type);
-    made_text(made, TAG(0x300a, 0x011c), "DS", positions);
-    made_item_end(made);
-}
-
 static void make_plan(struct made_dicom *made)
 {
     begin(made, "1.2.840.10008.5.1.4.1.1.481.5", "RTPLAN");
@@ -91,9 +73,9 @@ static void make_plan(struct made_dicom *made)
     made_item(made);
     made_text(made, TAG(0x300a, 0x00b4), "DS", "1000");
     made_sequence(made, TAG(0x300a, 0x00b6));
-    put_device(made, "ASYMX", "1", NULL);
-    put_device(made, "ASYMY", "1", NULL);
-    put_device(made, "MLCX", "4", "-40\\-20\\0\\20\\40");
+    made_rt_device(made, "ASYMX", "1", NULL);
+    made_rt_device(made, "ASYMY", "1", NULL);
+    made_rt_device(made, "MLCX", "4", "-40\\-20\\0\\20\\40");
     made_sequence_end(made);
     made_text(made, TAG(0x300a, 0x00c0), "IS", "1");
     made_text(made, TAG(0x300a, 0x00c2), "LO", "Front");
@@ -105,10 +87,11 @@ static void make_plan(struct made_dicom *made)
             made_text(made, TAG(0x300a, 0x0114), "DS", "6");
         made_sequence(made, TAG(0x300a, 0x011a));
         if (i == 0) {
-            put_positions(made, "ASYMX", "-50\\50");
-            put_positions(made, "ASYMY", "-45\\45.5");
+            made_rt_position(made, "ASYMX", "-50\\50");
+            made_rt_position(made, "ASYMY", "-45\\45.5");
         }
-        put_positions(made, "MLCX", i ? "-40\\-30\\-30\\-40\\20\\30\\30\\20" : "-30\\-20.5\\-20\\-30\\30\\20\\20\\30");
+        made_rt_position(made, "MLCX",
+                         i ? "-40\\-30\\-30\\-40\\20\\30\\30\\20" : "-30\\-20.5\\-20\\-30\\30\\20\\20\\30");
         made_sequence_end(made);
         made_text(made, TAG(0x300a, 0x011e), "DS", i ? "20.5" : "10");
         if (i == 0) {
