@@ -169,3 +169,25 @@ void reply_finish(struct reply *reply)
     free(reply->blob);
     *reply = (struct reply){ 0 };
 }
+
+void world_begin_with_plan(struct world *world, const char *behave)
+{
+    world_begin(world);
+    world_add_plan(world, "a", behave);
+}
+
+void world_step_for_ms(struct world *world, int ms)
+{
+    for (int64_t end_us = clock_now_us() + ms * 1000LL; clock_now_us() < end_us;)
+        world_step(world);
+}
+
+void world_draw(struct world *world, const char *id)
+{
+    struct reply reply = { 0 };
+    world_wait_for_state(world, id, FLEET_READY);
+    world_ask(world, id, "render", &reply);
+    world_wait_for_reply(world, &reply);
+    assert_true(reply.is_frame);
+    reply_finish(&reply);
+}

@@ -31,6 +31,8 @@ struct reply {
 void world_begin(struct world *world);
 /* A plan for the made-up renderer. */
 void world_add_plan(struct world *world, const char *name, const char *behave);
+/* world_begin with a plan "a" for the made-up renderer. */
+void world_begin_with_plan(struct world *world, const char *behave);
 /* Starts the fleet and waits until n_plans or more have been looked at. */
 void world_start(struct world *world, size_t n_plans);
 void world_end(struct world *world);
@@ -40,6 +42,7 @@ void world_step(struct world *world); /* one turn of what the net thread does */
 #define WORLD_UNTIL(world, condition) \
     for (int64_t until_us_ = clock_now_us() + 60000000; !(condition) && clock_now_us() < until_us_;) \
     world_step(world)
+void world_step_for_ms(struct world *world, int ms);
 struct fleet_plan world_plan_of(struct world *world, const char *id);
 void world_wait_for_state(struct world *world, const char *id, enum fleet_state state);
 void world_open_plan(struct world *world, const char *id);
@@ -48,4 +51,6 @@ uint64_t world_ask(struct world *world, const char *id, const char *type, struct
 /* Asks with this packet, which is deleted. */
 uint64_t world_ask_packet(struct world *world, const char *id, cJSON *packet, struct reply *reply);
 void world_wait_for_reply(struct world *world, struct reply *reply);
+/* Waits until the plan is ready, requests a picture and fails the test when none comes. */
+void world_draw(struct world *world, const char *id);
 void reply_finish(struct reply *reply); /* empties it too */

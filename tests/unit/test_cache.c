@@ -34,17 +34,22 @@ static void end_one(void *context, uint64_t process, const char *reason)
     atomic_fetch_add(&fixture->n_ended, 1);
 }
 
-static void begin(struct fixture *fixture)
+static struct fixture quota; /* of the test that runs */
+
+static int begin(void **state)
 {
-    memset(fixture, 0, sizeof *fixture);
-    snprintf(fixture->folder, sizeof fixture->folder, "/tmp/beamroom-cache-XXXXXX");
-    assert_non_null(mkdtemp(fixture->folder));
+    (void)state;
+    memset(&quota, 0, sizeof quota);
+    snprintf(quota.folder, sizeof quota.folder, "/tmp/beamroom-cache-XXXXXX");
+    return mkdtemp(quota.folder) ? 0 : -1;
 }
 
-static void finish(struct fixture *fixture)
+static int finish(void **state)
 {
-    cache_destroy(fixture->cache);
-    world_remove_folder(fixture->folder);
+    (void)state;
+    cache_destroy(quota.cache);
+    world_remove_folder(quota.folder);
+    return 0;
 }
 
 static char *path_of(const struct fixture *fixture, const char *name)
@@ -96,37 +101,31 @@ static void start(struct fixture *fixture, uint64_t max_bytes, uint64_t reserve_
 static void the_longest_unused_go_first(void **state)
 {
     (void)state;
-    struct fixture at;
-    begin(&at);
-    add(&at, "second", 2 * MIB, 20);
-    add(&at, "first", 2 * MIB, 30);
-    add(&at, "last", 2 * MIB, 1);
-    add(&at, "third", 2 * MIB, 10);
-    start(&at, 5 * MIB, 0); /* two of four have place */
-    UNTIL(!is_there(&at, "first/plan.cache") && !is_there(&at, "second/plan.cache"));
-    assert_true(is_there(&at, "third/plan.cache") && is_there(&at, "last/plan.cache"));
-    assert_int_equal(at.n_ended, 0);
-    finish(&at);
+    add(&quota, "second", 2 * MIB, 20);
+    add(&quota, "first", 2 * MIB, 30);
+    add(&quota, "last", 2 * MIB, 1);
+    add(&quota, "third", 2 * MIB, 10);
+    start(&quota, 5 * MIB, 0); /* two of four have place */
+    UNTIL(!is_there(&quota, "first/plan.cache") && !is_there(&quota, "second/plan.cache"));
+    assert_true(is_there(&quota, "third/plan.cache") && is_there(&quota, "last/plan.cache"));
+    assert_int_equal(quota.n_ended, 0);
 }
 
 static void what_is_in_use_goes_last(void **state)
 {
     (void)state;
-    struct fixture at;
-    begin(&at);
-    add(&at, "used", 2 * MIB, 30);
-    add(&at, "unused", 2 * MIB, 1);
-    start(&at, 5 * MIB, 0);
-    cache_begin(at.cache, "used", 7);
-    add(&at, "used", 4 * MIB, 30); /* it writes: 6 MiB together */
-    UNTIL(!is_there(&at, "unused/plan.cache"));
-    assert_true(is_there(&at, "used/plan.cache"));
-    add(&at, "other", 2 * MIB, 30);
-    cache_begin(at.cache, "other", 8);
-    UNTIL(!is_there(&at, "used/plan.cache")); /* both are in use: the one that began earlier */
-    assert_true(is_there(&at, "other/plan.cache") && is_there(&at, "used"));
-    assert_int_equal(at.n_ended, 0);
-    finish(&at);
+    add(&quota, "used", 2 * MIB, 30);
+    add(&quota, "unused", 2 * MIB, 1);
+    start(&quota, 5 * MIB, 0);
+    cache_begin(quota.cache, "used", 7);
+    add(&quota, "used", 4 * MIB, 30); /* it writes: 6 MiB together */
+    UNTIL(!is_there(&quota, "unused/plan.cache"));
+    assert_true(is_there(&quota, "used/plan.cache"));
+    add(&quota, "other", 2 * MIB, 30);
+    cache_begin(quota.cache, "other", 8);
+    UNTIL(!is_there(&quota, "used/plan.cache")); /* both are in use: the one that began earlier */
+    assert_true(is_there(&quota, "other/plan.cache") && is_there(&quota, "used"));
+    assert_int_equal(quota.n_ended, 0);
 }
 
 static void is_ended_and_emptied(struct fixture *at)
@@ -143,27 +142,22 @@ static void is_ended_and_emptied(struct fixture *at)
 static void a_renderer_that_writes_too_much_is_ended_and_its_cache_emptied(void **state)
 {
     (void)state;
-    struct fixture at;
-    begin(&at);
-    start(&at, 2 * MIB, 0);
-    add(&at, "a", MIB, 0);
-    cache_begin(at.cache, "a", 7);
+    start(&quota, 2 * MIB, 0);
+    add(&quota, "a", MIB, 0);
+    cache_begin(quota.cache, "a", 7);
     /* 2 and 64 of slack. A file that is seen while it grows is over the quota of all and is removed: then it writes
      * again. */
-    UNTIL((add(&at, "a", 67 * MIB, 0), at.n_ended > 0));
-    is_ended_and_emptied(&at);
-    finish(&at);
+    UNTIL((add(&quota, "a", 67 * MIB, 0), quota.n_ended > 0));
+    is_ended_and_emptied(&quota);
 }
 
 /* 300 folders in each other: no path reaches the last, and the files there count all the same. */
 static void a_cache_deeper_than_any_honest_one_ends_its_renderer(void **state)
 {
     (void)state;
-    struct fixture at;
-    begin(&at);
-    start(&at, 100 * MIB, 0);
-    add(&at, "a", MIB, 0);
-    int folder = open(path_of(&at, "a"), O_RDONLY | O_DIRECTORY);
+    start(&quota, 100 * MIB, 0);
+    add(&quota, "a", MIB, 0);
+    int folder = open(path_of(&quota, "a"), O_RDONLY | O_DIRECTORY);
     char name[] = "a-name-of-some-length-to-make-the-path-long";
     for (int i = 0; i < 300; i++) {
         assert_int_equal(mkdirat(folder, name, 0700), 0);
@@ -172,35 +166,29 @@ static void a_cache_deeper_than_any_honest_one_ends_its_renderer(void **state)
         folder = inner;
     }
     close(folder);
-    cache_begin(at.cache, "a", 7);
-    is_ended_and_emptied(&at);
-    finish(&at);
+    cache_begin(quota.cache, "a", 7);
+    is_ended_and_emptied(&quota);
 }
 
 static void a_folder_that_cannot_be_seen_ends_its_renderer(void **state)
 {
     (void)state;
-    struct fixture at;
     if (geteuid() == 0)
         skip(); /* root sees all */
-    begin(&at);
-    start(&at, 100 * MIB, 0);
-    add(&at, "a", MIB, 0);
-    assert_int_equal(mkdir(path_of(&at, "a/dark"), 0300), 0);
-    assert_int_equal(mkdir(path_of(&at, "a/dark/inner"), 0300), 0);
-    cache_begin(at.cache, "a", 7);
-    is_ended_and_emptied(&at);
-    finish(&at);
+    start(&quota, 100 * MIB, 0);
+    add(&quota, "a", MIB, 0);
+    assert_int_equal(mkdir(path_of(&quota, "a/dark"), 0300), 0);
+    assert_int_equal(mkdir(path_of(&quota, "a/dark/inner"), 0300), 0);
+    cache_begin(quota.cache, "a", 7);
+    is_ended_and_emptied(&quota);
 }
 
 static void more_files_than_any_honest_cache_has_end_its_renderer(void **state)
 {
     (void)state;
-    struct fixture at;
-    begin(&at);
-    start(&at, 100 * MIB, 0);
-    add(&at, "a", MIB, 0);
-    int folder = open(path_of(&at, "a"), O_RDONLY | O_DIRECTORY);
+    start(&quota, 100 * MIB, 0);
+    add(&quota, "a", MIB, 0);
+    int folder = open(path_of(&quota, "a"), O_RDONLY | O_DIRECTORY);
     for (int i = 0; i < CACHE_MAX_FILES; i++) { /* one is there */
         char name[32];
         snprintf(name, sizeof name, "%d", i);
@@ -209,33 +197,30 @@ static void more_files_than_any_honest_cache_has_end_its_renderer(void **state)
         close(file);
     }
     close(folder);
-    cache_begin(at.cache, "a", 7);
-    is_ended_and_emptied(&at);
-    finish(&at);
+    cache_begin(quota.cache, "a", 7);
+    is_ended_and_emptied(&quota);
 }
 
 /* A reserve no disk has: what is unused goes, then each renderer ends once, the newest first. */
 static void a_full_disk_costs_caches_first_and_then_each_renderer_once(void **state)
 {
     (void)state;
-    struct fixture at;
-    begin(&at);
-    add(&at, "unused", MIB, 3);
-    add(&at, "old", MIB, 2);
-    add(&at, "new", MIB, 1);
-    start(&at, 100 * MIB, UINT64_MAX);
-    UNTIL(!is_there(&at, "unused/plan.cache") && !is_there(&at, "old/plan.cache") && !is_there(&at, "new/plan.cache"));
-    cache_begin(at.cache, "old", 7);
-    cache_begin(at.cache, "new", 8);
-    UNTIL(at.n_ended == 1);
-    UNTIL(at.n_ended == 2);
-    cache_end(at.cache, at.ended[0]);
-    cache_end(at.cache, at.ended[1]);
-    cache_begin(at.cache, "old", 9);                                          /* started again */
+    add(&quota, "unused", MIB, 3);
+    add(&quota, "old", MIB, 2);
+    add(&quota, "new", MIB, 1);
+    start(&quota, 100 * MIB, UINT64_MAX);
+    UNTIL(!is_there(&quota, "unused/plan.cache") && !is_there(&quota, "old/plan.cache") &&
+          !is_there(&quota, "new/plan.cache"));
+    cache_begin(quota.cache, "old", 7);
+    cache_begin(quota.cache, "new", 8);
+    UNTIL(quota.n_ended == 1);
+    UNTIL(quota.n_ended == 2);
+    cache_end(quota.cache, quota.ended[0]);
+    cache_end(quota.cache, quota.ended[1]);
+    cache_begin(quota.cache, "old", 9);                                       /* started again */
     nanosleep(&(struct timespec){ .tv_sec = 2, .tv_nsec = 500000000 }, NULL); /* two looks at least */
-    assert_int_equal(at.n_ended, 2);
-    assert_int_equal(at.ended[0] + at.ended[1], 15);
-    finish(&at);
+    assert_int_equal(quota.n_ended, 2);
+    assert_int_equal(quota.ended[0] + quota.ended[1], 15);
 }
 
 /* A renderer that makes files as fast as they are removed must not keep the thread from the others. */
@@ -255,51 +240,46 @@ static void *make_files(void *argument)
 static void one_that_fills_its_cache_as_fast_as_it_is_emptied_keeps_nobody_waiting(void **state)
 {
     (void)state;
-    struct fixture at;
     pthread_t threads[2];
-    begin(&at);
-    start(&at, 2 * MIB, 0);
-    add(&at, "busy", 3 * MIB, 0);
-    cache_begin(at.cache, "busy", 8); /* is over the quota of all at once, and is emptied while it runs */
+    start(&quota, 2 * MIB, 0);
+    add(&quota, "busy", 3 * MIB, 0);
+    cache_begin(quota.cache, "busy", 8); /* is over the quota of all at once, and is emptied while it runs */
     for (int i = 0; i < 2; i++)
-        assert_int_equal(pthread_create(&threads[i], NULL, make_files, &at), 0);
-    UNTIL(!is_there(&at, "busy/plan.cache"));
-    add(&at, "a", 67 * MIB, 0);
-    cache_begin(at.cache, "a", 7);
-    UNTIL(at.n_ended > 0);
+        assert_int_equal(pthread_create(&threads[i], NULL, make_files, &quota), 0);
+    UNTIL(!is_there(&quota, "busy/plan.cache"));
+    add(&quota, "a", 67 * MIB, 0);
+    cache_begin(quota.cache, "a", 7);
+    UNTIL(quota.n_ended > 0);
     for (int i = 0; i < 2; i++)
         pthread_join(threads[i], NULL);
-    finish(&at);
 }
 
 static void an_end_for_the_quota_empties_the_folder_and_leaves_it(void **state)
 {
     (void)state;
-    struct fixture at;
-    begin(&at);
-    start(&at, 2 * MIB, 0);
-    add(&at, "a", 67 * MIB, 0);
-    cache_begin(at.cache, "a", 7);
-    UNTIL(at.n_ended > 0);
-    cache_begin(at.cache, "a", 8); /* before the end of the other is told */
-    UNTIL(!is_there(&at, "a/plan.cache"));
-    assert_true(is_there(&at, "a"));
-    assert_int_equal(at.n_ended, 1);
-    finish(&at);
+    start(&quota, 2 * MIB, 0);
+    add(&quota, "a", 67 * MIB, 0);
+    cache_begin(quota.cache, "a", 7);
+    UNTIL(quota.n_ended > 0);
+    cache_begin(quota.cache, "a", 8); /* before the end of the other is told */
+    UNTIL(!is_there(&quota, "a/plan.cache"));
+    assert_true(is_there(&quota, "a"));
+    assert_int_equal(quota.n_ended, 1);
 }
 
 int main(void)
 {
+#define T(name) cmocka_unit_test_setup_teardown(name, begin, finish)
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_longest_unused_go_first),
-        cmocka_unit_test(what_is_in_use_goes_last),
-        cmocka_unit_test(a_renderer_that_writes_too_much_is_ended_and_its_cache_emptied),
-        cmocka_unit_test(a_cache_deeper_than_any_honest_one_ends_its_renderer),
-        cmocka_unit_test(a_folder_that_cannot_be_seen_ends_its_renderer),
-        cmocka_unit_test(more_files_than_any_honest_cache_has_end_its_renderer),
-        cmocka_unit_test(one_that_fills_its_cache_as_fast_as_it_is_emptied_keeps_nobody_waiting),
-        cmocka_unit_test(an_end_for_the_quota_empties_the_folder_and_leaves_it),
-        cmocka_unit_test(a_full_disk_costs_caches_first_and_then_each_renderer_once),
+        T(the_longest_unused_go_first),
+        T(what_is_in_use_goes_last),
+        T(a_renderer_that_writes_too_much_is_ended_and_its_cache_emptied),
+        T(a_cache_deeper_than_any_honest_one_ends_its_renderer),
+        T(a_folder_that_cannot_be_seen_ends_its_renderer),
+        T(more_files_than_any_honest_cache_has_end_its_renderer),
+        T(one_that_fills_its_cache_as_fast_as_it_is_emptied_keeps_nobody_waiting),
+        T(an_end_for_the_quota_empties_the_folder_and_leaves_it),
+        T(a_full_disk_costs_caches_first_and_then_each_renderer_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,20 +9,8 @@
 
 static void begin(struct world *world, const char *behave)
 {
-    world_begin(world);
-    world_add_plan(world, "a", behave);
+    world_begin_with_plan(world, behave);
     world_start(world, 1);
-}
-
-/* Waits until it is ready and has drawn a picture. */
-static void draw(struct world *world)
-{
-    struct reply reply = { 0 };
-    world_wait_for_state(world, "a", FLEET_READY);
-    world_ask(world, "a", "render", &reply);
-    world_wait_for_reply(world, &reply);
-    assert_true(reply.is_frame);
-    reply_finish(&reply);
 }
 
 static void end_it(struct world *world)
@@ -47,13 +35,13 @@ static void one_that_had_drawn_is_started_at_once_however_often_it_ends(void **s
     begin(&world, "");
     assert_true(fleet_hold(world.fleet, "a"));
     for (uint32_t i = 1; i <= 10; i++) {
-        draw(&world);
+        world_draw(&world, "a");
         assert_int_equal(world_plan_of(&world, "a").generation, i);
         end_it(&world);
         assert_int_equal(world_plan_of(&world, "a").state, FLEET_RESTARTING);
         assert_int_equal(world_plan_of(&world, "a").generation, i + 1); /* its process has been started already */
     }
-    draw(&world);
+    world_draw(&world, "a");
     fleet_release(world.fleet, "a");
     world_end(&world);
 }
@@ -67,7 +55,7 @@ static void one_that_ends_after_each_picture_does_not_use_up_the_machine(void **
     int64_t began_us = clock_now_us();
     int n = 0;
     for (; n < 100; n++) {
-        draw(&world);
+        world_draw(&world, "a");
         uint32_t generation = world_plan_of(&world, "a").generation;
         end_it(&world);
         if (world_plan_of(&world, "a").generation == generation)
@@ -78,7 +66,7 @@ static void one_that_ends_after_each_picture_does_not_use_up_the_machine(void **
         assert_true(n >= 60 &&
                     n < 62 + elapsed_s); /* a minute's worth at one a second, and one more each second that passed */
     }
-    draw(&world); /* it comes back all the same */
+    world_draw(&world, "a"); /* it comes back all the same */
     world_end(&world);
 }
 
@@ -130,9 +118,8 @@ static void a_plan_whose_file_is_bad_is_not_tried_again_until_the_file_has_chang
     begin(&world, "fails");
     assert_true(fleet_hold(world.fleet, "a"));
     world_wait_for_state(&world, "a", FLEET_FAILED);
-    assert_true(fleet_hold(world.fleet, "a"));                                /* one more enters */
-    for (int64_t end_us = clock_now_us() + 1500000; clock_now_us() < end_us;) /* longer than the first pause */
-        world_step(&world);
+    assert_true(fleet_hold(world.fleet, "a")); /* one more enters */
+    world_step_for_ms(&world, 1500);           /* longer than the first pause */
     assert_int_equal(world_plan_of(&world, "a").state, FLEET_FAILED);
     assert_int_equal(world_plan_of(&world, "a").generation, 1);
     assert_string_equal(world_plan_of(&world, "a").problem->detail, "ct.nii: byte 40: 9 axes, expected 3");
@@ -151,11 +138,11 @@ static void a_plan_that_was_read_before_outlives_a_lack_of_memory_at_its_next_st
     struct world world;
     begin(&world, "memory-at-second-start");
     assert_true(fleet_hold(world.fleet, "a"));
-    draw(&world);
+    world_draw(&world, "a");
     end_it(&world);
     WORLD_UNTIL(&world, world_plan_of(&world, "a").generation == 3 || world_plan_of(&world, "a").state == FLEET_FAILED);
     assert_int_not_equal(world_plan_of(&world, "a").state, FLEET_FAILED);
-    draw(&world);
+    world_draw(&world, "a");
     assert_int_equal(world_plan_of(&world, "a").generation, 3);
     world_end(&world);
 }
@@ -164,8 +151,7 @@ static void one_that_gets_no_further_is_tried_again_while_somebody_is_there(void
 {
     (void)state;
     struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "stalls");
+    world_begin_with_plan(&world, "stalls");
     world.options.times.stall = 300;
     world_start(&world, 1);
     assert_true(fleet_hold(world.fleet, "a"));
@@ -179,8 +165,7 @@ static void one_that_takes_more_memory_than_it_may_is_ended_with_both_figures(vo
 {
     (void)state;
     struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "takes-shared-memory");
+    world_begin_with_plan(&world, "takes-shared-memory");
     world.options.max_renderer_bytes = 1 << 20; /* and 256 MiB beyond */
     world.options.times.silent = 60000;         /* it does not answer either */
     world_start(&world, 1);
@@ -195,8 +180,7 @@ static void who_enters_a_plan_without_a_place_gets_one_when_another_leaves(void 
 {
     (void)state;
     struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "");
+    world_begin_with_plan(&world, "");
     world_add_plan(&world, "b", "");
     world.options.max_renderers = 1;
     world_start(&world, 2);

@@ -10,21 +10,6 @@
 #include "tests/unit/fake_renderer.h"
 #include "tests/unit/fleet_world.h"
 
-static void draw(struct world *world)
-{
-    struct reply reply = { 0 };
-    world_ask(world, "a", "render", &reply);
-    world_wait_for_reply(world, &reply);
-    assert_true(reply.is_frame);
-    reply_finish(&reply);
-}
-
-static void step_for_ms(struct world *world, int ms)
-{
-    for (int64_t end_us = clock_now_us() + ms * 1000LL; clock_now_us() < end_us;)
-        world_step(world);
-}
-
 /* 2 s are promised; 5 s are for machines that are busy with other things, and less than a renderer has while nothing is
  * due. */
 static void one_that_was_stopped_is_replaced_soon_while_a_picture_is_due(void **state)
@@ -32,17 +17,16 @@ static void one_that_was_stopped_is_replaced_soon_while_a_picture_is_due(void **
     (void)state;
     struct world world;
     struct reply lost = { 0 };
-    world_begin(&world);
-    world_add_plan(&world, "a", "");
+    world_begin_with_plan(&world, "");
     world_start(&world, 1);
     world_open_plan(&world, "a");
-    draw(&world);
+    world_draw(&world, "a");
     int64_t began_us = clock_now_us();
     assert_int_equal(kill(world_plan_of(&world, "a").pid, SIGSTOP), 0);
     world_ask(&world, "a", "render", &lost);
     world_wait_for_reply(&world, &lost);
     assert_int_equal(lost.problem.type, PROBLEM_RENDERER);
-    draw(&world);
+    world_draw(&world, "a");
     assert_true(clock_now_us() - began_us < 5000000);
     assert_int_equal(world_plan_of(&world, "a").generation, 2);
     world_end(&world);
@@ -52,19 +36,18 @@ static void one_that_was_stopped_while_nothing_is_due_has_the_longer_time(void *
 {
     (void)state;
     struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "");
+    world_begin_with_plan(&world, "");
     world.options.times.awaited_ping = 50;
     world.options.times.awaited_silent = 100;
     world_start(&world, 1);
     world_open_plan(&world, "a");
-    draw(&world);
-    step_for_ms(&world, 600); /* until it is known that nothing is due */
+    world_draw(&world, "a");
+    world_step_for_ms(&world, 600); /* until it is known that nothing is due */
     assert_int_equal(kill(world_plan_of(&world, "a").pid, SIGSTOP), 0);
-    step_for_ms(&world, 1500);
+    world_step_for_ms(&world, 1500);
     assert_int_equal(world_plan_of(&world, "a").state, FLEET_READY);
     assert_int_equal(kill(world_plan_of(&world, "a").pid, SIGCONT), 0);
-    draw(&world);
+    world_draw(&world, "a");
     assert_int_equal(world_plan_of(&world, "a").generation, 1);
     world_end(&world);
 }
@@ -75,8 +58,7 @@ static void one_whose_main_thread_runs_has_the_longer_time(void **state)
     (void)state;
     struct world world;
     struct reply reply = { 0 };
-    world_begin(&world);
-    world_add_plan(&world, "a", "computes");
+    world_begin_with_plan(&world, "computes");
     world.options.times.awaited_ping = 50;
     world.options.times.awaited_silent = 200;
     world.options.times.silent = 30000;
@@ -95,8 +77,7 @@ static int be_stopped(int told)
 {
     struct world world;
     struct reply query = { 0 };
-    world_begin(&world);
-    world_add_plan(&world, "a", "never-draws");
+    world_begin_with_plan(&world, "never-draws");
     world.options.times.ping = 100;
     world.options.times.silent = 2000;
     world.options.times.request = 4000;
@@ -107,11 +88,11 @@ static int be_stopped(int told)
     struct reply picture = { 0 };
     world_ask(&world, "a", "render",
               &picture); /* due for a moment only when we are stopped: it is not late after that */
-    step_for_ms(&world, 300);
+    world_step_for_ms(&world, 300);
     if (write(told, "", 1) != 1)
         return 2;
-    step_for_ms(&world, 700); /* somewhere in here we are stopped */
-    step_for_ms(&world, 700);
+    world_step_for_ms(&world, 700); /* somewhere in here we are stopped */
+    world_step_for_ms(&world, 700);
     world_ask(&world, "a", "query", &query);
     world_wait_for_reply(&world, &query);
     int result = picture.n > 0                                     ? 3
@@ -147,8 +128,7 @@ static void one_that_hears_nothing_is_ended_and_started_again(void **state)
 {
     (void)state;
     struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "deaf");
+    world_begin_with_plan(&world, "deaf");
     world.options.times.ping = 100;
     world.options.times.silent = 600;
     world_start(&world, 1);
@@ -163,15 +143,13 @@ static void one_that_answers_pings_lives_on(void **state)
 {
     (void)state;
     struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "");
+    world_begin_with_plan(&world, "");
     world.options.times.ping = 50;
     world.options.times.silent = 3000; /* a busy machine may well keep it waiting for a second */
     world_start(&world, 1);
     world_open_plan(&world, "a");
     world_wait_for_state(&world, "a", FLEET_READY);
-    for (int64_t until_us = clock_now_us() + 4000000; clock_now_us() < until_us;)
-        world_step(&world);
+    world_step_for_ms(&world, 4000);
     assert_int_equal(world_plan_of(&world, "a").state, FLEET_READY);
     assert_int_equal(world_plan_of(&world, "a").generation, 1);
     assert_true(world_plan_of(&world, "a").memory_bytes > 100000);
@@ -182,8 +160,7 @@ static void a_load_that_gets_no_further_fails(void **state)
 {
     (void)state;
     struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "stalls");
+    world_begin_with_plan(&world, "stalls");
     world.options.times.stall = 300;
     world_start(&world, 1);
     world_open_plan(&world, "a");
@@ -196,8 +173,7 @@ static void a_picture_that_never_comes_is_a_timeout_and_a_restart(void **state)
 {
     (void)state;
     struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "never-draws");
+    world_begin_with_plan(&world, "never-draws");
     world.options.times.request = 1000;
     world_start(&world, 1);
     world_open_plan(&world, "a");
@@ -215,8 +191,7 @@ static void one_that_got_a_request_late_has_the_whole_time_for_a_picture(void **
 {
     (void)state;
     struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "late-and-never-draws");
+    world_begin_with_plan(&world, "late-and-never-draws");
     world.options.times.request = 2000;
     world_start(&world, 1);
     struct reply reply = { 0 };
@@ -224,7 +199,7 @@ static void one_that_got_a_request_late_has_the_whole_time_for_a_picture(void **
     world_ask(&world, "a", "render", &reply);
     world_wait_for_reply(&world, &reply);
     assert_int_equal(reply.problem.type, PROBLEM_TIMEOUT);
-    step_for_ms(&world, 500);
+    world_step_for_ms(&world, 500);
     world_wait_for_state(&world, "a", FLEET_READY);
     assert_int_equal(world_plan_of(&world, "a").generation, 1);
     world_end(&world);
@@ -234,8 +209,7 @@ static void one_that_is_late_with_a_picture_but_draws_others_is_left_alone(void 
 {
     (void)state;
     struct world world;
-    world_begin(&world);
-    world_add_plan(&world, "a", "forgets-first");
+    world_begin_with_plan(&world, "forgets-first");
     world.options.times.request = 3000; /* the others are to come within it on a busy machine too */
     world_start(&world, 1);
     world_open_plan(&world, "a");
@@ -251,8 +225,7 @@ static void one_that_is_late_with_a_picture_but_draws_others_is_left_alone(void 
         reply_finish(&reply);
     }
     assert_int_equal(late.problem.type, PROBLEM_TIMEOUT);
-    for (int64_t end_us = clock_now_us() + 300000; clock_now_us() < end_us;)
-        world_step(&world);
+    world_step_for_ms(&world, 300);
     assert_int_equal(world_plan_of(&world, "a").state, FLEET_READY);
     assert_int_equal(world_plan_of(&world, "a").generation, generation);
     world_end(&world);
@@ -279,21 +252,20 @@ static void a_listing_that_hangs_holds_up_neither_pictures_nor_pings(void **stat
     struct world world;
     assert_int_equal(sem_init(&disk_answers, 0, 0), 0);
     atomic_store(&is_slow, false);
-    world_begin(&world);
-    world_add_plan(&world, "a", "");
+    world_begin_with_plan(&world, "");
     world.options.list_folders = list_slowly;
     world.options.times.ping = 50;
     world.options.times.silent = 1000;
     world_start(&world, 1);
     world_open_plan(&world, "a");
-    draw(&world);
+    world_draw(&world, "a");
     atomic_store(&is_slow, true);
     world_add_plan(&world, "b", "");
     fleet_rescan(world.fleet);
     fleet_rescan(world.fleet);
     WORLD_UNTIL(&world, atomic_load(&n_waiting) == 1);
-    step_for_ms(&world, 2500); /* longer than a renderer may be silent */
-    draw(&world);
+    world_step_for_ms(&world, 2500); /* longer than a renderer may be silent */
+    world_draw(&world, "a");
     struct fleet_plan plan;
     assert_false(fleet_plan_find(world.fleet, "b", &plan));
     assert_int_equal(world_plan_of(&world, "a").generation, 1);
@@ -311,11 +283,10 @@ static void before_the_first_listing_a_plan_is_not_known_rather_than_not_there(v
     struct problem problem = { 0 };
     assert_int_equal(sem_init(&disk_answers, 0, 0), 0);
     atomic_store(&is_slow, true);
-    world_begin(&world);
-    world_add_plan(&world, "a", "");
+    world_begin_with_plan(&world, "");
     world.options.list_folders = list_slowly;
     world_start(&world, 0);
-    step_for_ms(&world, 100);
+    world_step_for_ms(&world, 100);
     assert_false(fleet_is_listed(world.fleet));
     assert_false(fleet_open(world.fleet, "a", &problem));
     assert_int_equal(problem.type, PROBLEM_BUSY);
