@@ -34,7 +34,7 @@ static uInt at_most_int(size_t n)
 enum outcome { WHOLE, FULL, CUT, BROKEN, FOLLOWED, NO_MEMORY };
 
 /* How far a stream was read: bytes of it, and bytes unpacked from it. reason: zlib's message when it is BROKEN. */
-struct reading {
+struct gzip_reading {
     enum outcome outcome;
     size_t in;
     uint64_t have;
@@ -43,10 +43,11 @@ struct reading {
 
 /* Unpacks with zlib, piece by piece: writes the first capacity bytes to out, checks and discards the rest. FULL: more
  * than most bytes inside. zlib checks checksum and length of every member that ends within most. */
-static struct reading inflate_slowly(const uint8_t *data, size_t size, uint8_t *out, size_t capacity, uint64_t most)
+static struct gzip_reading inflate_slowly(const uint8_t *data, size_t size, uint8_t *out, size_t capacity,
+                                          uint64_t most)
 {
     uint8_t scratch[SCRATCH_BYTES];
-    struct reading reading = { NO_MEMORY, 0, 0, "" };
+    struct gzip_reading reading = { NO_MEMORY, 0, 0, "" };
     z_stream stream = { 0 };
     if (inflateInit2(&stream, WINDOW_GZIP) != Z_OK)
         return reading;
@@ -149,7 +150,7 @@ static const char *plain_reason(const char *reason)
 }
 
 /* Sets the error for a stream that was not read to its end. */
-static bool refuse(const struct reading *reading, size_t size, const char *name, uint64_t most, struct error *err)
+static bool refuse(const struct gzip_reading *reading, size_t size, const char *name, uint64_t most, struct error *err)
 {
     unsigned long long have = (unsigned long long)reading->have;
     switch (reading->outcome) {
@@ -181,7 +182,7 @@ bool gzip_exact(const uint8_t *data, size_t size, const char *name, uint8_t *out
         return true;
     /* more inside than n, or damaged: zlib finds out which */
     uint64_t most = (uint64_t)n + GZIP_MOST_MORE;
-    struct reading reading = inflate_slowly(data, size, out, n, most);
+    struct gzip_reading reading = inflate_slowly(data, size, out, n, most);
     if (reading.outcome != WHOLE)
         return refuse(&reading, size, name, most, err);
     if (reading.have < n)
@@ -214,7 +215,7 @@ bool gzip_all(const uint8_t *data, size_t size, const char *name, uint64_t limit
         }
         free(buffer);
         if (outcome != FULL || capacity >= most) {
-            struct reading reading = { NO_MEMORY, 0, 0, "" };
+            struct gzip_reading reading = { NO_MEMORY, 0, 0, "" };
             if (outcome != NO_MEMORY)
                 reading = inflate_slowly(data, size, NULL, 0, most);
             return refuse(&reading, size, name, most, err);

@@ -43,23 +43,23 @@ static const char *const passed_over[] = { "content",     "number",       "min",
                                            "block size",  "blocksize" };
 
 /* The value of a field and its line in the header; line 0 and at "" when the field is absent. */
-struct value {
+struct field_value {
     const char *at;
     size_t n, line;
 };
 
-struct head {
+struct header_text {
     const char *at, *start, *end;
     size_t line;
     const char *name;
-    struct value values[N_FIELDS];
+    struct field_value values[N_FIELDS];
     struct report *report;
     struct error *err;
 };
 
-static bool refuse(const struct head *head, size_t line, enum error_code code, const char *format, ...)
+static bool refuse(const struct header_text *head, size_t line, enum error_code code, const char *format, ...)
     PRINTF_LIKE(4, 5);
-static bool refuse(const struct head *head, size_t line, enum error_code code, const char *format, ...)
+static bool refuse(const struct header_text *head, size_t line, enum error_code code, const char *format, ...)
 {
     char what[200];
     va_list args;
@@ -70,9 +70,9 @@ static bool refuse(const struct head *head, size_t line, enum error_code code, c
 }
 
 /* Sets the error for a field with a wrong value. */
-static bool refuse_value(const struct head *head, enum field field, enum error_code code, const char *expected)
+static bool refuse_value(const struct header_text *head, enum field field, enum error_code code, const char *expected)
 {
-    const struct value *value = &head->values[field];
+    const struct field_value *value = &head->values[field];
     char found[44], clean[44];
     if (value->line == 0)
         return error_set(head->err, code, "%s: the header has no \"%s\", expected %s", head->name, field_names[field],
@@ -86,14 +86,14 @@ static bool refuse_value(const struct head *head, enum field field, enum error_c
 /* ---- lines ------------------------------------------------------------------------------------------------------ */
 
 /* Reads the next line without its end; false at the end of the header's bytes. */
-static bool next_line(struct head *head, struct value *line)
+static bool next_line(struct header_text *head, struct field_value *line)
 {
     if (head->at >= head->end)
         return false;
     const char *end = memchr(head->at, '\n', (size_t)(head->end - head->at));
     const char *stop = end ? end : head->end;
     head->line++;
-    *line = (struct value){ head->at, (size_t)(stop - head->at), head->line };
+    *line = (struct field_value){ head->at, (size_t)(stop - head->at), head->line };
     if (line->n > 0 && line->at[line->n - 1] == '\r')
         line->n--;
     head->at = end ? end + 1 : head->end;
@@ -112,7 +112,7 @@ static void copy(const char *at, size_t n, char *out, size_t size)
     out[n] = 0;
 }
 
-static bool keep_field(struct head *head, const char *key, const struct value *value)
+static bool keep_field(struct header_text *head, const char *key, const struct field_value *value)
 {
     size_t field = 0;
     while (field < N_FIELDS && !text_equal(key, field_names[field]))
@@ -142,12 +142,12 @@ static bool keep_field(struct head *head, const char *key, const struct value *v
     return true;
 }
 
-static bool take_line(struct head *head, const struct value *line, struct nrrd_header *header)
+static bool take_line(struct header_text *head, const struct field_value *line, struct nrrd_header *header)
 {
     const char *colon = memchr(line->at, ':', line->n);
     if (!colon)
         return refuse(head, line->line, ERROR_FORMAT, "expected \"field: value\", found a line without a colon");
-    struct value value = { colon + 1, line->n - (size_t)(colon - line->at) - 1, line->line };
+    struct field_value value = { colon + 1, line->n - (size_t)(colon - line->at) - 1, line->line };
     char key[WORD_SIZE];
     copy(line->at, (size_t)(colon - line->at), key, sizeof key);
     if (value.n > 0 && *value.at == '=') {
@@ -165,9 +165,9 @@ static bool take_line(struct head *head, const struct value *line, struct nrrd_h
     return keep_field(head, key, &value);
 }
 
-static bool get_lines(struct head *head, struct nrrd_header *header, bool is_cut)
+static bool get_lines(struct header_text *head, struct nrrd_header *header, bool is_cut)
 {
-    struct value line;
+    struct field_value line;
     if (!next_line(head, &line) || line.n != 8 || memcmp(line.at, "NRRD000", 7) != 0 || line.at[7] < '1' ||
         line.at[7] > '5')
         return error_set(head->err, ERROR_FORMAT, "%s: line 1: expected NRRD0001 to NRRD0005: not a NRRD file",
@@ -192,7 +192,7 @@ static bool get_lines(struct head *head, struct nrrd_header *header, bool is_cut
 
 /* Reads the next word up to a separator: blanks, or commas within brackets; "" at the end. A word longer than WORD_SIZE
  * is cut, and is then no number. */
-static void next_word(struct value *rest, const char *separators, char word[WORD_SIZE])
+static void next_word(struct field_value *rest, const char *separators, char word[WORD_SIZE])
 {
     while (rest->n > 0 && strchr(separators, *rest->at)) {
         rest->at++;
@@ -207,7 +207,7 @@ static void next_word(struct value *rest, const char *separators, char word[WORD
 }
 
 /* Reads a vector, "(1,0,0)". */
-static bool next_vector(struct value *rest, struct vec3 *vector)
+static bool next_vector(struct field_value *rest, struct vec3 *vector)
 {
     while (rest->n > 0 && is_blank(*rest->at)) {
         rest->at++;
@@ -216,7 +216,7 @@ static bool next_vector(struct value *rest, struct vec3 *vector)
     const char *close = rest->n > 0 && *rest->at == '(' ? memchr(rest->at, ')', rest->n) : NULL;
     if (!close)
         return false;
-    struct value inside = { rest->at + 1, (size_t)(close - rest->at) - 1, rest->line };
+    struct field_value inside = { rest->at + 1, (size_t)(close - rest->at) - 1, rest->line };
     rest->n -= (size_t)(close + 1 - rest->at);
     rest->at = close + 1;
     double v[3];
@@ -231,9 +231,9 @@ static bool next_vector(struct value *rest, struct vec3 *vector)
     return word[0] == 0;
 }
 
-static bool get_whole(const struct head *head, enum field field, double least, double most, int64_t *out)
+static bool get_whole(const struct header_text *head, enum field field, double least, double most, int64_t *out)
 {
-    struct value rest = head->values[field];
+    struct field_value rest = head->values[field];
     char word[WORD_SIZE], expected[80];
     double number = 0;
     next_word(&rest, " \t", word);
@@ -246,9 +246,9 @@ static bool get_whole(const struct head *head, enum field field, double least, d
     return true;
 }
 
-static bool value_is(const struct head *head, enum field field, const char *word)
+static bool value_is(const struct header_text *head, enum field field, const char *word)
 {
-    const struct value *value = &head->values[field];
+    const struct field_value *value = &head->values[field];
     char text[WORD_SIZE];
     copy(value->at, value->line ? value->n : 0, text, sizeof text);
     return value->line != 0 && text_equal(text, word);
@@ -256,7 +256,7 @@ static bool value_is(const struct head *head, enum field field, const char *word
 
 /* ---- meaning of the fields -------------------------------------------------------------------------------------- */
 
-static bool get_type(const struct head *head, struct nrrd_header *header)
+static bool get_type(const struct header_text *head, struct nrrd_header *header)
 {
     static const struct {
         const char *word;
@@ -311,7 +311,7 @@ static bool get_type(const struct head *head, struct nrrd_header *header)
                         "a whole number of 8 to 64 bits, float or double");
 }
 
-static bool get_encoding(const struct head *head, struct nrrd_header *header)
+static bool get_encoding(const struct header_text *head, struct nrrd_header *header)
 {
     header->is_packed = value_is(head, ENCODING, "gzip") || value_is(head, ENCODING, "gz");
     if (!header->is_packed && !value_is(head, ENCODING, "raw"))
@@ -334,7 +334,7 @@ struct axes {
     int list;          /* index of the axis of layers; -1: none */
 };
 
-static bool get_sizes(const struct head *head, struct axes *axes)
+static bool get_sizes(const struct header_text *head, struct axes *axes)
 {
     int64_t n;
     if (!get_whole(head, DIMENSION, 1, MOST_AXES, &n))
@@ -342,7 +342,7 @@ static bool get_sizes(const struct head *head, struct axes *axes)
     if (n != 3 && n != 4)
         return refuse_value(head, DIMENSION, ERROR_UNSUPPORTED, "3, or 4 with an axis of layers");
     axes->n = (int)n;
-    struct value rest = head->values[SIZES];
+    struct field_value rest = head->values[SIZES];
     char word[WORD_SIZE];
     for (int i = 0; i < axes->n; i++) {
         double size;
@@ -368,9 +368,9 @@ static bool is_space_kind(const char *kind)
     return false;
 }
 
-static bool get_axes(const struct head *head, struct axes *axes)
+static bool get_axes(const struct header_text *head, struct axes *axes)
 {
-    struct value kinds = head->values[KINDS], directions = head->values[SPACE_DIRECTIONS];
+    struct field_value kinds = head->values[KINDS], directions = head->values[SPACE_DIRECTIONS];
     axes->has_directions = directions.line != 0;
     axes->list = -1;
     int n_other = 0;
@@ -382,7 +382,7 @@ static bool get_axes(const struct head *head, struct axes *axes)
         copy(clean, strlen(clean), axes->kinds[i], sizeof axes->kinds[i]);
         axes->is_space[i] = is_space_kind(axes->kinds[i]);
         if (axes->has_directions) {
-            struct value ahead = directions;
+            struct field_value ahead = directions;
             next_word(&ahead, " \t", word);
             bool is_none = text_equal(word, "none");
             if (is_none)
@@ -432,10 +432,10 @@ static bool get_direction(const char *word, size_t n, int *which, struct vec3 *d
 
 /* Reads the file's space, "left-posterior-superior", "LPS" or any other order: the patient's direction along each of
  * its three axes. */
-static bool get_space(const struct head *head, struct vec3 lps_from_space[3], bool *is_known)
+static bool get_space(const struct header_text *head, struct vec3 lps_from_space[3], bool *is_known)
 {
     static const char *const elsewhere[] = { "scanner-xyz", "3D-right-handed", "3D-left-handed" };
-    const struct value *value = &head->values[SPACE];
+    const struct field_value *value = &head->values[SPACE];
     for (int i = 0; i < 3; i++)
         lps_from_space[i] = vec3(i == 0, i == 1, i == 2);
     *is_known = false;
@@ -464,13 +464,13 @@ static bool get_space(const struct head *head, struct vec3 lps_from_space[3], bo
            refuse_value(head, SPACE, ERROR_UNSUPPORTED, "three axes, one along each of L-R, P-A, S-I");
 }
 
-static double get_unit_mm(const struct head *head)
+static double get_unit_mm(const struct header_text *head)
 {
     static const struct {
         const char *word;
         double mm;
     } units[] = { { "mm", 1 }, { "cm", 10 }, { "m", 1000 }, { "um", 0.001 } };
-    struct value rest = head->values[SPACE_UNITS];
+    struct field_value rest = head->values[SPACE_UNITS];
     char word[WORD_SIZE];
     if (rest.line == 0)
         return 1;
@@ -486,9 +486,9 @@ static double get_unit_mm(const struct head *head)
 }
 
 /* Directions of a header that gives spacings only: along the axes of the space. */
-static bool directions_from_spacings(const struct head *head, struct axes *axes)
+static bool directions_from_spacings(const struct header_text *head, struct axes *axes)
 {
-    struct value rest = head->values[SPACINGS];
+    struct field_value rest = head->values[SPACINGS];
     for (int i = 0, along = 0; i < axes->n; i++) {
         char word[WORD_SIZE];
         double spacing = 1;
@@ -505,7 +505,7 @@ static bool directions_from_spacings(const struct head *head, struct axes *axes)
 }
 
 /* Reports what the file does not say about its position in the patient. */
-static void note_assumed(const struct head *head, const struct axes *axes, bool is_known, bool has_origin)
+static void note_assumed(const struct header_text *head, const struct axes *axes, bool is_known, bool has_origin)
 {
     const char *apart = axes->has_directions || head->values[SPACINGS].line != 0 ? "" : ", 1 mm apart";
     if (!is_known)
@@ -525,10 +525,10 @@ static void note_assumed(const struct head *head, const struct axes *axes, bool 
                    "The file does not say where its first voxel lies; it was put at the origin.");
 }
 
-static bool get_geometry(const struct head *head, struct axes *axes, struct grid *grid)
+static bool get_geometry(const struct header_text *head, struct axes *axes, struct grid *grid)
 {
     struct vec3 lps_from_space[3], origin = vec3(0, 0, 0);
-    struct value rest = head->values[SPACE_ORIGIN];
+    struct field_value rest = head->values[SPACE_ORIGIN];
     bool has_origin = rest.line != 0, is_known;
     if (!get_space(head, lps_from_space, &is_known))
         return false;
@@ -549,7 +549,7 @@ static bool get_geometry(const struct head *head, struct axes *axes, struct grid
     }
     map.origin = vec3_scale(affine_vector(&lps, origin), mm);
     if (!grid_init(grid, size, &map, head->err)) {
-        const struct value *value = &head->values[axes->has_directions ? SPACE_DIRECTIONS : SPACINGS];
+        const struct field_value *value = &head->values[axes->has_directions ? SPACE_DIRECTIONS : SPACINGS];
         error_prefix(head->err, "%s: line %zu", head->name, value->line ? value->line : head->values[SIZES].line);
         return false;
     }
@@ -557,9 +557,9 @@ static bool get_geometry(const struct head *head, struct axes *axes, struct grid
 }
 
 /* Finds the voxels: after the header, or in a file named relative to it. */
-static bool get_place(const struct head *head, struct nrrd_header *header)
+static bool get_place(const struct header_text *head, struct nrrd_header *header)
 {
-    const struct value *value = &head->values[DATA_FILE];
+    const struct field_value *value = &head->values[DATA_FILE];
     int64_t skip = 0;
     if (head->values[LINE_SKIP].line != 0 && !get_whole(head, LINE_SKIP, 0, NRRD_MAX_SKIP, &skip))
         return false;
@@ -596,7 +596,7 @@ bool nrrd_parse_header(const uint8_t *bytes, size_t size, const char *name, stru
                        struct report *report, struct error *err)
 {
     bool is_cut = size >= NRRD_HEAD_BYTES;
-    struct head head = { .at = (const char *)bytes, .name = name, .report = report, .err = err };
+    struct header_text head = { .at = (const char *)bytes, .name = name, .report = report, .err = err };
     struct axes axes = { 0 };
     for (size_t i = 0; i < N_FIELDS; i++)
         head.values[i].at = "";

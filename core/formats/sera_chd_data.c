@@ -228,13 +228,13 @@ static bool resolve(const struct table *table, int column, const char *name, enu
         int boron = column_of(chd, DOSE_BORON);
         bool is_weighted = has_other_weights(chd);
         *quantity = is_weighted ? DOSE_WEIGHTED_TOTAL : DOSE_TOTAL;
-        char ppm_said[40] = "an unknown amount";
+        char ppm_text[40] = "an unknown amount";
         if (boron < 0 || chd->has_concentration[boron])
-            snprintf(ppm_said, sizeof ppm_said, "%g ppm", boron >= 0 ? chd->concentration[boron] : 0);
+            snprintf(ppm_text, sizeof ppm_text, "%g ppm", boron >= 0 ? chd->concentration[boron] : 0);
         report_add(
             report, is_weighted ? REPORT_WARNING : REPORT_NOTE, "dose.total-boron", name,
             "The total is %s, with %s of boron in blood times each tissue's ratio in it; neither can be taken out.",
-            is_weighted ? "weighted" : "physical", ppm_said);
+            is_weighted ? "weighted" : "physical", ppm_text);
         return true;
     }
     double divisor = *quantity == DOSE_BORON ? weight * ppm : weight;

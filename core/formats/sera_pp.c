@@ -74,7 +74,7 @@ static bool has_no_length(const struct track_segment *segment)
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-static void tell(const struct counts *counts, const char *name, struct report *report)
+static void report_counts(const struct counts *counts, const char *name, struct report *report)
 {
     if (counts->n_bad > 0)
         report_add(report, REPORT_WARNING, "tracks.bad-lines", name,
@@ -123,7 +123,7 @@ bool pp_parse(const uint8_t *data, size_t size, const char *name, struct track_s
     if (counts.n_segments == 0)
         return error_set(err, ERROR_FORMAT, "%s: not one of %zu lines is a segment: six coordinates, a type, an energy",
                          name, text.line);
-    tell(&counts, name, report);
+    report_counts(&counts, name, report);
     return true;
 }
 

@@ -159,7 +159,7 @@ static bool set_uvval(const struct parser *p, struct uvh_body *body, const char 
 }
 
 /* Keys of a body that are not used here. They are listed so that a misspelt key is still noticed. */
-static bool is_quiet_key(const char *key)
+static bool is_unused_key(const char *key)
 {
     static const char *const quiet[] = { "regionnum",     "matname",       "mean_intensity", "nitrogen_DENS",
                                          "recoil_RBE",    "hydrogen_DENS", "other_RBE",      "ultrafast_RBE",
@@ -206,7 +206,7 @@ static bool set_body_value(struct parser *p, struct uvh_body *body, const char *
                 p->n_bad++;
             return true;
         }
-    if (!is_quiet_key(key))
+    if (!is_unused_key(key))
         note_unknown(p, key);
     return true;
 }

@@ -96,7 +96,7 @@ static int choose_image(const struct loading *loading, const struct rtstruct *st
     return best;
 }
 
-static bool is_wanted(const struct plan_file_region *entry, const struct rtstruct_roi *roi)
+static bool is_selected(const struct plan_file_region *entry, const struct rtstruct_roi *roi)
 {
     return !entry->name[0] || text_equal(entry->name, roi->name);
 }
@@ -129,7 +129,7 @@ static bool fill_rois(struct loading *loading, struct region_builder *builder, c
         if (loading_is_cancelled(loading))
             return error_set(err, ERROR_CANCELLED, "loading was cancelled");
         loading_phase(loading, "filling contours of", structs->rois[r].name, 80, 95);
-        if (is_wanted(entry, &structs->rois[r]))
+        if (is_selected(entry, &structs->rois[r]))
             is_filled = fill_roi(loading, builder, reading, &structs->rois[r], &choices[r], options, err);
         loading_work(loading, 1);
     }

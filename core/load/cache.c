@@ -18,13 +18,13 @@
 #include "core/base/parallel.h"
 #include "core/load/cache_fields.h"
 
-/* Layout of the file: struct start; the head, which holds the sources, the plan's fields and a checksum for each piece
- * of voxels; then the voxels of each volume, aligned. Numbers are in the machine's byte order; a file of another order
- * is refused like one of another version. */
+/* Layout of the file: struct file_start; the head, which holds the sources, the plan's fields and a checksum for each
+ * piece of voxels; then the voxels of each volume, aligned. Numbers are in the machine's byte order; a file of another
+ * order is refused like one of another version. */
 enum { PIECE_BYTES = 8 << 20, ALIGNED = 4096 };
 #define MAX_BYTES ((uint64_t)PLAN_CACHE_MAX_MIB << 20)
 
-struct start {
+struct file_start {
     char magic[8];
     uint32_t order, format;
     char version[24];
@@ -56,9 +56,9 @@ void plan_sources_destroy(struct plan_sources *sources)
     free(sources);
 }
 
-static struct start make_start(const struct fields *head)
+static struct file_start make_start(const struct fields *head)
 {
-    struct start start = {
+    struct file_start start = {
         .magic = "BEAMPLAN", .order = 0x01020304, .format = PLAN_CACHE_FORMAT, .head_bytes = head->size
     };
     snprintf(start.version, sizeof start.version, "%s", BEAMROOM_VERSION);
@@ -125,7 +125,7 @@ static void count_pieces(struct pieces *pieces)
 /* Computes where the voxels lie after a head of so many bytes. Returns the size of the file. */
 static uint64_t place_voxels(struct pieces *pieces, uint64_t head_bytes)
 {
-    uint64_t at = aligned(sizeof(struct start) + head_bytes);
+    uint64_t at = aligned(sizeof(struct file_start) + head_bytes);
     for (size_t v = 0; v < pieces->n_volumes; v++) {
         pieces->voxels_at[v] = at;
         at = aligned(at + voxel_bytes(pieces->volumes[v]));
@@ -227,7 +227,7 @@ static bool write_file(int fd, const struct plan *plan, const struct plan_source
                       move_pieces(&pieces);
     if (is_written) {
         fields_bytes(&head, pieces.checks, pieces.n_pieces * sizeof *pieces.checks);
-        struct start start = make_start(&head);
+        struct file_start start = make_start(&head);
         is_written = !head.is_bad && transfer(fd, false, head.data, head.size, sizeof start) &&
                      transfer(fd, false, (uint8_t *)&start, sizeof start, 0) && ftruncate(fd, (off_t)*n_bytes) == 0;
     }
@@ -278,7 +278,7 @@ bool plan_cache_store(const struct plan *plan, const struct plan_sources *source
 /* Reads the head and checks version and checksum. The caller frees head->data, also after a failure. */
 static bool read_head(int fd, uint64_t file_bytes, struct fields *head)
 {
-    struct start start, expected;
+    struct file_start start, expected;
     if (file_bytes < sizeof start || file_bytes > MAX_BYTES ||
         !transfer(fd, true, (uint8_t *)&start, sizeof start, 0) || start.head_bytes > file_bytes - sizeof start ||
         start.head_bytes > (uint64_t)PLAN_CACHE_MAX_HEAD_MIB << 20)
@@ -325,7 +325,7 @@ static bool read_voxels(int fd, uint64_t file_bytes, struct fields *head, const 
     return is_read;
 }
 
-static void empty(struct plan *plan)
+static void release_parts(struct plan *plan)
 {
     for (size_t i = 0; i < PLAN_MAX_IMAGES; i++)
         volume_unref(plan->images[i].volume);
@@ -381,7 +381,7 @@ bool plan_cache_read(const char *cache_folder, const struct plan_sources *source
         memcpy(read->id, plan->id, sizeof read->id);
         *plan = *read;
     } else {
-        empty(read);
+        release_parts(read);
     }
     free(read);
     return is_read;

@@ -77,7 +77,7 @@ static size_t count_studies(const struct dicom_index *index)
     return n_different;
 }
 
-static void tell_of_studies(const struct dicom_index *index, struct report *report)
+static void report_studies(const struct dicom_index *index, struct report *report)
 {
     size_t n_studies = count_studies(index), n_frames = 0;
     for (size_t s = 0; s < index->n_stacks; s++) {
@@ -166,19 +166,19 @@ bool plan_dicom_recognise(const struct folder *folder, char *const *names, size_
     parts->is_all_dicom = true;
     recognise_images(parts->dicom, parts->file, report);
     recognise_structs(parts->dicom, parts->file, report);
-    tell_of_studies(parts->dicom, report);
+    report_studies(parts->dicom, report);
     return true;
 }
 
 /* ---- DICOM that plan.json names --------------------------------------------------------------------------------- */
 
-struct named {
+struct named_files {
     const struct folder *folder;
     char **names;
     size_t n;
 };
 
-static void note(struct named *named, char *path)
+static void add_named(struct named_files *named, char *path)
 {
     if (path[0] && part_format_of(named->folder, path) == PART_DICOM)
         named->names[named->n++] = path;
@@ -189,20 +189,20 @@ bool plan_dicom_scan_named(const struct folder *folder, struct plan_parts *parts
 {
     struct plan_file *file = parts->file;
     size_t most = file->n_images + file->n_regions + file->n_doses * DOSE_N_QUANTITIES + file->n_beam_files;
-    struct named named = { folder, mem_new((most + 1) * sizeof(char *)), 0 };
+    struct named_files named = { folder, mem_new((most + 1) * sizeof(char *)), 0 };
     for (size_t i = 0; i < file->n_images; i++)
-        note(&named, file->images[i].path);
+        add_named(&named, file->images[i].path);
     for (size_t i = 0; i < file->n_regions; i++)
-        note(&named, file->regions[i].path);
+        add_named(&named, file->regions[i].path);
     for (size_t i = 0; i < file->n_doses; i++)
         for (size_t c = 0; c < file->doses[i].n_components; c++)
-            note(&named, file->doses[i].components[c].path);
+            add_named(&named, file->doses[i].components[c].path);
     for (size_t i = 0; i < file->n_beam_files; i++)
-        note(&named, file->beam_files[i].path);
+        add_named(&named, file->beam_files[i].path);
     if (named.n > 0) {
         parts->dicom = dicom_index_scan(folder, named.names, named.n, progress, report, err);
         if (parts->dicom)
-            tell_of_studies(parts->dicom, report);
+            report_studies(parts->dicom, report);
     }
     free(named.names);
     return named.n == 0 || parts->dicom;

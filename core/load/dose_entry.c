@@ -77,9 +77,9 @@ void plan_add_sera(struct dose *dose, const struct plan_file_dose *entry, size_t
     bool is_any = false;
     for (size_t i = 0; i < doses->n_components; i++) {
         struct dose_component *held = &doses->components[i];
-        bool is_asked =
+        bool is_named_here =
             from->quantity == held->quantity || (from->quantity == DOSE_TOTAL && !is_named(entry, held->quantity));
-        if (!is_asked || dose->n_components >= DOSE_N_QUANTITIES)
+        if (!is_named_here || dose->n_components >= DOSE_N_QUANTITIES)
             continue;
         bool is_given = from->reference > 0 && from->quantity == held->quantity;
         dose->reference[held->quantity] = is_given ? from->reference : doses->reference[held->quantity];

@@ -124,13 +124,13 @@ static const struct name_list *list_naming(const struct name_lists *lists, const
     return NULL;
 }
 
-bool name_lists_name(const struct name_lists *lists, const char *map)
+bool name_lists_has_map(const struct name_lists *lists, const char *map)
 {
     return list_naming(lists, map) != NULL;
 }
 
 /* A file of regions and the list of names it has of its own. */
-struct map {
+struct label_map {
     bool is_grid, names_itself;
     const struct name_list *own;
 };
@@ -146,10 +146,10 @@ static const struct name_list *own_list(const struct name_lists *lists, const ch
     return list && !list->map[0] ? list : NULL;
 }
 
-static struct map look_at(const struct name_lists *lists, const struct folder *folder, const char *path)
+static struct label_map look_at(const struct name_lists *lists, const struct folder *folder, const char *path)
 {
     enum part_format format = part_format_of(folder, path);
-    struct map map = { format == PART_NIFTI || format == PART_NRRD, false, own_list(lists, path) };
+    struct label_map map = { format == PART_NIFTI || format == PART_NRRD, false, own_list(lists, path) };
     struct nrrd_header header;
     if (format == PART_NRRD) {
         map.names_itself = plan_nrrd_peek(folder, path, &header, NULL) && header.n_segments > 0;
@@ -161,7 +161,7 @@ static struct map look_at(const struct name_lists *lists, const struct folder *f
 /* The one map of the list's folder that a list without a "file" can mean: the map it is called after; else the only map
  * without names of its own; else the only such map not called a mask, as masks have no list. SIZE_MAX: none or several.
  */
-static size_t only_candidate(const struct plan_file *file, const struct map *maps, const struct name_list *list)
+static size_t only_candidate(const struct plan_file *file, const struct label_map *maps, const struct name_list *list)
 {
     static const char *const words[] = { "mask" };
     size_t n = 0, n_maps = 0, any = SIZE_MAX, map = SIZE_MAX, length = (size_t)folder_length(list->path);
@@ -176,7 +176,7 @@ static size_t only_candidate(const struct plan_file *file, const struct map *map
             continue;
         n++;
         any = i;
-        if (!part_is_spoken_of(part_base_name(path), words, 1)) {
+        if (!part_name_has_word(part_base_name(path), words, 1)) {
             n_maps++;
             map = i;
         }
@@ -199,7 +199,7 @@ static void note_elsewhere(struct report *report, const char *map, const char *l
             list);
 }
 
-static void assign(const struct name_lists *lists, struct plan_file *file, const struct map *maps, size_t at,
+static void assign(const struct name_lists *lists, struct plan_file *file, const struct label_map *maps, size_t at,
                    struct report *report)
 {
     struct plan_file_region *region = &file->regions[at];
@@ -225,7 +225,7 @@ void name_lists_assign(const struct name_lists *lists, const struct folder *fold
 {
     if (lists->n == 0)
         return;
-    struct map *maps = mem_new((file->n_regions + 1) * sizeof *maps);
+    struct label_map *maps = mem_new((file->n_regions + 1) * sizeof *maps);
     for (size_t i = 0; i < file->n_regions; i++)
         maps[i] = look_at(lists, folder, file->regions[i].path);
     for (size_t i = 0; i < file->n_regions; i++)

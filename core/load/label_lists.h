@@ -14,7 +14,7 @@ struct name_lists *name_lists_find(const struct folder *folder, const struct fol
 void name_lists_destroy(struct name_lists *lists);
 
 /* True if the "file" of a list is this map. */
-bool name_lists_name(const struct name_lists *lists, const char *map);
+bool name_lists_has_map(const struct name_lists *lists, const char *map);
 
 /* Gives each label map among the plan file's regions its list: the list whose "file" is the map; else the list called
  * after it, like parts.json beside parts.nii.gz; else labels.json beside it, when no other map could be meant. Reports

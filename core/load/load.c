@@ -18,14 +18,14 @@
  * the rest. */
 enum { LOOK_EVERY_MS = 20 };
 
-static void looked_at(void *context, size_t n_done, size_t n_all)
+static void index_progress(void *context, size_t n_done, size_t n_all)
 {
     struct loading *loading = context;
     atomic_store(&loading->work, n_all);
     atomic_store(&loading->work_done, n_done);
 }
 
-static void cache_begun(void *context, uint64_t n_bytes)
+static void cache_begin(void *context, uint64_t n_bytes)
 {
     struct loading *loading = context;
     loading_phase(loading, "reading the opened plan", "", 5, 95);
@@ -48,7 +48,7 @@ static bool load_from_cache(struct loading *loading)
         return false;
     }
     struct plan_sources *sources = plan_sources_create(&tree);
-    const struct plan_cache_reading reading = { loading->max_bytes, cache_begun, cache_read, loading,
+    const struct plan_cache_reading reading = { loading->max_bytes, cache_begin, cache_read, loading,
                                                 &loading->is_given_up };
     bool is_read = sources && plan_cache_read(loading->cache_folder, sources, &reading, loading->plan);
     loading->plan->is_from_cache = is_read;
@@ -77,7 +77,7 @@ static bool load(struct loading *loading)
     if (load_from_cache(loading))
         return true;
     loading_phase(loading, "looking at the folder", "", 0, 5);
-    const struct dicom_progress looking = { looked_at, loading, &loading->is_given_up, 0 };
+    const struct dicom_progress looking = { index_progress, loading, &loading->is_given_up, 0 };
     bool is_described = plan_describe(&loading->folder, &looking, &loading->parts, &plan->report, err);
     loading->file = loading->parts.file;
     if (!is_described || !plan_list_parts(loading, err) || !plan_check_estimate(loading, err) ||
@@ -108,8 +108,8 @@ static void start(struct loading *loading)
         load_main(loading);
 }
 
-static void tell(struct loading *loading, const struct plan_progress *progress, struct loading_phase *now,
-                 double *percent)
+static void report_progress(struct loading *loading, const struct plan_progress *progress, struct loading_phase *now,
+                            double *percent)
 {
     struct loading_phase *newest = mailbox_take(loading->phases);
     if (newest)
@@ -128,7 +128,7 @@ static bool wait(struct loading *loading, const struct plan_progress *progress, 
     struct loading_phase phase = { .words = "starting" };
     double percent = 0;
     while (!queue_take(loading->ended, LOOK_EVERY_MS)) {
-        tell(loading, progress, &phase, &percent);
+        report_progress(loading, progress, &phase, &percent);
         if (cancel && atomic_load(cancel)) {
             atomic_store(&loading->is_given_up, true);
             return error_set(err, ERROR_CANCELLED, "loading was cancelled");

@@ -12,7 +12,7 @@ const char *part_base_name(const char *name)
     return slash ? slash + 1 : name;
 }
 
-bool part_is_spoken_of(const char *name, const char *const *words, size_t n_words)
+bool part_name_has_word(const char *name, const char *const *words, size_t n_words)
 {
     char low[FOLDER_NAME_SIZE];
     size_t n = strlen(name);

@@ -4,7 +4,7 @@
 
 const char *part_base_name(const char *name); /* the name after the last slash */
 /* True if the name contains one of the words, whatever its case. words: in lower case. */
-bool part_is_spoken_of(const char *name, const char *const *words, size_t n_words);
+bool part_name_has_word(const char *name, const char *const *words, size_t n_words);
 
 /* Finds the data file beside a header: the header's stem with the ending (".uv", ".qim", ".cdf") and ".gz", ".sz" or
  * nothing, in that order. Returns false when there is none. */

@@ -40,6 +40,6 @@ struct part_reading {
     bool is_failed; /* after plan_read_parts: reported and left out */
 
     struct loading *loading; /* for the progress a reader reports */
-    uint64_t bytes_told;     /* of bytes, how many the progress counts already */
+    uint64_t bytes_counted;  /* of bytes, how many the progress counts already */
     size_t image;            /* index in the plan, once the image is added */
 };

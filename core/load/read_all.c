@@ -75,7 +75,7 @@ static void work(void *context, int part, int n_parts)
             while (at < before && !atomic_compare_exchange_weak(&loading->first_failed, &before, at)) {
             }
         }
-        loading_work(loading, reading->bytes - reading->bytes_told);
+        loading_work(loading, reading->bytes - reading->bytes_counted);
     }
 }
 

@@ -46,19 +46,19 @@ static bool read_names(const struct folder *folder, const char *path, struct par
 }
 
 /* Progress of dicom_series_read, which makes one call at a time. */
-static void slices_done(void *context, size_t n_done, size_t n_all)
+static void series_progress(void *context, size_t n_done, size_t n_all)
 {
     struct part_reading *reading = context;
-    uint64_t told = n_all ? (uint64_t)((double)reading->bytes * (double)n_done / (double)n_all) : 0;
-    if (told <= reading->bytes_told || told > reading->bytes)
+    uint64_t counted = n_all ? (uint64_t)((double)reading->bytes * (double)n_done / (double)n_all) : 0;
+    if (counted <= reading->bytes_counted || counted > reading->bytes)
         return;
-    loading_work(reading->loading, told - reading->bytes_told);
-    reading->bytes_told = told;
+    loading_work(reading->loading, counted - reading->bytes_counted);
+    reading->bytes_counted = counted;
 }
 
 static bool read_series(struct loading *loading, struct part_reading *reading)
 {
-    const struct dicom_progress progress = { slices_done, reading, &loading->is_given_up, 0 };
+    const struct dicom_progress progress = { series_progress, reading, &loading->is_given_up, 0 };
     const struct dicom_index *index = loading->parts.dicom;
     reading->volume = dicom_series_read(&loading->folder, index, (size_t)reading->stack, &progress, &reading->facts,
                                         &reading->report, &reading->err);

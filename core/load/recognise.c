@@ -37,13 +37,13 @@ struct grid_facts {
 static bool is_label_map(const char *name, const struct grid_facts *facts)
 {
     static const char *const words[] = { "label", "seg", "univel", "mask" };
-    return facts->is_whole && (facts->has_segments || part_is_spoken_of(name, words, sizeof words / sizeof words[0]));
+    return facts->is_whole && (facts->has_segments || part_name_has_word(name, words, sizeof words / sizeof words[0]));
 }
 
 static bool is_dose_map(const char *name)
 {
     static const char *const words[] = { "dose" };
-    return part_is_spoken_of(part_base_name(name), words, 1);
+    return part_name_has_word(part_base_name(name), words, 1);
 }
 
 static bool is_rst(const struct folder *folder, const char *name)
@@ -155,7 +155,7 @@ static void add_grid(struct recognition *all, const char *name, enum part_format
     struct grid_facts facts;
     if (is_second_of_pair(all->folder, name) || !has_good_header(all, name, format, &facts))
         return;
-    if (name_lists_name(all->lists, name) || is_label_map(name, &facts)) {
+    if (name_lists_has_map(all->lists, name) || is_label_map(name, &facts)) {
         (void)add_region(all, name);
     } else if (is_dose_map(name)) {
         add_dose(all, name);

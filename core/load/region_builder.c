@@ -60,7 +60,7 @@ static bool is_free_id(const struct region_set *set, const char *id)
 }
 
 /* Takes colour, id, tissue data and place from an entry of a list of names. */
-static void take_names(struct region_builder *builder, struct region *region, const struct label_name *label)
+static void apply_label(struct region_builder *builder, struct region *region, const struct label_name *label)
 {
     struct region_set *set = builder->set;
     if (label->has_color) {
@@ -219,7 +219,7 @@ bool region_builder_add_labels(struct region_builder *builder, struct volume *la
         struct region *region = add_region(builder, label->name, layer, label->value, where, err);
         is_added = region != NULL;
         if (region)
-            take_names(builder, region, label);
+            apply_label(builder, region, label);
         if (region && label->parent[0])
             add_pair(builder, label->parent, label->name);
     }
@@ -293,7 +293,7 @@ static bool grids_are_equal(const struct grid *a, const struct grid *b)
 }
 
 /* A mask being written into a layer that holds others. */
-struct laying {
+struct mask_placing {
     const struct volume *layer;
     uint8_t label;
     bool is_free;
@@ -307,17 +307,17 @@ static uint8_t *run_in(const struct volume *layer, uint32_t i, uint32_t j, uint3
 static void check_run(void *context, uint16_t label, uint32_t i, uint32_t j, uint32_t k, uint32_t length)
 {
     (void)label;
-    struct laying *laying = context;
-    const uint8_t *run = run_in(laying->layer, i, j, k);
-    for (uint32_t at = 0; laying->is_free && at < length; at++)
-        laying->is_free = run[at] == 0;
+    struct mask_placing *placing = context;
+    const uint8_t *run = run_in(placing->layer, i, j, k);
+    for (uint32_t at = 0; placing->is_free && at < length; at++)
+        placing->is_free = run[at] == 0;
 }
 
-static void lay_run(void *context, uint16_t label, uint32_t i, uint32_t j, uint32_t k, uint32_t length)
+static void place_run(void *context, uint16_t label, uint32_t i, uint32_t j, uint32_t k, uint32_t length)
 {
     (void)label;
-    const struct laying *laying = context;
-    memset(run_in(laying->layer, i, j, k), laying->label, length);
+    const struct mask_placing *placing = context;
+    memset(run_in(placing->layer, i, j, k), placing->label, length);
 }
 
 bool region_builder_add_mask(struct region_builder *builder, struct volume *mask, const struct plan_file_region *entry,
@@ -329,11 +329,11 @@ bool region_builder_add_mask(struct region_builder *builder, struct volume *mask
         if (!builder->is_packed[i] || builder->n_labels[i] >= UINT8_MAX ||
             !grids_are_equal(&mask->grid, &set->layers[i]->grid))
             continue;
-        struct laying laying = { set->layers[i], (uint8_t)(builder->n_labels[i] + 1), true };
-        label_rows_runs(mask, check_run, &laying);
-        if (!laying.is_free)
+        struct mask_placing placing = { set->layers[i], (uint8_t)(builder->n_labels[i] + 1), true };
+        label_rows_runs(mask, check_run, &placing);
+        if (!placing.is_free)
             continue;
-        label_rows_runs(mask, lay_run, &laying);
+        label_rows_runs(mask, place_run, &placing);
         layer = i;
     }
     if (layer == REGION_MAX_LAYERS) {

@@ -25,7 +25,7 @@ enum {
 };
 
 /* One file of voxels to write; written by one thread. */
-struct output {
+struct voxel_file {
     char name[FOLDER_NAME_SIZE];
     const struct volume *volume;
     const bool *is_kept; /* [65536] labels of a label layer to write, others become 0; NULL: write all voxels */
@@ -34,10 +34,10 @@ struct output {
     struct error err;
 };
 
-struct writing {
+struct plan_writing {
     const struct plan *plan;
     char folder[PATH_MAX]; /* temporary folder where the plan is built */
-    struct output *outputs;
+    struct voxel_file *outputs;
     size_t n_outputs;
     atomic_size_t next;
     atomic_bool is_failed; /* one output failed; the others need not start */
@@ -51,9 +51,9 @@ static void join(char out[PATH_MAX], const char *folder, const char *name)
         out[0] = 0; /* opening "" fails, with an error that is reported */
 }
 
-static struct output *add_output(struct writing *writing, const struct volume *volume, const char *name)
+static struct voxel_file *add_output(struct plan_writing *writing, const struct volume *volume, const char *name)
 {
-    struct output *output = &writing->outputs[writing->n_outputs++];
+    struct voxel_file *output = &writing->outputs[writing->n_outputs++];
     output->volume = volume;
     snprintf(output->name, sizeof output->name, "%s", name);
     return output;
@@ -61,7 +61,7 @@ static struct output *add_output(struct writing *writing, const struct volume *v
 
 /* ---- lists of files to write ------------------------------------------------------------------------------------ */
 
-static void list_images(struct writing *writing)
+static void list_images(struct plan_writing *writing)
 {
     const struct plan *plan = writing->plan;
     for (size_t i = 0; i < plan->n_images; i++) {
@@ -78,7 +78,7 @@ static void list_images(struct writing *writing)
     }
 }
 
-static bool write_names(const struct writing *writing, uint32_t layer, const char *name, bool *is_kept,
+static bool write_names(const struct plan_writing *writing, uint32_t layer, const char *name, bool *is_kept,
                         struct error *err)
 {
     const struct region_set *set = &writing->plan->regions;
@@ -109,7 +109,7 @@ static bool write_names(const struct writing *writing, uint32_t layer, const cha
     return is_written;
 }
 
-static bool list_regions(struct writing *writing, bool (*is_kept)[65536], struct error *err)
+static bool list_regions(struct plan_writing *writing, bool (*is_kept)[65536], struct error *err)
 {
     const struct region_set *set = &writing->plan->regions;
     struct plan_file *file = writing->file;
@@ -138,7 +138,7 @@ static bool list_regions(struct writing *writing, bool (*is_kept)[65536], struct
 }
 
 /* Files are called id_quantity; ids have no '_', so no two are called the same. */
-static void list_doses(struct writing *writing)
+static void list_doses(struct plan_writing *writing)
 {
     const struct plan *plan = writing->plan;
     for (size_t i = 0; i < plan->n_doses; i++) {
@@ -190,7 +190,7 @@ static struct volume *copy_kept(const struct volume *layer, const bool *is_kept,
     return copy;
 }
 
-static bool write_output(const struct writing *writing, struct output *output)
+static bool write_output(const struct plan_writing *writing, struct voxel_file *output)
 {
     char path[PATH_MAX];
     join(path, writing->folder, output->name);
@@ -206,7 +206,7 @@ static void write_some(void *context, int part, int n_parts)
 {
     (void)part;
     (void)n_parts;
-    struct writing *writing = context;
+    struct plan_writing *writing = context;
     for (size_t at;
          !atomic_load(&writing->is_failed) && (at = atomic_fetch_add(&writing->next, 1)) < writing->n_outputs;) {
         writing->outputs[at].is_failed = !write_output(writing, &writing->outputs[at]);
@@ -215,7 +215,7 @@ static void write_some(void *context, int part, int n_parts)
     }
 }
 
-static bool write_volumes(struct writing *writing, struct error *err)
+static bool write_volumes(struct plan_writing *writing, struct error *err)
 {
     atomic_init(&writing->next, 0);
     atomic_init(&writing->is_failed, false);
@@ -229,7 +229,7 @@ static bool write_volumes(struct writing *writing, struct error *err)
     return true;
 }
 
-static bool write_plan_json(const struct writing *writing, struct error *err)
+static bool write_plan_json(const struct plan_writing *writing, struct error *err)
 {
     char path[PATH_MAX];
     char *text = plan_file_text(writing->file, err);
@@ -245,7 +245,7 @@ static bool write_plan_json(const struct writing *writing, struct error *err)
     return is_written;
 }
 
-static bool write_contents(struct writing *writing, struct error *err)
+static bool write_contents(struct plan_writing *writing, struct error *err)
 {
     const struct plan *plan = writing->plan;
     bool(*is_kept)[65536] = mem_new((plan->regions.n_layers + 1) * sizeof *is_kept);
@@ -287,18 +287,18 @@ static bool check_target(const char *folder, struct error *err)
     return is_empty(folder) || error_set(err, ERROR_STATE, "%s is there already and is not empty", folder);
 }
 
-static bool make_folder(const char *folder, const char *asked_for, struct error *err)
+static bool make_folder(const char *folder, const char *final_folder, struct error *err)
 {
     return mkdir(folder, 0777) == 0 ||
-           error_set(err, ERROR_IO, "%.180s: cannot be created: %s", asked_for, strerror(errno));
+           error_set(err, ERROR_IO, "%.180s: cannot be created: %s", final_folder, strerror(errno));
 }
 
-static bool make_inner_folders(const char *folder, const char *asked_for, struct error *err)
+static bool make_inner_folders(const char *folder, const char *final_folder, struct error *err)
 {
     char path[PATH_MAX];
     for (int i = 0; i < N_FOLDERS; i++) {
         join(path, folder, folders[i]);
-        if (!make_folder(path, asked_for, err))
+        if (!make_folder(path, final_folder, err))
             return false;
     }
     return true;
@@ -340,17 +340,17 @@ static void remove_all(const char *folder)
 
 /* Replaces the temporary folder in an error sentence by the folder that was asked for, as the first no longer exists.
  */
-static void name_as_asked(const char *folder, const char *asked_for, struct error *err)
+static void name_final_folder(const char *folder, const char *final_folder, struct error *err)
 {
     size_t n = strlen(folder);
     char rest[sizeof err->text];
     if (!err || strncmp(err->text, folder, n) != 0)
         return;
     memcpy(rest, err->text + n, strlen(err->text + n) + 1);
-    error_set(err, err->code, "%.180s%s", asked_for, rest);
+    error_set(err, err->code, "%.180s%s", final_folder, rest);
 }
 
-static void tell_lost(const struct writing *writing, struct report *lost)
+static void report_cleared(const struct plan_writing *writing, struct report *lost)
 {
     for (size_t i = 0; i < writing->n_outputs; i++)
         if (writing->outputs[i].n_cleared > 0)
@@ -362,7 +362,7 @@ static void tell_lost(const struct writing *writing, struct report *lost)
 
 bool plan_write(const struct plan *plan, const char *folder, struct report *lost, struct error *err)
 {
-    struct writing writing = { .plan = plan };
+    struct plan_writing writing = { .plan = plan };
     char place[FILE_FOLDER_SIZE];
     if (!file_folder_paths(folder, place, writing.folder, err) || !check_target(place, err) ||
         !make_folder(writing.folder, place, err))
@@ -378,10 +378,10 @@ bool plan_write(const struct plan *plan, const char *folder, struct report *lost
             is_written = error_set(err, ERROR_IO, "%.180s: cannot be created: %s", place, strerror(errno));
     }
     if (is_written) {
-        tell_lost(&writing, lost);
+        report_cleared(&writing, lost);
     } else {
         remove_all(writing.folder);
-        name_as_asked(writing.folder, place, err);
+        name_final_folder(writing.folder, place, err);
     }
     plan_file_destroy(writing.file);
     free(writing.outputs);

@@ -11,32 +11,32 @@
 #include "core/base/file_write.h"
 
 /* A text in memory that becomes a file when it is closed; lack of memory is reported then. */
-struct sheet {
+struct text_file {
     FILE *out;
     char *text;
     size_t n_bytes;
     bool is_cut; /* no memory for something that was printed: such a stream does not remember it itself */
 };
 
-static void print(struct sheet *sheet, const char *format, ...) PRINTF_LIKE(2, 3);
-static void print(struct sheet *sheet, const char *format, ...)
+static void print(struct text_file *text_file, const char *format, ...) PRINTF_LIKE(2, 3);
+static void print(struct text_file *text_file, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    sheet->is_cut = vfprintf(sheet->out, format, args) < 0 || sheet->is_cut;
+    text_file->is_cut = vfprintf(text_file->out, format, args) < 0 || text_file->is_cut;
     va_end(args);
 }
 
-static bool sheet_close(struct sheet *sheet, const char *folder, const char *name, struct error *err)
+static bool text_file_close(struct text_file *text_file, const char *folder, const char *name, struct error *err)
 {
     char path[PATH_MAX];
-    bool is_whole = sheet->out && !sheet->is_cut;
-    is_whole = sheet->out && fclose(sheet->out) == 0 && sheet->text && is_whole;
+    bool is_whole = text_file->out && !text_file->is_cut;
+    is_whole = text_file->out && fclose(text_file->out) == 0 && text_file->text && is_whole;
     int n = snprintf(path, sizeof path, "%s/%s", folder, name);
     bool is_written = is_whole && n > 0 && n < (int)sizeof path
-                          ? file_write(path, sheet->text, sheet->n_bytes, err)
+                          ? file_write(path, text_file->text, text_file->n_bytes, err)
                           : error_set(err, ERROR_MEMORY, "%s: no memory for its text", name);
-    free(sheet->text);
+    free(text_file->text);
     return is_written;
 }
 
@@ -54,15 +54,15 @@ static bool write_tracks(const struct track_set *tracks, const char *folder, str
     snprintf(entry->path, sizeof entry->path, "tracks.pp");
     entry->mm = 1;
     file->n_tracks = 1;
-    struct sheet sheet = { 0 };
-    sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
-    for (size_t i = 0; sheet.out && i < tracks->n_segments; i++) {
+    struct text_file text_file = { 0 };
+    text_file.out = open_memstream(&text_file.text, &text_file.n_bytes);
+    for (size_t i = 0; text_file.out && i < tracks->n_segments; i++) {
         const struct track_segment *segment = &tracks->segments[i];
         const float *a = segment->from_lps_mm, *b = segment->to_lps_mm;
-        print(&sheet, "%.9g %.9g %.9g %.9g %.9g %.9g %d %d\n", (double)a[0], -(double)a[1], (double)a[2], (double)b[0],
-              -(double)b[1], (double)b[2], codes[segment->class][0], codes[segment->class][1]);
+        print(&text_file, "%.9g %.9g %.9g %.9g %.9g %.9g %d %d\n", (double)a[0], -(double)a[1], (double)a[2],
+              (double)b[0], -(double)b[1], (double)b[2], codes[segment->class][0], codes[segment->class][1]);
     }
-    return sheet_close(&sheet, folder, entry->path, err);
+    return text_file_close(&text_file, folder, entry->path, err);
 }
 
 /* The centimetres that give exactly these millimetres when multiplied by ten: mm / 10 or a double next to it. */
@@ -82,21 +82,21 @@ static double cm_of(double mm)
 /* Prints not-a-number as SERA's Fortran prints a value too wide for its column, and a point without any value as zeros,
  * which means outside the mesh. All values have the same width, so that no line is as long as one in SERA's own column
  * layout, which readers recognise by length. */
-static void print_point(struct sheet *sheet, const struct dose_curve *curve, size_t point)
+static void print_point(struct text_file *text_file, const struct dose_curve *curve, size_t point)
 {
     bool is_nothing = true;
     for (size_t c = 0; c < curve->n_columns; c++)
         is_nothing = is_nothing && isnan(curve->values[c][point]);
-    print(sheet, "%.17g %.17g 0 0", cm_of(curve->depths_mm[point / curve->n_radii]),
+    print(text_file, "%.17g %.17g 0 0", cm_of(curve->depths_mm[point / curve->n_radii]),
           cm_of(curve->radii_mm[point % curve->n_radii]));
     for (size_t c = 0; c < curve->n_columns; c++)
         if (is_nothing)
-            print(sheet, " 0.00000000E+00");
+            print(text_file, " 0.00000000E+00");
         else if (isnan(curve->values[c][point]))
-            print(sheet, " **************");
+            print(text_file, " **************");
         else
-            print(sheet, " %.8E", (double)curve->values[c][point]);
-    print(sheet, "\n");
+            print(text_file, " %.8E", (double)curve->values[c][point]);
+    print(text_file, "\n");
 }
 
 static bool write_curve(const struct dose_curve *curve, const char *folder, struct plan_file_curve *entry,
@@ -106,15 +106,15 @@ static bool write_curve(const struct dose_curve *curve, const char *folder, stru
     memcpy(entry->name, curve->name, sizeof entry->name);
     memcpy(entry->per, curve->per, sizeof entry->per);
     snprintf(entry->path, sizeof entry->path, "curves/%s.dose", curve->id);
-    struct sheet sheet = { 0 };
-    sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
+    struct text_file text_file = { 0 };
+    text_file.out = open_memstream(&text_file.text, &text_file.n_bytes);
     struct vec3 center = curve->center_lps_mm; /* the file's order is (PA, RL, IS), in cm */
-    if (sheet.out)
-        print(&sheet, "Center Point %.17g %.17g %.17g\nno. d,r points used %zu\n", -cm_of(center.y), cm_of(center.x),
-              cm_of(center.z), curve->n_depths);
-    for (size_t point = 0; sheet.out && point < curve->n_depths * curve->n_radii; point++)
-        print_point(&sheet, curve, point);
-    return sheet_close(&sheet, folder, entry->path, err);
+    if (text_file.out)
+        print(&text_file, "Center Point %.17g %.17g %.17g\nno. d,r points used %zu\n", -cm_of(center.y),
+              cm_of(center.x), cm_of(center.z), curve->n_depths);
+    for (size_t point = 0; text_file.out && point < curve->n_depths * curve->n_radii; point++)
+        print_point(&text_file, curve, point);
+    return text_file_close(&text_file, folder, entry->path, err);
 }
 
 static bool write_preferences(const struct plan_preferences *preferences, const char *folder, struct plan_file *file,
@@ -123,26 +123,26 @@ static bool write_preferences(const struct plan_preferences *preferences, const 
     enum { TO_16_BITS = 257 };
     bool is_written = true;
     if (preferences->n_levels > 0) {
-        struct sheet sheet = { 0 };
-        sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
-        for (size_t i = 0; sheet.out && i < preferences->n_levels; i++) {
+        struct text_file text_file = { 0 };
+        text_file.out = open_memstream(&text_file.text, &text_file.n_bytes);
+        for (size_t i = 0; text_file.out && i < preferences->n_levels; i++) {
             const struct plan_level *level = &preferences->levels[i];
-            print(&sheet, "contour_level: %.17g %d %d %d\n", level->percent, level->rgb[0] * TO_16_BITS,
+            print(&text_file, "contour_level: %.17g %d %d %d\n", level->percent, level->rgb[0] * TO_16_BITS,
                   level->rgb[1] * TO_16_BITS, level->rgb[2] * TO_16_BITS);
         }
         char *name = file->preferences[file->n_preferences++];
         snprintf(name, FOLDER_NAME_SIZE, "preferences.rsc");
-        is_written = sheet_close(&sheet, folder, name, err);
+        is_written = text_file_close(&text_file, folder, name, err);
     }
     if (preferences->n_colors > 0 && is_written) {
-        struct sheet sheet = { 0 };
-        sheet.out = open_memstream(&sheet.text, &sheet.n_bytes);
-        for (size_t i = 0; sheet.out && i < preferences->n_colors; i++)
-            print(&sheet, "%d %d %d\n", preferences->colors[i][0], preferences->colors[i][1],
+        struct text_file text_file = { 0 };
+        text_file.out = open_memstream(&text_file.text, &text_file.n_bytes);
+        for (size_t i = 0; text_file.out && i < preferences->n_colors; i++)
+            print(&text_file, "%d %d %d\n", preferences->colors[i][0], preferences->colors[i][1],
                   preferences->colors[i][2]);
         char *name = file->preferences[file->n_preferences++];
         snprintf(name, FOLDER_NAME_SIZE, "colors.cmap");
-        is_written = sheet_close(&sheet, folder, name, err);
+        is_written = text_file_close(&text_file, folder, name, err);
     }
     return is_written;
 }
