@@ -157,7 +157,7 @@ describe('pictures', () => {
     assert.equal(first.view, 1);
     assert.ok(first.matrix.every(Number.isFinite));
     const still = await client.frame((f) => f.isStill);
-    assert.deepEqual([still.width, still.height, still.scale, still.isFullColor, still.isLight], [320, 240, 100, true, false]);
+    assert.deepEqual([still.width, still.height, still.scale, still.isFullColor, still.isCoarse], [320, 240, 100, true, false]);
     assert.ok(still.sequence > first.sequence);
   });
   test('stop after two that are not acknowledged, and go on with the newest state', async () => {

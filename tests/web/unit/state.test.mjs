@@ -164,14 +164,14 @@ test('the time an input waits ends with the picture that shows it', () => {
 
 const facts = {
   link: { state: 'open', retryAt: 0 }, renderer: 'ready', staleSince: 0, revision: 3, revisionAt: 0, fps: 27, now: 10000,
-  header: { is_still: false, is_lossless: false, is_light: false, scale_percent: 100, quality: 80, scene_revision: 3 },
+  header: { is_still: false, is_lossless: false, is_coarse: false, scale_percent: 100, quality: 80, scene_revision: 3 },
 };
 const still = { ...facts.header, is_still: true };
 for (const [what, change, state] of [
   ['nothing before the first picture', { header: null }, undefined],
   ['moving at full size', {}, 'live'],
   ['half size', { header: { ...facts.header, scale_percent: 50 } }, 'reduced'],
-  ['lighter surfaces', { header: { ...facts.header, is_light: true } }, 'reduced'],
+  ['lighter surfaces', { header: { ...facts.header, is_coarse: true } }, 'reduced'],
   ['a still', { header: still }, 'full'],
   ['an input unanswered for 0.9 s', { header: still, staleSince: 9100 }, 'full'],
   ['an input unanswered for 1.1 s', { header: still, staleSince: 8900 }, 'stale'],

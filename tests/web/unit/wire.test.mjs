@@ -4,7 +4,7 @@ import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { load, root } from './page.mjs';
 
-const { WireError, isId, readDocument, readMessage, readNews } = await load('wire/check.js');
+const { WireError, isId, readDocument, readMessage, readServerMessage } = await load('wire/check.js');
 const { joinPatches, mergePatch } = await load('wire/merge.js');
 
 const fixtures = (kind) => {
@@ -46,11 +46,11 @@ for (const [what, kind, document, code, pointer] of [
     assert.throws(() => readDocument(kind, document), { code, pointer });
   });
 
-test('news: further fields of a newer server are passed over, unknown messages give null', () => {
-  assert.deepEqual(readNews({ type: 'pong', time_ms: 5, later: 1 }), { type: 'pong', time_ms: 5 });
-  assert.equal(readNews({ type: 'thunder' }), null);
-  assert.equal(readNews({ type: '__proto__' }), null);
-  assert.throws(() => readNews({ type: 'pong' }), { code: 'required' });
+test('fields of a newer server are dropped from its messages, and unknown messages give null', () => {
+  assert.deepEqual(readServerMessage({ type: 'pong', time_ms: 5, later: 1 }), { type: 'pong', time_ms: 5 });
+  assert.equal(readServerMessage({ type: 'thunder' }), null);
+  assert.equal(readServerMessage({ type: '__proto__' }), null);
+  assert.throws(() => readServerMessage({ type: 'pong' }), { code: 'required' });
 });
 
 test('ids are 1 to 63 of a-z, 0-9 and -', () => {
@@ -111,7 +111,7 @@ function frameBytes(change = () => {}, { headerBytes = 112, pictureBytes = 5 } =
   data.setUint16(4, 1, true);
   data.setUint16(6, headerBytes, true);
   data.setUint8(8, 1); // JPEG
-  data.setUint8(9, 1 | 4 | 16); // still, full colour, light
+  data.setUint8(9, 1 | 4 | 16); // still, full colour, coarse
   data.setUint8(10, 95);
   data.setUint8(11, 50);
   data.setUint32(12, 3, true);
@@ -133,7 +133,7 @@ function frameBytes(change = () => {}, { headerBytes = 112, pictureBytes = 5 } =
 test('a frame header is read field by field', () => {
   const { header, picture } = readFrame(frameBytes());
   assert.deepEqual({ ...header, clip_from_lps_mm: [...header.clip_from_lps_mm] }, {
-    media_type: 'image/jpeg', is_still: true, is_lossless: false, is_full_color: true, is_shared: false, is_light: true,
+    media_type: 'image/jpeg', is_still: true, is_lossless: false, is_full_color: true, is_shared: false, is_coarse: true,
     quality: 95, scale_percent: 50, view: 3, sequence: 77, scene_revision: 12, input_id: 4000000001,
     width_px: 640, height_px: 480, render_us: 12345, encode_us: 678, pixels_per_mm: 2.5,
     clip_from_lps_mm: Array.from({ length: 16 }, (_, i) => i + 0.5),

@@ -1,6 +1,6 @@
 // The WebSocket of a room: sends hello, checks messages in both directions, connects again after a loss.
 import { maxClientBytes, protocol } from '../../gen/wire.js';
-import { readMessage, readNews } from '../wire/check.js';
+import { readMessage, readServerMessage } from '../wire/check.js';
 import { readFrame } from '../wire/frame.js';
 
 const backoffMs = [500, 1000, 2000, 4000];
@@ -106,7 +106,7 @@ export class Connection extends EventTarget {
     this.#heardAt = this.#clock.now();
     try {
       if (typeof data !== 'string') return void this.#tell('frame', readFrame(data));
-      const message = readNews(JSON.parse(data));
+      const message = readServerMessage(JSON.parse(data));
       if (message) this.#take(message);
     } catch (error) {
       // A message of the server that cannot be read is ignored, but never silently.

@@ -10,7 +10,7 @@ function why(header) {
   const reasons = [];
   if (header.scale_percent < 100) reasons.push(`size ${header.scale_percent} %`);
   if (header.quality > 0 && header.quality < 60) reasons.push(`quality ${header.quality}`);
-  if (header.is_light) reasons.push('lighter surfaces');
+  if (header.is_coarse) reasons.push('lighter surfaces');
   return reasons;
 }
 
@@ -37,7 +37,7 @@ export function fidelity({ link, renderer, header, staleSince, revision, revisio
   const behindSince = header.scene_revision < revision ? revisionAt : 0;
   const since = Math.min(staleSince || Infinity, behindSince || Infinity);
   if (now - since > staleMs) return badge('stale', `Stale ${Math.floor((now - since) / 1000)} s`, 'The picture does not show the newest change yet.');
-  if (header.is_still && header.scale_percent === 100 && !header.is_light)
+  if (header.is_still && header.scale_percent === 100 && !header.is_coarse)
     return header.is_lossless ? badge('full', 'Full, lossless still') : badge('full', 'Full');
   const reasons = why(header);
   if (reasons.length) {

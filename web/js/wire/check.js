@@ -8,9 +8,9 @@ const leastDirection = 1e-9; // a shorter vector has no direction
 const idPattern = /^[a-z0-9-]{1,63}$/;
 const colorPattern = /^#[0-9a-f]{6}$/i;
 
-/** Why a message was refused. */
+/** A message or document that was refused. */
 export class WireError extends Error {
-  /** @param {string} code of proto: "type", "range", ... @param {string} pointer RFC 6901 @param {string} detail */
+  /** @param {string} code "type", "range", ... as in proto/problems.json @param {string} pointer RFC 6901 @param {string} detail a sentence */
   constructor(code, pointer, detail) {
     super(`${pointer || 'message'}: ${detail}`);
     this.code = code;
@@ -149,8 +149,8 @@ export function readMessage(value, from) {
   return { type, ...readObject(description.fields, value, '', protoTables, 'type') };
 }
 
-/** The same for what the server sends: a newer server's further fields are passed over. Unknown messages give null. */
-export function readNews(value) {
+/** A message of the server, checked, with defaults. Fields that only a newer server knows are dropped; null: an unknown message. */
+export function readServerMessage(value) {
   need(isObject(value), value, 'an object', '');
   const description = Object.hasOwn(messages, value.type) ? messages[value.type] : undefined;
   if (!description || description.from !== 'server') return null;

@@ -1,4 +1,4 @@
-// The header in front of each picture: proto/frame.md.
+// Reads binary WebSocket messages: the header in front of each picture (proto/frame.md), and the picture.
 
 const magic = 0x524d5242;
 const version = 1;
@@ -9,7 +9,7 @@ const mediaTypes = { 1: 'image/jpeg', 2: 'image/png' };
  * @typedef {object} FrameHeader
  * @property {string} media_type
  * @property {boolean} is_still @property {boolean} is_lossless @property {boolean} is_full_color
- * @property {boolean} is_shared @property {boolean} is_light
+ * @property {boolean} is_shared @property {boolean} is_coarse
  * @property {number} quality @property {number} scale_percent
  * @property {number} view @property {number} sequence @property {number} scene_revision @property {number} input_id
  * @property {number} width_px @property {number} height_px @property {number} render_us @property {number} encode_us
@@ -18,7 +18,7 @@ const mediaTypes = { 1: 'image/jpeg', 2: 'image/png' };
  */
 
 /**
- * Takes a binary message apart; throws a RangeError that says what is wrong.
+ * Header and picture of a binary message; throws a RangeError that names the wrong field.
  * @param {ArrayBuffer} message
  * @returns {{header: FrameHeader, picture: Uint8Array}}
  */
@@ -48,7 +48,7 @@ export function readFrame(message) {
       is_lossless: (flags & 2) !== 0,
       is_full_color: (flags & 4) !== 0,
       is_shared: (flags & 8) !== 0,
-      is_light: (flags & 16) !== 0,
+      is_coarse: (flags & 16) !== 0,
       quality: u8(10),
       scale_percent: u8(11),
       view: u32(12),
