@@ -1,11 +1,11 @@
-// Writes what is made from proto/*.json, and the list of report codes, into the folder named on the command line:
-//   scene.h scene.c      structs, enums, defaults of scene and view; no JSON, for core
+// Generates code and pages from proto/*.json and the list of report codes: main.mjs FOLDER, which gets
+//   scene.h scene.c      structs, enums, defaults, copy and compare of scene and view, without JSON, for core
 //   wire_gen.h wire_gen.c  field tables and message structs for server/wire
 //   problem_gen.h problem_gen.c  types of problems
 //   gl_shaders.h gl_shaders.c  the shaders of core/render/gl/shaders
-//   openapi.json openapi.c  the HTTP API, for people and for the daemon to serve
-//   wire.js              the same tables for the page
-//   reference.html       for people
+//   openapi.json openapi.c  the HTTP API, as a file and for the daemon to serve
+//   wire.js              the field tables for the page
+//   reference.html       all of it for people
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';

@@ -1,4 +1,4 @@
-// How names of the description become names in C.
+// Names, declarations and initial values in C for the fields and enums of a description.
 export const upper = (text) => text.replace(/[^a-z0-9]+/gi, '_').toUpperCase();
 export const lower = (text) => text.replace(/[^a-z0-9]+/gi, '_').toLowerCase();
 export const notice = '/* Generated from proto/; change it there. */\n';
@@ -30,7 +30,7 @@ export function declaration(field, prefix) {
 export const member = (field) => field.name + ({ color: '_rgb', patch: '_json' }[field.type] ?? '');
 export const textBytes = (field) => field.max * 4 + 1; // UTF-8
 
-/** C initializer of a field's default. objects: name -> object description. */
+/** C initializer of a field's default. objects: descriptions by name. */
 export function initializer(field, prefix, objects) {
   const value = field.default;
   switch (field.type) {

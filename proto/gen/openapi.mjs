@@ -1,4 +1,5 @@
-// openapi.json from proto/http.json, scene.json and the problem types; openapi.c carries it into the daemon.
+// openapi.json of http.json and scene.json: the HTTP API in OpenAPI 3.1; and openapi.c, the same bytes for the daemon to
+// serve.
 function schemaOf(field, objects) {
   const about = { description: field.about };
   const nullable = (schema) => (field.nullable ? { oneOf: [schema, { type: 'null' }], ...about } : { ...schema, ...about });

@@ -1,4 +1,4 @@
-// problem_gen.h and problem_gen.c: the types of problems with their words and statuses.
+// problem_gen.h and problem_gen.c of problems.json: the types of problems with their words, titles and HTTP statuses.
 import { notice, upper } from './names.mjs';
 
 const constant = (problem) => `PROBLEM_${upper(problem.word)}`;

@@ -1,8 +1,9 @@
-// The codes of load reports, from their one list: X("code", "meaning", "what to do") in core/report/report_codes.h.
+// Reads the codes of load reports from core/report/report_codes.h, X("code", "meaning", "what to do"), for the reference
+// page.
 const words = '((?:"(?:[^"\\\\]|\\\\.)*"\\s*)+)';
 const entry = new RegExp(`X\\(\\s*${words},\\s*${words},\\s*${words}\\)`, 'g');
 
-/** What a C compiler makes of "one" "string". */
+/** One string of adjacent C string literals. */
 const joined = (literals) => [...literals.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map(([, text]) => JSON.parse(`"${text}"`)).join('');
 
 export function reportCodes(header) {

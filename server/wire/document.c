@@ -1,3 +1,4 @@
+/* Scene and view: the tables of proto/scene.json given to patch.h and fields.h. */
 #include "server/wire/document.h"
 
 #include "server/wire/json_merge.h"

@@ -1,3 +1,5 @@
+/* What a struct owns by its field table, and what an id looks like: fields.h. Reading and writing have files of their
+ * own. */
 #include "server/wire/fields.h"
 
 #include <stdlib.h>

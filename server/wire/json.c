@@ -1,10 +1,11 @@
+/* Bounded parsing with cJSON, and printing: json.h. */
 #include "server/wire/json.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes of the well-formed UTF-8 character at s, of at most n; 0: none, without overlong forms, surrogates or NUL
- * (Unicode 15, table 3-7). */
+/* Length in bytes of the well-formed UTF-8 character at s, of which n bytes are there; 0 for overlong forms,
+ * surrogates, NUL and anything else that is not well-formed (Unicode 15, table 3-7). */
 static size_t utf8_character(const unsigned char *s, size_t n)
 {
     unsigned char c = s[0];
@@ -27,7 +28,8 @@ static bool is_utf8(const unsigned char *s, size_t n)
     return true;
 }
 
-/* File names are bytes, and a sentence may have been cut within a character: what is no UTF-8 becomes '?'. */
+/* Replaces each byte that is not part of a UTF-8 character by '?': file names are any bytes, and a sentence may have
+ * been cut inside a character. */
 static void make_utf8(unsigned char *s, size_t n)
 {
     for (size_t at = 0; at < n;) {
@@ -38,7 +40,7 @@ static void make_utf8(unsigned char *s, size_t n)
     }
 }
 
-/* Depth before parsing, so that the parser's own recursion is bounded by us. Brackets inside strings do not count. */
+/* Checked before parsing, because cJSON recurses into every level. Brackets inside strings do not count. */
 static bool depth_is_allowed(const char *s, size_t n)
 {
     int depth = 0;
@@ -62,7 +64,8 @@ static bool depth_is_allowed(const char *s, size_t n)
     return true;
 }
 
-/* The parser ends a text at \u0000: "a\u0000b" would pass every check as "a". */
+/* Whether a string has the escape \u0000: cJSON ends the string there, so that "a\u0000b" would pass every check as
+ * "a". */
 static bool names_nul(const char *s, size_t n)
 {
     for (size_t at = 0; at + 1 < n; at++)

@@ -1,6 +1,6 @@
 #pragma once
-/* JSON documents for the server's modules: the one door to cJSON, with bounds. Thread: any, a document has one owner.
- */
+/* JSON text to documents and back, with limits: everything from outside that is JSON is parsed here. Documents are
+ * cJSON trees with one owner. Thread: any. */
 #include <cjson/cJSON.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -9,14 +9,16 @@
 
 enum { JSON_MAX_DEPTH = 32 };
 
-/* Parses exactly n bytes: valid UTF-8, at most JSON_MAX_DEPTH deep, nothing after the value. NULL with problem "json".
- */
+/* Parses exactly n bytes: valid UTF-8 without NUL, at most JSON_MAX_DEPTH levels, nothing but white space after the
+ * value. NULL with a problem of type "json". The caller bounds n. */
 NODISCARD cJSON *json_read(const char *bytes, size_t n, struct problem *problem);
-/* Compact text, free() it. Never NULL, always UTF-8: bytes in strings that are none come out as '?'. */
+/* Compact text, for free(). Always UTF-8: bytes in strings that are not come out as '?'. Aborts when there is no
+ * memory. */
 NODISCARD char *json_write(const cJSON *json);
-/* The same; NULL when there is no memory. For documents whose size others decide. */
+/* The same, but NULL when there is no memory: for documents whose size comes from outside. */
 NODISCARD char *json_print(const cJSON *json);
 
-const char *json_text(const cJSON *object, const char *name);               /* NULL when absent or no string */
-double json_number(const cJSON *object, const char *name, double fallback); /* fallback when absent or no number */
+/* A member's value; NULL or fallback when it is absent or of another type. object may be NULL. */
+const char *json_text(const cJSON *object, const char *name);
+double json_number(const cJSON *object, const char *name, double fallback);
 bool json_flag(const cJSON *object, const char *name, bool fallback);

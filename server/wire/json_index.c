@@ -1,3 +1,4 @@
+/* A cursor in document order, then a sorted array: json_index.h. */
 #include "server/wire/json_index.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* RFC 7396 and comparing, with look-ups by json_index: json_merge.h. */
 #include "server/wire/json_merge.h"
 
 #include <float.h>

@@ -1,3 +1,4 @@
+/* Text of JSON pointers: json_pointer.h. */
 #include "server/wire/json_pointer.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* Finds the message by its "type" and gives its table to fields.h: message.h. */
 #include "server/wire/message.h"
 
 #include <string.h>

@@ -1,11 +1,13 @@
 #pragma once
-/* WebSocket text messages to structs and back (proto/messages.json). A door from outside: at most
- * WIRE_MAX_CLIENT_BYTES. */
+/* WebSocket text messages to structs and back, as proto/messages.json describes them. Messages of clients come from
+ * outside: longer than WIRE_MAX_CLIENT_BYTES they are refused before they are parsed. Thread: any. */
 #include "wire_gen.h"
 
-/* Reads a message that came from the client (or, from_client false, from the server: for tests and tools).
- * On failure message owns nothing; problem->detail says why. */
+/* Reads a message of a client; from_client false: one of the server, for tests and tools. True: message_finish is due.
+ * False: message owns nothing, and problem says why (too-large, json, validation). */
 NODISCARD bool message_read(const char *bytes, size_t n, bool from_client, struct message *message,
                             struct problem *problem);
-NODISCARD char *message_write(const struct message *message); /* free() it */
-void message_finish(struct message *message);                 /* frees what its fields own */
+/* JSON text, for free(). */
+NODISCARD char *message_write(const struct message *message);
+/* Frees what the fields own. */
+void message_finish(struct message *message);

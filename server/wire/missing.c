@@ -1,14 +1,15 @@
+/* Checks a renderer's list of missing regions: missing.h. */
 #include "server/wire/missing.h"
 
 #include <stdio.h>
 
 #include "server/wire/fields.h"
 
-enum { MAX_REASON = 240, MAX_COUNT = 1 << 20 };
+enum { MAX_REASON = 240 /* bytes */, MAX_COUNT = 1 << 20 /* regions */ };
 
-static cJSON *read_region(const cJSON *said)
+static cJSON *read_region(const cJSON *given)
 {
-    const char *id = json_text(said, "region"), *reason = json_text(said, "reason");
+    const char *id = json_text(given, "region"), *reason = json_text(given, "reason");
     if (!id || !id_is_valid(id) || !reason)
         return NULL;
     char text[MAX_REASON + 1];
@@ -21,9 +22,9 @@ static cJSON *read_region(const cJSON *said)
 
 cJSON *missing_read(const cJSON *frame)
 {
-    const cJSON *said = cJSON_GetObjectItemCaseSensitive(frame, "missing"),
-                *list = cJSON_GetObjectItemCaseSensitive(said, "regions"), *item;
-    double n = json_number(said, "n", 0);
+    const cJSON *given = cJSON_GetObjectItemCaseSensitive(frame, "missing"),
+                *list = cJSON_GetObjectItemCaseSensitive(given, "regions"), *item;
+    double n = json_number(given, "n", 0);
     int n_listed = cJSON_GetArraySize(list);
     if (!cJSON_IsArray(list) || n_listed < 1 || n_listed > MISSING_MAX_REGIONS || !(n >= n_listed && n <= MAX_COUNT))
         return NULL;

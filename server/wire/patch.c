@@ -1,3 +1,4 @@
+/* Applying, checking, completing and telling merge patches: patch.h. */
 #include "server/wire/patch.h"
 
 #include <stdlib.h>
@@ -139,16 +140,16 @@ static cJSON *difference(const cJSON *before, const cJSON *after)
     if (!cJSON_IsObject(before) || !cJSON_IsObject(after))
         return must(cJSON_Duplicate(after, true));
     cJSON *told = must(cJSON_CreateObject());
-    struct json_index olds, news;
-    json_index_init(&olds, before);
-    json_index_init(&news, after);
+    struct json_index old_members, new_members;
+    json_index_init(&old_members, before);
+    json_index_init(&new_members, after);
     for (const cJSON *item = after->child; item; item = item->next)
-        cJSON_AddItemToObject(told, item->string, difference(json_index_find(&olds, item->string), item));
+        cJSON_AddItemToObject(told, item->string, difference(json_index_find(&old_members, item->string), item));
     for (const cJSON *item = before->child; item; item = item->next)
-        if (!json_index_find(&news, item->string))
+        if (!json_index_find(&new_members, item->string))
             cJSON_AddNullToObject(told, item->string);
-    json_index_finish(&olds);
-    json_index_finish(&news);
+    json_index_finish(&old_members);
+    json_index_finish(&new_members);
     return told;
 }
 
@@ -159,14 +160,15 @@ cJSON *patch_told(const cJSON *before, const cJSON *after, const cJSON *patch)
     if (!cJSON_IsObject(before) || !cJSON_IsObject(after) || !cJSON_IsObject(patch))
         return difference(before, after);
     cJSON *told = must(cJSON_CreateObject());
-    struct json_index olds, news;
-    json_index_init(&olds, before);
-    json_index_init(&news, after);
+    struct json_index old_members, new_members;
+    json_index_init(&old_members, before);
+    json_index_init(&new_members, after);
     for (const cJSON *item = patch->child; item; item = item->next) {
-        const cJSON *old = json_index_find(&olds, item->string), *new = json_index_find(&news, item->string);
+        const cJSON *old = json_index_find(&old_members, item->string),
+                    *new = json_index_find(&new_members, item->string);
         cJSON_AddItemToObject(told, item->string, patch_told(old, new, item));
     }
-    json_index_finish(&olds);
-    json_index_finish(&news);
+    json_index_finish(&old_members);
+    json_index_finish(&new_members);
     return told;
 }

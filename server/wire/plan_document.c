@@ -1,3 +1,4 @@
+/* One function for each part of the plan document: plan_document.h. */
 #include "server/wire/plan_document.h"
 
 #include <math.h>
@@ -10,7 +11,7 @@
 static void add(cJSON *object, const char *name, cJSON *value) /* takes value */
 {
     if (!value || !cJSON_AddItemToObject(object, name, value))
-        abort(); /* small things: as mem_new */
+        abort(); /* no memory: as mem_new */
 }
 
 static void append(cJSON *array, cJSON *value) /* takes value */
@@ -88,7 +89,7 @@ static cJSON *image_object(const struct plan_image *image)
     return object;
 }
 
-/* Outer faces of the region's outermost voxels. */
+/* Box in patient space around the outer faces of the region's outermost voxels. */
 static struct box3 region_bounds(const struct region *region, const struct grid *grid)
 {
     struct box3 bounds = box3_empty();
@@ -139,7 +140,7 @@ static cJSON *region_object(const struct region_set *set, size_t index)
     return object;
 }
 
-/* 0 stands for what nobody knows. */
+/* 0 stands for a value that is not known. */
 static cJSON *known(double value)
 {
     return value > 0 ? number(value) : cJSON_CreateNull();

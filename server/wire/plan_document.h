@@ -1,28 +1,47 @@
 #pragma once
-/* A loaded plan as the API gives it: GET /api/v1/plans/{id}, the messages `welcome` and `plan`, `beamroom info --json`.
- * Only numbers and names, no voxels.
+/* A loaded plan as JSON: what GET /api/v1/plans/{id}, the messages `welcome` and `plan` and `beamroom info --json`
+ * give. Names and numbers, no voxels. Regions are in file order. Numbers that are not finite are null.
  *
- *   { id, name, note, phantom, load_ms, bounds_mm: {low, high} | null,
- *     home: {"3d": camera, axial, coronal, sagittal},                 where a view without a camera is taken from; as
- * in a view images:  [ {id, modality, unit, grid, low, high, window: {center, width}, is_inverted} ], regions: [ {id,
- * name, color: "#rrggbb", color_from_file, parent: id | null, depth, grid, label, voxels, volume_cm3, center_mm,
- * bounds_mm, touches_edge, tissue: {boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma} } ],    null: the plan
- * does not say hierarchy: "none" | "file" | "derived", doses:   [ {id, unit, per, frame_of_reference: "same" |
- * "unknown" | "differs" | null, masked,     DICOM's, beside the image's; null: not DICOM components: [ {quantity, unit,
- * per_ppm, boron_ppm, grid, low, high, reference, body_high} ]} ], boron_ppm: of a total, the boron in blood that is in
- * it; null: not known beams:   [ {id, entry_mm, target_mm, aperture_mm | null} ], tracks:  {segments, classes:
- * {"neutron-high": n, ...}}, curves:  [ {id, name, unit, per, depth_mm: [low, high], radius_mm: [low, high], reference
- * curves along a beam quantities: [ {quantity, unit, per_ppm, peak, peak_depth_mm} ]} ],               peaks are those
- * on the axis preferences: {levels: [ {percent, color} ], colors: ["#rrggbb"]},                        of the program
- * the plan comes from report:  {lines: [ {severity: "note" | "warning" | "error", code, where, sentence} ], dropped} }
+ * {
+ *   id, name, note, is_phantom,
+ *   load_ms,
+ *   bounds_mm: box | null,
+ *   home: {"3d": camera, axial, coronal, sagittal},  of views without a camera; each as the camera of a view
+ *   images: [ {id, name, modality, unit, grid, low, high, window: {center, width}, is_inverted} ],
+ *   regions: [ {
+ *     id, name, color: "#rrggbb", color_from_file, parent: id | null, depth,
+ *     grid, label, voxels, volume_cm3, center_mm: point | null, bounds_mm: box | null,  null: it has no voxels
+ *     touches_edge,
+ *     tissue: {boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma}  null: not in the plan
+ *   } ],
+ *   hierarchy: "none" | "file" | "derived",
+ *   doses: [ {
+ *     id, name, unit, per, masked,
+ *     frame_of_reference: "same" | "unknown" | "differs" | null,  DICOM: compared with the image's; null: no DICOM
+ *     components: [ {
+ *       quantity, unit, per_ppm, grid, low, high,
+ *       boron_ppm,  boron in blood that a total includes; null: not known
+ *       reference, body_high  null: not known
+ *     } ]
+ *   } ],
+ *   beams: [ {id, name, entry_mm, target_mm, aperture_mm | null, delivery: {number, radiation, machine, ...} | null} ],
+ *   tracks: {segments, classes: {"neutron-high": n, ...}},
+ *   curves: [ {  reference curves along a beam
+ *     id, name, unit, per, depth_mm: [low, high], radius_mm: [low, high],
+ *     quantities: [ {quantity, unit, per_ppm, peak, peak_depth_mm} ]  peaks on the axis
+ *   } ],
+ *   preferences: {levels: [ {percent, color} ], colors: ["#rrggbb"]},  of the program that the plan comes from
+ *   report: {lines: [ {severity: "note" | "warning" | "error", code, where, sentence} ], dropped}
+ * }
  *
+ *   point      [L, P, S] in mm
+ *   box        {low: point, high: point}
  *   grid       {size: [i, j, k], spacing_mm: [i, j, k], orientation: "LPS", lps_mm_from_ijk: 3 rows of 4, bounds_mm}
- *   low, high  smallest and largest finite value; points are [L, P, S] in mm; a region without voxels has no center or
- * bounds (null)
+ *   low, high  smallest and largest finite value
  *
- * Regions are in file order. Numbers that are not finite are null. */
+ * Thread: any; the plan is frozen. */
 #include "core/plan/plan.h"
 #include "server/wire/json.h"
 
-/* A new object, the caller's to cJSON_Delete. Never NULL. */
+/* A new object, for cJSON_Delete. Never NULL: aborts when there is no memory. */
 NODISCARD cJSON *plan_document(const struct plan *plan);

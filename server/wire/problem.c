@@ -1,3 +1,4 @@
+/* Problems to JSON and back, and from errors of core: problem.h. */
 #include "server/wire/problem.h"
 
 #include <stdio.h>

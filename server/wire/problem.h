@@ -1,5 +1,6 @@
 #pragma once
-/* RFC 9457 problem details: why a request or message was refused, for people and programs alike. */
+/* RFC 9457 problem details: why a request or message was refused, for programs (type, code, pointer) and for people (a
+ * sentence). Fixed size, so that it can be filled without memory. Thread: any. */
 #include <cjson/cJSON.h>
 
 #include "core/base/error.h"
@@ -7,24 +8,25 @@
 
 struct problem {
     enum problem_type type;
-    char code[32];      /* validation: "type", "range", "enum", "unknown-field", "required", "duplicate", "length",
-                         "pattern", "count",      "unknown-id" */
-    char pointer[160];  /* RFC 6901, "/image/window/width"; "" the whole */
+    /* Of a validation: type, range, enum, unknown-field, required, duplicate, length, pattern, count or unknown-id; ""
+     * of other types. */
+    char code[32];
+    char pointer[160];  /* RFC 6901: "/image/window/width"; "" the whole document */
     char detail[320];   /* a sentence: what was found, what was expected */
-    int retry_after_ms; /* 0: not said */
+    int retry_after_ms; /* 0: not given */
 };
 
-/* Fills problem (NULL is allowed) and returns false. */
+/* Fills problem (NULL is allowed) and returns false: `return problem_set(...);` is a whole failure. */
 bool problem_set(struct problem *problem, enum problem_type type, const char *pointer, const char *code,
                  const char *format, ...) PRINTF_LIKE(5, 6);
-/* Puts prefix before the pointer: what was checked alone is a part of something larger. */
+/* Puts prefix in front of the pointer, for a document that was checked alone and is a part of a larger one. */
 void problem_below(struct problem *problem, const char *prefix);
-/* From an error of core: not-found 404, range, format, unsupported 422, limit 429, cancelled 409, gl 503, else 500.
- * Returns false. */
+/* From an error of core. HTTP status by its code: not-found 404; range, format, unsupported 422; limit 429; cancelled
+ * 409; gl, state, memory 503; else 500. Returns false. */
 bool problem_from_error(struct problem *problem, const struct error *err);
-int problem_status(enum problem_type type);       /* HTTP status */
-const char *problem_word(enum problem_type type); /* "validation" */
+int problem_status(enum problem_type type);       /* HTTP status; 500 for an unknown type */
+const char *problem_word(enum problem_type type); /* "validation"; "internal" for an unknown type */
 /* {type: "/problems/validation", title, status, detail, pointer?, code?, retry_after_ms?} */
 NODISCARD cJSON *problem_to_json(const struct problem *problem);
-/* From such an object, untrusted: false when it is none, and problem is then PROBLEM_INTERNAL. */
+/* From such an object, which is not trusted. False when it is malformed: problem is then of type internal. */
 bool problem_from_json(const cJSON *json, struct problem *problem);

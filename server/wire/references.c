@@ -1,3 +1,4 @@
+/* One walk over field table and document for ids that name something of the plan: references.h. */
 #include "server/wire/references.h"
 
 #include <assert.h>

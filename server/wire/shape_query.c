@@ -1,3 +1,4 @@
+/* Checks the parameters of the surface call: shape_query.h. */
 #include "server/wire/shape_query.h"
 
 #include <stdio.h>
@@ -10,8 +11,8 @@ const char *const shape_query_names[] = { "representation", "algorithm", "normal
                                           "inner_boundary", "order",     "sampling", "bins",
                                           "format",         "frames",    NULL };
 
-/* Words that the scene does not have. Those it has stand in the order of core's enums; the tests hold the two together.
- */
+/* Words of parameters that are not fields of the scene. The scene's own words are in the order of core's enums;
+ * tests/unit/test_shape_query.c checks that. */
 static const struct field_words flags = { (const char *const[]){ "false", "true" }, 2 },
                                 formats = { (const char *const[]){ "json", "stl", "ply", "glb" }, 4 };
 
@@ -23,7 +24,7 @@ static bool refuse(struct problem *problem, const char *name, const char *found,
                        expected);
 }
 
-/* The place of a word in its list; absent: start. */
+/* Index of a parameter's word in its list; start when the parameter is absent. */
 static bool read_word(const cJSON *json, const char *name, const struct field_words *words, int start, int *at,
                       struct problem *problem)
 {
