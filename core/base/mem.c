@@ -31,6 +31,13 @@ void *mem_new(size_t size)
     return p;
 }
 
+static _Thread_local size_t n_refused;
+
+size_t mem_n_refused(void)
+{
+    return n_refused;
+}
+
 void *mem_counted(size_t size)
 {
     void *p = malloc(size);
@@ -39,8 +46,10 @@ void *mem_counted(size_t size)
         free(kept);
         p = malloc(size);
     }
-    if (!p)
+    if (!p) {
+        n_refused++;
         error_set(NULL, ERROR_MEMORY, "no memory for %zu bytes", size);
+    }
     return p;
 }
 

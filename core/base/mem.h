@@ -26,6 +26,7 @@ NODISCARD void *mem_large_array(size_t n, size_t size, uint64_t limit_bytes, str
  * request is first met from the reserve, as by mem_new. */
 enum { MEM_COUNTED_SMALL_BYTES = 4096 };
 NODISCARD void *mem_counted(size_t size);
+size_t mem_n_refused(void); /* how often mem_counted gave nothing, on this thread */
 
 /* Copy of a string; aborts when there is no memory. */
 NODISCARD char *mem_copy_text(const char *text);

@@ -93,10 +93,18 @@ void call_add_header(struct call *call, const char *name, const char *value)
     call->headers[call->n_headers++] = (struct call_pair){ mem_copy_text(name), mem_copy_text(value) };
 }
 
+static const char no_memory[] = "{\"type\":\"/problems/internal\",\"title\":\"A mistake in the server\",\"status\":500,"
+                                "\"detail\":\"no memory for the answer\"}";
+
 void call_answer_json(struct call *call, int status, cJSON *json)
 {
-    char *text = json_write(json);
+    char *text = json_print(json);
     cJSON_Delete(json);
+    if (!text) {
+        call_answer_bytes(call, 500, "application/problem+json", (uint8_t *)mem_copy_text(no_memory),
+                          sizeof no_memory - 1);
+        return;
+    }
     call->bytes = (uint8_t *)text;
     call->n_bytes = strlen(text);
     finish(call, status, "application/json");
@@ -106,8 +114,10 @@ void call_answer_problem(struct call *call, const struct problem *problem)
 {
     cJSON *json = problem_to_json(problem);
     cJSON_AddStringToObject(json, "instance", call->path);
-    char *text = json_write(json);
+    char *text = json_print(json);
     cJSON_Delete(json);
+    if (!text)
+        text = mem_copy_text(no_memory);
     if (problem->retry_after_ms > 0) {
         char seconds[16];
         (void)snprintf(seconds, sizeof seconds, "%d", (problem->retry_after_ms + 999) / 1000);

@@ -257,6 +257,8 @@ static void take_loaded(struct session *session, struct note *note)
     scene_for_plan(session->plan, &scene);
     session->default_scene = scene_write(&scene);
     scene_finish(&scene);
+    if (!session->default_scene)
+        say_failed(session, &(struct error){ ERROR_MEMORY, "no memory for the scene of the plan" });
 }
 
 static void take_note(struct session *session, struct note *note)

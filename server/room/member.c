@@ -112,8 +112,18 @@ int64_t members_forget(struct room *room)
     return again_us;
 }
 
+void members_close_lost(struct room *room)
+{
+    for (int i = 0; i < room->n_members; i++) /* saying who is there may lose others */
+        if (room->members[i]->is_lost) {
+            member_disconnected(room, room->members[i]);
+            i = -1;
+        }
+}
+
 void member_disconnected(struct room *room, struct member *member)
 {
+    member->is_lost = false;
     close_views(room, member);
     member->away_us = room->now_us;
     send_members(room);
@@ -167,6 +177,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
             member = room->members[i];
     if (member) {
         void *old = member->connection; /* half-open: the page notices a lost connection before the server does */
+        member->is_lost = false;
         close_views(room, member);
         if (old)
             send_bye(room, old, -1, replaced);
@@ -219,7 +230,9 @@ static void read_size(const cJSON *document, int size_px[2])
 
 static void write_size(cJSON *document, const int size_px[2])
 {
-    cJSON_ReplaceItemInObjectCaseSensitive(document, "size_px", cJSON_CreateIntArray(size_px, 2));
+    cJSON *size = cJSON_CreateIntArray(size_px, 2);
+    if (!cJSON_ReplaceItemInObjectCaseSensitive(document, "size_px", size)) /* no memory: the size stays as it was */
+        cJSON_Delete(size);
 }
 
 /* The shared stream of the document's kind. Takes document, and makes the stream from it when there is none yet. */
@@ -355,6 +368,8 @@ bool member_view_follow(struct room *room, struct member *member, const struct m
     } else {
         cJSON *document = cJSON_Duplicate(view->stream->view, true);
         struct stream *stream;
+        if (!document)
+            return json_no_memory(problem, "a view");
         if (follow->follow) {
             stream = shared_stream(room, member, document);
         } else {

@@ -10,6 +10,8 @@ void member_disconnected(struct room *room, struct member *member);
 /* Drops members that have been away for ROOM_MEMBER_KEPT_S. Returns when the next one is due. */
 int64_t members_forget(struct room *room);
 void members_free(struct room *room);
+/* Closes the views of members whose connection was closed for want of memory. */
+void members_close_lost(struct room *room);
 
 /* Handlers; each returns false with a problem when it applied nothing. */
 bool member_view_open(struct room *room, struct member *member, const struct message *message, struct problem *problem);

@@ -34,7 +34,7 @@ cJSON *room_members(const struct room *room)
         cJSON_AddStringToObject(item, "name", is_blank(member->name) ? member->id : member->name);
         cJSON_AddBoolToObject(item, "connected", member->connection != NULL);
         cJSON_AddBoolToObject(item, "following", member_follows(member));
-        cJSON_AddItemToArray(list, item);
+        json_append(list, item);
     }
     return list;
 }

@@ -70,15 +70,27 @@ const char *room_plan_id(const struct room *room)
 
 /* ---- the renderer ----------------------------------------------------------------------------------------------- */
 
-/* Keeps the scene over a restart, without ids that the plan does not have any more: it may have changed on disk. */
-static void renew_scene(struct room *room)
+/* Takes over copies of the plan's documents. Keeps the scene over a restart, without ids that the plan does not have
+ * any more: it may have changed on disk. False: no memory, and all is as it was. */
+static bool take_plan(struct room *room, const cJSON *plan_document, const cJSON *default_scene)
 {
-    cJSON *scene = room->scene ? scene_document_renew(room->plan, room->defaults, room->scene)
-                               : cJSON_Duplicate(room->defaults, true);
+    cJSON *plan = cJSON_Duplicate(plan_document, true), *defaults = cJSON_Duplicate(default_scene, true);
+    cJSON *scene = NULL;
+    if (plan && defaults)
+        scene = room->scene ? scene_document_renew(plan, defaults, room->scene) : cJSON_Duplicate(default_scene, true);
+    if (!scene) {
+        cJSON_Delete(plan);
+        cJSON_Delete(defaults);
+        return false;
+    }
+    forget_plan(room);
+    room->plan = plan;
+    room->defaults = defaults;
     if (!room->scene || !json_equal(scene, room->scene))
         room->revision++;
     cJSON_Delete(room->scene);
     room->scene = scene;
+    return true;
 }
 
 static void set_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent,
@@ -94,15 +106,17 @@ void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
                      bool is_software, int64_t now_us)
 {
     room->now_us = now_us;
-    forget_plan(room);
-    room->plan = cJSON_Duplicate(plan_document, true);
-    room->defaults = cJSON_Duplicate(default_scene, true);
+    if (!take_plan(room, plan_document, default_scene)) {
+        struct problem problem = { 0 };
+        (void)json_no_memory(&problem, "the plan in this room");
+        room_renderer_state(room, WIRE_RENDERER_STATE_FAILED, NULL, 0, &problem);
+        return;
+    }
     (void)snprintf(room->gl, sizeof room->gl, "%s", gl ? gl : "");
     if (room->is_software != is_software) {
         room->is_software = is_software;
         streams_restart_pace(room);
     }
-    renew_scene(room);
     set_state(room, WIRE_RENDERER_STATE_READY, NULL, 0, NULL);
     streams_forget_requests(room);
     streams_changed(room, true);
@@ -144,6 +158,10 @@ static bool apply_patch(struct room *room, const cJSON *patch, struct member *by
         return false;
     bool has_changed = !json_equal(scene, room->scene);
     cJSON *told = patch_told(room->scene, scene, patch);
+    if (!told) {
+        cJSON_Delete(scene);
+        return json_no_memory(problem, "a scene");
+    }
     cJSON_Delete(room->scene);
     room->scene = scene;
     if (has_changed) {
@@ -200,8 +218,9 @@ static void whole_number(const cJSON *json, const char *name, double most, int64
     *value = number >= 0 && number <= most ? (int64_t)number : 0;
 }
 
-/* Answers with the problem; type, view and input of the refused text are repeated as far as it can be parsed. */
-static void refuse(struct room *room, void *connection, const char *text, size_t n, const struct problem *problem)
+/* Answers with the problem; type, view and input of the refused text are repeated as far as it can be parsed. False:
+ * there was no memory for the answer, and the connection was closed. */
+static bool refuse(struct room *room, void *connection, const char *text, size_t n, const struct problem *problem)
 {
     char to[41] = "";
     int64_t view = 0, input = 0;
@@ -213,7 +232,7 @@ static void refuse(struct room *room, void *connection, const char *text, size_t
     whole_number(json, "view", ROOM_MAX_VIEWS, &view);
     whole_number(json, "input", UINT32_MAX, &input);
     cJSON_Delete(json);
-    send_problem(room, connection, to, view, input, problem);
+    return send_problem(room, connection, to, view, input, problem);
 }
 
 void room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us)
@@ -223,23 +242,24 @@ void room_text_came(struct room *room, void *connection, const char *text, size_
     room->now_us = now_us;
     struct member *member = member_of_connection(room, connection);
     if (!message_read(text, n, true, &message, &problem)) {
-        refuse(room, connection, text, n, &problem);
-        if (!member)
+        if (refuse(room, connection, text, n, &problem) && !member)
             send_bye(room, connection, -1, hello_first);
+        members_close_lost(room);
         return;
     }
     if (!member && message.type == MESSAGE_HELLO) {
         (void)member_hello(room, connection, &message.hello);
     } else if (!member) {
         problem_set(&problem, PROBLEM_VALIDATION, "/type", "required", "%s", hello_first);
-        refuse(room, connection, text, n, &problem);
-        send_bye(room, connection, -1, hello_first);
+        if (refuse(room, connection, text, n, &problem))
+            send_bye(room, connection, -1, hello_first);
     } else {
         for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; i++)
             if (handlers[i].type == message.type && !handlers[i].handle(room, member, &message, &problem))
-                refuse(room, connection, text, n, &problem);
+                (void)refuse(room, connection, text, n, &problem);
     }
     message_finish(&message);
+    members_close_lost(room);
     (void)streams_request_due(room);
 }
 
@@ -259,6 +279,7 @@ bool room_has_member(const struct room *room, void *connection)
 int64_t room_tick(struct room *room, int64_t now_us)
 {
     room->now_us = now_us;
+    members_close_lost(room);
     int64_t members_us = members_forget(room), streams_us = streams_request_due(room);
     return members_us < streams_us ? members_us : streams_us;
 }
@@ -299,7 +320,7 @@ cJSON *room_document(const struct room *room)
     cJSON_AddNumberToObject(json, "revision", room->revision);
     cJSON_AddStringToObject(json, "renderer", wire_renderer_state_words.words[room->state]);
     cJSON_AddStringToObject(json, "created_at", created);
-    cJSON_AddItemToObject(json, "members", room_members(room));
+    json_add(json, "members", room_members(room));
     return json;
 }
 

@@ -70,7 +70,8 @@ struct member_view {       /* a pane of a member; its number is its index + 1 */
 struct member {
     char id[64], name[161], secret[2 * SECRET_BYTES + 1];
     void *connection; /* NULL: away */
-    int64_t away_us;  /* when the connection was lost */
+    bool is_lost; /* a message to it found no memory and its connection was closed; its views are still to be closed */
+    int64_t away_us; /* when the connection was lost */
     struct member_view views[ROOM_MAX_VIEWS];
 };
 

@@ -14,17 +14,36 @@ static void copy_text(char *to, size_t size, const char *from)
     (void)snprintf(to, size, "%s", from ? from : "");
 }
 
-void send_to_connection(struct room *room, void *connection, const struct message *message)
+/* text NULL: there was no memory for it. A page that misses a message would show a stale state, so its
+ * connection is closed: it connects again and is sent everything. */
+static bool send_text(struct room *room, void *connection, const char *text)
+{
+    struct member *member = member_of_connection(room, connection);
+    if (text) {
+        room->callbacks.send_text(room->callbacks.context, connection, text);
+        return true;
+    }
+    if (member) {
+        member->connection = NULL;
+        member->is_lost = true;
+        member->away_us = room->now_us;
+    }
+    room->callbacks.close(room->callbacks.context, connection);
+    return false;
+}
+
+bool send_to_connection(struct room *room, void *connection, const struct message *message)
 {
     char *text = message_write(message);
-    room->callbacks.send_text(room->callbacks.context, connection, text);
+    bool is_sent = send_text(room, connection, text);
     free(text);
+    return is_sent;
 }
 
 void send_to_member(struct room *room, struct member *member, const struct message *message)
 {
     if (member->connection)
-        send_to_connection(room, member->connection, message);
+        (void)send_to_connection(room, member->connection, message);
 }
 
 void send_to_all(struct room *room, const struct message *message)
@@ -32,7 +51,7 @@ void send_to_all(struct room *room, const struct message *message)
     char *text = message_write(message); /* written once for all */
     for (int i = 0; i < room->n_members; i++)
         if (room->members[i]->connection)
-            room->callbacks.send_text(room->callbacks.context, room->members[i]->connection, text);
+            (void)send_text(room, room->members[i]->connection, text);
     free(text);
 }
 
@@ -96,7 +115,7 @@ void send_scene_patch(struct room *room, cJSON *patch, struct member *by, uint32
     for (int i = 0; i < room->n_members && to_all; i++) {
         struct member *member = room->members[i];
         if (member != by && member->connection)
-            room->callbacks.send_text(room->callbacks.context, member->connection, text);
+            (void)send_text(room, member->connection, text);
     }
     free(text);
     if (by) { /* the input number is only for its sender */
@@ -117,7 +136,7 @@ void send_view(struct room *room, struct member *member, int index, const char *
     send_to_member(room, member, &message);
 }
 
-void send_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,
+bool send_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,
                   const struct problem *problem)
 {
     struct message message = { .type = MESSAGE_PROBLEM };
@@ -125,9 +144,10 @@ void send_problem(struct room *room, void *connection, const char *to, int64_t v
     message.problem.view = view;
     message.problem.input = input;
     message.problem.problem = problem_to_json(problem);
-    send_to_connection(room, connection, &message);
+    bool is_sent = send_to_connection(room, connection, &message);
     message_finish(&message);
     room->counters.messages_refused++;
+    return is_sent;
 }
 
 void send_missing(struct room *room, struct member *member, int index, const cJSON *missing)
@@ -146,6 +166,6 @@ void send_bye(struct room *room, void *connection, int retry_ms, const char *rea
 {
     struct message message = { .type = MESSAGE_BYE, .bye = { .has_retry_ms = retry_ms >= 0, .retry_ms = retry_ms } };
     copy_text(message.bye.reason, sizeof message.bye.reason, reason);
-    send_to_connection(room, connection, &message);
-    room->callbacks.close(room->callbacks.context, connection);
+    if (send_to_connection(room, connection, &message))
+        room->callbacks.close(room->callbacks.context, connection);
 }

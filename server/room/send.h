@@ -5,7 +5,8 @@
 #include "server/wire/message.h"
 
 void send_to_member(struct room *room, struct member *member, const struct message *message);
-void send_to_connection(struct room *room, void *connection, const struct message *message);
+/* False: there was no memory for it, and the connection was closed. */
+bool send_to_connection(struct room *room, void *connection, const struct message *message);
 void send_to_all(struct room *room, const struct message *message);
 
 void send_welcome(struct room *room, struct member *member);
@@ -18,8 +19,8 @@ void send_scene_patch(struct room *room, cJSON *patch, struct member *by, uint32
 /* The document of one of the member's views; by: id of the member who moved it, "" for none. */
 void send_view(struct room *room, struct member *member, int index, const char *by);
 /* to: type of the refused message, "" when it was none; view, input: of that message, 0 when it had none. Counts as a
- * refused message. */
-void send_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,
+ * refused message. False as send_to_connection. */
+bool send_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,
                   const struct problem *problem);
 /* What the pictures of this view leave out; missing NULL: nothing. */
 void send_missing(struct room *room, struct member *member, int index, const cJSON *missing);

@@ -150,7 +150,8 @@ static void report_removed_override(struct room *room, const struct stream *stre
             if (member->views[v].stream != stream || !member->connection)
                 continue;
             send_view(room, member, v, stream->mover);
-            send_problem(room, member->connection, message_descriptions[MESSAGE_VIEW_OPEN].name, v + 1, 0, problem);
+            (void)send_problem(room, member->connection, message_descriptions[MESSAGE_VIEW_OPEN].name, v + 1, 0,
+                               problem);
         }
 }
 
@@ -158,8 +159,8 @@ void streams_remove_bad_overrides(struct room *room)
 {
     for (struct stream *stream = room->streams; stream; stream = stream->next) {
         struct problem problem = { 0 };
-        if (override_is_valid(room, stream->view, &problem))
-            continue;
+        if (override_is_valid(room, stream->view, &problem) || problem.type == PROBLEM_INTERNAL)
+            continue; /* without memory nothing is known of it; a request that finds it bad says so */
         cJSON_DeleteItemFromObjectCaseSensitive(stream->view, "override");
         stream->scene_is_stale = true;
         stream_changed(room, stream);
@@ -204,19 +205,23 @@ static bool has_credit(const struct room *room, const struct stream *stream)
     return false;
 }
 
-static void make_scene(struct room *room, struct stream *stream)
+/* False: no memory for the scene with the view's override, and without that nothing is drawn. */
+static bool make_scene(struct room *room, struct stream *stream)
 {
     if (!stream->scene_is_stale)
-        return;
-    cJSON_Delete(stream->scene);
-    stream->scene = NULL;
-    stream->scene_is_stale = false;
-    if (!has_override(stream->view))
-        return;
+        return true;
     struct problem problem = { 0 };
-    stream->scene = scene_document_for_view(room->plan, room->defaults, room->scene, stream->view, &problem);
-    if (!stream->scene) /* a bug: overrides are checked when they are set and when a plan is loaded */
+    cJSON *scene = has_override(stream->view)
+                       ? scene_document_for_view(room->plan, room->defaults, room->scene, stream->view, &problem)
+                       : NULL;
+    if (problem.type == PROBLEM_INTERNAL)
+        return false;
+    if (problem.type != PROBLEM_NONE) /* a bug: overrides are checked when they are set and when a plan is loaded */
         log_error("room %s: a view's override does not apply: %s", room->id, problem.detail);
+    cJSON_Delete(stream->scene);
+    stream->scene = scene;
+    stream->scene_is_stale = false;
+    return true;
 }
 
 /* Id of the member whose own view it is; NULL: shared, or without a viewer. */
@@ -229,9 +234,13 @@ static const char *owner_of(const struct room *room, const struct stream *stream
     return NULL;
 }
 
-static void request_picture(struct room *room, struct stream *stream, bool is_still)
+/* False: not now, but at retry_us. */
+static bool request_picture(struct room *room, struct stream *stream, bool is_still)
 {
-    make_scene(room, stream);
+    if (!make_scene(room, stream)) {
+        stream->retry_us = room->now_us + RETRY_US;
+        return false;
+    }
     struct request *request = stream->requests[0].number ? &stream->requests[1] : &stream->requests[0];
     *request = (struct request){ .number = ++room->n_requests,
                                  .version = stream->version,
@@ -256,6 +265,7 @@ static void request_picture(struct room *room, struct stream *stream, bool is_st
                                   .member = owner_of(room, stream) };
     room->counters.pictures_requested++;
     room->callbacks.render(room->callbacks.context, room, &render);
+    return true;
 }
 
 /* Requests the pictures of one stream that are due; returns when to call again, INT64_MAX when only credit or a picture
@@ -273,7 +283,8 @@ static int64_t request_due(struct room *room, struct stream *stream)
         if (n_outstanding(stream) >= 2)
             return INT64_MAX;
         if (wants_still && room->now_us >= still_due_us && !still_is_outstanding(stream)) {
-            request_picture(room, stream, true);
+            if (!request_picture(room, stream, true))
+                return stream->retry_us;
             continue;
         }
         if (wants_moving) {
@@ -283,7 +294,8 @@ static int64_t request_due(struct room *room, struct stream *stream)
             int64_t worth_us = other->requested_us + (int64_t)stream->pace.render_us;
             if (other->number && !other->is_still && room->now_us < worth_us)
                 return worth_us;
-            request_picture(room, stream, false);
+            if (!request_picture(room, stream, false))
+                return stream->retry_us;
             continue;
         }
         return room->now_us < still_due_us ? still_due_us : INT64_MAX;
@@ -463,7 +475,7 @@ static bool is_refused(const struct stream *stream)
 void stream_send_refusal(struct room *room, struct member *member, const struct member_view *view)
 {
     if (is_refused(view->stream) && member->connection)
-        send_problem(room, member->connection, "", view - member->views + 1, 0, &view->stream->refusal);
+        (void)send_problem(room, member->connection, "", view - member->views + 1, 0, &view->stream->refusal);
 }
 
 /* True for failures that a second try would repeat: an invalid field, a picture too large for the memory, a fixed
@@ -486,7 +498,7 @@ static void refuse_version(struct room *room, struct stream *stream, uint64_t ve
     for (int m = 0; m < room->n_members; m++)
         for (int v = 0; v < ROOM_MAX_VIEWS; v++)
             if (room->members[m]->views[v].stream == stream && room->members[m]->connection)
-                send_problem(room, room->members[m]->connection, "", v + 1, 0, problem);
+                (void)send_problem(room, room->members[m]->connection, "", v + 1, 0, problem);
 }
 
 void room_picture_failed(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us)

@@ -19,8 +19,12 @@ cJSON *scene_document_for_view(const cJSON *plan, const cJSON *defaults, const c
                                struct problem *problem)
 {
     const cJSON *override = cJSON_GetObjectItemCaseSensitive(view, "override");
-    if (!cJSON_IsObject(override))
-        return cJSON_Duplicate(scene, true);
+    if (!cJSON_IsObject(override)) {
+        cJSON *copy = cJSON_Duplicate(scene, true);
+        if (!copy)
+            json_no_memory(problem, "a scene");
+        return copy;
+    }
     cJSON *shown = patch_apply(&scene_object, plan, defaults, scene, override, problem);
     if (!shown && problem)
         problem_below(problem, "/override");
@@ -35,12 +39,14 @@ cJSON *view_document_patch(const cJSON *current, const cJSON *patch, struct prob
     }
     cJSON *merged = json_merge(current, patch);
     struct view view;
-    bool ok = fields_read(&view_object, merged, NULL, &view, problem);
+    bool ok = merged ? fields_read(&view_object, merged, NULL, &view, problem) : json_no_memory(problem, "a view");
     cJSON_Delete(merged);
     if (!ok)
         return NULL;
     cJSON *complete = fields_write(&view_object, &view);
     view_finish(&view);
+    if (!complete)
+        json_no_memory(problem, "a view");
     return complete;
 }
 

@@ -69,9 +69,9 @@ struct field_object {
  * On failure out owns nothing. skip, if given, names one member that is not a field ("type" of a message). */
 NODISCARD bool fields_read(const struct field_object *object, const cJSON *json, const char *skip, void *out,
                            struct problem *problem);
-/* The whole document, every field, as a new object. */
+/* The whole document, every field, as a new object. NULL: no memory. */
 NODISCARD cJSON *fields_write(const struct field_object *object, const void *in);
-/* The default of one field as new JSON; NULL: the field is left out. */
+/* The default of one field as new JSON; NULL: the field is left out, or there is no memory. */
 NODISCARD cJSON *field_write_default(const struct field_object *object, const struct field *field);
 /* Frees what in owns: lists, maps, patches, json. */
 void fields_finish(const struct field_object *object, void *in);

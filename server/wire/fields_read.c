@@ -169,6 +169,15 @@ static void set_entries(const struct field *field, char *base, char *entries, si
     memcpy(base + field->count_offset, &n, sizeof n);
 }
 
+static char *new_entries(const struct field *field, size_t n, struct problem *problem)
+{
+    struct error err = { 0 };
+    char *entries = mem_array(n ? n : 1, field->entry_size, UINT32_MAX, &err);
+    if (!entries)
+        problem_from_error(problem, &err);
+    return entries;
+}
+
 static bool read_list(const struct field *field, const cJSON *json, const struct json_pointer *where, char *base,
                       struct problem *problem)
 {
@@ -177,7 +186,9 @@ static bool read_list(const struct field *field, const cJSON *json, const struct
     size_t n = (size_t)cJSON_GetArraySize(json), at = 0;
     if (n > field->max_items)
         return refuse(where, "count", problem, "has %zu entries, at most %zu are allowed", n, field->max_items);
-    char *entries = mem_new((n ? n : 1) * field->entry_size);
+    char *entries = new_entries(field, n, problem);
+    if (!entries)
+        return false;
     for (const cJSON *item = json->child; item; item = item->next, at++) {
         struct json_pointer element = { where, NULL, at };
         if (!read_object(field->object, item, NULL, &element, entries + at * field->entry_size, problem)) {
@@ -201,8 +212,10 @@ static bool may_have_equal_names(const cJSON *json, size_t n)
     bool has_some = false;
     if (n <= 8)
         return true;
-    const cJSON **sorted = mem_new(n * sizeof *sorted);
+    const cJSON **sorted = mem_array(n, sizeof *sorted, UINT32_MAX, NULL);
     size_t at = 0;
+    if (!sorted)
+        return true;
     for (const cJSON *item = json->child; item; item = item->next)
         sorted[at++] = item;
     qsort(sorted, n, sizeof *sorted, compare_names);
@@ -229,7 +242,9 @@ static bool read_map(const struct field *field, const cJSON *json, const struct 
     size_t n = (size_t)cJSON_GetArraySize(json), at = 0;
     if (n > field->max_items)
         return refuse(where, "count", problem, "has %zu entries, at most %zu are allowed", n, field->max_items);
-    char *entries = mem_new((n ? n : 1) * field->entry_size);
+    char *entries = new_entries(field, n, problem);
+    if (!entries)
+        return false;
     bool may_repeat = may_have_equal_names(json, n), ok = true;
     for (const cJSON *item = json->child; item; item = item->next, at++) {
         struct json_pointer member = { where, item->string, 0 };
@@ -299,16 +314,16 @@ static bool read_field(const struct field *field, const cJSON *json, const struc
     case FIELD_PATCH: {
         if (!cJSON_IsObject(json))
             return wrong_type(where, "an object", problem);
-        char *text = json_write(json);
+        char *text = json_print(json);
         memcpy(at, &text, sizeof text);
-        return true;
+        return text || json_no_memory(problem, "a patch");
     }
     case FIELD_JSON: {
         if (!cJSON_IsObject(json) && !cJSON_IsArray(json))
             return wrong_type(where, "an object", problem);
         cJSON *copy = cJSON_Duplicate(json, true);
         memcpy(at, &copy, sizeof copy);
-        return copy != NULL;
+        return copy || json_no_memory(problem, "a part of a document");
     }
     }
     return false;

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/mem.h"
 #include "core/math/vec.h"
 #include "server/wire/fields.h"
 
@@ -9,6 +10,9 @@ static cJSON *write_numbers(int n, const double *values)
 {
     return cJSON_CreateDoubleArray(values, n);
 }
+
+/* Without memory for a part, that part is missing. */
+static cJSON *write_object(const struct field_object *object, const void *in);
 
 static cJSON *write_list(const struct field *field, const char *base)
 {
@@ -18,7 +22,7 @@ static cJSON *write_list(const struct field *field, const char *base)
     memcpy(&entries, base + field->offset, sizeof entries);
     cJSON *list = cJSON_CreateArray();
     for (size_t i = 0; i < n; i++)
-        cJSON_AddItemToArray(list, fields_write(field->object, entries + i * field->entry_size + field->value_offset));
+        json_append(list, write_object(field->object, entries + i * field->entry_size + field->value_offset));
     return list;
 }
 
@@ -31,7 +35,7 @@ static cJSON *write_map(const struct field *field, const char *base)
     cJSON *map = cJSON_CreateObject();
     for (size_t i = 0; i < n; i++) {
         const char *entry = entries + i * field->entry_size;
-        cJSON_AddItemToObject(map, entry, fields_write(field->object, entry + field->value_offset));
+        json_add(map, entry, write_object(field->object, entry + field->value_offset));
     }
     return map;
 }
@@ -86,7 +90,7 @@ static cJSON *write_field(const struct field *field, const char *base)
         memcpy(size, at, sizeof size);
         return write_numbers(2, (double[]){ size[0], size[1] });
     }
-    case FIELD_OBJECT: return fields_write(field->object, at);
+    case FIELD_OBJECT: return write_object(field->object, at);
     case FIELD_LIST: return write_list(field, base);
     case FIELD_MAP: return write_map(field, base);
     case FIELD_PATCH: {
@@ -103,15 +107,22 @@ static cJSON *write_field(const struct field *field, const char *base)
     return NULL;
 }
 
-cJSON *fields_write(const struct field_object *object, const void *in)
+static cJSON *write_object(const struct field_object *object, const void *in)
 {
     cJSON *json = cJSON_CreateObject();
-    for (size_t i = 0; i < object->n_fields; i++) {
-        cJSON *item = write_field(&object->fields[i], in);
-        if (item)
-            cJSON_AddItemToObject(json, object->fields[i].name, item);
-    }
+    for (size_t i = 0; i < object->n_fields; i++)
+        json_add(json, object->fields[i].name, write_field(&object->fields[i], in));
     return json;
+}
+
+cJSON *fields_write(const struct field_object *object, const void *in)
+{
+    size_t before = mem_n_refused();
+    cJSON *json = write_object(object, in);
+    if (mem_n_refused() == before)
+        return json;
+    cJSON_Delete(json);
+    return NULL;
 }
 
 cJSON *field_write_default(const struct field_object *object, const struct field *field)

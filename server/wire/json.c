@@ -4,6 +4,35 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/mem.h"
+
+/* mem_n_refused() when json_print or json_no_memory was last called. */
+static _Thread_local size_t n_told;
+
+/* Before main: no other thread uses cJSON yet. */
+__attribute__((constructor)) static void count_failures(void)
+{
+    cJSON_InitHooks(&(cJSON_Hooks){ mem_counted, free });
+}
+
+bool json_no_memory(struct problem *problem, const char *what)
+{
+    n_told = mem_n_refused();
+    return problem_set(problem, PROBLEM_INTERNAL, "", "", "no memory for %s", what);
+}
+
+void json_add(cJSON *object, const char *name, cJSON *value)
+{
+    if (value && !cJSON_AddItemToObject(object, name, value))
+        cJSON_Delete(value);
+}
+
+void json_append(cJSON *array, cJSON *value)
+{
+    if (value && !cJSON_AddItemToArray(array, value))
+        cJSON_Delete(value);
+}
+
 /* Length in bytes of the well-formed UTF-8 character at s, of which n bytes are there; 0 for overlong forms,
  * surrogates, NUL and anything else that is not well-formed (Unicode 15, table 3-7). */
 static size_t utf8_character(const unsigned char *s, size_t n)
@@ -96,7 +125,12 @@ cJSON *json_read(const char *bytes, size_t n, struct problem *problem)
         return NULL;
     }
     const char *end = NULL;
+    size_t before = mem_n_refused();
     cJSON *json = cJSON_ParseWithLengthOpts(bytes, n, &end, false);
+    if (!json && mem_n_refused() != before) {
+        json_no_memory(problem, "the JSON that was sent");
+        return NULL;
+    }
     if (!json) {
         size_t at = end && end >= bytes ? (size_t)(end - bytes) : 0;
         problem_set(problem, PROBLEM_JSON, "", "", "not JSON near byte %zu of %zu", at, n);
@@ -115,6 +149,11 @@ cJSON *json_read(const char *bytes, size_t n, struct problem *problem)
 char *json_print(const cJSON *json)
 {
     char *text = cJSON_PrintUnformatted(json);
+    if (mem_n_refused() != n_told) {
+        n_told = mem_n_refused();
+        free(text);
+        return NULL;
+    }
     if (text)
         make_utf8((unsigned char *)text, strlen(text));
     return text;

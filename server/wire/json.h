@@ -10,13 +10,19 @@
 enum { JSON_MAX_DEPTH = 32 };
 
 /* Parses exactly n bytes: valid UTF-8 without NUL, at most JSON_MAX_DEPTH levels, nothing but white space after the
- * value. NULL with a problem of type "json". The caller bounds n. */
+ * value. NULL with a problem of type "json", or "internal" when there is no memory. The caller bounds n. */
 NODISCARD cJSON *json_read(const char *bytes, size_t n, struct problem *problem);
-/* Compact text, for free(). Always UTF-8: bytes in strings that are not come out as '?'. Aborts when there is no
- * memory. */
-NODISCARD char *json_write(const cJSON *json);
-/* The same, but NULL when there is no memory: for documents whose size comes from outside. */
+/* Compact text, for free(). Always UTF-8: bytes in strings that are not come out as '?'. NULL when there is no memory
+ * for it, or when on this thread, since the last json_print or json_no_memory, there was none for a part of some
+ * document: so a caller that adds part to part need not check each, and no half document is sent. */
 NODISCARD char *json_print(const cJSON *json);
+/* The same for a program that can do nothing else: aborts where there is no memory. */
+NODISCARD char *json_write(const cJSON *json);
+/* Fills problem with what is not there for want of memory: PROBLEM_INTERNAL. Returns false. */
+bool json_no_memory(struct problem *problem, const char *what);
+/* As cJSON_AddItemToObject and cJSON_AddItemToArray, but value (taken) is freed where it cannot be added. */
+void json_add(cJSON *object, const char *name, cJSON *value);
+void json_append(cJSON *array, cJSON *value);
 
 /* A member's value; NULL or fallback when it is absent or of another type. object may be NULL. */
 const char *json_text(const cJSON *object, const char *name);

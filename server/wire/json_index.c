@@ -36,16 +36,19 @@ static int compare(const void *a, const void *b)
     return strcmp(((const struct json_index_entry *)a)->name, ((const struct json_index_entry *)b)->name);
 }
 
-static void sort(struct json_index *index)
+/* False: there is no memory for it. */
+static bool sort(struct json_index *index)
 {
-    size_t n = (size_t)cJSON_GetArraySize(index->parent);
-    index->entries = mem_new((n ? n : 1) * sizeof *index->entries);
+    index->entries = mem_array((size_t)cJSON_GetArraySize(index->parent), sizeof *index->entries, UINT32_MAX, NULL);
+    if (!index->entries)
+        return false;
     for (cJSON *item = index->parent->child; item; item = item->next) {
         const char *name = name_of(index, item);
         if (name)
             index->entries[index->n_entries++] = (struct json_index_entry){ name, item };
     }
     qsort(index->entries, index->n_entries, sizeof *index->entries, compare);
+    return true;
 }
 
 static cJSON *walk(struct json_index *index, const char *name)
@@ -61,8 +64,8 @@ static cJSON *walk(struct json_index *index, const char *name)
 
 static cJSON *search(struct json_index *index, const char *name)
 {
-    if (!index->entries)
-        sort(index);
+    if (!index->entries && !sort(index))
+        return walk(index, name);
     struct json_index_entry key = { name, NULL };
     struct json_index_entry *entry = bsearch(&key, index->entries, index->n_entries, sizeof key, compare);
     return entry ? entry->item : NULL;

@@ -39,9 +39,16 @@ static void find_first_of_few(struct change *changes, size_t n)
     }
 }
 
-static void find_first(struct change *changes, size_t n)
+/* False: no memory. */
+static bool find_first(struct change *changes, size_t n)
 {
-    struct change **sorted = mem_new(n * sizeof *sorted);
+    if (n <= MAX_PAIRS) {
+        find_first_of_few(changes, n);
+        return true;
+    }
+    struct change **sorted = mem_array(n, sizeof *sorted, UINT32_MAX, NULL);
+    if (!sorted)
+        return false;
     for (size_t i = 0; i < n; i++)
         sorted[i] = &changes[i];
     qsort(sorted, n, sizeof *sorted, compare_names);
@@ -50,25 +57,21 @@ static void find_first(struct change *changes, size_t n)
         sorted[i]->first = is_same ? sorted[i - 1]->first : sorted[i];
     }
     free(sorted);
+    return true;
 }
 
-static void merge_into(cJSON *target, const cJSON *patch);
+static bool merge_into(cJSON *target, const cJSON *patch);
 
-static cJSON *must(cJSON *json)
-{
-    if (!json)
-        abort(); /* no memory: as mem_new */
-    return json;
-}
-
-/* A new value as a patch gives it. */
+/* A new value as a patch gives it. NULL: no memory. */
 static cJSON *value_of(const cJSON *patch)
 {
     if (!cJSON_IsObject(patch))
-        return must(cJSON_Duplicate(patch, true));
-    cJSON *value = must(cJSON_CreateObject());
-    merge_into(value, patch);
-    return value;
+        return cJSON_Duplicate(patch, true);
+    cJSON *value = cJSON_CreateObject();
+    if (value && merge_into(value, patch))
+        return value;
+    cJSON_Delete(value);
+    return NULL;
 }
 
 /* Puts value in the place of member and gives it member's name. Takes both. */
@@ -82,64 +85,77 @@ static void replace(cJSON *target, cJSON *member, cJSON *value)
     cJSON_ReplaceItemViaPointer(target, member, value);
 }
 
-/* Returns the member that was taken out of target, NULL: none. */
-static cJSON *apply_change(cJSON *target, struct json_index *members, struct change *change)
+/* Puts a new value under the name of the change, in the place of member if there is one. False: no memory. */
+static bool put(cJSON *target, cJSON *member, struct change *change)
+{
+    cJSON *value = value_of(change->item);
+    if (!value)
+        return false;
+    change->first->member = value;
+    if (member) {
+        replace(target, member, value);
+    } else if (!cJSON_AddItemToObject(target, change->item->string, value)) {
+        cJSON_Delete(value);
+        return false;
+    }
+    return true;
+}
+
+/* Adds a member that was taken out of target to the list *removed. False: no memory. */
+static bool apply_change(cJSON *target, struct json_index *members, struct change *change, cJSON **removed)
 {
     struct change *first = change->first;
     const cJSON *item = change->item;
     if (!first->is_found)
         first->member = json_index_find(members, item->string);
     first->is_found = true;
-    cJSON *member = first->member, *removed = NULL;
+    cJSON *member = first->member;
     if (cJSON_IsNull(item)) {
         first->member = NULL;
-        removed = member ? cJSON_DetachItemViaPointer(target, member) : NULL;
-    } else if (!member) {
-        first->member = value_of(item);
-        cJSON_AddItemToObject(target, item->string, first->member);
-    } else if (cJSON_IsObject(member) && cJSON_IsObject(item)) {
-        merge_into(member, item);
-    } else {
-        first->member = value_of(item);
-        replace(target, member, first->member);
+        if (member) {
+            (void)cJSON_DetachItemViaPointer(target, member);
+            member->next = *removed;
+            *removed = member;
+        }
+        return true;
     }
-    return removed;
+    if (member && cJSON_IsObject(member) && cJSON_IsObject(item))
+        return merge_into(member, item);
+    return put(target, member, change);
 }
 
-/* Both are objects; target changes. */
-static void merge_into(cJSON *target, const cJSON *patch)
+/* Both are objects; target changes. False: no memory, target is changed in part. */
+static bool merge_into(cJSON *target, const cJSON *patch)
 {
     size_t n = (size_t)cJSON_GetArraySize(patch), at = 0;
-    struct change few[MAX_PAIRS], *changes = n <= MAX_PAIRS ? few : mem_new(n * sizeof *changes);
+    struct change few[MAX_PAIRS];
+    struct change *changes = n <= MAX_PAIRS ? few : mem_array(n, sizeof *changes, UINT32_MAX, NULL);
     struct json_index members;
     cJSON *removed = NULL; /* freed at the end: the index still holds their names */
+    if (!changes)
+        return false;
     json_index_init(&members, target);
     for (const cJSON *item = patch->child; item; item = item->next, at++)
         changes[at] = (struct change){ .item = item, .position = at };
-    if (n <= MAX_PAIRS)
-        find_first_of_few(changes, n);
-    else
-        find_first(changes, n);
-    for (size_t i = 0; i < n; i++) {
-        cJSON *one = apply_change(target, &members, &changes[i]);
-        if (one) {
-            one->next = removed;
-            removed = one;
-        }
-    }
+    bool ok = find_first(changes, n);
+    for (size_t i = 0; ok && i < n; i++)
+        ok = apply_change(target, &members, &changes[i], &removed);
     json_index_finish(&members);
     cJSON_Delete(removed); /* with those behind it */
     if (changes != few)
         free(changes);
+    return ok;
 }
 
 cJSON *json_merge(const cJSON *target, const cJSON *patch)
 {
     if (!cJSON_IsObject(patch) || !cJSON_IsObject(target))
         return value_of(patch);
-    cJSON *merged = must(cJSON_Duplicate(target, true));
-    merge_into(merged, patch);
-    return merged;
+    cJSON *merged = cJSON_Duplicate(target, true);
+    if (merged && merge_into(merged, patch))
+        return merged;
+    cJSON_Delete(merged);
+    return NULL;
 }
 
 static bool members_are_equal(const cJSON *a, const cJSON *b)

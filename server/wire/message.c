@@ -38,7 +38,7 @@ char *message_write(const struct message *message)
     const struct message_description *description = &message_descriptions[message->type];
     cJSON *json = fields_write(description->object, (const char *)message + description->offset);
     cJSON_AddStringToObject(json, "type", description->name);
-    char *text = json_write(json);
+    char *text = json_print(json);
     cJSON_Delete(json);
     return text;
 }

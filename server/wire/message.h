@@ -7,7 +7,7 @@
  * False: message owns nothing, and problem says why (too-large, json, validation). */
 NODISCARD bool message_read(const char *bytes, size_t n, bool from_client, struct message *message,
                             struct problem *problem);
-/* JSON text, for free(). */
+/* JSON text, for free(). NULL: no memory. */
 NODISCARD char *message_write(const struct message *message);
 /* Frees what the fields own. */
 void message_finish(struct message *message);

@@ -38,7 +38,7 @@ cJSON *missing_read(const cJSON *frame)
             cJSON_Delete(missing);
             return NULL;
         }
-        cJSON_AddItemToArray(regions, region);
+        json_append(regions, region);
     }
     return missing;
 }

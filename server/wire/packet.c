@@ -199,10 +199,12 @@ void packet_reader_added(struct packet_reader *reader, size_t n)
 /* Takes head and JSON from the buffer, and what is there of the blob. False: the packet breaks the rules. */
 static bool begin_packet(struct packet_reader *reader, const struct head *head, struct error *err)
 {
-    struct problem problem;
+    struct problem problem = { 0 };
     const char *text = (const char *)reader->bytes + reader->at + sizeof *head;
     struct packet *coming = &reader->coming;
     cJSON *json = json_read(text, head->json_bytes, &problem);
+    if (!json && problem.type == PROBLEM_INTERNAL)
+        return error_set(err, ERROR_MEMORY, "no memory for the JSON of a packet, %" PRIu32 " bytes", head->json_bytes);
     if (!json || !cJSON_IsObject(json)) {
         cJSON_Delete(json);
         return error_set(err, ERROR_FORMAT, "a packet without a JSON object");

@@ -9,35 +9,28 @@
 #include "server/wire/json_merge.h"
 #include "server/wire/references.h"
 
-static cJSON *must(cJSON *json)
-{
-    if (!json)
-        abort(); /* no memory: as mem_new */
-    return json;
-}
-
+/* Without memory for a part, that part is missing; those who use the whole compare mem_n_refused. */
 static cJSON *complete_object(const struct field_object *object, const cJSON *defaults, cJSON *json);
 
 /* A map whose keys name things of the plan has an entry for each that defaults has one for. In other maps an entry that
  * was removed stays removed. Takes json, which is an object. */
 static cJSON *complete_map(const struct field *field, const cJSON *defaults, cJSON *json)
 {
-    cJSON *complete = must(cJSON_CreateObject());
+    cJSON *complete = cJSON_CreateObject();
     struct json_index given, fallbacks;
     json_index_init(&given, json);
     json_index_init(&fallbacks, defaults);
     for (const cJSON *item = field->names && defaults ? defaults->child : NULL; item; item = item->next) {
         cJSON *entry = json_index_find(&given, item->string);
         if (entry)
-            cJSON_AddItemToArray(complete, /* keeps the name */
-                                 complete_object(field->object, item, cJSON_DetachItemViaPointer(json, entry)));
+            json_append(complete, /* keeps the name */
+                        complete_object(field->object, item, cJSON_DetachItemViaPointer(json, entry)));
         else
-            cJSON_AddItemToArray(complete, must(cJSON_Duplicate(item, true)));
+            json_append(complete, cJSON_Duplicate(item, true));
     }
     while (json->child) {
         cJSON *entry = cJSON_DetachItemViaPointer(json, json->child);
-        cJSON_AddItemToArray(complete,
-                             complete_object(field->object, json_index_find(&fallbacks, entry->string), entry));
+        json_append(complete, complete_object(field->object, json_index_find(&fallbacks, entry->string), entry));
     }
     json_index_finish(&given);
     json_index_finish(&fallbacks);
@@ -67,7 +60,7 @@ static cJSON *complete_field(const struct field_object *object, const struct fie
     if (is_given)
         return given;
     cJSON_Delete(given);
-    return fallback ? must(cJSON_Duplicate(fallback, true)) : field_write_default(object, field);
+    return fallback ? cJSON_Duplicate(fallback, true) : field_write_default(object, field);
 }
 
 /* Whether json has every field in the table's order, and none of them can be incomplete itself. */
@@ -94,24 +87,30 @@ static cJSON *complete_object(const struct field_object *object, const cJSON *de
             (void)cJSON_DetachItemViaPointer(json, given);
         cJSON *value = complete_field(object, field, fallback, given);
         if (value && value->string)
-            cJSON_AddItemToArray(json, value); /* keeps the name */
+            json_append(json, value); /* keeps the name */
         else if (value)
-            cJSON_AddItemToObject(json, field->name, value);
+            json_add(json, field->name, value);
     }
     return json;
 }
 
-/* The checks run on what was said, so that a pointer names what the sender wrote. Takes merged. */
+/* The checks run on what was said, so that a pointer names what the sender wrote. Takes merged; NULL: there was no
+ * memory for it. */
 static cJSON *check_and_complete(const struct field_object *object, const cJSON *plan, const cJSON *defaults,
                                  cJSON *merged, struct problem *problem)
 {
-    char *read = mem_new(object->size);
-    bool ok = fields_read(object, merged, NULL, read, problem);
+    size_t before = mem_n_refused();
+    char *read = mem_new(object->size); /* of some hundred bytes; entries of lists and maps stand elsewhere */
+    bool ok = merged ? fields_read(object, merged, NULL, read, problem) : json_no_memory(problem, object->name);
     if (ok)
         fields_finish(object, read);
     free(read);
-    if (ok && references_check(object, merged, plan, problem))
-        return complete_object(object, defaults, merged);
+    if (ok && references_check(object, merged, plan, problem)) {
+        cJSON *complete = complete_object(object, defaults, merged);
+        if (mem_n_refused() == before)
+            return complete;
+        json_no_memory(problem, object->name);
+    }
     cJSON_Delete(merged);
     return NULL;
 }
@@ -128,23 +127,25 @@ cJSON *patch_apply(const struct field_object *object, const cJSON *plan, const c
 
 cJSON *patch_renew(const struct field_object *object, const cJSON *plan, const cJSON *defaults, const cJSON *current)
 {
-    cJSON *kept = must(cJSON_Duplicate(current, true));
-    references_remove(object, kept, plan);
-    cJSON *renewed = check_and_complete(object, plan, defaults, kept, NULL);
-    return renewed ? renewed : must(cJSON_Duplicate(defaults, true));
+    struct problem problem = { 0 };
+    cJSON *kept = cJSON_Duplicate(current, true);
+    if (kept)
+        references_remove(object, kept, plan);
+    cJSON *renewed = check_and_complete(object, plan, defaults, kept, &problem);
+    return renewed || problem.type != PROBLEM_VALIDATION ? renewed : cJSON_Duplicate(defaults, true);
 }
 
 /* The patch that turns before into after, with every member of after; after itself where one is no object. */
 static cJSON *difference(const cJSON *before, const cJSON *after)
 {
     if (!cJSON_IsObject(before) || !cJSON_IsObject(after))
-        return must(cJSON_Duplicate(after, true));
-    cJSON *told = must(cJSON_CreateObject());
+        return cJSON_Duplicate(after, true);
+    cJSON *told = cJSON_CreateObject();
     struct json_index old_members, new_members;
     json_index_init(&old_members, before);
     json_index_init(&new_members, after);
     for (const cJSON *item = after->child; item; item = item->next)
-        cJSON_AddItemToObject(told, item->string, difference(json_index_find(&old_members, item->string), item));
+        json_add(told, item->string, difference(json_index_find(&old_members, item->string), item));
     for (const cJSON *item = before->child; item; item = item->next)
         if (!json_index_find(&new_members, item->string))
             cJSON_AddNullToObject(told, item->string);
@@ -153,22 +154,32 @@ static cJSON *difference(const cJSON *before, const cJSON *after)
     return told;
 }
 
-cJSON *patch_told(const cJSON *before, const cJSON *after, const cJSON *patch)
+static cJSON *told_of(const cJSON *before, const cJSON *after, const cJSON *patch)
 {
     if (!after)
-        return must(cJSON_CreateNull());
+        return cJSON_CreateNull();
     if (!cJSON_IsObject(before) || !cJSON_IsObject(after) || !cJSON_IsObject(patch))
         return difference(before, after);
-    cJSON *told = must(cJSON_CreateObject());
+    cJSON *told = cJSON_CreateObject();
     struct json_index old_members, new_members;
     json_index_init(&old_members, before);
     json_index_init(&new_members, after);
     for (const cJSON *item = patch->child; item; item = item->next) {
         const cJSON *old = json_index_find(&old_members, item->string),
                     *new = json_index_find(&new_members, item->string);
-        cJSON_AddItemToObject(told, item->string, patch_told(old, new, item));
+        json_add(told, item->string, told_of(old, new, item));
     }
     json_index_finish(&old_members);
     json_index_finish(&new_members);
     return told;
+}
+
+cJSON *patch_told(const cJSON *before, const cJSON *after, const cJSON *patch)
+{
+    size_t n_before = mem_n_refused();
+    cJSON *told = told_of(before, after, patch);
+    if (mem_n_refused() == n_before)
+        return told;
+    cJSON_Delete(told);
+    return NULL;
 }

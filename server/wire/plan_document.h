@@ -43,5 +43,5 @@
 #include "core/plan/plan.h"
 #include "server/wire/json.h"
 
-/* A new object, for cJSON_Delete. Never NULL: aborts when there is no memory. */
+/* A new object, for cJSON_Delete. NULL: no memory. */
 NODISCARD cJSON *plan_document(const struct plan *plan);

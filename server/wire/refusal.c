@@ -12,8 +12,10 @@
 char *refusal_write(const struct problem *problem, size_t *n)
 {
     cJSON *json = problem_to_json(problem);
-    char *body = json_write(json), head[512], more[64] = "";
+    char *body = json_print(json), head[512], more[64] = "";
     cJSON_Delete(json);
+    if (!body)
+        body = mem_copy_text("{}");
     if (problem->retry_after_ms > 0)
         (void)snprintf(more, sizeof more, "Retry-After: %d\r\n", (problem->retry_after_ms + 999) / 1000);
     else if (problem->type == PROBLEM_UPGRADE) /* RFC 9110 15.5.22, RFC 6455 4.4 */

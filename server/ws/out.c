@@ -143,7 +143,8 @@ void ws_bye(struct ws_connection *connection, enum ws_close_code code, const cha
     struct message message = { .type = MESSAGE_BYE, .bye = { .has_retry_ms = retry_ms >= 0, .retry_ms = retry_ms } };
     (void)snprintf(message.bye.reason, sizeof message.bye.reason, "%s", reason);
     char *text = message_write(&message);
-    ws_send_text(connection, text);
+    if (text) /* without memory for it the close alone is sent */
+        ws_send_text(connection, text);
     free(text);
     out_begin_close(connection, (uint16_t)code, reason);
 }

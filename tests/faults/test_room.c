@@ -17,6 +17,7 @@
 static void add_json(struct outcome *outcome, const cJSON *json)
 {
     faults_pause();
+    (void)json_no_memory(NULL, "what the fake renderer keeps");
     char *text = json_write(json);
     outcome_add_text(outcome, text);
     free(text);
@@ -61,7 +62,9 @@ static void add_page(struct outcome *outcome, const struct fake_page *page)
         outcome_add_text(outcome, type);
         outcome_note(outcome, type);
         outcome_add_number(outcome, cJSON_GetArraySize(json));
-        outcome->is_told |= strcmp(type, "problem") == 0 || strcmp(type, "bye") == 0;
+        const char *state = json_text(json, "state"); /* of the renderer */
+        outcome->is_told |=
+            strcmp(type, "problem") == 0 || strcmp(type, "bye") == 0 || (state && strcmp(state, "failed") == 0);
         cJSON_Delete(json);
     }
     outcome->is_told |= page->is_closed;
@@ -93,6 +96,7 @@ static void join(void *context, struct outcome *outcome)
     opacity = json_number(cJSON_GetObjectItem(regions, "scalp"), "opacity", 0.4);
     outcome->is_done = true;
     add_page(outcome, &world->page);
+    outcome->is_told |= world->other.is_closed;
     if (!(after == before ? opacity == 0.4 : opacity == 0.25 && after == before + 1)) {
         outcome->is_told = false;
         outcome_note(outcome, "the scene is neither the old one nor the new one");
@@ -117,6 +121,7 @@ static void patch_scene(void *context, struct outcome *outcome)
     faults_go_on();
     outcome->is_done = room_patch_scene(world->fake.room, patch, world->fake.now_us, &outcome->problem);
     faults_pause();
+    (void)json_no_memory(NULL, "what the fake renderer keeps");
     char *now = json_write(room_scene(world->fake.room, &after));
     outcome_add_text(outcome, now);
     outcome_add_number(outcome, after);
@@ -188,7 +193,7 @@ static void describe_room(void *context, struct outcome *outcome)
         outcome_add_number(outcome, (double)strlen(text));
         outcome_note(outcome, text);
     } else {
-        problem_set(&outcome->problem, PROBLEM_INTERNAL, "", "", "no memory for the document of a room");
+        json_no_memory(&outcome->problem, "the document of a room");
     }
     free(text);
     cJSON_Delete(document);
@@ -234,7 +239,7 @@ static void read_messages(void *context, struct outcome *outcome)
         outcome_add_text(outcome, again);
     } else {
         outcome->is_done = false;
-        problem_set(&outcome->problem, PROBLEM_INTERNAL, "", "", "no memory for a message");
+        json_no_memory(&outcome->problem, "a message");
     }
     free(again);
     message_finish(&message);
@@ -251,7 +256,7 @@ static void scene_both_ways(void *context, struct outcome *outcome)
     cJSON *json = scene_write(&scene);
     char *text = json ? json_print(json) : NULL;
     if (!text)
-        problem_set(&outcome->problem, PROBLEM_INTERNAL, "", "", "no memory for a scene");
+        json_no_memory(&outcome->problem, "a scene");
     else if (scene_read(json, &again, &outcome->problem)) {
         outcome->is_done = true;
         outcome_add_text(outcome, text);
@@ -276,7 +281,7 @@ static void describe_plan(void *context, struct outcome *outcome)
         outcome->is_done = true;
         outcome_add_text(outcome, text);
     } else {
-        problem_set(&outcome->problem, PROBLEM_INTERNAL, "", "", "no memory for the document of a plan");
+        json_no_memory(&outcome->problem, "the document of a plan");
     }
     free(text);
     cJSON_Delete(json);

@@ -126,7 +126,8 @@ static bool is_right_code(const struct walking *walking, const struct outcome *o
 {
     const char *text = outcome->err.text;
     if (outcome->problem.type)
-        return outcome->problem.type == PROBLEM_INTERNAL || outcome->problem.type == PROBLEM_STORAGE;
+        return outcome->problem.type == PROBLEM_INTERNAL || outcome->problem.type == PROBLEM_STORAGE ||
+               outcome->problem.type == PROBLEM_MEMORY;
     if (outcome->err.code == ERROR_MEMORY)
         return walking->kind != FAULT_READ && walking->kind != FAULT_WRITE;
     return walking->kind != FAULT_MEMORY &&
