@@ -3,6 +3,7 @@
 
 #include <archive.h>
 #include <archive_entry.h>
+#include <errno.h>
 #include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -80,6 +81,18 @@ static bool goes_on(void *context)
     return true;
 }
 
+/* Right after a call of the library failed. It says so of some allocations; others it takes for a kind of archive that
+ * it does not know, or for damage, and leaves only errno. */
+static bool lacks_memory(const struct unpacker *unpacker)
+{
+    return errno == ENOMEM || archive_errno(unpacker->archive) == ENOMEM;
+}
+
+static bool refuse_memory(struct unpacker *unpacker)
+{
+    return problem_set(&unpacker->problem, PROBLEM_INTERNAL, "", "", "no memory to read the archive");
+}
+
 /* What the library found wrong, or the source did. */
 static bool refuse_damaged(struct unpacker *unpacker, const char *name)
 {
@@ -87,6 +100,8 @@ static bool refuse_damaged(struct unpacker *unpacker, const char *name)
         unpacker->problem = unpacker->source.problem;
         return false;
     }
+    if (lacks_memory(unpacker))
+        return refuse_memory(unpacker);
     char shown[UNPACK_SHOWN_SIZE], words[UNPACK_SHOWN_SIZE];
     const char *said = archive_error_string(unpacker->archive);
     unpack_show(name, shown);
@@ -134,6 +149,8 @@ static bool refuse_no_file(struct unpacker *unpacker)
 static bool refuse_unknown(struct unpacker *unpacker)
 {
     uint32_t n_entries;
+    if (lacks_memory(unpacker))
+        return refuse_memory(unpacker);
     if (unpack_source_zip_entries(&unpacker->source, &n_entries) && n_entries == 0)
         return refuse_no_file(unpacker);
     if (unpack_source_has(&unpacker->source, 0, "PK\3\4", 4))
@@ -346,10 +363,12 @@ static bool check_end(struct unpacker *unpacker)
     uint64_t n_bytes = unpacker->source.n_bytes;
     if (is_tar(unpacker) && is_bare &&
         (n_bytes < sizeof zeros || !unpack_source_has(&unpacker->source, n_bytes - sizeof zeros, zeros, sizeof zeros)))
-        return problem_set(
-            &unpacker->problem, PROBLEM_VALIDATION, "", "format",
-            "the tar ends at byte %llu, after entry %lu, without its end mark, 512 bytes of zero; was all of it sent?",
-            (unsigned long long)n_bytes, (unsigned long)unpacker->n_entries);
+        return unpacker->source.problem.type != PROBLEM_NONE
+                   ? refuse_damaged(unpacker, "")
+                   : problem_set(
+                         &unpacker->problem, PROBLEM_VALIDATION, "", "format",
+                         "the tar ends at byte %llu, after entry %lu, without its end mark, 512 bytes of zero; was all of it sent?",
+                         (unsigned long long)n_bytes, (unsigned long)unpacker->n_entries);
     if (!unpack_source_drain(&unpacker->source))
         return refuse_damaged(unpacker, "");
     return true;
@@ -358,6 +377,7 @@ static bool check_end(struct unpacker *unpacker)
 static bool walk(struct unpacker *unpacker)
 {
     struct archive *archive = unpacker->archive;
+    errno = 0;
     int status = archive_read_open1(archive);
     while (status == ARCHIVE_OK) {
         struct archive_entry *entry;

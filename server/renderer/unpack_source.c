@@ -22,6 +22,11 @@ static bool is_within(struct unpack_source *source, uint64_t n_undone)
         (unsigned long long)source->n_bytes, (unsigned long long)source->most, (unsigned long long)source->at);
 }
 
+static bool refuse_unread(struct unpack_source *source)
+{
+    return problem_set(&source->problem, PROBLEM_INTERNAL, "", "", "the archive cannot be read: %s", strerror(errno));
+}
+
 /* Next block of the file; -1: source->problem says why. */
 static ssize_t read_block(struct unpack_source *source)
 {
@@ -32,8 +37,7 @@ static ssize_t read_block(struct unpack_source *source)
         n = pread(source->file, source->bytes, sizeof source->bytes, (off_t)source->at);
     while (n < 0 && errno == EINTR);
     if (n < 0) {
-        (void)problem_set(&source->problem, PROBLEM_INTERNAL, "", "", "the archive cannot be read: %s",
-                          strerror(errno));
+        (void)refuse_unread(source);
         return -1;
     }
     source->at += (uint64_t)n;
@@ -117,6 +121,10 @@ static la_ssize_t read_gzip(struct archive *archive, void *context, const void *
             stream->avail_in = (uInt)n;
         }
         int status = inflate(stream, Z_NO_FLUSH);
+        if (status == Z_MEM_ERROR) {
+            (void)fail(source, PROBLEM_INTERNAL, "", "no memory to undo gzip");
+            return ARCHIVE_FATAL;
+        }
         if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) {
             (void)problem_set(&source->problem, PROBLEM_VALIDATION, "", "format",
                               "the archive's gzip data are damaged before byte %llu: %s",
@@ -136,11 +144,13 @@ size_t unpack_source_first(const struct unpack_source *source, uint8_t *bytes, s
     return n_read > 0 ? (size_t)n_read : 0;
 }
 
-bool unpack_source_has(const struct unpack_source *source, uint64_t at, const void *expected, size_t n)
+bool unpack_source_has(struct unpack_source *source, uint64_t at, const void *expected, size_t n)
 {
     uint8_t found[512];
-    return n <= sizeof found && pread(source->file, found, n, (off_t)at) == (ssize_t)n &&
-           memcmp(found, expected, n) == 0;
+    ssize_t n_read = n <= sizeof found ? pread(source->file, found, n, (off_t)at) : 0;
+    if (n_read < 0)
+        return refuse_unread(source);
+    return n_read == (ssize_t)n && memcmp(found, expected, n) == 0;
 }
 
 /* End of central directory record: APPNOTE 4.3.16; a comment of up to 65535 bytes follows it. */
@@ -181,6 +191,8 @@ bool unpack_source_open(struct unpack_source *source, struct archive *archive, i
         return fail(source, PROBLEM_INTERNAL, "", "the archive is not a file");
     source->n_bytes = (uint64_t)facts.st_size;
     source->is_gzip = unpack_source_has(source, 0, "\x1f\x8b", 2);
+    if (source->problem.type != PROBLEM_NONE)
+        return false;
     if (source->is_gzip && inflateInit2(&source->inflate, 15 + 16) != Z_OK)
         return fail(source, PROBLEM_INTERNAL, "", "no memory to undo gzip");
     source->is_open = source->is_gzip;

@@ -25,8 +25,8 @@ struct unpack_source {
 /* goes_on: asked at every block; when it says no, problem says why. */
 NODISCARD bool unpack_source_open(struct unpack_source *source, struct archive *archive, int file, uint64_t most,
                                   bool (*goes_on)(void *context), void *context);
-/* Whether the bytes at an offset are these. */
-bool unpack_source_has(const struct unpack_source *source, uint64_t at, const void *expected, size_t n);
+/* Whether the bytes at an offset are these. Where they cannot be read: false, and problem says why. */
+bool unpack_source_has(struct unpack_source *source, uint64_t at, const void *expected, size_t n);
 /* The first bytes, at most n; how many there are. */
 size_t unpack_source_first(const struct unpack_source *source, uint8_t *bytes, size_t n);
 /* How many entries a zip's directory says it has; false: there is none, or they are too many for its plain form. */

@@ -116,9 +116,10 @@ static DIR *list(int parent, const char *name)
     return entries;
 }
 
+/* NULL: there is no further one, or with errno not 0: the folder cannot be read on. */
 static const char *next_name(DIR *entries)
 {
-    for (const struct dirent *entry; (entry = readdir(entries));)
+    for (const struct dirent *entry; errno = 0, (entry = readdir(entries));)
         if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
             return entry->d_name;
     return NULL;
@@ -131,7 +132,11 @@ bool unpack_is_empty(int folder, struct problem *problem)
         return problem_set(problem, PROBLEM_INTERNAL, "", "", "the folder to unpack into cannot be read: %s",
                            strerror(errno));
     bool is_empty = next_name(entries) == NULL;
+    int reason = errno;
     closedir(entries);
+    if (is_empty && reason)
+        return problem_set(problem, PROBLEM_INTERNAL, "", "", "the folder to unpack into cannot be read: %s",
+                           strerror(reason));
     return is_empty || problem_set(problem, PROBLEM_INTERNAL, "", "",
                                    "the folder to unpack into is not empty; expected is an empty one");
 }
@@ -146,6 +151,7 @@ static bool clear(int parent, const char *name, int depth)
         if (unlinkat(dirfd(entries), entry, 0) != 0)
             is_clear = depth > 0 && clear(dirfd(entries), entry, depth - 1) &&
                        unlinkat(dirfd(entries), entry, AT_REMOVEDIR) == 0 && is_clear;
+    is_clear = is_clear && errno == 0;
     closedir(entries);
     return is_clear;
 }
@@ -170,6 +176,7 @@ bool unpack_lift(struct unpack_writer *writer, const char *top, struct problem *
     for (const char *entry; is_done && (entry = next_name(entries));)
         is_done = renameat(dirfd(entries), entry, writer->folder, entry) == 0;
     int reason = errno;
+    is_done = is_done && reason == 0;
     closedir(entries);
     errno = reason;
     if (!is_done && errno == EXDEV) /* the first Landlock lets nothing be moved: then nothing was */
