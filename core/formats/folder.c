@@ -27,8 +27,8 @@ bool folder_open(struct folder *folder, const char *path, struct error *err)
     char *resolved = path_resolve(path);
     if (!resolved || strlen(resolved) >= sizeof folder->path) {
         free(resolved);
-        return error_set(err, ERROR_NOT_FOUND, "the plan's folder does not exist or cannot be entered: %s",
-                         strerror(errno));
+        return error_set(err, errno == ENOMEM ? ERROR_MEMORY : ERROR_NOT_FOUND,
+                         "the plan's folder does not exist or cannot be entered: %s", strerror(errno));
     }
     memcpy(folder->path, resolved, strlen(resolved) + 1);
     free(resolved);

@@ -25,7 +25,7 @@ struct bytes {
 };
 void bytes_free(struct bytes *bytes);
 
-/* errors ERROR_NOT_FOUND, ERROR_IO */
+/* errors ERROR_NOT_FOUND, ERROR_IO, ERROR_MEMORY */
 NODISCARD bool folder_open(struct folder *folder, const char *path, struct error *err);
 void folder_close(struct folder *folder);
 

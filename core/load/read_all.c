@@ -68,8 +68,11 @@ static void work(void *context, int part, int n_parts)
             continue;
         if (part == 0)
             loading_phase(loading, "reading", name_of(loading, reading), 5, 80);
-        if (!plan_read_part(loading, reading))
-            reading->is_failed = true;
+        size_t n_lacked = error_n_memory();
+        reading->is_failed = !plan_read_part(loading, reading);
+        if (!reading->is_failed && error_n_memory() != n_lacked) /* an element that found none counts as absent */
+            reading->is_failed =
+                !error_set(&reading->err, ERROR_MEMORY, "%s: no memory to read all of it", reading->path);
         if (reading->is_failed && !may_be_left_out(loading, reading)) {
             size_t before = atomic_load(&loading->first_failed);
             while (at < before && !atomic_compare_exchange_weak(&loading->first_failed, &before, at)) {

@@ -1,5 +1,6 @@
 #pragma once
-// Inside the DCMTK shim: a parsed file, shared by dicom_file.cc and dicom_pixels.cc, and the guard that stops exceptions.
+// Inside the DCMTK shim: a parsed file, shared by dicom_file.cc and dicom_pixels.cc, and the guard that stops
+// exceptions.
 extern "C" {
 #include "core/formats/dicom/dicom_file.h"
 #include "core/formats/dicom/dicom_walk.h"
@@ -42,11 +43,15 @@ struct dicom_file {
     }
 };
 
-// Runs `run`; an exception becomes the return value on_throw.
+// Runs `run`; an exception becomes the return value on_throw. Want of memory, which says nothing of the file, is
+// counted: error_n_memory.
 template <typename F, typename R> R guarded(R on_throw, F run) noexcept
 {
     try {
         return run();
+    } catch (const std::bad_alloc &) {
+        error_set(nullptr, ERROR_MEMORY, "no memory to read an element");
+        return on_throw;
     } catch (...) {
         return on_throw;
     }

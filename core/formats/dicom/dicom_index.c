@@ -32,8 +32,9 @@ struct scan {
 static void scan_file(struct scan *scan, struct scanned_file *file, struct bytes *scratch)
 {
     struct error err = { 0 };
+    size_t n_lacked = error_n_memory();
     file->result = dicom_head_read(scan->folder, file->path, &file->object, scratch, &err);
-    if (file->result == DICOM_HEAD_BROKEN && err.code == ERROR_MEMORY) /* says nothing of the file */
+    if (error_n_memory() != n_lacked) /* says nothing of the file */
         atomic_store(&scan->lacks_memory, true);
     bool is_misnamed = file->result == DICOM_HEAD_FOREIGN && text_has_ending(file->path, ".dcm");
     if (file->result == DICOM_HEAD_BROKEN)
