@@ -3,7 +3,7 @@
 #   make            the programs and the page               make run     install what is missing, build, demo plan, serve
 #   make test       every kind of test (tests/README.md)    make test-deep  the long ones: sanitizers, clang, fuzzing
 #   make install PREFIX=/usr/local DESTDIR=
-#   make test-unit test-render test-api test-web            one suite
+#   make test-unit test-render test-faults test-api test-web  one suite
 #   make bench  lint  fuzz  cover  clean
 # Variables: CC=gcc|clang  SAN=address,undefined|thread  WERROR=1  V=1  FUZZ_SECONDS=60
 #   run: PLANS="folder ..." further folders of plans, ARGS="--listen 127.0.0.1:9000 ..." further flags of beamroomd
@@ -194,11 +194,14 @@ ONE_THREAD := sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pix
     dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame plan_document shape_query head ws_parser ws_conformance convert convert_edges plan_real
 UNIT_RUN = $(if $(findstring thread,$(SAN)),$(filter-out $(ONE_THREAD:%=$(B)/unit/test_%),$(unit_BIN)),$(unit_BIN))
 PARALLEL := $(shell nproc)
-.PHONY: test-unit test-render test-api test-web test-install test test-deep lint
+.PHONY: test-unit test-render test-faults test-api test-web test-install test test-deep lint
 test-unit: $(UNIT_RUN)
 	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,unit)" $(UNIT_RUN)
 test-render: $(render_BIN)
 	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(if $(SAN),$(PARALLEL),1) tests/run_programs.sh "$(call LABEL,render)" $(render_BIN)
+# FAULTS=whole: every call of some hundred, then in short steps; else every one of the first few, then in long ones
+test-faults: $(faults_BIN)
+	$(Q)FAULTS=$(FAULTS) PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,faults)" $(faults_BIN)
 test-api: all demo
 	$(Q)tests/run_node.sh api $(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs))
 test-web: all demo

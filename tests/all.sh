@@ -33,13 +33,14 @@ suite() { # suite NAME MAKE-ARGUMENT...
     total_passed=$((total_passed + passed)) total_failed=$((total_failed + failed)) total_skipped=$((total_skipped + skipped))
 }
 
-programs="unit-programs render-programs bench-programs"
+programs="unit-programs render-programs faults-programs bench-programs"
 case $group in
 test)
     suite build-gcc "$jobs" WERROR=1 all $programs
     suite lint lint
     suite unit "$jobs" test-unit
     suite render "$jobs" test-render
+    suite faults "$jobs" test-faults
     suite api "$jobs" test-api
     suite web "$jobs" test-web
     suite install "$jobs" test-install
@@ -50,6 +51,7 @@ deep)
     suite unit-thread "$jobs" SAN=thread test-unit
     suite render-address-undefined "$jobs" SAN=address,undefined test-render
     suite render-thread "$jobs" SAN=thread test-render
+    suite faults "$jobs" SAN=address,undefined FAULTS=whole test-faults
     suite fuzz fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-3}"
     ;;
 *)

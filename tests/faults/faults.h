@@ -29,9 +29,9 @@ size_t faults_count(enum fault_kind kind);
 /* Prints the stack of the call that failed first. */
 void faults_print_stack(void);
 
-/* Blocks of memory taken since faults_arm and not given back; with print each one's stack (the first few). With the
- * address sanitizer without those that a library lost itself: DCMTK and libjpeg-turbo do where an allocation of theirs
- * fails. */
-size_t faults_n_kept_blocks(bool print);
+/* Blocks of memory taken since faults_arm and not given back; with print each one's stack (the first few).
+ * is_library_leaky: without those that DCMTK or libjpeg-turbo lost themselves; only the address sanitizer tells them,
+ * else 0 is given. */
+size_t faults_n_kept_blocks(bool is_library_leaky, bool print);
 /* The largest block that mem_new gave since the program began. */
 size_t faults_largest_small(void);

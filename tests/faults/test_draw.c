@@ -172,6 +172,7 @@ static void walk_pictures(void)
     const struct walk walk = { .name = "a slice is drawn and compressed",
                                .run = draw,
                                .context = &slice,
+                               .is_library_leaky = true,
                                .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
     walk_run(&walk);
 }

@@ -70,9 +70,9 @@ static void unpack_one(void *context, struct outcome *outcome)
     faults_go_on();
 }
 
-/* Only one call fails: where all later ones did, libarchive ends its process (Fatal Internal Error), and a folder that
- * cannot be opened cannot be cleared either. Both are the end of the process that unpacks, and beamroomd removes what
- * it leaves. */
+/* libarchive uses a null pointer or ends its process (Fatal Internal Error) where some of its allocations fail. Only
+ * one call fails here: where all later ones did, what is in the folder could not be listed either, to be removed. Both
+ * are the end of the process that unpacks, and beamroomd removes what it leaves. */
 static void walk_archives(void)
 {
     static const char *const names[] = { "good.zip",     "pax.tar",     "good.tar.gz",
@@ -90,6 +90,7 @@ static void walk_archives(void)
                                        .run = unpack_one,
                                        .context = path,
                                        .is_short = true,
+                                       .may_die_in = "libarchive",
                                        .kinds = { true, true, true, true, true, true } };
             walk_run(&walk);
         }

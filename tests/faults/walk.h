@@ -30,7 +30,9 @@ struct walk {
     void *context;
     const char *folder;        /* whose names must be the same after each run; NULL: none */
     bool kinds[FAULT_N_KINDS]; /* which are walked */
-    bool is_short;             /* without the runs in which every later call fails too */
+    bool is_library_leaky;  /* DCMTK or libjpeg-turbo is in it, which lose memory when an allocation of theirs fails */
+    const char *may_die_in; /* a library that ends the process without memory, "libarchive"; NULL: none */
+    bool is_short;          /* without the runs in which every later call fails too */
 };
 
 /* Runs it; prints "[       OK ] ..." or what was found. */
