@@ -92,8 +92,10 @@ bool label_names_parse(const uint8_t *data, size_t size, const char *name, struc
     bool is_read = place_list(&top, root, "labels", PLAN_FILE_MAX_LABELS, &list);
     if (is_read && !list)
         is_read = place_fail(&top, ERROR_FORMAT, "labels", "is missing");
-    if (is_read)
-        names->labels = mem_new(((size_t)cJSON_GetArraySize(list) + 1) * sizeof *names->labels);
+    if (is_read) {
+        names->labels = mem_array((size_t)cJSON_GetArraySize(list) + 1, sizeof *names->labels, UINT64_MAX, err);
+        is_read = names->labels != NULL;
+    }
     for (const cJSON *entry = is_read ? list->child : NULL; is_read && entry; entry = entry->next) {
         struct json_place at = place_at(&top, "labels", (int)names->n);
         is_read = parse_label(&at, entry, &names->labels[names->n++]);

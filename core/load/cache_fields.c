@@ -315,7 +315,9 @@ static void fields_tracks(struct fields *fields, struct track_set *tracks)
     if (fields->is_reading && !fields->is_bad) {
         require(fields, tracks->n_segments <= (fields->size - fields->at) / SEGMENT_BYTES);
         tracks->n_segments = fields->is_bad ? 0 : tracks->n_segments;
-        tracks->segments = mem_new((tracks->n_segments + 1) * sizeof *tracks->segments);
+        tracks->segments = mem_array(tracks->n_segments + 1, sizeof *tracks->segments, UINT64_MAX, NULL);
+        require(fields, tracks->segments != NULL);
+        tracks->n_segments = tracks->segments ? tracks->n_segments : 0;
     }
     for (size_t i = 0; i < tracks->n_segments; i++) {
         struct track_segment *segment = &tracks->segments[i];
@@ -358,7 +360,8 @@ static void fields_curve(struct fields *fields, struct dose_curve *curve)
         fields_bool(fields, &curve->is_per_ppm[c]);
         if (fields->is_reading) {
             require(fields, n_points * sizeof(float) <= fields->size - fields->at);
-            curve->values[c] = mem_new((fields->is_bad ? 1 : n_points) * sizeof(float));
+            curve->values[c] = mem_array(fields->is_bad ? 1 : n_points, sizeof(float), UINT64_MAX, NULL);
+            require(fields, curve->values[c] != NULL);
         }
         if (!fields->is_bad)
             fields_bytes(fields, curve->values[c], n_points * sizeof(float));

@@ -17,7 +17,10 @@ enum { LOG_EVERY_US = 10000000 };
 
 struct message_out *out_message(enum ws_opcode opcode, const void *bytes, size_t n)
 {
-    struct message_out *message = mem_new(sizeof *message + n);
+    struct message_out *message =
+        n <= OUT_SMALL_BYTES ? mem_new(sizeof *message + n) : mem_array(sizeof *message + n, 1, UINT64_MAX, NULL);
+    if (!message)
+        return NULL;
     message->opcode = opcode;
     message->n = n;
     if (n)
@@ -106,14 +109,17 @@ void ws_send_message(struct ws_connection *connection, enum ws_opcode kind, cons
     const struct ws_limits *limits = &connection->ws->limits;
     if (connection->state != STATE_OPEN)
         return;
-    if (connection->texts.n >= limits->max_waiting || connection->texts.n_bytes + n > limits->max_waiting_bytes) {
-        out_log_cut(connection->ws, "it takes its messages too slowly");
+    bool is_too_slow =
+        connection->texts.n >= limits->max_waiting || connection->texts.n_bytes + n > limits->max_waiting_bytes;
+    struct message_out *message = is_too_slow ? NULL : out_message(kind, bytes, n);
+    if (!message) {
+        out_log_cut(connection->ws, is_too_slow ? "it takes its messages too slowly" : "no memory for a message to it");
         connection->state = STATE_CLOSING; /* it would not read a close either */
         out_drop_frames(connection);
         end_within(connection, 0);
         return;
     }
-    out_queue_add(&connection->texts, out_message(kind, bytes, n));
+    out_queue_add(&connection->texts, message);
     lws_callback_on_writable(connection->wsi);
 }
 

@@ -70,6 +70,8 @@ struct ws {
 };
 
 /* out.c */
+/* Small ones abort without memory, as mem_new; larger than OUT_SMALL_BYTES: NULL. */
+enum { OUT_SMALL_BYTES = 4096 };
 struct message_out *out_message(enum ws_opcode opcode, const void *bytes, size_t n);
 void out_queue_add(struct queue_out *queue, struct message_out *message);
 void out_queue_clear(struct queue_out *queue);

@@ -336,8 +336,13 @@ struct dicom_index *dicom_index_scan(const struct folder *folder, char *const *n
         goto fail;
     report_unused(index, report);
     report_bad_numbers(index, report);
+    size_t n_lacked = error_n_memory();
     if (!dicom_stacks_find(index, report, err))
         goto fail;
+    if (error_n_memory() != n_lacked) {
+        error_set(err, ERROR_MEMORY, "no memory to put %zu DICOM objects in order", index->n_objects);
+        goto fail;
+    }
     scan_finish(&scan);
     return index;
 fail:

@@ -40,13 +40,21 @@ struct group {
     size_t n, room;
 };
 
+/* Without memory the member is left out, and counted: dicom_index_scan then fails. */
 static void group_add(struct group *group, struct member member)
 {
-    if (group->n == group->room) {
-        group->room = group->room ? 2 * group->room : 64;
-        group->members = realloc(group->members, group->room * sizeof *group->members);
-        if (!group->members)
-            abort(); /* like mem_new: 32 bytes per object, which already has some hundred */
+    enum { FIRST_ROOM = 64 };
+    if (group->room == 0) {
+        group->members = mem_new(FIRST_ROOM * sizeof *group->members);
+        group->room = FIRST_ROOM;
+    } else if (group->n == group->room) {
+        struct member *larger = realloc(group->members, 2 * group->room * sizeof *larger);
+        if (!larger) {
+            error_set(NULL, ERROR_MEMORY, "no memory for %zu pictures of a series", 2 * group->room);
+            return;
+        }
+        group->members = larger;
+        group->room *= 2;
     }
     group->members[group->n++] = member;
 }
