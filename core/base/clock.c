@@ -1,3 +1,4 @@
+/* The monotonic clock of the system. */
 #include "core/base/clock.h"
 
 #include <time.h>

@@ -1,5 +1,5 @@
 #pragma once
-/* Monotonic time. Wall time is for logs only. */
+/* Monotonic time in microseconds, from an arbitrary start. Wall-clock time is used in logs only (log.c). */
 #include <stdint.h>
 
 int64_t clock_now_us(void);

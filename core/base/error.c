@@ -1,3 +1,4 @@
+/* Filling and prefixing errors; counting those of memory. */
 #include "core/base/error.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #pragma once
 /* Why a call failed: a code for the program, a sentence for a person.
- * This module knows nothing of what failed; it allocates nothing, so it can also report lack of memory. */
+ * Knows nothing of the modules that fail. Allocates nothing, so it can also report lack of memory. */
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -11,18 +11,19 @@
 enum error_code {
     ERROR_NONE = 0,
     ERROR_RANGE,       /* a value is outside what is allowed or present */
-    ERROR_LIMIT,       /* more than a written limit: size, count, time */
-    ERROR_MEMORY,      /* the system gave no memory */
-    ERROR_FORMAT,      /* bytes or text that are not what they should be */
-    ERROR_UNSUPPORTED, /* well formed, but nothing we read or do */
+    ERROR_LIMIT,       /* a documented limit was exceeded: size, count, time */
+    ERROR_MEMORY,      /* an allocation failed */
+    ERROR_FORMAT,      /* bytes or text that break their format */
+    ERROR_UNSUPPORTED, /* well formed, but not supported by this program */
     ERROR_NOT_FOUND,   /* the named file, region, plan, room does not exist */
-    ERROR_IO,          /* the system refused to read, write, connect, start */
-    ERROR_STATE,       /* not now: already done, not ready, stale */
-    ERROR_CANCELLED,   /* somebody asked to stop */
+    ERROR_IO,          /* reading, writing, connecting or starting a process failed */
+    ERROR_STATE,       /* not possible in the current state: already done, not ready, stale */
+    ERROR_CANCELLED,   /* the caller or user cancelled */
     ERROR_GL           /* the graphics driver failed */
 };
 
-/* Lives on the caller's stack. Zero it before use: `struct error err = { 0 };` */
+/* Lives on the caller's stack. text is one sentence, cut at its size. Zero it before use: `struct error err = { 0 };`
+ */
 struct error {
     enum error_code code;
     char text[240];
@@ -31,8 +32,8 @@ struct error {
 /* Fills err (NULL is allowed) and returns false: `return error_set(...);` is a whole failure. */
 bool error_set(struct error *err, enum error_code code, const char *format, ...) PRINTF_LIKE(3, 4);
 
-/* How often ERROR_MEMORY was set on this thread, also where err was NULL. It tells a caller that leaves out what cannot
- * be read whether the file is bad or memory was short. */
+/* Number of times ERROR_MEMORY was set on this thread, calls with err == NULL included. A caller that skips what it
+ * cannot read compares the number before and after, to tell a bad file from a failed allocation. */
 size_t error_n_memory(void);
 
 /* Adds context in front on the way up: "plan head-3: region 7: label 300 is not in the volume". */

@@ -1,3 +1,4 @@
+/* Writing a file beside its path, then renaming it into place. */
 #include "core/base/file_write.h"
 
 #include <errno.h>
@@ -22,7 +23,7 @@ static bool write_all(int file, const char *bytes, size_t n_bytes)
     return true;
 }
 
-/* The reason is to be read also behind a long path. */
+/* Messages cut the path at 180 bytes, so that the system's reason still fits in error.text. */
 bool file_write(const char *path, const void *bytes, size_t n_bytes, struct error *err)
 {
     char partial[PATH_MAX];

@@ -1,17 +1,22 @@
 #pragma once
-/* A whole file, or folder, at once or not at all. Knows nothing of what is inside. */
+/* Atomic writing: a file or a folder appears under its name complete, or not at all. Knows nothing of the content. */
 #include <limits.h>
 #include <stddef.h>
 
 #include "core/base/error.h"
 
-/* Writes beside path and renames, so a reader sees the old file or the new one, never half of it. Two threads may write
- * different paths; the folder must be there. errors ERROR_LIMIT a path too long, ERROR_IO with the system's reason */
+/* Writes n_bytes to "<path>.partial-<pid>" and renames it to path, so a reader sees either the old file or the new one.
+ * After a failure the partial file is removed. The folder must exist.
+ *   errors  ERROR_LIMIT  the path is too long
+ *           ERROR_IO     with the system's reason
+ *   thread  any; two threads must not write the same path */
 NODISCARD bool file_write(const char *path, const void *bytes, size_t n_bytes, struct error *err);
 
-enum { FILE_FOLDER_SIZE = PATH_MAX - 64 }; /* longest path of a folder, with its end; names beside it are longer */
+/* Longest path of a folder, final zero included; leaves room for the suffix. */
+enum { FILE_FOLDER_SIZE = PATH_MAX - 64 };
 
-/* A folder's path without slashes at its end, and the path beside it where it is built before it is renamed to its
- * place. errors ERROR_RANGE an empty path, or one too long */
+/* Fills place with the folder's path without trailing slashes, and partial with "<place>.partial-<pid>": the folder is
+ * built there and then renamed to place.
+ *   errors  ERROR_RANGE  the path is empty or too long */
 NODISCARD bool file_folder_paths(const char *folder, char place[FILE_FOLDER_SIZE], char partial[PATH_MAX],
                                  struct error *err);

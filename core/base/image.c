@@ -1,3 +1,4 @@
+/* Allocating and freeing pictures. */
 #include "core/base/image.h"
 
 #include <stdlib.h>

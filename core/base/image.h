@@ -1,5 +1,5 @@
 #pragma once
-/* A picture in memory: 8-bit RGBA, row 0 at the top, no padding between rows. */
+/* A picture in memory: 8 bits a channel, RGBA, row 0 at the top, no padding between rows. */
 #include <stdint.h>
 
 #include "core/base/error.h"
@@ -11,6 +11,8 @@ struct image {
     uint8_t *rgba; /* [height][width][4] */
 };
 
-/* errors ERROR_RANGE a side outside 1..IMAGE_MAX_SIDE_PX, ERROR_MEMORY */
+/* Zeroed pixels.
+ *   errors  ERROR_RANGE   a side outside 1..IMAGE_MAX_SIDE_PX
+ *           ERROR_MEMORY */
 NODISCARD struct image *image_create(int width_px, int height_px, struct error *err);
 void image_destroy(struct image *image);

@@ -1,3 +1,4 @@
+/* Formatting a log line and writing it to standard error with one write(2). */
 #include "core/base/log.h"
 
 #include <stdio.h>
@@ -37,7 +38,7 @@ void log_line(enum log_level level, const char *format, ...)
         used = strnlen(line, sizeof line - 2);
     for (size_t i = 0; i < used; i++)
         if ((unsigned char)line[i] < 0x20)
-            line[i] = ' '; /* text from outside must not forge a line */
+            line[i] = ' '; /* control characters in foreign text must not forge a second line */
     line[used++] = '\n';
     if (write(STDERR_FILENO, line, used) < 0)
         return;

@@ -1,3 +1,4 @@
+/* The mailbox is one atomic pointer. */
 #include "core/base/mailbox.h"
 
 #include <stdatomic.h>

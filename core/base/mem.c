@@ -1,3 +1,4 @@
+/* Allocation with checks, and the reserve for small requests. */
 #include "core/base/mem.h"
 
 #include <inttypes.h>
@@ -6,8 +7,8 @@
 #include <string.h>
 #include <sys/mman.h>
 
-/* Given back when a small allocation fails: what failed before it was large, and whoever asked for that needs a little
- * to say so. */
+/* Freed when a small allocation fails. Usually a large one failed before it, and its caller needs a little memory to
+ * report that. */
 static _Atomic(void *) reserve;
 
 void mem_keep_reserve(void)
@@ -78,12 +79,12 @@ void *mem_large_array(size_t n, size_t size, uint64_t limit_bytes, struct error 
     uint64_t bytes;
     if (!array_bytes(n, size, limit_bytes, &bytes, err))
         return NULL;
-    /* A last huge page that would be used by less than half stays small pages. */
+    /* The last part gets a huge page only if it fills at least half of one. */
     uint64_t on_huge = bytes > UINT64_MAX - huge ? 0 : (bytes + huge / 2) / huge * huge;
     uint64_t all = on_huge > bytes ? on_huge : bytes;
     void *p = NULL;
     if (on_huge && posix_memalign(&p, (size_t)huge, (size_t)all) == 0)
-        (void)madvise(p, (size_t)on_huge, MADV_HUGEPAGE); /* a kernel without them says no: nothing is lost */
+        (void)madvise(p, (size_t)on_huge, MADV_HUGEPAGE); /* a kernel without huge pages refuses: still usable */
     else
         p = on_huge ? NULL : malloc(bytes ? (size_t)bytes : 1);
     if (!p)

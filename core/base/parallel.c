@@ -1,3 +1,4 @@
+/* Starting and joining threads for one call. */
 #define _GNU_SOURCE
 #include "core/base/parallel.h"
 

@@ -1,3 +1,4 @@
+/* realpath, with a fallback for a confined process. */
 #define _GNU_SOURCE
 #include "core/base/path.h"
 

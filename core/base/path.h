@@ -1,7 +1,7 @@
 #pragma once
-/* Paths of folders the program is given. */
+/* Resolving the paths of folders that are given on the command line. */
 
-/* Absolute and without links, as realpath makes it. A path from the working folder on stays as it is where a folder
- * above must not be entered: a process may use what lies below its working folder all the same. NULL with errno: there
- * is nothing, or it cannot be reached. free() */
+/* The absolute path without symbolic links, as realpath gives it; the caller's to free(). A relative path is returned
+ * unchanged if it exists but a parent of the working folder must not be entered (EACCES): the process can still use it.
+ * NULL with errno set: the path does not exist, cannot be reached, or memory ran out. */
 char *path_resolve(const char *path);

@@ -1,3 +1,4 @@
+/* A ring buffer with a mutex and a condition variable. */
 #define _GNU_SOURCE
 #include "core/base/queue.h"
 

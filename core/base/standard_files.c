@@ -1,3 +1,4 @@
+/* Filling closed standard descriptors from /dev/null. */
 #include "core/base/standard_files.h"
 
 #include <fcntl.h>

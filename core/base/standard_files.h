@@ -1,7 +1,7 @@
 #pragma once
-/* The three descriptors a program starts with. Knows nothing of what is read or written there. */
+/* Descriptors 0, 1 and 2: standard input, output and error. */
 
-/* Fills those of 0, 1 and 2 that are closed, so that no plan, socket or picture that is opened later gets such a number
- * and then what is meant for standard output or the log. Using one that was closed fails as before. First thing in
- * main. */
+/* Opens /dev/null on each of the three that is closed. Otherwise a file or socket opened later would get that number,
+ * and the output or log would be written into it. Opened the wrong way round (0 for writing, 1 and 2 for reading), so
+ * using one still fails. Call it first in main. Aborts if /dev/null cannot be opened. */
 void standard_files_fill(void);
