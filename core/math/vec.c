@@ -1,3 +1,4 @@
+/* Affine maps, 4x4 projections and boxes: inverting, composing, projecting. */
 #include "core/math/vec.h"
 
 double affine_determinant(const struct affine *map)
@@ -11,7 +12,7 @@ bool affine_invert(const struct affine *map, struct affine *inverse)
     if (!isfinite(det) || !vec3_is_finite(map->origin))
         return false;
     double scale = vec3_length(map->columns[0]) * vec3_length(map->columns[1]) * vec3_length(map->columns[2]);
-    if (!(fabs(det) > 1e-9 * scale)) /* columns nearly in one plane, or zero */
+    if (!(fabs(det) > 1e-9 * scale)) /* zero columns, or columns nearly in one plane */
         return false;
     /* rows of the inverse are cross products of the columns over the determinant */
     struct vec3 r0 = vec3_scale(vec3_cross(map->columns[1], map->columns[2]), 1 / det);

@@ -1,6 +1,6 @@
 #pragma once
-/* Small vectors, affine maps and 4x4 projections in double precision.
- * cglm works in single precision; a grid of 512 voxels over 500 mm with oblique cosines needs more. */
+/* Vectors, affine maps, 4x4 projections and boxes in double precision: single precision is too coarse for an oblique
+ * grid of 512 voxels over 500 mm. */
 #include <math.h>
 #include <stdbool.h>
 
@@ -42,7 +42,7 @@ static inline bool vec3_is_finite(struct vec3 a)
 {
     return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
 }
-/* The zero vector stays zero. */
+/* Unit length; the zero vector stays zero. */
 static inline struct vec3 vec3_normalize(struct vec3 a)
 {
     double length = vec3_length(a);
@@ -65,9 +65,9 @@ static inline struct vec3 affine_point(const struct affine *map, struct vec3 p)
     return vec3_add(affine_vector(map, p), map->origin);
 }
 double affine_determinant(const struct affine *map);
-/* false when singular or not finite; inverse is then untouched */
+/* False if the map is singular or not finite; inverse is then untouched. */
 bool affine_invert(const struct affine *map, struct affine *inverse);
-/* first b, then a */
+/* The map that applies first b, then a. */
 struct affine affine_compose(const struct affine *a, const struct affine *b);
 
 /* Column-major, m[4 * column + row], as OpenGL takes it. */
@@ -77,7 +77,7 @@ struct mat4 {
 
 struct mat4 mat4_multiply(const struct mat4 *a, const struct mat4 *b); /* first b, then a */
 bool mat4_invert(const struct mat4 *matrix, struct mat4 *inverse);
-/* With the perspective division. w == 0 gives not-a-number. */
+/* Includes the division by w; w == 0 gives not-a-number. */
 struct vec3 mat4_project(const struct mat4 *matrix, struct vec3 p);
 
 /* Axis-aligned box; empty when low > high. */

@@ -15,12 +15,12 @@
 #include "core/render/visible/draw_list.h"
 #include "core/render/visible/overlay.h"
 
-/* Either of the two implementations; the other is NULL. */
+/* One of gl and soft; the other is NULL. */
 struct renderer {
     pthread_t thread;
     struct gl_renderer *gl;
     struct soft_renderer *soft;
-    struct draw_cache *cache; /* of the back end's drawables */
+    struct draw_cache *cache; /* what the back end made of shapes and grids */
     struct overlay *overlay;
 };
 
@@ -52,8 +52,8 @@ static void assert_thread(const struct renderer *renderer)
     assert(pthread_equal(renderer->thread, pthread_self()));
 }
 
-/* Whether the system shows a graphics device at all. Starting a driver only to learn that it is a software one takes
- * longer than many pictures. Looks at names alone, which a confined process may. */
+/* True if the system has a device file of a graphics card. Starting a driver only to learn that it renders in software
+ * takes longer than many pictures. Checks names alone, which a confined process may. */
 static bool has_graphics_device(void)
 {
     static const char *const names[] = { "/dev/nvidiactl", "/dev/nvidia0", "/dev/dxg" };
@@ -114,7 +114,7 @@ void renderer_destroy(struct renderer *renderer)
     if (!renderer)
         return;
     assert_thread(renderer);
-    draw_cache_destroy(renderer->cache); /* while the back end is there */
+    draw_cache_destroy(renderer->cache); /* before the back end, which frees its drawables */
     gl_renderer_destroy(renderer->gl);
     soft_renderer_destroy(renderer->soft);
     overlay_destroy(renderer->overlay);
@@ -148,13 +148,13 @@ struct render_picture {
     struct renderer *renderer;
     struct draw_scope scope;
     struct render_options options;
-    struct draw_list *list; /* NULL: nothing is drawn yet */
+    struct draw_list *list; /* NULL: drawing has not begun */
     struct gl_picture *gl;
     struct soft_frame *soft;
     struct camera camera;
     struct render_timing timing;
-    struct image *image; /* drawn; NULL: the back end is not done with it */
-    bool is_done;        /* with what is painted over it */
+    struct image *image; /* as the back end drew it; NULL: not finished */
+    bool is_done;        /* the overlay is painted too */
 };
 
 struct render_picture *render_begin(struct renderer *renderer, const struct snapshot *snapshot,
@@ -242,6 +242,6 @@ struct image *render_snapshot(struct renderer *renderer, const struct snapshot *
                               struct error *err)
 {
     struct render_picture *picture = render_begin(renderer, snapshot, options);
-    (void)!render_go_on(picture, NULL, err); /* what is not done gives no image */
+    (void)!render_go_on(picture, NULL, err); /* a failed picture has no image */
     return render_end(picture, camera, timing);
 }

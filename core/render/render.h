@@ -1,18 +1,18 @@
 #pragma once
-/* A snapshot to an image. Leaks no GL: OpenGL and a software rasteriser of our own stand behind it, with the same
- * tests. */
+/* The renderer: a snapshot to an image, by OpenGL or by our own software rasteriser. Leaks no GL. */
 #include "core/render/visible/back_end.h"
 
-const char *render_back_end_word(
-    enum render_back_end back_end); /* "auto", "egl-device", "egl-surfaceless", "osmesa", "soft" */
+/* "auto", "egl-device", "egl-surfaceless", "osmesa", "soft" */
+const char *render_back_end_word(enum render_back_end back_end);
 bool render_back_end_from_word(const char *word, enum render_back_end *back_end);
 
 struct renderer;
 
-/* Starts the back end. RENDER_AUTO: OpenGL where a graphics card draws a correct test pixel, else our own software
- * rasteriser, which is always there and several times faster than OpenGL in software. Asked for by name, OpenGL may
- * also be a software one. The calling thread becomes the render thread: every other call must come from it (asserted).
- *   errors ERROR_GL with what each back end said */
+/* Starts the back end. RENDER_AUTO takes OpenGL if a graphics card draws a correct test pixel, else our own software
+ * rasteriser, which is several times faster than OpenGL in software. A back end of OpenGL that is asked for by name may
+ * be a software one.
+ *   errors  ERROR_GL with the message of each back end that was tried
+ *   thread  the calling thread becomes the render thread, which makes every other call (asserted) */
 NODISCARD struct renderer *renderer_create(enum render_back_end back_end, struct error *err);
 void renderer_destroy(struct renderer *renderer);
 const struct render_facts *renderer_facts(const struct renderer *renderer);
@@ -20,24 +20,25 @@ const struct render_facts *renderer_facts(const struct renderer *renderer);
  * processors are left out. Other back ends ignore it. */
 void renderer_tune(struct renderer *renderer, int n_threads, bool is_portable);
 
-/* The picture, RGBA, opaque, row 0 at the top. Uploads meshes and images on first use and keeps them until
- * renderer_forget. errors ERROR_GL, ERROR_MEMORY, ERROR_RANGE */
+/* The picture, RGBA, opaque, row 0 at the top; the caller's. Uploads shapes and images on first use and keeps them, at
+ * most until renderer_forget. errors ERROR_GL, ERROR_MEMORY, ERROR_LIMIT, ERROR_RANGE, ERROR_UNSUPPORTED, and those of
+ * derive_shape */
 NODISCARD struct image *render_snapshot(struct renderer *renderer, const struct snapshot *snapshot,
                                         const struct render_options *options, struct camera *camera,
                                         struct render_timing *timing, struct error *err);
 
-/* The same in pieces, so that a picture that takes long can wait while others are drawn: begin, go on until it is done
- * or has failed, end. Several pictures may be begun. However often one is paused, its bytes are the same. */
+/* The same in parts, so that a long picture can be paused while others are drawn: begin, go on until it is done or has
+ * failed, end. Several pictures may be begun at a time. Pauses do not change the picture. */
 struct render_picture;
 NODISCARD struct render_picture *render_begin(struct renderer *renderer, const struct snapshot *snapshot,
                                               const struct render_options *options);
-/* Draws at least one part of it, and on until a pause is due (NULL: never). Not to be called again once it is done or
- * has failed. errors as render_snapshot */
+/* Draws at least one part of the picture, and more until a pause is due (NULL: never). Not called again once the
+ * picture is done or has failed. errors as render_snapshot */
 NODISCARD enum render_state render_go_on(struct render_picture *picture, const struct render_pause *pause,
                                          struct error *err);
-/* Frees picture, done or not. The image, or NULL when it is not done; camera and timing (times of its own parts only)
- * are always filled. */
+/* Frees the picture, done or not. Returns the image; NULL if it is not done. Always fills camera and timing, which
+ * counts the time spent on this picture alone. */
 NODISCARD struct image *render_end(struct render_picture *picture, struct camera *camera, struct render_timing *timing);
 
-/* Drops everything kept for a plan; before the plan is destroyed, and while no picture is begun. */
+/* Drops everything that is kept of a plan. Called before the plan is destroyed, while no picture is begun. */
 void renderer_forget(struct renderer *renderer, const struct plan *plan);

@@ -1,6 +1,7 @@
+/* The home camera of a plan, and a view's camera resolved to axes and matrices. */
 #include "core/scene/snapshot.h"
 
-/* How much larger than the plan the home picture is. */
+/* Extent of the home picture over that of the plan. */
 static const double home_margin = 1.08;
 
 static void box_corners(const struct box3 *box, struct vec3 corners[8])
@@ -40,14 +41,14 @@ static double box_diagonal(const struct box3 *box)
     return vec3_length(vec3_sub(box->high, box->low));
 }
 
-/* Length of the shadow of a box of this size on a unit axis. */
+/* Length of a box of this size, projected on a unit axis. */
 static double box_extent(struct vec3 size, struct vec3 axis)
 {
     return fabs(axis.x) * size.x + fabs(axis.y) * size.y + fabs(axis.z) * size.z;
 }
 
-/* What the first 3-D picture frames: the regions; where they are only a small part of what was scanned (a lesion, and
- * no head around it) the image, so that it is seen where in the body one looks. */
+/* The box that the first 3-D picture frames: that of the regions. If it is less than half as long as the image (a
+ * lesion without the head around it), the image's, which shows where in the body the regions are. */
 static struct box3 home_box(const struct plan *plan)
 {
     struct box3 regions = plan_box(plan), image = pane_box(plan);
@@ -60,7 +61,7 @@ static double pane_height_mm(const struct box3 *box, const struct plane *plane)
     return fmax(home_margin * fmax(box_extent(size, plane->right), box_extent(size, plane->up)), 0.1);
 }
 
-/* How far in front of the centre the eye must stand so that every corner of the box lies within the opening angle. */
+/* Distance of the eye in front of the box's centre at which every corner lies within the opening angle. */
 static double home_distance_mm(const struct box3 *box, double fov_deg)
 {
     double slope = tan(fov_deg / 2 * MATH_PI / 180) / home_margin, distance = 0;
@@ -92,7 +93,8 @@ void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_cam
     }
 }
 
-/* Slice panes: parallel, square to their plane, the target on it. Returns millimetres across the smaller side. */
+/* A slice pane: parallel projection at right angles to its plane, the target on the plane. Returns millimetres across
+ * the smaller side of the picture. */
 static double resolve_pane(const struct snapshot *snapshot, struct camera *camera)
 {
     const struct scene_camera *asked = &snapshot->view.camera;
@@ -122,7 +124,7 @@ static double resolve_space(const struct snapshot *snapshot, struct camera *came
     camera->forward = vec3_normalize(sight);
     struct vec3 up = asked->has_up ? asked->up : vec3(0, 0, 1);
     if (vec3_length(vec3_cross(camera->forward, vec3_normalize(up))) <
-        1e-6) /* no up was asked and the view is along it */
+        1e-6) /* the default up lies along the line of sight */
         up = fabs(camera->forward.z) < 0.9 ? vec3(0, 0, 1) : vec3(0, -1, 0);
     camera->right = vec3_normalize(vec3_cross(camera->forward, up));
     camera->up = vec3_cross(camera->right, camera->forward);
@@ -130,7 +132,7 @@ static double resolve_space(const struct snapshot *snapshot, struct camera *came
     return asked->has_height_mm && camera->is_parallel ? asked->height_mm : fmax(at_target, 1e-3);
 }
 
-/* Everything that may be drawn lies between near and far, so 24 bits of depth are enough. */
+/* Near and far enclose the regions and all images tightly, so that 24 bits of depth are enough. */
 static void resolve_depth(const struct snapshot *snapshot, struct camera *camera)
 {
     struct box3 box = plan_box(snapshot->plan);
@@ -151,9 +153,8 @@ static void resolve_depth(const struct snapshot *snapshot, struct camera *camera
     far_mm += slack;
     if (!camera->is_parallel) {
         far_mm = fmax(far_mm, 10);
-        near_mm =
-            fmax(near_mm,
-                 far_mm / 2000); /* the eye stands in or before the plan: 2000 : 1 keeps 0.1 mm apart in the distance */
+        near_mm = fmax(near_mm, far_mm / 2000); /* the eye is inside or just before the plan: at 2000 : 1 the depth
+                                                   still resolves 0.1 mm at the far end */
     }
     camera->near_mm = near_mm;
     camera->far_mm = far_mm;

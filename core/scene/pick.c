@@ -1,3 +1,4 @@
+/* What lies under a pixel: a ray through the label layers and the slices, or a point of a slice pane. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +27,7 @@ static bool is_shown(const struct snapshot *snapshot, size_t region)
     return snapshot->styles[region].visible && snapshot->styles[region].opacity > 0;
 }
 
-/* Insertion by distance; equal distances keep the inner region behind the outer one. */
+/* Inserts by distance, after hits of equal distance. Drops the farthest beyond PICK_MAX_HITS. Returns the new count. */
 static size_t add_hit(struct pick_hit hits[PICK_MAX_HITS], size_t n, struct pick_hit hit)
 {
     size_t at = n;
@@ -40,13 +41,13 @@ static size_t add_hit(struct pick_hit hits[PICK_MAX_HITS], size_t n, struct pick
     return n < PICK_MAX_HITS ? n + 1 : n;
 }
 
-/* First entries of a ray into the regions of one layer: t_mm[region], infinity where it never enters. */
+/* The first entries of a ray into the regions of one label layer. */
 struct layer_walk {
     const struct snapshot *snapshot;
     const struct volume *layer;
     size_t layer_index;
-    bool *was_inside; /* by region: the ray starts inside and has not left yet */
-    double *t_mm;     /* by region */
+    bool *was_inside; /* [n_regions] the ray starts inside the region and has not left it yet */
+    double *t_mm;     /* [n_regions] along the ray; infinity: not entered */
 };
 
 static int region_of_label(const struct layer_walk *walk, uint16_t label)
@@ -58,8 +59,7 @@ static int region_of_label(const struct layer_walk *walk, uint16_t label)
     return -1;
 }
 
-/* The surface of a region encloses what lies inside it, so a voxel belongs to its region and all ancestors on the
- * layer. */
+/* A region's surface also encloses its descendants, so a voxel counts for its region and all ancestors on the layer. */
 static void enter_voxel(const struct layer_walk *walk, uint16_t label, double t)
 {
     const struct region *regions = walk->snapshot->plan->regions.regions;
@@ -68,7 +68,7 @@ static void enter_voxel(const struct layer_walk *walk, uint16_t label, double t)
             walk->t_mm[r] = t;
 }
 
-/* Regions the ray started inside and that this voxel no longer belongs to may be entered from now on. */
+/* A region that the ray started inside can be entered once the ray has left it: after a voxel that is not its own. */
 static void leave_voxel(const struct layer_walk *walk, uint16_t label)
 {
     const struct region_set *set = &walk->snapshot->plan->regions;
@@ -91,7 +91,7 @@ static void start_inside(const struct layer_walk *walk, uint16_t label)
             walk->was_inside[r] = true;
 }
 
-/* Part of the ray inside the grid's outer faces, t in mm; false when none. */
+/* The part of the ray inside the grid's outer faces, t0 to t1 in mm; false if there is none. */
 static bool clip_to_grid(const struct vec3 *origin_ijk, const struct vec3 *step_ijk, const uint32_t size[3], double *t0,
                          double *t1)
 {
@@ -113,8 +113,8 @@ static bool clip_to_grid(const struct vec3 *origin_ijk, const struct vec3 *step_
     return *t0 < *t1 && isfinite(*t1);
 }
 
-/* J. Amanatides, A. Woo, A Fast Voxel Traversal Algorithm for Ray Tracing, Eurographics 1987; in index space, so any
- * orientation and spacing of the grid is exact. */
+/* Source: J. Amanatides, A. Woo, A Fast Voxel Traversal Algorithm for Ray Tracing, Eurographics 1987. Works in index
+ * space, so it is exact for any orientation and spacing of the grid. */
 static void walk_layer(const struct layer_walk *walk, const struct ray *ray)
 {
     const struct grid *grid = &walk->layer->grid;
@@ -178,7 +178,8 @@ static size_t pick_regions(const struct snapshot *snapshot, const struct ray *ra
             walk_layer(&(struct layer_walk){ snapshot, set->layers[layer], layer, was_inside, t_mm }, ray);
 
     size_t n = 0;
-    for (int depth = 0, more = 1; more; depth++) { /* outer regions first, so that equal distances stay in that order */
+    for (int depth = 0, more = 1; more;
+         depth++) { /* outer regions first: add_hit keeps that order for equal distances */
         more = 0;
         for (size_t i = 0; i < set->n_regions; i++) {
             int region_level = region_depth(set, i);
@@ -190,7 +191,7 @@ static size_t pick_regions(const struct snapshot *snapshot, const struct ray *ra
     return n;
 }
 
-/* Values below the threshold are left out of slices in space; the value is the one the picture shows. */
+/* True if a slice in space is drawn at the point: its value, interpolated as in the picture, reaches cull_below. */
 static bool slice_is_drawn_at(const struct snapshot *snapshot, const struct volume *volume, struct vec3 point_lps_mm)
 {
     const struct scene_image_style *style = &snapshot->scene.image;
@@ -205,7 +206,7 @@ static bool slice_is_drawn_at(const struct snapshot *snapshot, const struct volu
     return value >= style->cull_below;
 }
 
-/* Slices of the image that are shown in space. */
+/* Adds the hits of image slices in space. */
 static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray, struct pick_hit hits[PICK_MAX_HITS],
                           size_t n)
 {
@@ -225,7 +226,7 @@ static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray
     return n;
 }
 
-/* Whether a point carries the region's label or that of something inside it. */
+/* Sets holds for the regions whose label the point carries, and for all their ancestors. */
 static void mark_regions_at(const struct snapshot *snapshot, struct vec3 point, bool holds[REGION_MAX])
 {
     const struct region_set *set = &snapshot->plan->regions;
@@ -276,7 +277,7 @@ size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, stru
     struct ray ray = pixel_ray(&camera, &snapshot->view, px, py);
     size_t n = pick_regions(snapshot, &ray, hits);
     n = pick_slices(snapshot, &ray, hits, n);
-    /* distances from the eye, not from the near plane the ray starts on */
+    /* the ray starts on the near plane; distances count from the eye */
     for (size_t i = 0; i < n; i++)
         hits[i].distance_mm = vec3_length(vec3_sub(hits[i].point_lps_mm, camera.eye_lps_mm));
     return n;

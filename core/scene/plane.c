@@ -91,7 +91,7 @@ struct plane_reach plane_reach(const struct plane *plane, const struct box3 *box
     return reach;
 }
 
-/* The axis or its opposite, whichever has its largest component positive. */
+/* The axis or its opposite: the one whose largest component is positive. */
 static struct vec3 towards_positive(struct vec3 axis)
 {
     double x = fabs(axis.x), y = fabs(axis.y), z = fabs(axis.z);

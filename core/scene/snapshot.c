@@ -1,3 +1,4 @@
+/* A frozen snapshot of plan, scene and view, checked against the plan; and the scene a new room starts with. */
 #include "core/scene/snapshot.h"
 
 #include <math.h>
@@ -26,7 +27,7 @@ bool snapshot_is_low_white(const struct snapshot *snapshot)
                                           : wanted == SCENE_LOW_VALUES_WHITE;
 }
 
-/* Index of the dose a scene shows, or -1 when the plan has none or none of that id. */
+/* Index of the dose that the scene shows; -1 if the plan has no dose, or none of that id. */
 static int dose_index(const struct plan *plan, const struct scene *scene)
 {
     if (scene->dose.id[0] == 0)
@@ -60,7 +61,7 @@ static bool check_camera(const struct scene_camera *camera, const struct view *v
     return true;
 }
 
-/* Styles by region index; what the scene leaves out has the default. */
+/* Fills the styles by region index. A region that the scene does not name has the default style. */
 static bool resolve_styles(struct snapshot *snapshot, char field[128], struct error *err)
 {
     const struct region_set *set = &snapshot->plan->regions;
@@ -81,8 +82,8 @@ static bool resolve_styles(struct snapshot *snapshot, char field[128], struct er
     return true;
 }
 
-/* What the scene names besides regions. */
-static bool find_things(struct snapshot *snapshot, char field[128], struct error *err)
+/* Finds the image and the dose that the scene names; checks the region that is to be checked. */
+static bool find_references(struct snapshot *snapshot, char field[128], struct error *err)
 {
     const struct plan *plan = snapshot->plan;
     const struct scene *scene = &snapshot->scene;
@@ -119,13 +120,13 @@ struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, st
 
     if (!resolve_styles(snapshot, field, err))
         goto fail;
-    if (!find_things(snapshot, field, err))
+    if (!find_references(snapshot, field, err))
         goto fail;
     snapshot->pane = plane_of_view(&snapshot->scene, &snapshot->view);
     snapshot->n_slices = planes_of_slices(&snapshot->scene, snapshot->slices);
     if (!check_camera(&snapshot->view.camera, &snapshot->view, field, err))
         goto fail;
-    /* position alone: the target is the plan's centre, which the position must not be */
+    /* without a target the camera looks at the plan's centre, which the position must not be */
     struct camera camera;
     camera_resolve(snapshot, &camera);
     if (!(vec3_length(camera.forward) > 0.5)) {
@@ -141,7 +142,7 @@ fail:
 
 struct snapshot *snapshot_ref(const struct snapshot *snapshot)
 {
-    struct snapshot *shared = (struct snapshot *)(uintptr_t)snapshot; /* frozen but for its counter */
+    struct snapshot *shared = (struct snapshot *)(uintptr_t)snapshot; /* frozen except for its counter */
     atomic_fetch_add(&shared->references, 1);
     return shared;
 }
@@ -159,7 +160,7 @@ void snapshot_unref(const struct snapshot *snapshot)
     free(shared);
 }
 
-/* The deepest region, the smallest of them if there are several: what a plan is about. */
+/* The deepest region in the hierarchy, the smallest if there are several: usually the tumour. */
 static const struct region *innermost_region(const struct region_set *set)
 {
     const struct region *best = NULL;
@@ -200,7 +201,7 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
         if (region_has_children(set, i))
             entry->value.opacity = region->parent < 0 ? 0.35 : 0.45;
         if (region->file_opacity > 0 &&
-            region->file_opacity < 1) /* SERA's preferences say 100 % of all that nobody set */
+            region->file_opacity < 1) /* SERA's preferences hold 100 % for regions that nobody set */
             entry->value.opacity = region->file_opacity;
     }
     const struct region *centre = innermost_region(set);
@@ -219,7 +220,7 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
         const struct scene_window *window = &scene->image.window;
         if (strcmp(plan->images[0].unit, "HU") == 0)
             scene->image.cull_below = -500;
-        else if (!plan->images[0].is_inverted) /* else what is low is bright, and no air */
+        else if (!plan->images[0].is_inverted) /* in an inverted image low values are bright and not air */
             scene->image.cull_below = fmax(window->center - 0.45 * window->width, -WINDOW_CENTER_FARTHEST);
     }
 }

@@ -1,5 +1,6 @@
 #pragma once
-/* What is asked to be seen, frozen: a plan, a scene and a view. A picture is a pure function of it. No JSON, no GL. */
+/* A snapshot: plan, scene and view, frozen. A picture is a pure function of it. Also cameras and picking. Knows no JSON
+ * and no GL. */
 #include "core/derive/derive.h"
 #include "core/math/vec.h"
 #include "core/plan/plan.h"
@@ -8,68 +9,69 @@
 
 struct snapshot {
     const struct plan *plan; /* borrowed; outlives every snapshot */
-    struct derive *derived;  /* borrowed, of the plan: what is computed from it on demand; outlives every snapshot */
+    struct derive *derived;  /* borrowed: the store of results computed from the plan; outlives every snapshot */
     struct scene scene;      /* owned */
     struct view view;        /* owned */
     uint32_t scene_revision;
-    struct scene_region_style *styles;     /* owned; by region index of the plan */
-    int image;                             /* index of the image shown, or -1 when the plan has none */
-    int dose;                              /* the same of the dose */
-    struct plane pane;                     /* of a slice pane: the plane it shows */
-    struct plane slices[PLANE_MAX_SLICES]; /* of the image, shown in space; in the order of drawing */
+    struct scene_region_style *styles;     /* owned; [n_regions] of the plan */
+    int image;                             /* index of the image shown; -1: the plan has none */
+    int dose;                              /* index of the dose shown; -1: the plan has none */
+    struct plane pane;                     /* the plane of a slice pane; else unused */
+    struct plane slices[PLANE_MAX_SLICES]; /* image slices shown in space, in the order of drawing */
     size_t n_slices;
     _Atomic int references;
 };
 
-/* A snapshot of the plan that derived is of. Takes scene and view, on failure too (their structs are emptied). Checks
- * them against the plan: every region id known, the image's and the dose's known (or empty), a camera that can be used
- * (position != target, up not along the line of sight). errors ERROR_NOT_FOUND, ERROR_RANGE; field names the place as a
- * JSON pointer, "/regions/foo" */
+/* A snapshot of derived's plan. Consumes scene and view, also on failure (their structs are emptied). Checks that the
+ * plan has every region, image and dose that the scene names, and that the camera can be used: position != target, up
+ * not along the line of sight.
+ *   field   on failure the JSON pointer of the wrong field, "/regions/foo"
+ *   errors  ERROR_NOT_FOUND, ERROR_RANGE */
 NODISCARD struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, struct view *view,
                                            uint32_t scene_revision, char field[128], struct error *err);
 struct snapshot *snapshot_ref(const struct snapshot *snapshot);
 void snapshot_unref(const struct snapshot *snapshot);
 
-/* The scene a new room starts with: every region visible in its own colour, those that contain others translucent
- * (outermost 0.35, inner ones 0.45), innermost opaque; the first image's window; slices through the centre of the
- * innermost region (else of the plan), axial visible when there is an image. Fills scene, which scene_finish frees. */
+/* The scene a new room starts with. Every region is visible in its own colour; regions that contain others are
+ * translucent (opacity 0.35 if outermost, else 0.45), the others opaque. The window is that of the first image. Slices
+ * go through the centre of the innermost region, else of the plan; the axial one is visible if there is an image. Fills
+ * scene, which scene_finish frees. */
 void scene_for_plan(const struct plan *plan, struct scene *scene);
 
-/* The image a scene shows: its index, or -1 when the plan has none or none of that id. */
+/* Index of the image that a scene shows; -1 if the plan has no image, or none of that id. */
 int scene_image_index(const struct plan *plan, const struct scene *scene);
-/* Whether low values of the image shown are white: as the scene says, else as the image asks. image >= 0 */
+/* True if low values of the image shown are white: as the scene says, else as the image asks. Only if image >= 0. */
 bool snapshot_is_low_white(const struct snapshot *snapshot);
-/* Whether the picture is a slice pane: parallel, looking at the snapshot's pane. Else it looks into space. */
+/* True if the picture is a slice pane: a parallel view of the plane `pane`. Else it is a view into space. */
 static inline bool snapshot_is_pane(const struct snapshot *snapshot)
 {
     return snapshot->view.kind != SCENE_KIND_3D;
 }
 
-/* The home camera of a kind: all regions (the image where they are less than half as long), from the front, superior
- * up; slice panes the whole image or regions. */
+/* The camera that shows the whole plan. 3-D: all regions from the front, superior up; the image instead if the regions'
+ * box is less than half as long. Slice panes: the whole first image, without one all regions. */
 void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera);
 
-/* A view's camera worked out: unit axes in patient space and the projection. */
+/* A view's camera, resolved: unit axes in patient space and the projection. */
 struct camera {
     struct vec3 eye_lps_mm, target_lps_mm;
-    struct vec3 right, up, forward; /* of the picture, orthonormal, right = forward x up */
+    struct vec3 right, up, forward; /* axes of the picture; orthonormal, right = forward x up */
     bool is_parallel;
-    double pixels_per_mm;   /* parallel: of the full-size view; 0 in perspective */
-    double near_mm, far_mm; /* along forward from the eye, around the plan's bounds */
+    double pixels_per_mm;   /* of the full-size view, in parallel projection; 0 in perspective */
+    double near_mm, far_mm; /* from the eye along forward; they enclose the plan's bounds */
     struct mat4 clip_from_lps_mm, lps_mm_from_clip;
 };
-/* A slice pane's camera looks at its plane: right and up are the plane's, the target is on it. */
+/* The camera of a snapshot. A slice pane's has the axes of its plane, and its target on the plane. */
 void camera_resolve(const struct snapshot *snapshot, struct camera *camera);
 
-/* What lies under a pixel of the full-size view, front to back, worked out on univels and slices, not on the picture.
- */
+/* What lies under a pixel of the full-size view. Computed from univels and slices, not from the picture. */
 struct pick_hit {
     struct vec3 point_lps_mm;
-    int region; /* index, or -1 for an image slice */
+    int region; /* index; -1: an image slice */
     double distance_mm;
 };
 enum { PICK_MAX_HITS = 32 };
-/* Fills hits, returns how many. Only what the scene shows (visible, opacity > 0),
- * whatever it is drawn as: between lines or points too. Slice panes: the point on the slice with the
- * regions there, innermost first. px, py: pixel centres are at + 0.5. */
+/* Fills hits front to back, returns how many. Hits every region that the scene shows (visible, opacity > 0) as if it
+ * were solid, whatever it is drawn as. On a slice pane: the point on the plane with the regions there, innermost first,
+ * then the image. px, py: pixel centres are at + 0.5. */
 size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, struct pick_hit hits[PICK_MAX_HITS]);

@@ -1,6 +1,5 @@
 #pragma once
-/* What render.h asks of a back end and hears from it: its kind, the options and timing of a picture, pauses. Knows no
- * back end. */
+/* The words between render.h and its back ends: which they are, options and timing of a picture, pauses. */
 #include "core/base/image.h"
 #include "core/derive/shapes.h"
 #include "core/scene/snapshot.h"
@@ -22,7 +21,7 @@ struct render_facts {
 };
 
 struct render_options {
-    int width_px, height_px; /* of the picture; may be smaller than the view's size: the same view, fewer pixels */
+    int width_px, height_px; /* of the picture; smaller than the view's size: the same view with fewer pixels */
     enum surface_detail detail;
     bool is_still; /* anti-aliased */
 };
@@ -30,13 +29,12 @@ struct render_options {
 struct render_timing {
     int64_t draw_us, read_us;
     size_t n_triangles;
-    bool is_coarse; /* some surface drawn was of reduced detail */
-    size_t n_added_px,
-        n_left_out_px; /* the check of a segmentation: what a surface encloses beyond the univels, what it leaves out */
+    bool is_coarse;                   /* some surface drawn was of reduced detail */
+    size_t n_added_px, n_left_out_px; /* of the check of a segmentation: struct check_counts */
 };
 
 struct render_pause {
-    bool (*is_due)(void *context); /* asked between parts of a picture, by several threads at once */
+    bool (*is_due)(void *context); /* called between parts of a picture, by several threads at a time */
     void *context;
 };
 enum render_state { RENDER_FAILED, RENDER_PAUSED, RENDER_DONE };

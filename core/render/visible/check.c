@@ -1,3 +1,4 @@
+/* The check of a segmentation on a slice pane: pixels enclosed by the surface against pixels in univels. */
 #include "core/render/visible/check.h"
 
 #include <math.h>
@@ -8,11 +9,11 @@
 
 static const uint8_t added_rgb[3] = { 0xff, 0xb0, 0x00 }, left_out_rgb[3] = { 0x10, 0x70, 0xff };
 
-/* Where the surface's lines cross the rows of the picture. */
+/* Where the surface's lines cross the middles of the picture's rows. */
 struct crossings {
-    double *x;                    /* sorted within a row */
-    size_t *starts;               /* [height + 1] */
-    double low_px[2], high_px[2]; /* around all lines */
+    double *x;                    /* in pixels, sorted within a row */
+    size_t *starts;               /* [height + 1] row y has x[starts[y]] .. x[starts[y + 1] - 1] */
+    double low_px[2], high_px[2]; /* box around all lines */
 };
 
 static struct vec3 to_pixels(const struct camera *camera, const struct image *image, const double p[3])
@@ -21,8 +22,8 @@ static struct vec3 to_pixels(const struct camera *camera, const struct image *im
     return vec3((clip.x + 1) / 2 * image->width_px, (1 - clip.y) / 2 * image->height_px, 0);
 }
 
-/* Rows whose line lies between the ends, the lower one included: then every corner of an outline belongs to one of its
- * sides. */
+/* The rows whose middle lies between the ends of a line, the lower end included: so a corner of an outline belongs to
+ * one of the two lines that meet there. False if there is none. */
 static bool rows_of(const struct vec3 *a, const struct vec3 *b, int height, int *first, int *last)
 {
     double low = fmin(a->y, b->y), high = fmax(a->y, b->y);
@@ -72,7 +73,8 @@ static bool find_crossings(const struct cut_lines *lines, const struct camera *c
     for (size_t i = 0; out->x && i < lines->n; i++) {
         const struct vec3 *a = &ends[i][0], *b = &ends[i][1];
         if (rows_of(a, b, height, &first, &last))
-            for (int y = first; y <= last; y++) /* starts[y + 1] runs to the row's end and so becomes its start */
+            for (int y = first; y <= last;
+                 y++) /* starts[y + 1] is the row's fill position; once the row is full it is the start of row y + 1 */
                 out->x[out->starts[y + 1]++] = a->x + (y + 0.5 + CHECK_NUDGE - a->y) / (b->y - a->y) * (b->x - a->x);
     }
     for (int y = 0; out->x && y < height; y++)
@@ -100,11 +102,11 @@ bool check_paint(const struct cut_region *univels, const struct cut_lines *surfa
     struct crossings crossings = { .low_px = { INFINITY, INFINITY }, .high_px = { -INFINITY, -INFINITY } };
     if (!find_crossings(surface, camera, image, &crossings, err))
         return false;
-    const double *m = camera->lps_mm_from_clip.m; /* of a parallel view: linear */
+    const double *m = camera->lps_mm_from_clip.m; /* linear, as a pane's projection is parallel */
     struct vec3 across = vec3_scale(vec3(m[0], m[1], m[2]), 2.0 / image->width_px),
                 down = vec3_scale(vec3(m[4], m[5], m[6]), -2.0 / image->height_px);
     struct vec3 middle = plane_nearest(plane, camera->target_lps_mm);
-    for (int corner = 0; corner < 8; corner++) { /* nothing differs outside of both */
+    for (int corner = 0; corner < 8; corner++) { /* pixels outside both boxes cannot differ */
         const struct box3 *box = &univels->bounds_lps_mm;
         const double p[3] = { corner & 1 ? box->high.x : box->low.x, corner & 2 ? box->high.y : box->low.y,
                               corner & 4 ? box->high.z : box->low.z };

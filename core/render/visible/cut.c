@@ -1,3 +1,4 @@
+/* Lines where a plane cuts regions, meshes and grids. */
 #include "core/render/visible/cut.h"
 
 #include <assert.h>
@@ -58,7 +59,8 @@ bool cut_region_init(struct cut_region *cut, const struct region_set *set, size_
         const struct region *one = &set->regions[inside[i]];
         const struct volume *layer = set->layers[one->layer];
         size_t part = 0;
-        if (!is_same_grid(&layer->grid, cut->grid)) /* as mask_from_region: it lies inside anyway */
+        if (!is_same_grid(&layer->grid,
+                          cut->grid)) /* left out as in mask_from_region: its voxels lie inside the region's own */
             continue;
         while (part < cut->n_parts && cut->parts[part].layer != layer)
             part++;
@@ -91,7 +93,8 @@ void cut_region_finish(struct cut_region *cut)
 bool cut_region_holds(const struct cut_region *cut, struct vec3 point_lps_mm)
 {
     uint32_t ijk[3];
-    if (cut->n_parts == 0 || !volume_voxel_at(cut->parts[0].layer, point_lps_mm, ijk)) /* one grid for all */
+    if (cut->n_parts == 0 ||
+        !volume_voxel_at(cut->parts[0].layer, point_lps_mm, ijk)) /* all parts have the same grid */
         return false;
     for (size_t i = 0; i < cut->n_parts; i++)
         if (cut->parts[i].is_inside[volume_label(cut->parts[i].layer, ijk[0], ijk[1], ijk[2])])
@@ -99,7 +102,8 @@ bool cut_region_holds(const struct cut_region *cut, struct vec3 point_lps_mm)
     return false;
 }
 
-/* Whether the plane is one of the grid's own slices: two of the grid's axes lie in the plane. */
+/* True if the plane is one of the grid's own slices, that is if two of the grid's axes lie in it. index_axis: the
+ * third. */
 static bool find_slice_axis(const struct grid *grid, const struct plane *plane, int *index_axis)
 {
     int n_in_plane = 0;
@@ -113,7 +117,8 @@ static bool find_slice_axis(const struct grid *grid, const struct plane *plane, 
     return n_in_plane == 2;
 }
 
-/* Pixels of the plane over the whole grid; columns[2] is across it. */
+/* The pixels of the plane over the whole grid; columns[2] of the map is across the plane. False: the plane misses it.
+ */
 static bool pixel_map(const struct grid *grid, const struct plane *plane, struct affine *map, uint32_t size[2])
 {
     int axis = 0;
@@ -143,7 +148,7 @@ static bool pixel_map(const struct grid *grid, const struct plane *plane, struct
     return true;
 }
 
-/* Pixels first .. end - 1 of a row; index: their place in the grid. */
+/* Sets the bits of pixels first_u .. end_u - 1 of row v that hold univels. index: grid index from pixel. */
 static void cut_row(const struct cut_region *cut, const struct affine *index, uint32_t v, uint32_t first_u,
                     uint32_t end_u, uint64_t *bits)
 {
@@ -162,7 +167,7 @@ static void cut_row(const struct cut_region *cut, const struct affine *index, ui
     }
 }
 
-/* Which pixels the region's box covers, and one more on every side: most regions are small. */
+/* The pixels that the region's box covers, and one more on each side. Most regions are much smaller than the grid. */
 static void find_pixels(const struct cut_region *cut, const struct affine *map, const uint32_t size[2],
                         uint32_t first[2], uint32_t end[2])
 {
@@ -170,7 +175,7 @@ static void find_pixels(const struct cut_region *cut, const struct affine *map, 
     struct affine pixel;
     double low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
     bool is_inverted = affine_invert(map, &pixel);
-    assert(is_inverted); /* made of a grid's axes */
+    assert(is_inverted); /* its columns are a grid's axes, or at right angles */
     for (int corner = 0; corner < 8; corner++) {
         struct vec3 p =
             affine_point(&pixel, vec3(corner & 1 ? box->high.x : box->low.x, corner & 2 ? box->high.y : box->low.y,
@@ -268,20 +273,21 @@ bool cut_borders(const struct mask *slice, struct cut_lines *lines, struct error
     return true;
 }
 
-/* A corner of a polygon; its position along the plane's normal, beside the plane's own, decides on which side it is. */
+/* A corner of a polygon, and its position along the plane's normal: above the plane if that is at least the plane's. */
 struct corner {
     struct vec3 lps_mm;
     double position_mm;
 };
 
-/* Where an edge from one side of the plane to the other meets it; the same point whichever way the edge is taken. */
+/* Where an edge meets the plane. Both triangles at an edge get the same point, as it is computed from below to above.
+ */
 static struct vec3 meet(const struct corner *below, const struct corner *above, double position_mm)
 {
     double t = (position_mm - below->position_mm) / (above->position_mm - below->position_mm);
     return vec3_add(below->lps_mm, vec3_scale(vec3_sub(above->lps_mm, below->lps_mm), t));
 }
 
-/* Adds where the plane cuts a polygon of n corners, seen as a fan of its edges: at two of them when it is convex. */
+/* Adds the segment where the plane cuts a convex polygon of n corners, if it does. */
 static bool cut_polygon(const struct corner *corners, int n, double position_mm, struct cut_lines *lines,
                         struct error *err)
 {

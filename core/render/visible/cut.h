@@ -12,10 +12,10 @@ struct cut_lines {
 };
 void cut_lines_finish(struct cut_lines *lines);
 
-/* A region's univels, those of everything inside it among them. */
+/* A region's univels, with those of its descendants on the same grid. */
 struct cut_region {
-    const struct grid *grid;   /* the region's own */
-    struct box3 bounds_lps_mm; /* around all of them */
+    const struct grid *grid;   /* of the region's label layer */
+    struct box3 bounds_lps_mm; /* of all these univels */
     struct {
         const struct volume *layer;
         uint8_t *is_inside; /* [65536] by label */
@@ -26,20 +26,20 @@ NODISCARD bool cut_region_init(struct cut_region *cut, const struct region_set *
 void cut_region_finish(struct cut_region *cut);
 bool cut_region_holds(const struct cut_region *cut, struct vec3 point_lps_mm);
 
-/* The pixels on the plane that hold univels, as a mask of one slice: the grid's own voxels where the plane is one of
- * its slices, else pixels along the plane's axes, as large as the grid's smallest spacing, each carrying the voxel at
- * its centre. *mask NULL: the plane misses the region. errors ERROR_MEMORY, ERROR_LIMIT */
+/* The pixels of the plane that hold univels, as a mask of one slice. If the plane is one of the grid's own slices, its
+ * pixels are the grid's voxels. Else they lie along the plane's axes, are as large as the grid's smallest spacing, and
+ * carry the voxel at their centre. *mask NULL: the plane misses the region. errors ERROR_MEMORY, ERROR_LIMIT */
 NODISCARD bool cut_univels(const struct cut_region *cut, const struct plane *plane, struct mask **mask,
                            struct error *err);
-/* Adds a slice's outlines; a pixel alone is a small diamond. errors of outline_slice */
+/* Adds the outlines of a slice; a single pixel becomes a small diamond. errors those of outline_slice */
 NODISCARD bool cut_outlines(const struct mask *slice, enum outline_method method, struct cut_lines *lines,
                             struct error *err);
-/* Adds the borders between pixels inside and outside. */
+/* Adds the sides of pixels between inside and outside. errors ERROR_MEMORY */
 NODISCARD bool cut_borders(const struct mask *slice, struct cut_lines *lines, struct error *err);
-/* Adds where the plane cuts the triangles: closed outlines where the mesh is closed. A corner on the plane counts as
- * above it. Works in single precision, as meshes do. */
+/* Adds the segments where the plane cuts the mesh's triangles: closed outlines if the mesh is closed. A vertex on the
+ * plane counts as above it. Single precision, as the mesh has. errors ERROR_MEMORY */
 NODISCARD bool cut_mesh(const struct mesh *mesh, const struct plane *plane, struct cut_lines *lines, struct error *err);
-/* Adds where the plane cuts the outer faces of a grid. */
+/* Adds the segments where the plane cuts the outer faces of a grid. errors ERROR_MEMORY */
 NODISCARD bool cut_grid(const struct grid *grid, const struct plane *plane, struct cut_lines *lines, struct error *err);
 /* The corners of a grid's outer faces; bit 0, 1, 2 of the number: high along i, j, k. */
 void cut_grid_corners(const struct grid *grid, struct vec3 corners_lps_mm[8]);

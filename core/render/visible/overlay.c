@@ -1,4 +1,4 @@
-/* The lines over a finished picture: made where planes cut regions and grids, kept, painted. */
+/* Executes the overlay of a draw list: computes where planes cut regions and grids, keeps these lines, paints them. */
 #include "core/render/visible/overlay.h"
 
 #include <math.h>
@@ -9,8 +9,8 @@
 #include "core/render/visible/cut.h"
 #include "core/render/visible/paint.h"
 
-/* Kept at most: three panes of all regions a plan can have, if their lines are not too many. */
-enum { MAX_ENTRIES = 3 * REGION_MAX + 512, MAX_LINES = 2 << 20 }; /* 48 bytes each */
+/* Limits of what is kept: three panes of all regions that a plan can have, and 96 MiB: a line has 48 bytes. */
+enum { MAX_ENTRIES = 3 * REGION_MAX + 512, MAX_LINES = 2 << 20 };
 static const uint32_t univel_rgb = 0xffffff;
 
 enum lines_of { LINES_OF_OUTLINE, LINES_OF_BORDER, LINES_OF_SHAPE };
@@ -20,16 +20,16 @@ struct entry {
     size_t region;
     enum lines_of what;
     enum outline_method method;
-    struct shape_key key; /* of a shape */
+    struct shape_key key; /* LINES_OF_SHAPE */
     struct plane plane;
     struct cut_lines lines;
-    bool is_open;   /* a shape that encloses nothing */
-    bool is_absent; /* the region cannot be shown in this way */
+    bool is_open;   /* LINES_OF_SHAPE: its lines enclose nothing */
+    bool is_absent; /* LINES_OF_SHAPE: the region has no such shape */
     struct entry *next;
 };
 
 struct overlay {
-    struct entry *first; /* newest first */
+    struct entry *first; /* most recently used first */
 };
 
 struct overlay *overlay_create(void)
@@ -102,7 +102,7 @@ static bool fill_shape(struct entry *entry, struct derive *derived, struct error
     return is_good;
 }
 
-/* Drops the oldest beyond what is kept. */
+/* Drops the least recently used beyond the limits. */
 static void trim(struct overlay *overlay)
 {
     struct entry **at = &overlay->first;
@@ -116,7 +116,7 @@ static void trim(struct overlay *overlay)
     }
 }
 
-/* Borrowed until the next picture. */
+/* The lines that are wanted, kept or computed now; borrowed until trim. NULL on failure. */
 static const struct entry *lines_of(struct overlay *overlay, struct derive *derived, const struct entry *wanted,
                                     struct error *err)
 {
@@ -185,7 +185,7 @@ static bool paint_check(const struct target *target, const struct draw *draw, st
     struct derive *derived = target->scope->snapshot->derived;
     size_t region = draw->subject.index;
     struct vec3 spacing = grid_spacing_mm(&plan->regions.layers[plan->regions.regions[region].layer]->grid);
-    /* never along faces of voxels */
+    /* beside the plane, so that it never runs along faces of voxels */
     struct plane plane = plane_moved(&draw->plane, CHECK_NUDGE * fmin(fmin(spacing.x, spacing.y), spacing.z));
     const struct entry wanted = {
         .plan = plan, .region = region, .what = LINES_OF_SHAPE, .plane = plane, .key = draw->lines.key
@@ -209,7 +209,7 @@ static bool paint_check(const struct target *target, const struct draw *draw, st
 
 /* ---- the dose's grid -------------------------------------------------------------------------------------------- */
 
-/* The part of an edge before the eye; false: none. */
+/* Shortens an edge to its part in front of the eye; false: none of it is. */
 static bool cut_before_eye(const struct camera *camera, double a[3], double b[3])
 {
     const double *m = camera->clip_from_lps_mm.m, least = fmax(1e-3, camera->near_mm / 10);

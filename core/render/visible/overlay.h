@@ -4,7 +4,7 @@
 #include "core/render/visible/check.h"
 #include "core/render/visible/draw.h"
 
-/* Keeps the lines of the slices it was last asked for. */
+/* Keeps the lines of recent pictures. */
 struct overlay;
 
 struct overlay *overlay_create(void);

@@ -1,3 +1,4 @@
+/* Anti-aliased lines over a picture: coverage is collected stroke by stroke, then blended once. */
 #include "core/render/visible/paint.h"
 
 #include <math.h>
@@ -6,13 +7,13 @@
 
 #include "core/base/mem.h"
 
-/* Longer lines are taken in pieces, so that the box around one is little more than the line. */
+/* Longer lines are painted in pieces of this length: the box around a slanted piece holds few pixels beside it. */
 #define PIECE_PX 24.0
 
 struct paint {
     struct image *image;
-    uint8_t *cover;                   /* of each pixel, 0..255 */
-    int low_x, high_x, low_y, high_y; /* touched, inclusive */
+    uint8_t *cover;                   /* [height][width] coverage of each pixel, 0..255 */
+    int low_x, high_x, low_y, high_y; /* box of the pixels covered so far, inclusive */
 };
 
 static void reset(struct paint *paint)
@@ -48,8 +49,7 @@ static double clamp(double value, double low, double high)
     return fmin(fmax(value, low), high);
 }
 
-/* A pixel is covered by how far its centre lies within the line's edge: a whole pixel inside fully, half a pixel
- * outside not. */
+/* Coverage falls linearly from 1, half a pixel inside the line's edge, to 0, half a pixel outside. */
 static void paint_piece(struct paint *paint, struct paint_point a, struct paint_point b, double radius)
 {
     const int width = paint->image->width_px, height = paint->image->height_px;
@@ -79,7 +79,7 @@ static void paint_piece(struct paint *paint, struct paint_point a, struct paint_
     }
 }
 
-/* The part of a + t (b - a) between two borders; false: none. */
+/* Narrows t0..t1 to where a + t (b - a) lies in low..high; false: nowhere. */
 static bool narrow(double a, double b, double low, double high, double *t0, double *t1)
 {
     double d = b - a;

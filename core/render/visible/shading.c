@@ -1,3 +1,4 @@
+/* Vertex normals averaged over their neighbourhood, for shading surfaces made of voxels. */
 #include "core/render/visible/shading.h"
 
 #include <math.h>
@@ -6,7 +7,7 @@
 
 #include "core/base/mem.h"
 
-/* Each vertex gets the sum of the normals of its triangles' corners, its own among them. */
+/* to[vertex] = sum of the normals at all corners of the triangles around it, its own included. */
 static void spread(const struct mesh *mesh, const float *restrict from, float *restrict to)
 {
     memset(to, 0, mesh->n_vertices * 3 * sizeof *to);
@@ -24,7 +25,7 @@ static void spread(const struct mesh *mesh, const float *restrict from, float *r
     }
 }
 
-/* Opposite normals may cancel out, at the edge of a sheet one voxel thick: then the vertex keeps its own. */
+/* Where opposite normals cancel, at the edge of a sheet one voxel thick, the vertex keeps its own. */
 static void normalize(const float *own, float *normals, size_t n_vertices)
 {
     for (size_t v = 0; v < n_vertices; v++) {
@@ -54,7 +55,7 @@ float *shading_normals(const struct mesh *mesh, int n_passes, struct error *err)
     return now;
 }
 
-/* As wide as the terraces of a surface that rises one voxel in a dozen. A reduced surface has larger triangles, so
+/* As wide as the terraces of a surface with a slope of 1 voxel in 12. The triangles of a reduced surface are larger, so
  * fewer passes reach as far. */
 enum { FULL_PASSES = 12 };
 

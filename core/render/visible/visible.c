@@ -1,3 +1,4 @@
+/* What a scene wants its regions drawn as. */
 #include "core/render/visible/visible.h"
 
 #include <stdlib.h>
@@ -72,7 +73,7 @@ struct visible_look visible_look(const struct snapshot *snapshot, size_t region,
     };
 }
 
-/* Only what is made of voxels' terraces needs its light smoothed. */
+/* Only surfaces with terraces of voxels need smoothed normals. */
 int visible_shading_passes(const struct shape_key *key, uint32_t reduction)
 {
     bool has_terraces = key->representation == REPRESENTATION_UNIVELS ||
@@ -129,7 +130,8 @@ size_t visible_n_translucent(const struct snapshot *snapshot)
     return n;
 }
 
-/* Whether a closed surface of the outer one's kind has the inner one's within it, if its voxels are. */
+/* True if the outer region's shape is a closed surface that encloses the inner region's shape whenever its voxels
+ * enclose those of the inner region. */
 static bool can_enclose(const struct snapshot *snapshot, size_t outer, size_t inner)
 {
     enum scene_representation a = snapshot->styles[outer].representation, b = snapshot->styles[inner].representation;
@@ -144,7 +146,7 @@ bool visible_hides(const struct snapshot *snapshot, size_t outer, size_t region)
            regions[outer].layer == regions[region].layer && can_enclose(snapshot, outer, region);
 }
 
-/* True unless some region hides it; where its shape and the camera decide, true. */
+/* False if some region hides it, as far as that can be told without shapes and camera. */
 static bool may_be_seen(const struct snapshot *snapshot, size_t region)
 {
     const struct region *regions = snapshot->plan->regions.regions;
@@ -169,7 +171,7 @@ bool visible_is_checked(const struct snapshot *snapshot, size_t region)
            (check->region[0] == 0 || strcmp(check->region, snapshot->plan->regions.regions[region].id) == 0);
 }
 
-/* What a region of a picture is made of. */
+/* The shape that a picture needs of a region. */
 static struct shape_want want_of(const struct snapshot *snapshot, size_t region, enum surface_detail detail)
 {
     bool is_in_space = !snapshot_is_pane(snapshot);
