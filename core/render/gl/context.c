@@ -1,3 +1,4 @@
+/* Opens an OpenGL context by EGL or OSMesa, whichever the back end is. */
 #include "core/render/gl/context.h"
 
 bool gl_context_open(struct gl_context *context, enum render_back_end back_end, enum gl_device_wish wish, struct gl *gl,

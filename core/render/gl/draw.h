@@ -18,14 +18,14 @@ struct gl_frame {
     const struct plan *plan;
     const struct draw_list *list;
     const struct camera *camera;
-    int view_width_px;       /* of the full picture, in which sizes of lines and points are told */
+    int view_width_px;       /* of the full picture: widths of lines and sizes of points are in its pixels */
     float clip_from_lps[16]; /* of the band, upside down */
 };
 
-/* errors ERROR_GL and those of draw_cache_grid, in all of them */
+/* errors of all: ERROR_GL, those of draw_cache_grid */
 NODISCARD bool gl_draw_shapes(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err);
 NODISCARD bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct error *err);
 NODISCARD bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struct error *err);
-/* Shapes whose depth rule is DRAW_DEPTH_LAYER. More than GL_LAYERS_MAX are composed in groups of as many. Leaves the
- * target's framebuffer bound. errors ERROR_MEMORY too */
+/* Shapes whose depth rule is DRAW_DEPTH_LAYER. More than GL_LAYERS_MAX are composed in groups of GL_LAYERS_MAX. Leaves
+ * the target's framebuffer bound. errors also ERROR_MEMORY */
 NODISCARD bool gl_draw_layers(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err);

@@ -1,4 +1,4 @@
-/* How OpenGL makes and frees what draw_cache.h keeps. */
+/* Makes and frees OpenGL's drawables: shapes as vertex buffers, grids as textures. */
 #include "core/render/gl/drawables.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #pragma once
-/* How OpenGL makes and frees what draw_cache.h keeps. */
+/* Makes and frees OpenGL's drawables, which draw_cache.h keeps. */
 #include "core/render/gl/upload.h"
 
-/* gl is borrowed and outlives the cache. Its drawables are struct gl_shape and struct gl_grid. */
+/* The maker of struct gl_shape and struct gl_grid. gl is borrowed and outlives the cache. */
 struct drawable_maker gl_drawable_maker(const struct gl *gl);

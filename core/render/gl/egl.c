@@ -1,3 +1,4 @@
+/* OpenGL contexts by EGL: on a device, or surfaceless. The library is opened at run time. */
 #include <dlfcn.h>
 #include <pthread.h>
 #include <string.h>
@@ -36,7 +37,7 @@ static void keep_why_not(const char *text)
     strncpy(egl.why_not, text ? text : "unknown", sizeof egl.why_not - 1);
 }
 
-/* Once in a process and never closed: drivers do not survive being unloaded. */
+/* Called once in a process. The library is never closed: drivers do not survive being unloaded. */
 static void load_egl(void)
 {
     void *library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
@@ -74,8 +75,8 @@ static gl_function get_function(const char *name)
     return (gl_function)egl.GetProcAddress(name);
 }
 
-/* A context on one display. Displays are shared by the whole process and stay initialised: another renderer may use the
- * same. */
+/* Opens a context on a display. The process shares displays and keeps them initialised, as another renderer may use the
+ * same one. */
 static bool open_display(struct gl_context *context, EGLDisplay display, struct gl *gl, struct error *err)
 {
     if (display == EGL_NO_DISPLAY || !egl.Initialize(display, NULL, NULL))

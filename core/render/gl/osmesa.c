@@ -1,3 +1,4 @@
+/* OpenGL contexts by OSMesa, Mesa's software renderer without a display. The library is opened at run time. */
 #include <dlfcn.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -6,7 +7,7 @@
 #include "core/base/mem.h"
 #include "core/render/gl/context.h"
 
-/* From GL/osmesa.h, which distributions drop together with the library; the library's interface is frozen. */
+/* Copied from GL/osmesa.h, which newer distributions no longer have; the library's interface is frozen. */
 enum {
     OSMESA_FORMAT = 0x22,
     OSMESA_DEPTH_BITS = 0x30,
@@ -31,7 +32,7 @@ static void keep_why_not(const char *text)
     strncpy(osmesa.why_not, text ? text : "unknown", sizeof osmesa.why_not - 1);
 }
 
-/* RTLD_LOCAL: its 1300 gl* symbols must not stand in for anybody else's. Never closed. */
+/* RTLD_LOCAL: its 1300 gl* symbols must not replace those of other libraries. The library is never closed. */
 static void load_osmesa(void)
 {
     void *library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);

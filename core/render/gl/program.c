@@ -1,6 +1,4 @@
-/* The shader programs: compiled from core/render/gl/shaders, and where their uniforms are.
- * Every picture is drawn upside down (the matrix of a band in renderer.c), so that reading it back gives row 0 at the
- * top. */
+/* The shader programs: compiling and linking core/render/gl/shaders, and finding their uniforms. */
 #include "core/render/gl/program.h"
 
 #include <stddef.h>
@@ -8,7 +6,7 @@
 
 #include "core/render/visible/visible.h"
 
-/* constants: "#define NAME value" lines that the shader uses, or "". */
+/* constants: lines of "#define NAME value" that the source uses, or "". Returns 0 on failure. */
 static GLuint compile(const struct gl *gl, GLenum kind, const char *name, const char *constants, const char *source,
                       struct error *err)
 {

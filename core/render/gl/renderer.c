@@ -1,4 +1,4 @@
-/* The OpenGL back end: start and stop, pictures in bands. */
+/* The OpenGL back end: start, test and stop; a picture drawn and read back in bands. */
 #include "core/render/gl/renderer.h"
 
 #include <stdio.h>
@@ -12,7 +12,7 @@
 #include "core/render/gl/drawables.h"
 #include "core/render/visible/visible.h"
 
-/* How many samples are drawn at a time: larger stills are drawn in bands. */
+/* A picture of more samples than a band is drawn in several bands. */
 enum { MAX_SIDE_PX = 4096, MAX_BAND_SAMPLES = 16 << 20 };
 
 struct gl_renderer {
@@ -23,7 +23,7 @@ struct gl_renderer {
     struct gl_target target;
     struct gl_layers layers;
     GLuint no_vertices, polygon_array, polygon, palette;
-    uint8_t *samples; /* a band of a still picture as it is read back */
+    uint8_t *samples; /* of a band of a still, as read back */
     size_t n_samples_bytes;
 };
 
@@ -79,7 +79,7 @@ static void make_polygon(struct gl_renderer *renderer)
     gl->BindTexture(GL_TEXTURE_2D, 0);
 }
 
-/* A back end is believed when a triangle through its compiler and rasteriser comes back with the right colour. */
+/* Tests the driver's compiler and rasteriser: a triangle must come back in the right colour. */
 static bool draw_test_pixel(struct gl_renderer *renderer, struct error *err)
 {
     const struct gl *gl = &renderer->gl;
@@ -162,7 +162,7 @@ struct drawable_maker gl_renderer_maker(struct gl_renderer *renderer)
 
 /* ---- a picture -------------------------------------------------------------------------------------------------- */
 
-/* The camera's matrix for rows first .. first + n of a picture of `rows` rows, upside down, so that row 0 is read
+/* The camera's matrix for rows first .. first + n - 1 of a picture of `rows` rows; upside down, so that row 0 is read
  * first. */
 static void band_matrix(const struct camera *camera, int first, int n, int rows, float out[16])
 {
@@ -176,7 +176,7 @@ static void band_matrix(const struct camera *camera, int first, int n, int rows,
     }
 }
 
-/* How many draws from `first` on are of its kind and depth rule, one after the other. */
+/* How many draws from `first` on have its kind and depth rule, one after the other. */
 static size_t n_alike(const struct draw_list *list, size_t first)
 {
     const struct draw *draws = list->draws;
@@ -196,7 +196,7 @@ static bool draw_alike(const struct gl_frame *frame, const struct draw *draws, s
     return true;
 }
 
-/* The draws of the list in their order. */
+/* Executes the list in its order. */
 static bool draw_all(const struct gl_frame *frame, struct error *err)
 {
     const struct gl *gl = frame->gl;

@@ -1,4 +1,4 @@
-/* Shapes by OpenGL: triangles, lines and points; translucent ones in layers. */
+/* Draws shapes by OpenGL: triangles, lines and points, and the composition of translucent layers. */
 #include "core/render/gl/draw.h"
 
 #include <stdlib.h>
@@ -46,7 +46,7 @@ static void draw_triangles(const struct gl_frame *frame, const struct draw *draw
 {
     const struct gl *gl = frame->gl;
     const struct gl_shape *shape = shape_of(draw);
-    gl->FrontFace(GL_CW); /* counter-clockwise, in a picture drawn upside down */
+    gl->FrontFace(GL_CW); /* counter-clockwise in patient space, but the picture is drawn upside down */
     gl->CullFace(GL_BACK);
     if (!draw->shape.look.is_two_sided)
         gl->Enable(GL_CULL_FACE);
@@ -68,8 +68,8 @@ static void draw_rectangles(const struct gl_frame *frame, const struct draw *dra
             edges[i][row] = m[0] * (float)e->x + m[4] * (float)e->y + m[8] * (float)e->z;
         }
     gl->Uniform2f(program->half_view, (float)frame->target->width_px / 2.0f, (float)frame->target->height_px / 2.0f);
-    gl->Uniform1f(program->half_size,
-                  (float)(fmax(1, draw->shape.look.size_px * samples_per_px) / 2)); /* never gone in a small picture */
+    gl->Uniform1f(program->half_size, (float)(fmax(1, draw->shape.look.size_px * samples_per_px) /
+                                              2)); /* at least a pixel wide in a small picture */
     gl->Uniform4f(program->cue, (float)cue.x, (float)cue.y, (float)cue.z, (float)cue.w);
     gl->Uniform4fv(program->edges, 3, &edges[0][0]);
     gl->Uniform1i(program->is_baked, draw->shape.look.is_baked);
@@ -87,7 +87,7 @@ static void draw_shape(const struct gl_frame *frame, const struct draw *draw)
         draw_rectangles(frame, draw, program);
 }
 
-/* Of the band that is being drawn. */
+/* True if the shape can be seen in the band. */
 static bool is_in_sight(const struct gl_frame *frame, const struct draw *draw)
 {
     struct mat4 clip_from_lps_mm;
@@ -104,7 +104,7 @@ bool gl_draw_shapes(const struct gl_frame *frame, const struct draw *draws, size
     return gl_check(frame->gl, "drawing opaque shapes", err);
 }
 
-/* The layers over the picture. */
+/* Composes the first n layers over the picture. */
 static void compose(const struct gl_frame *frame, int n)
 {
     const struct gl *gl = frame->gl;

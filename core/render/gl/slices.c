@@ -1,7 +1,7 @@
-/* Images and label layers on planes by OpenGL: a polygon where the plane cuts the grid. */
+/* Draws images and label layers on planes by OpenGL, as the polygon where the plane cuts the grid. */
 #include "core/render/gl/draw.h"
 
-/* A plane cuts a grid's box in at most six corners; each half-space adds at most one to the rectangle we start from. */
+/* The clipping starts from a rectangle, and each of the grid's six faces adds at most one corner. */
 enum { MAX_CORNERS = 10 };
 
 struct polygon {
@@ -9,7 +9,7 @@ struct polygon {
     struct vec3 lps_mm[MAX_CORNERS];
 };
 
-/* How far inside one face of the grid's box a point is, in voxels. */
+/* Distance of a point from one of the grid's outer faces, in voxels; positive inside. */
 static double inside_face(const struct grid *grid, int face, struct vec3 p_lps_mm)
 {
     struct vec3 ijk = affine_point(&grid->ijk_from_lps_mm, p_lps_mm);
@@ -17,7 +17,7 @@ static double inside_face(const struct grid *grid, int face, struct vec3 p_lps_m
     return face % 2 ? grid->size[face / 2] - 0.5 - at : at + 0.5;
 }
 
-/* I. E. Sutherland, G. W. Hodgman, Reentrant Polygon Clipping, CACM 1974; one face. */
+/* Clips the polygon at one face. Source: I. E. Sutherland, G. W. Hodgman, Reentrant Polygon Clipping, CACM 1974. */
 static void clip_face(const struct grid *grid, int face, struct polygon *polygon)
 {
     struct polygon kept = { 0 };
@@ -32,7 +32,7 @@ static void clip_face(const struct grid *grid, int face, struct polygon *polygon
     *polygon = kept;
 }
 
-/* Where a plane cuts a grid; n < 3: nowhere. */
+/* The polygon in which a plane cuts a grid's outer faces; n < 3: the plane misses the grid. */
 static struct polygon slice_polygon(const struct grid *grid, const struct plane *plane)
 {
     struct box3 box = grid_bounds_lps_mm(grid);

@@ -1,9 +1,10 @@
+/* The table of OpenGL functions: filled from a library, and the driver's errors. */
 #include "core/render/gl/table.h"
 
 #include <dlfcn.h>
 #include <string.h>
 
-/* C knows no conversion from an object pointer to a function pointer; POSIX says both are alike. */
+/* C defines no conversion from object to function pointers; POSIX guarantees equal representations. */
 gl_function gl_symbol(void *library, const char *name)
 {
     void *symbol = dlsym(library, name);
@@ -40,6 +41,6 @@ bool gl_check(const struct gl *gl, const char *during, struct error *err)
     if (first == GL_NO_ERROR)
         return true;
     for (int i = 0; i < 16 && gl->GetError() != GL_NO_ERROR; i++)
-        ; /* a lost context reports for ever */
+        ; /* at most 16: a lost context reports errors for ever */
     return error_set(err, ERROR_GL, "%s: the graphics driver says %s (0x%04x)", during, gl_error_words(first), first);
 }

@@ -1,6 +1,6 @@
 #pragma once
-/* Every OpenGL function we call, as one table filled from the chosen back end. No gl* symbol is ever linked: OSMesa
- * exports its own, and which one a direct call would reach depends on link order. */
+/* A table of every OpenGL function we call, filled from the chosen library. No gl* symbol is linked, because OSMesa
+ * exports its own, and link order would decide which one a direct call reaches. */
 #include <GL/glcorearb.h>
 
 #include "core/base/error.h"
@@ -86,9 +86,10 @@ struct gl {
 
 typedef void (*gl_function)(void);
 
-/* A function of a library opened with dlopen; NULL when it has none of that name. */
+/* A function of a library opened with dlopen; NULL if it has none of that name. */
 gl_function gl_symbol(void *library, const char *name);
-/* Fills the table. errors ERROR_GL naming the first function the driver does not have */
+/* Fills the table. errors ERROR_GL with the name of the first function that the driver does not have */
 NODISCARD bool gl_load(struct gl *gl, gl_function (*get)(const char *name), struct error *err);
-/* The driver's error since the last call, as an error that says during what. All pending ones are taken. */
+/* False if the driver has reported an error since the last call; clears all pending ones. during: what was being done,
+ * for the error's text. errors ERROR_GL */
 NODISCARD bool gl_check(const struct gl *gl, const char *during, struct error *err);

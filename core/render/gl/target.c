@@ -1,10 +1,11 @@
+/* The framebuffers that pictures and translucent layers are drawn into. */
 #include "core/render/gl/target.h"
 
 #include <stddef.h>
 
 void gl_target_destroy(const struct gl *gl, struct gl_target *target)
 {
-    gl->DeleteFramebuffers(1, &target->framebuffer); /* zero names are passed over by GL */
+    gl->DeleteFramebuffers(1, &target->framebuffer); /* GL ignores the name 0 */
     gl->DeleteFramebuffers(1, &target->over);
     gl->DeleteRenderbuffers(1, &target->color);
     gl->DeleteTextures(1, &target->depth);

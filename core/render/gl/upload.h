@@ -1,14 +1,14 @@
 #pragma once
-/* Shapes and grids on the graphics card: what is there of each, and how it gets there. */
+/* Uploads shapes and grids to the graphics card. */
 #include "core/render/gl/table.h"
 #include "core/render/visible/draw_cache.h"
 
 struct gl_shape {
     struct drawable base;
     enum shape_kind kind;
-    bool is_faceted; /* whatever the scene says */
+    bool is_faceted; /* always shaded with one normal a triangle */
     GLuint vertex_array, vertices, indices;
-    GLsizei n;                  /* indices of triangles; segments or points, each an instance of four corners */
+    GLsizei n;                  /* indices of triangles; or instances of lines or points, four corners each */
     struct vec3 edge_lps_mm[3]; /* points: of the voxel they stand for */
 };
 
@@ -18,11 +18,11 @@ struct gl_grid {
     double value_per_unit, value_at_zero; /* images: value = texture * value_per_unit + value_at_zero */
 };
 
-/* n_passes: of shading_normals. Adds the memory it takes to out->base.n_bytes. On failure the caller deletes what was
- * made. errors ERROR_GL, ERROR_MEMORY */
+/* n_passes: of shading_normals. Adds the memory on the card to out->base.n_bytes. On failure too the caller deletes the
+ * names in *out. errors ERROR_GL, ERROR_MEMORY */
 NODISCARD bool gl_upload_shape(const struct gl *gl, const struct shape *shape, int n_passes, struct gl_shape *out,
                                struct error *err);
-/* On failure nothing is left to delete. errors ERROR_GL, ERROR_MEMORY, ERROR_LIMIT more than the driver takes,
+/* On failure the caller has nothing to delete. errors ERROR_GL, ERROR_MEMORY, ERROR_LIMIT more than the driver takes,
  * ERROR_UNSUPPORTED labels of real numbers */
 NODISCARD bool gl_upload_grid(const struct gl *gl, const struct volume *volume, bool is_labels, struct gl_grid *out,
                               struct error *err);

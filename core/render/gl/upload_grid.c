@@ -1,4 +1,4 @@
-/* A grid to the graphics card: images and label layers as 3-D textures. */
+/* Uploads images and label layers to the graphics card, as 3-D textures. */
 #include "core/render/gl/upload.h"
 
 #include <stdlib.h>
@@ -12,7 +12,8 @@ struct texel_format {
     double zero;  /* stored value at texture value 0 */
 };
 
-/* Signed 16 bit values travel as unsigned ones with 32768 added: exact, where signed normalised texels lose -32768. */
+/* Signed 16-bit values are uploaded as unsigned ones with 32768 added, which is exact: signed normalised texels map
+ * -32768 and -32767 to the same value. */
 static const struct texel_format image_formats[] = {
     [VOXEL_U8] = { GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1, 255, 0 },
     [VOXEL_I16] = { GL_R16, GL_RED, GL_UNSIGNED_SHORT, 2, 65535, -32768 },
@@ -26,7 +27,7 @@ static const struct texel_format label_formats[] = {
     [VOXEL_F32] = { 0, 0, 0, 0, 0, 0 },
 };
 
-/* The driver's limits first, so that what does not fit is refused with numbers and not found out half way. */
+/* Checks the driver's limits before anything is uploaded, so that the error can name the sizes. */
 static bool check_size(const struct gl *gl, const struct volume *volume, const struct texel_format *format,
                        struct error *err)
 {

@@ -1,4 +1,4 @@
-/* A shape to the graphics card: triangles with their normals, lines and points as instances. */
+/* Uploads shapes to the graphics card: triangles with vertex normals, lines and points as instances. */
 #include "core/render/gl/upload.h"
 
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 #include "core/base/mem.h"
 #include "core/render/visible/shading.h"
 
-/* Position in single precision, normal in 16 bits a component: fine enough for shading, and less to fetch. */
+/* A normal has 16 bits a component: fine enough for shading, and less to fetch than floats. */
 struct vertex {
     float position_lps_mm[3];
     int16_t normal[4];
@@ -15,7 +15,7 @@ struct vertex {
 
 struct point {
     struct vertex vertex;
-    uint8_t shade[4]; /* the first alone */
+    uint8_t shade[4]; /* the first; the others pad */
 };
 
 struct segment {
@@ -36,7 +36,7 @@ static void send(const struct gl *gl, GLenum kind, const void *bytes, size_t n, 
     out->base.n_bytes += n;
 }
 
-/* What the vertex shaders call attribute `place`. divisor 1: of an instance. */
+/* Sets up the attribute at location `place`. divisor 0: one value a vertex; 1: one an instance. */
 static void attribute(const struct gl *gl, GLuint place, GLint n, GLenum type, size_t stride, size_t offset,
                       GLuint divisor)
 {

@@ -1,4 +1,4 @@
-/* Which of a chunk's triangles lie in which bands of the picture. */
+/* Sorts the triangles of a chunk into the bands of the picture: a counting sort. */
 #include "core/render/soft/bins.h"
 
 #include <string.h>
@@ -23,7 +23,7 @@ bool soft_chunk_sort(struct soft_chunk *chunk, int width, int height, int n_band
     if (!keep_all(chunk, width, height) ||
         !soft_reserve(&chunk->starts, &chunk->starts_capacity, n_starts, sizeof *chunk->starts))
         return false;
-    /* count[b + 1], summed up to ends, then filled from the back of each band so that ends become starts */
+    /* counts by band, summed up to the ends of the bands; filling each band from its end leaves the starts */
     uint32_t *starts = chunk->starts;
     memset(starts, 0, n_starts * sizeof *starts);
     for (size_t i = 0; i < chunk->n_kept; i++)

@@ -1,8 +1,8 @@
 #pragma once
-/* Which of a chunk's triangles lie in which bands of the picture. Chunks are sorted side by side, each by one thread;
- * bands then go through the chunks in order, so that pictures do not depend on the number of threads. */
+/* Sorts the triangles of a chunk into the bands of the picture. Threads sort chunks side by side; each band is then
+ * drawn from the chunks in their order, so that the picture does not depend on the number of threads. */
 #include "core/render/soft/chunk.h"
 
-/* Sorts the chunk's triangles that face the viewer (or are seen from both sides) and hold a sample into n_bands bands
- * of a picture of width x height samples. errors ERROR_MEMORY */
+/* Fills kept, extras, refs and starts of the chunk, for n_bands bands of a picture of width x height samples. False: no
+ * memory. */
 NODISCARD bool soft_chunk_sort(struct soft_chunk *chunk, int width, int height, int n_bands);

@@ -1,4 +1,4 @@
-/* What is kept of a chunk: clipping, and the test whether a triangle can be seen. */
+/* The triangles and rectangles that are kept of a chunk: visibility, clipping, storing. */
 #include "core/render/soft/chunk.h"
 
 #include <math.h>
@@ -31,7 +31,7 @@ bool soft_reserve(void *array, size_t *capacity, size_t n, size_t size)
 
 static double inside(const struct soft_corner *corner, int plane)
 {
-    const double guard = SOFT_GUARD / 2; /* well inside what can be drawn */
+    const double guard = SOFT_GUARD / 2; /* well inside the range that can be rasterised */
     switch (plane) {
     case 0: return corner->z + corner->w;
     case 1: return corner->x + guard * corner->w;
@@ -54,7 +54,7 @@ static struct soft_corner between(const struct soft_corner *a, const struct soft
     return out;
 }
 
-/* I. E. Sutherland, G. W. Hodgman, Reentrant Polygon Clipping, CACM 1974. */
+/* Source: I. E. Sutherland, G. W. Hodgman, Reentrant Polygon Clipping, CACM 1974. */
 static void clip(struct soft_polygon *polygon)
 {
     for (int plane = 0; plane < SOFT_CLIP_PLANES; plane++) {
@@ -64,8 +64,8 @@ static void clip(struct soft_polygon *polygon)
             double fa = inside(a, plane), fb = inside(b, plane);
             if (fa >= 0 && kept.n < SOFT_MAX_CORNERS)
                 kept.corners[kept.n++] = *a;
-            if ((fa >= 0) != (fb >= 0) &&
-                kept.n < SOFT_MAX_CORNERS) /* from the inner one, so that a neighbour gets the same point */
+            if ((fa >= 0) != (fb >= 0) && kept.n < SOFT_MAX_CORNERS) /* from the inner corner, so that the neighbour at
+                                                                        this edge gets the same point */
                 kept.corners[kept.n++] = fa >= 0 ? between(a, b, fa / (fa - fb)) : between(b, a, fb / (fb - fa));
         }
         *polygon = kept;

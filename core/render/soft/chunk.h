@@ -1,13 +1,14 @@
 #pragma once
-/* A chunk: up to SOFT_CHUNK_PRIMITIVES triangles, lines or points of one shape, and the triangles and rectangles that
- * are kept of them: what faces the viewer and holds a sample. Clips at the near plane. Knows no kind of shape. */
+/* A chunk: up to SOFT_CHUNK_PRIMITIVES triangles, lines or points of one shape, and what is kept of them to rasterise:
+ * triangles and rectangles that face the viewer and hold a sample, clipped at the near plane. Knows no kind of shape.
+ */
 #include "core/base/error.h"
 #include "core/render/soft/drawables.h"
 #include "core/render/visible/visible.h"
 
 enum { SOFT_CHUNK_PRIMITIVES = 4096 };
 
-/* A shape to draw. */
+/* A shape of the draw list, as the rasteriser draws it. */
 struct soft_item {
     const struct soft_shape *shape;
     struct soft_lighting lighting;
@@ -18,8 +19,9 @@ struct soft_item {
     size_t first_chunk, n_chunks;
 };
 
+/* A triangle or rectangle that is kept. */
 struct soft_kept {
-    uint32_t ref;
+    uint32_t ref; /* as in soft_triangles */
     uint16_t first_band, last_band;
 };
 
@@ -28,20 +30,19 @@ struct soft_chunk {
     size_t first, n; /* triangles, segments or points */
     struct soft_kept *kept;
     size_t n_kept, kept_capacity;
-    struct soft_vertex
-        *extras; /* corners of triangles that are not the mesh's own: clipped or flat ones, lines, points */
+    struct soft_vertex *extras; /* [n_extras][3] corners that are not the mesh's own: clipped, flat, lines, points */
     size_t n_extras, extras_capacity;
-    uint32_t *refs; /* by band; band b has starts[b] .. starts[b + 1] */
+    uint32_t *refs; /* by band: band b has refs[starts[b]] .. refs[starts[b + 1] - 1] */
     size_t refs_capacity;
     uint32_t *starts;
     size_t starts_capacity;
 };
 void soft_chunk_finish(struct soft_chunk *chunk);
 
-/* Makes room for n elements of size bytes at *array, a pointer; keeps what is there. False: no memory. */
+/* Grows an array to n elements of size bytes at least. array: address of the pointer to it. False: no memory. */
 NODISCARD bool soft_reserve(void *array, size_t *capacity, size_t n, size_t size);
 
-/* Whether a triangle faces the viewer and its box holds a sample, and in which bands. */
+/* True if a triangle faces the viewer and its box holds a sample of the picture. Always fills the bands. */
 static inline bool soft_can_be_seen(const struct soft_vertex *a, const struct soft_vertex *b,
                                     const struct soft_vertex *c, int width, int height, struct soft_kept *kept)
 {
@@ -65,9 +66,11 @@ static inline bool soft_can_be_seen(const struct soft_vertex *a, const struct so
            (right >= 0); /* y is down: counter-clockwise is negative */
 }
 
-struct soft_corner { /* place times w in sub-samples, depth times w, w, and its light by component */
-    double x, y, z, w, shade[4];
-    const struct soft_vertex *own; /* already rounded as its neighbours see it, or NULL */
+/* A corner before the division by w and rounding. */
+struct soft_corner {
+    double x, y, z, w;             /* x, y: sub-samples times w; z: depth times w */
+    double shade[4];               /* red, green, blue, alpha, 0..255 */
+    const struct soft_vertex *own; /* the same corner rounded, as the triangles around it use it; or NULL */
 };
 enum { SOFT_CLIP_PLANES = 5, SOFT_MAX_CORNERS = 4 + SOFT_CLIP_PLANES };
 struct soft_polygon {
@@ -77,9 +80,10 @@ struct soft_polygon {
 void soft_project(const struct soft_lighting *lighting, double x, double y, double z, struct soft_corner *corner);
 NODISCARD bool soft_keep_triangle(struct soft_chunk *chunk, const struct soft_vertex triangle[3], int width,
                                   int height);
-/* From low to high, of low's depth and colour. */
+/* From low, left and above, to high; with the depth and colour of low. */
 NODISCARD bool soft_keep_rectangle(struct soft_chunk *chunk, const struct soft_vertex *low,
                                    const struct soft_vertex *high, int width, int height);
-/* Cuts off what lies before the near plane or too far out. shade: of all of it, or NULL: the corners'. */
+/* Clips the polygon at the near plane and at the rasteriser's range. shade: of the whole polygon; NULL: the corners'.
+ */
 NODISCARD bool soft_keep_polygon(struct soft_chunk *chunk, struct soft_polygon *polygon, const uint32_t *shade,
                                  int width, int height);

@@ -1,4 +1,4 @@
-/* Shapes as the rasteriser wants them: vertices by component, indices as the shape has them. */
+/* Makes and frees the rasteriser's drawables: vertices by component, indices as the shape has them. */
 #include "core/render/soft/drawables.h"
 
 #include <stdlib.h>
@@ -17,8 +17,8 @@ static void destroy_shape(void *context, struct drawable *drawable)
     free(shape);
 }
 
-/* By component, so that one instruction works on several vertices; normals in 16 bits, fine enough to shade with.
- * normals NULL: none. */
+/* Stores vertices by component, so that one instruction works on several of them. Normals have 16 bits, fine enough for
+ * shading. normals NULL: zeroes. */
 static bool fill_vertices(struct soft_shape *made, const float *positions, const float *normals, size_t n,
                           struct error *err)
 {

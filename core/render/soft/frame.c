@@ -1,4 +1,4 @@
-/* The draws of a picture as the rasteriser wants them. */
+/* Prepares a picture: the draws of its list as the rasteriser's items and planes. */
 #include "core/render/soft/frame.h"
 
 #include <math.h>
@@ -44,7 +44,8 @@ static struct soft_item make_item(const struct soft_frame *frame, const struct d
         .lighting = make_lighting(frame, draw),
         .look = draw->shape.look,
         .cue = draw->shape.cue,
-        .size = fmax(1, draw->shape.look.size_px * samples_per_px) * SOFT_SUB, /* thinner if smaller, never gone */
+        .size =
+            fmax(1, draw->shape.look.size_px * samples_per_px) * SOFT_SUB, /* at least a sample in a small picture */
     };
 }
 

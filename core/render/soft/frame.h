@@ -1,5 +1,5 @@
 #pragma once
-/* A picture by the software rasteriser, begun: its draws as the rasteriser wants them. */
+/* A picture that the software rasteriser has begun: the draws of its list as items and planes. */
 #include <stdatomic.h>
 
 #include "core/render/soft/bins.h"
@@ -12,19 +12,19 @@ struct soft_renderer;
 struct soft_frame {
     struct soft_frame *next_frame; /* of the renderer's list */
     struct soft_renderer *renderer;
-    struct soft_sorted *sorted; /* while it is drawn on */
+    struct soft_sorted *sorted; /* valid during soft_picture_go_on */
     const struct render_pause *pause;
     const struct draw_list *list;
     const struct draw_scope *scope;
     struct render_options options;
     int width, height, n_bands; /* width and height in samples */
-    struct soft_item *items;    /* of the list's shapes, in its order */
-    struct soft_plane *planes;  /* of the list's images and labels, in its order */
+    struct soft_item *items;    /* the list's shapes, in its order */
+    struct soft_plane *planes;  /* the list's images and label layers, in its order */
     size_t n_items, n_planes, n_chunks, n_blocks;
-    size_t n_layers;               /* most layers that are composed at a time */
-    int layer_rows;                /* of a layer, drawn at a time */
-    struct image *image;           /* NULL: nothing is prepared yet */
-    atomic_size_t next, next_band; /* piece of work, band, nobody has taken */
+    size_t n_layers;               /* composed at a time, at most */
+    int layer_rows;                /* rows of a layer that are drawn at a time */
+    struct image *image;           /* NULL: not prepared yet */
+    atomic_size_t next, next_band; /* the next piece of work, the next band, for any thread */
     atomic_bool is_out_of_memory;
 };
 

@@ -1,15 +1,16 @@
+/* The inner loops of the rasteriser for any processor, and the choice between them and newer ones. */
 #include "core/render/soft/kernels.h"
 
 #define NAME(x) x##_portable
 #define TARGET
-/* lanes are 0 or -1 */
+/* of vectors whose lanes are 0 or -1 */
 #define LANES_OR(v) ((((LONGS)(v))[0] | ((LONGS)(v))[1]) | (((LONGS)(v))[2] | ((LONGS)(v))[3]))
 #define LANES_AND(v) ((((LONGS)(v))[0] & ((LONGS)(v))[1]) & (((LONGS)(v))[2] & ((LONGS)(v))[3]))
 #define ANY_SET(v) (LANES_OR(v) != 0)
 #define ALL_SET(v) (LANES_AND(v) == -1)
 #include "core/render/soft/kernels.inc"
 
-/* Samples are packed as they lie in memory. */
+/* A sample is stored as one 32-bit word, whose bytes must be those of the image. */
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
                "the software rasteriser packs samples for little-endian machines");
 

@@ -1,3 +1,4 @@
+/* The inner loops of the rasteriser for processors with AVX2. */
 #include "core/render/soft/kernels.h"
 
 #if defined(__x86_64__)

@@ -1,17 +1,17 @@
 #pragma once
-/* The light on a surface, as core/render/gl/program.c has it: a key light from the upper right, a weak fill from the
- * left, a soft rim; translucency as proto/scene.json says. Without branches, so that a compiler can work on many points
- * at once. */
+/* The light on a surface, the same as in core/render/gl/shaders/light.glsl: a key light from the upper right, a weak
+ * fill light from the left, a soft rim; translucency as in proto/scene.json. Has no branches, so that compilers
+ * vectorise it. */
 #include <math.h>
 
 #include "core/render/soft/kernels.h"
 
-/* edge^1.8 from its square root, within 7e-5 (less than a fiftieth of a grey level) */
+/* s^3.6, that is edge^1.8 for s = sqrt(edge); error below 7e-5, a fiftieth of a grey level */
 #define LIGHT_RIM(s) ((s) * (s) * (s) * (0.16669681f + (s) * (1.21131124f + (s) * (-0.52702127f + (s)*0.14907992f))))
 #define LIGHT_CLAMP(x) ((x) > 0.0f ? (x) : 0.0f)
 #define LIGHT_BYTE(x) ((uint32_t)(int32_t)(((x) < 1.0f ? (x) : 1.0f) * 255.0f + 0.5f))
 
-/* (nx, ny, nz): normal, (tx, ty, tz): direction towards the viewer; both of length 1, in patient space. */
+/* n: normal, t: direction towards the viewer; unit vectors in patient space. */
 __attribute__((always_inline)) static inline uint32_t light_at(const struct soft_lighting *s, float nx, float ny,
                                                                float nz, float tx, float ty, float tz)
 {
@@ -27,7 +27,8 @@ __attribute__((always_inline)) static inline uint32_t light_at(const struct soft
                 fill_cosine = -0.741f * ex + 0.106f * ey + 0.663f * ez;
     const float key = LIGHT_CLAMP(key_cosine), fill = LIGHT_CLAMP(fill_cosine);
     const float key_2 = key * key, key_4 = key_2 * key_2, key_8 = key_4 * key_4, gloss = 0.07f * (key_8 * key_8);
-    const float ambient = s->opacity < 1.0f ? 0.5f : 0.3f; /* what shows through black must be brighter to be seen */
+    const float ambient =
+        s->opacity < 1.0f ? 0.5f : 0.3f; /* translucent surfaces over black need more light to be seen */
     const float lit = ambient + 0.58f * key + 0.18f * fill + 0.24f * (edge * edge);
     const float root = sqrtf(edge), rim = s->is_rim ? 1.82f * s->opacity : 0.0f,
                 flat = s->is_rim ? 0.3f * s->opacity : s->opacity;

@@ -1,8 +1,9 @@
+/* Slices through grids, row by row. */
 #include "core/render/soft/planes.h"
 
 #include <math.h>
 
-/* Rows of a 3 x 3 matrix. */
+/* m[row][column] */
 struct mat3 {
     double m[3][3];
 };
@@ -20,7 +21,7 @@ static bool invert(const struct mat3 *a, struct mat3 *inverse)
     for (int column = 0; column < 3; column++)
         size *= sqrt(a->m[0][column] * a->m[0][column] + a->m[1][column] * a->m[1][column] +
                      a->m[2][column] * a->m[2][column]);
-    if (!(fabs(d) > 1e-12 * size)) /* the eye lies in the plane */
+    if (!(fabs(d) > 1e-12 * size)) /* the plane is seen edge-on */
         return false;
     for (int row = 0; row < 3; row++)
         for (int column = 0; column < 3; column++) {
@@ -37,8 +38,9 @@ static void clip_coordinates(const struct mat4 *matrix, struct vec3 p, double la
             matrix->m[row] * p.x + matrix->m[4 + row] * p.y + matrix->m[8 + row] * p.z + matrix->m[12 + row] * last;
 }
 
-/* A point of the plane is origin + u right + v up. Its place in the picture, times w, is linear in (u, v, 1); so by
- * the inverse u / w, v / w and 1 / w are linear in the place, and with them all that is linear on the plane. */
+/* A point of the plane is origin + u right + v up. Its position in the picture times w is linear in (u, v, 1). The
+ * inverse map gives u / w, v / w and 1 / w linear in the position, and so is every quantity over w that is linear on
+ * the plane. */
 void soft_plane_init(struct soft_plane *plane, const struct volume *volume, const struct plane *plane_lps,
                      const struct mat4 *clip_from_lps_mm, int width, int height)
 {
@@ -73,7 +75,7 @@ void soft_plane_init(struct soft_plane *plane, const struct volume *volume, cons
     plane->texture.voxels = volume->voxels;
 }
 
-/* Narrows [*first, *last] to where value + step x >= 0. */
+/* Narrows *first..*last to the x with value + step * x >= 0. */
 static void narrow(double value, double step, double *first, double *last)
 {
     if (step > 0)
@@ -95,7 +97,7 @@ void soft_plane_draw(const struct soft_plane *plane, const struct soft_kernels *
             row.at[i] = plane->at[i][2] + plane->at[i][0] * 0.5 + plane->at[i][1] * (band->first_row + y + 0.5);
         }
         double first = 0, last = band->width - 1;
-        narrow(row.at[3] - 1e-12, row.step[3], &first, &last); /* before the eye */
+        narrow(row.at[3] - 1e-12, row.step[3], &first, &last); /* in front of the eye */
         for (int axis = 0; axis < 3; axis++) {
             double high = plane->texture.size[axis] - 0.5;
             narrow(row.at[axis] + 0.5 * row.at[3], row.step[axis] + 0.5 * row.step[3], &first, &last);

@@ -1,4 +1,4 @@
-/* The lines and points of a shape in a chunk, as rectangles square to the picture. */
+/* Keeps the lines and points of a chunk as rectangles that face the viewer. */
 #include "core/render/soft/quads.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ static float cue_at(const struct visible_cue *cue, double x, double y, double z)
     return (float)fmin(1, fmax(VISIBLE_DARKEST, cue->x * x + cue->y * y + cue->z * z + cue->w));
 }
 
-/* Cut at the near plane, b at its middle; false: nothing is left. */
+/* Moves b to the near plane if it lies in front of it; false: a does too. */
 static bool cut(const struct soft_corner *a, struct soft_corner *b)
 {
     double fa = a->z + a->w, fb = b->z + b->w, t;
@@ -41,7 +41,8 @@ static bool is_beside(double a, double b, double margin, double last)
     return (a < -margin && b < -margin) || (a > last + margin && b > last + margin);
 }
 
-/* A rectangle round the segment, as much longer at both ends as it is wide, so that neighbours close. */
+/* Keeps the rectangle around a segment. It is longer by half its width at both ends, so that there are no gaps between
+ * the segments of a line. */
 static bool keep_line(struct soft_chunk *chunk, struct soft_corner a, struct soft_corner b, uint32_t shade, int width,
                       int height)
 {
@@ -94,7 +95,7 @@ bool soft_keep_lines(struct soft_chunk *chunk, int width, int height)
 
 /* ---- points ----------------------------------------------------------------------------------------------------- */
 
-/* Half the extent of a voxel's picture along x and y, in sub-samples: no less than that of any of its corners. */
+/* Half the extent of a voxel in the picture along x and y, in sub-samples: at least to its farthest corner. */
 static void cover(const struct soft_item *item, const struct soft_corner *middle, double half[2])
 {
     const struct soft_lighting *l = &item->lighting;
@@ -108,12 +109,12 @@ static void cover(const struct soft_item *item, const struct soft_corner *middle
         across[1] += fabs(ey - y * ew) / 2;
         towards += fabs(ew) / 2;
     }
-    double w = fmax(middle->w - towards, middle->w / 8); /* a voxel around the eye is as large as one right before it */
+    double w = fmax(middle->w - towards, middle->w / 8); /* bounded for a voxel around the eye */
     half[0] = across[0] / w;
     half[1] = across[1] / w;
 }
 
-/* The border of what is one voxel thin faces no way more than another: it is lit as if it faced the viewer. */
+/* A border voxel of a part one voxel thin has no normal: it is shaded as if it faced the viewer. */
 static uint32_t live_shade(const struct soft_item *item, size_t p)
 {
     const struct soft_points *points = &item->shape->points;
@@ -127,7 +128,7 @@ static uint32_t live_shade(const struct soft_item *item, size_t p)
     return soft_light(&item->lighting, towards, towards);
 }
 
-/* From low to high in whole sub-samples, at least one sample, and not far beyond the picture. */
+/* The extent along x or y in whole sub-samples: at least one sample, and at most 4 samples beyond the picture. */
 static void extent(double middle, double half, bool is_covering, int n_samples, int32_t range[2])
 {
     const double least = -4.0 * SOFT_SUB, most = (n_samples + 4.0) * SOFT_SUB;

@@ -1,4 +1,4 @@
-/* The software rasteriser: start and stop, and a picture drawn in bands by several threads. */
+/* The software back end: start and stop; a picture projected, sorted and drawn in bands by several threads. */
 #include "core/render/soft/soft.h"
 
 #include <assert.h>
@@ -12,27 +12,26 @@
 #include "core/render/soft/frame.h"
 #include "core/render/visible/visible.h"
 
-/* More threads than this wait for memory and for each other. */
+/* More threads than MAX_THREADS would wait for memory and for each other. */
 enum { MAX_THREADS = 16, VERTEX_BLOCK = 8192 };
-/* Pictures whose projected and sorted triangles are kept while others are drawn; those of a further one are made again.
- */
+/* Begun pictures whose sorted triangles are kept. Those of further ones are sorted again when they go on. */
 enum { MAX_SORTED = 2 };
-/* Of a thread's translucent layers together, unless one row of them takes more. */
+/* A thread's memory for translucent layers, unless a single row of all layers takes more. */
 enum { LAYER_BYTES = 1 << 20 };
 _Static_assert((int)SOFT_MAX_LAYERS >= (int)REGION_MAX, "every region of a plan can be translucent");
 
-/* What one thread draws into. */
+/* The buffers of one thread. */
 struct scratch {
-    uint32_t *band; /* depth, colour */
-    size_t n_band;  /* samples of each */
+    uint32_t *band; /* [2][n_band] depth, colour */
+    size_t n_band;
     uint32_t *layers;
-    size_t n_layers; /* samples of all of them */
+    size_t n_layers; /* samples of all layers; layers is [2][n_layers] */
 };
 
 /* A picture's triangles, projected and sorted into bands. */
 struct soft_sorted {
-    const struct soft_frame *owner; /* NULL: none */
-    uint64_t used;                  /* when last, counted in uses */
+    const struct soft_frame *owner; /* NULL: free */
+    uint64_t used;                  /* value of n_uses at the last use */
     struct soft_vertex *vertices;
     size_t n_vertices;
     struct soft_chunk *chunks;
@@ -78,7 +77,7 @@ void soft_renderer_tune(struct soft_renderer *renderer, int n_threads, bool is_p
     learn_facts(renderer);
 }
 
-/* What grew with a plan goes with it. */
+/* Frees the buffers that grew with a plan. */
 static void drop_buffers(struct soft_renderer *renderer)
 {
     for (int i = 0; i < MAX_SORTED; i++) {
@@ -153,7 +152,7 @@ static bool make_scratch(struct soft_frame *frame, struct scratch *scratch, stru
     return true;
 }
 
-/* The frame's own sorted triangles, or the place of those that were not used for longest, which are then lost. */
+/* The slot of the frame's sorted triangles. is_lost: it has none, and takes over the least recently used slot. */
 static struct soft_sorted *take_sorted(struct soft_frame *frame, bool *is_lost)
 {
     struct soft_renderer *renderer = frame->renderer;
@@ -268,7 +267,7 @@ static void draw_item(const struct soft_frame *frame, const struct soft_item *it
     }
 }
 
-/* The nearest sheet of each item into a layer of its own, a few rows at a time, then all of them over the picture. */
+/* Draws the nearest sheet of each item into a layer of its own, a few rows at a time, and composes the layers. */
 static void draw_layers(const struct soft_frame *frame, const struct soft_item *items, size_t n,
                         const struct scratch *scratch, const struct soft_band *band, int index)
 {
@@ -314,7 +313,7 @@ static void write_rows(const struct soft_frame *frame, const struct soft_band *b
     }
 }
 
-/* The draws of the list in their order, as far as they lie in a band. */
+/* Executes the list in its order, within a band. */
 static void draw_all(const struct soft_frame *frame, const struct scratch *scratch, const struct soft_band *band,
                      int index)
 {
@@ -341,7 +340,7 @@ static bool pause_is_due(const struct soft_frame *frame)
     return frame->pause && frame->pause->is_due(frame->pause->context);
 }
 
-/* At least one band each time, so that a picture gets done however often it is paused. */
+/* Draws at least one band in each call, so that a picture gets done however often it is paused. */
 static void draw_bands(void *context, int part, int n_parts)
 {
     struct soft_frame *frame = context;

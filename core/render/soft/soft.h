@@ -1,6 +1,5 @@
 #pragma once
-/* The implementation of render.h in plain C, for render.c alone. Draws what core/render/gl draws, by the same rules;
- * knows no GL. */
+/* The software back end: executes draw lists on the processor. For render.c alone. Knows no GL. */
 #include "core/render/visible/back_end.h"
 #include "core/render/visible/draw.h"
 
@@ -10,11 +9,11 @@ struct soft_frame;
 struct soft_renderer *soft_renderer_create(void);
 void soft_renderer_destroy(struct soft_renderer *renderer);
 const struct render_facts *soft_renderer_facts(const struct soft_renderer *renderer);
-/* How it makes drawables, for the cache that its pictures' lists are made from. */
+/* The maker for the cache of its drawables. */
 struct drawable_maker soft_renderer_maker(void);
-/* The parts of render_begin, render_go_on and render_end: executes a list of the scope, both borrowed until the end.
- * timing: zeroed before the first time. Equal bytes for any number of threads and pauses. Several pictures may be
- * begun. errors ERROR_RANGE, ERROR_LIMIT, ERROR_MEMORY */
+/* Its parts of render_begin, render_go_on and render_end. scope and its list are borrowed until the end. Adds to
+ * timing. The picture has equal bytes for any number of threads and pauses. errors  ERROR_RANGE, ERROR_LIMIT,
+ * ERROR_MEMORY */
 struct soft_frame *soft_picture_begin(struct soft_renderer *renderer, const struct draw_scope *scope,
                                       const struct draw_list *list, const struct render_options *options);
 NODISCARD enum render_state soft_picture_go_on(struct soft_frame *frame, const struct render_pause *pause,
@@ -23,5 +22,5 @@ NODISCARD struct image *soft_picture_end(struct soft_frame *frame); /* NULL: not
 /* Frees the buffers that grew with a plan. No picture is begun. */
 void soft_renderer_forget(struct soft_renderer *renderer);
 
-/* For tests and benches: how many threads draw (1..64), and whether what only newer processors have is used. */
+/* renderer_tune. */
 void soft_renderer_tune(struct soft_renderer *renderer, int n_threads, bool is_portable);

@@ -1,10 +1,9 @@
-/* The triangles of a mesh in a chunk: which can be seen, and those that need corners of their own. */
+/* Keeps the triangles of a chunk that can be seen. */
 #include "core/render/soft/triangles.h"
 
 #include <math.h>
 
-/* The light on a triangle of its own plane, seen from its middle; from behind, where that can be, the plane's other
- * side. */
+/* The shaded colour of a triangle by its own normal, at its middle. */
 static uint32_t flat_shade(const struct soft_item *item, const uint32_t *corners)
 {
     const struct soft_points *points = &item->shape->points;
@@ -20,7 +19,7 @@ static uint32_t flat_shade(const struct soft_item *item, const uint32_t *corners
                       (float[3]){ (float)t.x, (float)t.y, (float)t.z });
 }
 
-/* A corner's light: of the triangle, and as far as the look wants it of the corner's own normal. */
+/* A corner's colour: the triangle's, mixed with the vertex's own by the look's rounding. */
 static uint32_t round_off(const struct soft_item *item, uint32_t flat, uint32_t own)
 {
     uint32_t share = (uint32_t)lround(256 * item->look.rounding), mixed = 0;
@@ -44,7 +43,7 @@ static bool keep_clipped(struct soft_chunk *chunk, const uint32_t *corners, cons
         for (int c = 0; c < 4; c++)
             corner->shade[c] = (double)(own >> 8 * c & 255);
         if (item->look.rounding > 0)
-            corner->own = NULL; /* its light is not this */
+            corner->own = NULL; /* its shade differs */
     }
     return soft_keep_polygon(chunk, &polygon, item->look.rounding > 0 ? NULL : shade, width, height);
 }
@@ -54,7 +53,7 @@ static bool is_in_picture(const struct soft_vertex *a, const struct soft_vertex 
     return (a->x != SOFT_CLIPPED) & (b->x != SOFT_CLIPPED) & (c->x != SOFT_CLIPPED);
 }
 
-/* One that the mesh's own corners cannot stand for. */
+/* Keeps a triangle that needs corners of its own: clipped, flat, or seen from behind. */
 static bool keep_special(struct soft_chunk *chunk, const uint32_t *corners, int width, int height)
 {
     const struct soft_item *item = chunk->item;
@@ -97,7 +96,7 @@ bool soft_keep_triangles(struct soft_chunk *chunk, int width, int height)
                 !soft_reserve(&chunk->kept, &chunk->kept_capacity, chunk->n_kept + SOFT_CHUNK_PRIMITIVES,
                               sizeof *chunk->kept))
                 return false;
-            struct soft_kept *kept = &chunk->kept[chunk->n_kept]; /* written anyway: a branch less */
+            struct soft_kept *kept = &chunk->kept[chunk->n_kept]; /* always written: saves a branch */
             kept->ref = (uint32_t)t;
             chunk->n_kept += soft_can_be_seen(a, b, c, width, height, kept);
         }

@@ -1,5 +1,5 @@
-// The translucent layers over each other, the farther first: with rank_depth 0 in their own order, else in each sample's.
-// Alpha of the result is the share that still shows of what was there before, for blending.
+// Blends the translucent layers, the farthest first: in the order of the layers if rank_depth is 0, else by depth at each
+// sample. Alpha of the result is the share of the picture below that still shows, for blending.
 uniform sampler2DArray source;
 uniform sampler2DArray depths;
 uniform sampler2D before; // depth of what is opaque

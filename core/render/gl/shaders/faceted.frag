@@ -1,4 +1,4 @@
-// A surface with a normal a triangle: the plane of the triangle from the derivatives of its place.
+// A surface shaded by triangle normals, which are computed from the derivatives of the position.
 #include "light.glsl"
 uniform mat3 eye_from_lps;
 uniform float rounding;

@@ -1,4 +1,4 @@
-// A surface with a normal a triangle. rounding: share of the light that falls as on a rounded surface (visible.h).
+// A surface shaded by triangle normals. rounding: share of the shading by vertex normals (visible.h).
 #include "light.glsl"
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;

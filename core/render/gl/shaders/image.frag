@@ -1,8 +1,8 @@
 // A slice of an image: window and level.
 uniform sampler3D source;
-uniform vec2 grey; // stored value to 0 .. 1
-uniform vec2 ends; // what 0 and 1 are drawn as
-uniform float cull; // in the same scale: what is below is left out
+uniform vec2 grey; // grey = texture value * x + y
+uniform vec2 ends; // the levels that grey 0 and 1 are drawn with
+uniform float cull; // as grey: not drawn below it
 in vec3 at;
 out vec4 result;
 void main() {

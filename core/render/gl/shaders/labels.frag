@@ -1,7 +1,7 @@
 // A slice of a label layer: one colour a label.
 uniform usampler3D source;
-uniform sampler2D palette; // 256 x 256, label = 256 row + column; alpha 0: nothing to see
-uniform vec4 scale; // voxels along the grid
+uniform sampler2D palette; // 256 x 256, label = 256 row + column; alpha 0: not drawn
+uniform vec4 scale; // size of the grid in voxels
 in vec3 at;
 out vec4 result;
 void main() {

@@ -8,7 +8,7 @@ vec4 light(vec3 n, float facing) {
     float edge = 1.0 - facing;
     float key = max(dot(n, vec3(0.426, 0.568, 0.704)), 0.0);
     float fill = max(dot(n, vec3(-0.741, 0.106, 0.663)), 0.0);
-    float ambient = opacity < 1.0 ? 0.5 : 0.3; // what shows through black must be brighter to be seen
+    float ambient = opacity < 1.0 ? 0.5 : 0.3; // translucent surfaces over black need more light to be seen
     float gloss = key * key; gloss *= gloss; gloss *= gloss; gloss *= gloss;
     vec3 lit = color.rgb * (ambient + 0.58 * key + 0.18 * fill + 0.24 * edge * edge) + 0.07 * gloss;
     float alpha = is_rim != 0 ? opacity * (0.3 + 1.82 * pow(edge, 1.8)) : opacity;

@@ -14,7 +14,7 @@ void main() {
     vec4 a = clip_from_lps * vec4(first, 1.0), b = clip_from_lps * vec4(second, 1.0), uncut = a;
     float fa = a.z + a.w, fb = b.z + b.w;
     shade = vec4(color.rgb * (cue_at(first) + cue_at(second)) * 0.5, opacity);
-    gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // nothing
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the view: not drawn
     if (fa < 0.0 && fb < 0.0) return;
     if (fa < 0.0) a = mix(a, b, fa / (fa - fb));
     if (fb < 0.0) b = mix(uncut, b, fa / (fa - fb));

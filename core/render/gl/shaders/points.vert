@@ -16,9 +16,9 @@ out vec4 shade;
 void main() {
     vec4 middle = clip_from_lps * vec4(position, 1.0);
     vec3 towards = normalize(viewer.xyz - viewer.w * position);
-    vec3 n = dot(normal, normal) > 0.25 ? normal : towards; // none: what is one voxel thin
+    vec3 n = dot(normal, normal) > 0.25 ? normal : towards; // a part one voxel thin has no normal
     shade = is_baked != 0 ? vec4(color.rgb * baked, opacity) : light(eye_from_lps * n, clamp(dot(n, towards), 0.0, 1.0));
-    gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // nothing
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the view: not drawn
     if (middle.z + middle.w < 0.0 || middle.w <= 0.0) return;
     vec2 at = middle.xy / middle.w, size = vec2(half_size);
     if (is_covering != 0) {

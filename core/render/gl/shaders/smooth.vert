@@ -1,5 +1,5 @@
-// A surface with a normal a vertex. Lit at the vertices: a surface made of voxels has triangles of a pixel or few, and
-// on a software rasteriser a fragment costs what a vertex does.
+// A surface shaded by vertex normals, at the vertices: a surface made of voxels has triangles of a few pixels, and on a
+// software rasteriser a fragment costs as much as a vertex.
 // viewer: in perspective the eye and 1, in parallel projection the direction towards the viewer and 0.
 #include "light.glsl"
 layout(location = 0) in vec3 position;
@@ -11,7 +11,7 @@ uniform int is_two_sided;
 out vec4 shade;
 void main() {
     vec3 towards = normalize(viewer.xyz - viewer.w * position);
-    float cosine = dot(normal, towards), side = is_two_sided != 0 && cosine < 0.0 ? -1.0 : 1.0; // that is seen
+    float cosine = dot(normal, towards), side = is_two_sided != 0 && cosine < 0.0 ? -1.0 : 1.0; // the side that is seen
     shade = light(eye_from_lps * (side * normal), clamp(side * cosine, 0.0, 1.0));
     gl_Position = clip_from_lps * vec4(position, 1.0);
 }
