@@ -1,6 +1,7 @@
 #pragma once
 /* The renderer: a snapshot to an image, by OpenGL or by our own software rasteriser. Leaks no GL. */
 #include "core/render/visible/back_end.h"
+#include "core/scene/camera.h"
 
 /* "auto", "egl-device", "egl-surfaceless", "osmesa", "soft" */
 const char *render_back_end_word(enum render_back_end back_end);

@@ -1,4 +1,6 @@
 /* The home camera of a plan, and a view's camera resolved to axes and matrices. */
+#include "core/scene/camera.h"
+
 #include "core/scene/snapshot.h"
 
 /* Extent of the home picture over that of the plan. */

@@ -1,8 +1,10 @@
 /* What lies under a pixel: a ray through the label layers and the slices, or a point of a slice pane. */
+#include "core/scene/pick.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/scene/snapshot.h"
+#include "core/scene/camera.h"
 
 /* p(t) = origin + t direction, direction of unit length, t in millimetres >= 0 */
 struct ray {
@@ -185,7 +187,7 @@ static size_t pick_regions(const struct snapshot *snapshot, const struct ray *ra
             int region_level = region_depth(set, i);
             more |= region_level > depth;
             if (region_level == depth && isfinite(t_mm[i]) && is_shown(snapshot, i))
-                n = add_hit(hits, n, (struct pick_hit){ ray_point(ray, t_mm[i]), (int)i, t_mm[i] });
+                n = add_hit(hits, n, (struct pick_hit){ ray_point(ray, t_mm[i]), subject_region(i), t_mm[i] });
         }
     }
     return n;
@@ -206,6 +208,12 @@ static bool slice_is_drawn_at(const struct snapshot *snapshot, const struct volu
     return value >= style->cull_below;
 }
 
+/* The image shown, which the snapshot has. */
+static struct subject image_subject(const struct snapshot *snapshot)
+{
+    return (struct subject){ SUBJECT_IMAGE, (size_t)snapshot->image, 0 };
+}
+
 /* Adds the hits of image slices in space. */
 static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray, struct pick_hit hits[PICK_MAX_HITS],
                           size_t n)
@@ -221,7 +229,7 @@ static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray
         double t = (plane_position_mm(plane) - vec3_dot(ray->origin_lps_mm, plane->normal)) / across;
         struct vec3 point = ray_point(ray, t);
         if (t >= 0 && slice_is_drawn_at(snapshot, volume, point))
-            n = add_hit(hits, n, (struct pick_hit){ point, -1, t });
+            n = add_hit(hits, n, (struct pick_hit){ point, image_subject(snapshot), t });
     }
     return n;
 }
@@ -260,11 +268,11 @@ static size_t pick_pane(const struct snapshot *snapshot, const struct camera *ca
     for (int depth = deepest; depth >= 0; depth--)
         for (size_t i = 0; i < set->n_regions && n < PICK_MAX_HITS; i++)
             if (holds[i] && is_shown(snapshot, i) && region_depth(set, i) == depth)
-                hits[n++] = (struct pick_hit){ point, (int)i, 0 };
+                hits[n++] = (struct pick_hit){ point, subject_region(i), 0 };
     uint32_t ijk[3];
     if (n < PICK_MAX_HITS && snapshot->image >= 0 &&
         volume_voxel_at(snapshot->plan->images[snapshot->image].volume, point, ijk))
-        hits[n++] = (struct pick_hit){ point, -1, 0 };
+        hits[n++] = (struct pick_hit){ point, image_subject(snapshot), 0 };
     return n;
 }
 

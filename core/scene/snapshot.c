@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/scene/camera.h"
 #include "core/volume/window.h"
 
 int scene_image_index(const struct plan *plan, const struct scene *scene)

@@ -1,6 +1,6 @@
 #pragma once
-/* A snapshot: plan, scene and view, frozen. A picture is a pure function of it. Also cameras and picking. Knows no JSON
- * and no GL. */
+/* A snapshot: plan, scene and view, frozen. A picture is a pure function of it. Also the scene a new room starts with.
+ * Knows no JSON and no GL. */
 #include "core/derive/derive.h"
 #include "core/math/vec.h"
 #include "core/plan/plan.h"
@@ -47,31 +47,3 @@ static inline bool snapshot_is_pane(const struct snapshot *snapshot)
 {
     return snapshot->view.kind != SCENE_KIND_3D;
 }
-
-/* The camera that shows the whole plan. 3-D: all regions from the front, superior up; the image instead if the regions'
- * box is less than half as long. Slice panes: the whole first image, without one all regions. */
-void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera);
-
-/* A view's camera, resolved: unit axes in patient space and the projection. */
-struct camera {
-    struct vec3 eye_lps_mm, target_lps_mm;
-    struct vec3 right, up, forward; /* axes of the picture; orthonormal, right = forward x up */
-    bool is_parallel;
-    double pixels_per_mm;   /* of the full-size view, in parallel projection; 0 in perspective */
-    double near_mm, far_mm; /* from the eye along forward; they enclose the plan's bounds */
-    struct mat4 clip_from_lps_mm, lps_mm_from_clip;
-};
-/* The camera of a snapshot. A slice pane's has the axes of its plane, and its target on the plane. */
-void camera_resolve(const struct snapshot *snapshot, struct camera *camera);
-
-/* What lies under a pixel of the full-size view. Computed from univels and slices, not from the picture. */
-struct pick_hit {
-    struct vec3 point_lps_mm;
-    int region; /* index; -1: an image slice */
-    double distance_mm;
-};
-enum { PICK_MAX_HITS = 32 };
-/* Fills hits front to back, returns how many. Hits every region that the scene shows (visible, opacity > 0) as if it
- * were solid, whatever it is drawn as. On a slice pane: the point on the plane with the regions there, innermost first,
- * then the image. px, py: pixel centres are at + 0.5. */
-size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, struct pick_hit hits[PICK_MAX_HITS]);

@@ -10,6 +10,7 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
+#include "core/scene/camera.h"
 
 static const struct method {
     const char *name;

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "core/derive/shapes.h"
+#include "core/scene/pick.h"
 #include "server/wire/document.h"
 #include "server/wire/packet.h"
 #include "wire_gen.h"
@@ -137,8 +138,8 @@ cJSON *answer_pick(const struct snapshot *snapshot, double px, double py)
     for (size_t i = 0; i < n; i++) {
         cJSON *hit = cJSON_CreateObject();
         cJSON_AddItemToObject(hit, "point_lps_mm", point(hits[i].point_lps_mm));
-        if (hits[i].region >= 0)
-            cJSON_AddStringToObject(hit, "region", snapshot->plan->regions.regions[hits[i].region].id);
+        if (hits[i].subject.kind == SUBJECT_REGION)
+            cJSON_AddStringToObject(hit, "region", subject_id(snapshot->plan, hits[i].subject));
         else
             cJSON_AddNullToObject(hit, "region");
         add_number(hit, "distance_mm", hits[i].distance_mm);

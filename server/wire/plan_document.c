@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
+#include "core/scene/camera.h"
 #include "core/scene/snapshot.h"
 #include "server/wire/document.h"
 

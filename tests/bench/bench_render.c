@@ -9,6 +9,7 @@
 #include "core/encode/encode.h"
 #include "core/load/load.h"
 #include "core/render/render.h"
+#include "core/scene/camera.h"
 
 enum { REPEATS = 15, WIDTH = 1024, HEIGHT = 768 };
 

@@ -1,5 +1,6 @@
 /* Planes in any direction: what a pane, a slice in space, an outline and a pick show on an oblique plane is what
  * evaluating the grid at each pixel's point gives. */
+#include "core/scene/pick.h"
 #include "tests/render/shots.h"
 
 static const double pixels_per_mm = 6;
@@ -270,7 +271,7 @@ static void a_pick_on_an_oblique_pane_gives_the_pixels_point(void **state)
     struct pick_hit hits[PICK_MAX_HITS];
     struct vec3 expected = point_of_pixel(&plane, 210, 130);
     assert_int_equal(snapshot_pick(snapshot, 210.5, 130.5, hits), 1);
-    assert_int_equal(hits[0].region, 0);
+    assert_true(subject_equal(hits[0].subject, subject_region(0)));
     assert_close(vec3_length(vec3_sub(hits[0].point_lps_mm, expected)), 0, 1e-9);
     snapshot_unref(snapshot);
     shots_forget(plan);

@@ -1,5 +1,6 @@
 /* Every way to draw a region, of one with spikes, lone univels, holes and separate pieces on an oblique grid of unequal
  * spacings: where it is drawn, against rays through its univels. */
+#include "core/scene/pick.h"
 #include "tests/render/shots.h"
 
 static const struct vec3 origin = { 0, 0, 0 };

@@ -1,3 +1,4 @@
+#include "core/scene/camera.h"
 #include "core/scene/snapshot.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"

@@ -1,3 +1,5 @@
+#include "core/scene/camera.h"
+#include "core/scene/pick.h"
 #include "core/scene/snapshot.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"
@@ -53,9 +55,16 @@ static struct snapshot *look(struct plan *plan, struct vec3 from, struct vec3 at
     return snapshot;
 }
 
+/* region -1: an image slice */
+static void expect_subject(const struct pick_hit *hit, int region)
+{
+    assert_int_equal(hit->subject.kind, region < 0 ? SUBJECT_IMAGE : SUBJECT_REGION);
+    assert_int_equal(hit->subject.index, region < 0 ? 0 : region);
+}
+
 static void expect_hit(const struct pick_hit *hit, int region, struct vec3 point, double distance_mm)
 {
-    assert_int_equal(hit->region, region);
+    expect_subject(hit, region);
     assert_close(hit->point_lps_mm.x, point.x, 1e-6);
     assert_close(hit->point_lps_mm.y, point.y, 1e-6);
     assert_close(hit->point_lps_mm.z, point.z, 1e-6);
@@ -141,7 +150,7 @@ static void every_pixel_agrees_with_small_steps_along_its_ray(void **state)
             if ((first < 0) != (n == 0)) /* a corner cut by less than a step */
                 continue;
             n_compared++;
-            assert_int_equal(hits[0].region, 0);
+            expect_subject(&hits[0], 0);
             assert_close(hits[0].distance_mm, first, 0.05);
         }
     assert_true(n_compared > 20);
@@ -197,7 +206,7 @@ static void slices_in_space_are_hit_between_regions(void **state)
     struct pick_hit hits[PICK_MAX_HITS];
     assert_int_equal(snapshot_pick(snapshot, 50.5, 50.5, hits), 4);
     expect_hit(&hits[2], -1, vec3(0, -7, 0.5), 93);
-    assert_int_equal(hits[3].region, 2);
+    expect_subject(&hits[3], 2);
     snapshot_unref(snapshot);
     plan_and_derived_destroy(plan);
 }
@@ -223,7 +232,7 @@ static void a_pick_goes_through_where_a_slice_leaves_out_air(void **state)
     struct pick_hit hits[PICK_MAX_HITS];
     assert_int_equal(snapshot_pick(snapshot, 50.5, 50.5, hits), 3);
     for (int i = 0; i < 3; i++)
-        assert_int_equal(hits[i].region, i);
+        expect_subject(&hits[i], i);
     snapshot_unref(snapshot);
     plan_and_derived_destroy(plan);
 }
@@ -273,7 +282,7 @@ static void more_hits_than_fit_keep_the_nearest(void **state)
         struct pick_hit hits[PICK_MAX_HITS];
         assert_int_equal(snapshot_pick(snapshot, 50.5, 50.5, hits), PICK_MAX_HITS);
         for (int i = 0; i < PICK_MAX_HITS; i++) {
-            assert_int_equal(hits[i].region, side < 0 ? i : 39 - i);
+            expect_subject(&hits[i], side < 0 ? i : 39 - i);
             assert_close(hits[i].distance_mm, 80 + i, 1e-6);
         }
         snapshot_unref(snapshot);

@@ -3,6 +3,7 @@
  * differ. */
 #include "core/base/image.h"
 #include "core/render/visible/cut.h"
+#include "core/scene/camera.h"
 #include "core/scene/snapshot.h"
 
 /* Pixels of a picture where they differ. */

@@ -4,6 +4,7 @@
 #include "core/derive/subject.h"
 #include "core/render/visible/draw_cache.h"
 #include "core/render/visible/visible.h"
+#include "core/scene/camera.h"
 
 /* In the order of drawing. A volume comes between planes and translucent shapes, lines (of tracks) after those. */
 enum draw_pass {

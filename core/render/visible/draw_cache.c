@@ -169,6 +169,12 @@ static struct drawable *make_shape(struct draw_cache *cache, const struct shape 
     return drawable;
 }
 
+/* In front of its id, for people. */
+static const char *subject_word(struct subject subject)
+{
+    return subject.kind == SUBJECT_REGION ? "region " : "";
+}
+
 const struct drawable *draw_cache_shape(struct draw_cache *cache, struct derive *derived, const struct shape_want *want,
                                         draw_shape_source *source, struct error *err)
 {
@@ -191,14 +197,14 @@ const struct drawable *draw_cache_shape(struct draw_cache *cache, struct derive 
     bool is_refused = !shape && derive_is_refusal(why.code);
     shape_unref(shape);
     if (is_refused)
-        log_info("region %s is not drawn: %s", subject_id(plan, want->subject), why.text);
+        log_info("%s%s is not drawn: %s", subject_word(want->subject), subject_id(plan, want->subject), why.text);
     if (made.drawable || is_refused) {
         made.n_bytes = sizeof made + (made.drawable ? made.drawable->n_bytes : 0);
         return keep(cache, &made);
     }
     if (err)
         *err = why;
-    error_prefix(err, "region %s", subject_id(plan, want->subject));
+    error_prefix(err, "%s%s", subject_word(want->subject), subject_id(plan, want->subject));
     return NULL;
 }
 

@@ -17,7 +17,7 @@ enum lines_of { LINES_OF_OUTLINE, LINES_OF_BORDER, LINES_OF_SHAPE };
 
 struct entry {
     const struct plan *plan;
-    size_t region;
+    struct subject subject; /* a region */
     enum lines_of what;
     enum outline_method method;
     struct shape_key key; /* LINES_OF_SHAPE */
@@ -68,15 +68,15 @@ void overlay_destroy(struct overlay *overlay)
 
 static bool is_same(const struct entry *a, const struct entry *b)
 {
-    return a->plan == b->plan && a->region == b->region && a->what == b->what && a->method == b->method &&
-           shape_key_equal(&a->key, &b->key) && plane_equal(&a->plane, &b->plane);
+    return a->plan == b->plan && subject_equal(a->subject, b->subject) && a->what == b->what &&
+           a->method == b->method && shape_key_equal(&a->key, &b->key) && plane_equal(&a->plane, &b->plane);
 }
 
 static bool fill_univels(struct entry *entry, struct error *err)
 {
     struct cut_region cut;
     struct mask *mask;
-    if (!cut_region_init(&cut, &entry->plan->regions, entry->region, err))
+    if (!cut_region_init(&cut, &entry->plan->regions, entry->subject.index, err))
         return false;
     bool is_good = cut_univels(&cut, &entry->plane, &mask, err);
     if (is_good && mask)
@@ -91,8 +91,7 @@ static bool fill_shape(struct entry *entry, struct derive *derived, struct error
 {
     struct error why = { 0 };
     struct shape *shape =
-        derive_shape(derived, &(struct shape_want){ subject_region(entry->region), entry->key, SURFACE_FULL }, NULL,
-                     &why);
+        derive_shape(derived, &(struct shape_want){ entry->subject, entry->key, SURFACE_FULL }, NULL, &why);
     entry->is_absent = !shape && derive_is_refusal(why.code);
     entry->is_open = entry->key.representation == REPRESENTATION_FAN;
     bool is_good = shape ? cut_mesh(shape->mesh, &entry->plane, &entry->lines, &why) : entry->is_absent;
@@ -169,7 +168,7 @@ static void paint_lines(const struct target *target, const struct cut_lines *lin
 static bool paint_outline(const struct target *target, const struct draw *draw, struct error *err)
 {
     const struct entry wanted = { .plan = target->scope->snapshot->plan,
-                                  .region = draw->subject.index,
+                                  .subject = draw->subject,
                                   .what = LINES_OF_OUTLINE,
                                   .plane = draw->plane,
                                   .method = draw->lines.method };
@@ -188,9 +187,9 @@ static bool paint_check(const struct target *target, const struct draw *draw, st
     /* beside the plane, so that it never runs along faces of voxels */
     struct plane plane = plane_moved(&draw->plane, CHECK_NUDGE * fmin(fmin(spacing.x, spacing.y), spacing.z));
     const struct entry wanted = {
-        .plan = plan, .region = region, .what = LINES_OF_SHAPE, .plane = plane, .key = draw->lines.key
+        .plan = plan, .subject = draw->subject, .what = LINES_OF_SHAPE, .plane = plane, .key = draw->lines.key
     };
-    const struct entry border = { .plan = plan, .region = region, .what = LINES_OF_BORDER, .plane = plane };
+    const struct entry border = { .plan = plan, .subject = draw->subject, .what = LINES_OF_BORDER, .plane = plane };
     const struct entry *surface = lines_of(target->overlay, derived, &wanted, err);
     struct cut_region cut;
     if (!surface || !cut_region_init(&cut, &plan->regions, region, err))

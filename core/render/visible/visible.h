@@ -2,6 +2,7 @@
 /* What a scene wants its regions drawn as: which are shown, as which shapes, with which look. The same for every back
  * end; draw_list.h decides their order. Knows no pixels and no GL. */
 #include "core/derive/shapes.h"
+#include "core/scene/camera.h"
 #include "core/scene/snapshot.h"
 
 /* True if the scene shows a region: visible, opacity > 0. */

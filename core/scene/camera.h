@@ -1,0 +1,22 @@
+#pragma once
+/* Cameras: the home camera of a plan, and a snapshot's camera resolved to axes and matrices. */
+#include "core/plan/plan.h"
+#include "scene.h" /* generated from proto/scene.json */
+
+struct snapshot;
+
+/* The camera that shows the whole plan. 3-D: all regions from the front, superior up; the image instead if the regions'
+ * box is less than half as long. Slice panes: the whole first image, without one all regions. */
+void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera);
+
+/* A view's camera, resolved: unit axes in patient space and the projection. */
+struct camera {
+    struct vec3 eye_lps_mm, target_lps_mm;
+    struct vec3 right, up, forward; /* axes of the picture; orthonormal, right = forward x up */
+    bool is_parallel;
+    double pixels_per_mm;   /* of the full-size view, in parallel projection; 0 in perspective */
+    double near_mm, far_mm; /* from the eye along forward; they enclose the plan's bounds */
+    struct mat4 clip_from_lps_mm, lps_mm_from_clip;
+};
+/* The camera of a snapshot. A slice pane's has the axes of its plane, and its target on the plane. */
+void camera_resolve(const struct snapshot *snapshot, struct camera *camera);
