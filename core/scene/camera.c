@@ -1,7 +1,8 @@
 /* The home camera of a plan, and a view's camera resolved to axes and matrices. */
 #include "core/scene/camera.h"
 
-#include "core/scene/snapshot.h"
+#include <math.h>
+#include <stdio.h>
 
 /* Extent of the home picture over that of the plan. */
 static const double home_margin = 1.08;
@@ -97,11 +98,11 @@ void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_cam
 
 /* A slice pane: parallel projection at right angles to its plane, the target on the plane. Returns millimetres across
  * the smaller side of the picture. */
-static double resolve_pane(const struct snapshot *snapshot, struct camera *camera)
+static double resolve_pane(const struct plan *plan, const struct view *view, const struct plane *plane,
+                           struct camera *camera)
 {
-    const struct scene_camera *asked = &snapshot->view.camera;
-    const struct plane *plane = &snapshot->pane;
-    struct box3 box = pane_box(snapshot->plan);
+    const struct scene_camera *asked = &view->camera;
+    struct box3 box = pane_box(plan);
 
     camera->right = plane->right;
     camera->up = plane->up;
@@ -112,10 +113,10 @@ static double resolve_pane(const struct snapshot *snapshot, struct camera *camer
     return asked->has_height_mm ? asked->height_mm : pane_height_mm(&box, plane);
 }
 
-static double resolve_space(const struct snapshot *snapshot, struct camera *camera)
+static double resolve_space(const struct plan *plan, const struct view *view, struct camera *camera)
 {
-    const struct scene_camera *asked = &snapshot->view.camera;
-    struct box3 box = plan_box(snapshot->plan);
+    const struct scene_camera *asked = &view->camera;
+    struct box3 box = plan_box(plan);
 
     camera->target_lps_mm = asked->has_target_mm ? asked->target_mm : box_centre(&box);
     camera->eye_lps_mm = asked->has_position_mm
@@ -135,12 +136,12 @@ static double resolve_space(const struct snapshot *snapshot, struct camera *came
 }
 
 /* Near and far enclose the regions and all images tightly, so that 24 bits of depth are enough. */
-static void resolve_depth(const struct snapshot *snapshot, struct camera *camera)
+static void resolve_depth(const struct plan *plan, struct camera *camera)
 {
-    struct box3 box = plan_box(snapshot->plan);
+    struct box3 box = plan_box(plan);
     struct vec3 corners[8];
-    for (size_t i = 0; i < snapshot->plan->n_images; i++) {
-        struct box3 image = grid_bounds_lps_mm(&snapshot->plan->images[i].volume->grid);
+    for (size_t i = 0; i < plan->n_images; i++) {
+        struct box3 image = grid_bounds_lps_mm(&plan->images[i].volume->grid);
         box = box_union(box, &image);
     }
     box_corners(&box, corners);
@@ -187,19 +188,58 @@ static struct mat4 projection_matrix(const struct camera *camera, double half_wi
     return m;
 }
 
-void camera_resolve(const struct snapshot *snapshot, struct camera *camera)
+void camera_of_view(const struct plan *plan, const struct view *view, const struct plane *pane, struct camera *camera)
 {
-    const struct view *view = &snapshot->view;
     double width = view->size_px[0], height = view->size_px[1], smaller = fmin(width, height);
     *camera = (struct camera){ 0 };
-    double across_mm = snapshot_is_pane(snapshot) ? resolve_pane(snapshot, camera) : resolve_space(snapshot, camera);
-    resolve_depth(snapshot, camera);
+    double across_mm =
+        view->kind != SCENE_KIND_3D ? resolve_pane(plan, view, pane, camera) : resolve_space(plan, view, camera);
+    resolve_depth(plan, camera);
 
     double half = camera->is_parallel ? across_mm / 2 : tan(view->camera.fov_deg / 2 * MATH_PI / 180);
     camera->pixels_per_mm = camera->is_parallel ? smaller / across_mm : 0;
     struct mat4 eye = eye_matrix(camera),
                 projection = projection_matrix(camera, half * width / smaller, half * height / smaller);
     camera->clip_from_lps_mm = mat4_multiply(&projection, &eye);
-    if (!mat4_invert(&camera->clip_from_lps_mm, &camera->lps_mm_from_clip)) /* snapshot_create refused such cameras */
+    if (!mat4_invert(&camera->clip_from_lps_mm, &camera->lps_mm_from_clip)) /* camera_check refuses such cameras */
         camera->lps_mm_from_clip = (struct mat4){ { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 } };
+}
+
+/* What can be told without the plan. */
+static bool check_fields(const struct view *view, char field[128], struct error *err)
+{
+    const struct scene_camera *camera = &view->camera;
+    if (view->kind != SCENE_KIND_3D)
+        return true;
+    struct vec3 up = camera->has_up ? camera->up : vec3(0, 0, 1);
+    if (camera->has_up && !(vec3_length(up) > 1e-9)) {
+        snprintf(field, 128, "/camera/up");
+        return error_set(err, ERROR_RANGE, "the camera's up direction has no length");
+    }
+    if (!camera->has_position_mm || !camera->has_target_mm)
+        return true;
+    struct vec3 sight = vec3_sub(camera->target_mm, camera->position_mm);
+    if (!(vec3_length(sight) > 1e-6)) {
+        snprintf(field, 128, "/camera/position_mm");
+        return error_set(err, ERROR_RANGE, "the camera's position and target are the same point");
+    }
+    if (camera->has_up && vec3_length(vec3_cross(vec3_normalize(sight), vec3_normalize(up))) < 1e-6) {
+        snprintf(field, 128, "/camera/up");
+        return error_set(err, ERROR_RANGE, "the camera looks along its own up direction");
+    }
+    return true;
+}
+
+bool camera_check(const struct plan *plan, const struct view *view, const struct plane *pane, char field[128],
+                  struct error *err)
+{
+    struct camera camera;
+    if (!check_fields(view, field, err))
+        return false;
+    /* without a target the camera looks at the plan's centre, which the position must not be */
+    camera_of_view(plan, view, pane, &camera);
+    if (vec3_length(camera.forward) > 0.5)
+        return true;
+    snprintf(field, 128, "/camera/position_mm");
+    return error_set(err, ERROR_RANGE, "the camera's position and target are the same point");
 }

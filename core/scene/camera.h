@@ -1,9 +1,8 @@
 #pragma once
 /* Cameras: the home camera of a plan, and a snapshot's camera resolved to axes and matrices. */
 #include "core/plan/plan.h"
+#include "core/scene/plane.h"
 #include "scene.h" /* generated from proto/scene.json */
-
-struct snapshot;
 
 /* The camera that shows the whole plan. 3-D: all regions from the front, superior up; the image instead if the regions'
  * box is less than half as long. Slice panes: the whole first image, without one all regions. */
@@ -18,5 +17,10 @@ struct camera {
     double near_mm, far_mm; /* from the eye along forward; they enclose the plan's bounds */
     struct mat4 clip_from_lps_mm, lps_mm_from_clip;
 };
-/* The camera of a snapshot. A slice pane's has the axes of its plane, and its target on the plane. */
-void camera_resolve(const struct snapshot *snapshot, struct camera *camera);
+/* The camera of a view. A slice pane's has the axes of its plane, and its target on the plane. pane: of a slice pane;
+ * else unused. */
+void camera_of_view(const struct plan *plan, const struct view *view, const struct plane *pane, struct camera *camera);
+/* True if the view's camera can be used: position != target, up not along the line of sight. field: on failure the JSON
+ * pointer of the wrong field. errors ERROR_RANGE */
+NODISCARD bool camera_check(const struct plan *plan, const struct view *view, const struct plane *pane, char field[128],
+                            struct error *err);

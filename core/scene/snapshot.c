@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "core/scene/camera.h"
 #include "core/volume/window.h"
 
 int scene_image_index(const struct plan *plan, const struct scene *scene)
@@ -37,29 +36,6 @@ static int dose_index(const struct plan *plan, const struct scene *scene)
         if (strcmp(plan->doses[i].id, scene->dose.id) == 0)
             return (int)i;
     return -1;
-}
-
-static bool check_camera(const struct scene_camera *camera, const struct view *view, char field[128], struct error *err)
-{
-    if (view->kind != SCENE_KIND_3D)
-        return true;
-    struct vec3 up = camera->has_up ? camera->up : vec3(0, 0, 1);
-    if (camera->has_up && !(vec3_length(up) > 1e-9)) {
-        snprintf(field, 128, "/camera/up");
-        return error_set(err, ERROR_RANGE, "the camera's up direction has no length");
-    }
-    if (!camera->has_position_mm || !camera->has_target_mm)
-        return true;
-    struct vec3 sight = vec3_sub(camera->target_mm, camera->position_mm);
-    if (!(vec3_length(sight) > 1e-6)) {
-        snprintf(field, 128, "/camera/position_mm");
-        return error_set(err, ERROR_RANGE, "the camera's position and target are the same point");
-    }
-    if (camera->has_up && vec3_length(vec3_cross(vec3_normalize(sight), vec3_normalize(up))) < 1e-6) {
-        snprintf(field, 128, "/camera/up");
-        return error_set(err, ERROR_RANGE, "the camera looks along its own up direction");
-    }
-    return true;
 }
 
 /* Fills the styles by region index. A region that the scene does not name has the default style. */
@@ -125,16 +101,8 @@ struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, st
         goto fail;
     snapshot->pane = plane_of_view(&snapshot->scene, &snapshot->view);
     snapshot->n_slices = planes_of_slices(&snapshot->scene, snapshot->slices);
-    if (!check_camera(&snapshot->view.camera, &snapshot->view, field, err))
+    if (!camera_check(snapshot->plan, &snapshot->view, &snapshot->pane, field, err))
         goto fail;
-    /* without a target the camera looks at the plan's centre, which the position must not be */
-    struct camera camera;
-    camera_resolve(snapshot, &camera);
-    if (!(vec3_length(camera.forward) > 0.5)) {
-        snprintf(field, 128, "/camera/position_mm");
-        error_set(err, ERROR_RANGE, "the camera's position and target are the same point");
-        goto fail;
-    }
     return snapshot;
 fail:
     snapshot_unref(snapshot);

@@ -4,6 +4,7 @@
 #include "core/derive/derive.h"
 #include "core/math/vec.h"
 #include "core/plan/plan.h"
+#include "core/scene/camera.h"
 #include "core/scene/plane.h"
 #include "scene.h" /* generated from proto/scene.json */
 
@@ -42,6 +43,11 @@ void scene_for_plan(const struct plan *plan, struct scene *scene);
 int scene_image_index(const struct plan *plan, const struct scene *scene);
 /* True if low values of the image shown are white: as the scene says, else as the image asks. Only if image >= 0. */
 bool snapshot_is_low_white(const struct snapshot *snapshot);
+/* The snapshot's camera, resolved. */
+static inline void camera_resolve(const struct snapshot *snapshot, struct camera *camera)
+{
+    camera_of_view(snapshot->plan, &snapshot->view, &snapshot->pane, camera);
+}
 /* True if the picture is a slice pane: a parallel view of the plane `pane`. Else it is a view into space. */
 static inline bool snapshot_is_pane(const struct snapshot *snapshot)
 {
