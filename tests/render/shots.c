@@ -29,7 +29,7 @@ struct scene shots_scene(const struct plan *plan)
     scene_for_plan(plan, &scene);
     for (size_t i = 0; i < scene.n_regions; i++)
         scene.regions[i].value.opacity = 1;
-    scene.surface.algorithm = SCENE_ALGORITHM_MARCHING_CUBES; /* boxes with flat faces just where they are */
+    scene.surface.algorithm = SCENE_ALGORITHM_MARCHING_CUBES; /* boxes have flat faces exactly where their voxels end */
     scene.image.slices.axial.visible = false;
     scene.image.cull_below = scene_image_style_default.cull_below; /* air too */
     return scene;

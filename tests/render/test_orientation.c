@@ -1,6 +1,5 @@
-/* Left is left. A plan with marks on the patient's left, front and top is drawn from known directions on every back
- * end; where each mark must appear follows from the definition of the patient axes and of the views, not from a
- * picture. */
+/* Left is left: a plan with marks on the patient's left, front and top is drawn from known directions. Where each mark
+ * must appear follows from the definitions of patient axes and views. */
 #include "tests/render/shots.h"
 
 static const struct vec3 centre = { 5, -7, 11 }; /* off the origin, so that a mirrored axis cannot go unnoticed */
@@ -45,7 +44,8 @@ static struct grid marked_grid(int kind)
     return made_grid(size[0], size[1], size[2], map);
 }
 
-/* The mark's mean must be where its middle projects; voxels of up to 2 mm move it by less than half of one. */
+/* The mark's mean position must be where its middle projects. Voxels of up to 2 mm move it by less than half a voxel.
+ */
 static void expect_mark(const struct image *image, int channel, double right_mm, double up_mm)
 {
     double x, y;

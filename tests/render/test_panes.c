@@ -1,5 +1,5 @@
-/* What is painted over slice panes: outlines where the regions are, the check of a segmentation, the grid of a dose, on
- * grids square to the patient and on oblique ones; and images on grids of their own. */
+/* Slice panes: outlines of regions, the check of a segmentation and the grid of a dose, on grids square to the patient
+ * and on oblique ones; images on grids of their own; low values white. */
 #include "core/derive/region_shape.h"
 #include "tests/render/shots.h"
 
@@ -16,8 +16,8 @@ static struct grid oblique_grid(uint32_t side)
                                  vec3(-1.5 * s * e, 1.5 * c * e, -1.5 * d), size, origin));
 }
 
-/* Where a patient point is on a pane: axial and coronal have patient left on the right, sagittal the back; up is
- * anterior, superior. */
+/* Position of a patient point on a pane. Right is patient left on axial and coronal panes, posterior on sagittal ones;
+ * up is anterior on axial panes, superior on the others. */
 static void on_pane(enum scene_kind kind, struct vec3 p, double pixels_per_mm, double *x, double *y)
 {
     double right = kind == SCENE_KIND_SAGITTAL ? p.y : p.x, up = kind == SCENE_KIND_AXIAL ? -p.y : p.z;
@@ -55,7 +55,7 @@ static bool is_green(const uint8_t *pixel)
     return pixel[1] > 200 && pixel[0] < 80;
 }
 
-/* How far outside a rectangle (negative: inside). */
+/* Distance outside a rectangle; negative inside. */
 static double beyond(double x, double y, const double low[2], const double high[2])
 {
     return fmax(fmax(low[0] - x, x - high[0]), fmax(low[1] - y, y - high[1]));
@@ -74,7 +74,7 @@ static void outlines_lie_on_the_regions_border(void **state)
             scene.outline.width_px = 3;
             set_slices(&scene, vec3(1.3, 2.2, 7.6));
             struct image *image = shots_plain(plan, scene, shots_view(kinds[k], origin, 7));
-            /* traced: through the outermost voxels' centres, half a voxel inside; between voxels: on the border */
+            /* a traced outline runs through the centres of border voxels, marching squares along the border */
             double inset = method ? 0 : 0.5, x[2], y[2];
             on_pane(kinds[k], vec3_add(box_low, vec3(inset, inset, inset)), 7, &x[0], &y[0]);
             on_pane(kinds[k], vec3_sub(box_high, vec3(inset, inset, inset)), 7, &x[1], &y[1]);
@@ -86,7 +86,7 @@ static void outlines_lie_on_the_regions_border(void **state)
                     double off = beyond(column + 0.5, row + 0.5, low, high);
                     bool is_corner = method && fmin(fabs(column + 0.5 - low[0]), fabs(column + 0.5 - high[0])) < 7 &&
                                      fmin(fabs(row + 0.5 - low[1]), fabs(row + 0.5 - high[1])) < 7; /* cut off there */
-                    if (fabs(off) < 0.9 && !is_corner) { /* half of 3 px, less half a pixel's softness */
+                    if (fabs(off) < 0.9 && !is_corner) { /* half of 3 px, minus half a pixel of anti-aliasing */
                         assert_true(is_green(shots_pixel(image, column, row)));
                         n++;
                     } else if (fabs(off) > 2.1 && !is_corner)
@@ -227,7 +227,7 @@ static void the_check_marks_what_the_surface_leaves_out(void **state)
     shots_forget(plan);
 }
 
-/* Takes the place of the region's own shape: a box of triangles `grown` larger than the voxels on every side. */
+/* Replaces the region's own shape by a box of triangles that is `grown` larger than the voxels on every side. */
 static void put_box(struct plan *plan, enum region_representation representation, double grown, bool is_faceted)
 {
     static const uint32_t quads[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 },
@@ -258,8 +258,9 @@ static void put_box(struct plan *plan, enum region_representation representation
     shape_unref(shape);
 }
 
-/* On the border of the voxels to the last bit: at any zoom, at positions within a voxel and on its faces, nothing
- * differs; half a millimetre larger or smaller, a frame of that width does. An open surface encloses nothing. */
+/* A surface exactly on the border of the voxels differs nowhere, at any zoom, with the plane inside a voxel or on its
+ * face. One that is half a millimetre larger or smaller differs by a frame of that width. An open surface encloses
+ * nothing, so it is not checked. */
 static void the_check_finds_exactly_what_differs(void **state)
 {
     (void)state;
@@ -452,7 +453,7 @@ static void low_values_are_white_where_image_or_scene_say_so(void **state)
     shots_forget(plan);
 }
 
-/* In space the left half, whose values are below the limit, is left out whichever way the greys go. */
+/* In space the left half, whose values are below cull_below, is not drawn, whether low values are black or white. */
 static void what_is_left_out_goes_by_values_and_not_by_greys(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Pictures that wait while others are drawn: the same bytes as when they are drawn in one go. */
+/* Pictures that are paused while others are drawn have the same bytes as those drawn in one go. */
 #include "tests/render/shots.h"
 
 enum { N_PICTURES = 5 };
@@ -29,8 +29,8 @@ struct wish {
     struct render_options options;
 };
 
-/* Moving and still, in space and on panes with outlines, of many sizes; the first is large enough for several parts on
- * every back end. */
+/* Pictures of several sizes, moving and still, in space and on panes with outlines. The first is large enough to have
+ * several parts on every back end. */
 static void make_wishes(struct plan *plan, struct wish wishes[N_PICTURES])
 {
     static const struct {
@@ -100,8 +100,8 @@ static void pictures_drawn_in_turns_are_the_same_as_in_one_go(void **state)
         expected[i] = draw_in_one_go(&wishes[i], &timings[i]);
         pictures[i] = render_begin(shots_renderer, wishes[i].snapshot, &wishes[i].options);
     }
-    for (int turn = 0; n_done < N_PICTURES;
-         turn++) { /* each goes on in each turn, so what is kept of one is lost to others */
+    for (int turn = 0; n_done < N_PICTURES; turn++) { /* each goes on in its turn, so there are more begun pictures than
+                                                         the back end keeps sorted triangles of */
         int i = turn % N_PICTURES;
         struct error err = { 0 };
         if (!pictures[i])
@@ -123,7 +123,7 @@ static void pictures_drawn_in_turns_are_the_same_as_in_one_go(void **state)
     }
     /* the same shapes, whether a picture has one band or several */
     assert_int_equal(timings[0].n_triangles, timings[3].n_triangles);
-    assert_true(n_parts[0] > 2); /* it was paused between its parts, not only before what is painted over it */
+    assert_true(n_parts[0] > 2); /* it was paused between its parts, not only before the overlay */
     for (int i = 0; i < N_PICTURES; i++) {
         image_destroy(expected[i]);
         snapshot_unref(wishes[i].snapshot);

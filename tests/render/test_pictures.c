@@ -1,5 +1,4 @@
-/* What a picture must show, worked out by hand: which side of a surface is seen, how colours blend, how large things
- * are, which grey a value has. */
+/* Pictures against calculations by hand: which side of a surface is seen, how colours blend, sizes, greys of values. */
 #include "tests/render/shots.h"
 
 static const struct vec3 origin = { 0, 0, 0 };
@@ -20,7 +19,7 @@ static void the_near_side_of_a_ball_is_seen_lit_from_the_upper_right(void **stat
     struct plan *plan = made_plan(&grid, ball_label, ball, 1);
     struct image *image = shots_plain(plan, shots_scene(plan), shots_view_from(origin, from_front, up, 6));
     int right = shots_pixel(image, 200 + 60, 150 - 60)[0], left = shots_pixel(image, 200 - 60, 150 + 60)[0];
-    assert_true(right > left + 60); /* were the far side drawn, its normals would make it the other way round */
+    assert_true(right > left + 60); /* if the far side were drawn, its normals would reverse this */
     double grey = 0xc8 / 255.0;
     assert_close(shots_pixel(image, 200, 150)[0], 255 * shots_facing_light(grey, true),
                  8); /* averaged normals of voxels: a few levels */
@@ -377,7 +376,7 @@ static void a_grid_beyond_the_drivers_limit_is_refused_with_its_size(void **stat
 
 /* ---- stills, light surfaces, repeatability ---------------------------------------------------------------------- */
 
-/* Pixels across the box's slanted edges that are neither the background nor the face. */
+/* The number of pixels on the box's slanted edges that are neither background nor face. */
 static size_t count_between(const struct image *image)
 {
     const uint8_t *face = shots_pixel(image, image->width_px / 2, image->height_px / 2);
@@ -485,7 +484,7 @@ static void equal_snapshots_give_equal_bytes(void **state)
         scene.image.slices.axial.visible = true;
         struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, true };
         images[i] = shots_take(plan, scene, shots_view_from(origin, vec3(0.3, -1, 0.4), up, 3), &options, NULL);
-        if (i == 0) { /* another picture between the two leaves nothing behind */
+        if (i == 0) { /* another picture between the two must not change the second */
             struct image *other = shots_plain(plan, shots_scene(plan), shots_view(SCENE_KIND_CORONAL, origin, 2));
             image_destroy(other);
         }

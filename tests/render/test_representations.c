@@ -1,5 +1,5 @@
-/* Every way to draw a region, of one with spikes, lone univels, holes and separate pieces on an oblique grid of unequal
- * spacings: where it is drawn, against rays through its univels. */
+/* Every representation of a region with spikes, single univels, holes and separate pieces, on an oblique grid of
+ * unequal spacings: where it is drawn, against rays through its univels. */
 #include "core/scene/pick.h"
 #include "tests/render/shots.h"
 
@@ -61,7 +61,7 @@ static struct view make_view(int i)
     return view;
 }
 
-/* By pixel; and the middle of them. */
+/* Fills truth: the pixels whose ray meets a univel; and their mean position. */
 static void find_truth(struct plan *plan, int view_number, bool truth[SHOTS_HEIGHT][SHOTS_WIDTH], double middle_px[2])
 {
     struct scene scene = shots_scene(plan);
@@ -94,12 +94,12 @@ static bool is_near_truth(bool truth[SHOTS_HEIGHT][SHOTS_WIDTH], bool value, int
     return false;
 }
 
-/* How each way may differ from the univels' silhouette. */
+/* How each representation may differ from the univels' silhouette. */
 static const struct way {
     const char *name;
     enum scene_representation representation;
     enum scene_algorithm algorithm;
-    bool is_exact;    /* but for pixels on its edge */
+    bool is_exact;    /* except for pixels on its edge */
     bool is_covering; /* every pixel of it, and none a voxel away */
     bool is_thin;     /* lines and points: some of it */
     bool is_partial;  /* leaves out what is thin, or cannot show pieces */
@@ -209,7 +209,7 @@ static void every_back_end_draws_every_way_the_same(void **state)
             }
             if (n_far > n / 250)
                 printf("  %s, view %d: %zu pixels differ\n", ways[w].name, v, n_far);
-            assert_true(n_far <= n / 250); /* edges fall between samples a little differently */
+            assert_true(n_far <= n / 250); /* back ends round vertices differently, so some edge pixels differ */
             image_destroy(images[0]);
             image_destroy(images[1]);
         }
@@ -220,8 +220,7 @@ static void every_back_end_draws_every_way_the_same(void **state)
 
 /* ---- solid points at any zoom ----------------------------------------------------------------------------------- */
 
-/* Inside the body no pixel may show the background, from so far that a voxel is a third of a pixel to so near that it
- * is a hundred. */
+/* Inside the body no pixel may show the background, at scales from a third of a pixel to a hundred pixels a voxel. */
 static void solid_points_leave_no_gap_at_any_zoom(void **state)
 {
     (void)state;
@@ -262,8 +261,8 @@ static void solid_points_leave_no_gap_at_any_zoom(void **state)
 
 /* ---- light ------------------------------------------------------------------------------------------------------ */
 
-/* Faceted: a face of a univel square to the viewer has one colour all over, the one its plane has; baked light does not
- * follow the eye, live light does. */
+/* A univel's face that faces the viewer has one colour, that of its plane. Baked shading does not depend on the eye,
+ * live shading does. */
 static double block_label(struct vec3 p)
 {
     return fabs(p.x) < 10 && fabs(p.y) < 10 && fabs(p.z) < 10 ? 1 : 0;
@@ -289,7 +288,7 @@ static void light_is_of_faces_or_baked_or_live(void **state)
     int baked[2], live[2];
     for (int side = 0; side < 2; side++)
         for (int is_live = 0; is_live < 2;
-             is_live++) { /* the same voxels, in the middle of a face, seen from before and from above */
+             is_live++) { /* the same voxels, in the middle of a face, seen from the front and from above */
             struct scene scene = make_scene(plan, &ways[1]);
             scene.points.solid = is_live ? SCENE_SOLID_LIGHTING_LIVE : SCENE_SOLID_LIGHTING_BAKED;
             image = shots_plain(plan, scene, shots_view_from(origin, side ? vec3(0, -1, 0.9) : vec3(0, -1, 0), up, 8));
@@ -306,7 +305,7 @@ static double ball_label(struct vec3 p)
     return vec3_length(p) < 12 ? 1 : 0;
 }
 
-/* Seen along an axis all faces of univels that show are parallel: one colour by faces alone, and a ball looks like a
+/* Seen along an axis, all visible faces of univels are parallel. Shaded by face normals alone, a ball would look like a
  * disk. */
 static void univels_that_face_the_same_way_are_told_apart_unless_light_is_to_be_of_faces(void **state)
 {

@@ -1,5 +1,5 @@
-/* Lines, points and open or faceted triangles: where they are drawn, how large, in which light. The shapes are made by
- * hand and put in the place of the plan's own. */
+/* Lines, points and open or faceted triangles: position, size and shading. The shapes are made by hand and replace
+ * those of the plan. */
 #include "core/derive/region_shape.h"
 #include "tests/render/shots.h"
 
@@ -8,7 +8,8 @@ static const struct vec3 from_front = { 0, -1, 0 }, up = { 0, 0, 1 };
 static const struct made_region two[] = { { "shown", -1, 0xf08020 }, { "plate", -1, 0x2040ff } };
 static const double orange[3] = { 0xf0 / 255.0, 0x80 / 255.0, 0x20 / 255.0 };
 
-/* A plate before the middle on the right half of the picture, and one voxel for the region whose shape is made by hand.
+/* A plate in front of the middle, on the right half of the picture; and one voxel, whose region's shape is made by
+ * hand.
  */
 static double label(struct vec3 p)
 {
@@ -23,7 +24,7 @@ static struct plan *make_plan(void)
     return made_plan(&grid, label, two, 2);
 }
 
-/* Takes shape. */
+/* Consumes shape. */
 static void put(struct plan *plan, enum region_representation representation, struct shape *shape)
 {
     const struct shape_key key = { .representation = representation, .nurbs_order = 4, .nurbs_bins = 36 };
@@ -87,7 +88,7 @@ static struct scene scene_as(const struct plan *plan, enum scene_representation 
     return scene;
 }
 
-/* How many pixels differ from the background, and around where. */
+/* The number of pixels that differ from the background, and the box around them. */
 static size_t drawn(const struct image *image, double *x_px, double *y_px)
 {
     size_t n = 0;
@@ -246,7 +247,7 @@ static void solid_points_cover_their_voxel_in_the_light_worked_out_before(void *
 
 /* ---- triangles -------------------------------------------------------------------------------------------------- */
 
-/* One triangle, its vertex normals wrong on purpose: faceted shading must not look at them. */
+/* One triangle with wrong vertex normals, which faceted shading must not use. */
 static struct shape *make_triangle(bool is_faceted)
 {
     static const float positions[9] = { -25, 0, -20, -5, 0, -20, -15, 0, 20 },
@@ -374,7 +375,9 @@ static void every_back_end_draws_the_same(void **state)
                     }
             if (n_far > n / 100)
                 printf("  kind %d, way %d: %zu pixels differ\n", kind, way, n_far);
-            assert_true(n_far <= n / 100); /* edges of a thousand of them fall between samples a little differently */
+            assert_true(
+                n_far <=
+                n / 100); /* back ends round vertices differently, so some edge pixels of a thousand shapes differ */
             image_destroy(images[0]);
             image_destroy(images[1]);
             renderer_forget(soft, plan);

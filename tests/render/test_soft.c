@@ -1,13 +1,12 @@
-/* What the software rasteriser promises beyond what every back end must: the same picture as OpenGL's, the same bytes
- * whatever the processor and however many threads, no cracks, and the near plane where it should be. */
+/* The software rasteriser's own promises: the same picture as OpenGL's, the same bytes on any processor and with any
+ * number of threads, no cracks, exact clipping at the near plane. */
 #include "tests/render/shots.h"
 
 static const struct vec3 origin = { 0, 0, 0 };
 static const struct vec3 up = { 0, 0, 1 };
 enum { SIDE = 96 };
 
-/* A head as the demo plan has it: nested ellipsoids off each other's middles, and a tumour with its target around it.
- */
+/* A head like the demo plan's: nested ellipsoids with different middles, and a tumour inside its target. */
 static double ellipsoid(struct vec3 p, double x, double y, double z, double rx, double ry, double rz)
 {
     double a = (p.x - x) / rx, b = (p.y - y) / ry, c = (p.z - z) / rz;
@@ -128,8 +127,8 @@ enum { N_SHOTS = sizeof shots / sizeof shots[0], WIDTH = 404, HEIGHT = 301 };
 
 /* ---- the same as OpenGL ----------------------------------------------------------------------------------------- */
 
-/* Edges fall between samples a little differently, as vertices are rounded to other fractions of one: pixels that
- * differ by more than 8 levels are counted apart, the others must agree but for rounding. */
+/* The back ends round vertices to different fractions of a sample, so pixels at edges may differ: those that differ by
+ * more than 8 levels are counted; the others must agree within rounding. */
 static void expect_like(const struct image *a, const struct image *b, const char *name)
 {
     size_t n = (size_t)a->width_px * (size_t)a->height_px, n_far = 0;
@@ -244,8 +243,8 @@ static double ball_label(struct vec3 p)
 }
 static const struct made_region ball[] = { { "ball", -1, 0xffffff } };
 
-/* A ball of a few thousand triangles, close enough that they are large or so far that most miss every sample: within
- * its disc no sample is left out. */
+/* A ball of a few thousand triangles, from so close that they are large to so far that most of them hold no sample: no
+ * sample inside its disc is left out. */
 static void closed_surfaces_have_no_cracks(void **state)
 {
     (void)state;
@@ -281,8 +280,8 @@ static double cube_label(struct vec3 p)
     return fabs(p.x) < 20 && fabs(p.y) < 20 && fabs(p.z) < 20 ? 1 : 0;
 }
 
-/* The whole picture is one face of a cube, seen from so near that a voxel's triangles are larger than the picture: what
- * crosses the borders of what can be drawn is cut and nothing is lost. */
+/* The whole picture is one face of a cube, so near that a voxel's triangles are larger than the picture: triangles that
+ * reach beyond the rasteriser's range are clipped without a gap. */
 static void a_face_close_to_the_eye_fills_the_picture(void **state)
 {
     (void)state;

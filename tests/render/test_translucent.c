@@ -1,5 +1,5 @@
-/* What lies before what where regions are translucent: exact at every pixel, whatever the order of regions and
- * triangles, and the same on every back end; or whole regions over each other, when the scene asks for that. */
+/* The order of translucent regions: exact at every pixel, for any order of regions and triangles, and the same on every
+ * back end; or whole regions over each other, if the scene asks for that. */
 #include "tests/render/shots.h"
 
 static const struct vec3 origin = { 0, 0, 0 };
@@ -13,8 +13,8 @@ static void blend(double under[3], const double rgb[3], double alpha)
         under[c] = alpha * shots_facing_light(rgb[c], false) + (1 - alpha) * under[c];
 }
 
-/* Red is a plate; blue has a plate before it on the left (screen) and one behind it on the right. Whole regions in one
- * order are wrong on one side, whichever that order is. */
+/* Red is a plate; blue has one plate in front of it, on the left of the picture, and one behind it, on the right. Any
+ * order of whole regions is wrong on one side. */
 static double woven_label(struct vec3 p)
 {
     if (fabs(p.z) > 25 || fabs(p.x) > 30)
@@ -111,7 +111,8 @@ static struct image *take_balls(struct renderer *renderer, struct plan *plan, bo
     return image;
 }
 
-/* How far before a ball's middle its near side is at a place across the line of sight; false: beside it. */
+/* Distance of a ball's near side from its middle, at an offset across the line of sight; false: the offset misses it.
+ */
 static bool near_side(int ball, double x, double z, double *y)
 {
     double across = (x - middles[ball].x) * (x - middles[ball].x) + (z - middles[ball].z) * (z - middles[ball].z);
@@ -201,9 +202,8 @@ static void every_back_end_draws_the_same(void **state)
                     n_far++;
                     break;
                 }
-        assert_true(
-            n_far <
-            n / 250); /* edges, and the curve where the balls cross, fall between samples a little differently */
+        assert_true(n_far < n / 250); /* back ends round vertices differently, so some pixels at edges and where the
+                                         balls cross differ */
         image_destroy(a);
         image_destroy(b);
     }
@@ -214,7 +214,7 @@ static void every_back_end_draws_the_same(void **state)
 
 /* ---- many ------------------------------------------------------------------------------------------------------- */
 
-/* More plates than one composition takes, side by side before one large one. */
+/* More plates than one composition takes, side by side in front of a large one. */
 enum { COLUMNS = 12, ROWS = 7, PLATES = COLUMNS * ROWS };
 static double plates_label(struct vec3 p)
 {
