@@ -1,3 +1,4 @@
+/* Reads, compares and counts network addresses, and finds the client behind trusted proxies. */
 #include "server/http/address.h"
 
 #include <arpa/inet.h>

@@ -1,6 +1,6 @@
 #pragma once
-/* Who a connection is counted for: a network address, and the address of the client behind a trusted proxy. Knows no
- * sockets but the struct that the system gives with one. */
+/* Network addresses, and the client address that limits on connections count for, also behind trusted proxies. Opens no
+ * sockets. */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -18,7 +18,7 @@ struct address {
 /* Every address whose first n_bits bits are those of first. */
 struct address_range {
     struct address first;
-    int n_bits; /* of the 128 */
+    int n_bits; /* of 128 */
 };
 
 /* Reads "192.0.2.1", "192.0.2.1:80", "2001:db8::1" or "[2001:db8::1]:80", n bytes; the port is not kept. */
@@ -26,13 +26,13 @@ NODISCARD bool address_read(const char *text, size_t n, struct address *address)
 /* Reads ADDRESS or ADDRESS/BITS; BITS are those of the address's own kind: at most 32 or 128. errors ERROR_FORMAT,
  * ERROR_RANGE */
 NODISCARD bool address_range_read(const char *text, struct address_range *range, struct error *err);
-/* The address of a socket's peer; all zeros for a socket that is no IP one. */
+/* The address of a socket's peer; all zeros for a socket that is not of IP. */
 struct address address_of_peer(const struct sockaddr_storage *peer);
 bool address_is_in(const struct address *address, const struct address_range *ranges, size_t n_ranges);
 bool address_is_equal(const struct address *a, const struct address *b);
 
-/* The address that limits are counted for: an IPv4 address as a whole, of an IPv6 address its network of 64 bits,
- * because whoever has one address of such a network has all of them. */
+/* The address that limits count for: the whole of an IPv4 address, the first 64 bits of an IPv6 address, because a
+ * client has all addresses of such a network. */
 struct address address_counted(const struct address *address);
 
 /* The client of a request.
@@ -40,7 +40,7 @@ struct address address_counted(const struct address *address);
  *   peer       the other end of the connection
  *   trusted    proxies whose X-Forwarded-For is believed
  *   forwarded  value of the last X-Forwarded-For, n bytes; addresses parted by commas, the newest last
- *   returns    peer when it is not trusted. Else the newest address in forwarded that is not a trusted proxy's, and
- * when all are, the oldest of them. What stands before something that is no address is not believed. */
+ *   returns    peer when it is not trusted. Else the newest address in forwarded that is not a trusted proxy's; when
+ * all are, the oldest of them. Addresses before an entry that is no address are ignored. */
 struct address address_of_client(const struct address *peer, const struct address_range *trusted, size_t n_trusted,
                                  const char *forwarded, size_t n);

@@ -62,7 +62,7 @@ void api_count(struct api *api, int status, int64_t took_us)
         api->n_calls_us += (uint64_t)took_us;
 }
 
-/* Whether the call's path is the route's; fills call->ids with what stands for {...}. */
+/* True if the call's path matches the route; fills call->ids with the segments that stand for {...}. */
 static bool path_matches(struct call *call, const char *route)
 {
     size_t at = 0, n_ids = 0;

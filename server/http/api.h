@@ -1,5 +1,5 @@
 #pragma once
-/* The HTTP API's routes and what they do. Runs on the net thread. Knows nothing of libmicrohttpd. */
+/* The HTTP API: its routes and their handlers. Net thread. Knows nothing of libmicrohttpd. */
 #include "server/http/call.h"
 #include "server/net/net.h"
 
@@ -9,14 +9,14 @@ struct api *api_create(struct net *net, uint64_t max_upload_bytes); /* 0: no upl
 void api_destroy(struct api *api);
 
 struct api_route {
-    const char *method, *path; /* as proto/http.json says: "/api/v1/plans/{plan}/open" */
+    const char *method, *path; /* as in proto/http.json: "/api/v1/plans/{plan}/open" */
     void (*handle)(struct api *api, struct call *call);
 };
 extern const struct api_route api_routes[];
 extern const size_t api_n_routes;
 
-/* Finds the route, checks ids, runs it. Answers the call now or later, exactly once. */
+/* Finds the route, checks the ids and runs the handler. The call is answered now or later, exactly once. */
 void api_handle(struct api *api, struct call *call);
 
-/* An answer went out; any thread. For /metrics. */
+/* Counts an answer for /metrics. Any thread. */
 void api_count(struct api *api, int status, int64_t took_us);

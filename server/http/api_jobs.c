@@ -59,18 +59,18 @@ static void update_job(struct api *api, struct api_job *job)
         problem_set(&job->problem, PROBLEM_NOT_FOUND, "", "", "the plan is gone");
         return;
     }
-    if (plan.ready_opening == job->opening) { /* also when it has been closed since */
+    if (plan.ready_opening == job->opening) { /* also if the plan was closed since */
         job->state = JOB_DONE;
         job->phase[0] = 0;
         job->percent = 100;
         return;
     }
-    if (plan.failed_opening == job->opening) { /* also when it has been opened again since */
+    if (plan.failed_opening == job->opening) { /* also if the plan was opened again since */
         job->state = job->is_cancel_requested ? JOB_CANCELLED : JOB_FAILED;
         job->problem = *plan.failure;
         return;
     }
-    if (plan.opening != job->opening) { /* closed before it was ready, and opened again since */
+    if (plan.opening != job->opening) { /* the plan was closed before it was ready, and opened again since */
         job->state = JOB_CANCELLED;
         return;
     }
@@ -81,7 +81,7 @@ static void update_job(struct api *api, struct api_job *job)
         (void)snprintf(job->phase, sizeof job->phase, "%s", plan.phase ? plan.phase : "");
         job->percent = plan.percent;
         break;
-    case FLEET_READY: break; /* done, above */
+    case FLEET_READY: break; /* handled above */
     case FLEET_CLOSED: job->state = JOB_CANCELLED; break;
     case FLEET_UNREADABLE:
     case FLEET_FAILED:

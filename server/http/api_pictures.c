@@ -13,7 +13,7 @@ struct api_picture {
     struct call *call;
     char plan_id[64];
     double n_pixels;
-    bool has_revision; /* of a room's scene */
+    bool has_revision; /* the picture shows a room's scene: its revision is sent along */
 };
 
 static double pixels_of(const cJSON *view)
@@ -22,7 +22,8 @@ static double pixels_of(const cJSON *view)
     return cJSON_GetNumberValue(cJSON_GetArrayItem(size, 0)) * cJSON_GetNumberValue(cJSON_GetArrayItem(size, 1));
 }
 
-/* Scripts and rooms share a plan's renderer: how much a script may put before the others has an end. */
+/* Notes a picture under way; answers the call with 503 and returns false when the plan has too many. Scripts and rooms
+ * share a plan's renderer: without a limit a script could keep it from the rooms. */
 static bool start_picture(struct api *api, struct call *call, const char *plan_id, const cJSON *view, bool has_revision)
 {
     size_t n = 0;
@@ -50,7 +51,7 @@ static bool start_picture(struct api *api, struct call *call, const char *plan_i
     return true;
 }
 
-/* Whether it was of a room's scene. */
+/* The picture is answered. Returns true when it showed a room's scene. */
 static bool end_picture(struct api *api, const struct call *call)
 {
     for (struct api_picture **at = &api->pictures; *at; at = &(*at)->next)

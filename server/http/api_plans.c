@@ -21,7 +21,7 @@ static cJSON *plan_head(const struct fleet_plan *plan)
         cJSON_AddStringToObject(json, "phase", plan->phase);
         cJSON_AddNumberToObject(json, "percent", plan->percent);
     }
-    if (plan->problem) { /* unreadable, failed, or why the renderer is restarted after a pause */
+    if (plan->problem) { /* unreadable, failed, or waiting for a restart */
         cJSON_AddStringToObject(json, "reason", plan->problem->detail);
         cJSON_AddItemToObject(json, "problem", problem_to_json(plan->problem));
     } else {
@@ -60,7 +60,7 @@ void api_plan(struct api *api, struct call *call)
         return;
     cJSON *answer = plan_head(&plan);
     const cJSON *part;
-    cJSON_ArrayForEach(part, plan.document) /* images, regions, ...: all that only a loaded plan can tell */
+    cJSON_ArrayForEach(part, plan.document) /* images, regions, ...: known only of a loaded plan */
     {
         if (!cJSON_GetObjectItemCaseSensitive(answer, part->string))
             cJSON_AddItemToObject(answer, part->string, cJSON_Duplicate(part, true));

@@ -11,7 +11,7 @@
 
 struct render_call {
     char plan_id[64];
-    cJSON *body; /* checked: only known members */
+    cJSON *body; /* checked by check_body */
 };
 
 static void render_call_destroy(struct render_call *request)

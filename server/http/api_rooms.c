@@ -1,4 +1,4 @@
-/* Rooms: their documents, the shared scene with its ETag, snapshots. */
+/* Rooms: creating and deleting them, their documents, the shared scene with its ETag, snapshots. */
 #include <stdio.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "server/http/api_queries.h"
 #include "server/http/etag.h"
 
-/* The call's first id as a room; NULL: answered with not-found. */
+/* The room that the call's address names; NULL: there is none, the call was answered. */
 static struct room *find_room(struct api *api, struct call *call)
 {
     struct room *room = net_room_find(api->net, call->ids[0]);
@@ -91,7 +91,7 @@ static void write_etag(char etag[24], uint32_t revision)
     (void)snprintf(etag, 24, "\"%u\"", revision);
 }
 
-/* The scene of the call's room; NULL: answered. */
+/* The scene of the call's room; NULL: the call was answered. */
 static const cJSON *find_scene(struct api *api, struct call *call, struct room **room, uint32_t *revision)
 {
     *room = find_room(api, call);
@@ -191,7 +191,7 @@ void api_room_snapshot(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    if (!plan.default_scene) { /* closed while nobody was in the room: loaded for this picture */
+    if (!plan.default_scene) { /* the plan was closed while nobody was in the room: it is loaded for this picture */
         api_when_ready(api, call, plan_id, snapshot_when_ready);
         return;
     }

@@ -1,4 +1,4 @@
-/* The shape of a region: its figures, how fast it is drawn, or the shape itself as a file. */
+/* GET /plans/{plan}/regions/{region}/surface: a shape's figures, the time to draw it, or the shape as a file. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,20 +11,20 @@
 
 enum { TIMED_PX = 650 }; /* the window in which Sera3d's frame rates were taken */
 
-/* The files a surface is given as. What they are is said here and not by the renderer. PLY has no registered type. */
+/* Media types are named here, not by the renderer, which is not trusted. PLY has no registered type. */
 static const char *media_type(enum mesh_format format)
 {
     return format == MESH_STL ? "model/stl" : format == MESH_GLB ? "model/gltf-binary" : "application/octet-stream";
 }
 
-/* One call under way. */
+/* A call under way. */
 struct shape_call {
     char plan_id[64], region[64];
     struct shape_query query;
-    cJSON *body;   /* the figures, while pictures are timed */
-    cJSON *render; /* the packet that asks for one */
+    cJSON *body;   /* the shape's figures, kept while pictures are timed */
+    cJSON *render; /* the packet that requests a picture */
     double draw_ms[SHAPE_QUERY_MAX_FRAMES];
-    int n_drawn; /* -1: the first, which is not counted, is still to come */
+    int n_drawn; /* -1: the first picture, which is not counted, is still to come */
 };
 
 static void shape_call_destroy(struct api *api, struct shape_call *request)
@@ -102,7 +102,7 @@ static void picture_came(void *context, struct packet *answer, const struct prob
     call_answer_json(call, 200, body);
 }
 
-/* The region alone in the plan's own scene, at full detail, as while it moves. */
+/* The request for a picture of the region alone, at full detail, drawn as a moving picture. NULL with problem. */
 static cJSON *timed_picture(const struct fleet_plan *plan, const struct shape_call *request, struct problem *problem)
 {
     cJSON *patch = shape_query_scene(&request->query, request->region, plan->default_scene);
@@ -162,7 +162,7 @@ static void shape_came(void *context, struct packet *answer, const struct proble
     request_picture(call, request);
 }
 
-/* Both hold much for long. */
+/* True if one more file or timing may begin: each keeps memory or a renderer busy for long. */
 static bool is_free(struct api *api, const struct shape_query *query, struct problem *problem)
 {
     if (query->is_file && api->n_files == API_MAX_FILES)

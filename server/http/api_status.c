@@ -1,4 +1,4 @@
-/* Alive, ready, version, metrics, the description. */
+/* The state of the server: /healthz, /readyz, /metrics, /version, and the OpenAPI document. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -79,7 +79,7 @@ static void text_add(struct text *text, const char *format, ...)
     int n = vsnprintf(text->bytes + text->used, text->room - text->used, format, args);
     va_end(args);
     if (n > 0 && (size_t)n < text->room - text->used)
-        text->used += (size_t)n; /* what does not fit is left out whole */
+        text->used += (size_t)n; /* a line that does not fit is left out */
     else
         text->bytes[text->used] = 0;
 }
@@ -90,7 +90,7 @@ static void add_metric(struct text *text, const char *name, const char *type, co
              value);
 }
 
-/* No plan ids, no member names: metrics are read by people who may not see patients. */
+/* Without plan ids and members' names: those who read metrics may not be allowed to see patients. */
 void api_metrics(struct api *api, struct call *call)
 {
     struct fleet *fleet = net_fleet(api->net);

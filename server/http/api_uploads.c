@@ -7,7 +7,7 @@
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
 
-/* The body is in a file by now: server/http/intake.h. */
+/* The body was received into a file by server/http/intake.h. */
 void api_plan_upload(struct api *api, struct call *call)
 {
     struct problem problem;
@@ -19,7 +19,7 @@ void api_plan_upload(struct api *api, struct call *call)
         return;
     }
     uint64_t number = fleet_upload(net_fleet(api->net), call->upload_path, name ? name : "", &problem);
-    free(call->upload_path); /* the fleet's now */
+    free(call->upload_path); /* the fleet has taken the file */
     call->upload_path = NULL;
     if (!number) {
         call_answer_problem(call, &problem);
@@ -36,7 +36,7 @@ void api_plan_delete(struct api *api, struct call *call)
     struct fleet *fleet = net_fleet(api->net);
     struct fleet_plan plan;
     struct problem problem = { 0 };
-    /* the rooms go first, but only when the plan will */
+    /* closes the plan's rooms first, but only if the plan can be deleted */
     if (fleet_plan_find(fleet, call->ids[0], &plan) && plan.is_uploaded)
         for (size_t i = net_n_rooms(api->net); i-- > 0;)
             if (strcmp(room_plan_id(net_room_at(api->net, i)), call->ids[0]) == 0)

@@ -1,3 +1,4 @@
+/* Finds the end of a request body, byte by byte. */
 #include "server/http/body.h"
 
 #include <string.h>
@@ -26,7 +27,7 @@ static bool refuse(struct problem *problem, char found, const char *expected)
                        (unsigned)(unsigned char)found, expected);
 }
 
-/* The line in front of a chunk. */
+/* A byte of the line in front of a chunk: its size and extensions. */
 static bool take_size(struct body *body, char byte, struct problem *problem)
 {
     int digit = digit_of(byte);
@@ -62,7 +63,7 @@ static bool take_size(struct body *body, char byte, struct problem *problem)
     return true;
 }
 
-/* Fields after the last chunk, up to the empty line: they are not used. */
+/* A byte of the fields after the last chunk, up to the empty line. They are not used. */
 static bool take_trailer(struct body *body, char byte, struct problem *problem)
 {
     if (++body->n_line > BODY_MAX_TRAILERS)

@@ -1,3 +1,4 @@
+/* Fills in, answers and frees one call. */
 #include "server/http/call.h"
 
 #include <assert.h>
@@ -41,7 +42,7 @@ void call_destroy(struct call *call)
     free(call->fetch_site);
     free(call->body);
     if (call->upload_path)
-        (void)unlink(call->upload_path); /* nobody kept it */
+        (void)unlink(call->upload_path); /* no handler has kept the file */
     free(call->upload_path);
     free(call->bytes);
     free(call);
@@ -162,7 +163,7 @@ bool call_origin_is_own(const struct call *call, struct problem *problem)
         return origin_is_of_host(call->origin, call->host) ||
                problem_set(problem, PROBLEM_FORBIDDEN, "", "", "the origin %.100s may not change anything here",
                            call->origin);
-    /* browsers that leave Origin out say at least this much; programs say neither */
+    /* browsers that send no Origin send Sec-Fetch-Site; programs send neither */
     return !call->fetch_site || strcmp(call->fetch_site, "same-origin") == 0 || strcmp(call->fetch_site, "none") == 0 ||
            problem_set(problem, PROBLEM_FORBIDDEN, "", "",
                        "a page of another site (Sec-Fetch-Site: %.40s) may not change anything here", call->fetch_site);

@@ -1,6 +1,6 @@
 #pragma once
-/* One HTTP request on its way through: filled by the HTTP thread, answered on the net thread, sent by the HTTP thread.
- * Knows nothing of libmicrohttpd. */
+/* One HTTP call: its request, filled in by the HTTP thread; its answer, made on the net thread and sent by the HTTP
+ * thread. Knows nothing of libmicrohttpd. */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -25,17 +25,18 @@ struct call {
     /* the request */
     enum call_method method;
     char path[CALL_MAX_PATH];          /* decoded */
-    char *segments[CALL_MAX_SEGMENTS]; /* of path, split at '/' */
+    char *segments[CALL_MAX_SEGMENTS]; /* path, split at '/' */
     size_t n_segments;
-    const char *ids[CALL_MAX_SEGMENTS]; /* those that stand for {...} in the route, in order */
+    const char *ids[CALL_MAX_SEGMENTS]; /* the segments that stand for {...} in the route, in order */
     struct call_pair query[CALL_MAX_QUERY];
     size_t n_query;
     char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site; /* NULL when not sent */
     char *body;
     size_t n_body;
-    char *upload_path; /* an archive's body lies here instead; whoever keeps the file sets it to NULL */
+    char *upload_path; /* the file that holds the body when it is an archive; removed with the call unless it is set to
+                          NULL */
     uint64_t n_upload;
-    struct problem early; /* found while reading the request: answered instead of the route */
+    struct problem early; /* found while the request was received: answered without running the route */
 
     /* the answer */
     int status;
@@ -45,10 +46,10 @@ struct call {
     struct call_pair headers[CALL_MAX_HEADERS];
     size_t n_headers;
 
-    void *api;                           /* whose tables the handlers use */
-    void *context;                       /* the handler's own while it waits */
-    void (*finished)(struct call *call); /* set by the HTTP side: the answer is complete; any thread, exactly once */
-    void *connection;                    /* the HTTP side's */
+    void *api;                           /* the struct api that handles the call */
+    void *context;                       /* for the handler, while it waits for the fleet */
+    void (*finished)(struct call *call); /* of the HTTP side: called once, on any thread, when the answer is complete */
+    void *connection;                    /* of the HTTP side */
     int64_t started_us;
     const char *route; /* "GET /api/v1/plans/{plan}", for metrics; never an id */
 };
@@ -58,7 +59,7 @@ void call_destroy(struct call *call);
 void call_set_path(struct call *call, const char *path);
 const char *call_query(const struct call *call, const char *name); /* NULL when absent */
 
-/* Each sets the answer and calls finished: the call must not be touched after it. */
+/* Each sets the answer and calls finished. The call must not be used afterwards. */
 void call_answer_json(struct call *call, int status, cJSON *json); /* takes json */
 void call_answer_problem(struct call *call, const struct problem *problem);
 void call_answer_bytes(struct call *call, int status, const char *media_type, uint8_t *bytes,
@@ -67,13 +68,14 @@ void call_answer_text(struct call *call, int status, const char *media_type, con
 void call_answer_nothing(struct call *call, int status);
 void call_add_header(struct call *call, const char *name, const char *value); /* before the answer */
 
-/* Whether its Content-Type is media_type, parameters aside. */
+/* True if its Content-Type is media_type, without regard to parameters. */
 bool call_media_type_is(const struct call *call, const char *media_type);
-/* A page of another origin must not change anything here with the person's own browser. False with problem. */
+/* Returns false with problem for a request that would change something and that a page of another origin makes with the
+ * user's browser. */
 NODISCARD bool call_origin_is_own(const struct call *call, struct problem *problem);
-/* The body as a JSON object. media_types: NULL-terminated, which are read. false: the call has been answered with the
- * problem. */
+/* The body as a JSON object. media_types: those that are accepted, NULL-terminated. Returns false when the call was
+ * answered with the problem. */
 NODISCARD bool call_read_object(struct call *call, const char *const *media_types, cJSON **object);
-/* A query parameter as a finite number. NULL text: *value unchanged. */
+/* A query parameter as a finite number; *value is unchanged when it is absent. */
 NODISCARD bool call_query_number(const struct call *call, const char *name, bool is_required, double *value,
                                  struct problem *problem);

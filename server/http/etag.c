@@ -1,3 +1,4 @@
+/* Searches a list of entity tags. */
 #include "server/http/etag.h"
 
 #include <stddef.h>
@@ -14,7 +15,7 @@ bool etag_is_listed(const char *list, const char *etag, bool is_weak_allowed)
         bool is_weak = strncmp(at, "W/", 2) == 0;
         at += is_weak ? 2 : 0;
         const char *end = *at == '"' ? strchr(at + 1, '"') : NULL;
-        if (!end) { /* no tag: on to the next, or the end */
+        if (!end) { /* not a tag: skip to the next comma */
             at += strcspn(at, ",");
             if (!*at)
                 return false;

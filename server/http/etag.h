@@ -1,8 +1,7 @@
 #pragma once
-/* Conditions of requests (RFC 9110 13.1). */
+/* Lists of entity tags in conditional requests (RFC 9110 13.1). */
 #include <stdbool.h>
 
-/* Whether list, the value of If-Match or If-None-Match, names etag, which is strong and in its quotes: "*" names any, a
- * list names each of its tags. Weak tags, W/"x", count only where weak comparison is allowed, as in If-None-Match. What
- * is no tag names nothing. */
+/* True if list, the value of If-Match or If-None-Match, names etag, a strong tag with its quotes. "*" names every tag.
+ * Weak tags, W/"x", match only if is_weak_allowed, as for If-None-Match. Anything else in the list is ignored. */
 bool etag_is_listed(const char *list, const char *etag, bool is_weak_allowed);

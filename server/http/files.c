@@ -1,3 +1,4 @@
+/* Reads the files of the page into memory at start, and finds one by its path. */
 #define _GNU_SOURCE
 #include "server/http/files.h"
 
@@ -40,7 +41,7 @@ static const char *media_type_of(const char *name)
     return NULL;
 }
 
-/* FNV-1a, 64 bits: tells contents apart for caching, nothing more. */
+/* FNV-1a, 64 bits: only tells contents apart for caching. */
 static uint64_t hash_bytes(const uint8_t *bytes, size_t n)
 {
     uint64_t hash = 0xcbf29ce484222325u;

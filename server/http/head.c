@@ -1,3 +1,4 @@
+/* Parses and checks the head of a request. */
 #include "server/http/head.h"
 
 #include <ctype.h>
@@ -12,7 +13,7 @@ struct text { /* a piece of the head */
     size_t n;
 };
 
-/* What matters of the headers. */
+/* The headers that are used. */
 struct fields {
     struct text host, origin, upgrade, connection, key, version, length, coding, forwarded;
     size_t n_hosts, n_origins, n_lengths, n_codings, n_keys, n_versions;
@@ -28,7 +29,7 @@ struct head {
 
 enum { SHOWN_SIZE = 61 };
 
-/* Foreign bytes as they may stand in a sentence. */
+/* Bytes of a request, made printable for an error sentence. */
 static const char *show(struct text text, char shown[SHOWN_SIZE])
 {
     size_t n = text.n < SHOWN_SIZE - 1 ? text.n : SHOWN_SIZE - 1;
@@ -69,7 +70,7 @@ static struct text trim(struct text text)
     return text;
 }
 
-/* Whether a list of words, parted by commas, has one. */
+/* True if the comma-separated list holds the word. */
 static bool has_word(struct text list, const char *word)
 {
     while (list.n) {
@@ -84,7 +85,7 @@ static bool has_word(struct text list, const char *word)
     return false;
 }
 
-/* The next line, without its end; false: it is not there yet. */
+/* Takes the next line, without its line end. Returns false when it is not whole. */
 static bool next_line(const char **at, const char *end, struct text *line)
 {
     const char *newline = memchr(*at, '\n', (size_t)(end - *at));
@@ -143,8 +144,8 @@ static bool refuse_field(const struct head *head, size_t number, struct text lin
                        found);
 }
 
-/* The two fields that say where the body ends keep the blanks after their value, and are refused with them:
- * libmicrohttpd takes those blanks for a part of the value, and would look for another end of the body than we do. */
+/* Stores the value of a known field. Content-Length and Transfer-Encoding keep blanks after their value, and are then
+ * refused: libmicrohttpd counts those blanks as part of the value, and would find a different end of the body. */
 static void note_field(struct fields *fields, struct text name, struct text after_colon)
 {
     struct text whole = trim_front(after_colon), value = trim(after_colon);
@@ -186,7 +187,8 @@ static bool read_field(struct head *head, size_t number, struct text line)
     return true;
 }
 
-/* How long the body is must be said once and plainly: where two readers may differ, one is deceived. */
+/* The length of the body must be given once and plainly: where two readers find different ends, requests can be
+ * smuggled. */
 static bool check_length(const struct head *head)
 {
     const struct fields *fields = &head->fields;
@@ -206,7 +208,7 @@ static bool check_length(const struct head *head)
                            show(fields->coding, shown), head->minor);
     if (!fields->n_lengths)
         return true;
-    bool is_number = fields->length.n > 0 && fields->length.n <= 18; /* far less than 2^63 */
+    bool is_number = fields->length.n > 0 && fields->length.n <= 18; /* less than 2^63 */
     for (size_t i = 0; i < fields->length.n; i++)
         is_number = is_number && isdigit((unsigned char)fields->length.at[i]);
     return is_number || problem_set(head->problem, PROBLEM_REQUEST, "", "",
@@ -233,7 +235,7 @@ static bool check_host(const struct head *head, const struct hosts *hosts)
            refuse_host(head->problem, fields->host);
 }
 
-/* "/api/v1/rooms/<anything>/ws"; room: the anything. */
+/* True for "/api/v1/rooms/<room>/ws"; fills in room. */
 static bool is_room_address(struct text target, struct text *room)
 {
     static const char before[] = "/api/v1/rooms/";
@@ -246,7 +248,7 @@ static bool is_room_address(struct text target, struct text *room)
     return true;
 }
 
-/* 16 bytes in base64 */
+/* True for 16 bytes in base64. */
 static bool is_key(struct text key)
 {
     if (key.n != 24 || key.at[22] != '=' || key.at[23] != '=')
@@ -307,8 +309,7 @@ static enum head_kind refuse_size(const struct head *head, const char *line, con
     return HEAD_REFUSED;
 }
 
-/* The library behind keeps each parameter in the memory of its connection and gives no answer at all when they do not
- * fit. */
+/* libmicrohttpd keeps the parameters in the memory of the connection, and gives no answer when they do not fit. */
 static bool check_parameters(const struct head *head)
 {
     size_t n_parameters = 0;
@@ -323,7 +324,7 @@ static bool check_parameters(const struct head *head)
                        n_parameters, HEAD_MAX_PARAMETERS);
 }
 
-/* check_length has found it to be a number. */
+/* digits were checked by check_length. */
 static uint64_t number_of(struct text digits)
 {
     uint64_t number = 0;
@@ -384,7 +385,7 @@ enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts,
 
 static void copy(char *out, size_t size, struct text text)
 {
-    size_t n = text.n < size ? text.n : 0; /* never a part: what does not fit is left out */
+    size_t n = text.n < size ? text.n : 0; /* what does not fit is left out as a whole */
     if (n)
         memcpy(out, text.at, n);
     out[n] = 0;
@@ -392,7 +393,7 @@ static void copy(char *out, size_t size, struct text text)
 
 void head_read_handshake(const char *bytes, size_t n, struct handshake *handshake)
 {
-    struct problem problem; /* head_look has checked it: nothing is refused here */
+    struct problem problem; /* head_read has checked the head: nothing is refused here */
     struct head head = { .problem = &problem };
     const char *at = bytes, *end = bytes + n;
     struct text line, room = { 0 };
@@ -405,7 +406,7 @@ void head_read_handshake(const char *bytes, size_t n, struct handshake *handshak
         (void)read_field(&head, ++n_fields, line);
     (void)is_room_address(head.target, &room);
     copy(handshake->room_id, sizeof handshake->room_id, room);
-    if (!id_is_valid(handshake->room_id)) /* no percent-encoding either: an id has no letter that needs one */
+    if (!id_is_valid(handshake->room_id)) /* ids need no percent-encoding, so none is decoded */
         handshake->room_id[0] = 0;
     copy(handshake->key, sizeof handshake->key, head.fields.key);
     copy(handshake->host, sizeof handshake->host, head.fields.host);

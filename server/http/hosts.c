@@ -1,3 +1,4 @@
+/* Keeps the names of this server, and compares a Host header with them. */
 #include "server/http/hosts.h"
 
 #include <arpa/inet.h>
@@ -45,7 +46,7 @@ static bool is_port(const char *text)
     return text[strspn(text, "0123456789")] == 0;
 }
 
-/* The name alone, in place, without brackets, port and the dot of the root. */
+/* Cuts brackets, port and a final dot off, in place. NULL: malformed. */
 static char *bare_name(char *host, bool *is_bracketed)
 {
     *is_bracketed = host[0] == '[';

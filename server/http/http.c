@@ -21,12 +21,12 @@
 #include "server/http/intake.h"
 #include "server/http/relay.h"
 
-/* Never met: what the relay has at most, and those that have died and the library has not noticed yet. */
+/* Never reached: the relay's limit is lower, also with connections whose end the library has not noticed. */
 static const unsigned LIBRARY_LIMIT = 1000000;
 
 enum {
     MAX_ANSWERED = 1 << 16
-}; /* requests that wait for an answer: at most one for each connection, and each of those that have died */
+}; /* requests that are answered and not resumed: at most one per connection, ended ones included */
 
 struct http {
     struct net *net;
@@ -35,14 +35,14 @@ struct http {
     struct intake *intake;
     struct relay *relay;
     struct MHD_Daemon *daemon;
-    struct queue *answered; /* requests whose answer is there; their connections are resumed on the HTTP thread, as the
-                               library expects */
-    struct gate *posting;   /* passed by each net_post; closed by http_stop_posting */
-    size_t max_archive_dropped; /* bytes of an archive beyond the limit that are read: a sender who streams hears why it
-                                   was refused */
+    struct queue *
+        answered; /* answered requests, whose connections the HTTP thread resumes: the library allows no other thread */
+    struct gate *posting; /* passed by each net_post; closed by http_stop_posting */
+    size_t
+        max_archive_dropped; /* bytes of a refused archive that are read, so that its sender comes to read the answer */
 };
 
-/* A request: the call, and where it stands. */
+/* A request in the library, and its call. */
 struct request {
     struct call *call;
     struct http *http;
@@ -52,7 +52,7 @@ struct request {
     struct intake_file *archive; /* while it is received */
 };
 
-/* The page runs its own scripts and styles only, and nobody may frame it. */
+/* The page runs only its own scripts and styles, and may not be framed. */
 static const char content_policy[] =
     "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'self'";
 
@@ -72,10 +72,10 @@ static enum MHD_Result send_file(struct MHD_Connection *connection, const struct
     bool is_fresh = known && etag_is_listed(known, file->etag, true);
     struct MHD_Response *response =
         MHD_create_response_from_buffer(is_fresh ? 0 : file->n_bytes, file->bytes,
-                                        MHD_RESPMEM_PERSISTENT); /* files outlive the daemon */
+                                        MHD_RESPMEM_PERSISTENT); /* files outlives the library's daemon */
     MHD_add_response_header(response, "ETag", file->etag);
     MHD_add_response_header(response, "Cache-Control",
-                            "no-cache"); /* kept, but asked about: a page never mixes versions */
+                            "no-cache"); /* kept but revalidated: a page never mixes versions */
     MHD_add_response_header(response, "Content-Type", file->media_type);
     MHD_add_response_header(response, "Content-Security-Policy", content_policy);
     return send_response(connection, is_fresh ? 304 : 200, response);
@@ -95,14 +95,15 @@ static enum MHD_Result send_answer(struct MHD_Connection *connection, struct req
     return send_response(connection, (unsigned)call->status, response);
 }
 
-/* On whichever thread completed the answer. */
+/* Called on the thread that completed the answer. */
 static void call_finished(struct call *call)
 {
     struct request *request = call->connection;
     struct relay *relay = request->http->relay;
-    if (!queue_try_put(request->http->answered, request)) /* it holds more than there are connections */
+    if (!queue_try_put(request->http->answered,
+                       request)) /* cannot be: the queue holds more than there are connections */
         abort();
-    relay_wake(relay); /* the request is the HTTP thread's again */
+    relay_wake(relay); /* from here on the request belongs to the HTTP thread */
 }
 
 static void run_call(struct net *net, void *argument)
@@ -141,7 +142,7 @@ static enum call_method method_of(const char *word)
     return CALL_OTHER;
 }
 
-/* Decodes %XX in place, but leaves %00 as it stands: a text that ended there would pass for a shorter one. */
+/* Decodes %XX in place, but not %00: the text would end there and pass for a shorter one. */
 static size_t unescape(void *context, struct MHD_Connection *connection, char *text)
 {
     (void)context;
@@ -161,7 +162,7 @@ static size_t unescape(void *context, struct MHD_Connection *connection, char *t
     return (size_t)(out - text);
 }
 
-/* The path of an address in absolute form (RFC 9112 3.2.2), as proxies are asked with. */
+/* The path of an address, also of one in absolute form (RFC 9112 3.2.2), which proxies send. */
 static const char *path_of(const char *url)
 {
     if (strncasecmp(url, "http://", 7) != 0)
@@ -170,7 +171,7 @@ static const char *path_of(const char *url)
     return path ? path : "/";
 }
 
-/* Refuses what is being received: the sender is told at once, and its connection counts no longer. */
+/* Refuses a request whose body is being received: answers at once, and its connection counts no longer. */
 static enum MHD_Result refuse_body(struct request *request)
 {
     struct http *http = request->http;
@@ -182,7 +183,7 @@ static enum MHD_Result refuse_body(struct request *request)
     return MHD_NO;
 }
 
-/* The body will be an archive. */
+/* Begins to receive an archive as the body. */
 static bool begin_archive(struct request *request)
 {
     struct call *call = request->call;
@@ -198,7 +199,7 @@ static bool begin_archive(struct request *request)
     return request->archive != NULL;
 }
 
-/* Whether the body may be that large, as far as its sender says. */
+/* True if the announced length of the body is allowed. */
 static bool check_length(struct request *request)
 {
     const char *length = MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, "Content-Length");
@@ -237,7 +238,7 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     return request;
 }
 
-/* More of the body. */
+/* Appends bytes to the body. */
 static bool add_body(struct request *request, const char *bytes, size_t n)
 {
     struct call *call = request->call;
@@ -327,7 +328,7 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         relay_link_closed(*link);
 }
 
-/* What the relay calls. */
+/* Callbacks of the relay. */
 static bool add_to_library(void *context, int socket)
 {
     struct http *http = context;
@@ -373,9 +374,9 @@ struct http *http_create(struct net *net, const struct http_options *options, st
     http->relay = relay_create(&relay_options, err);
     if (!http->relay)
         goto fail;
-    /* Without its log, which tells with each answer that a pair of sockets has no options of TCP.
-     * No limit and no time limit of the library's own: the relay has both, and the library hangs for ever when its
-     * limit is met (0.9.75). */
+    /* The library's log is off: with each answer it reports that a pair of sockets has no options of TCP. The library's
+     * own limits on connections and time are off: the relay has both, and the library (0.9.75) hangs for ever when its
+     * limit on connections is reached. */
     http->daemon = MHD_start_daemon(MHD_USE_EPOLL | MHD_USE_NO_LISTEN_SOCKET | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
                                     handle, http, MHD_OPTION_NOTIFY_COMPLETED, completed, NULL,
                                     MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http, MHD_OPTION_CONNECTION_LIMIT,

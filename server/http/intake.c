@@ -1,3 +1,4 @@
+/* Writes archives that are being received to files, within limits of size, space, number and speed. */
 #include "server/http/intake.h"
 
 #include <assert.h>
@@ -17,7 +18,7 @@
 struct intake {
     char *folder;
     uint64_t max_bytes, last_number;
-    uint64_t reserve_bytes, n_promised; /* promised: what all files may still write of what they were granted */
+    uint64_t reserve_bytes, n_promised; /* n_promised: sum of the files' `promised` */
     uint64_t (*free_bytes)(void *context, int *failed);
     void *context;
     int n_files, window_ms;
@@ -27,9 +28,9 @@ struct intake_file {
     struct intake *intake;
     char *path;
     int fd;
-    uint64_t n_bytes, window_bytes; /* in all, and since the window began */
-    uint64_t promised;              /* granted and not written yet */
-    uint64_t n_unlooked;            /* written since the disk was last looked at */
+    uint64_t n_bytes, window_bytes; /* written in all; received since the window began */
+    uint64_t promised;              /* bytes of disk granted to this file and not written yet */
+    uint64_t n_unlooked;            /* written since the disk was last checked */
     int64_t window_us;
 };
 
@@ -111,15 +112,15 @@ static bool check_sender(const struct call *call, struct problem *problem)
         call->content_type ? call->content_type : "");
 }
 
-/* Whether the disk holds what all files were granted, and more beside it, and the reserve stays free. */
+/* True if the disk has room for all that was granted and `more` bytes, and the reserve stays free. */
 static bool check_space(const struct intake *intake, uint64_t more, struct problem *problem)
 {
     int failed;
     uint64_t n_free = intake->free_bytes(intake->context, &failed);
     if (failed)
         return refuse_storage(failed, problem);
-    uint64_t kept =
-        intake->reserve_bytes + intake->n_promised; /* a few files of at most INT64_MAX in all: each was granted */
+    uint64_t kept = intake->reserve_bytes +
+                    intake->n_promised; /* cannot overflow: each part was granted against the disk's free space */
     if (n_free >= kept && n_free - kept >= more)
         return true;
     return problem_set(problem, PROBLEM_STORAGE, "", "",
@@ -136,14 +137,14 @@ static void promise(struct intake_file *file, uint64_t n)
     file->intake->n_promised += n;
 }
 
-/* Before n bytes are written. A length that was announced is granted as a whole, one that was not in steps; and every
- * step the disk is looked at again, because others write to it too. */
+/* To be called before n bytes are written. An announced length was granted as a whole; else space is granted in steps.
+ * After each step the disk is checked again, because others write to it too. */
 static bool is_granted(struct intake_file *file, size_t n, struct problem *problem)
 {
     struct intake *intake = file->intake;
     if (n > file->promised) {
         uint64_t left = intake->max_bytes - file->n_bytes, step = INTAKE_STEP_BYTES < left ? INTAKE_STEP_BYTES : left;
-        step = step > n ? step : n; /* n is within the limit: the caller has seen to that */
+        step = step > n ? step : n; /* the caller checked that n is within max_bytes */
         if (!check_space(intake, step, problem))
             return false;
         promise(file, step);
@@ -195,7 +196,7 @@ struct intake_file *intake_begin(struct intake *intake, const struct call *call,
     return file;
 }
 
-/* A sender that trickles would hold one of the few places for ever. */
+/* Returns false when too little came in a window: a slow sender would hold one of the few slots for ever. */
 static bool is_fast_enough(struct intake_file *file, size_t n, struct problem *problem)
 {
     int64_t now_us = clock_now_us();
@@ -245,7 +246,7 @@ static void release(struct intake_file *file)
 
 char *intake_finish(struct intake_file *file, uint64_t *n_bytes, struct problem *problem)
 {
-    int failed = close(file->fd) != 0 ? errno : 0; /* some file systems say only here that the disk is full */
+    int failed = close(file->fd) != 0 ? errno : 0; /* some file systems report a full disk only here */
     file->fd = -1;
     if (failed) {
         refuse_storage(failed, problem);
