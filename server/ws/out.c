@@ -1,3 +1,6 @@
+/* Queues messages and frames of a connection, sends them in order, and closes. */
+#include "server/ws/out.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,11 +12,10 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/wire/message.h"
-#include "server/ws/parts.h"
 
 enum { LOG_EVERY_US = 10000000 };
 
-/* ---- what waits to go out --------------------------------------------------------------------------------------- */
+/* ---- queues ----------------------------------------------------------------------------------------------------- */
 
 struct message_out *out_message(enum ws_opcode opcode, const void *bytes, size_t n)
 {
@@ -58,8 +60,8 @@ void out_queue_clear(struct queue_out *queue)
 void out_drop_frames(struct ws_connection *connection)
 {
     for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
-        room_picture_drop(connection->boxes[i].picture);
-        connection->boxes[i].picture = NULL;
+        room_picture_drop(connection->slots[i].picture);
+        connection->slots[i].picture = NULL;
     }
 }
 
@@ -72,7 +74,7 @@ void out_log_cut(struct ws *ws, const char *reason)
     log_warn("a WebSocket was closed: %s (others are not logged for %d s)", reason, LOG_EVERY_US / 1000000);
 }
 
-/* No more than within_us from now on; 0: at once, but not before the caller has returned to the loop. */
+/* Cuts the connection after within_us; 0: as soon as the caller has returned to the loop. */
 static void end_within(struct ws_connection *connection, int64_t within_us)
 {
     connection->close_by_us = clock_now_us() + within_us;
@@ -114,7 +116,7 @@ void ws_send_message(struct ws_connection *connection, enum ws_opcode kind, cons
     struct message_out *message = is_too_slow ? NULL : out_message(kind, bytes, n);
     if (!message) {
         out_log_cut(connection->ws, is_too_slow ? "it takes its messages too slowly" : "no memory for a message to it");
-        connection->state = STATE_CLOSING; /* it would not read a close either */
+        connection->state = STATE_CLOSING; /* without a close: it would not read that either */
         out_drop_frames(connection);
         end_within(connection, 0);
         return;
@@ -132,10 +134,10 @@ void ws_send_frame(struct ws_connection *connection, const struct frame_header *
 {
     if (connection->state != STATE_OPEN || header->view < 1 || header->view > ROOM_MAX_VIEWS)
         return;
-    struct box *box = &connection->boxes[header->view - 1];
-    room_picture_drop(box->picture);
-    box->picture = room_picture_hold(picture);
-    frame_header_write(header, box->header);
+    struct frame_slot *slot = &connection->slots[header->view - 1];
+    room_picture_drop(slot->picture);
+    slot->picture = room_picture_hold(picture);
+    frame_header_write(header, slot->header);
     lws_callback_on_writable(connection->wsi);
 }
 
@@ -155,7 +157,7 @@ void ws_bye(struct ws_connection *connection, enum ws_close_code code, const cha
     out_begin_close(connection, (uint16_t)code, reason);
 }
 
-/* ---- what goes out ---------------------------------------------------------------------------------------------- */
+/* ---- sending ---------------------------------------------------------------------------------------------------- */
 
 static void begin_sending_message(struct ws_connection *connection, struct message_out *message)
 {
@@ -164,15 +166,15 @@ static void begin_sending_message(struct ws_connection *connection, struct messa
     sending->n_head = ws_write_head(sending->head, message->opcode, message->n);
 }
 
-static void begin_sending_frame(struct ws_connection *connection, struct box *box)
+static void begin_sending_frame(struct ws_connection *connection, struct frame_slot *slot)
 {
     struct sending *sending = &connection->sending;
-    struct room_picture *picture = box->picture;
+    struct room_picture *picture = slot->picture;
     *sending = (struct sending){ .picture = picture, .body = picture->bytes, .n_body = picture->n_bytes };
     sending->n_head = ws_write_head(sending->head, WS_BINARY, FRAME_HEADER_BYTES + picture->n_bytes);
-    memcpy(sending->head + sending->n_head, box->header, FRAME_HEADER_BYTES);
+    memcpy(sending->head + sending->n_head, slot->header, FRAME_HEADER_BYTES);
     sending->n_head += FRAME_HEADER_BYTES;
-    box->picture = NULL;
+    slot->picture = NULL;
 }
 
 static bool is_sending(const struct ws_connection *connection)
@@ -180,7 +182,8 @@ static bool is_sending(const struct ws_connection *connection)
     return connection->sending.message || connection->sending.picture;
 }
 
-/* Pongs before messages, messages before frames, views in turn; the close last. False: nothing waits. */
+/* Begins to send the next thing: pongs before messages, messages before the close, the close before frames (closing
+ * drops those), views in turn. Returns false when nothing waits. */
 static bool begin_next(struct ws_connection *connection)
 {
     struct message_out *message = queue_take_first(&connection->pongs);
@@ -195,11 +198,11 @@ static bool begin_next(struct ws_connection *connection)
         return true;
     }
     for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
-        int at = (connection->next_box + i) % ROOM_MAX_VIEWS;
-        if (!connection->boxes[at].picture)
+        int at = (connection->next_slot + i) % ROOM_MAX_VIEWS;
+        if (!connection->slots[at].picture)
             continue;
-        connection->next_box = at + 1;
-        begin_sending_frame(connection, &connection->boxes[at]);
+        connection->next_slot = at + 1;
+        begin_sending_frame(connection, &connection->slots[at]);
         return true;
     }
     return false;
@@ -209,15 +212,15 @@ static bool has_more(const struct ws_connection *connection)
 {
     bool has = is_sending(connection) || connection->pongs.first || connection->texts.first || connection->close;
     for (int i = 0; i < ROOM_MAX_VIEWS; i++)
-        has = has || connection->boxes[i].picture;
+        has = has || connection->slots[i].picture;
     return has;
 }
 
 static void finish_sending(struct ws_connection *connection)
 {
     struct sending *sending = &connection->sending;
-    if (sending->message &&
-        sending->message->opcode == WS_CLOSE) { /* RFC 6455 7.1.1: nothing more goes out; the client ends its side */
+    if (sending->message && sending->message->opcode ==
+                                WS_CLOSE) { /* RFC 6455 7.1.1: nothing more is sent; the client closes its direction */
         connection->state = STATE_LINGERING;
         (void)shutdown(lws_get_socket_fd(connection->wsi), SHUT_WR);
         end_within(connection, WS_LINGER_MS * INT64_C(1000));
@@ -265,7 +268,7 @@ int out_answer_now(struct ws_connection *connection)
 {
     while ((connection->state == STATE_OPEN && connection->pongs.first) || connection->state == STATE_CLOSING) {
         if (!is_sending(connection) && !begin_next(connection))
-            return 0; /* too slow: its time is over soon */
+            return 0; /* cut as too slow: its timer ends it */
         enum sent sent = send_some(connection);
         if (sent == SENT_FAILED)
             return -1;

@@ -1,3 +1,4 @@
+/* Parses frames byte by byte, unmasks and checks them, and puts messages together. */
 #include "server/ws/parser.h"
 
 #include <stdlib.h>
@@ -30,23 +31,23 @@ static bool begin_character(struct ws_parser *parser, uint8_t byte)
 {
     parser->utf8_low = 0x80;
     parser->utf8_high = 0xbf;
-    if (byte >= 0xc2 && byte <= 0xdf) { /* 0xc0 and 0xc1 would be longer than needed */
+    if (byte >= 0xc2 && byte <= 0xdf) { /* 0xc0 and 0xc1 are overlong */
         parser->utf8_more = 1;
     } else if (byte >= 0xe0 && byte <= 0xef) {
         parser->utf8_more = 2;
-        parser->utf8_low = byte == 0xe0 ? 0xa0 : 0x80;  /* longer than needed */
-        parser->utf8_high = byte == 0xed ? 0x9f : 0xbf; /* surrogates */
+        parser->utf8_low = byte == 0xe0 ? 0xa0 : 0x80;  /* no overlong form */
+        parser->utf8_high = byte == 0xed ? 0x9f : 0xbf; /* no surrogate */
     } else if (byte >= 0xf0 && byte <= 0xf4) {
         parser->utf8_more = 3;
-        parser->utf8_low = byte == 0xf0 ? 0x90 : 0x80;  /* longer than needed */
-        parser->utf8_high = byte == 0xf4 ? 0x8f : 0xbf; /* above U+10FFFF */
+        parser->utf8_low = byte == 0xf0 ? 0x90 : 0x80;  /* no overlong form */
+        parser->utf8_high = byte == 0xf4 ? 0x8f : 0xbf; /* not above U+10FFFF */
     } else {
         return false;
     }
     return true;
 }
 
-/* RFC 3629. The next bytes of a text; where it ends, utf8_more must be 0. */
+/* Checks the next bytes of a text (RFC 3629). At its end utf8_more must be 0. */
 static bool check_utf8(struct ws_parser *parser, const uint8_t *bytes, size_t n)
 {
     for (size_t i = 0; i < n;) {
@@ -116,7 +117,7 @@ static bool check_second_byte(struct ws_parser *parser, struct ws_event *event)
     return true;
 }
 
-/* Bytes of the header, as far as they are known by now. */
+/* Bytes of the header, as far as the bytes read so far tell. */
 static size_t head_bytes(const struct ws_parser *parser)
 {
     if (parser->n_head < 2)
@@ -141,7 +142,7 @@ static bool check_length(struct ws_parser *parser, struct ws_event *event)
     return true;
 }
 
-/* Takes bytes of the header; false: it is broken. */
+/* Reads bytes of the header. Returns false with a WS_EVENT_BROKEN. */
 static bool take_head(struct ws_parser *parser, const uint8_t **at, const uint8_t *end, struct ws_event *event)
 {
     while (*at < end && !parser->is_in_payload) {
@@ -151,7 +152,8 @@ static bool take_head(struct ws_parser *parser, const uint8_t **at, const uint8_
         if (parser->n_head == 2 && !check_second_byte(parser, event))
             return false;
         size_t n_all = head_bytes(parser);
-        if (parser->n_head == n_all - 4 && n_all > 2 && !check_length(parser, event)) /* before the mask's four bytes */
+        if (parser->n_head == n_all - 4 && n_all > 2 &&
+            !check_length(parser, event)) /* all but the four bytes of the mask were read */
             return false;
         if (parser->n_head < n_all || n_all == 2)
             continue;
@@ -183,7 +185,7 @@ static void unmask(const struct ws_parser *parser, uint8_t *out, const uint8_t *
         out[i] = in[i] ^ turned[i & 7];
 }
 
-/* Memory grows with the bytes that have come, not with the length that was announced. */
+/* Memory grows with the bytes received, not with the announced length. */
 static bool make_space(struct ws_parser *parser, size_t n)
 {
     size_t n_needed = parser->n_message + n, n_new = parser->n_allocated ? parser->n_allocated : FIRST_ALLOCATION;
@@ -227,8 +229,8 @@ static bool take_payload(struct ws_parser *parser, const uint8_t **at, const uin
 
 /* ---- whole frames ----------------------------------------------------------------------------------------------- */
 
-/* RFC 6455 7.4: those that are defined and may be sent, with what the registry added since, and those of libraries and
- * programs */
+/* RFC 6455 7.4: codes that are defined and may be sent, those registered since, and those for libraries and programs.
+ */
 static bool code_may_be_sent(unsigned code)
 {
     return (code >= 1000 && code <= 1014 && code != 1004 && code != 1005 && code != 1006) ||
@@ -241,7 +243,7 @@ static bool finish_close(struct ws_parser *parser, struct ws_event *event)
     unsigned code = n >= 2 ? (unsigned)parser->control[0] << 8 | parser->control[1] : WS_CLOSE_NO_CODE;
     if (n >= 2 && !code_may_be_sent(code))
         return fail(parser, event, WS_CLOSE_PROTOCOL, "a close with a code that may not be sent");
-    parser->utf8_more = 0; /* a text under way ends here */
+    parser->utf8_more = 0; /* drops the state of an unfinished text */
     if (n > 2 && (!check_utf8(parser, parser->control + 2, n - 2) || parser->utf8_more))
         return fail(parser, event, WS_CLOSE_NOT_UTF8, "the reason of a close is not UTF-8");
     parser->has_ended = true;
@@ -249,7 +251,7 @@ static bool finish_close(struct ws_parser *parser, struct ws_event *event)
     return true;
 }
 
-/* The frame is whole; it may complete a message. */
+/* Handles a whole frame, which may complete a message. */
 static void finish_frame(struct ws_parser *parser, struct ws_event *event)
 {
     parser->is_in_payload = false;

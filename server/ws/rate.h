@@ -1,6 +1,5 @@
 #pragma once
-/* How much may come in a time: so much a second in the long run, and so much at once. Plain arithmetic on times that
- * are handed in. */
+/* Rate limits: so much per second in the long run, and so much at once. Arithmetic on times passed in. */
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -10,11 +9,10 @@ struct rate_limit {
 };
 
 struct rate {
-    int64_t paid_until_ns; /* when what came by now is worked off at per_s; before now: there is nothing to work off */
+    int64_t paid_until_ns; /* when all that came so far is worked off at per_s */
 };
 
-/* Notes that n more have come. False: that is more than the limit allows, as it is for burst + 1 at once. n is at most
- * 2^31. */
+/* Notes that n more have come, n <= 2^31. Returns false when that exceeds the limit; burst + 1 at once always do. */
 static inline bool rate_allows(struct rate *rate, const struct rate_limit *limit, int64_t n, int64_t now_us)
 {
     int64_t now_ns = now_us * 1000;

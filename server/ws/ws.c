@@ -1,4 +1,5 @@
-#include "server/ws/parts.h"
+/* The loop; the handshake of a connection; what comes in, and its limits. */
+#include "server/ws/ws.h"
 
 #include <fcntl.h>
 #include <netinet/in.h>
@@ -15,10 +16,11 @@
 #include "core/base/mem.h"
 #include "server/wire/origin.h"
 #include "server/wire/refusal.h"
+#include "server/ws/out.h"
 
 enum {
-    SEND_BUFFER = 128 << 10,   /* of the kernel: what waits there cannot be replaced by a newer frame */
-    UNSENT_AT_MOST = 32 << 10, /* in it before it takes more */
+    SEND_BUFFER = 128 << 10,   /* the kernel's: a frame in it can no longer be replaced by a newer one */
+    UNSENT_AT_MOST = 32 << 10, /* bytes left in it when it takes more */
     READ_AT_ONCE = 32 << 10,
     TIMER_US = 1000000,
 };
@@ -34,7 +36,7 @@ const struct ws_limits ws_limits_default = {
 
 /* ---- the handshake ---------------------------------------------------------------------------------------------- */
 
-/* A page of another site must not open a connection with this browser's standing. Programs send no Origin. */
+/* False for a page of another site, which would use this browser's access to the server. Programs send no Origin. */
 static bool origin_is_allowed(const struct ws *ws, const struct handshake *handshake)
 {
     const char *origin = handshake->origin;
@@ -43,7 +45,7 @@ static bool origin_is_allowed(const struct ws *ws, const struct handshake *hands
     return handshake->host[0] && origin_is_of_host(origin, handshake->host);
 }
 
-/* Takes the socket. */
+/* Answers with the problem. Takes the socket. */
 static void refuse(struct ws *ws, int socket, const struct problem *problem)
 {
     (void)refusal_drain(socket, WS_MAX_HEAD);
@@ -71,7 +73,7 @@ static bool may_open(const struct ws *ws, const struct handshake *handshake, str
     return true;
 }
 
-/* RFC 6455 4.2.2. Nothing was sent on this socket before, so it takes this at once. */
+/* Sends the answer of RFC 6455 4.2.2. It is the first thing sent on this socket, so it fits into its buffer. */
 static bool answer_handshake(int socket, const char *key)
 {
     char bytes[128], accept[64], answer[256];
@@ -87,7 +89,7 @@ static bool answer_handshake(int socket, const char *key)
     return send(socket, answer, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT) == n;
 }
 
-/* The acceptor looked at the head without reading it. */
+/* Reads the head away: the acceptor has only peeked at it. */
 static bool skip_head(int socket, size_t n)
 {
     char bytes[WS_MAX_HEAD];
@@ -97,7 +99,7 @@ static bool skip_head(int socket, size_t n)
 static void set_option(int socket, int level, int name, int value)
 {
     if (setsockopt(socket, level, name, &value, sizeof value) < 0) {
-        /* a socket that is no TCP one (tests, proxies on Unix sockets) works as well, only later */
+        /* on other sockets than TCP (tests, proxies on Unix sockets) these options are not needed */
     }
 }
 
@@ -111,13 +113,13 @@ static void start(struct ws *ws, struct lws *wsi, const char *room_id, const str
     ws_parser_init(&connection->parser, ws->limits.max_message_bytes, ws->limits.takes_binary);
     ws->counters.opened++;
     ws->counters.n_connections++;
-    lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0); /* ours are in look_after */
+    lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0); /* time limits are checked in check_connection */
     lws_set_timer_usecs(wsi, TIMER_US);
     ws->callbacks.opened(ws->callbacks.context, connection, room_id);
 }
 
-/* NULL when the socket could not be taken over; it is closed then. */
-static struct lws *take_over(struct ws *ws, int socket, const struct handshake *handshake)
+/* Answers the handshake and gives the socket to libwebsockets. NULL: it could not, the socket is closed. */
+static struct lws *adopt_socket(struct ws *ws, int socket, const struct handshake *handshake)
 {
     struct problem problem;
     int flags = fcntl(socket, F_GETFL);
@@ -131,13 +133,13 @@ static struct lws *take_over(struct ws *ws, int socket, const struct handshake *
     set_option(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, UNSENT_AT_MOST);
     set_option(socket, SOL_SOCKET, SO_SNDBUF, SEND_BUFFER);
     if (!skip_head(socket, handshake->n_head) || !answer_handshake(socket, handshake->key)) {
-        (void)close(socket); /* the client is gone */
+        (void)close(socket); /* the client has gone */
         return NULL;
     }
     lws_sock_file_fd_type descriptor = { .sockfd = socket };
     struct lws *wsi = lws_adopt_descriptor_vhost(ws->vhost, LWS_ADOPT_SOCKET, descriptor, ws->protocols[0].name, NULL);
     if (!wsi)
-        log_warn("a connection could not be taken over: no memory"); /* the library has closed the socket */
+        log_warn("a connection could not be taken over: no memory"); /* libwebsockets has closed the socket */
     return wsi;
 }
 
@@ -149,7 +151,7 @@ static void end_count(const struct ws_count *count)
 
 void ws_adopt(struct ws *ws, int socket, const struct handshake *handshake, const struct ws_count *count)
 {
-    struct lws *wsi = take_over(ws, socket, handshake);
+    struct lws *wsi = adopt_socket(ws, socket, handshake);
     if (wsi)
         start(ws, wsi, handshake->room_id, count);
     else
@@ -175,7 +177,7 @@ static void refuse_rate(struct ws_connection *connection, const struct rate_limi
     ws_bye(connection, WS_CLOSE_POLICY, reason, WS_RETRY_MS);
 }
 
-static void take_event(struct ws_connection *connection, const struct ws_event *event, int64_t now_us)
+static void handle_event(struct ws_connection *connection, const struct ws_event *event, int64_t now_us)
 {
     const struct ws_limits *limits = &connection->ws->limits;
     const struct ws_callbacks *callbacks = &connection->ws->callbacks;
@@ -183,7 +185,8 @@ static void take_event(struct ws_connection *connection, const struct ws_event *
     case WS_EVENT_NONE: break;
     case WS_EVENT_MESSAGE:
         if (rate_allows(&connection->messages, &limits->messages, 1, now_us))
-            callbacks->message_came(callbacks->context, connection, event->kind, (const char *)event->bytes, event->n);
+            callbacks->message_received(callbacks->context, connection, event->kind, (const char *)event->bytes,
+                                        event->n);
         else
             refuse_rate(connection, &limits->messages, "messages");
         break;
@@ -216,12 +219,12 @@ static int receive(struct ws_connection *connection, const uint8_t *bytes, size_
         size_t n_taken = ws_parser_take(&connection->parser, bytes, n, &event);
         bytes += n_taken;
         n -= n_taken;
-        take_event(connection, &event, now_us);
+        handle_event(connection, &event, now_us);
     } while (event.type != WS_EVENT_NONE && connection->state == STATE_OPEN);
     return out_answer_now(connection);
 }
 
-static int look_after(struct ws_connection *connection)
+static int check_connection(struct ws_connection *connection)
 {
     struct ws *ws = connection->ws;
     int64_t now_us = clock_now_us(), silent_us = now_us - connection->heard_us;
@@ -248,7 +251,7 @@ static void closed(struct ws_connection *connection)
 {
     if (connection->state == STATE_NONE)
         return;
-    connection->state = STATE_NONE; /* nothing is queued from here on */
+    connection->state = STATE_NONE; /* from here on nothing is queued */
     connection->ws->counters.n_connections--;
     connection->ws->callbacks.closed(connection->ws->callbacks.context, connection);
     out_drop_frames(connection);
@@ -268,7 +271,7 @@ static int handle(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     switch (reason) {
     case LWS_CALLBACK_RAW_RX: return receive(connection, in, n);
     case LWS_CALLBACK_RAW_WRITEABLE: return out_write(connection);
-    case LWS_CALLBACK_TIMER: return connection && connection->state != STATE_NONE ? look_after(connection) : 0;
+    case LWS_CALLBACK_TIMER: return connection && connection->state != STATE_NONE ? check_connection(connection) : 0;
     case LWS_CALLBACK_RAW_CLOSE:
         if (connection)
             closed(connection);
@@ -282,8 +285,7 @@ static int handle(struct lws *wsi, enum lws_callback_reasons reason, void *user,
 
 static void log_library(int level, const char *line)
 {
-    log_line(level == LLL_ERR ? LOG_WARN : LOG_DEBUG, "libwebsockets: %s",
-             line); /* its errors are about what clients do */
+    log_line(level == LLL_ERR ? LOG_WARN : LOG_DEBUG, "libwebsockets: %s", line); /* its errors are caused by clients */
 }
 
 struct ws *ws_create(const struct ws_callbacks *callbacks, const struct ws_limits *limits, const char *allowed_origin,
@@ -302,7 +304,8 @@ struct ws *ws_create(const struct ws_callbacks *callbacks, const struct ws_limit
                                               .vhost_name = "rooms",
                                               .options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS,
                                               .pt_serv_buf_size = READ_AT_ONCE,
-                                              .fd_limit_per_thread = WS_MAX_CONNECTIONS + 16, /* and its own */
+                                              .fd_limit_per_thread =
+                                                  WS_MAX_CONNECTIONS + 16, /* plus the library's own */
                                               .count_threads = 1,
                                               .user = ws };
     ws->context = lws_create_context(&info);
@@ -337,16 +340,16 @@ void ws_wake(struct ws *ws)
     lws_cancel_service(ws->context);
 }
 
-static void time_came(lws_sorted_usec_list_t *timer)
+static void timer_fired(lws_sorted_usec_list_t *timer)
 {
     struct ws *ws = lws_container_of(timer, struct ws, timer);
-    ws->callbacks.time_came(ws->callbacks.context);
+    ws->callbacks.timer_fired(ws->callbacks.context);
 }
 
 void ws_wake_at(struct ws *ws, int64_t time_us)
 {
     int64_t wait_us = time_us - clock_now_us();
-    lws_sul_schedule(ws->context, 0, &ws->timer, time_came,
+    lws_sul_schedule(ws->context, 0, &ws->timer, timer_fired,
                      time_us == INT64_MAX ? LWS_SET_TIMER_USEC_CANCEL
                      : wait_us > 0        ? wait_us
                                           : 1);

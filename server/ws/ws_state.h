@@ -1,0 +1,68 @@
+#pragma once
+/* The state of the WebSocket side and of its connections, shared by the files of server/ws. Internal to server/ws; net
+ * thread. */
+#include <libwebsockets.h>
+
+#include "server/ws/ws.h"
+
+struct message_out { /* a message, ping, pong or close that waits to be sent */
+    struct message_out *next;
+    enum ws_opcode opcode;
+    size_t n;
+    uint8_t bytes[];
+};
+
+struct queue_out {
+    struct message_out *first, **last;
+    size_t n, n_bytes;
+};
+
+struct frame_slot { /* the newest frame of a view, not begun to be sent */
+    uint8_t header[FRAME_HEADER_BYTES];
+    struct room_picture *picture; /* NULL: empty */
+};
+
+struct sending { /* what was begun to be sent: nothing else may be sent before its rest */
+    uint8_t head[10 + FRAME_HEADER_BYTES];
+    size_t n_head, n_done; /* n_done: bytes of head and body that were sent */
+    const uint8_t *body;
+    size_t n_body;
+    struct message_out *message;  /* owner of the body, ... */
+    struct room_picture *picture; /* ... or this one; both NULL: nothing is being sent */
+};
+
+enum state {
+    STATE_NONE, /* not open yet, or reported as closed */
+    STATE_OPEN,
+    STATE_CLOSING,  /* what comes is dropped; what waits is sent, then the close */
+    STATE_LINGERING /* the close was sent; waits for the client to close */
+};
+
+struct ws_connection { /* allocated and zeroed by libwebsockets, lives as long as its socket */
+    struct ws *ws;
+    struct lws *wsi;
+    void *owner;
+    struct ws_count count;
+    enum state state;
+    int64_t opened_us, heard_us, close_by_us;
+    struct ws_parser parser;
+    struct rate messages, controls, bytes;
+    size_t n_dropped;
+    struct queue_out pongs, texts;
+    struct message_out *close; /* sent after pongs and texts */
+    struct frame_slot slots[ROOM_MAX_VIEWS];
+    int next_slot;
+    struct sending sending;
+};
+
+struct ws {
+    struct lws_context *context;
+    struct lws_vhost *vhost;
+    struct lws_protocols protocols[2];
+    struct ws_callbacks callbacks;
+    struct ws_limits limits;
+    char *allowed_origin;
+    lws_sorted_usec_list_t timer;
+    int64_t logged_us;
+    struct ws_counters counters;
+};
