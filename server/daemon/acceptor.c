@@ -1,3 +1,4 @@
+/* Listens, peeks at each first head, and hands the socket on or refuses it; on a thread of its own. */
 #define _GNU_SOURCE
 #include "server/daemon/acceptor.h"
 
@@ -21,30 +22,30 @@
 #include "server/net/net.h"
 #include "server/wire/refusal.h"
 
-struct pending {
-    int socket; /* -1: free */
+struct pending { /* a connection whose first head is not whole, or that was refused */
+    int socket;  /* -1: free */
     struct address peer;
     int64_t until_us;
-    bool is_refused; /* has been told; what it still sends is dropped, or its system would take the answer back */
+    bool is_refused; /* was answered; what it still sends is read and dropped, because closing a socket with unread
+                        bytes takes the answer back */
     size_t n_dropped;
 };
 
-struct websocket {       /* a connection that the net thread has, from being handed over to its end */
+struct websocket {       /* a connection of the net thread, until its end */
     atomic_bool is_used; /* set by the acceptor's thread, cleared by the net thread */
     struct address counted;
 };
 
 enum {
     N_SLOTS = ACCEPTOR_MAX_PENDING + ACCEPTOR_MAX_REFUSED,
-    MAX_AT_ONCE =
-        256, /* connections taken before other events, and the question whether the thread lives, have their turn */
-    BACKLOG = 4096 /* connections the system takes for us; what does not fit comes again a second later */
+    MAX_AT_ONCE = 256, /* connections accepted before other events are handled, among them the heartbeat */
+    BACKLOG = 4096     /* of listen(2): a connection that does not fit is retried by its client a second later */
 };
 
 struct acceptor {
     struct acceptor_options options;
-    char bytes[HEAD_MAX_BYTES]; /* of the head that is looked at */
-    int listener, epoll, wake;
+    char bytes[HEAD_MAX_BYTES]; /* of the head that is being peeked at */
+    int listener, epoll, wake_fd;
     atomic_bool is_stopping, is_to_hang;
     _Atomic(atomic_bool *) pinged;
     pthread_t thread;
@@ -66,11 +67,12 @@ static void free_slot(struct acceptor *acceptor, struct pending *slot)
     slot->socket = -1;
 }
 
-/* Takes it out of epoll first: a process that is being started has copies of all descriptors for a moment, and what is
- * only closed would be watched that long; its events would name a slot that another connection has by then. */
+/* Ends epoll's watch before closing: a child process that is being started holds a copy of every descriptor for a
+ * moment, so a descriptor that was only closed would go on raising events, for a slot that another connection has by
+ * then. */
 static void close_pending(const struct acceptor *acceptor, int socket)
 {
-    (void)epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, socket, NULL); /* fails for one that is not watched yet */
+    (void)epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, socket, NULL); /* fails for a socket that is not watched yet */
     (void)close(socket);
 }
 
@@ -111,11 +113,11 @@ static void refuse(struct acceptor *acceptor, struct pending *slot, const struct
     slot->until_us = clock_now_us() + ACCEPTOR_LINGER_MS * 1000LL;
 }
 
-/* For a refused connection. Returns true when the slot can be freed. */
+/* Reads and drops bytes of a refused connection. Returns true when the slot can be freed. */
 static bool linger(const struct acceptor *acceptor, struct pending *slot)
 {
     enum { AT_ONCE = 64 << 10 };
-    slot->n_dropped += AT_ONCE; /* at most */
+    slot->n_dropped += AT_ONCE; /* an upper bound */
     if (refusal_drain(slot->socket, AT_ONCE) && slot->n_dropped < ACCEPTOR_MAX_DROPPED &&
         acceptor->n_refused <= ACCEPTOR_MAX_REFUSED)
         return false;
@@ -123,14 +125,14 @@ static bool linger(const struct acceptor *acceptor, struct pending *slot)
     return true;
 }
 
-/* A WebSocket has ended; on the net thread. */
+/* A WebSocket has ended. Called on the net thread. */
 static void websocket_ended(void *context)
 {
     struct websocket *websocket = context;
     atomic_store(&websocket->is_used, false);
 }
 
-/* Hands a WebSocket over, or says that there are too many. */
+/* Hands a WebSocket to the net thread. Returns false with problem when there are too many. */
 static bool hand_to_net(struct acceptor *acceptor, int socket, const struct handshake *handshake,
                         const struct address *client, struct problem *problem)
 {
@@ -157,8 +159,8 @@ static bool hand_to_net(struct acceptor *acceptor, int socket, const struct hand
     return true;
 }
 
-/* Looks at what has come. has_ended: nothing more will. Returns true when the slot can be freed. */
-static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended)
+/* Peeks at what has come. has_ended: no more will come. Returns true when the slot can be freed. */
+static bool peek(struct acceptor *acceptor, struct pending *slot, bool has_ended)
 {
     struct problem problem;
     struct head_request request;
@@ -180,8 +182,7 @@ static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended
         refuse(acceptor, slot, &problem);
         return linger(acceptor, slot);
     }
-    epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, slot->socket,
-              NULL); /* a socket that was looked at before it was added is not there */
+    epoll_ctl(acceptor->epoll, EPOLL_CTL_DEL, slot->socket, NULL); /* fails for a socket whose head was whole at once */
     struct address client = address_of_client(&slot->peer, acceptor->options.trusted, acceptor->options.n_trusted,
                                               request.forwarded, request.n_forwarded);
     if (kind == HEAD_HTTP) {
@@ -198,13 +199,13 @@ static bool look(struct acceptor *acceptor, struct pending *slot, bool has_ended
     return true;
 }
 
-/* Its time is over. Returns true when the slot can be freed. */
+/* The connection's time is over. Returns true when the slot can be freed. */
 static bool end_late(struct acceptor *acceptor, struct pending *slot)
 {
     struct problem problem;
     ssize_t n =
         slot->is_refused ? 0 : recv(slot->socket, acceptor->bytes, sizeof acceptor->bytes, MSG_PEEK | MSG_DONTWAIT);
-    if (n <= 0) { /* one that said nothing expects no answer: browsers open connections before they need them */
+    if (n <= 0) { /* without a byte no answer is expected: browsers open connections in advance */
         close_pending(acceptor, slot->socket);
         return true;
     }
@@ -213,7 +214,7 @@ static bool end_late(struct acceptor *acceptor, struct pending *slot)
     return linger(acceptor, slot);
 }
 
-/* A connection whose head is there already never waits: in a burst, slots are for those that are slow. */
+/* A connection whose head is whole already takes no slot for long: in a burst the slots are for slow ones. */
 static void accept_one(struct acceptor *acceptor, int socket, const struct address *peer)
 {
     struct pending *slot = find_slot(acceptor);
@@ -224,12 +225,12 @@ static void accept_one(struct acceptor *acceptor, int socket, const struct addre
     bool has_room = may_wait(acceptor, peer);
     *slot = (struct pending){ .socket = socket, .peer = *peer, .until_us = clock_now_us() + ACCEPTOR_HEAD_MS * 1000LL };
     acceptor->n_pending++;
-    if (look(acceptor, slot, false)) {
+    if (peek(acceptor, slot, false)) {
         free_slot(acceptor, slot);
         return;
     }
     if (!has_room && !slot->is_refused) {
-        struct problem problem; /* the oldest ones run into their time limit soon */
+        struct problem problem; /* the oldest pending ones reach their time limit soon */
         problem_set(&problem, PROBLEM_LIMIT, "", "",
                     "too many connections that have not said what they want: at most %d in all, %d from one address",
                     ACCEPTOR_MAX_PENDING, ACCEPTOR_MAX_PENDING_PER_ADDRESS);
@@ -240,8 +241,8 @@ static void accept_one(struct acceptor *acceptor, int socket, const struct addre
             return;
         }
     }
-    /* edge-triggered: a peek leaves the bytes there, and only new ones may wake us; what came since the first look
-     * wakes us at once */
+    /* Edge-triggered: peeked bytes stay in the socket, and only new ones may raise an event. Bytes that came since the
+     * first look raise one at once. */
     struct epoll_event event = { .events = EPOLLIN | EPOLLRDHUP | EPOLLET,
                                  .data.u64 = (uint64_t)(slot - acceptor->pending) };
     if (epoll_ctl(acceptor->epoll, EPOLL_CTL_ADD, socket, &event) != 0) {
@@ -250,7 +251,7 @@ static void accept_one(struct acceptor *acceptor, int socket, const struct addre
     }
 }
 
-/* What is left in the system's queue makes epoll tell again: the listener is level-triggered. */
+/* The listener is level-triggered: connections left in the system's queue raise another event. */
 static void accept_some(struct acceptor *acceptor)
 {
     for (int i = 0; i < MAX_AT_ONCE; i++) {
@@ -262,7 +263,7 @@ static void accept_some(struct acceptor *acceptor)
             accept_one(acceptor, socket, &peer);
         } else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
             log_warn("acceptor: %s", strerror(errno));
-            usleep(50000); /* nothing helps but waiting for others to close */
+            usleep(50000); /* until other connections have closed */
             return;
         } else if (errno != EINTR && errno != ECONNABORTED) {
             return;
@@ -298,7 +299,7 @@ static void *run(void *argument)
                 while (atomic_load(&acceptor->is_to_hang))
                     (void)pause();
                 atomic_bool *pinged = atomic_exchange(&acceptor->pinged, NULL);
-                if (read(acceptor->wake, &n_wakes, sizeof n_wakes) == sizeof n_wakes && pinged)
+                if (read(acceptor->wake_fd, &n_wakes, sizeof n_wakes) == sizeof n_wakes && pinged)
                     atomic_store(pinged, true);
                 if (atomic_load(&acceptor->is_stopping))
                     return NULL;
@@ -309,7 +310,7 @@ static void *run(void *argument)
                 continue;
             }
             struct pending *slot = &acceptor->pending[tag];
-            if (slot->socket >= 0 && look(acceptor, slot, events[i].events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)))
+            if (slot->socket >= 0 && peek(acceptor, slot, events[i].events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)))
                 free_slot(acceptor, slot);
         }
     }
@@ -328,7 +329,7 @@ static bool start_listening(struct acceptor *acceptor, const char *listen_at, st
     if (colon[1 + strspn(colon + 1, "0123456789")] || strlen(colon + 1) - 1 >= 5 ||
         strtoul(colon + 1, NULL, 10) > 65535)
         return error_set(err, ERROR_RANGE, "--listen %.80s: expected a port from 0 to 65535",
-                         listen_at); /* the library takes 16 bits of it */
+                         listen_at); /* getaddrinfo uses only its low 16 bits */
     struct addrinfo hints = { .ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE, .ai_socktype = SOCK_STREAM },
                     *found = NULL;
     int failed = getaddrinfo(host, colon + 1, &hints, &found);
@@ -373,10 +374,10 @@ struct acceptor *acceptor_create(const struct acceptor_options *options, struct 
     for (size_t i = 0; i < ACCEPTOR_MAX_WEBSOCKETS; i++)
         atomic_init(&acceptor->websockets[i].is_used, false);
     acceptor->epoll = epoll_create1(EPOLL_CLOEXEC);
-    acceptor->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    acceptor->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (!start_listening(acceptor, options->listen, err))
         goto fail;
-    if (acceptor->epoll < 0 || !watch(acceptor, acceptor->wake, wake_tag) ||
+    if (acceptor->epoll < 0 || !watch(acceptor, acceptor->wake_fd, wake_tag) ||
         !watch(acceptor, acceptor->listener, listener_tag) ||
         pthread_create(&acceptor->thread, NULL, run, acceptor) != 0) {
         error_set(err, ERROR_IO, "the acceptor did not start: %s", strerror(errno));
@@ -392,8 +393,8 @@ fail:
 static void wake(struct acceptor *acceptor)
 {
     uint64_t one = 1;
-    if (write(acceptor->wake, &one, sizeof one) != sizeof one)
-        abort(); /* the thread could never be joined */
+    if (write(acceptor->wake_fd, &one, sizeof one) != sizeof one)
+        abort(); /* else the thread could never be joined */
 }
 
 void acceptor_stop(struct acceptor *acceptor)
@@ -411,7 +412,7 @@ void acceptor_stop(struct acceptor *acceptor)
             close(acceptor->pending[i].socket);
             acceptor->pending[i].socket = -1;
         }
-    int *const fds[] = { &acceptor->listener, &acceptor->epoll, &acceptor->wake };
+    int *const fds[] = { &acceptor->listener, &acceptor->epoll, &acceptor->wake_fd };
     for (size_t i = 0; i < sizeof fds / sizeof fds[0]; i++) {
         if (*fds[i] >= 0)
             close(*fds[i]);

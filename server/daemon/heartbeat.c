@@ -1,3 +1,4 @@
+/* Has each serving thread set a mark, and reports to the service manager when all have. */
 #include "server/daemon/heartbeat.h"
 
 #include <stdatomic.h>
@@ -16,8 +17,8 @@ struct heartbeat {
     struct net *net;
     struct http *http;
     struct acceptor *acceptor;
-    atomic_bool has_moved[N_THREADS]; /* since it was asked last */
-    bool is_late;                     /* has been logged */
+    atomic_bool has_moved[N_THREADS]; /* since the last round began */
+    bool is_late;                     /* a late thread was logged in the last round */
 };
 
 static void mark(struct net *net, void *moved)
@@ -26,7 +27,7 @@ static void mark(struct net *net, void *moved)
     atomic_store((atomic_bool *)moved, true);
 }
 
-static void ask(struct heartbeat *heartbeat)
+static void begin_round(struct heartbeat *heartbeat)
 {
     for (int i = 0; i < N_THREADS; i++)
         atomic_store(&heartbeat->has_moved[i], false);
@@ -42,7 +43,7 @@ struct heartbeat *heartbeat_create(struct net *net, struct http *http, struct ac
     heartbeat->http = http;
     heartbeat->acceptor = acceptor;
     if (notify_watchdog_us() > 0)
-        ask(heartbeat);
+        begin_round(heartbeat);
     return heartbeat;
 }
 
@@ -70,7 +71,7 @@ void heartbeat_beat(struct heartbeat *heartbeat)
     }
     heartbeat->is_late = !have_all_moved;
     if (!have_all_moved)
-        return; /* asked once: a thread that hangs must not be asked again and again, or its queue fills */
+        return; /* no new round: it would fill the queue of the thread that hangs */
     notify_send("WATCHDOG=1");
-    ask(heartbeat);
+    begin_round(heartbeat);
 }

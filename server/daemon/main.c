@@ -1,5 +1,5 @@
-/* beamroomd: reads the settings, starts net, HTTP and the acceptor in this order, waits for a signal, stops them in the
- * other. */
+/* beamroomd's main: reads the settings, starts net, HTTP and acceptor in this order, waits for a signal, and stops them
+ * in the reverse order. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <signal.h>
@@ -29,7 +29,7 @@ enum {
     LISTED_EVERY_MS = 5,
     SLOW_LISTING_S = 10,
     N_DESCRIPTORS =
-        4096 /* for every connection that is allowed: three of HTTP, one of a WebSocket; and for the renderers */
+        4096 /* for all allowed connections, three each for HTTP and one for a WebSocket, and for the renderers */
 };
 
 static bool make_folders(const char *folder, struct error *err)
@@ -41,8 +41,7 @@ static bool make_folders(const char *folder, struct error *err)
         if (kept != '/' && kept != 0)
             continue;
         *slash = 0;
-        if (mkdir(path, kept ? 0755 : 0700) != 0 &&
-            errno != EEXIST) /* what is ours is in the last; those above only lead there */
+        if (mkdir(path, kept ? 0755 : 0700) != 0 && errno != EEXIST) /* only the last one is private */
             return error_set(err, ERROR_IO, "--data %.150s: %s", path, strerror(errno));
         *slash = kept;
         if (!kept)
@@ -65,7 +64,7 @@ static bool default_data_folder(char path[PATH_SIZE], struct error *err)
     return true;
 }
 
-/* Beside the program: build/web next to build/release, or share/beamroom/web of an installation. */
+/* ../web beside the program's folder, as in build/, or ../share/beamroom/web of an installation. */
 static bool default_web_folder(char path[PATH_SIZE], struct error *err)
 {
     static const char *const places[] = { "../web", "../share/beamroom/web" };
@@ -96,7 +95,7 @@ static bool default_renderer(char path[PATH_SIZE], struct error *err)
     return true;
 }
 
-/* A text of the options, or the default; the options own it from then on. */
+/* Fills in a path that the options lack with its default; the options own it. */
 static bool fill_path(char **option, bool (*find)(char path[PATH_SIZE], struct error *err), struct error *err)
 {
     char path[PATH_SIZE];
@@ -108,7 +107,7 @@ static bool fill_path(char **option, bool (*find)(char path[PATH_SIZE], struct e
     return true;
 }
 
-/* Every path the options name, as the user we become reaches it. */
+/* Becomes an ordinary user. Replaces the options' paths by those that this user reaches. */
 static bool give_up_root(struct options *options, struct error *err)
 {
     struct privilege_place places[OPTIONS_MAX_PLAN_FOLDERS + 3];
@@ -143,7 +142,7 @@ static bool gl_is_known(const char *gl, struct error *err)
                      gl);
 }
 
-/* The limit that shells give is for programs that wait for descriptors with select; we do not. */
+/* Raises the limit on open files. The usual 1024 is for programs that use select(2). */
 static void raise_descriptors(void)
 {
     struct rlimit now;
@@ -164,7 +163,7 @@ static void hang_net(struct net *net, void *argument)
         (void)pause();
 }
 
-/* For tests: a thread that hangs. */
+/* For tests: lets one of the threads hang. */
 static void let_hang(const char *thread, struct net *net, struct http *http, struct acceptor *acceptor)
 {
     if (strcmp(thread, "net") == 0)
@@ -177,8 +176,8 @@ static void let_hang(const char *thread, struct net *net, struct http *http, str
         log_warn("hang is \"%.40s\", expected net, http or acceptor", thread);
 }
 
-/* Until the plan folders have been listed: whoever is told that the server is ready finds their plans. False: a signal
- * came before. */
+/* Waits until the plan folders have been listed, so that "ready" means that all plans can be found. Returns false when
+ * a signal came before. */
 static bool wait_for_plans(const struct net *net)
 {
     for (int n = 1; !net_plans_are_listed(net); n++) {
@@ -186,8 +185,8 @@ static bool wait_for_plans(const struct net *net)
             return false;
         if (n % (SLOW_LISTING_S * 1000 / LISTED_EVERY_MS) != 0)
             continue;
-        notify_send(
-            "EXTEND_TIMEOUT_USEC=60000000"); /* the server answers meanwhile: the service manager must not give it up */
+        notify_send("EXTEND_TIMEOUT_USEC=60000000"); /* the server answers meanwhile, so the service manager must go on
+                                                        waiting */
         if (n == SLOW_LISTING_S * 1000 / LISTED_EVERY_MS)
             log_warn("the plan folders are still being listed: a disk answers slowly or not at all");
     }
@@ -282,8 +281,8 @@ int main(int argc, char **argv)
     }
     log_start("beamroomd", options.log_level);
 
-    signal(SIGPIPE, SIG_IGN);         /* a write to a closed socket is an error */
-    struct rlimit no_core = { 0, 0 }; /* and so is what is in memory */
+    signal(SIGPIPE, SIG_IGN);         /* a write to a closed socket fails with EPIPE */
+    struct rlimit no_core = { 0, 0 }; /* no core files: memory holds patients' data */
     (void)setrlimit(RLIMIT_CORE, &no_core);
 
     notify_open();
@@ -293,9 +292,9 @@ int main(int argc, char **argv)
     ok = ok && fill_path(&options.data_folder, default_data_folder, &err) &&
          fill_path(&options.web_folder, default_web_folder, &err) &&
          fill_path(&options.renderer_path, default_renderer, &err) && make_folders(options.data_folder, &err);
-    (void)umask(0077); /* what we and our children write is patients' data */
+    (void)umask(0077); /* what the daemon and its children write is patients' data */
     ok = ok && give_up_root(&options, &err);
-    ok = ok && stop_watch(&err); /* starts the first thread; before it a signal just ends the process */
+    ok = ok && stop_watch(&err); /* starts the first thread; before, a signal simply ends the process */
     if (ok && options.n_plan_folders == 0)
         log_warn("no --plans folder: only uploaded plans can be shown");
     ok = ok && serve(&options, &err);

@@ -1,3 +1,4 @@
+/* Sends datagrams to the service manager. */
 #define _GNU_SOURCE
 #include "server/daemon/notify.h"
 
@@ -11,7 +12,7 @@
 
 #include "core/base/log.h"
 
-static int sender = -1; /* -1: there is nobody to tell */
+static int sender = -1; /* -1: there is no service manager */
 static int64_t watchdog_us;
 
 void notify_open(void)

@@ -1,12 +1,12 @@
 #pragma once
-/* Tells the service manager that started us about our state: a datagram to the Unix socket named by NOTIFY_SOCKET, as
- * sd_notify(3) describes it. Without that variable nothing is told. Main thread only. */
+/* Reports the daemon's state to the service manager that started it: datagrams to the Unix socket in NOTIFY_SOCKET, as
+ * in sd_notify(3). Without that variable nothing is sent. Main thread only. */
 #include <stdint.h>
 
-/* Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID and takes them out of the environment: our children must not
- * answer for us. */
+/* Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID, and removes them from the environment: child processes must not
+ * report in the daemon's place. */
 void notify_open(void);
 /* "READY=1", "WATCHDOG=1", "STOPPING=1" */
 void notify_send(const char *state);
-/* The manager kills us when it hears no "WATCHDOG=1" for so long; 0: it does not watch. */
+/* The manager kills the daemon when it gets no "WATCHDOG=1" for this long; 0: there is no watchdog. */
 int64_t notify_watchdog_us(void);

@@ -1,3 +1,4 @@
+/* The table of settings, and reading it from the command line and the configuration file. */
 #include "server/daemon/options.h"
 
 #include <errno.h>
@@ -10,7 +11,7 @@
 
 enum kind { KIND_FOLDERS, KIND_TEXT, KIND_COUNT, KIND_FLAG, KIND_LEVEL, KIND_NAMES, KIND_RANGES };
 
-/* One row a setting: flag --name VALUE, key "name = value". */
+/* One setting per row: flag --name VALUE, key "name = value". */
 struct setting {
     const char *name, *value_name, *about;
     enum kind kind;
@@ -145,7 +146,7 @@ static char *trim(char *text)
     return text;
 }
 
-/* given: settings the command line has said already, which win */
+/* given: settings that the command line has; they win. */
 static bool read_file(struct options *options, const char *name, const bool *given, struct error *err)
 {
     char line[OPTIONS_MAX_LINE];

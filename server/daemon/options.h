@@ -1,5 +1,5 @@
 #pragma once
-/* The daemon's settings: command line first, then a configuration file with the same names as keys. */
+/* The daemon's settings, from the command line and from a configuration file with the same names as keys. */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -16,8 +16,8 @@ struct options {
     size_t n_public_names;
     struct address_range trusted_proxies[ADDRESS_MAX_RANGES];
     size_t n_trusted_proxies;
-    char *hang;                                                                           /* NULL: nothing hangs */
-    char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin, *user; /* NULL: not said */
+    char *hang; /* for tests: the thread that hangs; NULL: none */
+    char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin, *user; /* NULL: not given */
     int64_t max_renderers, max_renderer_mib, plan_idle_close_s, room_idle_close_s, max_rooms, max_members;
     int64_t max_upload_mib, max_unpacked_mib, max_cache_mib, disk_reserve_mib;
     bool stub_renderer;
@@ -25,8 +25,8 @@ struct options {
     bool wants_help, wants_version;
 };
 
-/* Fills options with the defaults and what the command line and its --config file say; the command line wins.
- *   errors ERROR_FORMAT names the flag, or file and line */
+/* Fills options with the defaults, the command line and its --config file; the command line wins.
+ *   errors ERROR_FORMAT, ERROR_RANGE, ERROR_LIMIT, ERROR_IO; the sentence names the flag, or file and line */
 NODISCARD bool options_read(struct options *options, int argc, char **argv, struct error *err);
 void options_finish(struct options *options);
 void options_print_help(void);

@@ -1,3 +1,4 @@
+/* Finds a user who can reach all paths, gives the data folder to that user, and becomes that user. */
 #define _GNU_SOURCE
 #include "server/daemon/privilege.h"
 
@@ -22,7 +23,7 @@
 
 enum {
     MAX_GROUPS = 64,
-    MAX_DEPTH = 64 /* folders in folders of the data folder; what lies deeper stays as it is */
+    MAX_DEPTH = 64 /* nested folders of the data folder that are given; deeper ones stay as they are */
 };
 
 struct user {
@@ -42,7 +43,7 @@ static void add_group(struct user *user, const char *name)
         user->groups[user->n_groups++] = group->gr_gid;
 }
 
-/* His groups, and those that graphics cards belong to. */
+/* Fills in the user's ids and groups, and the groups that graphics cards belong to. */
 static bool find_user(const char *name, struct user *user)
 {
     const struct passwd *entry = getpwnam(name);
@@ -71,8 +72,8 @@ static bool is_reached(const char *path, int mode)
     return mode == F_OK ? stat(path, &facts) == 0 : access(path, mode) == 0;
 }
 
-/* The path from the working folder on, when it lies inside; else NULL. A process may use names below its working
- * folder, wherever that lies, without a right to the folders above it. */
+/* The path relative to the working folder, when it lies inside; else NULL. A process can reach names below its working
+ * folder without access to the folders above it. */
 static const char *from_here(const char *path, const char *here)
 {
     size_t n = strlen(here);
@@ -81,7 +82,8 @@ static const char *from_here(const char *path, const char *here)
     return NULL;
 }
 
-/* Tries it in a process of its own, which becomes the user. False: that cannot be tried. */
+/* Finds out in a child process, which becomes the user, how each place is reached. Returns false when the child failed.
+ */
 static bool try_as(const struct user *user, const struct privilege_options *options, const char *here,
                    enum reach reached[])
 {
@@ -124,8 +126,8 @@ static bool is_ours(const char *name)
     return false;
 }
 
-/* His already, or root's with nothing in it that is not ours: who names a folder full of other things does not mean to
- * give it away. */
+/* True if the user owns the folder, or root owns it and it holds only the daemon's own folders: a folder with other
+ * things in it was not meant to be given away. */
 static bool may_give(const char *folder, const struct user *user, struct error *err)
 {
     struct stat facts;
@@ -149,8 +151,8 @@ static bool may_give(const char *folder, const struct user *user, struct error *
                      other, user->name);
 }
 
-/* By descriptors, as another process of that user may put a link in the place of any folder meanwhile. Consumes the
- * folder. */
+/* Gives what root owns below the folder to the user. Works on descriptors, because another process of that user may put
+ * a link in the place of any folder meanwhile. Consumes the descriptor. */
 static bool give_opened(int folder, int depth, const struct user *user)
 {
     struct stat facts;
@@ -168,8 +170,8 @@ static bool give_opened(int folder, int depth, const struct user *user)
         }
         if (inner >= 0)
             close(inner);
-        /* what is opened is what is looked at and given; of a file with a second name the other may lie elsewhere: it
-         * stays as it is */
+        /* Checks and gives the same descriptor. A file with a second link is left as it is: the link may lie elsewhere.
+         */
         int thing = openat(folder, name->d_name, O_PATH | O_NOFOLLOW | O_CLOEXEC);
         if (thing < 0 || fstat(thing, &facts) != 0)
             is_given = errno == ENOENT;
@@ -187,12 +189,13 @@ static bool give_opened(int folder, int depth, const struct user *user)
     return is_given;
 }
 
-/* What an earlier daemon wrote as root is his from now on, in a folder that is his already, too; links inside are not
- * followed. */
+/* Gives the user what an earlier daemon wrote as root, also in a folder that the user owns already. Links inside are
+ * not followed. */
 static bool give_folder(const char *folder, const struct user *user, struct error *err)
 {
-    int top = open(folder, O_RDONLY | O_DIRECTORY |
-                               O_CLOEXEC); /* the name itself may be a link: who started the daemon gave it */
+    int top =
+        open(folder, O_RDONLY | O_DIRECTORY |
+                         O_CLOEXEC); /* the path itself may be a link: it was given by whoever started the daemon */
     return (top >= 0 && give_opened(top, 0, user)) ||
            error_set(err, ERROR_IO, "--data %.120s cannot be given to user %s: %s", folder, user->name,
                      strerror(errno));
@@ -200,7 +203,7 @@ static bool give_folder(const char *folder, const struct user *user, struct erro
 
 /* ---- giving it up ----------------------------------------------------------------------------------------------- */
 
-/* Nothing is left but, for a port below 1024, the right to listen there. */
+/* Drops all capabilities but, for a port below 1024, CAP_NET_BIND_SERVICE. */
 static bool drop_capabilities(int port)
 {
     struct __user_cap_header_struct header = { .version = _LINUX_CAPABILITY_VERSION_3, .pid = 0 };
@@ -216,7 +219,7 @@ static bool switch_to(const struct user *user, int port, struct error *err)
     for (unsigned long capability = 0; capability < 64; capability++)
         if (!wants_port || capability != CAP_NET_BIND_SERVICE)
             (void)prctl(PR_CAPBSET_DROP, capability, 0, 0,
-                        0); /* a container may have taken that right: then there is less to drop */
+                        0); /* fails in a container without CAP_SETPCAP: then there is less to drop */
     if (wants_port)
         (void)prctl(PR_SET_KEEPCAPS, 1, 0, 0, 0);
     if (!become(user) || !drop_capabilities(port) || setuid(0) == 0 || geteuid() != user->uid)
@@ -235,7 +238,8 @@ static bool can_be(const struct user *user, const struct privilege_options *opti
     for (size_t i = 0; i < options->n_places; i++) {
         const struct privilege_place *place = &options->places[i];
         if (reached[i] == REACH_NOT &&
-            is_reached(place->path, place->mode)) /* what root cannot reach either is reported by who needs it */
+            is_reached(place->path,
+                       place->mode)) /* a place that root cannot reach either is reported where it is used */
             return error_set(err, ERROR_IO, "user %s cannot reach %s %.140s", user->name, place->flag, place->path);
     }
     return true;

@@ -1,3 +1,4 @@
+/* Waits for SIGINT and SIGTERM on a thread of its own, and ends the process if it does not stop in time. */
 #define _GNU_SOURCE
 #include "server/daemon/stop.h"
 
@@ -12,7 +13,7 @@
 
 #include "core/base/log.h"
 
-static int asked = -1; /* an eventfd, readable from the first signal on */
+static int stop_fd = -1; /* eventfd, readable from the first signal on */
 
 static void *wait_for_signal(void *argument)
 {
@@ -25,8 +26,8 @@ static void *wait_for_signal(void *argument)
     sigaddset(&signals, SIGTERM);
     while (sigwait(&signals, &number) != 0)
         ;
-    (void)alarm(STOP_WITHIN_AT_MOST_S); /* what SIGALRM does by itself is to end the process */
-    if (write(asked, &one, sizeof one) != sizeof one)
+    (void)alarm(STOP_WITHIN_AT_MOST_S); /* the default action of SIGALRM ends the process */
+    if (write(stop_fd, &one, sizeof one) != sizeof one)
         log_error("the main thread was not told of %s: %s", strsignal(number), strerror(errno));
     log_info("stopping: %s", strsignal(number));
     struct timespec left = { .tv_sec = STOP_WITHIN_S };
@@ -41,14 +42,14 @@ bool stop_watch(struct error *err)
 {
     sigset_t signals, alarm_signal;
     pthread_t thread;
-    asked = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    if (asked < 0)
+    stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (stop_fd < 0)
         return error_set(err, ERROR_IO, "no descriptor for signals: %s", strerror(errno));
     sigemptyset(&signals);
     sigaddset(&signals, SIGINT);
     sigaddset(&signals, SIGTERM);
     (void)pthread_sigmask(SIG_BLOCK, &signals, NULL);
-    (void)signal(SIGALRM, SIG_DFL); /* whoever started us may have ignored or blocked it */
+    (void)signal(SIGALRM, SIG_DFL); /* the parent process may have ignored or blocked it */
     sigemptyset(&alarm_signal);
     sigaddset(&alarm_signal, SIGALRM);
     (void)pthread_sigmask(SIG_UNBLOCK, &alarm_signal, NULL);
@@ -61,7 +62,7 @@ bool stop_watch(struct error *err)
 
 bool stop_wait(int64_t wait_us)
 {
-    struct pollfd polled = { .fd = asked, .events = POLLIN };
+    struct pollfd polled = { .fd = stop_fd, .events = POLLIN };
     int wait_ms = wait_us < 0 ? -1 : wait_us / 1000 < 3600000 ? (int)(wait_us / 1000) : 3600000;
     return poll(&polled, 1, wait_ms) == 1;
 }

@@ -1,6 +1,6 @@
 #pragma once
-/* SIGTERM and SIGINT. A thread of its own waits for them from stop_watch on, so that the process ends in time also when
- * another thread hangs or the start itself does. */
+/* Stopping on SIGTERM and SIGINT. A thread of its own waits for them from stop_watch on, so that the process ends in
+ * time even when another thread hangs, or the start does. */
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -8,12 +8,12 @@
 
 enum {
     STOP_WITHIN_S =
-        8, /* after the first signal; then the process is ended as it is. Less than TimeoutStopSec of the unit */
-    STOP_WITHIN_AT_MOST_S = 9 /* the kernel ends it then, should even the log hang */
+        8, /* after the first signal the process exits, whatever still runs. Less than TimeoutStopSec of the unit */
+    STOP_WITHIN_AT_MOST_S = 9 /* then SIGALRM ends it, should even the log hang */
 };
 
-/* Blocks both signals in this thread and in all that it starts, and starts the waiting thread. Before any other thread.
- * errors ERROR_IO */
+/* Blocks both signals in this thread and in the threads it starts, and starts the waiting thread. To be called before
+ * any other thread is started. errors ERROR_IO */
 NODISCARD bool stop_watch(struct error *err);
-/* Waits until one of the signals has come, at most wait_us; negative: for ever. True: it has. The main thread. */
+/* Waits at most wait_us for one of the signals; negative: for ever. Returns true when one has come. Main thread. */
 bool stop_wait(int64_t wait_us);
