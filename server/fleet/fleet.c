@@ -10,7 +10,7 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "server/fleet/cache.h"
+#include "server/fleet/cache_quota.h"
 #include "server/fleet/data_folders.h"
 #include "server/fleet/gl_probe.h"
 #include "server/fleet/lister.h"
@@ -77,7 +77,7 @@ static void handle_event(struct fleet *fleet, struct watch_event *event)
     case WATCH_ENDED:
         if (uploads_event(fleet, event))
             break;
-        cache_end(fleet->cache, event->number);
+        cache_quota_end(fleet->cache_quota, event->number);
         if (!gl_probe_ended(fleet, event) && !plan_scan_ended(fleet, event))
             renderer_ended(fleet, event);
         break;
@@ -249,7 +249,7 @@ static void fleet_free(struct fleet *fleet)
 {
     lister_destroy(fleet->lister);
     root_finder_destroy(fleet->root_finder);
-    cache_destroy(fleet->cache); /* its thread gives orders to the watch */
+    cache_quota_destroy(fleet->cache_quota); /* its thread gives orders to the watch */
     watch_destroy(fleet->watch);
     data_folders_destroy(fleet);
     uploads_destroy(fleet);
@@ -272,16 +272,16 @@ static void end_renderer(void *context, uint64_t process, const char *reason)
     watch_stop(fleet->watch, process, true, reason);
 }
 
-static struct cache *make_cache(struct fleet *fleet, struct error *err)
+static struct cache_quota *make_cache(struct fleet *fleet, struct error *err)
 {
     char path[PATH_MAX];
     (void)snprintf(path, sizeof path, "%s/cache", fleet->data_folder); /* data_folders_create checked its length */
-    const struct cache_options options = { .folder = path,
-                                           .max_bytes = fleet->options.max_cache_bytes,
-                                           .reserve_bytes = fleet->options.disk_reserve_bytes,
-                                           .end = end_renderer,
-                                           .context = fleet };
-    return cache_create(&options, err);
+    const struct cache_quota_options options = { .folder = path,
+                                                 .max_bytes = fleet->options.max_cache_bytes,
+                                                 .reserve_bytes = fleet->options.disk_reserve_bytes,
+                                                 .end = end_renderer,
+                                                 .context = fleet };
+    return cache_quota_create(&options, err);
 }
 
 struct fleet *fleet_create(const struct fleet_options *options, struct error *err)
@@ -314,8 +314,8 @@ struct fleet *fleet_create(const struct fleet_options *options, struct error *er
                                             .wake = options->wake,
                                             .context = options->context };
     fleet->watch = watch_create(&watching, err);
-    fleet->cache = fleet->watch ? make_cache(fleet, err) : NULL;
-    fleet->root_finder = fleet->cache ? root_finder_create(options->wake, options->context, err) : NULL;
+    fleet->cache_quota = fleet->watch ? make_cache(fleet, err) : NULL;
+    fleet->root_finder = fleet->cache_quota ? root_finder_create(options->wake, options->context, err) : NULL;
     if (!fleet->root_finder)
         goto fail;
     fleet->lister = lister_create((const char *const *)fleet->plan_folders, options->n_plan_folders + 1,

@@ -8,7 +8,7 @@
 #include "server/fleet/room_updates.h"
 #include "server/fleet/run_clock.h"
 
-struct cache;
+struct cache_quota;
 struct lister;
 struct remover;
 struct request;
@@ -87,7 +87,7 @@ struct fleet {
     struct lister *lister;
     struct run_clock clock; /* stepped by fleet_tick */
     struct remover *remover;
-    struct cache *cache;
+    struct cache_quota *cache_quota;
     struct root_finder *root_finder;
     struct upload *uploads;          /* newest first */
     char *plans_home, *uploads_home; /* data/plans, data/uploads; absolute, links resolved */

@@ -221,7 +221,7 @@ static void stop_broken(struct process *process, const char *how, int64_t now_us
     process_stop(process, true, reason, now_us);
 }
 
-static void take_packets(struct process *process, int64_t now_us)
+static void put_packets(struct process *process, int64_t now_us)
 {
     struct packet packet;
     struct error err = { 0 };
@@ -271,12 +271,12 @@ static bool read_packets(struct process *process, size_t *n_read, int64_t now_us
     process->n_since_packet += (uint64_t)n;
     *n_read += (size_t)n;
     packet_reader_added(process->reader, (size_t)n);
-    take_packets(process, now_us);
+    put_packets(process, now_us);
     return process->child.channel >= 0 && !process_is_throttled(process);
 }
 
 /* Reports the whole lines printed so far, one event each. */
-static void take_lines(struct process *process, int64_t now_us)
+static void put_lines(struct process *process, int64_t now_us)
 {
     size_t begin = 0;
     for (const char *end; (end = memchr(process->output + begin, '\n', process->n_output - begin));) {
@@ -316,7 +316,7 @@ static bool read_output(struct process *process, size_t *n_read, int64_t now_us)
     }
     process->n_output += (size_t)n;
     if (process->has_progress)
-        take_lines(process, now_us);
+        put_lines(process, now_us);
     *n_read += (size_t)n;
     return true;
 }

@@ -7,7 +7,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
-#include "server/fleet/cache.h"
+#include "server/fleet/cache_quota.h"
 #include "server/fleet/requests.h"
 #include "server/fleet/watch.h"
 
@@ -17,7 +17,7 @@ bool renderer_start(struct fleet *fleet, struct plan_entry *plan)
     (void)snprintf(cache, sizeof cache, "%s/cache/%s", fleet->data_folder, plan->id);
     (void)snprintf(limit, sizeof limit, "%llu", (unsigned long long)fleet->options.max_renderer_bytes);
     (void)mkdir(cache, 0700); /* without the folder the renderer works without a cache */
-    (void)snprintf(file_limit, sizeof file_limit, "%llu", (unsigned long long)cache_max_file(fleet->cache));
+    (void)snprintf(file_limit, sizeof file_limit, "%llu", (unsigned long long)cache_quota_max_file(fleet->cache_quota));
     const char *words[20] = { fleet->renderer_path, "--socket-fd", "3",           "--plan-folder", plan->folder,
                               "--plan-id",          plan->id,      "--cache",     cache,           "--max-file-bytes",
                               file_limit,           "--gl",        fleet->gl_word };
@@ -38,10 +38,10 @@ bool renderer_start(struct fleet *fleet, struct plan_entry *plan)
     plan->ready_us = 0;
     plan->started_us = clock_now_us();
     plan->progressed_us = fleet_now_us(fleet);
-    cache_begin(fleet->cache, plan->id, plan->process);
+    cache_quota_begin(fleet->cache_quota, plan->id, plan->process);
     if (watch_start_renderer(fleet->watch, plan->process, fleet_arguments(words)))
         return true;
-    cache_end(fleet->cache, plan->process);
+    cache_quota_end(fleet->cache_quota, plan->process);
     plan->process = 0;
     return false;
 }

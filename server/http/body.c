@@ -28,7 +28,7 @@ static bool refuse(struct problem *problem, char found, const char *expected)
 }
 
 /* A byte of the line in front of a chunk: its size and extensions. */
-static bool take_size(struct body *body, char byte, struct problem *problem)
+static bool read_size_byte(struct body *body, char byte, struct problem *problem)
 {
     int digit = digit_of(byte);
     if (++body->n_line > BODY_MAX_CHUNK_LINE)
@@ -64,7 +64,7 @@ static bool take_size(struct body *body, char byte, struct problem *problem)
 }
 
 /* A byte of the fields after the last chunk, up to the empty line. They are not used. */
-static bool take_trailer(struct body *body, char byte, struct problem *problem)
+static bool read_trailer_byte(struct body *body, char byte, struct problem *problem)
 {
     if (++body->n_line > BODY_MAX_TRAILERS)
         return problem_set(problem, PROBLEM_HEADERS_TOO_LARGE, "", "",
@@ -84,12 +84,12 @@ static bool take_trailer(struct body *body, char byte, struct problem *problem)
     return true;
 }
 
-static bool take_byte(struct body *body, char byte, struct problem *problem)
+static bool read_framing_byte(struct body *body, char byte, struct problem *problem)
 {
     switch (body->place) {
     case BODY_SIZE:
     case BODY_EXTENSION:
-    case BODY_SIZE_LF: return take_size(body, byte, problem);
+    case BODY_SIZE_LF: return read_size_byte(body, byte, problem);
     case BODY_DATA_CR:
     case BODY_DATA_LF:
         if (byte != (body->place == BODY_DATA_CR ? '\r' : '\n'))
@@ -102,7 +102,7 @@ static bool take_byte(struct body *body, char byte, struct problem *problem)
         }
         return true;
     case BODY_TRAILER:
-    case BODY_TRAILER_LF: return take_trailer(body, byte, problem);
+    case BODY_TRAILER_LF: return read_trailer_byte(body, byte, problem);
     case BODY_DATA:
     case BODY_ENDED: break;
     }
@@ -119,7 +119,7 @@ bool body_take(struct body *body, const char *bytes, size_t n, size_t *n_taken, 
             body->n_left -= n_data;
             if (body->n_left == 0)
                 body->place = body->is_chunked ? BODY_DATA_CR : BODY_ENDED;
-        } else if (!take_byte(body, bytes[at++], problem)) {
+        } else if (!read_framing_byte(body, bytes[at++], problem)) {
             return false;
         }
     }

@@ -2,8 +2,8 @@
 /* What goes out on a connection, in which order, and how a connection is closed. Internal to server/ws; net thread. */
 #include "server/ws/ws_state.h"
 
-/* A copy of the bytes as a message; the queue or the connection frees it. */
-/* Copies the bytes. Without memory, messages up to OUT_SMALL_BYTES abort, like mem_new; larger ones are NULL. */
+/* A copy of the bytes as a message; the queue or the connection frees it. Without memory, messages up to
+ * OUT_SMALL_BYTES abort, like mem_new; larger ones are NULL. */
 enum { OUT_SMALL_BYTES = 4096 };
 struct message_out *out_message(enum ws_opcode opcode, const void *bytes, size_t n);
 void out_queue_add(struct queue_out *queue, struct message_out *message); /* takes message */

@@ -143,7 +143,7 @@ static bool check_length(struct ws_parser *parser, struct ws_event *event)
 }
 
 /* Reads bytes of the header. Returns false with a WS_EVENT_BROKEN. */
-static bool take_head(struct ws_parser *parser, const uint8_t **at, const uint8_t *end, struct ws_event *event)
+static bool read_head(struct ws_parser *parser, const uint8_t **at, const uint8_t *end, struct ws_event *event)
 {
     while (*at < end && !parser->is_in_payload) {
         parser->head[parser->n_head++] = *(*at)++;
@@ -203,7 +203,7 @@ static bool make_space(struct ws_parser *parser, size_t n)
     return true;
 }
 
-static bool take_payload(struct ws_parser *parser, const uint8_t **at, const uint8_t *end, struct ws_event *event)
+static bool read_payload(struct ws_parser *parser, const uint8_t **at, const uint8_t *end, struct ws_event *event)
 {
     size_t n = (size_t)(end - *at);
     uint8_t *out;
@@ -287,9 +287,9 @@ size_t ws_parser_take(struct ws_parser *parser, const uint8_t *bytes, size_t n, 
             ws_parser_finish(parser);
     }
     while (at < end && event->type == WS_EVENT_NONE && !parser->has_ended) {
-        if (!take_head(parser, &at, end, event) || !parser->is_in_payload)
+        if (!read_head(parser, &at, end, event) || !parser->is_in_payload)
             break;
-        if (take_payload(parser, &at, end, event) && parser->n_left == 0)
+        if (read_payload(parser, &at, end, event) && parser->n_left == 0)
             finish_frame(parser, event);
     }
     return parser->has_ended ? n : (size_t)(at - bytes);

@@ -1,6 +1,6 @@
 /* The quota on what renderers keep on disk, with folders made here in the place of theirs. */
 #define _GNU_SOURCE
-#include "server/fleet/cache.h"
+#include "server/fleet/cache_quota.h"
 
 #include <fcntl.h>
 #include <pthread.h>
@@ -17,7 +17,7 @@
 
 struct fixture {
     char folder[64];
-    struct cache *cache;
+    struct cache_quota *cache;
     atomic_int n_ended;
     _Atomic uint64_t ended[8]; /* processes, in the order they were ended */
     char reason[160];          /* of the first */
@@ -47,7 +47,7 @@ static int begin(void **state)
 static int finish(void **state)
 {
     (void)state;
-    cache_destroy(quota.cache);
+    cache_quota_destroy(quota.cache);
     world_remove_folder(quota.folder);
     return 0;
 }
@@ -91,9 +91,9 @@ static bool is_there(const struct fixture *fixture, const char *name)
 static void start(struct fixture *fixture, uint64_t max_bytes, uint64_t reserve_bytes)
 {
     struct error err = { 0 };
-    struct cache_options options = { fixture->folder, max_bytes, reserve_bytes, end_one, fixture };
+    struct cache_quota_options options = { fixture->folder, max_bytes, reserve_bytes, end_one, fixture };
     add(fixture, "oldest", max_bytes + MIB, 10000);
-    fixture->cache = cache_create(&options, &err);
+    fixture->cache = cache_quota_create(&options, &err);
     assert_string_equal(err.text, "");
     UNTIL(!is_there(fixture, "oldest/plan.cache"));
 }
@@ -117,12 +117,12 @@ static void what_is_in_use_goes_last(void **state)
     add(&quota, "used", 2 * MIB, 30);
     add(&quota, "unused", 2 * MIB, 1);
     start(&quota, 5 * MIB, 0);
-    cache_begin(quota.cache, "used", 7);
+    cache_quota_begin(quota.cache, "used", 7);
     add(&quota, "used", 4 * MIB, 30); /* it writes: 6 MiB together */
     UNTIL(!is_there(&quota, "unused/plan.cache"));
     assert_true(is_there(&quota, "used/plan.cache"));
     add(&quota, "other", 2 * MIB, 30);
-    cache_begin(quota.cache, "other", 8);
+    cache_quota_begin(quota.cache, "other", 8);
     UNTIL(!is_there(&quota, "used/plan.cache")); /* both are in use: the one that began earlier */
     assert_true(is_there(&quota, "other/plan.cache") && is_there(&quota, "used"));
     assert_int_equal(quota.n_ended, 0);
@@ -133,7 +133,7 @@ static void is_ended_and_emptied(struct fixture *at)
     UNTIL(at->n_ended > 0);
     assert_true(at->ended[0] == 7);
     assert_non_null(strstr(at->reason, "wrote more to its cache"));
-    cache_end(at->cache, 7);
+    cache_quota_end(at->cache, 7);
     UNTIL(rmdir(path_of(at, "a")) == 0 ||
           !is_there(at, "a")); /* empty; the folder itself stays for the next renderer */
     assert_int_equal(at->n_ended, 1);
@@ -144,7 +144,7 @@ static void a_renderer_that_writes_too_much_is_ended_and_its_cache_emptied(void 
     (void)state;
     start(&quota, 2 * MIB, 0);
     add(&quota, "a", MIB, 0);
-    cache_begin(quota.cache, "a", 7);
+    cache_quota_begin(quota.cache, "a", 7);
     /* 2 and 64 of slack. A file that is seen while it grows is over the quota of all and is removed: then it writes
      * again. */
     UNTIL((add(&quota, "a", 67 * MIB, 0), quota.n_ended > 0));
@@ -166,7 +166,7 @@ static void a_cache_deeper_than_any_honest_one_ends_its_renderer(void **state)
         folder = inner;
     }
     close(folder);
-    cache_begin(quota.cache, "a", 7);
+    cache_quota_begin(quota.cache, "a", 7);
     is_ended_and_emptied(&quota);
 }
 
@@ -179,7 +179,7 @@ static void a_folder_that_cannot_be_seen_ends_its_renderer(void **state)
     add(&quota, "a", MIB, 0);
     assert_int_equal(mkdir(path_of(&quota, "a/dark"), 0300), 0);
     assert_int_equal(mkdir(path_of(&quota, "a/dark/inner"), 0300), 0);
-    cache_begin(quota.cache, "a", 7);
+    cache_quota_begin(quota.cache, "a", 7);
     is_ended_and_emptied(&quota);
 }
 
@@ -189,7 +189,7 @@ static void more_files_than_any_honest_cache_has_end_its_renderer(void **state)
     start(&quota, 100 * MIB, 0);
     add(&quota, "a", MIB, 0);
     int folder = open(path_of(&quota, "a"), O_RDONLY | O_DIRECTORY);
-    for (int i = 0; i < CACHE_MAX_FILES; i++) { /* one is there */
+    for (int i = 0; i < CACHE_QUOTA_MAX_FILES; i++) { /* one is there */
         char name[32];
         snprintf(name, sizeof name, "%d", i);
         int file = openat(folder, name, O_RDWR | O_CREAT, 0600);
@@ -197,7 +197,7 @@ static void more_files_than_any_honest_cache_has_end_its_renderer(void **state)
         close(file);
     }
     close(folder);
-    cache_begin(quota.cache, "a", 7);
+    cache_quota_begin(quota.cache, "a", 7);
     is_ended_and_emptied(&quota);
 }
 
@@ -211,13 +211,13 @@ static void a_full_disk_costs_caches_first_and_then_each_renderer_once(void **st
     start(&quota, 100 * MIB, UINT64_MAX);
     UNTIL(!is_there(&quota, "unused/plan.cache") && !is_there(&quota, "old/plan.cache") &&
           !is_there(&quota, "new/plan.cache"));
-    cache_begin(quota.cache, "old", 7);
-    cache_begin(quota.cache, "new", 8);
+    cache_quota_begin(quota.cache, "old", 7);
+    cache_quota_begin(quota.cache, "new", 8);
     UNTIL(quota.n_ended == 1);
     UNTIL(quota.n_ended == 2);
-    cache_end(quota.cache, quota.ended[0]);
-    cache_end(quota.cache, quota.ended[1]);
-    cache_begin(quota.cache, "old", 9);                                       /* started again */
+    cache_quota_end(quota.cache, quota.ended[0]);
+    cache_quota_end(quota.cache, quota.ended[1]);
+    cache_quota_begin(quota.cache, "old", 9);                                 /* started again */
     nanosleep(&(struct timespec){ .tv_sec = 2, .tv_nsec = 500000000 }, NULL); /* two looks at least */
     assert_int_equal(quota.n_ended, 2);
     assert_int_equal(quota.ended[0] + quota.ended[1], 15);
@@ -243,12 +243,12 @@ static void one_that_fills_its_cache_as_fast_as_it_is_emptied_keeps_nobody_waiti
     pthread_t threads[2];
     start(&quota, 2 * MIB, 0);
     add(&quota, "busy", 3 * MIB, 0);
-    cache_begin(quota.cache, "busy", 8); /* is over the quota of all at once, and is emptied while it runs */
+    cache_quota_begin(quota.cache, "busy", 8); /* is over the quota of all at once, and is emptied while it runs */
     for (int i = 0; i < 2; i++)
         assert_int_equal(pthread_create(&threads[i], NULL, make_files, &quota), 0);
     UNTIL(!is_there(&quota, "busy/plan.cache"));
     add(&quota, "a", 67 * MIB, 0);
-    cache_begin(quota.cache, "a", 7);
+    cache_quota_begin(quota.cache, "a", 7);
     UNTIL(quota.n_ended > 0);
     for (int i = 0; i < 2; i++)
         pthread_join(threads[i], NULL);
@@ -259,9 +259,9 @@ static void an_end_for_the_quota_empties_the_folder_and_leaves_it(void **state)
     (void)state;
     start(&quota, 2 * MIB, 0);
     add(&quota, "a", 67 * MIB, 0);
-    cache_begin(quota.cache, "a", 7);
+    cache_quota_begin(quota.cache, "a", 7);
     UNTIL(quota.n_ended > 0);
-    cache_begin(quota.cache, "a", 8); /* before the end of the other is told */
+    cache_quota_begin(quota.cache, "a", 8); /* before the end of the other is told */
     UNTIL(!is_there(&quota, "a/plan.cache"));
     assert_true(is_there(&quota, "a"));
     assert_int_equal(quota.n_ended, 1);

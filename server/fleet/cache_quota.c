@@ -1,7 +1,7 @@
 /* The thread that measures what renderers write to data/cache, removes the least used, and ends renderers beyond the
  * quota. */
 #define _GNU_SOURCE
-#include "server/fleet/cache.h"
+#include "server/fleet/cache_quota.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -25,7 +25,7 @@ enum {
     /* limits of one emptying: a renderer that goes on making files must not make it endless. The rest waits for the
        next look. */
     MAX_ROUNDS = 64,
-    MAX_REMOVED = 2 * CACHE_MAX_FILES
+    MAX_REMOVED = 2 * CACHE_QUOTA_MAX_FILES
 };
 
 static const uint64_t default_max_bytes = UINT64_C(16) << 30, slack_bytes = UINT64_C(64) << 20;
@@ -47,8 +47,8 @@ struct entry { /* one plan's folder */
     bool has_rest;   /* emptying it stopped at a limit: the next look goes on */
 };
 
-struct cache {
-    struct cache_options options;
+struct cache_quota {
+    struct cache_quota_options options;
     pthread_t thread;
     struct queue *uses;
     /* only for the thread */
@@ -78,11 +78,12 @@ static bool measure(int folder, int depth, struct entry *entry)
     DIR *names = fdopendir(folder);
     if (!names) {
         is_measured = !is_own_lack(errno);
-        entry->n_files = CACHE_MAX_FILES + 1;
+        entry->n_files = CACHE_QUOTA_MAX_FILES + 1;
         close(folder);
         return is_measured;
     }
-    for (const struct dirent *name; is_measured && entry->n_files <= CACHE_MAX_FILES && (name = readdir(names));) {
+    for (const struct dirent *name;
+         is_measured && entry->n_files <= CACHE_QUOTA_MAX_FILES && (name = readdir(names));) {
         struct stat facts;
         if (strcmp(name->d_name, ".") == 0 || strcmp(name->d_name, "..") == 0 ||
             fstatat(dirfd(names), name->d_name, &facts, AT_SYMLINK_NOFOLLOW) != 0)
@@ -91,23 +92,23 @@ static bool measure(int folder, int depth, struct entry *entry)
         entry->n_bytes += (uint64_t)facts.st_blocks * 512;
         if (!S_ISDIR(facts.st_mode))
             continue;
-        int inner = depth < CACHE_MAX_DEPTH ? open_inner(dirfd(names), name->d_name) : -1;
+        int inner = depth < CACHE_QUOTA_MAX_DEPTH ? open_inner(dirfd(names), name->d_name) : -1;
         if (inner >= 0)
             is_measured = measure(inner, depth + 1, entry);
-        else if (depth < CACHE_MAX_DEPTH && is_own_lack(errno))
+        else if (depth < CACHE_QUOTA_MAX_DEPTH && is_own_lack(errno))
             is_measured = false;
-        else if (depth == CACHE_MAX_DEPTH || errno != ENOENT)
-            entry->n_files = CACHE_MAX_FILES + 1;
+        else if (depth == CACHE_QUOTA_MAX_DEPTH || errno != ENOENT)
+            entry->n_files = CACHE_QUOTA_MAX_FILES + 1;
     }
     closedir(names);
     return is_measured;
 }
 
 /* Measures the folder anew. Keeps the old figures when the daemon cannot look now. */
-static void look_at(const struct cache *cache, struct entry *entry)
+static void look_at(const struct cache_quota *quota, struct entry *entry)
 {
     struct entry found = { .n_bytes = 0 };
-    int folder = open_inner(cache->file, entry->id);
+    int folder = open_inner(quota->file, entry->id);
     if (folder >= 0 ? !measure(folder, 1, &found) : is_own_lack(errno))
         return;
     entry->n_bytes = found.n_bytes;
@@ -167,9 +168,9 @@ static void flatten(struct removing *removing, int folder)
 }
 
 /* Removes the contents. The folder itself stays: a renderer may be about to start in it. */
-static void empty(const struct cache *cache, struct entry *entry)
+static void empty(const struct cache_quota *quota, struct entry *entry)
 {
-    struct removing removing = { .top = open_inner(cache->file, entry->id) };
+    struct removing removing = { .top = open_inner(quota->file, entry->id) };
     entry->has_rest = false;
     if (removing.top < 0)
         return;
@@ -184,7 +185,7 @@ static void empty(const struct cache *cache, struct entry *entry)
     entry->has_rest = removing.n_done > 0 && !entry->process;
     if (removing.n_seen > 0 && removing.n_done == 0)
         log_warn("the cache of plan %s could not be emptied", entry->id);
-    look_at(cache, entry);
+    look_at(quota, entry);
 }
 
 /* ---- all of them ------------------------------------------------------------------------------------------------ */
@@ -196,51 +197,51 @@ static int64_t now_ns(void)
     return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
-static struct entry *entry_of(struct cache *cache, const char *id)
+static struct entry *entry_of(struct cache_quota *quota, const char *id)
 {
-    for (size_t i = 0; i < cache->n_entries; i++)
-        if (strcmp(cache->entries[i].id, id) == 0)
-            return &cache->entries[i];
-    if (cache->n_entries == cache->room) {
-        size_t room = cache->room ? 2 * cache->room : 64;
-        struct entry *larger = realloc(cache->entries, room * sizeof *larger);
+    for (size_t i = 0; i < quota->n_entries; i++)
+        if (strcmp(quota->entries[i].id, id) == 0)
+            return &quota->entries[i];
+    if (quota->n_entries == quota->room) {
+        size_t room = quota->room ? 2 * quota->room : 64;
+        struct entry *larger = realloc(quota->entries, room * sizeof *larger);
         if (!larger)
             return NULL;
-        cache->entries = larger;
-        cache->room = room;
+        quota->entries = larger;
+        quota->room = room;
     }
-    struct entry *entry = &cache->entries[cache->n_entries++];
+    struct entry *entry = &quota->entries[quota->n_entries++];
     *entry = (struct entry){ .used_ns = now_ns() };
     (void)snprintf(entry->id, sizeof entry->id, "%s", id);
     return entry;
 }
 
 /* Lists the folders that earlier daemons left. */
-static void list(struct cache *cache)
+static void list(struct cache_quota *quota)
 {
-    int copy = openat(cache->file, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    int copy = openat(quota->file, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     DIR *names = copy >= 0 ? fdopendir(copy) : NULL;
     for (const struct dirent *name; names && (name = readdir(names));) {
         struct stat facts;
         if (name->d_name[0] == '.' || strlen(name->d_name) >= ID_SIZE ||
-            fstatat(cache->file, name->d_name, &facts, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISDIR(facts.st_mode))
+            fstatat(quota->file, name->d_name, &facts, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISDIR(facts.st_mode))
             continue;
-        struct entry *entry = entry_of(cache, name->d_name);
+        struct entry *entry = entry_of(quota, name->d_name);
         if (!entry)
             break;
         entry->used_ns = (int64_t)facts.st_mtim.tv_sec * 1000000000 + facts.st_mtim.tv_nsec;
-        look_at(cache, entry);
+        look_at(quota, entry);
     }
     if (names)
         closedir(names);
 }
 
 /* Folders of running renderers come last: a renderer writes its kept plan only once. */
-static struct entry *least_used(struct cache *cache, bool with_running)
+static struct entry *least_used(struct cache_quota *quota, bool with_running)
 {
     struct entry *least = NULL;
-    for (size_t i = 0; i < cache->n_entries; i++) {
-        struct entry *entry = &cache->entries[i];
+    for (size_t i = 0; i < quota->n_entries; i++) {
+        struct entry *entry = &quota->entries[i];
         if (entry->n_bytes == 0 || entry->is_ended || entry->was_tried || (entry->process && !with_running))
             continue;
         if (!least || (!entry->process && least->process) ||
@@ -250,52 +251,52 @@ static struct entry *least_used(struct cache *cache, bool with_running)
     return least;
 }
 
-static uint64_t total(const struct cache *cache)
+static uint64_t total(const struct cache_quota *quota)
 {
     uint64_t sum = 0;
-    for (size_t i = 0; i < cache->n_entries; i++)
-        sum += cache->entries[i].n_bytes;
+    for (size_t i = 0; i < quota->n_entries; i++)
+        sum += quota->entries[i].n_bytes;
     return sum;
 }
 
-static void end_process(struct cache *cache, struct entry *entry, const char *reason)
+static void end_process(struct cache_quota *quota, struct entry *entry, const char *reason)
 {
     entry->is_ended = true;
-    cache->options.end(cache->options.context, entry->process, reason);
+    quota->options.end(quota->options.context, entry->process, reason);
 }
 
 /* At most once per look and folder. A renderer that fills its cache as fast as it is emptied is ended. */
-static void remove_one(struct cache *cache, struct entry *entry, const char *why)
+static void remove_one(struct cache_quota *quota, struct entry *entry, const char *why)
 {
     log_info("the cache of plan %s is removed (%llu MiB): %s", entry->id, (unsigned long long)(entry->n_bytes >> 20),
              why);
     uint64_t before = entry->n_bytes;
     entry->was_tried = true;
-    empty(cache, entry);
+    empty(quota, entry);
     if (entry->n_bytes < before)
         return;
     if (entry->process)
-        end_process(cache, entry, "was ended because its cache cannot be emptied while it runs");
+        end_process(quota, entry, "was ended because its cache cannot be emptied while it runs");
     else if (!entry->has_rest)
         entry->n_bytes = 0; /* it cannot be removed: count it as empty, or it would be tried for ever */
 }
 
-static bool is_short_of_space(const struct cache *cache)
+static bool is_short_of_space(const struct cache_quota *quota)
 {
     struct statvfs disk;
-    return fstatvfs(cache->file, &disk) == 0 && (uint64_t)disk.f_bavail * disk.f_frsize < cache->options.reserve_bytes;
+    return fstatvfs(quota->file, &disk) == 0 && (uint64_t)disk.f_bavail * disk.f_frsize < quota->options.reserve_bytes;
 }
 
 /* Removes caches until the disk has space again. If that is not enough, ends renderers, the newest first, one per look
  * and each once: a removed file that a renderer holds open still takes space that no measuring finds. */
-static void free_space(struct cache *cache)
+static void free_space(struct cache_quota *quota)
 {
     struct entry *blamed = NULL;
-    bool is_short = is_short_of_space(cache);
-    for (struct entry *least; is_short && (least = least_used(cache, false)); is_short = is_short_of_space(cache))
-        remove_one(cache, least, "the disk is short of space");
-    for (size_t i = 0; i < cache->n_entries; i++) {
-        struct entry *entry = &cache->entries[i];
+    bool is_short = is_short_of_space(quota);
+    for (struct entry *least; is_short && (least = least_used(quota, false)); is_short = is_short_of_space(quota))
+        remove_one(quota, least, "the disk is short of space");
+    for (size_t i = 0; i < quota->n_entries; i++) {
+        struct entry *entry = &quota->entries[i];
         if (!is_short)
             entry->was_blamed = false;
         else if (entry->process && !entry->was_blamed && !entry->is_ended &&
@@ -305,109 +306,109 @@ static void free_space(struct cache *cache)
     if (!blamed)
         return;
     blamed->was_blamed = true;
-    end_process(cache, blamed, "was ended because the disk of the data folder is short of space");
+    end_process(quota, blamed, "was ended because the disk of the data folder is short of space");
 }
 
-static void look(struct cache *cache)
+static void look(struct cache_quota *quota)
 {
     char reason[160];
-    const uint64_t max_bytes = cache->options.max_bytes;
-    for (size_t i = 0; i < cache->n_entries; i++) {
-        struct entry *entry = &cache->entries[i];
+    const uint64_t max_bytes = quota->options.max_bytes;
+    for (size_t i = 0; i < quota->n_entries; i++) {
+        struct entry *entry = &quota->entries[i];
         entry->was_tried = false;
         if (entry->has_rest && !entry->process)
-            empty(cache, entry);
+            empty(quota, entry);
         if (!entry->process || entry->is_ended)
             continue;
-        look_at(cache, entry);
-        if (entry->n_bytes <= max_bytes + slack_bytes && entry->n_files <= CACHE_MAX_FILES)
+        look_at(quota, entry);
+        if (entry->n_bytes <= max_bytes + slack_bytes && entry->n_files <= CACHE_QUOTA_MAX_FILES)
             continue;
         (void)snprintf(reason, sizeof reason,
                        "was ended because it wrote more to its cache than the %llu MiB or %d files it may",
-                       (unsigned long long)(max_bytes >> 20), CACHE_MAX_FILES);
-        end_process(cache, entry, reason);
+                       (unsigned long long)(max_bytes >> 20), CACHE_QUOTA_MAX_FILES);
+        end_process(quota, entry, reason);
     }
-    for (struct entry *least; total(cache) > max_bytes && (least = least_used(cache, true));)
-        remove_one(cache, least, "caches of all plans took more than they may");
-    free_space(cache);
+    for (struct entry *least; total(quota) > max_bytes && (least = least_used(quota, true));)
+        remove_one(quota, least, "caches of all plans took more than they may");
+    free_space(quota);
 }
 
-static struct entry *entry_used_by(struct cache *cache, uint64_t process)
+static struct entry *entry_used_by(struct cache_quota *quota, uint64_t process)
 {
-    for (size_t i = 0; i < cache->n_entries; i++)
-        if (cache->entries[i].process == process)
-            return &cache->entries[i];
+    for (size_t i = 0; i < quota->n_entries; i++)
+        if (quota->entries[i].process == process)
+            return &quota->entries[i];
     return NULL;
 }
 
-static void note_use(struct cache *cache, const struct use *use)
+static void note_use(struct cache_quota *quota, const struct use *use)
 {
-    struct entry *entry = use->is_begin ? entry_of(cache, use->id) : entry_used_by(cache, use->process);
+    struct entry *entry = use->is_begin ? entry_of(quota, use->id) : entry_used_by(quota, use->process);
     if (!entry)
         return;
     if (use->is_begin && entry->is_ended)
-        empty(cache, entry); /* the end of the earlier process has not been reported yet */
+        empty(quota, entry); /* the end of the earlier process has not been reported yet */
     entry->process = use->is_begin ? use->process : 0;
     entry->used_ns = now_ns();
-    (void)utimensat(cache->file, entry->id, NULL,
+    (void)utimensat(quota->file, entry->id, NULL,
                     AT_SYMLINK_NOFOLLOW); /* the time of the folder tells the next daemon when it was used */
     if (!use->is_begin && entry->is_ended)
-        empty(cache, entry);
+        empty(quota, entry);
     else if (!use->is_begin)
-        look_at(cache, entry);
+        look_at(quota, entry);
     entry->is_ended = false;
 }
 
-static bool is_any_left(const struct cache *cache)
+static bool is_any_left(const struct cache_quota *quota)
 {
-    for (size_t i = 0; i < cache->n_entries; i++)
-        if (cache->entries[i].process || cache->entries[i].has_rest)
+    for (size_t i = 0; i < quota->n_entries; i++)
+        if (quota->entries[i].process || quota->entries[i].has_rest)
             return true;
     return false;
 }
 
 static void *work(void *argument)
 {
-    struct cache *cache = argument;
-    list(cache);
-    for (int wait_ms = 0;; wait_ms = is_any_left(cache) ? CACHE_LOOK_MS : -1) {
-        for (struct use *use = queue_take(cache->uses, wait_ms); use; use = queue_try_take(cache->uses)) {
+    struct cache_quota *quota = argument;
+    list(quota);
+    for (int wait_ms = 0;; wait_ms = is_any_left(quota) ? CACHE_QUOTA_LOOK_MS : -1) {
+        for (struct use *use = queue_take(quota->uses, wait_ms); use; use = queue_try_take(quota->uses)) {
             bool is_last = use->process == 0;
             if (!is_last)
-                note_use(cache, use);
+                note_use(quota, use);
             free(use);
             if (is_last)
                 return NULL;
         }
-        look(cache);
+        look(quota);
     }
 }
 
-struct cache *cache_create(const struct cache_options *options, struct error *err)
+struct cache_quota *cache_quota_create(const struct cache_quota_options *options, struct error *err)
 {
-    struct cache *cache = mem_new(sizeof *cache);
-    cache->options = *options;
-    if (cache->options.max_bytes == 0)
-        cache->options.max_bytes = default_max_bytes;
-    cache->uses = queue_create(MAX_WAITING, free);
-    cache->file = open(options->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    int failed = cache->file < 0 ? errno : pthread_create(&cache->thread, NULL, work, cache);
+    struct cache_quota *quota = mem_new(sizeof *quota);
+    quota->options = *options;
+    if (quota->options.max_bytes == 0)
+        quota->options.max_bytes = default_max_bytes;
+    quota->uses = queue_create(MAX_WAITING, free);
+    quota->file = open(options->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    int failed = quota->file < 0 ? errno : pthread_create(&quota->thread, NULL, work, quota);
     if (!failed)
-        return cache;
+        return quota;
     error_set(err, ERROR_IO, "the cache folder %.120s cannot be watched: %s", options->folder, strerror(failed));
-    if (cache->file >= 0)
-        close(cache->file);
-    queue_destroy(cache->uses);
-    free(cache);
+    if (quota->file >= 0)
+        close(quota->file);
+    queue_destroy(quota->uses);
+    free(quota);
     return NULL;
 }
 
-static void put_use(struct cache *cache, const char *id, uint64_t process, bool is_begin)
+static void put_use(struct cache_quota *quota, const char *id, uint64_t process, bool is_begin)
 {
     struct use *use = mem_new(sizeof *use);
     *use = (struct use){ .process = process, .is_begin = is_begin };
     (void)snprintf(use->id, sizeof use->id, "%s", id);
-    if (queue_try_put(cache->uses, use))
+    if (queue_try_put(quota->uses, use))
         return;
     free(use); /* the queue is full: the thread is removing something large */
     log_warn("%s%s",
@@ -416,31 +417,31 @@ static void put_use(struct cache *cache, const char *id, uint64_t process, bool 
              id);
 }
 
-void cache_destroy(struct cache *cache)
+void cache_quota_destroy(struct cache_quota *quota)
 {
-    if (!cache)
+    if (!quota)
         return;
     struct use *last = mem_new(sizeof *last);
-    while (!queue_try_put(cache->uses, last))
+    while (!queue_try_put(quota->uses, last))
         (void)usleep(1000);
-    pthread_join(cache->thread, NULL);
-    queue_destroy(cache->uses);
-    close(cache->file);
-    free(cache->entries);
-    free(cache);
+    pthread_join(quota->thread, NULL);
+    queue_destroy(quota->uses);
+    close(quota->file);
+    free(quota->entries);
+    free(quota);
 }
 
-uint64_t cache_max_file(const struct cache *cache)
+uint64_t cache_quota_max_file(const struct cache_quota *quota)
 {
-    uint64_t half = cache->options.max_bytes / 2;
-    return half > CACHE_LEAST_FILE ? half : CACHE_LEAST_FILE;
+    uint64_t half = quota->options.max_bytes / 2;
+    return half > CACHE_QUOTA_LEAST_FILE ? half : CACHE_QUOTA_LEAST_FILE;
 }
 
-void cache_begin(struct cache *cache, const char *plan_id, uint64_t process)
+void cache_quota_begin(struct cache_quota *quota, const char *plan_id, uint64_t process)
 {
-    put_use(cache, plan_id, process, true);
+    put_use(quota, plan_id, process, true);
 }
-void cache_end(struct cache *cache, uint64_t process)
+void cache_quota_end(struct cache_quota *quota, uint64_t process)
 {
-    put_use(cache, "", process, false);
+    put_use(quota, "", process, false);
 }
