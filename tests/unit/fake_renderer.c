@@ -1,3 +1,4 @@
+/* The made-up renderer: reads "behave" in its plan folder, and does what each word there says. */
 #include "tests/unit/fake_renderer.h"
 
 #include <fcntl.h>

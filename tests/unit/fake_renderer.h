@@ -1,6 +1,6 @@
 #pragma once
-/* A made-up renderer: a test program that the fleet starts as if it were beamroom-render. It behaves as the file
- * "behave" in the plan's folder says; what a renderer may do wrong is done here. */
+/* A made-up renderer: the test program itself, started by the fleet in place of beamroom-render. The file "behave" in
+ * the plan's folder says what it does, and what it does wrong. */
 
-/* What a test's main() does when it has arguments. */
+/* To be called by the test's main() when it has arguments. */
 int fake_renderer_main(int argc, char **argv);

@@ -1,3 +1,4 @@
+/* Makes a fleet on a folder of its own, and steps it as the net thread does. */
 #include "tests/unit/fleet_world.h"
 
 #include <dirent.h>

@@ -1,5 +1,5 @@
 #pragma once
-/* A fleet with a folder of plans of its own, for tests. */
+/* A fleet on a folder of plans of its own, for tests. */
 #include <stdatomic.h>
 #include <stddef.h>
 
@@ -17,17 +17,17 @@ struct world {
 };
 
 struct reply {
-    int n;         /* replies that came */
+    int n;         /* replies so far */
     bool is_frame; /* with the made-up renderer's picture */
     struct problem problem;
-    char what[32]; /* of an answer's body */
+    char what[32]; /* "what" in the answer's body */
     cJSON *json;   /* the answer; reply_finish frees it */
     uint8_t *blob;
     size_t n_blob;
 };
 
-/* A folder below /tmp with an empty folder of plans; options stand ready to be changed, the renderer is this test
- * program. */
+/* Makes a folder below /tmp with an empty folder of plans, and fills in options, which the test may change. The
+ * renderer is this test program. */
 void world_begin(struct world *world);
 /* A plan for the made-up renderer. */
 void world_add_plan(struct world *world, const char *name, const char *behave);
@@ -38,7 +38,7 @@ void world_start(struct world *world, size_t n_plans);
 void world_end(struct world *world);
 void world_remove_folder(const char *path);
 void world_step(struct world *world); /* one turn of what the net thread does */
-/* Turns until the condition holds; after a minute, for machines that are busy with other things, whatever it says. */
+/* Steps until the condition holds; gives up after a minute, which is long enough for busy machines. */
 #define WORLD_UNTIL(world, condition) \
     for (int64_t until_us_ = clock_now_us() + 60000000; !(condition) && clock_now_us() < until_us_;) \
     world_step(world)
@@ -46,9 +46,9 @@ void world_step_for_ms(struct world *world, int ms);
 struct fleet_plan world_plan_of(struct world *world, const char *id);
 void world_wait_for_state(struct world *world, const char *id, enum fleet_state state);
 void world_open_plan(struct world *world, const char *id);
-/* Asks with a packet that has only its type and "what": "probe". reply must outlive the answer. */
+/* Sends a request with only its type and "what": "probe". reply must outlive the answer. */
 uint64_t world_ask(struct world *world, const char *id, const char *type, struct reply *reply);
-/* Asks with this packet, which is deleted. */
+/* Sends this packet as a request; takes packet. */
 uint64_t world_ask_packet(struct world *world, const char *id, cJSON *packet, struct reply *reply);
 void world_wait_for_reply(struct world *world, struct reply *reply);
 /* Waits until the plan is ready, requests a picture and fails the test when none comes. */

@@ -1,3 +1,4 @@
+/* The callbacks of a fake room: they record what the room requests and sends. */
 #include "tests/unit/room_fake.h"
 
 #include "core/base/mem.h"

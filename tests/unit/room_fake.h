@@ -23,7 +23,7 @@ struct fake_request {
 struct fake_room {
     struct room *room;
     int64_t now_us;
-    int64_t again_us; /* what the last tick said */
+    int64_t again_us; /* returned by the last tick */
     struct fake_request requests[1024];
     size_t n_requests;
     size_t n_scenes;
@@ -44,7 +44,7 @@ void fake_say(struct fake_room *fake, struct fake_page *page, const char *format
 void fake_join(struct fake_room *fake, struct fake_page *page, bool follow);
 void fake_hello(struct fake_room *fake, struct fake_page *page);
 void fake_shown(struct fake_room *fake, struct fake_page *page); /* acknowledges the newest frame of view 1 */
-void fake_pass(struct fake_room *fake, int64_t ms);              /* time goes on; ticks when asked to */
+void fake_pass(struct fake_room *fake, int64_t ms);              /* lets time pass, and ticks the room when it is due */
 
 size_t fake_outstanding(const struct fake_room *fake);
 struct fake_request *fake_oldest(struct fake_room *fake); /* outstanding; NULL none */
@@ -52,9 +52,9 @@ struct fake_request *fake_newest(struct fake_room *fake);
 void fake_draw(struct fake_room *fake, struct fake_request *request); /* answers with a picture */
 void fake_draw_slow(struct fake_room *fake, struct fake_request *request, uint32_t render_us);
 void fake_fail(struct fake_room *fake, struct fake_request *request);
-/* As a renderer that says that this can never be drawn. */
+/* Answers that this can never be drawn. */
 void fake_refuse(struct fake_room *fake, struct fake_request *request);
-/* Draws and shows everything until nothing is asked for any more. */
+/* Draws and shows pictures until no request is outstanding. */
 void fake_settle(struct fake_room *fake, struct fake_page *const *pages, size_t n_pages);
 
 /* The newest message of a type that a page got, as JSON to be deleted; NULL: none. */

@@ -1,4 +1,4 @@
-/* Who a connection is counted for. */
+/* Addresses, and the client that a connection counts for. */
 #include "server/http/address.h"
 #include "tests/check.h"
 

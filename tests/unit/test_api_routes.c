@@ -1,3 +1,4 @@
+/* The API's table of routes against proto/http.json, and the page's files. */
 #include "server/http/api.h"
 #include "server/http/call.h"
 #include "server/http/files.h"

@@ -1,4 +1,4 @@
-/* Where the body of a request ends, conditions, and origins. */
+/* Where the body of a request ends; entity tags; origins. */
 #include "server/http/body.h"
 #include "server/http/etag.h"
 #include "server/wire/origin.h"

@@ -1,4 +1,4 @@
-/* The quota on what renderers keep on disk, with folders made here in the place of theirs. */
+/* The quota on data/cache, with folders made by the test in place of the renderers'. */
 #define _GNU_SOURCE
 #include "server/fleet/cache_quota.h"
 
@@ -87,7 +87,7 @@ static bool is_there(const struct fixture *fixture, const char *name)
         assert_true(condition); \
     } while (0)
 
-/* Returns when its thread has looked for the first time: what is added after that is seen as written by a renderer. */
+/* Returns when the thread has looked once: what is added later counts as written by a renderer. */
 static void start(struct fixture *fixture, uint64_t max_bytes, uint64_t reserve_bytes)
 {
     struct error err = { 0 };
@@ -151,7 +151,7 @@ static void a_renderer_that_writes_too_much_is_ended_and_its_cache_emptied(void 
     is_ended_and_emptied(&quota);
 }
 
-/* 300 folders in each other: no path reaches the last, and the files there count all the same. */
+/* 300 nested folders: no path is long enough for the last, and its files still count. */
 static void a_cache_deeper_than_any_honest_one_ends_its_renderer(void **state)
 {
     (void)state;
@@ -201,7 +201,7 @@ static void more_files_than_any_honest_cache_has_end_its_renderer(void **state)
     is_ended_and_emptied(&quota);
 }
 
-/* A reserve no disk has: what is unused goes, then each renderer ends once, the newest first. */
+/* A reserve larger than any disk: unused caches are removed, then each renderer is ended once, the newest first. */
 static void a_full_disk_costs_caches_first_and_then_each_renderer_once(void **state)
 {
     (void)state;
@@ -223,7 +223,7 @@ static void a_full_disk_costs_caches_first_and_then_each_renderer_once(void **st
     assert_int_equal(quota.ended[0] + quota.ended[1], 15);
 }
 
-/* A renderer that makes files as fast as they are removed must not keep the thread from the others. */
+/* A renderer that makes files as fast as they are removed must not keep the thread from other folders. */
 static void *make_files(void *argument)
 {
     const struct fixture *at = argument;

@@ -76,7 +76,7 @@ static void what_cannot_be_read_is_listed_with_the_reason_and_not_opened(void **
     world_end(&world);
 }
 
-/* On its own: a limit short enough to wait for may be too short for the others where the machine is busy. */
+/* In a world of its own: a limit short enough for a test may be too short for other tests on a busy machine. */
 static void one_that_is_looked_at_for_too_long_is_listed_with_the_reason(void **state)
 {
     (void)state;
@@ -149,7 +149,7 @@ static void a_load_that_fails_while_the_folder_is_first_looked_at_stays_failed(v
     WORLD_UNTIL(&world, fleet_plan_find(world.fleet, "a", &plan));
     world_open_plan(&world, "a");
     world_wait_for_state(&world, "a", FLEET_FAILED);
-    assert_int_equal(cJSON_GetArraySize(world_plan_of(&world, "a").parts), 0); /* it is still being looked at */
+    assert_int_equal(cJSON_GetArraySize(world_plan_of(&world, "a").parts), 0); /* its scan has not ended */
     WORLD_UNTIL(&world, cJSON_GetArraySize(world_plan_of(&world, "a").parts) > 0);
     assert_int_equal(cJSON_GetArraySize(world_plan_of(&world, "a").parts), 1);
     plan = world_plan_of(&world, "a");
@@ -172,10 +172,10 @@ static void a_crash_answers_what_waits_and_the_next_process_draws(void **state)
     world_wait_for_reply(&world, &first);
     assert_int_equal(first.problem.type, PROBLEM_RENDERER);
     assert_int_equal(world_plan_of(&world, "a").state, FLEET_RESTARTING);
-    assert_non_null(world_plan_of(&world, "a").document); /* kept */
+    assert_non_null(world_plan_of(&world, "a").document); /* the document is kept */
     assert_int_equal(world_plan_of(&world, "a").generation,
-                     2);                       /* the first restart waits for nothing: it has been started */
-    world_ask(&world, "a", "render", &second); /* waits for the new one */
+                     2);                       /* the first restart has no pause: it was started at once */
+    world_ask(&world, "a", "render", &second); /* waits for the new process */
     world_wait_for_reply(&world, &second);
     assert_true(second.is_frame);
     assert_int_equal(world_plan_of(&world, "a").generation, 2);

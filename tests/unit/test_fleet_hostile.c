@@ -16,7 +16,7 @@ static void garbage_ends_that_plan_only(void **state)
     struct world world;
     world_begin(&world);
     world.options.max_renderers = N_KINDS + 2;
-    world_add_plan(&world, "good", "64-images"); /* as many as there may be */
+    world_add_plan(&world, "good", "64-images"); /* the most that are allowed */
     for (int i = 0; i < N_KINDS; i++)
         world_add_plan(&world, kinds[i], kinds[i]);
     world_start(&world, N_KINDS + 1);
@@ -62,7 +62,7 @@ static void a_flood_of_packets_does_not_fill_the_memory(void **state)
     cJSON_AddStringToObject(scene, "type", "scene");
     assert_true(fleet_tell(world.fleet, "a", scene));
     cJSON_Delete(scene);
-    nanosleep(&(struct timespec){ .tv_nsec = 700000000 }, NULL); /* nobody listens meanwhile */
+    nanosleep(&(struct timespec){ .tv_nsec = 700000000 }, NULL); /* the daemon does not read meanwhile */
     /* progress after ready is against the rules */
     world_wait_for_state(&world, "a", FLEET_RESTARTING);
     world_end(&world);
@@ -91,9 +91,8 @@ static void one_that_reads_nothing_is_ended_before_memory_fills(void **state)
     world_end(&world);
 }
 
-/* Of 300 rooms each gets three scenes at once, while four orders may wait for the thread that sends: it is the last
- * scene of each that counts, and it is there before a picture of the room is drawn. Every third room is closed
- * meanwhile. */
+/* 300 rooms send three scenes each at once, while only four orders fit into the queue to the watch. The renderer must
+ * have the last scene of each room before it draws the room's picture. Every third room is closed meanwhile. */
 static void no_scene_is_lost_when_the_way_to_the_renderer_is_full(void **state)
 {
     (void)state;

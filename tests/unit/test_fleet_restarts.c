@@ -1,4 +1,4 @@
-/* What happens after a renderer ended: at once, after a pause, or not at all. */
+/* Restarts after a renderer has ended: at once, after a pause, or not at all. */
 #include <signal.h>
 #include <unistd.h>
 
@@ -92,9 +92,9 @@ static void one_that_never_drew_is_tried_again_after_growing_pauses_while_somebo
                                "the renderer stopped (signal 9); it is started again in 2 s") == 0);
     assert_string_equal(world_plan_of(&world, "a").phase,
                         "the renderer stopped (signal 9); it is started again in 2 s");
-    fleet_release(world.fleet, "a"); /* nobody is there any more: not tried again */
+    fleet_release(world.fleet, "a"); /* nobody holds it any more: it is not tried again */
     world_wait_for_state(&world, "a", FLEET_CLOSED);
-    assert_true(fleet_hold(world.fleet, "a")); /* somebody enters */
+    assert_true(fleet_hold(world.fleet, "a")); /* a viewer enters */
     world_wait_for_state(&world, "a", FLEET_READY);
     world_end(&world);
 }
@@ -124,7 +124,7 @@ static void a_plan_whose_file_is_bad_is_not_tried_again_until_the_file_has_chang
     assert_int_equal(world_plan_of(&world, "a").generation, 1);
     assert_string_equal(world_plan_of(&world, "a").problem->detail, "ct.nii: byte 40: 9 axes, expected 3");
 
-    char path[512]; /* until the file is another */
+    char path[512]; /* until the file's time differs */
     snprintf(path, sizeof path, "%s/a/behave", world.plans);
     assert_int_equal(unlink(path), 0);
     fleet_rescan(world.fleet);

@@ -1,4 +1,4 @@
-/* Renderers that do not answer, and stalls that are not theirs: of a disk, of this very process. */
+/* Renderers that do not answer; and delays that are not theirs, of a disk or of this process. */
 #include <semaphore.h>
 #include <signal.h>
 #include <stdatomic.h>
@@ -52,7 +52,7 @@ static void one_that_was_stopped_while_nothing_is_due_has_the_longer_time(void *
     world_end(&world);
 }
 
-/* Its main thread computes for 2 s and answers no ping meanwhile: so would one that gets no processor. */
+/* The renderer's main thread computes for 2 s and answers no ping, like one that gets no processor time. */
 static void one_whose_main_thread_runs_has_the_longer_time(void **state)
 {
     (void)state;
@@ -72,7 +72,7 @@ static void one_whose_main_thread_runs_has_the_longer_time(void **state)
     world_end(&world);
 }
 
-/* Runs in a process of its own, which its parent stops and continues. 0: all is well. */
+/* Runs in a child process, which its parent stops and continues. Returns 0 on success. */
 static int be_stopped(int told)
 {
     struct world world;
@@ -145,7 +145,7 @@ static void one_that_answers_pings_lives_on(void **state)
     struct world world;
     world_begin_with_plan(&world, "");
     world.options.times.ping = 50;
-    world.options.times.silent = 3000; /* a busy machine may well keep it waiting for a second */
+    world.options.times.silent = 3000; /* a busy machine may delay it by a second */
     world_start(&world, 1);
     world_open_plan(&world, "a");
     world_wait_for_state(&world, "a", FLEET_READY);
@@ -186,7 +186,7 @@ static void a_picture_that_never_comes_is_a_timeout_and_a_restart(void **state)
     world_end(&world);
 }
 
-/* The request waits for 1.5 s of its 2 until the plan is read: the renderer has had half a second for it. */
+/* The request waits 1.5 s of its 2 s for the plan to be read, so the renderer has half a second for it. */
 static void one_that_got_a_request_late_has_the_whole_time_for_a_picture(void **state)
 {
     (void)state;
@@ -312,13 +312,13 @@ static void a_listing_that_never_ends_does_not_hold_up_the_end(void **state)
     world_start(&world, 0);
     WORLD_UNTIL(&world, atomic_load(&n_waiting) == 1);
     world_end(&world);
-    assert_int_equal(atomic_load(&n_waiting), 1); /* it still hangs */
+    assert_int_equal(atomic_load(&n_waiting), 1); /* the listing still hangs */
     atomic_store(&is_slow, false);
     sem_post(&disk_answers);
     for (int64_t end_us = clock_now_us() + 10000000; atomic_load(&n_waiting) > 0 && clock_now_us() < end_us;)
         nanosleep(&(struct timespec){ .tv_nsec = 10000000 }, NULL);
     assert_int_equal(atomic_load(&n_waiting), 0);
-    nanosleep(&(struct timespec){ .tv_nsec = 300000000 }, NULL); /* its thread ends, and frees what it had */
+    nanosleep(&(struct timespec){ .tv_nsec = 300000000 }, NULL); /* its thread ends and frees the lister */
 }
 
 int main(int argc, char **argv)

@@ -1,3 +1,4 @@
+/* Which folders are listed as plans, and the ids made from their names. */
 #include <sys/stat.h>
 #include <unistd.h>
 

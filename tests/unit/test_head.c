@@ -1,4 +1,4 @@
-/* The head of a first request: who gets the connection, and what is said where nobody does. */
+/* Heads of requests: HTTP, WebSocket handshake, or refused with which problem. */
 #include <unistd.h>
 
 #include "server/http/head.h"

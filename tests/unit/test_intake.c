@@ -1,4 +1,4 @@
-/* Archives as they are received: limits, and that nothing stays behind. */
+/* Receiving archives: limits, and that no file stays behind. */
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -129,12 +129,12 @@ static void what_has_come_whole_is_ours_alone_to_read(void **state)
     assert_int_equal(facts.st_size, 5);
     assert_int_equal(facts.st_mode & 0777, 0600);
     call->upload_path = path;
-    call_destroy(call); /* nobody kept it */
+    call_destroy(call); /* no handler kept the file */
     assert_int_equal(n_bytes, facts.st_size);
     intake_destroy(intake);
 }
 
-/* A limit on the size of files stands for a full disk: the system refuses the write in the same way. */
+/* A limit on file sizes stands in for a full disk: the write fails in the same way. */
 static void a_disk_that_takes_no_more_is_said(void **state)
 {
     (void)state;
@@ -158,7 +158,7 @@ static void a_disk_that_takes_no_more_is_said(void **state)
     intake_destroy(intake);
 }
 
-/* A disk of its own: what is free is what it had less what lies in the folder, and less what others took. */
+/* A simulated disk: free is its size less the files in the folder, less what others wrote. */
 static uint64_t disk_bytes, taken_bytes;
 
 static uint64_t free_bytes(void *context, int *failed)
@@ -178,7 +178,7 @@ static uint64_t free_bytes(void *context, int *failed)
 
 static const char block[1 << 20];
 
-/* On a disk of 100 MiB with nothing on it, of which some stay free. */
+/* An empty disk of 100 MiB with a reserve. */
 static struct intake *intake_on_disk(uint64_t reserve)
 {
     disk_bytes = 100 << 20;
@@ -188,7 +188,7 @@ static struct intake *intake_on_disk(uint64_t reserve)
     return intake;
 }
 
-/* Four senders that do not say how much comes, in turn, until none may go on: what is free then. */
+/* Four senders without an announced length write in turn until all are refused. Returns what is free then. */
 static void streams_that_come_together_leave_the_reserve(void **state)
 {
     (void)state;
@@ -242,7 +242,7 @@ static void what_was_announced_is_kept_for_its_sender(void **state)
     assert_false(intake_add(stream, block, sizeof block, &problem));
     assert_int_equal(problem.type, PROBLEM_STORAGE);
     intake_drop(stream);
-    intake_drop(other); /* and what it was granted is free again */
+    intake_drop(other); /* what it was granted is free again */
     other = intake_begin(intake, call, 30 << 20, &problem);
     assert_non_null(other);
     for (int i = 0; i < 60; i++)
@@ -265,7 +265,7 @@ static void a_disk_that_others_fill_meanwhile_is_noticed(void **state)
     int n = 0;
     while (n < 60 && intake_add(file, block, sizeof block, &problem))
         n++;
-    assert_int_equal(n, INTAKE_STEP_BYTES >> 20); /* it is looked at once a step */
+    assert_int_equal(n, INTAKE_STEP_BYTES >> 20); /* the disk is checked once per step */
     assert_int_equal(problem.type, PROBLEM_STORAGE);
     intake_drop(file);
     call_destroy(call);

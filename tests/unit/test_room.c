@@ -106,7 +106,7 @@ static void a_change_that_changes_nothing_is_not_drawn(void **state)
              "{\"type\":\"scene.patch\",\"input\":9,\"patch\":{\"regions\":{\"brain\":{\"visible\":true}}}}");
     fake_pass(&fake, 1000);
     assert_int_equal(fake.n_requests, before);
-    cJSON *scene = fake_heard(&ann, "scene"); /* its sender still hears that it was taken, at the revision it had */
+    cJSON *scene = fake_heard(&ann, "scene"); /* its sender is still answered, with the unchanged revision */
     assert_int_equal(json_number(scene, "revision", 0), revision);
     assert_int_equal(json_number(scene, "input", 0), 9);
     cJSON_Delete(scene);
@@ -155,7 +155,7 @@ static void no_more_than_two_unshown_frames_are_ever_sent(void **state)
             fake_draw(&fake, request);
     }
     assert_int_equal(ann.n_frames, 2);
-    assert_int_equal(fake.n_requests, 2); /* and nothing was drawn for nobody */
+    assert_int_equal(fake.n_requests, 2); /* no picture is drawn without a viewer */
 }
 
 static void when_credit_returns_the_newest_state_is_drawn(void **state)
@@ -223,7 +223,7 @@ static void a_second_picture_is_asked_for_when_the_first_should_be_drawn(void **
 {
     (void)state;
     fake_join(&fake, &ann, false);
-    fake_draw_slow(&fake, fake_oldest(&fake), 20000); /* now it is known that drawing takes 20 ms */
+    fake_draw_slow(&fake, fake_oldest(&fake), 20000); /* from now on 20 ms are expected for a picture */
     fake_shown(&fake, &ann);
     fake_turn(&fake, &ann, 1, 0);
     fake_turn(&fake, &ann, 2, 0);
@@ -265,7 +265,7 @@ static void a_change_does_not_wait_for_a_slow_still(void **state)
     fake_pass(&fake, 150);
     struct fake_request *still = fake_newest(&fake);
     assert_true(still->is_still);
-    for (int i = 2; i < 30; i++) { /* the still takes for ever; moving pictures go on */
+    for (int i = 2; i < 30; i++) { /* the still is not answered; moving pictures go on */
         fake_turn(&fake, &ann, i, 0);
         struct fake_request *moving = fake_newest(&fake);
         assert_ptr_not_equal(moving, still);
@@ -276,7 +276,7 @@ static void a_change_does_not_wait_for_a_slow_still(void **state)
         assert_int_equal(fake_outstanding(&fake), 1); /* no second still beside it */
     }
     size_t before = ann.n_frames;
-    fake_draw(&fake, still); /* at last, and overtaken */
+    fake_draw(&fake, still); /* the late still shows an older view */
     assert_int_equal(ann.n_frames, before);
     struct fake_request *last = fake_newest(&fake);
     assert_true(last->is_still);

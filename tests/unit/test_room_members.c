@@ -127,7 +127,7 @@ static void a_full_room_says_so(void **state)
     assert_true(dee.is_closed);
     assert_string_equal(heard(&dee, "bye", "reason"), "the room is full");
     assert_int_equal(room_n_connected(fake.room), 3);
-    room_connection_closed(fake.room, &ben, fake.now_us); /* who is away makes place for who is here */
+    room_connection_closed(fake.room, &ben, fake.now_us); /* a member that is away makes room for a new one */
     dee.is_closed = false;
     fake_hello(&fake, &dee);
     assert_false(dee.is_closed);
@@ -158,7 +158,7 @@ static void coming_back_ends_the_old_connection(void **state)
     come_back(&dee, id, secret);
     assert_true(ann.is_closed);
     assert_int_equal(fake_n_heard(&ann, "bye"), 1);
-    room_connection_closed(fake.room, &ann, fake.now_us); /* the late news of it changes nothing */
+    room_connection_closed(fake.room, &ann, fake.now_us); /* the late report of its end changes nothing */
     assert_int_equal(room_n_connected(fake.room), 1);
 }
 
@@ -189,7 +189,7 @@ static void who_is_there_is_said_after_each_change(void **state)
     (void)state;
     fake_hello(&fake, &ann);
     size_t before = fake_n_heard(&ann, "members");
-    fake_join(&fake, &ben, true); /* comes; follows */
+    fake_join(&fake, &ben, true); /* enters and follows */
     assert_int_equal(fake_n_heard(&ann, "members"), before + 2);
     room_connection_closed(fake.room, &ben, fake.now_us);
     assert_int_equal(fake_n_heard(&ann, "members"), before + 3);
@@ -233,7 +233,7 @@ static void followers_hear_of_a_move_with_the_frame_that_shows_it_and_once(void 
     assert_int_equal(fake_n_heard(&ben, "view"), ben_before);
     fake_draw(&fake, fake_oldest(&fake));
     assert_int_equal(fake_n_heard(&ben, "view"), ben_before + 1);
-    assert_int_equal(fake_n_heard(&ann, "view"), ann_before); /* who moved it knows */
+    assert_int_equal(fake_n_heard(&ann, "view"), ann_before); /* not sent to the member who moved it */
 }
 
 static void the_size_is_that_of_the_follower_who_moved_last(void **state)
@@ -316,16 +316,16 @@ static void pictures_of_a_closed_view_are_waited_for_by_nobody(void **state)
     fake_join(&fake, &ben, true);
     struct fake_request *request = fake_newest(&fake);
     fake_say(&fake, &ann, "{\"type\":\"view.close\",\"view\":1}");
-    assert_false(request->is_forgotten); /* ben looks still */
+    assert_false(request->is_forgotten); /* ben still views it */
     fake_say(&fake, &ben, "{\"type\":\"view.close\",\"view\":1}");
     assert_true(request->is_forgotten);
     assert_int_equal(fake_outstanding(&fake), 0);
     fake_pass(&fake, 1000);
-    assert_int_equal(fake_outstanding(&fake), 0); /* and nothing is asked for meanwhile */
+    assert_int_equal(fake_outstanding(&fake), 0); /* without a viewer nothing is requested */
     fake_say(
         &fake, &ann,
         "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"kind\":\"3d\",\"size_px\":[800,600]}}");
-    assert_true(fake_outstanding(&fake) > 0); /* who comes back wants it again */
+    assert_true(fake_outstanding(&fake) > 0); /* a viewer who comes back needs the picture again */
     fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
     assert_true(ann.frames[ann.n_frames - 1].flags & FRAME_STILL);
 
@@ -340,7 +340,7 @@ static void pictures_of_a_closed_view_are_waited_for_by_nobody(void **state)
     fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
 
     fake_say(&fake, &ann, "{\"type\":\"view.follow\",\"view\":1,\"follow\":false}");
-    fake_turn(&fake, &ann, 30, 7); /* an own view, and its page goes away without a word */
+    fake_turn(&fake, &ann, 30, 7); /* an own view whose page disconnects without closing it */
     request = fake_newest(&fake);
     assert_non_null(request);
     room_connection_closed(fake.room, &ann, fake.now_us);
@@ -369,7 +369,7 @@ static void an_override_shows_another_scene_to_one_view(void **state)
     assert_non_null(scene);
     assert_false(json_flag(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "scalp"), "visible", true));
     assert_true(json_flag(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "brain"), "visible", false));
-    /* the room's scene goes on under it */
+    /* the room's scene changes below the override */
     fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.5}}}}");
     scene = fake_newest(&fake)->scene;
     assert_close(json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "brain"), "opacity", 0), 0.5,
@@ -481,7 +481,7 @@ static void before_the_plan_is_loaded_views_wait_and_the_scene_cannot_change(voi
     fake_page_end(&page);
 }
 
-/* Whether the newest view document that a page was told has no override. */
+/* True if the newest view document sent to the page has no override. */
 static bool override_is_gone(const struct fake_page *page)
 {
     cJSON *said = fake_heard(page, "view");
@@ -534,20 +534,20 @@ static void after_a_restart_with_another_plan_nothing_names_what_is_gone(void **
         "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.3}},\"check\":{\"region\":\"scalp\"}}}");
     fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
     room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, NULL, 0, NULL);
-    /* while it restarts, the plan as it was decides */
+    /* during a restart patches are checked against the old plan */
     fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"check\":{\"region\":\"liver\"}}}");
     assert_string_equal(refused(&ann), "422 /check/region");
     fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.7}}}}");
     (void)room_scene(fake.room, &before);
     fake_other_plan_ready(&fake);
     const cJSON *scene = room_scene(fake.room, &after), *regions = cJSON_GetObjectItem(scene, "regions");
-    assert_int_equal(after, before + 1); /* it is another scene: its ETag is another */
+    assert_int_equal(after, before + 1); /* the scene differs, so its ETag must */
     assert_null(cJSON_GetObjectItem(regions, "scalp"));
     assert_close(json_number(cJSON_GetObjectItem(regions, "brain"), "opacity", 0), 0.3, 1e-12);
     assert_string_equal(json_text(cJSON_GetObjectItem(scene, "check"), "region"), "");
     assert_string_equal(refused(&ann), "422 /override/regions/scalp");
     assert_true(override_is_gone(&ann));
-    assert_null(fake_newest(&fake)->scene); /* drawn as the room's */
+    assert_null(fake_newest(&fake)->scene); /* drawn with the room's scene */
 }
 
 static void a_plan_that_cannot_be_loaded_says_why(void **state)
@@ -561,7 +561,7 @@ static void a_plan_that_cannot_be_loaded_says_why(void **state)
     assert_string_equal(json_text(said, "state"), "failed");
     assert_string_equal(json_text(cJSON_GetObjectItem(said, "problem"), "detail"), problem.detail);
     cJSON_Delete(said);
-    fake_hello(&fake, &ben); /* also to who comes later */
+    fake_hello(&fake, &ben); /* also sent to a later member */
     assert_string_equal(heard(&ben, "renderer", "state"), "failed");
 }
 

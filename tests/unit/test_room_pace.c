@@ -1,4 +1,4 @@
-/* Pacing: how large pictures are while they move (design.md 6). */
+/* Pacing: scale and quality of moving pictures. */
 #include "server/room/pace.h"
 #include "tests/unit/room_fake.h"
 
@@ -41,7 +41,7 @@ static void a_graphics_card_starts_at_full_size_and_detail(void **state)
     assert_false(fake_newest(&fake)->coarse);
 }
 
-/* moves for a while; returns the scale asked for last */
+/* Turns the camera for a while; returns the scale requested last. */
 static int drag(int n, int64_t interval_ms, uint32_t render_us)
 {
     int scale = 0;

@@ -107,7 +107,7 @@ static void an_archive_becomes_a_plan_and_goes_again(void **state)
     assert_string_equal(upload.plan_id, "mr-x");
     struct fleet_plan plan = world_plan_of(&world, "mr-x");
     assert_true(plan.is_uploaded);
-    assert_int_equal(cJSON_GetArraySize(plan.parts), 1); /* done: it has been looked at */
+    assert_int_equal(cJSON_GetArraySize(plan.parts), 1); /* done means that it was scanned */
     assert_false(world_plan_of(&world, "head").is_uploaded);
     snprintf(path, sizeof path, "%s/plans/mr-x/behave", world.data); /* without the folder around it */
     assert_int_equal(access(path, F_OK), 0);
@@ -122,7 +122,7 @@ static void an_archive_becomes_a_plan_and_goes_again(void **state)
     assert_int_equal(n_in(&world, "plans"), 0);
     assert_int_equal(n_in(&world, "cache"), 0);
     wait_until_empty(&world);
-    WORLD_UNTIL(&world, kill(pid, 0) != 0 && fleet_n_plans(world.fleet) == 1); /* its end is told by an event */
+    WORLD_UNTIL(&world, kill(pid, 0) != 0 && fleet_n_plans(world.fleet) == 1); /* its end is reported by an event */
     assert_int_equal(kill(pid, 0), -1);
     assert_int_equal(fleet_n_plans(world.fleet), 1);
     assert_false(fleet_remove_plan(world.fleet, "mr-x", &problem));
@@ -224,9 +224,9 @@ static void impossible_progress_is_not_believed(void **state)
     for (int64_t until_us = clock_now_us() + 60000000; now != 12.75 && clock_now_us() < until_us; world_step(&world)) {
         now = upload_of(&world, number).percent;
         most = now > most ? now : most;
-        assert_close(now, most, 0); /* never back */
+        assert_close(now, most, 0); /* never decreases */
     }
-    assert_close(most, 12.75, 0); /* said after all the others */
+    assert_close(most, 12.75, 0); /* the last one reported */
     world_end(&world);
 }
 
@@ -253,9 +253,9 @@ static void cancelling_ends_the_unpacker_and_leaves_nothing(void **state)
     fleet_upload_cancel(world.fleet, hanging);
     fleet_upload_cancel(world.fleet, flooding);
     assert_int_equal(upload_of(&world, hanging).state, UPLOAD_CANCELLED);
-    assert_int_equal(wait_for_end(&world, waiting).state, UPLOAD_DONE); /* its turn has come */
+    assert_int_equal(wait_for_end(&world, waiting).state, UPLOAD_DONE); /* its turn came */
     fleet_upload_cancel(world.fleet, waiting);
-    assert_int_equal(upload_of(&world, waiting).state, UPLOAD_DONE); /* what has ended stays */
+    assert_int_equal(upload_of(&world, waiting).state, UPLOAD_DONE); /* an ended upload is still known */
     wait_until_empty(&world);
     assert_int_equal(upload_of(&world, hanging).state, UPLOAD_CANCELLED);
     assert_int_equal(n_in(&world, "plans"), 1);

@@ -1,3 +1,4 @@
+/* A WebSocket client for tests: builds frames and parses what comes back. */
 #include "tests/unit/ws_client.h"
 
 #include <errno.h>
