@@ -118,6 +118,7 @@ describe('a job that opens a plan', () => {
   }));
 
   test('stays failed when the plan was opened again since', () => withDaemon([], async ({ daemon, api }) => {
+    await until(() => call(`${api}/plans/head-2`), (plan) => plan.json.parts.length); // else its scan may refuse it before it is opened
     rmSync(join(folder, 'plans', 'head-2', 'ct.nii.gz'));
     try {
       const first = await call(`${api}/plans/head-2/open`, 'POST');
