@@ -20,7 +20,7 @@ enum {
     JSON_WEIGHT = 16         /* a parsed JSON document takes about this many times the bytes of its text */
 };
 
-struct chunk {
+struct chunk { /* a packet that waits to be sent */
     struct chunk *next;
     uint8_t *bytes;
     size_t n_bytes, n_sent;
@@ -28,19 +28,24 @@ struct chunk {
 
 struct process {
     uint64_t number;
-    bool is_program, has_progress;
+    bool is_program; /* output to a pipe; else a renderer, packets over a socket */
+    bool has_progress;
     int limit_ms;
     struct child child;
     struct process_events events;
     struct packet_reader *reader;
     struct event_backlog *backlog;
-    struct chunk *outgoing, **last;
-    size_t n_outgoing;
-    char *output;
+    struct chunk *outgoing, **last; /* oldest first */
+    size_t n_outgoing;              /* bytes */
+    char *output;                   /* a program's; PROCESS_MAX_OUTPUT + 1 bytes, NULL before the first */
     size_t n_output;
-    uint64_t n_since_packet;
-    int64_t heard_us, kill_at_us, limit_at_us, memory_at_us, drain_until_us;
-    int64_t pinged_us; /* when the unanswered ping was sent; 0: there is none */
+    uint64_t n_since_packet; /* bytes received since the last whole packet */
+    int64_t heard_us;        /* when bytes last came */
+    int64_t kill_at_us;      /* when it is killed after its socket was closed; INT64_MAX: not planned */
+    int64_t limit_at_us;     /* when a program's time is over */
+    int64_t memory_at_us;    /* when its memory is measured next */
+    int64_t drain_until_us;  /* after its end: until then its socket is read */
+    int64_t pinged_us;       /* when the unanswered ping was sent; 0: there is none */
     bool has_ended, is_stopping, is_awaited;
     int status;
     char reason[240];
