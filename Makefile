@@ -81,7 +81,7 @@ DAEMON_SRC := $(call c_files,server/daemon)
 RENDERER_SRC := $(call c_files,server/renderer)
 UNPACK_SRC := $(filter-out %_run.c,$(sort $(wildcard server/renderer/unpack*.c)))
 CLI_SRC := $(call c_files,server/cli)
-GEN_SRC := $(GEN)/wire_gen.c $(GEN)/problem_gen.c $(GEN)/openapi.c
+GEN_SRC := $(GEN)/wire_gen.c $(GEN)/packets_gen.c $(GEN)/problem_gen.c $(GEN)/openapi.c
 
 # The inner loops of the software rasteriser are written to be vectorised. No value changes by that; what does is the exception
 # flags of the processor, which nobody reads.
@@ -191,7 +191,7 @@ RUNNER := $(if $(findstring thread,$(SAN)),$(shell setarch -R true 2>/dev/null &
 # Programs run side by side, but for pictures, whose back ends use all cores themselves. The thread sanitizer is slow: its programs
 # are those that start threads of their own, or the first of those that read plans by the same ones.
 ONE_THREAD := sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pixels dicom_oracle dicom_hostile dicom_rtdose dicom_rtplan \
-    dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame plan_document shape_query head ws_parser ws_conformance convert convert_edges plan_real
+    dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame packet plan_document shape_query head ws_parser ws_conformance convert convert_edges plan_real
 UNIT_RUN = $(if $(findstring thread,$(SAN)),$(filter-out $(ONE_THREAD:%=$(B)/unit/test_%),$(unit_BIN)),$(unit_BIN))
 PARALLEL := $(shell nproc)
 .PHONY: test-unit test-render test-faults test-api test-web test-install test test-deep lint

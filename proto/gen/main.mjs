@@ -3,6 +3,7 @@
 //   wire_gen.h wire_gen.c  field tables and message structs for server/wire
 //   problem_gen.h problem_gen.c  types of problems
 //   gl_shaders.h gl_shaders.c  the shaders of core/render/gl/shaders
+//   packets_gen.h packets_gen.c  structs, field tables and limits of the packets between daemon and renderer
 //   openapi.json openapi.c  the HTTP API, as a file and for the daemon to serve
 //   wire.js              the field tables for the page
 //   reference.html       all of it for people
@@ -14,6 +15,7 @@ import { sceneHeader, sceneSource } from './scene_c.mjs';
 import { wireHeader, wireSource } from './wire_c.mjs';
 import { wireScript } from './wire_js.mjs';
 import { openapi, openapiSource } from './openapi.mjs';
+import { checkPackets, packetsHeader, packetsSource, questionRoutes } from './packets.mjs';
 import { problemHeader, problemSource } from './problem_c.mjs';
 import { readShaders, shadersHeader, shadersSource } from './shaders_c.mjs';
 import { referencePage } from './reference.mjs';
@@ -25,7 +27,10 @@ const scene = checkedDocuments(read('scene.json'));
 const messages = checkedMessages(read('messages.json'));
 const problems = read('problems.json');
 const shaders = readShaders(join(proto, '../core/render/gl/shaders'));
-const api = openapi(read('http.json'), scene, '1');
+const packets = read('packets.json');
+checkPackets(packets, scene);
+const http = read('http.json');
+const api = openapi({ ...http, routes: [...http.routes, ...questionRoutes(packets)] }, scene, '1');
 const out = process.argv[2];
 mkdirSync(out, { recursive: true });
 const write = (name, text) => writeFileSync(join(out, name), text);
@@ -34,11 +39,13 @@ write('scene.h', sceneHeader(scene));
 write('scene.c', sceneSource(scene));
 write('wire_gen.h', wireHeader(scene, messages));
 write('wire_gen.c', wireSource(scene, messages));
+write('packets_gen.h', packetsHeader(packets));
+write('packets_gen.c', packetsSource(packets));
 write('problem_gen.h', problemHeader(problems));
 write('problem_gen.c', problemSource(problems));
 write('gl_shaders.h', shadersHeader(shaders));
 write('gl_shaders.c', shadersSource(shaders));
 write('wire.js', wireScript(scene, messages));
-write('reference.html', referencePage(scene, messages, problems, reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8'))));
+write('reference.html', referencePage(scene, messages, packets, problems, reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8'))));
 write('openapi.json', JSON.stringify(api, null, 1));
 write('openapi.c', openapiSource(api));

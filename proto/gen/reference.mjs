@@ -1,4 +1,6 @@
 // reference.html: everything that proto/ describes, as a page for people.
+import { packetsSection } from './packets.mjs';
+
 const escape = (text) => String(text).replace(/[&<>"]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' })[c]);
 
 const aThing = (word) => `${/^[aeiou]/.test(word) ? 'an' : 'a'} ${word}`;
@@ -14,7 +16,8 @@ function typeWords(field, enums) {
     case 'direction': return 'three numbers, patient LPS: a direction, of any length but 0';
     case 'size': return 'width and height in pixels';
     case 'patch': return 'merge patch';
-    case 'json': return 'object';
+    case 'json': case 'document': return 'object';
+    case 'matrix': return '16 numbers';
     default: return field.type + (field.unit ? ` (${field.unit})` : '');
   }
 }
@@ -29,7 +32,7 @@ function rows(fields, enums) {
 
 export const tableOf = (fields, enums) => `<table><thead><tr><th>Field</th><th>Type</th><th>Range</th><th>Default</th><th>Meaning</th></tr></thead><tbody>\n${rows(fields, enums)}\n</tbody></table>\n`;
 
-export function referencePage(scene, messages, problems, codes) {
+export function referencePage(scene, messages, packets, problems, codes) {
   const enums = { ...scene.enums, ...messages.enums };
   let body = '<h1>Beamroom reference</h1>\n<p><a href="/api/v1/openapi.json">OpenAPI description of the HTTP API</a></p>\n';
   body += `<h2>Scene and view</h2>\n<p>${escape(scene.about)}</p>\n`;
@@ -41,6 +44,7 @@ export function referencePage(scene, messages, problems, codes) {
   body += `<h2>WebSocket messages</h2>\n<p>${escape(messages.about)}</p>\n`;
   for (const message of messages.messages)
     body += `<h3 id="message-${escape(message.name)}">${escape(message.name)} <small>from the ${message.from === 'client' ? 'page' : 'server'}</small></h3>\n<p>${escape(message.about)}</p>\n${tableOf(message.fields, enums)}`;
+  body += packetsSection(packets, escape, tableOf);
   body += `<h2 id="problems">Problems</h2>\n<p>${escape(problems.about)}</p>\n<table><thead><tr><th>Type</th><th>Status</th><th>Title</th><th>What to do</th></tr></thead><tbody>\n` +
     problems.problems.map((p) => `<tr id="problem-${p.word}"><td><code>/problems/${p.word}</code></td><td>${p.status}</td><td>${escape(p.title)}</td><td>${escape(p.about)}</td></tr>`).join('\n') + '\n</tbody></table>\n';
   body += '<h2 id="report">Load report</h2>\n<p>What a plan\'s report may say; each line has one of these codes, a severity (note, warning, error), a sentence with the figures, and the file it is about.</p>\n' +

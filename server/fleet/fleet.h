@@ -148,15 +148,18 @@ void fleet_upload_cancel(struct fleet *fleet, uint64_t number);
 /* Sends the renderer a packet that has no answer (scene, forget, drop); borrowed. A packet about a room is not lost
  * while the process lives: when the queue to the watch is full it is sent later, and requests are refused until then.
  * Returns false when the plan is not ready. */
-bool fleet_tell(struct fleet *fleet, const char *plan_id, const cJSON *packet);
+bool fleet_tell(struct fleet *fleet, const char *plan_id, const struct packet *packet);
 
-/* Exactly one of answer and problem is not NULL. The reply may take answer->blob by setting it to NULL. */
+/* Exactly one of answer and problem is not NULL. The reply may take answer->blob by setting it
+ * to NULL, and documents by packet_take_document. */
 typedef void (*fleet_reply)(void *context, struct packet *answer, const struct problem *problem);
-/* Sends a request (render, query); the fleet adds the id. While the plan is starting, loading or restarting the request
- * waits for FLEET_READY. When the renderer ends, requests sent to it fail with PROBLEM_RENDERER at once. Calls reply
- * exactly once, from fleet_handle_events, fleet_tick or fleet_destroy; after times.request with PROBLEM_TIMEOUT.
- * Returns a number for fleet_forget_request. */
-uint64_t fleet_request(struct fleet *fleet, const char *plan_id, const cJSON *packet, fleet_reply reply, void *context);
+/* Sends a request (render, await_ready or a question) and sets the packet's id. A field out of its range fails with
+ * PROBLEM_VALIDATION. While the plan is starting, loading or restarting the request waits for FLEET_READY. When the
+ * renderer ends, requests sent to it fail with PROBLEM_RENDERER at once. Calls reply exactly once, from
+ * fleet_handle_events, fleet_tick or fleet_destroy; after times.request with PROBLEM_TIMEOUT. Returns a number for
+ * fleet_forget_request. */
+uint64_t fleet_request(struct fleet *fleet, const char *plan_id, struct packet *packet, fleet_reply reply,
+                       void *context);
 /* The reply is not called any more. */
 void fleet_forget_request(struct fleet *fleet, uint64_t request);
 

@@ -16,60 +16,53 @@ void gl_probe_start(struct fleet *fleet)
         fleet->gl_probe = 0;
 }
 
-/* A copy with only the known members, each cut to 199 bytes; NULL when json holds no GL facts. */
-static cJSON *copy_facts(const cJSON *json)
+bool gl_facts_received(struct fleet *fleet, const struct packet_gl *gl)
 {
-    static const char *const texts[] = { "back_end", "vendor", "renderer", "version", "confined" };
-    if (!json_text(json, "back_end"))
-        return NULL;
-    cJSON *facts = cJSON_CreateObject();
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        char text[200];
-        const char *given = json_text(json, texts[i]);
-        (void)snprintf(text, sizeof text, "%s", given ? given : "");
-        cJSON_AddStringToObject(facts, texts[i], text);
-    }
-    cJSON_AddBoolToObject(facts, "is_software", json_flag(json, "is_software", false));
-    return facts;
-}
-
-bool gl_facts_received(struct fleet *fleet, const cJSON *json)
-{
-    const cJSON *reported = cJSON_GetObjectItemCaseSensitive(json, "problem");
-    if (reported) {
-        struct problem problem;
-        if (!problem_from_json(reported, &problem))
-            return false;
-        fleet->gl_problem = problem;
-        cJSON_Delete(fleet->gl);
-        fleet->gl = NULL;
-        return true;
-    }
-    cJSON *facts = copy_facts(json);
-    if (!facts)
+    bool has_failed = gl->problem.type != PROBLEM_NONE;
+    if (!has_failed && !gl->back_end[0])
         return false;
     cJSON_Delete(fleet->gl);
-    fleet->gl = facts;
-    fleet->gl_problem = (struct problem){ 0 };
+    fleet->gl = NULL;
+    fleet->gl_problem = gl->problem;
+    if (has_failed)
+        return true;
+    cJSON *facts = fleet->gl = cJSON_CreateObject();
+    cJSON_AddStringToObject(facts, "back_end", gl->back_end);
+    cJSON_AddStringToObject(facts, "vendor", gl->vendor);
+    cJSON_AddStringToObject(facts, "renderer", gl->renderer);
+    cJSON_AddStringToObject(facts, "version", gl->version);
+    cJSON_AddStringToObject(facts, "confined", gl->confined);
+    cJSON_AddBoolToObject(facts, "is_software", gl->is_software);
     return true;
+}
+
+/* The probe prints the fields of a "gl" packet. Returns false when it printed something else. */
+static bool read_output(struct fleet *fleet, const struct watch_event *event)
+{
+    struct packet packet;
+    struct problem problem;
+    cJSON *json = event->is_exit ? json_read(event->output ? event->output : "", event->n_output, &problem) : NULL;
+    cJSON_AddStringToObject(json, "type", "gl");
+    if (!packet_from_json(json, PACKET_TO_DAEMON, 0, &packet, &problem))
+        return false;
+    bool is_good = gl_facts_received(fleet, &packet.gl);
+    packet_finish(&packet);
+    return is_good;
 }
 
 bool gl_probe_ended(struct fleet *fleet, const struct watch_event *event)
 {
-    struct problem problem;
     char how[240];
     if (event->number != fleet->gl_probe)
         return false;
     fleet->gl_probe = 0;
     if (fleet->gl)
         return true; /* a renderer reported meanwhile */
-    cJSON *json = event->is_exit ? json_read(event->output ? event->output : "", event->n_output, &problem) : NULL;
-    if (!json || !gl_facts_received(fleet, json)) {
+    if (!read_output(fleet, event)) {
         watch_event_describe_end(event, how, sizeof how);
         problem_set(&fleet->gl_problem, PROBLEM_GL_UNAVAILABLE, "", "",
                     "looking for a way to draw failed: the renderer %.180s", how);
     }
-    cJSON_Delete(json);
     if (fleet->gl_problem.type != PROBLEM_NONE)
         log_warn("%s", fleet->gl_problem.detail);
     else

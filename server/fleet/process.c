@@ -238,14 +238,13 @@ static void put_packets(struct process *process, int64_t now_us)
         }
         uint64_t n_text = process->n_since_packet > packet.n_blob ? process->n_since_packet - packet.n_blob : 0;
         process->n_since_packet = 0;
-        const char *type = json_text(packet.json, "type"); /* a known type: the reader checked it */
-        if (strcmp(type, "pong") == 0) {                   /* the answer to a ping: heard_us is all that counts */
+        if (packet.type == PACKET_PONG) { /* only its arrival counts */
             packet_finish(&packet);
             continue;
         }
         struct watch_event *event = event_new(process, WATCH_PACKET);
         event->packet = packet;
-        event_backlog_add(process->backlog, event, 1024 + packet.n_blob + JSON_WEIGHT * n_text);
+        event_backlog_add(process->backlog, event, sizeof *event + packet.n_blob + JSON_WEIGHT * n_text);
         put_event(process, event);
     }
 }
@@ -388,11 +387,10 @@ static bool is_stopped_or_asleep(const struct process *process)
 static void send_ping(struct process *process, int64_t now_us)
 {
     process->pinged_us = now_us;
-    cJSON *ping = cJSON_CreateObject();
-    cJSON_AddStringToObject(ping, "type", "ping");
+    struct packet ping;
     size_t n;
-    uint8_t *bytes = packet_write(ping, NULL, 0, &n, NULL);
-    cJSON_Delete(ping);
+    packet_init(&ping, PACKET_PING);
+    uint8_t *bytes = packet_encode(&ping, NULL, 0, &n, NULL);
     if (bytes)
         process_send(process, bytes, n, now_us);
 }

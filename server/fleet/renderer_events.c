@@ -1,7 +1,6 @@
 /* Turns packets, memory figures and ends of renderers into changes of their plans. */
 #include "server/fleet/renderer_events.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -21,7 +20,9 @@ enum {
 
 static void copy_text(char *to, size_t n, const char *text)
 {
-    (void)snprintf(to, n, "%s", text ? text : "");
+    size_t n_copied = strnlen(text, n - 1);
+    memcpy(to, text, n_copied);
+    to[n_copied] = 0;
 }
 
 void renderer_started(struct fleet *fleet, const struct watch_event *event)
@@ -53,18 +54,18 @@ void renderer_memory(struct fleet *fleet, const struct watch_event *event)
     plan_entry_kill(fleet, plan, how);
 }
 
-/* ---- packets: each returns false when the packet breaks the protocol --------------------------------------------- */
+/* ---- packets: their fields are checked; false when the packet does not fit the plan ------------------------------- */
 
-static bool progress_packet(struct fleet *fleet, struct plan_entry *plan, const cJSON *json)
+static bool progress_packet(struct fleet *fleet, struct plan_entry *plan, const struct packet_progress *progress)
 {
-    double percent = json_number(json, "percent", NAN);
-    const char *phase = json_text(json, "phase");
-    if (!phase || !(percent >= 0 && percent <= 100) || plan->state == FLEET_READY)
+    char phase[sizeof plan->phase];
+    copy_text(phase, sizeof phase, progress->phase);
+    if (plan->state == FLEET_READY)
         return false;
-    if (percent != plan->percent || strcmp(phase, plan->phase) != 0)
+    if (progress->percent != plan->percent || strcmp(phase, plan->phase) != 0)
         plan->progressed_us = fleet_now_us(fleet);
-    copy_text(plan->phase, sizeof plan->phase, phase);
-    plan->percent = percent;
+    memcpy(plan->phase, phase, sizeof plan->phase);
+    plan->percent = progress->percent;
     plan_entry_change(fleet, plan, plan->state == FLEET_STARTING ? FLEET_LOADING : plan->state);
     return true;
 }
@@ -82,25 +83,22 @@ static bool images_are_valid(const cJSON *document)
     return true;
 }
 
-static bool ready_packet(struct fleet *fleet, struct plan_entry *plan, cJSON *json)
+static bool ready_packet(struct fleet *fleet, struct plan_entry *plan, struct packet *packet)
 {
-    const cJSON *document = cJSON_GetObjectItemCaseSensitive(json, "plan");
-    const cJSON *defaults = cJSON_GetObjectItemCaseSensitive(json, "scene");
-    const char *id = json_text(document, "id");
+    const struct packet_ready *ready = &packet->ready;
+    const char *id = json_text(ready->plan, "id");
     struct problem problem;
     struct scene scene;
-    if (plan->state == FLEET_READY || !cJSON_IsObject(document) || !id || strcmp(id, plan->id) != 0 ||
-        !scene_read(defaults, &scene, &problem))
+    if (plan->state == FLEET_READY || !id || strcmp(id, plan->id) != 0 || !scene_read(ready->scene, &scene, &problem))
         return false;
     scene_finish(&scene);
-    if (!images_are_valid(document))
+    if (!images_are_valid(ready->plan))
         return false;
     plan_entry_forget_documents(plan);
-    plan->document = cJSON_DetachItemFromObjectCaseSensitive(json, "plan");
-    plan->default_scene = cJSON_DetachItemFromObjectCaseSensitive(json, "scene");
-    copy_text(plan->confined, sizeof plan->confined, json_text(json, "confined"));
-    double load_ms = json_number(json, "load_ms", 0);
-    plan->load_ms = load_ms >= 0 && load_ms < 1e9 ? (int64_t)load_ms : 0;
+    plan->document = packet_take_document(packet, ready->plan);
+    plan->default_scene = packet_take_document(packet, ready->scene);
+    copy_text(plan->confined, sizeof plan->confined, ready->confined);
+    plan->load_ms = ready->load_ms;
     plan->was_ready = true;
     plan->percent = 100;
     plan->phase[0] = 0;
@@ -121,21 +119,18 @@ static bool is_temporary(enum problem_type type)
            type == PROBLEM_TIMEOUT || type == PROBLEM_CANCELLED;
 }
 
-static bool failed_packet(struct fleet *fleet, struct plan_entry *plan, const cJSON *json)
+static void failed_packet(struct fleet *fleet, struct plan_entry *plan, const struct problem *reported)
 {
-    struct problem reported, problem;
-    if (!problem_from_json(cJSON_GetObjectItemCaseSensitive(json, "problem"), &reported))
-        return false;
-    if (plan->was_ready && plan->n_holds > 0 && is_temporary(reported.type)) { /* the files were readable before */
+    struct problem problem;
+    if (plan->was_ready && plan->n_holds > 0 && is_temporary(reported->type)) { /* the files were readable before */
         char how[200];
-        (void)snprintf(how, sizeof how, "could not read the plan again (%.150s)", reported.detail);
+        (void)snprintf(how, sizeof how, "could not read the plan again (%.150s)", reported->detail);
         plan_entry_kill(fleet, plan, how);
-        return true;
+        return;
     }
-    problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "%s", reported.detail);
+    problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "%s", reported->detail);
     renderer_fail(fleet, plan, &problem);
-    plan->is_failure_final = !is_temporary(reported.type);
-    return true;
+    plan->is_failure_final = !is_temporary(reported->type);
 }
 
 void renderer_packet(struct fleet *fleet, struct watch_event *event)
@@ -143,21 +138,22 @@ void renderer_packet(struct fleet *fleet, struct watch_event *event)
     struct plan_entry *plan = plan_entry_of_process(fleet, event->number);
     if (!plan || plan->is_killed)
         return;
-    const char *type = json_text(event->packet.json, "type");
-    bool is_good = false;
-    if (strcmp(type, "frame") == 0 || strcmp(type, "answer") == 0 || strcmp(type, "problem") == 0)
-        is_good = requests_answer(fleet, plan, &event->packet);
-    else if (strcmp(type, "progress") == 0)
-        is_good = progress_packet(fleet, plan, event->packet.json);
-    else if (strcmp(type, "ready") == 0)
-        is_good = ready_packet(fleet, plan, event->packet.json);
-    else if (strcmp(type, "failed") == 0)
-        is_good = failed_packet(fleet, plan, event->packet.json);
-    else if (strcmp(type, "gl") == 0)
-        is_good = gl_facts_received(fleet, event->packet.json);
+    struct packet *packet = &event->packet;
+    bool is_good = true;
+    switch (packet->type) {
+    case PACKET_FRAME:
+    case PACKET_ANSWER:
+    case PACKET_PROBLEM: is_good = requests_answer(fleet, plan, packet); break;
+    case PACKET_PROGRESS: is_good = progress_packet(fleet, plan, &packet->progress); break;
+    case PACKET_READY: is_good = ready_packet(fleet, plan, packet); break;
+    case PACKET_FAILED: failed_packet(fleet, plan, &packet->failed.problem); break;
+    case PACKET_GL: is_good = gl_facts_received(fleet, &packet->gl); break;
+    default: is_good = false; /* the reader lets no other through */
+    }
     if (!is_good) {
         char reason[120];
-        (void)snprintf(reason, sizeof reason, "was ended because it sent a wrong \"%.40s\"", type);
+        (void)snprintf(reason, sizeof reason, "was ended because it sent a wrong \"%.40s\"",
+                       packet_descriptions[packet->type].name);
         plan_entry_kill(fleet, plan, reason);
     }
 }

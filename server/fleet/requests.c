@@ -13,7 +13,8 @@ struct request {
     struct request *next;
     uint64_t number;
     struct plan_entry *plan; /* NULL when it failed */
-    bool is_render, is_sent, is_failed;
+    enum packet_type type;   /* of the packet; render: its answer shows that the renderer draws */
+    bool is_sent, is_failed;
     struct problem problem; /* when failed */
     uint8_t *bytes;         /* the packet, until it is sent */
     size_t n_bytes;
@@ -21,25 +22,6 @@ struct request {
     fleet_reply reply;
     void *context;
 };
-
-static bool is_render(const cJSON *packet)
-{
-    const char *type = json_text(packet, "type");
-    return type && strcmp(type, "render") == 0;
-}
-
-/* The packet with our id in it, written. The document is not copied. errors as packet_write */
-static uint8_t *write_with_id(const cJSON *packet, uint64_t id, size_t *n_bytes, struct error *err)
-{
-    cJSON *whole = cJSON_CreateObject();
-    cJSON_AddNumberToObject(whole, "id", (double)id);
-    for (cJSON *item = packet->child; item; item = item->next)
-        if (strcmp(item->string, "id") != 0)
-            cJSON_AddItemReferenceToObject(whole, item->string, item);
-    uint8_t *bytes = packet_write(whole, NULL, 0, n_bytes, err);
-    cJSON_Delete(whole);
-    return bytes;
-}
 
 static struct request *request_new(struct fleet *fleet, fleet_reply reply, void *context)
 {
@@ -127,7 +109,8 @@ static bool may_wait(const struct plan_entry *plan, struct problem *problem)
     return false;
 }
 
-uint64_t fleet_request(struct fleet *fleet, const char *plan_id, const cJSON *packet, fleet_reply reply, void *context)
+uint64_t fleet_request(struct fleet *fleet, const char *plan_id, struct packet *packet, fleet_reply reply,
+                       void *context)
 {
     bool is_full = fleet->n_requests >= FLEET_MAX_REQUESTS;
     struct request *request = request_new(fleet, reply, context);
@@ -140,18 +123,16 @@ uint64_t fleet_request(struct fleet *fleet, const char *plan_id, const cJSON *pa
         problem_set(&problem, PROBLEM_BUSY, "", "", "%d requests wait for an answer already", FLEET_MAX_REQUESTS);
         problem.retry_after_ms = 1000;
     } else if (may_wait(plan, &problem)) {
-        struct error err = { 0 };
-        request->is_render = is_render(packet);
-        request->bytes = write_with_id(packet, number, &request->n_bytes, &err);
+        packet_set_id(packet, (int64_t)number);
+        request->type = packet->type;
+        request->bytes = packet_encode(packet, NULL, 0, &request->n_bytes, &problem);
         fleet->n_waiting_bytes += request->n_bytes;
         plan->used_us = fleet_now_us(fleet);
-        if (!request->bytes)
-            problem_from_error(&problem, &err);
-        else if (plan->state != FLEET_READY && fleet->n_waiting_bytes > FLEET_MAX_WAITING_BYTES) {
+        if (request->bytes && plan->state != FLEET_READY && fleet->n_waiting_bytes > FLEET_MAX_WAITING_BYTES) {
             problem_set(&problem, PROBLEM_BUSY, "", "", "requests of more than %d MiB wait for plans to be read",
                         FLEET_MAX_WAITING_BYTES >> 20);
             problem.retry_after_ms = 1000;
-        } else {
+        } else if (request->bytes) {
             request->plan = plan;
         }
         if (request->plan && plan->state == FLEET_READY)
@@ -174,17 +155,25 @@ void fleet_forget_request(struct fleet *fleet, uint64_t number)
         }
 }
 
-bool fleet_tell(struct fleet *fleet, const char *plan_id, const cJSON *packet)
+/* The room a packet is about; NULL: none. */
+static const char *room_of(const struct packet *packet)
+{
+    return packet->type == PACKET_SCENE    ? packet->scene.room
+           : packet->type == PACKET_FORGET ? packet->forget.room
+                                           : NULL;
+}
+
+bool fleet_tell(struct fleet *fleet, const char *plan_id, const struct packet *packet)
 {
     struct plan_entry *plan = plan_entry_find(fleet, plan_id);
-    const char *room = json_text(packet, "room");
+    const char *room = room_of(packet);
     if (!plan || plan->state != FLEET_READY)
         return false;
     size_t n_bytes;
-    struct error err = { 0 };
-    uint8_t *bytes = packet_write(packet, NULL, 0, &n_bytes, &err);
+    struct problem problem = { 0 };
+    uint8_t *bytes = packet_encode(packet, NULL, 0, &n_bytes, &problem);
     if (!bytes) {
-        log_error("plan %s: its renderer is not told: %s", plan->id, err.text);
+        log_error("plan %s: its renderer is not told: %s", plan->id, problem.detail);
         return false;
     }
     if (!room) /* a "drop": when it is lost, one picture is drawn in vain */
@@ -247,7 +236,7 @@ void requests_check_time(struct fleet *fleet, int64_t now_us)
         /* The renderer's main thread answers pings even when its render thread is stuck, so only a late picture shows
          * that. A renderer that finishes other pictures meanwhile has too much to do, but is not stuck; nor is one that
          * has been ready for less than the time of a request. */
-        if (request->is_render && request->is_sent &&
+        if (request->type == PACKET_RENDER && request->is_sent &&
             now_us - last_drew_us(request->plan) >= (int64_t)fleet->times.request * 1000)
             plan_entry_kill(fleet, request->plan, "did not finish a picture in time");
         request_fail(fleet, request, &problem);
@@ -278,35 +267,27 @@ static void picture_came(struct fleet *fleet, struct plan_entry *plan)
 
 bool requests_answer(struct fleet *fleet, struct plan_entry *plan, struct packet *packet)
 {
-    double id = json_number(packet->json, "id", -1);
+    int64_t id = packet_id(packet);
+    bool is_problem = packet->type == PACKET_PROBLEM;
     struct request *request = fleet->requests;
     while (request &&
-           !(request->plan == plan && request->is_sent && !request->is_failed && (double)request->number == id))
+           !(request->plan == plan && request->is_sent && !request->is_failed && request->number == (uint64_t)id))
         request = request->next;
-    const char *type = json_text(packet->json, "type");
     if (!request) { /* forgotten since it was sent */
-        if (id >= 0 && type && strcmp(type, "frame") == 0)
+        if (packet->type == PACKET_FRAME)
             picture_came(fleet, plan);
-        return id >= 0;
+        return true;
     }
-    struct problem problem = { 0 };
-    struct packet_frame frame;
-    bool is_problem = strcmp(type, "problem") == 0;
-    if (is_problem) {
-        if (!problem_from_json(cJSON_GetObjectItemCaseSensitive(packet->json, "problem"), &problem))
-            return false;
-    } else if (strcmp(type, request->is_render ? "frame" : "answer") != 0 ||
-               (request->is_render && !packet_frame_read(packet, &frame)) ||
-               (!request->is_render && !cJSON_GetObjectItemCaseSensitive(packet->json, "body"))) {
+    if (!is_problem && packet->type != packet_descriptions[request->type].answer)
         return false;
-    }
+    bool is_render = request->type == PACKET_RENDER;
     request_unlink(fleet, request);
     plan->used_us = fleet_now_us(fleet);
-    if (request->is_render && !is_problem)
+    if (is_render && !is_problem)
         picture_came(fleet, plan);
-    else if (request->is_render)
+    else if (is_render)
         plan->last_picture_us = plan->used_us; /* it refused the picture, so it is not stuck */
-    request->reply(request->context, is_problem ? NULL : packet, is_problem ? &problem : NULL);
+    request->reply(request->context, is_problem ? NULL : packet, is_problem ? &packet->problem.problem : NULL);
     request_destroy(fleet, request);
     return true;
 }

@@ -9,8 +9,9 @@
 #include "core/base/mem.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
+#include "server/http/api_questions.h"
 
-const struct api_route api_routes[] = {
+static const struct api_route api_routes[] = {
     { "GET", "/healthz", api_healthz },
     { "GET", "/readyz", api_readyz },
     { "GET", "/metrics", api_metrics },
@@ -26,8 +27,6 @@ const struct api_route api_routes[] = {
     { "DELETE", "/api/v1/jobs/{job}", api_job_cancel },
     { "POST", "/api/v1/plans/{plan}/render", api_plan_render },
     { "GET", "/api/v1/plans/{plan}/regions/{region}/surface", api_plan_surface },
-    { "GET", "/api/v1/plans/{plan}/probe", api_plan_probe },
-    { "GET", "/api/v1/plans/{plan}/pick", api_plan_pick },
     { "GET", "/api/v1/rooms", api_rooms },
     { "POST", "/api/v1/rooms", api_room_new },
     { "GET", "/api/v1/rooms/{room}", api_room },
@@ -38,7 +37,7 @@ const struct api_route api_routes[] = {
     { "GET", "/api/v1/rooms/{room}/snapshot", api_room_snapshot },
     { "GET", "/api/v1/rooms/{room}/ws", api_room_ws },
 };
-const size_t api_n_routes = sizeof api_routes / sizeof api_routes[0];
+static const size_t api_n_routes = sizeof api_routes / sizeof api_routes[0];
 
 struct api *api_create(struct net *net, uint64_t max_upload_bytes)
 {
@@ -89,6 +88,15 @@ static const char *method_word(enum call_method method)
     return words[method];
 }
 
+bool api_route_at(size_t index, struct api_route *route)
+{
+    if (index < api_n_routes)
+        *route = api_routes[index];
+    else
+        *route = (struct api_route){ .method = "GET", .handle = api_question };
+    return index < api_n_routes || api_question_route(index - api_n_routes, &route->path);
+}
+
 void api_handle(struct api *api, struct call *call)
 {
     struct problem problem;
@@ -104,24 +112,24 @@ void api_handle(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    for (size_t i = 0; i < api_n_routes; i++) {
-        const struct api_route *route = &api_routes[i];
-        if (!path_matches(call, route->path))
+    struct api_route route;
+    for (size_t i = 0; api_route_at(i, &route); i++) {
+        if (!path_matches(call, route.path))
             continue;
-        if (strcmp(route->method, method_word(call->method)) == 0) {
+        if (strcmp(route.method, method_word(call->method)) == 0) {
             for (size_t k = 0; k < CALL_MAX_SEGMENTS && call->ids[k]; k++)
                 if (!id_is_valid(call->ids[k])) {
                     problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "\"%.60s\" is not an id", call->ids[k]);
                     call_answer_problem(call, &problem);
                     return;
                 }
-            call->route = route->path;
-            route->handle(api, call);
+            call->route = route.path;
+            route.handle(api, call);
             return;
         }
         is_known = true;
         size_t used = strlen(allowed);
-        (void)snprintf(allowed + used, sizeof allowed - used, "%s%s", used ? ", " : "", route->method);
+        (void)snprintf(allowed + used, sizeof allowed - used, "%s%s", used ? ", " : "", route.method);
     }
     if (is_known) {
         call_add_header(call, "Allow", allowed);

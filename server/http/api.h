@@ -12,8 +12,9 @@ struct api_route {
     const char *method, *path; /* as in proto/http.json: "/api/v1/plans/{plan}/open" */
     void (*handle)(struct api *api, struct call *call);
 };
-extern const struct api_route api_routes[];
-extern const size_t api_n_routes;
+/* The route number index: those with a handler of their own, then one for each question of proto/packets.json. False
+ * after the last. */
+bool api_route_at(size_t index, struct api_route *route);
 
 /* Finds the route, checks the ids and runs the handler. The call is answered now or later, exactly once. */
 void api_handle(struct api *api, struct call *call);

@@ -80,9 +80,9 @@ static void picture_came(void *context, struct packet *answer, const struct prob
         return;
     }
     char timing[96], revision[24];
-    (void)snprintf(timing, sizeof timing, "render;dur=%.1f, encode;dur=%.1f",
-                   json_number(answer->json, "render_us", 0) / 1000, json_number(answer->json, "encode_us", 0) / 1000);
-    (void)snprintf(revision, sizeof revision, "%.0f", json_number(answer->json, "scene_revision", 0));
+    (void)snprintf(timing, sizeof timing, "render;dur=%.1f, encode;dur=%.1f", (double)answer->frame.render_us / 1000,
+                   (double)answer->frame.encode_us / 1000);
+    (void)snprintf(revision, sizeof revision, "%lld", (long long)answer->frame.scene_revision);
     call_add_header(call, "Server-Timing", timing);
     if (has_revision)
         call_add_header(call, "Beamroom-Revision", revision);
@@ -116,20 +116,17 @@ void api_picture_request(struct api *api, struct call *call, const char *plan_id
     }
     if (!start_picture(api, call, plan_id, view, revision != NULL))
         return;
-    cJSON *packet = cJSON_CreateObject();
-    cJSON_AddStringToObject(packet, "type", "render");
-    cJSON_AddItemToObject(packet, "scene", cJSON_Duplicate(scene, true));
-    if (revision)
-        cJSON_AddNumberToObject(packet, "scene_revision", *revision);
-    cJSON_AddItemToObject(packet, "view", cJSON_Duplicate(view, true));
-    cJSON_AddNumberToObject(packet, "scale_percent", 100);
-    cJSON_AddNumberToObject(packet, "quality", quality);
-    cJSON_AddStringToObject(packet, "codec", is_jpeg ? "jpeg" : "png");
-    cJSON_AddBoolToObject(packet, "full_color", true);
-    cJSON_AddStringToObject(packet, "detail", "full");
-    cJSON_AddBoolToObject(packet, "still", true);
-    (void)fleet_request(net_fleet(api->net), plan_id, packet, picture_came, call);
-    cJSON_Delete(packet);
+    struct packet packet;
+    packet_init(&packet, PACKET_RENDER);
+    packet.render.shown.scene = scene;
+    packet.render.shown.has_scene_revision = revision != NULL;
+    packet.render.shown.scene_revision = revision ? *revision : 0;
+    packet.render.shown.view = view;
+    packet.render.quality = (int64_t)quality;
+    packet.render.codec = is_jpeg ? PACKET_CODEC_JPEG : PACKET_CODEC_PNG;
+    packet.render.full_color = true;
+    packet.render.still = true;
+    (void)fleet_request(net_fleet(api->net), plan_id, &packet, picture_came, call);
 }
 
 cJSON *api_view_parameter(struct call *call)

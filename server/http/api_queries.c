@@ -11,42 +11,27 @@ bool api_find_plan(struct api *api, struct call *call, struct fleet_plan *plan)
     return false;
 }
 
-cJSON *api_query_create(const char *what)
-{
-    cJSON *query = cJSON_CreateObject();
-    cJSON_AddStringToObject(query, "type", "query");
-    cJSON_AddStringToObject(query, "what", what);
-    return query;
-}
-
-void api_query_send(struct api *api, struct call *call, const char *plan_id, cJSON *query, fleet_reply reply)
+void api_query_send(struct api *api, struct call *call, const char *plan_id, struct packet *question, fleet_reply reply)
 {
     struct problem problem;
     if (fleet_open(net_fleet(api->net), plan_id, &problem))
-        (void)fleet_request(net_fleet(api->net), plan_id, query, reply, call);
+        (void)fleet_request(net_fleet(api->net), plan_id, question, reply, call);
     else
         reply(call, NULL, &problem);
-    cJSON_Delete(query);
 }
 
 void api_query_answer(void *context, struct packet *answer, const struct problem *problem)
 {
     struct call *call = context;
-    if (problem) {
+    if (problem)
         call_answer_problem(call, problem);
-        return;
-    }
-    cJSON *body = cJSON_DetachItemFromObjectCaseSensitive(answer->json, "body");
-    struct problem broken;
-    if (!body) {
-        problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no body");
-        call_answer_problem(call, &broken);
-        return;
-    }
-    call_answer_json(call, 200, body);
+    else
+        call_answer_json(call, 200, packet_take_document(answer, answer->answer.body));
 }
 
 void api_when_ready(struct api *api, struct call *call, const char *plan_id, fleet_reply reply)
 {
-    api_query_send(api, call, plan_id, api_query_create("ready"), reply);
+    struct packet packet;
+    packet_init(&packet, PACKET_AWAIT_READY);
+    api_query_send(api, call, plan_id, &packet, reply);
 }

@@ -5,10 +5,9 @@
 
 /* The plan that the call's address names. Returns false when there is none: the call was answered. */
 bool api_find_plan(struct api *api, struct call *call, struct fleet_plan *plan);
-/* {type: "query", what: what} */
-NODISCARD cJSON *api_query_create(const char *what);
-/* Opens the plan, sends the query, and calls reply with the call as its context, exactly once. Takes query. */
-void api_query_send(struct api *api, struct call *call, const char *plan_id, cJSON *query, fleet_reply reply);
+/* Opens the plan, sends the question, and calls reply with the call as its context, exactly once. */
+void api_query_send(struct api *api, struct call *call, const char *plan_id, struct packet *question,
+                    fleet_reply reply);
 /* A fleet_reply that answers the call with the body of the renderer's answer. */
 void api_query_answer(void *context, struct packet *answer, const struct problem *problem);
 /* Opens the plan and calls reply once it is ready, or with the problem. */

@@ -6,6 +6,7 @@
 #include "core/base/mem.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_queries.h"
+#include "server/http/api_questions.h"
 #include "server/wire/document.h"
 #include "server/wire/shape_query.h"
 
@@ -21,8 +22,8 @@ static const char *media_type(enum mesh_format format)
 struct shape_call {
     char plan_id[64], region[64];
     struct shape_query query;
-    cJSON *body;   /* the shape's figures, kept while pictures are timed */
-    cJSON *render; /* the packet that requests a picture */
+    cJSON *body;         /* the figures, while pictures are timed */
+    cJSON *scene, *view; /* what the timed pictures show */
     double draw_ms[SHAPE_QUERY_MAX_FRAMES];
     int n_drawn; /* -1: the first picture, which is not counted, is still to come */
 };
@@ -32,7 +33,8 @@ static void shape_call_destroy(struct api *api, struct shape_call *request)
     api->n_files -= request->query.is_file;
     api->n_timings -= !request->query.is_file && request->query.n_frames > 0;
     cJSON_Delete(request->body);
-    cJSON_Delete(request->render);
+    cJSON_Delete(request->scene);
+    cJSON_Delete(request->view);
     free(request);
 }
 
@@ -71,10 +73,15 @@ static int compare_numbers(const void *a, const void *b)
 
 static void picture_came(void *context, struct packet *answer, const struct problem *problem);
 
-static void request_picture(struct call *call, struct shape_call *request)
+static void request_picture(struct call *call, const struct shape_call *request)
 {
     const struct api *api = call->api;
-    (void)fleet_request(net_fleet(api->net), request->plan_id, request->render, picture_came, call);
+    struct packet packet;
+    packet_init(&packet, PACKET_RENDER);
+    packet.render.shown.scene = request->scene;
+    packet.render.shown.view = request->view;
+    packet.render.quality = 50;
+    (void)fleet_request(net_fleet(api->net), request->plan_id, &packet, picture_came, call);
 }
 
 static void picture_came(void *context, struct packet *answer, const struct problem *problem)
@@ -86,7 +93,7 @@ static void picture_came(void *context, struct packet *answer, const struct prob
         return;
     }
     if (request->n_drawn >= 0)
-        request->draw_ms[request->n_drawn] = json_number(answer->json, "render_us", 0) / 1000;
+        request->draw_ms[request->n_drawn] = (double)answer->frame.render_us / 1000;
     if (++request->n_drawn < request->query.n_frames) {
         request_picture(call, request);
         return;
@@ -102,29 +109,17 @@ static void picture_came(void *context, struct packet *answer, const struct prob
     call_answer_json(call, 200, body);
 }
 
-/* The request for a picture of the region alone, at full detail, drawn as a moving picture. NULL with problem. */
-static cJSON *timed_picture(const struct fleet_plan *plan, const struct shape_call *request, struct problem *problem)
+/* Sets what the timed pictures show: the region alone, at full detail. False with problem. */
+static bool set_timed_picture(const struct fleet_plan *plan, struct shape_call *request, struct problem *problem)
 {
     cJSON *patch = shape_query_scene(&request->query, request->region, plan->default_scene);
-    cJSON *scene = scene_document_patch(plan->document, plan->default_scene, plan->default_scene, patch, problem);
+    request->scene = scene_document_patch(plan->document, plan->default_scene, plan->default_scene, patch, problem);
     cJSON_Delete(patch);
     cJSON *size = cJSON_CreateObject();
     cJSON_AddItemToObject(size, "size_px", cJSON_CreateIntArray((const int[]){ TIMED_PX, TIMED_PX }, 2));
-    cJSON *view = scene ? view_document_patch(NULL, size, problem) : NULL;
+    request->view = request->scene ? view_document_patch(NULL, size, problem) : NULL;
     cJSON_Delete(size);
-    if (!view) {
-        cJSON_Delete(scene);
-        return NULL;
-    }
-    cJSON *packet = cJSON_CreateObject();
-    cJSON_AddStringToObject(packet, "type", "render");
-    cJSON_AddItemToObject(packet, "scene", scene);
-    cJSON_AddItemToObject(packet, "view", view);
-    cJSON_AddNumberToObject(packet, "quality", 50);
-    cJSON_AddStringToObject(packet, "codec", "jpeg");
-    cJSON_AddStringToObject(packet, "detail", "full");
-    cJSON_AddBoolToObject(packet, "still", false);
-    return packet;
+    return request->view != NULL;
 }
 
 static void shape_came(void *context, struct packet *answer, const struct problem *problem)
@@ -147,14 +142,12 @@ static void shape_came(void *context, struct packet *answer, const struct proble
         api_query_answer(call, answer, NULL);
         return;
     }
-    request->body = cJSON_DetachItemFromObjectCaseSensitive(answer->json, "body");
-    if (!request->body)
-        problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no body");
-    else if (!fleet_plan_find(net_fleet(api->net), request->plan_id, &plan) || !plan.document || !plan.default_scene)
+    request->body = packet_take_document(answer, answer->answer.body);
+    bool is_found =
+        fleet_plan_find(net_fleet(api->net), request->plan_id, &plan) && plan.document && plan.default_scene;
+    if (!is_found)
         problem_set(&broken, PROBLEM_BUSY, "", "", "the plan was closed meanwhile");
-    else
-        request->render = timed_picture(&plan, request, &broken);
-    if (!request->render) {
+    if (!is_found || !set_timed_picture(&plan, request, &broken)) {
         refuse(call, request, &broken);
         return;
     }
@@ -185,13 +178,18 @@ void api_plan_surface(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    cJSON *query = api_query_create("surface");
-    cJSON_AddStringToObject(query, "region", call->ids[1]);
+    cJSON *words = cJSON_CreateObject();
     for (const char *const *name = shape_query_names; *name; name++)
         if (call_query(call, *name))
-            cJSON_AddStringToObject(query, *name, call_query(call, *name));
-    if (!shape_query_read(query, &shape, &problem) || !is_free(api, &shape, &problem)) {
-        cJSON_Delete(query);
+            cJSON_AddStringToObject(words, *name, call_query(call, *name));
+    bool is_good = shape_query_read(words, &shape, &problem) && is_free(api, &shape, &problem);
+    cJSON_Delete(words);
+    cJSON *path = cJSON_CreateObject();
+    cJSON_AddStringToObject(path, "region", call->ids[1]);
+    struct packet packet = { 0 };
+    if (!is_good)
+        cJSON_Delete(path);
+    if (!is_good || !api_question_read(call, PACKET_SURFACE, path, &packet, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }
@@ -202,5 +200,6 @@ void api_plan_surface(struct api *api, struct call *call)
     api->n_files += shape.is_file;
     api->n_timings += !shape.is_file && shape.n_frames > 0;
     call->context = request;
-    api_query_send(api, call, request->plan_id, query, shape_came);
+    api_query_send(api, call, request->plan_id, &packet, shape_came);
+    packet_finish(&packet);
 }

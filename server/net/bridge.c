@@ -22,28 +22,27 @@ static void unlink_request(struct picture_request *request)
     *at = request->next;
 }
 
-/* The answer's frame as a header for members. Returns false when it is malformed: a hostile plan file may have taken
- * over the renderer, so its answers are checked like outside input. */
+/* The answer's frame, whose fields are checked, as a header for members. Returns false when it is another packet. */
 static bool read_frame(const struct picture_request *request, const struct packet *answer, struct frame_header *header)
 {
-    struct packet_frame frame;
-    if (!packet_frame_read(answer, &frame))
+    const struct packet_frame *frame = &answer->frame;
+    if (answer->type != PACKET_FRAME)
         return false;
-    *header =
-        (struct frame_header){ .codec = 1,
-                               .flags = request->flags,
-                               .quality = request->quality,
-                               .scale_percent = request->scale_percent,
-                               .scene_revision = request->is_override ? request->scene_revision : frame.scene_revision,
-                               .width_px = frame.width_px,
-                               .height_px = frame.height_px,
-                               .render_us = frame.render_us,
-                               .encode_us = frame.encode_us,
-                               .payload_bytes = (uint32_t)answer->n_blob,
-                               .pixels_per_mm_1000 = (uint32_t)llround(frame.pixels_per_mm * 1000) };
-    memcpy(header->clip_from_lps_mm, frame.clip_from_lps_mm, sizeof header->clip_from_lps_mm);
-    if (frame.is_light)
-        header->flags |= FRAME_LIGHT; /* the renderer reports whether it did draw coarse meshes */
+    *header = (struct frame_header){ .codec = 1,
+                                     .flags = request->flags,
+                                     .quality = request->quality,
+                                     .scale_percent = request->scale_percent,
+                                     .scene_revision = request->is_override ? request->scene_revision
+                                                                            : (uint32_t)frame->scene_revision,
+                                     .width_px = (uint16_t)frame->width_px,
+                                     .height_px = (uint16_t)frame->height_px,
+                                     .render_us = (uint32_t)frame->render_us,
+                                     .encode_us = (uint32_t)frame->encode_us,
+                                     .payload_bytes = (uint32_t)answer->n_blob,
+                                     .pixels_per_mm_1000 = (uint32_t)llround(frame->pixels_per_mm * 1000) };
+    memcpy(header->clip_from_lps_mm, frame->clip_from_lps_mm, sizeof header->clip_from_lps_mm);
+    if (frame->is_coarse)
+        header->flags |= FRAME_COARSE; /* the renderer reports whether it did draw coarse meshes */
     return true;
 }
 
@@ -91,13 +90,12 @@ static bool send_scene(struct net_room *entry)
     const cJSON *scene = room_scene(entry->room, &revision);
     if (entry->renderer_has_scene)
         return true;
-    cJSON *packet = cJSON_CreateObject();
-    cJSON_AddStringToObject(packet, "type", "scene");
-    cJSON_AddStringToObject(packet, "room", room_id(entry->room));
-    cJSON_AddNumberToObject(packet, "revision", revision);
-    cJSON_AddItemReferenceToObject(packet, "scene", (cJSON *)(uintptr_t)scene);
-    entry->renderer_has_scene = fleet_tell(entry->net->fleet, room_plan_id(entry->room), packet);
-    cJSON_Delete(packet);
+    struct packet packet;
+    packet_init(&packet, PACKET_SCENE);
+    (void)snprintf(packet.scene.room, sizeof packet.scene.room, "%s", room_id(entry->room));
+    packet.scene.revision = revision;
+    packet.scene.scene = scene;
+    entry->renderer_has_scene = fleet_tell(entry->net->fleet, room_plan_id(entry->room), &packet);
     return entry->renderer_has_scene;
 }
 
@@ -108,22 +106,21 @@ void bridge_render(void *context, struct room *room, const struct room_render *r
     const cJSON *scene = request->scene;
     if (!scene && !send_scene(entry))
         scene = room_scene(room, NULL); /* then the request carries the scene */
-    cJSON *packet = cJSON_CreateObject();
-    cJSON_AddStringToObject(packet, "type", "render");
-    if (scene)
-        cJSON_AddItemReferenceToObject(packet, "scene", (cJSON *)(uintptr_t)scene);
-    else
-        cJSON_AddStringToObject(packet, "room", room_id(room));
-    cJSON_AddItemReferenceToObject(packet, "view", (cJSON *)(uintptr_t)request->view);
-    char source[144]; /* the renderer serves sources in turn: one member's own pictures, or a room's shared ones */
-    (void)snprintf(source, sizeof source, "%s/%s", room_id(room), request->member ? request->member : "");
-    cJSON_AddStringToObject(packet, "source", source);
-    cJSON_AddNumberToObject(packet, "scale_percent", request->scale_percent);
-    cJSON_AddNumberToObject(packet, "quality", request->quality);
-    cJSON_AddStringToObject(packet, "codec", "jpeg");
-    cJSON_AddBoolToObject(packet, "full_color", request->full_color);
-    cJSON_AddStringToObject(packet, "detail", request->coarse ? "light" : "full");
-    cJSON_AddBoolToObject(packet, "still", request->is_still);
+    struct packet packet;
+    packet_init(&packet, PACKET_RENDER);
+    struct packet_render *render = &packet.render;
+    render->shown.scene = scene;
+    if (!scene)
+        (void)snprintf(render->shown.room, sizeof render->shown.room, "%s", room_id(room));
+    render->shown.view = request->view;
+    /* the renderer serves sources in turn: one member's own pictures, or a room's shared ones */
+    (void)snprintf(render->source, sizeof render->source, "%s/%s", room_id(room),
+                   request->member ? request->member : "");
+    render->scale_percent = request->scale_percent;
+    render->quality = request->quality;
+    render->full_color = request->full_color;
+    render->detail = request->coarse ? PACKET_DETAIL_COARSE : PACKET_DETAIL_FULL;
+    render->still = request->is_still;
 
     struct picture_request *sent = mem_new(sizeof *sent);
     *sent = (struct picture_request){ .next = entry->requests,
@@ -136,8 +133,7 @@ void bridge_render(void *context, struct room *room, const struct room_render *r
                                       .scale_percent = (uint8_t)request->scale_percent,
                                       .is_override = scene != NULL };
     entry->requests = sent;
-    sent->fleet_request = fleet_request(net->fleet, room_plan_id(room), packet, picture_answered, sent);
-    cJSON_Delete(packet);
+    sent->fleet_request = fleet_request(net->fleet, room_plan_id(room), &packet, picture_answered, sent);
 }
 
 void bridge_forget(void *context, struct room *room, uint64_t request)
@@ -150,11 +146,10 @@ void bridge_forget(void *context, struct room *room, uint64_t request)
         sent = sent->next;
     if (!sent)
         return;
-    cJSON *packet = cJSON_CreateObject();
-    cJSON_AddStringToObject(packet, "type", "drop");
-    cJSON_AddNumberToObject(packet, "id", (double)sent->fleet_request);
-    (void)fleet_tell(net->fleet, room_plan_id(room), packet); /* false when not ready: the request was never sent */
-    cJSON_Delete(packet);
+    struct packet packet;
+    packet_init(&packet, PACKET_DROP);
+    packet.drop.id = (int64_t)sent->fleet_request;
+    (void)fleet_tell(net->fleet, room_plan_id(room), &packet); /* false when not ready: the request was never sent */
     fleet_forget_request(net->fleet, sent->fleet_request);
     unlink_request(sent);
     free(sent);
@@ -275,9 +270,8 @@ void bridge_close_room(struct net_room *entry)
         fleet_forget_request(fleet, request->fleet_request);
         free(request);
     }
-    cJSON *packet = cJSON_CreateObject();
-    cJSON_AddStringToObject(packet, "type", "forget");
-    cJSON_AddStringToObject(packet, "room", room_id(entry->room));
-    (void)fleet_tell(fleet, room_plan_id(entry->room), packet);
-    cJSON_Delete(packet);
+    struct packet packet;
+    packet_init(&packet, PACKET_FORGET);
+    (void)snprintf(packet.forget.room, sizeof packet.forget.room, "%s", room_id(entry->room));
+    (void)fleet_tell(fleet, room_plan_id(entry->room), &packet);
 }

@@ -1,4 +1,4 @@
-/* Answers to questions about a plan, as JSON bodies of the web API. */
+/* Answers to questions about a plan and a scene, and what --scan and --probe-gl print, as JSON. */
 #include "server/renderer/answers.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 #include "core/derive/shapes.h"
 #include "core/scene/pick.h"
 #include "server/wire/document.h"
-#include "server/wire/packet.h"
+#include "server/wire/shape_query.h"
 #include "wire_gen.h"
 
 static cJSON *point(struct vec3 p)
@@ -53,28 +53,39 @@ static void add_key(cJSON *json, const struct shape_query *query)
     }
 }
 
-cJSON *answer_shape(struct derive *derived, struct subject subject, const struct shape_query *query, uint8_t **file,
-                    size_t *n_file, struct problem *problem)
+/* {region, representation, what else decides the shape, triangles, vertices, lines, points, area_mm2, volume_mm3,
+ * univel_volume_mm3, n_univels, distance_mean_mm, distance_max_mm, n_bytes, ms}; null where a shape has no such figure.
+ * When the question wants a file also its bytes, at most PACKET_MAX_BLOB. */
+cJSON *answer_surface(struct question *question, struct derive *derived, struct problem *problem)
 {
+    const struct plan *plan = derive_plan(derived);
+    const char *id = question->packet.surface.region;
+    const struct region *region = region_find(&plan->regions, id);
+    struct shape_query query;
+    if (!region) {
+        (void)problem_set(problem, PROBLEM_NOT_FOUND, "/region", "", "the plan has no region \"%.64s\"", id);
+        return NULL;
+    }
+    if (!shape_query_read(question->packet.json, &query, problem))
+        return NULL;
     struct error err = { 0 };
     struct shape_facts facts;
-    const struct plan *plan = derive_plan(derived);
-    const struct shape_want want = { subject, query->key, SURFACE_FULL };
-    *file = NULL;
+    const struct subject subject = subject_region((size_t)(region - plan->regions.regions));
+    const struct shape_want want = { subject, query.key, SURFACE_FULL };
     struct shape *shape = derive_shape(derived, &want, &facts, &err);
     bool is_good = shape != NULL, has_mesh = shape && shape->kind == SHAPE_TRIANGLES;
-    if (shape && query->is_file)
-        is_good = (*file = shape_file(plan, subject, query, shape, n_file, &err)) != NULL;
+    if (shape && query.is_file)
+        is_good = (question->file = shape_file(plan, subject, &query, shape, &question->n_file, &err)) != NULL;
     else if (shape)
         is_good = derive_shape_distance(derived, &want, shape, &facts, &err);
     shape_unref(shape);
     if (!is_good) {
-        problem_from_error(problem, &err);
+        (void)problem_from_error(problem, &err);
         return NULL;
     }
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "region", subject_id(plan, subject));
-    add_key(json, query);
+    add_key(json, &query);
     add_number(json, "triangles", (double)facts.n_triangles);
     add_number(json, "vertices", (double)facts.n_vertices);
     add_number(json, "lines", (double)facts.n_lines);
@@ -90,9 +101,14 @@ cJSON *answer_shape(struct derive *derived, struct subject subject, const struct
     return json;
 }
 
-cJSON *answer_probe(const struct plan *plan, struct vec3 point_lps_mm)
+/* {point_lps_mm, regions: [id], images: [{id, value, unit}], doses: [{id, quantity, per_ppm, boron_ppm, value,
+ * unit, per, frame_of_reference}]}; innermost region first; boron_ppm and frame_of_reference as in the plan document */
+cJSON *answer_probe(struct question *question, struct derive *derived, struct problem *problem)
 {
+    const struct plan *plan = derive_plan(derived);
+    const struct vec3 point_lps_mm = question->packet.probe.point_lps_mm;
     struct plan_probe probe;
+    (void)problem;
     plan_probe(plan, point_lps_mm, &probe);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddItemToObject(json, "point_lps_mm", point(point_lps_mm));
@@ -130,10 +146,14 @@ cJSON *answer_probe(const struct plan *plan, struct vec3 point_lps_mm)
     return json;
 }
 
-cJSON *answer_pick(const struct snapshot *snapshot, double px, double py)
+/* {hits: [{point_lps_mm, region: id | null, distance_mm}]}, front to back */
+cJSON *answer_pick(struct question *question, struct derive *derived, struct problem *problem)
 {
+    const struct snapshot *snapshot = question->snapshot;
     struct pick_hit hits[PICK_MAX_HITS];
-    size_t n = snapshot_pick(snapshot, px, py, hits);
+    size_t n = snapshot_pick(snapshot, question->packet.pick.px, question->packet.pick.py, hits);
+    (void)derived;
+    (void)problem;
     cJSON *json = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(json, "hits");
     for (size_t i = 0; i < n; i++) {
         cJSON *hit = cJSON_CreateObject();
@@ -146,6 +166,17 @@ cJSON *answer_pick(const struct snapshot *snapshot, double px, double py)
         cJSON_AddItemToArray(list, hit);
     }
     return json;
+}
+
+cJSON *answer_question(struct question *question, struct derive *derived, struct problem *problem)
+{
+#define ANSWER_CALL(TYPE, name) \
+    case TYPE: return answer_##name(question, derived, problem);
+    switch (question->packet.type) {
+        PACKET_QUESTIONS(ANSWER_CALL)
+    default: (void)problem_set(problem, PROBLEM_INTERNAL, "", "", "a packet that is no question"); return NULL;
+    }
+#undef ANSWER_CALL
 }
 
 cJSON *answer_summary(const struct plan_summary *summary)

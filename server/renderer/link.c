@@ -1,9 +1,12 @@
+/* The socket to the daemon: a queue of bytes to write, a reader of packets. */
 #include "server/renderer/link.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -21,13 +24,15 @@ struct link {
     int socket;
     struct packet_reader *reader;
     struct outgoing *first, **last;
+    uint64_t max_bytes;
     bool is_broken;
 };
 
-struct link *link_create(int socket)
+struct link *link_create(int socket, uint64_t max_bytes)
 {
     struct link *link = mem_new(sizeof *link);
     link->socket = socket;
+    link->max_bytes = max_bytes;
     link->reader = packet_reader_create(PACKET_TO_RENDERER);
     link->last = &link->first;
     int flags = fcntl(socket, F_GETFL);
@@ -74,17 +79,18 @@ void link_write(struct link *link)
         if (n < 0 && errno == EINTR)
             continue;
         if (n < 0)
-            return; /* full, or closed: reading tells */
+            return; /* the socket is full, or closed, which link_read finds */
         out->n_sent += (size_t)n;
         if (out->n_sent == out->n_bytes)
             drop_first(link);
     }
 }
 
-static bool put(struct link *link, const cJSON *json, const uint8_t *blob, size_t n_blob, struct error *err)
+static bool put(struct link *link, const struct packet *packet, const uint8_t *blob, size_t n_blob,
+                struct problem *problem)
 {
     size_t n_bytes;
-    uint8_t *bytes = packet_write(json, blob, n_blob, &n_bytes, err);
+    uint8_t *bytes = packet_encode(packet, blob, n_blob, &n_bytes, problem);
     if (!bytes)
         return false;
     struct outgoing *out = mem_new(sizeof *out);
@@ -95,24 +101,48 @@ static bool put(struct link *link, const cJSON *json, const uint8_t *blob, size_
     return true;
 }
 
-void link_say(struct link *link, const cJSON *json, const uint8_t *blob, size_t n_blob)
+void link_send(struct link *link, const struct packet *packet, const uint8_t *blob, size_t n_blob)
 {
-    struct error err = { 0 };
-    if (put(link, json, blob, n_blob, &err))
+    struct problem problem = { 0 };
+    if (put(link, packet, blob, n_blob, &problem))
         return;
-    log_error("%s", err.text);
-    /* the daemon waits for it: it hears why it does not come */
-    struct problem problem;
-    problem_from_error(&problem, &err);
-    const cJSON *id = cJSON_GetObjectItemCaseSensitive(json, "id");
-    cJSON *instead = cJSON_CreateObject();
-    cJSON_AddStringToObject(instead, "type", id ? "problem" : "failed");
-    if (id)
-        cJSON_AddItemToObject(instead, "id", cJSON_Duplicate(id, false));
-    cJSON_AddItemToObject(instead, "problem", problem_to_json(&problem));
-    if (!put(link, instead, NULL, 0, &err))
+    log_error("a packet \"%s\" cannot be sent: %s", packet_descriptions[packet->type].name, problem.detail);
+    if (packet->type == PACKET_PROBLEM || packet->type == PACKET_FAILED)
         link->is_broken = true;
-    cJSON_Delete(instead);
+    else if (packet_id(packet) >= 0)
+        link_send_problem(link, packet_id(packet), &problem);
+    else
+        link_send_failed(link, &problem);
+}
+
+/* Adds to a problem with memory how much memory the process may take. */
+static void add_memory_limit(struct problem *problem, uint64_t max_bytes)
+{
+    char detail[sizeof problem->detail];
+    if (problem->type != PROBLEM_MEMORY || max_bytes == 0)
+        return;
+    memcpy(detail, problem->detail, sizeof detail);
+    (void)snprintf(problem->detail, sizeof problem->detail,
+                   "%.*s; the renderer of a plan may take %llu MiB (max-renderer-mib)", (int)sizeof detail - 80, detail,
+                   (unsigned long long)(max_bytes >> 20));
+}
+
+void link_send_problem(struct link *link, int64_t id, const struct problem *problem)
+{
+    struct packet packet;
+    packet_init(&packet, PACKET_PROBLEM);
+    packet.problem.id = id;
+    packet.problem.problem = *problem;
+    add_memory_limit(&packet.problem.problem, link->max_bytes);
+    link_send(link, &packet, NULL, 0);
+}
+
+void link_send_failed(struct link *link, const struct problem *problem)
+{
+    struct packet packet;
+    packet_init(&packet, PACKET_FAILED);
+    packet.failed.problem = *problem;
+    link_send(link, &packet, NULL, 0);
 }
 
 bool link_read(struct link *link)

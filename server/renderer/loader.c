@@ -27,52 +27,48 @@ enum {
 struct loader {
     char *folder, *plan_id, *cache_folder;
     uint64_t max_bytes;
-    struct desk *desk;
+    struct inbox *inbox;
     atomic_bool cancel;
     pthread_t load_thread, quick_thread, shapes_thread;
     struct queue *slow, *quick;     /* questions about shapes, for the load thread; about points, for the quick one */
     struct queue *waiting_requests; /* for the shapes thread */
     const struct plan *plan;        /* the load thread's; the quick one gets it with its first question */
     struct derive *derived;         /* of the plan */
-    int64_t told_us;
+    int64_t reported_us;
 };
 
-static void question_drop(void *item)
+static void drop_question(void *item)
 {
-    struct question *question = item;
-    snapshot_unref(question->snapshot);
-    free(question);
+    question_destroy(item);
 }
 
-static void tell(struct loader *loader, const char *phase, double percent)
+static void report_progress(struct loader *loader, const char *phase, double percent)
 {
     int64_t now_us = clock_now_us();
-    if (now_us - loader->told_us < PROGRESS_EVERY_US)
+    if (now_us - loader->reported_us < PROGRESS_EVERY_US)
         return;
-    loader->told_us = now_us;
-    struct note note = { .type = NOTE_PROGRESS, .percent = percent };
-    (void)snprintf(note.phase, sizeof note.phase, "%s", phase);
-    desk_offer(loader->desk, &note);
+    loader->reported_us = now_us;
+    struct inbox_event event = { .type = INBOX_PROGRESS, .percent = percent };
+    (void)snprintf(event.phase, sizeof event.phase, "%s", phase);
+    inbox_offer(loader->inbox, &event);
 }
 
-static void step(void *context, const char *phase, double percent)
+static void loading_progressed(void *context, const char *phase, double percent)
 {
-    tell(context, phase, percent * 0.9); /* the last tenth is for building surfaces */
+    report_progress(context, phase, percent * 0.9); /* the last tenth is for building surfaces */
 }
 
 static void answer(struct loader *loader, struct question *question)
 {
-    struct note note = { .type = NOTE_ANSWER, .id = question->id };
-    switch (question->what) {
-    case QUESTION_SURFACE:
-        note.body =
-            answer_shape(loader->derived, question->subject, &question->shape, &note.blob, &note.n_blob, &note.problem);
-        break;
-    case QUESTION_PROBE: note.body = answer_probe(loader->plan, question->point_lps_mm); break;
-    case QUESTION_PICK: note.body = answer_pick(question->snapshot, question->px, question->py); break;
+    struct inbox_event event = { .type = INBOX_ANSWER, .id = packet_id(&question->packet) };
+    event.body = answer_question(question, loader->derived, &event.problem);
+    if (event.body) {
+        event.blob = question->file;
+        event.n_blob = question->n_file;
+        question->file = NULL;
     }
-    desk_put(loader->desk, &note);
-    question_drop(question);
+    inbox_put(loader->inbox, &event);
+    question_destroy(question);
 }
 
 /* The regions that a new room shows as surfaces, in file order, and the algorithm of these. Returns how many. Other
@@ -98,22 +94,22 @@ struct building {
     struct loader *loader;
     int64_t began_us;
     size_t n, n_begun; /* surfaces */
-    bool is_told;      /* BUILT was sent: a first picture may be drawn */
+    bool is_reported;  /* BUILT was sent: a first picture may be drawn */
 };
 
 /* Called before each surface. After BUILT, questions are answered before the next surface is built. */
-static bool look_around(void *context)
+static bool before_surface(void *context)
 {
     struct building *building = context;
     struct loader *loader = building->loader;
-    if (!building->is_told && clock_now_us() - building->began_us > BUILD_AHEAD_US) {
-        desk_put(loader->desk, &(struct note){ .type = NOTE_BUILT });
-        building->is_told = true;
+    if (!building->is_reported && clock_now_us() - building->began_us > BUILD_AHEAD_US) {
+        inbox_put(loader->inbox, &(struct inbox_event){ .type = INBOX_BUILT });
+        building->is_reported = true;
     }
-    for (struct question *question; building->is_told && (question = queue_try_take(loader->slow));)
+    for (struct question *question; building->is_reported && (question = queue_try_take(loader->slow));)
         answer(loader, question);
-    if (!building->is_told)
-        tell(loader, "building surfaces", 90 + 10.0 * (double)building->n_begun++ / (double)building->n);
+    if (!building->is_reported)
+        report_progress(loader, "building surfaces", 90 + 10.0 * (double)building->n_begun++ / (double)building->n);
     return !atomic_load(&loader->cancel);
 }
 
@@ -124,15 +120,15 @@ static void build_ahead(struct loader *loader)
     enum surface_algorithm algorithm;
     size_t n = visible_regions(loader->plan, subjects, &algorithm);
     struct building building = { loader, clock_now_us(), 2 * n + 1, 0, false };
-    derive_build_surfaces(loader->derived, subjects, n, algorithm, SURFACE_COARSE, look_around, &building);
-    derive_build_surfaces(loader->derived, subjects, n, algorithm, SURFACE_FULL, look_around, &building);
-    if (!building.is_told)
-        desk_put(loader->desk, &(struct note){ .type = NOTE_BUILT });
+    derive_build_surfaces(loader->derived, subjects, n, algorithm, SURFACE_COARSE, before_surface, &building);
+    derive_build_surfaces(loader->derived, subjects, n, algorithm, SURFACE_FULL, before_surface, &building);
+    if (!building.is_reported)
+        inbox_put(loader->inbox, &(struct inbox_event){ .type = INBOX_BUILT });
     free(subjects);
 }
 
 /* Stores a plan that took long to open in the cache. A failure only means that the next opening reads the folder. */
-static void keep(const struct loader *loader, const struct plan *plan, const struct plan_sources *sources)
+static void store_in_cache(const struct loader *loader, const struct plan *plan, const struct plan_sources *sources)
 {
     struct error err = { 0 };
     if (!loader->cache_folder || plan->load_us < WORTH_KEEPING_US || atomic_load(&loader->cancel))
@@ -144,29 +140,29 @@ static void keep(const struct loader *loader, const struct plan *plan, const str
 static void *load_main(void *argument)
 {
     struct loader *loader = argument;
-    struct note note = { .type = NOTE_LOADED };
+    struct inbox_event event = { .type = INBOX_LOADED };
     struct plan_sources *sources = NULL;
-    struct plan_load_options options = { .progress = { step, loader, &loader->cancel },
+    struct plan_load_options options = { .progress = { loading_progressed, loader, &loader->cancel },
                                          .max_bytes = loader->max_bytes,
                                          .cache_folder = loader->cache_folder,
                                          .sources = &sources };
-    struct plan *plan = plan_load(loader->folder, loader->plan_id, &options, &note.error);
-    loader->plan = note.plan = plan;
+    struct plan *plan = plan_load(loader->folder, loader->plan_id, &options, &event.error);
+    loader->plan = event.plan = plan;
     if (plan)
-        loader->derived = note.derived = derive_create(plan);
+        loader->derived = event.derived = derive_create(plan);
     else
-        note.type = NOTE_FAILED;
-    desk_put(loader->desk, &note);
+        event.type = INBOX_LOAD_FAILED;
+    inbox_put(loader->inbox, &event);
     if (plan) {
         build_ahead(loader);
-        keep(loader, plan, sources);
+        store_in_cache(loader, plan, sources);
     }
     plan_sources_destroy(sources);
     if (!plan)
         return NULL;
     for (struct question *question; (question = queue_take(loader->slow, -1));) {
         if (atomic_load(&loader->cancel))
-            question_drop(question);
+            question_destroy(question);
         else
             answer(loader, question);
     }
@@ -178,7 +174,7 @@ static void *quick_main(void *argument)
     struct loader *loader = argument;
     for (struct question *question; (question = queue_take(loader->quick, -1));) {
         if (atomic_load(&loader->cancel))
-            question_drop(question);
+            question_destroy(question);
         else
             answer(loader, question); /* the plan is set before LOADED is sent, and questions come later */
     }
@@ -194,7 +190,7 @@ static void *shapes_main(void *argument)
             continue;
         }
         waiting_request_build_shapes(waiting, &loader->cancel);
-        desk_put(loader->desk, &(struct note){ .type = NOTE_SHAPES_BUILT, .waiting = waiting });
+        inbox_put(loader->inbox, &(struct inbox_event){ .type = INBOX_SHAPES_BUILT, .waiting = waiting });
     }
     return NULL;
 }
@@ -222,17 +218,17 @@ static void stop(struct loader *loader, int n_started)
     free(loader);
 }
 
-struct loader *loader_create(const struct loader_options *options, struct desk *desk, struct error *err)
+struct loader *loader_create(const struct loader_options *options, struct inbox *inbox, struct error *err)
 {
     struct loader *loader = mem_new(sizeof *loader);
     loader->folder = mem_copy_text(options->folder);
     loader->plan_id = mem_copy_text(options->plan_id);
     loader->max_bytes = options->max_bytes;
     loader->cache_folder = options->cache_folder ? mem_copy_text(options->cache_folder) : NULL;
-    loader->desk = desk;
+    loader->inbox = inbox;
     atomic_init(&loader->cancel, false);
-    loader->slow = queue_create(MAX_QUESTIONS, question_drop);
-    loader->quick = queue_create(MAX_QUESTIONS, question_drop);
+    loader->slow = queue_create(MAX_QUESTIONS, drop_question);
+    loader->quick = queue_create(MAX_QUESTIONS, drop_question);
     loader->waiting_requests = queue_create(MAX_WAITING_REQUESTS, drop_waiting);
     int n_started = 0, failed = pthread_create(&loader->load_thread, NULL, load_main, loader);
     if (!failed && ++n_started)
@@ -251,13 +247,11 @@ bool loader_build_shapes(struct loader *loader, struct waiting_request *waiting)
     return queue_try_put(loader->waiting_requests, waiting);
 }
 
-bool loader_ask(struct loader *loader, const struct question *question)
+bool loader_answer(struct loader *loader, struct question *question)
 {
-    struct question *copy = mem_new(sizeof *copy);
-    *copy = *question;
-    if (queue_try_put(question->what == QUESTION_SURFACE ? loader->slow : loader->quick, copy))
+    if (queue_try_put(question_is_slow(question) ? loader->slow : loader->quick, question))
         return true;
-    question_drop(copy);
+    question_destroy(question);
     return false;
 }
 

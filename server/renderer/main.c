@@ -52,7 +52,7 @@ struct arguments {
     struct session_options session;
     const char *scan, *cache, *archive, *into;
     bool is_probe;
-    uint64_t max_bytes, max_file_bytes, max_unpacked_bytes; /* the last 0: not said */
+    uint64_t max_bytes, max_file_bytes, max_unpacked_bytes; /* max_unpacked_bytes 0: not given */
 };
 
 static int refuse(const char *what, const char *value)
@@ -70,7 +70,7 @@ static bool read_number(const char *text, unsigned long long most, unsigned long
     return errno == 0 && end != text && *end == 0 && text[0] != '-' && *number <= most;
 }
 
-/* -1: go on; else the exit status. */
+/* Returns -1 to go on, else the exit status. */
 static int read_arguments(int argc, char **argv, struct arguments *arguments)
 {
     enum {
@@ -217,8 +217,8 @@ int main(int argc, char **argv)
     (void)signal(SIGPIPE, SIG_IGN);
     if (arguments.archive)
         return unpack_run(arguments.archive, arguments.into, arguments.max_unpacked_bytes, arguments.max_bytes);
-    /* compiled shaders are code: one plan's renderer must not leave any for another's, so they stay in the plan's own
-     * cache */
+    /* Compiled shaders are code. A renderer must not leave code for another plan's renderer, so the drivers keep them
+     * in the plan's own cache folder. */
     if (arguments.cache) {
         (void)setenv("MESA_SHADER_CACHE_DIR", arguments.cache, 1);
         (void)setenv("__GL_SHADER_DISK_CACHE_PATH", arguments.cache, 1);

@@ -1,3 +1,4 @@
+/* One opened plan on one socket: packets in, events of other threads in, packets out. */
 #include "server/renderer/session.h"
 
 #include <errno.h>
@@ -10,73 +11,38 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/renderer/answers.h"
-#include "server/renderer/session_parts.h"
-#include "server/wire/document.h"
+#include "server/renderer/pictures.h"
 #include "server/wire/plan_document.h"
 
-enum { LAST_WORDS_MS = 1000 };
-#define MAX_ID 9e15 /* ids of requests are exact as a double */
+enum { LAST_PACKETS_MS = 1000 };
 
-/* ---- out -------------------------------------------------------------------------------------------------------- */
+struct session {
+    const struct session_options *options;
+    struct link *link;
+    struct inbox *inbox;
+    struct pipeline *pipeline;
+    struct loader *loader;
+    struct scenes *scenes;
+    struct pictures *pictures;
+    struct plan *plan;      /* NULL until it is loaded */
+    struct derive *derived; /* the plan's store */
+    bool is_built, has_gl, is_ready;
+    int64_t began_us;
+    int status; /* exit status; -1: go on */
+};
 
-cJSON *session_packet(const char *type)
-{
-    cJSON *json = cJSON_CreateObject();
-    cJSON_AddStringToObject(json, "type", type);
-    return json;
-}
+/* ---- to the daemon ---------------------------------------------------------------------------------------------- */
 
-void session_say(struct session *session, cJSON *json, const uint8_t *blob, size_t n_blob)
-{
-    link_say(session->link, json, blob, n_blob);
-    cJSON_Delete(json);
-}
-
-void session_say_problem(struct session *session, uint64_t id, const struct problem *problem)
-{
-    cJSON *json = session_packet("problem");
-    cJSON_AddNumberToObject(json, "id", (double)id);
-    cJSON_AddItemToObject(json, "problem", problem_to_json(problem));
-    session_say(session, json, NULL, 0);
-}
-
-bool session_read_number(struct session *session, uint64_t id, const cJSON *json, const char *name, double low,
-                         double high, double *value)
-{
-    *value = json_number(json, name, *value);
-    if (*value >= low && *value <= high)
-        return true;
-    struct problem problem;
-    char pointer[32];
-    (void)snprintf(pointer, sizeof pointer, "/%s", name);
-    problem_set(&problem, PROBLEM_VALIDATION, pointer, "range", "%s is %g, expected %g to %g", name, *value, low, high);
-    session_say_problem(session, id, &problem);
-    return false;
-}
-
-void session_add_limit(const struct session *session, struct problem *problem)
-{
-    char detail[sizeof problem->detail];
-    if (problem->type != PROBLEM_MEMORY || session->options->max_bytes == 0)
-        return;
-    memcpy(detail, problem->detail, sizeof detail);
-    (void)snprintf(problem->detail, sizeof problem->detail,
-                   "%.*s; the renderer of a plan may take %llu MiB (max-renderer-mib)", (int)sizeof detail - 80, detail,
-                   (unsigned long long)(session->options->max_bytes >> 20));
-}
-
-static void say_failed(struct session *session, const struct error *err)
+static void send_failed(struct session *session, const struct error *err)
 {
     struct problem problem;
     problem_from_error(&problem, err);
-    cJSON *json = session_packet("failed");
-    cJSON_AddItemToObject(json, "problem", problem_to_json(&problem));
-    session_say(session, json, NULL, 0);
+    link_send_failed(session->link, &problem);
     log_warn("the plan cannot be read: %s", err->text);
     session->status = SESSION_UNREADABLE;
 }
 
-static double resident_bytes(void)
+static int64_t resident_bytes(void)
 {
     unsigned long long all = 0, resident = 0;
     FILE *file = fopen("/proc/self/statm", "re");
@@ -86,217 +52,180 @@ static double resident_bytes(void)
     if (!fgets(text, sizeof text, file) || sscanf(text, "%llu %llu", &all, &resident) != 2)
         resident = 0;
     fclose(file);
-    return (double)resident * 4096;
+    return (int64_t)resident * 4096;
 }
 
-static void say_ready_when_it_is(struct session *session)
+static void send_ready_once(struct session *session)
 {
     if (session->is_ready || !session->plan || !session->is_built || !session->has_gl)
         return;
     session->is_ready = true;
-    cJSON *json = session_packet("ready");
-    cJSON_AddItemToObject(json, "plan", plan_document(session->plan));
-    cJSON_AddItemToObject(json, "scene", cJSON_Duplicate(session->default_scene, true));
-    cJSON_AddStringToObject(json, "confined", session->options->confined);
-    cJSON_AddNumberToObject(json, "memory_bytes", resident_bytes());
-    cJSON_AddNumberToObject(json, "load_ms", (double)((clock_now_us() - session->began_us) / 1000));
-    session_say(session, json, NULL, 0);
-    pictures_warm_up(session);
+    cJSON *document = plan_document(session->plan);
+    struct packet packet;
+    packet_init(&packet, PACKET_READY);
+    packet.ready.plan = document;
+    packet.ready.scene = scenes_default(session->scenes);
+    packet_put_text(packet.ready.confined, sizeof packet.ready.confined, session->options->confined);
+    packet.ready.memory_bytes = resident_bytes();
+    packet.ready.load_ms = (clock_now_us() - session->began_us) / 1000;
+    link_send(session->link, &packet, NULL, 0);
+    cJSON_Delete(document);
+    pictures_warm_up(session->pictures);
 }
 
-/* ---- what the daemon asks --------------------------------------------------------------------------------------- */
-
-static bool read_point(const cJSON *json, struct vec3 *point)
+static void send_answer(struct session *session, int64_t id, const cJSON *body, const uint8_t *blob, size_t n_blob)
 {
-    const cJSON *list = cJSON_GetObjectItemCaseSensitive(json, "point_lps_mm");
-    double p[3];
-    if (!cJSON_IsArray(list) || cJSON_GetArraySize(list) != 3)
-        return false;
-    for (int i = 0; i < 3; i++) {
-        const cJSON *item = cJSON_GetArrayItem(list, i);
-        if (!cJSON_IsNumber(item) || !(fabs(item->valuedouble) <= 1e5))
-            return false;
-        p[i] = item->valuedouble;
-    }
-    *point = vec3(p[0], p[1], p[2]);
-    return true;
+    struct packet packet;
+    packet_init(&packet, PACKET_ANSWER);
+    packet.answer.id = id;
+    packet.answer.body = body;
+    link_send(session->link, &packet, blob, n_blob);
 }
 
-/* Fills question; false after the problem was said. */
-static bool read_question(struct session *session, uint64_t id, const cJSON *json, struct question *question)
+/* ---- packets from the daemon ------------------------------------------------------------------------------------ */
+
+static void refuse_busy(struct session *session, int64_t id, const char *why)
 {
-    const char *what = json_text(json, "what");
     struct problem problem;
-    *question = (struct question){ .id = id };
-    if (what && strcmp(what, "surface") == 0) {
-        const char *name = json_text(json, "region");
-        const struct region *region = region_find(&session->plan->regions, name ? name : "");
-        question->what = QUESTION_SURFACE;
-        if (!region)
-            problem_set(&problem, PROBLEM_NOT_FOUND, "/region", "", "the plan has no region \"%.64s\"",
-                        name ? name : "");
-        else if (shape_query_read(json, &question->shape, &problem)) {
-            question->subject = subject_region((size_t)(region - session->plan->regions.regions));
-            return true;
-        }
-    } else if (what && strcmp(what, "probe") == 0) {
-        question->what = QUESTION_PROBE;
-        if (read_point(json, &question->point_lps_mm))
-            return true;
-        problem_set(&problem, PROBLEM_VALIDATION, "/point_lps_mm", "type",
-                    "a point is three numbers in mm, each -100000 to 100000");
-    } else if (what && strcmp(what, "pick") == 0) {
-        uint32_t revision;
-        question->what = QUESTION_PICK;
-        question->px = question->py = NAN;
-        if (!session_read_number(session, id, json, "px", 0, 4096, &question->px) ||
-            !session_read_number(session, id, json, "py", 0, 4096, &question->py))
-            return false;
-        question->snapshot = pictures_read_snapshot(session, id, json, &revision);
-        return question->snapshot != NULL;
-    } else {
-        problem_set(&problem, PROBLEM_VALIDATION, "/what", "enum", "\"%.40s\" is no question", what ? what : "");
-    }
-    session_say_problem(session, id, &problem);
-    return false;
-}
-
-static void answer(struct session *session, uint64_t id, const cJSON *json)
-{
-    struct question question;
-    const char *what = json_text(json, "what");
-    if (what && strcmp(what, "ready") == 0) { /* only whether: this is not asked before ready was said */
-        cJSON *yes = session_packet("answer");
-        cJSON_AddNumberToObject(yes, "id", (double)id);
-        (void)cJSON_AddObjectToObject(yes, "body");
-        session_say(session, yes, NULL, 0);
-        return;
-    }
-    if (!read_question(session, id, json, &question) || loader_ask(session->loader, &question))
-        return;
-    struct problem problem;
-    problem_set(&problem, PROBLEM_BUSY, "", "", "too many questions wait for an answer");
+    problem_set(&problem, PROBLEM_BUSY, "", "", "%s", why);
     problem.retry_after_ms = 500;
-    session_say_problem(session, id, &problem);
+    link_send_problem(session->link, id, &problem);
 }
 
-static void take_packet(struct session *session, cJSON *json)
+/* Hands a question to the thread that answers it. Takes packet's contents. */
+static void start_answer(struct session *session, struct packet *packet)
 {
-    const char *type = json_text(json, "type");
-    double id = json_number(json, "id", -1);
-    bool is_request = type && (strcmp(type, "render") == 0 || strcmp(type, "query") == 0);
-    if (!type || (is_request && !(id >= 0 && id < MAX_ID))) {
-        log_error("a packet that cannot be understood");
-    } else if (strcmp(type, "ping") == 0) {
-        session_say(session, session_packet("pong"), NULL, 0);
-    } else if (strcmp(type, "scene") == 0) {
-        pictures_take_scene(session, json);
-    } else if (strcmp(type, "forget") == 0) {
-        pictures_forget_room(session, json_text(json, "room"));
-    } else if (strcmp(type, "drop") == 0) {
-        if (id >= 0 && id < MAX_ID)
-            pictures_drop(session, (uint64_t)id);
-    } else if (is_request && !session->is_ready) {
-        struct problem problem;
-        problem_set(&problem, PROBLEM_BUSY, "", "", "the plan is still being read");
-        problem.retry_after_ms = 500;
-        session_say_problem(session, (uint64_t)id, &problem);
-    } else if (is_request) {
-        if (type[0] == 'r')
-            pictures_draw(session, (uint64_t)id, json);
-        else
-            answer(session, (uint64_t)id, json);
-    } else {
-        log_error("a packet of the unknown type \"%.40s\"", type);
+    const struct packet_snapshot *shown = packet_snapshot_of(packet);
+    int64_t id = packet_id(packet);
+    struct snapshot *snapshot = NULL;
+    struct problem problem;
+    uint32_t scene_revision;
+    if (shown && !(snapshot = scenes_snapshot(session->scenes, shown, &scene_revision, &problem)))
+        link_send_problem(session->link, id, &problem);
+    else if (!loader_answer(session->loader, question_create(packet, snapshot)))
+        refuse_busy(session, id, "too many questions wait for an answer");
+}
+
+static void put_scene(struct session *session, struct packet *packet)
+{
+    cJSON *scene = packet_take_document(packet, packet->scene.scene);
+    if (!scenes_put_room(session->scenes, packet->scene.room, (uint32_t)packet->scene.revision, scene))
+        log_error("no place for the scene of another room");
+}
+
+static void handle_packet(struct session *session, struct packet *packet)
+{
+    const struct packet_description *description = &packet_descriptions[packet->type];
+    if (description->is_request && !session->is_ready) {
+        refuse_busy(session, packet_id(packet), "the plan is still being read");
+        return;
+    }
+    if (description->question) {
+        start_answer(session, packet);
+        return;
+    }
+    switch (packet->type) {
+    case PACKET_PING: {
+        struct packet pong;
+        packet_init(&pong, PACKET_PONG);
+        link_send(session->link, &pong, NULL, 0);
+        break;
+    }
+    case PACKET_SCENE: put_scene(session, packet); break;
+    case PACKET_FORGET: scenes_forget_room(session->scenes, packet->forget.room); break;
+    case PACKET_DROP: pictures_drop(session->pictures, packet->drop.id); break;
+    case PACKET_RENDER: pictures_start(session->pictures, &packet->render); break;
+    case PACKET_AWAIT_READY: {
+        cJSON *body = cJSON_CreateObject();
+        send_answer(session, packet->await_ready.id, body, NULL, 0);
+        cJSON_Delete(body);
+        break;
+    }
+    default: log_error("a packet \"%s\" is not handled", description->name);
     }
 }
 
-/* ---- what other threads tell ------------------------------------------------------------------------------------ */
+/* ---- events of other threads ------------------------------------------------------------------------------------ */
 
 static void gl_started(void *context, const struct render_facts *facts, const struct error *err)
 {
-    struct note note = { .type = NOTE_GL };
+    struct inbox_event event = { .type = INBOX_GL_STARTED };
     if (facts)
-        note.facts = *facts;
+        event.facts = *facts;
     else
-        note.error = *err;
-    desk_put(context, &note);
+        event.error = *err;
+    inbox_put(context, &event);
 }
 
-static void deliver(void *context, struct pipeline_frame *frame)
+static void frame_encoded(void *context, struct pipeline_frame *frame)
 {
-    struct note note = { .type = NOTE_FRAME, .frame = *frame };
+    struct inbox_event event = { .type = INBOX_FRAME, .frame = *frame };
     frame->picture = (struct encoded){ 0 };
-    desk_put(context, &note);
+    inbox_put(context, &event);
 }
 
-static void take_gl(struct session *session, const struct note *note)
+static void send_gl(struct session *session, const struct inbox_event *event)
 {
-    cJSON *json;
+    struct packet packet;
+    packet_init(&packet, PACKET_GL);
+    struct packet_gl *gl = &packet.gl;
     session->has_gl = true;
-    if (note->error.code == ERROR_NONE) {
-        json = answer_gl(&note->facts, session->options->is_stub);
-        cJSON_AddStringToObject(json, "type", "gl");
-        cJSON_AddStringToObject(json, "confined", session->options->confined);
+    if (event->error.code == ERROR_NONE) {
+        const char *back_end = session->options->is_stub ? "stub" : render_back_end_word(event->facts.back_end);
+        packet_put_text(gl->back_end, sizeof gl->back_end, back_end);
+        packet_put_text(gl->vendor, sizeof gl->vendor, event->facts.vendor);
+        packet_put_text(gl->renderer, sizeof gl->renderer, event->facts.renderer);
+        packet_put_text(gl->version, sizeof gl->version, event->facts.version);
+        packet_put_text(gl->confined, sizeof gl->confined, session->options->confined);
+        gl->is_software = event->facts.is_software;
     } else {
-        problem_set(&session->gl_problem, PROBLEM_GL_UNAVAILABLE, "", "", "%s", note->error.text);
-        json = session_packet("gl");
-        cJSON_AddItemToObject(json, "problem", problem_to_json(&session->gl_problem));
-        log_warn("nothing can be drawn: %s", note->error.text);
+        problem_set(&gl->problem, PROBLEM_GL_UNAVAILABLE, "", "", "%s", event->error.text);
+        pictures_refuse_all(session->pictures, &gl->problem);
+        log_warn("nothing can be drawn: %s", event->error.text);
     }
-    session_say(session, json, NULL, 0);
+    link_send(session->link, &packet, NULL, 0);
 }
 
-static void take_loaded(struct session *session, struct note *note)
+static void send_progress(struct session *session, const struct inbox_event *event)
 {
-    struct scene scene;
-    session->plan = note->plan;
-    session->derived = note->derived;
-    note->plan = NULL;
-    note->derived = NULL;
-    scene_for_plan(session->plan, &scene);
-    session->default_scene = scene_write(&scene);
-    scene_finish(&scene);
-    if (!session->default_scene)
-        say_failed(session, &(struct error){ ERROR_MEMORY, "no memory for the scene of the plan" });
+    struct packet packet;
+    if (session->is_ready)
+        return;
+    packet_init(&packet, PACKET_PROGRESS);
+    packet_put_text(packet.progress.phase, sizeof packet.progress.phase, event->phase);
+    packet.progress.percent = fmax(0, fmin(100, event->percent));
+    link_send(session->link, &packet, NULL, 0);
 }
 
-static void take_note(struct session *session, struct note *note)
+static void handle_event(struct session *session, struct inbox_event *event)
 {
-    switch (note->type) {
-    case NOTE_GL: take_gl(session, note); break;
-    case NOTE_PROGRESS:
-        if (!session->is_ready) {
-            cJSON *json = session_packet("progress");
-            cJSON_AddStringToObject(json, "phase", note->phase);
-            cJSON_AddNumberToObject(json, "percent", fmax(0, fmin(100, note->percent)));
-            session_say(session, json, NULL, 0);
-        }
+    switch (event->type) {
+    case INBOX_GL_STARTED: send_gl(session, event); break;
+    case INBOX_PROGRESS: send_progress(session, event); break;
+    case INBOX_LOADED:
+        session->plan = event->plan;
+        session->derived = event->derived;
+        event->plan = NULL;
+        event->derived = NULL;
+        scenes_set_plan(session->scenes, session->derived);
+        if (!scenes_default(session->scenes))
+            send_failed(session, &(struct error){ ERROR_MEMORY, "no memory for the scene of the plan" });
         break;
-    case NOTE_LOADED: take_loaded(session, note); break;
-    case NOTE_FAILED: say_failed(session, &note->error); break;
-    case NOTE_BUILT: session->is_built = true; break;
-    case NOTE_FRAME: pictures_take_frame(session, &note->frame); break;
-    case NOTE_SHAPES_BUILT:
-        if (note->waiting->is_built)
-            built_shapes_add(session->built_shapes, note->waiting);
-        pictures_submit(session, note->waiting);
-        note->waiting = NULL;
+    case INBOX_LOAD_FAILED: send_failed(session, &event->error); break;
+    case INBOX_BUILT: session->is_built = true; break;
+    case INBOX_FRAME: pictures_send_frame(session->pictures, &event->frame); break;
+    case INBOX_SHAPES_BUILT:
+        pictures_shapes_built(session->pictures, event->waiting);
+        event->waiting = NULL;
         break;
-    case NOTE_ANSWER:
-        if (note->body) {
-            cJSON *json = session_packet("answer");
-            cJSON_AddNumberToObject(json, "id", (double)note->id);
-            cJSON_AddItemToObject(json, "body", note->body);
-            note->body = NULL;
-            session_say(session, json, note->blob, note->n_blob);
-        } else {
-            session_add_limit(session, &note->problem);
-            session_say_problem(session, note->id, &note->problem);
-        }
+    case INBOX_ANSWER:
+        if (event->body)
+            send_answer(session, event->id, event->body, event->blob, event->n_blob);
+        else
+            link_send_problem(session->link, event->id, &event->problem);
         break;
     }
-    say_ready_when_it_is(session);
+    send_ready_once(session);
 }
 
 /* ---- the loop --------------------------------------------------------------------------------------------------- */
@@ -306,7 +235,7 @@ static void loop(struct session *session)
     while (session->status < 0) {
         short wanted = (short)(POLLIN | (link_has_outgoing(session->link) ? POLLOUT : 0));
         struct pollfd polled[2] = { { .fd = link_file(session->link), .events = wanted },
-                                    { .fd = desk_bell(session->desk), .events = POLLIN } };
+                                    { .fd = inbox_wake_fd(session->inbox), .events = POLLIN } };
         if (poll(polled, 2, -1) < 0 && errno != EINTR) {
             session->status = SESSION_BROKEN;
             return;
@@ -315,50 +244,58 @@ static void loop(struct session *session)
         link_write(session->link);
         if ((polled[0].revents & ~POLLOUT) && !link_read(session->link))
             session->status = SESSION_DONE;
-        struct packet packet_in;
+        struct packet packet;
         int got = 0;
-        while (session->status < 0 && (got = link_take(session->link, &packet_in)) > 0) {
-            take_packet(session, packet_in.json);
-            packet_finish(&packet_in);
+        while (session->status < 0 && (got = link_take(session->link, &packet)) > 0) {
+            handle_packet(session, &packet);
+            packet_finish(&packet);
         }
         if (got < 0)
             session->status = SESSION_BROKEN;
-        for (struct note *note; session->status < 0 && (note = desk_take(session->desk));) {
-            take_note(session, note);
-            note_destroy(note);
+        for (struct inbox_event *event; session->status < 0 && (event = inbox_take(session->inbox));) {
+            handle_event(session, event);
+            inbox_event_destroy(event);
         }
     }
+}
+
+static bool start(struct session *session, struct error *err)
+{
+    const struct session_options *options = session->options;
+    session->inbox = inbox_create();
+    if (!session->inbox)
+        return error_set(err, ERROR_IO, "no file to wait on: %s", strerror(errno));
+    struct pipeline_callbacks callbacks = { gl_started, frame_encoded, session->inbox };
+    session->pipeline = pipeline_create(options->back_end, options->is_stub, &callbacks, err);
+    if (!session->pipeline)
+        return false;
+    struct loader_options load = { options->plan_folder, options->plan_id, options->max_bytes, options->cache };
+    session->loader = loader_create(&load, session->inbox, err);
+    if (!session->loader)
+        return false;
+    session->pictures = pictures_create(
+        &(struct pictures_options){ session->link, session->pipeline, session->loader, session->scenes });
+    return true;
 }
 
 int session_run(const struct session_options *options)
 {
     struct session session = { .options = options, .status = -1, .began_us = clock_now_us() };
     struct error err = { 0 };
-    pictures_begin(&session);
-    session.link = link_create(options->socket);
-    session.desk = desk_create();
-    if (!session.desk) {
-        error_set(&err, ERROR_IO, "no file for the bell: %s", strerror(errno));
-    } else {
-        struct pipeline_callbacks callbacks = { gl_started, deliver, session.desk };
-        session.pipeline = pipeline_create(options->back_end, options->is_stub, &callbacks, &err);
-        if (session.pipeline)
-            session.loader = loader_create(&(struct loader_options){ options->plan_folder, options->plan_id,
-                                                                     options->max_bytes, options->cache },
-                                           session.desk, &err);
-    }
-    if (session.loader)
+    session.link = link_create(options->socket, options->max_bytes);
+    session.scenes = scenes_create();
+    if (start(&session, &err))
         loop(&session);
     else
-        say_failed(&session, &err);
-    link_flush(session.link, LAST_WORDS_MS);
+        send_failed(&session, &err);
+    link_flush(session.link, LAST_PACKETS_MS);
 
     loader_destroy(session.loader);
     if (session.pipeline)
         pipeline_destroy(session.pipeline);
-    desk_destroy(session.desk);
-    pictures_end(&session);
-    cJSON_Delete(session.default_scene);
+    pictures_destroy(session.pictures);
+    inbox_destroy(session.inbox);
+    scenes_destroy(session.scenes);
     derive_destroy(session.derived);
     plan_destroy(session.plan);
     link_destroy(session.link);

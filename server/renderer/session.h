@@ -1,6 +1,6 @@
 #pragma once
-/* One opened plan on one socket: the main thread's work. Reads what the daemon asks, hands pictures to the pipeline and
- * questions to the loader, sends what comes back. Never works itself for longer than a few milliseconds. */
+/* One opened plan on one socket: the main thread's loop. Reads packets, hands pictures to the pipeline and questions to
+ * the loader, and sends their results. Never runs for longer than a few milliseconds at a time. */
 #include <stdint.h>
 
 #include "core/render/render.h"
@@ -10,13 +10,13 @@ struct session_options {
     const char *plan_folder, *plan_id;
     enum render_back_end back_end;
     bool is_stub;
-    const char *confined; /* what confine() got */
-    const char *cache;    /* folder that may be written */
+    const char *confined; /* what confine() reported */
+    const char *cache;    /* writable folder */
     uint64_t max_bytes;   /* of memory; 0: no limit */
 };
 
 enum { SESSION_DONE = 0, SESSION_BROKEN = 1, SESSION_UNREADABLE = 3 };
 
-/* Until the daemon's end closes (SESSION_DONE) or the plan cannot be read (SESSION_UNREADABLE). Gives the exit status.
- */
+/* Runs until the daemon closes the socket (SESSION_DONE), the connection breaks (SESSION_BROKEN) or the plan cannot be
+ * read (SESSION_UNREADABLE). Returns the exit status. */
 int session_run(const struct session_options *options);

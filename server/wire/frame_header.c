@@ -1,3 +1,4 @@
+/* The header in front of each picture: little-endian bytes, whatever the machine. */
 #include "server/wire/frame_header.h"
 
 #include <math.h>

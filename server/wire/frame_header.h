@@ -1,5 +1,6 @@
 #pragma once
-/* The fixed header before each picture (proto/frame.md), little-endian whatever the machine. */
+/* The fixed header in front of each picture sent to a browser (proto/frame.md): little-endian bytes to a struct and
+ * back. Thread: any. */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -7,7 +8,7 @@
 
 enum { FRAME_HEADER_BYTES = 112, FRAME_VERSION = 1 };
 #define FRAME_MAGIC 0x524D5242u
-enum frame_flag { FRAME_STILL = 1, FRAME_LOSSLESS = 2, FRAME_FULL_COLOR = 4, FRAME_SHARED = 8, FRAME_LIGHT = 16 };
+enum frame_flag { FRAME_STILL = 1, FRAME_LOSSLESS = 2, FRAME_FULL_COLOR = 4, FRAME_SHARED = 8, FRAME_COARSE = 16 };
 
 struct frame_header {
     uint8_t codec, flags, quality, scale_percent;

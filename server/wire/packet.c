@@ -1,15 +1,16 @@
+/* Packets between daemon and renderer: bytes to checked structs and back. */
 #include "server/wire/packet.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/base/mem.h"
 
 #define PACKET_MAGIC 0x4b505242u /* "BRPK" */
-#define MAX_PIXELS_PER_MM 4e6    /* the frame header counts thousandths in 32 bits */
-enum { READ_STEP = 256 << 10, LEAST_SPACE = 64 << 10 };
+enum { READ_STEP = 256 << 10, LEAST_SPACE = 64 << 10, MAX_PARTS = 4, N_MATRIX = 16 };
 
 struct head {
     uint32_t magic, json_bytes, blob_bytes;
@@ -19,10 +20,165 @@ struct packet_reader {
     enum packet_direction direction;
     uint8_t *bytes; /* heads and JSON; the packets before `at` are taken */
     size_t at, used, room;
-    /* a packet whose blob is on its way: read to blob directly */
+    /* a packet whose blob is being read, to where it stays */
     struct packet coming; /* json NULL: none */
     size_t n_come;
 };
+
+/* ---- tables ----------------------------------------------------------------------------------------------------- */
+
+enum packet_type packet_type_find(const char *name)
+{
+    for (int type = 0; name && type < PACKET_N_TYPES; type++)
+        if (strcmp(packet_descriptions[type].name, name) == 0)
+            return (enum packet_type)type;
+    return PACKET_N_TYPES;
+}
+
+/* The sizes no packet of a direction exceeds: all that can be checked before a packet's type is known. */
+static void find_largest(enum packet_direction direction, uint32_t *max_json, uint32_t *max_blob)
+{
+    *max_json = *max_blob = 0;
+    for (const struct packet_description *d = packet_descriptions; d < packet_descriptions + PACKET_N_TYPES; d++) {
+        if (d->direction != direction)
+            continue;
+        *max_json = d->max_json > *max_json ? d->max_json : *max_json;
+        *max_blob = d->max_blob > *max_blob ? d->max_blob : *max_blob;
+    }
+}
+
+int64_t packet_id(const struct packet *packet)
+{
+    const struct packet_description *description = &packet_descriptions[packet->type];
+    int64_t id = -1;
+    if (description->has_id)
+        memcpy(&id, (const char *)packet + description->id_offset, sizeof id);
+    return id;
+}
+
+void packet_set_id(struct packet *packet, int64_t id)
+{
+    const struct packet_description *description = &packet_descriptions[packet->type];
+    if (description->has_id)
+        memcpy((char *)packet + description->id_offset, &id, sizeof id);
+}
+
+const struct packet_snapshot *packet_snapshot_of(const struct packet *packet)
+{
+    const struct packet_description *description = &packet_descriptions[packet->type];
+    const void *at = (const char *)packet + description->snapshot_offset;
+    return description->has_snapshot ? at : NULL;
+}
+
+/* ---- JSON to a packet ------------------------------------------------------------------------------------------- */
+
+static bool refuse_part(const struct packet_part *part, const char *code, const char *expected, struct problem *problem)
+{
+    char pointer[48];
+    (void)snprintf(pointer, sizeof pointer, "/%s", part->name);
+    return problem_set(problem, PROBLEM_VALIDATION, pointer, code, "%s %s", pointer, expected);
+}
+
+static bool read_matrix(const struct packet_part *part, const cJSON *json, char *at, struct problem *problem)
+{
+    float values[N_MATRIX];
+    int n = 0;
+    if (!cJSON_IsArray(json) || cJSON_GetArraySize(json) != N_MATRIX)
+        return refuse_part(part, "type", "is not 16 numbers", problem);
+    for (const cJSON *item = json->child; item; item = item->next) {
+        if (!cJSON_IsNumber(item) || !isfinite((float)item->valuedouble))
+            return refuse_part(part, "range", "holds what is not a finite number", problem);
+        values[n++] = (float)item->valuedouble;
+    }
+    memcpy(at, values, sizeof values);
+    return true;
+}
+
+static bool read_part(const struct packet_part *part, const cJSON *json, char *fields, struct problem *problem)
+{
+    char *at = fields + part->offset;
+    if (!json || cJSON_IsNull(json))
+        return !part->is_required || refuse_part(part, "required", "is missing", problem);
+    switch (part->type) {
+    case PACKET_PART_DOCUMENT:
+        if (!cJSON_IsObject(json))
+            return refuse_part(part, "type", "is not an object", problem);
+        memcpy(at, &json, sizeof json);
+        return true;
+    case PACKET_PART_PROBLEM: {
+        struct problem value = { 0 };
+        if (!problem_from_json(json, &value))
+            return refuse_part(part, "type", "is not a problem", problem);
+        memcpy(at, &value, sizeof value);
+        return true;
+    }
+    case PACKET_PART_MATRIX: return read_matrix(part, json, at, problem);
+    }
+    return false;
+}
+
+/* The fields of packet->json. Parts are not copied: they leave the object while the other fields are read, and are put
+ * back, which costs nothing. */
+static bool read_fields(struct packet *packet, struct problem *problem)
+{
+    const struct packet_description *description = &packet_descriptions[packet->type];
+    char *fields = (char *)packet + description->offset;
+    cJSON *parts[MAX_PARTS];
+    for (size_t i = 0; i < description->n_parts; i++)
+        parts[i] = cJSON_DetachItemFromObjectCaseSensitive(packet->json, description->parts[i].name);
+    bool is_good = fields_read(description->object, packet->json, "type", fields, problem);
+    for (size_t i = 0; i < description->n_parts; i++) {
+        is_good = is_good && read_part(&description->parts[i], parts[i], fields, problem);
+        if (parts[i])
+            cJSON_AddItemToArray(packet->json, parts[i]); /* it has kept its name */
+    }
+    return is_good;
+}
+
+static bool find_type(const cJSON *json, enum packet_direction direction, enum packet_type *type,
+                      struct problem *problem)
+{
+    const char *name = json_text(json, "type");
+    *type = packet_type_find(name);
+    if (*type == PACKET_N_TYPES || packet_descriptions[*type].direction != direction)
+        return problem_set(problem, PROBLEM_VALIDATION, "/type", name ? "enum" : "required",
+                           "there is no packet \"%.40s\" %s", name ? name : "",
+                           direction == PACKET_TO_DAEMON ? "to the daemon" : "to a renderer");
+    return true;
+}
+
+static bool has_good_size(enum packet_type type, size_t n_json, size_t n_blob, struct problem *problem)
+{
+    const struct packet_description *description = &packet_descriptions[type];
+    if (n_json > description->max_json || n_blob > description->max_blob)
+        return problem_set(problem, PROBLEM_LIMIT, "", "",
+                           "a packet \"%s\" of %zu + %zu bytes, at most %" PRIu32 " + %" PRIu32 " are allowed",
+                           description->name, n_json, n_blob, description->max_json, description->max_blob);
+    if (n_blob == 0 && description->needs_blob)
+        return problem_set(problem, PROBLEM_VALIDATION, "", "required", "a packet \"%s\" has no blob",
+                           description->name);
+    return true;
+}
+
+bool packet_from_json(cJSON *json, enum packet_direction direction, size_t n_blob, struct packet *packet,
+                      struct problem *problem)
+{
+    enum packet_type type;
+    *packet = (struct packet){ .json = json };
+    bool is_good = find_type(json, direction, &type, problem) && has_good_size(type, 0, n_blob, problem);
+    if (is_good) {
+        packet->type = type;
+        is_good = read_fields(packet, problem);
+    }
+    if (!is_good)
+        packet_finish(packet);
+    return is_good;
+}
+
+cJSON *packet_take_document(struct packet *packet, const cJSON *document)
+{
+    return document ? cJSON_DetachItemViaPointer(packet->json, (cJSON *)(uintptr_t)document) : NULL;
+}
 
 void packet_finish(struct packet *packet)
 {
@@ -31,88 +187,98 @@ void packet_finish(struct packet *packet)
     *packet = (struct packet){ 0 };
 }
 
-/* Of a size that its type allows; err names type, sizes and limits. */
-static bool is_within_limit(const char *type, enum packet_direction direction, size_t n_json, size_t n_blob,
-                            struct error *err)
+/* ---- a packet to bytes ------------------------------------------------------------------------------------------ */
+
+void packet_init(struct packet *packet, enum packet_type type)
 {
-    const struct packet_limit *limit = packet_limit_find(type);
-    if (!limit || limit->direction != direction)
-        return error_set(err, ERROR_FORMAT, "there is no packet \"%.40s\" %s", type ? type : "",
-                         direction == PACKET_TO_DAEMON ? "to the daemon" : "to a renderer");
-    if (n_json > limit->max_json || n_blob > limit->max_blob)
-        return error_set(err, ERROR_LIMIT,
-                         "a packet \"%s\" of %zu + %zu bytes, at most %" PRIu32 " + %" PRIu32 " are allowed", type,
-                         n_json, n_blob, limit->max_json, limit->max_blob);
-    return true;
+    const struct packet_description *description = &packet_descriptions[type];
+    *packet = (struct packet){ .type = type };
+    memcpy((char *)packet + description->offset, description->object->defaults, description->object->size);
 }
 
-uint8_t *packet_write(const cJSON *json, const uint8_t *blob, size_t n_blob, size_t *n_bytes, struct error *err)
+void packet_put_text(char *field, size_t size, const char *text)
 {
-    const char *type = json_text(json, "type");
-    const struct packet_limit *limit = packet_limit_find(type);
-    char *text = json_print(json);
-    size_t n_json = text ? strlen(text) : 0;
-    uint8_t *bytes = NULL;
-    *n_bytes = 0;
-    if (!text)
-        error_set(err, ERROR_MEMORY, "no memory for the JSON of a packet");
-    else if (is_within_limit(type, limit ? limit->direction : PACKET_TO_DAEMON, n_json, n_blob, err)) {
-        size_t n = sizeof(struct head) + n_json + n_blob; /* within the limits: far from overflow */
-        bytes = malloc(n);
-        if (!bytes)
-            error_set(err, ERROR_MEMORY, "no memory for a packet \"%s\" of %zu bytes", type, n);
-        else
-            *n_bytes = n;
+    size_t most = (size - 1) / 4, n = 0; /* a byte that is not UTF-8 is written as one character */
+    for (; text && text[n] && n < most; n++)
+        field[n] = (unsigned char)text[n] < 0x20 || text[n] == 0x7f ? '?' : text[n];
+    field[n] = 0;
+}
+
+static void add_part(cJSON *json, const struct packet_part *part, const char *fields)
+{
+    const char *at = fields + part->offset;
+    cJSON *value = NULL;
+    switch (part->type) {
+    case PACKET_PART_DOCUMENT: {
+        cJSON *document;
+        memcpy(&document, at, sizeof document);
+        if (document) {
+            cJSON_AddItemReferenceToObject(json, part->name, document);
+            return;
+        }
+        break;
     }
-    if (bytes) {
-        struct head head = { PACKET_MAGIC, (uint32_t)n_json, (uint32_t)n_blob };
-        memcpy(bytes, &head, sizeof head);
-        memcpy(bytes + sizeof head, text, n_json);
-        if (n_blob)
-            memcpy(bytes + sizeof head + n_json, blob, n_blob);
+    case PACKET_PART_PROBLEM: {
+        struct problem problem;
+        memcpy(&problem, at, sizeof problem);
+        value = problem.type == PROBLEM_NONE ? NULL : problem_to_json(&problem);
+        break;
     }
-    free(text);
+    case PACKET_PART_MATRIX: {
+        float values[N_MATRIX];
+        memcpy(values, at, sizeof values);
+        value = cJSON_CreateFloatArray(values, N_MATRIX);
+        break;
+    }
+    }
+    cJSON_AddItemToObject(json, part->name, value ? value : cJSON_CreateNull());
+}
+
+cJSON *packet_to_json(const struct packet *packet)
+{
+    const struct packet_description *description = &packet_descriptions[packet->type];
+    const char *fields = (const char *)packet + description->offset;
+    cJSON *json = fields_write(description->object, fields);
+    cJSON_AddStringToObject(json, "type", description->name);
+    for (size_t i = 0; i < description->n_parts; i++)
+        add_part(json, &description->parts[i], fields);
+    return json;
+}
+
+/* Head, JSON and blob. */
+static uint8_t *join(const char *text, size_t n_json, const uint8_t *blob, size_t n_blob, size_t n)
+{
+    struct head head = { PACKET_MAGIC, (uint32_t)n_json, (uint32_t)n_blob };
+    uint8_t *bytes = malloc(n);
+    if (!bytes)
+        return NULL;
+    memcpy(bytes, &head, sizeof head);
+    memcpy(bytes + sizeof head, text, n_json);
+    if (n_blob)
+        memcpy(bytes + sizeof head + n_json, blob, n_blob);
     return bytes;
 }
 
-static bool is_number_within(const cJSON *json, const char *name, double least, double most, double *value)
+uint8_t *packet_encode(const struct packet *packet, const uint8_t *blob, size_t n_blob, size_t *n_bytes,
+                       struct problem *problem)
 {
-    *value = json_number(json, name, NAN);
-    return *value >= least && *value <= most;
+    const char *name = packet_descriptions[packet->type].name;
+    struct packet check = { .type = packet->type, .json = packet_to_json(packet) };
+    char *text = json_print(check.json); /* NULL also when there was no memory for a part of it */
+    size_t n_json = text ? strlen(text) : 0, n = sizeof(struct head) + n_json + n_blob;
+    uint8_t *bytes = NULL;
+    if (!text)
+        (void)problem_set(problem, PROBLEM_MEMORY, "", "", "no memory for the JSON of a packet \"%s\"", name);
+    else if (read_fields(&check, problem) && has_good_size(packet->type, n_json, n_blob, problem) &&
+             !(bytes = join(text, n_json, blob, n_blob, n)))
+        (void)problem_set(problem, PROBLEM_MEMORY, "", "", "no memory for a packet \"%s\" of %zu bytes", name, n);
+    *n_bytes = bytes ? n : 0;
+    free(text);
+    cJSON_Delete(check.json);
+    return bytes;
 }
 
-bool packet_frame_read(const struct packet *packet, struct packet_frame *frame)
-{
-    double width, height, revision, render_us, encode_us;
-    const cJSON *json = packet->json, *matrix = cJSON_GetObjectItemCaseSensitive(json, "clip_from_lps_mm"), *number;
-    const char *type = json_text(json, "type");
-    *frame = (struct packet_frame){ 0 };
-    if (!type || strcmp(type, "frame") != 0 || packet->n_blob == 0 || packet->n_blob > PACKET_MAX_PICTURE ||
-        !is_number_within(json, "width_px", 1, PACKET_MAX_SIDE_PX, &width) ||
-        !is_number_within(json, "height_px", 1, PACKET_MAX_SIDE_PX, &height) ||
-        !is_number_within(json, "scene_revision", 0, UINT32_MAX, &revision) ||
-        !is_number_within(json, "render_us", 0, UINT32_MAX, &render_us) ||
-        !is_number_within(json, "encode_us", 0, UINT32_MAX, &encode_us) ||
-        !is_number_within(json, "pixels_per_mm", 0, MAX_PIXELS_PER_MM, &frame->pixels_per_mm) ||
-        !cJSON_IsArray(matrix) || cJSON_GetArraySize(matrix) != 16)
-        return false;
-    frame->width_px = (uint16_t)width;
-    frame->height_px = (uint16_t)height;
-    frame->scene_revision = (uint32_t)revision;
-    frame->render_us = (uint32_t)render_us;
-    frame->encode_us = (uint32_t)encode_us;
-    frame->is_light = json_flag(json, "is_light", false);
-    int i = 0;
-    cJSON_ArrayForEach(number, matrix)
-    {
-        if (!cJSON_IsNumber(number) || !isfinite((float)number->valuedouble))
-            return false;
-        frame->clip_from_lps_mm[i++] = (float)number->valuedouble;
-    }
-    return true;
-}
-
-/* ---- reading ---------------------------------------------------------------------------------------------------- */
+/* ---- a stream of packets ---------------------------------------------------------------------------------------- */
 
 struct packet_reader *packet_reader_create(enum packet_direction direction)
 {
@@ -146,11 +312,12 @@ static int read_head(const struct packet_reader *reader, struct head *head, stru
                   PACKET_MAGIC);
         return -1;
     }
-    struct packet_limit largest = packet_limit_largest(reader->direction);
-    if (head->json_bytes > largest.max_json || head->blob_bytes > largest.max_blob) {
+    uint32_t max_json, max_blob;
+    find_largest(reader->direction, &max_json, &max_blob);
+    if (head->json_bytes > max_json || head->blob_bytes > max_blob) {
         error_set(err, ERROR_LIMIT,
                   "a packet of %" PRIu32 " + %" PRIu32 " bytes, at most %" PRIu32 " + %" PRIu32 " are allowed",
-                  head->json_bytes, head->blob_bytes, largest.max_json, largest.max_blob);
+                  head->json_bytes, head->blob_bytes, max_json, max_blob);
         return -1;
     }
     return 1;
@@ -169,7 +336,7 @@ uint8_t *packet_reader_space(struct packet_reader *reader, size_t *n, struct err
     }
     struct head head;
     size_t want = reader->used + READ_STEP, least = reader->used + LEAST_SPACE;
-    /* a good head says how much JSON is coming: one allocation for it; memory grows only with a checked head */
+    /* the checked head gives the size of the JSON: one allocation */
     if (read_head(reader, &head, NULL) == 1 && sizeof head + head.json_bytes > least) {
         least = sizeof head + head.json_bytes;
         want = want > least ? want : least;
@@ -196,10 +363,16 @@ void packet_reader_added(struct packet_reader *reader, size_t n)
         reader->used += n;
 }
 
-/* Takes head and JSON from the buffer, and what is there of the blob. False: the packet breaks the rules. */
+static bool refuse_packet(struct error *err, const struct problem *problem)
+{
+    return error_set(err, problem->type == PROBLEM_LIMIT ? ERROR_LIMIT : ERROR_FORMAT, "%.230s", problem->detail);
+}
+
+/* Checks head and JSON and takes them from the buffer, with the bytes of the blob that have come already. */
 static bool begin_packet(struct packet_reader *reader, const struct head *head, struct error *err)
 {
     struct problem problem = { 0 };
+    enum packet_type type;
     const char *text = (const char *)reader->bytes + reader->at + sizeof *head;
     struct packet *coming = &reader->coming;
     cJSON *json = json_read(text, head->json_bytes, &problem);
@@ -209,11 +382,14 @@ static bool begin_packet(struct packet_reader *reader, const struct head *head, 
         cJSON_Delete(json);
         return error_set(err, ERROR_FORMAT, "a packet without a JSON object");
     }
-    if (!is_within_limit(json_text(json, "type"), reader->direction, head->json_bytes, head->blob_bytes, err)) {
+    if (!find_type(json, reader->direction, &type, &problem) ||
+        !has_good_size(type, head->json_bytes, head->blob_bytes, &problem)) {
         cJSON_Delete(json);
-        return false;
+        return refuse_packet(err, &problem);
     }
-    *coming = (struct packet){ .json = json, .n_blob = head->blob_bytes };
+    if (!packet_from_json(json, reader->direction, head->blob_bytes, coming, &problem))
+        return error_set(err, ERROR_FORMAT, "a wrong \"%s\": %.180s", packet_descriptions[type].name, problem.detail);
+    coming->n_blob = head->blob_bytes;
     reader->at += sizeof *head + head->json_bytes;
     size_t left = reader->used - reader->at;
     reader->n_come = left < coming->n_blob ? left : coming->n_blob;
@@ -255,7 +431,9 @@ int packet_reader_take(struct packet_reader *reader, struct packet *packet, stru
     if (reader->n_come < reader->coming.n_blob)
         return 0;
     *packet = reader->coming;
-    reader->coming = (struct packet){ 0 };
+    reader->coming.json = NULL;
+    reader->coming.blob = NULL;
+    reader->coming.n_blob = 0;
     reader->n_come = 0;
     return 1;
 }

@@ -1,66 +1,106 @@
 #pragma once
-/* What daemon and renderer say to each other over their socket pair: a 12-byte head (u32 magic "BRPK", u32 json_bytes,
- * u32 blob_bytes, host order), a JSON object with "type", then an optional blob (a picture, a mesh). The renderer may
- * be taken over by a hostile file: the daemon bounds and checks everything it says.
- *
- * daemon to renderer
- *   scene    {type, room, revision, scene}            the room's scene document, complete; replaces the room's last
- *   forget   {type, room}                             a room is gone
- *   drop     {type, id}                               a picture is no longer wanted
- *   render   {type, id, room | scene, scene_revision?, view, scale_percent, quality, codec: "jpeg"|"png", full_color,
- * detail: "full"|"light", still, source} scene: a complete document for this picture alone (HTTP render, overrides);
- * else the room's. scene_revision comes back in frame; left out: the room's, or 0 source: a text of at most 143 bytes;
- * pictures of the same source share its turn. "ROOM/MEMBER" for a member's own views, "ROOM/" for the views a room
- * shares; left out by all of HTTP, whose pictures count together query    {type, id, what:
- * "surface"|"probe"|"pick"|"ready", ...arguments}   ready: answered with an empty body; surface with format "stl",
- * "ply" or "glb": answered with the file as blob ping     {type}                                   answered with pong
- * at once, by the main thread renderer to daemon gl       {type, back_end, vendor, renderer, version, is_software} or
- * {type, problem} progress {type, phase, percent} ready    {type, plan, scene, confined, memory_bytes, load_ms} plan:
- * as the API gives it; scene: the plan's default scene failed   {type, problem}                          the plan
- * cannot be loaded; the process then ends with status 3 frame    {type, id, width_px, height_px, scene_revision,
- * render_us, encode_us, pixels_per_mm, clip_from_lps_mm[16], is_light, n_triangles, missing?: {n, regions: [{region,
- * reason}]}} + blob: regions that cannot be drawn, the first of n answer   {type, id, body} + blob? problem  {type, id,
- * problem}                      instead of frame or answer pong     {type} How large each may be: packet_limits.h.
- */
+/* Packets between daemon and renderer (proto/packets.json): their bytes on the socket pair to checked structs and back.
+ * A renderer may have been taken over by a hostile file: every packet is checked whole, and against the limits of its
+ * type, before memory is taken for its blob. Thread: any; a packet and a reader have one owner. */
 #include "server/wire/json.h"
-#include "server/wire/packet_limits.h"
+
+enum packet_direction { PACKET_TO_RENDERER, PACKET_TO_DAEMON };
+
+#include "packets_gen.h" /* struct packet, one struct for each type, PACKET_MAX_... */
 
 enum { PACKET_HEAD_BYTES = 12 };
 
-struct packet {
-    cJSON *json;
-    uint8_t *blob; /* NULL when n_blob is 0 */
-    size_t n_blob;
+/* ---- tables made from proto/packets.json ------------------------------------------------------------------------ */
+
+/* Fields that fields.h does not know. */
+enum packet_part_type {
+    PACKET_PART_DOCUMENT, /* const cJSON *: an object; NULL when there is none */
+    PACKET_PART_PROBLEM,  /* struct problem; PROBLEM_NONE when there is none */
+    PACKET_PART_MATRIX    /* float[16], finite */
 };
+
+struct packet_part {
+    const char *name;
+    enum packet_part_type type;
+    size_t offset; /* in the struct of the packet's type */
+    bool is_required;
+};
+
+/* An argument of a question and the HTTP parameters it is read from: one, or three for a vec3. */
+struct packet_parameter {
+    const char *field, *names[3];
+};
+
+struct packet_question {
+    const char *path;     /* of the HTTP GET; NULL: no HTTP call */
+    bool has_own_handler; /* its HTTP call has code of its own in server/http */
+    bool is_slow;         /* may take longer than some milliseconds */
+    const struct packet_parameter *parameters;
+    size_t n_parameters;
+};
+
+struct packet_description {
+    const char *name;
+    enum packet_direction direction;
+    uint32_t max_json, max_blob; /* bytes */
+    bool needs_blob;
+    size_t offset; /* of the type's struct in struct packet */
+    const struct field_object *object;
+    const struct packet_part *parts;
+    size_t n_parts;
+    bool has_id;
+    size_t id_offset; /* in struct packet */
+    bool is_request;  /* is answered with `answer` or a problem */
+    enum packet_type answer;
+    bool has_snapshot;
+    size_t snapshot_offset;                 /* of its struct packet_snapshot in struct packet */
+    const struct packet_question *question; /* NULL: it is no question */
+};
+extern const struct packet_description packet_descriptions[PACKET_N_TYPES];
+
+/* PACKET_N_TYPES: there is none of that name. name may be NULL. */
+enum packet_type packet_type_find(const char *name);
+/* The id of a packet, -1 of a type without one. */
+int64_t packet_id(const struct packet *packet);
+void packet_set_id(struct packet *packet, int64_t id);
+/* What a request wants to see; NULL for types without it. */
+const struct packet_snapshot *packet_snapshot_of(const struct packet *packet);
+
+/* ---- writing ---------------------------------------------------------------------------------------------------- */
+
+/* A packet of defaults, to be filled in and written. */
+void packet_init(struct packet *packet, enum packet_type type);
+/* Fills a text field of size bytes: cuts what is too long, control characters become '?'. text NULL: "". */
+void packet_put_text(char *field, size_t size, const char *text);
+/* The packet's JSON as a new object. Refers to its documents: delete it before them. */
+NODISCARD cJSON *packet_to_json(const struct packet *packet);
+/* Bytes to send; free(). Documents and blob are read, not taken.
+ *   errors  PROBLEM_VALIDATION a field is out of its range, PROBLEM_LIMIT larger than the type may be, PROBLEM_MEMORY
+ */
+NODISCARD uint8_t *packet_encode(const struct packet *packet, const uint8_t *blob, size_t n_blob, size_t *n_bytes,
+                                 struct problem *problem);
+
+/* ---- reading ---------------------------------------------------------------------------------------------------- */
+
+/* A packet from its JSON, checked whole. Takes json, also on failure. n_blob: bytes of the blob that follows. False
+ * with PROBLEM_VALIDATION (pointer names the field) or PROBLEM_LIMIT. */
+NODISCARD bool packet_from_json(cJSON *json, enum packet_direction direction, size_t n_blob, struct packet *packet,
+                                struct problem *problem);
+/* Takes a document out of a packet that was read: the caller's to delete. NULL when document is NULL. */
+NODISCARD cJSON *packet_take_document(struct packet *packet, const cJSON *document);
 void packet_finish(struct packet *packet);
 
-/* Bytes to send for a packet; free(). blob is copied.
- *   errors ERROR_FORMAT a type there is no packet of, ERROR_LIMIT larger than its type may be, ERROR_MEMORY */
-NODISCARD uint8_t *packet_write(const cJSON *json, const uint8_t *blob, size_t n_blob, size_t *n_bytes,
-                                struct error *err);
-
-/* What a frame says of its picture. */
-struct packet_frame {
-    uint16_t width_px, height_px;
-    uint32_t scene_revision, render_us, encode_us;
-    double pixels_per_mm;
-    float clip_from_lps_mm[16];
-    bool is_light;
-};
-/* The daemon's check of a "frame": every number within its bounds, a blob there. False: it breaks the rules. */
-NODISCARD bool packet_frame_read(const struct packet *packet, struct packet_frame *frame);
-
-/* Collects bytes of one direction from a stream and gives whole packets. Memory for a blob is taken when its packet's
- * type is known and allows it, and the bytes are read to where they stay. */
+/* Collects bytes of one direction from a stream and gives whole packets. The bytes of a blob are read to where they
+ * stay. */
 struct packet_reader;
 struct packet_reader *packet_reader_create(enum packet_direction direction);
 void packet_reader_destroy(struct packet_reader *reader);
-/* Room for the next bytes from the socket: *n of them at most. NULL: ERROR_MEMORY. */
+/* Where the next bytes from the socket go: at most *n of them. NULL: ERROR_MEMORY. */
 NODISCARD uint8_t *packet_reader_space(struct packet_reader *reader, size_t *n, struct error *err);
 /* After n bytes were put there. */
 void packet_reader_added(struct packet_reader *reader, size_t n);
-/* 1 a packet (the caller's to finish), 0 more bytes needed, -1 broken (bad head, no JSON, a type of the other direction
- * or none, too large for its type, no memory): err says why, close the stream. */
+/* 1 a packet (the caller's to finish), 0 more bytes needed, -1 broken (no packet, of the other direction, a field or a
+ * size out of its range, no memory) with err: close the stream. */
 int packet_reader_take(struct packet_reader *reader, struct packet *packet, struct error *err);
-/* Bytes of memory it holds now. What a large packet needed is given back with the packet. */
+/* Bytes of memory it holds now. The memory of a large packet is given back with the packet. */
 size_t packet_reader_held(const struct packet_reader *reader);

@@ -135,27 +135,47 @@ static void take_reply(void *context, struct packet *answer, const struct proble
         return;
     }
     reply->is_frame = answer->n_blob == 7 && memcmp(answer->blob, "picture", 7) == 0;
-    const char *what = json_text(cJSON_GetObjectItemCaseSensitive(answer->json, "body"), "what");
-    snprintf(reply->what, sizeof reply->what, "%s", what ? what : "");
+    const char *type = answer->type == PACKET_ANSWER ? json_text(answer->answer.body, "type") : NULL;
+    snprintf(reply->type, sizeof reply->type, "%s", type ? type : "");
     reply->json = cJSON_Duplicate(answer->json, true);
     reply->blob = answer->blob;
     reply->n_blob = answer->n_blob;
     answer->blob = NULL;
 }
 
-uint64_t world_ask_packet(struct world *world, const char *id, cJSON *packet, struct reply *reply)
+static struct packet packet_of(cJSON *json)
 {
-    uint64_t number = fleet_request(world->fleet, id, packet, take_reply, reply);
-    cJSON_Delete(packet);
+    struct packet packet;
+    struct problem problem = { 0 };
+    if (!packet_from_json(json, PACKET_TO_RENDERER, 0, &packet, &problem))
+        fail_msg("%s", problem.detail);
+    return packet;
+}
+
+uint64_t world_ask_packet(struct world *world, const char *id, cJSON *json, struct reply *reply)
+{
+    cJSON_AddNumberToObject(json, "id", 0); /* the fleet's to set */
+    struct packet packet = packet_of(json);
+    uint64_t number = fleet_request(world->fleet, id, &packet, take_reply, reply);
+    packet_finish(&packet);
     return number;
 }
 
 uint64_t world_ask(struct world *world, const char *id, const char *type, struct reply *reply)
 {
-    cJSON *packet = cJSON_CreateObject();
-    cJSON_AddStringToObject(packet, "type", type);
-    cJSON_AddStringToObject(packet, "what", "probe");
-    return world_ask_packet(world, id, packet, reply);
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "type", type);
+    if (strcmp(type, "probe") == 0)
+        cJSON_AddItemToObject(json, "point_lps_mm", cJSON_CreateDoubleArray((const double[]){ 1, 2, 3 }, 3));
+    return world_ask_packet(world, id, json, reply);
+}
+
+bool world_tell(struct world *world, const char *id, cJSON *json)
+{
+    struct packet packet = packet_of(json);
+    bool is_sent = fleet_tell(world->fleet, id, &packet);
+    packet_finish(&packet);
+    return is_sent;
 }
 
 void world_wait_for_reply(struct world *world, struct reply *reply)

@@ -20,7 +20,7 @@ struct reply {
     int n;         /* replies so far */
     bool is_frame; /* with the made-up renderer's picture */
     struct problem problem;
-    char what[32]; /* "what" in the answer's body */
+    char type[32]; /* the made-up renderer answers a question with the packet that asked it: its type */
     cJSON *json;   /* the answer; reply_finish frees it */
     uint8_t *blob;
     size_t n_blob;
@@ -46,10 +46,12 @@ void world_step_for_ms(struct world *world, int ms);
 struct fleet_plan world_plan_of(struct world *world, const char *id);
 void world_wait_for_state(struct world *world, const char *id, enum fleet_state state);
 void world_open_plan(struct world *world, const char *id);
-/* Sends a request with only its type and "what": "probe". reply must outlive the answer. */
+/* Sends a request of this type: "render", or "probe" of one point. reply must outlive the answer. */
 uint64_t world_ask(struct world *world, const char *id, const char *type, struct reply *reply);
-/* Sends this packet as a request; takes packet. */
+/* Sends a request: the JSON of a packet without its id, which is deleted. */
 uint64_t world_ask_packet(struct world *world, const char *id, cJSON *packet, struct reply *reply);
+/* Sends a packet that has no answer: its JSON, which is deleted. False: the plan is not ready. */
+bool world_tell(struct world *world, const char *id, cJSON *packet);
 void world_wait_for_reply(struct world *world, struct reply *reply);
 /* Waits until the plan is ready, requests a picture and fails the test when none comes. */
 void world_draw(struct world *world, const char *id);

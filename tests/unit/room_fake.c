@@ -222,7 +222,7 @@ void fake_draw_slow(struct fake_room *fake, struct fake_request *request, uint32
     picture->missing = fake->missing ? json_read(fake->missing, strlen(fake->missing), NULL) : NULL;
     picture->header = (struct frame_header){ .codec = 1,
                                              .flags = (uint8_t)((request->is_still ? FRAME_STILL : 0) |
-                                                                (request->coarse ? FRAME_LIGHT : 0)),
+                                                                (request->coarse ? FRAME_COARSE : 0)),
                                              .quality = (uint8_t)request->quality,
                                              .scale_percent = (uint8_t)request->scale_percent,
                                              .scene_revision = request->scene_revision,

@@ -35,10 +35,10 @@ static void a_plan_is_listed_opened_drawn_and_closed(void **state)
     assert_string_equal(plan.confined, "not at all");
     assert_true(plan.pid > 0);
     assert_non_null(fleet_gl(world.fleet, NULL));
-    fleet_forget_request(world.fleet, world_ask(&world, "head-of-mr-x", "query", &forgotten));
-    world_ask(&world, "head-of-mr-x", "query", &answer);
+    fleet_forget_request(world.fleet, world_ask(&world, "head-of-mr-x", "probe", &forgotten));
+    world_ask(&world, "head-of-mr-x", "probe", &answer);
     world_wait_for_reply(&world, &answer);
-    assert_string_equal(answer.what, "probe");
+    assert_string_equal(answer.type, "probe");
     assert_int_equal(forgotten.n, 0);
     reply_finish(&frame);
     reply_finish(&answer);
@@ -286,8 +286,8 @@ static void more_requests_than_the_limit_are_refused_at_once(void **state)
     struct reply waiting = { 0 }, one_more = { 0 };
     world_open_plan(&world, "a");
     for (int i = 0; i < FLEET_MAX_REQUESTS; i++)
-        world_ask(&world, "a", "query", &waiting);
-    world_ask(&world, "a", "query", &one_more);
+        world_ask(&world, "a", "probe", &waiting);
+    world_ask(&world, "a", "probe", &one_more);
     world_wait_for_reply(&world, &one_more);
     assert_int_equal(one_more.problem.type, PROBLEM_BUSY);
     assert_int_equal(waiting.n, 0);
@@ -308,8 +308,8 @@ static void what_is_asked_of_no_plan_or_a_closed_one_is_refused(void **state)
     struct problem problem = { 0 };
     assert_false(fleet_open(world.fleet, "nobody", &problem));
     assert_int_equal(problem.type, PROBLEM_NOT_FOUND);
-    world_ask(&world, "nobody", "query", &unknown);
-    world_ask(&world, "a", "query", &closed);
+    world_ask(&world, "nobody", "probe", &unknown);
+    world_ask(&world, "a", "probe", &closed);
     assert_int_equal(unknown.n, 0); /* only from fleet_handle_events */
     world_wait_for_reply(&world, &unknown);
     world_wait_for_reply(&world, &closed);

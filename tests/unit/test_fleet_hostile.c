@@ -7,6 +7,17 @@
 #include "tests/unit/fake_renderer.h"
 #include "tests/unit/fleet_world.h"
 
+/* A scene of a room that holds nothing but an unknown field, which nobody reads before a picture is drawn. */
+static cJSON *scene_packet(const char *room, int revision, const char *text)
+{
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "type", "scene");
+    cJSON_AddStringToObject(json, "room", room);
+    cJSON_AddNumberToObject(json, "revision", revision);
+    cJSON_AddStringToObject(cJSON_AddObjectToObject(json, "scene"), "text", text);
+    return json;
+}
+
 static void garbage_ends_that_plan_only(void **state)
 {
     (void)state;
@@ -58,11 +69,8 @@ static void a_flood_of_packets_does_not_fill_the_memory(void **state)
     world_start(&world, 1);
     world_open_plan(&world, "a");
     world_wait_for_state(&world, "a", FLEET_READY);
-    cJSON *scene = cJSON_CreateObject();
-    cJSON_AddStringToObject(scene, "type", "scene");
-    assert_true(fleet_tell(world.fleet, "a", scene));
-    cJSON_Delete(scene);
-    nanosleep(&(struct timespec){ .tv_nsec = 700000000 }, NULL); /* the daemon does not read meanwhile */
+    assert_true(world_tell(&world, "a", scene_packet("r", 1, "")));
+    nanosleep(&(struct timespec){ .tv_nsec = 700000000 }, NULL); /* nobody listens meanwhile */
     /* progress after ready is against the rules */
     world_wait_for_state(&world, "a", FLEET_RESTARTING);
     world_end(&world);
@@ -80,13 +88,9 @@ static void one_that_reads_nothing_is_ended_before_memory_fills(void **state)
     char *text = calloc(1, (1 << 20) + 1);
     assert_non_null(text);
     memset(text, 'x', 1 << 20);
-    cJSON *scene = cJSON_CreateObject();
-    cJSON_AddStringToObject(scene, "type", "scene");
-    cJSON_AddStringToObject(scene, "scene", text);
     for (int i = 0; i < 70; i++) /* the limit is 64 MB */
-        assert_true(fleet_tell(world.fleet, "a", scene));
+        assert_true(world_tell(&world, "a", scene_packet("r", i, text)));
     world_wait_for_state(&world, "a", FLEET_RESTARTING);
-    cJSON_Delete(scene);
     free(text);
     world_end(&world);
 }
@@ -108,16 +112,17 @@ static void no_scene_is_lost_when_the_way_to_the_renderer_is_full(void **state)
         for (int i = 0; i < N_ROOMS; i++) {
             char room[32];
             snprintf(room, sizeof room, "room-%d", i);
-            cJSON *scene = cJSON_CreateObject();
-            cJSON_AddStringToObject(scene, "type", revision == 3 && i % 3 == 0 ? "forget" : "scene");
-            cJSON_AddStringToObject(scene, "room", room);
-            cJSON_AddNumberToObject(scene, "revision", revision);
-            (void)fleet_tell(world.fleet, "a", scene);
-            cJSON_Delete(scene);
+            bool is_closed = revision == 3 && i % 3 == 0;
+            cJSON *forget = cJSON_CreateObject();
+            cJSON_AddStringToObject(forget, "type", "forget");
+            cJSON_AddStringToObject(forget, "room", room);
+            (void)world_tell(&world, "a", is_closed ? forget : scene_packet(room, revision, ""));
+            if (!is_closed)
+                cJSON_Delete(forget);
         }
     /* a request is refused while scenes wait, and answered after them */
     struct reply reply = { 0 };
-    WORLD_UNTIL(&world, (reply_finish(&reply), world_ask(&world, "a", "query", &reply),
+    WORLD_UNTIL(&world, (reply_finish(&reply), world_ask(&world, "a", "probe", &reply),
                          world_wait_for_reply(&world, &reply), reply.problem.type != PROBLEM_BUSY));
     assert_int_equal(reply.problem.type, PROBLEM_NONE);
     cJSON *body = cJSON_GetObjectItemCaseSensitive(reply.json, "body");

@@ -64,9 +64,9 @@ static void one_whose_main_thread_runs_has_the_longer_time(void **state)
     world.options.times.silent = 30000;
     world_start(&world, 1);
     world_open_plan(&world, "a");
-    world_ask(&world, "a", "query", &reply);
+    world_ask(&world, "a", "probe", &reply);
     world_wait_for_reply(&world, &reply);
-    assert_string_equal(reply.what, "probe");
+    assert_string_equal(reply.type, "probe");
     assert_int_equal(world_plan_of(&world, "a").generation, 1);
     reply_finish(&reply);
     world_end(&world);
@@ -93,7 +93,7 @@ static int be_stopped(int told)
         return 2;
     world_step_for_ms(&world, 700); /* somewhere in here we are stopped */
     world_step_for_ms(&world, 700);
-    world_ask(&world, "a", "query", &query);
+    world_ask(&world, "a", "probe", &query);
     world_wait_for_reply(&world, &query);
     int result = picture.n > 0                                     ? 3
                  : world_plan_of(&world, "a").generation != 1      ? 4

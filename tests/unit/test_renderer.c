@@ -118,7 +118,7 @@ static void a_plan_is_read_and_drawn_and_drawn_again_after_a_kill(void **state)
 
     ask(&world, "{\"type\":\"render\",\"view\":{\"size_px\":[320,200]}}", &reply);
     assert_frame(&reply, 320, 200);
-    ask(&world, "{\"type\":\"render\",\"scale_percent\":50,\"detail\":\"light\",\"view\":{\"size_px\":[320,200]}}",
+    ask(&world, "{\"type\":\"render\",\"scale_percent\":50,\"detail\":\"coarse\",\"view\":{\"size_px\":[320,200]}}",
         &reply);
     assert_frame(&reply, 160, 100);
 
@@ -127,7 +127,7 @@ static void a_plan_is_read_and_drawn_and_drawn_again_after_a_kill(void **state)
     cJSON_AddStringToObject(scene, "room", "r1");
     cJSON_AddNumberToObject(scene, "revision", 41);
     cJSON_AddItemToObject(scene, "scene", cJSON_Duplicate(plan.default_scene, true));
-    assert_true(fleet_tell(world.fleet, PLAN, scene));
+    assert_true(world_tell(&world, PLAN, cJSON_Duplicate(scene, true)));
     ask(&world, "{\"type\":\"render\",\"room\":\"r1\",\"view\":{\"size_px\":[64,64]}}", &reply);
     assert_frame(&reply, 64, 64);
     assert_int_equal(json_number(reply.json, "scene_revision", 0), 41);
@@ -142,8 +142,7 @@ static void a_plan_is_read_and_drawn_and_drawn_again_after_a_kill(void **state)
     /* the new one has forgotten the room */
     ask(&world, "{\"type\":\"render\",\"room\":\"r1\",\"view\":{}}", &reply);
     assert_int_equal(reply.problem.type, PROBLEM_NOT_FOUND);
-    assert_true(fleet_tell(world.fleet, PLAN, scene));
-    cJSON_Delete(scene);
+    assert_true(world_tell(&world, PLAN, scene));
     ask(&world, "{\"type\":\"render\",\"room\":\"r1\",\"view\":{\"size_px\":[64,64]}}", &reply);
     assert_frame(&reply, 64, 64);
     reply_finish(&reply);
@@ -168,15 +167,14 @@ static void numbers_are_answered(void **state)
     world_open_plan(&world, PLAN);
     /* modified Snyder head: the middle of the brain, (0, 0, 10) mm in the paper's frame, is inside brain, cranium and
      * scalp */
-    ask(&world, "{\"type\":\"query\",\"what\":\"probe\",\"point_lps_mm\":[30,0,-10]}", &reply);
+    ask(&world, "{\"type\":\"probe\",\"point_lps_mm\":[30,0,-10]}", &reply);
     const cJSON *json = body(&reply);
     assert_true(cJSON_GetArraySize(cJSON_GetObjectItem(json, "regions")) >= 1);
     assert_string_equal(cJSON_GetArrayItem(cJSON_GetObjectItem(json, "regions"), 0)->valuestring, "brain");
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "images")), 1);
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "doses")), 4);
 
-    ask(&world, "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"algorithm\":\"marching-cubes\"}",
-        &reply);
+    ask(&world, "{\"type\":\"surface\",\"region\":\"brain\",\"algorithm\":\"marching-cubes\"}", &reply);
     json = body(&reply);
     double univels = json_number(json, "n_univels", 0), volume = json_number(json, "univel_volume_mm3", 0);
     assert_close(volume, univels * 4 * 4 * 6.4, 0.5); /* 256 x 256 x 204.8 mm in 64 x 64 x 32 voxels */
@@ -186,7 +184,7 @@ static void numbers_are_answered(void **state)
     assert_true(n_cubes > 1000);
     assert_string_equal(json_text(json, "algorithm"), "marching-cubes");
 
-    ask(&world, "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"algorithm\":\"eight-cell\"}", &reply);
+    ask(&world, "{\"type\":\"surface\",\"region\":\"brain\",\"algorithm\":\"eight-cell\"}", &reply);
     json = body(&reply);
     assert_string_equal(json_text(json, "algorithm"), "eight-cell");
     /* a mesh has twice as many triangles as vertices: those of marching cubes are |n.x| + |n.y| + |n.z| a univel's
@@ -196,17 +194,16 @@ static void numbers_are_answered(void **state)
     assert_true(json_number(json, "triangles", 0) > n_cubes * 0.5);
     assert_close(json_number(json, "n_univels", 0), univels, 0);
 
-    ask(&world, "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"format\":\"stl\"}", &reply);
+    ask(&world, "{\"type\":\"surface\",\"region\":\"brain\",\"format\":\"stl\"}", &reply);
     assert_close(json_number(body(&reply), "triangles", 0), n_cubes, 0);
     assert_close((double)reply.n_blob, 84 + 50 * n_cubes, 0);
 
-    ask(&world, "{\"type\":\"query\",\"what\":\"pick\",\"view\":{\"size_px\":[200,200]},\"px\":100.5,\"py\":100.5}",
-        &reply);
+    ask(&world, "{\"type\":\"pick\",\"view\":{\"size_px\":[200,200]},\"px\":100.5,\"py\":100.5}", &reply);
     const cJSON *hits = cJSON_GetObjectItem(body(&reply), "hits");
     assert_true(cJSON_GetArraySize(hits) >= 1);
     assert_string_equal(json_text(cJSON_GetArrayItem(hits, 0), "region"),
                         "scalp"); /* from the front the skin comes first */
-    ask(&world, "{\"type\":\"query\",\"what\":\"ready\"}", &reply);
+    ask(&world, "{\"type\":\"await_ready\"}", &reply);
     assert_int_equal(cJSON_GetArraySize(body(&reply)), 0);
     reply_finish(&reply);
     world_end(&world);
@@ -226,17 +223,10 @@ static void what_is_asked_wrongly_is_refused_with_its_place(void **state)
         { "{\"type\":\"render\",\"scene\":{\"image\":{\"id\":\"pet\"}}}", PROBLEM_VALIDATION, "/scene/image/id" },
         { "{\"type\":\"render\",\"view\":{\"camera\":{\"position_mm\":[1,1,1],\"target_mm\":[1,1,1],\"up\":[0,0,1]}}}",
           PROBLEM_VALIDATION, "/view/camera/position_mm" },
-        { "{\"type\":\"render\",\"quality\":0}", PROBLEM_VALIDATION, "/quality" },
-        { "{\"type\":\"render\",\"codec\":\"gif\"}", PROBLEM_VALIDATION, "/codec" },
         { "{\"type\":\"render\",\"room\":\"nowhere\"}", PROBLEM_NOT_FOUND, "/room" },
-        { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"liver\"}", PROBLEM_NOT_FOUND, "/region" },
-        { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"algorithm\":\"magic\"}", PROBLEM_VALIDATION,
-          "/algorithm" },
-        { "{\"type\":\"query\",\"what\":\"surface\",\"region\":\"brain\",\"format\":\"obj\"}", PROBLEM_VALIDATION,
-          "/format" },
-        { "{\"type\":\"query\",\"what\":\"probe\",\"point_lps_mm\":[1,2]}", PROBLEM_VALIDATION, "/point_lps_mm" },
-        { "{\"type\":\"query\",\"what\":\"pick\",\"view\":{},\"px\":-1,\"py\":0}", PROBLEM_VALIDATION, "/px" },
-        { "{\"type\":\"query\",\"what\":\"weather\"}", PROBLEM_VALIDATION, "/what" },
+        { "{\"type\":\"surface\",\"region\":\"liver\"}", PROBLEM_NOT_FOUND, "/region" },
+        { "{\"type\":\"surface\",\"region\":\"brain\",\"algorithm\":\"magic\"}", PROBLEM_VALIDATION, "/algorithm" },
+        { "{\"type\":\"surface\",\"region\":\"brain\",\"format\":\"obj\"}", PROBLEM_VALIDATION, "/format" },
     };
     struct world world;
     struct reply reply = { 0 };
@@ -261,9 +251,7 @@ static void tell_scene(struct world *world, int room)
         snprintf(text, sizeof text,
                  "{\"type\":\"scene\",\"room\":\"r%d\",\"revision\":%d,\"scene\":{\"surface\":{\"normals\":\"face\"}}}",
                  room, room);
-    cJSON *packet = parse(text);
-    WORLD_UNTIL(world, fleet_tell(world->fleet, PLAN, packet)); /* waits while too much is on the way */
-    cJSON_Delete(packet);
+    WORLD_UNTIL(world, world_tell(world, PLAN, parse(text))); /* waits while too much is on the way */
 }
 
 static void draw_room(struct world *world, int room, struct reply *reply)
@@ -288,9 +276,8 @@ static void a_scene_is_kept_for_as_many_rooms_as_a_daemon_may_have_and_no_more(v
     assert_int_equal(json_number(reply.json, "scene_revision", 0), SCENE_MAX_ROOMS);
     draw_room(&world, SCENE_MAX_ROOMS + 1, &reply);
     assert_int_equal(reply.problem.type, PROBLEM_NOT_FOUND);
-    cJSON *packet = parse("{\"type\":\"forget\",\"room\":\"r1\"}"); /* a room that is gone makes place for another */
-    assert_true(fleet_tell(world.fleet, PLAN, packet));
-    cJSON_Delete(packet);
+    /* a room that is gone makes place for another */
+    assert_true(world_tell(&world, PLAN, parse("{\"type\":\"forget\",\"room\":\"r1\"}")));
     tell_scene(&world, SCENE_MAX_ROOMS + 1);
     draw_room(&world, SCENE_MAX_ROOMS + 1, &reply);
     assert_frame(&reply, 64, 48);
@@ -412,7 +399,7 @@ static void with_gl_a_frame_of_the_demo_plan_comes_and_comes_again(void **state)
     world_open_plan(&world, PLAN);
     world_wait_for_state(&world, PLAN, FLEET_READY);
     int64_t ready_us = clock_now_us();
-    ask(&world, "{\"type\":\"render\",\"detail\":\"light\",\"view\":{\"size_px\":[1024,768]}}", &reply);
+    ask(&world, "{\"type\":\"render\",\"detail\":\"coarse\",\"view\":{\"size_px\":[1024,768]}}", &reply);
     int64_t drawn_us = clock_now_us();
     assert_frame(&reply, 1024, 768);
     assert_true(json_number(reply.json, "n_triangles", 0) > 1000);
@@ -424,7 +411,7 @@ static void with_gl_a_frame_of_the_demo_plan_comes_and_comes_again(void **state)
     for (int64_t until_us = clock_now_us() + 1500000; clock_now_us() < until_us;)
         world_step(&world);
     drawn_us = clock_now_us();
-    ask(&world, "{\"type\":\"render\",\"detail\":\"light\",\"view\":{\"size_px\":[1024,768]}}", &reply);
+    ask(&world, "{\"type\":\"render\",\"detail\":\"coarse\",\"view\":{\"size_px\":[1024,768]}}", &reply);
     printf("the next %.0f ms, ", (double)(clock_now_us() - drawn_us) / 1000);
     printf("resident %.0f MB; %s\n", (double)world_plan_of(&world, PLAN).memory_bytes / 1e6,
            world_plan_of(&world, PLAN).confined);
@@ -432,7 +419,7 @@ static void with_gl_a_frame_of_the_demo_plan_comes_and_comes_again(void **state)
     kill(world_plan_of(&world, PLAN).pid, SIGKILL);
     world_wait_for_state(&world, PLAN, FLEET_RESTARTING);
     int64_t killed_us = clock_now_us();
-    ask(&world, "{\"type\":\"render\",\"detail\":\"light\",\"view\":{\"size_px\":[1024,768]}}", &reply);
+    ask(&world, "{\"type\":\"render\",\"detail\":\"coarse\",\"view\":{\"size_px\":[1024,768]}}", &reply);
     assert_frame(&reply, 1024, 768);
     printf("picture %.0f ms after a kill\n", (double)(clock_now_us() - killed_us) / 1000);
     reply_finish(&reply);

@@ -1,0 +1,234 @@
+/* Pictures from the render packet to the frame packet. */
+#include "server/renderer/pictures.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "core/render/visible/visible.h"
+#include "server/wire/document.h"
+
+enum { WARM_UP_PX = 64, MAX_REQUESTS = 2 * PIPELINE_MAX_WAITING };
+#define WARM_UP_ID UINT64_MAX       /* never the id of a packet, so its picture is dropped */
+#define NO_REQUEST (UINT64_MAX - 1) /* likewise */
+
+struct picture_request {
+    _Atomic uint64_t id; /* of the render packet; NO_REQUEST: free. Written by the main thread alone; the thread that
+                            builds the shapes reads whether the picture is still wanted */
+    uint32_t scene_revision;
+    struct snapshot *snapshot; /* a reference */
+    enum surface_detail detail;
+};
+
+struct pictures {
+    struct pictures_options options;
+    struct picture_request requests[MAX_REQUESTS]; /* not answered yet */
+    struct built_shapes *built_shapes;
+    struct problem gl_problem; /* when graphics did not start */
+};
+
+struct pictures *pictures_create(const struct pictures_options *options)
+{
+    struct pictures *pictures = mem_new(sizeof *pictures);
+    pictures->options = *options;
+    for (size_t i = 0; i < MAX_REQUESTS; i++)
+        atomic_init(&pictures->requests[i].id, NO_REQUEST);
+    pictures->built_shapes = built_shapes_create();
+    return pictures;
+}
+
+void pictures_destroy(struct pictures *pictures)
+{
+    if (!pictures)
+        return;
+    built_shapes_destroy(pictures->built_shapes);
+    for (size_t i = 0; i < MAX_REQUESTS; i++)
+        snapshot_unref(pictures->requests[i].snapshot);
+    free(pictures);
+}
+
+void pictures_refuse_all(struct pictures *pictures, const struct problem *problem)
+{
+    pictures->gl_problem = *problem;
+}
+
+/* ---- requests --------------------------------------------------------------------------------------------------- */
+
+static void refuse_busy(const struct pictures *pictures, int64_t id)
+{
+    struct problem problem;
+    problem_set(&problem, PROBLEM_BUSY, "", "", "too many pictures wait to be drawn");
+    problem.retry_after_ms = 200;
+    link_send_problem(pictures->options.link, id, &problem);
+}
+
+static void end_request(struct picture_request *request)
+{
+    atomic_store(&request->id, NO_REQUEST);
+    snapshot_unref(request->snapshot);
+    request->snapshot = NULL;
+}
+
+static struct picture_request *find_request(struct pictures *pictures, uint64_t id)
+{
+    for (size_t i = 0; i < MAX_REQUESTS; i++)
+        if (atomic_load(&pictures->requests[i].id) == id)
+            return &pictures->requests[i];
+    return NULL;
+}
+
+void pictures_drop(struct pictures *pictures, int64_t id)
+{
+    struct picture_request *request = find_request(pictures, (uint64_t)id);
+    if (!request)
+        return;
+    end_request(request);
+    pipeline_drop(pictures->options.pipeline, (uint64_t)id);
+}
+
+static void submit(struct pictures *pictures, struct waiting_request *waiting)
+{
+    struct error err = { 0 };
+    struct pipeline_request drawn = waiting->request;
+    struct picture_request *request = find_request(pictures, drawn.id);
+    if (request)
+        snapshot_ref(drawn.snapshot);
+    waiting_request_destroy(waiting);
+    if (!request || pipeline_submit(pictures->options.pipeline, &drawn, &err)) /* none: dropped meanwhile */
+        return;
+    end_request(request);
+    refuse_busy(pictures, (int64_t)drawn.id);
+}
+
+void pictures_shapes_built(struct pictures *pictures, struct waiting_request *waiting)
+{
+    if (waiting->is_built)
+        built_shapes_add(pictures->built_shapes, waiting);
+    submit(pictures, waiting);
+}
+
+/* Whose turn a picture takes. Two sources with the same number would share one: nothing worse. FNV-1a, 64 bits */
+static uint64_t source_number(const char *source)
+{
+    uint64_t number = UINT64_C(14695981039346656037);
+    for (; *source; source++)
+        number = (number ^ (uint8_t)*source) * UINT64_C(1099511628211);
+    return number;
+}
+
+void pictures_start(struct pictures *pictures, const struct packet_render *render)
+{
+    struct problem problem;
+    uint32_t scene_revision;
+    if (pictures->gl_problem.type != PROBLEM_NONE) {
+        link_send_problem(pictures->options.link, render->id, &pictures->gl_problem);
+        return;
+    }
+    struct snapshot *snapshot = scenes_snapshot(pictures->options.scenes, &render->shown, &scene_revision, &problem);
+    if (!snapshot) {
+        link_send_problem(pictures->options.link, render->id, &problem);
+        return;
+    }
+    int width = (int)lround(snapshot->view.size_px[0] * render->scale_percent / 100),
+        height = (int)lround(snapshot->view.size_px[1] * render->scale_percent / 100);
+    bool is_coarse = render->detail == PACKET_DETAIL_COARSE, is_png = render->codec == PACKET_CODEC_PNG;
+    struct pipeline_request drawn = {
+        .id = (uint64_t)render->id,
+        .source = source_number(render->source),
+        .snapshot = snapshot,
+        .render = { width > 1 ? width : 1, height > 1 ? height : 1, is_coarse ? SURFACE_COARSE : SURFACE_FULL,
+                    render->still },
+        .encode = { is_png ? ENCODE_PNG : ENCODE_JPEG, (int)render->quality, render->full_color },
+    };
+    struct picture_request *request = find_request(pictures, NO_REQUEST);
+    if (!request) {
+        snapshot_unref(snapshot);
+        refuse_busy(pictures, render->id);
+        return;
+    }
+    request->scene_revision = scene_revision;
+    request->snapshot = snapshot_ref(snapshot);
+    request->detail = drawn.render.detail;
+    atomic_store(&request->id, drawn.id);
+    struct waiting_request *waiting = waiting_request_create(&drawn);
+    waiting->wanted = &request->id;
+    if (built_shapes_has_all(pictures->built_shapes, waiting) ||
+        !loader_build_shapes(pictures->options.loader, waiting))
+        submit(pictures, waiting);
+}
+
+void pictures_warm_up(struct pictures *pictures)
+{
+    struct problem problem;
+    uint32_t scene_revision;
+    if (pictures->gl_problem.type != PROBLEM_NONE)
+        return;
+    cJSON *view = cJSON_CreateObject(), *size = cJSON_AddArrayToObject(view, "size_px");
+    for (int i = 0; i < 2; i++)
+        cJSON_AddItemToArray(size, cJSON_CreateNumber(WARM_UP_PX));
+    const struct packet_snapshot shown = { .view = view }; /* of the plan's own scene */
+    struct pipeline_request drawn = {
+        .id = WARM_UP_ID,
+        .snapshot = scenes_snapshot(pictures->options.scenes, &shown, &scene_revision, &problem),
+        .render = { WARM_UP_PX, WARM_UP_PX, SURFACE_COARSE, false },
+        .encode = { ENCODE_JPEG, 50, false },
+    };
+    cJSON_Delete(view);
+    struct error err = { 0 };
+    if (drawn.snapshot && !pipeline_submit(pictures->options.pipeline, &drawn, &err))
+        log_warn("nothing could be drawn ahead: %s", err.text);
+}
+
+/* ---- frames ----------------------------------------------------------------------------------------------------- */
+
+/* {n, regions: [{region, reason}]}; NULL: nothing is missing. */
+static cJSON *missing_of(const struct picture_request *request)
+{
+    struct visible_missing missing[VISIBLE_MAX_MISSING];
+    size_t n = visible_missing(request->snapshot, request->detail, missing);
+    if (n == 0)
+        return NULL;
+    cJSON *json = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(json, "regions");
+    cJSON_AddNumberToObject(json, "n", (double)n);
+    for (size_t i = 0; i < n && i < VISIBLE_MAX_MISSING; i++) {
+        cJSON *region = cJSON_CreateObject();
+        cJSON_AddStringToObject(region, "region", subject_id(request->snapshot->plan, missing[i].subject));
+        cJSON_AddStringToObject(region, "reason", missing[i].why.text);
+        cJSON_AddItemToArray(list, region);
+    }
+    return json;
+}
+
+void pictures_send_frame(struct pictures *pictures, const struct pipeline_frame *frame)
+{
+    struct picture_request *request = find_request(pictures, frame->id);
+    if (!request)
+        return;
+    if (frame->error.code != ERROR_NONE) {
+        end_request(request);
+        struct problem problem;
+        problem_from_error(&problem, &frame->error);
+        link_send_problem(pictures->options.link, (int64_t)frame->id, &problem);
+        return;
+    }
+    cJSON *missing = missing_of(request);
+    struct packet packet;
+    packet_init(&packet, PACKET_FRAME);
+    struct packet_frame *fields = &packet.frame;
+    fields->id = (int64_t)frame->id;
+    fields->width_px = frame->width_px;
+    fields->height_px = frame->height_px;
+    fields->scene_revision = request->scene_revision;
+    fields->render_us = (int64_t)(frame->timing.draw_us + frame->timing.read_us);
+    fields->encode_us = frame->encode_us;
+    fields->pixels_per_mm = frame->camera.pixels_per_mm;
+    for (int i = 0; i < 16; i++)
+        fields->clip_from_lps_mm[i] = (float)frame->camera.clip_from_lps_mm.m[i];
+    fields->is_coarse = frame->timing.is_coarse;
+    fields->n_triangles = (int64_t)frame->timing.n_triangles;
+    fields->missing = missing;
+    end_request(request);
+    link_send(pictures->options.link, &packet, frame->picture.bytes, frame->picture.n_bytes);
+    cJSON_Delete(missing);
+}
