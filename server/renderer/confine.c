@@ -1,3 +1,4 @@
+/* Landlock rules, resource limits and capabilities of a renderer process. */
 #define _GNU_SOURCE
 #include "server/renderer/confine.h"
 
@@ -17,8 +18,8 @@
 
 #include "server/renderer/seccomp.h"
 
-/* Rights that came after the first Landlock; older headers lack the names. Kernel documentation,
- * userspace-api/landlock. */
+/* Rights added after Landlock version 1, with the version; older kernel headers lack the names. Source: kernel
+ * documentation, userspace-api/landlock. */
 #define FS_REFER (UINT64_C(1) << 13)     /* 2 */
 #define FS_TRUNCATE (UINT64_C(1) << 14)  /* 3 */
 #define FS_IOCTL_DEV (UINT64_C(1) << 15) /* 5 */
@@ -36,11 +37,11 @@ struct ruleset { /* struct landlock_ruleset_attr of the newest kernels */
     uint64_t fs, net, scoped;
 };
 
-static const struct place {
+static const struct allowed_path {
     const char *path;
     uint64_t rights;
-    bool is_gpu;
-} places[] = {
+    bool is_gpu; /* only with needs_gpu */
+} allowed_paths[] = {
     { "/usr", FS_RUN, false },
     { "/lib", FS_RUN, false },
     { "/lib64", FS_RUN, false },
@@ -74,7 +75,7 @@ static const struct place {
     { "/dev/kfd", FS_DEVICE, true },
 };
 
-/* What a rule on a file (not a folder) may carry. */
+/* The rights that a rule on a file, not a folder, may have. */
 #define FS_OF_FILES \
     (LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_READ_FILE | FS_TRUNCATE | \
      FS_IOCTL_DEV)
@@ -92,7 +93,7 @@ static void allow(int rules, const char *path, uint64_t rights)
     close(file);
 }
 
-/* The version in force, or -1 with errno. */
+/* Returns the Landlock version in force, or -1 with errno. */
 static long restrict_files(const struct confine_options *options)
 {
     long version = syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION);
@@ -100,14 +101,14 @@ static long restrict_files(const struct confine_options *options)
         return -1;
     uint64_t known =
         FS_FIRST | (version >= 2 ? FS_REFER : 0) | (version >= 3 ? FS_TRUNCATE : 0) | (version >= 5 ? FS_IOCTL_DEV : 0);
-    struct ruleset asked = { known, version >= 4 ? NET_ALL : 0, version >= 6 ? SCOPE_ALL : 0 };
-    size_t size = version >= 6 ? sizeof asked : version >= 4 ? 2 * sizeof asked.fs : sizeof asked.fs;
-    int rules = (int)syscall(SYS_landlock_create_ruleset, &asked, size, 0);
+    struct ruleset attributes = { known, version >= 4 ? NET_ALL : 0, version >= 6 ? SCOPE_ALL : 0 };
+    size_t size = version >= 6 ? sizeof attributes : version >= 4 ? 2 * sizeof attributes.fs : sizeof attributes.fs;
+    int rules = (int)syscall(SYS_landlock_create_ruleset, &attributes, size, 0);
     if (rules < 0)
         return -1;
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++)
-        if (!places[i].is_gpu || options->needs_gpu)
-            allow(rules, places[i].path, places[i].rights & known);
+    for (size_t i = 0; i < sizeof allowed_paths / sizeof *allowed_paths; i++)
+        if (!allowed_paths[i].is_gpu || options->needs_gpu)
+            allow(rules, allowed_paths[i].path, allowed_paths[i].rights & known);
     for (int i = 0; options->needs_gpu && i < 16; i++) {
         char path[32];
         (void)snprintf(path, sizeof path, "/dev/nvidia%d", i);
@@ -126,9 +127,8 @@ static long restrict_files(const struct confine_options *options)
     return failed ? -1 : version;
 }
 
-/* Everything root may do beyond its own files: gone for this process and for whatever it would start. True when nothing
- * is left. The bounding set can be lowered only by a process that has capabilities; for another one it bounds what it
- * cannot get. */
+/* Drops all capabilities, for this process and every program it could start. True when none is left. Only a process
+ * with CAP_SETPCAP can lower its bounding set; without capabilities the bounding set does not matter. */
 static bool drop_capabilities(void)
 {
     struct __user_cap_header_struct header = { .version = _LINUX_CAPABILITY_VERSION_3, .pid = 0 };
@@ -158,13 +158,13 @@ void confine(const struct confine_options *options, char got[128])
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, 1024);
     if (options->max_file_bytes > 0) {
-        (void)signal(SIGXFSZ, SIG_IGN); /* the write fails with EFBIG, and whoever writes can say so */
+        (void)signal(SIGXFSZ, SIG_IGN); /* the write fails with EFBIG instead, which the caller reports */
         limit(RLIMIT_FSIZE, (rlim_t)options->max_file_bytes);
     }
     if (options->cpu_seconds > 0)
         limit(RLIMIT_CPU, (rlim_t)options->cpu_seconds);
-    if (!SECCOMP_IS_RELAXED) { /* a sanitizer maps terabytes, and looks at its own process from outside */
-        /* of its own writable memory, not of addresses: a graphics driver reserves far more of those than it uses */
+    if (!SECCOMP_IS_RELAXED) { /* sanitizers map terabytes, and trace their own process */
+        /* RLIMIT_DATA, not RLIMIT_AS: graphics drivers reserve far more address space than they use */
         if (options->max_bytes > 0)
             limit(RLIMIT_DATA, (rlim_t)options->max_bytes);
         (void)prctl(PR_SET_DUMPABLE, 0, 0, 0, 0);

@@ -1,3 +1,4 @@
+/* The filter program: the list of allowed calls, and rules for calls that are allowed with some arguments. */
 #define _GNU_SOURCE
 #include "server/renderer/seccomp.h"
 
@@ -22,10 +23,9 @@
 
 #ifdef OUR_ARCH
 
-/* Calls that are allowed whatever their arguments are. The kernel remembers these (Linux 5.11 and later) and does not
- * run the filter for them. Everything that is neither here nor among the rules of add_rules is refused. Landlock
- * decides which files the calls on files reach. Each call here acts on the process itself, on its own open files, or on
- * files that Landlock guards. */
+/* Calls that are allowed with any arguments. Linux 5.11 and later caches these and does not run the filter for them.
+ * Every call that is neither here nor in a rule of add_rules is refused. Each of these calls acts on the process
+ * itself, on its open files, or on files that Landlock restricts. */
 static const int allowed[] = {
     /* open files */
     SYS_read,
@@ -64,7 +64,7 @@ static const int allowed[] = {
     SYS_timerfd_gettime,
     SYS_recvfrom,
     SYS_shutdown,
-    /* names of files; not their modes, owners, times, attributes, links */
+    /* paths; not modes, owners, times, attributes or links of files */
     SYS_newfstatat,
     SYS_fstat,
     SYS_statx,
@@ -96,7 +96,7 @@ static const int allowed[] = {
     SYS_mbind,
     SYS_get_mempolicy,
     SYS_set_mempolicy,
-    /* threads, signals and time of its own */
+    /* the own threads and signals, and time */
     SYS_futex,
     SYS_set_robust_list,
     SYS_set_tid_address,
@@ -129,7 +129,7 @@ static const int allowed[] = {
     SYS_timer_settime,
     SYS_timer_gettime,
     SYS_timer_delete,
-    /* what it is and where it runs */
+    /* facts about the process and the machine */
     SYS_getpid,
     SYS_gettid,
     SYS_getppid,
@@ -151,7 +151,7 @@ static const int allowed[] = {
 #ifdef SYS_futex_waitv
     SYS_futex_waitv,
 #endif
-#ifdef __x86_64__ /* the same under the names of before; other machines never had them */
+#ifdef __x86_64__ /* older forms of the calls above, which only x86-64 has */
     SYS_stat,
     SYS_lstat,
     SYS_access,
@@ -202,7 +202,7 @@ enum {
 
 #define NEW_NAMESPACES \
     (CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET)
-#define SET_VMA 0x53564d41 /* PR_SET_VMA: names a mapping of its own */
+#define SET_VMA 0x53564d41 /* PR_SET_VMA: names one of its own mappings */
 
 struct program {
     struct sock_filter steps[MAX_STEPS];
@@ -219,17 +219,17 @@ static void load(struct program *program, size_t offset)
 {
     add(program, BPF_LD | BPF_W | BPF_ABS, (uint32_t)offset, 0, 0);
 }
-static void give(struct program *program, uint32_t verdict)
+static void end_with(struct program *program, uint32_t verdict)
 {
     add(program, BPF_RET | BPF_K, verdict, 0, 0);
 }
 static void allow(struct program *program)
 {
-    give(program, SECCOMP_RET_ALLOW);
+    end_with(program, SECCOMP_RET_ALLOW);
 }
 static void refuse(struct program *program, uint32_t reason)
 {
-    give(program, SECCOMP_RET_ERRNO | reason);
+    end_with(program, SECCOMP_RET_ERRNO | reason);
 }
 
 static void allow_if(struct program *program, uint32_t value)
@@ -255,8 +255,7 @@ static void keep_bits(struct program *program, uint32_t bits)
     add(program, BPF_ALU | BPF_AND | BPF_K, bits, 0, 0);
 }
 
-/* An argument's low half (both machines are little-endian), which is all the kernel looks at where the argument is an
- * int. */
+/* Loads the low 32 bits of argument i (both machines are little-endian): all that the kernel reads of an int. */
 static void load_argument(struct program *program, int i)
 {
     load(program, offsetof(struct seccomp_data, args) + (size_t)i * sizeof(uint64_t));
@@ -266,7 +265,7 @@ static void load_high_half(struct program *program, int i)
     load(program, offsetof(struct seccomp_data, args) + (size_t)i * sizeof(uint64_t) + 4);
 }
 
-/* What is added between these two is for one call alone, and decides. */
+/* The steps between begin_rule and end_rule run for one call only, and decide on it. */
 static unsigned short begin_rule(struct program *program, uint32_t number)
 {
     add(program, BPF_JMP | BPF_JEQ | BPF_K, number, 0, 0);
@@ -279,8 +278,8 @@ static void end_rule(struct program *program, unsigned short body)
         program->steps[body - 1].jf = (uint8_t)(program->n - body);
 }
 
-/* Cutting a file short asks for no right of Landlock's before its version 3, and opening with both bits of the access
- * mode set asks for none at all: such flags are refused. */
+/* Refuses O_TRUNC without write access, for which Landlock before version 3 needs no right, and both bits of the access
+ * mode together, for which no version needs one. */
 static void add_open_rule(struct program *program, uint32_t number, int flags_at)
 {
     unsigned short body = begin_rule(program, number);
@@ -293,7 +292,8 @@ static void add_open_rule(struct program *program, uint32_t number, int flags_at
     end_rule(program, body);
 }
 
-/* Not the owner, signal or lease of a file: by these the kernel sends signals to other processes and stops them. */
+/* Allows fcntl, but not the owner, signal and lease of a file: with these the kernel sends signals to other processes
+ * and stops them. */
 static void add_fcntl_rule(struct program *program)
 {
     static const uint32_t commands[] = { F_DUPFD,     F_DUPFD_CLOEXEC, F_GETFD,      F_SETFD,
@@ -308,17 +308,18 @@ static void add_fcntl_rule(struct program *program)
     end_rule(program, body);
 }
 
-/* Requests carry their kind in the second byte. Of those of terminals a few that ask; none of file systems, disks and
- * sockets, whose requests change attributes of files, type keys into the terminal and name receivers of signals; the
- * rest is for drivers of graphics cards alone, whose device files are the only ones that can be opened. */
+/* The second byte of an ioctl request is its kind. Always allowed are a few requests that only read or set
+ * flags of the descriptor. Refused are those of terminals, file systems, disks and sockets, which change attributes of
+ * files, type into terminals or choose receivers of signals. All others are for graphics drivers, whose device files
+ * are the only ones that can be opened. */
 static void add_ioctl_rule(struct program *program, bool has_gpu)
 {
-    static const uint32_t asking[] = { TCGETS, TIOCGWINSZ, FIONREAD, FIONBIO, FIOCLEX, FIONCLEX };
+    static const uint32_t plain_requests[] = { TCGETS, TIOCGWINSZ, FIONREAD, FIONBIO, FIOCLEX, FIONCLEX };
     static const uint32_t other_kinds[] = { 'T', 'f', 'v', 'X', 0x12, 0x89, 0x94 };
     unsigned short body = begin_rule(program, SYS_ioctl);
     load_argument(program, 1);
-    for (size_t i = 0; i < sizeof asking / sizeof *asking; i++)
-        allow_if(program, asking[i]);
+    for (size_t i = 0; i < sizeof plain_requests / sizeof *plain_requests; i++)
+        allow_if(program, plain_requests[i]);
     keep_bits(program, 0xff00);
     for (size_t i = 0; i < sizeof other_kinds / sizeof *other_kinds && has_gpu; i++)
         refuse_if(program, other_kinds[i] << 8, EPERM);
@@ -329,14 +330,14 @@ static void add_ioctl_rule(struct program *program, bool has_gpu)
     end_rule(program, body);
 }
 
-/* Threads, but no processes and no namespaces; limits and signals for itself alone. */
+/* Allows threads, but no processes and no namespaces; limits and signals only for the process itself. */
 static void add_process_rules(struct program *program)
 {
     static const uint32_t options[] = { PR_SET_NAME, PR_GET_NAME, PR_GET_DUMPABLE, PR_GET_NO_NEW_PRIVS, SET_VMA };
     unsigned short body;
     if (!SECCOMP_IS_RELAXED) {
         refuse_if(program, SYS_clone3,
-                  ENOSYS); /* its flags are in memory, where no filter sees them; libc then takes clone */
+                  ENOSYS); /* its flags are in memory, where no filter sees them; libc falls back to clone */
         body = begin_rule(program, SYS_clone);
         load_argument(program, 0);
         refuse_if_any_bit(program, NEW_NAMESPACES);
@@ -352,7 +353,7 @@ static void add_process_rules(struct program *program)
         refuse(program, EPERM);
         end_rule(program, body);
     }
-    /* libc sets and asks for limits by the first; abort sends its signal by the second */
+    /* libc reads and sets limits with prlimit64; abort sends its signal with tgkill */
     static const uint32_t of_a_process[] = { SYS_prlimit64, SYS_tgkill };
     for (size_t i = 0; i < 2; i++) {
         body = begin_rule(program, of_a_process[i]);
@@ -372,11 +373,12 @@ static void add_rules(struct program *program, const struct seccomp_options *opt
     add_open_rule(program, SYS_open, 1);
 #endif
     refuse_if(program, SYS_openat2,
-              ENOSYS); /* its flags are in memory, where no filter sees them; folder.c does without it */
+              ENOSYS); /* its flags are in memory, where no filter sees them; folder.c falls back to openat */
     add_fcntl_rule(program);
     add_ioctl_rule(program, options->has_gpu);
     add_process_rules(program);
-    /* to the other end alone: a datagram may name any receiver of this machine, and sendmsg names it in memory */
+    /* sendto only without an address: a datagram could go to any socket of the machine. sendmsg is refused: its address
+     * is in memory, where no filter sees it */
     unsigned short body = begin_rule(program, SYS_sendto);
     load_argument(program, 4);
     add(program, BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0);
@@ -392,13 +394,13 @@ bool seccomp_restrict(const struct seccomp_options *options)
     struct program program = { .n = 0 };
     load(&program, offsetof(struct seccomp_data, arch));
     add(&program, BPF_JMP | BPF_JEQ | BPF_K, OUR_ARCH, 1, 0);
-    give(&program, SECCOMP_RET_KILL_PROCESS);
+    end_with(&program, SECCOMP_RET_KILL_PROCESS);
     load(&program, offsetof(struct seccomp_data, nr));
     for (int i = 0; i < N_ALLOWED; i++)
         allow_if(&program, (uint32_t)allowed[i]);
     add_rules(&program, options);
-    /* EPERM is a plain refusal. For a call that is newer than this list it is ENOSYS: libraries then take the older
-     * one. That holds for the numbers of x32, too, which begin at 0x40000000. */
+    /* Refused calls fail with EPERM. Calls newer than this list fail with ENOSYS, so that libraries fall back to older
+     * ones; so do the calls of x32, whose numbers begin at 0x40000000. */
     add(&program, BPF_JMP | BPF_JGT | BPF_K, NEWEST_KNOWN, 0, 1);
     refuse(&program, ENOSYS);
     refuse(&program, EPERM);
@@ -408,8 +410,7 @@ bool seccomp_restrict(const struct seccomp_options *options)
 }
 
 #else
-bool seccomp_restrict(
-    const struct seccomp_options *options) /* the numbers of this machine's calls are not written down here */
+bool seccomp_restrict(const struct seccomp_options *options) /* this file has no call numbers for this architecture */
 {
     (void)options;
     return false;

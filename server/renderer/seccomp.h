@@ -1,7 +1,6 @@
 #pragma once
-/* The filter on system calls, a list of what is allowed: the process's own files, memory and threads. No sockets, no
- * other programs, no looking into other processes, none of the calls that change modes, owners, times or links of
- * files. */
+/* The filter on system calls. Allowed are calls on the process's own open files, memory and threads. Refused are
+ * sockets, other programs, access to other processes, and changes of modes, owners, times or links of files. */
 #include <stdbool.h>
 
 #if defined(__has_feature)
@@ -18,8 +17,9 @@
 #endif
 
 struct seccomp_options {
-    bool has_gpu; /* requests to device files of graphics drivers are allowed */
+    bool has_gpu; /* ioctl on device files of graphics drivers is allowed */
 };
 
-/* For this thread and those it will start; PR_SET_NO_NEW_PRIVS must be set. False where the kernel has no filters. */
+/* Installs the filter for this thread and the threads it starts. Needs PR_SET_NO_NEW_PRIVS. False when the kernel has
+ * no filters. */
 bool seccomp_restrict(const struct seccomp_options *options);

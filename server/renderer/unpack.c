@@ -1,3 +1,4 @@
+/* Walks the entries of an archive, checks each and writes it. */
 #define _GNU_SOURCE
 #include "server/renderer/unpack.h"
 
@@ -18,7 +19,7 @@
 #include "server/renderer/unpack_source.h"
 #include "server/renderer/unpack_write.h"
 
-enum { HEADER_BYTES = 2048 }; /* of a tar, around each entry */
+enum { HEADER_BYTES = 2048 }; /* headers and padding of one tar entry, at most */
 
 struct unpacker {
     const struct unpack_options *options;
@@ -28,14 +29,14 @@ struct unpacker {
     struct unpack_names names;
     struct unpack_result result;
     struct problem problem;
-    uint64_t most;   /* bytes of all entries together */
-    uint64_t n_read; /* of them, litter too */
+    uint64_t most;   /* limit of the bytes of all entries together */
+    uint64_t n_read; /* bytes of entries so far, litter included */
     uint32_t n_entries;
-    int64_t entry_at;           /* of a tar: where the last one begins */
-    char top[FOLDER_NAME_SIZE]; /* the first part of every name so far */
+    int64_t entry_at;           /* of a tar: offset of the current entry */
+    char top[FOLDER_NAME_SIZE]; /* first part of the first name */
     bool has_one_top, is_top_folder;
-    char last_parent[FOLDER_NAME_SIZE]; /* whose folders are all made */
-    int64_t start_cpu_ms, told_us;
+    char last_parent[FOLDER_NAME_SIZE]; /* a folder that exists with all above it */
+    int64_t start_cpu_ms, reported_us;
     double percent;
 };
 
@@ -50,20 +51,20 @@ static int64_t cpu_ms(void)
     return clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now) == 0 ? (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000 : 0;
 }
 
-static void tell(struct unpacker *unpacker)
+static void report_progress(struct unpacker *unpacker)
 {
     int64_t now_us = clock_now_us();
-    if (!unpacker->options->progress || now_us - unpacker->told_us < (int64_t)UNPACK_PERCENT_MS * 1000 ||
+    if (!unpacker->options->progress || now_us - unpacker->reported_us < (int64_t)UNPACK_PERCENT_MS * 1000 ||
         unpacker->source.n_bytes == 0)
         return;
-    /* a zip's directory stands at its end and is read first: what counts is how much was read */
+    /* a zip's directory is at its end and is read first, so the offset says nothing: count the bytes read */
     double percent = 100.0 * (double)unpacker->source.n_read / (double)unpacker->source.n_bytes;
-    unpacker->told_us = now_us;
+    unpacker->reported_us = now_us;
     unpacker->percent = percent < 100.0 ? percent : 100.0;
     unpacker->options->progress(unpacker->options->context, unpacker->percent);
 }
 
-/* Asked at every block. */
+/* Called at every block: false with source.problem when cancelled or out of processor time. */
 static bool goes_on(void *context)
 {
     struct unpacker *unpacker = context;
@@ -77,12 +78,12 @@ static bool goes_on(void *context)
             problem, PROBLEM_TIMEOUT, "", "",
             "unpacking %llu bytes took more than %llu s of processor time; no honest archive needs as much",
             (unsigned long long)unpacker->n_read, (unsigned long long)seconds);
-    tell(unpacker);
+    report_progress(unpacker);
     return true;
 }
 
-/* Right after a call of the library failed. It says so of some allocations; others it takes for a kind of archive that
- * it does not know, or for damage, and leaves only errno. */
+/* To be called right after a call of libarchive failed. It reports some failed allocations; others it takes for an
+ * unknown kind of archive, or for damage, and leaves only errno. */
 static bool lacks_memory(const struct unpacker *unpacker)
 {
     return errno == ENOMEM || archive_errno(unpacker->archive) == ENOMEM;
@@ -93,7 +94,7 @@ static bool refuse_memory(struct unpacker *unpacker)
     return problem_set(&unpacker->problem, PROBLEM_INTERNAL, "", "", "no memory to read the archive");
 }
 
-/* What the library found wrong, or the source did. */
+/* Refuses with what the source or libarchive found wrong. */
 static bool refuse_damaged(struct unpacker *unpacker, const char *name)
 {
     if (unpacker->source.problem.type != PROBLEM_NONE) {
@@ -103,9 +104,9 @@ static bool refuse_damaged(struct unpacker *unpacker, const char *name)
     if (lacks_memory(unpacker))
         return refuse_memory(unpacker);
     char shown[UNPACK_SHOWN_SIZE], words[UNPACK_SHOWN_SIZE];
-    const char *said = archive_error_string(unpacker->archive);
+    const char *message = archive_error_string(unpacker->archive);
     unpack_show(name, shown);
-    unpack_show(said ? said : "it cannot be read", words);
+    unpack_show(message ? message : "it cannot be read", words);
     if (*shown)
         return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
                            "entry \"%s\": damaged: %s; expected is an archive that is whole", shown, words);
@@ -121,22 +122,22 @@ static bool is_tar(const struct unpacker *unpacker)
     return (archive_format(unpacker->archive) & ARCHIVE_FORMAT_BASE_MASK) == ARCHIVE_FORMAT_TAR;
 }
 
-/* A sentence about an entry names it; here comes which it is, as names may be there twice, be cut or look like others.
- */
+/* Adds the number of the entry, and in a tar its offset, to a sentence about it: names may occur twice, be cut or look
+ * alike. */
 static void add_place(struct unpacker *unpacker)
 {
     static const char before[] = "entry \"", many[] = "more than";
     struct problem *problem = &unpacker->problem;
-    char said[sizeof problem->detail], place[64] = "";
+    char sentence[sizeof problem->detail], place[64] = "";
     bool names_it = strncmp(problem->detail, before, sizeof before - 1) == 0;
     if (unpacker->n_entries == 0 || (!names_it && strncmp(problem->detail, many, sizeof many - 1) != 0))
         return;
-    memcpy(said, problem->detail, sizeof said);
+    memcpy(sentence, problem->detail, sizeof sentence);
     if (is_tar(unpacker))
         (void)snprintf(place, sizeof place, " at byte %lld of the tar", (long long)unpacker->entry_at);
     (void)snprintf(problem->detail, sizeof problem->detail, "entry %lu%s%s%.*s", (unsigned long)unpacker->n_entries,
-                   place, names_it ? ", \"" : ": ", (int)(sizeof said - sizeof place),
-                   said + (names_it ? sizeof before - 1 : 0));
+                   place, names_it ? ", \"" : ": ", (int)(sizeof sentence - sizeof place),
+                   sentence + (names_it ? sizeof before - 1 : 0));
 }
 
 static bool refuse_no_file(struct unpacker *unpacker)
@@ -220,7 +221,7 @@ static bool check_kind(struct unpacker *unpacker, struct archive_entry *entry, c
     return true;
 }
 
-/* The folders above a name, made where they are not yet there. */
+/* Makes the missing folders of a path of n bytes. */
 static bool make_parents(struct unpacker *unpacker, const char *name, size_t n)
 {
     if (strlen(unpacker->last_parent) == n && memcmp(unpacker->last_parent, name, n) == 0)
@@ -267,7 +268,7 @@ static bool is_within(struct unpacker *unpacker, const char *name)
         shown, (unsigned long long)unpacker->most, (unsigned long long)unpacker->source.n_bytes, UNPACK_MAX_RATIO);
 }
 
-/* Reads the entry's data to their end; file -1: for their check sum alone. */
+/* Reads an entry's data to the end and writes them to file; file -1: only verifies their check sum. */
 static bool copy_data(struct unpacker *unpacker, struct archive_entry *entry, const char *name, int file,
                       uint64_t *n_bytes)
 {
@@ -319,7 +320,7 @@ static bool write_file(struct unpacker *unpacker, struct archive_entry *entry, c
     return is_done;
 }
 
-static bool take_entry(struct unpacker *unpacker, struct archive_entry *entry)
+static bool handle_entry(struct unpacker *unpacker, struct archive_entry *entry)
 {
     if (++unpacker->n_entries > UNPACK_MAX_ENTRIES)
         return problem_set(&unpacker->problem, PROBLEM_TOO_LARGE, "", "",
@@ -348,17 +349,17 @@ static bool take_entry(struct unpacker *unpacker, struct archive_entry *entry)
     return make_parents(unpacker, name, strlen(name));
 }
 
-/* A tar that is cut between two entries looks whole, but for the zeros it ends with. A zip may name the same bytes as
- * many files; the library takes the first. */
+/* Finds truncation and overlap that libarchive does not report. A tar cut between two entries lacks only the zeros at
+ * its end. A zip may list the same bytes as several files, of which libarchive gives the first. */
 static bool check_end(struct unpacker *unpacker)
 {
     static const uint8_t zeros[512];
-    uint32_t n_said;
-    if (!is_tar(unpacker) && unpack_source_zip_entries(&unpacker->source, &n_said) &&
-        n_said != (unpacker->n_entries & 0xffff)) /* older programs count on from 0 */
+    uint32_t n_listed;
+    if (!is_tar(unpacker) && unpack_source_zip_entries(&unpacker->source, &n_listed) &&
+        n_listed != (unpacker->n_entries & 0xffff)) /* older programs write the count modulo 65536 */
         return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
                            "the zip's directory says that it holds %lu entries; found are %lu that do not overlap",
-                           (unsigned long)n_said, (unsigned long)unpacker->n_entries);
+                           (unsigned long)n_listed, (unsigned long)unpacker->n_entries);
     bool is_bare = !unpacker->source.is_gzip && archive_filter_count(unpacker->archive) <= 1;
     uint64_t n_bytes = unpacker->source.n_bytes;
     if (is_tar(unpacker) && is_bare &&
@@ -388,7 +389,7 @@ static bool walk(struct unpacker *unpacker)
                 "compressed more than once, from byte 0 on; expected is a zip, or a tar as it is or within gzip, bzip2, xz or zstd");
         if (status == ARCHIVE_OK && !goes_on(unpacker))
             return refuse_damaged(unpacker, "");
-        if (status == ARCHIVE_OK && !take_entry(unpacker, entry))
+        if (status == ARCHIVE_OK && !handle_entry(unpacker, entry))
             return false;
     }
     if (status != ARCHIVE_EOF)
@@ -403,10 +404,10 @@ static bool walk(struct unpacker *unpacker)
            unpack_lift(&unpacker->writer, unpacker->top, &unpacker->problem);
 }
 
-/* What is not asked for here is not read: no other kind of archive, no other program to undo compression. */
+/* Enables the formats and filters that are read, and no others; none of them runs another program. */
 static bool choose_kinds(struct archive *archive)
 {
-    /* zips by the directory at their end alone: without it nothing tells a link from a file, and a cut zip from a whole
+    /* zips only by the directory at their end: without it a link cannot be told from a file, nor a cut zip from a whole
      * one */
     return archive_read_support_format_zip_seekable(archive) == ARCHIVE_OK &&
            archive_read_support_format_tar(archive) == ARCHIVE_OK &&
@@ -414,7 +415,7 @@ static bool choose_kinds(struct archive *archive)
            archive_read_support_filter_xz(archive) == ARCHIVE_OK &&
            archive_read_support_filter_zstd(archive) == ARCHIVE_OK &&
            archive_read_set_option(archive, "tar", "read_concatenated_archives", "1") ==
-               ARCHIVE_OK; /* to its end, so that all is checked */
+               ARCHIVE_OK; /* to the end of the file, so that all of it is checked */
 }
 
 static bool run(struct unpacker *unpacker, int archive, int folder)
@@ -456,10 +457,10 @@ bool unpack(int archive, int folder, const struct unpack_options *options, struc
         return problem_set(problem, PROBLEM_INTERNAL, "", "", "no memory to unpack");
     unpacker->options = options;
     unpacker->start_cpu_ms = cpu_ms();
-    unpacker->told_us = clock_now_us();
+    unpacker->reported_us = clock_now_us();
     unpack_writer_init(&unpacker->writer, folder);
-    /* the library turns names into the locale's bytes, and what is a capital letter is asked of it: UTF-8, for this
-     * thread alone */
+    /* libarchive converts names to the locale's encoding, and towlower depends on it: set UTF-8, for this thread only
+     */
     locale_t utf8 = newlocale(LC_CTYPE_MASK, "C.UTF-8", (locale_t)0), before = utf8 ? uselocale(utf8) : (locale_t)0;
     bool is_done = run(unpacker, archive, folder);
     if (utf8) {

@@ -1,3 +1,4 @@
+/* Rules and bookkeeping of entry names: UTF-8, safe names, a tree of names seen. */
 #define _GNU_SOURCE
 #include "server/renderer/unpack_name.h"
 
@@ -8,8 +9,9 @@
 #include <strings.h>
 #include <wctype.h>
 
-/* Length of the character of UTF-8 at the beginning of text (RFC 3629: shortest form, no surrogates), 0 when it is
- * none. */
+#include "server/renderer/unpack_limits.h"
+
+/* Bytes of the UTF-8 character at the start of text (RFC 3629: shortest form, no surrogates); 0 when it is invalid. */
 static size_t utf8_length(const char *text, uint32_t *code)
 {
     const unsigned char *byte = (const unsigned char *)text;
@@ -66,7 +68,7 @@ static bool refuse(struct problem *problem, const char *raw, const char *code, c
                        "entry \"%s\": %s; expected is a relative name below the archive's top", shown, found);
 }
 
-/* Copies with '/' for '\' and every foreign byte replaced. */
+/* Copies raw with '/' for '\' and "_XX" for every byte that is not UTF-8. */
 static bool make_safe(const char *raw, char safe[FOLDER_NAME_SIZE], struct problem *problem)
 {
     size_t n = 0;
@@ -150,11 +152,11 @@ bool unpack_is_litter(const char *name)
     return false;
 }
 
-/* ---- what has been before: a balanced tree, so that no choice of names makes it slow ---------------------------- */
+/* ---- names seen so far: a balanced tree, so that no choice of names makes it slow ------------------------------- */
 
 struct node {
     bool is_folder;
-    size_t name_at; /* text: the name in one case, and here as it is written */
+    size_t name_at; /* text holds the name in lower case, then, from name_at, as it is written */
     char text[];
 };
 
@@ -165,8 +167,8 @@ static int compare(const void *a, const void *b)
 
 enum { FOLDED_SIZE = 2 * FOLDER_NAME_SIZE };
 
-/* In lower case, as file systems that do not tell cases apart see it. One character's other case is at most one byte
- * longer per two. */
+/* The name in lower case, as a case-insensitive file system compares it. Lower case adds at most one byte to every two
+ * of a character. */
 static size_t fold(const char *name, size_t n, char folded[FOLDED_SIZE])
 {
     size_t length = 0;

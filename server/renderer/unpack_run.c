@@ -1,3 +1,4 @@
+/* The command --unpack: limits, signals, and lines of JSON. */
 #define _GNU_SOURCE
 #include "server/renderer/unpack_run.h"
 
@@ -17,49 +18,49 @@
 
 enum { EXIT_REFUSED = 3 };
 
-static volatile sig_atomic_t is_asked_to_stop;
-static bool is_unheard; /* nobody reads what we say */
+static volatile sig_atomic_t is_stop_signalled;
+static bool is_output_closed; /* standard output cannot be written */
 
 static void stop(int signal_number)
 {
     (void)signal_number;
-    is_asked_to_stop = 1;
+    is_stop_signalled = 1;
 }
 
 static bool is_cancelled(void *context)
 {
     (void)context;
-    return is_asked_to_stop || is_unheard;
+    return is_stop_signalled || is_output_closed;
 }
 
-static void say(cJSON *json)
+static void print_line(cJSON *json)
 {
     char *text = json_write(json);
     if (puts(text) < 0 || fflush(stdout) != 0)
-        is_unheard = true;
+        is_output_closed = true;
     free(text);
     cJSON_Delete(json);
 }
 
-static void say_percent(void *context, double percent)
+static void print_percent(void *context, double percent)
 {
     (void)context;
     cJSON *json = cJSON_CreateObject();
     cJSON_AddNumberToObject(json, "percent", (double)(int)(percent * 10.0) / 10.0);
-    say(json);
+    print_line(json);
 }
 
-static int say_problem(const struct problem *problem)
+static int print_problem(const struct problem *problem)
 {
     cJSON *json = cJSON_CreateObject();
     cJSON_AddItemToObject(json, "problem", problem_to_json(problem));
-    say(json);
-    return is_unheard ? EXIT_FAILURE : EXIT_REFUSED;
+    print_line(json);
+    return is_output_closed ? EXIT_FAILURE : EXIT_REFUSED;
 }
 
-static void listen_to_signals(void)
+static void handle_signals(void)
 {
-    struct sigaction action = { .sa_handler = stop }; /* without SA_RESTART: what waits is woken */
+    struct sigaction action = { .sa_handler = stop }; /* without SA_RESTART: a blocking call returns EINTR */
     (void)sigemptyset(&action.sa_mask);
     (void)sigaction(SIGTERM, &action, NULL);
     (void)sigaction(SIGINT, &action, NULL);
@@ -72,13 +73,13 @@ int unpack_run(const char *archive, const char *folder, uint64_t max_unpacked_by
     struct stat facts;
     struct unpack_result result;
     char confined[128];
-    listen_to_signals();
+    handle_signals();
     int from = open(archive, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY),
         into = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (from < 0 || into < 0 || fstat(from, &facts) != 0) {
         (void)problem_set(&problem, PROBLEM_INTERNAL, "", "", "%s cannot be opened: %s",
                           from < 0 ? "the archive" : "the folder to unpack into", strerror(errno));
-        return say_problem(&problem);
+        return print_problem(&problem);
     }
     struct confine_options limits = {
         .unpack_folder = folder,
@@ -90,13 +91,13 @@ int unpack_run(const char *archive, const char *folder, uint64_t max_unpacked_by
     log_info("unpacking %llu bytes; %s", (unsigned long long)facts.st_size, confined);
     struct unpack_options options = { .max_bytes = max_unpacked_bytes,
                                       .is_cancelled = is_cancelled,
-                                      .progress = say_percent };
+                                      .progress = print_percent };
     if (!unpack(from, into, &options, &result, &problem))
-        return say_problem(&problem);
+        return print_problem(&problem);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddBoolToObject(json, "done", true);
     cJSON_AddNumberToObject(json, "n_files", (double)result.n_files);
     cJSON_AddNumberToObject(json, "n_bytes", (double)result.n_bytes);
-    say(json);
-    return is_unheard ? EXIT_FAILURE : EXIT_SUCCESS;
+    print_line(json);
+    return is_output_closed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -1,3 +1,4 @@
+/* Reads the archive file in blocks, plain or through zlib, for libarchive. */
 #define _GNU_SOURCE
 #include "server/renderer/unpack_source.h"
 
@@ -27,7 +28,7 @@ static bool refuse_unread(struct unpack_source *source)
     return problem_set(&source->problem, PROBLEM_INTERNAL, "", "", "the archive cannot be read: %s", strerror(errno));
 }
 
-/* Next block of the file; -1: source->problem says why. */
+/* Reads the next block of the file; -1 with source->problem. */
 static ssize_t read_block(struct unpack_source *source)
 {
     if (source->goes_on && !source->goes_on(source->context))
@@ -69,7 +70,7 @@ static la_int64_t seek_plain(struct archive *archive, void *context, la_int64_t 
     return from + offset;
 }
 
-/* After a member: true when another one or nothing follows. Zeros may, as tapes pad. */
+/* After a gzip member: skips zeros, which tapes pad with, and starts the next member or sets *is_end. */
 static bool begin_member(struct unpack_source *source, bool *is_end)
 {
     z_stream *stream = &source->inflate;
@@ -167,7 +168,7 @@ bool unpack_source_zip_entries(const struct unpack_source *source, uint32_t *n_e
                 *n_entries = tail[at + N_ENTRIES_AT] | (uint32_t)tail[at + N_ENTRIES_AT + 1] << 8;
             }
     free(tail);
-    return is_found && *n_entries != 0xffff; /* then the number is elsewhere (ZIP64) */
+    return is_found && *n_entries != 0xffff; /* else the number is in the ZIP64 record */
 }
 
 bool unpack_source_drain(struct unpack_source *source)

@@ -1,3 +1,4 @@
+/* Writes unpacked files and folders, and clears a folder after a failure. */
 #define _GNU_SOURCE
 #include "server/renderer/unpack_write.h"
 
@@ -9,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "server/renderer/unpack_limits.h"
 #include "server/renderer/unpack_name.h"
 
 enum { FOLDER_FLAGS = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC };
@@ -35,7 +37,7 @@ static bool refuse(struct problem *problem, const char *name, const char *what)
                        what, strerror(reason));
 }
 
-/* Opens the folder a name of n bytes is in, step by step; base: its last part. */
+/* Opens the parent folder of a name of n bytes, part by part. base: the last part of the name. */
 static bool enter(struct unpack_writer *writer, const char *name, size_t n, char base[UNPACK_PART_SIZE + 1],
                   struct problem *problem)
 {
@@ -163,7 +165,8 @@ bool unpack_clear(int folder)
 
 bool unpack_lift(struct unpack_writer *writer, const char *top, struct problem *problem)
 {
-    static const char aside[] = "\177top"; /* what is in the folder may be called as the folder is, and never as this */
+    static const char aside[] =
+        "\177top"; /* an entry in the folder may have the name of the folder, but never this one */
     if (writer->folder < 0)
         return true;
     unpack_writer_finish(writer);
@@ -179,7 +182,7 @@ bool unpack_lift(struct unpack_writer *writer, const char *top, struct problem *
     is_done = is_done && reason == 0;
     closedir(entries);
     errno = reason;
-    if (!is_done && errno == EXDEV) /* the first Landlock lets nothing be moved: then nothing was */
+    if (!is_done && errno == EXDEV) /* Landlock version 1 refuses every move, so nothing was moved: undo the rename */
         is_done = renameat(writer->folder, aside, writer->folder, top) == 0;
     else if (is_done)
         is_done = unlinkat(writer->folder, aside, AT_REMOVEDIR) == 0;
