@@ -208,7 +208,7 @@ test-web: all demo
 	$(Q)tests/run_node.sh web $(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs))
 test-install: all demo
 	$(Q)tests/install.sh
-lint: $(GEN_STAMP)
+lint: $(GEN_STAMP) $(call obj,$(CORE_SRC) $(WIRE_SRC) $(SERVER_SRC) $(DAEMON_SRC) $(RENDERER_SRC) $(CLI_SRC))
 	$(Q)tests/lint.sh
 test:
 	@deploy/packages build run test

@@ -31,6 +31,25 @@ planted() { # planted FILE INCLUDE EXPECTED-WORDS
     echo "$out"
     return 1
 }
+# So is the one for circles: two folders that include each other, and two files that call each other, have to be found.
+planted_circle() {
+    local copy out
+    copy=$(mktemp -d)
+    mkdir -p "$copy/core/one" "$copy/core/two" "$copy/build/obj/core/one"
+    printf '#include "core/two/b.h"\nint a(void);\nint b(void);\nint a(void) { return b(); }\n' >"$copy/core/one/a.c"
+    printf 'int a(void);\nint b(void);\nint b(void) { return a(); }\n' >"$copy/core/one/b.c"
+    printf '#pragma once\n#include "core/one/a.h"\n' >"$copy/core/two/b.h"
+    printf '#pragma once\n' >"$copy/core/one/a.h"
+    (cd "$copy" && "${CC:-gcc}" -I. -c core/one/a.c -o build/obj/core/one/a.o &&
+        "${CC:-gcc}" -I. -c core/one/b.c -o build/obj/core/one/b.o)
+    out=$(cd "$copy" && "$OLDPWD/tests/circles.sh" build)
+    local status=$?
+    rm -rf "$copy"
+    [ $status = 1 ] && grep -q "circle of folders" <<<"$out" && grep -q "circle of files in core/one" <<<"$out" && return 0
+    echo "two planted circles; the check said (exit $status):"
+    echo "$out"
+    return 1
+}
 no_calls() {
     ! grep -nE '(^|[^a-zA-Z0-9_.>])(sprintf|vsprintf|strcpy|strcat|strtok|gets|system|popen|setlocale|alloca|atoi|atof)[[:space:]]*\(' \
         $(sources '*.c' '*.h' '*.cc' '*.hh')
@@ -55,7 +74,7 @@ scripts_parse() {
     return $status
 }
 json_parses() { "${NODE:-node}" tests/api/strict_json.mjs $(sources '*.json' | grep -v '/fixtures/bad/') build/gen/openapi.json; }
-laid_out() { sources '*.c' '*.h' '*.cc' '*.inc' | xargs clang-format --dry-run -Werror; }
+laid_out() { sources '*.c' '*.h' '*.cc' '*.hh' '*.inc' | xargs clang-format --dry-run -Werror; }
 no_addresses_in_the_lock() { ! grep -nE '"resolved"|https?://[^"]*\.tgz' package-lock.json; }
 
 check "includes follow tests/layers.txt" tests/layers.sh
@@ -63,6 +82,8 @@ check "a core file that includes a server header is found" planted core/base/pla
 check "an edge against the direction is found" planted core/math/planted.c '"core/volume/volume.h"' 'core/math may not include'
 check "a library outside its home is found" planted core/plan/planted.c '<GL/gl.h>' 'only core/render/gl'
 check "an include that is not from the root is found" planted core/volume/planted.c '"../base/error.h"' 'not a path from the root'
+check "no folder and no file of a folder is in a circle" tests/circles.sh "${BEAMROOM_BIN:-build/release}"
+check "a circle of folders and one of files are found" planted_circle
 check "no banned calls" no_calls
 check "C is laid out as .clang-format says (clang-format -i FILE)" laid_out
 check "no value-changing float flags" no_flags

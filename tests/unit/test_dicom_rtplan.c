@@ -106,11 +106,11 @@ static void a_neutron_beam_lies_between_source_and_isocentre(void **state)
     (void)state;
     struct report report = { 0 };
     struct made_rtplan made = { .position = "FFS",
-                              .radiation = "NEUTRON",
-                              .sad = "1800",
-                              .iso = "10\\-20\\30",
-                              .n_points = 1,
-                              .gantries = { "270" } };
+                                .radiation = "NEUTRON",
+                                .sad = "1800",
+                                .iso = "10\\-20\\30",
+                                .n_points = 1,
+                                .gantries = { "270" } };
     struct rtplan *plan = made_rtplan_read(&made, &report);
     assert_int_equal(report.n_lines, 0);
     assert_string_equal(plan->label, "Label");
@@ -141,8 +141,9 @@ static void what_a_plan_does_not_say_is_assumed_and_said(void **state)
     assert_point(plan->beams[0].entry_lps_mm, 1, 2 - 1000, 3, 1e-9);
     rtplan_destroy(plan);
     report_finish(&report);
-    made =
-        (struct made_rtplan){ .position = "UPRIGHT", .sad = "-5", .iso = "1\\2\\3", .n_points = 1, .gantries = { "0" } };
+    made = (struct made_rtplan){
+        .position = "UPRIGHT", .sad = "-5", .iso = "1\\2\\3", .n_points = 1, .gantries = { "0" }
+    };
     plan = made_rtplan_read(&made, &report);
     assert_true(report_has(&report, "beam.position-assumed"));
     assert_true(report_has(&report, "beam.distance-assumed"));
@@ -237,12 +238,12 @@ static void angles_beyond_a_turn_are_taken_without_whole_turns_and_said(void **s
                   { "90", "0", "-270", "", { 0, 0, -1000 }, { 0, 1, 0 } } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct made_rtplan made = { .position = "HFS",
-                                  .sad = "1000",
-                                  .iso = "0\\0\\0",
-                                  .n_points = 1,
-                                  .gantries = { cases[i].gantry },
-                                  .collimator = cases[i].collimator,
-                                  .table = cases[i].table };
+                                    .sad = "1000",
+                                    .iso = "0\\0\\0",
+                                    .n_points = 1,
+                                    .gantries = { cases[i].gantry },
+                                    .collimator = cases[i].collimator,
+                                    .table = cases[i].table };
         struct report report = { 0 };
         struct rtplan *plan = made_rtplan_read(&made, &report);
         const struct beam *beam = &plan->beams[0];

@@ -55,13 +55,13 @@ static void doubts_about_where_a_beam_is_come_before_those_about_its_opening(voi
     (void)state;
     struct report report = { 0 };
     struct made_rtplan made = { .position = "HFS",
-                              .sad = "1000",
-                              .iso = "0\\0\\0",
-                              .n_points = 3,
-                              .gantries = { "450", "460", "470" },
-                              .collimator = "361",
-                              .table = "362",
-                              .devices = strange_devices };
+                                .sad = "1000",
+                                .iso = "0\\0\\0",
+                                .n_points = 3,
+                                .gantries = { "450", "460", "470" },
+                                .collimator = "361",
+                                .table = "362",
+                                .devices = strange_devices };
     static const char *const first[] = { "(300A,011E) is 450", "(300A,0122) is 362", "(300A,0120) is 361",
                                          "\"SHUTTER\"",        "\"SHUTTER\"",        "\"SHUTTER\"" };
     enum { N = sizeof first / sizeof first[0] };
@@ -89,11 +89,11 @@ static void a_single_boundary_is_too_few_for_any_number_of_leaves(void **state)
     (void)state;
     struct report report = { 0 };
     struct made_rtplan made = { .position = "HFS",
-                              .sad = "1000",
-                              .iso = "0\\0\\0",
-                              .n_points = 1,
-                              .gantries = { "0" },
-                              .devices = leaves_without_a_number_of_pairs };
+                                .sad = "1000",
+                                .iso = "0\\0\\0",
+                                .n_points = 1,
+                                .gantries = { "0" },
+                                .devices = leaves_without_a_number_of_pairs };
     struct rtplan *plan = made_rtplan_read(&made, &report);
     char expected[80];
     snprintf(expected, sizeof expected, "MLCX: leaf position boundaries (300A,00BE) are 1, expected 2 to %d.",
@@ -107,12 +107,12 @@ static void the_opening_is_what_jaws_and_leaves_leave(void **state)
 {
     (void)state;
     struct made_rtplan made = { .position = "HFS",
-                              .sad = "1000",
-                              .iso = "0\\0\\0",
-                              .n_points = 3,
-                              .gantries = { "0" },
-                              .devices = jaws_and_leaves,
-                              .positions = three_steps };
+                                .sad = "1000",
+                                .iso = "0\\0\\0",
+                                .n_points = 3,
+                                .gantries = { "0" },
+                                .devices = jaws_and_leaves,
+                                .positions = three_steps };
     struct rtplan *plan = made_rtplan_read(&made, NULL);
     const struct beam_delivery *d = &plan->beams[0].delivery;
     assert_memory_equal(d->jaws_x_mm, ((double[]){ -30, 30 }), sizeof d->jaws_x_mm);
@@ -185,11 +185,11 @@ static void only_a_round_opening_has_a_diameter(void **state)
                   { round_applicator, 120, NAN } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct made_rtplan made = { .position = "HFS",
-                                  .sad = "1000",
-                                  .iso = "0\\0\\0",
-                                  .n_points = 1,
-                                  .gantries = { "0" },
-                                  .devices = cases[i].devices };
+                                    .sad = "1000",
+                                    .iso = "0\\0\\0",
+                                    .n_points = 1,
+                                    .gantries = { "0" },
+                                    .devices = cases[i].devices };
         struct rtplan *plan = made_rtplan_read(&made, NULL);
         const struct beam *beam = &plan->beams[0];
         if (isnan(cases[i].diameter_mm))

@@ -17,9 +17,9 @@ bool dicom_begins_picture(const char *transfer_syntax, const uint8_t *bytes, siz
 bool dicom_ends_picture(const uint8_t *bytes, size_t size);
 // Lists all fragments, offset table first. first_fragments: the number of each frame's first fragment, then the number
 // of fragments.
-bool dicom_find_frames(const dicom_layout &layout, const char *name, uint32_t n_frames, std::vector<dicom_fragment> &fragments,
-                       std::vector<size_t> &first_fragments, error *err);
+bool dicom_find_frames(const dicom_layout &layout, const char *name, uint32_t n_frames,
+                       std::vector<dicom_fragment> &fragments, std::vector<size_t> &first_fragments, error *err);
 // Decodes the fragments of one frame. out holds rows * columns * bits_allocated / 8 bytes and receives stored values as
 // dicom_pixels_read gives them. Throws what the standard library throws.
-bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, const char *name, const std::vector<dicom_fragment> &fragments,
-                        void *out, dicom_decoded *decoded, error *err);
+bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, const char *name,
+                        const std::vector<dicom_fragment> &fragments, void *out, dicom_decoded *decoded, error *err);
