@@ -153,7 +153,7 @@ double pp_unit_mm(const struct track_set *set, size_t first, double given_mm, co
         return given_mm > 0 ? given_mm : 1;
     float *room = malloc(2 * (set->n_segments - first) * sizeof *room);
     if (!room)
-        return given_mm > 0 ? given_mm : 1;
+        return given_mm > 0 ? given_mm : 0;
     double length = 0;
     for (int axis = 0; axis < 3; axis++) {
         double along = spread(set, first, axis, room);

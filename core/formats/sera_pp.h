@@ -14,7 +14,7 @@ NODISCARD bool pp_parse(const uint8_t *data, size_t size, const char *name, stru
                         struct report *report, struct error *err);
 
 /* Length of one unit of the segments from first on, in mm: given_mm when the plan gives it (0: it does not), else 1 or
- * 10, whichever brings their spread closer to the patient's size. An empty box gives 1. */
+ * 10, whichever brings their spread closer to the patient's size. An empty box gives 1. 0: no memory. */
 double pp_unit_mm(const struct track_set *set, size_t first, double given_mm, const struct box3 *patient_lps_mm,
                   const char *name, struct report *report);
 /* Scales the segments from first on to millimetres; drops and reports those beyond PP_MAX_PLACE_MM. */

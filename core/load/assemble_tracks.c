@@ -16,11 +16,13 @@ static bool add_file(struct plan *plan, const struct folder *folder, const struc
         return false;
     bool is_read = pp_parse(bytes.data, bytes.size, entry->path, &plan->tracks, &plan->report, err);
     bytes_free(&bytes);
-    if (is_read)
-        pp_scale(&plan->tracks, first,
-                 pp_unit_mm(&plan->tracks, first, entry->mm, &plan->bounds_lps_mm, entry->path, &plan->report),
-                 entry->path, &plan->report);
-    return is_read;
+    if (!is_read)
+        return false;
+    double mm = pp_unit_mm(&plan->tracks, first, entry->mm, &plan->bounds_lps_mm, entry->path, &plan->report);
+    if (!(mm > 0))
+        return error_set(err, ERROR_MEMORY, "%s: no memory to tell its unit", entry->path);
+    pp_scale(&plan->tracks, first, mm, entry->path, &plan->report);
+    return true;
 }
 
 static struct vec3 point_of(const float p[3])

@@ -70,9 +70,10 @@ static void work(void *context, int part, int n_parts)
             loading_phase(loading, "reading", name_of(loading, reading), 5, 80);
         size_t n_lacked = error_n_memory();
         reading->is_failed = !plan_read_part(loading, reading);
-        if (!reading->is_failed && error_n_memory() != n_lacked) /* an element that found none counts as absent */
-            reading->is_failed =
-                !error_set(&reading->err, ERROR_MEMORY, "%s: no memory to read all of it", reading->path);
+        /* an element that found none counts as absent, and so does a file beside this one without descriptors */
+        if (error_n_memory() != n_lacked && (!reading->is_failed || reading->err.code != ERROR_MEMORY))
+            reading->is_failed = !error_set(&reading->err, ERROR_MEMORY,
+                                            "%s: no memory, or too many open files, to read all of it", reading->path);
         if (reading->is_failed && !may_be_left_out(loading, reading)) {
             size_t before = atomic_load(&loading->first_failed);
             while (at < before && !atomic_compare_exchange_weak(&loading->first_failed, &before, at)) {

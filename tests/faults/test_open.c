@@ -38,6 +38,10 @@ static void open_plan(void *context, struct outcome *outcome)
     outcome_add_number(outcome, (double)plan->n_beams);
     outcome_add_number(outcome, (double)plan->tracks.n_segments);
     outcome_add_number(outcome, (double)plan->n_curves);
+    outcome_add_number(outcome, (double)plan->preferences.n_levels);
+    outcome_add_number(outcome, (double)plan->preferences.n_colors);
+    for (size_t i = 0; i < plan->regions.n_regions; i++)
+        outcome_add_number(outcome, plan->regions.regions[i].cbe_boron);
     for (size_t i = 0; i < plan->report.n_lines; i++) {
         outcome_add_text(outcome, plan->report.lines[i].code);
         outcome_add_text(outcome, plan->report.lines[i].where);
@@ -46,7 +50,8 @@ static void open_plan(void *context, struct outcome *outcome)
         /* a file that the disk does not give is left out, and so is a part for want of memory: the report says so */
         outcome->is_told |= strstr(plan->report.lines[i].sentence, "Input/output error") ||
                             strstr(plan->report.lines[i].sentence, "Too many open files") ||
-                            strncmp(plan->report.lines[i].sentence, "Left out: ", 10) == 0;
+                            strncmp(plan->report.lines[i].sentence, "Left out: ", 10) == 0 ||
+                            strstr(plan->report.lines[i].sentence, "is shown without these preferences");
     }
     plan_destroy(plan);
 }
@@ -169,8 +174,35 @@ static void walk_nrrd(void)
     folder_remove(folder);
 }
 
+/* Univels with tissues, colours and tracks, as SERA keeps them. */
+static void walk_sera(void)
+{
+    static const char header[] =
+        "Version: uvh2.0\nDimensionality: mm\nSliceOrientation: Axial\nImageRows: 16\nImageColumns: 16\nImageSlices: 2\n"
+        "PixelSizeRows: 10\nPixelSizeColumns: 10\nPixelSizeSlices: 10\nRLaxisMin: -80\nRLaxisMax: 80\nPAaxisMin: -80\n"
+        "PAaxisMax: 80\nISaxisMin: 0\nISaxisMax: 20\nImageRowAxis: PA-\nImageColumnAxis: RL+\nImageSliceAxis: IS+\n"
+        "begin: brain\nuvval: 3\ntissue_to_blood: 2\nend\nbegin: tumor\nuvval: 4\nend\nbegin: bone\nuvval: 5\nend\n";
+    static const char colors[] = "contour_level: 80 0 65535 0\nbrain_color: 257 514 771 30\n",
+                      tissues[] = "begin: brain\ntissue_to_blood: 1\nboron_CF: 1.3\nend\n", map[] = "0 0 0\n255 0 0\n",
+                      tracks[] = "0 0 0 10 0 0 0 1\n10 0 0 10 10 0 1 2\n";
+    char folder[256];
+    uint8_t univels[512];
+    for (size_t i = 0; i < sizeof univels; i++)
+        univels[i] = (uint8_t)(3 + i % 3);
+    folder_make(folder);
+    folder_put(folder, "a.uvh", header, sizeof header - 1);
+    folder_put(folder, "a.uv", univels, sizeof univels);
+    folder_put(folder, "S.rsc", colors, sizeof colors - 1);
+    folder_put(folder, "body_data.txt", tissues, sizeof tissues - 1);
+    folder_put(folder, "x.cmap", map, sizeof map - 1);
+    folder_put(folder, "a.pp", tracks, sizeof tracks - 1);
+    walk_open("a plan of SERA's files opens", folder);
+    folder_remove(folder);
+}
+
 int main(void)
 {
+    walk_sera();
     walk_phantom();
     walk_dicom();
     walk_nrrd();
