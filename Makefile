@@ -174,7 +174,7 @@ $(B)/unit/test_unpack $(B)/fuzz/fuzz_unpack: private CORE_LIBS += $(UNPACK_LIBS)
 
 # Programs whose calls of the system fail on demand (tests/faults/faults.h): what they define takes the place of libc's for all
 # libraries too (-rdynamic), and mem_new is led through it.
-FAULTS_HELP := $(call obj,$(addprefix tests/unit/,data_folder.c made_chd.c made_dicom.c made_dose.c made_series.c oracle.c room_fake.c rt_files.c) $(UNPACK_SRC))
+FAULTS_HELP := $(call obj,$(addprefix tests/unit/,data_folder.c fake_renderer.c fleet_world.c made_chd.c made_dicom.c made_dose.c made_series.c oracle.c room_fake.c rt_files.c) $(UNPACK_SRC))
 $(faults_BIN): $(FAULTS_HELP)
 $(faults_BIN): private LDFLAGS += -rdynamic -Wl,--wrap=mem_new,--wrap=mem_copy_text
 $(faults_BIN): private CORE_LIBS += $(UNPACK_LIBS)

@@ -129,11 +129,12 @@ static bool is_right_code(const struct walking *walking, const struct outcome *o
     const char *text = outcome->err.text;
     if (outcome->problem.type)
         return outcome->problem.type == PROBLEM_INTERNAL || outcome->problem.type == PROBLEM_STORAGE ||
-               outcome->problem.type == PROBLEM_MEMORY;
+               outcome->problem.type == PROBLEM_MEMORY || outcome->problem.type == PROBLEM_RENDERER;
     if (outcome->err.code == ERROR_MEMORY)
         return walking->kind != FAULT_READ && walking->kind != FAULT_WRITE;
-    return walking->kind != FAULT_MEMORY &&
-           (outcome->err.code == ERROR_IO || strstr(text, strerror(EIO)) || strstr(text, strerror(EMFILE)));
+    if (walking->kind == FAULT_MEMORY)
+        return strstr(text, strerror(ENOMEM)) != NULL;
+    return outcome->err.code == ERROR_IO || strstr(text, strerror(EIO)) || strstr(text, strerror(EMFILE));
 }
 
 static const char *judge(const struct walking *walking, const struct outcome *outcome, bool has_fired)
