@@ -163,9 +163,11 @@ static void walk_pictures(void)
         char name[128];
         snprintf(name, sizeof name, "regions as %s are drawn and compressed",
                  region_representation_word((enum region_representation)r));
-        const struct walk walk = {
-            .name = name, .run = draw, .context = &wanted, .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true }
-        };
+        const struct walk walk = { .name = name,
+                                   .run = draw,
+                                   .context = &wanted,
+                                   .is_library_leaky = true,
+                                   .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
         walk_run(&walk);
     }
     struct picture_case slice = { RENDER_SOFT, SCENE_KIND_AXIAL, SCENE_REPRESENTATION_SURFACE, false };
