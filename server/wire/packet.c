@@ -212,10 +212,7 @@ static void add_part(cJSON *json, const struct packet_part *part, const char *fi
     case PACKET_PART_DOCUMENT: {
         cJSON *document;
         memcpy(&document, at, sizeof document);
-        if (document) {
-            cJSON_AddItemReferenceToObject(json, part->name, document);
-            return;
-        }
+        value = document ? cJSON_CreateObjectReference(document->child) : NULL;
         break;
     }
     case PACKET_PART_PROBLEM: {
@@ -231,7 +228,7 @@ static void add_part(cJSON *json, const struct packet_part *part, const char *fi
         break;
     }
     }
-    cJSON_AddItemToObject(json, part->name, value ? value : cJSON_CreateNull());
+    json_add(json, part->name, value ? value : cJSON_CreateNull());
 }
 
 cJSON *packet_to_json(const struct packet *packet)

@@ -294,13 +294,16 @@ static void packets(void *context, struct outcome *outcome)
     (void)context;
     size_t n, room;
     uint8_t blob[3000];
-    struct packet packet = { 0 };
+    struct packet packet;
     memset(blob, 7, sizeof blob);
     faults_pause();
-    static const char words[] = "{\"type\":\"answer\",\"id\":7,\"body\":{\"n_triangles\":12}}";
-    cJSON *json = json_read(words, sizeof words - 1, NULL);
+    static const char words[] = "{\"n_triangles\":12}";
+    cJSON *body = json_read(words, sizeof words - 1, NULL);
     faults_go_on();
-    uint8_t *bytes = packet_write(json, blob, sizeof blob, &n, &outcome->err);
+    packet_init(&packet, PACKET_ANSWER);
+    packet.answer.id = 7;
+    packet.answer.body = body;
+    uint8_t *bytes = packet_encode(&packet, blob, sizeof blob, &n, &outcome->problem);
     struct packet_reader *reader = packet_reader_create(PACKET_TO_DAEMON);
     int state = bytes ? 0 : -1;
     for (size_t at = 0; state == 0 && at < n;) {
@@ -324,7 +327,7 @@ static void packets(void *context, struct outcome *outcome)
     }
     packet_reader_destroy(reader);
     free(bytes);
-    cJSON_Delete(json);
+    cJSON_Delete(body);
 }
 
 int main(void)
