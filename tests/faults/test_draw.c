@@ -1,5 +1,6 @@
 /* Shapes of every representation, pictures of our own rasteriser and of GL, and their compression, while a call of the
  * system fails. */
+#include "core/derive/shapes.h"
 #include "core/encode/encode.h"
 #include "core/render/render.h"
 #include "core/render/visible/visible.h"
@@ -46,21 +47,24 @@ static void build_shape(void *context, struct outcome *outcome)
     struct error again = { 0 };
     faults_pause();
     struct plan *plan = make_plan();
+    struct derive *derived = derive_create(plan);
+    const struct shape_want want = { subject_region(0), wanted->key, wanted->detail };
     faults_go_on();
-    struct surface_facts facts;
-    struct shape *shape = plan_shape(plan, 0, &wanted->key, wanted->detail, &facts, &outcome->err);
+    struct shape_facts facts;
+    struct shape *shape = derive_shape(derived, &want, &facts, &outcome->err);
     if (shape) {
         outcome->is_done = true;
         add_shape(outcome, shape);
         shape_unref(shape);
     } else {
         faults_pause();
-        shape = plan_shape(plan, 0, &wanted->key, wanted->detail, &facts, &again);
+        shape = derive_shape(derived, &want, &facts, &again);
         if (!shape)
             outcome->err = (struct error){ ERROR_NONE, "" }; /* a finding: it fails for ever */
         shape_unref(shape);
         faults_go_on();
     }
+    derive_destroy(derived);
     plan_destroy(plan);
 }
 
@@ -68,16 +72,16 @@ static void walk_shapes(void)
 {
     for (int r = 0; r < REPRESENTATION_N; r++)
         for (int a = 0; a < (r == REPRESENTATION_SURFACE ? SURFACE_N_ALGORITHMS : 1); a++)
-            for (int light = 0; light < (r == REPRESENTATION_SURFACE ? 2 : 1); light++) {
+            for (int coarse = 0; coarse < (r == REPRESENTATION_SURFACE ? 2 : 1); coarse++) {
                 struct shape_case wanted = { { .representation = (enum region_representation)r,
                                                .algorithm = (enum surface_algorithm)a,
                                                .nurbs_order = 4,
                                                .nurbs_bins = 32 },
-                                             light ? SURFACE_LIGHT : SURFACE_FULL };
+                                             coarse ? SURFACE_COARSE : SURFACE_FULL };
                 char name[128];
                 snprintf(name, sizeof name, "a region as %s%s%s%s is built",
                          region_representation_word((enum region_representation)r), r ? "" : " by ",
-                         r ? "" : surface_algorithm_word((enum surface_algorithm)a), light ? ", coarse," : "");
+                         r ? "" : surface_algorithm_word((enum surface_algorithm)a), coarse ? ", coarse," : "");
                 const struct walk walk = { .name = name,
                                            .run = build_shape,
                                            .context = &wanted,
@@ -106,6 +110,7 @@ static void draw(void *context, struct outcome *outcome)
     char field[128];
     faults_pause();
     struct plan *plan = make_plan();
+    struct derive *derived = derive_create(plan);
     struct scene scene;
     scene_for_plan(plan, &scene);
     for (size_t i = 0; i < scene.n_regions; i++) {
@@ -117,7 +122,7 @@ static void draw(void *context, struct outcome *outcome)
     view.size_px[0] = 120;
     view.size_px[1] = 90;
     faults_go_on();
-    struct snapshot *snapshot = snapshot_create(plan, &scene, &view, 1, field, &outcome->err);
+    struct snapshot *snapshot = snapshot_create(derived, &scene, &view, 1, field, &outcome->err);
     if (!snapshot)
         goto done;
     renderer = renderer_create(wanted->back_end, &outcome->err);
@@ -153,6 +158,7 @@ done:
     if (renderer)
         renderer_forget(renderer, plan);
     renderer_destroy(renderer);
+    derive_destroy(derived);
     plan_destroy(plan);
 }
 

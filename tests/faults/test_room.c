@@ -299,11 +299,12 @@ static void packets(void *context, struct outcome *outcome)
     faults_pause();
     static const char words[] = "{\"n_triangles\":12}";
     cJSON *body = json_read(words, sizeof words - 1, NULL);
+    struct packet written;
+    packet_init(&written, PACKET_ANSWER);
+    written.answer.id = 7;
+    written.answer.body = body;
     faults_go_on();
-    packet_init(&packet, PACKET_ANSWER);
-    packet.answer.id = 7;
-    packet.answer.body = body;
-    uint8_t *bytes = packet_encode(&packet, blob, sizeof blob, &n, &outcome->problem);
+    uint8_t *bytes = packet_encode(&written, blob, sizeof blob, &n, &outcome->problem);
     struct packet_reader *reader = packet_reader_create(PACKET_TO_DAEMON);
     int state = bytes ? 0 : -1;
     for (size_t at = 0; state == 0 && at < n;) {
