@@ -54,6 +54,7 @@ no_calls() {
     ! grep -nE '(^|[^a-zA-Z0-9_.>])(sprintf|vsprintf|strcpy|strcat|strtok|gets|system|popen|setlocale|alloca|atoi|atof)[[:space:]]*\(' \
         $(sources '*.c' '*.h' '*.cc' '*.hh')
 }
+locks_in_base() { ! grep -nE 'pthread_(mutex|cond|rwlock|spin)' $(sources 'core/*.[ch]' 'core/*.cc' 'server/*.[ch]' | grep -v '^core/base/'); }
 no_flags() { ! grep -nE -e '-f(fast-math|unsafe-math-optimizations)' Makefile; }
 headers_stand_alone() {
     local header status=0
@@ -86,6 +87,7 @@ check "no folder and no file of a folder is in a circle" tests/circles.sh "${BEA
 check "a circle of folders and one of files are found" planted_circle
 check "no banned calls" no_calls
 check "C is laid out as .clang-format says (clang-format -i FILE)" laid_out
+check "locks stand in core/base alone" locks_in_base
 check "no value-changing float flags" no_flags
 check "each header compiles alone, once" headers_stand_alone
 check "scripts parse and can be run" scripts_parse
