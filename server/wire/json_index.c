@@ -89,3 +89,18 @@ void json_index_finish(struct json_index *index)
     free(index->entries);
     *index = (struct json_index){ 0 };
 }
+
+bool json_has_equal_names(const cJSON *object)
+{
+    struct json_index index;
+    bool has_some = false;
+    if (!object->child || !object->child->next)
+        return false;
+    json_index_init(&index, object);
+    if (!sort(&index))
+        return true;
+    for (size_t i = 1; i < index.n_entries && !has_some; i++)
+        has_some = strcmp(index.entries[i - 1].name, index.entries[i].name) == 0;
+    json_index_finish(&index);
+    return has_some;
+}

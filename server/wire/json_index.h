@@ -24,3 +24,6 @@ void json_index_init_ids(struct json_index *index, const cJSON *list);
  * be taken out or replaced if its name stays in memory and is not looked up again. Appended members may be missed. */
 cJSON *json_index_find(struct json_index *index, const char *name);
 void json_index_finish(struct json_index *index);
+
+/* True if two members of object have one name, and where there is no memory to find out. */
+bool json_has_equal_names(const cJSON *object);

@@ -86,13 +86,15 @@ static void replace(cJSON *target, cJSON *member, cJSON *value)
 }
 
 /* Puts a new value under the name of the change, in the place of member if there is one. False: no memory. */
-static bool put(cJSON *target, cJSON *member, struct change *change)
+static bool put(cJSON *target, struct json_index *members, cJSON *member, struct change *change)
 {
     cJSON *value = value_of(change->item);
     if (!value)
         return false;
     change->first->member = value;
     if (member) {
+        if (members->next == member) /* a name that stands twice: the index must not read what is freed */
+            members->next = value;
         replace(target, member, value);
     } else if (!cJSON_AddItemToObject(target, change->item->string, value)) {
         cJSON_Delete(value);
@@ -121,7 +123,7 @@ static bool apply_change(cJSON *target, struct json_index *members, struct chang
     }
     if (member && cJSON_IsObject(member) && cJSON_IsObject(item))
         return merge_into(member, item);
-    return put(target, member, change);
+    return put(target, members, member, change);
 }
 
 /* Both are objects; target changes. False: no memory, target is changed in part. */

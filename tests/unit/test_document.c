@@ -340,6 +340,69 @@ static void of_equal_names_in_a_patch_each_is_applied_after_the_one_before(void 
     cJSON_Delete(defaults);
 }
 
+/* What a reader of JSON that keeps the last of equal names (JSON.parse) makes of a patch. */
+static cJSON *as_read_by_a_page(const cJSON *patch)
+{
+    if (!cJSON_IsObject(patch))
+        return cJSON_Duplicate(patch, true);
+    cJSON *read = cJSON_CreateObject();
+    for (const cJSON *item = patch->child; item; item = item->next) {
+        cJSON_DeleteItemFromObjectCaseSensitive(read, item->string);
+        cJSON_AddItemToObject(read, item->string, as_read_by_a_page(item));
+    }
+    return read;
+}
+
+static void equal_names_in_a_patch_reach_members_as_what_was_applied(void **state)
+{
+    (void)state;
+    static const char *const patches[] = {
+        "{\"surface\":{\"normals\":\"face\",\"algorithm\":\"smooth\",\"normals\":\"vertex\",\"translucency\":\"rim\"}}",
+        "{\"surface\":{\"algorithm\":\"eight-cell\"},\"surface\":{\"normals\":\"face\"}}",
+        "{\"regions\":null,\"surface\":{\"normals\":\"face\"},\"regions\":{\"brain\":{\"opacity\":0.1}}}",
+        "{\"regions\":{\"brain\":{\"opacity\":0.3},\"brain\":null,\"tumor\":{\"visible\":false}}}",
+    };
+    for (size_t i = 0; i < sizeof patches / sizeof patches[0]; i++) {
+        cJSON *before = plan_defaults(), *patch = parse(patches[i]);
+        cJSON *after = patched(before, before, patches[i]);
+        assert_non_null(after);
+        cJSON *told = patch_told(before, after, patch), *read = as_read_by_a_page(told);
+        cJSON *copy = json_merge(before, read);
+        assert_true(json_equal(copy, after));
+        cJSON_Delete(copy);
+        cJSON_Delete(read);
+        cJSON_Delete(told);
+        cJSON_Delete(after);
+        cJSON_Delete(patch);
+        cJSON_Delete(before);
+    }
+}
+
+/* 2,000 times the same name: the answer grows with the document, not with the patch. */
+static void a_name_repeated_in_a_patch_does_not_multiply_the_document(void **state)
+{
+    (void)state;
+    enum { N = 2000 };
+    static const char name[] = "\"regions\":null,";
+    char *text = malloc(N * (sizeof name - 1) + 3);
+    size_t n = 1;
+    text[0] = '{';
+    for (int i = 0; i < N; i++, n += sizeof name - 1)
+        memcpy(text + n, name, sizeof name - 1);
+    memcpy(text + n - 1, "}", 2);
+    cJSON *before = plan_defaults(), *patch = parse(text), *after = patched(before, before, text);
+    cJSON *told = patch_told(before, after, patch);
+    char *words = json_write(told), *whole = json_write(after);
+    assert_true(strlen(words) <= 2 * strlen(whole));
+    free(words);
+    free(whole);
+    free(text);
+    cJSON_Delete(told);
+    cJSON_Delete(after);
+    cJSON_Delete(patch);
+    cJSON_Delete(before);
+}
+
 static void documents_are_equal_whatever_the_order_of_their_members(void **state)
 {
     (void)state;
@@ -455,6 +518,8 @@ int main(void)
         cmocka_unit_test(regions_are_found_whatever_order_a_patch_names_them_in),
         cmocka_unit_test(the_work_of_a_patch_grows_with_the_scene_and_not_with_its_square),
         cmocka_unit_test(of_equal_names_in_a_patch_each_is_applied_after_the_one_before),
+        cmocka_unit_test(equal_names_in_a_patch_reach_members_as_what_was_applied),
+        cmocka_unit_test(a_name_repeated_in_a_patch_does_not_multiply_the_document),
         cmocka_unit_test(documents_are_equal_whatever_the_order_of_their_members),
         cmocka_unit_test(a_scene_for_a_plan_that_changed_keeps_what_the_plan_still_has),
         cmocka_unit_test(a_view_gets_defaults_and_keeps_its_override),
