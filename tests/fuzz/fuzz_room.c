@@ -19,7 +19,7 @@ static void render(void *context, struct room *room, const struct room_render *r
     (void)context;
     (void)room;
     REQUIRE(request->view != NULL && request->scale_percent >= 10 && request->scale_percent <= 100);
-    REQUIRE(!request->is_still || (request->scale_percent == 100 && request->full_color && !request->light));
+    REQUIRE(!request->is_still || (request->scale_percent == 100 && request->full_color && !request->coarse));
     if (n_requests < MAX_REQUESTS)
         requests[n_requests++] = request->request;
 }
