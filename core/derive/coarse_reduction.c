@@ -191,7 +191,7 @@ static struct derive_result *build(struct derive *derive, const struct derive_re
             shape_unref(search.ladders[r].shape[step]);
     free(search.ladders);
     if (!is_built) {
-        error_set(err, ERROR_MEMORY, "no memory for the lighter surfaces");
+        error_set(err, ERROR_MEMORY, "no memory for the coarse surfaces");
         return NULL;
     }
     struct result *result = mem_new(sizeof *result);

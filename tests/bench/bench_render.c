@@ -1,7 +1,7 @@
-/* Drawing and compressing the demo plan as a new room shows it (five surfaces, four of them translucent, and an axial
- * slice), the camera going round it: light surfaces as while moving at 100, 75, 60 and 50 % of 1024 x 768, full
- * surfaces anti-aliased as still; the axial pane; each by our own rasteriser and, picture by picture in turn, by the
- * OpenGL there is; JPEG and PNG. */
+/* Draws and compresses the demo plan as a new room shows it: five surfaces, four of them translucent, and an axial
+ * slice. The camera goes round it, with coarse surfaces at 100, 75, 60 and 50 % of 1024 x 768 as while moving, and with
+ * full anti-aliased surfaces as in a still; then the axial pane. Our own rasteriser and the OpenGL of this machine draw
+ * each picture in turn; the picture is compressed as JPEG and as PNG. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -374,7 +374,7 @@ static void a_grid_beyond_the_drivers_limit_is_refused_with_its_size(void **stat
     shots_forget(plan);
 }
 
-/* ---- stills, light surfaces, repeatability ---------------------------------------------------------------------- */
+/* ---- stills, coarse surfaces, repeatability --------------------------------------------------------------------- */
 
 /* The number of pixels on the box's slanted edges that are neither background nor face. */
 static size_t count_between(const struct image *image)

@@ -21,7 +21,7 @@ static int end(void **state)
     return 0;
 }
 
-static void software_starts_whole_but_with_light_surfaces(void **state)
+static void software_starts_at_full_size_but_with_coarse_surfaces(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, false);
@@ -109,10 +109,8 @@ int main(void)
 {
 #define T(name) cmocka_unit_test_setup_teardown(name, start, end)
     const struct CMUnitTest tests[] = {
-        T(software_starts_whole_but_with_light_surfaces),
-        T(a_graphics_card_starts_at_full_size_and_detail),
-        T(slow_pictures_become_smaller_and_fast_ones_larger_again),
-        T(late_acknowledgements_make_pictures_smaller),
+        T(software_starts_at_full_size_but_with_coarse_surfaces),     T(a_graphics_card_starts_at_full_size_and_detail),
+        T(slow_pictures_become_smaller_and_fast_ones_larger_again),   T(late_acknowledgements_make_pictures_smaller),
         T(a_step_up_that_does_not_hold_is_tried_less_and_less_often),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -171,7 +171,7 @@ for (const [what, change, state] of [
   ['nothing before the first picture', { header: null }, undefined],
   ['moving at full size', {}, 'live'],
   ['half size', { header: { ...facts.header, scale_percent: 50 } }, 'reduced'],
-  ['lighter surfaces', { header: { ...facts.header, is_coarse: true } }, 'reduced'],
+  ['coarse surfaces', { header: { ...facts.header, is_coarse: true } }, 'reduced'],
   ['a still', { header: still }, 'full'],
   ['an input unanswered for 0.9 s', { header: still, staleSince: 9100 }, 'full'],
   ['an input unanswered for 1.1 s', { header: still, staleSince: 8900 }, 'stale'],

@@ -10,7 +10,7 @@ function why(header) {
   const reasons = [];
   if (header.scale_percent < 100) reasons.push(`size ${header.scale_percent} %`);
   if (header.quality > 0 && header.quality < 60) reasons.push(`quality ${header.quality}`);
-  if (header.is_coarse) reasons.push('lighter surfaces');
+  if (header.is_coarse) reasons.push('coarse surfaces');
   return reasons;
 }
 
