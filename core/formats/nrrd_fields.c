@@ -109,7 +109,7 @@ static bool keep_field(struct nrrd_fields *head, const char *key, const struct n
     return true;
 }
 
-static bool take_line(struct nrrd_fields *head, const struct nrrd_value *line, struct nrrd_header *header)
+static bool parse_line(struct nrrd_fields *head, const struct nrrd_value *line, struct nrrd_header *header)
 {
     const char *colon = memchr(line->at, ':', line->n);
     if (!colon)
@@ -142,7 +142,7 @@ bool nrrd_fields_read(struct nrrd_fields *head, struct nrrd_header *header, bool
     bool has_end = false;
     while (!has_end && next_line(head, &line)) {
         has_end = line.n == 0;
-        if (!has_end && *line.at != '#' && !take_line(head, &line, header))
+        if (!has_end && *line.at != '#' && !parse_line(head, &line, header))
             return false;
     }
     header->head_bytes = (size_t)(head->at - head->start);

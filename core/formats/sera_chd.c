@@ -194,7 +194,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static bool take_planes(struct parser *p)
+static bool sort_planes(struct parser *p)
 {
     struct chd *chd = p->chd;
     for (uint32_t i = 0; i < chd->n_planes; i++)
@@ -254,7 +254,7 @@ static bool check_geometry(struct parser *p)
         return error_set(p->err, ERROR_LIMIT, "%s: %u x %u x %u points, at most %d are read", p->name, chd->n_columns,
                          chd->n_rows, chd->n_planes, CHD_MAX_POINTS);
     check_unit(p);
-    return take_planes(p);
+    return sort_planes(p);
 }
 
 static bool check_columns(struct parser *p)

@@ -209,7 +209,7 @@ static void remove_picture(struct pipeline *pipeline, const struct picture *pict
 
 /* ---- messages to the render thread ------------------------------------------------------------------------------ */
 
-static void take_request(struct pipeline *pipeline, struct picture *picture)
+static void add_request(struct pipeline *pipeline, struct picture *picture)
 {
     assert(pipeline->n_pictures < MAX_PICTURES); /* pipeline_submit lets no more in */
     pipeline->pictures[pipeline->n_pictures++] = picture;
@@ -219,11 +219,11 @@ static void take_request(struct pipeline *pipeline, struct picture *picture)
         pipeline->leave_at_us = at_us;
 }
 
-static void take_message(struct pipeline *pipeline, struct message *message)
+static void handle_message(struct pipeline *pipeline, struct message *message)
 {
     switch (message->kind) {
     case MESSAGE_REQUEST:
-        take_request(pipeline, message->picture);
+        add_request(pipeline, message->picture);
         message->picture = NULL;
         break;
     case MESSAGE_DROP:
@@ -244,7 +244,7 @@ static void read_messages(struct pipeline *pipeline)
 {
     atomic_store(&pipeline->is_called, false); /* before looking: what comes later calls again */
     for (struct message *message; (message = queue_try_take(pipeline->inbox));)
-        take_message(pipeline, message);
+        handle_message(pipeline, message);
 }
 
 /* ---- drawing ---------------------------------------------------------------------------------------------------- */
@@ -393,7 +393,7 @@ static void *render_main(void *argument)
         if (picture)
             draw_slice(pipeline, renderer, &err, picture);
         else if (message)
-            take_message(pipeline, message);
+            handle_message(pipeline, message);
     }
     for (size_t i = 0; i < pipeline->n_pictures; i++) {
         give_up(pipeline->pictures[i]);

@@ -70,7 +70,7 @@ static void tally_run(void *context, uint16_t label, uint32_t i, uint32_t j, uin
     tally->sum[2] += (uint64_t)k * length;
 }
 
-static void take_tally(struct region *region, const struct tally *tally, const struct grid *grid)
+static void store_tally(struct region *region, const struct tally *tally, const struct grid *grid)
 {
     region->n_voxels = tally->n;
     region->volume_cm3 = (double)tally->n * grid_voxel_mm3(grid) / 1000;
@@ -100,7 +100,7 @@ void region_set_measure(struct region_set *set)
             struct region *region = &set->regions[i];
             static const struct tally none;
             if (region->layer == layer)
-                take_tally(region, region->label < n_labels ? &tallies.of_label[region->label] : &none, &volume->grid);
+                store_tally(region, region->label < n_labels ? &tallies.of_label[region->label] : &none, &volume->grid);
         }
         free(tallies.of_label);
     }

@@ -101,38 +101,38 @@ void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_cam
 static double resolve_pane(const struct plan *plan, const struct view *view, const struct plane *plane,
                            struct camera *camera)
 {
-    const struct scene_camera *asked = &view->camera;
+    const struct scene_camera *given = &view->camera;
     struct box3 box = pane_box(plan);
 
     camera->right = plane->right;
     camera->up = plane->up;
     camera->forward = plane_forward(plane);
     camera->is_parallel = true;
-    camera->target_lps_mm = plane_nearest(plane, asked->has_target_mm ? asked->target_mm : box_centre(&box));
+    camera->target_lps_mm = plane_nearest(plane, given->has_target_mm ? given->target_mm : box_centre(&box));
     camera->eye_lps_mm = vec3_sub(camera->target_lps_mm, vec3_scale(camera->forward, 1000));
-    return asked->has_height_mm ? asked->height_mm : pane_height_mm(&box, plane);
+    return given->has_height_mm ? given->height_mm : pane_height_mm(&box, plane);
 }
 
 static double resolve_space(const struct plan *plan, const struct view *view, struct camera *camera)
 {
-    const struct scene_camera *asked = &view->camera;
+    const struct scene_camera *given = &view->camera;
     struct box3 box = plan_box(plan);
 
-    camera->target_lps_mm = asked->has_target_mm ? asked->target_mm : box_centre(&box);
-    camera->eye_lps_mm = asked->has_position_mm
-                             ? asked->position_mm
-                             : vec3_sub(camera->target_lps_mm, vec3(0, home_distance_mm(&box, asked->fov_deg), 0));
-    camera->is_parallel = asked->projection == SCENE_PROJECTION_PARALLEL;
+    camera->target_lps_mm = given->has_target_mm ? given->target_mm : box_centre(&box);
+    camera->eye_lps_mm = given->has_position_mm
+                             ? given->position_mm
+                             : vec3_sub(camera->target_lps_mm, vec3(0, home_distance_mm(&box, given->fov_deg), 0));
+    camera->is_parallel = given->projection == SCENE_PROJECTION_PARALLEL;
     struct vec3 sight = vec3_sub(camera->target_lps_mm, camera->eye_lps_mm);
     camera->forward = vec3_normalize(sight);
-    struct vec3 up = asked->has_up ? asked->up : vec3(0, 0, 1);
+    struct vec3 up = given->has_up ? given->up : vec3(0, 0, 1);
     if (vec3_length(vec3_cross(camera->forward, vec3_normalize(up))) <
         1e-6) /* the default up lies along the line of sight */
         up = fabs(camera->forward.z) < 0.9 ? vec3(0, 0, 1) : vec3(0, -1, 0);
     camera->right = vec3_normalize(vec3_cross(camera->forward, up));
     camera->up = vec3_cross(camera->right, camera->forward);
-    double at_target = 2 * vec3_length(sight) * tan(asked->fov_deg / 2 * MATH_PI / 180);
-    return asked->has_height_mm && camera->is_parallel ? asked->height_mm : fmax(at_target, 1e-3);
+    double at_target = 2 * vec3_length(sight) * tan(given->fov_deg / 2 * MATH_PI / 180);
+    return given->has_height_mm && camera->is_parallel ? given->height_mm : fmax(at_target, 1e-3);
 }
 
 /* Near and far enclose the regions and all images tightly, so that 24 bits of depth are enough. */

@@ -50,7 +50,7 @@ enum { MAX_TERMS = 3 };
 
 /* One pass: computes something for every vertex from the result of the pass before, at the vertex and at its links. */
 struct pass {
-    void (*take)(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end);
+    void (*run)(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end);
     /* for a step of the recurrence */
     const float4 *now; /* e_(n-1) */
     float4 *next;      /* holds e_(n-2), receives e_n */
@@ -77,42 +77,42 @@ struct passes {
 };
 
 /* Runs the passes over slices from..end; each further pass begins and ends `begins` and `ends` slices later. */
-static void take_tile(const struct passes *passes, int32_t from, int32_t end, int begins, int ends)
+static void run_tile(const struct passes *passes, int32_t from, int32_t end, int begins, int ends)
 {
     int32_t n = (int32_t)(passes->end - passes->pass);
     for (int32_t front = from - n; front < end + 2 * n; front++)
         for (int32_t i = 0; i < n; i++) {
             int32_t slice = front - i;
             if (slice >= from + i * begins && slice < end + i * ends)
-                passes->pass[i].take(passes->job, &passes->pass[i], passes->begin[slice], passes->begin[slice + 1]);
+                passes->pass[i].run(passes->job, &passes->pass[i], passes->begin[slice], passes->begin[slice + 1]);
         }
 }
 
 /* First a thread goes as far as it can without the slices of others: each pass covers one slice less at either end. */
-static void take_own(void *context, int part, int n_parts)
+static void run_own_slices(void *context, int part, int n_parts)
 {
     const struct passes *passes = context;
-    take_tile(passes, passes->tiles[part], passes->tiles[part + 1], part > 0, part + 1 < n_parts ? -1 : 0);
+    run_tile(passes, passes->tiles[part], passes->tiles[part + 1], part > 0, part + 1 < n_parts ? -1 : 0);
 }
 
 /* Then the gaps between two threads' slices are filled: each pass covers one slice more at either end. */
-static void take_between(void *context, int part, int n_parts)
+static void run_between(void *context, int part, int n_parts)
 {
     const struct passes *passes = context;
     (void)n_parts;
-    take_tile(passes, passes->tiles[part + 1], passes->tiles[part + 1], -1, 1);
+    run_tile(passes, passes->tiles[part + 1], passes->tiles[part + 1], -1, 1);
 }
 
-static void take_share(void *context, int part, int n_parts)
+static void run_share(void *context, int part, int n_parts)
 {
     const struct passes *passes = context;
     size_t from, end;
     smooth_range(passes->job, part, n_parts, &from, &end);
-    passes->pass->take(passes->job, passes->pass, from, end);
+    passes->pass->run(passes->job, passes->pass, from, end);
 }
 
-/* Divides the slices into shares with about equally many vertices; false if shares would be too thin for take_own and
- * take_between. */
+/* Divides the slices into shares with about equally many vertices; false if shares would be too thin for run_own_slices
+ * and run_between. */
 static bool share_slices(struct passes *passes)
 {
     passes->n_tiles = passes->job->n_threads;
@@ -146,7 +146,7 @@ static bool find_slices(struct passes *passes, struct error *err)
     return true;
 }
 
-static bool take_passes(const struct smooth_job *job, const struct pass *all, size_t n, struct error *err)
+static bool run_passes(const struct smooth_job *job, const struct pass *all, size_t n, struct error *err)
 {
     struct passes passes = { .job = job };
     if (!find_slices(&passes, err))
@@ -155,9 +155,9 @@ static bool take_passes(const struct smooth_job *job, const struct pass *all, si
     for (size_t at = 0, step = is_shared ? BLOCK : 1; at < n; at += step) {
         passes.pass = all + at;
         passes.end = all + (at + step < n ? at + step : n);
-        parallel_run(is_shared ? passes.n_tiles : job->n_threads, is_shared ? take_own : take_share, &passes);
+        parallel_run(is_shared ? passes.n_tiles : job->n_threads, is_shared ? run_own_slices : run_share, &passes);
         if (is_shared && passes.n_tiles > 1)
-            parallel_run(passes.n_tiles - 1, take_between, &passes);
+            parallel_run(passes.n_tiles - 1, run_between, &passes);
     }
     free(passes.begin);
     return true;
@@ -254,10 +254,10 @@ static size_t plan_filters(const struct smooth_job *job, struct pass *passes)
     double strong[SMOOTH_MAX_STEPS + 1], gentle[SMOOTH_MAX_STEPS + 1];
     make_weights(options->strong_band, options->n_steps, strong);
     make_weights(options->gentle_band, n_gentle, gentle);
-    passes[0] = (struct pass){ .take = first_step, .strong = { (float)strong[1] }, .gentle = { (float)gentle[1] } };
+    passes[0] = (struct pass){ .run = first_step, .strong = { (float)strong[1] }, .gentle = { (float)gentle[1] } };
     for (int n = 2, added = 1; n <= options->n_steps; n++) {
         struct pass *pass = &passes[n - 1];
-        *pass = (struct pass){ .take = next_step,
+        *pass = (struct pass){ .run = next_step,
                                .now = n % 2 ? job->before : job->now,
                                .next = n % 2 ? job->now : job->before };
         if (n - added < MAX_TERMS && n < options->n_steps)
@@ -410,18 +410,18 @@ static size_t plan_way_to_edges(const struct smooth_job *job, struct pass *passe
 {
     size_t n = 0;
     float *trust = job->shift, *next_trust = job->lean; /* free until the last pass */
-    passes[n++] = (struct pass){ .take = place_gently };
-    passes[n++] = (struct pass){ .take = rate_trust, .next_trust = trust };
+    passes[n++] = (struct pass){ .run = place_gently };
+    passes[n++] = (struct pass){ .run = rate_trust, .next_trust = trust };
     for (int round = 0; round < CAUTIOUS_ROUNDS + EVEN_ROUNDS; round++) {
-        passes[n++] = (struct pass){ .take = round < CAUTIOUS_ROUNDS ? lower_trust : average_trust,
+        passes[n++] = (struct pass){ .run = round < CAUTIOUS_ROUNDS ? lower_trust : average_trust,
                                      .trust = trust,
                                      .next_trust = next_trust };
         float *written = next_trust;
         next_trust = trust;
         trust = written;
     }
-    passes[n++] = (struct pass){ .take = blend_filters, .trust = trust };
-    passes[n++] = (struct pass){ .take = shift_to_edges };
+    passes[n++] = (struct pass){ .run = blend_filters, .trust = trust };
+    passes[n++] = (struct pass){ .run = shift_to_edges };
     return n;
 }
 
@@ -463,7 +463,7 @@ static bool smooth(struct smooth_job *job, struct error *err)
     struct pass passes[SMOOTH_MAX_STEPS + MAX_PASSES_TO_EDGES];
     size_t n_passes = plan_filters(job, passes);
     n_passes += plan_way_to_edges(job, passes + n_passes);
-    if (!take_passes(job, passes, n_passes, err)) {
+    if (!run_passes(job, passes, n_passes, err)) {
         free(vectors);
         return false;
     }

@@ -72,7 +72,7 @@ const char *room_plan_id(const struct room *room)
 
 /* Takes over copies of the plan's documents. Keeps the scene over a restart, without ids that the plan does not have
  * any more: it may have changed on disk. False: no memory, and all is as it was. */
-static bool take_plan(struct room *room, const cJSON *plan_document, const cJSON *default_scene)
+static bool replace_plan(struct room *room, const cJSON *plan_document, const cJSON *default_scene)
 {
     cJSON *plan = cJSON_Duplicate(plan_document, true), *defaults = cJSON_Duplicate(default_scene, true);
     cJSON *scene = NULL;
@@ -106,7 +106,7 @@ void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
                      bool is_software, int64_t now_us)
 {
     room->now_us = now_us;
-    if (!take_plan(room, plan_document, default_scene)) {
+    if (!replace_plan(room, plan_document, default_scene)) {
         struct problem problem = { 0 };
         (void)json_no_memory(&problem, "the plan in this room");
         room_renderer_state(room, WIRE_RENDERER_STATE_FAILED, NULL, 0, &problem);

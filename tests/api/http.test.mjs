@@ -256,9 +256,9 @@ describe('a plan', () => {
     assert.ok('NORMAL' in jsonOf(glb).meshes[0].primitives[0].attributes);
     assert.ok(!('NORMAL' in jsonOf(await file('format=glb&normals=face')).meshes[0].primitives[0].attributes));
     assertProblem(await call(`${plan}/regions/tumour/surface?format=obj`), 422, 'validation', '/format');
-    const crowd = await Promise.all(Array.from({ length: 16 }, () => call(`${plan}/regions/scalp/surface?format=stl`)));
-    for (const answer of crowd) if (answer.status !== 200) assertProblem(answer, 503, 'busy');
-    assert.ok(crowd.filter((answer) => answer.status === 200).length >= 4, 'four at once are made');
+    const batch = await Promise.all(Array.from({ length: 16 }, () => call(`${plan}/regions/scalp/surface?format=stl`)));
+    for (const answer of batch) if (answer.status !== 200) assertProblem(answer, 503, 'busy');
+    assert.ok(batch.filter((answer) => answer.status === 200).length >= 4, 'four at once are made');
     assert.equal((await file('format=stl')).status, 200, 'and later ones again');
     const none = await call(`${plan}/regions/liver/surface?format=stl`);
     assertProblem(none, 404, 'not-found');

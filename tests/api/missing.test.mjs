@@ -69,10 +69,10 @@ describe('a region that would take more triangles than the limit', { timeout: 24
     assert.deepEqual([said[0].view, said[0].n, said[0].regions.length, said[0].regions[0].region], [1, 1, 1, 'foam']);
     assert.match(said[0].regions[0].reason, /region "foam": .*40000000/);
     assert.ok(!ann.messages.some((m) => m.type === 'problem'));
-    const asked = async () => Number(/^beamroom_renders_total (\d+)/m.exec((await call(`${daemon.url}/metrics`)).text)[1]);
-    const before = await asked();
+    const nRequested = async () => Number(/^beamroom_renders_total (\d+)/m.exec((await call(`${daemon.url}/metrics`)).text)[1]);
+    const before = await nRequested();
     await sleep(5000); // it must not be requested again periodically
-    assert.equal(await asked(), before);
+    assert.equal(await nRequested(), before);
     const ben = await join_(); // a later member is told, too
     assert.equal((await ben.message('missing')).n, 1);
     ann.send({ type: 'scene.patch', patch: { regions: { foam: { visible: false } } }, input: 3 });

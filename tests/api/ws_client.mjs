@@ -38,7 +38,7 @@ export class Client {
     client.#socket = connect({ host: hostname, port: Number(port) });
     client.#socket.on('error', () => {});
     client.#socket.on('data', (bytes) => client.#take(bytes, key));
-    client.#socket.on('close', () => { client.closeCode ||= 1006; client.#news(); });
+    client.#socket.on('close', () => { client.closeCode ||= 1006; client.#checkWaiting(); });
     const lines = { Host: host, Connection: 'Upgrade', Upgrade: 'websocket', 'Sec-WebSocket-Version': '13', 'Sec-WebSocket-Key': key, ...headers };
     client.#socket.write(`GET ${path} HTTP/1.1\r\n${Object.entries(lines).map(([name, value]) => `${name}: ${value}\r\n`).join('')}\r\n`);
     await client.until(() => client.status !== 0 || client.closeCode, 'an answer to the handshake');
@@ -60,7 +60,7 @@ export class Client {
       this.#isOpen = this.status === 101;
     }
     while (this.#isOpen && this.#parse());
-    this.#news();
+    this.#checkWaiting();
   }
 
   #parse() {
@@ -89,7 +89,7 @@ export class Client {
     return true;
   }
 
-  #news() { for (const look of [...this.#waiting]) look(); }
+  #checkWaiting() { for (const look of [...this.#waiting]) look(); }
 
   /** Waits until test() returns something true, and returns it. */
   until(test, what = 'something', ms = 60000) {

@@ -115,7 +115,7 @@ static void plan_ready(struct room *room, int64_t now_us)
     cJSON_Delete(defaults);
 }
 
-static void take_line(struct room *room, const char *line, size_t n, int64_t *now_us)
+static void play_line(struct room *room, const char *line, size_t n, int64_t *now_us)
 {
     switch (line[0]) {
     case '{': /* a message of the first page; with a blank in front, of the second */
@@ -156,7 +156,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
         for (end = at; end < n && data[end] != '\n'; end++) {
         }
         if (end > at)
-            take_line(room, (const char *)data + at, end - at, &now_us);
+            play_line(room, (const char *)data + at, end - at, &now_us);
         int64_t again_us = room_tick(room, now_us);
         REQUIRE(again_us > now_us);
     }

@@ -235,10 +235,10 @@ static void solid_points_leave_no_gap_at_any_zoom(void **state)
             struct scene scene = make_scene(plan, &ways[1]);
             struct render_options options = { SHOTS_WIDTH, SHOTS_HEIGHT, SURFACE_FULL, is_still };
             struct image *image = shots_take(plan, scene, view, &options, NULL);
-            struct scene asked = shots_scene(plan);
+            struct scene picked = shots_scene(plan);
             struct error err = { 0 };
             char field[128];
-            struct snapshot *snapshot = snapshot_create(derived_of(plan), &asked, &view, 1, field, &err);
+            struct snapshot *snapshot = snapshot_create(derived_of(plan), &picked, &view, 1, field, &err);
             size_t n = 0;
             memset(truth, 0, sizeof truth);
             for (int y = 0; y < SHOTS_HEIGHT; y++)

@@ -98,7 +98,7 @@ static struct plan *make_crossing_balls(bool is_swapped)
     return plan;
 }
 
-static struct image *take_balls(struct renderer *renderer, struct plan *plan, bool is_still)
+static struct image *draw_balls(struct renderer *renderer, struct plan *plan, bool is_still)
 {
     struct scene scene = shots_scene(plan);
     shots_style(&scene, "red")->opacity = shots_style(&scene, "blue")->opacity = 0.8;
@@ -124,7 +124,7 @@ static void crossing_balls_have_the_nearer_one_on_top_everywhere(void **state)
 {
     (void)state;
     struct plan *plan = make_crossing_balls(false);
-    struct image *image = take_balls(shots_renderer, plan, false);
+    struct image *image = draw_balls(shots_renderer, plan, false);
     int n_checked[2] = { 0, 0 };
     for (int y = 0; y < SHOTS_HEIGHT; y++)
         for (int x = 0; x < SHOTS_WIDTH; x++) {
@@ -173,9 +173,9 @@ static void the_order_of_regions_and_of_triangles_makes_no_difference(void **sta
                     *shuffled = make_crossing_balls(false);
         shuffle_triangles(shuffled, 0);
         shuffle_triangles(shuffled, 1);
-        struct image *a = take_balls(shots_renderer, plan, is_still),
-                     *b = take_balls(shots_renderer, swapped, is_still),
-                     *c = take_balls(shots_renderer, shuffled, is_still);
+        struct image *a = draw_balls(shots_renderer, plan, is_still),
+                     *b = draw_balls(shots_renderer, swapped, is_still),
+                     *c = draw_balls(shots_renderer, shuffled, is_still);
         assert_memory_equal(a->rgba, b->rgba, (size_t)SHOTS_WIDTH * SHOTS_HEIGHT * 4);
         assert_memory_equal(a->rgba, c->rgba, (size_t)SHOTS_WIDTH * SHOTS_HEIGHT * 4);
         image_destroy(a);
@@ -194,7 +194,7 @@ static void every_back_end_draws_the_same(void **state)
     struct renderer *soft = renderer_create(RENDER_SOFT, &err);
     struct plan *plan = make_crossing_balls(false);
     for (int is_still = 0; is_still < 2; is_still++) {
-        struct image *a = take_balls(shots_renderer, plan, is_still), *b = take_balls(soft, plan, is_still);
+        struct image *a = draw_balls(shots_renderer, plan, is_still), *b = draw_balls(soft, plan, is_still);
         size_t n = (size_t)SHOTS_WIDTH * SHOTS_HEIGHT, n_far = 0;
         for (size_t i = 0; i < n; i++)
             for (size_t channel = 0; channel < 3; channel++)

@@ -53,7 +53,7 @@ static void write_all(const void *bytes, size_t n)
 }
 
 /* Without any of packet.h's checks. */
-static void say(cJSON *json, const void *blob, size_t n_blob)
+static void send_packet(cJSON *json, const void *blob, size_t n_blob)
 {
     char *text = json_write(json);
     const uint32_t head[3] = { 0x4b505242u, (uint32_t)strlen(text), (uint32_t)n_blob };
@@ -71,15 +71,15 @@ static cJSON *word(const char *type)
     return json;
 }
 
-static void say_progress(double percent)
+static void send_progress(double percent)
 {
     cJSON *json = word("progress");
     cJSON_AddStringToObject(json, "phase", "reading");
     cJSON_AddNumberToObject(json, "percent", percent);
-    say(json, NULL, 0);
+    send_packet(json, NULL, 0);
 }
 
-static void say_ready(const char *id)
+static void send_ready(const char *id)
 {
     cJSON *json = word("ready"), *plan = cJSON_AddObjectToObject(json, "plan");
     cJSON_AddStringToObject(plan, "id", behaves("other-id") ? "another" : id);
@@ -94,13 +94,13 @@ static void say_ready(const char *id)
         cJSON_AddNumberToObject(scene, "regions", 7);
     cJSON_AddStringToObject(json, "confined", "not at all");
     cJSON_AddNumberToObject(json, "load_ms", 12);
-    say(json, NULL, 0);
+    send_packet(json, NULL, 0);
 }
 
-static void say_frame(const cJSON *asked)
+static void send_frame(const cJSON *render)
 {
     cJSON *json = word("frame");
-    cJSON_AddNumberToObject(json, "id", json_number(asked, "id", 0));
+    cJSON_AddNumberToObject(json, "id", json_number(render, "id", 0));
     cJSON_AddNumberToObject(json, "width_px", behaves("liar") ? -5 : 64);
     static const char *const others[] = { "height_px", "scene_revision", "render_us", "encode_us", "pixels_per_mm" };
     for (size_t i = 0; i < 5; i++)
@@ -108,7 +108,7 @@ static void say_frame(const cJSON *asked)
     cJSON *matrix = cJSON_AddArrayToObject(json, "clip_from_lps_mm");
     for (int i = 0; i < 16; i++)
         cJSON_AddItemToArray(matrix, cJSON_CreateNumber(i));
-    say(json, "picture", 7);
+    send_packet(json, "picture", 7);
 }
 
 static void die(void)
@@ -139,21 +139,21 @@ static void handle(const struct packet *in, const char *folder)
     char mark[512];
     snprintf(mark, sizeof mark, "%s/crashed", folder);
     if (strcmp(type, "ping") == 0) {
-        say(word("pong"), NULL, 0);
+        send_packet(word("pong"), NULL, 0);
     } else if (strcmp(type, "render") == 0) {
         if (behaves("crash-on-render") || (behaves("crash-once") && access(mark, F_OK) != 0 && mkdir(mark, 0700) == 0))
             die();
-        static int n_asked;
+        static int n_renders;
         if (!behaves("never-draws") && !behaves("late-and-never-draws") &&
-            !(behaves("forgets-first") && n_asked++ == 0))
-            say_frame(packet);
+            !(behaves("forgets-first") && n_renders++ == 0))
+            send_frame(packet);
     } else if (packet_descriptions[in->type].question) {
         for (int64_t until_us = clock_now_us() + 2000000; behaves("computes") && clock_now_us() < until_us;)
             continue;
         cJSON *json = word("answer");
         cJSON_AddNumberToObject(json, "id", json_number(packet, "id", 0));
         cJSON_AddItemToObject(json, "body", cJSON_Duplicate(behaves("remembers-scenes") ? revisions : packet, true));
-        say(json, NULL, 0);
+        send_packet(json, NULL, 0);
     } else if (behaves("remembers-scenes") && (strcmp(type, "scene") == 0 || strcmp(type, "forget") == 0)) {
         const char *room = json_text(packet, "room");
         revisions = revisions ? revisions : cJSON_CreateObject();
@@ -162,7 +162,7 @@ static void handle(const struct packet *in, const char *folder)
             cJSON_AddNumberToObject(revisions, room, json_number(packet, "revision", -1));
     } else if (strcmp(type, "scene") == 0 && behaves("floods")) {
         for (;;)
-            say_progress(1);
+            send_progress(1);
     }
 }
 
@@ -215,22 +215,22 @@ static int renderer_main(const char *folder, const char *id, const char *cache)
             problem_set(&problem, PROBLEM_INTERNAL, "", "", "ct.nii: no memory for 1000 bytes");
         cJSON *json = word("failed");
         cJSON_AddItemToObject(json, "problem", problem_to_json(&problem));
-        say(json, NULL, 0);
+        send_packet(json, NULL, 0);
         return 3;
     }
     cJSON *gl = word("gl");
     cJSON_AddStringToObject(gl, "back_end", "made-up");
-    say(gl, NULL, 0);
-    say_progress(10);
+    send_packet(gl, NULL, 0);
+    send_progress(10);
     for (double percent = 20; behaves("loads-for-ever"); percent = percent < 90 ? percent + 0.01 : 20) {
-        say_progress(percent);
+        send_progress(percent);
         nanosleep(&(struct timespec){ .tv_nsec = 20000000 }, NULL);
     }
     while (behaves("stalls"))
         pause();
     if (behaves("late-and-never-draws"))
         nanosleep(&(struct timespec){ .tv_sec = 1, .tv_nsec = 500000000 }, NULL);
-    say_ready(id);
+    send_ready(id);
     if (behaves("deaf"))
         raise(SIGSTOP);
     struct packet_reader *reader = packet_reader_create(PACKET_TO_RENDERER);

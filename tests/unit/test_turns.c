@@ -8,13 +8,13 @@ enum { ORBIT = 1, HOG, SCRIPTS, LATE, MAX_SOURCES = 5, MS = 1000 };
 struct world {
     struct turns *turns;
     struct turns_item items[MAX_SOURCES]; /* [source] */
-    int64_t cost_us[MAX_SOURCES];         /* of a picture; 0: the source asks for nothing */
+    int64_t cost_us[MAX_SOURCES];         /* of a picture; 0: the source has no request */
     int64_t left_us[MAX_SOURCES], got_us[MAX_SOURCES], waited_us[MAX_SOURCES], worst_wait_us[MAX_SOURCES];
     int n_pictures[MAX_SOURCES];
 };
 enum { SLICE_US = 20 * MS };
 
-static void asks(struct world *world, int source, int64_t cost_us, bool is_still)
+static void add_pictures(struct world *world, int source, int64_t cost_us, bool is_still)
 {
     world->items[source] = (struct turns_item){ .source = (uint64_t)source, .is_still = is_still };
     world->cost_us[source] = world->left_us[source] = cost_us;
@@ -46,7 +46,7 @@ static void run(struct world *world, int64_t duration_us)
             }
         if ((world->left_us[s] -= step_us) == 0) {
             world->n_pictures[s]++;
-            asks(world, s, world->cost_us[s], world->items[s].is_still);
+            add_pictures(world, s, world->cost_us[s], world->items[s].is_still);
         }
     }
 }
@@ -55,9 +55,9 @@ static void sources_get_the_same_time_whatever_their_pictures_cost(void **state)
 {
     (void)state;
     struct world world = { .turns = turns_create() };
-    asks(&world, ORBIT, 10 * MS, false);
-    asks(&world, HOG, 2000 * MS, false);
-    asks(&world, SCRIPTS, 300 * MS, false);
+    add_pictures(&world, ORBIT, 10 * MS, false);
+    add_pictures(&world, HOG, 2000 * MS, false);
+    add_pictures(&world, SCRIPTS, 300 * MS, false);
     run(&world, 60000 * MS);
     for (int s = ORBIT; s <= SCRIPTS; s++)
         assert_close((double)world.got_us[s], 20000.0 * MS, 200.0 * MS); /* a third, but for credits and a slice */
@@ -69,9 +69,9 @@ static void a_moving_picture_waits_for_no_more_than_a_few_slices(void **state)
 {
     (void)state;
     struct world world = { .turns = turns_create() };
-    asks(&world, ORBIT, 15 * MS, false);
-    asks(&world, HOG, 3000 * MS, true);
-    asks(&world, SCRIPTS, 1000 * MS, true);
+    add_pictures(&world, ORBIT, 15 * MS, false);
+    add_pictures(&world, HOG, 3000 * MS, true);
+    add_pictures(&world, SCRIPTS, 1000 * MS, true);
     run(&world, 60000 * MS);
     assert_true(world.worst_wait_us[ORBIT] <= 3 * SLICE_US); /* a slice of each other, and one for what it was ahead */
     assert_close((double)world.got_us[ORBIT], 20000.0 * MS, 300.0 * MS);
@@ -83,17 +83,17 @@ static void a_newcomer_gets_no_credit_for_the_time_before(void **state)
 {
     (void)state;
     struct world world = { .turns = turns_create() };
-    asks(&world, HOG, 30 * MS, false);
+    add_pictures(&world, HOG, 30 * MS, false);
     run(&world, 3600000ll * MS);
     int64_t hog_us = world.got_us[HOG];
-    asks(&world, LATE, 30 * MS, false);
+    add_pictures(&world, LATE, 30 * MS, false);
     run(&world, 1000 * MS);
     assert_close((double)(world.got_us[HOG] - hog_us), 450.0 * MS, 60.0 * MS); /* 500, less half of the credit */
     /* nor for a rest */
     world.cost_us[LATE] = 0;
     run(&world, 600000 * MS);
     hog_us = world.got_us[HOG];
-    asks(&world, LATE, 30 * MS, false);
+    add_pictures(&world, LATE, 30 * MS, false);
     run(&world, 1000 * MS);
     assert_close((double)(world.got_us[HOG] - hog_us), 450.0 * MS, 60.0 * MS);
     turns_destroy(world.turns);

@@ -307,7 +307,7 @@ static bool grow(struct bytes *scratch, size_t size, const char *path, struct er
     return scratch->data ? true : error_set(err, ERROR_MEMORY, "%s: no memory for %zu bytes", path, size);
 }
 
-static enum dicom_head_result say_foreign(const uint8_t *data, size_t n, const char *path, struct error *err)
+static enum dicom_head_result refuse_foreign(const uint8_t *data, size_t n, const char *path, struct error *err)
 {
     char found[16] = "";
     for (size_t i = 0; i < n && i < 4; i++)
@@ -350,7 +350,7 @@ enum dicom_head_result dicom_head_read(const struct folder *folder, const char *
         if (!grow(scratch, n, path, err) || !folder_read_part(&part, path, 0, scratch->data, n, err))
             break;
         if (!dicom_looks_like(scratch->data, n)) {
-            result = say_foreign(scratch->data, n, path, err);
+            result = refuse_foreign(scratch->data, n, path, err);
             break;
         }
         dicom_file_destroy(file);

@@ -60,7 +60,7 @@ class FakeConnection extends EventTarget {
     return true;
   }
 
-  news(message) {
+  receive(message) {
     const event = new Event('message');
     event.detail = message;
     this.dispatchEvent(event);
@@ -78,7 +78,7 @@ function roomWorld() {
   const told = [];
   let now = 1000;
   const room = new RoomState('r', { connection, clock: { now: () => now }, schedule: (callback) => frames.push(callback), notify: (...words) => told.push(words) });
-  connection.news({ type: 'welcome', room: 'r', member: 'm1', secret: 's', name: 'Reviewer 1', plan_id: 'p', plan: { id: 'p' }, revision: 1, scene, gl: '' });
+  connection.receive({ type: 'welcome', room: 'r', member: 'm1', secret: 's', name: 'Reviewer 1', plan_id: 'p', plan: { id: 'p' }, revision: 1, scene, gl: '' });
   const flush = () => frames.splice(0).forEach((callback) => callback());
   return { room, connection, flush, told, advance: (ms) => { now += ms; } };
 }
@@ -104,7 +104,7 @@ test('a refusal brings the old value back and says why', () => {
   room.patchScene({ regions: { brain: { opacity: 7 } } });
   flush();
   const { input } = connection.sent.at(-1);
-  connection.news({ type: 'problem', to: 'scene.patch', view: 0, input, problem: { detail: 'opacity is 7, expected 0 to 1' } });
+  connection.receive({ type: 'problem', to: 'scene.patch', view: 0, input, problem: { detail: 'opacity is 7, expected 0 to 1' } });
   assert.equal(room.scene.value.regions.brain.opacity, 1);
   assert.deepEqual(told, [['err', 'opacity is 7, expected 0 to 1']]);
 });
@@ -118,7 +118,7 @@ test('after a lost connection every open picture is asked for again', () => {
   connection.dispatchEvent(lost);
   assert.equal(room.canChange.value, false);
   connection.sent.length = 0;
-  connection.news({ type: 'welcome', room: 'r', member: 'm1', secret: 's', name: 'n', plan_id: 'p', plan: { id: 'p' }, revision: 9, scene, gl: '' });
+  connection.receive({ type: 'welcome', room: 'r', member: 'm1', secret: 's', name: 'n', plan_id: 'p', plan: { id: 'p' }, revision: 9, scene, gl: '' });
   assert.deepEqual(connection.sent.map(({ type, view }) => [type, view]), [['view.open', 1], ['view.open', 3]]);
   assert.equal(room.revision.value, 9);
 });
@@ -131,20 +131,20 @@ test('a size that comes before the connection, or without one, is the one asked 
   room.showView(1, [456, 218]); // before the page has its final layout
   room.showView(1, [456, 270]);
   connection.sent.length = 0;
-  connection.news(welcome);
+  connection.receive(welcome);
   assert.deepEqual(opened(), [[456, 270]]);
   const lost = new Event('lost');
   lost.detail = { retryMs: 500 };
   connection.dispatchEvent(lost);
   room.showView(1, [800, 600]);
   connection.sent.length = 0;
-  connection.news(welcome);
+  connection.receive(welcome);
   assert.deepEqual(opened(), [[800, 600]]);
 });
 
 test('a member who has left is here no more', () => {
   const { room, connection } = roomWorld();
-  connection.news({ type: 'members', members: [{ id: 'm1', name: 'A', connected: true }, { id: 'm2', name: 'B', connected: false }] });
+  connection.receive({ type: 'members', members: [{ id: 'm1', name: 'A', connected: true }, { id: 'm2', name: 'B', connected: false }] });
   assert.deepEqual(['m1', 'm2', 'm3', ''].map((id) => room.isHere(id)), [true, false, false, false]);
 });
 
