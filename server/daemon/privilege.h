@@ -24,6 +24,8 @@ struct privilege_options {
 };
 
 /* Does nothing when the daemon was not started by root. When no user is named and the default user cannot reach a
- * place, the daemon stays root and logs why. errors ERROR_NOT_FOUND  no such user ERROR_IO         the named user
- * cannot reach a place, or does not own the data folder */
+ * place, the daemon stays root and logs why.
+ *
+ *   errors   ERROR_NOT_FOUND  no such user
+ *            ERROR_IO         the named user cannot reach a place, or does not own the data folder */
 NODISCARD bool privilege_give_up(const struct privilege_options *options, struct error *err);
