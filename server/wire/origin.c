@@ -1,3 +1,4 @@
+/* Compares the Origin of a request with its Host. */
 #include "server/wire/origin.h"
 
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* Writes a problem as an HTTP/1.1 answer, and sends it without waiting. */
 #include "server/wire/refusal.h"
 
 #include <errno.h>

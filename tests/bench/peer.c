@@ -1,3 +1,4 @@
+/* Starts the other program of a benchmark, sends it lines and reads its answers. */
 #include "tests/bench/peer.h"
 
 #include <spawn.h>

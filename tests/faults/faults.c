@@ -1,4 +1,6 @@
 #define _GNU_SOURCE
+/* Replaces malloc, open, read, write, mmap, fork, pthread_create and their relatives in the test program, counts their
+ * calls and lets chosen ones fail. */
 #include "tests/faults/faults.h"
 
 #include <dirent.h>

@@ -1,4 +1,5 @@
 #define _GNU_SOURCE
+/* Runs a piece of work once for each fault in a child process, and compares memory, descriptors, files and result. */
 #include "tests/faults/walk.h"
 
 #include <dirent.h>

@@ -1,3 +1,4 @@
+/* Draws the pictures of the render tests, and measures in them. */
 #include "tests/render/shots.h"
 
 struct renderer *shots_renderer;

@@ -1,4 +1,5 @@
 #define _GNU_SOURCE
+/* Finds real data for tests, and makes and removes temporary folders. */
 #include "tests/unit/data_folder.h"
 
 #include <ftw.h>

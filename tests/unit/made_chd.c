@@ -1,3 +1,4 @@
+/* Writes small sets of SERA's dose contours (.chd, .cdf, .cmf) for tests. */
 #include "tests/unit/made_chd.h"
 
 const char *const chd_sera_mc[9] = {

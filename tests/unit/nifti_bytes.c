@@ -1,3 +1,4 @@
+/* Writes NIfTI files for tests, field by field. */
 #include "tests/unit/nifti_bytes.h"
 
 #include <libdeflate.h>

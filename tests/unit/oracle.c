@@ -1,3 +1,4 @@
+/* Runs a Python script of tests/oracle and reads its answer. */
 #include "tests/unit/oracle.h"
 
 #include <spawn.h>

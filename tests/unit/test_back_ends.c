@@ -1,3 +1,4 @@
+/* The words for back ends, and back to them. */
 #include "core/render/render.h"
 #include "tests/check.h"
 

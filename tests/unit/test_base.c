@@ -1,3 +1,4 @@
+/* core/base: errors, checked sizes, mailbox, queue, gate, parallel work. */
 #include <pthread.h>
 #include <stdatomic.h>
 

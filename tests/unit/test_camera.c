@@ -1,3 +1,4 @@
+/* Cameras of scenes and panes: home position, clip space, refusals. */
 #include "core/scene/camera.h"
 #include "core/scene/snapshot.h"
 #include "tests/check.h"

@@ -1,3 +1,4 @@
+/* Scene and view documents: patches, defaults, references to the plan, merge patches (RFC 7396). */
 #include "server/wire/document.h"
 #include "server/wire/json_merge.h"
 #include "server/wire/patch.h"

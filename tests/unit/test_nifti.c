@@ -1,3 +1,4 @@
+/* Reading NIfTI 1 and 2: geometry, data types, scaling, packed files, damaged files. */
 #include "core/formats/nifti.h"
 #include "tests/check.h"
 #include "tests/unit/nifti_bytes.h"

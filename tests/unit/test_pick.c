@@ -1,3 +1,4 @@
+/* Picking: the regions and slices along a pixel's ray, front to back. */
 #include "core/scene/camera.h"
 #include "core/scene/pick.h"
 #include "core/scene/snapshot.h"

@@ -1,3 +1,4 @@
+/* The report of loading, and the list of its codes. */
 #include "core/report/report.h"
 #include "core/report/report_codes.h"
 #include "tests/check.h"

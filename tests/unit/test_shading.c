@@ -1,3 +1,4 @@
+/* Normals for shading voxel surfaces. */
 #include "core/render/visible/shading.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"

@@ -17,9 +17,12 @@ struct check_counts {
 #define CHECK_NUDGE 1.7e-3
 
 /* Marks pixels that the surface encloses but that are no univels (amber, hatched upwards) and univels outside the
- * surface (blue, hatched downwards); adds both to *check. surface  closed lines, filled by the even-odd rule; a row
- * that they cross an odd number of times is not checked plane    already nudged scale    pixels of the image to one of
- * the full picture errors   ERROR_MEMORY */
+ * surface (blue, hatched downwards); adds both to *check.
+ *
+ *   surface  closed lines, filled by the even-odd rule; a row that they cross an odd number of times is not checked
+ *   plane    already nudged
+ *   scale    pixels of the image for one pixel of the full picture
+ *   errors   ERROR_MEMORY */
 NODISCARD bool check_paint(const struct cut_region *univels, const struct cut_lines *surface,
                            const struct camera *camera, const struct plane *plane, struct image *image, double scale,
                            struct check_counts *check, struct error *err);

@@ -1,3 +1,4 @@
+// Reading the list of report codes from the C header, for the reference page.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
