@@ -3,7 +3,7 @@
 #   make            the programs and the page               make run     install what is missing, build, demo plan, serve
 #   make test       every kind of test (tests/README.md)    make test-deep  the long ones: sanitizers, clang, fuzzing
 #   make install PREFIX=/usr/local DESTDIR=
-#   make test-unit test-render test-faults test-api test-web  one suite
+#   make test-unit test-render test-faults test-api test-web test-install  one suite
 #   make bench  lint  fuzz  cover  clean
 # Variables: CC=gcc|clang  SAN=address,undefined|thread  WERROR=1  V=1  FUZZ_SECONDS=60
 #   run: PLANS="folder ..." further folders of plans, ARGS="--listen 127.0.0.1:9000 ..." further flags of beamroomd

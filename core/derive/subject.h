@@ -1,10 +1,10 @@
 #pragma once
-/* What of a plan is drawn or derived: its kind, and which one of that kind. Caches, visibility, picking, statistics and
- * export name things by a subject. */
+/* A subject: the part of a plan that is drawn or derived from, as its kind and its index. Caches, visibility, picking,
+ * statistics and export name parts of a plan by it. */
 #include "core/plan/plan.h"
 
 enum subject_kind {
-    SUBJECT_PLAN, /* all of it: what is derived of no single part */
+    SUBJECT_PLAN, /* the whole plan: for results that belong to no single part */
     SUBJECT_REGION,
     SUBJECT_IMAGE,       /* index: of the plan's images */
     SUBJECT_LABEL_LAYER, /* index: of the layers of its regions */
@@ -13,8 +13,8 @@ enum subject_kind {
 
 struct subject {
     enum subject_kind kind;
-    size_t index; /* region: its index in the plan; else 0 */
-    uint64_t key; /* what else tells two of a kind apart; plan, region: 0 */
+    size_t index; /* in the plan's list of that kind; 0 for the plan */
+    uint64_t key; /* tells subjects of equal kind and index apart; 0 for plan and region */
 };
 
 static inline struct subject subject_plan(void)
@@ -29,7 +29,7 @@ static inline struct subject subject_region(size_t region)
 
 bool subject_equal(struct subject a, struct subject b);
 uint64_t subject_hash(struct subject subject); /* equal for equal subjects */
-/* True if the plan has it. */
+/* True if the plan has this part. */
 bool subject_exists(const struct plan *plan, struct subject subject);
 /* The id that people and URLs use. The subject exists; borrowed from the plan. */
 const char *subject_id(const struct plan *plan, struct subject subject);
