@@ -1,4 +1,4 @@
-/* The common reduction of coarse surfaces: the kind of result, and the search for it. */
+/* Finds the reduction that all coarse surfaces of a plan share, and keeps it as a result. */
 #include "core/derive/coarse_reduction.h"
 
 #include <math.h>

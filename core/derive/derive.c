@@ -1,4 +1,4 @@
-/* The store of derived results: recipes as keys of one cache. */
+/* The store of derived results: one cache whose keys are recipes. */
 #include "core/derive/derive.h"
 
 #include <stdatomic.h>

@@ -1,4 +1,4 @@
-/* Masks of many regions: the wishes are cut into runs, and one sweep makes the masks of a run. */
+/* Makes the masks of many regions from few sweeps over the labels: the wishes are cut into runs, one sweep each. */
 #include "core/derive/region_masks.h"
 
 #include <stdatomic.h>

@@ -1,4 +1,4 @@
-/* Shapes of regions: the kind of result, and many of them built side by side. */
+/* Builds shapes of regions, one or many side by side, and keeps them in the store. */
 #include "core/derive/region_shape.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* Surfaces of regions: full ones, and coarse ones for pictures that move. */
+/* Builds surfaces of regions from their masks: full ones, and coarse ones for pictures that move. */
 #include "core/derive/region_surface.h"
 
 #include <math.h>

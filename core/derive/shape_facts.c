@@ -1,4 +1,4 @@
-/* Facts that a shape alone tells. */
+/* Counts and measures a built shape. */
 #include "core/derive/shape_facts.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 #pragma once
-/* What was built of a region, for people to read. */
+/* The figures of a built shape, for people to read: counts, area, volume, distance from the univels, time, memory. */
 #include "core/surface/shape.h"
 
 struct shape_facts {

@@ -1,4 +1,4 @@
-/* Shapes by level of detail: from a want to the recipe of a shape. */
+/* Builds shapes by level of detail: chooses the recipe for a wanted shape. */
 #include "core/derive/shapes.h"
 
 #include <assert.h>

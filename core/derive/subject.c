@@ -1,4 +1,4 @@
-/* Subjects: comparing, hashing, naming. */
+/* Compares, hashes and names subjects. */
 #include "core/derive/subject.h"
 
 bool subject_equal(struct subject a, struct subject b)

@@ -1,5 +1,5 @@
 #pragma once
-/* Finds the DICOM objects of a plan's folder, and opens one. */
+/* Finds the DICOM objects of a plan's folder, and opens them. */
 #include "core/formats/dicom/dicom_index.h"
 #include "core/load/parts.h"
 

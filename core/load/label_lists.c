@@ -1,4 +1,4 @@
-/* Finds the lists of label names in a folder without plan.json and the label map each belongs to. */
+/* Finds the lists of label names in a folder without plan.json, and the label map that each belongs to. */
 #include "core/load/label_lists.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 #pragma once
-/* Lists of label names in a folder without plan.json, and the label map each belongs to. */
+/* Finds the lists of label names in a folder without plan.json, and the label map that each belongs to. */
 #include <stdatomic.h>
 
 #include "core/formats/folder.h"

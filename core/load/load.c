@@ -7,8 +7,8 @@
 
 #include "core/base/clock.h"
 #include "core/load/assemble.h"
-#include "core/load/describe.h"
 #include "core/load/estimate.h"
+#include "core/load/find_parts.h"
 #include "core/load/loading.h"
 #include "core/load/part_list.h"
 #include "core/load/read_all.h"
@@ -78,9 +78,9 @@ static bool load(struct loading *loading)
         return true;
     loading_phase(loading, "looking at the folder", "", 0, 5);
     const struct dicom_progress looking = { index_progress, loading, &loading->is_given_up, 0 };
-    bool is_described = plan_describe(&loading->folder, &looking, &loading->parts, &plan->report, err);
+    bool is_found = plan_find_parts(&loading->folder, &looking, &loading->parts, &plan->report, err);
     loading->file = loading->parts.file;
-    if (!is_described || !plan_list_parts(loading, err) || !plan_check_estimate(loading, err) ||
+    if (!is_found || !plan_list_parts(loading, err) || !plan_check_estimate(loading, err) ||
         !plan_read_parts(loading, err) || !plan_assemble(loading, err) || !has_anything(plan, err))
         return false;
     memcpy(plan->name, loading->file->name, sizeof plan->name);

@@ -1,4 +1,4 @@
-/* One plan while it is loaded: its life and its progress. */
+/* Creates the state of a plan that is being loaded, counts its references, and works out the progress. */
 #include "core/load/loading.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #pragma once
-/* One plan while it is loaded: the folder, its parts, the files being read, the plan they fill, and the progress.
- * load.c leads: describe.h finds the parts, part_list.h lists the files, estimate.h checks the memory, read_all.h reads
- * them in several threads, assemble.h builds the plan. */
+/* The state of a plan that is being loaded: the folder, its parts, the files being read, the plan they fill, the
+ * progress. load.c leads: find_parts.h finds the parts, part_list.h lists the files, estimate.h checks the memory,
+ * read_all.h reads them in several threads, assemble.h builds the plan. */
 #include <stdatomic.h>
 
 #include "core/base/mailbox.h"

@@ -1,4 +1,4 @@
-/* Tells the format of a file in a plan's folder. */
+/* Recognises the format of a file in a plan's folder. */
 #include "core/load/part_format.h"
 
 #include "core/formats/dicom/dicom_index.h"

@@ -1,5 +1,5 @@
 #pragma once
-/* The format of a file in a plan's folder, told by its name and, for DICOM, by its first bytes. */
+/* The format of a file in a plan's folder, recognised by its name and, for DICOM, by its first bytes. */
 #include "core/formats/folder.h"
 
 enum part_format {

@@ -1,4 +1,4 @@
-/* Lists the files to read for a plan. */
+/* Lists the files to read for a plan: one part_reading each. */
 #include "core/load/part_list.h"
 
 #include "core/base/mem.h"

@@ -1,4 +1,4 @@
-/* Works on names of files in a plan's folder. */
+/* Takes names of files in a plan's folder apart, and finds the data file beside a header. */
 #include "core/load/part_names.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 #pragma once
-/* One file of a plan while it is loaded: which entry it stands for, and what its reader filled in. Plain data. */
+/* The reading of one file of a plan: the entry that the file stands for, and what its reader filled in. Plain data. */
 #include "core/formats/dicom/dicom_rtdose.h"
 #include "core/formats/dicom/dicom_rtplan.h"
 #include "core/formats/dicom/dicom_rtstruct.h"

@@ -1,4 +1,4 @@
-/* The parts of a plan before any voxel is read. */
+/* Frees the parts of a plan. */
 #include "core/load/parts.h"
 
 void plan_parts_finish(struct plan_parts *parts)

@@ -1,4 +1,4 @@
-/* Ids of what is added to a plan, and the limit on its doses. */
+/* Makes ids for the parts that are added to a plan, and checks the limit on its doses. */
 #include "core/load/plan_ids.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 #pragma once
-/* Ids of what is added to a plan, and the limit on its doses. */
+/* Makes ids for the parts that are added to a plan, and checks the limit on its doses. */
 #include "core/plan/plan.h"
 
 /* Makes an id that may stand in a URL: from the id the plan gives, else from the file's name; different from others. */

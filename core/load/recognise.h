@@ -1,5 +1,5 @@
 #pragma once
-/* A folder without plan.json: finds its parts by the names and headers of the files. */
+/* Finds the parts of a folder without plan.json by the names and headers of its files. */
 #include "core/load/parts.h"
 
 /* Looks at all files below the folder, except in folders that have a plan.json of their own. The caller finishes parts,

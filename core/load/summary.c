@@ -9,8 +9,8 @@
 #include "core/formats/sera_rst.h"
 #include "core/formats/sera_uvh.h"
 #include "core/formats/text.h"
-#include "core/load/describe.h"
 #include "core/load/dicom_parts.h"
+#include "core/load/find_parts.h"
 #include "core/load/nifti_parts.h"
 #include "core/load/nrrd_parts.h"
 #include "core/load/part_format.h"
@@ -290,7 +290,7 @@ void plan_summarize(const char *path, struct plan_summary *summary)
     struct plan_parts parts = { 0 };
     *summary = (struct plan_summary){ 0 };
     plan_folder_name(path, summary->name, sizeof summary->name);
-    if (folder_open(&folder, path, &err) && plan_describe(&folder, NULL, &parts, NULL, &err)) {
+    if (folder_open(&folder, path, &err) && plan_find_parts(&folder, NULL, &parts, NULL, &err)) {
         const struct plan_file *file = parts.file;
         memcpy(summary->name, file->name, sizeof summary->name);
         memcpy(summary->note, file->note, sizeof summary->note);

@@ -1,4 +1,4 @@
-/* An empty plan, and its end. */
+/* Creates and destroys an empty plan. */
 #include "core/plan/plan.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* The bounds of a plan: the boxes of its regions, images, doses, beams. */
+/* Computes the bounds of a plan from its regions, images, doses and beams. */
 #include "core/plan/plan_bounds.h"
 
 static void add_box(struct box3 *bounds, const struct box3 *box)

@@ -1,5 +1,5 @@
 #pragma once
-/* The bounds of a plan from its parts; for core/load. */
+/* Computes the bounds of a plan from its parts; for core/load. */
 #include "core/plan/plan.h"
 
 /* Fills bounds_lps_mm from the parts of the plan, and reports an image or a dose that overlaps no region. */

@@ -1,4 +1,4 @@
-/* Regions, image values and doses at a patient point. */
+/* Looks up the regions, image values and doses at a patient point. */
 #include <string.h>
 
 #include "core/plan/plan.h"

@@ -1,4 +1,4 @@
-/* Lists plan folders: which folder is a plan, its name, its fingerprint, and ids made from names. */
+/* Finds the plans in the configured folders: which folder is a plan, its name, fingerprint and id. */
 #include "server/fleet/folders.h"
 
 #include <dirent.h>

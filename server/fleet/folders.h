@@ -1,5 +1,5 @@
 #pragma once
-/* Lists the plans in the configured folders, with a fingerprint of each. Opens no plan file. Any thread. */
+/* Finds the plans in the configured folders, with a fingerprint of each. Opens no plan file. Any thread. */
 #include <stddef.h>
 #include <stdint.h>
 

@@ -1,4 +1,4 @@
-/* The probe program at start, and the GL facts that it or a renderer reported. */
+/* Runs the probe program at start, and keeps the GL facts that it or a renderer reported. */
 #include "server/fleet/gl_probe.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* The thread that lists plan folders whenever it is asked to. */
+/* The thread that lists the plan folders. */
 #include "server/fleet/lister.h"
 
 #include <pthread.h>

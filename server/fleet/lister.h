@@ -1,5 +1,5 @@
 #pragma once
-/* Lists the plan folders on a thread of its own: a slow or dead disk holds up nothing else. */
+/* Lists the plan folders on a thread of its own, so that a slow or dead disk holds up nothing else. */
 #include "server/fleet/folders.h"
 
 enum { LISTER_LEAVE_MS = 1000 /* at the end, a listing that takes longer is left behind with its thread */ };

@@ -1,4 +1,4 @@
-/* Finds, changes, kills, loses and frees one plan's entry; the fleet's clock and numbers. */
+/* Finds, changes, kills, loses and frees one plan's entry; keeps the fleet's clock and numbers. */
 #include "server/fleet/plan_entry.h"
 
 #include <stdlib.h>

@@ -1,5 +1,4 @@
-/* Deleting an uploaded plan for good (fleet_remove_plan): its renderer, its folder, its cache, its place in the list.
- */
+/* Deletes an uploaded plan for good (fleet_remove_plan): its renderer, its folder, its cache, its entry in the list. */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* The list of requests to renderers: sent, answered, failed, timed out. */
+/* Keeps the list of requests to renderers: sends them, and ends them by answer, failure or time-out. */
 #include "server/fleet/requests.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* The list of packets about rooms that one renderer still has to be sent. */
+/* Keeps the packets about rooms that one renderer still has to be sent. */
 #include "server/fleet/room_updates.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* Finds the parts of a plan: from plan.json, or by recognising the folder's files. */
-#include "core/load/describe.h"
+#include "core/load/find_parts.h"
 
 #include "core/formats/plan_json.h"
 #include "core/load/dicom_parts.h"
@@ -24,8 +24,8 @@ static bool describe(const struct folder *folder, const struct dicom_progress *p
 }
 
 /* A file that could not be looked at for want of memory or descriptors would be missing, or taken for another kind. */
-bool plan_describe(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts,
-                   struct report *report, struct error *err)
+bool plan_find_parts(const struct folder *folder, const struct dicom_progress *progress, struct plan_parts *parts,
+                     struct report *report, struct error *err)
 {
     struct error why = { 0 };
     size_t n_lacked = error_n_memory();

@@ -1,7 +1,0 @@
-#pragma once
-/* What a plan's folder holds: as plan.json says, or recognised from the files where there is no plan.json. */
-#include "core/load/parts.h"
-
-/* Fills parts; the caller finishes them, also after a failure. progress may be NULL. errors as plan_load */
-NODISCARD bool plan_describe(const struct folder *folder, const struct dicom_progress *progress,
-                             struct plan_parts *parts, struct report *report, struct error *err);
