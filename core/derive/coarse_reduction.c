@@ -37,7 +37,7 @@ struct search {
     enum surface_algorithm algorithm;
     struct ladder *ladders; /* [n_regions] */
     bool is_tried[MAX_REDUCTION + 1];
-    uint32_t factor;            /* being tried */
+    uint32_t factor;            /* the reduction that is tried */
     struct region_masks *masks; /* of all regions, in their order */
     atomic_size_t next;
     atomic_bool is_failed;
@@ -128,7 +128,7 @@ static bool full_is_enough(struct search *search, size_t n_at_two)
         struct error err = { 0 };
         struct region_shape *full = region_shape_get(search->derive, &recipes[i], &err);
         is_built = full != NULL;
-        if (!full && !derive_is_refusal(err.code)) /* memory may come back: nothing is decided for good without it */
+        if (!full && !derive_is_refusal(err.code)) /* only a refusal is final; memory may be there later */
             atomic_store(&search->is_failed, true);
         if (full) {
             n += full->facts.n_triangles;
@@ -156,7 +156,7 @@ static void destroy(struct derive_result *base)
 
 static const struct derive_kind kind = { sizeof(struct recipe), is_equal, build, destroy };
 
-/* Of the surfaces built on the way, those at the reduction that was found are what pictures will ask for. */
+/* Keeps those surfaces of the search that have the reduction found: pictures will request them. */
 static void keep_surfaces(struct search *search, uint32_t factor)
 {
     const struct shape_key key = { .representation = REPRESENTATION_SURFACE, .algorithm = search->algorithm };

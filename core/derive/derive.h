@@ -23,7 +23,7 @@ struct derive_result {
 
 struct derive_kind {
     size_t recipe_size; /* of the kind's recipe struct */
-    /* Whether two recipes of this kind and of one subject have the same other inputs. NULL: there are none. */
+    /* True if two recipes of this kind and of one subject have equal other inputs. NULL: there are no other inputs. */
     bool (*is_equal)(const struct derive_recipe *a, const struct derive_recipe *b);
     /* Builds the result, begun with derive_result_init; NULL on failure. Any thread, no lock held; may ask the store
      * for other results, as long as no two builds wait for each other. way: as given to derive_get. */
@@ -32,7 +32,7 @@ struct derive_kind {
     void (*destroy)(struct derive_result *result); /* after the last reference is dropped */
 };
 
-#define DERIVE_BUDGET_BYTES ((uint64_t)1 << 30) /* unless set otherwise */
+#define DERIVE_BUDGET_BYTES ((uint64_t)1 << 30) /* the default budget */
 
 /* The plan is borrowed and outlives the store; it is frozen from then on. */
 struct derive *derive_create(const struct plan *plan);

@@ -19,7 +19,7 @@ struct region_masks {
     const struct plan *plan;
     size_t n;
     struct mask_wish *wishes; /* [n] */
-    size_t *run_of;           /* [n]: the first wish of the run of each */
+    size_t *run_of;           /* [n]: for each wish, the first wish of its run */
     struct once_cache *runs;  /* by their first wish */
 };
 

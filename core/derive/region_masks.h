@@ -9,11 +9,11 @@
 
 struct region_masks;
 
-/* wishes: about in the order in which they will be asked for. most_bytes: of masks made by one sweep, which makes at
- * least one. The plan is borrowed. */
+/* Lists the masks to make. wishes: roughly in the order of region_masks_take. most_bytes: limit on the masks of one
+ * sweep, which makes at least one mask. The plan is borrowed. */
 struct region_masks *region_masks_create(const struct plan *plan, const struct mask_wish *wishes, size_t n,
                                          uint64_t most_bytes);
-/* The mask of a wish; the caller's, also when it is asked for again. Any thread: the first one sweeps, on all cores;
- * others that wait for the same sweep wait. errors as mask_sweep */
+/* Returns the mask of a wish, which the caller owns; a second call makes it again. Any thread: the first thread sweeps,
+ * on all cores, and others that need the same sweep wait. errors as mask_sweep */
 NODISCARD struct mask *region_masks_take(struct region_masks *masks, size_t wish, struct error *err);
 void region_masks_destroy(struct region_masks *masks);

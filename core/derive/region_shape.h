@@ -1,6 +1,6 @@
 #pragma once
-/* Inside core/derive: shapes of regions as results of the store, by reduction. Everybody else asks shapes.h, which
- * finds the reduction for a level of detail. */
+/* Inside core/derive: shapes of regions as results of the store, by reduction. Other folders call shapes.h, which finds
+ * the reduction for a level of detail. */
 #include "core/derive/derive.h"
 #include "core/derive/shape_facts.h"
 
@@ -29,10 +29,9 @@ void region_shape_offer(struct derive *derive, const struct region_shape_recipe 
 NODISCARD struct mask *region_shape_mask(const struct plan *plan, struct subject subject, const struct shape_key *key,
                                          struct error *err);
 
-/* Builds those of the shapes that the store does not have, a thread each, in this order; what fails is logged. go_on is
- * asked before each shape that the calling thread builds; false ends the rest; NULL: always true. */
+/* Builds the shapes that the store does not have, one thread each, in this order; logs failures. Calls go_on before
+ * each shape that the calling thread builds and stops when it returns false; NULL: never stops. */
 void region_shapes_build(struct derive *derive, const struct region_shape_recipe *recipes, size_t n,
                          bool (*go_on)(void *context), void *context);
-/* The largest region first, by the box around its voxels: the order in which several threads are done soonest. Stable.
- */
+/* Sorts by the box around the region's voxels, largest first: in this order several threads end soonest. Stable. */
 void region_shape_sort(const struct plan *plan, struct region_shape_recipe *recipes, size_t n);

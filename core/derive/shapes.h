@@ -7,7 +7,7 @@
  * surfaces of the plan by the same algorithm stay together under COARSE_MAX_TRIANGLES, or the reduction is 8. */
 enum surface_detail { SURFACE_FULL, SURFACE_COARSE };
 
-/* A wanted shape: of what, as what, how fine. */
+/* A wanted shape: its subject, representation and detail. */
 struct shape_want {
     struct subject subject;
     struct shape_key key;       /* need not be normalised */
@@ -27,14 +27,13 @@ NODISCARD struct shape *derive_shape(struct derive *derive, const struct shape_w
                                      struct error *err);
 /* True if the shape was tried before and refused (derive_is_refusal); fills why. */
 bool derive_shape_is_refused(struct derive *derive, const struct shape_want *want, struct error *why);
-/* Fills the distances of facts: of the shape's vertices from the border of the univels it was made from. Not part of
- * the shape's own facts, as it takes about as long as building. errors those of shape_distance */
+/* Fills the distances in facts: from the shape's vertices to the border of the univels that it was made from. The
+ * shape's own facts lack them, as measuring takes about as long as building. errors those of shape_distance */
 NODISCARD bool derive_shape_distance(const struct derive *derive, const struct shape_want *want,
                                      const struct shape *shape, struct shape_facts *facts, struct error *err);
 
-/* Builds several shapes side by side, a thread each, in this order, to have them ready; what fails is logged. go_on is
- * asked at the beginning and before each shape that the calling thread builds; false ends the rest; NULL: always true.
- */
+/* Builds several shapes ahead, one thread each, in this order; logs failures. Calls go_on at the beginning and before
+ * each shape that the calling thread builds, and stops when it returns false; NULL: never stops. */
 void derive_build_shapes(struct derive *derive, const struct shape_want *wants, size_t n, bool (*go_on)(void *context),
                          void *context);
 /* The same for surfaces of regions, the largest region first. */

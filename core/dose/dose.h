@@ -32,7 +32,7 @@ struct dose_component {
                          program that wrote the file */
 };
 
-/* Whether a dose and the image share a DICOM frame of reference; if not, the dose may be shifted against the image. A
+/* Tells if a dose and the image share a DICOM frame of reference; if not, the dose may be shifted against the image. A
  * greater value is worse. */
 enum dose_frame {
     DOSE_FRAME_SAME,

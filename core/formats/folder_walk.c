@@ -18,7 +18,7 @@ struct walk {
     struct folder_tree *tree;
     size_t capacity;
     struct error *err; /* set when is_failed */
-    bool is_failed;    /* the system refused something: what is in the tree is not all there is */
+    bool is_failed;    /* the system refused a call: the tree is incomplete */
 };
 
 static bool fail(struct walk *walk, enum error_code code, const char *under, const char *what)

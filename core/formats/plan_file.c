@@ -1,4 +1,4 @@
-/* What plan.json and the lists of label names say, as plain structs. */
+/* The content of plan.json and of lists of label names, as plain structs. */
 #include "core/formats/plan_file.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #pragma once
-/* What plan.json and the lists of label names say, as plain structs with their limits. Paths are relative to the plan's
- * folder and checked for form alone; "" and 0 stand for what is not given. */
+/* The content of plan.json and of lists of label names, as plain structs with their limits. Paths are relative to the
+ * plan's folder and checked for form alone; "" and 0 stand for missing values. */
 #include "core/beam/beam.h"
 #include "core/dose/dose.h"
 #include "core/formats/folder.h"

@@ -64,7 +64,7 @@ static long key_index(const char *key, const char *stem)
     return *end == 0 && index >= 0 && index < 100000 ? index : -1;
 }
 
-/* The quantity by seraMC's or seraPlan's name; the hydrogen dose is that of fast neutrons. */
+/* Finds the quantity by seraMC's or seraPlan's name; the hydrogen dose is that of fast neutrons. */
 static bool quantity_of(const char *word, enum dose_quantity *quantity)
 {
     static const struct {

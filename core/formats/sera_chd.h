@@ -40,7 +40,7 @@ void chd_finish(struct chd *chd);
 NODISCARD bool chd_parse(const uint8_t *data, size_t size, const char *name, struct chd *chd, struct report *report,
                          struct error *err);
 
-/* The most bytes that the table and the images of a header can have. */
+/* Upper bound on the bytes of the table and the images of a header. */
 uint64_t chd_table_bytes(const struct chd *chd);
 uint64_t chd_mask_bytes(const struct chd *chd);
 

@@ -11,7 +11,7 @@
 
 enum { N_FIELDS = 8 };
 
-/* What was noticed, reported once at the end. */
+/* Counts of what the report names once, at the end. */
 struct counts {
     size_t n_segments, n_bad, first_bad_line, n_zero_length, n_no_energy;
 };

@@ -53,9 +53,9 @@ void loading_unref(struct loading *loading);
 bool loading_is_cancelled(const struct loading *loading);
 /* Starts a phase: "reading", "ct.nii.gz", from 5 to 80 %. name may be "". */
 void loading_phase(struct loading *loading, const char *what, const char *name, double low, double high);
-/* Says how much work the phases from here on are together, in bytes or any other unit. */
+/* Sets the total work of the phases that follow, in bytes or any other unit. */
 void loading_begin(struct loading *loading, uint64_t work);
-/* Says that so much more of it is done. */
+/* Adds to the work that is done, in the same unit. */
 void loading_work(struct loading *loading, uint64_t work);
 
 /* The stack of the DICOM index that an image of the plan was read from; NULL when it was not DICOM. */

@@ -28,7 +28,7 @@ struct recognition {
     struct error reason; /* why the first file that looked like a part was not used */
 };
 
-/* What a grid's header says of its values. */
+/* Properties of a grid's values, from its header. */
 struct grid_facts {
     bool is_whole, has_segments;
 };

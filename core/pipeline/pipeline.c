@@ -16,8 +16,8 @@
 /* Small pictures are compressed by one thread and large ones by another, so that a large one, which takes ten times as
  * long, holds up none. A PNG takes as long as a large JPEG. */
 enum { ENCODE_SMALL, ENCODE_LARGE, N_ENCODE_THREADS, SMALL_MAX_PX = 2500000 };
-/* Drawn pictures that may wait for an encode thread. While it compresses one more, these keep it busy; further ones
- * would only add delay. */
+/* Drawn pictures that may wait for an encode thread: these keep it busy after the one it compresses; more would only
+ * add delay. */
 enum { MAX_DRAWN = 2 };
 /* How long a picture is drawn before it is left for another request that waits: shorter for a moving picture, which
  * somebody follows with a hand on the mouse, than for a still. */
@@ -84,7 +84,7 @@ struct pipeline {
     size_t n_pictures, n_begun;
     struct picture *current; /* of pictures: being drawn since current_us; NULL: none */
     int64_t current_us;
-    int64_t leave_at_us; /* the current picture is left from then on; read by the back end's threads while it draws */
+    int64_t leave_at_us;    /* when to leave the current picture; read by the back end's threads while it draws */
     uint64_t n_image_bytes; /* of pictures begun and not compressed */
 };
 
@@ -489,9 +489,9 @@ struct pipeline *pipeline_create(enum render_back_end back_end, bool stub, const
     return NULL;
 }
 
-/* Whether a request just sent may end the slice of the picture that is drawn: one of another source, or a moving
- * picture while a still is drawn (turns_may_interrupt). If the render thread goes on to another picture meanwhile, it
- * reads its messages after it has stored which. */
+/* True if a new request may end the slice of the picture that is drawn: the request is of another source, or it is a
+ * moving picture while a still is drawn (turns_may_interrupt). If the render thread begins another picture meanwhile,
+ * it reads its messages after it has stored which picture it draws. */
 static bool calls_for(struct pipeline *pipeline, const struct pipeline_request *request)
 {
     return request->source != atomic_load(&pipeline->drawn_source) ||

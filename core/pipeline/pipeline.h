@@ -41,7 +41,7 @@ struct pipeline_callbacks {
  * errors ERROR_MEMORY: a thread cannot be started */
 NODISCARD struct pipeline *pipeline_create(enum render_back_end back_end, bool stub,
                                            const struct pipeline_callbacks *callbacks, struct error *err);
-/* What the images of pictures begun and not yet compressed take together; a single one may take more. */
+/* Limit on the images of all pictures that are begun and not yet compressed; a single image may be larger. */
 #define PIPELINE_MAX_IMAGE_BYTES ((uint64_t)256 << 20)
 enum { PIPELINE_MAX_WAITING = 64 };
 /* Takes request->snapshot, on failure too. Pictures of one source that are alike in size and codec, and all moving or

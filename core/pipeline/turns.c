@@ -62,7 +62,7 @@ static struct source *find_source(struct turns *turns, uint64_t id)
     return source ? source : add_source(turns, id);
 }
 
-/* Of two requests of one source: true if the newer goes first. */
+/* True if the newer of two requests of one source goes first. */
 static bool goes_before(const struct turns_item *item, const struct turns_item *older)
 {
     return older->is_still && !item->is_still && older->n_overtaken < TURNS_MAX_OVERTAKING;

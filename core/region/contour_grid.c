@@ -13,7 +13,7 @@
 #define PLANE_GRID_MM 1.0 /* in-plane voxel size without an image */
 enum { MOST_SEARCH_ROWS = 4000000, SHARED_VOXELS = 8 << 20 };
 
-/* What is known of one set while grids are chosen. */
+/* Properties of one set while grids are chosen. */
 struct candidate {
     uint32_t low[3], high[3]; /* box around it in voxels of the base grid, one more on each side; low <= index < high */
     size_t n_voxels;          /* voxels of the grid cropped to it, unless it is on the image's own grid */
@@ -338,8 +338,8 @@ static bool may_join(const struct group *group, const struct contour_choice *cho
     return n <= most_voxels && (n <= SHARED_VOXELS || n <= 2 * joined->own_voxels);
 }
 
-/* Lets sets share cropped grids on one base: the image, or with is_beyond its continuation. Their groups get the
- * numbers after *n_groups_before, which is increased by how many they are. */
+/* Lets sets share cropped grids on one base: the image, or its continuation with is_beyond. Their groups are numbered
+ * from *n_groups_before on, which grows by the number of groups. */
 static bool share_grids(struct contour_choice *choices, const struct candidate *candidates, size_t n,
                         const struct grid *base, bool is_beyond, uint64_t most_voxels, uint32_t *n_groups_before,
                         struct error *err)

@@ -205,7 +205,7 @@ void camera_of_view(const struct plan *plan, const struct view *view, const stru
         camera->lps_mm_from_clip = (struct mat4){ { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 } };
 }
 
-/* What can be told without the plan. */
+/* Checks the fields of a view that can be checked without the plan. */
 static bool check_fields(const struct view *view, char field[128], struct error *err)
 {
     const struct scene_camera *camera = &view->camera;

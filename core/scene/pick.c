@@ -1,4 +1,4 @@
-/* What lies under a pixel: a ray through the label layers and the slices, or a point of a slice pane. */
+/* Finds what lies under a pixel: along a ray through the label layers and the slices, or at a point of a slice pane. */
 #include "core/scene/pick.h"
 
 #include <stdlib.h>

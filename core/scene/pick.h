@@ -2,7 +2,7 @@
 /* Picking: what lies under a pixel, computed from univels and slices, not from the picture. */
 #include "core/scene/snapshot.h"
 
-/* What lies under a pixel of the full-size view. */
+/* One thing under a pixel of the full-size view. */
 struct pick_hit {
     struct vec3 point_lps_mm;
     struct subject subject; /* a region, or the image of a slice */

@@ -1,4 +1,4 @@
-/* A frozen snapshot of plan, scene and view, checked against the plan; and the scene a new room starts with. */
+/* Freezes plan, scene and view as a snapshot, checked against the plan; makes the scene that a new room starts with. */
 #include "core/scene/snapshot.h"
 
 #include <math.h>

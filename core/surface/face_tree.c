@@ -93,8 +93,8 @@ double face_tree_face_distance_2(const struct face_tree *tree, const double from
 
 /* ---- building the tree ------------------------------------------------------------------------------------------ */
 
-/* Of 64 voxels of a row, those with a face on that side. rows: the neighbouring rows along y and z, NULL beyond the
- * grid. */
+/* Returns the voxels with a face on that side, for 64 voxels of a row. rows: the neighbouring rows along y and z, NULL
+ * beyond the grid. */
 static uint64_t faces_of_word(const struct mask *mask, int64_t w, int64_t j, int64_t k, int way)
 {
     const uint64_t *row = row_at(mask, j, k);

@@ -3,7 +3,7 @@
  * thread. */
 #include "core/surface/surface.h"
 
-/* Which compiled version runs: the best for this processor, or the portable one. Both give the same bytes. */
+/* The compiled version that runs: the best for this processor, or the portable one. Both give the same bytes. */
 enum marching_cubes_code { MARCHING_CUBES_BEST, MARCHING_CUBES_PORTABLE };
 
 /* Start position of a vertex: the midpoint of a crossed edge of the working grid, which is the mask's grid, shifted. */

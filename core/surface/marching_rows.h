@@ -7,7 +7,7 @@
 enum { CELLS_A_WORD = 63, MAX_MASK_WORDS = VOLUME_MAX_SIDE / 64 };
 #define LOW_63 (~(uint64_t)0 >> 1)
 
-/* Of one row: counts, after the running totals the number of the row's first. */
+/* Counts of one row; after the running totals, the number of the row's first vertex or triangle. */
 struct row {
     uint32_t x, y, z; /* vertices on edges along x, y, z, numbered in this order */
     uint32_t triangles;
@@ -45,7 +45,7 @@ INLINED struct around rows_around(const struct marching_rows *grid, uint32_t y, 
     return (struct around){ here, here + to_y, here + to_z, here + to_y + to_z, has_y && has_z && grid->size[0] > 1 };
 }
 
-/* What one word of a row owns. */
+/* The crossed edges and active cells that belong to one word of a row. */
 struct crossings {
     uint64_t x, y, z; /* crossed edges by the voxel they start at */
     uint64_t active;  /* cells with triangles */

@@ -263,7 +263,7 @@ static void accept_some(struct acceptor *acceptor)
             accept_one(acceptor, socket, &peer);
         } else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
             log_warn("acceptor: %s", strerror(errno));
-            usleep(50000); /* until other connections have closed */
+            usleep(50000); /* waits for other connections to close */
             return;
         } else if (errno != EINTR && errno != ECONNABORTED) {
             return;

@@ -43,8 +43,8 @@ struct entry { /* one plan's folder */
     int64_t used_ns; /* since 1970 */
     bool is_ended;   /* its process was ended by us; the folder is emptied after the end */
     bool was_blamed; /* its process was ended since the disk became short of space */
-    bool was_tried;  /* was emptied in this look already */
-    bool has_rest;   /* emptying it stopped at a limit: the next look goes on */
+    bool was_tried;  /* emptied in this look already */
+    bool has_rest;   /* emptying stopped at a limit and goes on at the next look */
 };
 
 struct cache_quota {
@@ -278,7 +278,7 @@ static void remove_one(struct cache_quota *quota, struct entry *entry, const cha
     if (entry->process)
         end_process(quota, entry, "was ended because its cache cannot be emptied while it runs");
     else if (!entry->has_rest)
-        entry->n_bytes = 0; /* it cannot be removed: count it as empty, or it would be tried for ever */
+        entry->n_bytes = 0; /* it cannot be removed: counted as empty, so that it is not tried for ever */
 }
 
 static bool is_short_of_space(const struct cache_quota *quota)

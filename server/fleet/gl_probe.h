@@ -1,5 +1,5 @@
 #pragma once
-/* Which graphics the renderers get: the GL facts of the newest renderer that reported them, and the probe program
+/* The graphics of the renderers: the GL facts of the newest renderer that reported them, and the probe program
  * (beamroom-render --probe-gl) that reports them before any plan is open (fleet_gl). Internal to server/fleet; net
  * thread. */
 #include "server/fleet/plan_entry.h"

@@ -1,6 +1,6 @@
 #pragma once
-/* Which plans have a renderer: opening and closing a plan, holding it, and the limit of renderers that run at once
- * (fleet_open, fleet_close, fleet_hold, fleet_release). Internal to server/fleet; net thread. */
+/* Opens, closes, holds and releases plans within the limit of renderers that run at once (fleet_open, fleet_close,
+ * fleet_hold, fleet_release). Internal to server/fleet; net thread. */
 #include "server/fleet/plan_entry.h"
 
 /* Opens a plan that is held. Without a free slot it goes to FLEET_FAILED with a sentence, and tries again later. */

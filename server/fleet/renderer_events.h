@@ -1,5 +1,5 @@
 #pragma once
-/* What renderers report and how they end, turned into changes of their plans: progress, ready, failed, answers, memory,
+/* Turns what renderers report, and their ends, into changes of their plans: progress, ready, failed, answers, memory,
  * the end of a process. Internal to server/fleet; net thread. */
 #include "server/fleet/plan_entry.h"
 

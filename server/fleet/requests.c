@@ -205,8 +205,8 @@ void requests_fail(struct fleet *fleet, const struct plan_entry *plan, bool only
 
 void requests_deliver_failed(struct fleet *fleet)
 {
-    /* A reply may make or forget requests: start from the front after each, and leave those made meanwhile for the next
-     * call. */
+    /* A reply may add or forget requests, so the search starts again after each; requests added meanwhile wait for the
+     * next call. */
     uint64_t last = fleet->last_number;
     for (struct request *request = fleet->requests; request;) {
         if (!request->is_failed || request->number > last) {
@@ -220,7 +220,7 @@ void requests_deliver_failed(struct fleet *fleet)
     }
 }
 
-/* When the present process last drew a picture; when it became ready, if it has drawn none. */
+/* Time when the present process last drew a picture, or became ready if it has drawn none. */
 static int64_t last_drew_us(const struct plan_entry *plan)
 {
     return plan->last_picture_us > plan->ready_us ? plan->last_picture_us : plan->ready_us;

@@ -7,9 +7,9 @@
 enum {
     RESTART_FIRST_PAUSE_MS = 1000, /* after the second end in a row without a picture */
     RESTART_LONGEST_PAUSE_MS = 30000,
-    RESTART_WORKED_MS = 60000, /* ready for this long counts like a picture: some plans are only asked for numbers */
-    RESTART_QUICK_EVERY_MS = 1000, /* starts of one plan without a pause: one in this time, ... */
-    RESTART_QUICK_AHEAD_MS = 60000 /* ... and before that as many as fit into this */
+    RESTART_WORKED_MS = 60000, /* time ready that counts like a picture: of some plans only questions are requested */
+    RESTART_QUICK_EVERY_MS = 1000, /* one start of a plan without a pause is allowed in this time, ... */
+    RESTART_QUICK_AHEAD_MS = 60000 /* ... and at most as many in a row as fit into this time */
 };
 
 /* The pause before the next start, after this many ends in a row without a picture. */

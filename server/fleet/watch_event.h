@@ -1,6 +1,7 @@
 #pragma once
-/* What the watch reports about a child process (started, packet, memory, output, end), and the accounting of packets
- * that the net thread has not handled yet. Events are made on the watch's thread and destroyed on the net thread. */
+/* Events that the watch reports about a child process (started, packet, memory, output, end), and the count of the
+ * packets that the net thread has not handled yet. Events are made on the watch's thread and destroyed on the net
+ * thread. */
 #include <stdint.h>
 
 #include "server/wire/packet.h"

@@ -36,7 +36,7 @@ struct call {
     char *upload_path; /* the file that holds the body when it is an archive; removed with the call unless it is set to
                           NULL */
     uint64_t n_upload;
-    struct problem early; /* found while the request was received: answered without running the route */
+    struct problem early; /* a problem found while the request was received: answered without running the route */
 
     /* the answer */
     int status;
@@ -59,7 +59,7 @@ void call_destroy(struct call *call);
 void call_set_path(struct call *call, const char *path);
 const char *call_query(const struct call *call, const char *name); /* NULL when absent */
 
-/* Each sets the answer and calls finished. The call must not be used afterwards. */
+/* Each of these sets the answer and calls finished. The call must not be used afterwards. */
 void call_answer_json(struct call *call, int status, cJSON *json); /* takes json */
 void call_answer_problem(struct call *call, const struct problem *problem);
 void call_answer_bytes(struct call *call, int status, const char *media_type, uint8_t *bytes,

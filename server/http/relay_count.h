@@ -1,6 +1,6 @@
 #pragma once
-/* Which client a connection counts for, and how many there are; the list of links that have something to do. Internal
- * to server/http; the relay's thread. */
+/* Counts connections per client, and keeps the list of links that have something to do. Internal to server/http; the
+ * relay's thread. */
 #include "server/http/relay_state.h"
 
 /* Counts the connection for this client, and no longer for another. Returns false with a problem at the limit. */

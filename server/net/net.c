@@ -17,7 +17,7 @@
 #include "server/net/schedule.h"
 
 enum {
-    MAX_TASKS = 4096, /* waiting; net_post of one more waits too */
+    MAX_TASKS = 4096, /* tasks that may wait; one more makes net_post wait */
     FLEET_TICK_US = 250000,
     FAREWELL_US = 1000000,   /* at the end, for the byes to be sent */
     RESTART_RETRY_MS = 2000, /* when pages reconnect after a stop: about the time of a restart */

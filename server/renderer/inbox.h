@@ -1,6 +1,6 @@
 #pragma once
-/* What the other threads of the renderer report to its main thread: a queue of events, and a file to poll that becomes
- * readable when one was put in. */
+/* Events from the other threads of the renderer to its main thread: a queue, and a descriptor to poll that becomes
+ * readable when an event was put in. */
 #include <stdatomic.h>
 
 #include "core/pipeline/pipeline.h"
@@ -8,7 +8,7 @@
 #include "server/wire/json.h"
 
 enum inbox_event_type {
-    INBOX_GL_STARTED,  /* or could not be: error */
+    INBOX_GL_STARTED,  /* graphics have started, or could not: error */
     INBOX_PROGRESS,    /* of loading */
     INBOX_LOADED,      /* the plan is read */
     INBOX_LOAD_FAILED, /* it cannot be read */

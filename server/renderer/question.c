@@ -1,4 +1,4 @@
-/* What a question owns, from its packet to its answer. */
+/* Creates and destroys a question. */
 #include "server/renderer/question.h"
 
 #include <stdlib.h>

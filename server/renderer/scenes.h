@@ -15,7 +15,7 @@ const cJSON *scenes_default(const struct scenes *scenes);
 /* Takes scene, which replaces the room's last. False: SCENE_MAX_ROOMS rooms are kept already. */
 NODISCARD bool scenes_put_room(struct scenes *scenes, const char *room, uint32_t revision, cJSON *scene);
 void scenes_forget_room(struct scenes *scenes, const char *room);
-/* What a packet wants to see: the scene it brings, else the room's, else the plan's own. revision: of that scene. One
- * reference, the caller's; NULL with problem, whose pointer begins with the packet's field. */
+/* Makes the snapshot that a packet is about: of the scene it brings, else the room's, else the plan's own. revision: of
+ * that scene. Returns one reference, the caller's; NULL with problem, whose pointer begins with the packet's field. */
 NODISCARD struct snapshot *scenes_snapshot(const struct scenes *scenes, const struct packet_snapshot *shown,
                                            uint32_t *revision, struct problem *problem);

@@ -1,5 +1,5 @@
 #pragma once
-/* Who is in a room: finding a member, and the list of members as JSON (room_members). Internal to server/room. */
+/* The members of a room: finding one, and the list of members as JSON (room_members). Internal to server/room. */
 #include "server/room/room_state.h"
 
 /* The member that uses this connection; NULL: it has not said hello. */

@@ -22,7 +22,7 @@ void send_view(struct room *room, struct member *member, int index, const char *
  * refused message. False as send_to_connection. */
 bool send_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,
                   const struct problem *problem);
-/* What the pictures of this view leave out; missing NULL: nothing. */
+/* Sends which regions the pictures of this view leave out; missing NULL: none. */
 void send_missing(struct room *room, struct member *member, int index, const cJSON *missing);
 /* Sends bye and closes the connection; retry_ms < 0: the page is not to come back. */
 void send_bye(struct room *room, void *connection, int retry_ms, const char *reason);

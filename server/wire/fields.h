@@ -6,7 +6,7 @@
 
 #include "server/wire/json.h"
 
-/* What stands at a field's offset in the struct, and what JSON has for it. */
+/* The C type at a field's offset in the struct, and its form in JSON. */
 enum field_type {
     FIELD_BOOL,
     FIELD_NUMBER,    /* double */

@@ -205,8 +205,8 @@ static int compare_names(const void *a, const void *b)
     return strcmp((*(const cJSON *const *)a)->string, (*(const cJSON *const *)b)->string);
 }
 
-/* Whether a name may stand twice in an object of n members: each is compared with each only where one does, or where
- * that is as fast as sorting. */
+/* True if an object of n members may have two of one name; only then is each compared with each. Always true for few
+ * members, where comparing is as fast as sorting. */
 static bool may_have_equal_names(const cJSON *json, size_t n)
 {
     bool has_some = false;
@@ -225,7 +225,7 @@ static bool may_have_equal_names(const cJSON *json, size_t n)
     return has_some;
 }
 
-/* Whether a member before this one has its name. */
+/* True if a member before this one has its name. */
 static bool stands_before(const cJSON *json, const cJSON *member)
 {
     for (const cJSON *item = json->child; item != member; item = item->next)

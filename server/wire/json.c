@@ -93,7 +93,7 @@ static bool depth_is_allowed(const char *s, size_t n)
     return true;
 }
 
-/* Whether a string has the escape \u0000: cJSON ends the string there, so that "a\u0000b" would pass every check as
+/* True if a string has the escape \u0000: cJSON ends the string there, so that "a\u0000b" would pass every check as
  * "a". */
 static bool names_nul(const char *s, size_t n)
 {

@@ -1,5 +1,5 @@
 #pragma once
-/* Whether a page belongs to this server: the one rule for HTTP requests that change something and for WebSockets. */
+/* Decides if a page belongs to this server: the one rule for HTTP requests that change something and for WebSockets. */
 #include <stdbool.h>
 
 /* True when origin (RFC 6454: "http://name:port") has the scheme http or https and names exactly what the request's

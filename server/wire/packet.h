@@ -58,12 +58,12 @@ struct packet_description {
 };
 extern const struct packet_description packet_descriptions[PACKET_N_TYPES];
 
-/* PACKET_N_TYPES: there is none of that name. name may be NULL. */
+/* Finds a type by its name; PACKET_N_TYPES if there is none. name may be NULL. */
 enum packet_type packet_type_find(const char *name);
-/* The id of a packet, -1 of a type without one. */
+/* The id of a packet; -1 for a type without one. */
 int64_t packet_id(const struct packet *packet);
 void packet_set_id(struct packet *packet, int64_t id);
-/* What a request wants to see; NULL for types without it. */
+/* Returns the scene and view that a request is about; NULL for types without them. */
 const struct packet_snapshot *packet_snapshot_of(const struct packet *packet);
 
 /* ---- writing ---------------------------------------------------------------------------------------------------- */

@@ -63,7 +63,7 @@ static cJSON *complete_field(const struct field_object *object, const struct fie
     return fallback ? cJSON_Duplicate(fallback, true) : field_write_default(object, field);
 }
 
-/* Whether json has every field in the table's order, and none of them can be incomplete itself. */
+/* True if json has every field in the table's order and no field is an object, which could be incomplete itself. */
 static bool is_complete(const struct field_object *object, const cJSON *json)
 {
     const cJSON *item = json->child;

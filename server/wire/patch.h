@@ -14,8 +14,8 @@ NODISCARD cJSON *patch_apply(const struct field_object *object, const cJSON *pla
  * the rest does not pass the checks, the result is a copy of defaults. NULL: no memory. */
 NODISCARD cJSON *patch_renew(const struct field_object *object, const cJSON *plan, const cJSON *defaults,
                              const cJSON *current);
-/* What those who keep a copy of the document are told, after patch made before into after: what the patch names, as it
- * is now, so that json_merge alone makes their copy the new document. A value that patch set to null is its default; a
- * new entry of a map, and a list, is complete. A field that is null now is null in it: absent and null mean the same.
- * NULL: no memory. */
+/* The change for clients that keep a copy of the document, after patch made before into after: the present value of
+ * each field that patch names, so that json_merge alone makes their copy the new document. A value that patch set to
+ * null is its default; a new entry of a map, and a list, is complete. A field that is null now is null in it: absent
+ * and null mean the same. NULL: no memory. */
 NODISCARD cJSON *patch_told(const cJSON *before, const cJSON *after, const cJSON *patch);

@@ -4,9 +4,9 @@
 
 #include "server/wire/problem.h"
 
-/* Status line, headers and body; the connection closes after it. For free(). */
+/* Returns status line, headers and body as one buffer, to be freed by free(); the connection closes after it. */
 NODISCARD char *refusal_write(const struct problem *problem, size_t *n);
-/* Says it without waiting, and that nothing more will be sent; a peer that does not take it now gets less of it. Closes
+/* Sends the answer without waiting, and ends the sending side; a peer whose buffer is full gets less of it. Closes
  * nothing. */
 void refusal_send(int socket, const struct problem *problem);
 /* Drops what has come by now, at most so many bytes: a socket that is closed with bytes unread takes the answer back.

@@ -21,7 +21,7 @@ struct shape_query {
 NODISCARD bool shape_query_read(const cJSON *json, struct shape_query *query, struct problem *problem);
 /* Names of all parameters, NULL at the end. */
 extern const char *const shape_query_names[];
-/* Whether the representation consists of triangles: only those can be written to files. */
+/* True if the representation consists of triangles: only those can be written to files. */
 bool shape_query_has_triangles(const struct shape_query *query);
 /* A new merge patch on scene that shows this shape of one region and nothing else. scene: a complete scene document,
  * for the ids of all regions. */

@@ -1,5 +1,6 @@
 #pragma once
-/* What goes out on a connection, in which order, and how a connection is closed. Internal to server/ws; net thread. */
+/* The messages that wait to be sent on a connection, their order, and how a connection is closed. Internal to
+ * server/ws; net thread. */
 #include "server/ws/ws_state.h"
 
 /* A copy of the bytes as a message; the queue or the connection frees it. Without memory, messages up to

@@ -80,7 +80,7 @@ void ws_set_owner(struct ws_connection *connection, void *owner); /* a pointer o
 void *ws_owner(const struct ws_connection *connection);
 void ws_send_text(struct ws_connection *connection, const char *text);
 void ws_send_message(struct ws_connection *connection, enum ws_opcode kind, const void *bytes, size_t n);
-/* Replaces a frame of the same view that was not begun to be sent. */
+/* Replaces a waiting frame of the same view of which nothing was sent. */
 void ws_send_frame(struct ws_connection *connection, const struct frame_header *header, struct room_picture *picture);
 void ws_close(struct ws_connection *connection, enum ws_close_code code); /* sends waiting messages first */
 /* Sends a bye with the reason, and closes; retry_ms < 0: the page is not to come back. */

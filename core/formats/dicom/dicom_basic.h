@@ -28,7 +28,7 @@ struct dicom_pixels {
     uint32_t n_samples; /* always 1; colour is refused */
 };
 
-/* What the JPEG 2000 codestream of the last frame read says about its values. n_bits is 0 for every other encoding. */
+/* Properties of the values in the JPEG 2000 codestream of the last frame read. n_bits is 0 for every other encoding. */
 struct dicom_decoded {
     bool is_lossy; /* the codestream uses the irreversible transform; a reversible one may still have been truncated */
     bool is_signed;

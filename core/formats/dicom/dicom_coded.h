@@ -6,7 +6,7 @@
 
 struct dicom_coded {
     size_t n_frames, n_lossy, n_other_sign, n_other_bits;
-    uint32_t n_bits; /* of the last frame whose number of bits differs */
+    uint32_t n_bits; /* in the last frame whose number of bits differs */
 };
 /* Counts the last frame read from file: whether it is lossy, and whether its sign or number of bits differs from
  * pixels. */

@@ -25,7 +25,7 @@ const struct dicom_item *dicom_root(const struct dicom_file *file);
 const char *dicom_transfer_syntax(const struct dicom_file *file); /* UID; "" when the file does not say */
 /* Name in the UID dictionary, e.g. "RTImageStorage"; "" for an unknown UID. */
 const char *dicom_uid_word(const char *uid);
-/* After DICOM_START: data ended before the last element in front of the pixels. */
+/* True if, after DICOM_START, the data ended before the last element in front of the pixels. */
 bool dicom_is_cut(const struct dicom_file *file);
 
 bool dicom_has(const struct dicom_item *item, uint32_t tag); /* the element is present, with or without a value */
@@ -38,7 +38,7 @@ bool dicom_text_at(const struct dicom_item *item, uint32_t tag, size_t index, ch
  * values and returns how many the element has. */
 size_t dicom_numbers(const struct dicom_item *item, uint32_t tag, double *values, size_t most);
 bool dicom_number(const struct dicom_item *item, uint32_t tag, double *value); /* first value; false unless finite */
-/* The first value, if it is a whole number; else false. */
+/* Stores the first value; returns false if it is not a whole number. */
 bool dicom_integer(const struct dicom_item *item, uint32_t tag, int64_t *value);
 /* A DS value that is not a number, or an IS value that is not a whole number. */
 struct dicom_bad_number {

@@ -1,5 +1,5 @@
 #pragma once
-/* What the heads of DICOM files say, as plain data: objects, images, and the stacks formed by images. */
+/* The heads of DICOM files as plain data: objects, images, and the stacks formed by images. */
 #include "core/formats/dicom/dicom_file.h"
 
 enum {

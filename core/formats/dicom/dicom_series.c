@@ -22,7 +22,7 @@ struct coded {
 
 enum { MAX_THREADS = 8 };
 
-/* What a thread keeps from one slice to the next, and its results. */
+/* Buffers that a thread keeps from one slice to the next, and its results. */
 struct reader {
     struct dicom_file *file; /* the file that slices are decoded from */
     size_t object;           /* index of file's object; SIZE_MAX: none */

@@ -371,7 +371,7 @@ static void report_stray(const struct grouping *all, const struct dicom_index *i
                few->n, few->n + most->n, stray->description, difference);
 }
 
-/* Which group of its series this is: "2 of 3", so that names differ; "" if it is the only one. */
+/* Writes the number of a group in its series, "2 of 3", so that names differ; "" if it is the only one. */
 static void name_group(const struct grouping *all, const struct dicom_index *index, size_t group, char out[80])
 {
     const char *series = index->objects[all->groups[group].members[0].object].series;

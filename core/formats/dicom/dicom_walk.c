@@ -276,8 +276,7 @@ static bool walk_elements(struct walk *walk, struct dicom_layout *layout)
     return true;
 }
 
-/* Inflates (RFC 1951) as much as there is, up to the limit. A truncated stream is no error here: the walk reports
- * it. */
+/* Inflates (RFC 1951) all data up to the limit. A truncated stream is no error here: the walk reports it. */
 static bool inflate_data_set(struct walk *walk, size_t from, struct dicom_layout *layout)
 {
     size_t limit = walk->extent == DICOM_START ? (size_t)1 << 20 : (size_t)DICOM_MAX_INFLATED_MIB << 20;

@@ -5,7 +5,7 @@
 #include "core/render/gl/upload.h"
 #include "core/render/visible/draw.h"
 
-/* What a band of a picture is drawn with. */
+/* State for drawing one band of a picture. */
 struct gl_frame {
     const struct gl *gl;
     const struct gl_programs *programs;

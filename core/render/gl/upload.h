@@ -6,7 +6,7 @@
 struct gl_shape {
     struct drawable base;
     enum shape_kind kind;
-    bool is_faceted; /* always shaded with one normal a triangle */
+    bool is_faceted; /* always shaded with one normal per triangle */
     GLuint vertex_array, vertices, indices;
     GLsizei n;                  /* indices of triangles; or instances of lines or points, four corners each */
     struct vec3 edge_lps_mm[3]; /* points: of the voxel they stand for */

@@ -80,8 +80,8 @@ struct draw_list {
     size_t n, capacity;
     size_t n_in_image; /* those before DRAW_OVERLAY, for the back end */
     int samples;       /* along a side of a pixel */
-    /* Each sample of the composed layers in its own order, where a layer counts as VISIBLE_RANK_DEPTH nearer for each
-     * one before it; else in the order of the list. */
+    /* True: the layers of each sample are composed in their own order of depth, where a layer counts as nearer by
+     * VISIBLE_RANK_DEPTH for each layer before it. False: in the order of the list. */
     bool is_order_exact;
     size_t n_layers_planned; /* translucent draws there are at most, wherever the camera is */
     size_t n_triangles;
@@ -90,7 +90,7 @@ struct draw_list {
     struct draw_cache_use use; /* keeps the drawables until the list is destroyed */
 };
 
-/* What the draws of a list are made from; borrowed. */
+/* The inputs of a draw list; borrowed. */
 struct draw_scope {
     const struct snapshot *snapshot;
     const struct camera *camera; /* the snapshot's, resolved */

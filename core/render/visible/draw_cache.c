@@ -1,4 +1,4 @@
-/* What a back end makes of shapes and grids, kept from picture to picture. */
+/* Keeps the drawables that a back end makes of shapes and grids from picture to picture. */
 #include "core/render/visible/draw_cache.h"
 
 #include <assert.h>

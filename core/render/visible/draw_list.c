@@ -18,7 +18,7 @@ static bool draw_translucent_regions(struct draw_list *list, const struct draw_s
     return snapshot_is_pane(scope->snapshot) || draw_regions(list, scope, false, err);
 }
 
-/* What fills the list, in the order of drawing. */
+/* The functions that fill the list, in the order of drawing. */
 typedef bool fill(struct draw_list *list, const struct draw_scope *scope, struct error *err);
 static fill *const fills[] = {
     draw_opaque_regions,

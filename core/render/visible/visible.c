@@ -1,4 +1,4 @@
-/* What a scene wants its regions drawn as. */
+/* Chooses for each region of a scene if it is shown, as which shape and with which look. */
 #include "core/render/visible/visible.h"
 
 #include <stdlib.h>

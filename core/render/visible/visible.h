@@ -1,6 +1,6 @@
 #pragma once
-/* What a scene wants its regions drawn as: which are shown, as which shapes, with which look. The same for every back
- * end; draw_list.h decides their order. Knows no pixels and no GL. */
+/* Chooses for each region of a scene if it is shown, as which shape and with which look. The same for every back end;
+ * draw_list.h decides the order. Knows no pixels and no GL. */
 #include "core/derive/shapes.h"
 #include "core/scene/camera.h"
 #include "core/scene/snapshot.h"
@@ -45,7 +45,7 @@ bool visible_is_checked(const struct snapshot *snapshot, size_t region);
 #define VISIBLE_ROUNDING 0.45
 /* How a shape is shaded and rasterised. */
 struct visible_look {
-    bool is_flat; /* shaded with one normal a triangle */
+    bool is_flat; /* shaded with one normal per triangle */
     double
         rounding; /* univels: share of the shading by vertex normals, which tells boxes that face the same way apart */
     bool is_two_sided; /* open surfaces: their back is drawn too */
