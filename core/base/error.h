@@ -32,8 +32,8 @@ struct error {
 /* Fills err (NULL is allowed) and returns false: `return error_set(...);` is a whole failure. */
 bool error_set(struct error *err, enum error_code code, const char *format, ...) PRINTF_LIKE(3, 4);
 
-/* Number of times ERROR_MEMORY was set on this thread, calls with err == NULL included. A caller that skips what it
- * cannot read compares the number before and after, to tell a bad file from a failed allocation. */
+/* Number of times ERROR_MEMORY was set on this thread, calls with err == NULL included. A caller that skips unreadable
+ * parts compares the number before and after, to tell a bad file from a failed allocation. */
 size_t error_n_memory(void);
 
 /* Adds context in front on the way up: "plan head-3: region 7: label 300 is not in the volume". */

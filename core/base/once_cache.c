@@ -13,7 +13,7 @@ struct entry {
     uint64_t hash;
     size_t n_key_bytes;
     void *result;  /* NULL while it is built */
-    uint64_t used; /* the cache's clock when the result was last asked for */
+    uint64_t used; /* the cache's clock when the result was last requested */
     struct entry *next;
     max_align_t key[];
 };
@@ -96,7 +96,7 @@ static const struct refusal *find_refusal(const struct once_cache *cache, const 
 static void add_refusal(struct once_cache *cache, const struct once_key *key, const struct error *why)
 {
     if (cache->n_refusals == ONCE_CACHE_MAX_REFUSALS)
-        forget_refusals(cache); /* each is found again when its key is asked for */
+        forget_refusals(cache); /* each is found again by the next build of its key */
     struct refusal *refusal = mem_new(sizeof *refusal + key->n_bytes);
     refusal->hash = key->hash;
     refusal->n_key_bytes = key->n_bytes;

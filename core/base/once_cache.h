@@ -51,7 +51,7 @@ NODISCARD void *once_cache_get(struct once_cache *cache, const struct once_key *
                                void *context, struct error *err);
 /* Keeps a result that was built outside once_cache_get, unless the key has one. Adds a reference of its own. */
 void once_cache_offer(struct once_cache *cache, const struct once_key *key, void *result);
-/* True if the key's result is kept, is being built, or is refused. It may be dropped before it is asked for. */
+/* True if the key's result is kept, is being built, or is refused. It may be dropped before the next request. */
 bool once_cache_has(struct once_cache *cache, const struct once_key *key);
 /* True if the key's build failed for good; fills why. At most ONCE_CACHE_MAX_REFUSALS are remembered: one more forgets
  * them all. */

@@ -58,7 +58,7 @@ NODISCARD struct derive_result *derive_get(struct derive *derive, const struct d
 /* Keeps a result that was built on the way to another one, unless the store has one for the recipe. Adds a reference.
  */
 void derive_offer(struct derive *derive, const struct derive_recipe *recipe, struct derive_result *result);
-/* True if the result is kept, is being built, or was refused. It may be dropped before it is asked for. */
+/* True if the result is kept, is being built, or was refused. It may be dropped before the next request. */
 bool derive_has(struct derive *derive, const struct derive_recipe *recipe);
 
 /* True if a build that failed with this code fails each time: by what the plan is, or by a written limit. */

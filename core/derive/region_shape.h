@@ -24,8 +24,8 @@ NODISCARD struct region_shape *region_shape_get(struct derive *derive, const str
 /* Keeps a shape that was built on the way to something else (derive_offer). Adds a reference to the shape. */
 void region_shape_offer(struct derive *derive, const struct region_shape_recipe *recipe, const struct shape *shape,
                         const struct shape_facts *facts);
-/* The mask that a shape is made from: the region with its descendants, or its own univels alone when the key asks for
- * the inner boundary. errors as mask_from_region */
+/* The mask that a shape is made from: the region with its descendants, or its own univels alone when the key has the
+ * inner boundary. errors as mask_from_region */
 NODISCARD struct mask *region_shape_mask(const struct plan *plan, struct subject subject, const struct shape_key *key,
                                          struct error *err);
 

@@ -1,6 +1,6 @@
 #pragma once
-/* A dose as the plan gives it: components on their own grids, unit, and what it is per. No weights, no pictures. Frozen
- * once part of a plan; functions without state: any thread. */
+/* A dose as the plan gives it: components on their own grids, its unit, and its reference (per what). No weights, no
+ * pictures. Frozen once part of a plan; functions without state: any thread. */
 #include "core/volume/volume.h"
 
 /* Physical doses, fluences, and two quantities whose files already contain weights that cannot be removed. Those last

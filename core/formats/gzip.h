@@ -15,7 +15,7 @@ bool gzip_is(const uint8_t *data, size_t size);
  * the start, or without memory (error_n_memory). */
 size_t gzip_head(const uint8_t *data, size_t size, uint8_t *out, size_t capacity);
 
-/* Bytes that a stream may hold beyond those the caller asked for. */
+/* Bytes that a stream may hold beyond the size that the caller requested. */
 #define GZIP_MOST_MORE ((uint64_t)64 << 20)
 
 /* Unpacks the first n bytes to out. n_more: how many bytes follow; they are checked and discarded.

@@ -193,7 +193,7 @@ static void add_component(struct loading *loading, struct dose *dose, struct par
 
 static void add_dose_mask(struct loading *loading, struct dose *dose, struct part_reading *reading)
 {
-    volume_unref(dose->mask); /* a SERA file's own mask; the one that the plan names replaces it */
+    volume_unref(dose->mask); /* the mask that plan.json names replaces the SERA file's own */
     dose->mask = take_volume(reading);
     if (dose->n_components > 0 &&
         memcmp(dose->mask->grid.size, dose->components[0].values->grid.size, sizeof dose->mask->grid.size) != 0)

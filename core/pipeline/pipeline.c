@@ -19,8 +19,8 @@ enum { ENCODE_SMALL, ENCODE_LARGE, N_ENCODE_THREADS, SMALL_MAX_PX = 2500000 };
 /* Drawn pictures that may wait for an encode thread: these keep it busy after the one it compresses; more would only
  * add delay. */
 enum { MAX_DRAWN = 2 };
-/* How long a picture is drawn before it is left for another request that waits: shorter for a moving picture, which
- * somebody follows with a hand on the mouse, than for a still. */
+/* Time that a picture is drawn before it is left for a request that waits: shorter when a moving picture waits, which a
+ * person follows with the mouse, than when a still waits. */
 enum { SLICE_MOVING_US = 20000, SLICE_STILL_US = 100000 };
 /* Stacks count to a process's memory in full. */
 enum { ENCODE_STACK_BYTES = 512 << 10 };
@@ -168,7 +168,7 @@ static struct picture *choose(struct pipeline *pipeline)
     return at == SIZE_MAX ? NULL : pipeline->pictures[at];
 }
 
-/* When the current picture is to be left for another one that waits. */
+/* Time when the current picture is left for the other; INT64_MAX: it is not. */
 static int64_t leave_for_us(const struct pipeline *pipeline, const struct picture *other)
 {
     if (other == pipeline->current || other->turn.is_held ||
@@ -242,7 +242,7 @@ static void handle_message(struct pipeline *pipeline, struct message *message)
 
 static void read_messages(struct pipeline *pipeline)
 {
-    atomic_store(&pipeline->is_called, false); /* before looking: what comes later calls again */
+    atomic_store(&pipeline->is_called, false); /* stored before the queue is read: a later message calls again */
     for (struct message *message; (message = queue_try_take(pipeline->inbox));)
         handle_message(pipeline, message);
 }

@@ -17,7 +17,7 @@ struct block {
     uint32_t low, high; /* smallest and largest vertex used by its triangles */
 };
 
-/* Four floats in one register: x, y, z and one that is carried along and never read. */
+/* Four floats in one register: x, y, z and an unused lane. */
 typedef float float4 __attribute__((vector_size(16)));
 
 struct normals_job {

@@ -26,8 +26,8 @@ struct pending { /* a connection whose first head is not whole, or that was refu
     int socket;  /* -1: free */
     struct address peer;
     int64_t until_us;
-    bool is_refused; /* was answered; what it still sends is read and dropped, because closing a socket with unread
-                        bytes takes the answer back */
+    bool is_refused; /* answered; further bytes are read and dropped, because closing a socket with unread bytes takes
+                        the answer back */
     size_t n_dropped;
 };
 
@@ -159,7 +159,7 @@ static bool hand_to_net(struct acceptor *acceptor, int socket, const struct hand
     return true;
 }
 
-/* Peeks at what has come. has_ended: no more will come. Returns true when the slot can be freed. */
+/* Peeks at the received bytes. has_ended: no more will come. Returns true when the slot can be freed. */
 static bool peek(struct acceptor *acceptor, struct pending *slot, bool has_ended)
 {
     struct problem problem;

@@ -193,9 +193,8 @@ static bool give_opened(int folder, int depth, const struct user *user)
  * not followed. */
 static bool give_folder(const char *folder, const struct user *user, struct error *err)
 {
-    int top =
-        open(folder, O_RDONLY | O_DIRECTORY |
-                         O_CLOEXEC); /* the path itself may be a link: it was given by whoever started the daemon */
+    int top = open(folder, O_RDONLY | O_DIRECTORY |
+                               O_CLOEXEC); /* the path may be a link: the person who started the daemon gave it */
     return (top >= 0 && give_opened(top, 0, user)) ||
            error_set(err, ERROR_IO, "--data %.120s cannot be given to user %s: %s", folder, user->name,
                      strerror(errno));

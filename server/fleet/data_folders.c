@@ -1,4 +1,4 @@
-/* Makes data/cache, data/plans and data/uploads at start, and moves what is thrown away to the remover. */
+/* Makes data/cache, data/plans and data/uploads at start, and hands files and folders to be deleted to the remover. */
 #include "server/fleet/data_folders.h"
 
 #include <dirent.h>

@@ -22,11 +22,11 @@ enum {
 /* Time limits in ms; 0: the default, in brackets. */
 struct fleet_times {
     int ping;   /* a renderer that sends nothing for this long is sent a ping [2000] */
-    int silent; /* one that does not answer it for this long is ended and restarted [6000]: its main thread does no long
-                   work */
+    int silent; /* a renderer that does not answer a ping for this long is ended and restarted [6000]: its main thread
+                   does no long work */
     int awaited_ping;   /* the same while a picture or an answer is due [250] ... */
-    int awaited_silent; /* ... and its main thread is stopped or asleep [600]; one that waits for a processor or a disk
-                           has `silent` */
+    int awaited_silent; /* ... and its main thread is stopped or asleep [600]; a renderer that waits for a processor or
+                           a disk has `silent` */
     int stall;          /* loading a plan without progress; then it fails [120000] */
     int request; /* a request without an answer; if it was for a picture, the renderer is ended as well [30000] */
     int scan;    /* a scan of a plan folder, or the GL probe [30000]: 20,000 DICOM files take most of it */

@@ -56,7 +56,7 @@ struct plan_entry {
     int64_t last_picture_us; /* when the last picture came, of any process */
     int64_t progressed_us;   /* when loading last made progress */
     int64_t ready_us;        /* when the present process became ready; 0: not yet */
-    int64_t used_us;         /* when somebody last used the plan */
+    int64_t used_us;         /* time of the last use of the plan */
 
     /* restarts */
     int64_t restart_at_us;      /* when the next process is started; 0: no start is planned */

@@ -8,5 +8,5 @@ struct folder_list;
 /* Adds plans for new folders, has changed ones scanned again, and frees those whose folder is gone and that nothing
  * uses. */
 void plan_list_update(struct fleet *fleet, const struct folder_list *found);
-/* Frees deleted plans that nothing uses any more. Never while somebody walks through the list. */
+/* Frees deleted plans that nothing uses any more. Never call it while the list is walked. */
 void plan_list_drop_removed(struct fleet *fleet);

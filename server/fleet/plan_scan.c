@@ -104,7 +104,7 @@ bool plan_scan_ended(struct fleet *fleet, const struct watch_event *event)
         if (!is_readable)
             problem_set(&plan->problem, PROBLEM_PLAN_UNREADABLE, "", "", "%s", reason);
         else if (plan->n_holds > 0 && was_failed)
-            opening_of_held(fleet, plan); /* its files have changed, and somebody holds it */
+            opening_of_held(fleet, plan); /* its files have changed, and a viewer holds it */
     }
     plan->has_changed = true;
     fleet->list_has_changed = true;

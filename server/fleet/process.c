@@ -16,7 +16,7 @@ enum {
     READ_ROUND = 4 << 20, /* bytes read from one process before it is the next one's turn */
     MEMORY_EVERY_US = 1000000,
     STOP_GRACE_US = 1000000, /* to end by itself after its socket was closed */
-    DRAIN_US = 500000,       /* to read what is left in the socket after the end */
+    DRAIN_US = 500000,       /* to read the rest of the socket after the end */
     JSON_WEIGHT = 16         /* a parsed JSON document takes about this many times the bytes of its text */
 };
 

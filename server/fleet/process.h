@@ -1,6 +1,6 @@
 #pragma once
-/* One child process on the watch's thread: what it sends and prints, what waits to be sent to it, its time limits and
- * its end. Each becomes a watch_event. Only for watch.c; now_us is of the watch's run_clock everywhere. */
+/* One child process on the watch's thread: the packets and lines it sends, the packets that wait to be sent to it, its
+ * time limits and its end. Each becomes a watch_event. Only for watch.c; now_us is always of the watch's run_clock. */
 #include <poll.h>
 
 #include "server/fleet/spawn.h"
@@ -15,9 +15,9 @@ enum {
 /* A renderer's silence counts from the first ping that is not answered, and only while the watch itself runs. */
 struct silence_limits {
     int ping_ms;   /* a renderer that sends nothing for this long is sent a ping */
-    int silent_ms; /* one that does not answer it for this long is ended */
+    int silent_ms; /* a process that does not answer a ping for this long is ended */
     /* The same while an answer is awaited (process_await). The renderer is ended this early only when its main thread
-     * is stopped, or asleep without reading: one that waits for a processor or a disk keeps silent_ms. */
+     * is stopped, or asleep without reading; a main thread that waits for a processor or a disk keeps silent_ms. */
     int awaited_ping_ms, awaited_silent_ms;
 };
 

@@ -7,7 +7,7 @@ enum { REMOVER_MAX_WAITING = 4096 };
 
 struct remover;
 NODISCARD struct remover *remover_create(struct error *err);
-/* Stops at the next file: what is not removed by then stays. */
+/* Stops at the next file: files not removed by then stay. */
 void remover_destroy(struct remover *remover);
 /* Takes path, a file or folder that nobody else uses. Links are removed, not followed. Any thread; never waits. */
 void remover_put(struct remover *remover, char *path);

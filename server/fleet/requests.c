@@ -233,9 +233,9 @@ void requests_check_time(struct fleet *fleet, int64_t now_us)
     for (struct request *request = fleet->requests; request; request = request->next) {
         if (request->is_failed || now_us < request->until_us)
             continue;
-        /* The renderer's main thread answers pings even when its render thread is stuck, so only a late picture shows
-         * that. A renderer that finishes other pictures meanwhile has too much to do, but is not stuck; nor is one that
-         * has been ready for less than the time of a request. */
+        /* The renderer's main thread answers pings even when its render thread is stuck, so only a late picture shows a
+         * stuck thread. A renderer that finishes other pictures meanwhile is overloaded but not stuck; nor is a
+         * renderer that has been ready for less than the time of a request. */
         if (request->type == PACKET_RENDER && request->is_sent &&
             now_us - last_drew_us(request->plan) >= (int64_t)fleet->times.request * 1000)
             plan_entry_kill(fleet, request->plan, "did not finish a picture in time");

@@ -1,7 +1,7 @@
 #pragma once
-/* When a renderer that ended is started again. One that had worked is started at once. One that ended without having
- * delivered a picture is started after pauses that double, for as long as somebody holds the plan. Internal to
- * server/fleet; net thread. */
+/* Decides when a renderer that ended is started again. A renderer that had worked is started at once. A renderer that
+ * ended without having delivered a picture is started after pauses that double, for as long as a viewer holds the plan.
+ * Internal to server/fleet; net thread. */
 #include "server/fleet/plan_entry.h"
 
 enum {

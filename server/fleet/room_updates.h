@@ -12,7 +12,7 @@ struct room_update; /* a list; NULL: empty */
 
 /* Queues a written packet for this process and replaces an earlier one about the same room. Takes bytes. */
 void room_updates_put(struct room_update **updates, uint64_t process, const char *room, uint8_t *bytes, size_t n_bytes);
-/* Sends what is queued to the process. Drops what was queued for an earlier process: a new one is sent every room's
- * scene anew. Returns true when none is left. */
+/* Sends the queued packets to the process. Drops packets queued for an earlier process: a new process is sent every
+ * room's scene anew. Returns true when none is left. */
 bool room_updates_send(struct room_update **updates, struct watch *watch, uint64_t process);
 void room_updates_clear(struct room_update **updates);

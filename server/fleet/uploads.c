@@ -1,5 +1,5 @@
-/* The steps of each upload: unpack the archive beside itself, find its root, scan it, move it to data/plans, wait until
- * it is listed; and removing what it leaves when it fails or is cancelled. */
+/* Runs the steps of each upload: unpacks the archive beside itself, finds its root, scans it, moves it to data/plans,
+ * waits until it is listed; and removes its files when it fails or is cancelled. */
 #define _GNU_SOURCE
 #include "server/fleet/uploads.h"
 
@@ -92,7 +92,7 @@ static void end(struct fleet *fleet, struct upload *upload, enum fleet_upload_st
     upload->stage = STAGE_ENDED;
     if (upload->process)
         watch_stop(fleet->watch, upload->process, true,
-                   "is no longer wanted"); /* it may still write: what it made is removed after its end */
+                   "is no longer wanted"); /* it may still write: its files are removed after its end */
     else
         clean(fleet, upload);
     fleet->options.wake(fleet->options.context);

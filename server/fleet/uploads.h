@@ -5,7 +5,7 @@
 
 struct watch_event;
 
-/* Starts what waits, and ends uploads whose plan is listed. */
+/* Starts waiting uploads, and ends uploads whose plan is listed. */
 void uploads_tick(struct fleet *fleet);
 /* A line or the end of a process. Returns true when the process was an upload's. */
 bool uploads_event(struct fleet *fleet, const struct watch_event *event);

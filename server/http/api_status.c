@@ -90,7 +90,7 @@ static void add_metric(struct text *text, const char *name, const char *type, co
              value);
 }
 
-/* Without plan ids and members' names: those who read metrics may not be allowed to see patients. */
+/* Holds no plan ids and members' names: readers of the metrics may not be allowed to see patients. */
 void api_metrics(struct api *api, struct call *call)
 {
     struct fleet *fleet = net_fleet(api->net);

@@ -17,7 +17,7 @@ enum {
     RELAY_ANSWER_MS = 120000, /* from a request's last byte to the first of its answer: requests to renderers time out
                                  after 30 s */
     RELAY_WINDOW_MS = 60000,  /* in each window ... */
-    RELAY_WINDOW_BYTES = 64 << 10, /* ... so much of a body must come, or of an answer be taken: a kilobyte a second */
+    RELAY_WINDOW_BYTES = 64 << 10, /* ... bytes of a body must come, or of an answer be taken: a kilobyte a second */
     RELAY_HEAD_MS = 5000,          /* from the first byte of a head to its last */
     RELAY_MAX_QUEUED = 512,        /* connections from the acceptor that the thread has not taken yet */
     RELAY_MAX_LINGERING =
@@ -35,8 +35,9 @@ struct relay_server {
     bool (*add)(
         void *context,
         int socket); /* Takes a connection, whose first request follows. false: it cannot, and has closed socket. */
-    bool (*run)(void *context); /* Handles what has come; never waits. Returns true when there is more to do at once. */
-    int poll_fd;                /* readable when run has something to do */
+    bool (*run)(
+        void *context); /* Handles received bytes; never waits. Returns true when there is more to do at once. */
+    int poll_fd;        /* readable when run has something to do */
     void *context;
 };
 

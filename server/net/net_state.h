@@ -39,7 +39,7 @@ struct net_room { /* a room and what the net thread keeps beside it */
     char phase[200];
     double percent;
     int64_t wake_us;        /* when room_tick is due */
-    int64_t empty_since_us; /* 0: somebody is connected */
+    int64_t empty_since_us; /* 0: a member is connected */
 };
 
 struct net {

@@ -15,6 +15,6 @@ struct confine_options {
     uint64_t cpu_seconds;      /* of processor time, then the kernel ends the process; 0: no limit */
 };
 
-/* Call before any other thread starts. got: what is in force, "landlock 3, seccomp, no-new-privs, no capabilities";
- * what is missing is named with the reason. Never fails: renderers also run on a kernel without these. */
+/* Call before any other thread starts. got: the protections in force, "landlock 3, seccomp, no-new-privs, no
+ * capabilities"; missing ones are named with the reason. Never fails: renderers also run on a kernel without these. */
 void confine(const struct confine_options *options, char got[128]);

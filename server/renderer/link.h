@@ -19,7 +19,7 @@ void link_send_problem(struct link *link, int64_t id, const struct problem *prob
 void link_send_failed(struct link *link, const struct problem *problem);
 /* Writes what the socket takes. */
 void link_write(struct link *link);
-/* Reads what has come. False: the daemon's end is closed, or memory is lacking. */
+/* Reads the bytes received. False: the daemon's end is closed, or memory is lacking. */
 bool link_read(struct link *link);
 /* 1 a packet (the caller's to finish), 0 none yet, -1 the daemon sent something that is no packet. */
 int link_take(struct link *link, struct packet *packet);

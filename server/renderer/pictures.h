@@ -7,7 +7,8 @@
 
 struct pictures;
 
-/* All borrowed; pictures_destroy comes after loader and pipeline have ended, whose threads read what it frees. */
+/* All are borrowed. Call pictures_destroy after loader and pipeline have ended: their threads read memory that it
+ * frees. */
 struct pictures_options {
     struct link *link;
     struct pipeline *pipeline;

@@ -141,7 +141,7 @@ struct snapshot *scenes_snapshot(const struct scenes *scenes, const struct packe
     if (!snapshot) {
         (void)problem_from_error(problem, &err);
         if (problem->type == PROBLEM_NOT_FOUND)
-            problem->type = PROBLEM_VALIDATION; /* it is a field that names what is not there */
+            problem->type = PROBLEM_VALIDATION; /* a field that names a part the plan does not have */
         (void)snprintf(problem->pointer, sizeof problem->pointer, "%s", field);
         problem_below(problem, strncmp(field, "/camera", 7) == 0 ? "/view" : "/scene");
     }

@@ -33,7 +33,8 @@ struct room_picture {
     struct frame_header header; /* view, sequence, input_id, flags SHARED are filled per member by the room */
     uint8_t *bytes;
     size_t n_bytes;
-    cJSON *missing; /* {n, regions: [{region, reason}]}: what it leaves out because it cannot be drawn; NULL: nothing */
+    cJSON *missing; /* {n, regions: [{region, reason}]}: the regions that it leaves out because they cannot be drawn;
+                       NULL: none */
     int references;
 };
 

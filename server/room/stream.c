@@ -326,8 +326,8 @@ static void mark_inputs_shown(struct member_view *view, uint64_t version)
     memmove(view->waiting, view->waiting + n, (size_t)view->n_waiting * sizeof view->waiting[0]);
 }
 
-/* True if the latest picture shows an input not yet reported, one that changed nothing: the picture is sent once more
- * to report it. */
+/* True if the latest picture shows an input that is not yet reported because it changed nothing: the picture is sent
+ * once more to report it. */
 static bool shows_waiting_input(const struct stream *stream, const struct member_view *view)
 {
     return view->n_waiting > 0 && view->waiting[0].version <= stream->latest_version;

@@ -18,7 +18,7 @@ NODISCARD cJSON *json_read(const char *bytes, size_t n, struct problem *problem)
 NODISCARD char *json_print(const cJSON *json);
 /* The same for a program that can do nothing else: aborts where there is no memory. */
 NODISCARD char *json_write(const cJSON *json);
-/* Fills problem with what is not there for want of memory: PROBLEM_INTERNAL. Returns false. */
+/* Fills problem with PROBLEM_INTERNAL: no memory for `what`. Returns false. */
 bool json_no_memory(struct problem *problem, const char *what);
 /* As cJSON_AddItemToObject and cJSON_AddItemToArray, but value (taken) is freed where it cannot be added. */
 void json_add(cJSON *object, const char *name, cJSON *value);

@@ -3,7 +3,7 @@
  */
 #include <stddef.h>
 
-enum { JSON_POINTER_SIZE = 160 }; /* bytes of the text with the final zero; what is longer is cut */
+enum { JSON_POINTER_SIZE = 160 }; /* bytes of the text with the final zero; longer texts are cut */
 
 struct json_pointer {
     const struct json_pointer *outer; /* NULL: this is the whole document */

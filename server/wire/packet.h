@@ -70,7 +70,7 @@ const struct packet_snapshot *packet_snapshot_of(const struct packet *packet);
 
 /* A packet of defaults, to be filled in and written. */
 void packet_init(struct packet *packet, enum packet_type type);
-/* Fills a text field of size bytes: cuts what is too long, control characters become '?'. text NULL: "". */
+/* Fills a text field of size bytes: cuts longer texts, replaces control characters by '?'. text NULL: "". */
 void packet_put_text(char *field, size_t size, const char *text);
 /* The packet's JSON as a new object. Refers to its documents: delete it before them. */
 NODISCARD cJSON *packet_to_json(const struct packet *packet);

@@ -9,7 +9,7 @@
 #include "server/wire/json_merge.h"
 #include "server/wire/references.h"
 
-/* Without memory for a part, that part is missing; those who use the whole compare mem_n_refused. */
+/* A part for which there is no memory is missing; callers that use the whole compare mem_n_refused. */
 static cJSON *complete_object(const struct field_object *object, const cJSON *defaults, cJSON *json);
 
 /* A map whose keys name things of the plan has an entry for each that defaults has one for. In other maps an entry that
@@ -94,8 +94,8 @@ static cJSON *complete_object(const struct field_object *object, const cJSON *de
     return json;
 }
 
-/* The checks run on what was said, so that a pointer names what the sender wrote. Takes merged; NULL: there was no
- * memory for it. */
+/* The checks run on merged before it is completed, so that a pointer names a field as the sender wrote it. Consumes
+ * merged; NULL: there was no memory for it. */
 static cJSON *check_and_complete(const struct field_object *object, const cJSON *plan, const cJSON *defaults,
                                  cJSON *merged, struct problem *problem)
 {

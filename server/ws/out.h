@@ -16,8 +16,8 @@ int out_write(struct ws_connection *connection);
 /* Sends pongs and a close at once: a client may close its direction right after sending. Returns non-zero when the
  * connection is to be cut. */
 int out_answer_now(struct ws_connection *connection);
-/* Begins to close: what waits is still sent, then a close with this code and reason (NULL: none). What comes from now
- * on is dropped. */
+/* Begins to close: waiting messages are still sent, then a close with this code and reason (NULL: none). Bytes received
+ * from now on are dropped. */
 void out_begin_close(struct ws_connection *connection, uint16_t code, const char *reason);
 void out_drop_frames(struct ws_connection *connection);
 /* Logs that a connection was cut, at most every 10 s: clients that reconnect again and again must not fill the log. */

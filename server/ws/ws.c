@@ -1,4 +1,4 @@
-/* The loop; the handshake of a connection; what comes in, and its limits. */
+/* The event loop, the handshake of a connection, and incoming messages with their limits. */
 #include "server/ws/ws.h"
 
 #include <fcntl.h>

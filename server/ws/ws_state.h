@@ -22,7 +22,7 @@ struct frame_slot { /* the newest frame of a view, not begun to be sent */
     struct room_picture *picture; /* NULL: empty */
 };
 
-struct sending { /* what was begun to be sent: nothing else may be sent before its rest */
+struct sending { /* the message that is partly sent: nothing else may be sent before its rest */
     uint8_t head[10 + FRAME_HEADER_BYTES];
     size_t n_head, n_done; /* n_done: bytes of head and body that were sent */
     const uint8_t *body;
@@ -34,7 +34,7 @@ struct sending { /* what was begun to be sent: nothing else may be sent before i
 enum state {
     STATE_NONE, /* not open yet, or reported as closed */
     STATE_OPEN,
-    STATE_CLOSING,  /* what comes is dropped; what waits is sent, then the close */
+    STATE_CLOSING,  /* received bytes are dropped; waiting messages are sent, then the close */
     STATE_LINGERING /* the close was sent; waits for the client to close */
 };
 

@@ -319,7 +319,7 @@ static struct rectangle open_between_leaves(const struct opening_device *device,
     return hull;
 }
 
-/* The current opening. Returns false if it is closed, or if no device says what it is. */
+/* Stores the current opening. Returns false if it is closed, or if no device states it. */
 static bool opening_now(const struct opening *opening, struct rectangle *open, double *cm2)
 {
     bool has_x, has_y;

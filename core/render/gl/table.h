@@ -90,6 +90,6 @@ typedef void (*gl_function)(void);
 gl_function gl_symbol(void *library, const char *name);
 /* Fills the table. errors ERROR_GL with the name of the first function that the driver does not have */
 NODISCARD bool gl_load(struct gl *gl, gl_function (*get)(const char *name), struct error *err);
-/* False if the driver has reported an error since the last call; clears all pending ones. during: what was being done,
+/* Returns false if the driver has reported an error since the last call; clears all pending errors. during: the step,
  * for the error's text. errors ERROR_GL */
 NODISCARD bool gl_check(const struct gl *gl, const char *during, struct error *err);

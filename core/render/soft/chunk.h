@@ -1,7 +1,7 @@
 #pragma once
-/* A chunk: up to SOFT_CHUNK_PRIMITIVES triangles, lines or points of one shape, and what is kept of them to rasterise:
- * triangles and rectangles that face the viewer and hold a sample, clipped at the near plane. Knows no kind of shape.
- */
+/* A chunk: up to SOFT_CHUNK_PRIMITIVES triangles, lines or points of one shape, of which those are kept for rasterising
+ * that face the viewer and hold a sample, as triangles and rectangles clipped at the near plane. Knows no kind of
+ * shape. */
 #include "core/base/error.h"
 #include "core/render/soft/drawables.h"
 #include "core/render/visible/visible.h"

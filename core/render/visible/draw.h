@@ -26,7 +26,7 @@ enum draw_kind {
 
 enum draw_depth {
     DRAW_DEPTH_NONE,   /* lies over all that was drawn before it */
-    DRAW_DEPTH_TESTED, /* hidden by what is nearer, hides what is farther */
+    DRAW_DEPTH_TESTED, /* hidden by nearer draws, hides farther ones */
     /* Its nearest sheet goes into a layer of its own. The layers of consecutive draws are tested against what was drawn
      * before the first of them and composed together. */
     DRAW_DEPTH_LAYER

@@ -17,7 +17,7 @@ struct entry {
     struct drawable *drawable;  /* NULL: the shape cannot be shown */
     struct drawable nothing;    /* stands for it then */
     uint64_t n_bytes;           /* counted against the budget */
-    uint64_t used;              /* the picture that asked for it last */
+    uint64_t used;              /* the last picture that used it */
     struct entry *next;
 };
 

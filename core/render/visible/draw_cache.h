@@ -33,7 +33,7 @@ void draw_cache_destroy(struct draw_cache *cache);
 /* No picture is begun. */
 void draw_cache_forget(struct draw_cache *cache, const struct plan *plan);
 
-/* A picture that is begun; in the caller's storage. Drawables asked for since stay until it ends. */
+/* A picture that is begun; in the caller's storage. Drawables it uses from then on stay until it ends. */
 struct draw_cache_use {
     struct draw_cache *cache; /* NULL: none */
     uint64_t picture;         /* counted from 1 */

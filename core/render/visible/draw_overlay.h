@@ -3,5 +3,5 @@
  * the grids of a dose. */
 #include "core/render/visible/draw.h"
 
-/* Appends them, what is on top last. errors ERROR_MEMORY */
+/* Appends the draws of the overlay, the topmost last. errors ERROR_MEMORY */
 NODISCARD bool draw_overlay(struct draw_list *list, const struct draw_scope *scope, struct error *err);

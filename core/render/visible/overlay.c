@@ -9,7 +9,8 @@
 #include "core/render/visible/cut.h"
 #include "core/render/visible/paint.h"
 
-/* Limits of what is kept: three panes of all regions that a plan can have, and 96 MiB: a line has 48 bytes. */
+/* Limits of the lines that are kept: three panes of all regions that a plan can have, and 96 MiB at 48 bytes per line.
+ */
 enum { MAX_ENTRIES = 3 * REGION_MAX + 512, MAX_LINES = 2 << 20 };
 static const uint32_t univel_rgb = 0xffffff;
 

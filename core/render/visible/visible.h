@@ -25,8 +25,8 @@ struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t regio
 /* The key of a surface by the scene's algorithm. */
 struct shape_key visible_surface_key(const struct snapshot *snapshot);
 
-/* The shapes to build before a picture of the snapshot is drawn; what is missing here is built while it is drawn. Fills
- * wants, which has room for n_regions of the plan; returns how many. */
+/* Lists the shapes to build before a picture of the snapshot is drawn; shapes that the list lacks are built while it is
+ * drawn. Fills wants, which has room for n_regions of the plan; returns the number. */
 size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct shape_want *wants);
 /* The regions that a picture, once drawn, does not show as the scene wants, because their shape was refused
  * (derive_shape_is_refused). Fills the first VISIBLE_MAX_MISSING; returns how many there are. */
