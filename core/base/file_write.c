@@ -1,4 +1,4 @@
-/* Writing a file beside its path, then renaming it into place. */
+/* Writes a file beside its path, then renames it into place. */
 #include "core/base/file_write.h"
 
 #include <errno.h>

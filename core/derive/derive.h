@@ -22,7 +22,7 @@ struct derive_result {
 };
 
 struct derive_kind {
-    size_t recipe_size; /* of the kind's recipe struct */
+    size_t recipe_size; /* size of the kind's recipe struct */
     /* True if two recipes of this kind and of one subject have equal other inputs. NULL: there are no other inputs. */
     bool (*is_equal)(const struct derive_recipe *a, const struct derive_recipe *b);
     /* Builds the result, begun with derive_result_init; NULL on failure. Any thread, no lock held; may ask the store
@@ -34,7 +34,7 @@ struct derive_kind {
 
 #define DERIVE_BUDGET_BYTES ((uint64_t)1 << 30) /* the default budget */
 
-/* The plan is borrowed and outlives the store; it is frozen from then on. */
+/* Creates a store for a plan, which is borrowed, outlives the store and is frozen from then on. */
 struct derive *derive_create(const struct plan *plan);
 void derive_destroy(struct derive *derive);
 const struct plan *derive_plan(const struct derive *derive);

@@ -88,7 +88,7 @@ static int open_resolved(const struct folder *folder, const char *name)
     return fd;
 }
 
-/* When openat2 is missing or refused: opens one folder after the other and follows no link; a name with a link is
+/* Used when openat2 is missing or refused: opens one folder after the other and follows no link; a name with a link is
  * resolved first. */
 static int open_by_parts(const struct folder *folder, const char *name)
 {

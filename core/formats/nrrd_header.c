@@ -259,7 +259,7 @@ static bool directions_from_spacings(const struct nrrd_fields *head, struct axes
     return true;
 }
 
-/* Reports what the file does not say about its position in the patient. */
+/* Reports which parts of its position in the patient the file does not state. */
 static void note_assumed(const struct nrrd_fields *head, const struct axes *axes, bool is_known, bool has_origin)
 {
     const char *apart = axes->has_directions || head->values[NRRD_SPACINGS].line != 0 ? "" : ", 1 mm apart";

@@ -11,7 +11,7 @@ struct sera_direction {
     int sign; /* +1: the index grows along the axis; -1: against it */
 };
 
-/* Reads "PA-" and the like, in any case. */
+/* Reads a word such as "PA-", in any case. */
 bool sera_direction_from_word(const char *word, struct sera_direction *direction);
 struct vec3 sera_lps_from_rpi(double rl, double pa, double is);
 

@@ -4,8 +4,8 @@
 #include "core/formats/sera_doses.h"
 #include "core/report/report.h"
 
-/* Sets the unit, and what the dose is per, from the entry. is_sera: the file is in cGy and per unit of its source,
- * whatever the entry says of the unit. */
+/* Sets the unit of the dose, and its "per", from the entry. is_sera: the file is in cGy and per unit of its source,
+ * whatever unit the entry has. */
 void plan_dose_units(struct dose *dose, const struct plan_file_dose *entry, bool is_sera, struct report *report);
 /* Sets the frame of reference from the entry, unless the dose's file says a worse one. where: the file, for the report.
  */

@@ -10,7 +10,7 @@
 
 enum { N_BINS = 4096, N_SAMPLES = 1 << 19 };
 
-/* The value below which this share of the n sampled voxels lies. */
+/* Returns the value below which this share of the n sampled voxels lies. */
 static double percentile(const uint32_t *bins, uint64_t n, double low, double width, double share)
 {
     uint64_t below = 0;

@@ -153,7 +153,7 @@ static bool is_held(struct pipeline *pipeline, const struct picture *picture, bo
     return pipeline->n_begun >= MAX_BEGUN || (another_needs_all && !picture->needs_all);
 }
 
-/* NULL: all are held, or there is none. */
+/* Chooses the picture to draw next. NULL: all are held, or there is none. */
 static struct picture *choose(struct pipeline *pipeline)
 {
     struct turns_item *items[MAX_PICTURES];
@@ -265,7 +265,7 @@ static bool is_time_to_leave(const struct pipeline *pipeline)
            (pipeline->leave_at_us != INT64_MAX && clock_now_us() >= pipeline->leave_at_us);
 }
 
-/* Any thread of the back end. */
+/* True when the current picture is to be left. Called on any thread of the back end. */
 static bool pause_is_due(void *context)
 {
     const struct pipeline *pipeline = context;

@@ -36,9 +36,10 @@ struct pipeline_callbacks {
     void *context;
 };
 
-/* Starts the threads; the back end comes up while the caller goes on. stub: draws nothing and delivers grey pictures of
- * the right size with the right camera, for tests under sanitizers, which do not get on with GL drivers.
- * errors ERROR_MEMORY: a thread cannot be started */
+/* Starts the threads; the back end starts while the caller goes on. stub: draws nothing and delivers grey pictures of
+ * the right size with the right camera, for tests under sanitizers, which do not work with GL drivers.
+ *
+ *   errors   ERROR_MEMORY  a thread cannot be started */
 NODISCARD struct pipeline *pipeline_create(enum render_back_end back_end, bool stub,
                                            const struct pipeline_callbacks *callbacks, struct error *err);
 /* Limit on the images of all pictures that are begun and not yet compressed; a single image may be larger. */

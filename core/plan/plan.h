@@ -66,7 +66,7 @@ struct plan *plan_create(const char *id);
 /* After every store (core/derive) of the plan is destroyed. */
 void plan_destroy(struct plan *plan);
 
-/* Everything at a patient point. A region, image or dose is named by its index in the plan. */
+/* The regions, image values and doses at a patient point. A region, image or dose is named by its index in the plan. */
 struct probe_dose {
     size_t dose, component;
     double value; /* in the dose's unit */

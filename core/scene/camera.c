@@ -236,7 +236,7 @@ bool camera_check(const struct plan *plan, const struct view *view, const struct
     struct camera camera;
     if (!check_fields(view, field, err))
         return false;
-    /* without a target the camera looks at the plan's centre, which the position must not be */
+    /* without a target the camera looks at the plan's centre, so its position must not be there */
     camera_of_view(plan, view, pane, &camera);
     if (vec3_length(camera.forward) > 0.5)
         return true;

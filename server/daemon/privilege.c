@@ -82,7 +82,7 @@ static const char *from_here(const char *path, const char *here)
     return NULL;
 }
 
-/* Finds out in a child process, which becomes the user, how each place is reached. Returns false when the child failed.
+/* Tests in a child process, which becomes the user, how each place can be reached. Returns false when the child failed.
  */
 static bool try_as(const struct user *user, const struct privilege_options *options, const char *here,
                    enum reach reached[])

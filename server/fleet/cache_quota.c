@@ -104,7 +104,7 @@ static bool measure(int folder, int depth, struct entry *entry)
     return is_measured;
 }
 
-/* Measures the folder anew. Keeps the old figures when the daemon cannot look now. */
+/* Measures the folder again. Keeps the old figures when it cannot be read now. */
 static void look_at(const struct cache_quota *quota, struct entry *entry)
 {
     struct entry found = { .n_bytes = 0 };

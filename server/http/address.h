@@ -15,7 +15,7 @@ struct address {
     uint8_t bytes[16];
 };
 
-/* Every address whose first n_bits bits are those of first. */
+/* The addresses whose first n_bits bits are those of first. */
 struct address_range {
     struct address first;
     int n_bits; /* of 128 */

@@ -12,7 +12,7 @@
 
 enum { TIMED_PX = 650 }; /* the window in which Sera3d's frame rates were taken */
 
-/* Media types are named here, not by the renderer, which is not trusted. PLY has no registered type. */
+/* The media type is chosen here and not by the renderer, which is not trusted. PLY has no registered type. */
 static const char *media_type(enum mesh_format format)
 {
     return format == MESH_STL ? "model/stl" : format == MESH_GLB ? "model/gltf-binary" : "application/octet-stream";

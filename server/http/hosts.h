@@ -9,8 +9,8 @@ struct hosts;
 
 enum { HOSTS_MAX_NAME = 255 };
 
-/* names: further names, without a port; "*" allows any. Always allowed: numeric addresses, localhost, names below it,
- * and the machine's host name. */
+/* Creates the list of accepted host names. names: further names, without a port; "*" allows any. Always allowed:
+ * numeric addresses, localhost, names below it, and the machine's host name. */
 struct hosts *hosts_create(const char *const *names, size_t n_names);
 void hosts_destroy(struct hosts *hosts);
 /* True if the value of a Host header (n bytes, with or without a port) is allowed. */

@@ -35,9 +35,8 @@ struct relay_server {
     bool (*add)(
         void *context,
         int socket); /* Takes a connection, whose first request follows. false: it cannot, and has closed socket. */
-    bool (*run)(
-        void *context); /* Handles received bytes; never waits. Returns true when there is more to do at once. */
-    int poll_fd;        /* readable when run has something to do */
+    bool (*run)(void *context); /* handles received bytes, never waits; true: there is more to do at once */
+    int poll_fd;                /* readable when run has something to do */
     void *context;
 };
 

@@ -250,7 +250,7 @@ void bridge_fleet_changed(void *context, const char *plan_id)
 {
     struct net *net = context;
     char id[64];
-    if (!plan_id) { /* the list of plans: rooms do not depend on it */
+    if (!plan_id) { /* the list of plans has changed: rooms do not depend on it */
         atomic_store(&net->is_listed, fleet_is_listed(net->fleet));
         return;
     }

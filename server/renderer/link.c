@@ -79,7 +79,7 @@ void link_write(struct link *link)
         if (n < 0 && errno == EINTR)
             continue;
         if (n < 0)
-            return; /* the socket is full, or closed, which link_read finds */
+            return; /* the socket is full, or closed: link_read notices that */
         out->n_sent += (size_t)n;
         if (out->n_sent == out->n_bytes)
             drop_first(link);

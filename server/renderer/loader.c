@@ -1,5 +1,5 @@
-/* Three threads of one plan: one loads it and then answers slow questions, one answers quick questions, one builds the
- * shapes that requests wait for. */
+/* Three threads of one plan: the first loads it and then answers slow questions, the second answers quick questions,
+ * the third builds the shapes that requests wait for. */
 #include "server/renderer/loader.h"
 
 #include <pthread.h>

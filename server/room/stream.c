@@ -375,7 +375,7 @@ static void send_to_subscribers(struct room *room, struct stream *stream)
             if (view->stream != stream)
                 continue;
             if (n_unshown(view) >= ROOM_MAX_UNSHOWN)
-                room->counters.frames_skipped++; /* it gets the newest picture when its credit returns */
+                room->counters.frames_skipped++; /* the viewer gets the newest picture when its credit returns */
             stream_send_picture(room, room->members[m], view);
         }
 }

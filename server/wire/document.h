@@ -3,7 +3,8 @@
  * functions on documents. Thread: any. */
 #include "wire_gen.h"
 
-/* Most rooms of one daemon (--max-rooms), and so most scenes that one renderer keeps: all rooms may be on one plan. */
+/* Largest number of rooms of one daemon (--max-rooms), and so of scenes that one renderer keeps: all rooms may be on
+ * one plan. */
 enum { SCENE_MAX_ROOMS = 10000 };
 
 /* current with patch applied, as a new document: patch_apply of patch.h. defaults is the scene the renderer gave for

@@ -36,7 +36,7 @@ static int compare(const void *a, const void *b)
     return strcmp(((const struct json_index_entry *)a)->name, ((const struct json_index_entry *)b)->name);
 }
 
-/* False: there is no memory for it. */
+/* Sorts the members by name. False: there is no memory for it. */
 static bool sort(struct json_index *index)
 {
     index->entries = mem_array((size_t)cJSON_GetArraySize(index->parent), sizeof *index->entries, UINT32_MAX, NULL);

@@ -20,8 +20,9 @@ struct json_index {
 void json_index_init(struct json_index *index, const cJSON *object);
 /* The elements of list that are objects with a text "id". */
 void json_index_init_ids(struct json_index *index, const cJSON *list);
-/* NULL: none. Of members with equal names any one; fields_read refuses such documents. The member that is returned may
- * be taken out or replaced if its name stays in memory and is not looked up again. Appended members may be missed. */
+/* Finds the member of a name; NULL: none. With equal names it is any of them; fields_read refuses such documents. The
+ * member that is returned may be taken out or replaced if its name stays in memory and is not looked up again. Appended
+ * members may be missed. */
 cJSON *json_index_find(struct json_index *index, const char *name);
 void json_index_finish(struct json_index *index);
 

@@ -130,7 +130,7 @@ static bool read_fields(struct packet *packet, struct problem *problem)
     for (size_t i = 0; i < description->n_parts; i++) {
         is_good = is_good && read_part(&description->parts[i], parts[i], fields, problem);
         if (parts[i])
-            cJSON_AddItemToArray(packet->json, parts[i]); /* it has kept its name */
+            cJSON_AddItemToArray(packet->json, parts[i]); /* the part keeps its name */
     }
     return is_good;
 }

@@ -9,7 +9,7 @@ struct rate_limit {
 };
 
 struct rate {
-    int64_t paid_until_ns; /* when all that came so far is worked off at per_s */
+    int64_t paid_until_ns; /* time at which everything counted so far is worked off at per_s */
 };
 
 /* Notes that n more have come, n <= 2^31. Returns false when that exceeds the limit; burst + 1 at once always do. */

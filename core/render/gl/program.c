@@ -6,7 +6,7 @@
 
 #include "core/render/visible/visible.h"
 
-/* constants: lines of "#define NAME value" that the source uses, or "". Returns 0 on failure. */
+/* Compiles a shader. constants: lines of "#define NAME value" that the source uses, or "". Returns 0 on failure. */
 static GLuint compile(const struct gl *gl, GLenum kind, const char *name, const char *constants, const char *source,
                       struct error *err)
 {

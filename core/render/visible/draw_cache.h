@@ -39,7 +39,7 @@ struct draw_cache_use {
     uint64_t picture;         /* counted from 1 */
     struct draw_cache_use *next;
 };
-/* Drops first what exceeds the budget. */
+/* Begins a picture; first drops the drawables that exceed the budget. */
 void draw_cache_begin(struct draw_cache *cache, struct draw_cache_use *use);
 void draw_cache_end(struct draw_cache_use *use);
 
