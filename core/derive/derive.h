@@ -1,6 +1,6 @@
 #pragma once
 /* The store of what is computed from a plan for a scene. A recipe (a plain struct that names all inputs) leads to an
- * immutable, reference-counted result, which is built once, by the first thread that asks, and kept within one budget
+ * immutable, reference-counted result, which is built once, by the first caller, and kept within one budget
  * of memory over all kinds of result. Knows no kind by name: a kind is one file of its own, which exports its functions
  * and calls derive_get with its `struct derive_kind`. Kinds now: region_shape.h, coarse_reduction.h. */
 #include "core/base/once_cache.h"
@@ -43,15 +43,15 @@ const struct plan *derive_plan(const struct derive *derive);
 void derive_result_init(struct derive_result *result, const struct derive_kind *kind, uint64_t n_bytes);
 void derive_result_unref(struct derive_result *result);
 
-/* The result of a recipe: the kept one, or built now. The first thread that asks builds; others that ask for the same
- * recipe wait. What was not used for longest is dropped when all that is kept exceeds the budget; a reference keeps its
+/* Returns the result of a recipe: the kept one, or a new one. The first caller builds it; other callers of the same
+ * recipe wait. When the kept results exceed the budget, the least recently used are dropped; a reference keeps its
  * result alive.
  *
  *   way      how to build, handed to the kind's build: what makes it faster and changes nothing of the result (threads,
  *            a mask that is there already). May be NULL if the kind allows it
  *   returns  one reference, the caller's; NULL on failure
  *   errors   those of the kind's build. A refusal (derive_is_refusal) is remembered and given again without a build;
- *            after any other failure the next thread that asks builds again
+ *            after any other failure the next caller builds again
  *   thread   any */
 NODISCARD struct derive_result *derive_get(struct derive *derive, const struct derive_recipe *recipe, const void *way,
                                            struct error *err);

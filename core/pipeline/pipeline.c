@@ -265,7 +265,8 @@ static bool is_time_to_leave(const struct pipeline *pipeline)
            (pipeline->leave_at_us != INT64_MAX && clock_now_us() >= pipeline->leave_at_us);
 }
 
-/* True when the current picture is to be left. Called on any thread of the back end. */
+/* True when the current picture is to be left, or a new request may end its slice. Called on any thread of the back
+ * end. */
 static bool pause_is_due(void *context)
 {
     const struct pipeline *pipeline = context;
