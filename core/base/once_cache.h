@@ -1,7 +1,7 @@
 #pragma once
-/* A cache of results that threads share. Each result is built once: the first caller for a key builds, without a
- * lock held, and other callers for the same key wait. Results are kept within a budget of
- * memory, least recently used dropped first. The module knows neither what a key means nor what a result is. */
+/* A cache of results that threads share. Each result is built once: the first caller for a key builds, without a lock
+ * held, and other callers for the same key wait. Results are kept within a budget of memory, least recently used
+ * dropped first. The module knows neither what a key means nor what a result is. */
 #include <stddef.h>
 #include <stdint.h>
 

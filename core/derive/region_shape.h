@@ -17,8 +17,8 @@ struct region_shape {
 };
 
 struct region_shape_recipe region_shape_recipe(struct subject subject, const struct shape_key *key, uint32_t reduction);
-/* One reference, the caller's, dropped by derive_result_unref(&result->base). errors those of surface_make and
- * shape_make */
+/* Returns the shape of a recipe, built on first use. One reference, the caller's, dropped by
+ * derive_result_unref(&result->base). errors those of surface_make and shape_make */
 NODISCARD struct region_shape *region_shape_get(struct derive *derive, const struct region_shape_recipe *recipe,
                                                 struct error *err);
 /* Keeps a shape that was built on the way to something else (derive_offer). Adds a reference to the shape. */

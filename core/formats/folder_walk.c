@@ -57,7 +57,7 @@ static bool add_file(struct walk *walk, const char *name, const struct stat *abo
     return true;
 }
 
-/* Finds what a link leads to; false when that lies outside the folder. */
+/* Finds the file or folder that a link leads to; false when it lies outside the folder. */
 static bool look_behind_link(const struct folder *folder, const char *name, struct stat *about)
 {
     return folder_look(folder, name, NULL) == FOLDER_FILE && fstatat(folder->fd, name, about, 0) == 0;

@@ -139,7 +139,7 @@ static enum outcome inflate_members(const uint8_t *data, size_t size, uint8_t *o
     return outcome == WHOLE && !gzip_is_padding(data + in, size - in) ? BROKEN : outcome;
 }
 
-/* Replaces a message of zlib that people would not understand. */
+/* Replaces a message of zlib that is meaningless to users. */
 static const char *plain_reason(const char *reason)
 {
     if (strcmp(reason, "incorrect data check") == 0)

@@ -27,7 +27,7 @@ void uvh_finish(struct uvh *uvh);
 NODISCARD bool uvh_parse(const uint8_t *data, size_t size, const char *name, struct uvh *uvh, struct report *report,
                          struct error *err);
 
-/* The same with the length of one unit as the plan gives it, instead of the header's; 0: the header's. */
+/* As uvh_parse, but the length of one unit is the one the plan gives; 0: the header's own. */
 NODISCARD bool uvh_parse_in(const uint8_t *data, size_t size, const char *name, double given_mm, struct uvh *uvh,
                             struct report *report, struct error *err);
 

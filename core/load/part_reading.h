@@ -18,7 +18,7 @@ enum part_kind { PART_KIND_IMAGE, PART_KIND_REGION, PART_KIND_DOSE, PART_KIND_DO
 struct part_reading {
     enum part_kind kind;
     size_t index;     /* of the entry in its list of the plan file; PART_WITHOUT_ENTRY: found in the folder */
-    size_t component; /* of the dose in that entry */
+    size_t component; /* index of the component in the dose of that entry */
     const char *path; /* relative to the plan's folder; borrowed from the plan file or the DICOM index */
     enum part_format format;
     int stack;      /* of a DICOM image: which stack of the index */

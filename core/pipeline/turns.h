@@ -25,8 +25,8 @@ struct turns_item {
 struct turns;
 struct turns *turns_create(void);
 void turns_destroy(struct turns *turns);
-/* The index of the item to draw next, which counts as begun from then on; SIZE_MAX: all are held.
- * items: all requests that wait or are paused, oldest first; fewer sources than turns.c remembers (512) */
+/* Returns the index of the item to draw next, which counts as begun from then on; SIZE_MAX: all are held. items: all
+ * requests that wait or are paused, oldest first; fewer sources than turns.c remembers (512) */
 size_t turns_choose(struct turns *turns, struct turns_item *const *items, size_t n);
 /* Adds the time that a picture of the source took, or a part of it. */
 void turns_charge(struct turns *turns, uint64_t source, int64_t cost_us);

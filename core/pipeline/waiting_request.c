@@ -1,4 +1,4 @@
-/* Requests that wait for their shapes, and the set of shapes built before. */
+/* Keeps requests that wait for their shapes, and the set of shapes built before. */
 #include "core/pipeline/waiting_request.h"
 
 #include <stdlib.h>

@@ -28,8 +28,8 @@ NODISCARD struct image *render_snapshot(struct renderer *renderer, const struct 
                                         const struct render_options *options, struct camera *camera,
                                         struct render_timing *timing, struct error *err);
 
-/* The same in parts, so that a long picture can be paused while others are drawn: begin, go on until it is done or has
- * failed, end. Several pictures may be begun at a time. Pauses do not change the picture. */
+/* Draws a picture in parts, so that a long one can be paused while others are drawn: begin, go on until it is done or
+ * has failed, end. Several pictures may be begun at a time. Pauses do not change the picture. */
 struct render_picture;
 NODISCARD struct render_picture *render_begin(struct renderer *renderer, const struct snapshot *snapshot,
                                               const struct render_options *options);

@@ -44,7 +44,7 @@ static const float agreeing = 0.9f, disagreeing = 0.5f;
 
 /* ---- passes over the vertices ----------------------------------------------------------------------------------- */
 
-/* Terms of the recurrence added to the sums in one pass, while they are at hand: the sums travel to memory and back
+/* Terms of the recurrence that one pass adds to the sums while they are in the cache: the sums are loaded and stored
  * less often. */
 enum { MAX_TERMS = 3 };
 

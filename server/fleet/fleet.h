@@ -1,8 +1,7 @@
 #pragma once
-/* Plans and their renderer processes: finding plans, starting one confined renderer per open plan, watching and
- * restarting it, and sending it requests. Called on the net thread, and calls back on it. Threads of the fleet's own
- * wait for sockets, processes and disks; they pass events by queues and call options.wake. Knows no rooms, no HTTP and
- * no WebSocket. */
+/* Plans and their renderer processes: finds plans, starts one confined renderer per open plan, watches and restarts it,
+ * and sends it requests. Called on the net thread, and calls back on it. Threads of the fleet's own wait for sockets,
+ * processes and disks; they pass events by queues and call options.wake. Knows no rooms, no HTTP and no WebSocket. */
 #include <stdint.h>
 
 #include "server/fleet/folders.h"

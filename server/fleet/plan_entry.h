@@ -32,7 +32,7 @@ struct plan_entry {
     uint64_t n_bytes;
 
     /* the folder and its scan */
-    uint64_t fingerprint;   /* of folders.h */
+    uint64_t fingerprint;   /* the folder's fingerprint (folders.h) */
     uint64_t scan;          /* process number of the running scan; 0: none */
     uint64_t failed_number; /* last process number when the plan failed: an older scan does not undo the failure */
     bool wants_scan;
@@ -53,7 +53,7 @@ struct plan_entry {
     struct room_update *room_updates; /* not yet sent to the renderer */
     int64_t load_ms;
     int64_t started_us;      /* clock_now_us when the present process was started */
-    int64_t last_picture_us; /* when the last picture came, of any process */
+    int64_t last_picture_us; /* time when the last picture came, from any process */
     int64_t progressed_us;   /* when loading last made progress */
     int64_t ready_us;        /* when the present process became ready; 0: not yet */
     int64_t used_us;         /* time of the last use of the plan */

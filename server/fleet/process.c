@@ -44,7 +44,7 @@ struct process {
     int64_t kill_at_us;      /* when it is killed after its socket was closed; INT64_MAX: not planned */
     int64_t limit_at_us;     /* when a program's time is over */
     int64_t memory_at_us;    /* when its memory is measured next */
-    int64_t drain_until_us;  /* after its end: until then its socket is read */
+    int64_t drain_until_us;  /* after its end: its socket is read until then */
     int64_t pinged_us;       /* when the unanswered ping was sent; 0: there is none */
     bool has_ended, is_stopping, is_awaited;
     int status;
@@ -397,7 +397,7 @@ static void send_ping(struct process *process, int64_t now_us)
 
 static void check_silence(struct process *process, const struct silence_limits *limits, int64_t now_us)
 {
-    if (process_is_throttled(process)) { /* we do not read from it */
+    if (process_is_throttled(process)) { /* it is not read from */
         process->heard_us = now_us;
         process->pinged_us = 0;
         return;

@@ -273,7 +273,7 @@ bool requests_answer(struct fleet *fleet, struct plan_entry *plan, struct packet
     while (request &&
            !(request->plan == plan && request->is_sent && !request->is_failed && request->number == (uint64_t)id))
         request = request->next;
-    if (!request) { /* forgotten since it was sent */
+    if (!request) { /* the request was forgotten since it was sent */
         if (packet->type == PACKET_FRAME)
             picture_came(fleet, plan);
         return true;

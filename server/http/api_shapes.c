@@ -18,7 +18,7 @@ static const char *media_type(enum mesh_format format)
     return format == MESH_STL ? "model/stl" : format == MESH_GLB ? "model/gltf-binary" : "application/octet-stream";
 }
 
-/* A call under way. */
+/* A call for a shape that is not answered yet. */
 struct shape_call {
     char plan_id[64], region[64];
     struct shape_query query;

@@ -73,7 +73,7 @@ bool call_media_type_is(const struct call *call, const char *media_type);
 /* Returns false with problem for a request that would change something and that a page of another origin makes with the
  * user's browser. */
 NODISCARD bool call_origin_is_own(const struct call *call, struct problem *problem);
-/* The body as a JSON object. media_types: those that are accepted, NULL-terminated. Returns false when the call was
+/* Reads the body as a JSON object. media_types: the accepted ones, NULL-terminated. Returns false when the call was
  * answered with the problem. */
 NODISCARD bool call_read_object(struct call *call, const char *const *media_types, cJSON **object);
 /* A query parameter as a finite number; *value is unchanged when it is absent. */

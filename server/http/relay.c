@@ -147,7 +147,8 @@ static void check_answer(struct relay_link *link, int64_t now_us)
     } else if (still_us > RELAY_IDLE_MS * INT64_C(1000) || is_window_missed(link, now_us)) {
         relay_link_die(link);
     } else {
-        relay_touch(link); /* epoll reports room only when much was taken: send again to see a slow client's progress */
+        relay_touch(
+            link); /* epoll reports room only when much was taken: sending again shows a slow client's progress */
     }
 }
 

@@ -236,7 +236,7 @@ void bridge_enter(struct visitor *visitor)
 {
     struct net_room *entry = visitor->room;
     visitor->holds_plan = fleet_hold(entry->net->fleet, room_plan_id(entry->room));
-    bridge_report_plan(entry); /* before its hello, so that the welcome states the present */
+    bridge_report_plan(entry); /* before the member's hello, so that the welcome holds the present state */
 }
 
 void bridge_leave(struct visitor *visitor)

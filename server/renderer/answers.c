@@ -34,7 +34,7 @@ static uint8_t *shape_file(const struct plan *plan, struct subject subject, cons
     return mesh_export(shape->mesh, query->format, &about, PACKET_MAX_BLOB, n_bytes, err);
 }
 
-/* The fields of the query that decide the shape. */
+/* Adds the fields of the query that decide the shape. */
 static void add_key(cJSON *json, const struct shape_query *query)
 {
     const struct shape_key *key = &query->key;

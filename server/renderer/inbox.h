@@ -15,7 +15,7 @@ enum inbox_event_type {
     INBOX_BUILT,       /* the surfaces of a first picture are built */
     INBOX_FRAME,       /* a picture is drawn and compressed, or failed */
     INBOX_ANSWER,      /* to a question */
-    INBOX_SHAPES_BUILT /* of a picture that waits for them */
+    INBOX_SHAPES_BUILT /* the shapes of a picture that waits for them are built */
 };
 
 struct inbox_event {

@@ -18,7 +18,7 @@ struct pace {
     int n_drawn;            /* since the last step */
     double cost_us, lag_us; /* smoothed */
     double render_us;       /* smoothed; a second request is made after this much of the first */
-    int64_t drawn_us;       /* when the last picture came */
+    int64_t drawn_us;       /* time when the last picture came */
     int64_t good_since_us;  /* since when cost and lag are low; 0: they are not */
     int64_t stepped_up_us, up_after_us;
 };

@@ -30,7 +30,7 @@ struct field_words {
     size_t n;
 };
 
-/* A kind of thing that a plan has and a scene names. */
+/* A kind of part of a plan that a scene may name. */
 struct field_reference {
     const char *word; /* "region" */
     const char *list; /* member of the plan document (plan_document.h) that lists what there is */
@@ -53,7 +53,7 @@ struct field {
     size_t count_offset;                 /* list, map: of a size_t */
     size_t entry_size, value_offset;     /* list, map: of one entry; of the object in it. A map's entry begins with its
                                             id, char[64] */
-    size_t text_bytes;                   /* text, with the final zero */
+    size_t text_bytes;                   /* of a text: its size with the final zero */
 };
 
 struct field_object {

@@ -9,7 +9,7 @@
 /* mem_n_refused() when json_print or json_no_memory was last called. */
 static _Thread_local size_t n_told;
 
-/* Before main: no other thread uses cJSON yet. */
+/* Runs before main: no other thread uses cJSON yet. */
 __attribute__((constructor)) static void count_failures(void)
 {
     cJSON_InitHooks(&(cJSON_Hooks){ mem_counted, free });

@@ -135,7 +135,8 @@ cJSON *patch_renew(const struct field_object *object, const cJSON *plan, const c
     return renewed || problem.type != PROBLEM_VALIDATION ? renewed : cJSON_Duplicate(defaults, true);
 }
 
-/* The patch that turns before into after, with every member of after; after itself where one is no object. */
+/* Returns the patch that turns before into after, with every member of after; after itself where one of them is no
+ * object. */
 static cJSON *difference(const cJSON *before, const cJSON *after)
 {
     if (!cJSON_IsObject(before) || !cJSON_IsObject(after))

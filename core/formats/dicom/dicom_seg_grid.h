@@ -1,5 +1,6 @@
 #pragma once
-/* Inside the segmentation reader: the positions of the frames, and the grid they span. Reads no pixels. Any thread. */
+/* Inside the segmentation reader: finds the positions of the frames, and the grid they span. Reads no pixels. Any
+ * thread. */
 #include "core/formats/dicom/dicom_file.h"
 #include "core/report/report.h"
 #include "core/volume/volume.h"

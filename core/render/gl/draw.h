@@ -19,7 +19,7 @@ struct gl_frame {
     const struct draw_list *list;
     const struct camera *camera;
     int view_width_px;       /* of the full picture: widths of lines and sizes of points are in its pixels */
-    float clip_from_lps[16]; /* of the band, upside down */
+    float clip_from_lps[16]; /* from patient points to the clip space of the band, upside down */
 };
 
 /* errors of all: ERROR_GL, those of draw_cache_grid */

@@ -1,4 +1,4 @@
-/* Slices through grids, row by row. */
+/* Draws slices through grids, row by row. */
 #include "core/render/soft/planes.h"
 
 #include <math.h>

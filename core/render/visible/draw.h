@@ -67,7 +67,7 @@ struct draw {
     struct plane plane; /* of images, labels, outlines, checks, cuts */
     uint32_t color_rgb;
     double opacity;
-    union { /* by kind */
+    union { /* the member that kind names */
         struct draw_shape shape;
         struct draw_image image;
         const uint8_t *palette; /* DRAW_LABELS: [VISIBLE_N_LABELS][4], label to RGBA, alpha 0: not drawn; the list's */
