@@ -48,7 +48,7 @@ describe('a region that would take more triangles than the limit', { timeout: 24
     assert.match(stderr, /not in the picture: region "foam": .*40000000/);
   });
 
-  test('is told in a room with its reason, once, and no picture is asked for again while nothing changes', async () => {
+  test('is told in a room with its reason, once, and no picture is requested again while nothing changes', async () => {
     const room = (await call(`${api}/rooms`, 'POST', { plan: 'foam' })).json.id;
     const join_ = async () => {
       const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);

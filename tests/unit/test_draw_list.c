@@ -218,7 +218,7 @@ static void the_least_recently_used_goes_and_nothing_that_is_in_use(void **state
     plan_and_derived_destroy(plan);
 }
 
-static void what_is_asked_for_again_is_not_made_again(void **state)
+static void what_is_requested_again_is_not_made_again(void **state)
 {
     (void)state;
     struct counting counting = { .bytes_each = 1000 };
@@ -274,7 +274,7 @@ int main(void)
         cmocka_unit_test(draws_are_ordered_by_pass_and_distance),
         cmocka_unit_test(a_pane_has_the_image_and_the_overlay),
         cmocka_unit_test(the_least_recently_used_goes_and_nothing_that_is_in_use),
-        cmocka_unit_test(what_is_asked_for_again_is_not_made_again),
+        cmocka_unit_test(what_is_requested_again_is_not_made_again),
         cmocka_unit_test(a_list_fails_when_a_shape_cannot_be_made),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

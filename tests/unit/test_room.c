@@ -72,7 +72,7 @@ static void a_still_follows_150_ms_after_the_last_change(void **state)
     assert_close(fake_camera_x(still), 5, 0);
 }
 
-static void an_idle_room_asks_for_nothing(void **state)
+static void an_idle_room_requests_nothing(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, false);
@@ -83,7 +83,7 @@ static void an_idle_room_asks_for_nothing(void **state)
     assert_int_equal(fake.n_requests, before);
 }
 
-static void a_room_without_views_asks_for_nothing(void **state)
+static void a_room_without_views_requests_nothing(void **state)
 {
     (void)state;
     fake_hello(&fake, &ann);
@@ -204,7 +204,7 @@ static void an_acknowledgement_of_a_frame_never_sent_is_refused(void **state)
     cJSON_Delete(said);
 }
 
-static void while_two_pictures_are_being_made_nothing_more_is_asked_for(void **state)
+static void while_two_pictures_are_being_made_nothing_more_is_requested(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, false);
@@ -219,7 +219,7 @@ static void while_two_pictures_are_being_made_nothing_more_is_asked_for(void **s
     assert_close(fake_camera_x(fake_newest(&fake)), 39, 0); /* the newest state wins */
 }
 
-static void a_second_picture_is_asked_for_when_the_first_should_be_drawn(void **state)
+static void a_second_picture_is_requested_when_the_first_should_be_drawn(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, false);
@@ -407,8 +407,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         T(a_new_view_gets_a_moving_picture_at_once_and_then_a_still),
         T(a_still_follows_150_ms_after_the_last_change),
-        T(an_idle_room_asks_for_nothing),
-        T(a_room_without_views_asks_for_nothing),
+        T(an_idle_room_requests_nothing),
+        T(a_room_without_views_requests_nothing),
         T(a_change_that_changes_nothing_is_not_drawn),
         T(an_input_that_changes_nothing_is_answered_by_the_picture_that_is_there),
         T(a_followers_resizing_that_does_not_take_the_lead_is_answered),
@@ -416,8 +416,8 @@ int main(void)
         T(when_credit_returns_the_newest_state_is_drawn),
         T(an_acknowledgement_counts_for_all_earlier_frames),
         T(an_acknowledgement_of_a_frame_never_sent_is_refused),
-        T(while_two_pictures_are_being_made_nothing_more_is_asked_for),
-        T(a_second_picture_is_asked_for_when_the_first_should_be_drawn),
+        T(while_two_pictures_are_being_made_nothing_more_is_requested),
+        T(a_second_picture_is_requested_when_the_first_should_be_drawn),
         T(a_frame_is_not_sent_out_of_order),
         T(a_change_does_not_wait_for_a_slow_still),
         T(a_slow_member_does_not_slow_another),

@@ -31,7 +31,7 @@ static void settle_two(void)
     fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
 }
 
-static void a_picture_that_failed_is_asked_for_again_but_not_at_once(void **state)
+static void a_picture_that_failed_is_requested_again_but_not_at_once(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, false);
@@ -49,7 +49,7 @@ static void a_picture_that_failed_is_asked_for_again_but_not_at_once(void **stat
     assert_true(ann.frames[ann.n_frames - 1].flags & FRAME_STILL);
 }
 
-static void a_still_that_failed_is_asked_for_again(void **state)
+static void a_still_that_failed_is_requested_again(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, false);
@@ -63,7 +63,7 @@ static void a_still_that_failed_is_asked_for_again(void **state)
     assert_true(fake_newest(&fake)->is_still);
 }
 
-static void a_picture_that_cannot_be_is_told_once_and_not_asked_for_again(void **state)
+static void a_picture_that_cannot_be_is_told_once_and_not_requested_again(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, false);
@@ -93,7 +93,7 @@ static void fail_with(struct fake_request *request, enum problem_type type, int 
     fake.again_us = room_tick(fake.room, fake.now_us);
 }
 
-static void a_picture_beyond_a_limit_is_told_once_and_asked_for_again_only_after_a_change(void **state)
+static void a_picture_beyond_a_limit_is_told_once_and_requested_again_only_after_a_change(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, true);
@@ -198,10 +198,10 @@ int main(void)
 {
 #define T(name) cmocka_unit_test_setup_teardown(name, start, end)
     const struct CMUnitTest tests[] = {
-        T(a_picture_that_failed_is_asked_for_again_but_not_at_once),
-        T(a_still_that_failed_is_asked_for_again),
-        T(a_picture_that_cannot_be_is_told_once_and_not_asked_for_again),
-        T(a_picture_beyond_a_limit_is_told_once_and_asked_for_again_only_after_a_change),
+        T(a_picture_that_failed_is_requested_again_but_not_at_once),
+        T(a_still_that_failed_is_requested_again),
+        T(a_picture_that_cannot_be_is_told_once_and_not_requested_again),
+        T(a_picture_beyond_a_limit_is_told_once_and_requested_again_only_after_a_change),
         T(a_refusal_that_comes_late_does_not_hide_the_one_of_a_newer_view),
         T(a_limit_that_says_when_to_come_again_is_no_last_word),
         T(what_a_picture_leaves_out_is_told_before_it_and_when_it_changes),
