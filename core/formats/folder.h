@@ -48,7 +48,7 @@ struct folder_part {
     int fd;
     uint64_t n_bytes; /* of the file */
 };
-/* errors as folder_read, without ERROR_LIMIT and ERROR_MEMORY */
+/* errors as folder_read, without ERROR_LIMIT; ERROR_MEMORY also without descriptors */
 NODISCARD bool folder_open_part(const struct folder *folder, const char *name, struct folder_part *part,
                                 struct error *err);
 /* Reads n bytes from offset at. errors ERROR_IO, also when the file ends earlier */

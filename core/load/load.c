@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "core/base/mem.h"
 #include "core/load/assemble.h"
 #include "core/load/estimate.h"
 #include "core/load/find_parts.h"
@@ -78,11 +79,17 @@ static bool load(struct loading *loading)
         return true;
     loading_phase(loading, "looking at the folder", "", 0, 5);
     const struct dicom_progress looking = { index_progress, loading, &loading->is_given_up, 0 };
+    size_t n_lacked = error_n_memory();
     bool is_found = plan_find_parts(&loading->folder, &looking, &loading->parts, &plan->report, err);
     loading->file = loading->parts.file;
     if (!is_found || !plan_list_parts(loading, err) || !plan_check_estimate(loading, err) ||
-        !plan_read_parts(loading, err) || !plan_assemble(loading, err) || !has_anything(plan, err))
+        !plan_read_parts(loading, err) || !plan_assemble(loading, err) || !has_anything(plan, err)) {
+        if (error_n_memory() != n_lacked && err->code != ERROR_MEMORY)
+            error_set(err, ERROR_MEMORY, "no memory, or too many open files, to read the plan");
         return false;
+    }
+    if (error_n_memory() != n_lacked) /* a dose, curves or preferences may be left out: not to be shown, nor cached */
+        return error_set(err, ERROR_MEMORY, "no memory, or too many open files, to read all of the plan");
     memcpy(plan->name, loading->file->name, sizeof plan->name);
     memcpy(plan->note, loading->file->note, sizeof plan->note);
     plan->is_phantom = loading->file->is_phantom;
@@ -157,7 +164,8 @@ struct plan *plan_load(const char *folder, const char *id, const struct plan_loa
     if (!loading)
         return NULL;
     loading->max_bytes = options->max_bytes;
-    loading->cache_folder = options->cache_folder;
+    loading->cache_folder =
+        options->cache_folder ? mem_copy_text(options->cache_folder) : NULL; /* the thread may outlive it */
     start(loading);
     if (wait(loading, &options->progress, err)) {
         plan = loading->plan;

@@ -57,6 +57,7 @@ void loading_unref(struct loading *loading)
     plan_parts_finish(&loading->parts);
     plan_destroy(loading->plan);
     plan_sources_destroy(loading->sources);
+    free(loading->cache_folder);
     folder_close(&loading->folder);
     mailbox_destroy(loading->phases);
     queue_destroy(loading->ended);

@@ -21,8 +21,8 @@ struct loading_phase {
 /* Shared by the caller, who waits, and the thread that loads; the last of them frees it. */
 struct loading {
     struct folder folder;
-    uint64_t max_bytes;       /* refuse a plan that needs more memory; 0: no limit */
-    const char *cache_folder; /* where an opened plan may be kept; NULL: nowhere */
+    uint64_t max_bytes; /* refuse a plan that needs more memory; 0: no limit */
+    char *cache_folder; /* where an opened plan may be kept; a copy; NULL: nowhere */
 
     struct plan *plan;
     struct plan_sources *sources; /* with a cache folder: the files the plan is made from */

@@ -8,12 +8,14 @@
 
 static bool is_dicom_file(const struct folder *folder, const char *name)
 {
-    struct bytes head;
-    if (!folder_read(folder, name, UINT64_MAX, 140, &head, NULL))
+    uint8_t head[140];
+    struct folder_part part;
+    if (!folder_open_part(folder, name, &part, NULL))
         return false;
-    bool is_dicom = dicom_looks_like(head.data, head.size);
-    bytes_free(&head);
-    return is_dicom;
+    size_t n = part.n_bytes < sizeof head ? (size_t)part.n_bytes : sizeof head;
+    bool is_read = folder_read_part(&part, name, 0, head, n, NULL);
+    folder_close_part(&part);
+    return !is_read || dicom_looks_like(head, n); /* the scan reports a file that the disk does not give */
 }
 
 enum part_format part_format_of(const struct folder *folder, const char *name)

@@ -91,7 +91,7 @@ static void put_slices(const char *folder, int n)
         slice.thickness = 3;
         slice.number = k + 1;
         slice.base = -1000;
-        snprintf(name, sizeof name, "ct%d.dcm", k);
+        snprintf(name, sizeof name, "IM%04d", k);
         made_slice_put(folder, name, &slice);
     }
 }

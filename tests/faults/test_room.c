@@ -169,7 +169,7 @@ static void ready_again(void *context, struct outcome *outcome)
     scene.n_regions = 1;
     cJSON *defaults = scene_write(&scene);
     faults_go_on();
-    room_plan_ready(world->fake.room, plan, defaults, "made up", true, world->fake.now_us);
+    (void)room_plan_ready(world->fake.room, plan, defaults, "made up", true, world->fake.now_us);
     faults_pause();
     outcome->is_done = true;
     add_page(outcome, &world->other);

@@ -120,17 +120,18 @@ bool rle_fits(const std::vector<uint8_t> &bytes, const dicom_pixels &pixels, con
     return true;
 }
 
-void describe(DcmDataset &image, const dicom_pixels &pixels)
+// False without memory.
+bool describe(DcmDataset &image, const dicom_pixels &pixels)
 {
-    image.putAndInsertUint16(DCM_SamplesPerPixel, 1);
-    image.putAndInsertString(DCM_PhotometricInterpretation, "MONOCHROME2");
-    image.putAndInsertString(DCM_NumberOfFrames, "1");
-    image.putAndInsertUint16(DCM_Rows, Uint16(pixels.rows));
-    image.putAndInsertUint16(DCM_Columns, Uint16(pixels.columns));
-    image.putAndInsertUint16(DCM_BitsAllocated, Uint16(pixels.bits_allocated));
-    image.putAndInsertUint16(DCM_BitsStored, Uint16(pixels.bits_stored));
-    image.putAndInsertUint16(DCM_HighBit, Uint16(pixels.high_bit));
-    image.putAndInsertUint16(DCM_PixelRepresentation, pixels.is_signed ? 1 : 0);
+    return image.putAndInsertUint16(DCM_SamplesPerPixel, 1).good() &&
+           image.putAndInsertString(DCM_PhotometricInterpretation, "MONOCHROME2").good() &&
+           image.putAndInsertString(DCM_NumberOfFrames, "1").good() &&
+           image.putAndInsertUint16(DCM_Rows, Uint16(pixels.rows)).good() &&
+           image.putAndInsertUint16(DCM_Columns, Uint16(pixels.columns)).good() &&
+           image.putAndInsertUint16(DCM_BitsAllocated, Uint16(pixels.bits_allocated)).good() &&
+           image.putAndInsertUint16(DCM_BitsStored, Uint16(pixels.bits_stored)).good() &&
+           image.putAndInsertUint16(DCM_HighBit, Uint16(pixels.high_bit)).good() &&
+           image.putAndInsertUint16(DCM_PixelRepresentation, pixels.is_signed ? 1 : 0).good();
 }
 
 } // namespace
@@ -183,7 +184,8 @@ bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, 
         bytes.push_back(i % 2 ? 0xD9 : 0xFF);
 
     DcmDataset image;
-    describe(image, pixels);
+    if (!describe(image, pixels))
+        return error_set(err, ERROR_MEMORY, "%s: no memory for a compressed frame", name);
     auto sequence = std::make_unique<DcmPixelSequence>(DCM_PixelSequenceTag);
     for (int item = 0; item < 2; item++) { // the first item is an empty offset table
         auto fragment = std::make_unique<DcmPixelItem>(DCM_PixelItemTag);
@@ -209,8 +211,9 @@ bool dicom_decode_frame(const dicom_layout &layout, const dicom_pixels &pixels, 
     OFCondition condition =
         frame->getUncompressedFrame(&image, 0, first, odd.empty() ? out : odd.data(), Uint32(padded), colors);
     if (condition.bad())
-        return error_set(err, ERROR_FORMAT, "%s: a compressed frame (%s) cannot be decoded: %.80s", name,
-                         DcmXfer(xfer).getXferName(), condition.text());
+        return error_set(err, condition == EC_MemoryExhausted ? ERROR_MEMORY : ERROR_FORMAT,
+                         "%s: a compressed frame (%s) cannot be decoded: %.80s", name, DcmXfer(xfer).getXferName(),
+                         condition.text());
     if (!odd.empty())
         std::memcpy(out, odd.data(), size);
     dicom_pixels_unpack(&pixels, false, out, size_t(pixels.rows) * pixels.columns);

@@ -236,7 +236,12 @@ static void read_part(void *context, int part, int n_parts)
         bool is_cancelled = series->progress->cancel && atomic_load(series->progress->cancel);
         if (is_cancelled)
             error_set(&err, ERROR_CANCELLED, "reading the series was cancelled");
-        if (is_cancelled || !read_slice(series, reader, i, &err)) {
+        size_t n_lacked = error_n_memory();
+        bool is_read = !is_cancelled && read_slice(series, reader, i, &err);
+        if (error_n_memory() != n_lacked && (is_read || err.code != ERROR_MEMORY)) /* counted for each thread alone */
+            is_read = error_set(&err, ERROR_MEMORY, "%s: no memory to read a slice",
+                                object_of(series, &series->slices[i])->path);
+        if (!is_read) {
             fail(series, &err);
             break;
         }
