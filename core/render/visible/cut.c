@@ -307,16 +307,26 @@ static inline float position_of(const float *p, const float normal[3])
     return normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2];
 }
 
+/* The axis of a normal along an axis of the patient; -1: it is oblique. */
+static int axis_of(const float normal[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (fabsf(normal[axis]) == 1 && normal[(axis + 1) % 3] == 0 && normal[(axis + 2) % 3] == 0)
+            return axis;
+    return -1;
+}
+
 bool cut_mesh(const struct mesh *mesh, const struct plane *plane, struct cut_lines *lines, struct error *err)
 {
     const float normal[3] = { (float)plane->normal.x, (float)plane->normal.y, (float)plane->normal.z };
     const float position = (float)plane_position_mm(plane);
+    const int axis = axis_of(normal); /* one coordinate then decides, and most triangles are left at once */
     for (size_t t = 0; t < mesh->n_triangles; t++) {
         const float *p[3];
         float at[3];
         for (size_t i = 0; i < 3; i++) {
             p[i] = &mesh->positions_lps_mm[3 * (size_t)mesh->indices[3 * t + i]];
-            at[i] = position_of(p[i], normal);
+            at[i] = axis >= 0 ? normal[axis] * p[i][axis] : position_of(p[i], normal);
         }
         bool above[3] = { at[0] >= position, at[1] >= position, at[2] >= position };
         if (above[0] == above[1] && above[1] == above[2])
