@@ -219,10 +219,11 @@ static void write_out(struct process *process)
     }
 }
 
-static void stop_broken(struct process *process, const char *how, int64_t now_us)
+static void stop_broken(struct process *process, const struct error *why, int64_t now_us)
 {
     char reason[240];
-    (void)snprintf(reason, sizeof reason, "was ended because it said something that is no packet: %.160s", how);
+    (void)snprintf(reason, sizeof reason, "was ended because it %s %.160s",
+                   why->code == ERROR_RANGE ? "sent" : "said something that is no packet:", why->text);
     process_stop(process, true, reason, now_us);
 }
 
@@ -233,7 +234,7 @@ static void put_packets(struct process *process, int64_t now_us)
     int got;
     while (process->child.channel >= 0 && (got = packet_reader_take(process->reader, &packet, &err)) != 0) {
         if (got < 0) {
-            stop_broken(process, err.text, now_us);
+            stop_broken(process, &err, now_us);
             return;
         }
         uint64_t n_text = process->n_since_packet > packet.n_blob ? process->n_since_packet - packet.n_blob : 0;
@@ -256,7 +257,7 @@ static bool read_packets(struct process *process, size_t *n_read, int64_t now_us
     struct error err = { 0 };
     uint8_t *space = packet_reader_space(process->reader, &room, &err);
     if (!space) {
-        stop_broken(process, err.text, now_us);
+        stop_broken(process, &err, now_us);
         return false;
     }
     ssize_t n = recv(process->child.channel, space, room, 0);

@@ -14,7 +14,8 @@
 #include "server/wire/document.h"
 
 enum {
-    MAX_IMAGES = 64, /* in the plan document of a renderer */
+    MAX_IMAGES = 64,  /* in the plan document of a renderer */
+    MAX_MEMBERS = 64, /* of that document, which has some 16 */
     LEAST_MEMORY_SLACK = 256 << 20
 };
 
@@ -92,7 +93,7 @@ static bool ready_packet(struct fleet *fleet, struct plan_entry *plan, struct pa
     if (plan->state == FLEET_READY || !id || strcmp(id, plan->id) != 0 || !scene_read(ready->scene, &scene, &problem))
         return false;
     scene_finish(&scene);
-    if (!images_are_valid(ready->plan))
+    if (!images_are_valid(ready->plan) || cJSON_GetArraySize(ready->plan) > MAX_MEMBERS)
         return false;
     plan_entry_forget_documents(plan);
     plan->document = packet_take_document(packet, ready->plan);

@@ -176,8 +176,9 @@ static void report_ready(struct net_room *entry, const struct fleet_plan *plan)
     (void)snprintf(words, sizeof words, "%s%s%s", back_end ? back_end : "", back_end && renderer ? ", " : "",
                    renderer ? renderer : "");
     entry->generation = plan->generation;
-    room_plan_ready(entry->room, plan->document, plan->default_scene, words, json_flag(gl, "is_software", true),
-                    clock_now_us());
+    if (!room_plan_ready(entry->room, plan->document, plan->default_scene, words, json_flag(gl, "is_software", true),
+                         clock_now_us()))
+        entry->generation = 0; /* reported again with the next change, and when somebody enters */
 }
 
 static void report_state(struct net_room *entry, const struct fleet_plan *plan)

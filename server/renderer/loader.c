@@ -61,7 +61,13 @@ static void loading_progressed(void *context, const char *phase, double percent)
 static void answer(struct loader *loader, struct question *question)
 {
     struct inbox_event event = { .type = INBOX_ANSWER, .id = packet_id(&question->packet) };
+    size_t n_refused = mem_n_refused(); /* of this thread: the one that writes the answer does not see it */
     event.body = answer_question(question, loader->derived, &event.problem);
+    if (mem_n_refused() != n_refused && (event.body || event.problem.type == PROBLEM_NONE)) {
+        cJSON_Delete(event.body);
+        event.body = NULL;
+        (void)problem_set(&event.problem, PROBLEM_MEMORY, "", "", "no memory for the answer");
+    }
     if (event.body) {
         event.blob = question->file;
         event.n_blob = question->n_file;

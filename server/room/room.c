@@ -102,7 +102,7 @@ static void set_state(struct room *room, enum wire_renderer_state state, const c
     room->problem = problem ? *problem : (struct problem){ 0 };
 }
 
-void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl,
+bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl,
                      bool is_software, int64_t now_us)
 {
     room->now_us = now_us;
@@ -110,7 +110,7 @@ void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
         struct problem problem = { 0 };
         (void)json_no_memory(&problem, "the plan in this room");
         room_renderer_state(room, WIRE_RENDERER_STATE_FAILED, NULL, 0, &problem);
-        return;
+        return false;
     }
     (void)snprintf(room->gl, sizeof room->gl, "%s", gl ? gl : "");
     if (room->is_software != is_software) {
@@ -125,6 +125,7 @@ void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
     send_renderer_state(room, NULL);
     room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
     (void)streams_request_due(room);
+    return true;
 }
 
 void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent,

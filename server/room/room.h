@@ -70,8 +70,9 @@ const char *room_plan_id(const struct room *room);
  * process is reported by room_plan_ready: all pictures are requested anew, requests to the old process are forgotten.
  * Before the first one is ready the scene cannot be changed; while another one starts it can, checked against the plan
  * as it was. room_plan_ready then removes ids that the plan does not have any more from the scene, and overrides with
- * such ids from their views, whose members are told. */
-void room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl,
+ * such ids from their views, whose members are told. False: no memory; members are told that it failed, and it is to be
+ * reported again. */
+bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl,
                      bool is_software, int64_t now_us);
 void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent,
                          const struct problem *problem);

@@ -385,7 +385,7 @@ static bool begin_packet(struct packet_reader *reader, const struct head *head, 
         return refuse_packet(err, &problem);
     }
     if (!packet_from_json(json, reader->direction, head->blob_bytes, coming, &problem))
-        return error_set(err, ERROR_FORMAT, "a wrong \"%s\": %.180s", packet_descriptions[type].name, problem.detail);
+        return error_set(err, ERROR_RANGE, "a wrong \"%s\": %.180s", packet_descriptions[type].name, problem.detail);
     coming->n_blob = head->blob_bytes;
     reader->at += sizeof *head + head->json_bytes;
     size_t left = reader->used - reader->at;

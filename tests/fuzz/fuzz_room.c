@@ -108,7 +108,7 @@ static void plan_ready(struct room *room, int64_t now_us)
     cJSON *said = json_read(text, strlen(text), NULL), *plan = json_read(document, strlen(document), NULL);
     REQUIRE(scene_read(said, &scene, NULL));
     cJSON *defaults = scene_write(&scene);
-    room_plan_ready(room, plan, defaults, "fuzz", true, now_us);
+    (void)room_plan_ready(room, plan, defaults, "fuzz", true, now_us);
     scene_finish(&scene);
     cJSON_Delete(said);
     cJSON_Delete(plan);

@@ -119,7 +119,7 @@ static void ready(struct fake_room *fake, const char *const *region_ids, bool is
     }
     scene.regions = entries;
     cJSON *complete = scene_write(&scene);
-    room_plan_ready(fake->room, plan, complete, "osmesa llvmpipe", is_software, fake->now_us);
+    (void)room_plan_ready(fake->room, plan, complete, "osmesa llvmpipe", is_software, fake->now_us);
     cJSON_Delete(complete);
     cJSON_Delete(plan);
     tick(fake);
