@@ -21,7 +21,7 @@ void fields_bytes(struct fields *fields, void *value, size_t size)
         fields->at += size;
         return;
     }
-    if (fields->is_bad)
+    if (fields->is_bad || size == 0) /* value may be NULL then */
         return;
     if (fields->capacity - fields->size < size) {
         size_t capacity = 2 * fields->capacity + size + 4096;
