@@ -1,6 +1,7 @@
 /* Filling and prefixing errors; counting those of memory. */
 #include "core/base/error.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -22,6 +23,11 @@ bool error_set(struct error *err, enum error_code code, const char *format, ...)
     (void)vsnprintf(err->text, sizeof err->text, format, args);
     va_end(args);
     return false;
+}
+
+bool error_is_shortage(int reason)
+{
+    return reason == EMFILE || reason == ENFILE || reason == ENOMEM;
 }
 
 void error_prefix(struct error *err, const char *format, ...)

@@ -12,7 +12,7 @@ enum error_code {
     ERROR_NONE = 0,
     ERROR_RANGE,       /* a value is outside what is allowed or present */
     ERROR_LIMIT,       /* a documented limit was exceeded: size, count, time */
-    ERROR_MEMORY,      /* an allocation failed */
+    ERROR_MEMORY,      /* an allocation failed, or no descriptor was free */
     ERROR_FORMAT,      /* bytes or text that break their format */
     ERROR_UNSUPPORTED, /* well formed, but not supported by this program */
     ERROR_NOT_FOUND,   /* the named file, region, plan, room does not exist */
@@ -35,6 +35,9 @@ bool error_set(struct error *err, enum error_code code, const char *format, ...)
 /* Number of times ERROR_MEMORY was set on this thread, calls with err == NULL included. A caller that skips unreadable
  * parts compares the number before and after, to tell a bad file from a failed allocation. */
 size_t error_n_memory(void);
+
+/* True for the errno values of a process short of memory or descriptors: they say nothing of the file at hand. */
+bool error_is_shortage(int reason);
 
 /* Adds context in front on the way up: "plan head-3: region 7: label 300 is not in the volume". */
 void error_prefix(struct error *err, const char *format, ...) PRINTF_LIKE(2, 3);

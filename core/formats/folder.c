@@ -136,7 +136,7 @@ enum folder_kind folder_look(const struct folder *folder, const char *name, uint
     int fd = open_beneath(folder, name);
     if (fd < 0) {
         int reason = errno;
-        if (reason == EMFILE || reason == ENFILE || reason == ENOMEM)
+        if (error_is_shortage(reason))
             error_set(NULL, ERROR_MEMORY, "%s: %s", name, strerror(reason));
         return reason == ENOENT || reason == ENOTDIR ? FOLDER_ABSENT : FOLDER_OTHER;
     }
@@ -179,8 +179,8 @@ bool folder_open_part(const struct folder *folder, const char *name, struct fold
             return error_set(err, ERROR_RANGE, "%s: a link that leads out of the plan's folder is not followed", name);
         if (errno == ENOENT || errno == ENOTDIR)
             return error_set(err, ERROR_NOT_FOUND, "%s: there is no such file in the plan's folder", name);
-        bool is_short = errno == EMFILE || errno == ENFILE || errno == ENOMEM; /* says nothing of the file */
-        return error_set(err, is_short ? ERROR_MEMORY : ERROR_IO, "%s: cannot be opened: %s", name, strerror(errno));
+        return error_set(err, error_is_shortage(errno) ? ERROR_MEMORY : ERROR_IO, "%s: cannot be opened: %s", name,
+                         strerror(errno));
     }
     struct stat about;
     if (fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) {

@@ -31,7 +31,7 @@ static bool fail_listing(struct walk *walk, const char *under, int reason)
 {
     char what[128];
     snprintf(what, sizeof what, "the folder cannot be listed: %s", strerror(reason));
-    return fail(walk, reason == ENOMEM ? ERROR_MEMORY : ERROR_IO, under, what);
+    return fail(walk, error_is_shortage(reason) ? ERROR_MEMORY : ERROR_IO, under, what);
 }
 
 static bool add_file(struct walk *walk, const char *name, const struct stat *about)
@@ -123,10 +123,10 @@ bool folder_walk(const struct folder *folder, const char *under,
     /* folder_look rejects a link that leads out of the folder */
     if (under[0] && folder_look(folder, under, NULL) != FOLDER_DIRECTORY)
         return error_set(err, ERROR_NOT_FOUND, "%s: there is no such folder in the plan's folder", under);
+    struct walk walk = { .folder = folder, .is_skipped = is_skipped, .tree = tree, .err = err };
     int fd = openat(folder->fd, under[0] ? under : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (fd < 0)
-        return error_set(err, ERROR_IO, "%s: the folder cannot be listed: %s", under, strerror(errno));
-    struct walk walk = { .folder = folder, .is_skipped = is_skipped, .tree = tree, .err = err };
+        return fail_listing(&walk, under, errno);
     walk_into(&walk, fd, under, 0);
     if (walk.is_failed)
         return false;

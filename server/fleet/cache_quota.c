@@ -59,12 +59,6 @@ struct cache_quota {
 
 /* ---- one folder ------------------------------------------------------------------------------------------------- */
 
-/* True when the daemon itself lacks descriptors or memory: the renderer is not to blame. */
-static bool is_own_lack(int reason)
-{
-    return reason == EMFILE || reason == ENFILE || reason == ENOMEM;
-}
-
 static int open_inner(int folder, const char *name)
 {
     return openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
@@ -77,7 +71,7 @@ static bool measure(int folder, int depth, struct entry *entry)
     bool is_measured = true;
     DIR *names = fdopendir(folder);
     if (!names) {
-        is_measured = !is_own_lack(errno);
+        is_measured = !error_is_shortage(errno);
         entry->n_files = CACHE_QUOTA_MAX_FILES + 1;
         close(folder);
         return is_measured;
@@ -95,7 +89,7 @@ static bool measure(int folder, int depth, struct entry *entry)
         int inner = depth < CACHE_QUOTA_MAX_DEPTH ? open_inner(dirfd(names), name->d_name) : -1;
         if (inner >= 0)
             is_measured = measure(inner, depth + 1, entry);
-        else if (depth < CACHE_QUOTA_MAX_DEPTH && is_own_lack(errno))
+        else if (depth < CACHE_QUOTA_MAX_DEPTH && error_is_shortage(errno))
             is_measured = false;
         else if (depth == CACHE_QUOTA_MAX_DEPTH || errno != ENOENT)
             entry->n_files = CACHE_QUOTA_MAX_FILES + 1;
@@ -109,7 +103,7 @@ static void look_at(const struct cache_quota *quota, struct entry *entry)
 {
     struct entry found = { .n_bytes = 0 };
     int folder = open_inner(quota->file, entry->id);
-    if (folder >= 0 ? !measure(folder, 1, &found) : is_own_lack(errno))
+    if (folder >= 0 ? !measure(folder, 1, &found) : error_is_shortage(errno))
         return;
     entry->n_bytes = found.n_bytes;
     entry->n_files = found.n_files;

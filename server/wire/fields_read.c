@@ -9,6 +9,7 @@
 #include "core/base/mem.h"
 #include "core/math/vec.h"
 #include "server/wire/fields.h"
+#include "server/wire/json_index.h"
 #include "server/wire/json_pointer.h"
 
 static const double least_direction = 1e-9; /* a shorter vector has no direction */
@@ -169,10 +170,17 @@ static void set_entries(const struct field *field, char *base, char *entries, si
     memcpy(base + field->count_offset, &n, sizeof n);
 }
 
-static char *new_entries(const struct field *field, size_t n, struct problem *problem)
+/* Memory for the *n entries of a list or map. NULL with problem: more than allowed, or no memory. */
+static char *new_entries(const struct field *field, const cJSON *json, const struct json_pointer *where, size_t *n,
+                         struct problem *problem)
 {
     struct error err = { 0 };
-    char *entries = mem_array(n ? n : 1, field->entry_size, UINT32_MAX, &err);
+    *n = (size_t)cJSON_GetArraySize(json);
+    if (*n > field->max_items) {
+        (void)refuse(where, "count", problem, "has %zu entries, at most %zu are allowed", *n, field->max_items);
+        return NULL;
+    }
+    char *entries = mem_array(*n ? *n : 1, field->entry_size, UINT32_MAX, &err);
     if (!entries)
         problem_from_error(problem, &err);
     return entries;
@@ -183,10 +191,8 @@ static bool read_list(const struct field *field, const cJSON *json, const struct
 {
     if (!cJSON_IsArray(json))
         return wrong_type(where, "a list", problem);
-    size_t n = (size_t)cJSON_GetArraySize(json), at = 0;
-    if (n > field->max_items)
-        return refuse(where, "count", problem, "has %zu entries, at most %zu are allowed", n, field->max_items);
-    char *entries = new_entries(field, n, problem);
+    size_t n, at = 0;
+    char *entries = new_entries(field, json, where, &n, problem);
     if (!entries)
         return false;
     for (const cJSON *item = json->child; item; item = item->next, at++) {
@@ -198,31 +204,6 @@ static bool read_list(const struct field *field, const cJSON *json, const struct
     }
     set_entries(field, base, entries, n);
     return true;
-}
-
-static int compare_names(const void *a, const void *b)
-{
-    return strcmp((*(const cJSON *const *)a)->string, (*(const cJSON *const *)b)->string);
-}
-
-/* True if an object of n members may have two of one name; only then is each compared with each. Always true for few
- * members, where comparing is as fast as sorting. */
-static bool may_have_equal_names(const cJSON *json, size_t n)
-{
-    bool has_some = false;
-    if (n <= 8)
-        return true;
-    const cJSON **sorted = mem_array(n, sizeof *sorted, UINT32_MAX, NULL);
-    size_t at = 0;
-    if (!sorted)
-        return true;
-    for (const cJSON *item = json->child; item; item = item->next)
-        sorted[at++] = item;
-    qsort(sorted, n, sizeof *sorted, compare_names);
-    for (size_t i = 1; i < n && !has_some; i++)
-        has_some = strcmp(sorted[i - 1]->string, sorted[i]->string) == 0;
-    free(sorted);
-    return has_some;
 }
 
 /* True if a member before this one has its name. */
@@ -239,13 +220,11 @@ static bool read_map(const struct field *field, const cJSON *json, const struct 
 {
     if (!cJSON_IsObject(json))
         return wrong_type(where, "an object of ids", problem);
-    size_t n = (size_t)cJSON_GetArraySize(json), at = 0;
-    if (n > field->max_items)
-        return refuse(where, "count", problem, "has %zu entries, at most %zu are allowed", n, field->max_items);
-    char *entries = new_entries(field, n, problem);
+    size_t n, at = 0;
+    char *entries = new_entries(field, json, where, &n, problem);
     if (!entries)
         return false;
-    bool may_repeat = may_have_equal_names(json, n), ok = true;
+    bool may_repeat = json_has_equal_names(json), ok = true;
     for (const cJSON *item = json->child; item; item = item->next, at++) {
         struct json_pointer member = { where, item->string, 0 };
         char *entry = entries + at * field->entry_size;

@@ -11,7 +11,7 @@ struct json_index_entry {
     cJSON *item;
 };
 
-enum { MAX_WALKS = 8 }; /* from about so many walks on, sorting pays */
+enum { MAX_WALKS = 8, FEW = 8 }; /* beyond about so many walks, or members to compare in pairs, sorting pays */
 
 void json_index_init(struct json_index *index, const cJSON *object)
 {
@@ -94,7 +94,12 @@ bool json_has_equal_names(const cJSON *object)
 {
     struct json_index index;
     bool has_some = false;
-    if (!object->child || !object->child->next)
+    int n = 0;
+    for (const cJSON *item = object->child; item && n <= FEW; item = item->next, n++)
+        for (const cJSON *before = object->child; before != item; before = before->next)
+            if (strcmp(before->string, item->string) == 0)
+                return true;
+    if (n <= FEW)
         return false;
     json_index_init(&index, object);
     if (!sort(&index))
