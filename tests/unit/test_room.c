@@ -1,35 +1,5 @@
 /* When pictures are requested, and which members get them. Pictures that fail: test_room_failures.c. */
-#include "tests/unit/room_fake.h"
-
-static struct fake_room fake;
-static struct fake_page ann, ben;
-
-static int start(void **state)
-{
-    (void)state;
-    fake_room_start(&fake, 0);
-    fake_plan_ready(&fake, true);
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    fake_room_end(&fake);
-    fake_page_end(&ann);
-    fake_page_end(&ben);
-    return 0;
-}
-
-static void settle_one(void)
-{
-    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
-}
-
-static void settle_two(void)
-{
-    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
-}
+#include "tests/unit/room_set_up.h"
 
 static void a_new_view_gets_a_moving_picture_at_once_and_then_a_still(void **state)
 {
@@ -403,30 +373,29 @@ static void many_inputs_between_two_pictures_are_never_reported_too_early(void *
 
 int main(void)
 {
-#define T(name) cmocka_unit_test_setup_teardown(name, start, end)
     const struct CMUnitTest tests[] = {
-        T(a_new_view_gets_a_moving_picture_at_once_and_then_a_still),
-        T(a_still_follows_150_ms_after_the_last_change),
-        T(an_idle_room_requests_nothing),
-        T(a_room_without_views_requests_nothing),
-        T(a_change_that_changes_nothing_is_not_drawn),
-        T(an_input_that_changes_nothing_is_answered_by_the_picture_that_is_there),
-        T(a_followers_resizing_that_does_not_take_the_lead_is_answered),
-        T(no_more_than_two_unshown_frames_are_ever_sent),
-        T(when_credit_returns_the_newest_state_is_drawn),
-        T(an_acknowledgement_counts_for_all_earlier_frames),
-        T(an_acknowledgement_of_a_frame_never_sent_is_refused),
-        T(while_two_pictures_are_being_made_nothing_more_is_requested),
-        T(a_second_picture_is_requested_when_the_first_should_be_drawn),
-        T(a_frame_is_not_sent_out_of_order),
-        T(a_change_does_not_wait_for_a_slow_still),
-        T(a_slow_member_does_not_slow_another),
-        T(two_followers_share_one_render),
-        T(own_views_are_drawn_each_for_itself),
-        T(a_late_follower_gets_the_picture_that_is_there_at_once),
-        T(a_frame_carries_the_newest_input_it_shows_and_none_newer),
-        T(input_numbers_are_each_members_own),
-        T(many_inputs_between_two_pictures_are_never_reported_too_early),
+        ROOM_TEST(a_new_view_gets_a_moving_picture_at_once_and_then_a_still),
+        ROOM_TEST(a_still_follows_150_ms_after_the_last_change),
+        ROOM_TEST(an_idle_room_requests_nothing),
+        ROOM_TEST(a_room_without_views_requests_nothing),
+        ROOM_TEST(a_change_that_changes_nothing_is_not_drawn),
+        ROOM_TEST(an_input_that_changes_nothing_is_answered_by_the_picture_that_is_there),
+        ROOM_TEST(a_followers_resizing_that_does_not_take_the_lead_is_answered),
+        ROOM_TEST(no_more_than_two_unshown_frames_are_ever_sent),
+        ROOM_TEST(when_credit_returns_the_newest_state_is_drawn),
+        ROOM_TEST(an_acknowledgement_counts_for_all_earlier_frames),
+        ROOM_TEST(an_acknowledgement_of_a_frame_never_sent_is_refused),
+        ROOM_TEST(while_two_pictures_are_being_made_nothing_more_is_requested),
+        ROOM_TEST(a_second_picture_is_requested_when_the_first_should_be_drawn),
+        ROOM_TEST(a_frame_is_not_sent_out_of_order),
+        ROOM_TEST(a_change_does_not_wait_for_a_slow_still),
+        ROOM_TEST(a_slow_member_does_not_slow_another),
+        ROOM_TEST(two_followers_share_one_render),
+        ROOM_TEST(own_views_are_drawn_each_for_itself),
+        ROOM_TEST(a_late_follower_gets_the_picture_that_is_there_at_once),
+        ROOM_TEST(a_frame_carries_the_newest_input_it_shows_and_none_newer),
+        ROOM_TEST(input_numbers_are_each_members_own),
+        ROOM_TEST(many_inputs_between_two_pictures_are_never_reported_too_early),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,35 +1,5 @@
 /* Pictures that fail, cannot be drawn or lack regions, and a renderer that is started again. */
-#include "tests/unit/room_fake.h"
-
-static struct fake_room fake;
-static struct fake_page ann, ben;
-
-static int start(void **state)
-{
-    (void)state;
-    fake_room_start(&fake, 0);
-    fake_plan_ready(&fake, true);
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    fake_room_end(&fake);
-    fake_page_end(&ann);
-    fake_page_end(&ben);
-    return 0;
-}
-
-static void settle_one(void)
-{
-    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
-}
-
-static void settle_two(void)
-{
-    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
-}
+#include "tests/unit/room_set_up.h"
 
 static void a_picture_that_failed_is_requested_again_but_not_at_once(void **state)
 {
@@ -196,16 +166,15 @@ static void a_new_renderer_is_told_the_scene_and_draws_everything_anew(void **st
 
 int main(void)
 {
-#define T(name) cmocka_unit_test_setup_teardown(name, start, end)
     const struct CMUnitTest tests[] = {
-        T(a_picture_that_failed_is_requested_again_but_not_at_once),
-        T(a_still_that_failed_is_requested_again),
-        T(a_picture_that_cannot_be_is_told_once_and_not_requested_again),
-        T(a_picture_beyond_a_limit_is_told_once_and_requested_again_only_after_a_change),
-        T(a_refusal_that_comes_late_does_not_hide_the_one_of_a_newer_view),
-        T(a_limit_that_says_when_to_come_again_is_no_last_word),
-        T(what_a_picture_leaves_out_is_told_before_it_and_when_it_changes),
-        T(a_new_renderer_is_told_the_scene_and_draws_everything_anew),
+        ROOM_TEST(a_picture_that_failed_is_requested_again_but_not_at_once),
+        ROOM_TEST(a_still_that_failed_is_requested_again),
+        ROOM_TEST(a_picture_that_cannot_be_is_told_once_and_not_requested_again),
+        ROOM_TEST(a_picture_beyond_a_limit_is_told_once_and_requested_again_only_after_a_change),
+        ROOM_TEST(a_refusal_that_comes_late_does_not_hide_the_one_of_a_newer_view),
+        ROOM_TEST(a_limit_that_says_when_to_come_again_is_no_last_word),
+        ROOM_TEST(what_a_picture_leaves_out_is_told_before_it_and_when_it_changes),
+        ROOM_TEST(a_new_renderer_is_told_the_scene_and_draws_everything_anew),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

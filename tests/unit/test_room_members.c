@@ -1,52 +1,5 @@
-/* Members, views, the shared scene, refusals. */
-#include "tests/unit/room_fake.h"
-
-static struct fake_room fake;
-static struct fake_page ann, ben, cem, dee;
-
-static int start(void **state)
-{
-    (void)state;
-    fake_room_start(&fake, 3);
-    fake_plan_ready(&fake, true);
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    fake_room_end(&fake);
-    fake_page_end(&ann);
-    fake_page_end(&ben);
-    fake_page_end(&cem);
-    fake_page_end(&dee);
-    return 0;
-}
-
-/* The text of a field of the newest message of a type. */
-static const char *heard(struct fake_page *page, const char *type, const char *field)
-{
-    static char text[256];
-    cJSON *json = fake_heard(page, type);
-    assert_non_null(json);
-    const char *value = json_text(json, field);
-    (void)snprintf(text, sizeof text, "%s", value ? value : "");
-    cJSON_Delete(json);
-    return text;
-}
-
-/* Pointer and status of the newest problem, as "422 /regions/liver". */
-static const char *refused(struct fake_page *page)
-{
-    static char text[256];
-    cJSON *json = fake_heard(page, "problem");
-    assert_non_null(json);
-    const cJSON *problem = cJSON_GetObjectItem(json, "problem");
-    const char *pointer = json_text(problem, "pointer");
-    (void)snprintf(text, sizeof text, "%d %s", (int)json_number(problem, "status", 0), pointer ? pointer : "");
-    cJSON_Delete(json);
-    return text;
-}
+/* Members and views. */
+#include "tests/unit/room_set_up.h"
 
 static void come_back(struct fake_page *page, const char *id, const char *secret)
 {
@@ -226,7 +179,7 @@ static void followers_hear_of_a_move_with_the_frame_that_shows_it_and_once(void 
     (void)state;
     fake_join(&fake, &ann, true);
     fake_join(&fake, &ben, true);
-    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
+    settle_two();
     size_t ben_before = fake_n_heard(&ben, "view"), ann_before = fake_n_heard(&ann, "view");
     for (int i = 1; i <= 30; i++)
         move(&ann, i);
@@ -242,7 +195,7 @@ static void the_size_is_that_of_the_follower_who_moved_last(void **state)
     fake_join(&fake, &ann, true); /* 800 wide */
     fake_hello(&fake, &ben);
     fake_say(&fake, &ben, "{\"type\":\"view.open\",\"view\":1,\"document\":{\"size_px\":[400,300]},\"follow\":true}");
-    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
+    settle_two();
     assert_int_equal(width_of(&fake.requests[fake.n_requests - 1]), 800);
     size_t before = fake.n_requests;
     fake_say(&fake, &ben,
@@ -251,7 +204,7 @@ static void the_size_is_that_of_the_follower_who_moved_last(void **state)
     assert_int_equal(fake.n_requests, before);
     move(&ben, 1);
     assert_int_equal(width_of(fake_newest(&fake)), 500);
-    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
+    settle_two();
     move(&ann, 2);
     assert_int_equal(width_of(fake_newest(&fake)), 800);
 }
@@ -267,7 +220,7 @@ static void an_own_view_starts_as_a_copy_and_goes_its_own_way(void **state)
     const cJSON *camera = cJSON_GetObjectItem(cJSON_GetObjectItem(view, "document"), "camera");
     assert_close(cJSON_GetArrayItem(cJSON_GetObjectItem(camera, "target_mm"), 0)->valuedouble, 7, 0);
     cJSON_Delete(view);
-    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
+    settle_two();
     size_t before = ann.n_frames;
     move(&ben, 8);
     fake_draw(&fake, fake_newest(&fake));
@@ -288,7 +241,7 @@ static void each_kind_has_its_own_shared_view(void **state)
         "{\"type\":\"view.open\",\"view\":2,\"document\":{\"kind\":\"axial\",\"size_px\":[300,300]},\"follow\":true}");
     assert_int_equal(fake_outstanding(&fake), 2);
     fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":2,\"patch\":{\"camera\":{\"height_mm\":120}}}");
-    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    settle_one();
     size_t before = fake.n_requests;
     fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"kind\":\"coronal\"}}");
     assert_int_equal(fake.n_requests, before + 1);
@@ -326,7 +279,7 @@ static void pictures_of_a_closed_view_are_waited_for_by_nobody(void **state)
         &fake, &ann,
         "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"kind\":\"3d\",\"size_px\":[800,600]}}");
     assert_true(fake_outstanding(&fake) > 0); /* a viewer who comes back needs the picture again */
-    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    settle_one();
     assert_true(ann.frames[ann.n_frames - 1].flags & FRAME_STILL);
 
     fake_turn(&fake, &ann, 10, 5);
@@ -337,7 +290,7 @@ static void pictures_of_a_closed_view_are_waited_for_by_nobody(void **state)
         "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"kind\":\"3d\",\"size_px\":[800,600]}}");
     assert_int_equal(fake_outstanding(&fake), 1); /* at once, long before a still is due */
     assert_false(fake_newest(&fake)->is_still);
-    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    settle_one();
 
     fake_say(&fake, &ann, "{\"type\":\"view.follow\",\"view\":1,\"follow\":false}");
     fake_turn(&fake, &ann, 30, 7); /* an own view whose page disconnects without closing it */
@@ -364,7 +317,7 @@ static void an_override_shows_another_scene_to_one_view(void **state)
     fake_say(
         &fake, &ann,
         "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"scalp\":{\"visible\":false}}}}}");
-    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    settle_one();
     const cJSON *scene = fake.requests[fake.n_requests - 1].scene;
     assert_non_null(scene);
     assert_false(json_flag(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "scalp"), "visible", true));
@@ -392,211 +345,30 @@ static void a_view_number_outside_one_to_eight_is_refused(void **state)
     assert_int_equal(fake.n_requests, 0);
 }
 
-/* ---- the scene -------------------------------------------------------------------------------------------------- */
-
-static void a_change_of_the_scene_reaches_all_and_raises_the_revision_by_one(void **state)
-{
-    uint32_t before, after;
-    (void)state;
-    fake_join(&fake, &ann, false);
-    fake_join(&fake, &ben, false);
-    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
-    (void)room_scene(fake.room, &before);
-    fake_say(&fake, &ann,
-             "{\"type\":\"scene.patch\",\"input\":3,\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.1}}}}");
-    (void)room_scene(fake.room, &after);
-    assert_int_equal(after, before + 1);
-    assert_int_equal(fake.told_revision, after);
-    cJSON *to_ben = fake_heard(&ben, "scene"), *to_ann = fake_heard(&ann, "scene");
-    assert_int_equal(json_number(to_ben, "revision", 0), after);
-    assert_int_equal(json_number(to_ben, "input", 0), 0);
-    assert_int_equal(json_number(to_ann, "input", 0), 3);
-    cJSON_Delete(to_ben);
-    cJSON_Delete(to_ann);
-    assert_int_equal(fake_outstanding(&fake), 2); /* both pictures */
-}
-
-static void a_bad_patch_is_refused_whole_and_only_its_sender_hears_it(void **state)
-{
-    uint32_t before, after;
-    (void)state;
-    fake_join(&fake, &ann, false);
-    fake_join(&fake, &ben, false);
-    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben }, 2);
-    size_t texts = ben.n_texts, requests = fake.n_requests;
-    (void)room_scene(fake.room, &before);
-    fake_say(
-        &fake, &ann,
-        "{\"type\":\"scene.patch\",\"input\":4,\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.9},\"liver\":{\"visible\":true}}}}");
-    assert_string_equal(refused(&ann), "422 /regions/liver");
-    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"scalp\":{\"opacity\":2}}}}");
-    assert_string_equal(refused(&ann), "422 /regions/scalp/opacity");
-    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"size_px\":[8,8]}}");
-    assert_string_equal(refused(&ann), "422 /size_px/0");
-    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":[]}");
-    fake_say(&fake, &ann, "not json");
-    assert_string_equal(refused(&ann), "400 ");
-    const cJSON *scene = room_scene(fake.room, &after);
-    assert_int_equal(after, before);
-    assert_close(json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "scalp"), "opacity", 0), 0.4,
-                 1e-12);
-    fake_pass(&fake, 1000);
-    assert_int_equal(ben.n_texts, texts);
-    assert_int_equal(fake.n_requests, requests);
-    struct room_counters counters = { 0 };
-    room_count(fake.room, &counters);
-    assert_int_equal(counters.messages_refused, 5);
-}
-
-static void a_message_over_64_kib_is_refused(void **state)
-{
-    static char text[WIRE_MAX_CLIENT_BYTES + 2];
-    (void)state;
-    fake_hello(&fake, &ann);
-    memset(text, ' ', sizeof text);
-    memcpy(text, "{\"type\":\"ping\",\"time_ms\":1}", 27);
-    room_text_came(fake.room, &ann, text, WIRE_MAX_CLIENT_BYTES, fake.now_us);
-    assert_int_equal(fake_n_heard(&ann, "pong"), 1);
-    room_text_came(fake.room, &ann, text, WIRE_MAX_CLIENT_BYTES + 1, fake.now_us);
-    assert_string_equal(refused(&ann), "413 ");
-}
-
-static void before_the_plan_is_loaded_views_wait_and_the_scene_cannot_change(void **state)
-{
-    struct fake_room early;
-    (void)state;
-    fake_room_start(&early, 3);
-    struct fake_page page = { 0 };
-    fake_join(&early, &page, false);
-    room_renderer_state(early.room, WIRE_RENDERER_STATE_LOADING, "reading the image", 40, NULL);
-    assert_string_equal(heard(&page, "renderer", "phase"), "reading the image");
-    fake_say(&early, &page, "{\"type\":\"scene.patch\",\"patch\":{}}");
-    assert_string_equal(refused(&page), "503 ");
-    fake_pass(&early, 5000);
-    assert_int_equal(early.n_requests, 0);
-    fake_plan_ready(&early, true);
-    assert_int_equal(fake_n_heard(&page, "plan"), 1);
-    assert_int_equal(early.n_requests, 1);
-    fake_room_end(&early);
-    fake_page_end(&page);
-}
-
-/* True if the newest view document sent to the page has no override. */
-static bool override_is_gone(const struct fake_page *page)
-{
-    cJSON *said = fake_heard(page, "view");
-    const cJSON *override = cJSON_GetObjectItem(cJSON_GetObjectItem(said, "document"), "override");
-    bool is_gone = said && (!override || cJSON_IsNull(override) || !override->child);
-    cJSON_Delete(said);
-    return is_gone;
-}
-
-static void an_override_said_too_early_is_taken_out_and_told_when_the_plan_has_no_such_region(void **state)
-{
-    struct fake_room early;
-    (void)state;
-    fake_room_start(&early, 3);
-    struct fake_page page = { 0 };
-    fake_hello(&early, &page);
-    fake_say(
-        &early, &page,
-        "{\"type\":\"view.open\",\"view\":1,\"document\":{\"override\":{\"regions\":{\"liver\":{\"visible\":false}}}}}");
-    fake_say(
-        &early, &page,
-        "{\"type\":\"view.open\",\"view\":2,\"document\":{\"override\":{\"regions\":{\"brain\":{\"visible\":false}}}}}");
-    assert_int_equal(fake_n_heard(&page, "problem"), 0);
-    fake_plan_ready(&early, true);
-    assert_string_equal(refused(&page), "422 /override/regions/liver");
-    assert_int_equal(fake_n_heard(&page, "problem"), 1);
-    assert_true(override_is_gone(&page));
-    /* view 1 shows the room's scene and can be moved, view 2 keeps its own */
-    assert_int_equal(early.n_requests, 2);
-    assert_true((early.requests[0].scene == NULL) != (early.requests[1].scene == NULL));
-    fake_draw(&early, &early.requests[0]);
-    fake_draw(&early, &early.requests[1]);
-    fake_turn(&early, &page, 3, 7);
-    assert_int_equal(fake_n_heard(&page, "problem"), 1);
-    assert_null(fake_newest(&early)->scene);
-    fake_room_end(&early);
-    fake_page_end(&page);
-}
-
-static void after_a_restart_with_another_plan_nothing_names_what_is_gone(void **state)
-{
-    uint32_t before, after;
-    (void)state;
-    fake_join(&fake, &ann, false);
-    fake_say(
-        &fake, &ann,
-        "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"override\":{\"regions\":{\"scalp\":{\"visible\":false}}}}}");
-    fake_say(
-        &fake, &ann,
-        "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.3}},\"check\":{\"region\":\"scalp\"}}}");
-    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
-    room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, NULL, 0, NULL);
-    /* during a restart patches are checked against the old plan */
-    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"check\":{\"region\":\"liver\"}}}");
-    assert_string_equal(refused(&ann), "422 /check/region");
-    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.7}}}}");
-    (void)room_scene(fake.room, &before);
-    fake_other_plan_ready(&fake);
-    const cJSON *scene = room_scene(fake.room, &after), *regions = cJSON_GetObjectItem(scene, "regions");
-    assert_int_equal(after, before + 1); /* the scene differs, so its ETag must */
-    assert_null(cJSON_GetObjectItem(regions, "scalp"));
-    assert_close(json_number(cJSON_GetObjectItem(regions, "brain"), "opacity", 0), 0.3, 1e-12);
-    assert_string_equal(json_text(cJSON_GetObjectItem(scene, "check"), "region"), "");
-    assert_string_equal(refused(&ann), "422 /override/regions/scalp");
-    assert_true(override_is_gone(&ann));
-    assert_null(fake_newest(&fake)->scene); /* drawn with the room's scene */
-}
-
-static void a_plan_that_cannot_be_loaded_says_why(void **state)
-{
-    struct problem problem = { 0 };
-    (void)state;
-    fake_hello(&fake, &ann);
-    problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "labels.nii.gz ends after 12 of 8388608 bytes");
-    room_renderer_state(fake.room, WIRE_RENDERER_STATE_FAILED, NULL, 0, &problem);
-    cJSON *said = fake_heard(&ann, "renderer");
-    assert_string_equal(json_text(said, "state"), "failed");
-    assert_string_equal(json_text(cJSON_GetObjectItem(said, "problem"), "detail"), problem.detail);
-    cJSON_Delete(said);
-    fake_hello(&fake, &ben); /* also sent to a later member */
-    assert_string_equal(heard(&ben, "renderer", "state"), "failed");
-}
-
 int main(void)
 {
-#define T(name) cmocka_unit_test_setup_teardown(name, start, end)
     const struct CMUnitTest tests[] = {
-        T(hello_is_answered_with_everything_a_page_needs),
-        T(who_gives_no_name_is_numbered),
-        T(nothing_but_hello_may_come_first),
-        T(another_protocol_is_told_to_go),
-        T(a_second_hello_is_refused),
-        T(a_full_room_says_so),
-        T(a_member_comes_back_with_its_secret_only),
-        T(coming_back_ends_the_old_connection),
-        T(a_member_who_is_away_is_kept_five_minutes),
-        T(who_is_there_is_said_after_each_change),
-        T(a_closed_room_says_bye_to_everybody),
-        T(the_shared_view_goes_on_from_who_opened_it_first),
-        T(followers_hear_of_a_move_with_the_frame_that_shows_it_and_once),
-        T(the_size_is_that_of_the_follower_who_moved_last),
-        T(an_own_view_starts_as_a_copy_and_goes_its_own_way),
-        T(each_kind_has_its_own_shared_view),
-        T(a_view_that_is_closed_gets_nothing_more),
-        T(pictures_of_a_closed_view_are_waited_for_by_nobody),
-        T(a_frame_of_a_view_closed_meanwhile_may_still_be_acknowledged),
-        T(an_override_shows_another_scene_to_one_view),
-        T(a_view_number_outside_one_to_eight_is_refused),
-        T(a_change_of_the_scene_reaches_all_and_raises_the_revision_by_one),
-        T(a_bad_patch_is_refused_whole_and_only_its_sender_hears_it),
-        T(a_message_over_64_kib_is_refused),
-        T(before_the_plan_is_loaded_views_wait_and_the_scene_cannot_change),
-        T(an_override_said_too_early_is_taken_out_and_told_when_the_plan_has_no_such_region),
-        T(after_a_restart_with_another_plan_nothing_names_what_is_gone),
-        T(a_plan_that_cannot_be_loaded_says_why),
+        ROOM_TEST(hello_is_answered_with_everything_a_page_needs),
+        ROOM_TEST(who_gives_no_name_is_numbered),
+        ROOM_TEST(nothing_but_hello_may_come_first),
+        ROOM_TEST(another_protocol_is_told_to_go),
+        ROOM_TEST(a_second_hello_is_refused),
+        ROOM_TEST(a_full_room_says_so),
+        ROOM_TEST(a_member_comes_back_with_its_secret_only),
+        ROOM_TEST(coming_back_ends_the_old_connection),
+        ROOM_TEST(a_member_who_is_away_is_kept_five_minutes),
+        ROOM_TEST(who_is_there_is_said_after_each_change),
+        ROOM_TEST(a_closed_room_says_bye_to_everybody),
+        ROOM_TEST(the_shared_view_goes_on_from_who_opened_it_first),
+        ROOM_TEST(followers_hear_of_a_move_with_the_frame_that_shows_it_and_once),
+        ROOM_TEST(the_size_is_that_of_the_follower_who_moved_last),
+        ROOM_TEST(an_own_view_starts_as_a_copy_and_goes_its_own_way),
+        ROOM_TEST(each_kind_has_its_own_shared_view),
+        ROOM_TEST(a_view_that_is_closed_gets_nothing_more),
+        ROOM_TEST(pictures_of_a_closed_view_are_waited_for_by_nobody),
+        ROOM_TEST(a_frame_of_a_view_closed_meanwhile_may_still_be_acknowledged),
+        ROOM_TEST(an_override_shows_another_scene_to_one_view),
+        ROOM_TEST(a_view_number_outside_one_to_eight_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,25 +1,6 @@
 /* Pacing: scale and quality of moving pictures. */
 #include "server/room/pace.h"
-#include "tests/unit/room_fake.h"
-
-static struct fake_room fake;
-static struct fake_page ann;
-
-static int start(void **state)
-{
-    (void)state;
-    fake_room_start(&fake, 0);
-    fake_plan_ready(&fake, true);
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    fake_room_end(&fake);
-    fake_page_end(&ann);
-    return 0;
-}
+#include "tests/unit/room_set_up.h"
 
 static void software_starts_at_full_size_but_with_coarse_surfaces(void **state)
 {
@@ -62,7 +43,7 @@ static void slow_pictures_become_smaller_and_fast_ones_larger_again(void **state
     (void)state;
     fake_plan_ready(&fake, false);
     fake_join(&fake, &ann, false);
-    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    settle_one();
     assert_int_equal(drag(10, 60, 60000), 50); /* 4 steps of 3 pictures: 100, 75, 60, 50 */
     assert_int_equal(drag(30, 15, 8000), 50);  /* less than a second of fast ones */
     assert_int_equal(drag(80, 15, 8000), 60);
@@ -74,7 +55,7 @@ static void late_acknowledgements_make_pictures_smaller(void **state)
     (void)state;
     fake_plan_ready(&fake, false);
     fake_join(&fake, &ann, false);
-    fake_settle(&fake, (struct fake_page *const[]){ &ann }, 1);
+    settle_one();
     assert_int_equal(drag(10, 15, 8000), 100);
     int scale = 0;
     for (int i = 0; i < 40; i++) {
@@ -107,11 +88,12 @@ static void a_step_up_that_does_not_hold_is_tried_less_and_less_often(void **sta
 
 int main(void)
 {
-#define T(name) cmocka_unit_test_setup_teardown(name, start, end)
     const struct CMUnitTest tests[] = {
-        T(software_starts_at_full_size_but_with_coarse_surfaces),     T(a_graphics_card_starts_at_full_size_and_detail),
-        T(slow_pictures_become_smaller_and_fast_ones_larger_again),   T(late_acknowledgements_make_pictures_smaller),
-        T(a_step_up_that_does_not_hold_is_tried_less_and_less_often),
+        ROOM_TEST(software_starts_at_full_size_but_with_coarse_surfaces),
+        ROOM_TEST(a_graphics_card_starts_at_full_size_and_detail),
+        ROOM_TEST(slow_pictures_become_smaller_and_fast_ones_larger_again),
+        ROOM_TEST(late_acknowledgements_make_pictures_smaller),
+        ROOM_TEST(a_step_up_that_does_not_hold_is_tried_less_and_less_often),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
