@@ -161,7 +161,7 @@ $(eval $(call c_programs,unit,test,-lcmocka))
 $(B)/unit/test_renderer: | $(B)/beamroom-render
 $(B)/obj/tests/unit/test_fields.o: | $(TRIAL_STAMP)
 $(B)/unit/test_fields: $(call obj,$(GEN)/trial.c $(GEN)/trial_gen.c)
-$(B)/unit/test_confine $(B)/unit/test_dicom_file: $(call obj,server/renderer/confine.c server/renderer/seccomp.c)
+$(unit_BIN): $(call obj,server/renderer/confine.c server/renderer/seccomp.c)
 $(eval $(call c_programs,render,test,-lcmocka))
 $(eval $(call c_programs,bench,bench,))
 $(eval $(call c_programs,faults,test,-lcmocka))
