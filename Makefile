@@ -191,7 +191,7 @@ RUNNER := $(if $(findstring thread,$(SAN)),$(shell setarch -R true 2>/dev/null &
 # Programs run side by side, but for pictures, whose back ends use all cores themselves. The thread sanitizer is slow: its programs
 # are those that start threads of their own, or the first of those that read plans by the same ones.
 ONE_THREAD := sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pixels dicom_oracle dicom_hostile dicom_rtdose dicom_rtplan \
-    dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame packet plan_document shape_query head ws_parser ws_conformance convert convert_edges plan_real
+    dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame packet plan_document shape_query head ws_parser ws_conformance ws_conformance_utf8 convert convert_edges plan_real
 UNIT_RUN = $(if $(findstring thread,$(SAN)),$(filter-out $(ONE_THREAD:%=$(B)/unit/test_%),$(unit_BIN)),$(unit_BIN))
 PARALLEL := $(shell nproc)
 .PHONY: test-unit test-render test-faults test-api test-web test-install test test-deep lint

@@ -1,4 +1,4 @@
-/* Bytes of a client to messages. What RFC 6455 says beyond the cases of test_ws_conformance.c: masks, lengths, memory.
+/* Bytes of a client to messages. What RFC 6455 says beyond the cases of ws_cases.h: masks, lengths, memory.
  */
 #include "core/base/mem.h"
 #include "server/ws/parser.h"
