@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "core/base/mem.h"
 
@@ -50,35 +51,50 @@ static uint64_t hash_bytes(const uint8_t *bytes, size_t n)
     return hash;
 }
 
-static bool add_file(struct files *files, const char *folder, const char *path, const char *media_type,
-                     struct error *err)
+/* Reads one file into form. */
+static bool read_form(const char *name, struct file_form *form, struct error *err)
 {
-    char name[4096];
     struct stat facts;
-    (void)snprintf(name, sizeof name, "%s%s", folder, path);
     FILE *stream = fopen(name, "rbe");
     if (!stream || fstat(fileno(stream), &facts) != 0) {
         if (stream)
             fclose(stream);
         return error_set(err, ERROR_IO, "%s: %s", name, strerror(errno));
     }
-    if (!S_ISREG(facts.st_mode) || facts.st_size > FILES_MAX_BYTES || files->n == FILES_MAX ||
-        strlen(path) >= sizeof files->files->path) {
+    if (!S_ISREG(facts.st_mode) || facts.st_size > FILES_MAX_BYTES) {
         fclose(stream);
-        return error_set(err, ERROR_LIMIT, "%s: not a file, over %d bytes, its path too long, or more than %d files",
-                         name, FILES_MAX_BYTES, FILES_MAX);
+        return error_set(err, ERROR_LIMIT, "%s: not a file, or over %d bytes", name, FILES_MAX_BYTES);
     }
-    struct file *file = &files->files[files->n];
-    file->n_bytes = (size_t)facts.st_size;
-    file->bytes = mem_new(file->n_bytes + 1);
-    size_t got = fread(file->bytes, 1, file->n_bytes, stream);
+    form->n_bytes = (size_t)facts.st_size;
+    form->bytes = mem_new(form->n_bytes + 1);
+    size_t got = fread(form->bytes, 1, form->n_bytes, stream);
     fclose(stream);
-    files->n++;
-    if (got != file->n_bytes)
-        return error_set(err, ERROR_IO, "%s: %zu bytes read, %zu expected", name, got, file->n_bytes);
+    if (got != form->n_bytes)
+        return error_set(err, ERROR_IO, "%s: %zu bytes read, %zu expected", name, got, form->n_bytes);
+    (void)snprintf(form->etag, sizeof form->etag, "\"%016" PRIx64 "\"", hash_bytes(form->bytes, form->n_bytes));
+    return true;
+}
+
+static bool add_file(struct files *files, const char *folder, const char *path, const char *media_type,
+                     struct error *err)
+{
+    static const char *const endings[N_CODINGS] = { "", ".gz", ".br" };
+    if (files->n == FILES_MAX || strlen(path) >= sizeof files->files->path)
+        return error_set(err, ERROR_LIMIT, "%s%s: its path is too long, or there are more than %d files", folder, path,
+                         FILES_MAX);
+    struct file *file = &files->files[files->n++];
     memcpy(file->path, path, strlen(path) + 1);
     file->media_type = media_type;
-    (void)snprintf(file->etag, sizeof file->etag, "\"%016" PRIx64 "\"", hash_bytes(file->bytes, file->n_bytes));
+    file->is_immutable = strncmp(path, "/page/", strlen("/page/")) == 0;
+    for (enum content_coding coding = CODING_IDENTITY; coding < N_CODINGS; coding++) {
+        char name[4096];
+        (void)snprintf(name, sizeof name, "%s%s%s", folder, path, endings[coding]);
+        if (coding != CODING_IDENTITY && access(name, F_OK) != 0)
+            continue;
+        if (!read_form(name, &file->forms[coding], err))
+            return false;
+        file->has_forms = coding != CODING_IDENTITY;
+    }
     return true;
 }
 
@@ -129,7 +145,8 @@ void files_destroy(struct files *files)
     if (!files)
         return;
     for (size_t i = 0; i < files->n; i++)
-        free(files->files[i].bytes);
+        for (enum content_coding coding = CODING_IDENTITY; coding < N_CODINGS; coding++)
+            free(files->files[i].forms[coding].bytes);
     free(files->files);
     free(files);
 }
@@ -142,4 +159,12 @@ const struct file *files_find(const struct files *files, const char *path)
         if (strcmp(files->files[i].path, path) == 0)
             return &files->files[i];
     return NULL;
+}
+
+enum content_coding file_coding(const struct file *file, const char *accept)
+{
+    bool exists[N_CODINGS];
+    for (enum content_coding coding = CODING_IDENTITY; coding < N_CODINGS; coding++)
+        exists[coding] = file->forms[coding].bytes != NULL;
+    return coding_choose(accept, exists);
 }

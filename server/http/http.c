@@ -68,14 +68,22 @@ static enum MHD_Result send_response(struct MHD_Connection *connection, unsigned
 
 static enum MHD_Result send_file(struct MHD_Connection *connection, const struct file *file)
 {
+    const char *accept = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Accept-Encoding");
     const char *known = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "If-None-Match");
-    bool is_fresh = known && etag_is_listed(known, file->etag, true);
+    enum content_coding coding = file_coding(file, accept);
+    const struct file_form *form = &file->forms[coding];
+    bool is_fresh = known && etag_is_listed(known, form->etag, true);
     struct MHD_Response *response =
-        MHD_create_response_from_buffer(is_fresh ? 0 : file->n_bytes, file->bytes,
+        MHD_create_response_from_buffer(is_fresh ? 0 : form->n_bytes, form->bytes,
                                         MHD_RESPMEM_PERSISTENT); /* files outlives the library's daemon */
-    MHD_add_response_header(response, "ETag", file->etag);
+    MHD_add_response_header(response, "ETag", form->etag);
+    if (file->has_forms)
+        MHD_add_response_header(response, "Vary", "Accept-Encoding");
+    if (coding != CODING_IDENTITY)
+        MHD_add_response_header(response, "Content-Encoding", coding_name(coding));
+    /* no-cache is kept but revalidated: a page never mixes versions */
     MHD_add_response_header(response, "Cache-Control",
-                            "no-cache"); /* kept but revalidated: a page never mixes versions */
+                            file->is_immutable ? "public, max-age=31536000, immutable" : "no-cache");
     MHD_add_response_header(response, "Content-Type", file->media_type);
     MHD_add_response_header(response, "Content-Security-Policy", content_policy);
     return send_response(connection, is_fresh ? 304 : 200, response);
