@@ -125,8 +125,8 @@ LIB := $(WEB)/lib
 node_modules/.stamp: package.json package-lock.json .npmrc
 	$(if $(Q),@echo "  NPM ci")
 	$(Q)npm ci --loglevel=error </dev/null >/dev/null && touch $@
-$(WEB)/.stamp: $(shell find web -type f 2>/dev/null) $(GEN_STAMP) node_modules/.stamp deploy/web.sh
-	$(Q)deploy/web.sh $(WEB) $(GEN)
+$(WEB)/.stamp: $(shell find web -type f 2>/dev/null) $(GEN_STAMP) node_modules/.stamp deploy/web.sh deploy/page.mjs
+	$(Q)NODE=$(NODE) deploy/web.sh $(WEB) $(GEN)
 	$(Q)touch $@
 .PHONY: web
 web: $(WEB)/.stamp

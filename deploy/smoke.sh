@@ -86,6 +86,8 @@ call GET /metrics
 check "has metrics" is 200 '^# TYPE '
 call GET /
 check "serves the page" is 200 '<!doctype html|<!DOCTYPE html'
+call GET / '' 'Accept-Encoding: gzip'
+check "serves the page compressed" is 200 '^Content-Encoding: gzip'
 call GET /api/v1/no-such-thing
 check "an unknown path is a problem with a sentence" is 404 'application/problem\+json'
 call GET /api/v1/plans

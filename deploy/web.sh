@@ -1,8 +1,10 @@
 #!/bin/bash
 # Puts the page together: deploy/web.sh DEST GENERATED
 #   DEST/...      the files of web/ as they are
-#   DEST/lib/     the pinned libraries, single ES modules: lit-html.js (directives in lib/directives/), signals-core.js
+#   DEST/lib/     the pinned libraries, single ES modules: lit-html.js (directives in lib/directives/), signals-core.js;
+#                 the font Inter with the signs of Western European languages
 #   DEST/gen/     the tables and the reference page generated from proto/
+#   and what deploy/page.mjs makes of them: index.html with few requests, and everything compressed
 # Built beside DEST and moved into place, so a running daemon never serves a half-written page.
 set -eu
 dest=$1 generated=$2
@@ -19,9 +21,12 @@ done
 library @preact/signals-core/dist/signals-core.module.js signals-core.js
 cp node_modules/lit-html/LICENSE "$part/lib/LICENSE.lit-html"
 cp node_modules/@preact/signals-core/LICENSE "$part/lib/LICENSE.signals-core"
+cp node_modules/@fontsource-variable/inter/files/inter-latin-wght-normal.woff2 "$part/lib/"
+cp node_modules/@fontsource-variable/inter/LICENSE "$part/lib/LICENSE.inter"
 
 for file in "$generated"/*.js "$generated"/*.html "$generated"/openapi.json; do
     [ ! -e "$file" ] || cp "$file" "$part/gen/"
 done
+"${NODE:-node}" deploy/page.mjs "$part"
 rm -rf "$dest"
 mv "$part" "$dest"
