@@ -1,4 +1,4 @@
-/* The page's files: which content coding a request gets (RFC 9110 12.5.3), and how compressed copies are read. */
+/* The page's files: the content coding chosen for a request (RFC 9110 12.5.3), and how compressed copies are read. */
 #include "server/http/coding.h"
 #include "server/http/files.h"
 #include "tests/check.h"
