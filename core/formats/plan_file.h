@@ -106,6 +106,7 @@ struct label_name {
     char id[REGION_ID_SIZE]; /* "" none; an entry with an id is a region even without a voxel */
     int place;               /* position among all regions of the plan, from 1; 0: none */
     double opacity;          /* above 0, up to 1; 0: none */
+    bool is_target;          /* struct region's */
     bool has_tissue;
     struct label_tissue {
         double boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma; /* not-a-number: not given */

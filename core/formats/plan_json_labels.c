@@ -63,6 +63,14 @@ static bool get_opacity(const struct json_place *at, const cJSON *entry, double 
     return true;
 }
 
+static bool get_target(const struct json_place *at, const cJSON *entry, bool *out)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(entry, "target");
+    *out = cJSON_IsTrue(item);
+    return !item || cJSON_IsNull(item) || cJSON_IsBool(item) ||
+           place_fail(at, ERROR_FORMAT, "target", "expected true or false");
+}
+
 static bool parse_label(const struct json_place *at, const cJSON *entry, struct label_name *label)
 {
     const cJSON *value = cJSON_GetObjectItemCaseSensitive(entry, "value");
@@ -75,7 +83,7 @@ static bool parse_label(const struct json_place *at, const cJSON *entry, struct 
            place_text(at, entry, "id", label->id, sizeof label->id) &&
            get_whole(at, entry, "place", REGION_MAX, &label->place) &&
            place_color(at, entry, &label->has_color, label->rgb) && get_opacity(at, entry, &label->opacity) &&
-           get_tissue(at, entry, label);
+           get_target(at, entry, &label->is_target) && get_tissue(at, entry, label);
 }
 
 bool label_names_parse(const uint8_t *data, size_t size, const char *name, struct label_names *names, struct error *err)

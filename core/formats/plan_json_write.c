@@ -265,6 +265,8 @@ char *label_names_text(const struct label_names *names, struct error *err)
             add_color(entry, label->rgb);
         if (label->opacity > 0)
             add_number(entry, "opacity", label->opacity);
+        if (label->is_target)
+            add(entry, "target", cJSON_CreateTrue());
         add_text(entry, "parent", label->parent);
         if (!label->has_tissue)
             continue;

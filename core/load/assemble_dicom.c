@@ -101,6 +101,12 @@ static bool is_selected(const struct plan_file_region *entry, const struct rtstr
     return !entry->name[0] || text_equal(entry->name, roi->name);
 }
 
+/* kind: RT ROI Interpreted Type */
+static bool is_target_type(const char *kind)
+{
+    return text_equal(kind, "GTV") || text_equal(kind, "CTV") || text_equal(kind, "PTV");
+}
+
 static bool fill_roi(struct loading *loading, struct region_builder *builder, const struct part_reading *reading,
                      const struct rtstruct_roi *roi, const struct contour_choice *choice,
                      const struct contour_options *options, struct error *err)
@@ -116,6 +122,9 @@ static bool fill_roi(struct loading *loading, struct region_builder *builder, co
     rtstruct_report_fill(roi, choice, &facts, reading->path, &loading->plan->report);
     bool is_added = region_builder_add_bits(builder, mask, &choice->grid, roi->name, rgb, reading->path, err);
     mask_destroy(mask);
+    struct region_set *set = &loading->plan->regions;
+    if (is_added)
+        set->regions[set->n_regions - 1].is_target = is_target_type(roi->kind);
     return is_added;
 }
 

@@ -174,6 +174,7 @@ static void fields_region(struct fields *fields, struct region *region, const st
     fields_text(fields, region->name, sizeof region->name);
     fields_bytes(fields, region->rgb, sizeof region->rgb);
     fields_bool(fields, &region->has_file_color);
+    fields_bool(fields, &region->is_target);
     fields_finite(fields, &region->file_opacity);
     require(fields, region->file_opacity >= 0 && region->file_opacity <= 1);
     fields_bytes(fields, &parent, sizeof parent);

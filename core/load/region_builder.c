@@ -68,6 +68,7 @@ static void apply_label(struct region_builder *builder, struct region *region, c
         memcpy(region->rgb, label->rgb, 3);
     }
     region->file_opacity = label->opacity;
+    region->is_target = label->is_target;
     if (strcmp(label->id, region->id) != 0 && is_free_id(set, label->id))
         memcpy(region->id, label->id, sizeof region->id);
     if (label->has_tissue) {

@@ -92,6 +92,7 @@ static bool write_names(const struct plan_writing *writing, uint32_t layer, cons
         label->value = region->label;
         label->has_color = region->has_file_color;
         label->opacity = region->file_opacity;
+        label->is_target = region->is_target;
         memcpy(label->rgb, region->rgb, sizeof label->rgb);
         memcpy(label->name, region->name, sizeof label->name);
         memcpy(label->id, region->id, sizeof label->id);

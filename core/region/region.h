@@ -28,6 +28,7 @@ struct region {
     struct vec3 centre_lps_mm;        /* mean of the voxel centres */
     bool touches_edge;                /* reaches the first or last index of an axis: the scan cuts it */
     double file_opacity;              /* from the file, above 0 to 1; 0: not given */
+    bool is_target;                   /* the file says so: DICOM's RT ROI Interpreted Type is GTV, CTV or PTV */
     /* Tissue data from the file; NaN where not given. */
     double boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma;
 };

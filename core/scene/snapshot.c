@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/region/target.h"
 #include "core/volume/window.h"
 
 int scene_image_index(const struct plan *plan, const struct scene *scene)
@@ -129,30 +130,27 @@ void snapshot_unref(const struct snapshot *snapshot)
     free(shared);
 }
 
-/* The deepest region in the hierarchy, the smallest if there are several: usually the tumour. */
-static const struct region *innermost_region(const struct region_set *set)
-{
-    const struct region *best = NULL;
-    int best_depth = -1;
-    for (size_t i = 0; i < set->n_regions; i++) {
-        const struct region *region = &set->regions[i];
-        int depth = region_depth(set, i);
-        if (region->n_voxels == 0)
-            continue;
-        if (depth > best_depth || (depth == best_depth && region->n_voxels < best->n_voxels)) {
-            best = region;
-            best_depth = depth;
-        }
-    }
-    return best;
-}
-
 static bool region_has_children(const struct region_set *set, size_t index)
 {
     for (size_t i = 0; i < set->n_regions; i++)
         if (set->regions[i].parent == (int)index)
             return true;
     return false;
+}
+
+/* In the first target, else the image's centre, else the plan's; on the centre of a voxel of the first image. */
+static struct vec3 first_crosshair_lps_mm(const struct plan *plan)
+{
+    const struct grid *grid = plan->n_images ? &plan->images[0].volume->grid : NULL;
+    int target = region_first_target(&plan->regions);
+    struct vec3 at = vec3(0, 0, 0);
+    if (target >= 0)
+        at = region_middle_lps_mm(&plan->regions, (size_t)target);
+    else if (grid || !box3_is_empty(&plan->bounds_lps_mm)) {
+        struct box3 box = grid ? grid_bounds_lps_mm(grid) : plan->bounds_lps_mm;
+        at = vec3_scale(vec3_add(box.low, box.high), 0.5);
+    }
+    return grid ? grid_nearest_centre_lps_mm(grid, at) : at;
 }
 
 void scene_for_plan(const struct plan *plan, struct scene *scene)
@@ -173,17 +171,13 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
             region->file_opacity < 1) /* SERA's preferences hold 100 % for regions that nobody set */
             entry->value.opacity = region->file_opacity;
     }
-    const struct region *centre = innermost_region(set);
-    struct vec3 at = vec3(0, 0, 0);
-    if (centre)
-        at = centre->centre_lps_mm;
-    else if (!box3_is_empty(&plan->bounds_lps_mm))
-        at = vec3_scale(vec3_add(plan->bounds_lps_mm.low, plan->bounds_lps_mm.high), 0.5);
+    struct vec3 at = first_crosshair_lps_mm(plan);
     scene->image.slices.sagittal.position_mm = at.x;
     scene->image.slices.coronal.position_mm = at.y;
     scene->image.slices.axial.position_mm = at.z;
     if (plan->n_images) {
         scene->image.slices.axial.visible = true;
+        scene->image.slices.coronal.visible = scene->image.slices.sagittal.visible = set->n_regions == 0;
         scene->image.window.center = plan->images[0].window_center;
         scene->image.window.width = plan->images[0].window_width;
         const struct scene_window *window = &scene->image.window;

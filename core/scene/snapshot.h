@@ -35,8 +35,9 @@ void snapshot_unref(const struct snapshot *snapshot);
 
 /* The scene a new room starts with. Every region is visible in its own colour; regions that contain others are
  * translucent (opacity 0.35 if outermost, else 0.45), the others opaque. The window is that of the first image. Slices
- * go through the centre of the innermost region, else of the plan; the axial one is visible if there is an image. Fills
- * scene, which scene_finish frees. */
+ * go through the middle of the first target (core/region/target.h), else of the first image, else of the plan, and
+ * through the centre of the first image's voxel there. If there is an image the axial slice is visible in space, and
+ * all three are in a plan without regions. Fills scene, which scene_finish frees. */
 void scene_for_plan(const struct plan *plan, struct scene *scene);
 
 /* Index of the image that a scene shows; -1 if the plan has no image, or none of that id. */

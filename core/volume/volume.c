@@ -78,6 +78,19 @@ struct box3 grid_bounds_lps_mm(const struct grid *grid)
     return box;
 }
 
+static double nearest_index(double at, uint32_t size)
+{
+    return fmin(fmax(floor(at + 0.5), 0), size - 1.0);
+}
+
+struct vec3 grid_nearest_centre_lps_mm(const struct grid *grid, struct vec3 point_lps_mm)
+{
+    struct vec3 ijk = affine_point(&grid->ijk_from_lps_mm, point_lps_mm);
+    return affine_point(&grid->lps_mm_from_ijk,
+                        vec3(nearest_index(ijk.x, grid->size[0]), nearest_index(ijk.y, grid->size[1]),
+                             nearest_index(ijk.z, grid->size[2])));
+}
+
 int grid_index_axis(const struct grid *grid, int patient_axis, int *sign)
 {
     double cosines[3][3]; /* [index axis][patient axis] */

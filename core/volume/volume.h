@@ -31,6 +31,9 @@ double grid_voxel_mm3(const struct grid *grid);
 bool grid_is_same(const struct grid *a, const struct grid *b);
 struct vec3 grid_spacing_mm(const struct grid *grid);    /* lengths of the three columns */
 struct box3 grid_bounds_lps_mm(const struct grid *grid); /* to the outer faces of the outermost voxels */
+/* The centre of the voxel nearest to a patient point in index space; of an outermost voxel if the point lies outside.
+ */
+struct vec3 grid_nearest_centre_lps_mm(const struct grid *grid, struct vec3 point_lps_mm);
 /* Index axis (0, 1, 2) nearest to a patient axis (0 = L, 1 = P, 2 = S). The three form a permutation, assigned by
  * largest remaining cosine. sign, unless NULL, is +1 if the index grows along the patient axis, else -1. */
 int grid_index_axis(const struct grid *grid, int patient_axis, int *sign);

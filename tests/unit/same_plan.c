@@ -11,7 +11,7 @@
 IS_COMPARED_UP_TO(struct plan, 57792);
 IS_COMPARED_UP_TO(struct plan_image, 248);
 IS_COMPARED_UP_TO(struct plan_preferences, 1296);
-IS_COMPARED_UP_TO(struct region, 328);
+IS_COMPARED_UP_TO(struct region, 336);
 IS_COMPARED_UP_TO(struct region_set, 2080);
 IS_COMPARED_UP_TO(struct dose, 760);
 IS_COMPARED_UP_TO(struct dose_component, 32);
@@ -95,6 +95,7 @@ static void same_regions(const struct region_set *found, const struct region_set
         assert_memory_equal(a->high_ijk, b->high_ijk, sizeof a->high_ijk);
         assert_close(vec3_length(vec3_sub(a->centre_lps_mm, b->centre_lps_mm)), 0, mm);
         assert_int_equal(a->touches_edge, b->touches_edge);
+        assert_int_equal(a->is_target, b->is_target);
         same_number(a->file_opacity, b->file_opacity);
         same_number(a->boron_ratio, b->boron_ratio);
         same_number(a->cbe_boron, b->cbe_boron);

@@ -104,6 +104,7 @@ static void name_regions(struct region_set *set)
         if (region->has_file_color)
             memcpy(region->rgb, (uint8_t[3]){ (uint8_t)r, (uint8_t)(r * 7), 255 }, 3);
         region->file_opacity = r % 3 == 0 ? 1.0 / 3 : 0;
+        region->is_target = r % 5 == 0;
         region->parent = (int)r - 1;
         region->boron_ratio = r % 4 == 0 ? 1e6 : NAN;
         region->rbe_gamma = r % 4 == 1 ? 0 : NAN;

@@ -21,7 +21,7 @@
 
 enum {
     SIZE_IMAGE = 248,
-    SIZE_REGION = 328,
+    SIZE_REGION = 336,
     SIZE_DOSE = 760,
     SIZE_BEAM = 464,
     SIZE_SEGMENT = 28,

@@ -58,6 +58,14 @@ static void put_boxes(const char *folder, int n_regions, int n_planes, double pi
         made_item_end(&made);
     }
     made_sequence_end(&made);
+    made_sequence(&made, TAG(0x3006, 0x0080));
+    for (int r = 0; r < n_regions; r++) {
+        made_item(&made);
+        made_integer(&made, TAG(0x3006, 0x0084), r);
+        made_text(&made, TAG(0x3006, 0x00a4), "CS", r == 2 ? "CTV" : r == 1 ? "AVOIDANCE" : "");
+        made_item_end(&made);
+    }
+    made_sequence_end(&made);
     folder_put(folder, "rtstruct.dcm", made.data, made.size);
     made_finish(&made);
 }
@@ -81,6 +89,7 @@ static void regions_drawn_on_slices_that_are_not_there_are_whole(void **state)
         for (int r = 0; r < 9; r++) {
             const struct region *region = &plan->regions.regions[r];
             assert_near(region->volume_cm3, 2.0 * 3.0 * 1.5, 1e-6);
+            assert_int_equal(region->is_target, r == 2); /* by its interpreted type */
             assert_close(region->centre_lps_mm.x, 39, 1e-6);
             assert_close(region->centre_lps_mm.y, 40, 1e-6);
             assert_close(region->centre_lps_mm.z, 3 * (5 * r + 2), 1e-6);

@@ -79,6 +79,66 @@ static void a_new_room_leaves_out_air_and_not_what_is_white(void **state)
     plan_and_derived_destroy(plan);
 }
 
+static double blob(struct vec3 p)
+{
+    return vec3_length(vec3_sub(p, vec3(3.2, -4.7, 6.1))) < 3 ? 2 : 1;
+}
+static double grey(struct vec3 p)
+{
+    return p.x;
+}
+
+static struct vec3 crosshair(const struct plan *plan, bool *are_all_visible)
+{
+    struct scene scene;
+    scene_for_plan(plan, &scene);
+    const struct scene_slices *slices = &scene.image.slices;
+    struct vec3 at = vec3(slices->sagittal.position_mm, slices->coronal.position_mm, slices->axial.position_mm);
+    *are_all_visible = slices->axial.visible && slices->coronal.visible && slices->sagittal.visible;
+    scene_finish(&scene);
+    return at;
+}
+
+/* The image has voxels of 2 x 3 x 5 mm, some axes reversed: centres at odd 1, at 3 n and at 5 n + 2.5. */
+static void a_new_room_begins_at_a_voxel_in_the_first_target_or_in_the_images_middle(void **state)
+{
+    (void)state;
+    static const struct made_region targets[] = { { "brain", -1, 0 }, { "gtv", 0, 0 } };
+    static const struct made_region organs[] = { { "brain", -1, 0 }, { "eye", 0, 0 } };
+    const uint32_t size[3] = { 10, 11, 8 };
+    struct grid fine = made_cube_grid(31);
+    struct grid coarse =
+        made_grid(10, 11, 8, made_affine(vec3(-2, 0, 0), vec3(0, 3, 0), vec3(0, 0, -5), size, vec3(0, 0, 0)));
+    bool are_all;
+    for (int has_target = 0; has_target < 2; has_target++) {
+        struct plan *plan = made_plan(&fine, blob, has_target ? targets : organs, 2);
+        made_plan_add_image(plan, &coarse, VOXEL_I16, grey);
+        struct vec3 at = crosshair(plan, &are_all);
+        struct vec3 wanted = has_target ? vec3(3, -6, 7.5) /* around the blob's middle */ : vec3(-1, 0, -2.5);
+        assert_false(are_all);
+        assert_close(at.y, wanted.y, 1e-9);
+        assert_close(fabs(at.x), fabs(wanted.x), 1e-9); /* the image's middle lies between two voxels */
+        assert_close(fabs(at.z), fabs(wanted.z), 1e-9);
+        assert_true(!has_target || (at.x > 0 && at.z > 0));
+        plan_and_derived_destroy(plan);
+    }
+}
+
+static void a_plan_without_regions_shows_its_three_slices_in_space(void **state)
+{
+    (void)state;
+    bool are_all;
+    struct grid grid = made_cube_grid(5);
+    struct plan *plan = made_plan(&grid, label, NULL, 0);
+    (void)crosshair(plan, &are_all);
+    assert_false(are_all); /* nor an image */
+    made_plan_add_image(plan, &grid, VOXEL_U8, label);
+    struct vec3 at = crosshair(plan, &are_all);
+    assert_true(are_all);
+    assert_close(vec3_length(at), 0, 1e-9);
+    plan_and_derived_destroy(plan);
+}
+
 static void what_the_plan_does_not_have_is_refused_by_the_fields_place(void **state)
 {
     (void)state;
@@ -116,6 +176,8 @@ int main(void)
         cmocka_unit_test(images_and_doses_are_found_by_their_id_and_the_first_without_one),
         cmocka_unit_test(what_the_plan_does_not_have_is_refused_by_the_fields_place),
         cmocka_unit_test(a_plan_without_images_and_doses_has_neither),
+        cmocka_unit_test(a_new_room_begins_at_a_voxel_in_the_first_target_or_in_the_images_middle),
+        cmocka_unit_test(a_plan_without_regions_shows_its_three_slices_in_space),
         cmocka_unit_test(a_new_room_leaves_out_air_and_not_what_is_white),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
