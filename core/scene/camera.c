@@ -6,6 +6,9 @@
 
 /* Extent of the home picture over that of the plan. */
 static const double home_margin = 1.08;
+/* The home camera of 3-D looks from the front, turned towards the patient's left, from above. web/js/view/home.js has
+ * the same numbers. */
+static const double home_turn_deg = 30, home_rise_deg = 12;
 
 static void box_corners(const struct box3 *box, struct vec3 corners[8])
 {
@@ -64,15 +67,25 @@ static double pane_height_mm(const struct box3 *box, const struct plane *plane)
     return fmax(home_margin * fmax(box_extent(size, plane->right), box_extent(size, plane->up)), 0.1);
 }
 
-/* Distance of the eye in front of the box's centre at which every corner lies within the opening angle. */
+/* From the target to the eye of the 3-D home camera; of unit length. */
+static struct vec3 home_direction(void)
+{
+    double turn = home_turn_deg * MATH_PI / 180, rise = home_rise_deg * MATH_PI / 180;
+    return vec3(cos(rise) * sin(turn), -cos(rise) * cos(turn), sin(rise));
+}
+
+/* Distance of the eye from the box's centre, along home_direction, at which every corner lies within the opening angle.
+ */
 static double home_distance_mm(const struct box3 *box, double fov_deg)
 {
     double slope = tan(fov_deg / 2 * MATH_PI / 180) / home_margin, distance = 0;
-    struct vec3 corners[8], centre = box_centre(box);
+    struct vec3 corners[8], centre = box_centre(box), back = home_direction();
+    struct vec3 right = vec3_normalize(vec3_cross(vec3(0, 0, 1), back)), up = vec3_cross(back, right);
     box_corners(box, corners);
     for (int i = 0; i < 8; i++) {
         struct vec3 d = vec3_sub(corners[i], centre);
-        distance = fmax(distance, fmax(fabs(d.x), fabs(d.z)) / slope - d.y); /* looking along +y */
+        double across = fmax(fabs(vec3_dot(d, right)), fabs(vec3_dot(d, up)));
+        distance = fmax(distance, across / slope + vec3_dot(d, back));
     }
     return fmax(distance, 1);
 }
@@ -87,9 +100,11 @@ void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_cam
     camera->has_position_mm = camera->has_target_mm = camera->has_up = true;
     camera->target_mm = box_centre(&box);
     camera->up = plane.up;
-    double distance = kind == SCENE_KIND_3D ? home_distance_mm(&box, fov_deg) : 1000;
-    camera->position_mm = vec3_sub(camera->target_mm, vec3_scale(plane_forward(&plane), distance));
-    if (kind != SCENE_KIND_3D) {
+    if (kind == SCENE_KIND_3D) {
+        camera->position_mm =
+            vec3_add(camera->target_mm, vec3_scale(home_direction(), home_distance_mm(&box, fov_deg)));
+    } else {
+        camera->position_mm = vec3_sub(camera->target_mm, vec3_scale(plane_forward(&plane), 1000));
         camera->projection = SCENE_PROJECTION_PARALLEL;
         camera->has_height_mm = true;
         camera->height_mm = pane_height_mm(&box, &plane);
@@ -116,12 +131,13 @@ static double resolve_pane(const struct plan *plan, const struct view *view, con
 static double resolve_space(const struct plan *plan, const struct view *view, struct camera *camera)
 {
     const struct scene_camera *given = &view->camera;
-    struct box3 box = plan_box(plan);
+    struct box3 box = home_box(plan);
 
     camera->target_lps_mm = given->has_target_mm ? given->target_mm : box_centre(&box);
-    camera->eye_lps_mm = given->has_position_mm
-                             ? given->position_mm
-                             : vec3_sub(camera->target_lps_mm, vec3(0, home_distance_mm(&box, given->fov_deg), 0));
+    camera->eye_lps_mm =
+        given->has_position_mm
+            ? given->position_mm
+            : vec3_add(camera->target_lps_mm, vec3_scale(home_direction(), home_distance_mm(&box, given->fov_deg)));
     camera->is_parallel = given->projection == SCENE_PROJECTION_PARALLEL;
     struct vec3 sight = vec3_sub(camera->target_lps_mm, camera->eye_lps_mm);
     camera->forward = vec3_normalize(sight);

@@ -35,7 +35,7 @@ static void print_help(void)
         "Draws one picture of the plan in the folder DIR, the same that the daemon shows for the same scene and view.\n\n"
         "  -o, --output OUT  the picture; its ending says whether PNG or JPEG\n"
         "  --scene FILE      JSON: what differs from the scene a new room starts with (a merge patch, RFC 7396)\n"
-        "  --view FILE       JSON: what differs from the view from the front, 1024x768; camera, kind, size, override\n"
+        "  --view FILE       JSON: what differs from the view a new room starts with, 1024x768; camera, kind, size, override\n"
         "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
         "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
         "  --quality N       of a JPEG, 1 to 100 (default %d)\n"

@@ -142,7 +142,10 @@ describe('beamroom info', () => {
       [['scalp', null], ['cranium', 'scalp'], ['brain', 'cranium'], ['target', 'brain'], ['tumour', 'target']]);
     assert.equal(info.hierarchy, 'file');
     assert.deepEqual(Object.keys(info.home), ['3d', 'axial', 'coronal', 'sagittal']);
-    assert.ok(info.home['3d'].position_mm[1] < -103 && info.home['3d'].up[2] === 1, 'from the front, the top up');
+    const { position_mm: eye, target_mm: target, up } = info.home['3d'];
+    assert.ok(eye[1] < -103 && up[2] === 1, 'from the front, the top up');
+    near(Math.atan2(eye[0] - target[0], target[1] - eye[1]), Math.PI / 6, 1e-6); // 30 degrees towards the patient's left
+    near(Math.asin((eye[2] - target[2]) / Math.hypot(...eye.map((value, axis) => value - target[axis]))), Math.PI / 15, 1e-6); // 12 up
     const region = Object.fromEntries(info.regions.map((entry) => [entry.id, entry]));
     near(region.brain.volume_cm3, brain, 0.01 * brain); // 1 %: border voxels at this size
     assert.equal(region.brain.color, '#d696a0');

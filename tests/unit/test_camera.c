@@ -42,7 +42,7 @@ static void expect_vec3(struct vec3 value, double x, double y, double z)
     assert_close(value.z, z, 1e-9);
 }
 
-static void the_home_camera_looks_from_the_front_and_holds_the_whole_plan(void **state)
+static void the_home_camera_looks_from_the_front_left_and_above_and_holds_the_whole_plan(void **state)
 {
     (void)state;
     struct plan *plan = box_plan();
@@ -51,9 +51,10 @@ static void the_home_camera_looks_from_the_front_and_holds_the_whole_plan(void *
     struct snapshot *snapshot = snapshot_of(plan, view);
     struct camera camera;
     camera_resolve(snapshot, &camera);
-    expect_vec3(camera.right, 1, 0, 0); /* patient left on screen right */
-    expect_vec3(camera.up, 0, 0, 1);
-    expect_vec3(camera.forward, 0, 1, 0); /* towards the back */
+    const double c30 = sqrt(3) / 2, s30 = 0.5, c12 = cos(MATH_PI / 15), s12 = sin(MATH_PI / 15);
+    expect_vec3(camera.right, c30, s30, 0); /* patient left on screen right, and nearer */
+    expect_vec3(camera.up, -s12 * s30, s12 * c30, c12);
+    expect_vec3(camera.forward, -c12 * s30, c12 * c30, -s12); /* to the right, the back and below */
     expect_vec3(camera.target_lps_mm, 10, 20, 30);
     double most = 0;
     for (int i = 0; i < 8; i++) {
@@ -317,7 +318,7 @@ static void a_new_room_sees_through_to_the_innermost_region(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_home_camera_looks_from_the_front_and_holds_the_whole_plan),
+        cmocka_unit_test(the_home_camera_looks_from_the_front_left_and_above_and_holds_the_whole_plan),
         cmocka_unit_test(a_plan_of_a_small_region_in_a_large_image_is_framed_by_the_image),
         cmocka_unit_test(a_view_without_position_has_the_home_camera),
         cmocka_unit_test(clip_space_goes_to_the_patient_and_back),

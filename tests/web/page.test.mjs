@@ -104,7 +104,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.locator('[data-plan="phantom"] button').click();
     await page.waitForURL(/#\/rooms\/[a-z0-9-]+$/);
     for (const view of [1, 2, 3, 4]) await full(page, view);
-    assert.equal(await letters(page, 1), 'R L S I', 'from the front, patient right on screen left');
+    assert.equal(await letters(page, 1), 'RA LP S I', 'from the front and the left, patient right on screen left');
     assert.equal(await letters(page, 2), 'R L A P');
     assert.equal(await letters(page, 3), 'A P S I');
     assert.equal(await letters(page, 4), 'R L S I');

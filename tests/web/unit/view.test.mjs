@@ -6,6 +6,7 @@ import { load } from './page.mjs';
 const cameras = await load('view/camera.js');
 const { axesFigure, edgeLetters, letters } = await load('view/letters.js');
 const { barMm, fromPicture, toPicture } = await load('view/vec.js');
+const { homeCamera } = await load('view/home.js');
 const { Painter } = await load('view/painter.js');
 
 const near = (actual, expected, tolerance = 1e-9) =>
@@ -20,6 +21,29 @@ test('the picture from the front has patient left at its right and superior up',
   near(right, [1, 0, 0]);
   near(up, [0, 0, 1]);
   near(forward, [0, 1, 0]);
+});
+
+test('the home picture is a three-quarter view that holds the whole plan and touches its corners', () => {
+  // the box, angles and margin of tests/unit/test_camera.c: 100 x 80 x 60 mm around (10, 20, 30)
+  const bounds = { low: [-40, -20, 0], high: [60, 60, 60] };
+  const home = homeCamera({ bounds, images: [], home: {} }, '3d');
+  const c30 = Math.sqrt(3) / 2, c12 = Math.cos(Math.PI / 15), s12 = Math.sin(Math.PI / 15);
+  const { right, up, forward } = cameras.axes(home);
+  near(home.target_mm, [10, 20, 30]);
+  near(right, [c30, 0.5, 0]);
+  near(up, [-s12 / 2, s12 * c30, c12]);
+  near(forward, [-c12 / 2, c12 * c30, -s12]);
+  const along = (a, b) => a.reduce((sum, value, axis) => sum + value * b[axis], 0);
+  const shares = [0, 1, 2, 3, 4, 5, 6, 7].map((at) => {
+    const corner = [0, 1, 2].map((axis) => bounds[at >> axis & 1 ? 'high' : 'low'][axis] - home.position_mm[axis]);
+    return Math.max(Math.abs(along(corner, right)), Math.abs(along(corner, up))) / along(corner, forward) / Math.tan(Math.PI / 12);
+  });
+  near([Math.max(...shares)], [1 / 1.08]);
+});
+
+test('a small lesion in a large image is framed by the image', () => {
+  const plan = { bounds: { low: [0, 0, 0], high: [10, 10, 10] }, images: [{ bounds: { low: [-95, -94, -93], high: [105, 106, 107] } }], home: {} };
+  near(homeCamera(plan, '3d').target_mm, [5, 6, 7]);
 });
 
 test('a quarter turn about the long axis looks from the patient\'s left', () => {
