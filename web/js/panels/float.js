@@ -32,6 +32,8 @@ const keys = [
   ['W', 'Window and level by left drag'],
   ['Z', 'Zoom by left drag'],
   ['F', 'Follow the shared view, or look for yourself'],
+  ['Ctrl + Z', 'Undo your last change of scene or camera'],
+  ['Ctrl + Shift + Z, Ctrl + Y', 'Redo it'],
   ['?', 'This list'],
   ['Esc', 'Leave tool, popover, message, full pane'],
 ];

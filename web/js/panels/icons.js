@@ -12,6 +12,8 @@ const paths = {
   grid: svg`<rect x="2" y="2" width="12" height="12" rx="1"/><path d="M8 2v12M2 8h12"/>`,
   oneThree: svg`<rect x="2" y="2" width="12" height="12" rx="1"/><path d="M10 2v12M10 6h4M10 10h4"/>`,
   single: svg`<rect x="2" y="2" width="12" height="12" rx="1"/>`,
+  undo: svg`<path d="M5.5 3 2.5 6l3 3M2.5 6H10a3.500 3.500 0 0 1 0 7H6"/>`,
+  redo: svg`<path d="m10.5 3 3 3-3 3M13.5 6H6a3.500 3.500 0 0 0 0 7h4"/>`,
   reset: svg`<path d="M2.5 3v3.500H6M2.8 6.300A5.6 5.6 0 1 1 2.4 9"/>`,
   camera: svg`<path d="M1.8 5h2.700l1.2-1.800h4.600L11.5 5h2.700v8H1.800Z"/><circle cx="8" cy="8.7" r="2.3"/>`,
   maximise: svg`<path d="M9.5 2H14v4.500M6.5 14H2V9.500M14 2 9.3 6.700M2 14l4.7-4.7"/>`,

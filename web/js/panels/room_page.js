@@ -7,6 +7,7 @@ import { Refusals, inQuestion } from '../state/refusals.js';
 import { shapeQuery } from '../state/shapes.js';
 import { RoomState } from '../state/room.js';
 import { UiState } from '../state/ui.js';
+import { Undo, listenUndo } from '../state/undo.js';
 import { banner } from './banner.js';
 import { figuresDialog } from './figures.js';
 import { ended, help, toasts } from './float.js';
@@ -39,6 +40,7 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const ui = new UiState(clock);
   const connection = connect(id);
   const room = new RoomState(id, { connection, clock, schedule, notify: ui.notify });
+  const undo = new Undo(room, { clock, notify: ui.notify });
   const probed = signal({ result: null, error: '', isOld: false });
   const shaped = signal({ region: '', representation: '', result: null, error: '' });
   const comparison = new Comparison(api, signal([]));
@@ -53,11 +55,11 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, decode, schedule, onPainted }, view));
   connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));
 
-  const world = { room, ui, api, probed, shaped, refused, comparison, panes: () => panes };
+  const world = { room, ui, api, undo, probed, shaped, refused, comparison, panes: () => panes };
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), probe(room, api, probed, clock), ...adapt(ui));
-  stops.push(listenKeys(ui), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui));
+  stops.push(listenKeys(ui), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);

@@ -2,6 +2,7 @@
 import { html } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { icon } from './icons.js';
+import { undoButtons } from './undo_buttons.js';
 
 const tools = [
   ['crosshair', 'Crosshair', 'Crosshair in slices, turn in 3-D'],
@@ -26,7 +27,8 @@ export function roving(event) {
   event.preventDefault();
 }
 
-export function toolStrip({ room, ui, panes, api }) {
+export function toolStrip(world) {
+  const { room, ui, panes, api } = world;
   const active = panes()[ui.active.value - 1];
   const snapshot = () => {
     const view = room.view(ui.active.value);
@@ -46,6 +48,7 @@ export function toolStrip({ room, ui, panes, api }) {
     ${layouts.map(([id, picture, name]) => html`<button class=${classMap({ tool: true, plain: true, on: !ui.maximised.value && ui.layout.value === id })} title=${name} aria-label=${name}
       aria-pressed=${ui.layout.value === id} tabindex="-1" @click=${() => setLayout(id)}>${icon(picture)}</button>`)}
     <span class="grow"></span>
+    ${undoButtons(world)}
     <button class="tool plain" tabindex="-1" title="Reset this view (R)" aria-label="Reset view" ?disabled=${!room.canChange.value} @click=${(event) => active.actions.reset(event.timeStamp)}>${icon('reset')}</button>
     <button class="tool plain" tabindex="-1" title="Save this picture as a file" aria-label="Snapshot" ?disabled=${!room.canChange.value} @click=${snapshot}>${icon('camera')}</button>
   </div>`;

@@ -32,6 +32,8 @@ export class RoomState {
     this.#clock = clock;
     this.#schedule = schedule;
     this.notify = notify;
+    /** @type {(of: 'scene'|number, patch: object, document: object) => void} told each change of this person before it is applied */
+    this.recorder = () => {};
 
     this.link = signal({ state: 'connecting', retryAt: 0, reason: '' }); // connecting | open | lost | ended
     this.member = signal('');
@@ -75,6 +77,7 @@ export class RoomState {
   /** Changes the scene for everybody. view: the pane it was done in; at: time of the input event, for measurements. */
   patchScene(patch, { view = 0, at = this.#clock.now() } = {}) {
     if (!this.canChange.value) return;
+    this.recorder('scene', patch, this.scene.value);
     this.#scene.queue(patch);
     this.#sceneOrigin = { view, at };
     this.#showScene();
@@ -85,6 +88,7 @@ export class RoomState {
   patchView(number, patch, { at = this.#clock.now() } = {}) {
     const view = this.view(number);
     if (this.link.value.state !== 'open') return;
+    this.recorder(number, patch, view.document.value);
     view.queue(patch);
     this.#viewOrigin.set(number, at);
     this.#plan();

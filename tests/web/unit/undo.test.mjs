@@ -1,0 +1,211 @@
+// Undo and redo: steps, gestures, what somebody else has changed, and the words of the buttons; over a room that is a fake.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { load } from './page.mjs';
+
+const { Undo, maxSteps, joinMs, listenUndo } = await load('state/undo.js');
+const { stepName, stepTitle } = await load('panels/undo_words.js');
+const { mergePatch } = await load('wire/merge.js');
+
+function world() {
+  let now = 1000;
+  const told = [];
+  const views = [{ kind: '3d', document: { value: { kind: '3d', size_px: [10, 10] } } }, { kind: 'axial', document: { value: { kind: 'axial' } } }];
+  const room = {
+    canChange: { value: true },
+    plan: { value: { images: [{ id: 'ct', unit: 'HU' }], regions: [{ id: 'r1', name: 'brain' }, { id: 'r2', name: 'tumor' }] } },
+    scene: { value: { regions: { r1: { opacity: 1, visible: true }, r2: { opacity: 1, visible: true } }, image: { window: { center: 40, width: 400 }, slices: { axial: { position_mm: 0 }, coronal: { position_mm: 0 }, sagittal: { position_mm: 0 } } } } },
+    view: (number) => views[number - 1],
+    patchScene(patch) {
+      room.recorder('scene', patch, room.scene.value);
+      room.scene.value = mergePatch(room.scene.value, patch);
+    },
+    patchView(number, patch) {
+      const { document } = views[number - 1];
+      room.recorder(number, patch, document.value);
+      document.value = mergePatch(document.value, patch);
+    },
+  };
+  const undo = new Undo(room, { clock: { now: () => now }, notify: (...words) => told.push(words) });
+  const opacity = (value, id = 'r1') => room.patchScene({ regions: { [id]: { opacity: value } } });
+  const other = (patch) => { room.scene.value = mergePatch(room.scene.value, patch); }; // another member
+  return { room, undo, told, opacity, other, wait: (ms = joinMs + 1) => { now += ms; } };
+}
+const opacityOf = (room, id = 'r1') => room.scene.value.regions[id].opacity;
+
+test('undo restores what was, redo what was done, one step at a time', () => {
+  const { room, undo, opacity, wait } = world();
+  opacity(0.5);
+  wait();
+  opacity(0.2);
+  undo.undo();
+  assert.equal(opacityOf(room), 0.5);
+  undo.undo();
+  assert.equal(opacityOf(room), 1);
+  assert.equal(undo.next.value, null);
+  undo.undo(); // nothing left
+  undo.redo();
+  undo.redo();
+  assert.equal(opacityOf(room), 0.2);
+  assert.equal(undo.nextAgain.value, null);
+});
+
+test('a new change ends what could be redone', () => {
+  const { room, undo, opacity, wait } = world();
+  opacity(0.5);
+  undo.undo();
+  wait();
+  opacity(0.7);
+  undo.redo();
+  assert.equal(opacityOf(room), 0.7);
+});
+
+test('a change right after an undo is a step of its own', () => {
+  const { room, undo, opacity, wait } = world();
+  opacity(0.5);
+  wait();
+  opacity(0.4);
+  undo.undo();
+  opacity(0.3);
+  undo.undo();
+  assert.equal(opacityOf(room), 0.5);
+});
+
+test('all changes of one press are one step, however long it lasts and whatever it changes', () => {
+  const { room, undo, wait } = world();
+  undo.press();
+  for (let at = 1; at <= 5; at++) {
+    room.patchScene({ image: { slices: { axial: { position_mm: at }, coronal: { position_mm: 0 } } } });
+    room.patchView(2, { camera: { height_mm: 100 + at } });
+    wait(1000);
+  }
+  undo.release();
+  undo.press();
+  room.patchScene({ image: { slices: { axial: { position_mm: 9 } } } });
+  undo.release();
+  undo.undo();
+  assert.equal(room.scene.value.image.slices.axial.position_mm, 5);
+  undo.undo();
+  assert.equal(room.scene.value.image.slices.axial.position_mm, 0);
+  assert.equal(room.view(2).document.value.camera, undefined, 'the camera too');
+  undo.redo();
+  assert.deepEqual([room.scene.value.image.slices.axial.position_mm, room.view(2).document.value.camera], [5, { height_mm: 105 }]);
+});
+
+test('without a press, changes of the same field join within 400 ms, those of another do not', () => {
+  const { room, undo, opacity, wait } = world();
+  opacity(0.9);
+  wait(joinMs);
+  opacity(0.8);
+  wait(joinMs);
+  opacity(0.7);
+  opacity(0.1, 'r2');
+  undo.undo();
+  assert.deepEqual([opacityOf(room), opacityOf(room, 'r2')], [0.7, 1]);
+  undo.undo();
+  assert.equal(opacityOf(room), 1);
+});
+
+test('what somebody else has changed since is left, and a message says so', () => {
+  const { room, undo, told, opacity, other, wait } = world();
+  opacity(0.5);
+  other({ regions: { r1: { opacity: 0.3 } } });
+  undo.undo();
+  assert.equal(opacityOf(room), 0.3);
+  assert.match(told[0][1], /^Not undone: .* somebody else/);
+  wait();
+  room.patchScene({ regions: { r1: { visible: false }, r2: { visible: false } } });
+  other({ regions: { r2: { visible: true } } });
+  other({ regions: { r2: { visible: false, opacity: 0.6 } } }); // another field, and the same value again
+  undo.undo();
+  assert.deepEqual(room.scene.value.regions, { r1: { opacity: 0.3, visible: true }, r2: { opacity: 0.6, visible: true } });
+  assert.equal(told.length, 1);
+  room.patchScene({ regions: { r1: { opacity: 1 }, r2: { opacity: 1 } } });
+  other({ regions: { r2: { opacity: 0.2 } } });
+  undo.undo();
+  assert.deepEqual([opacityOf(room), opacityOf(room, 'r2')], [0.3, 0.2]);
+  assert.match(told[1][1], /^Only in part undone/);
+});
+
+test('a camera goes back whole or not at all', () => {
+  const { room, undo, told } = world();
+  room.view(1).document.value.camera = { position_mm: [0, 0, 1], fov_deg: 30 };
+  room.patchView(1, { camera: { position_mm: [0, 0, 2], fov_deg: 30, height_mm: 7 } });
+  room.view(1).document.value = mergePatch(room.view(1).document.value, { camera: { fov_deg: 40 } });
+  undo.undo();
+  assert.deepEqual(room.view(1).document.value.camera, { position_mm: [0, 0, 2], fov_deg: 40, height_mm: 7 });
+  assert.equal(told.length, 1);
+  room.patchView(1, { camera: { position_mm: [0, 0, 3], height_mm: null } });
+  undo.undo();
+  assert.deepEqual(room.view(1).document.value.camera, { position_mm: [0, 0, 2], fov_deg: 40, height_mm: 7 });
+});
+
+test('a change that the server refused is passed over, the size of a pane is no step', () => {
+  const { room, undo, told, opacity, other, wait } = world();
+  opacity(0.5);
+  wait();
+  opacity(0.9, 'r2');
+  other({ regions: { r2: { opacity: 1 } } }); // refused: as it was
+  room.patchView(1, { size_px: [20, 20] });
+  undo.undo();
+  assert.equal(opacityOf(room), 1);
+  assert.deepEqual(told, []);
+});
+
+test('numbers that came back from the server with other last digits are the same', () => {
+  const { room, undo, told, opacity, other } = world();
+  opacity(0.1 + 0.2);
+  other({ regions: { r1: { opacity: 0.3 } } });
+  undo.undo();
+  assert.deepEqual([opacityOf(room), told.length], [1, 0]);
+});
+
+test('the oldest of more than 100 steps is forgotten', () => {
+  const { room, undo, wait } = world();
+  for (let step = 1; step <= maxSteps + 5; step++) {
+    room.patchScene({ image: { window: { center: 40 + step, width: 400 } } });
+    wait();
+  }
+  for (let step = 0; step < maxSteps + 20; step++) undo.undo();
+  assert.equal(room.scene.value.image.window.center, 45);
+});
+
+test('keys undo and redo, but not while a text field has the focus', () => {
+  const { room, undo, opacity } = world();
+  const target = new EventTarget();
+  const stop = listenUndo(target, undo);
+  const key = (name, { isText = false, ...how } = {}) => {
+    const event = Object.assign(new Event('keydown', { cancelable: true }), { key: name, ctrlKey: true, ...how });
+    Object.defineProperty(event, 'target', { value: { matches: () => isText } });
+    target.dispatchEvent(event);
+    return event.defaultPrevented;
+  };
+  opacity(0.5);
+  assert.equal(key('z', { isText: true }), false);
+  assert.equal(opacityOf(room), 0.5);
+  assert.equal(key('z'), true);
+  assert.equal(opacityOf(room), 1);
+  key('Z', { shiftKey: true });
+  assert.equal(opacityOf(room), 0.5);
+  key('z');
+  key('y');
+  assert.equal(opacityOf(room), 0.5);
+  stop();
+  assert.equal(key('z'), false);
+});
+
+test('steps are named, with the value and its unit', () => {
+  const { room, undo, opacity, wait } = world();
+  const title = () => stepTitle('Undo', 'Ctrl+Z', undo.next.value, 'before', room);
+  assert.equal(title(), 'Undo (Ctrl+Z)');
+  opacity(0.5);
+  assert.equal(title(), 'Undo: opacity of brain, to 100 % (Ctrl+Z)');
+  wait();
+  room.patchScene({ image: { window: { center: 80, width: 200 } } });
+  assert.equal(title(), 'Undo: window, to C 40  W 400 HU (Ctrl+Z)');
+  const name = (of, ...paths) => stepName(paths.map((path) => ({ of, path: path.split('.') })), room);
+  assert.equal(name('scene', 'regions.r1.visible', 'regions.r2.visible'), 'visibility of 2 regions');
+  assert.equal(name('scene', 'image.slices.axial.position_mm', 'image.slices.coronal.position_mm'), 'crosshair');
+  assert.equal(name('scene', 'outline.width_px'), 'outline width');
+  assert.equal(name(1, 'camera'), 'camera of 3-D');
+});

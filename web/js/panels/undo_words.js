@@ -1,0 +1,55 @@
+// The words for what undo and redo would change.
+import { shownImage } from '../state/plan.js';
+import { number, significant, windowText } from './format.js';
+
+const paneNames = { '3d': '3-D', axial: 'axial', sagittal: 'sagittal', coronal: 'coronal' };
+const words = { 'image.id': 'image', 'image.window': 'window', 'image.low_values': 'greys of low values', 'image.interpolation': 'values between voxels' };
+const regionWords = { visible: 'visibility', color: 'colour', representation: 'form' };
+const units = { _mm: 'mm', _px: 'px', _deg: '°' };
+
+const unitOf = (name) => Object.keys(units).find((ending) => name.endsWith(ending));
+const unique = (list) => [...new Set(list)];
+
+/** "opacity of brain", "window", "camera of 3-D", "crosshair", "visibility of 4 regions". @param {import('../state/undo.js').Change[]} changes */
+export function stepName(changes, room) {
+  const views = changes.filter(({ of }) => of !== 'scene');
+  const [regions, rest] = [true, false].map((isRegion) => changes.filter(({ of, path }) => of === 'scene' && (path[0] === 'regions') === isRegion));
+  const names = [];
+  if (regions.length) {
+    const ids = unique(regions.map(({ path }) => path[1]));
+    const fields = unique(regions.map(({ path }) => regionWords[path[2]] ?? path[2]?.replaceAll('_', ' ')));
+    const who = ids.length > 1 ? `${ids.length} regions` : room.plan.value?.regions.find(({ id }) => id === ids[0])?.name ?? ids[0];
+    names.push(`${fields.length > 2 ? 'style' : fields.join(' and ')} of ${who}`);
+  }
+  names.push(...unique(rest.map(fieldName)));
+  const kinds = unique(views.map(({ of }) => paneNames[room.view(of).kind]));
+  if (kinds.length) names.push(`camera of ${kinds.join(', ')}`);
+  return names.length > 2 ? `${names[0]} and ${names.length - 1} more` : names.join(' and ');
+}
+
+function fieldName({ path }) {
+  const [group, name, ...inner] = path;
+  if (group === 'image' && name === 'slices') return inner.at(-1) === 'position_mm' ? 'crosshair' : 'slices in 3-D';
+  const known = words[`${group}.${name}`];
+  if (known) return known;
+  const ending = unitOf(name ?? '');
+  return [group, ...(name ? [ending ? name.slice(0, -ending.length) : name] : [])].join(' ').replaceAll('_', ' ');
+}
+
+/** "100 %", "2 px", "C 40 W 400": the value that a step of one field goes to; '' where a value would say little. */
+function valueText(change, wanted, room) {
+  const value = change[wanted];
+  const name = change.path.at(-1);
+  if (name === 'window' && value) return windowText(value, shownImage(room.plan.value, room.scene.value)?.unit);
+  if (typeof value !== 'number' || name === 'position_mm') return '';
+  if (name === 'opacity') return `${number(value * 100)} %`;
+  const unit = units[unitOf(name)];
+  return unit ? `${significant(value)} ${unit}` : significant(value);
+}
+
+/** "Undo: opacity of brain, to 100 % (Ctrl+Z)" */
+export function stepTitle(verb, keys, changes, wanted, room) {
+  if (!changes) return `${verb} (${keys})`;
+  const value = changes.length === 1 ? valueText(changes[0], wanted, room) : '';
+  return `${verb}: ${stepName(changes, room)}${value ? `, to ${value}` : ''} (${keys})`;
+}

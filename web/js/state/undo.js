@@ -1,0 +1,185 @@
+// Undo and redo of what this person changed: the scene, and the cameras of the views.
+import { batch, signal } from '../../lib/signals-core.js';
+import { isObject } from '../wire/merge.js';
+
+/** Steps that are kept; the oldest is forgotten first. */
+export const maxSteps = 100;
+/** Changes of the same fields at most this far apart are one step: wheel, keys held down, typing. */
+export const joinMs = 400;
+
+// Fields that only make sense together: one of them is never restored without the others.
+const units = ['camera', 'image.window'];
+const ignored = ['size_px']; // follows the pane, not the person
+
+/**
+ * @typedef {object} Change one field, or one unit of fields, of one document
+ * @property {'scene'|number} of the scene, or the number of a view
+ * @property {string[]} path @property {unknown} before undefined: not there @property {unknown} after
+ */
+
+export class Undo {
+  #room;
+  #clock;
+  #notify;
+  #done = []; // steps {changes: Map<string, Change>, gesture, at}, oldest first
+  #undone = [];
+  #gesture = 0; // the press that is held down; 0: none
+  #nextGesture = 1;
+  #isRestoring = false;
+
+  /**
+   * @param {import('./room.js').RoomState} room
+   * @param {{clock: {now: () => number}, notify: (kind: string, text: string, topic?: string) => void}} world
+   */
+  constructor(room, { clock, notify }) {
+    this.#room = room;
+    this.#clock = clock;
+    this.#notify = notify;
+    this.next = signal(null); // the changes that undo would take back, Change[]; null: none
+    this.nextAgain = signal(null); // the same of redo
+    room.recorder = (of, patch, document) => this.#record(of, patch, document);
+  }
+
+  /** All changes until release() are one step: a drag, or one movement of a slider. */
+  press() {
+    this.#gesture = this.#nextGesture++;
+  }
+
+  release() {
+    this.#gesture = 0;
+  }
+
+  undo() {
+    this.#move(this.#done, this.#undone, 'before', 'after', 'undone');
+  }
+
+  redo() {
+    this.#move(this.#undone, this.#done, 'after', 'before', 'redone');
+  }
+
+  /** Notes a change before it is applied. */
+  #record(of, patch, document) {
+    if (this.#isRestoring) return;
+    const changes = leaves(patch).filter(([path]) => !ignored.includes(path[0])).map(([path, value]) => {
+      const before = at(document, path);
+      return { of, path, before, after: after(before, value) };
+    }).filter(({ before, after: value }) => !isSame(before, value));
+    if (!changes.length) return;
+    const now = this.#clock.now();
+    const step = this.#stepFor(changes, now);
+    step.at = now;
+    for (const change of changes) {
+      const key = keyOf(change);
+      const known = step.changes.get(key);
+      step.changes.set(key, known ? { ...known, after: change.after } : change);
+    }
+    this.#undone = [];
+    this.#tell();
+  }
+
+  /** The step that these changes belong to: the last one, or a new one. */
+  #stepFor(changes, now) {
+    const last = this.#done.at(-1);
+    const isSamePress = last && this.#gesture !== 0 && last.gesture === this.#gesture;
+    const isSameFields = last && !this.#undone.length && now - last.at <= joinMs && changes.length === last.changes.size && changes.every((change) => last.changes.has(keyOf(change)));
+    if (isSamePress || isSameFields) return last;
+    const step = { changes: new Map(), gesture: this.#gesture, at: now };
+    this.#done = [...this.#done, step].slice(-maxSteps);
+    return step;
+  }
+
+  /** Restores the fields of the newest step that still differ; a field that somebody else has changed since is left. */
+  #move(from, to, wanted, left, word) {
+    if (!this.#room.canChange.value) return;
+    let step = null;
+    let open = [];
+    while (!open.length && from.length) { // a step that was refused, or already is as wanted, is passed over
+      step = from.pop();
+      open = [...step.changes.values()].filter((change) => !isSame(this.#now(change), change[wanted]));
+    }
+    const mine = open.filter((change) => isSame(this.#now(change), change[left]));
+    this.#restore(mine, wanted);
+    if (mine.length) to.push({ changes: new Map(mine.map((change) => [keyOf(change), change])), gesture: 0, at: -Infinity });
+    if (mine.length < open.length)
+      this.#notify('warn', mine.length ? `Only in part ${word}: the rest was changed by somebody else since.` : `Not ${word}: it was changed by somebody else since.`, 'undo');
+    this.#tell();
+  }
+
+  #restore(changes, wanted) {
+    const patches = new Map();
+    for (const change of changes) {
+      const value = change[wanted] === undefined ? null : patchTo(this.#now(change), change[wanted]);
+      patches.set(change.of, put(patches.get(change.of) ?? {}, change.path, value));
+    }
+    this.#isRestoring = true;
+    batch(() => {
+      for (const [of, patch] of patches) {
+        if (of === 'scene') this.#room.patchScene(patch);
+        else this.#room.patchView(of, patch);
+      }
+    });
+    this.#isRestoring = false;
+  }
+
+  #now({ of, path }) {
+    return at(of === 'scene' ? this.#room.scene.value : this.#room.view(of).document.value, path);
+  }
+
+  #tell() {
+    const changes = (step) => (step ? [...step.changes.values()] : null);
+    batch(() => {
+      this.next.value = changes(this.#done.at(-1));
+      this.nextAgain.value = changes(this.#undone.at(-1));
+    });
+  }
+}
+
+/**
+ * Makes every press of a pointer one step, and Ctrl+Z, Ctrl+Shift+Z and Ctrl+Y undo and redo, but in a text field its own.
+ * @param {EventTarget} target the window @param {Undo} undo @returns {() => void} stops it
+ */
+export function listenUndo(target, undo) {
+  const abort = new AbortController();
+  const on = (type, listener, capture) => target.addEventListener(type, listener, { signal: abort.signal, capture });
+  on('pointerdown', () => undo.press(), true);
+  on('pointerup', () => undo.release()); // after the listeners of what was pressed, whose last change belongs to the drag
+  on('pointercancel', () => undo.release());
+  on('keydown', (event) => {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.matches?.('input:not([type=range]):not([type=checkbox]), textarea')) return;
+    const key = event.key.toLowerCase();
+    if (key === 'y' || (key === 'z' && event.shiftKey)) undo.redo();
+    else if (key === 'z') undo.undo();
+    else return;
+    event.preventDefault();
+  });
+  return () => abort.abort();
+}
+
+const keyOf = ({ of, path }) => JSON.stringify([of, ...path]);
+
+/** The fields that a patch sets, a unit as one field: [path, value][]. */
+function leaves(patch, path = []) {
+  if (path.length && (!isObject(patch) || units.includes(path.join('.')))) return [[path, patch]];
+  return Object.entries(patch).flatMap(([name, value]) => leaves(value, [...path, name]));
+}
+
+/** The value of a field once a patch has set it; null takes it away. */
+const after = (before, patch) => (patch === null ? undefined : isObject(patch) ? Object.fromEntries(Object.entries({ ...before, ...patch }).filter(([, value]) => value !== null)) : patch);
+
+/** What sets a field to a value, also where that has fewer fields inside than are there now. */
+const patchTo = (now, wanted) => (isObject(wanted) && isObject(now) ? { ...Object.fromEntries(Object.keys(now).map((name) => [name, null])), ...wanted } : wanted);
+
+const at = (document, path) => path.reduce((value, name) => (isObject(value) && Object.hasOwn(value, name) ? value[name] : undefined), document) ?? undefined;
+
+function put(patch, [name, ...rest], value) {
+  patch[name] = rest.length ? put(patch[name] ?? {}, rest, value) : value;
+  return patch;
+}
+
+/** Equal values; numbers that have been through the server as text may differ in their last digits. */
+function isSame(a, b) {
+  if (typeof a === 'number' && typeof b === 'number') return a === b || Math.abs(a - b) <= 1e-9 * Math.max(Math.abs(a), Math.abs(b));
+  if (Array.isArray(a) && Array.isArray(b)) return a.length === b.length && a.every((value, index) => isSame(value, b[index]));
+  if (!isObject(a) || !isObject(b)) return (a ?? null) === (b ?? null);
+  return [...new Set([...Object.keys(a), ...Object.keys(b)])].every((name) => isSame(a[name], b[name]));
+}
