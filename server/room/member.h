@@ -1,6 +1,5 @@
 #pragma once
-/* Members: entering with hello, coming back with the secret, leaving, and the views each member opens. The handlers of
- * view messages and of frame.shown. Internal to server/room. */
+/* Members: entering with hello, coming back with the secret, leaving. Internal to server/room. */
 #include "server/room/room_state.h"
 #include "server/wire/message.h"
 
@@ -12,16 +11,3 @@ int64_t members_forget(struct room *room);
 void members_free(struct room *room);
 /* Closes the views of members whose connection was closed for want of memory. */
 void members_close_lost(struct room *room);
-
-/* Handlers; each returns false with a problem when it applied nothing. */
-bool member_view_open(struct room *room, struct member *member, const struct message *message, struct problem *problem);
-bool member_view_patch(struct room *room, struct member *member, const struct message *message,
-                       struct problem *problem);
-bool member_view_follow(struct room *room, struct member *member, const struct message *message,
-                        struct problem *problem);
-bool member_view_close(struct room *room, struct member *member, const struct message *message,
-                       struct problem *problem);
-bool member_frame_shown(struct room *room, struct member *member, const struct message *message,
-                        struct problem *problem);
-/* Notes an input that the stream's present version holds: it is reported with the first picture that shows it. */
-void view_add_input(struct member_view *view, uint32_t input);

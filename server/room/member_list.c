@@ -11,12 +11,26 @@ struct member *member_of_connection(const struct room *room, const void *connect
     return NULL;
 }
 
-bool member_follows(const struct member *member)
+bool member_presents(const struct room *room, const struct member *member)
 {
-    for (int i = 0; i < ROOM_MAX_VIEWS; i++)
+    return room->presenter == member;
+}
+
+bool member_follows(const struct room *room, const struct member *member)
+{
+    for (int i = 0; i < ROOM_MAX_VIEWS && !member_presents(room, member); i++)
         if (member->views[i].is_following)
             return true;
     return false;
+}
+
+bool refuse_not_presenter(const struct room *room, struct problem *problem, const char *what)
+{
+    if (room->presenter)
+        return problem_set(problem, PROBLEM_NOT_PRESENTER, "", "", "only the presenter, %s, may %s",
+                           room->presenter->id, what);
+    return problem_set(problem, PROBLEM_NOT_PRESENTER, "", "", "only a presenter may %s, and nobody presents now",
+                       what);
 }
 
 static bool is_blank(const char *text)
@@ -33,7 +47,8 @@ cJSON *room_members(const struct room *room)
         cJSON_AddStringToObject(item, "id", member->id);
         cJSON_AddStringToObject(item, "name", is_blank(member->name) ? member->id : member->name);
         cJSON_AddBoolToObject(item, "connected", member->connection != NULL);
-        cJSON_AddBoolToObject(item, "following", member_follows(member));
+        cJSON_AddBoolToObject(item, "following", member_follows(room, member));
+        cJSON_AddBoolToObject(item, "presenting", member_presents(room, member));
         json_append(list, item);
     }
     return list;

@@ -1,8 +1,12 @@
 #pragma once
-/* The members of a room: finding one, and the list of members as JSON (room_members). Internal to server/room. */
+/* The members of a room: finding one, who presents and who follows, and the list of members as JSON (room_members).
+ * Internal to server/room. */
 #include "server/room/room_state.h"
 
 /* The member that uses this connection; NULL: it has not said hello. */
 struct member *member_of_connection(const struct room *room, const void *connection);
-/* True if one of the member's views follows a shared view. */
-bool member_follows(const struct member *member);
+bool member_presents(const struct room *room, const struct member *member);
+/* True if one of its views shows a shared view, and the member does not present. */
+bool member_follows(const struct room *room, const struct member *member);
+/* Fills problem: only the presenter may do `what` ("change the scene"). Returns false. */
+bool refuse_not_presenter(const struct room *room, struct problem *problem, const char *what);

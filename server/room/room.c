@@ -1,4 +1,4 @@
-/* Creates and destroys a room; takes the renderer's states, members' messages and patches of the scene. */
+/* Creates and destroys a room; takes the renderer's states and members' messages. */
 #include "server/room/room.h"
 
 #include <assert.h>
@@ -10,11 +10,13 @@
 #include "core/base/mem.h"
 #include "server/room/member.h"
 #include "server/room/member_list.h"
+#include "server/room/member_view.h"
+#include "server/room/presenter.h"
 #include "server/room/send.h"
+#include "server/room/shared_scene.h"
 #include "server/room/stream.h"
 #include "server/wire/json_merge.h"
 #include "server/wire/message.h"
-#include "server/wire/patch.h"
 
 static const char room_is_closed[] = "the room is closed";
 static const char hello_first[] = "the first message must be hello";
@@ -145,46 +147,6 @@ void room_renderer_state(struct room *room, enum wire_renderer_state state, cons
 
 /* ---- messages --------------------------------------------------------------------------------------------------- */
 
-static bool apply_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input,
-                        struct problem *problem)
-{
-    if (!room->scene) {
-        problem_set(problem, PROBLEM_BUSY, "", "", "the plan is not loaded yet");
-        if (problem)
-            problem->retry_after_ms = 500;
-        return false;
-    }
-    cJSON *scene = scene_document_patch(room->plan, room->defaults, room->scene, patch, problem);
-    if (!scene)
-        return false;
-    bool has_changed = !json_equal(scene, room->scene);
-    cJSON *told = patch_told(room->scene, scene, patch);
-    if (!told) {
-        cJSON_Delete(scene);
-        return json_no_memory(problem, "a scene");
-    }
-    cJSON_Delete(room->scene);
-    room->scene = scene;
-    if (has_changed) {
-        room->revision++;
-        streams_changed(room, true);
-        room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
-    }
-    for (int i = 0; by && i < ROOM_MAX_VIEWS; i++) {
-        view_add_input(&by->views[i], input);
-        stream_send_picture(room, by, &by->views[i]);
-    }
-    send_scene_patch(room, told, by, input,
-                     has_changed); /* a patch that changed nothing is answered to its sender only */
-    return true;
-}
-
-static bool handle_scene_patch(struct room *room, struct member *member, const struct message *message,
-                               struct problem *problem)
-{
-    return apply_patch(room, message->scene_patch.patch, member, (uint32_t)message->scene_patch.input, problem);
-}
-
 static bool handle_ping(struct room *room, struct member *member, const struct message *message,
                         struct problem *problem)
 {
@@ -207,10 +169,16 @@ static const struct {
     enum message_type type;
     bool (*handle)(struct room *room, struct member *member, const struct message *message, struct problem *problem);
 } handlers[] = {
-    { MESSAGE_HELLO, handle_second_hello },      { MESSAGE_VIEW_OPEN, member_view_open },
-    { MESSAGE_VIEW_PATCH, member_view_patch },   { MESSAGE_VIEW_FOLLOW, member_view_follow },
-    { MESSAGE_VIEW_CLOSE, member_view_close },   { MESSAGE_SCENE_PATCH, handle_scene_patch },
-    { MESSAGE_FRAME_SHOWN, member_frame_shown }, { MESSAGE_PING, handle_ping },
+    { MESSAGE_HELLO, handle_second_hello },
+    { MESSAGE_VIEW_OPEN, member_view_open },
+    { MESSAGE_VIEW_PATCH, member_view_patch },
+    { MESSAGE_VIEW_CLOSE, member_view_close },
+    { MESSAGE_FOLLOW, member_follow },
+    { MESSAGE_PRESENT, presenter_present },
+    { MESSAGE_SHOW_EVERYONE, presenter_show_everyone },
+    { MESSAGE_SCENE_PATCH, member_scene_patch },
+    { MESSAGE_FRAME_SHOWN, member_frame_shown },
+    { MESSAGE_PING, handle_ping },
 };
 
 static void whole_number(const cJSON *json, const char *name, double most, int64_t *value)
@@ -281,8 +249,12 @@ int64_t room_tick(struct room *room, int64_t now_us)
 {
     room->now_us = now_us;
     members_close_lost(room);
+    if (presenter_settle(room))
+        send_members(room);
     int64_t members_us = members_forget(room), streams_us = streams_request_due(room);
-    return members_us < streams_us ? members_us : streams_us;
+    int64_t presenter_us = presenter_due_us(room);
+    int64_t least_us = members_us < streams_us ? members_us : streams_us;
+    return least_us < presenter_us ? least_us : presenter_us;
 }
 
 /* ---- for HTTP --------------------------------------------------------------------------------------------------- */
@@ -302,7 +274,7 @@ cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct pr
 bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, struct problem *problem)
 {
     room->now_us = now_us;
-    if (!apply_patch(room, patch, NULL, 0, problem))
+    if (!scene_apply_patch(room, patch, NULL, 0, problem))
         return false;
     (void)streams_request_due(room);
     return true;

@@ -11,7 +11,8 @@ enum {
     ROOM_MAX_VIEWS = 8,
     ROOM_MAX_UNSHOWN = 2,
     ROOM_STILL_AFTER_MS = 150,
-    ROOM_MEMBER_KEPT_S = 300
+    ROOM_MEMBER_KEPT_S = 300,
+    ROOM_PRESENTER_KEPT_S = 30 /* how long a presenter without a connection still presents */
 };
 
 struct room;

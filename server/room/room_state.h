@@ -28,7 +28,7 @@ struct stream {
     bool scene_is_stale; /* scene is made anew before the next request */
     bool is_shared;
     int kind;
-    char mover[64];   /* shared: id of the member who moved it last */
+    char mover[64];   /* shared: id of the presenter who moved it last; "": nobody has yet */
     uint64_t version; /* counts changes of what the picture shows */
     uint64_t requested_version,
         still_requested_version; /* newest version requested, of either kind, and as a still; 0: none */
@@ -47,7 +47,7 @@ struct stream {
 struct member_view {       /* a pane of a member; its number is its index + 1 */
     struct stream *stream; /* NULL: closed */
     bool is_following, was_open;
-    int size_px[2]; /* this member's own; a shared view has the size of the member who moved it last */
+    int size_px[2];                         /* this member's own, as sent last; a shared view has the presenter's */
     uint32_t sent_sequence, shown_sequence; /* they differ by at most ROOM_MAX_UNSHOWN */
     struct {
         int64_t sent_us;
@@ -63,7 +63,7 @@ struct member_view {       /* a pane of a member; its number is its index + 1 */
     int n_waiting;
     uint32_t input; /* newest input that a sent picture shows */
     cJSON *missing; /* what the newest picture sent leaves out, as last sent to the member; NULL: nothing */
-    bool has_moved; /* another member moved the shared view: the view message goes out before the next frame */
+    bool has_moved; /* the presenter moved the shared view: the view message goes out before the next frame */
     char moved_by[64];
 };
 
@@ -93,7 +93,8 @@ struct room {
 
     struct member *members[ROOM_MAX_MEMBERS];
     int n_members;
-    uint32_t n_named; /* members ever made, for ids */
+    struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
+    uint32_t n_named;         /* members ever made, for ids */
     struct stream *streams;
     struct stream *shared[N_KINDS];
     uint64_t n_requests;

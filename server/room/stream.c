@@ -224,6 +224,13 @@ static bool make_scene(struct room *room, struct stream *stream)
     return true;
 }
 
+const cJSON *stream_scene(struct room *room, struct stream *stream)
+{
+    if (!room->scene || !make_scene(room, stream))
+        return NULL;
+    return stream->scene ? stream->scene : room->scene;
+}
+
 /* Id of the member whose own view it is; NULL: shared, or without a viewer. */
 static const char *owner_of(const struct room *room, const struct stream *stream)
 {

@@ -29,5 +29,7 @@ int64_t streams_request_due(struct room *room);
 bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem);
 /* After a plan was loaded: removes overrides that do not fit it from their views, and tells their members. */
 void streams_remove_bad_overrides(struct room *room);
+/* The complete scene that the stream shows: with its view's override. NULL: the plan is not loaded, or no memory. */
+const cJSON *stream_scene(struct room *room, struct stream *stream);
 /* enum scene_kind of a view document. */
 int view_kind(const cJSON *view);

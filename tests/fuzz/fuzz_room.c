@@ -130,6 +130,10 @@ static void play_line(struct room *room, const char *line, size_t n, int64_t *no
     case 'd': answer(room, false, *now_us); break;
     case 'f': answer(room, true, *now_us); break;
     case 't': *now_us += n > 1 ? (int64_t)(unsigned char)line[1] * 1000 : 20000; break;
+    case 'T': /* longer than a presenter without a connection presents */
+        *now_us += (ROOM_PRESENTER_KEPT_S + 1) * INT64_C(1000000);
+        (void)room_tick(room, *now_us);
+        break;
     case 'r': room_renderer_state(room, WIRE_RENDERER_STATE_RESTARTING, "again", 10, NULL); break;
     case 'p': plan_ready(room, *now_us); break;
     case 'x': {

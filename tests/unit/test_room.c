@@ -100,7 +100,7 @@ static void an_input_that_changes_nothing_is_answered_by_the_picture_that_is_the
     assert_int_equal(fake.n_requests, n_drawn);
 }
 
-static void a_followers_resizing_that_does_not_take_the_lead_is_answered(void **state)
+static void a_followers_resizing_draws_nothing_and_is_answered(void **state)
 {
     (void)state;
     fake_join(&fake, &ann, true);
@@ -380,7 +380,7 @@ int main(void)
         ROOM_TEST(a_room_without_views_requests_nothing),
         ROOM_TEST(a_change_that_changes_nothing_is_not_drawn),
         ROOM_TEST(an_input_that_changes_nothing_is_answered_by_the_picture_that_is_there),
-        ROOM_TEST(a_followers_resizing_that_does_not_take_the_lead_is_answered),
+        ROOM_TEST(a_followers_resizing_draws_nothing_and_is_answered),
         ROOM_TEST(no_more_than_two_unshown_frames_are_ever_sent),
         ROOM_TEST(when_credit_returns_the_newest_state_is_drawn),
         ROOM_TEST(an_acknowledgement_counts_for_all_earlier_frames),

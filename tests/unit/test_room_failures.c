@@ -76,7 +76,7 @@ static void a_picture_beyond_a_limit_is_told_once_and_requested_again_only_after
     fake_pass(&fake, 60000);
     assert_int_equal(fake.n_requests, 1);
     assert_int_equal(fake_n_heard(&ann, "problem"), 1);
-    fake_say(&fake, &ben, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"visible\":false}}}}");
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"visible\":false}}}}");
     assert_int_equal(fake.n_requests, 2);
     settle_two();
     assert_int_equal(fake_n_heard(&ben, "problem"), 1);

@@ -189,24 +189,23 @@ static void followers_hear_of_a_move_with_the_frame_that_shows_it_and_once(void 
     assert_int_equal(fake_n_heard(&ann, "view"), ann_before); /* not sent to the member who moved it */
 }
 
-static void the_size_is_that_of_the_follower_who_moved_last(void **state)
+static void a_shared_view_has_the_presenters_size(void **state)
 {
     (void)state;
-    fake_join(&fake, &ann, true); /* 800 wide */
+    fake_join(&fake, &ann, true); /* 800 wide, and presents */
     fake_hello(&fake, &ben);
     fake_say(&fake, &ben, "{\"type\":\"view.open\",\"view\":1,\"document\":{\"size_px\":[400,300]},\"follow\":true}");
     settle_two();
     assert_int_equal(width_of(&fake.requests[fake.n_requests - 1]), 800);
     size_t before = fake.n_requests;
-    fake_say(&fake, &ben,
-             "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"size_px\":[500,300]}}"); /* a resize takes no lead */
+    fake_say(&fake, &ben, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"size_px\":[500,300]}}");
     fake_pass(&fake, 1000);
     assert_int_equal(fake.n_requests, before);
-    move(&ben, 1);
-    assert_int_equal(width_of(fake_newest(&fake)), 500);
-    settle_two();
     move(&ann, 2);
     assert_int_equal(width_of(fake_newest(&fake)), 800);
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"size_px\":[640,480]}}");
+    settle_two();
+    assert_int_equal(width_of(&fake.requests[fake.n_requests - 1]), 640);
 }
 
 static void an_own_view_starts_as_a_copy_and_goes_its_own_way(void **state)
@@ -215,7 +214,7 @@ static void an_own_view_starts_as_a_copy_and_goes_its_own_way(void **state)
     fake_join(&fake, &ann, true);
     fake_join(&fake, &ben, true);
     move(&ann, 7);
-    fake_say(&fake, &ben, "{\"type\":\"view.follow\",\"view\":1,\"follow\":false}");
+    fake_say(&fake, &ben, "{\"type\":\"follow\",\"follow\":false}");
     cJSON *view = fake_heard(&ben, "view");
     const cJSON *camera = cJSON_GetObjectItem(cJSON_GetObjectItem(view, "document"), "camera");
     assert_close(cJSON_GetArrayItem(cJSON_GetObjectItem(camera, "target_mm"), 0)->valuedouble, 7, 0);
@@ -225,7 +224,7 @@ static void an_own_view_starts_as_a_copy_and_goes_its_own_way(void **state)
     move(&ben, 8);
     fake_draw(&fake, fake_newest(&fake));
     assert_int_equal(ann.n_frames, before);
-    fake_say(&fake, &ben, "{\"type\":\"view.follow\",\"view\":1,\"follow\":true}"); /* and back */
+    fake_say(&fake, &ben, "{\"type\":\"follow\",\"follow\":true}"); /* and back */
     view = fake_heard(&ben, "view");
     camera = cJSON_GetObjectItem(cJSON_GetObjectItem(view, "document"), "camera");
     assert_close(cJSON_GetArrayItem(cJSON_GetObjectItem(camera, "target_mm"), 0)->valuedouble, 7, 0);
@@ -292,7 +291,7 @@ static void pictures_of_a_closed_view_are_waited_for_by_nobody(void **state)
     assert_false(fake_newest(&fake)->is_still);
     settle_one();
 
-    fake_say(&fake, &ann, "{\"type\":\"view.follow\",\"view\":1,\"follow\":false}");
+    fake_say(&fake, &ann, "{\"type\":\"view.open\",\"view\":1,\"document\":{}}");
     fake_turn(&fake, &ann, 30, 7); /* an own view whose page disconnects without closing it */
     request = fake_newest(&fake);
     assert_non_null(request);
@@ -361,7 +360,7 @@ int main(void)
         ROOM_TEST(a_closed_room_says_bye_to_everybody),
         ROOM_TEST(the_shared_view_goes_on_from_who_opened_it_first),
         ROOM_TEST(followers_hear_of_a_move_with_the_frame_that_shows_it_and_once),
-        ROOM_TEST(the_size_is_that_of_the_follower_who_moved_last),
+        ROOM_TEST(a_shared_view_has_the_presenters_size),
         ROOM_TEST(an_own_view_starts_as_a_copy_and_goes_its_own_way),
         ROOM_TEST(each_kind_has_its_own_shared_view),
         ROOM_TEST(a_view_that_is_closed_gets_nothing_more),

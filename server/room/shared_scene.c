@@ -1,0 +1,51 @@
+/* Applies patches to the shared scene. */
+#include "server/room/shared_scene.h"
+
+#include "server/room/member_list.h"
+#include "server/room/member_view.h"
+#include "server/room/send.h"
+#include "server/room/stream.h"
+#include "server/wire/json_merge.h"
+#include "server/wire/patch.h"
+
+bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input,
+                       struct problem *problem)
+{
+    if (!room->scene) {
+        problem_set(problem, PROBLEM_BUSY, "", "", "the plan is not loaded yet");
+        if (problem)
+            problem->retry_after_ms = 500;
+        return false;
+    }
+    cJSON *scene = scene_document_patch(room->plan, room->defaults, room->scene, patch, problem);
+    if (!scene)
+        return false;
+    bool has_changed = !json_equal(scene, room->scene);
+    cJSON *told = patch_told(room->scene, scene, patch);
+    if (!told) {
+        cJSON_Delete(scene);
+        return json_no_memory(problem, "a scene");
+    }
+    cJSON_Delete(room->scene);
+    room->scene = scene;
+    if (has_changed) {
+        room->revision++;
+        streams_changed(room, true);
+        room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
+    }
+    for (int i = 0; by && i < ROOM_MAX_VIEWS; i++) {
+        view_add_input(&by->views[i], input);
+        stream_send_picture(room, by, &by->views[i]);
+    }
+    send_scene_patch(room, told, by, input,
+                     has_changed); /* a patch that changed nothing is answered to its sender only */
+    return true;
+}
+
+bool member_scene_patch(struct room *room, struct member *member, const struct message *message,
+                        struct problem *problem)
+{
+    if (!member_presents(room, member))
+        return refuse_not_presenter(room, problem, "change the scene");
+    return scene_apply_patch(room, message->scene_patch.patch, member, (uint32_t)message->scene_patch.input, problem);
+}
