@@ -1,0 +1,736 @@
+/* Random meetings against a simple model of who presents, follows and looks on their own. After each act: every view
+ * shows what the model says, nobody's picture has moved but by the presenter or by that person, and the list of members
+ * is told as it is. */
+#include <math.h>
+#include <stdarg.h>
+
+#include "server/room/room_state.h"
+#include "server/room/stream.h"
+#include "server/wire/json_merge.h"
+#include "tests/unit/room_fake.h"
+
+enum { N_PEOPLE = 5, N_PANES = 4, N_SEEDS = 150, N_STEPS = 120, N_SLICES = 3 };
+static const double kept_us = 30e6, known_us = 300e6; /* a presenter, a member without a connection */
+static const char *const kind_words[] = { "3d", "axial", "coronal", "sagittal" };
+static const char *const slice_words[N_SLICES] = { "axial", "coronal", "sagittal" };
+
+/* ---- the model -------------------------------------------------------------------------------------------------- */
+
+struct shown { /* NAN: not set */
+    int size_px[2];
+    bool is_parallel;
+    double target_x_mm, height_mm, slices_mm[N_SLICES], opacity; /* slices and opacity: of the override */
+};
+
+struct pane {
+    bool is_open, is_following;
+    int kind, own_px[2];
+    struct shown own; /* while it does not follow */
+};
+
+static struct person {
+    struct fake_page page;
+    char id[64], secret[64];
+    bool is_member, is_connected;
+    double away_us;
+    struct pane panes[N_PANES];
+    cJSON *heard[N_PANES]; /* document of the last view message */
+} people[N_PEOPLE];
+
+static struct shared {
+    bool exists;
+    struct shown shown;
+} shared[N_KINDS];
+
+static struct fake_room fake;
+static int presenter; /* -1: nobody */
+static double scene_slices_mm[N_SLICES], scene_opacity;
+
+static struct shown plain(const int size_px[2])
+{
+    return (struct shown){ { size_px[0], size_px[1] }, false, NAN, NAN, { NAN, NAN, NAN }, NAN };
+}
+
+static struct shown *shown_in(struct pane *pane)
+{
+    return pane->is_following ? &shared[pane->kind].shown : &pane->own;
+}
+
+static int smaller(const int size_px[2])
+{
+    return size_px[0] < size_px[1] ? size_px[0] : size_px[1];
+}
+
+/* What a person who leaves goes on from. */
+static struct shown copy_for(const struct pane *pane)
+{
+    struct shown own = shared[pane->kind].shown;
+    if (pane->kind != SCENE_KIND_3D || own.is_parallel) /* as many pixels to a millimetre as before */
+        own.height_mm = fmin(fmax(own.height_mm * smaller(pane->own_px) / smaller(own.size_px), 0.1), 10000);
+    if (isnan(shared[pane->kind].shown.height_mm))
+        own.height_mm = NAN;
+    memcpy(own.size_px, pane->own_px, sizeof own.size_px);
+    for (int i = 0; i < N_SLICES; i++)
+        own.slices_mm[i] = isnan(own.slices_mm[i]) ? scene_slices_mm[i] : own.slices_mm[i];
+    return own;
+}
+
+static void join(int who, struct pane *pane, struct shown wanted)
+{
+    struct shared *to = &shared[pane->kind];
+    if (!to->exists)
+        *to = (struct shared){ true, who == presenter ? wanted : plain(wanted.size_px) };
+    if (who == presenter)
+        memcpy(to->shown.size_px, pane->own_px, sizeof pane->own_px);
+    pane->is_following = true;
+}
+
+static void share(int who)
+{
+    struct person *person = &people[who];
+    bool is_taken[N_KINDS] = { false };
+    for (int p = 0; p < N_PANES; p++) {
+        struct pane *pane = &person->panes[p];
+        if (!pane->is_open || pane->is_following)
+            continue;
+        for (int i = 0; i < N_SLICES; i++)
+            if (!isnan(pane->own.slices_mm[i]))
+                scene_slices_mm[i] = pane->own.slices_mm[i];
+        if (!isnan(pane->own.opacity))
+            scene_opacity = pane->own.opacity;
+    }
+    for (int p = 0; p < N_PANES; p++) {
+        struct pane *pane = &person->panes[p];
+        if (!pane->is_open)
+            continue;
+        struct shown to = pane->is_following ? shared[pane->kind].shown : pane->own;
+        if (!pane->is_following)
+            to.slices_mm[0] = to.slices_mm[1] = to.slices_mm[2] = to.opacity = NAN; /* in the scene now */
+        memcpy(to.size_px, pane->own_px, sizeof to.size_px);
+        if (!is_taken[pane->kind])
+            shared[pane->kind] = (struct shared){ true, to };
+        is_taken[pane->kind] = true;
+        pane->is_following = true;
+    }
+}
+
+static void follow_all(int who)
+{
+    for (int p = 0; p < N_PANES; p++)
+        if (people[who].panes[p].is_open)
+            join(who, &people[who].panes[p], *shown_in(&people[who].panes[p]));
+}
+
+static void settle_presenter(void)
+{
+    int only = -1, n = 0;
+    if (presenter >= 0 && !people[presenter].is_connected && (double)fake.now_us - people[presenter].away_us >= kept_us)
+        presenter = -1;
+    for (int who = 0; who < N_PEOPLE; who++)
+        if (people[who].is_connected) {
+            only = who;
+            n++;
+        }
+    if (presenter < 0 && n == 1) {
+        presenter = only;
+        share(only);
+    }
+    for (int who = 0; who < N_PEOPLE; who++)
+        if (people[who].is_member && !people[who].is_connected && (double)fake.now_us - people[who].away_us >= known_us)
+            people[who].is_member = false;
+}
+
+/* ---- comparing -------------------------------------------------------------------------------------------------- */
+
+static char act[600]; /* the last one, with seed and step: told when something differs */
+
+static void differs(const char *format, ...)
+{
+    char text[300];
+    va_list args;
+    va_start(args, format);
+    (void)vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    fail_msg("%s: after %s", text, act);
+}
+
+static struct member *member_of(int who)
+{
+    for (int m = 0; m < fake.room->n_members; m++)
+        if (people[who].is_member && strcmp(fake.room->members[m]->id, people[who].id) == 0)
+            return fake.room->members[m];
+    return NULL;
+}
+
+/* The scene that requests of the stream show. */
+static const cJSON *scene_of(struct stream *stream)
+{
+    const cJSON *scene = stream_scene(fake.room, stream);
+    assert_non_null(scene);
+    return scene;
+}
+
+static double slice_mm(const cJSON *scene, int i)
+{
+    const cJSON *slices = cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "image"), "slices");
+    return json_number(cJSON_GetObjectItem(slices, slice_words[i]), "position_mm", NAN);
+}
+
+static bool is_same(double a, double b)
+{
+    return (isnan(a) && isnan(b)) || fabs(a - b) < 1e-9;
+}
+
+static double or_scene(double override, double scene)
+{
+    return isnan(override) ? scene : override;
+}
+
+static void check_pane(int who, int p)
+{
+    struct pane *pane = &people[who].panes[p];
+    const struct member_view *view = &member_of(who)->views[p];
+    if (pane->is_open != (view->stream != NULL))
+        differs("%d's pane %d is %s", who, p, pane->is_open ? "closed" : "open");
+    if (!pane->is_open)
+        return;
+    const struct shown *expected = shown_in(pane);
+    const cJSON *document = view->stream->view, *camera = cJSON_GetObjectItem(document, "camera");
+    const cJSON *target = cJSON_GetObjectItem(camera, "target_mm"), *size = cJSON_GetObjectItem(document, "size_px");
+    const cJSON *scene = scene_of(view->stream);
+    double x = cJSON_IsArray(target) ? cJSON_GetArrayItem(target, 0)->valuedouble : NAN;
+    if (view->is_following != pane->is_following || view->stream->is_shared != pane->is_following)
+        differs("%d's pane %d shows the %s view", who, p, view->is_following ? "shared" : "own");
+    if (strcmp(json_text(document, "kind"), kind_words[pane->kind]) != 0)
+        differs("%d's pane %d is %s, not %s", who, p, json_text(document, "kind"), kind_words[pane->kind]);
+    for (int i = 0; i < 2; i++)
+        if (cJSON_GetArrayItem(size, i)->valueint != expected->size_px[i])
+            differs("side %d of %d's pane %d is %d px, not %d", i, who, p, cJSON_GetArrayItem(size, i)->valueint,
+                    expected->size_px[i]);
+    if (!pane->is_following && memcmp(expected->size_px, pane->own_px, sizeof pane->own_px) != 0)
+        differs("the model itself: the size of %d's own pane %d", who, p);
+    if (!is_same(x, expected->target_x_mm))
+        differs("%d's pane %d looks at %g, not at %g", who, p, x, expected->target_x_mm);
+    if (!is_same(json_number(camera, "height_mm", NAN), expected->height_mm))
+        differs("%d's pane %d is %.12g mm high, not %.12g", who, p, json_number(camera, "height_mm", NAN),
+                expected->height_mm);
+    for (int i = 0; i < N_SLICES; i++)
+        if (!is_same(slice_mm(scene, i), or_scene(expected->slices_mm[i], scene_slices_mm[i])))
+            differs("%d's pane %d has the %s slice at %g, not at %g", who, p, slice_words[i], slice_mm(scene, i),
+                    or_scene(expected->slices_mm[i], scene_slices_mm[i]));
+    double opacity = json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "scalp"), "opacity", NAN);
+    if (!is_same(opacity, or_scene(expected->opacity, scene_opacity)))
+        differs("%d's pane %d has opacity %g, not %g", who, p, opacity, or_scene(expected->opacity, scene_opacity));
+}
+
+static bool follows(int who)
+{
+    for (int p = 0; p < N_PANES && who != presenter; p++)
+        if (people[who].panes[p].is_following)
+            return true;
+    return false;
+}
+
+/* The last list of members that this page was sent is true now. */
+static void check_members_heard(int listener)
+{
+    cJSON *said = fake_heard(&people[listener].page, "members");
+    const cJSON *item;
+    int n_presenting = 0, n = 0;
+    cJSON_ArrayForEach(item, cJSON_GetObjectItem(said, "members"))
+    {
+        n_presenting += json_flag(item, "presenting", false);
+        for (int who = 0; who < N_PEOPLE; who++)
+            if (people[who].is_member && strcmp(json_text(item, "id"), people[who].id) == 0) {
+                n++;
+                if (json_flag(item, "presenting", false) != (who == presenter) ||
+                    json_flag(item, "following", false) != follows(who) ||
+                    json_flag(item, "connected", false) != people[who].is_connected)
+                    differs("%d is told of %d: presenting %d, following %d, connected %d", listener, who,
+                            json_flag(item, "presenting", false), json_flag(item, "following", false),
+                            json_flag(item, "connected", false));
+            }
+    }
+    if (n_presenting > 1 || n != fake.room->n_members)
+        differs("%d is told of %d members of %d, %d present", listener, n, fake.room->n_members, n_presenting);
+    cJSON_Delete(said);
+}
+
+static void check(void)
+{
+    for (int who = 0; who < N_PEOPLE; who++) {
+        const struct person *person = &people[who];
+        const struct member *member = member_of(who);
+        if (person->is_member != (member != NULL) || (member && person->is_connected != (member->connection != NULL)))
+            differs("%d is %s", who, member ? "a member" : "no member");
+        if (member && (fake.room->presenter == member) != (who == presenter))
+            differs("%d %s", who, who == presenter ? "does not present" : "presents");
+        for (int p = 0; p < N_PANES && person->is_connected; p++)
+            check_pane(who, p);
+        if (person->is_connected)
+            check_members_heard(who);
+    }
+    if (presenter >= 0 && !people[presenter].is_connected && (double)fake.now_us - people[presenter].away_us >= kept_us)
+        differs("the presenter is away for long");
+}
+
+/* ---- nobody's picture is moved by others, without the model ---------------------------------------------------- */
+
+static char *pictures[N_PEOPLE][N_PANES]; /* all that a request says; NULL: closed */
+
+static char *picture_of(int who, int p)
+{
+    struct member *member = people[who].is_connected ? member_of(who) : NULL;
+    if (!member || !member->views[p].stream)
+        return NULL;
+    char *view = json_write(member->views[p].stream->view), *scene = json_write(scene_of(member->views[p].stream));
+    size_t n = strlen(view) + strlen(scene) + 2;
+    char *both = malloc(n);
+    assert_non_null(both);
+    (void)snprintf(both, n, "%s %s", view, scene);
+    free(view);
+    free(scene);
+    return both;
+}
+
+static void remember_pictures(void)
+{
+    for (int who = 0; who < N_PEOPLE; who++)
+        for (int p = 0; p < N_PANES; p++) {
+            free(pictures[who][p]);
+            pictures[who][p] = picture_of(who, p);
+        }
+}
+
+/* actor: who acted; -1: only time passed. before: who presented. */
+static void check_nobody_was_moved(int actor, int before)
+{
+    for (int who = 0; who < N_PEOPLE; who++)
+        for (int p = 0; p < N_PANES; p++) {
+            char *now = picture_of(who, p);
+            bool may_move = who == actor || (actor >= 0 && actor == presenter) ||
+                            (who == presenter && before != presenter); /* alone in the room */
+            if (now && pictures[who][p] && !may_move && strcmp(now, pictures[who][p]) != 0)
+                differs("%d's pane %d moved, who presented: %d\nfrom %s\nto   %s", who, p, before, pictures[who][p],
+                        now);
+            free(now);
+        }
+}
+
+/* ---- pages ------------------------------------------------------------------------------------------------------ */
+
+static uint64_t random_state;
+
+static int any(int n) /* 0 to n - 1; xorshift64 */
+{
+    random_state ^= random_state << 13;
+    random_state ^= random_state >> 7;
+    random_state ^= random_state << 17;
+    return (int)(random_state % (uint64_t)n);
+}
+
+static void tick(void)
+{
+    fake.again_us = room_tick(fake.room, fake.now_us);
+}
+
+/* Keeps the last view messages, acknowledges the frames, and empties the page but for the last list of members. */
+static void read_page(struct person *person)
+{
+    struct fake_page *page = &person->page;
+    char *members = NULL;
+    for (size_t i = 0; i < page->n_texts; i++) {
+        cJSON *json = json_read(page->texts[i], strlen(page->texts[i]), NULL);
+        if (strcmp(json_text(json, "type"), "view") == 0) {
+            int p = (int)json_number(json, "view", 0) - 1;
+            cJSON_Delete(person->heard[p]);
+            person->heard[p] = cJSON_DetachItemFromObject(json, "document");
+        }
+        if (strcmp(json_text(json, "type"), "members") == 0) {
+            free(members);
+            members = page->texts[i];
+        } else {
+            free(page->texts[i]);
+        }
+        cJSON_Delete(json);
+    }
+    page->n_texts = 0;
+    if (members)
+        page->texts[page->n_texts++] = members;
+}
+
+static void forget_page(struct person *person)
+{
+    for (int p = 0; p < N_PANES; p++) {
+        cJSON_Delete(person->heard[p]);
+        person->heard[p] = NULL;
+        person->panes[p] = (struct pane){ 0 };
+    }
+    fake_page_end(&person->page);
+}
+
+/* Answers all requests and shows all frames until nothing is due. */
+static void draw_all(void)
+{
+    for (bool is_busy = true; is_busy;) {
+        is_busy = false;
+        for (struct fake_request *request; (request = fake_oldest(&fake)); is_busy = true)
+            fake_draw(&fake, request);
+        for (int who = 0; who < N_PEOPLE; who++) {
+            struct fake_page *page = &people[who].page;
+            for (size_t i = 0; i < page->n_frames; i++)
+                fake_say(&fake, page, "{\"type\":\"frame.shown\",\"view\":%u,\"sequence\":%u}", page->frames[i].view,
+                         page->frames[i].sequence);
+            is_busy = is_busy || page->n_frames;
+            page->n_frames = 0;
+        }
+        if (!is_busy && fake.again_us < fake.now_us + 1000000) { /* a still is due */
+            fake_pass(&fake, 200);
+            is_busy = true;
+        }
+    }
+}
+
+static void forget_requests(void)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < fake.n_requests; i++) {
+        struct fake_request *request = &fake.requests[i];
+        if (!request->is_answered && !request->is_forgotten) {
+            fake.requests[n++] = *request;
+            continue;
+        }
+        cJSON_Delete(request->view);
+        cJSON_Delete(request->scene);
+    }
+    fake.n_requests = n;
+}
+
+/* With every picture drawn: the last request of each stream was for what its viewers are to see, and followers have
+ * the document that belongs to it. */
+static void check_drawn(void)
+{
+    draw_all();
+    for (int who = 0; who < N_PEOPLE; who++)
+        read_page(&people[who]);
+    for (int who = 0; who < N_PEOPLE; who++)
+        for (int p = 0; p < N_PANES && people[who].is_connected; p++) {
+            struct stream *stream = member_of(who)->views[p].stream;
+            if (!stream)
+                continue;
+            if (stream->latest_version != stream->version || !stream->latest_is_still)
+                differs("%d's pane %d is not drawn to the end", who, p);
+            for (size_t i = 0; i < fake.n_requests; i++)
+                if (fake.requests[i].request == stream->latest_number &&
+                    (!json_equal(fake.requests[i].view, stream->view) ||
+                     (fake.requests[i].scene && !json_equal(fake.requests[i].scene, scene_of(stream)))))
+                    differs("%d's pane %d was drawn otherwise", who, p);
+            if (people[who].panes[p].is_following && who != presenter &&
+                !json_equal(people[who].heard[p], stream->view))
+                differs("%d follows with pane %d, and was told another document", who, p);
+        }
+    forget_requests();
+}
+
+/* ---- acts ------------------------------------------------------------------------------------------------------- */
+
+static const char *expected; /* type of the problem that the act is to be refused with; NULL: it is accepted */
+
+static void say(int who, const char *format, ...) PRINTF_LIKE(2, 3);
+static void say(int who, const char *format, ...)
+{
+    char text[500];
+    va_list args;
+    va_start(args, format);
+    (void)vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    size_t n = strlen(act);
+    (void)snprintf(act + n, sizeof act - n, " %d says %s", who, text);
+    size_t before = fake_n_heard(&people[who].page, "problem");
+    fake_say(&fake, &people[who].page, "%s", text);
+    if (fake_n_heard(&people[who].page, "problem") != before + (expected != NULL))
+        differs(expected ? "not refused" : "refused");
+    cJSON *problem = expected ? fake_heard(&people[who].page, "problem") : NULL;
+    if (expected && strcmp(json_text(cJSON_GetObjectItem(problem, "problem"), "type"), expected) != 0)
+        differs("refused as %s, not %s", json_text(cJSON_GetObjectItem(problem, "problem"), "type"), expected);
+    cJSON_Delete(problem);
+}
+
+static void enter(int who)
+{
+    struct person *person = &people[who];
+    forget_page(person);
+    fake_say(&fake, &person->page, "{\"type\":\"hello\",\"protocol\":1,\"member\":\"%s\",\"secret\":\"%s\"}",
+             person->id, person->secret);
+    cJSON *welcome = fake_heard(&person->page, "welcome");
+    if (person->is_member != (strcmp(person->id, json_text(welcome, "member")) == 0))
+        differs("%d came back as %s, was %s", who, json_text(welcome, "member"), person->id);
+    (void)snprintf(person->id, sizeof person->id, "%s", json_text(welcome, "member"));
+    (void)snprintf(person->secret, sizeof person->secret, "%s", json_text(welcome, "secret"));
+    cJSON_Delete(welcome);
+    person->is_member = person->is_connected = true;
+}
+
+static void lose_link(int who)
+{
+    struct person *person = &people[who];
+    room_connection_closed(fake.room, &person->page, fake.now_us);
+    forget_page(person);
+    person->is_connected = false;
+    person->away_us = (double)fake.now_us;
+    tick();
+}
+
+static void any_size(int size_px[2])
+{
+    static const int sizes[][2] = { { 800, 600 }, { 300, 400 }, { 1280, 720 }, { 64, 64 }, { 500, 300 } };
+    memcpy(size_px, sizes[any(5)], 2 * sizeof *size_px);
+}
+
+/* A random document as text and as shown. */
+static struct shown any_document(int kind, char text[300])
+{
+    int size_px[2];
+    any_size(size_px);
+    struct shown shown = plain(size_px);
+    shown.target_x_mm = any(100);
+    shown.height_mm = 50 + any(100);
+    shown.is_parallel = any(2);
+    int n = snprintf(text, 300,
+                     "{\"kind\":\"%s\",\"size_px\":[%d,%d],\"camera\":{\"target_mm\":[%g,0,0],\"height_mm\":%g,"
+                     "\"projection\":\"%s\"}",
+                     kind_words[kind], size_px[0], size_px[1], shown.target_x_mm, shown.height_mm,
+                     shown.is_parallel ? "parallel" : "perspective");
+    if (any(3) == 0) {
+        shown.slices_mm[1] = any(50);
+        shown.opacity = any(4) / 4.0;
+        n += snprintf(text + n, 300 - (size_t)n,
+                      ",\"override\":{\"image\":{\"slices\":{\"coronal\":{\"position_mm\":%g}}},"
+                      "\"regions\":{\"scalp\":{\"opacity\":%g}}}",
+                      shown.slices_mm[1], shown.opacity);
+    }
+    (void)snprintf(text + n, 300 - (size_t)n, "}");
+    return shown;
+}
+
+static void open_pane(int who, int p)
+{
+    char text[300];
+    struct pane *pane = &people[who].panes[p];
+    int kind = any(N_KINDS);
+    bool follow = any(4) != 0;
+    struct shown document = any_document(kind, text);
+    *pane = (struct pane){ .is_open = true, .kind = kind, .own = document };
+    memcpy(pane->own_px, document.size_px, sizeof pane->own_px);
+    if (follow)
+        join(who, pane, document);
+    say(who, "{\"type\":\"view.open\",\"view\":%d,\"document\":%s,\"follow\":%s}", p + 1, text,
+        follow ? "true" : "false");
+}
+
+static void resize(int who, int p)
+{
+    struct pane *pane = &people[who].panes[p];
+    int size_px[2];
+    any_size(size_px);
+    memcpy(pane->own_px, size_px, sizeof size_px);
+    if (!pane->is_following || who == presenter)
+        memcpy(shown_in(pane)->size_px, size_px, sizeof size_px);
+    say(who, "{\"type\":\"view.patch\",\"view\":%d,\"patch\":{\"size_px\":[%d,%d]}}", p + 1, size_px[0], size_px[1]);
+}
+
+static void move(int who, int p)
+{
+    struct pane *pane = &people[who].panes[p];
+    struct shown *shown = shown_in(pane);
+    int value = any(60);
+    bool may = !pane->is_following || who == presenter;
+    const char *patch[] = { "\"camera\":{\"target_mm\":[%d,0,0]}", "\"camera\":{\"height_mm\":%d}",
+                            "\"override\":{\"image\":{\"slices\":{\"axial\":{\"position_mm\":%d}}}}",
+                            "\"size_px\":[333,222],\"camera\":{\"height_mm\":%d}" };
+    int which = any(4);
+    expected = may ? NULL : "/problems/not-presenter";
+    value += 1;
+    if (may) {
+        if (which == 3)
+            memcpy(pane->own_px, ((int[]){ 333, 222 }), sizeof pane->own_px);
+        memcpy(shown->size_px, pane->own_px, sizeof pane->own_px);
+        *(which == 0 ? &shown->target_x_mm : which == 2 ? &shown->slices_mm[0] : &shown->height_mm) = value;
+    }
+    char text[200], with[20];
+    (void)snprintf(with, sizeof with, "%d", value);
+    const char *hole = strstr(patch[which], "%d");
+    (void)snprintf(text, sizeof text, "%.*s%s%s", (int)(hole - patch[which]), patch[which], with, hole + 2);
+    say(who, "{\"type\":\"view.patch\",\"view\":%d,\"patch\":{%s}}", p + 1, text);
+}
+
+static void close_pane(int who, int p)
+{
+    people[who].panes[p] = (struct pane){ 0 };
+    say(who, "{\"type\":\"view.close\",\"view\":%d}", p + 1);
+}
+
+/* Half of the time with a document for pane p. */
+static void leave(int who, int p)
+{
+    struct person *person = &people[who];
+    char text[300], views[400] = "";
+    bool has_document = person->panes[p].is_open && any(2);
+    int kind = has_document ? any(N_KINDS) : 0;
+    struct shown document = { 0 };
+    if (has_document) {
+        document = any_document(kind, text);
+        (void)snprintf(views, sizeof views, ",\"views\":[{\"view\":%d,\"document\":%s}]", p + 1, text);
+    }
+    expected = who == presenter ? "/problems/not-presenter" : NULL;
+    for (int i = 0; i < N_PANES && !expected; i++) {
+        struct pane *pane = &person->panes[i];
+        if (!pane->is_open)
+            continue;
+        if (has_document && i == p) {
+            pane->kind = kind;
+            pane->own = document;
+            memcpy(pane->own_px, document.size_px, sizeof pane->own_px);
+        } else if (pane->is_following) {
+            pane->own = copy_for(pane);
+        }
+        pane->is_following = false;
+    }
+    say(who, "{\"type\":\"follow\",\"follow\":false%s}", views);
+}
+
+static void return_to_all(int who)
+{
+    follow_all(who);
+    say(who, "{\"type\":\"follow\",\"follow\":true}");
+}
+
+static void take_over(int who)
+{
+    expected = presenter >= 0 && presenter != who ? "/problems/not-presenter" : NULL;
+    if (!expected) {
+        presenter = who;
+        share(who);
+    }
+    say(who, "{\"type\":\"present\"}");
+}
+
+static void call_back(int who)
+{
+    expected = presenter == who ? NULL : "/problems/not-presenter";
+    if (!expected) {
+        share(who);
+        for (int m = 0; m < fake.room->n_members; m++) /* of several who show a new kind, the room's first makes it */
+            for (int i = 0; i < N_PEOPLE; i++)
+                if (i != who && people[i].is_connected && member_of(i) == fake.room->members[m])
+                    follow_all(i);
+    }
+    say(who, "{\"type\":\"show.everyone\"}");
+}
+
+static void change_scene(int who)
+{
+    int value = any(80), i = any(N_SLICES);
+    expected = presenter == who ? NULL : "/problems/not-presenter";
+    if (!expected)
+        scene_slices_mm[i] = value;
+    say(who, "{\"type\":\"scene.patch\",\"patch\":{\"image\":{\"slices\":{\"%s\":{\"position_mm\":%d}}}}}",
+        slice_words[i], value);
+}
+
+/* Returns who acted. */
+static int act_of_somebody(int who, int p)
+{
+    expected = NULL;
+    if (!people[who].is_connected && any(3) == 0) {
+        enter(who);
+        settle_presenter();
+        return who;
+    }
+    if (!people[who].is_connected) /* it only takes time */
+        who = -1;
+    bool is_open = who >= 0 && people[who].panes[p].is_open;
+    switch (who >= 0 ? any(14) : 1) {
+    case 0:
+        if (any(2) == 0)
+            lose_link(who);
+        break;
+    case 1:
+        fake_pass(&fake, (int[]){ 10, 400, 9000, 31000, 301000 }[any(5)]);
+        who = -1;
+        break;
+    case 2: leave(who, p); break;
+    case 3: return_to_all(who); break;
+    case 4: take_over(who); break;
+    case 5: call_back(who); break;
+    case 6: change_scene(who); break;
+    case 7:
+        if (is_open)
+            close_pane(who, p);
+        break;
+    case 8:
+    case 9:
+        if (is_open)
+            resize(who, p);
+        break;
+    case 10:
+    case 11:
+        if (is_open)
+            move(who, p);
+        break;
+    default: open_pane(who, p); break;
+    }
+    settle_presenter();
+    return who;
+}
+
+static void play(int seed)
+{
+    memset(people, 0, sizeof people);
+    memset(shared, 0, sizeof shared);
+    random_state = (uint64_t)seed * 0x9e3779b97f4a7c15u;
+    presenter = -1;
+    const int n_people = 1 + seed % N_PEOPLE;
+    fake_room_start(&fake, N_PEOPLE + 1);
+    fake_plan_ready(&fake, true);
+    memset(scene_slices_mm, 0, sizeof scene_slices_mm); /* the defaults of proto/scene.json, and of fake_plan_ready */
+    scene_opacity = 0.4;
+    for (int step = 0; step < N_STEPS; step++) {
+        int before = presenter;
+        (void)snprintf(act, sizeof act, "seed %d, step %d (presents: %d):", seed, step, before);
+        remember_pictures();
+        int actor = act_of_somebody(any(n_people), any(N_PANES));
+        check();
+        check_nobody_was_moved(actor, before);
+        for (int who = 0; who < N_PEOPLE; who++)
+            read_page(&people[who]);
+        if (any(4) == 0 || fake.n_requests > 900) {
+            check_drawn();
+            settle_presenter(); /* drawing takes time */
+            check();
+        }
+    }
+    fake_room_end(&fake);
+    for (int who = 0; who < N_PEOPLE; who++)
+        forget_page(&people[who]);
+    for (int who = 0; who < N_PEOPLE; who++)
+        for (int p = 0; p < N_PANES; p++) {
+            free(pictures[who][p]);
+            pictures[who][p] = NULL;
+        }
+}
+
+static void in_random_meetings_nobodys_picture_moves_but_by_the_presenter_or_themselves(void **state)
+{
+    (void)state;
+    for (int seed = 1; seed <= N_SEEDS; seed++)
+        play(seed);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(in_random_meetings_nobodys_picture_moves_but_by_the_presenter_or_themselves),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
