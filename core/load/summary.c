@@ -290,7 +290,9 @@ void plan_summarize(const char *path, struct plan_summary *summary)
     struct plan_parts parts = { 0 };
     *summary = (struct plan_summary){ 0 };
     plan_folder_name(path, summary->name, sizeof summary->name);
-    if (folder_open(&folder, path, &err) && plan_find_parts(&folder, NULL, &parts, NULL, &err)) {
+    bool is_open = folder_open(&folder, path, &err);
+    summary->has_plan_file = is_open && folder_look(&folder, "plan.json", NULL) == FOLDER_FILE;
+    if (is_open && plan_find_parts(&folder, NULL, &parts, NULL, &err)) {
         const struct plan_file *file = parts.file;
         memcpy(summary->name, file->name, sizeof summary->name);
         memcpy(summary->note, file->note, sizeof summary->note);

@@ -8,6 +8,7 @@ struct plan_summary {
     char name[128];
     char note[512];
     bool is_phantom;
+    bool has_plan_file; /* has a plan.json, so it is meant to be a plan */
     bool is_readable;
     char reason[240];   /* why is_readable is false */
     char parts[16][64]; /* "CT", "3 regions", "4 dose components", "1 beam", ... */

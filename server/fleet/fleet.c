@@ -167,6 +167,7 @@ static void describe(const struct fleet *fleet, const struct plan_entry *plan, s
         .name = plan->name,
         .note = plan->note,
         .is_phantom = plan->is_phantom,
+        .has_plan_file = plan->has_plan_file,
         .is_uploaded = fleet_owns_folder(fleet, plan->folder),
         .state = plan->state,
         .phase = plan->phase,

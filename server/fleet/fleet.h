@@ -83,6 +83,7 @@ void fleet_tick(struct fleet *fleet);
 struct fleet_plan {
     const char *id, *folder, *name, *note;
     bool is_phantom, is_uploaded;
+    bool has_plan_file; /* the folder has a plan.json */
     enum fleet_state state;
     const char *phase; /* while starting, loading or restarting */
     double percent;

@@ -23,6 +23,7 @@ struct plan_entry {
     char *folder; /* absolute, links resolved */
     char name[128], note[512];
     bool is_phantom;
+    bool has_plan_file;
     enum fleet_state state;
     bool has_changed; /* options.changed has not been called since the last change */
     char phase[200];

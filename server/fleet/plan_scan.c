@@ -46,6 +46,7 @@ static bool read_summary(struct plan_entry *plan, const cJSON *json, char reason
         copy_text(plan->name, sizeof plan->name, json, "name");
     copy_text(plan->note, sizeof plan->note, json, "note");
     plan->is_phantom = json_flag(json, "phantom", false);
+    plan->has_plan_file = json_flag(json, "has_plan_file", false);
     plan->n_bytes = n_bytes >= 0 && n_bytes < 9e15 ? (uint64_t)n_bytes : 0;
     cJSON_Delete(plan->parts);
     plan->parts = cJSON_CreateArray();

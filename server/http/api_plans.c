@@ -14,6 +14,7 @@ static cJSON *plan_head(const struct fleet_plan *plan)
     cJSON_AddStringToObject(json, "note", plan->note);
     cJSON_AddBoolToObject(json, "is_phantom", plan->is_phantom);
     cJSON_AddBoolToObject(json, "uploaded", plan->is_uploaded);
+    cJSON_AddBoolToObject(json, "has_plan_file", plan->has_plan_file);
     cJSON_AddStringToObject(json, "state", fleet_state_word(plan->state));
     cJSON_AddItemToObject(json, "parts", plan->parts ? cJSON_Duplicate(plan->parts, true) : cJSON_CreateArray());
     cJSON_AddNumberToObject(json, "n_bytes", (double)plan->n_bytes);

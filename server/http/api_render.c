@@ -1,5 +1,5 @@
 /* POST /plans/{plan}/render: a picture of a plan without a room. The request patches the plan's default scene, which is
- * known only once the plan is loaded: so the plan is opened first. */
+ * known only once the plan is loaded: so the plan is opened first, unless the request says only_loaded. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +22,7 @@ static void render_call_destroy(struct render_call *request)
 
 static bool check_body(const cJSON *body, struct problem *problem)
 {
-    static const char *const known[] = { "scene", "view", "format", "quality" };
+    static const char *const known[] = { "scene", "view", "format", "quality", "only_loaded" };
     const cJSON *item;
     cJSON_ArrayForEach(item, body)
     {
@@ -34,9 +34,10 @@ static bool check_body(const cJSON *body, struct problem *problem)
         if (!is_known)
             return problem_set(problem, PROBLEM_VALIDATION, pointer, "unknown-field",
                                "%.60s is not a field of a render request", item->string);
-        bool right = strcmp(item->string, "format") == 0    ? cJSON_IsString(item)
-                     : strcmp(item->string, "quality") == 0 ? cJSON_IsNumber(item)
-                                                            : cJSON_IsObject(item);
+        bool right = strcmp(item->string, "format") == 0        ? cJSON_IsString(item)
+                     : strcmp(item->string, "quality") == 0     ? cJSON_IsNumber(item)
+                     : strcmp(item->string, "only_loaded") == 0 ? cJSON_IsBool(item)
+                                                                : cJSON_IsObject(item);
         if (!right)
             return problem_set(problem, PROBLEM_VALIDATION, pointer, "type", "%.60s has the wrong type", item->string);
     }
@@ -98,6 +99,12 @@ void api_plan_render(struct api *api, struct call *call)
         return;
     if (!check_body(body, &problem)) {
         cJSON_Delete(body);
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (json_flag(body, "only_loaded", false) && plan.state != FLEET_READY) {
+        cJSON_Delete(body);
+        problem_set(&problem, PROBLEM_BUSY, "", "", "the plan is not loaded, and only_loaded keeps it so");
         call_answer_problem(call, &problem);
         return;
     }

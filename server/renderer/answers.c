@@ -185,6 +185,7 @@ cJSON *answer_summary(const struct plan_summary *summary)
     cJSON_AddStringToObject(json, "name", summary->name);
     cJSON_AddStringToObject(json, "note", summary->note);
     cJSON_AddBoolToObject(json, "phantom", summary->is_phantom);
+    cJSON_AddBoolToObject(json, "has_plan_file", summary->has_plan_file);
     cJSON_AddBoolToObject(json, "readable", summary->is_readable);
     cJSON_AddStringToObject(json, "reason", summary->reason);
     cJSON *parts = cJSON_AddArrayToObject(json, "parts");

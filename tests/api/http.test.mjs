@@ -15,11 +15,13 @@ before(async () => {
   broken = mkdtempSync(join(tmpdir(), 'beamroom-plans-'));
   mkdirSync(join(broken, 'broken'));
   writeFileSync(join(broken, 'broken', 'plan.json'), '{"format":"beamroom-plan","version":1,"images":[{"id":"ct","path":"../../etc/passwd"}]}');
+  mkdirSync(join(broken, 'letters'));
+  writeFileSync(join(broken, 'letters', 'letter.txt'), 'no plan');
   daemon = await startDaemon({ plans: [demo, broken] });
   url = daemon.url;
   api = `${url}/api/v1`;
   plan = `${api}/plans/phantom`;
-  await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.length === 2 && plans.every((p) => p.parts.length || p.reason));
+  await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.length === 3 && plans.every((p) => p.parts.length || p.reason));
 });
 after(async () => {
   await daemon?.stop();
@@ -75,7 +77,7 @@ describe('the server', () => {
     const metrics = await call(`${url}/metrics`);
     assert.match(metrics.type, /^text\/plain/);
     assert.match(metrics.text, /^beamroom_http_requests_total\{code="2xx"\} [1-9]/m);
-    assert.match(metrics.text, /^beamroom_plans\{state="unreadable"\} 1$/m);
+    assert.match(metrics.text, /^beamroom_plans\{state="unreadable"\} 2$/m);
     assert.doesNotMatch(metrics.text, /phantom/);
     for (const line of metrics.text.trim().split('\n')) assert.match(line, /^(# (HELP|TYPE) beamroom_\w+ .+|beamroom_\w+(\{[^}]*\})? -?[\d.e+-]+)$/);
   });
@@ -121,8 +123,20 @@ describe('a plan', () => {
     const broken = plans.find((p) => p.id === 'broken');
     assert.equal(broken.state, 'unreadable');
     assert.match(broken.reason, /passwd|\.\./);
+    assert.equal(broken.has_plan_file, true);
+    const letters = plans.find((p) => p.id === 'letters');
+    assert.deepEqual([letters.state, letters.has_plan_file], ['unreadable', false]);
     assertProblem(await call(`${api}/plans/broken/open`, 'POST'), 409, 'plan-unreadable');
     assertProblem(await call(`${api}/plans/nowhere/open`, 'POST'), 404, 'not-found');
+  });
+
+  test('is not loaded for a picture of loaded plans only', async () => {
+    const body = { view: { size_px: [64, 48] }, only_loaded: true };
+    assertProblem(await call(`${plan}/render`, 'POST', body), 503, 'busy');
+    assert.equal((await call(plan)).json.state, 'not-loaded');
+    assertProblem(await call(`${plan}/render`, 'POST', { only_loaded: 1 }), 422, 'validation', '/only_loaded');
+    await openPlan(url, 'phantom');
+    assert.equal((await call(`${plan}/render`, 'POST', body)).status, 200);
   });
 
   test('is loaded by a job, and then tells what it holds', async () => {
