@@ -281,7 +281,8 @@ static void every_voxel_has_the_grey_its_window_says(void **state)
         for (int voxel = 0; voxel < 60; voxel++) {
             double x_mm = voxel - 29.5, value = cases[i].value(vec3(x_mm, 0, 0));
             const uint8_t *p = shots_pixel(image, 200 + (int)floor(x_mm * 4), 150);
-            assert_close(p[0], expected_grey(value, cases[i].center, cases[i].width), 1);
+            double grey = expected_grey(value, cases[i].center, cases[i].width);
+            assert_close(p[0], fmax(grey, shots_background[0]), 1);
         }
         assert_memory_equal(shots_pixel(image, 200 + 31 * 4, 150), shots_background, 3); /* beyond the grid */
         image_destroy(image);

@@ -29,7 +29,7 @@ static bool create(const struct gl *gl, struct gl_program *program, const char *
                    const char *vertex, const char *fragment, struct error *err)
 {
     GLuint v = compile(gl, GL_VERTEX_SHADER, name, constants, vertex, err);
-    GLuint f = v ? compile(gl, GL_FRAGMENT_SHADER, name, "", fragment, err) : 0;
+    GLuint f = v ? compile(gl, GL_FRAGMENT_SHADER, name, constants, fragment, err) : 0;
     if (!f) {
         if (v)
             gl->DeleteShader(v);
@@ -60,9 +60,16 @@ static const char *line_constants(char text[80])
     return text;
 }
 
+static const char *image_constants(char text[80])
+{
+    const uint8_t *rgb = visible_background;
+    (void)snprintf(text, 80, "#define DARKEST_GREY (vec3(%d, %d, %d) / 255.0)\n", rgb[0], rgb[1], rgb[2]);
+    return text;
+}
+
 bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struct error *err)
 {
-    char constants[80];
+    char constants[80], darkest[80];
     const struct {
         struct gl_program *program;
         const char *name, *constants, *vertex, *fragment;
@@ -72,7 +79,7 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
         { &programs->lines, "lines", line_constants(constants), gl_shader_lines_vert, gl_shader_shade_frag },
         { &programs->points, "points", "", gl_shader_points_vert, gl_shader_shade_frag },
         { &programs->compose, "compose", "", gl_shader_whole_vert, gl_shader_compose_frag },
-        { &programs->image, "image", "", gl_shader_slice_vert, gl_shader_image_frag },
+        { &programs->image, "image", image_constants(darkest), gl_shader_slice_vert, gl_shader_image_frag },
         { &programs->labels, "labels", "", gl_shader_slice_vert, gl_shader_labels_frag },
         { &programs->test, "test", "", gl_shader_whole_vert, gl_shader_test_frag },
     };

@@ -63,6 +63,8 @@ static struct soft_plane make_image(const struct soft_frame *frame, const struct
     plane.texture.grey_offset = (float)((volume->offset - image->low) / image->width);
     plane.texture.cull = (float)image->cull;
     plane.texture.flip = image->is_low_white ? 255 : 0;
+    for (int c = 0; c < 3; c++)
+        plane.texture.darkest[c] = visible_background[c];
     plane.texture.is_linear = image->is_linear;
     plane.texture.has_depth = draw->depth == DRAW_DEPTH_TESTED;
     return plane;

@@ -80,6 +80,7 @@ struct soft_texture {
     float grey_scale, grey_offset,
         cull;                /* grey = value * scale + offset, 0 .. 1; not drawn where it is less than cull */
     uint32_t flip;           /* 255: grey 0 is white, 1 is black; else 0 */
+    uint32_t darkest[3];     /* red, green and blue of a grey are at least this */
     const uint32_t *palette; /* by label; NULL: grey */
     bool is_linear, has_depth;
 };

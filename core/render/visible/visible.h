@@ -78,5 +78,6 @@ enum { VISIBLE_N_LABELS = 65536 };
  * their pixels. width_px: of the picture. */
 int visible_samples(const struct snapshot *snapshot, const struct camera *camera, int width_px, bool is_still);
 
-/* The colour of the background, RGB. */
+/* The colour of the background, RGB: the page's colour of an empty pane (--pane in web/css/tokens.css). Each channel of
+ * an image's grey is at least this, so that air fades into the pane and the image's box does not show. */
 extern const uint8_t visible_background[3];

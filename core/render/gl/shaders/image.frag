@@ -10,5 +10,6 @@ void main() {
     if (isnan(value) || isinf(value)) discard;
     if (value * grey.x + grey.y < cull)
         discard;
-    result = vec4(vec3(mix(ends.x, ends.y, clamp(value * grey.x + grey.y, 0.0, 1.0))), 1.0);
+    float level = mix(ends.x, ends.y, clamp(value * grey.x + grey.y, 0.0, 1.0));
+    result = vec4(max(vec3(level), DARKEST_GREY), 1.0);
 }
