@@ -51,7 +51,7 @@ LDFLAGS += --coverage
 endif
 
 DCMTK_LIBS := -ldcmjpeg -lijg8 -lijg12 -lijg16 -ldcmjpls -ldcmtkcharls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++
-CORE_LIBS := $(DCMTK_LIBS) -lopenjp2 -lturbojpeg -lspng -ldeflate -lz -lcjson -ldl -lm
+CORE_LIBS := $(DCMTK_LIBS) -lopenjp2 -lturbojpeg -lspng -lfreetype -ldeflate -lz -lcjson -ldl -lm
 UNPACK_LIBS := -larchive
 SERVER_LIBS := -lmicrohttpd -lwebsockets -lcjson -lm
 
@@ -89,6 +89,8 @@ EXTRA_core_render_soft_kernels := -O3 -fno-trapping-math
 EXTRA_core_render_soft_kernels_avx2 := -O3 -fno-trapping-math
 # So are those over the cells of a picture.
 EXTRA_core_formats_dicom_dicom_unpack := -O3
+# FreeType's headers; the font that is compiled in is core/annotate/font.c's.
+EXTRA_core_annotate_font := -isystem /usr/include/freetype2
 
 obj = $(patsubst %.c,$(B)/obj/%.o,$(patsubst %.cc,$(B)/obj/%.o,$(1)))
 $(B)/obj/%.o: %.cc | $(GEN_STAMP)

@@ -1,5 +1,6 @@
 /* Shapes of every representation, pictures of our own rasteriser and of GL, and their compression, while a call of the
  * system fails. */
+#include "core/annotate/describe.h"
 #include "core/derive/shapes.h"
 #include "core/encode/encode.h"
 #include "core/render/render.h"
@@ -185,8 +186,46 @@ static void walk_pictures(void)
     walk_run(&walk);
 }
 
+/* A caption of a snapshot of which a picture was drawn. */
+static void annotate(void *context, struct outcome *outcome)
+{
+    (void)context;
+    char field[128];
+    struct error err = { 0 };
+    struct annotations annotations = { .n_items = 0 };
+    faults_pause();
+    struct plan *plan = make_plan();
+    struct derive *derived = derive_create(plan);
+    struct scene scene;
+    struct view view = view_default;
+    view.kind = SCENE_KIND_AXIAL;
+    scene_for_plan(plan, &scene);
+    struct snapshot *snapshot = snapshot_create(derived, &scene, &view, 1, field, &err);
+    struct image *image = image_create(200, 150, &err), *annotated = NULL;
+    faults_go_on();
+    if (annotations_describe(&annotations, snapshot, 200, "2026-07-01 09:30 UTC", &outcome->err))
+        annotated = annotate_image(image, &annotations, &outcome->err);
+    annotations_finish(&annotations);
+    if (annotated) {
+        outcome->is_done = true;
+        outcome_add(outcome, annotated->rgba, (size_t)annotated->width_px * (size_t)annotated->height_px * 4);
+    }
+    image_destroy(annotated);
+    image_destroy(image);
+    snapshot_unref(snapshot);
+    derive_destroy(derived);
+    plan_destroy(plan);
+}
+
+static void walk_annotations(void)
+{
+    const struct walk walk = { .name = "a picture is annotated", .run = annotate, .kinds = { [FAULT_MEMORY] = true } };
+    walk_run(&walk);
+}
+
 int main(void)
 {
+    walk_annotations();
     walk_shapes();
     walk_pictures();
     return walks_end();

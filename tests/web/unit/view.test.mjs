@@ -1,5 +1,6 @@
 // Cameras, letters and the painter, against figures worked out by hand.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { load } from './page.mjs';
 
@@ -96,6 +97,17 @@ test('letters of the standard slices', () => {
   assert.deepEqual(edgeLetters(parallel([1, 0, 0], [0, -1, 0], [0, 0, 1])), { left: 'R', right: 'L', top: 'A', bottom: 'P' });
   assert.deepEqual(edgeLetters(parallel([0, 1, 0], [0, 0, 1], [-1, 0, 0])), { left: 'A', right: 'P', top: 'S', bottom: 'I' });
   assert.deepEqual(edgeLetters(parallel([1, 0, 0], [0, 0, 1], [0, 1, 0])), { left: 'R', right: 'L', top: 'S', bottom: 'I' });
+});
+
+test('letters are those that the pictures of reports have', () => {
+  const fixture = JSON.parse(readFileSync(new URL('../../data/edge_letters.json', import.meta.url), 'utf8'));
+  const list = ({ left, right, top, bottom }) => [left, right, top, bottom];
+  for (const { kind, letters: expected } of fixture.planes)
+    assert.deepEqual(list(edgeLetters(parallel(cameras.planes[kind].right, cameras.planes[kind].up, [0, 0, 0]))), expected, kind);
+  for (const { about, camera: [position_mm, target_mm, up], letters: expected } of fixture.cameras) {
+    const axes = cameras.axes({ ...front, position_mm, target_mm, up });
+    assert.deepEqual(list(edgeLetters(parallel(axes.right, axes.up, axes.forward))), expected, about);
+  }
 });
 
 test('oblique directions get a second letter from a cosine of 0.30 on', () => {

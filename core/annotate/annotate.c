@@ -1,0 +1,302 @@
+/* Letters, scale bar and caption as pixels. */
+#include "core/annotate/annotate.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/annotate/font.h"
+#include "core/base/mem.h"
+
+enum { MIN_TEXT_PX = 12, MAX_TEXT_PX = 24, COLUMNS = 70, HALO_PX = 2 };
+static const uint8_t ink[3] = { 255, 255, 255 }, halo[3] = { 0, 0, 0 }, print[3] = { 24, 28, 33 },
+                     print_pale[3] = { 92, 99, 106 }, chip_edge[3] = { 120, 126, 133 };
+
+void annotations_finish(struct annotations *annotations)
+{
+    free(annotations->items);
+    *annotations = (struct annotations){ .n_items = 0 };
+}
+
+int annotate_text_px(int width_px)
+{
+    int size = (width_px + COLUMNS / 2) / COLUMNS;
+    return size < MIN_TEXT_PX ? MIN_TEXT_PX : size > MAX_TEXT_PX ? MAX_TEXT_PX : size;
+}
+
+/* ---- on the picture --------------------------------------------------------------------------------------------- */
+
+static void blend(uint8_t *pixel, const uint8_t rgb[3], int coverage)
+{
+    for (int channel = 0; channel < 3; channel++)
+        pixel[channel] = (uint8_t)((pixel[channel] * (255 - coverage) + rgb[channel] * coverage + 127) / 255);
+}
+
+/* The part of an image that shows the picture: its top left. */
+struct canvas {
+    struct image *image;
+    int width_px, height_px;
+};
+
+/* Paints the coverage, whose top left is at (left, top), with a dark rim of HALO_PX around it. */
+static void paint_with_halo(const struct canvas *canvas, const struct coverage *coverage, int left, int top)
+{
+    int width = coverage->width_px, height = coverage->height_px;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            int px = left + x, py = top + y, around = 0;
+            if (px < 0 || py < 0 || px >= canvas->width_px || py >= canvas->height_px)
+                continue;
+            for (int dy = -HALO_PX; dy <= HALO_PX; dy++)
+                for (int dx = -HALO_PX; dx <= HALO_PX; dx++) {
+                    if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height ||
+                        dx * dx + dy * dy > HALO_PX * HALO_PX + 1)
+                        continue;
+                    int there = coverage->pixels[(size_t)(y + dy) * (size_t)width + (size_t)(x + dx)];
+                    around = there > around ? there : around;
+                }
+            uint8_t *pixel = &canvas->image->rgba[4 * ((size_t)py * (size_t)canvas->image->width_px + (size_t)px)];
+            blend(pixel, halo, around * 3 / 4);
+            blend(pixel, ink, coverage->pixels[(size_t)y * (size_t)width + (size_t)x]);
+        }
+}
+
+static bool coverage_create(struct coverage *coverage, int width_px, int height_px, struct error *err)
+{
+    coverage->width_px = width_px;
+    coverage->height_px = height_px;
+    coverage->pixels = mem_array((size_t)width_px * (size_t)height_px, 1, UINT64_MAX, err);
+    return coverage->pixels != NULL;
+}
+
+/* A word on the picture: x + align * width / 2 is its middle, and the middle of its capitals is at y. */
+static bool paint_word(const struct canvas *canvas, struct font *font, const char *word, int x, int align, int y,
+                       struct error *err)
+{
+    struct font_line line;
+    struct coverage coverage = { 0 };
+    if (!font_lay_out(font, word, canvas->width_px, &line, err))
+        return false;
+    int left = x + (align - 1) * line.width_px / 2, top = y - font_size_px(font) / 2 - HALO_PX,
+        baseline = y + (font_size_px(font) * 73 / 100 + 1) / 2; /* capitals are 0.73 of the font's size high */
+    bool is_drawn =
+        coverage_create(&coverage, line.width_px + 2 * HALO_PX, font_size_px(font) * 4 / 3 + 2 * HALO_PX, err) &&
+        font_draw(font, &line, HALO_PX, baseline - top, &coverage, err);
+    if (is_drawn)
+        paint_with_halo(canvas, &coverage, left - HALO_PX, top);
+    free(coverage.pixels);
+    return is_drawn;
+}
+
+static bool paint_letters(const struct canvas *canvas, struct font *font, const struct edge_letters *letters,
+                          struct error *err)
+{
+    int text = font_size_px(font), width = canvas->width_px, height = canvas->height_px;
+    if (width < 6 * text || height < 6 * text)
+        return true; /* they would cover the picture */
+    int margin = text / 2 + HALO_PX;
+    return paint_word(canvas, font, letters->left, margin, 1, height / 2, err) &&
+           paint_word(canvas, font, letters->right, width - margin, -1, height / 2, err) &&
+           paint_word(canvas, font, letters->top, width / 2, 0, text, err) &&
+           paint_word(canvas, font, letters->bottom, width / 2, 0, height - text, err);
+}
+
+struct scale_bar annotate_scale_bar(int width_px, int height_px, double pixels_per_mm)
+{
+    static const double lengths_mm[] = { 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000 };
+    int text = annotate_text_px(width_px);
+    struct scale_bar bar = { .x_px = text, .y_px = height_px - text };
+    /* the bar and its words, of up to seven characters, end before the letter in the middle */
+    double longest_px = fmin(9.0 * text, width_px / 2.0 - 7.0 * text);
+    if (height_px < 6 * text)
+        return bar;
+    for (size_t i = 0; i < sizeof lengths_mm / sizeof *lengths_mm; i++)
+        if (lengths_mm[i] * pixels_per_mm <= longest_px && lengths_mm[i] * pixels_per_mm >= text / 2.0) {
+            bar.length_mm = lengths_mm[i];
+            bar.length_px = (int)lround(lengths_mm[i] * pixels_per_mm);
+        }
+    return bar;
+}
+
+static bool paint_scale_bar(const struct canvas *canvas, struct font *font, double pixels_per_mm, struct error *err)
+{
+    struct scale_bar bar = annotate_scale_bar(canvas->width_px, canvas->height_px, pixels_per_mm);
+    if (!(bar.length_mm > 0))
+        return true;
+    struct coverage coverage = { 0 };
+    int tick = font_size_px(font) / 3, thick = font_size_px(font) >= 18 ? 3 : 2;
+    if (!coverage_create(&coverage, bar.length_px + 2 * HALO_PX, 2 * tick + thick + 2 * HALO_PX, err))
+        return false;
+    for (int y = 0; y < 2 * tick + thick; y++)
+        for (int x = 0; x < bar.length_px; x++)
+            if ((y >= tick && y < tick + thick) || x < thick || x >= bar.length_px - thick)
+                coverage.pixels[(y + HALO_PX) * coverage.width_px + x + HALO_PX] = 255;
+    paint_with_halo(canvas, &coverage, bar.x_px - HALO_PX, bar.y_px - tick - HALO_PX);
+    free(coverage.pixels);
+    char words[32];
+    (void)snprintf(words, sizeof words, "%g mm", bar.length_mm);
+    return paint_word(canvas, font, words, bar.x_px + bar.length_px + font_size_px(font) / 2, 1, bar.y_px + thick / 2,
+                      err);
+}
+
+/* ---- the caption ------------------------------------------------------------------------------------------------ */
+
+/* The place where the next item of a caption goes. */
+struct caption {
+    struct font *fonts[2]; /* of the text, of the title */
+    int margin_px, width_px;
+    struct coverage *ink, *pale; /* NULL: it is only measured */
+    struct image *image;         /* takes the chips */
+    int image_top_px;
+    int x_px, y_px; /* y: the top of the line */
+};
+
+static int line_height_px(struct font *font)
+{
+    return font_ascent_px(font) + font_descent_px(font) + font_size_px(font) / 4;
+}
+
+static void paint_chip(struct caption *caption, const uint8_t rgb[3], int side)
+{
+    struct image *image = caption->image;
+    int top = caption->image_top_px + caption->y_px + font_ascent_px(caption->fonts[0]) - side;
+    for (int y = top; y < top + side && y < image->height_px; y++)
+        for (int x = caption->x_px; x < caption->x_px + side; x++) {
+            bool is_edge = x == caption->x_px || y == top || x == caption->x_px + side - 1 || y == top + side - 1;
+            memcpy(&image->rgba[4 * ((size_t)y * (size_t)image->width_px + (size_t)x)], is_edge ? chip_edge : rgb, 3);
+        }
+}
+
+static bool put_text(struct caption *caption, struct font *font, const struct font_line *line, bool is_pale,
+                     struct error *err)
+{
+    struct coverage *coverage = is_pale ? caption->pale : caption->ink;
+    return !coverage || font_draw(font, line, caption->x_px, caption->y_px + font_ascent_px(font), coverage, err);
+}
+
+/* One row: items[0..n), of n_lines lines at most. */
+static bool put_row(struct caption *caption, const struct annotation_item *items, size_t n, struct error *err)
+{
+    struct font *font = caption->fonts[items[0].row == ANNOTATION_TITLE];
+    bool is_pale = items[0].row == ANNOTATION_ORIGIN || items[0].row == ANNOTATION_USE;
+    int gap = font_size_px(font), chip = font_size_px(font) * 3 / 4, n_lines = 1,
+        right = caption->width_px - caption->margin_px, room = right - caption->margin_px;
+    caption->x_px = caption->margin_px;
+    for (size_t i = 0; i < n; i++) {
+        struct font_line line, more;
+        char words[40];
+        int before = items[i].has_chip ? chip + gap / 3 : 0;
+        bool is_last = i + 1 == n;
+        (void)snprintf(words, sizeof words, "and %zu more", n - i);
+        if (!font_lay_out(font, items[i].text, room - before, &line, err) ||
+            !font_lay_out(font, words, room, &more, err))
+            return false;
+        /* on the last line there must be room for "and n more", unless it is the last item */
+        int behind = n_lines == ANNOTATE_MAX_LINES && !is_last ? gap + more.width_px : 0;
+        if (caption->x_px > caption->margin_px && caption->x_px + before + line.width_px + behind > right) {
+            if (n_lines == ANNOTATE_MAX_LINES)
+                return put_text(caption, font, &more, is_pale, err);
+            n_lines++;
+            caption->x_px = caption->margin_px;
+            caption->y_px += line_height_px(font);
+        }
+        if (items[i].has_chip && caption->image)
+            paint_chip(caption, items[i].rgb, chip);
+        caption->x_px += before;
+        if (!put_text(caption, font, &line, is_pale, err))
+            return false;
+        caption->x_px += line.width_px + gap;
+    }
+    return true;
+}
+
+static bool put_caption(struct caption *caption, const struct annotations *annotations, struct error *err)
+{
+    caption->y_px = caption->margin_px;
+    for (size_t i = 0, end; i < annotations->n_items; i = end) {
+        const struct annotation_item *item = &annotations->items[i];
+        for (end = i + 1; end < annotations->n_items && annotations->items[end].row == item->row;)
+            end++;
+        if (!put_row(caption, item, end - i, err))
+            return false;
+        caption->y_px += line_height_px(caption->fonts[item->row == ANNOTATION_TITLE]);
+    }
+    caption->y_px += caption->margin_px;
+    return true;
+}
+
+static void paint_plain(struct image *image, const struct coverage *coverage, int top, const uint8_t rgb[3])
+{
+    for (int y = 0; y < coverage->height_px; y++)
+        for (int x = 0; x < coverage->width_px; x++) {
+            int there = coverage->pixels[(size_t)y * (size_t)coverage->width_px + (size_t)x];
+            if (there)
+                blend(&image->rgba[4 * ((size_t)(top + y) * (size_t)image->width_px + (size_t)x)], rgb, there);
+        }
+}
+
+static bool paint_caption(struct caption *caption, const struct annotations *annotations, int height_px,
+                          struct image *image, int top, struct error *err)
+{
+    struct coverage dark = { 0 }, pale = { 0 };
+    bool is_done = coverage_create(&dark, image->width_px, height_px, err) &&
+                   coverage_create(&pale, image->width_px, height_px, err);
+    caption->ink = &dark;
+    caption->pale = &pale;
+    caption->image = image;
+    caption->image_top_px = top;
+    is_done = is_done && put_caption(caption, annotations, err);
+    if (is_done) {
+        paint_plain(image, &dark, top, print);
+        paint_plain(image, &pale, top, print_pale);
+    }
+    free(dark.pixels);
+    free(pale.pixels);
+    return is_done;
+}
+
+/* A white picture with this one at its top left. */
+static struct image *copy_onto_white(const struct image *image, int width_px, int height_px, struct error *err)
+{
+    struct image *copy = image_create(width_px, height_px, err);
+    if (!copy)
+        return NULL;
+    memset(copy->rgba, 255, (size_t)width_px * (size_t)height_px * 4);
+    for (int y = 0; y < image->height_px; y++)
+        memcpy(copy->rgba + 4 * (size_t)y * (size_t)width_px, image->rgba + 4 * (size_t)y * (size_t)image->width_px,
+               4 * (size_t)image->width_px);
+    return copy;
+}
+
+static bool paint_on_picture(const struct canvas *canvas, struct font *font, const struct annotations *annotations,
+                             struct error *err)
+{
+    return paint_letters(canvas, font, &annotations->letters, err) &&
+           (!(annotations->pixels_per_mm > 0) || paint_scale_bar(canvas, font, annotations->pixels_per_mm, err));
+}
+
+struct image *annotate_image(const struct image *image, const struct annotations *annotations, struct error *err)
+{
+    int text_px = annotate_text_px(image->width_px),
+        width_px = image->width_px < ANNOTATE_MIN_WIDTH_PX ? ANNOTATE_MIN_WIDTH_PX : image->width_px;
+    struct caption caption = { .margin_px = text_px * 3 / 4, .width_px = width_px };
+    struct image *out = NULL;
+    bool is_done = false;
+    if (!(caption.fonts[0] = font_create(text_px, err)) || !(caption.fonts[1] = font_create(text_px * 5 / 4, err)) ||
+        !put_caption(&caption, annotations, err))
+        goto done;
+    int caption_px = caption.y_px < ANNOTATE_MAX_CAPTION_PX ? caption.y_px : ANNOTATE_MAX_CAPTION_PX;
+    if (!(out = copy_onto_white(image, width_px, image->height_px + caption_px, err)))
+        goto done;
+    const struct canvas canvas = { out, image->width_px, image->height_px };
+    is_done = paint_on_picture(&canvas, caption.fonts[0], annotations, err) &&
+              paint_caption(&caption, annotations, caption_px, out, image->height_px, err);
+done:
+    font_destroy(caption.fonts[0]);
+    font_destroy(caption.fonts[1]);
+    if (is_done)
+        return out;
+    image_destroy(out);
+    return NULL;
+}

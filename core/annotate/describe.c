@@ -1,0 +1,261 @@
+/* Words for plan, pane, regions and methods of a snapshot. */
+#include "core/annotate/describe.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "core/base/mem.h"
+#include "core/render/visible/visible.h"
+
+enum { MAX_OTHER_ITEMS = 32 }; /* beside regions */
+static const char minus[] = "\u2212";
+
+void annotate_date(int64_t unix_s, char date[ANNOTATE_DATE_SIZE])
+{
+    struct tm utc;
+    time_t seconds = (time_t)unix_s;
+    if (!gmtime_r(&seconds, &utc) || strftime(date, ANNOTATE_DATE_SIZE, "%Y-%m-%d %H:%M UTC", &utc) == 0)
+        date[0] = '\0';
+}
+
+static struct annotation_item *add_item(struct annotations *annotations, enum annotation_row row)
+{
+    struct annotation_item *item = &annotations->items[annotations->n_items++];
+    item->row = row;
+    return item;
+}
+
+static void add_words(struct annotations *annotations, enum annotation_row row, const char *words)
+{
+    (void)snprintf(add_item(annotations, row)->text, ANNOTATION_TEXT_SIZE, "%s", words);
+}
+
+/* A number as the page writes it, with a true minus. */
+static void write_number(char text[40], double value, int digits)
+{
+    char plain[36];
+    (void)snprintf(plain, sizeof plain, "%.*f", digits, fabs(value));
+    bool is_zero = strspn(plain, "0.") == strlen(plain);
+    (void)snprintf(text, 40, "%s%s", value < 0 && !is_zero ? minus : "", plain);
+}
+
+/* ---- the pane --------------------------------------------------------------------------------------------------- */
+
+static const char *kind_words(enum scene_kind kind)
+{
+    static const char *const words[] = { [SCENE_KIND_3D] = "3-D",
+                                         [SCENE_KIND_AXIAL] = "Axial",
+                                         [SCENE_KIND_CORONAL] = "Coronal",
+                                         [SCENE_KIND_SAGITTAL] = "Sagittal" };
+    return words[kind];
+}
+
+/* "S 34.0 mm": where a plane square to the patient cuts its axis. */
+static void add_position(struct annotations *annotations, const char *before, const struct plane *plane)
+{
+    char number[40];
+    const char *letter = plane->normal.z > 0.5 ? "S" : plane->normal.y > 0.5 ? "P" : "L";
+    write_number(number, plane_position_mm(plane), 1);
+    (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%s %s mm", before, letter,
+                   number);
+}
+
+static void add_image(struct annotations *annotations, const struct snapshot *snapshot)
+{
+    const struct plan_image *image = &snapshot->plan->images[snapshot->image];
+    const struct scene_image_style *style = &snapshot->scene.image;
+    char width[40], center[40];
+    int digits = style->window.width < 10 ? 2 : 0;
+    const char *name = image->name[0] ? image->name : image->id;
+    bool has_modality = image->modality[0] && !strstr(name, image->modality);
+    (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%s%s", name,
+                   has_modality ? ", " : "", has_modality ? image->modality : "");
+    write_number(center, style->window.center, digits);
+    write_number(width, style->window.width, digits);
+    (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "C %s  W %s%s%s", center, width,
+                   image->unit[0] ? " " : "", image->unit);
+    if (snapshot_is_low_white(snapshot))
+        add_words(annotations, ANNOTATION_PANE, "low values white");
+    if (style->interpolation == SCENE_INTERPOLATION_NEAREST)
+        add_words(annotations, ANNOTATION_PANE, "nearest voxel");
+}
+
+static void add_pane(struct annotations *annotations, const struct snapshot *snapshot, const struct camera *camera)
+{
+    bool is_pane = snapshot_is_pane(snapshot);
+    add_words(annotations, ANNOTATION_PANE, kind_words(snapshot->view.kind));
+    if (is_pane)
+        add_position(annotations, "", &snapshot->pane);
+    else
+        add_words(annotations, ANNOTATION_PANE, camera->is_parallel ? "parallel projection" : "perspective, no scale");
+    for (size_t i = 0; !is_pane && snapshot->image >= 0 && i < snapshot->n_slices; i++)
+        add_position(annotations, "slice ", &snapshot->slices[i]);
+    if (snapshot->image >= 0 && (is_pane || snapshot->n_slices > 0))
+        add_image(annotations, snapshot);
+}
+
+/* ---- regions ---------------------------------------------------------------------------------------------------- */
+
+/* True if the plane of a slice pane meets the box of the region or of one inside it. inside: room for n_regions. */
+static bool reaches_pane(const struct snapshot *snapshot, size_t index, size_t *inside)
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    size_t n = region_with_descendants(set, index, inside);
+    for (size_t i = 0; i < n; i++) {
+        const struct region *region = &set->regions[inside[i]];
+        struct box3 box = box3_empty();
+        for (int corner = 0; region->n_voxels > 0 && corner < 8; corner++) {
+            double ijk[3];
+            for (int axis = 0; axis < 3; axis++)
+                ijk[axis] = corner >> axis & 1 ? region->high_ijk[axis] + 0.5 : region->low_ijk[axis] - 0.5;
+            box3_add(&box,
+                     affine_point(&set->layers[region->layer]->grid.lps_mm_from_ijk, vec3(ijk[0], ijk[1], ijk[2])));
+        }
+        if (box3_is_empty(&box))
+            continue;
+        struct plane_reach reach = plane_reach(&snapshot->pane, &box);
+        if (plane_meets(&reach))
+            return true;
+    }
+    return false;
+}
+
+static bool is_missing(const struct visible_missing *missing, size_t n, size_t region)
+{
+    for (size_t i = 0; i < n && i < VISIBLE_MAX_MISSING; i++)
+        if (missing[i].subject.kind == SUBJECT_REGION && missing[i].subject.index == region)
+            return true;
+    return false;
+}
+
+static void add_region(struct annotations *annotations, const struct snapshot *snapshot, size_t index)
+{
+    const struct scene_region_style *style = &snapshot->styles[index];
+    const struct region *region = &snapshot->plan->regions.regions[index];
+    enum region_representation kind = visible_shape_key(snapshot, index).representation;
+    struct annotation_item *item = add_item(annotations, ANNOTATION_REGIONS);
+    char opacity[16] = "";
+    bool is_pane = snapshot_is_pane(snapshot);
+    item->has_chip = true;
+    for (int channel = 0; channel < 3; channel++)
+        item->rgb[channel] = (uint8_t)(style->color_rgb >> (16 - 8 * channel));
+    if (!is_pane && style->opacity < 1)
+        (void)snprintf(opacity, sizeof opacity, " %.0f %%", 100 * style->opacity);
+    (void)snprintf(item->text, sizeof item->text, "%s%s%s%s", region->name[0] ? region->name : region->id, opacity,
+                   is_pane || kind == REPRESENTATION_SURFACE ? "" : ", ",
+                   is_pane || kind == REPRESENTATION_SURFACE ? "" : region_representation_word(kind));
+}
+
+/* True if the picture shows regions at all: a slice pane with an image draws them only as outlines. */
+static bool has_regions(const struct snapshot *snapshot)
+{
+    return !snapshot_is_pane(snapshot) || snapshot->image < 0 || snapshot->scene.outline.on_slices;
+}
+
+static bool add_regions(struct annotations *annotations, const struct snapshot *snapshot,
+                        const struct visible_missing *missing, size_t n_missing, struct error *err)
+{
+    size_t n_regions = snapshot->plan->regions.n_regions;
+    size_t *inside = mem_array(n_regions, sizeof *inside, UINT64_MAX, err);
+    if (!inside)
+        return false;
+    for (size_t i = 0; has_regions(snapshot) && i < n_regions; i++)
+        if (visible_is_drawn(snapshot, i) && !is_missing(missing, n_missing, i) &&
+            (!snapshot_is_pane(snapshot) || reaches_pane(snapshot, i, inside)))
+            add_region(annotations, snapshot, i);
+    free(inside);
+    return true;
+}
+
+static void add_missing(struct annotations *annotations, const struct snapshot *snapshot,
+                        const struct visible_missing *missing, size_t n_missing)
+{
+    enum { MAX_NAMED = 8 };
+    for (size_t i = 0; i < n_missing && i < MAX_NAMED; i++) {
+        const struct subject subject = missing[i].subject;
+        const char *name = subject.kind == SUBJECT_REGION ? snapshot->plan->regions.regions[subject.index].name
+                                                          : subject_id(snapshot->plan, subject);
+        (void)snprintf(add_item(annotations, ANNOTATION_MISSING)->text, ANNOTATION_TEXT_SIZE, "%s%s",
+                       i == 0 ? "Not drawn: " : "", name);
+    }
+    if (n_missing > MAX_NAMED)
+        (void)snprintf(add_item(annotations, ANNOTATION_MISSING)->text, ANNOTATION_TEXT_SIZE, "and %zu more",
+                       n_missing - MAX_NAMED);
+}
+
+/* ---- methods ---------------------------------------------------------------------------------------------------- */
+
+static const char *outline_words(enum scene_outline_method method)
+{
+    if (method == SCENE_OUTLINE_METHOD_TRACED)
+        return "outlines: along the univels' centres";
+    return method == SCENE_OUTLINE_METHOD_MARCHING_SQUARES ? "outlines: midway between univels"
+                                                           : "outlines: of the surfaces";
+}
+
+static void add_methods(struct annotations *annotations, const struct snapshot *snapshot)
+{
+    bool has_surface = false, has_outline = snapshot_is_pane(snapshot) && snapshot->scene.outline.on_slices;
+    for (size_t i = 0; !snapshot_is_pane(snapshot) && i < snapshot->plan->regions.n_regions; i++) {
+        enum region_representation kind = visible_shape_key(snapshot, i).representation;
+        has_surface = has_surface || (visible_is_drawn(snapshot, i) && kind == REPRESENTATION_SURFACE);
+        has_outline = has_outline || (visible_is_drawn(snapshot, i) && kind == REPRESENTATION_OUTLINE);
+    }
+    if (has_surface)
+        (void)snprintf(add_item(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE, "surfaces: %s",
+                       surface_algorithm_word(visible_surface_key(snapshot).algorithm));
+    if (has_outline && snapshot->plan->regions.n_regions > 0)
+        add_words(annotations, ANNOTATION_METHODS, outline_words(snapshot->scene.outline.method));
+    if (snapshot_is_pane(snapshot) && snapshot->scene.check.visible)
+        add_words(annotations, ANNOTATION_METHODS, "check of the segmentation: differences are marked");
+    if (snapshot->scene.dose.grid && snapshot->dose >= 0) {
+        const struct dose *dose = &snapshot->plan->doses[snapshot->dose];
+        (void)snprintf(add_item(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE,
+                       "grid of the dose %s%s%s%s%s", dose->name[0] ? dose->name : dose->id, dose->unit[0] ? ", " : "",
+                       dose->unit,
+                       dose->per[0] == 0                    ? ""
+                       : strncmp(dose->per, "per ", 4) == 0 ? " "
+                                                            : " per ",
+                       dose->per);
+    }
+}
+
+static void add_origin(struct annotations *annotations, const struct snapshot *snapshot, const char *date)
+{
+    add_words(annotations, ANNOTATION_ORIGIN, date);
+    if (snapshot->scene_revision > 0)
+        (void)snprintf(add_item(annotations, ANNOTATION_ORIGIN)->text, ANNOTATION_TEXT_SIZE, "revision %u",
+                       (unsigned)snapshot->scene_revision);
+    add_words(annotations, ANNOTATION_ORIGIN, "Beamroom " BEAMROOM_VERSION);
+    add_words(annotations, ANNOTATION_USE, "For research and plan review. Not a medical device.");
+}
+
+bool annotations_describe(struct annotations *annotations, const struct snapshot *snapshot, int width_px,
+                          const char *date, struct error *err)
+{
+    const struct plan *plan = snapshot->plan;
+    struct visible_missing missing[VISIBLE_MAX_MISSING];
+    struct camera camera;
+    size_t n_missing = visible_missing(snapshot, SURFACE_FULL, missing);
+    *annotations = (struct annotations){ .n_items = 0 };
+    annotations->items =
+        mem_array(plan->regions.n_regions + MAX_OTHER_ITEMS, sizeof annotations->items[0], UINT64_MAX, err);
+    if (!annotations->items)
+        return false;
+    camera_resolve(snapshot, &camera);
+    annotations->letters = letters_of_edges(camera.right, camera.up);
+    annotations->pixels_per_mm = camera.pixels_per_mm * width_px / snapshot->view.size_px[0];
+
+    add_words(annotations, ANNOTATION_TITLE, plan->name[0] ? plan->name : plan->id);
+    if (plan->is_phantom)
+        add_words(annotations, ANNOTATION_TITLE, "(phantom)");
+    add_pane(annotations, snapshot, &camera);
+    if (!add_regions(annotations, snapshot, missing, n_missing, err))
+        return false;
+    add_methods(annotations, snapshot);
+    add_missing(annotations, snapshot, missing, n_missing);
+    add_origin(annotations, snapshot, date);
+    return true;
+}

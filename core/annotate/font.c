@@ -1,0 +1,219 @@
+/* FreeType, and the font's bytes. */
+#include "core/annotate/font.h"
+
+#include <freetype/freetype.h>
+#include <freetype/ftmodapi.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+
+#ifndef ANNOTATE_FONT
+#define ANNOTATE_FONT "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf" /* Debian's fonts-dejavu-core */
+#endif
+
+/* The font file, put into the program by the assembler. */
+__asm__(".pushsection .rodata\n"
+        ".balign 16\n"
+        ".global annotate_font_begin\n"
+        ".hidden annotate_font_begin\n"
+        "annotate_font_begin:\n"
+        ".incbin \"" ANNOTATE_FONT "\"\n"
+        ".global annotate_font_end\n"
+        ".hidden annotate_font_end\n"
+        "annotate_font_end:\n"
+        ".popsection\n");
+extern const unsigned char annotate_font_begin[], annotate_font_end[];
+
+enum { ELLIPSIS = 0x2026, REPLACEMENT = 0xfffd };
+
+struct font {
+    struct FT_MemoryRec_ memory;
+    FT_Library library;
+    FT_Face face;
+    int size_px, ascent_px, descent_px;
+    bool is_short; /* an allocation failed: FreeType does not report all of them, but does without a module */
+};
+
+static void *allocate(FT_Memory memory, long size)
+{
+    struct font *font = memory->user;
+    void *block = malloc((size_t)size);
+    font->is_short = font->is_short || !block;
+    return block;
+}
+
+static void release(FT_Memory memory, void *block)
+{
+    (void)memory;
+    free(block);
+}
+
+static void *resize(FT_Memory memory, long old_size, long size, void *block)
+{
+    struct font *font = memory->user;
+    void *resized = realloc(block, (size_t)size);
+    (void)old_size;
+    font->is_short = font->is_short || !resized;
+    return resized;
+}
+
+/* status: of a call of FreeType */
+static bool is_done(const struct font *font, FT_Error status, struct error *err)
+{
+    if (!status && !font->is_short)
+        return true;
+    return error_set(err, ERROR_MEMORY, "no memory for text: FreeType's error %d", status);
+}
+
+struct font *font_create(int size_px, struct error *err)
+{
+    struct font *font = mem_new(sizeof *font);
+    font->memory = (struct FT_MemoryRec_){ font, allocate, release, resize };
+    FT_Error status = FT_New_Library(&font->memory, &font->library);
+    if (!status)
+        FT_Add_Default_Modules(font->library);
+    if (!status)
+        status = FT_New_Memory_Face(font->library, annotate_font_begin,
+                                    (FT_Long)(annotate_font_end - annotate_font_begin), 0, &font->face);
+    if (!status)
+        status = FT_Set_Pixel_Sizes(font->face, 0, (FT_UInt)size_px);
+    if (!is_done(font, status, err)) {
+        font_destroy(font);
+        return NULL;
+    }
+    font->size_px = size_px;
+    font->ascent_px = (int)((font->face->size->metrics.ascender + 63) / 64);
+    font->descent_px = (int)((63 - font->face->size->metrics.descender) / 64);
+    return font;
+}
+
+void font_destroy(struct font *font)
+{
+    if (!font)
+        return;
+    if (font->face)
+        FT_Done_Face(font->face);
+    if (font->library)
+        FT_Done_Library(font->library);
+    free(font);
+}
+
+int font_size_px(const struct font *font)
+{
+    return font->size_px;
+}
+int font_ascent_px(const struct font *font)
+{
+    return font->ascent_px;
+}
+int font_descent_px(const struct font *font)
+{
+    return font->descent_px;
+}
+
+/* ---- characters ------------------------------------------------------------------------------------------------- */
+
+/* Controls, and characters that change the direction of text or break lines. */
+static bool is_printable(uint32_t c)
+{
+    return c >= 0x20 && !(c >= 0x7f && c < 0xa0) && c != 0xad && !(c >= 0x200b && c <= 0x200f) &&
+           !(c >= 0x2028 && c <= 0x202e) && !(c >= 0x2060 && c <= 0x206f) && !(c >= 0xd800 && c < 0xe000) &&
+           c != 0xfeff && c <= 0x10ffff;
+}
+
+/* Reads one character of UTF-8 and moves *at behind it, by at least one byte. REPLACEMENT for anything else. */
+static uint32_t next_character(const unsigned char **at)
+{
+    static const uint32_t lowest[4] = { 0, 0x80, 0x800, 0x10000 };
+    uint32_t c = *(*at)++;
+    int n_more = c < 0x80 ? 0 : c >= 0xc2 && c < 0xe0 ? 1 : c >= 0xe0 && c < 0xf0 ? 2 : c >= 0xf0 && c < 0xf5 ? 3 : -1;
+    if (n_more < 0)
+        return REPLACEMENT;
+    if (n_more)
+        c &= 0x3fU >> n_more;
+    for (int i = 0; i < n_more; i++) {
+        if ((**at & 0xc0) != 0x80)
+            return REPLACEMENT;
+        c = c << 6 | (*(*at)++ & 0x3fU);
+    }
+    return c >= lowest[n_more] && is_printable(c) ? c : REPLACEMENT;
+}
+
+static bool load(struct font *font, uint32_t character, FT_Int32 flags, struct error *err)
+{
+    FT_Error status = FT_Load_Char(font->face, character, FT_LOAD_TARGET_LIGHT | FT_LOAD_NO_BITMAP | flags);
+    return is_done(font, status, err);
+}
+
+bool font_lay_out(struct font *font, const char *text, int max_width_px, struct font_line *line, struct error *err)
+{
+    enum { HALF = FONT_MAX_CHARACTERS / 2 };
+    uint32_t last[HALF]; /* a ring of the characters after the first HALF */
+    size_t n = 0;
+    *line = (struct font_line){ .n = 0 };
+    for (const unsigned char *at = (const unsigned char *)text; *at; n++)
+        *(n < HALF ? &line->characters[n] : &last[n % HALF]) = next_character(&at);
+    size_t n_first = n < HALF ? n : HALF, n_last = n - n_first < HALF ? n - n_first : HALF;
+    for (size_t i = 0; i < n_last; i++)
+        line->characters[n_first + i] = last[(n - n_last + i) % HALF];
+    int n_kept = line->n = (int)(n_first + n_last);
+    for (int i = 0; i < n_kept; i++) {
+        if (!load(font, line->characters[i], 0, err))
+            return false;
+        line->advance_px[i] = (int)(font->face->glyph->advance.x >> 6);
+        line->width_px += line->advance_px[i];
+    }
+    if (line->width_px <= max_width_px && n == (size_t)n_kept)
+        return true;
+
+    /* [first, behind) becomes an ellipsis */
+    if (!load(font, ELLIPSIS, 0, err))
+        return false;
+    int ellipsis_px = (int)(font->face->glyph->advance.x >> 6), first = n_kept / 2, behind = first;
+    while (behind - first < n_kept && (behind == first || line->width_px + ellipsis_px > max_width_px))
+        line->width_px -= n_kept - behind >= first ? line->advance_px[behind++] : line->advance_px[--first];
+    line->characters[first] = ELLIPSIS;
+    line->advance_px[first] = ellipsis_px;
+    line->width_px += ellipsis_px;
+    line->n = first + 1 + n_kept - behind;
+    memmove(line->characters + first + 1, line->characters + behind,
+            (size_t)(n_kept - behind) * sizeof line->characters[0]);
+    memmove(line->advance_px + first + 1, line->advance_px + behind,
+            (size_t)(n_kept - behind) * sizeof line->advance_px[0]);
+    return true;
+}
+
+/* ---- pixels ----------------------------------------------------------------------------------------------------- */
+
+static void put_glyph(const FT_Bitmap *glyph, int left_px, int top_px, struct coverage *coverage)
+{
+    for (int row = 0; row < (int)glyph->rows; row++) {
+        int y = top_px + row;
+        if (y < 0 || y >= coverage->height_px)
+            continue;
+        for (int column = 0; column < (int)glyph->width; column++) {
+            int x = left_px + column;
+            if (x < 0 || x >= coverage->width_px)
+                continue;
+            uint8_t value = glyph->buffer[row * glyph->pitch + column];
+            uint8_t *pixel = &coverage->pixels[(size_t)y * (size_t)coverage->width_px + (size_t)x];
+            *pixel = value > *pixel ? value : *pixel;
+        }
+    }
+}
+
+bool font_draw(struct font *font, const struct font_line *line, int x_px, int baseline_px, struct coverage *coverage,
+               struct error *err)
+{
+    for (int i = 0; i < line->n; i++) {
+        if (!load(font, line->characters[i], FT_LOAD_RENDER, err))
+            return false;
+        const FT_GlyphSlot slot = font->face->glyph;
+        if (slot->bitmap.pixel_mode == FT_PIXEL_MODE_GRAY)
+            put_glyph(&slot->bitmap, x_px + slot->bitmap_left, baseline_px - slot->bitmap_top, coverage);
+        x_px += line->advance_px[i];
+    }
+    return true;
+}
