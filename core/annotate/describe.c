@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <time.h>
 
 #include "core/base/mem.h"
@@ -69,7 +70,7 @@ static void add_image(struct annotations *annotations, const struct snapshot *sn
     char width[40], center[40];
     int digits = style->window.width < 10 ? 2 : 0;
     const char *name = image->name[0] ? image->name : image->id;
-    bool has_modality = image->modality[0] && !strstr(name, image->modality);
+    bool has_modality = image->modality[0] && !strstr(name, image->modality) && strcasecmp(name, image->modality) != 0;
     (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%s%s", name,
                    has_modality ? ", " : "", has_modality ? image->modality : "");
     write_number(center, style->window.center, digits);
@@ -190,9 +191,9 @@ static void add_missing(struct annotations *annotations, const struct snapshot *
 static const char *outline_words(enum scene_outline_method method)
 {
     if (method == SCENE_OUTLINE_METHOD_TRACED)
-        return "outlines: along the univels' centres";
-    return method == SCENE_OUTLINE_METHOD_MARCHING_SQUARES ? "outlines: midway between univels"
-                                                           : "outlines: of the surfaces";
+        return "Outlines: along the univels' centres";
+    return method == SCENE_OUTLINE_METHOD_MARCHING_SQUARES ? "Outlines: midway between univels"
+                                                           : "Outlines: of the surfaces";
 }
 
 static void add_methods(struct annotations *annotations, const struct snapshot *snapshot)
@@ -204,16 +205,16 @@ static void add_methods(struct annotations *annotations, const struct snapshot *
         has_outline = has_outline || (visible_is_drawn(snapshot, i) && kind == REPRESENTATION_OUTLINE);
     }
     if (has_surface)
-        (void)snprintf(add_item(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE, "surfaces: %s",
+        (void)snprintf(add_item(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE, "Surfaces: %s",
                        surface_algorithm_word(visible_surface_key(snapshot).algorithm));
     if (has_outline && snapshot->plan->regions.n_regions > 0)
         add_words(annotations, ANNOTATION_METHODS, outline_words(snapshot->scene.outline.method));
     if (snapshot_is_pane(snapshot) && snapshot->scene.check.visible)
-        add_words(annotations, ANNOTATION_METHODS, "check of the segmentation: differences are marked");
+        add_words(annotations, ANNOTATION_METHODS, "Check of the segmentation: differences are marked");
     if (snapshot->scene.dose.grid && snapshot->dose >= 0) {
         const struct dose *dose = &snapshot->plan->doses[snapshot->dose];
         (void)snprintf(add_item(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE,
-                       "grid of the dose %s%s%s%s%s", dose->name[0] ? dose->name : dose->id, dose->unit[0] ? ", " : "",
+                       "Grid of the dose %s%s%s%s%s", dose->name[0] ? dose->name : dose->id, dose->unit[0] ? ", " : "",
                        dose->unit,
                        dose->per[0] == 0                    ? ""
                        : strncmp(dose->per, "per ", 4) == 0 ? " "
@@ -229,7 +230,8 @@ static void add_origin(struct annotations *annotations, const struct snapshot *s
         (void)snprintf(add_item(annotations, ANNOTATION_ORIGIN)->text, ANNOTATION_TEXT_SIZE, "revision %u",
                        (unsigned)snapshot->scene_revision);
     add_words(annotations, ANNOTATION_ORIGIN, "Beamroom " BEAMROOM_VERSION);
-    add_words(annotations, ANNOTATION_USE, "For research and plan review. Not a medical device.");
+    add_words(annotations, ANNOTATION_USE, "For research and plan review.");
+    add_words(annotations, ANNOTATION_USE, "Not a medical device.");
 }
 
 bool annotations_describe(struct annotations *annotations, const struct snapshot *snapshot, int width_px,
@@ -249,7 +251,7 @@ bool annotations_describe(struct annotations *annotations, const struct snapshot
     annotations->pixels_per_mm = camera.pixels_per_mm * width_px / snapshot->view.size_px[0];
 
     add_words(annotations, ANNOTATION_TITLE, plan->name[0] ? plan->name : plan->id);
-    if (plan->is_phantom)
+    if (plan->is_phantom && !strstr(plan->name, "hantom"))
         add_words(annotations, ANNOTATION_TITLE, "(phantom)");
     add_pane(annotations, snapshot, &camera);
     if (!add_regions(annotations, snapshot, missing, n_missing, err))

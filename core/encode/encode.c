@@ -2,7 +2,9 @@
 #include "core/encode/encode.h"
 
 #include <spng.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <turbojpeg.h>
 
 #include "core/base/mem.h"
@@ -67,7 +69,8 @@ static bool encode_jpeg(struct encoder *encoder, const struct image *image, cons
     return true;
 }
 
-static bool encode_png(const struct image *image, struct encoded *out, struct error *err)
+/* text: NULL: none */
+static bool encode_png(const struct image *image, struct spng_text *text, struct encoded *out, struct error *err)
 {
     spng_ctx *png = spng_ctx_new(SPNG_CTX_ENCODER);
     if (!png)
@@ -84,6 +87,8 @@ static bool encode_png(const struct image *image, struct encoded *out, struct er
         status = spng_set_option(png, SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_SUB | SPNG_FILTER_CHOICE_UP);
     if (!status)
         status = spng_set_ihdr(png, &header);
+    if (!status && text)
+        status = spng_set_text(png, text, 1);
     if (!status)
         status = spng_encode_image(png, image->rgba, n_raw, SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
     uint8_t *bytes = status ? NULL : spng_get_png_buffer(png, &n_bytes, &status);
@@ -95,17 +100,40 @@ static bool encode_png(const struct image *image, struct encoded *out, struct er
     return true;
 }
 
+static bool check_size(const struct image *image, struct error *err)
+{
+    return (image->width_px >= 1 && image->height_px >= 1 && image->width_px <= IMAGE_MAX_SIDE_PX &&
+            image->height_px <= IMAGE_MAX_SIDE_PX) ||
+           error_set(err, ERROR_RANGE, "a picture of %d x %d pixels: each side must be 1 to %d", image->width_px,
+                     image->height_px, IMAGE_MAX_SIDE_PX);
+}
+
+bool encode_png_with_text(const struct image *image, const char *keyword, const char *text, struct encoded *out,
+                          struct error *err)
+{
+    char none[] = "", *copy = mem_copy_text(text); /* libspng wants them writable */
+    struct spng_text chunk = { .type = SPNG_ITXT,
+                               .length = strlen(text),
+                               .text = copy,
+                               .compression_flag = 1,
+                               .language_tag = none,
+                               .translated_keyword = none };
+    (void)snprintf(chunk.keyword, sizeof chunk.keyword, "%s", keyword);
+    *out = (struct encoded){ 0 };
+    bool is_done = check_size(image, err) && encode_png(image, &chunk, out, err);
+    free(copy);
+    return is_done;
+}
+
 bool encode_image(struct encoder *encoder, const struct image *image, const struct encode_options *options,
                   struct encoded *out, struct error *err)
 {
     *out = (struct encoded){ 0 };
-    if (image->width_px < 1 || image->height_px < 1 || image->width_px > IMAGE_MAX_SIDE_PX ||
-        image->height_px > IMAGE_MAX_SIDE_PX)
-        return error_set(err, ERROR_RANGE, "a picture of %d x %d pixels: each side must be 1 to %d", image->width_px,
-                         image->height_px, IMAGE_MAX_SIDE_PX);
+    if (!check_size(image, err))
+        return false;
     switch (options->codec) {
     case ENCODE_JPEG: return encode_jpeg(encoder, image, options, out, err);
-    case ENCODE_PNG: return encode_png(image, out, err);
+    case ENCODE_PNG: return encode_png(image, NULL, out, err);
     }
     return error_set(err, ERROR_RANGE, "no picture format has the number %d", (int)options->codec);
 }

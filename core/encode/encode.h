@@ -26,3 +26,7 @@ struct encoded {
  *   thread  the encoder's */
 NODISCARD bool encode_image(struct encoder *encoder, const struct image *image, const struct encode_options *options,
                             struct encoded *out, struct error *err);
+/* The image as a PNG with a text in it, UTF-8, compressed, in an iTXt chunk of this keyword (1 to 79 letters). errors
+ * as encode_image. thread: any */
+NODISCARD bool encode_png_with_text(const struct image *image, const char *keyword, const char *text,
+                                    struct encoded *out, struct error *err);

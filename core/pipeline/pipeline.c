@@ -88,11 +88,19 @@ struct pipeline {
     uint64_t n_image_bytes; /* of pictures begun and not compressed */
 };
 
+void pipeline_annotation_destroy(struct pipeline_annotation *annotation)
+{
+    if (annotation)
+        free(annotation->text);
+    free(annotation);
+}
+
 static void picture_destroy(struct picture *picture)
 {
     if (!picture)
         return;
     snapshot_unref(picture->request.snapshot);
+    pipeline_annotation_destroy(picture->request.annotation);
     image_destroy(picture->image);
     free(picture->frame.picture.bytes);
     free(picture);
@@ -134,9 +142,10 @@ static struct encode_thread *encode_thread_of(struct pipeline *pipeline, const s
 static uint64_t image_bytes(const struct picture *picture)
 {
     const struct render_options *options = &picture->request.render;
-    return options->width_px > 0 && options->height_px > 0
-               ? (uint64_t)options->width_px * (uint64_t)options->height_px * 4
-               : 0;
+    uint64_t width = options->width_px > 0 ? (uint64_t)options->width_px : 0,
+             height = options->height_px > 0 ? (uint64_t)options->height_px : 0;
+    /* an annotated picture is copied, and has a caption with masks for its text */
+    return picture->request.annotation ? width * (2 * height + 2 * ANNOTATE_MAX_CAPTION_PX) * 4 : width * height * 4;
 }
 
 /* A picture is held while its encode thread has enough drawn ones, while there is no memory for it, and while another
@@ -406,12 +415,38 @@ static void *render_main(void *argument)
 
 /* ---- the encode threads ----------------------------------------------------------------------------------------- */
 
+/* Replaces the image by one with letters, scale bar and caption. */
+static bool annotate(struct picture *picture, struct error *err)
+{
+    const struct pipeline_annotation *annotation = picture->request.annotation;
+    struct annotations annotations;
+    struct image *annotated = NULL;
+    if (annotations_describe(&annotations, picture->request.snapshot, picture->image->width_px, annotation->date, err))
+        annotated = annotate_image(picture->image, &annotations, err);
+    annotations_finish(&annotations);
+    image_destroy(picture->image);
+    picture->image = annotated;
+    return annotated != NULL;
+}
+
+static bool compress(struct encoder *encoder, struct picture *picture)
+{
+    const struct pipeline_request *request = &picture->request;
+    struct pipeline_frame *frame = &picture->frame;
+    if (request->annotation && !annotate(picture, &frame->error))
+        return false;
+    return request->annotation && request->encode.codec == ENCODE_PNG
+               ? encode_png_with_text(picture->image, request->annotation->keyword, request->annotation->text,
+                                      &frame->picture, &frame->error)
+               : encode_image(encoder, picture->image, &request->encode, &frame->picture, &frame->error);
+}
+
 static void encode(struct pipeline *pipeline, struct encoder *encoder, struct picture *picture)
 {
     struct pipeline_frame *frame = &picture->frame;
     if (picture->image) {
         int64_t start_us = clock_now_us();
-        (void)!encode_image(encoder, picture->image, &picture->request.encode, &frame->picture, &frame->error);
+        (void)!compress(encoder, picture);
         frame->encode_us = clock_now_us() - start_us;
     }
     image_destroy(picture->image);

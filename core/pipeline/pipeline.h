@@ -3,10 +3,19 @@
  * large pictures, so that one frame is compressed while the next is drawn. Sources share the render thread by time
  * (turns.h); a picture that takes long is left between its parts for others. All pictures are of plans that outlive the
  * pipeline. Knows no sockets and no JSON. */
+#include "core/annotate/describe.h"
 #include "core/encode/encode.h"
 #include "core/render/render.h"
 
 struct pipeline;
+
+/* A picture for a report: core/annotate. */
+struct pipeline_annotation {
+    char date[ANNOTATE_DATE_SIZE];
+    const char *keyword; /* of the text in a PNG; borrowed, a constant */
+    char *text;          /* owned: kept in a PNG; JPEGs carry none */
+};
+void pipeline_annotation_destroy(struct pipeline_annotation *annotation);
 
 struct pipeline_request {
     uint64_t id;               /* the caller's; stands in the frame */
@@ -14,13 +23,14 @@ struct pipeline_request {
     struct snapshot *snapshot; /* one reference, taken */
     struct render_options render;
     struct encode_options encode;
+    struct pipeline_annotation *annotation; /* owned, taken with the snapshot; NULL: a plain picture */
 };
 
 struct pipeline_frame {
     uint64_t id;
-    struct error error;     /* ERROR_NONE: there is a picture */
-    struct encoded picture; /* the receiver's to free */
-    int width_px, height_px;
+    struct error error;      /* ERROR_NONE: there is a picture */
+    struct encoded picture;  /* the receiver's to free */
+    int width_px, height_px; /* as drawn; the caption of an annotated picture comes below */
     struct camera camera;
     struct render_timing timing;
     int64_t encode_us;
@@ -45,8 +55,9 @@ NODISCARD struct pipeline *pipeline_create(enum render_back_end back_end, bool s
 /* Limit on the images of all pictures that are begun and not yet compressed; a single image may be larger. */
 #define PIPELINE_MAX_IMAGE_BYTES ((uint64_t)256 << 20)
 enum { PIPELINE_MAX_WAITING = 64 };
-/* Takes request->snapshot, on failure too. Pictures of one source that are alike in size and codec, and all moving or
- * all stills, are delivered in order. Nothing is dropped, so the caller decides what is worth a request.
+/* Takes request->snapshot and request->annotation, on failure too. Pictures of one source that are alike in size and
+ * codec, and all moving or all stills, are delivered in order. Nothing is dropped, so the caller decides what is worth
+ * a request.
  *
  *   errors   ERROR_LIMIT  PIPELINE_MAX_WAITING requests are not begun yet
  *   thread   any; never blocks */

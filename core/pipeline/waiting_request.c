@@ -23,6 +23,7 @@ void waiting_request_destroy(struct waiting_request *waiting)
     if (!waiting)
         return;
     snapshot_unref(waiting->request.snapshot);
+    pipeline_annotation_destroy(waiting->request.annotation);
     free(waiting->wants);
     free(waiting);
 }

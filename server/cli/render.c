@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <time.h>
 
+#include "core/annotate/describe.h"
 #include "core/base/clock.h"
 #include "core/base/file_write.h"
 #include "core/encode/encode.h"
@@ -17,6 +19,7 @@
 #include "server/cli/text.h"
 #include "server/wire/document.h"
 #include "server/wire/plan_document.h"
+#include "server/wire/snapshot_record.h"
 
 enum { DOCUMENT_MAX_BYTES = 1 << 20, DEFAULT_QUALITY = 92 };
 
@@ -26,6 +29,7 @@ struct render_arguments {
     enum render_back_end back_end;
     int size_px[2]; /* 0: that of the view */
     int quality;
+    bool has_annotations;
 };
 
 static void print_help(void)
@@ -39,6 +43,8 @@ static void print_help(void)
         "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
         "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
         "  --quality N       of a JPEG, 1 to 100 (default %d)\n"
+        "  --annotations     letters, scale bar and a caption below the picture, which makes the file higher; a PNG then\n"
+        "                    carries scene and view, so that the page can show them again\n"
         "  --help            this text\n\n"
         "The fields of scene and view are those of the daemon's API. Equal plans, scenes and views give equal pictures on the\n"
         "same back end.\n",
@@ -121,9 +127,10 @@ static cJSON *make_view(const char *path, const int size_px[2], struct error *er
     return sized;
 }
 
-/* The snapshot of the scene and view that the arguments name. NULL with err. */
+/* The snapshot of the scene and view that the arguments name. NULL with err. view_document: the view, the caller's;
+ * NULL on failure. */
 static struct snapshot *make_snapshot(struct derive *derived, const struct render_arguments *arguments,
-                                      struct error *err)
+                                      cJSON **view_document, struct error *err)
 {
     const struct plan *plan = derive_plan(derived);
     struct scene scene = { 0 };
@@ -160,19 +167,42 @@ done:
     cJSON_Delete(defaults);
     cJSON_Delete(scene_json);
     cJSON_Delete(shown_json);
-    cJSON_Delete(view_json);
+    *view_document = snapshot ? view_json : NULL;
+    if (!snapshot)
+        cJSON_Delete(view_json);
     return snapshot;
 }
 
 /* ---- the picture ------------------------------------------------------------------------------------------------ */
 
-static bool write_picture(const struct image *image, const struct render_arguments *arguments, struct error *err)
+/* The picture with letters, scale bar and caption; text: what a PNG of it carries. */
+static struct image *annotate(const struct image *image, const struct snapshot *snapshot, const cJSON *view,
+                              char **text, struct error *err)
+{
+    struct annotations annotations = { .n_items = 0 };
+    struct image *annotated = NULL;
+    char date[ANNOTATE_DATE_SIZE];
+    int64_t now_s = (int64_t)time(NULL);
+    annotate_date(now_s, date);
+    if (!(*text = snapshot_record(snapshot, view, now_s)))
+        error_set(err, ERROR_MEMORY, "no memory for the picture's record");
+    else if (annotations_describe(&annotations, snapshot, image->width_px, date, err))
+        annotated = annotate_image(image, &annotations, err);
+    annotations_finish(&annotations);
+    return annotated;
+}
+
+/* text: NULL: none */
+static bool write_picture(const struct image *image, const char *text, const struct render_arguments *arguments,
+                          struct error *err)
 {
     const struct encode_options options = { arguments->codec, arguments->quality, true };
     struct encoded encoded = { 0 };
     struct encoder *encoder = encoder_create();
-    bool is_written = encode_image(encoder, image, &options, &encoded, err) &&
-                      file_write(arguments->out, encoded.bytes, encoded.n_bytes, err);
+    bool is_encoded = text && arguments->codec == ENCODE_PNG
+                          ? encode_png_with_text(image, SNAPSHOT_RECORD_KEYWORD, text, &encoded, err)
+                          : encode_image(encoder, image, &options, &encoded, err);
+    bool is_written = is_encoded && file_write(arguments->out, encoded.bytes, encoded.n_bytes, err);
     free(encoded.bytes);
     encoder_destroy(encoder);
     return is_written;
@@ -193,7 +223,9 @@ static void print_missing(const struct snapshot *snapshot)
 
 static bool draw(struct derive *derived, const struct render_arguments *arguments, struct error *err)
 {
-    struct snapshot *snapshot = make_snapshot(derived, arguments, err);
+    cJSON *view = NULL;
+    char *text = NULL;
+    struct snapshot *snapshot = make_snapshot(derived, arguments, &view, err);
     if (!snapshot)
         return false;
     bool is_drawn = false;
@@ -206,7 +238,12 @@ static bool draw(struct derive *derived, const struct render_arguments *argument
         struct render_timing timing = { 0 };
         int64_t start_us = clock_now_us();
         image = render_snapshot(renderer, snapshot, &options, &camera, &timing, err);
-        is_drawn = image && write_picture(image, arguments, err);
+        if (image && arguments->has_annotations) {
+            struct image *annotated = annotate(image, snapshot, view, &text, err);
+            image_destroy(image);
+            image = annotated;
+        }
+        is_drawn = image && write_picture(image, text, arguments, err);
         if (is_drawn) {
             text_print(stdout, arguments->out, 0);
             printf(": %d x %d, %zu triangles, %.0f ms, %s\n", image->width_px, image->height_px, timing.n_triangles,
@@ -217,6 +254,8 @@ static bool draw(struct derive *derived, const struct render_arguments *argument
             print_missing(snapshot);
         renderer_forget(renderer, derive_plan(derived));
     }
+    free(text);
+    cJSON_Delete(view);
     image_destroy(image);
     renderer_destroy(renderer);
     snapshot_unref(snapshot);
@@ -260,12 +299,15 @@ static bool codec_from_path(const char *path, enum encode_codec *codec)
 /* False when there is nothing to draw; *code is then the exit code. */
 static bool parse_arguments(int argc, char **argv, struct render_arguments *arguments, int *code)
 {
-    static const struct option long_options[] = {
-        { "output", required_argument, NULL, 'o' }, { "scene", required_argument, NULL, 's' },
-        { "view", required_argument, NULL, 'v' },   { "size", required_argument, NULL, 'z' },
-        { "gl", required_argument, NULL, 'g' },     { "quality", required_argument, NULL, 'q' },
-        { "help", no_argument, NULL, 'h' },         { NULL, 0, NULL, 0 }
-    };
+    static const struct option long_options[] = { { "output", required_argument, NULL, 'o' },
+                                                  { "scene", required_argument, NULL, 's' },
+                                                  { "view", required_argument, NULL, 'v' },
+                                                  { "size", required_argument, NULL, 'z' },
+                                                  { "gl", required_argument, NULL, 'g' },
+                                                  { "quality", required_argument, NULL, 'q' },
+                                                  { "annotations", no_argument, NULL, 'a' },
+                                                  { "help", no_argument, NULL, 'h' },
+                                                  { NULL, 0, NULL, 0 } };
     *code = EXIT_USAGE;
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
@@ -290,6 +332,7 @@ static bool parse_arguments(int argc, char **argv, struct render_arguments *argu
             if (!parse_quality(optarg, &arguments->quality))
                 return command_usage_error("render", "--quality '%s' is not 1 to 100", optarg), false;
             break;
+        case 'a': arguments->has_annotations = true; break;
         case 'h':
             print_help();
             *code = EXIT_DONE;

@@ -98,7 +98,8 @@ static void picture_came(void *context, struct packet *answer, const struct prob
 }
 
 void api_picture_request(struct api *api, struct call *call, const char *plan_id, const cJSON *scene,
-                         const uint32_t *revision, const cJSON *view, const char *format, double quality)
+                         const uint32_t *revision, const cJSON *view, const char *format, double quality,
+                         bool annotations)
 {
     struct problem problem;
     bool is_jpeg = format && strcmp(format, "jpeg") == 0;
@@ -126,6 +127,7 @@ void api_picture_request(struct api *api, struct call *call, const char *plan_id
     packet.render.codec = is_jpeg ? PACKET_CODEC_JPEG : PACKET_CODEC_PNG;
     packet.render.full_color = true;
     packet.render.still = true;
+    packet.render.annotations = annotations;
     (void)fleet_request(net_fleet(api->net), plan_id, &packet, picture_came, call);
 }
 

@@ -8,9 +8,11 @@
  *   scene, view  complete documents, borrowed
  *   revision     of the room whose scene it is, for the header Beamroom-Revision; NULL: no room's
  *   format       "png", "jpeg" or NULL for png; others are refused
- *   quality      of a JPEG, 1 to 100 */
+ *   quality      of a JPEG, 1 to 100
+ *   annotations  with letters, scale bar and caption */
 void api_picture_request(struct api *api, struct call *call, const char *plan_id, const cJSON *scene,
-                         const uint32_t *revision, const cJSON *view, const char *format, double quality);
+                         const uint32_t *revision, const cJSON *view, const char *format, double quality,
+                         bool annotations);
 /* The call's parameter "view" as a complete document; the default view when it was not given. NULL: the call was
  * answered with a problem. */
 NODISCARD cJSON *api_view_parameter(struct call *call);

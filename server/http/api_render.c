@@ -22,7 +22,7 @@ static void render_call_destroy(struct render_call *request)
 
 static bool check_body(const cJSON *body, struct problem *problem)
 {
-    static const char *const known[] = { "scene", "view", "format", "quality", "only_loaded" };
+    static const char *const known[] = { "scene", "view", "format", "quality", "annotations", "only_loaded" };
     const cJSON *item;
     cJSON_ArrayForEach(item, body)
     {
@@ -36,6 +36,7 @@ static bool check_body(const cJSON *body, struct problem *problem)
                                "%.60s is not a field of a render request", item->string);
         bool right = strcmp(item->string, "format") == 0        ? cJSON_IsString(item)
                      : strcmp(item->string, "quality") == 0     ? cJSON_IsNumber(item)
+                     : strcmp(item->string, "annotations") == 0 ? cJSON_IsBool(item)
                      : strcmp(item->string, "only_loaded") == 0 ? cJSON_IsBool(item)
                                                                 : cJSON_IsObject(item);
         if (!right)
@@ -77,7 +78,7 @@ static void render_when_ready(void *context, struct packet *answer, const struct
         goto refuse;
     }
     api_picture_request(api, call, request->plan_id, shown, NULL, view, json_text(request->body, "format"),
-                        json_number(request->body, "quality", 92));
+                        json_number(request->body, "quality", 92), json_flag(request->body, "annotations", false));
     goto done;
 refuse:
     call_answer_problem(call, &problem);

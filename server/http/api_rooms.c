@@ -184,6 +184,14 @@ void api_room_snapshot(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
+    const char *word = call_query(call, "annotations");
+    bool annotations = word && strcmp(word, "true") == 0;
+    if (word && !annotations && strcmp(word, "false") != 0) {
+        problem_set(&problem, PROBLEM_VALIDATION, "/annotations", "type",
+                    "annotations is \"%.20s\", expected true or false", word);
+        call_answer_problem(call, &problem);
+        return;
+    }
     struct fleet_plan plan;
     const char *plan_id = room_plan_id(room);
     if (!fleet_plan_find(net_fleet(api->net), plan_id, &plan)) {
@@ -200,7 +208,8 @@ void api_room_snapshot(struct api *api, struct call *call)
         return;
     cJSON *shown = room_scene_for_view(room, view, &problem);
     if (shown) {
-        api_picture_request(api, call, plan_id, shown, &revision, view, call_query(call, "format"), quality);
+        api_picture_request(api, call, plan_id, shown, &revision, view, call_query(call, "format"), quality,
+                            annotations);
     } else {
         problem_below(&problem, "/view");
         call_answer_problem(call, &problem);

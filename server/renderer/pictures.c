@@ -3,11 +3,13 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/render/visible/visible.h"
 #include "server/wire/document.h"
+#include "server/wire/snapshot_record.h"
 
 enum { WARM_UP_PX = 64, MAX_REQUESTS = 2 * PIPELINE_MAX_WAITING };
 #define WARM_UP_ID UINT64_MAX       /* never the id of a packet, so its picture is dropped */
@@ -92,8 +94,10 @@ static void submit(struct pictures *pictures, struct waiting_request *waiting)
     struct error err = { 0 };
     struct pipeline_request drawn = waiting->request;
     struct picture_request *request = find_request(pictures, drawn.id);
-    if (request)
+    if (request) {
         snapshot_ref(drawn.snapshot);
+        waiting->request.annotation = NULL; /* goes on with the request */
+    }
     waiting_request_destroy(waiting);
     if (!request || pipeline_submit(pictures->options.pipeline, &drawn, &err)) /* none: dropped meanwhile */
         return;
@@ -115,6 +119,20 @@ static uint64_t source_number(const char *source)
     for (; *source; source++)
         number = (number ^ (uint8_t)*source) * UINT64_C(1099511628211);
     return number;
+}
+
+/* NULL: there is no memory for it. */
+static struct pipeline_annotation *make_annotation(const struct snapshot *snapshot, const cJSON *view)
+{
+    int64_t now_s = (int64_t)time(NULL);
+    char *text = snapshot_record(snapshot, view, now_s);
+    if (!text)
+        return NULL;
+    struct pipeline_annotation *annotation = mem_new(sizeof *annotation);
+    annotate_date(now_s, annotation->date);
+    annotation->keyword = SNAPSHOT_RECORD_KEYWORD;
+    annotation->text = text;
+    return annotation;
 }
 
 void pictures_start(struct pictures *pictures, const struct packet_render *render)
@@ -145,6 +163,12 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
     if (!request) {
         snapshot_unref(snapshot);
         refuse_busy(pictures, render->id);
+        return;
+    }
+    if (render->annotations && !(drawn.annotation = make_annotation(snapshot, render->shown.view))) {
+        snapshot_unref(snapshot);
+        (void)json_no_memory(&problem, "the picture's record");
+        link_send_problem(pictures->options.link, render->id, &problem);
         return;
     }
     request->scene_revision = scene_revision;

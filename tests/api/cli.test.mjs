@@ -206,6 +206,16 @@ describe('beamroom export', () => {
 });
 
 describe('beamroom render', () => {
+  it('writes a caption below the picture when annotations are wanted', () => {
+    const out = join(folder, 'annotated.png');
+    const { status, stderr } = beamroom('render', plan, '-o', out, '--size', '320x200', '--annotations');
+    assert.equal(status, 0, stderr);
+    const bytes = readFileSync(out);
+    assert.equal(bytes.readUInt32BE(16), 320);
+    assert.ok(bytes.readUInt32BE(20) > 250);
+    assert.ok(bytes.includes('iTXt') && bytes.includes('beamroom\0'));
+  });
+
   it('writes a PNG of the size asked for, twice the same', () => {
     const [one, two] = [join(folder, 'one.png'), join(folder, 'two.png')];
     for (const out of [one, two]) {

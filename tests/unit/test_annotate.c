@@ -396,7 +396,7 @@ static void a_snapshot_is_described(void **state)
         assert_string_equal(row_text(&words, ANNOTATION_REGIONS), pane ? "low" : "low|high 35 %");
         assert_string_equal(row_text(&words, ANNOTATION_ORIGIN),
                             "2026-07-01 09:30 UTC|revision 12|Beamroom " BEAMROOM_VERSION);
-        assert_string_equal(row_text(&words, ANNOTATION_USE), "For research and plan review. Not a medical device.");
+        assert_string_equal(row_text(&words, ANNOTATION_USE), "For research and plan review.|Not a medical device.");
         assert_string_equal(row_text(&words, ANNOTATION_MISSING), "");
         struct camera camera;
         camera_resolve(snapshot, &camera);

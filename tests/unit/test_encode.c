@@ -138,6 +138,37 @@ static void what_cannot_be_encoded_is_refused(void **state)
     image_destroy(image);
 }
 
+static void a_png_carries_a_text_that_is_compressed(void **state)
+{
+    (void)state;
+    struct image *image = smooth_image();
+    struct error err = { 0 };
+    struct encoded png;
+    static char text[100000];
+    for (size_t i = 0; i + 1 < sizeof text; i++)
+        text[i] = "{\"name\": \"\xc3\x84\"}"[i % 14];
+    assert_true(encode_png_with_text(image, "beamroom", text, &png, &err));
+    spng_ctx *reader = spng_ctx_new(0);
+    struct spng_text found[1];
+    uint32_t n = 0;
+    assert_int_equal(spng_set_png_buffer(reader, png.bytes, png.n_bytes), 0);
+    assert_int_equal(spng_get_text(reader, NULL, &n), 0);
+    assert_int_equal(n, 1);
+    assert_int_equal(spng_get_text(reader, found, &n), 0);
+    assert_string_equal(found[0].keyword, "beamroom");
+    assert_int_equal(found[0].type, SPNG_ITXT);
+    assert_int_equal(found[0].compression_flag, 1);
+    assert_int_equal(found[0].length, strlen(text));
+    assert_string_equal(found[0].text, text);
+    assert_true(png.n_bytes < sizeof text / 5); /* a pattern of 14 bytes */
+    static uint8_t back[WIDTH * HEIGHT * 4];
+    assert_int_equal(spng_decode_image(reader, back, sizeof back, SPNG_FMT_RGBA8, 0), 0);
+    assert_memory_equal(back, image->rgba, sizeof back);
+    spng_ctx_free(reader);
+    free(png.bytes);
+    image_destroy(image);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -146,6 +177,7 @@ int main(void)
         cmocka_unit_test(a_png_is_the_picture_exactly),
         cmocka_unit_test(one_compressor_serves_pictures_of_any_size),
         cmocka_unit_test(what_cannot_be_encoded_is_refused),
+        cmocka_unit_test(a_png_carries_a_text_that_is_compressed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -300,18 +300,19 @@ static int read_one(enum packet_direction direction, enum packet_type type, size
     return got;
 }
 
-/* A frame of a 4096 x 4096 picture has at most 64 MiB of pixels (4 bytes each), and a MiB for the codec's own; the JSON
- * of a frame has 24 numbers and up to 32 missing regions, each with an id of 63 letters and a reason of 239, which JSON
- * may write six times as long: 58 KiB. What is larger is refused before memory is taken for it. */
+/* A frame of a 4096 x 4096 picture with a caption of 1024 lines has at most 80 MiB of pixels (4 bytes each), and a MiB
+ * for the codec's own; the JSON of a frame has 24 numbers and up to 32 missing regions, each with an id of 63 letters
+ * and a reason of 239, which JSON may write six times as long: 58 KiB. What is larger is refused before memory is taken
+ * for it. */
 static void a_packet_larger_than_its_type_may_be_is_refused_before_its_blob(void **state)
 {
     (void)state;
-    const size_t picture = ((size_t)64 << 20) + (1 << 20);
+    const size_t picture = ((size_t)80 << 20) + (1 << 20);
     struct error err = { 0 };
     assert_int_equal(read_one(PACKET_TO_DAEMON, PACKET_FRAME, 1000, picture, &err), 0); /* it waits for the picture */
     assert_int_equal(read_one(PACKET_TO_DAEMON, PACKET_FRAME, 1000, picture + 1, &err), -1);
     assert_int_equal(err.code, ERROR_LIMIT);
-    assert_non_null(strstr(err.text, "\"frame\" of 1000 + 68157441 bytes, at most 65536 + 68157440"));
+    assert_non_null(strstr(err.text, "\"frame\" of 1000 + 84934657 bytes, at most 65536 + 84934656"));
     assert_int_equal(read_one(PACKET_TO_DAEMON, PACKET_FRAME, 65537, 10, &err), -1);
     assert_int_equal(read_one(PACKET_TO_DAEMON, PACKET_PROGRESS, 16384, 0, &err), 1);
     assert_int_equal(read_one(PACKET_TO_DAEMON, PACKET_PROGRESS, 16385, 0, &err), -1);
