@@ -29,6 +29,21 @@ static bool is_shown(const struct snapshot *snapshot, size_t region)
     return snapshot->styles[region].visible && snapshot->styles[region].opacity > 0;
 }
 
+/* The part of its opacity that a surface has as alpha where it faces the viewer; proto/scene.json, translucency. */
+#define RIM_PLAIN_PART 0.3
+/* The part of a pixel that lines and points cover, roughly. */
+#define SPARSE_COVER 0.1
+
+static double region_alpha(const struct snapshot *snapshot, size_t region)
+{
+    const struct scene_region_style *style = &snapshot->styles[region];
+    if (style->representation == SCENE_REPRESENTATION_OUTLINE || style->representation == SCENE_REPRESENTATION_POINTS)
+        return style->opacity * SPARSE_COVER;
+    bool is_rim = style->opacity < 1 && style->representation != SCENE_REPRESENTATION_SOLID &&
+                  snapshot->scene.surface.translucency == SCENE_TRANSLUCENCY_RIM;
+    return is_rim ? style->opacity * RIM_PLAIN_PART : style->opacity;
+}
+
 /* Inserts by distance, after hits of equal distance. Drops the farthest beyond PICK_MAX_HITS. Returns the new count. */
 static size_t add_hit(struct pick_hit hits[PICK_MAX_HITS], size_t n, struct pick_hit hit)
 {
@@ -187,7 +202,9 @@ static size_t pick_regions(const struct snapshot *snapshot, const struct ray *ra
             int region_level = region_depth(set, i);
             more |= region_level > depth;
             if (region_level == depth && isfinite(t_mm[i]) && is_shown(snapshot, i))
-                n = add_hit(hits, n, (struct pick_hit){ ray_point(ray, t_mm[i]), subject_region(i), t_mm[i] });
+                n = add_hit(hits, n,
+                            (struct pick_hit){ ray_point(ray, t_mm[i]), subject_region(i), t_mm[i],
+                                               region_alpha(snapshot, i) });
         }
     }
     return n;
@@ -229,7 +246,7 @@ static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray
         double t = (plane_position_mm(plane) - vec3_dot(ray->origin_lps_mm, plane->normal)) / across;
         struct vec3 point = ray_point(ray, t);
         if (t >= 0 && slice_is_drawn_at(snapshot, volume, point))
-            n = add_hit(hits, n, (struct pick_hit){ point, image_subject(snapshot), t });
+            n = add_hit(hits, n, (struct pick_hit){ point, image_subject(snapshot), t, 1 });
     }
     return n;
 }
@@ -268,11 +285,11 @@ static size_t pick_pane(const struct snapshot *snapshot, const struct camera *ca
     for (int depth = deepest; depth >= 0; depth--)
         for (size_t i = 0; i < set->n_regions && n < PICK_MAX_HITS; i++)
             if (holds[i] && is_shown(snapshot, i) && region_depth(set, i) == depth)
-                hits[n++] = (struct pick_hit){ point, subject_region(i), 0 };
+                hits[n++] = (struct pick_hit){ point, subject_region(i), 0, 1 };
     uint32_t ijk[3];
     if (n < PICK_MAX_HITS && snapshot->image >= 0 &&
         volume_voxel_at(snapshot->plan->images[snapshot->image].volume, point, ijk))
-        hits[n++] = (struct pick_hit){ point, image_subject(snapshot), 0 };
+        hits[n++] = (struct pick_hit){ point, image_subject(snapshot), 0, 1 };
     return n;
 }
 
@@ -289,4 +306,22 @@ size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, stru
     for (size_t i = 0; i < n; i++)
         hits[i].distance_mm = vec3_length(vec3_sub(hits[i].point_lps_mm, camera.eye_lps_mm));
     return n;
+}
+
+size_t pick_seen(const struct pick_hit *hits, size_t n, int preferred)
+{
+    double left = 1, most = 0; /* the part of the light that has passed, the largest part that one hit covers */
+    size_t largest = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (preferred >= 0 && hits[i].subject.kind == SUBJECT_REGION && hits[i].subject.index == (size_t)preferred)
+            return i;
+        if (left * hits[i].alpha > most) {
+            most = left * hits[i].alpha;
+            largest = i;
+        }
+        left *= 1 - hits[i].alpha;
+        if (left < 0.5)
+            return i;
+    }
+    return largest;
 }

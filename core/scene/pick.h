@@ -1,5 +1,6 @@
 #pragma once
-/* Picking: what lies under a pixel, computed from univels and slices, not from the picture. */
+/* Picking: what lies under a pixel and which of it is seen, computed from univels and slices, not from the
+ * picture. */
 #include "core/scene/snapshot.h"
 
 /* One thing under a pixel of the full-size view. */
@@ -7,9 +8,19 @@ struct pick_hit {
     struct vec3 point_lps_mm;
     struct subject subject; /* a region, or the image of a slice */
     double distance_mm;
+    /* How much of what lies behind it the hit covers, 0 to 1: as the picture blends surfaces away from their
+     * silhouettes. Outlines and points leave most of the picture free and cover a tenth of their opacity; slices cover
+     * all, and so does every hit in a slice pane. */
+    double alpha;
 };
 enum { PICK_MAX_HITS = 32 };
 /* Fills hits front to back, returns how many. Hits every region that the scene shows (visible, opacity > 0) as if it
  * were solid, whatever it is drawn as. On a slice pane: the point on the plane with the regions there, innermost first,
  * then the image. px, py: pixel centres are at + 0.5. */
 size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, struct pick_hit hits[PICK_MAX_HITS]);
+
+/* Index of the hit that a person sees, of the n > 0 hits of snapshot_pick. Light goes through the hits front to back,
+ * each lets 1 - alpha of it pass: the first hit behind which less than half is left; if there is none, the hit that
+ * covers most. preferred, a region's index or -1, is the hit seen instead wherever at least half of the light reaches
+ * it. */
+size_t pick_seen(const struct pick_hit *hits, size_t n, int preferred);

@@ -146,23 +146,33 @@ cJSON *answer_probe(struct question *question, struct derive *derived, struct pr
     return json;
 }
 
-/* {hits: [{point_lps_mm, region: id | null, distance_mm}]}, front to back */
+/* {hits: [{point_lps_mm, region: id | null, distance_mm, alpha, seen}]}, front to back; one is seen */
 cJSON *answer_pick(struct question *question, struct derive *derived, struct problem *problem)
 {
     const struct snapshot *snapshot = question->snapshot;
     struct pick_hit hits[PICK_MAX_HITS];
     size_t n = snapshot_pick(snapshot, question->packet.pick.px, question->packet.pick.py, hits);
     (void)derived;
-    (void)problem;
+    const struct plan *plan = snapshot->plan;
+    const struct region *preferred =
+        question->packet.pick.has_prefer ? region_find(&plan->regions, question->packet.pick.prefer) : NULL;
+    if (question->packet.pick.has_prefer && !preferred) {
+        (void)problem_set(problem, PROBLEM_NOT_FOUND, "/prefer", "", "the plan has no region \"%.64s\"",
+                          question->packet.pick.prefer);
+        return NULL;
+    }
+    size_t seen = n ? pick_seen(hits, n, preferred ? (int)(preferred - plan->regions.regions) : -1) : 0;
     cJSON *json = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(json, "hits");
     for (size_t i = 0; i < n; i++) {
         cJSON *hit = cJSON_CreateObject();
         cJSON_AddItemToObject(hit, "point_lps_mm", point(hits[i].point_lps_mm));
         if (hits[i].subject.kind == SUBJECT_REGION)
-            cJSON_AddStringToObject(hit, "region", subject_id(snapshot->plan, hits[i].subject));
+            cJSON_AddStringToObject(hit, "region", subject_id(plan, hits[i].subject));
         else
             cJSON_AddNullToObject(hit, "region");
         add_number(hit, "distance_mm", hits[i].distance_mm);
+        add_number(hit, "alpha", hits[i].alpha);
+        cJSON_AddBoolToObject(hit, "seen", i == seen);
         cJSON_AddItemToArray(list, hit);
     }
     return json;

@@ -297,6 +297,11 @@ describe('a plan', () => {
     assert.equal(hits[0].region, 'scalp', 'the scalp is in front');
     for (let i = 1; i < hits.length; i++) assert.ok(hits[i].distance_mm >= hits[i - 1].distance_mm);
     assert.ok(hits[0].point_lps_mm[1] < 0, 'the home camera looks from the front: the first hit is anterior');
+    assert.equal(hits.filter(({ seen }) => seen).length, 1);
+    for (const { alpha } of hits) assert.ok(alpha > 0 && alpha <= 1);
+    const { hits: skin } = (await call(`${plan}/pick?view=${view}&px=200&py=200&prefer=scalp`)).json;
+    assert.deepEqual(skin.map(({ seen }) => seen), hits.map((_, at) => at === 0), 'nothing is before the scalp');
+    assertProblem(await call(`${plan}/pick?view=${view}&px=200&py=200&prefer=liver`), 404, 'not-found', '/prefer');
     assertProblem(await call(`${plan}/pick?view=${view}&px=200`), 422, 'validation', '/py');
   });
 

@@ -291,6 +291,116 @@ static void more_hits_than_fit_keep_the_nearest(void **state)
     plan_and_derived_destroy(plan);
 }
 
+/* Nested spheres around the origin, radii 5, 10, 15 mm, in voxels of 1 mm. */
+static double spheres(struct vec3 p)
+{
+    double r = vec3_length(p);
+    return r < 5 ? 3 : r < 10 ? 2 : r < 15 ? 1 : 0;
+}
+
+/* Opacities of body, organ and tumour, and how they blend. */
+static double opacity[3];
+static enum scene_translucency translucency;
+static enum scene_representation body_as;
+static void see_through(struct scene *scene)
+{
+    for (int i = 0; i < 3; i++)
+        scene->regions[i].value.opacity = opacity[i];
+    scene->regions[0].value.representation = body_as;
+    scene->surface.translucency = translucency;
+}
+
+/* The region seen along a ray that passes the spheres' middle at this distance; preferred: -1 for none. */
+static int seen_at(const struct plan *plan, double aside_mm, int preferred, size_t *n)
+{
+    struct snapshot *snapshot =
+        look((struct plan *)plan, vec3(0, -100, aside_mm), vec3(0, 0, aside_mm), see_through, SCENE_KIND_3D);
+    struct pick_hit hits[PICK_MAX_HITS];
+    *n = snapshot_pick(snapshot, 50.5, 50.5, hits);
+    int seen = *n ? (int)hits[pick_seen(hits, *n, preferred)].subject.index : -1;
+    snapshot_unref(snapshot);
+    return seen;
+}
+
+static void what_is_seen_is_where_half_of_the_light_is_stopped(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = made_plan(&grid, spheres, tree, 3);
+    static const struct {
+        double opacity[3];
+        enum scene_translucency translucency;
+        int seen[3]; /* at 0, 7 and 12 mm from the middle: through three, two and one of the spheres */
+    } cases[] = {
+        /* an opaque skin hides all */
+        { { 1, 1, 1 }, SCENE_TRANSLUCENCY_RIM, { 0, 0, 0 } },
+        /* plain: 0.7 of the light is left behind the skin, 0.35 behind the organ */
+        { { 0.3, 0.5, 1 }, SCENE_TRANSLUCENCY_PLAIN, { 1, 1, 0 } },
+        /* 0.7, then 0.56: the tumour stops the rest; without it the skin covers 0.3, the organ 0.14 */
+        { { 0.3, 0.2, 1 }, SCENE_TRANSLUCENCY_PLAIN, { 2, 0, 0 } },
+        /* just more than half is left behind the skin, then just less */
+        { { 0.499, 1, 1 }, SCENE_TRANSLUCENCY_PLAIN, { 1, 1, 0 } },
+        { { 0.501, 1, 1 }, SCENE_TRANSLUCENCY_PLAIN, { 0, 0, 0 } },
+        /* rim: 0.35 covers 0.105, 0.45 covers 0.135 of the remaining 0.895, which is more */
+        { { 0.35, 0.45, 1 }, SCENE_TRANSLUCENCY_RIM, { 2, 1, 0 } },
+        /* the same surfaces at 0.99 are still translucent with a rim: 0.297, then 0.703 x 0.297; 0.494 is left */
+        { { 0.99, 0.99, 0.1 }, SCENE_TRANSLUCENCY_RIM, { 1, 1, 0 } },
+    };
+    body_as = SCENE_REPRESENTATION_SURFACE;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        memcpy(opacity, cases[i].opacity, sizeof opacity);
+        translucency = cases[i].translucency;
+        for (int at = 0; at < 3; at++) {
+            size_t n;
+            assert_int_equal(seen_at(plan, at == 0 ? 0.5 : at == 1 ? 7.5 : 12.5, -1, &n), cases[i].seen[at]);
+            assert_int_equal(n, 3 - at); /* what is seen or not: all are listed */
+        }
+    }
+    plan_and_derived_destroy(plan);
+}
+
+static void outlines_and_points_are_seen_through(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = made_plan(&grid, spheres, tree, 3);
+    memcpy(opacity, (double[3]){ 1, 1, 1 }, sizeof opacity);
+    translucency = SCENE_TRANSLUCENCY_RIM;
+    static const struct {
+        enum scene_representation as;
+        int seen;
+    } cases[] = { { SCENE_REPRESENTATION_OUTLINE, 1 },
+                  { SCENE_REPRESENTATION_POINTS, 1 },
+                  { SCENE_REPRESENTATION_SOLID, 0 },
+                  { SCENE_REPRESENTATION_UNIVELS, 0 },
+                  { SCENE_REPRESENTATION_FAN, 0 } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        size_t n;
+        body_as = cases[i].as;
+        assert_int_equal(seen_at(plan, 0.5, -1, &n), cases[i].seen);
+        assert_int_equal(seen_at(plan, 12.5, -1, &n), 0); /* where there is nothing else, they are what is seen */
+    }
+    plan_and_derived_destroy(plan);
+}
+
+static void the_selected_region_is_seen_where_half_of_the_light_reaches_it(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = made_plan(&grid, spheres, tree, 3);
+    size_t n;
+    body_as = SCENE_REPRESENTATION_SURFACE;
+    translucency = SCENE_TRANSLUCENCY_PLAIN;
+    memcpy(opacity, (double[3]){ 0.2, 0.2, 1 }, sizeof opacity);
+    for (int preferred = -1; preferred < 3; preferred++)
+        assert_int_equal(seen_at(plan, 0.5, preferred, &n), preferred < 0 ? 2 : preferred);
+    assert_int_equal(seen_at(plan, 7.5, 2, &n), 0); /* the ray passes the tumour by */
+    memcpy(opacity, (double[3]){ 0.2, 0.5, 1 }, sizeof opacity);
+    assert_int_equal(seen_at(plan, 0.5, 2, &n),
+                     1); /* 0.4 of the light is left behind the organ: the tumour is hidden */
+    plan_and_derived_destroy(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -304,6 +414,9 @@ int main(void)
         cmocka_unit_test(a_pick_goes_through_where_a_slice_leaves_out_air),
         cmocka_unit_test(a_pane_gives_the_point_and_its_regions_innermost_first),
         cmocka_unit_test(more_hits_than_fit_keep_the_nearest),
+        cmocka_unit_test(what_is_seen_is_where_half_of_the_light_is_stopped),
+        cmocka_unit_test(outlines_and_points_are_seen_through),
+        cmocka_unit_test(the_selected_region_is_seen_where_half_of_the_light_reaches_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
