@@ -8,6 +8,7 @@
 #include <sys/random.h>
 
 #include "core/base/mem.h"
+#include "server/room/member_list.h"
 #include "server/room/member_view.h"
 #include "server/room/presenter.h"
 #include "server/room/send.h"
@@ -45,7 +46,7 @@ static void member_free(struct room *room, int index)
 {
     struct member *member = room->members[index];
     views_close(room, member);
-    if (room->presenter == member)
+    if (member_presents(room, member))
         room->presenter = NULL;
     free(member);
     room->members[index] = room->members[--room->n_members];
@@ -106,14 +107,15 @@ static bool name_is_taken(const struct room *room, const char *name)
     return false;
 }
 
-/* Makes room for one more member by dropping the one away longest. Returns false when all are connected. */
+/* Makes room for one more member by dropping the one away longest, who does not present. Returns false when there is
+ * none. */
 static bool make_place(struct room *room)
 {
     if (room->n_members < room->max_members)
         return true;
     int longest = -1;
     for (int i = 0; i < room->n_members; i++)
-        if (!room->members[i]->connection &&
+        if (!room->members[i]->connection && !member_presents(room, room->members[i]) &&
             (longest < 0 || room->members[i]->away_us < room->members[longest]->away_us))
             longest = i;
     if (longest < 0)

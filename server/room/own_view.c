@@ -47,30 +47,24 @@ static bool set_size(cJSON *view, const int size_px[2])
     return set(camera, "height_mm", cJSON_CreateNumber(own_mm)) != NULL;
 }
 
-/* The object `name` of an override, to set fields in. Where the override gives the whole object its default, with null,
- * it gets the shown values instead, which are the default. */
-static cJSON *object_in(cJSON *override, const char *name, const cJSON *shown)
+/* The object `name` of an override, to set fields in. A view's override holds no null: merging removed them. */
+static cJSON *object_in(cJSON *override, const char *name)
 {
     cJSON *present = cJSON_GetObjectItemCaseSensitive(override, name);
-    if (cJSON_IsObject(present))
-        return present;
-    return set(override, name, present ? cJSON_Duplicate(shown, true) : cJSON_CreateObject());
+    return cJSON_IsObject(present) ? present : set(override, name, cJSON_CreateObject());
 }
 
 static bool set_slices(cJSON *view, const cJSON *scene)
 {
     static const char *const names[] = { "axial", "coronal", "sagittal" };
-    const cJSON *shown_image = cJSON_GetObjectItemCaseSensitive(scene, "image"),
-                *shown_slices = cJSON_GetObjectItemCaseSensitive(shown_image, "slices");
-    cJSON *override = cJSON_GetObjectItemCaseSensitive(view, "override");
-    if (!cJSON_IsObject(override))
-        override = set(view, "override", cJSON_CreateObject());
-    cJSON *image = override ? object_in(override, "image", shown_image) : NULL;
-    cJSON *slices = image ? object_in(image, "slices", shown_slices) : NULL;
+    const cJSON *image = cJSON_GetObjectItemCaseSensitive(scene, "image"),
+                *shown = cJSON_GetObjectItemCaseSensitive(image, "slices");
+    cJSON *override = object_in(view, "override"), *own_image = override ? object_in(override, "image") : NULL,
+          *slices = own_image ? object_in(own_image, "slices") : NULL;
     for (size_t i = 0; slices && i < sizeof names / sizeof names[0]; i++) {
-        const cJSON *shown = cJSON_GetObjectItemCaseSensitive(shown_slices, names[i]);
-        cJSON *slice = object_in(slices, names[i], shown);
-        if (!slice || !set(slice, "position_mm", cJSON_CreateNumber(json_number(shown, "position_mm", 0))))
+        double mm = json_number(cJSON_GetObjectItemCaseSensitive(shown, names[i]), "position_mm", 0);
+        cJSON *slice = object_in(slices, names[i]);
+        if (!slice || !set(slice, "position_mm", cJSON_CreateNumber(mm)))
             return false;
     }
     return slices != NULL;
