@@ -73,9 +73,9 @@ static void read_size(const cJSON *document, int size_px[2])
 
 static void write_size(cJSON *document, const int size_px[2])
 {
-    cJSON *size = cJSON_CreateIntArray(size_px, 2);
-    if (!cJSON_ReplaceItemInObjectCaseSensitive(document, "size_px", size)) /* no memory: the size stays as it was */
-        cJSON_Delete(size);
+    cJSON *size = cJSON_GetObjectItemCaseSensitive(document, "size_px");
+    for (int i = 0; i < 2; i++)
+        cJSON_SetNumberValue(cJSON_GetArrayItem(size, i), size_px[i]);
 }
 
 static bool is_members_own(const struct member_view *view)

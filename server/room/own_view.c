@@ -14,20 +14,6 @@ static bool is_parallel(const cJSON *view, const cJSON *camera)
     return (kind && strcmp(kind, "3d") != 0) || (projection && strcmp(projection, "parallel") == 0);
 }
 
-/* Replaces or adds a member of object. Takes value, NULL for no memory. Returns it in its place, or NULL. */
-static cJSON *set(cJSON *object, const char *name, cJSON *value)
-{
-    if (!value)
-        return NULL;
-    bool is_set = cJSON_GetObjectItemCaseSensitive(object, name)
-                      ? cJSON_ReplaceItemInObjectCaseSensitive(object, name, value)
-                      : cJSON_AddItemToObject(object, name, value);
-    if (is_set)
-        return value;
-    cJSON_Delete(value);
-    return NULL;
-}
-
 static int smaller_side(const cJSON *view)
 {
     const cJSON *size = cJSON_GetObjectItemCaseSensitive(view, "size_px");
@@ -35,23 +21,35 @@ static int smaller_side(const cJSON *view)
     return width < height ? width : height;
 }
 
-static bool set_size(cJSON *view, const int size_px[2])
+static void set_size(cJSON *view, const int size_px[2])
 {
-    cJSON *camera = cJSON_GetObjectItemCaseSensitive(view, "camera");
-    double height_mm = json_number(camera, "height_mm", 0), before_px = smaller_side(view);
-    if (!set(view, "size_px", cJSON_CreateIntArray(size_px, 2)))
-        return false;
-    if (height_mm <= 0 || !is_parallel(view, camera))
-        return true;
-    double own_mm = fmin(fmax(height_mm * smaller_side(view) / before_px, least_height_mm), largest_height_mm);
-    return set(camera, "height_mm", cJSON_CreateNumber(own_mm)) != NULL;
+    cJSON *camera = cJSON_GetObjectItemCaseSensitive(view, "camera"),
+          *height = cJSON_GetObjectItemCaseSensitive(camera, "height_mm"),
+          *size = cJSON_GetObjectItemCaseSensitive(view, "size_px");
+    double before_px = smaller_side(view);
+    for (int i = 0; i < 2; i++)
+        cJSON_SetNumberValue(cJSON_GetArrayItem(size, i), size_px[i]);
+    if (!cJSON_IsNumber(height) || !is_parallel(view, camera))
+        return;
+    double own_mm = height->valuedouble * smaller_side(view) / before_px;
+    cJSON_SetNumberValue(height, fmin(fmax(own_mm, least_height_mm), largest_height_mm));
 }
 
-/* The object `name` of an override, to set fields in. A view's override holds no null: merging removed them. */
+/* The object `name` of an override, made when there is none; NULL: no memory. An override holds no null: merging
+ * removed them. */
 static cJSON *object_in(cJSON *override, const char *name)
 {
     cJSON *present = cJSON_GetObjectItemCaseSensitive(override, name);
-    return cJSON_IsObject(present) ? present : set(override, name, cJSON_CreateObject());
+    return present ? present : cJSON_AddObjectToObject(override, name);
+}
+
+static bool set_position(cJSON *slice, double mm)
+{
+    cJSON *present = cJSON_GetObjectItemCaseSensitive(slice, "position_mm");
+    if (!present)
+        return cJSON_AddNumberToObject(slice, "position_mm", mm) != NULL;
+    cJSON_SetNumberValue(present, mm);
+    return true;
 }
 
 static bool set_slices(cJSON *view, const cJSON *scene)
@@ -64,7 +62,7 @@ static bool set_slices(cJSON *view, const cJSON *scene)
     for (size_t i = 0; slices && i < sizeof names / sizeof names[0]; i++) {
         double mm = json_number(cJSON_GetObjectItemCaseSensitive(shown, names[i]), "position_mm", 0);
         cJSON *slice = object_in(slices, names[i]);
-        if (!slice || !set(slice, "position_mm", cJSON_CreateNumber(mm)))
+        if (!slice || !set_position(slice, mm))
             return false;
     }
     return slices != NULL;
@@ -73,7 +71,9 @@ static bool set_slices(cJSON *view, const cJSON *scene)
 cJSON *own_view(const cJSON *shared, const cJSON *scene, const int size_px[2], struct problem *problem)
 {
     cJSON *view = cJSON_Duplicate(shared, true);
-    if (view && set_size(view, size_px) && (!scene || set_slices(view, scene)))
+    if (view)
+        set_size(view, size_px);
+    if (view && (!scene || set_slices(view, scene)))
         return view;
     cJSON_Delete(view);
     (void)json_no_memory(problem, "a view");

@@ -86,13 +86,12 @@ static struct member *only_connected(const struct room *room)
 bool presenter_settle(struct room *room)
 {
     const struct member *before = room->presenter;
-    if (room->now_us >= presenter_due_us(room))
+    if (before && !before->connection && room->now_us >= presenter_due_us(room))
         room->presenter = NULL;
-    if (!room->presenter) {
-        room->presenter = only_connected(room);
+    if (!room->presenter && (room->presenter = only_connected(room)) != NULL) {
         struct problem problem = { 0 };
-        if (room->presenter) /* without memory for it the views stay the member's own */
-            (void)share(room, room->presenter, 0, &problem);
+        if (!share(room, room->presenter, 0, &problem))
+            room->presenter = NULL; /* tried again */
     }
     return room->presenter != before;
 }
@@ -100,5 +99,7 @@ bool presenter_settle(struct room *room)
 int64_t presenter_due_us(const struct room *room)
 {
     const struct member *presenter = room->presenter;
-    return presenter && !presenter->connection ? presenter->away_us + kept_us : INT64_MAX;
+    if (presenter)
+        return presenter->connection ? INT64_MAX : presenter->away_us + kept_us;
+    return only_connected(room) ? room->now_us + RETRY_US : INT64_MAX; /* there was no memory to share the views */
 }

@@ -88,15 +88,15 @@ static void join(void *context, struct outcome *outcome)
     room_text_came(room, &world->page, hello, sizeof hello - 1, world->fake.now_us);
     if (!world->page.is_closed)
         room_text_came(room, &world->page, open, sizeof open - 1, world->fake.now_us);
-    if (!world->page.is_closed)
-        room_text_came(room, &world->page, patch, sizeof patch - 1, world->fake.now_us);
+    if (!world->other.is_closed) /* who was there first presents */
+        room_text_came(room, &world->other, patch, sizeof patch - 1, world->fake.now_us);
     (void)room_tick(room, world->fake.now_us);
     faults_pause();
     const cJSON *scene = room_scene(room, &after), *regions = cJSON_GetObjectItem(scene, "regions");
     opacity = json_number(cJSON_GetObjectItem(regions, "scalp"), "opacity", 0.4);
     outcome->is_done = true;
     add_page(outcome, &world->page);
-    outcome->is_told |= world->other.is_closed;
+    add_page(outcome, &world->other);
     if (!(after == before ? opacity == 0.4 : opacity == 0.25 && after == before + 1)) {
         outcome->is_told = false;
         outcome_note(outcome, "the scene is neither the old one nor the new one");
@@ -133,6 +133,43 @@ static void patch_scene(void *context, struct outcome *outcome)
     free(old);
     free(now);
     cJSON_Delete(patch);
+    world_end(world);
+    faults_go_on();
+}
+
+/* A member leaves and looks elsewhere; then the presenter loses the link for good. */
+static void leave(void *context, struct outcome *outcome)
+{
+    (void)context;
+    faults_pause();
+    struct room_world *world = world_make();
+    fake_join(&world->fake, &world->page, true);
+    static const char
+        away[] = "{\"type\":\"follow\",\"follow\":false}",
+        look[] = "{\"type\":\"view.patch\",\"view\":1,\"patch\":{\"size_px\":[640,480],\"camera\":{\"height_mm\":66},"
+                 "\"override\":{\"image\":{\"slices\":{\"axial\":{\"position_mm\":21}}}}}}";
+    struct room *room = world->fake.room;
+    int64_t now_us = world->fake.now_us;
+    faults_go_on();
+    room_text_came(room, &world->page, away, sizeof away - 1, now_us);
+    if (!world->page.is_closed)
+        room_text_came(room, &world->page, look, sizeof look - 1, now_us);
+    room_connection_closed(room, &world->other, now_us);
+    now_us += ROOM_PRESENTER_KEPT_S * INT64_C(1000000);
+    for (int i = 0; i < 2; i++) /* a second time where there was no memory */
+        now_us = room_tick(room, now_us) < INT64_MAX ? now_us + 200000 : now_us;
+    faults_pause();
+    outcome->is_done = true;
+    struct outcome heard = { 0 }; /* how often it is told the state on the way is no matter */
+    add_page(&heard, &world->page);
+    outcome->is_told = heard.is_told;
+    outcome_note(outcome, heard.notes);
+    cJSON *members = room_members(room);
+    const cJSON *page = cJSON_GetArrayItem(members, 1);
+    outcome->is_told |= !json_flag(page, "presenting", false); /* it is tried again and again */
+    add_json(outcome, members);
+    add_json(outcome, room_scene(room, NULL));
+    cJSON_Delete(members);
     world_end(world);
     faults_go_on();
 }
@@ -340,6 +377,7 @@ int main(void)
         "\"follow\":false}";
     const struct walk walks[] = {
         { .name = "somebody joins a room, opens a view and changes the scene", .run = join },
+        { .name = "a member leaves, and then presents because nobody else does", .run = leave },
         { .name = "a scene is changed", .run = patch_scene },
         { .name = "pictures are drawn and shown", .run = draw_frame },
         { .name = "a renderer comes back with another plan", .run = ready_again },
