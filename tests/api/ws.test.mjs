@@ -227,6 +227,36 @@ describe('a room', () => {
     const moved = await ben.message('view', (m) => m.by === ann.welcome.member && m.document.camera.position_mm?.[0] === 50);
     assert.equal(moved.follow, true);
   });
+  test('has one presenter: a follower moves nobody, looks elsewhere alone, and is called back', async () => {
+    const room = await newRoom(), ann = await join(room), ben = await join(room);
+    const members = async () => (await call(`${api}/rooms/${room}/members`)).json.members;
+    const said = async (client, act) => {
+      const from = client.messages.length;
+      client.send(act);
+      return (await client.message('problem', () => true, from)).problem.type;
+    };
+    openView(ann, { follow: true }); openView(ben, { follow: true });
+    await settled(ann); await settled(ben);
+    const list = await members();
+    assert.deepEqual(list.map((m) => [m.presenting, m.following]), [[true, false], [false, true]]);
+    assert.deepEqual((await call(`${api}/rooms/${room}`)).json.members, list);
+    const frames = ann.frames.length;
+    assert.equal(await said(ben, { type: 'view.patch', view: 1, patch: camera(9) }), '/problems/not-presenter');
+    assert.equal(await said(ben, { type: 'scene.patch', patch: { image: { window: { center: 1 } } } }), '/problems/not-presenter');
+    assert.equal(await said(ben, { type: 'present' }), '/problems/not-presenter');
+    assert.equal(await said(ann, { type: 'follow', follow: false }), '/problems/not-presenter');
+    ben.send({ type: 'follow', follow: false, input: 3 });
+    const { axial } = (await call(`${api}/rooms/${room}/scene`)).json.image.slices;
+    assert.equal((await ben.message('view', (m) => !m.follow)).document.override.image.slices.axial.position_mm, axial.position_mm);
+    ben.send({ type: 'view.patch', view: 1, input: 4, patch: { size_px: [200, 100], ...camera(9) } });
+    const own = await ben.frame((f) => f.isStill && f.input === 4);
+    assert.deepEqual([own.width, own.height, own.isShared], [200, 100, false]);
+    assert.equal(ann.frames.length, frames, 'no other picture for who presents');
+    ann.send({ type: 'show.everyone' });
+    await ben.message('view', (m) => m.follow && m.document.size_px[0] === 320, ben.messages.length - 1);
+    await ben.frame((f) => f.isShared && f.isStill && f.picture.equals(ann.frames.at(-1).picture), frames);
+    assert.equal((await call(`${api}/rooms/${room}/scene`, 'PATCH', { image: { window: { center: 60 } } }, { 'If-Match': '*' })).status, 200); // scripts may, as ever
+  });
   test('is not slowed by a member who does not read', async () => {
     const room = await newRoom(), ann = await join(room), ben = await join(room);
     openView(ann, { follow: true }); openView(ben, { follow: true });
