@@ -283,30 +283,6 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('shows one member what the other does, until one looks for themself', async () => {
-    const room = await newRoom();
-    const [one, two] = [await newPage(`#/rooms/${room}`), await newPage(`#/rooms/${room}`)];
-    await Promise.all([full(one), full(two)]);
-    await drag(one, 1, 225, 0);
-    await turned(two, 'P A S I');
-    await two.locator('[data-view="1"] .follow-bar').waitFor();
-    assert.match(await two.locator('[data-view="1"] .follow-bar').textContent(), /Following/);
-    await sleep(600); // the bar stays, whatever sizes change
-    assert.ok(await two.locator('[data-view="1"] .follow-bar').isVisible());
-    await shoot(two, 'room-following');
-    await two.locator('#picture-1').focus();
-    await two.keyboard.press('f');
-    await two.locator('[data-view="1"] .follow-bar >> text=Own view').waitFor();
-    await one.locator('#picture-1').focus();
-    await one.keyboard.press('r');
-    await turned(one, 'R L S I');
-    await sleep(300);
-    assert.equal(await letters(two, 1), 'P A S I', 'an own view stays');
-    await two.locator('[data-view="1"] .follow-bar button').click();
-    await turned(two, 'R L S I');
-    await Promise.all([one.context().close(), two.context().close()]);
-  });
-
   it('lives through the death of the renderer in the middle of a drag', async () => {
     const page = await newPage(`#/rooms/${await newRoom()}`);
     await full(page);

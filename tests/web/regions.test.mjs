@@ -173,20 +173,5 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     await page.context().close();
   });
 
-  it('nobody is followed who has left', async () => {
-    const room = await world.newRoom('balls');
-    const one = await world.newPage(`#/rooms/${room}`);
-    await full(one);
-    await one.locator('#picture-1').focus();
-    await one.keyboard.press('ArrowLeft');
-    await full(one);
-    const two = await world.newPage(`#/rooms/${room}`);
-    await two.locator('[data-view="1"] .follow-bar', { hasText: 'Following' }).waitFor();
-    await one.context().close();
-    await two.locator('.follow-bar').first().waitFor({ state: 'detached' });
-    await full(two);
-    await two.context().close();
-  });
-
   it('has had no error', () => assert.deepEqual(world.errors, []));
 });

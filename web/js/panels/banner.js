@@ -2,6 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { icon } from './icons.js';
 import { initials } from './pane.js';
+import { roomChip } from './room_chip.js';
 
 export const brand = () => html`<a class="brand" href="#/" title="All plans">${icon('logo', 20)}<b>Beamroom</b></a>`;
 
@@ -32,6 +33,7 @@ export function banner({ room, ui }) {
       <span class="dim">${others.length ? `${others.length} more in this room` : 'alone in this room'}</span></span></div>` : nothing}
     <div class="members" aria-label="Members">${others.slice(0, 6).map((member, index) => html`<span class=${`avatar tint-${index % 4}`} title=${member.name}>${initials(member.name)}</span>`)}
       ${others.length > 6 ? html`<span class="dim">+${others.length - 6}</span>` : nothing}</div>
+    ${roomChip({ room, ui }, 'banner')}
     <span class="anchor"><button @click=${() => ui.toggle('invite')} aria-expanded=${ui.popover.value === 'invite'}>${icon('invite')}<span>Invite</span></button>
       ${ui.popover.value === 'invite' ? html`<div class="popover invite"><label for="invite-link">Link to this room <code>${room.id}</code></label>
         <div class="pair"><input id="invite-link" readonly .value=${location.href}><button class="primary" @click=${() => copyLink(ui)}>Copy</button></div></div>` : nothing}</span>

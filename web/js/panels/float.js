@@ -5,8 +5,9 @@ import { icon } from './icons.js';
 
 const signs = { ok: 'check', warn: 'warning', err: 'error' };
 
-export const toasts = ({ ui }) => html`${repeat(ui.toasts.value, (toast) => toast.id, ({ id, kind, text }) => html`
+export const toasts = ({ ui }) => html`${repeat(ui.toasts.value, (toast) => toast.id, ({ id, kind, text, action }) => html`
   <div class="toast" role=${kind === 'err' ? 'alert' : 'status'}><span class=${kind}>${icon(signs[kind])}</span><span>${text}</span>
+    ${action ? html`<button class="toast-act" @click=${() => { ui.dismiss(id); action.act(); }}>${action.word}${action.keys ? html` <kbd>${action.keys}</kbd>` : nothing}</button>` : nothing}
     <button class="icon-button small" aria-label="Dismiss" @click=${() => ui.dismiss(id)}>${icon('close', 12)}</button><i></i></div>`)}`;
 
 /** The notice that a room has ended, with the reason and a link to the start page; the last pictures stay visible. */
@@ -31,11 +32,11 @@ const keys = [
   ['1 to 5', 'Window presets'],
   ['W', 'Window and level by left drag'],
   ['Z', 'Zoom by left drag'],
-  ['F', 'Follow the shared view, or look for yourself'],
+  ['F', 'Return to the presenter, or look for yourself'],
   ['Ctrl + Z', 'Undo your last change of scene or camera'],
   ['Ctrl + Shift + Z, Ctrl + Y', 'Redo it'],
   ['?', 'This list'],
-  ['Esc', 'Leave tool, popover, message, full pane'],
+  ['Esc', 'Leave tool, popover, own view, message, full pane'],
 ];
 
 export const help = ({ ui }) => (ui.popover.value !== 'help' ? nothing : html`<section class="card help" role="dialog" tabindex="-1" aria-label="Keys and mouse">

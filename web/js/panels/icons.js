@@ -22,6 +22,7 @@ const paths = {
   help: svg`<circle cx="8" cy="8" r="6.2"/><path d="M6.2 6.200a1.9 1.9 0 1 1 2.6 1.900c-.5.2-.8.6-.8 1.200M8 11.500v.1"/>`,
   search: svg`<circle cx="7" cy="7" r="4.8"/><path d="m10.6 10.6 3.9 3.9"/>`,
   people: svg`<circle cx="6" cy="5" r="2.5"/><path d="M1.5 13.500c0-2.8 2-4.5 4.5-4.500s4.5 1.7 4.5 4.500M10.5 2.700a2.5 2.5 0 0 1 0 4.600M12 9.400c1.5.6 2.5 2 2.5 4.1"/>`,
+  person: svg`<circle cx="8" cy="5" r="2.700"/><path d="M2.8 14c0-3 2.2-5 5.2-5s5.2 2 5.2 5"/>`,
   upload: svg`<path d="M8 11V2.500M4.5 5.500 8 2l3.5 3.500M2 10v3.500h12V10"/>`,
   trash: svg`<path d="M2.5 4.500h11M6 4.500V2.500h4v2M4 4.500l.7 9h6.600l.7-9M6.8 7v4M9.2 7v4"/>`,
   close: svg`<path d="m3.5 3.5 9 9M12.5 3.500l-9 9"/>`,
@@ -45,6 +46,7 @@ const paths = {
   live: svg`<circle cx="8" cy="8" r="6"/><circle cx="8" cy="8" r="2.5" fill="currentColor"/>`,
   reduced: svg`<circle cx="8" cy="8" r="6"/><path d="M2 8a6 6 0 0 0 12 0Z" fill="currentColor"/>`,
   stale: svg`<path d="M3.5 2h9M3.5 14h9M4.5 2c0 3.5 3.5 4 3.5 6s-3.5 2.5-3.5 6M11.5 2c0 3.5-3.5 4-3.5 6s3.5 2.5 3.5 6"/>`,
+  link: svg`<path d="M8 1.500 14.5 8 8 14.500 1.5 8ZM6.3 6.300a1.8 1.8 0 1 1 2.4 1.700c-.5.2-.7.5-.7 1M8 11.200v.1"/>`,
   disconnected: svg`<path d="M8 2.5 14.5 13.500h-13ZM1.5 2.500l13 12"/>`,
 };
 

@@ -1,4 +1,4 @@
-// One pane: header, follow bar, picture with its overlay, slice slider.
+// One pane: header, picture with its overlay, slice slider.
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
@@ -10,10 +10,11 @@ import { describe, planes } from '../view/camera.js';
 import { overlay } from '../view/overlay.js';
 import { Painter } from '../view/painter.js';
 import { PointerReader } from '../view/pointer.js';
-import { millimetres, number, seconds, windowText } from './format.js';
+import { millimetres, number, windowText } from './format.js';
 import { icon } from './icons.js';
 import { mount, variables } from './mount.js';
 import { PaneActions, fitBox } from './pane_actions.js';
+import { followMark } from './room_chip.js';
 
 export const names = { '3d': '3-D', axial: 'Axial', sagittal: 'Sagittal', coronal: 'Coronal' };
 const resizeMs = 120;
@@ -96,12 +97,12 @@ export class Pane {
     return html`
       <header class=${classMap({ 'pane-head': true, active: this.#ui.active.value === n })}>
         <h2>${names[kind]}</h2><span class="where">${this.#where()}</span><span class="grow"></span>
-        ${this.#badgeButton()}
+        ${followMark(this.#room)}${this.#badgeButton()}
         <button class="icon-button small" @click=${() => this.#ui.maximise(n)} aria-pressed=${isMaximised}
           title=${isMaximised ? 'Show all panes (Enter)' : 'Maximise (double click, Enter)'} aria-label=${`${isMaximised ? 'Restore' : 'Maximise'} ${names[kind]}`}>
           ${icon(isMaximised ? 'restore' : 'maximise')}</button>
       </header>
-      <div class="pane-body">${this.#followBar()}
+      <div class="pane-body">
         <div class=${classMap({ picture: true, stale: this.badge.value?.state === 'stale', lost: this.badge.value?.state === 'disconnected' })}
           tabindex="0" role="group" aria-label=${`${names[kind]} picture`} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
           @focus=${() => { this.#ui.active.value = n; }}>
@@ -136,27 +137,6 @@ export class Pane {
       ${badge.why && this.#ui.popover.value === name ? html`<div class="popover badge-why" role="status"><b class=${badge.state}>${icon(badge.state, 12)} ${badge.text}</b><p>${badge.why}</p></div>` : nothing}</span>`;
   }
 
-  /** The member whose view is shown here; '' when that member has left, as the shared view then stays where it is. */
-  get #leader() {
-    const { isFollowing, movedBy } = this.#view;
-    return isFollowing.value && this.#room.isHere(movedBy.value) ? movedBy.value : '';
-  }
-
-  #followBar() {
-    const view = this.#view;
-    const act = (isFollowing) => this.#room.follow(view.number, isFollowing);
-    if (!view.isFollowing.value) {
-      const ago = seconds(Math.max(0, Math.round((this.#ui.now.value - view.leftAt.value) / 1000)) * 1000);
-      const from = view.leftFrom.value ? `left ${this.#room.nameOf(view.leftFrom.value)} ${ago} ago` : '';
-      return html`<div class="follow-bar"><b>Own view</b><span class="dim">${from}</span><span class="grow"></span>
-        <button class="primary" @click=${() => act(true)}>Return</button></div>`;
-    }
-    if (!this.#leader) return nothing;
-    const name = this.#room.nameOf(this.#leader);
-    return html`<div class="follow-bar"><span class="avatar small">${initials(name)}</span><span class="follow-text"><b>Following ${name}</b></span><span class="grow"></span>
-      <button @click=${() => act(false)}>Look for yourself <kbd>F</kbd></button></div>`;
-  }
-
   #overlay() {
     const view = this.#view;
     const header = view.painted.value;
@@ -171,7 +151,6 @@ export class Pane {
       kind: view.kind, header, box, pane,
       point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
       pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
-      topPx: view.isFollowing.value && !this.#leader ? 0 : parseInt(getComputedStyle(this.host).getPropertyValue('--follow'), 10),
       windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : plan?.regions.length ? 'No image: regions' : '',
     });
   }

@@ -102,6 +102,7 @@ export class PaneActions {
   }
 
   reset(at) {
+    this.#room.following.leave(); // before: the home camera is none that was seen in the shared view
     this.#set(homeCamera(this.#room.plan.value, this.view.kind), at);
   }
 
@@ -221,7 +222,7 @@ export class PaneActions {
     const common = {
       '+': () => this.zoom(keyZoom, null, at), '=': () => this.zoom(keyZoom, null, at), '-': () => this.zoom(1 / keyZoom, null, at),
       r: () => this.reset(at), ' ': () => this.reset(at),
-      f: () => this.#room.follow(this.#number, !this.view.isFollowing.value),
+      f: () => this.#room.following.toggle(),
       w: () => this.#toggleTool('window'), z: () => this.#toggleTool('zoom'),
       Enter: () => this.#ui.maximise(this.#number),
     };

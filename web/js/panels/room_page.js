@@ -59,7 +59,7 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), probe(room, api, probed, clock), ...adapt(ui));
-  stops.push(listenKeys(ui), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui));
+  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);
@@ -202,10 +202,10 @@ function moveFocus(host, ui) {
   });
 }
 
-function listenKeys(ui) {
+function listenKeys(ui, room) {
   const onKey = (event) => {
     const isTyping = event.target.matches?.('input:not([type=range]):not([type=checkbox]), textarea');
-    if (event.key === 'Escape') ui.escape();
+    if (event.key === 'Escape') ui.escape(() => room.following.return());
     else if (event.key === '?' && !isTyping) ui.toggle('help');
   };
   const onPress = (event) => {

@@ -3,6 +3,7 @@ import { html } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { icon } from './icons.js';
 import { undoButtons } from './undo_buttons.js';
+import { roomChip } from './room_chip.js';
 
 const tools = [
   ['crosshair', 'Crosshair', 'Crosshair in slices, turn in 3-D'],
@@ -48,6 +49,7 @@ export function toolStrip(world) {
     ${layouts.map(([id, picture, name]) => html`<button class=${classMap({ tool: true, plain: true, on: !ui.maximised.value && ui.layout.value === id })} title=${name} aria-label=${name}
       aria-pressed=${ui.layout.value === id} tabindex="-1" @click=${() => setLayout(id)}>${icon(picture)}</button>`)}
     <span class="grow"></span>
+    ${roomChip({ room, ui }, 'strip')}
     ${undoButtons(world)}
     <button class="tool plain" tabindex="-1" title="Reset this view (R)" aria-label="Reset view" ?disabled=${!room.canChange.value} @click=${(event) => active.actions.reset(event.timeStamp)}>${icon('reset')}</button>
     <button class="tool plain" tabindex="-1" title="Save this picture as a file" aria-label="Snapshot" ?disabled=${!room.canChange.value} @click=${snapshot}>${icon('camera')}</button>

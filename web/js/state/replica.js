@@ -17,6 +17,11 @@ export class Replica {
     return this.#value;
   }
 
+  /** The server's document. */
+  get base() {
+    return this.#base;
+  }
+
   get isPending() {
     return this.#queued !== null || this.#sent.length > 0;
   }
@@ -61,6 +66,17 @@ export class Replica {
   refuse(input) {
     this.#sent = this.#sent.filter((entry) => entry.input !== input);
     this.#rebase();
+  }
+
+  /**
+   * After a lost connection: queues again what was sent and not answered, before what is queued. The server may have applied
+   * it; a merge patch that is applied twice changes nothing more. Returns whether anything is queued.
+   */
+  recall() {
+    const patches = [...this.#sent.map(({ patch }) => patch), ...(this.#queued ? [this.#queued] : [])];
+    this.#sent = [];
+    this.#queued = patches.length ? patches.reduce(joinPatches) : null;
+    return this.#queued !== null;
   }
 
   /** Starts from a document with nothing pending. */

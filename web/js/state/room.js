@@ -1,8 +1,12 @@
 // State of the room page. Panels draw from its signals and call its methods; the connection's messages change it.
 import { batch, computed, signal } from '../../lib/signals-core.js';
 import { readDocument } from '../wire/check.js';
+import { mergePatch } from '../wire/merge.js';
+import { Following } from './following.js';
+import { Latency } from './latency.js';
 import { readPlan } from './plan.js';
 import { Replica } from './replica.js';
+import { Sending } from './sending.js';
 import { ViewState } from './view.js';
 
 const kinds = ['3d', 'axial', 'sagittal', 'coronal'];
@@ -10,13 +14,11 @@ const kinds = ['3d', 'axial', 'sagittal', 'coronal'];
 export class RoomState {
   #connection;
   #clock;
-  #schedule;
-  #scene = new Replica();
-  #sceneOrigin = { view: 0, at: 0 };
-  #viewOrigin = new Map();
-  #nextInput = 1;
-  #isScheduled = false;
+  #sending;
+  #scene = new Replica(null);
+  #sharedScene = signal(null); // the room's scene with our pending changes
   #restored = false;
+  #latency = new Latency();
 
   /**
    * @param {string} id
@@ -24,38 +26,45 @@ export class RoomState {
    * @param {import('../net/connection.js').Connection} world.connection
    * @param {{now: () => number}} world.clock
    * @param {(callback: () => void) => void} world.schedule calls back before the next paint
-   * @param {(kind: 'ok'|'warn'|'err', text: string) => void} world.notify
+   * @param {(kind: 'ok'|'warn'|'err', text: string, topic?: string, action?: {word: string, act: () => void}) => void} world.notify
    */
   constructor(id, { connection, clock, schedule, notify }) {
     this.id = id;
     this.#connection = connection;
     this.#clock = clock;
-    this.#schedule = schedule;
     this.notify = notify;
     /** @type {(of: 'scene'|number, patch: object, document: object) => void} told each change of this person before it is applied */
     this.recorder = () => {};
 
-    this.link = signal({ state: 'connecting', retryAt: 0, reason: '' }); // connecting | open | lost | ended
+    // connecting | open | lost | ended; quietSince: time of the last sign of the server when one is overdue, else 0
+    this.link = signal({ state: 'connecting', retryAt: 0, quietSince: 0, reason: '' });
     this.member = signal('');
     this.members = signal([]);
     this.planId = signal('');
     this.plan = signal(null);
-    this.scene = signal(null);
     this.revision = signal(0);
     this.revisionAt = signal(0);
     this.isScenePending = signal(false);
     this.renderer = signal({ state: 'starting', phase: '', percent: 0, problem: null });
     this.gl = signal('');
-    this.latencyMs = signal(null);
+    this.latencyMs = this.#latency.medianMs; // input to paint
+    this.pingMs = signal(null);
     this.views = kinds.map((kind, index) => new ViewState(index + 1, kind));
-    this.canChange = computed(() => this.link.value.state === 'open' && this.scene.value !== null);
+    // Changes made while the connection is lost are kept, and sent when it is back.
+    this.canChange = computed(() => ['open', 'lost'].includes(this.link.value.state) && this.#sharedScene.value !== null);
+    this.#sending = new Sending({ connection, clock, schedule, views: this.views, scene: this.#scene, refused: () => this.#tooLarge() });
+    this.following = new Following(this, (message) => this.#sending.act(message));
+    /** What this member sees: the room's scene with, for a member on their own, the override of their views. */
+    this.scene = computed(() => {
+      const [scene, override] = [this.#sharedScene.value, this.following.override.value];
+      return scene && override ? mergePatch(scene, override) : scene;
+    });
 
     connection.addEventListener('message', (event) => this.#take(event.detail));
     connection.addEventListener('lost', (event) => this.#lose(event.detail.retryMs));
-    connection.addEventListener('ended', (event) => {
-      this.link.value = { state: 'ended', retryAt: 0, reason: event.detail.reason };
-      this.latencyMs.value = null;
-    });
+    connection.addEventListener('quiet', (event) => this.#setLink('open', { quietSince: event.detail.since }));
+    connection.addEventListener('heard', () => this.#setLink('open'));
+    connection.addEventListener('ended', (event) => this.#setLink('ended', { reason: event.detail.reason }));
   }
 
   /** @returns {ViewState} */
@@ -74,39 +83,54 @@ export class RoomState {
 
   // ---- actions of the user ----------------------------------------------------------------------------------------
 
-  /** Changes the scene for everybody. view: the pane it was done in; at: time of the input event, for measurements. */
+  /**
+   * Changes the scene: the presenter's change is everybody's, any other member leaves the presenter and sees it alone.
+   * view: the pane it was done in; at: time of the input event, for measurements.
+   */
   patchScene(patch, { view = 0, at = this.#clock.now() } = {}) {
     if (!this.canChange.value) return;
-    this.recorder('scene', patch, this.scene.value);
-    this.#scene.queue(patch);
-    this.#sceneOrigin = { view, at };
-    this.#showScene();
-    this.#plan();
+    if (this.following.isPresenting.value) {
+      this.recorder('scene', patch, this.scene.value);
+      this.#scene.queue(patch);
+      this.#showScene();
+      this.#sending.plan({ sceneView: view, at });
+    } else {
+      this.following.leave();
+      this.recorder('scene', patch, this.scene.value);
+      this.following.patchOwn(patch);
+      this.#sending.plan({ view, at });
+    }
   }
 
-  /** Changes a view; a view that follows changes the shared one. */
+  /** Changes a view: the presenter's are the room's; any other member leaves the presenter and changes their own. */
   patchView(number, patch, { at = this.#clock.now() } = {}) {
-    const view = this.view(number);
-    if (this.link.value.state !== 'open') return;
-    this.recorder(number, patch, view.document.value);
-    view.queue(patch);
-    this.#viewOrigin.set(number, at);
-    this.#plan();
+    if (!this.canChange.value) return;
+    const change = this.following.leave() ? this.following.adapted(number, patch) : patch;
+    this.recorder(number, change, this.view(number).document.value);
+    this.view(number).queue(change);
+    this.#sending.plan({ view: number, at });
   }
 
   /** Opens a view of this size, or changes the size of an open one. */
   showView(number, sizePx) {
     const view = this.view(number);
-    if (view.isOpen.value) {
-      const [width, height] = view.document.value.size_px ?? [];
-      if (width === sizePx[0] && height === sizePx[1]) return;
-      if (this.link.value.state === 'open') this.patchView(number, { size_px: sizePx });
-      else view.restart({ ...view.document.value, size_px: sizePx }); // opens with this size once connected
+    const isSame = view.ownSize?.[0] === sizePx[0] && view.ownSize[1] === sizePx[1];
+    if (view.isOpen.value && isSame) return;
+    view.ownSize = sizePx;
+    if (view.isOpen.value) return void this.#resize(view);
+    view.restart(this.following.documentToOpen(view));
+    view.isOpen.value = true;
+    this.#openView(view);
+  }
+
+  #resize(view) {
+    if (this.following.isFollowing.value && !this.following.isPresenting.value) {
+      // the shared picture keeps the presenter's size; the server needs ours for when we leave
+      this.#sending.act({ type: 'view.patch', view: view.number, patch: { size_px: view.ownSize } });
       return;
     }
-    view.isOpen.value = true;
-    view.restart({ ...view.document.value, size_px: sizePx });
-    this.#openView(view);
+    view.queue({ size_px: view.ownSize });
+    this.#sending.plan();
   }
 
   hideView(number) {
@@ -115,20 +139,6 @@ export class RoomState {
     view.isOpen.value = false;
     view.restart(view.document.value);
     this.#connection.send({ type: 'view.close', view: number });
-  }
-
-  follow(number, isFollowing) {
-    const view = this.view(number);
-    if (this.link.value.state !== 'open' || view.isFollowing.value === isFollowing) return;
-    const input = this.#nextInput++;
-    const now = this.#clock.now();
-    batch(() => {
-      view.isFollowing.value = isFollowing;
-      view.leftAt.value = isFollowing ? 0 : now;
-      view.leftFrom.value = isFollowing ? '' : view.movedBy.value;
-      view.movedBy.value = '';
-    });
-    this.#connection.send({ type: 'view.follow', view: number, follow: isFollowing, input });
   }
 
   /** Acknowledges a picture that was painted or could not be, so that the server continues. Returns the answered inputs. */
@@ -143,43 +153,19 @@ export class RoomState {
     return answered;
   }
 
+  /** Takes times from an input to the painted picture, for the status bar. */
+  measured(timesMs) {
+    this.#latency.add(timesMs);
+  }
+
   /** Tries to connect at once. */
   reconnect() {
     this.#connection.retryNow();
   }
 
-  // ---- sending: at most one patch of each kind per animation frame --------------------------------------------------
-
-  #plan() {
-    if (this.#isScheduled) return;
-    this.#isScheduled = true;
-    this.#schedule(() => {
-      this.#isScheduled = false;
-      this.#flush();
-    });
-  }
-
-  #flush() {
-    const now = this.#clock.now();
-    for (const view of this.views) {
-      const patch = view.take(this.#nextInput);
-      if (!patch) continue;
-      if (view.isOpen.value && this.#connection.send({ type: 'view.patch', view: view.number, patch, input: this.#nextInput }))
-        view.expect(this.#nextInput, this.#viewOrigin.get(view.number) ?? now, now);
-      this.#nextInput += 1;
-    }
-    const patch = this.#scene.take(this.#nextInput);
-    if (!patch) return;
-    const input = this.#nextInput++;
-    if (!this.#connection.send({ type: 'scene.patch', patch, input })) return;
-    const { view, at } = this.#sceneOrigin;
-    if (view && this.view(view).isOpen.value) this.view(view).expect(input, at, now);
-  }
-
   #openView(view) {
-    const input = this.#nextInput++;
-    const message = { type: 'view.open', view: view.number, document: view.document.value, follow: view.isFollowing.value, input };
-    if (this.#connection.send(message)) view.expect(input, this.#clock.now(), this.#clock.now());
+    const input = this.#sending.act({ type: 'view.open', view: view.number, document: this.following.documentToOpen(view), follow: this.following.isFollowing.value });
+    if (input) view.expect(input, 0, this.#clock.now());
   }
 
   // ---- messages of the server -----------------------------------------------------------------------------------------
@@ -202,11 +188,9 @@ export class RoomState {
           view.missing.value = { n: message.n, reasons: Object.fromEntries(message.regions.map(({ region, reason }) => [region, reason])) };
       },
       members: () => {
-        if (Array.isArray(message.members)) this.members.value = message.members;
+        if (Array.isArray(message.members)) this.#membersChanged(message.members);
       },
-      pong: () => {
-        this.latencyMs.value = Math.round(this.#clock.now() - message.time_ms);
-      },
+      pong: () => { this.pingMs.value = Math.round(this.#clock.now() - message.time_ms); },
       problem: () => this.#refused(message),
       bye: () => {},
     };
@@ -214,23 +198,42 @@ export class RoomState {
   }
 
   #welcome(message) {
-    this.link.value = { state: 'open', retryAt: 0, reason: '' };
+    this.#setLink('open');
+    this.#sending.hold();
     this.member.value = message.member;
     this.identity = { member: message.member, secret: message.secret, name: message.name };
     this.planId.value = message.plan_id;
     this.gl.value = message.gl;
     this.#loaded(message);
     for (const view of this.views) {
-      view.restart(view.document.value);
+      if (!this.following.isFollowing.value) view.restart(view.document.value); // the whole document goes with view.open
       if (view.isOpen.value) this.#openView(view);
     }
+  }
+
+  #membersChanged(members) {
+    if (this.following.membersChanged(members))
+      for (const view of this.views) if (view.isOpen.value && String(view.document.value.size_px) !== String(view.ownSize)) this.#resize(view);
+    if (!this.#sending.isHeld) return;
+    if (!this.following.isPresenting.value) this.#dropKept();
+    this.#sending.release();
+  }
+
+  /** Somebody else presents since, or nobody: changes that were kept for the room while the connection was lost are lost. */
+  #dropKept() {
+    const isLost = this.#scene.isPending || (this.following.isFollowing.value && this.views.some((view) => view.isPending));
+    this.#scene.reset(this.#scene.base);
+    if (this.following.isFollowing.value) for (const view of this.views) if (view.isPending) view.drop();
+    this.#showScene();
+    const { presenter } = this.following;
+    if (isLost) this.notify('err', `Your changes since the connection was lost are lost: ${presenter.value ? `${presenter.value.name} presents` : 'you do not present'} now.`);
   }
 
   #loaded(message) {
     if (message.gl) this.gl.value = message.gl;
     if (message.plan) this.plan.value = readPlan(message.plan);
     if (message.scene) {
-      this.#scene.reset(message.scene);
+      this.#scene.replace(message.scene);
       for (const view of this.views) view.change();
       this.#showScene();
       this.renderer.value = { state: 'ready', phase: '', percent: 100, problem: null };
@@ -247,18 +250,18 @@ export class RoomState {
     }
   }
 
-  #viewChanged({ view: number, document, follow, by }) {
+  #viewChanged({ view: number, document, follow }) {
     const view = this.view(number);
-    if (!view) return;
+    if (!view?.isOpen.value || !this.following.viewFollows(view, follow)) return;
     // The server sends complete documents; an incomplete one throws here.
-    view.replace(readDocument('view', document));
-    view.isFollowing.value = follow;
-    view.movedBy.value = follow && by !== this.member.value ? by : '';
+    const whole = readDocument('view', document);
+    view.replace(follow || !view.ownSize ? whole : { ...whole, size_px: view.ownSize });
   }
 
   #refused({ to, view, input, problem }) {
     this.#scene.refuse(input);
     if (this.view(view)) this.view(view).refuse(input);
+    if (to === 'follow') this.following.refused(this.following.isFollowing.value);
     if (this.scene.value) this.#showScene();
     if (to === '' && this.view(view)) this.view(view).refuseToDraw(problem?.detail || 'The server gave no reason.');
     this.notify('err', problem?.detail || `The server refused ${to || 'a message'}.`);
@@ -266,9 +269,21 @@ export class RoomState {
 
   #lose(retryMs) {
     batch(() => {
-      this.link.value = { state: 'lost', retryAt: this.#clock.now() + retryMs, reason: '' };
-      this.latencyMs.value = null;
+      this.#setLink('lost', { retryAt: this.#clock.now() + retryMs });
+      this.pingMs.value = null;
+      this.#scene.recall();
+      for (const view of this.views) view.recall();
+      this.#sending.hold();
     });
+  }
+
+  #tooLarge() {
+    this.#showScene();
+    this.notify('err', 'This change is too large to be sent; it was taken back.');
+  }
+
+  #setLink(state, more = {}) {
+    this.link.value = { state, retryAt: 0, quietSince: 0, reason: '', ...more };
   }
 
   #setRevision(revision) {
@@ -278,7 +293,7 @@ export class RoomState {
 
   #showScene() {
     batch(() => {
-      this.scene.value = this.#scene.value;
+      this.#sharedScene.value = this.#scene.value;
       this.isScenePending.value = this.#scene.isPending;
     });
   }

@@ -27,9 +27,12 @@ export class UiState {
     });
   }
 
-  /** @param {'ok'|'warn'|'err'} kind @param {string} topic a newer message replaces an older one on the same topic */
-  notify = (kind, text, topic = text) => {
-    const toast = { id: this.#nextToast++, kind, text, topic };
+  /**
+   * @param {'ok'|'warn'|'err'} kind @param {string} topic a newer message replaces an older one on the same topic
+   * @param {{word: string, keys?: string, act: () => void}} [action] a button in the message
+   */
+  notify = (kind, text, topic = text, action = null) => {
+    const toast = { id: this.#nextToast++, kind, text, topic, action };
     this.toasts.value = [...this.toasts.value.filter((other) => other.topic !== topic).slice(-2), toast];
     this.#clock.setTimeout(() => this.dismiss(toast.id), toastMs);
   };
@@ -47,10 +50,11 @@ export class UiState {
     this.maximised.value = this.maximised.value ? 0 : number;
   }
 
-  /** Closes one thing per call: tool, popover, toast or maximised pane. */
-  escape() {
+  /** Closes one thing per call: tool, popover, what the page has to close (returns whether it had), toast or maximised pane. */
+  escape(close = () => false) {
     if (this.tool.value !== 'crosshair') this.tool.value = 'crosshair';
     else if (this.popover.value) this.popover.value = '';
+    else if (close()) return;
     else if (this.toasts.value.length) this.dismiss(this.toasts.value.at(-1).id);
     else this.maximised.value = 0;
   }

@@ -8,7 +8,7 @@ export class ViewState {
   #replica = new Replica();
   #paintedAt = [];
   #hasChanged = false; // since the last refusal; messages may overtake frames
-  #unanswered = []; // {input, at, sentAt}; at: time of the input event
+  #unanswered = []; // {input, at, sentAt}; at: time of the input event, 0: not an input in this pane
 
   /** @param {number} number in messages and frames @param {'3d'|'axial'|'coronal'|'sagittal'} kind */
   constructor(number, kind) {
@@ -16,10 +16,9 @@ export class ViewState {
     this.kind = kind;
     this.document = signal({ kind });
     this.isOpen = signal(false);
-    this.isFollowing = signal(true);
-    this.movedBy = signal(''); // the other member whose change of the camera is shown; '' for our own
-    this.leftAt = signal(0); // time when following ended
-    this.leftFrom = signal('');
+    this.ownSize = null; // [width, height] in px, as last measured in the page; the shared document has the presenter's
+    this.widening = 1; // by how much the extent of the own view was more than that of the shared one when the member left
+    this.awaited = []; // follow flags of our acts, oldest first, that the server has not answered with a view message yet
     this.missing = signal({ n: 0, reasons: {} }); // regions missing from the picture because they cannot be drawn: number, and reason by id
     this.refusal = signal(''); // why the view cannot be drawn as it is now; '' when it can
     this.painted = signal(null); // FrameHeader of the picture on the screen
@@ -30,10 +29,11 @@ export class ViewState {
   queue(patch) {
     this.change();
     this.#replica.queue(patch);
-    batch(() => {
-      if ('camera' in patch) this.movedBy.value = ''; // a change of the size alone is no movement
-      this.document.value = this.#replica.value;
-    });
+    this.document.value = this.#replica.value;
+  }
+
+  get isPending() {
+    return this.#replica.isPending;
   }
 
   take(input) {
@@ -58,7 +58,21 @@ export class ViewState {
     this.document.value = this.#replica.value;
   }
 
-  /** Starts again after a lost connection: pending changes are lost, the picture stays. */
+  /** After a lost connection: changes without an answer are queued again. Returns whether there are any. */
+  recall() {
+    this.#unanswered = [];
+    this.staleSince.value = 0;
+    this.awaited = [];
+    return this.#replica.recall();
+  }
+
+  /** Drops the queued changes. */
+  drop() {
+    this.#replica.reset(this.#replica.base);
+    this.document.value = this.#replica.value;
+  }
+
+  /** Starts again from a document without pending changes; the picture stays. */
   restart(document) {
     this.#replica.reset(document);
     this.#unanswered = [];
@@ -84,7 +98,7 @@ export class ViewState {
   /** Notes that a picture is on the screen. Returns the answered inputs. */
   paint(header, now) {
     this.#paintedAt = [...this.#paintedAt.filter((at) => now - at < fpsWindowMs), now];
-    const answered = this.#unanswered.filter((entry) => entry.input <= header.input_id);
+    const answered = this.#unanswered.filter((entry) => entry.input <= header.input_id && entry.at);
     this.#replica.settle(header.input_id);
     this.#forget((entry) => entry.input <= header.input_id);
     batch(() => {

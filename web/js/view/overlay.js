@@ -15,15 +15,15 @@ const figurePx = 24;
  * @param {number[]} what.pane size of the pane, CSS px
  * @param {number[]|null} what.point the crosshair, LPS mm
  * @param {number} what.pxPerMm CSS px; 0 in perspective
- * @param {string} what.windowText @param {number} what.topPx height at the top that is covered, CSS px
+ * @param {string} what.windowText
  */
-export function overlay({ kind, header, box, pane: [width, height], point, pxPerMm, windowText, topPx }) {
+export function overlay({ kind, header, box, pane: [width, height], point, pxPerMm, windowText }) {
   const matrix = header.clip_from_lps_mm;
   const at = point && toPicture(matrix, point);
   const mark = at && { x: box.x + at[0] * box.width, y: box.y + at[1] * box.height };
   return svg`
     ${mark && (kind === '3d' ? marker(mark, box) : cross(mark, box))}
-    ${edgeText(edgeLetters(matrix), width, height, topPx)}
+    ${edgeText(edgeLetters(matrix), width, height)}
     ${kind === '3d' ? figure(matrix, width, height) : nothing}
     ${pxPerMm > 0 ? scaleBar(pxPerMm, height) : nothing}
     ${kind !== '3d' && windowText ? svg`<text class="halo caption" x=${width - 12} y=${height - 12} text-anchor="end">${windowText}</text>` : nothing}`;
@@ -50,12 +50,12 @@ function marker({ x, y }, box) {
     <circle cx=${x} cy=${y} r="7" />${line(x - 12, y, x - 7, y)}${line(x + 7, y, x + 12, y)}${line(x, y - 12, x, y - 7)}${line(x, y + 7, x, y + 12)}</g>`)}</g>`;
 }
 
-function edgeText(letters, width, height, topPx) {
+function edgeText(letters, width, height) {
   const text = (x, y, anchor, word) => svg`<text class="halo letter" x=${x} y=${y} text-anchor=${anchor}>${word}</text>`;
   const middle = height / 2 + 5;
   return svg`<g data-letters=${`${letters.left} ${letters.right} ${letters.top} ${letters.bottom}`}>
     ${text(letterPx - 4, middle, 'start', letters.left)}${text(width - letterPx + 4, middle, 'end', letters.right)}
-    ${text(width / 2, topPx + letterPx + 5, 'middle', letters.top)}${text(width / 2, height - letterPx + 4, 'middle', letters.bottom)}</g>`;
+    ${text(width / 2, letterPx + 5, 'middle', letters.top)}${text(width / 2, height - letterPx + 4, 'middle', letters.bottom)}</g>`;
 }
 
 function figure(matrix, width, height) {

@@ -1,0 +1,65 @@
+// The room chip: who presents, whether this member follows or is on their own, and what can be done about it.
+import { html, nothing } from '../../lib/lit-html.js';
+import { icon } from './icons.js';
+import { initials } from './pane.js';
+
+const marks = { presenting: 'people', following: 'people', own: 'person', away: 'phase', none: 'warning' };
+
+function words({ following }) {
+  const name = following.presenter.value?.name ?? '';
+  const n = following.nFollowers.value;
+  switch (following.standing.value) {
+    case 'presenting': return { text: 'Presenting', more: n ? `· ${n} follow${n === 1 ? 's' : ''}` : '' };
+    case 'own': return { text: 'On my own', act: { word: 'Return', keys: 'F', about: name ? `Return to ${name}` : 'Return to the shared view', do: () => following.return() } };
+    case 'away': return { text: `${name} is away` };
+    case 'none': return { text: 'No presenter', act: { word: 'Take over', about: 'Take over: your view becomes the room\'s', do: () => following.present() } };
+    default: return { text: name ? `Following ${name}` : 'Following' };
+  }
+}
+
+function doing({ presenting, following, connected }) {
+  if (presenting) return connected === false ? 'presents, is away' : 'presents';
+  if (connected === false) return 'is away';
+  return following ? 'follows' : 'on their own';
+}
+
+const actions = ({ following }) => [
+  following.isPresenting.value && { word: 'Show everyone', about: 'Everybody follows you again', do: () => following.showEveryone() },
+  !following.presenter.value && { word: 'Take over', about: 'Your view becomes the room\'s', do: () => following.present() },
+  !following.isFollowing.value && { word: 'Return', about: 'Follow with all panes again', do: () => following.return() },
+  following.isFollowing.value && !following.isPresenting.value && { word: 'Look for yourself', about: 'Your panes alone, from what they show now', do: () => following.leave() },
+].filter(Boolean);
+
+function popover({ room, ui }) {
+  const members = room.members.value;
+  const act = (what) => {
+    ui.popover.value = '';
+    what();
+  };
+  return html`<div class="popover room-members" role="dialog" aria-label="Members of this room">
+    <ul>${members.map((member) => html`<li><span class="avatar small" aria-hidden="true">${initials(member.name)}</span>
+      <span class="clipped">${member.name}${member.id === room.member.value ? ' (you)' : ''}</span><span class="dim">${doing(member)}</span></li>`)}</ul>
+    <div class="room-actions">${actions(room).map((action) => html`<button title=${action.about} @click=${() => act(action.do)}>${action.word}</button>`)}</div></div>`;
+}
+
+/** @param {object} world {room, ui} @param {'strip'|'banner'} place each has its own chip, one of which the style sheet hides */
+export function roomChip({ room, ui }, place) {
+  if (!room.members.value.length) return nothing;
+  const name = `room-${place}`;
+  const isOpen = ui.popover.value === name;
+  const { text, more, act } = words(room);
+  const keep = (event) => event.stopPropagation(); // the arrow keys of the tool bar stay out of the chip
+  return html`<span class="anchor room-chip in-${place}" role="group" aria-label="Room" data-standing=${room.following.standing.value} @keydown=${(event) => event.key.startsWith('Arrow') && keep(event)}>
+    <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title="Who is in this room" @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
+      <span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
+    ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.keys ? html` <kbd>${act.keys}</kbd>` : nothing}</button>` : nothing}
+    ${isOpen ? popover({ room, ui }) : nothing}</span>`;
+}
+
+/** In the header of each pane: whether it shows the shared view or an own one. Nothing for a member who is alone. */
+export function followMark(room) {
+  const isOwn = !room.following.isFollowing.value;
+  if (!isOwn && room.members.value.filter(({ connected }) => connected !== false).length < 2) return nothing;
+  const about = isOwn ? 'Own view' : room.following.isPresenting.value ? 'Shared view: the others see it' : 'Shared view';
+  return html`<span class="follow-mark" role="img" data-own=${isOwn} title=${about} aria-label=${about}>${icon(isOwn ? 'person' : 'people', 12)}</span>`;
+}

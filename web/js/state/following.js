@@ -1,0 +1,167 @@
+// Who presents, and whether this member follows the presenter with all panes or is on their own. Nobody else's picture
+// moves when a member leaves: their views become own views, and their changes of the scene the override of these.
+import { batch, computed, signal } from '../../lib/signals-core.js';
+import { mergePatch } from '../wire/merge.js';
+import { wholeCamera, widen, widening } from '../view/own_camera.js';
+
+const usualSize = [1024, 768]; // of a pane that was never shown
+
+export class Following {
+  #room;
+  #tell;
+
+  /**
+   * @param {import('./room.js').RoomState} room
+   * @param {(message: object) => void} tell sends a message with an input number; does nothing without a connection
+   */
+  constructor(room, tell) {
+    this.#room = room;
+    this.#tell = tell;
+    const own = () => room.members.value.find(({ id }) => id === room.member.value);
+    this.isFollowing = signal(true); // also true for the presenter, whose views are the shared ones
+    this.presenter = computed(() => room.members.value.find(({ presenting }) => presenting) ?? null);
+    this.isPresenting = computed(() => own()?.presenting === true);
+    this.nFollowers = computed(() => room.members.value.filter((other) => other.id !== room.member.value && other.connected !== false && other.following).length);
+    /** presenting | following | own | away: follows a presenter who lost the connection | none: nobody presents */
+    this.standing = computed(() => {
+      if (this.isPresenting.value) return 'presenting';
+      if (!this.presenter.value) return room.members.value.length ? 'none' : 'following';
+      if (!this.isFollowing.value) return 'own';
+      return this.presenter.value.connected === false ? 'away' : 'following';
+    });
+    /** A merge patch on the scene for the own views; null while the member follows. */
+    this.override = computed(() => (this.isFollowing.value ? null : this.#lead.document.value.override ?? null));
+  }
+
+  /** All own views have the same override; that of a closed view may be older. */
+  get #lead() {
+    return this.#room.views.find((view) => view.isOpen.value) ?? this.#room.views[0];
+  }
+
+  // ---- acts of the user -------------------------------------------------------------------------------------------
+
+  /** Leaves the presenter with all panes at once. Returns whether anything changed. */
+  leave() {
+    const { scene, plan, views, notify } = this.#room;
+    if (!this.isFollowing.value || this.isPresenting.value || !scene.value || !plan.value) return false;
+    const slices = Object.fromEntries(Object.entries(scene.value.image.slices).map(([axis, { position_mm }]) => [axis, { position_mm }]));
+    batch(() => {
+      for (const view of views) view.restart(this.#ownDocument(view, plan.value, { image: { slices } }));
+      this.isFollowing.value = false;
+    });
+    this.#act(false);
+    notify('ok', 'On your own.', 'following', { word: 'Return', keys: 'Esc or F', act: () => this.return() });
+    return true;
+  }
+
+  /** Follows again, with all panes. Returns whether anything changed. */
+  return() {
+    if (this.isFollowing.value) return false;
+    this.#follow();
+    this.#act(true);
+    const name = this.presenter.value?.name;
+    this.#room.notify('ok', name ? `Following ${name}.` : 'Back in the shared view.', 'following');
+    return true;
+  }
+
+  /** Key F. */
+  toggle() {
+    if (this.isPresenting.value) this.#room.notify('ok', 'You are presenting: the others follow you.', 'following');
+    else if (!this.return()) this.leave();
+  }
+
+  /** Takes over a room without presenter: the own views become the room's. */
+  present() {
+    if (!this.presenter.value) this.#tell({ type: 'present' });
+  }
+
+  /** Calls everybody back to the presenter's views. */
+  showEveryone() {
+    if (!this.isPresenting.value) return;
+    this.#tell({ type: 'show.everyone' });
+    this.#room.notify('ok', 'Everybody sees your view.', 'following');
+  }
+
+  /** The scene patch as an override of all own views. */
+  patchOwn(patch) {
+    for (const view of this.#room.views) {
+      if (view.isOpen.value) view.queue({ override: patch });
+      else view.restart(mergePatch(view.document.value, { override: patch }));
+    }
+  }
+
+  /** A change of the shared camera that made the member leave, as a change of the own view that has taken its place. */
+  adapted(number, patch) {
+    const { kind, widening: factor } = this.#room.view(number);
+    return patch.camera ? { ...patch, camera: widen(patch.camera, kind, factor) } : patch;
+  }
+
+  /** The document with which a view opens. */
+  documentToOpen(view) {
+    const document = { ...view.document.value, size_px: view.ownSize };
+    if (this.isFollowing.value) delete document.override;
+    else if (this.override.value) document.override = this.override.value;
+    return document;
+  }
+
+  // ---- messages of the server -------------------------------------------------------------------------------------
+
+  /** Takes the list of members. Returns whether this member became the presenter by it. */
+  membersChanged(members) {
+    const [wasPresenting, before] = [this.isPresenting.value, this.presenter.value];
+    this.#room.members.value = members;
+    const own = members.find(({ id }) => id === this.#room.member.value);
+    if (!own) return false;
+    if (own.presenting && !wasPresenting) {
+      this.#follow();
+      if (before || members.some(({ id, connected }) => id !== own.id && connected !== false)) this.#room.notify('ok', 'You present: the others follow you.', 'following');
+      return true;
+    }
+    if (before && !this.presenter.value) this.#room.notify('warn', 'Nobody presents any more. What you see stays.', 'following', { word: 'Take over', act: () => this.present() });
+    return false;
+  }
+
+  /** Takes the follow flag of a view message. Returns false if the message is older than this member's last act. */
+  viewFollows(view, follow) {
+    if (view.awaited.length) {
+      if (view.awaited[0] === follow) view.awaited.shift();
+      return !view.awaited.length && follow === this.isFollowing.value;
+    }
+    if (follow === this.isFollowing.value) return true;
+    if (!follow) this.isFollowing.value = false;
+    else {
+      this.#follow();
+      if (this.presenter.value && !this.isPresenting.value) this.#room.notify('ok', `${this.presenter.value.name} shows everybody the same view. You follow again.`, 'following');
+    }
+    return true;
+  }
+
+  /** The server refused to let this member leave or return. */
+  refused(follow) {
+    for (const view of this.#room.views) view.awaited = [];
+    if (!follow) this.#follow();
+  }
+
+  #follow() {
+    batch(() => {
+      for (const view of this.#room.views) {
+        const { override, ...document } = view.document.value;
+        if (override) view.restart(document);
+      }
+      this.isFollowing.value = true;
+    });
+  }
+
+  #act(follow) {
+    const open = this.#room.views.filter((view) => view.isOpen.value);
+    const views = open.map((view) => ({ view: view.number, document: view.document.value }));
+    if (this.#tell(follow ? { type: 'follow', follow } : { type: 'follow', follow, views })) for (const view of open) view.awaited.push(follow);
+  }
+
+  #ownDocument(view, plan, override) {
+    const shared = wholeCamera({ ...view.document.value, kind: view.kind }, plan);
+    const size_px = view.ownSize ?? view.document.value.size_px ?? usualSize;
+    view.widening = widening(shared, view.kind, view.document.value.size_px ?? size_px, view.painted.value, size_px);
+    return { kind: view.kind, size_px, camera: widen(shared, view.kind, view.widening), override };
+  }
+}
