@@ -1,4 +1,4 @@
-// Measurements for tests and benchmarks: window.beamroom. It changes nothing, and the page itself does not use it.
+// Measurements for tests and benchmarks: window.beamroom. It changes nothing.
 //   beamroom.stats()   {input_to_paint_ms: [...], frames, fps: {view: n}, headers: {view: FrameHeader}, badges: {view: word}}
 //   beamroom.clear()   forgets the measured times
 
@@ -23,14 +23,16 @@ export class Hooks {
     this.#frames = 0;
   }
 
-  /** Records that a picture was drawn that answers these inputs, at the time when the browser has painted it. */
-  painted(header, answered) {
+  /** Records that a picture was drawn that answers these inputs, and tells the times in ms when the browser has painted it. */
+  painted(header, answered, measured = () => {}) {
     this.#frames += 1;
     if (!answered.length) return;
     const { port1, port2 } = new MessageChannel();
     port1.onmessage = () => {
       const now = this.#clock.now();
-      for (const { at } of answered) this.#times.push(now - at);
+      const times = answered.map(({ at }) => now - at);
+      this.#times.push(...times);
+      measured(times);
       this.#times.splice(0, this.#times.length - capacity);
       port1.close();
     };

@@ -1,4 +1,4 @@
-// The connection: when it is tried again and when it ends. Sockets and clock are fakes.
+// The connection: when it is tried again, when it ends, and when silence counts as a loss. Sockets and clock are fakes.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from './page.mjs';
@@ -106,4 +106,114 @@ test('a page that could not get back asks whether the room is there, and ends wh
   const n = fake.n();
   fake.connection.open();
   assert.equal(fake.n(), n, 'it stays ended');
+});
+
+// ---- silence ----------------------------------------------------------------------------------------------------------------
+
+/** A connection with a clock that runs, and a server that answers pings until it is silent. */
+function runningConnection() {
+  const sockets = [];
+  const told = [];
+  let timers = [];
+  let now = 10000;
+  let isSilent = false;
+  class Socket extends EventTarget {
+    send(text) {
+      const message = JSON.parse(text);
+      if (isSilent) return;
+      if (message.type === 'hello') this.tell({ type: 'welcome', protocol: 1, room: 'r', member: 'm-1', secret: 'abc', name: 'R', plan_id: 'p', revision: 0 });
+      if (message.type === 'ping') this.tell({ type: 'pong', time_ms: message.time_ms });
+    }
+    close() { this.isClosed = true; } // and never says so, as without a network
+    tell(message) { this.dispatchEvent(Object.assign(new Event('message'), { data: JSON.stringify(message) })); }
+  }
+  const clock = {
+    now: () => now,
+    setTimeout: (callback, ms) => { timers.push({ callback, at: now + ms }); return timers.at(-1); },
+    clearTimeout: (timer) => { timers = timers.filter((other) => other !== timer); },
+  };
+  const advance = (ms) => {
+    const end = now + ms;
+    for (;;) {
+      timers.sort((a, b) => a.at - b.at);
+      if (!timers.length || timers[0].at > end) break;
+      const next = timers.shift();
+      now = Math.max(now, next.at);
+      next.callback();
+    }
+    now = end;
+  };
+  const connection = new Connection('ws://x', { clock, makeSocket: () => { sockets.push(new Socket()); return sockets.at(-1); } });
+  for (const type of ['quiet', 'heard', 'lost', 'up']) connection.addEventListener(type, ({ detail }) => told.push([type, now, detail]));
+  connection.open();
+  sockets[0].dispatchEvent(new Event('open'));
+  told.length = 0;
+  return { connection, sockets, told, advance, sleep: (ms) => { now += ms; }, silence: (value) => { isSilent = value; } };
+}
+
+test('a server that answers is never quiet', () => {
+  const { told, advance } = runningConnection();
+  advance(60000);
+  assert.deepEqual(told, []);
+});
+
+test('2 s without an answer that is due: quiet; 5 s: lost, and tried again on a new socket without waiting for the old one to close', () => {
+  const { connection, sockets, told, advance, silence } = runningConnection();
+  advance(10000); // a ping each second, the last at 20000
+  silence(true);
+  connection.send({ type: 'view.patch', view: 1, patch: {}, input: 1 });
+  advance(1000); // a ping went unanswered at 20000 + 500 or + 1000
+  assert.deepEqual(told, []);
+  advance(2500);
+  assert.deepEqual(told.map(([type]) => type), ['quiet']);
+  assert.equal(told[0][2].since, 20000, 'its age counts from the last answer');
+  advance(3000);
+  assert.deepEqual(told.map(([type]) => type), ['quiet', 'lost']);
+  assert.ok(told[1][1] - told[0][1] >= 3000 - 500 && told[1][1] - told[0][1] <= 3000 + 500, 'a beat is 500 ms');
+  assert.equal(sockets[0].isClosed, true);
+  silence(false);
+  advance(500);
+  assert.equal(sockets.length, 2);
+  sockets[1].dispatchEvent(new Event('open'));
+  assert.equal(told.at(-1)[0], 'up');
+  sockets[0].dispatchEvent(new Event('close')); // at last
+  assert.equal(told.at(-1)[0], 'up');
+});
+
+test('an answer after 3 s ends the doubt', () => {
+  const { sockets, told, advance, silence } = runningConnection();
+  silence(true);
+  advance(4000);
+  assert.deepEqual(told.map(([type]) => type), ['quiet']);
+  silence(false);
+  sockets[0].tell({ type: 'pong', time_ms: 1 });
+  assert.deepEqual(told.map(([type]) => type), ['quiet', 'heard']);
+  advance(10000);
+  assert.equal(told.length, 2);
+});
+
+test('a socket that opens and then says nothing is given up after 8 s', () => {
+  const { sockets, told, advance, silence } = runningConnection();
+  silence(true);
+  advance(8000); // lost, and tried again
+  const n = sockets.length;
+  assert.equal(n, 2);
+  sockets[1].dispatchEvent(new Event('open'));
+  advance(10000);
+  assert.ok(sockets.length > n);
+  assert.ok(told.filter(([type]) => type === 'lost').length >= 2);
+});
+
+test('a page that slept is not a lost connection', () => {
+  const { sockets, told, advance, silence, sleep } = runningConnection();
+  advance(900);
+  silence(true);
+  advance(600); // a ping is out
+  sleep(3600000); // the answer lies in the socket, behind the timer
+  advance(0);
+  assert.deepEqual(told, []);
+  silence(false);
+  sockets[0].tell({ type: 'pong', time_ms: 1 });
+  advance(10000);
+  assert.deepEqual(told, []);
 });

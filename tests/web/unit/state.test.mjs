@@ -141,9 +141,23 @@ for (const [what, change, state] of [
   ['an older scene for 1.1 s', { header: { ...still, scene_revision: 2 }, revisionAt: 8900 }, 'stale'],
   ['a view that cannot be drawn as it is', { header: still, refusal: 'the camera looks at itself' }, 'stale'],
   ['a restarting renderer', { header: still, renderer: 'restarting' }, 'stale'],
+  ['a link that is quiet for 3 s', { header: still, link: { state: 'open', retryAt: 0, quietSince: 7000 } }, 'link'],
   ['a lost connection', { header: still, link: { state: 'lost', retryAt: 12000 } }, 'disconnected'],
 ])
   test(`badge of ${what}`, () => assert.equal(fidelity({ ...facts, ...change })?.state, state));
+
+test('the age of a quiet link counts', () => {
+  const link = { state: 'open', retryAt: 0, quietSince: 7000 };
+  assert.deepEqual([9200, 10000, 11900].map((now) => fidelity({ ...facts, link, now }).text), ['Link? 2 s', 'Link? 3 s', 'Link? 4 s']);
+});
+
+test('latency is the median of the last 20 times from input to paint', () => {
+  const { room } = roomWorld();
+  assert.equal(room.latencyMs.value, null);
+  room.measured([1000, 1000, 1000]);
+  room.measured(Array.from({ length: 19 }, (_, at) => at + 1)); // 1000 and 1 to 19 stay
+  assert.equal(room.latencyMs.value, 11); // the middle of 10 and 11, rounded
+});
 
 test('the badge of all panes is the worst of them', () => {
   assert.equal(worst([{ state: 'full' }, null, { state: 'stale' }, { state: 'live' }]).state, 'stale');

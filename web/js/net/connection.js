@@ -4,8 +4,13 @@ import { readMessage, readServerMessage } from '../wire/check.js';
 import { readFrame } from '../wire/frame.js';
 
 const backoffMs = [500, 1000, 2000, 4000];
-const pingMs = 2000;
-const silenceMs = 10000; // without a pong for so long the connection counts as lost
+const beatMs = 500;
+const pingMs = 1000;
+const hurryMs = 250; // a change is followed by a ping, at most this often, so that an answer is due
+const quietMs = 2000; // an answer that is due for so long: "quiet"
+const lostMs = 5000; // ... the connection counts as lost
+const welcomeMs = 8000; // a new connection without welcome for so long is given up
+const changes = new Set(['view.patch', 'scene.patch', 'follow']);
 
 // Like CustomEvent, which older versions of node do not have.
 class ConnectionEvent extends Event {
@@ -15,7 +20,10 @@ class ConnectionEvent extends Event {
   }
 }
 
-/** Dispatches "message" and "frame" with what was received as detail, "up", "lost" {retryMs} and "ended" {reason}. */
+/**
+ * Dispatches "message" and "frame" with what was received as detail, "up", "lost" {retryMs} and "ended" {reason}; "quiet"
+ * {since: time of the last sign of the server} when an answer is overdue, and "heard" when one came after all.
+ */
 export class Connection extends EventTarget {
   #url;
   #makeSocket;
@@ -27,8 +35,13 @@ export class Connection extends EventTarget {
   #failures = 0;
   #serverWaitMs = 0; // wait that the last bye asked for
   #retryTimer = 0;
-  #pingTimer = 0;
+  #beatTimer = 0;
+  #welcomeTimer = 0;
   #heardAt = 0;
+  #pingedAt = 0;
+  #dueSince = null; // time of the oldest ping after which nothing was heard
+  #beatAt = 0;
+  #isQuiet = false;
   #isEnded = false;
 
   /**
@@ -59,6 +72,8 @@ export class Connection extends EventTarget {
     socket.binaryType = 'arraybuffer';
     this.#socket = socket;
     let wasOpen = false;
+    // closing a socket whose packets get lost takes minutes: it is left to itself
+    this.#welcomeTimer = this.#clock.setTimeout(() => this.#abandon(socket, wasOpen), welcomeMs);
     socket.addEventListener('open', () => {
       if (socket !== this.#socket) return;
       wasOpen = true;
@@ -75,7 +90,9 @@ export class Connection extends EventTarget {
   /** Sends a message of proto/messages.json; returns false without a connection. */
   send(message) {
     if (!this.#isWelcome) return false;
-    return this.#write(readMessage(message, 'client'));
+    if (!this.#write(readMessage(message, 'client'))) return false;
+    if (changes.has(message.type) && this.#dueSince === null && this.#clock.now() - this.#pingedAt > hurryMs) this.#ping();
+    return true;
   }
 
   /** Connects at once instead of at the end of the wait. */
@@ -88,7 +105,7 @@ export class Connection extends EventTarget {
   close() {
     this.#isEnded = true;
     this.#clock.clearTimeout(this.#retryTimer);
-    this.#clock.clearTimeout(this.#pingTimer);
+    this.#stopTimers();
     const socket = this.#socket;
     this.#socket = null;
     this.#isWelcome = false;
@@ -104,6 +121,9 @@ export class Connection extends EventTarget {
 
   #receive(data) {
     this.#heardAt = this.#clock.now();
+    this.#dueSince = null;
+    if (this.#isQuiet) this.#tell('heard');
+    this.#isQuiet = false;
     try {
       if (typeof data !== 'string') return void this.#tell('frame', readFrame(data));
       const message = readServerMessage(JSON.parse(data));
@@ -120,7 +140,10 @@ export class Connection extends EventTarget {
       this.#failures = 0;
       this.#identity = { name: message.name, member: message.member, secret: message.secret };
       this.#tell('up');
+      this.#clock.clearTimeout(this.#welcomeTimer);
+      this.#beatAt = this.#clock.now();
       this.#ping();
+      this.#beat();
     }
     if (message.type === 'bye') {
       if (message.retry_ms === null) this.#isEnded = true;
@@ -131,19 +154,47 @@ export class Connection extends EventTarget {
   }
 
   #ping() {
-    this.#clock.clearTimeout(this.#pingTimer);
+    this.#pingedAt = this.#clock.now();
+    this.#dueSince ??= this.#pingedAt;
+    this.#write({ type: 'ping', time_ms: this.#pingedAt });
+  }
+
+  #beat() {
+    this.#clock.clearTimeout(this.#beatTimer);
     if (!this.#isWelcome) return;
     const now = this.#clock.now();
-    if (now - this.#heardAt > silenceMs) return void this.#socket.close();
-    this.send({ type: 'ping', time_ms: now });
-    this.#pingTimer = this.#clock.setTimeout(() => this.#ping(), pingMs);
+    // After a sleep of the page, what came meanwhile is still to be read.
+    if (now - this.#beatAt > 4 * beatMs && this.#dueSince !== null) this.#dueSince = now;
+    this.#beatAt = now;
+    const dueMs = this.#dueSince === null ? 0 : now - this.#dueSince;
+    if (dueMs >= lostMs) return void this.#abandon(this.#socket, true);
+    if (dueMs >= quietMs && !this.#isQuiet) {
+      this.#isQuiet = true;
+      this.#tell('quiet', { since: this.#heardAt });
+    }
+    if (now - this.#pingedAt >= pingMs) this.#ping();
+    this.#beatTimer = this.#clock.setTimeout(() => this.#beat(), beatMs);
+  }
+
+  /** Gives a socket up without waiting for its end. */
+  #abandon(socket, wasOpen) {
+    if (socket !== this.#socket) return;
+    socket.close();
+    this.#lose(socket, wasOpen);
+  }
+
+  #stopTimers() {
+    this.#clock.clearTimeout(this.#beatTimer);
+    this.#clock.clearTimeout(this.#welcomeTimer);
   }
 
   #lose(socket, wasOpen) {
     if (socket !== this.#socket) return;
     this.#socket = null;
     this.#isWelcome = false;
-    this.#clock.clearTimeout(this.#pingTimer);
+    this.#isQuiet = false;
+    this.#dueSince = null;
+    this.#stopTimers();
     if (this.#isEnded) return;
     const retryMs = Math.max(this.#serverWaitMs, backoffMs[Math.min(this.#failures, backoffMs.length - 1)]);
     this.#failures += 1;

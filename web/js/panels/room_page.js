@@ -50,7 +50,7 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
 
   const onPainted = (header, isDrawn) => {
     const answered = room.frameShown(header, isDrawn);
-    hooks.painted(header, answered);
+    hooks.painted(header, answered, (timesMs) => room.measured(timesMs));
   };
   const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, decode, schedule, onPainted }, view));
   connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));

@@ -17,7 +17,7 @@ export function status({ room, ui, panes, probed }) {
   return html`
     ${badge ? html`<span class=${`badge ${badge.state}`} id="badge-all" data-badge=${badge.state}>${icon(badge.state, 12)}<span>${badge.text}</span></span>` : nothing}
     ${room.link.value.state === 'lost' ? html`<button class="ghost" @click=${() => room.reconnect()}>Try now</button>` : nothing}
-    <span class="pairing pace">Latency <b id="latency">${latency === null ? '–' : `${number(latency)} ms`}</b></span>
+    <span class="pairing pace" title=${`From an input to its picture, median of the last 20. Ping ${room.pingMs.value === null ? '–' : `${number(room.pingMs.value)} ms`}.`}>Latency <b id="latency">${latency === null ? '–' : `${number(latency)} ms`}</b></span>
     <span class="pairing pace"><b id="fps">${fps ? `${number(fps)} fps` : 'idle'}</b></span>
     <span class="dim wide" id="gl">${room.gl.value}</span>
     ${point ? html`<i class="rule"></i><span class="pairing">Position <b>L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm</b></span><span class="place-name">${region?.name ?? ''}</span>` : nothing}
