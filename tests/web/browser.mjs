@@ -25,13 +25,13 @@ export async function startWorld({ plans = [], args = [] } = {}) {
       await openPlan(daemon.url, plan);
       return (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan })).json.id;
     },
-    /** @param {string} address behind the daemon's @param {object} options of the browser's context */
-    async newPage(address = '', options = {}) {
+    /** @param {string} address behind the daemon's, or behind base @param {object} options of the browser's context */
+    async newPage(address = '', { base = daemon.url, ...options } = {}) {
       const context = await browser.newContext({ viewport: { width: 1600, height: 1000 }, ...options });
       context.setDefaultTimeout(60000); // waits for states, however busy the machine
       const page = await context.newPage();
       page.on('pageerror', (error) => errors.push(error.message));
-      await page.goto(`${daemon.url}/${address}`);
+      await page.goto(`${base}/${address}`);
       return page;
     },
     async scene(room) {

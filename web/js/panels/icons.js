@@ -46,7 +46,7 @@ const paths = {
   live: svg`<circle cx="8" cy="8" r="6"/><circle cx="8" cy="8" r="2.5" fill="currentColor"/>`,
   reduced: svg`<circle cx="8" cy="8" r="6"/><path d="M2 8a6 6 0 0 0 12 0Z" fill="currentColor"/>`,
   stale: svg`<path d="M3.5 2h9M3.5 14h9M4.5 2c0 3.5 3.5 4 3.5 6s-3.5 2.5-3.5 6M11.5 2c0 3.5-3.5 4-3.5 6s3.5 2.5 3.5 6"/>`,
-  link: svg`<path d="M8 1.500 14.5 8 8 14.500 1.5 8ZM6.3 6.300a1.8 1.8 0 1 1 2.4 1.700c-.5.2-.7.5-.7 1M8 11.200v.1"/>`,
+  link: svg`<path d="M6.5 4.500H5a3.500 3.500 0 0 0 0 7h1.500M9.5 4.500H11a3.500 3.500 0 0 1 0 7H9.500M8 2v2M8 12v2"/>`,
   disconnected: svg`<path d="M8 2.5 14.5 13.500h-13ZM1.5 2.500l13 12"/>`,
 };
 

@@ -1,0 +1,195 @@
+// A meeting of three: join, present, follow, leave, return, lose the connection, take over. Screenshots stay in build/test-artifacts/.
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import { sleep } from '../api/daemon.mjs';
+import { full, header, missing, shoot, startWorld } from './browser.mjs';
+import { startProxy } from './proxy.mjs';
+
+const sizes = [
+  ['1600x1000', { viewport: { width: 1600, height: 1000 } }],
+  ['1280x720', { viewport: { width: 1280, height: 720 } }],
+  ['1180x820-touch', { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true }],
+];
+
+/** Until this holds; fails with the last value after 30 s. */
+async function until(what, holds, of = async () => undefined) {
+  let last;
+  for (const end = Date.now() + 30000; Date.now() < end; await sleep(50)) {
+    last = await of();
+    if (await holds(last)) return last;
+  }
+  throw new assert.AssertionError({ message: `${what}: ${JSON.stringify(last)}` });
+}
+
+const chip = (page) => page.locator('.room-chip:visible');
+const says = (page, words) => until(`the chip says ${words}`, (text) => words.test(text), async () => (await chip(page).textContent()).replace(/\s+/g, ' ').trim());
+const act = (page) => chip(page).locator('.chip-act');
+const allFull = (...pages) => Promise.all(pages.flatMap((page) => [1, 2, 3, 4].map((view) => full(page, view))));
+const matrix = async (page, view) => Object.values((await header(page, view)).clip_from_lps_mm).map((value) => value.toFixed(4)).join(' ');
+const seen = (page) => page.evaluate(() => JSON.stringify([1, 2, 3, 4].map((n) => {
+  const { sequence, scene_revision, clip_from_lps_mm, width_px, height_px } = globalThis.beamroom.stats().headers[n];
+  return [sequence, scene_revision, width_px, height_px, Object.values(clip_from_lps_mm)];
+})));
+const shows = (page, view, expected) => until(`view ${view} shows the same`, async (now) => now === (await expected()), () => matrix(page, view));
+/** "S 33.9 mm": the position in the header of a slice pane. */
+const place = (page, view) => page.locator(`[data-view="${view}"] .where`).textContent();
+
+async function drag(page, view, dx, dy) {
+  const box = await page.locator(`#picture-${view}`).boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  const isTouch = await page.evaluate(() => matchMedia('(pointer: coarse)').matches);
+  if (!isTouch) {
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + dx, y + dy, { steps: 6 });
+    return void await page.mouse.up();
+  }
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, points) => session.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py]) => ({ x: px, y: py, id: 0 })) });
+  await touch('touchStart', [[x, y]]);
+  for (let step = 1; step <= 6; step++) await touch('touchMove', [[x + (dx * step) / 6, y + (dy * step) / 6]]);
+  await touch('touchEnd', []);
+}
+
+/** The size of a pane in px of the screen, as the page measures it. */
+const paneSize = async (page, view) => page.evaluate((n) => {
+  const { width, height } = document.querySelector(`#picture-${n}`).getBoundingClientRect();
+  return [Math.round(width * devicePixelRatio), Math.round(height * devicePixelRatio)];
+}, view);
+
+/** Px of the screen per mm, as a picture is shown in its pane. */
+async function scaleOf(page, view) {
+  const { width_px, height_px, scale_percent, pixels_per_mm } = await header(page, view);
+  const [width, height] = await paneSize(page, view);
+  return pixels_per_mm * Math.min((width * scale_percent) / (width_px * 100), (height * scale_percent) / (height_px * 100));
+}
+
+describe('a meeting of three', { skip: missing && `${missing} is not there` }, () => {
+  let world;
+  let proxy;
+
+  before(async () => {
+    world = await startWorld();
+    proxy = await startProxy(world.daemon.url);
+  });
+  after(async () => {
+    await proxy?.stop();
+    await world?.stop();
+  });
+
+  /** The presenter, at another size than the two who follow. */
+  const meet = async (options, base) => {
+    const room = await world.newRoom();
+    const address = `#/rooms/${room}`;
+    const one = await world.newPage(address, { viewport: { width: 1500, height: 700 } });
+    await says(one, /^Presenting$/);
+    const [two, three] = [await world.newPage(address, options), await world.newPage(address, { ...options, base })];
+    await says(one, /^Presenting · 2 follow$/);
+    await says(two, /^Following Reviewer 1$/);
+    await allFull(one, two, three);
+    return { room, one, two, three, stop: () => Promise.all([one, two, three].map((page) => page.context().close())) };
+  };
+
+  for (const [name, options] of sizes)
+    it(`present, follow, leave, return, show everyone at ${name}`, async () => {
+      const { room, one, two, three, stop } = await meet(options);
+      const before = await matrix(two, 1);
+      await drag(one, 1, 150, 0);
+      await until('the presenter has turned it', (now) => now !== before, () => matrix(one, 1));
+      for (const page of [two, three]) await shows(page, 1, () => matrix(one, 1));
+      assert.equal(await place(two, 2), await place(one, 2));
+      await allFull(one, two, three);
+
+      const [pictures, scene, scale] = [[await seen(one), await seen(three)], await world.scene(room), await scaleOf(two, 2)];
+      await drag(two, 2, 30, 20);
+      await says(two, /^On my own Return F$/);
+      await until('the own crosshair has moved', async (own) => own !== await place(one, 3), () => place(two, 3));
+      await two.locator('.toast', { hasText: 'On your own' }).waitFor();
+      for (const view of [1, 2, 3, 4]) {
+        const size = await paneSize(two, view);
+        await until(`own size of view ${view}`, ({ width_px, height_px, scale_percent }) => scale_percent === 100 && Math.abs(width_px - size[0]) <= 1 && Math.abs(height_px - size[1]) <= 1, () => header(two, view));
+      }
+      await allFull(two);
+      await until('the scale is kept', (now) => Math.abs(now / scale - 1) < 0.01, () => scaleOf(two, 2)); // sizes are whole px
+      assert.deepEqual([await seen(one), await seen(three)], pictures, 'nobody else\'s picture has changed');
+      assert.deepEqual(await world.scene(room), scene, 'nor the room\'s scene');
+      await says(one, /^Presenting · 1 follows$/);
+      await shoot(two, `meeting-own-${name}`);
+
+      const own = await matrix(two, 1);
+      await drag(one, 1, -60, 30);
+      await shows(three, 1, () => matrix(one, 1));
+      await until('the presenter\'s picture is new', (now) => now !== own, () => matrix(one, 1));
+      assert.equal(await matrix(two, 1), own, 'an own view stays');
+      await two.keyboard.press('Escape');
+      await says(two, /^Following Reviewer 1$/);
+      await shows(two, 1, () => matrix(one, 1));
+      await until('the crosshair is the room\'s again', async (now) => now === await place(one, 3), () => place(two, 3));
+
+      await three.locator('#picture-1').focus();
+      await three.keyboard.press('f');
+      await says(three, /^On my own/);
+      await drag(one, 1, 0, 40);
+      await one.locator('.room-chip:visible .chip-main').click();
+      await shoot(one, `meeting-presenter-${name}`);
+      await one.locator('.room-members button', { hasText: 'Show everyone' }).click();
+      await says(three, /^Following Reviewer 1$/);
+      await shows(three, 1, () => matrix(one, 1));
+      await one.locator('#picture-1').focus();
+      await one.keyboard.press('f');
+      await one.locator('.toast', { hasText: 'You are presenting' }).waitFor();
+      await says(one, /^Presenting · 2 follow$/);
+      await allFull(two);
+      await shoot(two, `meeting-following-${name}`);
+      await stop();
+    });
+
+  it('a link that swallows everything shows, what is done meanwhile is kept, and it comes back', async () => {
+    const { one, two, three, stop } = await meet(sizes[0][1], proxy.url);
+    const before = await place(three, 2);
+    proxy.black(true);
+    await drag(three, 3, 0, 30); // who follows leaves; this is not heard by the server
+    await until('the own crosshair shows', (now) => now !== before, () => place(three, 2));
+    const own = await place(three, 2);
+    const badge = three.locator('#badge-all');
+    await until('the badge doubts', (text) => /^Link\? \d s$/.test(text), async () => (await badge.textContent()).trim());
+    assert.equal(await badge.getAttribute('data-badge'), 'link');
+    await shoot(three, 'meeting-link');
+    await until('the badge knows', (state) => state === 'disconnected', () => badge.getAttribute('data-badge'));
+    await shoot(three, 'meeting-disconnected');
+    assert.equal(await place(three, 2), own);
+    proxy.black(false);
+    await allFull(three);
+    assert.equal(await place(three, 2), own, 'what was done meanwhile is kept');
+    await says(three, /^On my own/);
+    assert.equal(await place(one, 2), before);
+    await says(one, /^Presenting · 1 follows$/);
+    assert.equal(await place(two, 2), before);
+    await act(three).click();
+    await says(three, /^Following Reviewer 1$/);
+    await until('the crosshair is the room\'s again', (now) => now === before, () => place(three, 2));
+    await stop();
+  });
+
+  it('a presenter who is gone for 30 s presents no more; others keep what they see and take over', async () => {
+    const { one, two, three } = await meet(sizes[0][1]);
+    await one.context().close();
+    await says(two, /^Reviewer 1 is away$/);
+    const pictures = [await seen(two), await seen(three)];
+    await act(two).waitFor({ timeout: 45000 }); // 30 s, and a busy machine
+    await says(two, /^No presenter Take over$/);
+    await shoot(two, 'meeting-no-presenter');
+    assert.deepEqual([await seen(two), await seen(three)], pictures);
+    await act(two).click();
+    await says(two, /^Presenting · 1 follows$/);
+    await says(three, /^Following Reviewer 2$/);
+    await drag(two, 1, 100, 0);
+    await shows(three, 1, () => matrix(two, 1));
+    await drag(two, 2, 30, 10);
+    await until('the crosshair of the new presenter', async (now) => now === await place(two, 3), () => place(three, 3));
+    await two.context().close();
+    await three.context().close();
+  });
+
+  it('has had no error', () => assert.deepEqual(world.errors, []));
+});
