@@ -171,6 +171,25 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
     await stop();
   });
 
+  it('what the presenter changes while the link is dead is sent when it is back', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`#/rooms/${room}`, { base: proxy.url });
+    await allFull(page);
+    proxy.black(true);
+    await page.locator('[data-region="scalp"] .eye').click();
+    await drag(page, 1, 150, 0);
+    const badge = page.locator('#badge-all');
+    await until('the link is lost', (state) => state === 'disconnected', () => badge.getAttribute('data-badge'));
+    await page.locator('[data-region="brain"] .eye').click();
+    assert.equal((await world.scene(room)).regions.scalp.visible, true);
+    proxy.black(false);
+    await until('the scene has it', ({ regions }) => !regions.scalp.visible && !regions.brain.visible, () => world.scene(room));
+    await page.waitForFunction(() => document.querySelector('[data-view="1"] [data-letters]').dataset.letters.startsWith('RP') || document.querySelector('[data-view="1"] [data-letters]').dataset.letters.startsWith('PR'));
+    await allFull(page);
+    await says(page, /^Presenting$/);
+    await page.context().close();
+  });
+
   it('a presenter who is gone for 30 s presents no more; others keep what they see and take over', async () => {
     const { one, two, three } = await meet(sizes[0][1]);
     await one.context().close();

@@ -79,6 +79,8 @@ test('"Try now" does not wait for what a bye asked for', () => {
   fake.last().lose();
   fake.connection.retryNow();
   assert.equal(fake.n(), 2);
+  fake.connection.retryNow(); // that attempt hangs: another one takes its place
+  assert.equal(fake.n(), 3);
   fake.last().lose();
   assert.deepEqual(fake.waits, [500]);
 });

@@ -152,6 +152,18 @@ test('without a presenter every member can take over; before, nobody', () => {
   assert.equal(room.following.standing.value, 'presenting');
 });
 
+test('who is left alone is told so, and not that somebody who is gone called', () => {
+  const { room, connection, told } = follower();
+  room.following.leave();
+  connection.receive(viewMessage(false));
+  connection.receive(members('m2', ['m1'], { m2: { connected: false } }));
+  told.length = 0;
+  connection.receive(viewMessage(true)); // the own views have become the room's
+  connection.receive(members('m1', ['m2'], { m2: { connected: false } }));
+  assert.equal(room.following.standing.value, 'presenting');
+  assert.deepEqual(told.map(([, text]) => text), ['You are alone here, and present now.']);
+});
+
 // ---- a lost connection --------------------------------------------------------------------------------------------------
 
 test('what the presenter changed without a connection, and what was on its way, is sent after it as one newest change', () => {

@@ -105,12 +105,6 @@ test('a size that comes before the connection, or without one, is the one asked 
   assert.deepEqual(opened(), [[800, 600]]);
 });
 
-test('a member who has left is here no more', () => {
-  const { room, connection } = roomWorld();
-  connection.receive({ type: 'members', members: [{ id: 'm1', name: 'A', connected: true }, { id: 'm2', name: 'B', connected: false }] });
-  assert.deepEqual(['m1', 'm2', 'm3', ''].map((id) => room.isHere(id)), [true, false, false, false]);
-});
-
 test('the time an input waits ends with the picture that shows it', () => {
   const { room, connection, flush } = roomWorld();
   room.showView(1, [800, 600]);

@@ -99,6 +99,11 @@ export class Connection extends EventTarget {
   retryNow() {
     this.#failures = 0;
     this.#serverWaitMs = 0;
+    if (!this.#isWelcome) { // also instead of an attempt that got no answer yet
+      this.#stopTimers();
+      this.#socket?.close();
+      this.#socket = null;
+    }
     this.open();
   }
 

@@ -114,7 +114,8 @@ export class Following {
     if (!own) return false;
     if (own.presenting && !wasPresenting) {
       this.#follow();
-      if (before || members.some(({ id, connected }) => id !== own.id && connected !== false)) this.#room.notify('ok', 'You present: the others follow you.', 'following');
+      const isAlone = !members.some(({ id, connected }) => id !== own.id && connected !== false);
+      if (before || !isAlone) this.#room.notify('ok', isAlone ? 'You are alone here, and present now.' : 'You present: the others follow you.', 'following');
       return true;
     }
     if (before && !this.presenter.value) this.#room.notify('warn', 'Nobody presents any more. What you see stays.', 'following', { word: 'Take over', act: () => this.present() });
@@ -131,7 +132,8 @@ export class Following {
     if (!follow) this.isFollowing.value = false;
     else {
       this.#follow();
-      if (this.presenter.value && !this.isPresenting.value) this.#room.notify('ok', `${this.presenter.value.name} shows everybody the same view. You follow again.`, 'following');
+      // a presenter who is away did not call: the list of members that says who presents now is still to come
+      if (this.presenter.value && this.presenter.value.connected !== false && !this.isPresenting.value) this.#room.notify('ok', `${this.presenter.value.name} shows everybody the same view. You follow again.`, 'following');
     }
     return true;
   }

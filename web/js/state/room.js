@@ -72,15 +72,6 @@ export class RoomState {
     return this.views[number - 1];
   }
 
-  nameOf(member) {
-    return this.members.value.find((other) => other.id === member)?.name ?? 'another member';
-  }
-
-  /** True while this member is in the room. */
-  isHere(member) {
-    return this.members.value.some((other) => other.id === member && other.connected !== false);
-  }
-
   // ---- actions of the user ----------------------------------------------------------------------------------------
 
   /**
