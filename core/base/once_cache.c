@@ -234,6 +234,15 @@ bool once_cache_has(struct once_cache *cache, const struct once_key *key)
     return has;
 }
 
+bool once_cache_is_ready(struct once_cache *cache, const struct once_key *key)
+{
+    pthread_mutex_lock(&cache->lock);
+    const struct entry *entry = find(cache, key);
+    bool is_ready = entry ? entry->result != NULL : find_refusal(cache, key) != NULL;
+    pthread_mutex_unlock(&cache->lock);
+    return is_ready;
+}
+
 bool once_cache_is_refused(struct once_cache *cache, const struct once_key *key, struct error *why)
 {
     pthread_mutex_lock(&cache->lock);

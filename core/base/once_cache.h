@@ -53,6 +53,8 @@ NODISCARD void *once_cache_get(struct once_cache *cache, const struct once_key *
 void once_cache_offer(struct once_cache *cache, const struct once_key *key, void *result);
 /* True if the key's result is kept, is being built, or is refused. It may be dropped before the next request. */
 bool once_cache_has(struct once_cache *cache, const struct once_key *key);
+/* True if the key's result is kept or refused: once_cache_get would not build or wait now. */
+bool once_cache_is_ready(struct once_cache *cache, const struct once_key *key);
 /* True if the key's build failed for good; fills why. At most ONCE_CACHE_MAX_REFUSALS are remembered: one more forgets
  * them all. */
 bool once_cache_is_refused(struct once_cache *cache, const struct once_key *key, struct error *why);

@@ -111,6 +111,12 @@ bool derive_has(struct derive *derive, const struct derive_recipe *recipe)
     return once_cache_has(derive->cache, &key);
 }
 
+bool derive_is_ready(struct derive *derive, const struct derive_recipe *recipe)
+{
+    struct once_key key = key_of(recipe);
+    return once_cache_is_ready(derive->cache, &key);
+}
+
 bool derive_is_refusal(enum error_code code)
 {
     return code == ERROR_UNSUPPORTED || code == ERROR_LIMIT || code == ERROR_RANGE || code == ERROR_FORMAT;

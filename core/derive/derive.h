@@ -2,7 +2,8 @@
 /* The store of what is computed from a plan for a scene. A recipe (a plain struct that names all inputs) leads to an
  * immutable, reference-counted result, which is built once, by the first caller, and kept within one budget of memory
  * over all kinds of result. Knows no kind by name: a kind is one file of its own, which exports its functions and calls
- * derive_get with its `struct derive_kind`. Kinds now: region_shape.h, coarse_reduction.h. */
+ * derive_get with its `struct derive_kind`. Kinds now: region_shape.h, coarse_reduction.h,
+ * shape_slabs.h. */
 #include "core/base/once_cache.h"
 #include "core/derive/subject.h"
 
@@ -60,6 +61,9 @@ NODISCARD struct derive_result *derive_get(struct derive *derive, const struct d
 void derive_offer(struct derive *derive, const struct derive_recipe *recipe, struct derive_result *result);
 /* True if the result is kept, is being built, or was refused. It may be dropped before the next request. */
 bool derive_has(struct derive *derive, const struct derive_recipe *recipe);
+
+/* True if the result is kept or was refused: derive_get would not build or wait now. */
+bool derive_is_ready(struct derive *derive, const struct derive_recipe *recipe);
 
 /* True if a build that failed with this code fails each time: by what the plan is, or by a written limit. */
 bool derive_is_refusal(enum error_code code);

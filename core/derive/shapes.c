@@ -46,6 +46,13 @@ struct shape *derive_shape(struct derive *derive, const struct shape_want *want,
     return shape;
 }
 
+bool derive_shape_is_ready(struct derive *derive, const struct shape_want *want)
+{
+    struct region_shape_recipe recipe = region_shape_recipe(want->subject, &want->key, 1);
+    assert(want->detail == SURFACE_FULL);
+    return derive_is_ready(derive, &recipe.base);
+}
+
 bool derive_shape_is_refused(struct derive *derive, const struct shape_want *want, struct error *why)
 {
     struct region_shape_recipe recipe;

@@ -25,6 +25,8 @@ bool shape_want_equal(const struct shape_want *a, const struct shape_want *b); /
  *   thread   any; the first builds, others wait */
 NODISCARD struct shape *derive_shape(struct derive *derive, const struct shape_want *want, struct shape_facts *facts,
                                      struct error *err);
+/* True if derive_shape of a want in full detail would not build or wait now: it is kept, or was refused. */
+bool derive_shape_is_ready(struct derive *derive, const struct shape_want *want);
 /* True if the shape was tried before and refused (derive_is_refusal); fills why. */
 bool derive_shape_is_refused(struct derive *derive, const struct shape_want *want, struct error *why);
 /* Fills the distances in facts: from the shape's vertices to the border of the univels that it was made from. The

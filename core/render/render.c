@@ -164,7 +164,8 @@ struct render_picture *render_begin(struct renderer *renderer, const struct snap
     struct render_picture *picture = mem_new(sizeof *picture);
     picture->renderer = renderer;
     picture->options = *options;
-    picture->scope = (struct draw_scope){ snapshot, &picture->camera, options->detail, renderer->cache };
+    picture->scope =
+        (struct draw_scope){ snapshot, &picture->camera, options->detail, renderer->cache, options->is_still };
     camera_resolve(snapshot, &picture->camera);
     return picture;
 }

@@ -15,6 +15,8 @@ const char *const shape_query_names[] = { "representation", "algorithm", "normal
  * tests/unit/test_shape_query.c checks that. */
 static const struct field_words flags = { (const char *const[]){ "false", "true" }, 2 },
                                 formats = { (const char *const[]){ "json", "stl", "ply", "glb" }, 4 };
+/* The scene's methods that trace univels: its words without the last, "surface". */
+enum { N_TRACED_METHODS = OUTLINE_MARCHING_SQUARES + 1 };
 
 static bool refuse(struct problem *problem, const char *name, const char *found, const char *expected)
 {
@@ -65,11 +67,12 @@ static bool read_whole(const cJSON *json, const char *name, int low, int high, i
 bool shape_query_read(const cJSON *json, struct shape_query *query, struct problem *problem)
 {
     const struct scene *start = &scene_default;
+    const struct field_words traced = { scene_outline_method_words.words, N_TRACED_METHODS };
     int representation, algorithm, outline, sampling, is_face, has_inner, format, order, bins, n_frames;
     if (!read_word(json, "representation", &scene_representation_words, REPRESENTATION_SURFACE, &representation,
                    problem) ||
         !read_word(json, "algorithm", &scene_algorithm_words, (int)start->surface.algorithm, &algorithm, problem) ||
-        !read_word(json, "outline", &scene_outline_method_words, OUTLINE_TRACED, &outline, problem) ||
+        !read_word(json, "outline", &traced, OUTLINE_TRACED, &outline, problem) ||
         !read_word(json, "sampling", &scene_nurbs_sampling_words, NURBS_TRACES, &sampling, problem) ||
         !read_word(json, "inner_boundary", &flags, 0, &has_inner, problem) ||
         !read_word(json, "normals", &scene_normals_words, 0, &is_face, problem) ||

@@ -1,5 +1,6 @@
 /* Measures of meshes: volume, area, open edges, Euler number, normals. */
 #include "core/surface/mesh.h"
+#include "core/surface/mesh_slabs.h"
 #include "tests/check.h"
 
 /* The corners of a box with its 12 triangles, counter-clockwise as seen from outside. */
@@ -178,6 +179,48 @@ static void references_are_counted_and_absurd_sizes_refused(void **state)
     assert_int_equal(err.code, ERROR_LIMIT);
 }
 
+/* Triangles of up to 1 mm in a box of 100 mm: every one that crosses a position is found, and few others are. */
+static void slabs_find_every_triangle_that_crosses_a_position(void **state)
+{
+    (void)state;
+    enum { N = 20000 };
+    struct error err = { 0 };
+    struct mesh *mesh = mesh_create((size_t)3 * N, N, &err);
+    uint32_t seed = 1;
+    for (size_t i = 0; i < (size_t)9 * N; i++) {
+        seed = seed * 1664525u + 1013904223u;
+        float share = (float)(seed >> 8) / 16777216.0f;
+        mesh->positions_lps_mm[i] = i % 9 < 3 ? 100 * share - 30 : mesh->positions_lps_mm[i - i % 9 + i % 3] + share;
+    }
+    for (uint32_t i = 0; i < 3u * N; i++)
+        mesh->indices[i] = i;
+    mesh_measure_bounds(mesh);
+    for (int axis = 0; axis < 3; axis++) {
+        struct mesh_slabs *slabs = mesh_slabs_create(mesh, axis, &err);
+        bool *is_found = calloc(N, sizeof *is_found);
+        assert_true(slabs && is_found);
+        for (double at = -31; at <= 73; at += 1.37) {
+            size_t first, end, n_crossing = 0;
+            memset(is_found, 0, N * sizeof *is_found);
+            mesh_slabs_find(slabs, (float)at, &first, &end);
+            assert_true(first <= end && end <= N);
+            for (size_t i = first; i < end; i++)
+                is_found[slabs->triangles[i]] = true;
+            for (size_t t = 0; t < N; t++) {
+                const float *p = &mesh->positions_lps_mm[9 * t + (size_t)axis];
+                bool has_below = p[0] < (float)at || p[3] < (float)at || p[6] < (float)at,
+                     has_above = p[0] >= (float)at || p[3] >= (float)at || p[6] >= (float)at;
+                n_crossing += has_below && has_above;
+                assert_true(is_found[t] || !(has_below && has_above));
+            }
+            assert_true(end - first <= 400 + 3 * n_crossing); /* lowest within 1 mm and a few slabs: of 200 per mm */
+        }
+        free(is_found);
+        mesh_slabs_destroy(slabs);
+    }
+    mesh_unref(mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -186,6 +229,7 @@ int main(void)
         cmocka_unit_test(edges_are_counted_right_around_a_vertex_of_many_triangles),
         cmocka_unit_test(normals_are_area_weighted_unit_and_outward),
         cmocka_unit_test(normals_are_the_same_bytes_for_any_threads),
+        cmocka_unit_test(slabs_find_every_triangle_that_crosses_a_position),
         cmocka_unit_test(references_are_counted_and_absurd_sizes_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -163,6 +163,7 @@ static void while_one_key_is_built_another_key_can_be_asked_for(void **state)
     assert_ptr_equal(queue_take(slow.begun, -1), &slow);
     struct once_key key = key_of(&slow.value);
     assert_true(once_cache_has(cache, &key)); /* is being built */
+    assert_false(once_cache_is_ready(cache, &key));
     assert_int_equal(usage_of(cache).n_results, 0);
     assert_int_equal(get_value(&other), 2);
     once_cache_set_budget(cache, 0); /* drops nothing that is being built */
@@ -222,6 +223,7 @@ static void a_refusal_is_kept_and_given_again_without_a_build(void **state)
     assert_string_equal(why.text, "build 1");
     assert_true(once_cache_has_refusals(building.cache));
     assert_true(once_cache_has(building.cache, &key));
+    assert_true(once_cache_is_ready(building.cache, &key)); /* refused */
     /* one more than are remembered forgets the others */
     struct building more = { .cache = building.cache, .fails_with = ERROR_LIMIT };
     for (int i = 0; i < ONCE_CACHE_MAX_REFUSALS; i++) {
@@ -257,6 +259,7 @@ static void the_least_recently_used_is_dropped_and_lives_on_with_its_holder(void
     assert_false(once_cache_has(cache, &keys[1]));
     assert_int_equal(held->value, 1);
     assert_true(once_cache_has(cache, &keys[0]));
+    assert_true(once_cache_is_ready(cache, &keys[0]));
     assert_int_equal(usage_of(cache).n_results, 3);
     assert_int_equal(usage_of(cache).n_bytes, 30);
     once_cache_set_budget(cache, 15);

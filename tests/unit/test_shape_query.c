@@ -74,6 +74,7 @@ static void what_cannot_be_is_refused_by_name(void **state)
         { "{\"algorithm\":\"magic\"}", "/algorithm" },
         { "{\"normals\":\"both\"}", "/normals" },
         { "{\"outline\":\"\"}", "/outline" },
+        { "{\"outline\":\"surface\"}", "/outline" }, /* no method of tracing univels */
         { "{\"inner_boundary\":\"yes\"}", "/inner_boundary" },
         { "{\"order\":\"1\"}", "/order" },
         { "{\"order\":\"5\"}", "/order" },

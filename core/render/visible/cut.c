@@ -316,24 +316,34 @@ static int axis_of(const float normal[3])
     return -1;
 }
 
-bool cut_mesh(const struct mesh *mesh, const struct plane *plane, struct cut_lines *lines, struct error *err)
+int cut_axis(const struct plane *plane)
+{
+    return axis_of((const float[3]){ (float)plane->normal.x, (float)plane->normal.y, (float)plane->normal.z });
+}
+
+bool cut_mesh(const struct mesh *mesh, const struct mesh_slabs *slabs, const struct plane *plane,
+              struct cut_lines *lines, struct error *err)
 {
     const float normal[3] = { (float)plane->normal.x, (float)plane->normal.y, (float)plane->normal.z };
     const float position = (float)plane_position_mm(plane);
     const int axis = axis_of(normal); /* one coordinate then decides, and most triangles are left at once */
-    for (size_t t = 0; t < mesh->n_triangles; t++) {
+    size_t first = 0, end = mesh->n_triangles;
+    if (slabs) /* along the axis itself, also if the normal is its opposite */
+        mesh_slabs_find(slabs, normal[axis] * position, &first, &end);
+    for (size_t i = first; i < end; i++) {
+        size_t t = slabs ? slabs->triangles[i] : i;
         const float *p[3];
         float at[3];
-        for (size_t i = 0; i < 3; i++) {
-            p[i] = &mesh->positions_lps_mm[3 * (size_t)mesh->indices[3 * t + i]];
-            at[i] = axis >= 0 ? normal[axis] * p[i][axis] : position_of(p[i], normal);
+        for (size_t c = 0; c < 3; c++) {
+            p[c] = &mesh->positions_lps_mm[3 * (size_t)mesh->indices[3 * t + c]];
+            at[c] = axis >= 0 ? normal[axis] * p[c][axis] : position_of(p[c], normal);
         }
         bool above[3] = { at[0] >= position, at[1] >= position, at[2] >= position };
         if (above[0] == above[1] && above[1] == above[2])
             continue;
         struct corner corners[3];
-        for (int i = 0; i < 3; i++)
-            corners[i] = (struct corner){ vec3((double)p[i][0], (double)p[i][1], (double)p[i][2]), (double)at[i] };
+        for (int c = 0; c < 3; c++)
+            corners[c] = (struct corner){ vec3((double)p[c][0], (double)p[c][1], (double)p[c][2]), (double)at[c] };
         if (!cut_polygon(corners, 3, (double)position, lines, err))
             return false;
     }

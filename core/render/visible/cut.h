@@ -3,7 +3,7 @@
  * and no pixels. */
 #include "core/region/outline.h"
 #include "core/scene/plane.h"
-#include "core/surface/mesh.h"
+#include "core/surface/mesh_slabs.h"
 
 /* Line segments in the plane, in patient space. */
 struct cut_lines {
@@ -36,9 +36,13 @@ NODISCARD bool cut_outlines(const struct mask *slice, enum outline_method method
                             struct error *err);
 /* Adds the sides of pixels between inside and outside. errors ERROR_MEMORY */
 NODISCARD bool cut_borders(const struct mask *slice, struct cut_lines *lines, struct error *err);
+/* The patient axis that a plane is square to: 0 L, 1 P, 2 S; -1: the plane is oblique. */
+int cut_axis(const struct plane *plane);
 /* Adds the segments where the plane cuts the mesh's triangles: closed outlines if the mesh is closed. A vertex on the
- * plane counts as above it. Single precision, as the mesh has. errors ERROR_MEMORY */
-NODISCARD bool cut_mesh(const struct mesh *mesh, const struct plane *plane, struct cut_lines *lines, struct error *err);
+ * plane counts as above it. Single precision, as the mesh has. slabs: the mesh's along cut_axis, or NULL: every
+ * triangle is looked at. errors ERROR_MEMORY */
+NODISCARD bool cut_mesh(const struct mesh *mesh, const struct mesh_slabs *slabs, const struct plane *plane,
+                        struct cut_lines *lines, struct error *err);
 /* Adds the segments where the plane cuts the outer faces of a grid. errors ERROR_MEMORY */
 NODISCARD bool cut_grid(const struct grid *grid, const struct plane *plane, struct cut_lines *lines, struct error *err);
 /* The corners of a grid's outer faces; bit 0, 1, 2 of the number: high along i, j, k. */

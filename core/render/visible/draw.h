@@ -18,7 +18,7 @@ enum draw_kind {
     DRAW_SHAPE,    /* triangles, lines or points */
     DRAW_IMAGE,    /* an image on a plane */
     DRAW_LABELS,   /* a label layer on a plane */
-    DRAW_OUTLINE,  /* overlay: the outline of a region's univels on a plane */
+    DRAW_OUTLINE,  /* overlay: the outline of a region's surface or univels on a plane */
     DRAW_CHECK,    /* overlay: where univels and surface of a region differ on a plane */
     DRAW_GRID_CUT, /* overlay: where a plane cuts the grids of a dose */
     DRAW_GRID_BOX  /* overlay: the edges of the grids of a dose */
@@ -54,8 +54,10 @@ struct draw_image {
 
 struct draw_lines {
     double width_px;            /* on the full picture */
-    enum outline_method method; /* DRAW_OUTLINE */
-    struct shape_key key;       /* DRAW_CHECK: of the surface */
+    enum outline_method method; /* DRAW_OUTLINE of univels */
+    bool is_of_surface;         /* DRAW_OUTLINE: of the surface, not of univels */
+    bool may_be_univels;        /* of univels all the same, by method, as long as the surface is not built */
+    struct shape_key key;       /* of the surface */
 };
 
 struct draw {
@@ -96,6 +98,7 @@ struct draw_scope {
     const struct camera *camera; /* the snapshot's, resolved */
     enum surface_detail detail;
     struct draw_cache *cache;
+    bool is_still; /* false: the next picture comes soon */
 };
 
 /* Appends a draw. errors ERROR_MEMORY */

@@ -28,10 +28,12 @@ static int compare_ranks(const void *left, const void *right)
     return a->region < b->region ? -1 : 1;
 }
 
-static bool add_region(struct draw_list *list, const struct snapshot *snapshot, size_t region, struct error *err)
+static bool add_region(struct draw_list *list, const struct draw_scope *scope, size_t region, struct error *err)
 {
+    const struct snapshot *snapshot = scope->snapshot;
     const struct scene_outline_style *style = &snapshot->scene.outline;
-    bool is_checked = visible_is_checked(snapshot, region);
+    bool is_checked = visible_is_checked(snapshot, region),
+         is_of_surface = visible_has_outlined_surface(snapshot, region);
     if (!is_checked && !style->on_slices)
         return true;
     return draw_list_add(list,
@@ -43,13 +45,18 @@ static bool add_region(struct draw_list *list, const struct snapshot *snapshot, 
                                          .color_rgb = snapshot->styles[region].color_rgb,
                                          .opacity = 1,
                                          .lines = { .width_px = style->width_px,
-                                                    .method = visible_outline_method(snapshot),
-                                                    .key = visible_checked_key(snapshot, region) } },
+                                                    .method = is_of_surface ? OUTLINE_MARCHING_SQUARES
+                                                                            : visible_outline_method(snapshot),
+                                                    .is_of_surface = is_of_surface,
+                                                    .may_be_univels = !scope->is_still,
+                                                    .key = is_checked ? visible_checked_key(snapshot, region)
+                                                                      : visible_outlined_key(snapshot, region) } },
                          err);
 }
 
-static bool add_regions(struct draw_list *list, const struct snapshot *snapshot, struct error *err)
+static bool add_regions(struct draw_list *list, const struct draw_scope *scope, struct error *err)
 {
+    const struct snapshot *snapshot = scope->snapshot;
     const struct region_set *set = &snapshot->plan->regions;
     struct ranked *ranks = mem_array(set->n_regions, sizeof *ranks, UINT64_MAX, err);
     size_t n = 0;
@@ -61,7 +68,7 @@ static bool add_regions(struct draw_list *list, const struct snapshot *snapshot,
     if (is_good)
         qsort(ranks, n, sizeof *ranks, compare_ranks);
     for (size_t i = 0; is_good && i < n; i++)
-        is_good = add_region(list, snapshot, ranks[i].region, err);
+        is_good = add_region(list, scope, ranks[i].region, err);
     free(ranks);
     return is_good;
 }
@@ -71,7 +78,7 @@ bool draw_overlay(struct draw_list *list, const struct draw_scope *scope, struct
     const struct snapshot *snapshot = scope->snapshot;
     const struct scene *scene = &snapshot->scene;
     bool is_pane = snapshot_is_pane(snapshot);
-    if (is_pane && (scene->outline.on_slices || scene->check.visible) && !add_regions(list, snapshot, err))
+    if (is_pane && (scene->outline.on_slices || scene->check.visible) && !add_regions(list, scope, err))
         return false;
     if (!scene->dose.grid || snapshot->dose < 0)
         return true;

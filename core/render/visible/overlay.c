@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
+#include "core/derive/shape_slabs.h"
 #include "core/render/visible/check.h"
 #include "core/render/visible/cut.h"
 #include "core/render/visible/paint.h"
@@ -13,6 +14,9 @@
  */
 enum { MAX_ENTRIES = 3 * REGION_MAX + 512, MAX_LINES = 2 << 20 };
 static const uint32_t univel_rgb = 0xffffff;
+/* Under outlines, to keep light lines readable on bone. */
+static const uint32_t halo_rgb = 0x07080a;
+static const double halo_px = 1;
 
 enum lines_of { LINES_OF_OUTLINE, LINES_OF_BORDER, LINES_OF_SHAPE };
 
@@ -88,6 +92,24 @@ static bool fill_univels(struct entry *entry, struct error *err)
     return is_good;
 }
 
+/* Below so many triangles looking at all of them takes no time. */
+enum { MIN_INDEXED_TRIANGLES = 4096 };
+
+static bool cut_shape(struct entry *entry, struct derive *derived, const struct shape *shape, struct error *err)
+{
+    int axis = cut_axis(&entry->plane);
+    struct shape_slabs *slabs = NULL;
+    if (axis >= 0 && shape->mesh->n_triangles >= MIN_INDEXED_TRIANGLES) {
+        slabs = shape_slabs_get(derived, &(struct shape_want){ entry->subject, entry->key, SURFACE_FULL }, shape, axis,
+                                err);
+        if (!slabs)
+            return false;
+    }
+    bool is_good = cut_mesh(shape->mesh, slabs ? slabs->slabs : NULL, &entry->plane, &entry->lines, err);
+    derive_result_unref(slabs ? &slabs->base : NULL);
+    return is_good;
+}
+
 static bool fill_shape(struct entry *entry, struct derive *derived, struct error *err)
 {
     struct error why = { 0 };
@@ -95,7 +117,7 @@ static bool fill_shape(struct entry *entry, struct derive *derived, struct error
         derive_shape(derived, &(struct shape_want){ entry->subject, entry->key, SURFACE_FULL }, NULL, &why);
     entry->is_absent = !shape && derive_is_refusal(why.code);
     entry->is_open = entry->key.representation == REPRESENTATION_FAN;
-    bool is_good = shape ? cut_mesh(shape->mesh, &entry->plane, &entry->lines, &why) : entry->is_absent;
+    bool is_good = shape ? cut_shape(entry, derived, shape, &why) : entry->is_absent;
     shape_unref(shape);
     if (!is_good && err)
         *err = why;
@@ -158,25 +180,86 @@ static struct paint_point project(const struct target *target, const double p[3]
                                  (1 - clip.y) / 2 * target->image->height_px };
 }
 
+/* From a pane's patient coordinates to pixels: x = p . x + x[3]. A parallel view has no division. */
+struct pane_pixels {
+    double x[4], y[4];
+};
+
+static struct pane_pixels pane_pixels(const struct target *target)
+{
+    const double *m = target->scope->camera->clip_from_lps_mm.m;
+    double half_width = target->image->width_px / 2.0, half_height = target->image->height_px / 2.0;
+    struct pane_pixels pixels;
+    for (size_t i = 0; i < 4; i++) {
+        pixels.x[i] = m[4 * i] * half_width + (i == 3 ? half_width : 0);
+        pixels.y[i] = -m[4 * i + 1] * half_height + (i == 3 ? half_height : 0);
+    }
+    return pixels;
+}
+
+static inline struct paint_point on_pane(const struct pane_pixels *pixels, const double p[3])
+{
+    const double *x = pixels->x, *y = pixels->y;
+    return (struct paint_point){ x[0] * p[0] + x[1] * p[1] + x[2] * p[2] + x[3],
+                                 y[0] * p[0] + y[1] * p[1] + y[2] * p[2] + y[3] };
+}
+
+/* Of a slice pane. */
+static void stroke(const struct target *target, const struct cut_lines *lines, double width_px)
+{
+    const struct pane_pixels pixels = pane_pixels(target);
+    for (size_t i = 0; i < lines->n; i++)
+        paint_line(target->paint, on_pane(&pixels, lines->ends_lps_mm[i][0]),
+                   on_pane(&pixels, lines->ends_lps_mm[i][1]), fmax(1, width_px * target->scale));
+}
+
 static void paint_lines(const struct target *target, const struct cut_lines *lines, double width_px, uint32_t rgb)
 {
-    for (size_t i = 0; i < lines->n; i++)
-        paint_line(target->paint, project(target, lines->ends_lps_mm[i][0]), project(target, lines->ends_lps_mm[i][1]),
-                   fmax(1, width_px * target->scale));
+    stroke(target, lines, width_px);
     paint_flush(target->paint, rgb, 1);
+}
+
+/* The lines of an outline, borrowed until trim. NULL on failure. */
+static const struct cut_lines *outline_lines(const struct target *target, const struct draw *draw, struct error *err)
+{
+    struct derive *derived = target->scope->snapshot->derived;
+    const struct shape_want want = { draw->subject, draw->lines.key, SURFACE_FULL };
+    bool is_of_surface =
+        draw->lines.is_of_surface && (!draw->lines.may_be_univels || derive_shape_is_ready(derived, &want));
+    struct entry wanted = { .plan = target->scope->snapshot->plan,
+                            .subject = draw->subject,
+                            .what = is_of_surface ? LINES_OF_SHAPE : LINES_OF_OUTLINE,
+                            .plane = draw->plane };
+    if (is_of_surface)
+        wanted.key = draw->lines.key;
+    else
+        wanted.method = draw->lines.method;
+    const struct entry *found = lines_of(target->overlay, derived, &wanted, err);
+    return found ? &found->lines : NULL;
+}
+
+/* Strokes outlines with dark lines a pixel wider to each side, all before the first outline is painted, so that none
+ * covers another's line. */
+static bool paint_halos(const struct target *target, const struct draw_list *list, struct error *err)
+{
+    for (size_t i = list->n_in_image; i < list->n; i++) {
+        const struct draw *draw = &list->draws[i];
+        const struct cut_lines *lines = draw->kind == DRAW_OUTLINE ? outline_lines(target, draw, err) : NULL;
+        if (lines)
+            stroke(target, lines, draw->lines.width_px + 2 * halo_px);
+        else if (draw->kind == DRAW_OUTLINE)
+            return false;
+    }
+    paint_flush(target->paint, halo_rgb, 1);
+    return true;
 }
 
 static bool paint_outline(const struct target *target, const struct draw *draw, struct error *err)
 {
-    const struct entry wanted = { .plan = target->scope->snapshot->plan,
-                                  .subject = draw->subject,
-                                  .what = LINES_OF_OUTLINE,
-                                  .plane = draw->plane,
-                                  .method = draw->lines.method };
-    const struct entry *found = lines_of(target->overlay, target->scope->snapshot->derived, &wanted, err);
-    if (found)
-        paint_lines(target, &found->lines, draw->lines.width_px, draw->color_rgb);
-    return found != NULL;
+    const struct cut_lines *lines = outline_lines(target, draw, err);
+    if (lines)
+        paint_lines(target, lines, draw->lines.width_px, draw->color_rgb);
+    return lines != NULL;
 }
 
 static bool paint_check(const struct target *target, const struct draw *draw, struct error *err)
@@ -284,7 +367,7 @@ bool overlay_draw(struct overlay *overlay, const struct draw_scope *scope, const
         overlay, scope, image, paint_create(image, err), (double)image->width_px / scope->snapshot->view.size_px[0],
         check
     };
-    bool is_good = target.paint != NULL;
+    bool is_good = target.paint && paint_halos(&target, list, err);
     for (size_t i = list->n_in_image; is_good && i < list->n; i++)
         is_good = paint_draw(&target, &list->draws[i], err);
     paint_destroy(target.paint);

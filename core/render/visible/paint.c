@@ -44,9 +44,20 @@ void paint_destroy(struct paint *paint)
     free(paint);
 }
 
-static double clamp(double value, double low, double high)
+/* Comparisons, as fmin and fmax are calls. */
+static inline double smaller(double a, double b)
 {
-    return fmin(fmax(value, low), high);
+    return a < b ? a : b;
+}
+
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static inline double clamp(double value, double low, double high)
+{
+    return smaller(larger(value, low), high);
 }
 
 /* Coverage falls linearly from 1, half a pixel inside the line's edge, to 0, half a pixel outside. */
@@ -54,10 +65,11 @@ static void paint_piece(struct paint *paint, struct paint_point a, struct paint_
 {
     const int width = paint->image->width_px, height = paint->image->height_px;
     double reach = radius + 0.5;
-    int low_x = (int)clamp(floor(fmin(a.x, b.x) - reach), 0, width),
-        high_x = (int)clamp(ceil(fmax(a.x, b.x) + reach), -1, width - 1);
-    int low_y = (int)clamp(floor(fmin(a.y, b.y) - reach), 0, height),
-        high_y = (int)clamp(ceil(fmax(a.y, b.y) + reach), -1, height - 1);
+    /* the pixels whose centres are within reach along each axis */
+    int low_x = (int)clamp(ceil(smaller(a.x, b.x) - reach - 0.5), 0, width),
+        high_x = (int)clamp(floor(larger(a.x, b.x) + reach - 0.5), -1, width - 1);
+    int low_y = (int)clamp(ceil(smaller(a.y, b.y) - reach - 0.5), 0, height),
+        high_y = (int)clamp(floor(larger(a.y, b.y) + reach - 0.5), -1, height - 1);
     if (low_x > high_x || low_y > high_y)
         return;
     paint->low_x = low_x < paint->low_x ? low_x : paint->low_x;
@@ -65,6 +77,7 @@ static void paint_piece(struct paint *paint, struct paint_point a, struct paint_
     paint->high_x = high_x > paint->high_x ? high_x : paint->high_x;
     paint->high_y = high_y > paint->high_y ? high_y : paint->high_y;
     double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy, inverse = square > 0 ? 1 / square : 0;
+    double most = smaller(1, 2 * radius);
     for (int y = low_y; y <= high_y; y++) {
         uint8_t *row = paint->cover + (size_t)y * (size_t)width;
         for (int x = low_x; x <= high_x; x++) {
@@ -72,7 +85,7 @@ static void paint_piece(struct paint *paint, struct paint_point a, struct paint_
             double off_x = px - t * dx, off_y = py - t * dy, far = off_x * off_x + off_y * off_y;
             if (far >= reach * reach)
                 continue;
-            double covered = clamp(reach - sqrt(far), 0, fmin(1, 2 * radius));
+            double covered = clamp(reach - sqrt(far), 0, most);
             uint8_t level = (uint8_t)(covered * 255 + 0.5);
             row[x] = level > row[x] ? level : row[x];
         }
@@ -109,6 +122,13 @@ void paint_line(struct paint *paint, struct paint_point a, struct paint_point b,
     }
 }
 
+static inline bool is_clear(const uint8_t cover[8])
+{
+    uint64_t all;
+    memcpy(&all, cover, sizeof all);
+    return all == 0;
+}
+
 void paint_flush(struct paint *paint, uint32_t rgb, double opacity)
 {
     const int color[3] = { (int)(rgb >> 16 & 255), (int)(rgb >> 8 & 255), (int)(rgb & 255) };
@@ -116,6 +136,9 @@ void paint_flush(struct paint *paint, uint32_t rgb, double opacity)
     size_t width = (size_t)paint->image->width_px;
     for (int y = paint->low_y; y <= paint->high_y; y++)
         for (int x = paint->low_x; x <= paint->high_x; x++) {
+            const uint8_t *row = &paint->cover[(size_t)y * width];
+            while (x + 8 <= paint->high_x && is_clear(row + x)) /* most pixels of the box */
+                x += 8;
             uint8_t *cover = &paint->cover[(size_t)y * width + (size_t)x],
                     *pixel = &paint->image->rgba[4 * ((size_t)y * width + (size_t)x)];
             int alpha = *cover * weight >> 8;

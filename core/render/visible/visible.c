@@ -26,7 +26,8 @@ struct shape_key visible_surface_key(const struct snapshot *snapshot)
 
 enum outline_method visible_outline_method(const struct snapshot *snapshot)
 {
-    return snapshot->scene.outline.method == SCENE_OUTLINE_METHOD_TRACED ? OUTLINE_TRACED : OUTLINE_MARCHING_SQUARES;
+    return snapshot->scene.outline.method == SCENE_OUTLINE_METHOD_MARCHING_SQUARES ? OUTLINE_MARCHING_SQUARES
+                                                                                   : OUTLINE_TRACED;
 }
 
 struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t region)
@@ -171,40 +172,55 @@ bool visible_is_checked(const struct snapshot *snapshot, size_t region)
            (check->region[0] == 0 || strcmp(check->region, snapshot->plan->regions.regions[region].id) == 0);
 }
 
-/* The shape that a picture needs of a region. */
-static struct shape_want want_of(const struct snapshot *snapshot, size_t region, enum surface_detail detail)
+struct shape_key visible_outlined_key(const struct snapshot *snapshot, size_t region)
 {
-    bool is_in_space = !snapshot_is_pane(snapshot);
-    struct shape_want want = { subject_region(region),
-                               is_in_space ? visible_shape_key(snapshot, region)
-                                           : visible_checked_key(snapshot, region),
-                               SURFACE_FULL };
-    if (is_in_space && want.key.representation == REPRESENTATION_SURFACE)
-        want.detail = detail;
-    return want;
+    struct shape_key key = visible_checked_key(snapshot, region);
+    return key.representation == REPRESENTATION_FAN ? visible_surface_key(snapshot) : key;
 }
 
-size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct shape_want *wants)
+bool visible_has_outlined_surface(const struct snapshot *snapshot, size_t region)
+{
+    const struct scene_outline_style *style = &snapshot->scene.outline;
+    return style->on_slices && style->method == SCENE_OUTLINE_METHOD_SURFACE && visible_is_drawn(snapshot, region);
+}
+
+/* The shape that a picture needs of a region; false: none. */
+static bool find_want(const struct snapshot *snapshot, size_t region, enum surface_detail detail,
+                      struct shape_want *want)
+{
+    *want = (struct shape_want){ .subject = subject_region(region), .detail = SURFACE_FULL };
+    if (!snapshot_is_pane(snapshot)) {
+        want->key = visible_shape_key(snapshot, region);
+        if (want->key.representation == REPRESENTATION_SURFACE)
+            want->detail = detail;
+        return visible_is_drawn(snapshot, region);
+    }
+    bool is_checked = visible_is_checked(snapshot, region);
+    want->key = is_checked ? visible_checked_key(snapshot, region) : visible_outlined_key(snapshot, region);
+    return is_checked || visible_has_outlined_surface(snapshot, region);
+}
+
+size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, bool is_still,
+                     struct shape_want *wants)
 {
     bool is_in_space = !snapshot_is_pane(snapshot);
     size_t n = 0;
-    for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++)
-        if (is_in_space ? visible_is_drawn(snapshot, i) && may_be_seen(snapshot, i) : visible_is_checked(snapshot, i))
-            wants[n++] = want_of(snapshot, i, detail);
+    for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
+        bool may_wait = is_in_space ? may_be_seen(snapshot, i) : is_still || visible_is_checked(snapshot, i);
+        if (may_wait && find_want(snapshot, i, detail, &wants[n]))
+            n++;
+    }
     return n;
 }
 
 size_t visible_missing(const struct snapshot *snapshot, enum surface_detail detail,
                        struct visible_missing missing[VISIBLE_MAX_MISSING])
 {
-    bool is_in_space = !snapshot_is_pane(snapshot);
     size_t n = 0;
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
-        if (!(is_in_space ? visible_is_drawn(snapshot, i) : visible_is_checked(snapshot, i)))
-            continue;
-        struct shape_want want = want_of(snapshot, i, detail);
+        struct shape_want want;
         struct error why = { 0 };
-        if (!derive_shape_is_refused(snapshot->derived, &want, &why))
+        if (!find_want(snapshot, i, detail, &want) || !derive_shape_is_refused(snapshot->derived, &want, &why))
             continue;
         if (n < VISIBLE_MAX_MISSING)
             missing[n] = (struct visible_missing){ want.subject, why };

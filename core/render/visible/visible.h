@@ -17,7 +17,7 @@ bool visible_is_out_of_sight(const struct mat4 *clip_from_lps_mm, const struct b
 /* The number of translucent regions with any camera, at most. */
 size_t visible_n_translucent(const struct snapshot *snapshot);
 
-/* The scene's method of tracing outlines. */
+/* The scene's method of tracing outlines of univels; OUTLINE_TRACED if it outlines surfaces. */
 enum outline_method visible_outline_method(const struct snapshot *snapshot);
 /* The key of the shape that the scene wants a region drawn as; normalised. */
 struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t region);
@@ -26,8 +26,10 @@ struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t regio
 struct shape_key visible_surface_key(const struct snapshot *snapshot);
 
 /* Lists the shapes to build before a picture of the snapshot is drawn; shapes that the list lacks are built while it is
- * drawn. Fills wants, which has room for n_regions of the plan; returns the number. */
-size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, struct shape_want *wants);
+ * drawn. A moving slice pane waits for no surface to outline: it outlines univels until the surface is there. Fills
+ * wants, which has room for n_regions of the plan; returns the number. */
+size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, bool is_still,
+                     struct shape_want *wants);
 /* The regions that a picture, once drawn, does not show as the scene wants, because their shape was refused
  * (derive_shape_is_refused). Fills the first VISIBLE_MAX_MISSING; returns how many there are. */
 enum { VISIBLE_MAX_MISSING = 32 };
@@ -41,6 +43,11 @@ size_t visible_missing(const struct snapshot *snapshot, enum surface_detail deta
  * surface by the scene's algorithm. */
 struct shape_key visible_checked_key(const struct snapshot *snapshot, size_t region);
 bool visible_is_checked(const struct snapshot *snapshot, size_t region);
+/* The key of the shape that a slice pane outlines: the region's own if that is closed, else a surface by the scene's
+ * algorithm. */
+struct shape_key visible_outlined_key(const struct snapshot *snapshot, size_t region);
+/* True if a slice pane shows where its plane cuts the region's surface, unless the region is checked. */
+bool visible_has_outlined_surface(const struct snapshot *snapshot, size_t region);
 
 #define VISIBLE_ROUNDING 0.45
 /* How a shape is shaded and rasterised. */

@@ -17,7 +17,7 @@ export function drawingBlocks({ room, ui }, isDisabled, change) {
 
 function outlines(outline, isDisabled, change) {
   return html`<section class="block"><h3>Outlines</h3>
-    <dl><dt>Run</dt><dd>${segment('Outlines run', [['traced', 'Through univels', 'Traced along the centres of the border univels'], ['marching-squares', 'Between them', 'Marching squares, midway between inside and outside']], outline.method, isDisabled, (method, event) => change({ outline: { method } }, event))}</dd>
+    <dl><dt>Run</dt><dd>${segment('Outlines run', [['surface', 'Surface', 'Where the slice cuts what 3-D shows'], ['marching-squares', 'Between', 'Marching squares, midway between inside and outside'], ['traced', 'Through', 'Traced along the centres of the border univels']], outline.method, isDisabled, (method, event) => change({ outline: { method } }, event))}</dd>
       <dt>Width</dt><dd>${numberField('Width of outlines', outline.width_px, 'px', isDisabled, (value, event) => change({ outline: { width_px: clamp(value, 1, 8) } }, event))}</dd></dl>
     <div class="checks">${checkbox('On slices', outline.on_slices, isDisabled, (on_slices, event) => change({ outline: { on_slices } }, event), 'Outlines of the visible regions over the image')}</div></section>`;
 }

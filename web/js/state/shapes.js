@@ -21,7 +21,7 @@ export const algorithms = [
 export function shapeQuery(scene, representation) {
   switch (representation) {
     case 'surface': return { representation, algorithm: scene.surface.algorithm };
-    case 'outline': return { representation, outline: scene.outline.method };
+    case 'outline': return { representation, outline: scene.outline.method === 'marching-squares' ? 'marching-squares' : 'traced' };
     case 'points': case 'solid': return { representation, inner_boundary: String(scene.points.inner_boundary) };
     case 'nurbs': return { representation, order: String(scene.nurbs.order), sampling: scene.nurbs.sampling, bins: String(scene.nurbs.bins) };
     default: return { representation };
