@@ -43,8 +43,8 @@ export function makeApi(fetch, base = 'api/v1') {
     makeRoom: (plan) => call('POST', 'rooms', { body: { plan } }),
     room: (room) => call('GET', `rooms/${id(room)}`),
     probe: (plan, [x, y, z], signal) => call('GET', `plans/${id(plan)}/probe?x=${x}&y=${y}&z=${z}`, { signal }),
-    pick: (plan, room, view, px, py) =>
-      call('GET', `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}`),
+    pick: (plan, room, view, px, py, prefer = '') =>
+      call('GET', `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}${prefer ? `&prefer=${id(prefer)}` : ''}`),
     surface: (plan, region, query, signal) => call('GET', `plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`, { signal }),
     surfaceUrl: (plan, region, query) => `${base}/plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`,
     snapshotUrl: (room, view, format) => `${base}/rooms/${id(room)}/snapshot?view=${id(JSON.stringify(view))}&format=${format}`,

@@ -29,6 +29,12 @@ export function significant(value) {
 
 export const millimetres = (value) => `${number(value, 1)} mm`;
 
+/** "L 24.9  P 38.4  S \u221264.9 mm" */
+export const position = ([left, posterior, superior]) => `L ${number(left, 1)}  P ${number(posterior, 1)}  S ${number(superior, 1)} mm`;
+
+/** A value of an image and its unit: whole numbers as they are (139, \u22121 024 HU), others by three significant figures. */
+export const imageValue = (value, unit) => ({ text: Number.isInteger(value) ? number(value) : significant(value), unit: unitText(unit) });
+
 /** "6.6 MB"; a dash for nothing, as of a plan that cannot be read. */
 export function bytes(n) {
   if (!Number.isFinite(n) || n <= 0) return '–';

@@ -2,7 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
-import { computed, signal } from '../../lib/signals-core.js';
+import { computed, effect, signal } from '../../lib/signals-core.js';
 import { fidelity } from '../state/fidelity.js';
 import { crosshair, isLowWhite, shownImage } from '../state/plan.js';
 import { nameSome } from '../state/refusals.js';
@@ -15,6 +15,7 @@ import { icon } from './icons.js';
 import { mount, variables } from './mount.js';
 import { PaneActions, fitBox } from './pane_actions.js';
 import { followMark } from './room_chip.js';
+import { readOut } from './read_out.js';
 
 export const names = { '3d': '3-D', axial: 'Axial', sagittal: 'Sagittal', coronal: 'Coronal' };
 const resizeMs = 120;
@@ -53,6 +54,7 @@ export class Pane {
     const body = host.querySelector('.picture');
     this.painter = new Painter(host.querySelector('canvas'), { decode, schedule, onPainted });
     const pointer = new PointerReader(body, this.actions);
+    this.#stops.push(...this.#readOut(body.querySelector('.pointed')));
     body.addEventListener('keydown', (event) => {
       if (this.actions.key(event)) event.preventDefault();
     });
@@ -60,6 +62,17 @@ export class Pane {
     observer.observe(body);
     this.#measure(body);
     this.#stops.push(() => pointer.stop(), () => observer.disconnect(), () => this.painter.stop());
+  }
+
+  /** The card at the pointer: drawn apart from the pane, and gone with the picture that it is about. */
+  #readOut(host) {
+    const { pointed } = this.actions;
+    return [mount(host, () => readOut({ room: this.#room, pointed }, host)), effect(() => {
+      const header = this.#view.painted.value;
+      if (header) pointed.picture(`${header.scene_revision} ${header.clip_from_lps_mm}`);
+    }), effect(() => {
+      if (this.#ui.active.value !== this.#view.number) pointed.hide();
+    }), () => pointed.hide()];
   }
 
   stop() {
@@ -108,6 +121,7 @@ export class Pane {
           @focus=${() => { this.#ui.active.value = n; }}>
           <canvas width="16" height="16"></canvas>
           <svg class="overlay" aria-hidden="true">${this.#overlay()}</svg>
+          <div class="pointed"></div>
           ${this.#cover()}
         </div>
         ${this.#legend()}

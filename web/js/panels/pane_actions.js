@@ -1,12 +1,14 @@
 // Turns pointer and keyboard input on a pane into changes of camera, crosshair, slice and window.
 import * as cameras from '../view/camera.js';
-import { fromPicture } from '../view/vec.js';
 import { crosshair, crosshairPatch, shownImage, windowPresets } from '../state/plan.js';
+import { Pointed } from '../state/pointed.js';
 import { homeCamera } from '../view/home.js';
+import { PanePick } from './pane_pick.js';
 
 const degreesPerPixel = 0.4;
 const keyDegrees = 5;
 const keyZoom = 1.15;
+const keyPanPx = 24;
 const wheelZoom = 1.12;
 const dragZoomPerPixel = 0.006;
 
@@ -15,16 +17,19 @@ const looks = { 1: ['anterior', 'posterior'], 3: ['left', 'right'], 7: ['superio
 export class PaneActions {
   #room;
   #ui;
-  #api;
   #number;
+  #pick;
+  #isPicking = false; // the crosshair follows the pointer in 3-D; one question at a time
+  #nextPick = null;
 
   /** @param {import('../state/room.js').RoomState} room @param {import('../state/ui.js').UiState} ui */
   constructor(room, ui, api, number) {
     this.#room = room;
     this.#ui = ui;
-    this.#api = api;
     this.#number = number;
     this.box = { x: 0, y: 0, width: 1, height: 1 }; // position and size of the picture in the pane, CSS px
+    this.#pick = new PanePick(room, api, this.view, () => this.box);
+    this.pointed = new Pointed((x, y) => this.#pick.factsAt(x, y));
   }
 
   get view() {
@@ -46,24 +51,29 @@ export class PaneActions {
 
   // ---- pointer ------------------------------------------------------------------------------------------------------
 
-  start = (mode, { x, y }) => {
+  start = () => {
     this.#ui.active.value = this.#number;
-    if (mode === 'primary' && !this.is3d && this.#ui.tool.value === 'crosshair') this.#crosshairAt(x, y);
+    this.pointed.hide();
   };
 
-  move = (mode, { x, y, dx, dy, at }) => {
+  move = (mode, { x, y, dx, dy, alt, at }) => {
     const tool = mode === 'primary' ? this.#ui.tool.value : mode;
     if (tool === 'pan') this.pan(dx, dy, at);
     else if (tool === 'zoom') this.zoom(Math.exp(-dy * dragZoomPerPixel), null, at);
     else if (this.is3d) this.orbit(-dx * degreesPerPixel, dy * degreesPerPixel, at);
     else if (tool === 'window') this.dragWindow(dx, dy, at);
-    else this.#crosshairAt(x, y, at);
+    else this.#crosshairAt(x, y, at, alt);
   };
 
   end = () => {};
 
-  tap = ({ x, y, shift }) => {
-    if (this.is3d && shift) this.#pick(x, y);
+  tap = ({ x, y, shift, alt, at }) => {
+    if (shift) {
+      if (this.is3d) this.#crosshairToSeen(x, y, at);
+      return;
+    }
+    if (!this.is3d && this.#ui.tool.value === 'crosshair') this.#crosshairAt(x, y, at, alt);
+    this.#selectAt(x, y);
   };
 
   doubleTap = ({ touch, at }) => {
@@ -71,10 +81,31 @@ export class PaneActions {
     else this.#ui.maximise(this.#number);
   };
 
-  longPress = ({ x, y, at }) => {
-    if (this.is3d) this.#pick(x, y);
-    else this.#crosshairAt(x, y, at);
+  /** Probes there: crosshair and values in a card beside the finger. Opens no panel, as the picture would move away. */
+  longPress = async ({ x, y, at }) => {
+    this.#ui.active.value = this.#number;
     this.#ui.tab.value = 'probe';
+    this.pointed.hide();
+    try {
+      const hit = this.is3d ? await this.#crosshairToSeen(x, y, at) : null;
+      if (!this.is3d) this.#crosshairAt(x, y, at);
+      const facts = this.is3d ? hit && await this.#pick.factsOf(hit) : await this.#pick.factsAt(x, y);
+      if (facts) this.pointed.hold(x, y, facts);
+    } catch (error) {
+      this.#ui.notify('err', error.message);
+    }
+  };
+
+  hover = ({ x, y, shift, alt, at }) => {
+    if (!shift) return this.pointed.hover(x, y);
+    this.pointed.hide();
+    if (!this.#room.canChange.value) return;
+    if (this.is3d) this.#followPointer(x, y, at);
+    else this.#crosshairAt(x, y, at, alt);
+  };
+
+  leave = () => {
+    if (!this.pointed.shown.peek()?.isHeld) this.pointed.hide();
   };
 
   wheel = ({ x, y, steps, ctrl, at }) => {
@@ -83,6 +114,7 @@ export class PaneActions {
   };
 
   pinch = ({ x, y, dx, dy, factor, at }) => {
+    this.pointed.hide();
     const panned = this.#panned(this.camera, dx, dy);
     this.#set(this.#zoomed(panned, factor, [x, y]), at);
   };
@@ -132,34 +164,51 @@ export class PaneActions {
 
   // ---- crosshair and slices -------------------------------------------------------------------------------------------
 
-  #fraction(x, y) {
-    return [(x - this.box.x) / this.box.width, (y - this.box.y) / this.box.height];
+  /** isFree: anywhere, not only on the middles of voxels. */
+  #crosshairAt(x, y, at, isFree = false) {
+    const point = this.#pick.pointAt(x, y);
+    if (point) this.#moveCrosshair(point, at, isFree);
   }
 
-  #crosshairAt(x, y, at) {
-    const header = this.view.painted.value;
-    const scene = this.#room.scene.value;
-    if (!header || !scene) return;
-    this.#moveCrosshair(fromPicture(header.clip_from_lps_mm, this.#fraction(x, y), crosshair(scene)), at);
-  }
-
-  #moveCrosshair(point, at) {
+  #moveCrosshair(point, at, isFree = false) {
     const { scene, plan } = this.#room;
     const before = crosshair(scene.value);
-    const patch = crosshairPatch(plan.value, shownImage(plan.value, scene.value), point);
+    const patch = crosshairPatch(plan.value, shownImage(plan.value, scene.value), point, { isFree });
     const { sagittal, coronal, axial } = patch.image.slices;
     if (sagittal.position_mm === before[0] && coronal.position_mm === before[1] && axial.position_mm === before[2]) return;
     this.#room.patchScene(patch, { view: this.#number, at });
   }
 
-  async #pick(x, y) {
-    const header = this.view.painted.value;
-    const { size_px: size } = this.view.document.value;
-    if (!header || !size) return;
-    const [u, v] = this.#fraction(x, y);
+  /** Moves the crosshair to what is seen in 3-D, to the selected region where that can be seen. Returns the hit. */
+  async #crosshairToSeen(x, y, at) {
     try {
-      const { hits } = await this.#api.pick(this.#room.planId.value, this.#room.id, this.view.document.value, u * size[0], v * size[1]);
-      if (hits.length) this.#moveCrosshair(hits[0].point_lps_mm);
+      const hit = await this.#pick.seenAt(x, y, this.#ui.region.value);
+      if (hit) this.#moveCrosshair(hit.point_lps_mm, at);
+      return hit;
+    } catch (error) {
+      this.#ui.notify('err', error.message);
+      return null;
+    }
+  }
+
+  /** The same for a pointer that moves: one question at a time, and then the newest place. */
+  async #followPointer(x, y, at) {
+    this.#nextPick = [x, y, at];
+    if (this.#isPicking) return;
+    this.#isPicking = true;
+    while (this.#nextPick) {
+      const place = this.#nextPick;
+      this.#nextPick = null;
+      await this.#crosshairToSeen(...place);
+    }
+    this.#isPicking = false;
+  }
+
+  /** Selects the region that is seen at a place; the crosshair stays. */
+  async #selectAt(x, y) {
+    try {
+      const hit = await this.#pick.seenAt(x, y);
+      if (hit) this.#ui.select(hit.region === null ? 'image' : 'region', hit.region ?? shownImage(this.#room.plan.value, this.#room.scene.value)?.id, this.is3d);
     } catch (error) {
       this.#ui.notify('err', error.message);
     }
@@ -200,12 +249,18 @@ export class PaneActions {
 
   /** @param {KeyboardEvent} event @returns {boolean} whether the key was used */
   key(event) {
-    if (event.altKey || event.metaKey || event.ctrlKey) return false;
+    if (event.altKey || event.metaKey) return false;
     const at = event.timeStamp;
-    const act = this.#keyAction(event, at);
+    const act = event.ctrlKey ? this.#panKey(event.key, at) : this.#keyAction(event, at);
     if (!act || !this.#room.canChange.value) return false;
+    this.pointed.hide();
     act();
     return true;
+  }
+
+  #panKey(key, at) {
+    const [dx, dy] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[key] ?? [];
+    return dx === undefined ? null : () => this.pan(dx * keyPanPx, dy * keyPanPx, at);
   }
 
   #keyAction({ key, code, shiftKey }, at) {

@@ -41,6 +41,12 @@ export class UiState {
     this.toasts.value = this.toasts.value.filter((toast) => toast.id !== id);
   }
 
+  /** Selects what was clicked in a picture. Opens no panel: the picture would move away under the pointer. isShown: turns to its tab. */
+  select(kind, id, isShown = true) {
+    if (kind === 'region') this.region.value = id;
+    if (isShown) this.tab.value = 'probe';
+  }
+
   toggle(name) {
     this.popover.value = this.popover.value === name ? '' : name;
   }

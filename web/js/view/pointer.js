@@ -1,17 +1,21 @@
-// Reads mouse, pen and touch on a picture and reports drags, taps, long presses, wheel steps and pinches.
+// Reads mouse, pen and touch on a picture and reports drags, taps, long presses, wheel steps, pinches and the pointer at rest.
 
 const slopPx = 4; // a press that moves less is a tap
-const doubleMs = 350;
+// A tap is reported once it is known not to be the first of two: what a double tap does must not move anything before.
+const doubleMs = { mouse: 250, pen: 300, touch: 300 };
+const doublePx = 24;
 const longMs = 500;
 
 /**
  * @typedef {object} PointerHandlers each gets CSS pixels relative to the element, and at: time of the input event
  * @property {(mode: 'primary'|'pan'|'zoom', at: {x: number, y: number}) => void} start
- * @property {(mode: string, move: {x: number, y: number, dx: number, dy: number, at: number}) => void} move
+ * @property {(mode: string, move: {x: number, y: number, dx: number, dy: number, alt: boolean, at: number}) => void} move
  * @property {(mode: string) => void} end
- * @property {(tap: {x: number, y: number, shift: boolean, at: number}) => void} tap
+ * @property {(tap: {x: number, y: number, shift: boolean, alt: boolean, at: number}) => void} tap
  * @property {(tap: {x: number, y: number, touch: boolean, at: number}) => void} doubleTap
  * @property {(press: {x: number, y: number, at: number}) => void} longPress
+ * @property {(hover: {x: number, y: number, shift: boolean, alt: boolean, at: number}) => void} hover a mouse or pen that moves with nothing pressed
+ * @property {() => void} leave
  * @property {(wheel: {x: number, y: number, steps: number, ctrl: boolean, at: number}) => void} wheel
  * @property {(pinch: {x: number, y: number, dx: number, dy: number, factor: number, at: number}) => void} pinch
  */
@@ -23,7 +27,9 @@ export class PointerReader {
   #start = null;
   #isDrag = false;
   #isStartDue = false; // the start of a touch drag waits, as a second finger makes it a pinch
-  #lastTap = null;
+  #waiting = null; // a tap that may be the first of two
+  #isSecond = false; // the press may be the second of two
+  #tapTimer = 0;
   #longTimer = 0;
   #wheelRest = 0;
   #abort = new AbortController();
@@ -37,12 +43,14 @@ export class PointerReader {
     on('pointermove', (event) => this.#move(event));
     on('pointerup', (event) => this.#up(event));
     on('pointercancel', (event) => this.#up(event, true));
+    on('pointerleave', () => this.#fingers.size || this.#handlers.leave());
     on('wheel', (event) => this.#wheel(event), { passive: false });
     on('contextmenu', (event) => event.preventDefault());
   }
 
   stop() {
     clearTimeout(this.#longTimer);
+    clearTimeout(this.#tapTimer);
     this.#abort.abort();
   }
 
@@ -58,14 +66,18 @@ export class PointerReader {
     this.#element.setPointerCapture(event.pointerId);
     this.#element.focus({ preventScroll: true });
     clearTimeout(this.#longTimer);
+    clearTimeout(this.#tapTimer);
     if (this.#fingers.size > 1) {
+      this.#waiting = null;
       this.#isDrag = true;
       this.#isStartDue = false;
       this.#mode = 'pinch';
       return;
     }
     this.#isDrag = false;
-    this.#start = { ...point, shift: event.shiftKey };
+    this.#isSecond = this.#waiting !== null && Math.hypot(point.x - this.#waiting.x, point.y - this.#waiting.y) < doublePx;
+    if (!this.#isSecond) this.#settle();
+    this.#start = { ...point, shift: event.shiftKey, at: event.timeStamp };
     const isRight = event.button === 2 || (event.button === 0 && event.ctrlKey);
     this.#mode = isRight ? 'zoom' : event.button === 1 || event.shiftKey ? 'pan' : 'primary';
     this.#isStartDue = true;
@@ -81,6 +93,7 @@ export class PointerReader {
 
   #long(at) {
     if (this.#isDrag || this.#fingers.size !== 1) return;
+    this.#settle();
     this.#isDrag = true; // the release is not a tap
     this.#isStartDue = false;
     this.#mode = 'held';
@@ -89,9 +102,12 @@ export class PointerReader {
 
   #move(event) {
     const before = this.#fingers.get(event.pointerId);
-    if (!before) return;
-    const point = this.#point(event);
     const at = event.timeStamp;
+    if (!before) {
+      if (event.pointerType !== 'touch' && !event.buttons) this.#handlers.hover({ ...this.#point(event), shift: event.shiftKey, alt: event.altKey, at });
+      return;
+    }
+    const point = this.#point(event);
     if (this.#mode === 'pinch') {
       const other = [...this.#fingers].find(([id]) => id !== event.pointerId)?.[1];
       this.#fingers.set(event.pointerId, point);
@@ -101,9 +117,10 @@ export class PointerReader {
     if (!this.#isDrag && Math.hypot(point.x - this.#start.x, point.y - this.#start.y) < slopPx) return;
     this.#isDrag = true;
     clearTimeout(this.#longTimer);
+    this.#settle();
     if (this.#mode !== 'held') this.#begin(this.#start);
     this.#fingers.set(event.pointerId, point);
-    if (this.#mode !== 'held') this.#handlers.move(this.#mode, { ...point, dx: point.x - before.x, dy: point.y - before.y, at });
+    if (this.#mode !== 'held') this.#handlers.move(this.#mode, { ...point, dx: point.x - before.x, dy: point.y - before.y, alt: event.altKey, at });
   }
 
   #pinch(before, point, other, at) {
@@ -127,15 +144,26 @@ export class PointerReader {
     this.#mode = null;
     if (mode !== 'held' && mode !== 'pinch') this.#handlers.end(mode);
     if (this.#isDrag || isCancelled || event.button > 0) return;
-    const last = this.#lastTap;
-    if (last && at - last.at < doubleMs && Math.hypot(point.x - last.x, point.y - last.y) < 24) {
-      this.#lastTap = null;
-      this.#handlers.doubleTap({ ...point, touch: event.pointerType === 'touch', at });
+    this.#begin(point);
+    const isTouch = event.pointerType === 'touch';
+    if (this.#isSecond) {
+      this.#waiting = null;
+      this.#handlers.doubleTap({ ...point, touch: isTouch, at });
       return;
     }
-    this.#begin(point);
-    this.#lastTap = { ...point, at };
-    this.#handlers.tap({ ...point, shift: this.#start.shift, at });
+    this.#waiting = { ...point, shift: this.#start.shift, alt: event.altKey };
+    const waitMs = doubleMs[event.pointerType] ?? doubleMs.mouse;
+    if (at - this.#start.at > waitMs) this.#settle(); // nobody begins a double click that slowly
+    else this.#tapTimer = setTimeout(() => this.#settle(), waitMs);
+  }
+
+  /** Reports the tap that waited for a second one. */
+  #settle() {
+    clearTimeout(this.#tapTimer);
+    const tap = this.#waiting;
+    this.#waiting = null;
+    this.#isSecond = false;
+    if (tap) this.#handlers.tap({ ...tap, at: performance.now() }); // the wait is no delay of the picture
   }
 
   #wheel(event) {

@@ -1,0 +1,67 @@
+// What lies under a place in a pane's picture: asks the server for the hit that is seen, or for the values at the point.
+import { crosshair } from '../state/plan.js';
+import { fromPicture } from '../view/vec.js';
+
+export class PanePick {
+  #room;
+  #api;
+  #view;
+  #box;
+  #newest = 0;
+
+  /** @param {import('../state/view.js').ViewState} view @param {() => {x: number, y: number, width: number, height: number}} box of the picture in the pane, CSS px */
+  constructor(room, api, view, box) {
+    this.#room = room;
+    this.#api = api;
+    this.#view = view;
+    this.#box = box;
+  }
+
+  #fraction(x, y) {
+    const box = this.#box();
+    return [(x - box.x) / box.width, (y - box.y) / box.height];
+  }
+
+  /** In a slice pane: the patient point at a place, on the slice shown; null before the first picture. */
+  pointAt(x, y) {
+    const header = this.#view.painted.value;
+    const scene = this.#room.scene.value;
+    return header && scene ? fromPicture(header.clip_from_lps_mm, this.#fraction(x, y), crosshair(scene)) : null;
+  }
+
+  /** The hit that a person sees at a place; null: none, or a newer question has been asked. */
+  async seenAt(x, y, prefer = '') {
+    const number = ++this.#newest;
+    const hit = await this.#hit(x, y, prefer);
+    return number === this.#newest ? hit : null;
+  }
+
+  async #hit(x, y, prefer = '') {
+    const { size_px: size } = this.#view.document.value;
+    const [u, v] = this.#fraction(x, y);
+    if (!this.#view.painted.value || !size || u < 0 || v < 0 || u >= 1 || v >= 1) return null;
+    const { hits } = await this.#api.pick(this.#room.planId.value, this.#room.id, this.#view.document.value, u * size[0], v * size[1], prefer);
+    return hits.find(({ seen }) => seen) ?? null;
+  }
+
+  /** Regions and image values at a place, for the read-out; null where there is nothing. */
+  async factsAt(x, y) {
+    const [u, v] = this.#fraction(x, y);
+    if (u < 0 || v < 0 || u >= 1 || v >= 1) return null;
+    if (this.#view.kind !== '3d') {
+      const point = this.pointAt(x, y);
+      return point && this.#api.probe(this.#room.planId.value, point);
+    }
+    const hit = await this.#hit(x, y);
+    return hit && this.factsOf(hit);
+  }
+
+  /** Of a hit in 3-D: the region seen and those it lies in; of a slice, the values there. */
+  factsOf({ region, point_lps_mm }) {
+    if (region === null) return this.#api.probe(this.#room.planId.value, point_lps_mm);
+    const regions = [];
+    const parentOf = (id) => this.#room.plan.value?.regions.find((other) => other.id === id)?.parent;
+    for (let id = region; id && !regions.includes(id); id = parentOf(id)) regions.push(id);
+    return { regions, images: [], point_lps_mm, onSurface: true };
+  }
+}

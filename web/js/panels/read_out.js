@@ -1,0 +1,54 @@
+// The card at the pointer: region, image value and position, beside the place that the mouse rests on or a finger held.
+import { html, nothing, svg } from '../../lib/lit-html.js';
+import { shownImage } from '../state/plan.js';
+import { placeBeside } from '../view/place.js';
+import { imageValue, position, volume } from './format.js';
+import { variables } from './mount.js';
+
+const width = 196;
+const mouseGap = 16;
+const touchGap = 40; // a finger covers what is nearer
+const rings = [24, 31];
+const heights = { padding: 18, name: 18, line: 16, large: 26 };
+
+/** @param {object} world {room, pointed} @param {HTMLElement} host inside the picture */
+export function readOut({ room, pointed }, host) {
+  const shown = pointed.shown.value;
+  const plan = room.plan.peek();
+  const scene = room.scene.peek();
+  if (!shown || !plan || !scene) return nothing;
+  const { name, color, lines, value } = words(shown.facts, plan, scene);
+  const height = heights.padding + heights.name + lines.length * heights.line + (value ? (shown.isHeld ? heights.large : heights.line) : 0);
+  const picture = host.parentElement.getBoundingClientRect();
+  const { x, y } = placeBeside(shown, [width, height], [picture.width, picture.height], takenIn(host.parentElement, picture), shown.isHeld ? touchGap : mouseGap);
+  return html`${shown.isHeld ? html`<svg class="rings">${[0, 1].map((layer) => rings.map((r) => svg`<circle class=${layer ? 'ink' : 'under'} cx=${shown.x} cy=${shown.y} r=${r} />`))}</svg>` : nothing}
+    <div class="read-out" role=${shown.isHeld ? 'status' : nothing} aria-hidden=${shown.isHeld ? nothing : 'true'} ?data-held=${shown.isHeld}
+      ${variables({ '--x': `${x}px`, '--y': `${y}px`, '--width': `${width}px`, '--height': `${height}px` })}>
+      <p class="who">${color ? html`<svg class="swatch" viewBox="0 0 12 12" width="12" height="12" aria-hidden="true"><rect width="12" height="12" rx="2.5" fill=${color}/></svg>` : nothing}<b>${name}</b></p>
+      ${value ? html`<p class="value"><span>${value.label}</span> <b>${value.text}</b> ${value.unit}</p>` : nothing}
+      ${lines.map((line) => html`<p>${line}</p>`)}</div>`;
+}
+
+/** The words of the card: the innermost region first. */
+export function words({ regions: ids, images, point_lps_mm: point, onSurface }, plan, scene) {
+  const regions = ids.map((id) => plan.regions.find((region) => region.id === id)).filter(Boolean);
+  const [first, ...outer] = regions;
+  const image = shownImage(plan, scene);
+  const found = image && images?.find(({ id }) => id === image.id);
+  return {
+    name: first?.name ?? (plan.regions.length ? 'Outside every region' : image?.modality ?? ''),
+    color: first && (scene.regions[first.id]?.color ?? first.color),
+    value: found && found.value !== null ? { label: image.modality, ...imageValue(found.value, image.unit) } : null,
+    lines: [outer.length ? `in ${outer.map((region) => region.name).join(', ')}` : '', first && scene.regions[first.id]?.visible === false ? 'hidden in this scene' : '',
+      onSurface && first?.voxels ? volume(first.volume_cm3) : '', position(point)].filter(Boolean),
+  };
+}
+
+/** What the card must not cover: letters, scale bar, axes figure, legend. */
+function takenIn(picture, { left, top }) {
+  const marks = [...picture.querySelectorAll('.overlay text, .overlay .figure, .overlay .scale'), ...picture.parentElement.querySelectorAll('.legend')];
+  return marks.map((mark) => {
+    const box = mark.getBoundingClientRect();
+    return { x: box.left - left, y: box.top - top, width: box.width, height: box.height };
+  });
+}

@@ -1,0 +1,82 @@
+// What the pointer rests on in one pane: asks for the facts there, one question at a time, and keeps the newest answer.
+import { signal } from '../../lib/signals-core.js';
+
+export const restMs = 150;
+const slackPx = 3;
+
+const browserClock = { setTimeout: (callback, ms) => setTimeout(callback, ms), clearTimeout: (timer) => clearTimeout(timer) };
+
+export class Pointed {
+  #ask;
+  #clock;
+  #place = null; // where the pointer is; null: not over the picture, or pressed
+  #timer = 0;
+  #isAsking = false;
+  #isDue = false;
+  #picture = ''; // names the picture that the facts are of
+
+  /**
+   * @param {(x: number, y: number) => Promise<object|null>} ask the facts at a place, CSS px in the picture; null: none
+   * @param {{setTimeout: Function, clearTimeout: Function}} clock
+   */
+  constructor(ask, clock = browserClock) {
+    this.#ask = ask;
+    this.#clock = clock;
+    this.shown = signal(null); // {x, y, isHeld, facts}
+  }
+
+  /** The pointer has moved, with nothing pressed. */
+  hover(x, y) {
+    const shown = this.shown.peek();
+    const isHere = shown && Math.hypot(x - shown.x, y - shown.y) <= slackPx;
+    if (isHere) return;
+    this.hide();
+    this.#place = { x, y };
+    this.#wait();
+  }
+
+  /** Shows facts at a place until hide() is called. */
+  hold(x, y, facts) {
+    this.hide();
+    this.shown.value = { x, y, isHeld: true, facts };
+  }
+
+  hide() {
+    this.#clock.clearTimeout(this.#timer);
+    this.#place = null;
+    this.#isDue = false;
+    if (this.shown.peek()) this.shown.value = null;
+  }
+
+  /** Another picture may be on the screen: facts of an older one are taken away, and asked again once it rests. */
+  picture(name) {
+    if (name === this.#picture) return;
+    this.#picture = name;
+    if (!this.#place) return;
+    this.shown.value = null;
+    this.#wait();
+  }
+
+  #wait() {
+    this.#clock.clearTimeout(this.#timer);
+    this.#timer = this.#clock.setTimeout(() => this.#rest(), restMs);
+  }
+
+  async #rest() {
+    if (this.#isAsking) {
+      this.#isDue = true;
+      return;
+    }
+    const place = this.#place;
+    const picture = this.#picture;
+    this.#isAsking = true;
+    const facts = await this.#ask(place.x, place.y).catch(() => null); // the pointer is no command: nobody waits for this
+    this.#isAsking = false;
+    if (this.#isDue) {
+      this.#isDue = false;
+      if (this.#place) this.#rest();
+    } else if (place === this.#place && picture === this.#picture && facts) {
+      this.shown.value = { ...place, isHeld: false, facts };
+    }
+  }
+}

@@ -1,0 +1,32 @@
+// Where a card goes beside a point so that it covers no letter and stays inside its pane. Pure; CSS px.
+
+/** @typedef {{x: number, y: number, width: number, height: number}} Box */
+
+const marginPx = 6;
+
+/** The area that two boxes share. */
+export const overlap = (a, b) => Math.max(0, Math.min(a.x + a.width, b.x + b.width) - Math.max(a.x, b.x)) * Math.max(0, Math.min(a.y + a.height, b.y + b.height) - Math.max(a.y, b.y));
+
+/**
+ * @param {{x: number, y: number}} point @param {[number, number]} size of the card @param {[number, number]} pane
+ * @param {Box[]} taken what must not be covered @param {number} gap between point and card
+ * @returns {{x: number, y: number}} the card's corner: the nearest place that is free, else the one that covers least
+ */
+export function placeBeside(point, [width, height], pane, taken, gap) {
+  const inside = (value, size, side) => Math.max(marginPx, Math.min(value, side - size - marginPx));
+  let best = null;
+  for (const away of [gap, gap * 2, gap * 3]) {
+    const columns = [point.x + away, point.x - away - width];
+    const rows = [point.y + away, point.y - height / 2, point.y - away - height];
+    const places = [[columns[0], rows[0]], [columns[0], rows[1]], [columns[0], rows[2]], [columns[1], rows[0]], [columns[1], rows[1]], [columns[1], rows[2]],
+      [point.x - width / 2, rows[0]], [point.x - width / 2, rows[2]]];
+    for (const [left, top] of places) {
+      const card = { x: inside(left, width, pane[0]), y: inside(top, height, pane[1]), width, height };
+      const around = { x: point.x - gap / 2, y: point.y - gap / 2, width: gap, height: gap }; // the point itself stays to be seen
+      const covered = overlap(card, around) * 4 + taken.reduce((sum, box) => sum + overlap(card, box), 0);
+      if (covered === 0) return { x: card.x, y: card.y };
+      if (!best || covered < best.covered) best = { x: card.x, y: card.y, covered };
+    }
+  }
+  return { x: best.x, y: best.y };
+}
