@@ -1,5 +1,6 @@
 /* A room with two browsers: each line of the input is a message or an event. Invariants: at most two frames
- * unacknowledged, sequence numbers count up, the scene's revision never decreases, no timer is set in the past. */
+ * unacknowledged, sequence numbers count up, the scene's revision never decreases, no timer is set in the past, at most
+ * one member presents, and who is alone does. */
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/room/room.h"
@@ -146,6 +147,24 @@ static void play_line(struct room *room, const char *line, size_t n, int64_t *no
     }
 }
 
+static void check_presenter(const struct room *room)
+{
+    cJSON *members = room_members(room);
+    const cJSON *member;
+    int n_presenting = 0;
+    bool has_connected_presenter = false;
+    cJSON_ArrayForEach(member, members)
+    {
+        bool presents = json_flag(member, "presenting", false);
+        n_presenting += presents;
+        has_connected_presenter |= presents && json_flag(member, "connected", false);
+        REQUIRE(!presents || !json_flag(member, "following", false));
+    }
+    REQUIRE(n_presenting <= 1);
+    REQUIRE(cJSON_GetArraySize(members) != 1 || room_n_connected(room) != 1 || has_connected_presenter);
+    cJSON_Delete(members);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
 {
     const struct room_callbacks callbacks = { render,     forget,           scene_changed, send_text,
@@ -163,6 +182,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
             play_line(room, (const char *)data + at, end - at, &now_us);
         int64_t again_us = room_tick(room, now_us);
         REQUIRE(again_us > now_us);
+        check_presenter(room);
     }
     room_destroy(room);
     return 0;

@@ -7,138 +7,21 @@
 #include "server/room/room_state.h"
 #include "server/room/stream.h"
 #include "server/wire/json_merge.h"
+#include "tests/unit/meeting_model.h"
 #include "tests/unit/room_fake.h"
 
-enum { N_PEOPLE = 5, N_PANES = 4, N_SEEDS = 150, N_STEPS = 120, N_SLICES = 3 };
-static const double kept_us = 30e6, known_us = 300e6; /* a presenter, a member without a connection */
+enum { N_SEEDS = 150, N_STEPS = 120 };
 static const char *const kind_words[] = { "3d", "axial", "coronal", "sagittal" };
 static const char *const slice_words[N_SLICES] = { "axial", "coronal", "sagittal" };
-
-/* ---- the model -------------------------------------------------------------------------------------------------- */
-
-struct shown { /* NAN: not set */
-    int size_px[2];
-    bool is_parallel;
-    double target_x_mm, height_mm, slices_mm[N_SLICES], opacity; /* slices and opacity: of the override */
-};
-
-struct pane {
-    bool is_open, is_following;
-    int kind, own_px[2];
-    struct shown own; /* while it does not follow */
-};
 
 static struct person {
     struct fake_page page;
     char id[64], secret[64];
-    bool is_member, is_connected;
-    double away_us;
-    struct pane panes[N_PANES];
     cJSON *heard[N_PANES]; /* document of the last view message */
 } people[N_PEOPLE];
 
-static struct shared {
-    bool exists;
-    struct shown shown;
-} shared[N_KINDS];
-
 static struct fake_room fake;
-static int presenter; /* -1: nobody */
-static double scene_slices_mm[N_SLICES], scene_opacity;
-
-static struct shown plain(const int size_px[2])
-{
-    return (struct shown){ { size_px[0], size_px[1] }, false, NAN, NAN, { NAN, NAN, NAN }, NAN };
-}
-
-static struct shown *shown_in(struct pane *pane)
-{
-    return pane->is_following ? &shared[pane->kind].shown : &pane->own;
-}
-
-static int smaller(const int size_px[2])
-{
-    return size_px[0] < size_px[1] ? size_px[0] : size_px[1];
-}
-
-/* What a person who leaves goes on from. */
-static struct shown copy_for(const struct pane *pane)
-{
-    struct shown own = shared[pane->kind].shown;
-    if (pane->kind != SCENE_KIND_3D || own.is_parallel) /* as many pixels to a millimetre as before */
-        own.height_mm = fmin(fmax(own.height_mm * smaller(pane->own_px) / smaller(own.size_px), 0.1), 10000);
-    if (isnan(shared[pane->kind].shown.height_mm))
-        own.height_mm = NAN;
-    memcpy(own.size_px, pane->own_px, sizeof own.size_px);
-    for (int i = 0; i < N_SLICES; i++)
-        own.slices_mm[i] = isnan(own.slices_mm[i]) ? scene_slices_mm[i] : own.slices_mm[i];
-    return own;
-}
-
-static void join(int who, struct pane *pane, struct shown wanted)
-{
-    struct shared *to = &shared[pane->kind];
-    if (!to->exists)
-        *to = (struct shared){ true, who == presenter ? wanted : plain(wanted.size_px) };
-    if (who == presenter)
-        memcpy(to->shown.size_px, pane->own_px, sizeof pane->own_px);
-    pane->is_following = true;
-}
-
-static void share(int who)
-{
-    struct person *person = &people[who];
-    bool is_taken[N_KINDS] = { false };
-    for (int p = 0; p < N_PANES; p++) {
-        struct pane *pane = &person->panes[p];
-        if (!pane->is_open || pane->is_following)
-            continue;
-        for (int i = 0; i < N_SLICES; i++)
-            if (!isnan(pane->own.slices_mm[i]))
-                scene_slices_mm[i] = pane->own.slices_mm[i];
-        if (!isnan(pane->own.opacity))
-            scene_opacity = pane->own.opacity;
-    }
-    for (int p = 0; p < N_PANES; p++) {
-        struct pane *pane = &person->panes[p];
-        if (!pane->is_open)
-            continue;
-        struct shown to = pane->is_following ? shared[pane->kind].shown : pane->own;
-        if (!pane->is_following)
-            to.slices_mm[0] = to.slices_mm[1] = to.slices_mm[2] = to.opacity = NAN; /* in the scene now */
-        memcpy(to.size_px, pane->own_px, sizeof to.size_px);
-        if (!is_taken[pane->kind])
-            shared[pane->kind] = (struct shared){ true, to };
-        is_taken[pane->kind] = true;
-        pane->is_following = true;
-    }
-}
-
-static void follow_all(int who)
-{
-    for (int p = 0; p < N_PANES; p++)
-        if (people[who].panes[p].is_open)
-            join(who, &people[who].panes[p], *shown_in(&people[who].panes[p]));
-}
-
-static void settle_presenter(void)
-{
-    int only = -1, n = 0;
-    if (presenter >= 0 && !people[presenter].is_connected && (double)fake.now_us - people[presenter].away_us >= kept_us)
-        presenter = -1;
-    for (int who = 0; who < N_PEOPLE; who++)
-        if (people[who].is_connected) {
-            only = who;
-            n++;
-        }
-    if (presenter < 0 && n == 1) {
-        presenter = only;
-        share(only);
-    }
-    for (int who = 0; who < N_PEOPLE; who++)
-        if (people[who].is_member && !people[who].is_connected && (double)fake.now_us - people[who].away_us >= known_us)
-            people[who].is_member = false;
-}
+static struct meeting meeting;
 
 /* ---- comparing -------------------------------------------------------------------------------------------------- */
 
@@ -157,7 +40,7 @@ static void differs(const char *format, ...)
 static struct member *member_of(int who)
 {
     for (int m = 0; m < fake.room->n_members; m++)
-        if (people[who].is_member && strcmp(fake.room->members[m]->id, people[who].id) == 0)
+        if (meeting.seats[who].is_member && strcmp(fake.room->members[m]->id, people[who].id) == 0)
             return fake.room->members[m];
     return NULL;
 }
@@ -188,13 +71,13 @@ static double or_scene(double override, double scene)
 
 static void check_pane(int who, int p)
 {
-    struct pane *pane = &people[who].panes[p];
+    struct pane *pane = &meeting.seats[who].panes[p];
     const struct member_view *view = &member_of(who)->views[p];
     if (pane->is_open != (view->stream != NULL))
         differs("%d's pane %d is %s", who, p, pane->is_open ? "closed" : "open");
     if (!pane->is_open)
         return;
-    const struct shown *expected = shown_in(pane);
+    const struct shown *expected = shown_in(&meeting, pane);
     const cJSON *document = view->stream->view, *camera = cJSON_GetObjectItem(document, "camera");
     const cJSON *target = cJSON_GetObjectItem(camera, "target_mm"), *size = cJSON_GetObjectItem(document, "size_px");
     const cJSON *scene = scene_of(view->stream);
@@ -215,20 +98,12 @@ static void check_pane(int who, int p)
         differs("%d's pane %d is %.12g mm high, not %.12g", who, p, json_number(camera, "height_mm", NAN),
                 expected->height_mm);
     for (int i = 0; i < N_SLICES; i++)
-        if (!is_same(slice_mm(scene, i), or_scene(expected->slices_mm[i], scene_slices_mm[i])))
+        if (!is_same(slice_mm(scene, i), or_scene(expected->slices_mm[i], meeting.slices_mm[i])))
             differs("%d's pane %d has the %s slice at %g, not at %g", who, p, slice_words[i], slice_mm(scene, i),
-                    or_scene(expected->slices_mm[i], scene_slices_mm[i]));
+                    or_scene(expected->slices_mm[i], meeting.slices_mm[i]));
     double opacity = json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(scene, "regions"), "scalp"), "opacity", NAN);
-    if (!is_same(opacity, or_scene(expected->opacity, scene_opacity)))
-        differs("%d's pane %d has opacity %g, not %g", who, p, opacity, or_scene(expected->opacity, scene_opacity));
-}
-
-static bool follows(int who)
-{
-    for (int p = 0; p < N_PANES && who != presenter; p++)
-        if (people[who].panes[p].is_following)
-            return true;
-    return false;
+    if (!is_same(opacity, or_scene(expected->opacity, meeting.opacity)))
+        differs("%d's pane %d has opacity %g, not %g", who, p, opacity, or_scene(expected->opacity, meeting.opacity));
 }
 
 /* The last list of members that this page was sent is true now. */
@@ -241,11 +116,11 @@ static void check_members_heard(int listener)
     {
         n_presenting += json_flag(item, "presenting", false);
         for (int who = 0; who < N_PEOPLE; who++)
-            if (people[who].is_member && strcmp(json_text(item, "id"), people[who].id) == 0) {
+            if (meeting.seats[who].is_member && strcmp(json_text(item, "id"), people[who].id) == 0) {
                 n++;
-                if (json_flag(item, "presenting", false) != (who == presenter) ||
-                    json_flag(item, "following", false) != follows(who) ||
-                    json_flag(item, "connected", false) != people[who].is_connected)
+                if (json_flag(item, "presenting", false) != (who == meeting.presenter) ||
+                    json_flag(item, "following", false) != meeting_follows(&meeting, who) ||
+                    json_flag(item, "connected", false) != meeting.seats[who].is_connected)
                     differs("%d is told of %d: presenting %d, following %d, connected %d", listener, who,
                             json_flag(item, "presenting", false), json_flag(item, "following", false),
                             json_flag(item, "connected", false));
@@ -259,18 +134,19 @@ static void check_members_heard(int listener)
 static void check(void)
 {
     for (int who = 0; who < N_PEOPLE; who++) {
-        const struct person *person = &people[who];
+        const struct seat *seat = &meeting.seats[who];
         const struct member *member = member_of(who);
-        if (person->is_member != (member != NULL) || (member && person->is_connected != (member->connection != NULL)))
+        if (seat->is_member != (member != NULL) || (member && seat->is_connected != (member->connection != NULL)))
             differs("%d is %s", who, member ? "a member" : "no member");
-        if (member && (fake.room->presenter == member) != (who == presenter))
-            differs("%d %s", who, who == presenter ? "does not present" : "presents");
-        for (int p = 0; p < N_PANES && person->is_connected; p++)
+        if (member && (fake.room->presenter == member) != (who == meeting.presenter))
+            differs("%d %s", who, who == meeting.presenter ? "does not present" : "presents");
+        for (int p = 0; p < N_PANES && seat->is_connected; p++)
             check_pane(who, p);
-        if (person->is_connected)
+        if (seat->is_connected)
             check_members_heard(who);
     }
-    if (presenter >= 0 && !people[presenter].is_connected && (double)fake.now_us - people[presenter].away_us >= kept_us)
+    if (meeting.presenter >= 0 && !meeting.seats[meeting.presenter].is_connected &&
+        (double)fake.now_us - meeting.seats[meeting.presenter].away_us >= ROOM_PRESENTER_KEPT_S * 1e6)
         differs("the presenter is away for long");
 }
 
@@ -280,7 +156,7 @@ static char *pictures[N_PEOPLE][N_PANES]; /* all that a request says; NULL: clos
 
 static char *picture_of(int who, int p)
 {
-    struct member *member = people[who].is_connected ? member_of(who) : NULL;
+    struct member *member = meeting.seats[who].is_connected ? member_of(who) : NULL;
     if (!member || !member->views[p].stream)
         return NULL;
     char *view = json_write(member->views[p].stream->view), *scene = json_write(scene_of(member->views[p].stream));
@@ -308,8 +184,8 @@ static void check_nobody_was_moved(int actor, int before)
     for (int who = 0; who < N_PEOPLE; who++)
         for (int p = 0; p < N_PANES; p++) {
             char *now = picture_of(who, p);
-            bool may_move = who == actor || (actor >= 0 && actor == presenter) ||
-                            (who == presenter && before != presenter); /* alone in the room */
+            bool may_move = who == actor || (actor >= 0 && actor == meeting.presenter) ||
+                            (who == meeting.presenter && before != meeting.presenter); /* alone in the room */
             if (now && pictures[who][p] && !may_move && strcmp(now, pictures[who][p]) != 0)
                 differs("%d's pane %d moved, who presented: %d\nfrom %s\nto   %s", who, p, before, pictures[who][p],
                         now);
@@ -327,11 +203,6 @@ static int any(int n) /* 0 to n - 1; xorshift64 */
     random_state ^= random_state >> 7;
     random_state ^= random_state << 17;
     return (int)(random_state % (uint64_t)n);
-}
-
-static void tick(void)
-{
-    fake.again_us = room_tick(fake.room, fake.now_us);
 }
 
 /* Keeps the last view messages, acknowledges the frames, and empties the page but for the last list of members. */
@@ -364,7 +235,6 @@ static void forget_page(struct person *person)
     for (int p = 0; p < N_PANES; p++) {
         cJSON_Delete(person->heard[p]);
         person->heard[p] = NULL;
-        person->panes[p] = (struct pane){ 0 };
     }
     fake_page_end(&person->page);
 }
@@ -414,7 +284,7 @@ static void check_drawn(void)
     for (int who = 0; who < N_PEOPLE; who++)
         read_page(&people[who]);
     for (int who = 0; who < N_PEOPLE; who++)
-        for (int p = 0; p < N_PANES && people[who].is_connected; p++) {
+        for (int p = 0; p < N_PANES && meeting.seats[who].is_connected; p++) {
             struct stream *stream = member_of(who)->views[p].stream;
             if (!stream)
                 continue;
@@ -425,7 +295,7 @@ static void check_drawn(void)
                     (!json_equal(fake.requests[i].view, stream->view) ||
                      (fake.requests[i].scene && !json_equal(fake.requests[i].scene, scene_of(stream)))))
                     differs("%d's pane %d was drawn otherwise", who, p);
-            if (people[who].panes[p].is_following && who != presenter &&
+            if (meeting.seats[who].panes[p].is_following && who != meeting.presenter &&
                 !json_equal(people[who].heard[p], stream->view))
                 differs("%d follows with pane %d, and was told another document", who, p);
         }
@@ -463,12 +333,12 @@ static void enter(int who)
     fake_say(&fake, &person->page, "{\"type\":\"hello\",\"protocol\":1,\"member\":\"%s\",\"secret\":\"%s\"}",
              person->id, person->secret);
     cJSON *welcome = fake_heard(&person->page, "welcome");
-    if (person->is_member != (strcmp(person->id, json_text(welcome, "member")) == 0))
+    if (meeting.seats[who].is_member != (strcmp(person->id, json_text(welcome, "member")) == 0))
         differs("%d came back as %s, was %s", who, json_text(welcome, "member"), person->id);
     (void)snprintf(person->id, sizeof person->id, "%s", json_text(welcome, "member"));
     (void)snprintf(person->secret, sizeof person->secret, "%s", json_text(welcome, "secret"));
     cJSON_Delete(welcome);
-    person->is_member = person->is_connected = true;
+    meeting.seats[who].is_member = meeting.seats[who].is_connected = true;
 }
 
 static void lose_link(int who)
@@ -476,9 +346,8 @@ static void lose_link(int who)
     struct person *person = &people[who];
     room_connection_closed(fake.room, &person->page, fake.now_us);
     forget_page(person);
-    person->is_connected = false;
-    person->away_us = (double)fake.now_us;
-    tick();
+    meeting_lose(&meeting, who, (double)fake.now_us);
+    fake.again_us = room_tick(fake.room, fake.now_us);
 }
 
 static void any_size(int size_px[2])
@@ -492,7 +361,7 @@ static struct shown any_document(int kind, char text[300])
 {
     int size_px[2];
     any_size(size_px);
-    struct shown shown = plain(size_px);
+    struct shown shown = plain_view(size_px);
     shown.target_x_mm = any(100);
     shown.height_mm = 50 + any(100);
     shown.is_parallel = any(2);
@@ -516,35 +385,34 @@ static struct shown any_document(int kind, char text[300])
 static void open_pane(int who, int p)
 {
     char text[300];
-    struct pane *pane = &people[who].panes[p];
+    struct pane *pane = &meeting.seats[who].panes[p];
     int kind = any(N_KINDS);
     bool follow = any(4) != 0;
     struct shown document = any_document(kind, text);
-    *pane = (struct pane){ .is_open = true, .kind = kind, .own = document };
-    memcpy(pane->own_px, document.size_px, sizeof pane->own_px);
+    *pane = own_pane(kind, document);
     if (follow)
-        join(who, pane, document);
+        meeting_join(&meeting, who, pane, document);
     say(who, "{\"type\":\"view.open\",\"view\":%d,\"document\":%s,\"follow\":%s}", p + 1, text,
         follow ? "true" : "false");
 }
 
 static void resize(int who, int p)
 {
-    struct pane *pane = &people[who].panes[p];
+    struct pane *pane = &meeting.seats[who].panes[p];
     int size_px[2];
     any_size(size_px);
     memcpy(pane->own_px, size_px, sizeof size_px);
-    if (!pane->is_following || who == presenter)
-        memcpy(shown_in(pane)->size_px, size_px, sizeof size_px);
+    if (!pane->is_following || who == meeting.presenter)
+        memcpy(shown_in(&meeting, pane)->size_px, size_px, sizeof size_px);
     say(who, "{\"type\":\"view.patch\",\"view\":%d,\"patch\":{\"size_px\":[%d,%d]}}", p + 1, size_px[0], size_px[1]);
 }
 
 static void move(int who, int p)
 {
-    struct pane *pane = &people[who].panes[p];
-    struct shown *shown = shown_in(pane);
+    struct pane *pane = &meeting.seats[who].panes[p];
+    struct shown *shown = shown_in(&meeting, pane);
     int value = any(60);
-    bool may = !pane->is_following || who == presenter;
+    bool may = !pane->is_following || who == meeting.presenter;
     const char *patch[] = { "\"camera\":{\"target_mm\":[%d,0,0]}", "\"camera\":{\"height_mm\":%d}",
                             "\"override\":{\"image\":{\"slices\":{\"axial\":{\"position_mm\":%d}}}}",
                             "\"size_px\":[333,222],\"camera\":{\"height_mm\":%d}" };
@@ -566,64 +434,56 @@ static void move(int who, int p)
 
 static void close_pane(int who, int p)
 {
-    people[who].panes[p] = (struct pane){ 0 };
+    meeting.seats[who].panes[p] = (struct pane){ 0 };
     say(who, "{\"type\":\"view.close\",\"view\":%d}", p + 1);
 }
 
 /* Half of the time with a document for pane p. */
 static void leave(int who, int p)
 {
-    struct person *person = &people[who];
+    struct pane *panes = meeting.seats[who].panes;
     char text[300], views[400] = "";
-    bool has_document = person->panes[p].is_open && any(2);
+    bool has_document = panes[p].is_open && any(2);
     int kind = has_document ? any(N_KINDS) : 0;
     struct shown document = { 0 };
     if (has_document) {
         document = any_document(kind, text);
         (void)snprintf(views, sizeof views, ",\"views\":[{\"view\":%d,\"document\":%s}]", p + 1, text);
     }
-    expected = who == presenter ? "/problems/not-presenter" : NULL;
-    for (int i = 0; i < N_PANES && !expected; i++) {
-        struct pane *pane = &person->panes[i];
-        if (!pane->is_open)
-            continue;
-        if (has_document && i == p) {
-            pane->kind = kind;
-            pane->own = document;
-            memcpy(pane->own_px, document.size_px, sizeof pane->own_px);
-        } else if (pane->is_following) {
-            pane->own = copy_for(pane);
-        }
-        pane->is_following = false;
-    }
+    expected = who == meeting.presenter ? "/problems/not-presenter" : NULL;
+    for (int i = 0; i < N_PANES && !expected; i++)
+        if (has_document && i == p)
+            panes[i] = own_pane(kind, document);
+        else if (panes[i].is_following)
+            meeting_leave(&meeting, &panes[i]);
     say(who, "{\"type\":\"follow\",\"follow\":false%s}", views);
 }
 
 static void return_to_all(int who)
 {
-    follow_all(who);
+    meeting_follow(&meeting, who);
     say(who, "{\"type\":\"follow\",\"follow\":true}");
 }
 
 static void take_over(int who)
 {
-    expected = presenter >= 0 && presenter != who ? "/problems/not-presenter" : NULL;
+    expected = meeting.presenter >= 0 && meeting.presenter != who ? "/problems/not-presenter" : NULL;
     if (!expected) {
-        presenter = who;
-        share(who);
+        meeting.presenter = who;
+        meeting_share(&meeting, who);
     }
     say(who, "{\"type\":\"present\"}");
 }
 
 static void call_back(int who)
 {
-    expected = presenter == who ? NULL : "/problems/not-presenter";
+    expected = meeting.presenter == who ? NULL : "/problems/not-presenter";
     if (!expected) {
-        share(who);
+        meeting_share(&meeting, who);
         for (int m = 0; m < fake.room->n_members; m++) /* of several who show a new kind, the room's first makes it */
             for (int i = 0; i < N_PEOPLE; i++)
-                if (i != who && people[i].is_connected && member_of(i) == fake.room->members[m])
-                    follow_all(i);
+                if (i != who && meeting.seats[i].is_connected && member_of(i) == fake.room->members[m])
+                    meeting_follow(&meeting, i);
     }
     say(who, "{\"type\":\"show.everyone\"}");
 }
@@ -631,9 +491,9 @@ static void call_back(int who)
 static void change_scene(int who)
 {
     int value = any(80), i = any(N_SLICES);
-    expected = presenter == who ? NULL : "/problems/not-presenter";
+    expected = meeting.presenter == who ? NULL : "/problems/not-presenter";
     if (!expected)
-        scene_slices_mm[i] = value;
+        meeting.slices_mm[i] = value;
     say(who, "{\"type\":\"scene.patch\",\"patch\":{\"image\":{\"slices\":{\"%s\":{\"position_mm\":%d}}}}}",
         slice_words[i], value);
 }
@@ -642,14 +502,14 @@ static void change_scene(int who)
 static int act_of_somebody(int who, int p)
 {
     expected = NULL;
-    if (!people[who].is_connected && any(3) == 0) {
+    if (!meeting.seats[who].is_connected && any(3) == 0) {
         enter(who);
-        settle_presenter();
+        meeting_settle(&meeting, (double)fake.now_us);
         return who;
     }
-    if (!people[who].is_connected) /* it only takes time */
+    if (!meeting.seats[who].is_connected) /* it only takes time */
         who = -1;
-    bool is_open = who >= 0 && people[who].panes[p].is_open;
+    bool is_open = who >= 0 && meeting.seats[who].panes[p].is_open;
     switch (who >= 0 ? any(14) : 1) {
     case 0:
         if (any(2) == 0)
@@ -680,23 +540,20 @@ static int act_of_somebody(int who, int p)
         break;
     default: open_pane(who, p); break;
     }
-    settle_presenter();
+    meeting_settle(&meeting, (double)fake.now_us);
     return who;
 }
 
 static void play(int seed)
 {
-    memset(people, 0, sizeof people);
-    memset(shared, 0, sizeof shared);
-    random_state = (uint64_t)seed * 0x9e3779b97f4a7c15u;
-    presenter = -1;
     const int n_people = 1 + seed % N_PEOPLE;
+    memset(people, 0, sizeof people);
+    random_state = (uint64_t)seed * 0x9e3779b97f4a7c15u;
+    meeting_start(&meeting, 0.4); /* the scalp's opacity in fake_plan_ready; all slices at the default, 0 */
     fake_room_start(&fake, N_PEOPLE + 1);
     fake_plan_ready(&fake, true);
-    memset(scene_slices_mm, 0, sizeof scene_slices_mm); /* the defaults of proto/scene.json, and of fake_plan_ready */
-    scene_opacity = 0.4;
     for (int step = 0; step < N_STEPS; step++) {
-        int before = presenter;
+        int before = meeting.presenter;
         (void)snprintf(act, sizeof act, "seed %d, step %d (presents: %d):", seed, step, before);
         remember_pictures();
         int actor = act_of_somebody(any(n_people), any(N_PANES));
@@ -706,18 +563,15 @@ static void play(int seed)
             read_page(&people[who]);
         if (any(4) == 0 || fake.n_requests > 900) {
             check_drawn();
-            settle_presenter(); /* drawing takes time */
+            meeting_settle(&meeting, (double)fake.now_us); /* drawing takes time */
             check();
         }
     }
+    for (int who = 0; who < N_PEOPLE; who++)
+        if (meeting.seats[who].is_connected)
+            lose_link(who);
+    remember_pictures(); /* of nobody: frees them */
     fake_room_end(&fake);
-    for (int who = 0; who < N_PEOPLE; who++)
-        forget_page(&people[who]);
-    for (int who = 0; who < N_PEOPLE; who++)
-        for (int p = 0; p < N_PANES; p++) {
-            free(pictures[who][p]);
-            pictures[who][p] = NULL;
-        }
 }
 
 static void in_random_meetings_nobodys_picture_moves_but_by_the_presenter_or_themselves(void **state)
