@@ -206,6 +206,21 @@ test('a socket that opens and then says nothing is given up after 8 s', () => {
   assert.ok(told.filter(([type]) => type === 'lost').length >= 2);
 });
 
+test('connections that end soon after their welcome get more time, so that one large picture can come through', () => {
+  const { sockets, told, advance, silence } = runningConnection();
+  silence(true);
+  advance(7000); // a ping after at most 1 s, and 5 s
+  assert.equal(told.at(-1)[0], 'lost');
+  silence(false);
+  sockets.at(-1).dispatchEvent(new Event('open'));
+  told.length = 0;
+  silence(true);
+  advance(8000);
+  assert.deepEqual(told.map(([type]) => type), ['quiet']);
+  advance(4000); // 1 s and 10 s
+  assert.deepEqual(told.map(([type]) => type), ['quiet', 'lost']);
+});
+
 test('a page that slept is not a lost connection', () => {
   const { sockets, told, advance, silence, sleep } = runningConnection();
   advance(900);

@@ -135,13 +135,14 @@ for (const [what, change, state] of [
   ['an older scene for 1.1 s', { header: { ...still, scene_revision: 2 }, revisionAt: 8900 }, 'stale'],
   ['a view that cannot be drawn as it is', { header: still, refusal: 'the camera looks at itself' }, 'stale'],
   ['a restarting renderer', { header: still, renderer: 'restarting' }, 'stale'],
-  ['a link that is quiet for 3 s', { header: still, link: { state: 'open', retryAt: 0, quietSince: 7000 } }, 'link'],
+  ['a link that is quiet for 3 s', { header: still, link: { state: 'open', retryAt: 0, quietSince: 7000, dueSince: 7500 } }, 'link'],
+  ['an answer that is due for 5 s', { header: still, link: { state: 'open', retryAt: 0, quietSince: 4500, dueSince: 5000 } }, 'disconnected'],
   ['a lost connection', { header: still, link: { state: 'lost', retryAt: 12000 } }, 'disconnected'],
 ])
   test(`badge of ${what}`, () => assert.equal(fidelity({ ...facts, ...change })?.state, state));
 
 test('the age of a quiet link counts', () => {
-  const link = { state: 'open', retryAt: 0, quietSince: 7000 };
+  const link = { state: 'open', retryAt: 0, quietSince: 7000, dueSince: 7500 };
   assert.deepEqual([9200, 10000, 11900].map((now) => fidelity({ ...facts, link, now }).text), ['Link? 2 s', 'Link? 3 s', 'Link? 4 s']);
 });
 

@@ -9,6 +9,8 @@ const pingMs = 1000;
 const hurryMs = 250; // a change is followed by a ping, at most this often, so that an answer is due
 const quietMs = 2000; // an answer that is due for so long: "quiet"
 const lostMs = 5000; // ... the connection counts as lost
+const mostLostMs = 40000;
+const shortMs = 60000; // a connection that was lost sooner after its welcome
 const welcomeMs = 8000; // a new connection without welcome for so long is given up
 const changes = new Set(['view.patch', 'scene.patch', 'follow']);
 
@@ -22,7 +24,7 @@ class ConnectionEvent extends Event {
 
 /**
  * Dispatches "message" and "frame" with what was received as detail, "up", "lost" {retryMs} and "ended" {reason}; "quiet"
- * {since: time of the last sign of the server} when an answer is overdue, and "heard" when one came after all.
+ * {since: time of the last sign of the server, dueSince} when an answer is overdue, and "heard" when one came after all.
  */
 export class Connection extends EventTarget {
   #url;
@@ -42,6 +44,8 @@ export class Connection extends EventTarget {
   #dueSince = null; // time of the oldest ping after which nothing was heard
   #beatAt = 0;
   #isQuiet = false;
+  #welcomeAt = 0;
+  #lostMs = lostMs; // grows while connections are short: a slow link may only be busy with one large picture
   #isEnded = false;
 
   /**
@@ -146,7 +150,7 @@ export class Connection extends EventTarget {
       this.#identity = { name: message.name, member: message.member, secret: message.secret };
       this.#tell('up');
       this.#clock.clearTimeout(this.#welcomeTimer);
-      this.#beatAt = this.#clock.now();
+      this.#beatAt = this.#welcomeAt = this.#clock.now();
       this.#ping();
       this.#beat();
     }
@@ -172,10 +176,13 @@ export class Connection extends EventTarget {
     if (now - this.#beatAt > 4 * beatMs && this.#dueSince !== null) this.#dueSince = now;
     this.#beatAt = now;
     const dueMs = this.#dueSince === null ? 0 : now - this.#dueSince;
-    if (dueMs >= lostMs) return void this.#abandon(this.#socket, true);
+    if (dueMs >= this.#lostMs) {
+      this.#lostMs = now - this.#welcomeAt < shortMs ? Math.min(2 * this.#lostMs, mostLostMs) : lostMs;
+      return void this.#abandon(this.#socket, true);
+    }
     if (dueMs >= quietMs && !this.#isQuiet) {
       this.#isQuiet = true;
-      this.#tell('quiet', { since: this.#heardAt });
+      this.#tell('quiet', { since: this.#heardAt, dueSince: this.#dueSince });
     }
     if (now - this.#pingedAt >= pingMs) this.#ping();
     this.#beatTimer = this.#clock.setTimeout(() => this.#beat(), beatMs);

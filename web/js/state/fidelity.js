@@ -1,6 +1,7 @@
 // The fidelity of the picture on the screen: one of six states, each with its words. Pure functions.
 
 const staleMs = 1000;
+const deadMs = 5000; // an answer that is due for so long
 /** Best to worst. */
 export const order = ['full', 'live', 'reduced', 'stale', 'link', 'disconnected'];
 
@@ -16,7 +17,7 @@ function why(header) {
 
 /**
  * @param {object} facts
- * @param {{state: string, retryAt: number, quietSince: number}} facts.link
+ * @param {{state: string, retryAt: number, quietSince: number, dueSince: number}} facts.link
  * @param {string} facts.renderer state of the renderer
  * @param {import('../wire/frame.js').FrameHeader|null} facts.header of the picture on the screen
  * @param {number} facts.staleSince @param {number} facts.revision @param {number} facts.revisionAt
@@ -30,6 +31,7 @@ export function fidelity({ link, renderer, header, staleSince, revision, revisio
     return badge('disconnected', seconds ? `Disconnected, trying again in ${seconds} s` : 'Disconnected, trying again');
   }
   if (link.state === 'ended') return badge('disconnected', 'Disconnected', link.reason);
+  if (link.quietSince && now - link.dueSince >= deadMs) return badge('disconnected', 'Disconnected', 'The server has not answered for 5 s. What you change is kept and sent.');
   if (link.quietSince) return badge('link', `Link? ${Math.floor((now - link.quietSince) / 1000)} s`, 'Nothing was heard from the server for so long. What you change is kept and sent.');
   if (!header) return null;
   if (renderer === 'failed' || renderer === 'closed') return badge('stale', 'Stale', 'The plan is not loaded; this is the last picture of it.');

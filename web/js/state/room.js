@@ -36,8 +36,8 @@ export class RoomState {
     /** @type {(of: 'scene'|number, patch: object, document: object) => void} told each change of this person before it is applied */
     this.recorder = () => {};
 
-    // connecting | open | lost | ended; quietSince: time of the last sign of the server when one is overdue, else 0
-    this.link = signal({ state: 'connecting', retryAt: 0, quietSince: 0, reason: '' });
+    // connecting | open | lost | ended; when an answer is overdue, quietSince: time of the last sign of the server; dueSince: of the answer
+    this.link = signal({ state: 'connecting', retryAt: 0, quietSince: 0, dueSince: 0, reason: '' });
     this.member = signal('');
     this.members = signal([]);
     this.planId = signal('');
@@ -62,7 +62,7 @@ export class RoomState {
 
     connection.addEventListener('message', (event) => this.#take(event.detail));
     connection.addEventListener('lost', (event) => this.#lose(event.detail.retryMs));
-    connection.addEventListener('quiet', (event) => this.#setLink('open', { quietSince: event.detail.since }));
+    connection.addEventListener('quiet', (event) => this.#setLink('open', { quietSince: event.detail.since, dueSince: event.detail.dueSince }));
     connection.addEventListener('heard', () => this.#setLink('open'));
     connection.addEventListener('ended', (event) => this.#setLink('ended', { reason: event.detail.reason }));
   }
@@ -274,7 +274,7 @@ export class RoomState {
   }
 
   #setLink(state, more = {}) {
-    this.link.value = { state, retryAt: 0, quietSince: 0, reason: '', ...more };
+    this.link.value = { state, retryAt: 0, quietSince: 0, dueSince: 0, reason: '', ...more };
   }
 
   #setRevision(revision) {
